@@ -1,0 +1,18 @@
+# Every third-party library the build uses, in one place. setup.sh installs them.
+find_package(Threads REQUIRED)
+find_package(TBB REQUIRED)
+find_package(Eigen3 3.3 REQUIRED NO_MODULE)
+find_package(glm REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(embree 3 QUIET)
+if(NOT embree_FOUND)
+  find_package(embree 4 REQUIRED)
+endif()
+find_package(spdlog REQUIRED)
+find_package(Vulkan REQUIRED) # headers only: the loader is opened at run time, so that a machine without one still has Embree
+find_path(VANTAGE_VOLK_INCLUDE_DIR volk.h PATH_SUFFIXES Volk volk REQUIRED)
+find_path(VANTAGE_TINYGLTF_INCLUDE_DIR tiny_gltf.h REQUIRED)
+find_path(VANTAGE_STB_INCLUDE_DIR stb_image.h PATH_SUFFIXES stb REQUIRED)
+find_program(VANTAGE_GLSLANG NAMES glslangValidator glslang REQUIRED)
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(cairo REQUIRED IMPORTED_TARGET cairo)

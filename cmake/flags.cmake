@@ -1,0 +1,12 @@
+# Compile flags of every target, in one interface library that is never exported.
+add_library(vantage_flags INTERFACE)
+target_compile_options(
+  vantage_flags
+  INTERFACE -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Wold-style-cast
+            # Shader and host must round alike: a contracted multiply-add would move a point across a voxel face.
+            -ffp-contract=off
+            $<$<BOOL:${VANTAGE_WARNINGS_AS_ERRORS}>:-Werror>)
+if(VANTAGE_SANITIZE)
+  target_compile_options(vantage_flags INTERFACE -fsanitize=${VANTAGE_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=undefined)
+  target_link_options(vantage_flags INTERFACE -fsanitize=${VANTAGE_SANITIZE})
+endif()

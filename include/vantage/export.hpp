@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Files that vantage writes: point clouds, coverage cartography, tables and pictures. Every file appears whole or not at all.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "vantage/objective.hpp"
+#include "vantage/placement.hpp"
+#include "vantage/planner.hpp"
+#include "vantage/scene.hpp"
+#include "vantage/simulator.hpp"
+
+namespace vantage {
+
+/// Streams a point cloud to a file in constant memory. The format follows the extension: .ply (binary little endian) or .las (1.4).
+/// The file takes its name at close(); destroyed before that, nothing is left.
+class PointCloudWriter {
+ public:
+  /// `outputs` are the ScanOutput bits that chunks will carry; position is required.
+  /// Throws Error: io, invalid_argument (unknown extension).
+  PointCloudWriter(const std::filesystem::path& file, const Vec3& origin, std::uint32_t outputs);
+  PointCloudWriter(PointCloudWriter&&) noexcept;
+  PointCloudWriter& operator=(PointCloudWriter&&) noexcept;
+  ~PointCloudWriter();
+  void write(const ScanChunk& chunk, std::uint16_t station);  ///< Only rays that hit become points.
+  void close();
+  std::uint64_t points() const noexcept;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// The coverage cartography (figures 7b, 11, 17 of the method): every surveyed voxel as a coloured point, from red (no point) over
+/// yellow to green (goal reached), with its ratio, count and station mask. Binary PLY, survey frame.
+void write_coverage_ply(const std::filesystem::path& file, const Simulator& simulator, const VoxelField& field);
+
+/// Square matrix with a header line; row and column i are station i.
+void write_overlap_csv(const std::filesystem::path& file, const OverlapMatrix& overlap);
+
+/// Stations of one network as CSV: `station,x,y,z,u,v,status`. Survey frame, head positions.
+void write_stations_csv(const std::filesystem::path& file, std::span<const PlacedStation> stations);
+
+/// What `read_stations_csv` found on one line: x,y,z or u,v or both.
+struct StationRow {
+  std::optional<Vec3> position;
+  std::optional<Uv> uv;
+};
+/// Reads a CSV with a header naming x,y,z and/or u,v (any order, other columns ignored). Throws Error: io, malformed_file with the line.
+std::vector<StationRow> read_stations_csv(const std::filesystem::path& file);
+
+/// Everything about a run that its results must name: version, engine, device, seed, scene, every parameter. JSON text.
+std::string run_parameters_json(const Simulator& simulator, const PlanConfig* plan = nullptr);
+
+/// `front.json`: keys problem, objectives, hypervolume, evaluations, stop_reason, front, seconds, engine, device, seed, parameters, version.
+std::string front_json(const PlanResult& result, const PlanConfig& config, const Simulator& simulator);
+void write_front_csv(const std::filesystem::path& file, const PlanResult& result, const PlanConfig& config);
+
+/// Pictures, drawn as .png or .svg by extension.
+void draw_front(const std::filesystem::path& file, const PlanResult& result, const PlanConfig& config);
+void draw_hypervolume(const std::filesystem::path& file, const PlanResult& result, const PlanConfig& config);
+/// The site from above in shaded relief, the search area, the stations and the links between them, as wide as their overlap is large.
+void draw_plan_view(const std::filesystem::path& file, const Scene& scene, const SearchArea& area,
+                    std::span<const PlacedStation> stations, const OverlapMatrix& overlap, const std::string& title);
+
+/// Writes a whole result folder: front.csv, front.json, history.csv, and for the chosen compromise coverage.ply, overlap.csv, stations.csv,
+/// and the pictures front.png, hypervolume.png, plan.png (each also as .svg). Returns the index of the chosen entry.
+std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& result, const PlanConfig& config, Simulator& simulator,
+                       const SearchArea& area);
+
+/// The entry of the front with the largest product of its objectives' gains: the compromise shown where one must be chosen.
+std::size_t compromise(const PlanResult& result, Problem problem);
+
+/// Writes text to a file atomically. Throws Error io.
+void write_text(const std::filesystem::path& file, const std::string& text);
+
+}  // namespace vantage

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Where a scanner may stand: the search area in (u, v) and the security volume (sections 4.2 and 4.3).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "vantage/scene.hpp"
+#include "vantage/types.hpp"
+
+namespace vantage {
+
+/// How a search area is derived where the scene marks none: upward, gentle and clear surfaces.
+struct WalkableOptions {
+  Angle max_slope = Angle::degrees(35);  ///< Between a triangle's normal and up.
+  double headroom_m = 2.0;               ///< Clear height needed above the surface.
+  double min_area_m2 = 0.25;             ///< Connected parts smaller than this are left out.
+};
+
+/// A triangle mesh with (u, v) per vertex, survey frame. What `SearchArea` is built from and can hand out for drawing.
+struct SearchMesh {
+  std::vector<Vec3> positions;
+  std::vector<Uv> uvs;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+/// The search area: maps (u, v) to the ground through a quadtree (section 4.2).
+/// Immutable; copies share storage; safe to read from any thread.
+class SearchArea {
+ public:
+  /// The scene's marked search area; where it has none, or none with (u, v), charts in true proportion are made.
+  /// Throws Error: invalid_argument when nothing is walkable, with what to do.
+  static SearchArea build(const Scene& scene, const WalkableOptions& options = {});
+  static SearchArea from_mesh(SearchMesh mesh);
+
+  Uv uv_min() const noexcept;
+  Uv uv_max() const noexcept;
+  bool derived() const noexcept;      ///< True: made from walkable surfaces.
+  const SearchMesh& mesh() const noexcept;
+  /// Ground point under (u, v), survey frame; empty in a hole. Points on an edge or a vertex are always found.
+  std::optional<Vec3> locate(Uv uv) const;
+  /// (u, v) of the point of the search area straight above or below `ground`, the nearest in height; empty outside.
+  std::optional<Uv> project(const Vec3& ground) const;
+
+ private:
+  struct Impl;
+  std::shared_ptr<const Impl> impl_;
+};
+
+/// The security volume of section 4.3: two spheres above the ground.
+struct SecurityVolume {
+  double lower_m = 0.6;    ///< h1: height of the lower sphere's centre above the ground.
+  double upper_m = 1.35;   ///< h2.
+  double radius_m = 0.5;   ///< r; 0 switches the check off.
+};
+
+/// Distance queries against all surveyed and blocking meshes. Safe to use from any thread.
+class ClashChecker {
+ public:
+  /// Throws Error invalid_argument where radius_m >= lower_m > 0 (the ground itself would clash) or a value is negative.
+  ClashChecker(const Scene& scene, const SecurityVolume& volume = {});
+  /// Whether one of the spheres above `ground` (survey frame) comes closer to a mesh than its radius.
+  bool clashes(const Vec3& ground) const;
+  /// Distance from a point to the nearest mesh, at most `limit_m`.
+  double distance(const Vec3& point, double limit_m) const;
+
+ private:
+  struct Impl;
+  std::shared_ptr<const Impl> impl_;
+};
+
+}  // namespace vantage

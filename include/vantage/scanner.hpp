@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The scanner: geometry of its ray pattern, range, and noise.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "vantage/types.hpp"
+
+namespace vantage {
+
+/// Range noise as a maker states it: one standard deviation per (reflectivity, distance). Table 1 of the method is one.
+struct NoiseTable {
+  std::vector<double> distances_m = {};     ///< Columns, ascending.
+  std::vector<double> reflectivities = {};  ///< Rows, ascending, in [0, 1].
+  std::vector<double> sigma_m = {};         ///< Row-major, reflectivities × distances. Empty: no noise.
+  bool empty() const { return sigma_m.empty(); }
+};
+
+/// A terrestrial laser scanner (section 3.2). Rays: floor(H/Δh) azimuths times floor(V/2/Δv) zeniths; both floors guarded by 1e-9.
+/// Ray (i, j): zenith (i + ½)·Δv, azimuth heading − H/2 + (j + ½)·Δh, direction (sin θ cos φ, sin θ sin φ, cos θ); its index is
+/// i·columns + j everywhere.
+struct Scanner {
+  std::string name = "custom";
+  Angle heading = Angle::degrees(0);              ///< Azimuth of the middle of the horizontal sweep, from +X towards +Y.
+  Angle horizontal_angle = Angle::degrees(360);   ///< H, (0°, 360°].
+  Angle vertical_angle = Angle::degrees(300);     ///< V, (0°, 360°]: the mirror's sweep over both sides, so zeniths 0..V/2.
+  Angle azimuth_step = Angle::degrees(0.1);       ///< Δh.
+  Angle zenith_step = Angle::degrees(0.1);        ///< Δv.
+  double height_m = 1.85;                         ///< Of the scanner's head above the search area.
+  double min_range_m = 0.1;                       ///< d_min.
+  double max_range_m = 130.0;                     ///< d_max.
+  NoiseTable noise = {};                          ///< Empty: exact ranges.
+
+  std::uint32_t rows() const;     ///< Zenith steps.
+  std::uint32_t columns() const;  ///< Azimuth steps.
+  std::uint64_t rays() const { return std::uint64_t{rows()} * columns(); }
+  /// Throws Error invalid_argument with the member and its value.
+  void check() const;
+};
+
+/// Table 1 of the method: Leica RTC360, single measurement.
+NoiseTable rtc360_noise();
+
+/// One entry of a presets file.
+struct ScannerPreset {
+  std::string key;      ///< "rtc360"
+  std::string summary;  ///< One line for `vantage info`.
+};
+
+/// A scanner from a presets file (data/scanners.json) by "key" or "key@setting", e.g. "rtc360@6mm".
+/// Throws Error: io, malformed_file, invalid_argument (lists what exists).
+Scanner load_scanner(const std::filesystem::path& presets, const std::string& name);
+std::vector<ScannerPreset> list_scanners(const std::filesystem::path& presets);
+
+/// Where the installed or built-in presets file is. Environment variable VANTAGE_DATA overrides the folder.
+std::filesystem::path default_presets_file();
+
+}  // namespace vantage

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The 3D model of a site: what is surveyed, what blocks, and where a scanner may stand.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "vantage/types.hpp"
+
+namespace vantage {
+
+struct SceneData;  // internal: flat arrays in the local frame, see src/scene/scene_data.hpp
+
+/// What a mesh is for (section 4.1 of the method).
+enum class Role {
+  surveyed,  ///< Hit by rays; its points count towards coverage and overlap.
+  blocking,  ///< Hit by rays and kept clear of by stations; its points do not count.
+  search,    ///< Where stations may stand. Never hit by rays.
+  ignore,    ///< Left out.
+};
+
+/// One mesh of the scene: a glTF primitive as one node places it.
+struct MeshInfo {
+  std::string name;              ///< The node's name, or the mesh's where the node has none.
+  Role role = Role::surveyed;    ///< `surveyed` or `blocking`; the others are no meshes of the loaded scene.
+  double diffuse = 0.5;          ///< Diffuse reflection coefficient R of its material, in [0, 1].
+  std::uint32_t triangle_count = 0;
+};
+
+/// How `Scene::load` reads a file. Patterns are shell globs (`*`, `?`) on node names; a node hands its role down to its children.
+/// Precedence: pattern, then extras on node, mesh, material. Once any mesh has a role, meshes without one block.
+struct SceneOptions {
+  std::vector<std::string> surveyed = {};  ///< Nodes that are surveyed.
+  std::vector<std::string> blocking = {};  ///< Nodes that only block.
+  std::vector<std::string> search = {};    ///< Nodes that form the search area.
+  std::vector<std::string> ignore = {};    ///< Nodes that are left out.
+  std::optional<std::size_t> scene_index = std::nullopt;  ///< Which glTF scene; empty: the file's default.
+  double default_diffuse = 0.5;  ///< R where neither extras nor a base colour give one.
+};
+
+/// Immutable triangle scene. Copies share storage; safe to read from any thread.
+class Scene {
+ public:
+  /// Loads a .glb or .gltf file. Y up becomes Z up: (x, y, z) ↦ (x, −z, y).
+  /// Throws Error: io, malformed_file (bad reference, unknown required extension, nothing to survey), invalid_argument (a pattern that
+  /// matches nothing).
+  static Scene load(const std::filesystem::path& file, const SceneOptions& options = {});
+
+  /// One surveyed mesh from an indexed triangle list in the survey frame.
+  static Scene from_triangles(std::span<const Vec3> positions, std::span<const std::array<std::uint32_t, 3>> triangles,
+                              double diffuse = 0.5);
+
+  /// Bounds of all surveyed and blocking meshes, survey frame.
+  Box bounds() const noexcept;
+  std::span<const MeshInfo> meshes() const noexcept;
+  std::size_t triangle_count() const noexcept;
+  /// Whether the file marks a search area; where it does not, one is derived from walkable surfaces.
+  bool has_search_area() const noexcept;
+  /// Human-readable notes of the load: what was dropped or turned, precision lost, and how much of it.
+  std::span<const std::string> notes() const noexcept;
+  /// The `vantage` object of the file's `asset.extras` as JSON text ("{}" where absent): default parameters of built-in scenes.
+  const std::string& defaults_json() const noexcept;
+
+  /// Internal storage, for the library's own modules.
+  const SceneData& data() const noexcept { return *data_; }
+  explicit Scene(std::shared_ptr<const SceneData> data) : data_(std::move(data)) {}
+
+ private:
+  std::shared_ptr<const SceneData> data_;
+};
+
+/// Names of the scenes that `write_built_in_scene` can make.
+std::span<const std::string> built_in_scene_names() noexcept;
+
+/// Writes a built-in scene as GLB: `three-walls`, `four-walls` or `industrial`. `triangles` is the wished number for `industrial`
+/// (20 000 and up; met within 2 %), ignored by the others. The same arguments give the same bytes.
+/// Throws Error: invalid_argument, io.
+void write_built_in_scene(const std::string& name, std::size_t triangles, const std::filesystem::path& file);
+
+}  // namespace vantage

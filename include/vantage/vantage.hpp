@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+/// All of vantage.
+#pragma once
+
+#include "vantage/error.hpp"
+#include "vantage/export.hpp"
+#include "vantage/objective.hpp"
+#include "vantage/optimiser.hpp"
+#include "vantage/placement.hpp"
+#include "vantage/planner.hpp"
+#include "vantage/progress.hpp"
+#include "vantage/scanner.hpp"
+#include "vantage/scene.hpp"
+#include "vantage/simulator.hpp"
+#include "vantage/types.hpp"
+#include "vantage/version.hpp"

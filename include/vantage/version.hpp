@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace vantage {
+
+/// Version of the library, "major.minor.patch".
+const char* version() noexcept;
+
+}  // namespace vantage

@@ -1,0 +1,102 @@
+#!/usr/bin/env bash
+# Prepares a machine for vantage and builds it: packages, a Mesa whose software Vulkan device has ray queries, configure, build.
+# Safe to run again: what is already there is left alone, and an up-to-date build takes seconds.
+#
+#   ./setup.sh            the program `vantage` and its library, in build/release
+#   ./setup.sh --tests    the same, with the tests, the benchmarks and the examples
+#   ./setup.sh --packages packages only, nothing is built
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")"
+
+readonly mesa_minimum=24.1 # the first release whose lavapipe has VK_KHR_ray_query
+readonly packages=(
+  g++ cmake ninja-build git ca-certificates
+  libvulkan-dev libvulkan-volk-dev libvulkan1 glslang-tools spirv-tools spirv-headers
+  libembree-dev libtbb-dev libeigen3-dev libglm-dev libtinygltf-dev nlohmann-json3-dev
+  libstb-dev libcli11-dev libspdlog-dev libcairo2-dev
+)
+readonly test_packages=(libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev vulkan-validationlayers)
+
+mode=program
+case "${1-}" in
+  "") ;;
+  --tests) mode=tests ;;
+  --packages) mode=packages ;;
+  *) echo "usage: $0 [--tests | --packages]" >&2; exit 2 ;;
+esac
+
+say() { printf 'setup: %s\n' "$*" >&2; }
+installed() { [ "$(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }
+version_of() { dpkg-query -W -f '${Version}' "$1" 2>/dev/null || true; }
+candidate_of() { apt-cache policy "$1" 2>/dev/null | sed -n 's/^ *Candidate: //p'; }
+
+if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
+  say "this script installs packages with apt, which this system lacks."
+  say "Install a C++20 compiler, CMake 3.25, Ninja, glslang and the -dev packages listed in $0, then: cmake --preset release"
+  exit 1
+fi
+
+wanted=("${packages[@]}")
+[ "$mode" = program ] || wanted+=("${test_packages[@]}")
+missing=()
+for package in "${wanted[@]}"; do installed "$package" || missing+=("$package"); done
+
+mesa=$(version_of mesa-vulkan-drivers)
+mesa_needed=no
+if ! installed mesa-vulkan-drivers || dpkg --compare-versions "$mesa" lt "$mesa_minimum"; then mesa_needed=yes; fi
+
+if [ ${#missing[@]} -gt 0 ] || [ "$mesa_needed" = yes ]; then
+  if [ "$(id -u)" -ne 0 ]; then
+    say "root is needed to install what is missing:"
+    [ ${#missing[@]} -eq 0 ] || say "  packages: ${missing[*]}"
+    [ "$mesa_needed" = no ] || say "  mesa-vulkan-drivers >= $mesa_minimum (here: ${mesa:-none}); Debian 12 has it in backports"
+    say "Run this script once as root (sudo $0), then again as yourself."
+    exit 1
+  fi
+  export DEBIAN_FRONTEND=noninteractive
+  say "updating the package lists"
+  apt-get update -qq
+  if [ ${#missing[@]} -gt 0 ]; then
+    say "installing ${missing[*]}"
+    apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
+  fi
+  if [ "$mesa_needed" = yes ]; then
+    target=()
+    candidate=$(candidate_of mesa-vulkan-drivers)
+    if dpkg --compare-versions "${candidate:-0}" lt "$mesa_minimum"; then
+      . /etc/os-release
+      backports="${VERSION_CODENAME}-backports"
+      if ! apt-get indextargets --format '$(CODENAME) $(SUITE)' 'Created-By: Packages' | grep -qwF "$backports"; then
+        mirror=$(apt-get indextargets --format '$(REPO_URI)' 'Created-By: Packages' "Codename: $VERSION_CODENAME" | head -n 1)
+        if [ -z "$mirror" ]; then
+          say "cannot read the mirror of $VERSION_CODENAME from apt's configuration; add the suite $backports by hand and run $0 again"
+          exit 1
+        fi
+        keyring=/usr/share/keyrings/debian-archive-keyring.gpg
+        [ -f "$keyring" ] && signed="[signed-by=$keyring] " || signed=""
+        say "adding the suite $backports"
+        echo "deb $signed$mirror $backports main" >/etc/apt/sources.list.d/vantage-backports.list
+        apt-get update -qq
+      fi
+      target=(-t "$backports")
+    fi
+    say "installing mesa-vulkan-drivers >= $mesa_minimum"
+    apt-get install -y -qq --no-install-recommends "${target[@]}" mesa-vulkan-drivers >/dev/null
+    mesa=$(version_of mesa-vulkan-drivers)
+    if dpkg --compare-versions "$mesa" lt "$mesa_minimum"; then
+      say "mesa-vulkan-drivers is $mesa, but $mesa_minimum is needed for ray queries in software"
+      exit 1
+    fi
+  fi
+fi
+
+case "$mode" in
+  program)
+    cmake --preset release -DVANTAGE_BUILD_TESTS=OFF -DVANTAGE_BUILD_EXAMPLES=OFF >/dev/null
+    cmake --build --preset release
+    ;;
+  tests)
+    cmake --preset release -DVANTAGE_BUILD_TESTS=ON -DVANTAGE_BUILD_EXAMPLES=ON >/dev/null
+    cmake --build --preset release
+    ;;
+esac

@@ -1,0 +1,21 @@
+// Lets C++ read the structs that the shaders use. Scalar layout: every member at its C++ offset, vec3 four-byte aligned.
+#ifndef VANTAGE_SHARED_HOST_H
+#define VANTAGE_SHARED_HOST_H
+
+#ifdef __cplusplus
+#include <cstdint>
+namespace vantage {
+using uint = std::uint32_t;
+struct vec3 { float x, y, z; };
+struct uvec2 { uint x, y; };
+}  // namespace vantage
+#define VANTAGE_SHARED_BEGIN namespace vantage {
+#define VANTAGE_SHARED_END }
+#define VANTAGE_CONST inline constexpr
+#else
+#define VANTAGE_SHARED_BEGIN
+#define VANTAGE_SHARED_END
+#define VANTAGE_CONST const
+#endif
+
+#endif
