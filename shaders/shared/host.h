@@ -12,10 +12,12 @@ struct uvec2 { uint x, y; };
 #define VANTAGE_SHARED_BEGIN namespace vantage {
 #define VANTAGE_SHARED_END }
 #define VANTAGE_CONST inline constexpr
+#define VANTAGE_INLINE inline
 #else
 #define VANTAGE_SHARED_BEGIN
 #define VANTAGE_SHARED_END
 #define VANTAGE_CONST const
+#define VANTAGE_INLINE
 #endif
 
 #endif

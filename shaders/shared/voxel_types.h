@@ -23,5 +23,12 @@ struct BrickSlot {
   uint brick;                  // index into the bricks, or empty_slot
 };
 
+VANTAGE_INLINE uint brick_hash(uint x, uint y, uint z) {
+  uint h = (x * 0x9E3779B1u) ^ (y * 0x85EBCA77u) ^ (z * 0xC2B2AE3Du);
+  h ^= h >> 15;
+  h *= 0x2C1B3C6Du;
+  return h ^ (h >> 12);
+}
+
 VANTAGE_SHARED_END
 #endif
