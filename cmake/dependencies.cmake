@@ -8,6 +8,7 @@ find_package(embree 3 QUIET)
 if(NOT embree_FOUND)
   find_package(embree 4 REQUIRED)
 endif()
+string(REGEX MATCH "^[0-9]+" VANTAGE_EMBREE_MAJOR "${embree_VERSION}") # which headers src/core/embree.hpp includes
 find_package(spdlog REQUIRED)
 find_package(Vulkan REQUIRED) # headers only: the loader is opened at run time, so that a machine without one still has Embree
 find_path(VANTAGE_VOLK_INCLUDE_DIR volk.h PATH_SUFFIXES Volk volk REQUIRED)
