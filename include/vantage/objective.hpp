@@ -46,19 +46,26 @@ class OverlapMatrix {
   std::vector<double> values_;
 };
 
-/// Equation 8, in [0, 1]. 0 for a scene without surveyed voxels.
+/// Equation 8, in [0, 1]. 0 for a scene without surveyed voxels. REQUIRES: goal_density > 0.
 double coverage(const NetworkCounts& counts, double goal_density);
 /// Equation 11 for every pair; 0/0 is 0.
 OverlapMatrix overlap_matrix(const NetworkCounts& counts);
-/// Equation 13: average weighted clustering coefficient. 0/0 is 0, so networks of one or two stations have 0.
+/// Equation 13: average weighted clustering coefficient, in [0, 1]; the maximum is over all pairs. 0/0 is 0, so networks of one or two
+/// stations, or without a shared voxel, have 0.
 double clustering_coefficient(const OverlapMatrix& overlap);
 
-/// An estimate and its standard error (0 when exact).
+/// An estimate and its standard error. The error is 0 when all of the population was counted, and 0.5, the largest that a value in
+/// [0, 1] can have, where the sample is too small to tell (one voxel).
 struct Estimate {
   double value = 0, standard_error = 0;
 };
+/// Equation 8 from a sample of `population` voxels. Error by successive differences along the Morton order, which a systematic sample
+/// needs: s/√n would be too wide.
 Estimate coverage_estimate(const NetworkCounts& counts, double goal_density, std::uint64_t population);
+/// Equation 13 from a sample. Error by the jackknife over the interleaved groups.
 Estimate overlap_estimate(const NetworkCounts& counts, std::uint64_t population);
+/// Standard errors of `overlap_matrix`, likewise by the jackknife.
+OverlapMatrix overlap_standard_errors(const NetworkCounts& counts, std::uint64_t population);
 
 /// Equation 7: rounded(N_min + α (N_max − N_min)), half up, α clamped to [0, 1].
 std::size_t station_count_from_alpha(double alpha, std::size_t n_min, std::size_t n_max);

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// Standard errors of sampled objectives (Wolter: Introduction to Variance Estimation, 2007: chapter 8 for systematic
+// samples, chapter 4 for the jackknife), with the finite-population correction 1 − n/N.
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <vector>
+
+#include "vantage/objective.hpp"
+
+namespace vantage {
+namespace {
+
+constexpr double largest_error = 0.5;  // standard deviation of a value in {0, 1}
+
+double unsampled_share(const NetworkCounts& counts, std::uint64_t population) {
+  if (counts.voxels >= population) return 0;
+  return 1.0 - static_cast<double>(counts.voxels) / static_cast<double>(population);
+}
+
+// What the sample holds without one of its groups. Only what overlaps need.
+NetworkCounts without_group(const NetworkCounts& all, const NetworkCounts& group) {
+  NetworkCounts rest;
+  rest.stations = all.stations;
+  rest.voxels = all.voxels - group.voxels;
+  rest.seen.resize(all.seen.size());
+  rest.shared.resize(all.shared.size());
+  std::transform(all.seen.begin(), all.seen.end(), group.seen.begin(), rest.seen.begin(), std::minus<>());
+  std::transform(all.shared.begin(), all.shared.end(), group.shared.begin(), rest.shared.begin(), std::minus<>());
+  return rest;
+}
+
+// The delete-one-group replicates; empty where there are fewer than two groups.
+std::vector<OverlapMatrix> replicates(const NetworkCounts& counts) {
+  std::vector<OverlapMatrix> found;
+  for (const NetworkCounts& group : counts.groups) {
+    if (group.voxels > 0) found.push_back(overlap_matrix(without_group(counts, group)));
+  }
+  if (found.size() < 2) found.clear();
+  return found;
+}
+
+double jackknife_error(const std::vector<double>& values, double unsampled) {
+  const double groups = static_cast<double>(values.size());
+  double mean = 0, squares = 0;
+  for (const double value : values) mean += value / groups;
+  for (const double value : values) squares += (value - mean) * (value - mean);
+  return std::min(std::sqrt(unsampled * (groups - 1) / groups * squares), largest_error);
+}
+
+}  // namespace
+
+Estimate coverage_estimate(const NetworkCounts& counts, double goal_density, std::uint64_t population) {
+  Estimate estimate{coverage(counts, goal_density), 0};
+  const double unsampled = unsampled_share(counts, population);
+  if (unsampled == 0) return estimate;
+  if (counts.voxels < 2) {
+    estimate.standard_error = largest_error;
+    return estimate;
+  }
+  const double n = static_cast<double>(counts.voxels);
+  estimate.standard_error = std::sqrt(unsampled * counts.successive_difference_sum / (2 * n * (n - 1)));
+  return estimate;
+}
+
+Estimate overlap_estimate(const NetworkCounts& counts, std::uint64_t population) {
+  Estimate estimate{clustering_coefficient(overlap_matrix(counts)), 0};
+  const double unsampled = unsampled_share(counts, population);
+  if (unsampled == 0 || counts.seen.empty()) return estimate;
+  std::vector<double> values;
+  for (const OverlapMatrix& replicate : replicates(counts)) values.push_back(clustering_coefficient(replicate));
+  estimate.standard_error = values.empty() ? largest_error : jackknife_error(values, unsampled);
+  return estimate;
+}
+
+OverlapMatrix overlap_standard_errors(const NetworkCounts& counts, std::uint64_t population) {
+  OverlapMatrix errors(counts.stations);
+  const double unsampled = unsampled_share(counts, population);
+  if (unsampled == 0 || counts.seen.empty()) return errors;
+  const std::vector<OverlapMatrix> without = replicates(counts);
+  std::vector<double> values(without.size());
+  for (std::size_t i = 0; i < counts.stations; ++i) {
+    for (std::size_t j = i + 1; j < counts.stations; ++j) {
+      for (std::size_t g = 0; g < without.size(); ++g) values[g] = without[g](i, j);
+      errors.set(i, j, values.empty() ? largest_error : jackknife_error(values, unsampled));
+    }
+  }
+  return errors;
+}
+
+}  // namespace vantage
