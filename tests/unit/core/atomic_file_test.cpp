@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/atomic_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "support/temporary_folder.hpp"
+#include "vantage/error.hpp"
+
+namespace vantage {
+namespace {
+
+std::string content(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::size_t entries(const std::filesystem::path& folder) {
+  return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder), {}));
+}
+
+TEST(AtomicFile, AppearsAtCommitOnly) {
+  const test::TemporaryFolder folder;
+  {
+    AtomicFile out(folder / "a.txt");
+    out.write("count 0000 rest");
+    out.patch(6, "1234", 4);
+    out.write("!");
+    EXPECT_FALSE(std::filesystem::exists(folder / "a.txt"));
+    out.commit();
+  }
+  EXPECT_EQ(content(folder / "a.txt"), "count 1234 rest!");
+  EXPECT_EQ(entries(folder.path()), 1u);
+}
+
+TEST(AtomicFile, LeavesTheOldFileWhenDropped) {
+  const test::TemporaryFolder folder;
+  write_atomically(folder / "a.txt", "old");
+  { AtomicFile(folder / "a.txt").write("new"); }
+  EXPECT_EQ(content(folder / "a.txt"), "old");
+  EXPECT_EQ(entries(folder.path()), 1u);
+}
+
+TEST(AtomicFile, NamesAFolderThatIsMissing) {
+  const test::TemporaryFolder folder;
+  try {
+    AtomicFile out(folder.path() / "missing" / "a.txt");
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), Errc::io);
+    EXPECT_NE(std::string(e.what()).find("missing/a.txt"), std::string::npos);
+  }
+}
+
+TEST(AtomicFile, RemovesOnlyItsOwnLeftovers) {
+  const test::TemporaryFolder folder;
+  for (const char* name : {".a.ckpt.12-0.partial", ".ab.ckpt.12-0.partial", ".a.ckpt.notes", "a.ckpt"})
+    std::ofstream(folder / name) << "x";
+  AtomicFile::remove_leftovers(folder / "a.ckpt");
+  EXPECT_FALSE(std::filesystem::exists(folder / ".a.ckpt.12-0.partial"));
+  EXPECT_EQ(entries(folder.path()), 3u);
+}
+
+}  // namespace
+}  // namespace vantage
