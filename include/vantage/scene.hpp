@@ -67,6 +67,8 @@ class Scene {
   std::span<const std::string> notes() const noexcept;
   /// The `vantage` object of the file's `asset.extras` as JSON text ("{}" where absent): default parameters of built-in scenes.
   const std::string& defaults_json() const noexcept;
+  /// Hash of everything that can change a result: geometry, roles, materials, search area. Names do not count.
+  std::uint64_t fingerprint() const noexcept;
 
   /// Internal storage, for the library's own modules.
   const SceneData& data() const noexcept { return *data_; }

@@ -17,7 +17,9 @@ namespace {
 
 std::string reason(int error) { return std::generic_category().message(error); }
 
-std::string temporary_prefix(const std::filesystem::path& file) { return "." + file.filename().string() + "."; }
+std::string temporary_prefix(const std::filesystem::path& file) {
+  return std::string(1, '.').append(file.filename().string()).append(1, '.');
+}
 
 constexpr std::string_view kSuffix = ".partial";
 

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/hash.hpp"
+#include "scene/scene_data.hpp"
+#include "vantage/scene.hpp"
+
+namespace vantage {
+
+std::uint64_t Scene::fingerprint() const noexcept {
+  const SceneData& scene = data();
+  Hash hash;
+  hash.add(scene.origin.x), hash.add(scene.origin.y), hash.add(scene.origin.z);
+  hash.add_all(scene.positions);
+  hash.add_all(scene.normals);
+  hash.add_all(scene.texcoords);
+  hash.add_all(scene.colours);
+  hash.add_all(scene.triangles);
+  for (const MeshRange& range : scene.ranges) hash.add(range.triangle_count), hash.add(range.material);
+  for (const MeshInfo& mesh : scene.meshes) hash.add(static_cast<int>(mesh.role)), hash.add(mesh.diffuse);
+  for (const Material& material : scene.materials) {
+    for (const float channel : material.base_colour) hash.add(channel);
+    hash.add(material.image), hash.add(material.repeat_u), hash.add(material.repeat_v);
+  }
+  for (const Image& image : scene.images) hash.add(image.width), hash.add_all(image.rgba);
+  hash.add_all(scene.search_positions);
+  hash.add_all(scene.search_uvs);
+  hash.add_all(scene.search_triangles);
+  return hash.value();
+}
+
+}  // namespace vantage
