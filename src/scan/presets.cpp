@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads data/scanners.json (docs/scanners.md describes it). Strict: a figure without a known source, or a name that is
+// not known, is an error, so that a typing mistake cannot pass as a scanner.
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <initializer_list>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <optional>
+#include <set>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "vantage/error.hpp"
+#include "vantage/scanner.hpp"
+
+namespace vantage {
+namespace {
+
+using Json = nlohmann::json;
+
+// A place in a presets file: its value, and where it is for messages.
+class Node {
+ public:
+  Node(const Json& value, std::string where, const std::set<std::string>* sources)
+      : value_(&value), where_(std::move(where)), sources_(sources) {}
+
+  [[noreturn]] void fail(const std::string& what) const { throw Error(Errc::malformed_file, where_ + ": " + what); }
+
+  Node member(const std::string& name) const {
+    if (!has(name)) fail("\"" + name + "\" is missing");
+    return Node((*value_)[name], where_ + " / " + name, sources_);
+  }
+  bool has(const std::string& name) const { return value_->is_object() && value_->contains(name); }
+
+  void only(std::initializer_list<const char*> known) const {
+    if (!value_->is_object()) fail("must be an object");
+    for (const auto& [name, ignored] : value_->items()) {
+      if (std::none_of(known.begin(), known.end(), [&n = name](const char* k) { return n == k; }))
+        fail("\"" + name + "\" is not known here");
+    }
+  }
+
+  std::string text() const {
+    if (!value_->is_string()) fail("must be a text");
+    return value_->get<std::string>();
+  }
+  double number() const {
+    if (!value_->is_number()) fail("must be a number");
+    return value_->get<double>();
+  }
+  std::vector<double> numbers() const {
+    if (!value_->is_array()) fail("must be an array of numbers");
+    std::vector<double> found;
+    for (const Json& entry : *value_) {
+      if (!entry.is_number()) fail("must be an array of numbers");
+      found.push_back(entry.get<double>());
+    }
+    return found;
+  }
+  // A figure has its source beside it; the values are its other members.
+  const Node& sourced() const {
+    const Node source = member("source");
+    if (!sources_->contains(source.text())) source.fail("\"" + source.text() + "\" is not among the scanner's sources");
+    return *this;
+  }
+  double figure() const {
+    only({"value", "source", "note"});
+    return sourced().member("value").number();
+  }
+  const Json& json() const { return *value_; }
+
+ private:
+  const Json* value_;
+  std::string where_;
+  const std::set<std::string>* sources_;
+};
+
+// "3mm", "1/4": its step angle, from what the maker states.
+Angle step_of(const Node& setting) {
+  const bool by_angle = setting.has("step_deg"), by_spacing = setting.has("spacing_mm"),
+             by_turn = setting.has("pixels_per_turn");
+  if (by_angle + by_spacing + by_turn != 1)
+    setting.fail("needs one of \"step_deg\", \"spacing_mm\" with \"at_m\", \"pixels_per_turn\"");
+  if (by_angle) return Angle::degrees(setting.member("step_deg").number());
+  if (by_turn) return Angle::radians(2 * std::numbers::pi / setting.member("pixels_per_turn").number());
+  return Angle::radians(setting.member("spacing_mm").number() * 1e-3 / setting.member("at_m").number());
+}
+
+NoiseTable noise_of(const Node& node) {
+  node.only({"distances_m", "reflectivities", "sigma_mm", "source", "note"});
+  node.sourced();
+  NoiseTable table;
+  table.distances_m = node.member("distances_m").numbers();
+  // Without reflectivities the maker states none: one row, which holds for all.
+  table.reflectivities =
+      node.has("reflectivities") ? node.member("reflectivities").numbers() : std::vector<double>{0.5};
+  const Node sigma = node.member("sigma_mm");
+  if (!sigma.json().is_array() || sigma.json().size() != table.reflectivities.size())
+    sigma.fail("must have a row for each reflectivity");
+  for (std::size_t row = 0; row < sigma.json().size(); ++row) {
+    if (!sigma.json()[row].is_array() || sigma.json()[row].size() != table.distances_m.size())
+      sigma.fail("row " + std::to_string(row + 1) + " must have a value for each distance");
+    for (const Json& value : sigma.json()[row]) {
+      if (!value.is_number()) sigma.fail("row " + std::to_string(row + 1) + " must hold numbers");
+      table.sigma_m.push_back(value.get<double>() * 1e-3);
+    }
+  }
+  return table;
+}
+
+struct Document {
+  Json json;
+  std::string file;
+
+  explicit Document(const std::filesystem::path& path) : file(path.string()) {
+    std::ifstream in(path);
+    if (!in)
+      throw Error(Errc::io, "cannot read the scanner presets " + file +
+                                " (set VANTAGE_DATA to the folder that holds scanners.json)");
+    try {
+      json = Json::parse(in);
+    } catch (const Json::exception& e) {
+      throw Error(Errc::malformed_file, file + ": not valid JSON: " + e.what());
+    }
+    if (!json.is_object() || json.value("format", Json()) != Json("vantage-scanners-1"))
+      throw Error(Errc::malformed_file, file + ": \"format\" must be \"vantage-scanners-1\"");
+    if (!json.contains("scanners") || !json["scanners"].is_object() || json["scanners"].empty())
+      throw Error(Errc::malformed_file, file + ": \"scanners\" must be an object with at least one scanner");
+  }
+  const Json& scanners() const { return json["scanners"]; }
+};
+
+template <class Object>
+std::string names_of(const Object& object) {
+  std::string names;
+  for (const auto& [name, ignored] : object.items()) names += (names.empty() ? "" : ", ") + name;
+  return names;
+}
+
+std::string lower_case(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+// The scanner `key` at `setting` (its default where empty).
+Scanner read_scanner(const Document& document, const std::string& key, std::string setting) {
+  std::set<std::string> sources;
+  const Node node(document.scanners()[key], document.file + ": " + key, &sources);
+  node.only({"name", "sources", "horizontal_angle_deg", "vertical_angle_deg", "zenith_start_deg", "min_range_m",
+             "max_range_m", "settings", "default_setting", "noise"});
+  const Node listed = node.member("sources");
+  if (!listed.json().is_object()) listed.fail("must be an object of texts");
+  for (const auto& [name, ignored] : listed.json().items()) {
+    if (listed.member(name).text().empty()) listed.member(name).fail("must name a document");
+    sources.insert(name);
+  }
+
+  const Node settings = node.member("settings");
+  if (setting.empty()) setting = node.member("default_setting").text();
+  if (!settings.has(setting)) {
+    throw Error(Errc::invalid_argument,
+                "scanner \"" + key + "\" has no setting \"" + setting + "\"; it has " + names_of(settings.json()));
+  }
+  const Node chosen = settings.member(setting);
+  chosen.only({"step_deg", "spacing_mm", "at_m", "pixels_per_turn", "min_range_m", "max_range_m", "source", "note"});
+  chosen.sourced();
+
+  Scanner scanner;
+  scanner.name = node.member("name").text() + " @" + setting;
+  scanner.horizontal_angle = Angle::degrees(node.member("horizontal_angle_deg").figure());
+  scanner.vertical_angle = Angle::degrees(node.member("vertical_angle_deg").figure());
+  if (node.has("zenith_start_deg")) scanner.zenith_start = Angle::degrees(node.member("zenith_start_deg").figure());
+  scanner.azimuth_step = scanner.zenith_step = step_of(chosen);
+  // A setting's own range goes before the scanner's.
+  const auto range = [&](const char* name) {
+    return chosen.has(name) ? chosen.member(name).number() : node.member(name).figure();
+  };
+  scanner.min_range_m = range("min_range_m");
+  scanner.max_range_m = range("max_range_m");
+  if (node.has("noise")) scanner.noise = noise_of(node.member("noise"));
+  try {
+    scanner.check();
+  } catch (const Error& e) {
+    node.fail("setting " + setting + ": " + e.what());
+  }
+  return scanner;
+}
+
+}  // namespace
+
+Scanner load_scanner(const std::filesystem::path& presets, const std::string& name) {
+  const Document document(presets);
+  const std::size_t at = name.find('@');
+  const std::string key = lower_case(name.substr(0, at));
+  const std::string setting = at == std::string::npos ? "" : lower_case(name.substr(at + 1));
+  if (at != std::string::npos && setting.empty())
+    throw Error(Errc::invalid_argument, "scanner \"" + name + "\": a setting must follow the @, as in rtc360@6mm");
+  if (!document.scanners().contains(key)) {
+    throw Error(Errc::invalid_argument, "there is no scanner \"" + key + "\" in " + document.file + "; it has " +
+                                            names_of(document.scanners()));
+  }
+  return read_scanner(document, key, setting);
+}
+
+std::vector<ScannerPreset> list_scanners(const std::filesystem::path& presets) {
+  const Document document(presets);
+  std::vector<ScannerPreset> list;
+  for (const auto& [key, entry] : document.scanners().items()) {
+    const Scanner scanner = read_scanner(document, key, "");
+    char figures[160];
+    std::snprintf(figures, sizeof figures, ": %.4g° × %.4g°, %.3g to %.4g m, %s; ",
+                  scanner.horizontal_angle.in_degrees(), scanner.vertical_angle.in_degrees(), scanner.min_range_m,
+                  scanner.max_range_m, scanner.noise.empty() ? "no noise table" : "noise table");
+    list.push_back({key, entry["name"].get<std::string>() + figures + "settings " + names_of(entry["settings"]) +
+                             " (default " + entry["default_setting"].get<std::string>() + ")"});
+  }
+  return list;
+}
+
+std::filesystem::path default_presets_file() {
+  if (const char* folder = std::getenv("VANTAGE_DATA"); folder && *folder)
+    return std::filesystem::path(folder) / "scanners.json";
+  std::error_code ignored;
+  const std::filesystem::path installed = std::filesystem::path(VANTAGE_INSTALLED_DATA_DIR) / "scanners.json";
+  if (std::filesystem::exists(installed, ignored)) return installed;
+  return std::filesystem::path(VANTAGE_SOURCE_DATA_DIR) / "scanners.json";
+}
+
+}  // namespace vantage

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vantage/scanner.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+#include "vantage/error.hpp"
+
+namespace vantage {
+namespace {
+
+constexpr double floor_guard = 1e-9;      // so that 360° / 0.1° is 3600 and not 3599
+constexpr double angle_guard_deg = 1e-9;  // 360° given in radians may come out a rounding above 360°
+constexpr double max_steps = 16'777'216;  // 2^24 a direction: 0.00002° over a full turn
+
+double steps(Angle sweep, Angle step) { return std::floor(sweep.in_radians() / step.in_radians() + floor_guard); }
+
+Angle zenith_sweep(const Scanner& scanner) { return Angle::radians(scanner.vertical_angle.in_radians() / 2); }
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.10g", value);
+  return text;
+}
+
+[[noreturn]] void refuse(const std::string& member, double value, const std::string& must) {
+  throw Error(Errc::invalid_argument, "scanner: " + member + " is " + number(value) + ", but must be " + must);
+}
+
+void check_step(const std::string& member, Angle step, const char* sweep_name, Angle sweep) {
+  const double degrees = step.in_degrees();
+  if (!(std::isfinite(degrees) && degrees > 0)) refuse(member + " in degrees", degrees, "above 0");
+  const double count = steps(sweep, step);
+  if (count < 1)
+    refuse(member + " in degrees", degrees, std::string("at most ") + sweep_name + ", " + number(sweep.in_degrees()));
+  if (count > max_steps) refuse(member + " in degrees", degrees, "so large that there are at most 2^24 steps");
+}
+
+void check_noise(const NoiseTable& noise) {
+  if (noise.empty()) return;
+  if (noise.distances_m.empty() || noise.reflectivities.empty() ||
+      noise.sigma_m.size() != noise.distances_m.size() * noise.reflectivities.size()) {
+    throw Error(Errc::invalid_argument, "scanner: the noise table has " + std::to_string(noise.sigma_m.size()) +
+                                            " values, but must have reflectivities × distances = " +
+                                            std::to_string(noise.reflectivities.size()) + " × " +
+                                            std::to_string(noise.distances_m.size()));
+  }
+  for (std::size_t i = 0; i < noise.distances_m.size(); ++i) {
+    const double distance = noise.distances_m[i];
+    if (!(std::isfinite(distance) && distance >= 0)) refuse("a noise table distance in metres", distance, "0 or more");
+    if (i > 0 && distance <= noise.distances_m[i - 1])
+      refuse("a noise table distance in metres", distance, "above the one before it");
+  }
+  for (std::size_t i = 0; i < noise.reflectivities.size(); ++i) {
+    const double reflectivity = noise.reflectivities[i];
+    if (!(reflectivity >= 0 && reflectivity <= 1)) refuse("a noise table reflectivity", reflectivity, "in [0, 1]");
+    if (i > 0 && reflectivity <= noise.reflectivities[i - 1])
+      refuse("a noise table reflectivity", reflectivity, "above the one before it");
+  }
+  for (const double sigma : noise.sigma_m) {
+    if (!(std::isfinite(sigma) && sigma >= 0)) refuse("a noise table standard deviation in metres", sigma, "0 or more");
+  }
+}
+
+}  // namespace
+
+std::uint32_t Scanner::rows() const { return static_cast<std::uint32_t>(steps(zenith_sweep(*this), zenith_step)); }
+
+std::uint32_t Scanner::columns() const { return static_cast<std::uint32_t>(steps(horizontal_angle, azimuth_step)); }
+
+void Scanner::check() const {
+  if (!std::isfinite(heading.in_degrees())) refuse("heading in degrees", heading.in_degrees(), "finite");
+  const double horizontal = horizontal_angle.in_degrees(), vertical = vertical_angle.in_degrees();
+  if (!(horizontal > 0 && horizontal <= 360 + angle_guard_deg))
+    refuse("horizontal_angle in degrees", horizontal, "in (0, 360]");
+  if (!(vertical > 0 && vertical <= 360 + angle_guard_deg))
+    refuse("vertical_angle in degrees", vertical, "in (0, 360]");
+  const double start = zenith_start.in_degrees();
+  if (!(start >= 0 && start + vertical / 2 <= 180 + angle_guard_deg))
+    refuse("zenith_start in degrees", start,
+           "0 or more, and at most 180 with half of vertical_angle, " + number(vertical / 2));
+  check_step("azimuth_step", azimuth_step, "horizontal_angle", horizontal_angle);
+  check_step("zenith_step", zenith_step, "half of vertical_angle", zenith_sweep(*this));
+  if (!(std::isfinite(height_m) && height_m >= 0)) refuse("height_m", height_m, "0 or more");
+  if (!(std::isfinite(min_range_m) && min_range_m >= 0)) refuse("min_range_m", min_range_m, "0 or more");
+  if (!(std::isfinite(max_range_m) && max_range_m > min_range_m))
+    refuse("max_range_m", max_range_m, "finite and above min_range_m, " + number(min_range_m));
+  check_noise(noise);
+}
+
+NoiseTable rtc360_noise() {
+  return {.distances_m = {5, 10, 20, 40, 60},
+          .reflectivities = {0.08, 0.21, 0.89},
+          .sigma_m = {0.0005, 0.0006, 0.0007, 0.0025, 0.0050,    // black
+                      0.0004, 0.0005, 0.0006, 0.0008, 0.0020,    // grey
+                      0.0003, 0.0004, 0.0005, 0.0006, 0.0010}};  // white
+}
+
+}  // namespace vantage

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scan/noise_model.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace vantage {
+namespace {
+
+Scanner rtc360() {
+  Scanner scanner;
+  scanner.noise = rtc360_noise();
+  return scanner;
+}
+
+TEST(TableSigma, IsTheTableAtItsNodes) {
+  const NoiseTable t = rtc360_noise();
+  for (std::size_t r = 0; r < t.reflectivities.size(); ++r) {
+    for (std::size_t d = 0; d < t.distances_m.size(); ++d)
+      EXPECT_NEAR(table_sigma(t, t.distances_m[d], t.reflectivities[r]), t.sigma_m[r * t.distances_m.size() + d],
+                  1e-18);
+  }
+}
+
+TEST(TableSigma, IsLinearBetweenNodes) {
+  const NoiseTable t = rtc360_noise();
+  EXPECT_NEAR(table_sigma(t, 7.5, 0.08), 0.55e-3, 1e-12);
+  EXPECT_NEAR(table_sigma(t, 30, 0.21), 0.7e-3, 1e-12);
+  // Half way between black and grey at 50 m: (3.75 + 1.4) / 2 mm.
+  EXPECT_NEAR(table_sigma(t, 50, 0.145), 2.575e-3, 1e-12);
+}
+
+TEST(TableSigma, GoesOnLinearlyBeyondTheNodes) {
+  const NoiseTable t = rtc360_noise();
+  EXPECT_NEAR(table_sigma(t, 0, 0.89), 0.2e-3, 1e-12);      // 0.1 mm less for 5 m
+  EXPECT_NEAR(table_sigma(t, 130, 0.08), 13.75e-3, 1e-12);  // 5 mm and 70 m at 0.125 mm a metre
+  EXPECT_NEAR(table_sigma(t, 60, 0.0), (5 + 3.0 * 8 / 13) * 1e-3, 1e-12);
+  EXPECT_NEAR(table_sigma(t, 60, 1.0), (1 - 1.0 * 11 / 68) * 1e-3, 1e-12);
+}
+
+TEST(TableSigma, IsNeverBelowZero) {
+  const NoiseTable t{.distances_m = {10, 20}, .reflectivities = {0.2, 0.8}, .sigma_m = {1e-3, 3e-3, 0.5e-3, 1e-3}};
+  EXPECT_EQ(table_sigma(t, 0, 0.2), 0.0);
+  EXPECT_GT(table_sigma(t, 6, 0.2), 0.0);
+}
+
+TEST(TableSigma, OneRowOrColumnIsConstantAlongIt) {
+  const NoiseTable point{.distances_m = {30}, .reflectivities = {0.5}, .sigma_m = {2.5e-3}};
+  for (const double distance : {0.0, 30.0, 500.0}) {
+    for (const double reflectivity : {0.0, 0.5, 1.0}) EXPECT_EQ(table_sigma(point, distance, reflectivity), 2.5e-3);
+  }
+  const NoiseTable row{.distances_m = {10, 20}, .reflectivities = {0.9}, .sigma_m = {1e-3, 2e-3}};
+  EXPECT_NEAR(table_sigma(row, 15, 0.1), 1.5e-3, 1e-15);
+  EXPECT_EQ(table_sigma({}, 10, 0.5), 0.0);
+}
+
+TEST(NoiseModel, IsTheTableAtEveryStep) {
+  const Scanner scanner = rtc360();
+  const NoiseModel model = make_noise_model(scanner, 7);
+  ASSERT_TRUE(model.enabled());
+  ASSERT_EQ(model.sigma.size(), 101u * 101u);
+  EXPECT_EQ(model.seed, 7u);
+  EXPECT_EQ(model.min_range, 0.1f);
+  EXPECT_FLOAT_EQ(model.inverse_span, 1 / 129.9f);
+  for (int r = 0; r <= 100; ++r) {
+    for (int d = 0; d <= 100; ++d) {
+      const double expected = table_sigma(scanner.noise, 0.1 + d / 100.0 * 129.9, r / 100.0);
+      EXPECT_NEAR(model.sigma[static_cast<std::size_t>(r * 101 + d)], expected, 1e-9);
+      EXPECT_NEAR(model_sigma(model, 0.1 + d / 100.0 * 129.9, r / 100.0), expected, 1e-8);
+    }
+  }
+}
+
+TEST(NoiseModel, LookUpIsBilinearAndClamped) {
+  const Scanner scanner = rtc360();
+  const NoiseModel model = make_noise_model(scanner, 1);
+  // The table's own bends lie between steps, so a step's width bounds the difference.
+  for (double distance = 1; distance < 130; distance += 0.37) {
+    for (double reflectivity = 0; reflectivity <= 1; reflectivity += 0.013) {
+      const double exact = table_sigma(scanner.noise, distance, reflectivity);
+      EXPECT_NEAR(model_sigma(model, distance, reflectivity), exact, 0.02 * exact + 5e-5)
+          << distance << " m, " << reflectivity;
+    }
+  }
+  EXPECT_EQ(model_sigma(model, 500, 0.5), model_sigma(model, 130, 0.5));
+  EXPECT_EQ(model_sigma(model, 0, 0.5), model_sigma(model, 0.1, 0.5));
+  EXPECT_EQ(model_sigma(model, 20, 1.5), model_sigma(model, 20, 1));
+}
+
+TEST(NoiseModel, ReachBoundsEveryDisplacement) {
+  const NoiseModel model = make_noise_model(rtc360(), 1);
+  const float largest = *std::max_element(model.sigma.begin(), model.sigma.end());
+  EXPECT_GE(model.reach, 5 * largest);
+  EXPECT_LE(model.reach, 5 * largest * 1.000001f);
+}
+
+TEST(NoiseModel, IsOffWithoutATableOrWithZeros) {
+  EXPECT_FALSE(make_noise_model(Scanner{}, 1).enabled());
+  EXPECT_EQ(make_noise_model(Scanner{}, 1).reach, 0.0f);
+  Scanner zeros;
+  zeros.noise = {.distances_m = {10}, .reflectivities = {0.5}, .sigma_m = {0.0}};
+  EXPECT_FALSE(make_noise_model(zeros, 1).enabled());
+  EXPECT_EQ(model_sigma(make_noise_model(zeros, 1), 10, 0.5), 0.0);
+}
+
+}  // namespace
+}  // namespace vantage

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "support/temporary_folder.hpp"
+#include "vantage/error.hpp"
+#include "vantage/scanner.hpp"
+
+namespace vantage {
+namespace {
+
+const std::filesystem::path presets = VANTAGE_TEST_PRESETS;
+
+TEST(Presets, HoldTheScannersOfTheTrade) {
+  std::vector<std::string> keys;
+  for (const ScannerPreset& preset : list_scanners(presets)) {
+    keys.push_back(preset.key);
+    EXPECT_NE(preset.summary.find("settings"), std::string::npos);
+    EXPECT_NO_THROW(load_scanner(presets, preset.key).check());
+  }
+  EXPECT_EQ(keys, (std::vector<std::string>{"focus-x330", "rtc360", "vz-400i", "x7", "zf5016"}));
+}
+
+TEST(Presets, Rtc360) {
+  const Scanner scanner = load_scanner(presets, "rtc360@6mm");
+  EXPECT_EQ(scanner.name, "Leica RTC360 @6mm");
+  EXPECT_DOUBLE_EQ(scanner.azimuth_step.in_radians(), 0.0006);
+  EXPECT_EQ(scanner.azimuth_step, scanner.zenith_step);
+  EXPECT_EQ(scanner.columns(), 10471u);  // 2π / 0.0006
+  EXPECT_EQ(scanner.rows(), 4363u);
+  EXPECT_EQ(scanner.max_range_m, 130.0);
+  EXPECT_EQ(scanner.min_range_m, 0.5);
+  const NoiseTable paper = rtc360_noise();
+  EXPECT_EQ(scanner.noise.distances_m, paper.distances_m);
+  EXPECT_EQ(scanner.noise.reflectivities, paper.reflectivities);
+  ASSERT_EQ(scanner.noise.sigma_m.size(), paper.sigma_m.size());
+  for (std::size_t k = 0; k < paper.sigma_m.size(); ++k) EXPECT_DOUBLE_EQ(scanner.noise.sigma_m[k], paper.sigma_m[k]);
+  EXPECT_EQ(load_scanner(presets, "RTC360").name, scanner.name);
+  EXPECT_DOUBLE_EQ(load_scanner(presets, "Rtc360@3MM").zenith_step.in_radians(), 0.0003);
+}
+
+TEST(Presets, ScannersThatDoNotLookUp) {
+  const Scanner scanner = load_scanner(presets, "vz-400i");
+  EXPECT_DOUBLE_EQ(scanner.zenith_start.in_degrees(), 30.0);
+  EXPECT_EQ(scanner.rows(), 2500u);
+  EXPECT_EQ(scanner.columns(), 9000u);
+  EXPECT_EQ(scanner.max_range_m, 800.0);
+  EXPECT_EQ(load_scanner(presets, "vz-400i@40mdeg-1200khz").max_range_m, 250.0);  // a setting's own range
+  EXPECT_EQ(load_scanner(presets, "vz-400i@40mdeg-1200khz").min_range_m, 0.5);
+}
+
+TEST(Presets, PixelsPerTurn) {
+  EXPECT_EQ(load_scanner(presets, "focus-x330@1/1").columns(), 40960u);
+  EXPECT_EQ(load_scanner(presets, "zf5016@high").columns(), 10000u);
+}
+
+TEST(Presets, NamesThatAreNotThereListWhatIs) {
+  const auto message = [](const std::string& name) {
+    try {
+      load_scanner(presets, name);
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), Errc::invalid_argument);
+      return std::string(e.what());
+    }
+    return std::string("no error");
+  };
+  EXPECT_NE(message("rtc3600").find("rtc360, vz-400i"), std::string::npos);
+  EXPECT_NE(message("rtc360@7mm").find("12mm, 3mm, 6mm"), std::string::npos);
+  EXPECT_NE(message("rtc360@").find("must follow the @"), std::string::npos);
+}
+
+TEST(Presets, EveryFigureHasASource) {
+  std::ifstream in(presets);
+  const auto document = nlohmann::json::parse(in);
+  for (const auto& [key, scanner] : document["scanners"].items()) {
+    for (const auto& [name, figure] : scanner.items()) {
+      if (name == "name" || name == "sources" || name == "default_setting") continue;
+      if (name == "settings") {
+        for (const auto& [setting, entry] : figure.items())
+          EXPECT_TRUE(scanner["sources"].contains(entry.at("source"))) << key << setting;
+      } else {
+        EXPECT_TRUE(scanner["sources"].contains(figure.at("source"))) << key << name;
+      }
+    }
+  }
+}
+
+TEST(Presets, BrokenFilesSayWhere) {
+  std::ifstream in(presets);
+  const auto good = nlohmann::json::parse(in);
+  const test::TemporaryFolder folder;
+  const auto file = folder / "scanners.json";
+  const struct {
+    const char* says;
+    std::function<void(nlohmann::json&)> spoil;
+  } cases[] = {
+      {"\"format\" must be", [](auto& d) { d.erase("format"); }},
+      {"at least one scanner", [](auto& d) { d["scanners"] = nlohmann::json::object(); }},
+      {"rtc360: \"hight\" is not known", [](auto& d) { d["scanners"]["rtc360"]["hight"] = 3; }},
+      {"rtc360: \"max_range_m\" is missing", [](auto& d) { d["scanners"]["rtc360"].erase("max_range_m"); }},
+      {"max_range_m: \"source\" is missing", [](auto& d) { d["scanners"]["rtc360"]["max_range_m"].erase("source"); }},
+      {"source: \"hearsay\" is not among", [](auto& d) { d["scanners"]["rtc360"]["noise"]["source"] = "hearsay"; }},
+      {"value: must be a number", [](auto& d) { d["scanners"]["rtc360"]["max_range_m"]["value"] = "far"; }},
+      {"row 2 must have a value", [](auto& d) { d["scanners"]["rtc360"]["noise"]["sigma_mm"][1].erase(0); }},
+      {"must have a row", [](auto& d) { d["scanners"]["rtc360"]["noise"]["sigma_mm"].erase(0); }},
+      {"6mm: needs one of", [](auto& d) { d["scanners"]["rtc360"]["settings"]["6mm"].erase("spacing_mm"); }},
+      {"vertical_angle in degrees is 720",
+       [](auto& d) { d["scanners"]["rtc360"]["vertical_angle_deg"]["value"] = 720; }},
+  };
+  for (const auto& c : cases) {
+    auto document = good;
+    c.spoil(document);
+    std::ofstream(file) << document;
+    try {
+      load_scanner(file, "rtc360@6mm");
+      ADD_FAILURE() << "passed, but should say: " << c.says;
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), Errc::malformed_file) << e.what();
+      EXPECT_NE(std::string(e.what()).find(c.says), std::string::npos) << e.what();
+    }
+  }
+  std::ofstream(file) << "{ \"format\": ";
+  EXPECT_THROW(list_scanners(file), Error);
+  EXPECT_THROW(list_scanners(folder / "none.json"), Error);
+}
+
+TEST(Presets, DefaultFileFollowsTheEnvironment) {
+  setenv("VANTAGE_DATA", "/some/where", 1);
+  EXPECT_EQ(default_presets_file(), "/some/where/scanners.json");
+  unsetenv("VANTAGE_DATA");
+  EXPECT_TRUE(std::filesystem::exists(default_presets_file()));
+  EXPECT_NO_THROW(list_scanners(default_presets_file()));
+}
+
+}  // namespace
+}  // namespace vantage

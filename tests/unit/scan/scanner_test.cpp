@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vantage/scanner.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+#include <string>
+
+#include "vantage/error.hpp"
+
+namespace vantage {
+namespace {
+
+Scanner with_step(double degrees) {
+  Scanner scanner;
+  scanner.azimuth_step = scanner.zenith_step = Angle::degrees(degrees);
+  return scanner;
+}
+
+TEST(Scanner, CountsRaysAsThePaperDoes) {
+  EXPECT_EQ(with_step(0.1).columns(), 3600u);
+  EXPECT_EQ(with_step(0.1).rows(), 1500u);
+  EXPECT_EQ(with_step(0.0286).columns(), 12587u);  // Table 4
+  EXPECT_EQ(with_step(0.0286).rows(), 5244u);
+  EXPECT_EQ(with_step(0.0286).rays(), 66'006'228u);
+}
+
+TEST(Scanner, FloorsAreGuarded) {
+  // n steps of 360°/n are n columns, for every n, however 360/n rounds.
+  for (std::uint32_t n = 1; n <= 20'000; ++n) {
+    Scanner scanner = with_step(360.0 / n);
+    scanner.vertical_angle = Angle::degrees(360);
+    EXPECT_EQ(scanner.columns(), n);
+    EXPECT_EQ(scanner.rows(), n / 2);
+  }
+  Scanner narrow = with_step(0.7);
+  narrow.horizontal_angle = Angle::degrees(0.7);
+  EXPECT_EQ(narrow.columns(), 1u);
+}
+
+TEST(Scanner, DefaultAndPaperScannersPass) {
+  EXPECT_NO_THROW(Scanner{}.check());
+  Scanner scanner = with_step(0.0286);
+  scanner.noise = rtc360_noise();
+  EXPECT_NO_THROW(scanner.check());
+  scanner.horizontal_angle = Angle::radians(2 * 3.141592653589793);
+  scanner.vertical_angle = Angle::degrees(200);
+  scanner.zenith_start = Angle::degrees(30);
+  EXPECT_NO_THROW(scanner.check());
+}
+
+TEST(Scanner, RefusesWhatCannotBe) {
+  const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+  const struct {
+    const char* says;
+    std::function<void(Scanner&)> spoil;
+  } cases[] = {
+      {"heading in degrees is inf", [&](Scanner& s) { s.heading = Angle::degrees(inf); }},
+      {"horizontal_angle in degrees is 0", [](Scanner& s) { s.horizontal_angle = Angle::degrees(0); }},
+      {"horizontal_angle in degrees is 361", [](Scanner& s) { s.horizontal_angle = Angle::degrees(361); }},
+      {"vertical_angle in degrees is -1", [](Scanner& s) { s.vertical_angle = Angle::degrees(-1); }},
+      {"vertical_angle in degrees is nan", [&](Scanner& s) { s.vertical_angle = Angle::degrees(nan); }},
+      {"zenith_start in degrees is 31", [](Scanner& s) { s.zenith_start = Angle::degrees(31); }},
+      {"zenith_start in degrees is -1", [](Scanner& s) { s.zenith_start = Angle::degrees(-1); }},
+      {"azimuth_step in degrees is 0", [](Scanner& s) { s.azimuth_step = Angle::degrees(0); }},
+      {"azimuth_step in degrees is 400", [](Scanner& s) { s.azimuth_step = Angle::degrees(400); }},
+      {"zenith_step in degrees is nan", [&](Scanner& s) { s.zenith_step = Angle::degrees(nan); }},
+      {"zenith_step in degrees is 151", [](Scanner& s) { s.zenith_step = Angle::degrees(151); }},
+      {"zenith_step in degrees is 1e-06", [](Scanner& s) { s.zenith_step = Angle::degrees(1e-6); }},
+      {"height_m is -1", [](Scanner& s) { s.height_m = -1; }},
+      {"min_range_m is -0.1", [](Scanner& s) { s.min_range_m = -0.1; }},
+      {"max_range_m is 0.1", [](Scanner& s) { s.max_range_m = 0.1; }},
+      {"max_range_m is inf", [&](Scanner& s) { s.max_range_m = inf; }},
+      {"noise table has 2 values", [](Scanner& s) { s.noise.sigma_m.resize(2); }},
+      {"distance in metres is 5", [](Scanner& s) { s.noise.distances_m[1] = 5; }},
+      {"reflectivity is 1.5", [](Scanner& s) { s.noise.reflectivities[2] = 1.5; }},
+      {"reflectivity is 0.08", [](Scanner& s) { s.noise.reflectivities[1] = 0.08; }},
+      {"standard deviation in metres is -1", [](Scanner& s) { s.noise.sigma_m[3] = -1; }},
+  };
+  for (const auto& c : cases) {
+    Scanner scanner;
+    scanner.noise = rtc360_noise();
+    c.spoil(scanner);
+    try {
+      scanner.check();
+      ADD_FAILURE() << "passed, but should say: " << c.says;
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), Errc::invalid_argument);
+      EXPECT_NE(std::string(e.what()).find(c.says), std::string::npos) << e.what();
+    }
+  }
+}
+
+TEST(Rtc360Noise, IsTable1) {
+  const NoiseTable t = rtc360_noise();
+  EXPECT_EQ(t.distances_m, (std::vector<double>{5, 10, 20, 40, 60}));
+  EXPECT_EQ(t.reflectivities, (std::vector<double>{0.08, 0.21, 0.89}));
+  EXPECT_EQ(t.sigma_m[0 * 5 + 3], 2.5e-3);
+  EXPECT_EQ(t.sigma_m[1 * 5 + 4], 2.0e-3);
+  EXPECT_EQ(t.sigma_m[2 * 5 + 0], 0.3e-3);
+}
+
+}  // namespace
+}  // namespace vantage
