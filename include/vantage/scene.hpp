@@ -34,15 +34,16 @@ struct MeshInfo {
   std::uint32_t triangle_count = 0;
 };
 
-/// How `Scene::load` reads a file. Patterns are shell globs (`*`, `?`) on node names; a node hands its role down to its children.
-/// Precedence: pattern, then extras on node, mesh, material. Once any mesh has a role, meshes without one block.
+/// How `Scene::load` reads a file. Patterns are shell globs (`*`, `?`) on node names (a node without one goes by its mesh's); a node hands
+/// its role down to its children. Precedence: pattern, then extras on node, mesh, material; where several lists match one node, the last of
+/// them in the order below. Once any mesh is marked surveyed, meshes without a role block; until then they are surveyed.
 struct SceneOptions {
   std::vector<std::string> surveyed = {};  ///< Nodes that are surveyed.
   std::vector<std::string> blocking = {};  ///< Nodes that only block.
   std::vector<std::string> search = {};    ///< Nodes that form the search area.
   std::vector<std::string> ignore = {};    ///< Nodes that are left out.
   std::optional<std::size_t> scene_index = std::nullopt;  ///< Which glTF scene; empty: the file's default.
-  double default_diffuse = 0.5;  ///< R where neither extras nor a base colour give one.
+  double default_diffuse = 0.5;  ///< R where neither extras nor a plain base colour (its luminance) give one.
 };
 
 /// Immutable triangle scene. Copies share storage; safe to read from any thread.
@@ -50,10 +51,11 @@ class Scene {
  public:
   /// Loads a .glb or .gltf file. Y up becomes Z up: (x, y, z) ↦ (x, −z, y).
   /// Throws Error: io, malformed_file (bad reference, unknown required extension, nothing to survey), invalid_argument (a pattern that
-  /// matches nothing).
+  /// matches nothing, a scene index or coefficient out of range), out_of_memory.
   static Scene load(const std::filesystem::path& file, const SceneOptions& options = {});
 
-  /// One surveyed mesh from an indexed triangle list in the survey frame.
+  /// One surveyed mesh from an indexed triangle list in the survey frame. Throws Error: invalid_argument (an index or coefficient out of
+  /// range), malformed_file (no triangle with area).
   static Scene from_triangles(std::span<const Vec3> positions, std::span<const std::array<std::uint32_t, 3>> triangles,
                               double diffuse = 0.5);
 

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the built-in scenes are made of, before they are written: named parts in the survey frame (Z up, metres).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/scene_data.hpp"
+#include "vantage/scene.hpp"
+
+namespace vantage::built_in {
+
+struct Mesh {
+  std::vector<Float3> positions;
+  std::vector<Float3> normals;  // one per position
+  std::vector<Float2> uvs;      // empty, or one per position
+  std::vector<std::uint32_t> indices;
+  std::size_t triangles() const { return indices.size() / 3; }
+};
+
+// One glTF node with one mesh.
+struct Part {
+  std::string name;
+  Role role = Role::surveyed;
+  std::optional<double> diffuse = {};
+  std::array<float, 3> colour{0.8F, 0.8F, 0.8F};  // linear
+  Mesh mesh = {};
+};
+
+struct Model {
+  std::vector<Part> parts;
+  nlohmann::json defaults;  // asset.extras.vantage
+};
+
+// The scanner and evaluation parameters of a built-in scene, as keys that mirror the program's options. Degrees and
+// metres.
+struct Defaults {
+  double step = 0.1, height = 1.5;
+  const char* noise = "off";
+  double spacing = 0.01, user_size = 0.1;
+};
+nlohmann::json to_json(const Defaults& defaults);
+
+Model three_walls();
+Model four_walls();
+
+}  // namespace vantage::built_in

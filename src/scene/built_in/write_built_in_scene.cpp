@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+
+#include "scene/built_in/glb_writer.hpp"
+#include "scene/built_in/model.hpp"
+#include "vantage/error.hpp"
+
+namespace vantage {
+
+std::span<const std::string> built_in_scene_names() noexcept {
+  static const std::array<std::string, 2> kNames{"three-walls", "four-walls"};
+  return kNames;
+}
+
+void write_built_in_scene(const std::string& name, std::size_t, const std::filesystem::path& file) {
+  if (name == "three-walls") return built_in::write_glb(built_in::three_walls(), file);
+  if (name == "four-walls") return built_in::write_glb(built_in::four_walls(), file);
+
+  throw Error(Errc::invalid_argument, "there is no built-in scene \"" + name + "\"; use three-walls or four-walls");
+}
+
+}  // namespace vantage

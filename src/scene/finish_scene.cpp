@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "scene/raw_scene.hpp"
+#include "vantage/error.hpp"
+
+namespace vantage {
+namespace {
+
+constexpr double kFarthest_m = 1e9;  // float32 is 64 m coarse there: no site reaches so far, but a broken vertex does
+
+bool sound(const Vec3& p) {
+  return std::abs(p.x) <= kFarthest_m && std::abs(p.y) <= kFarthest_m && std::abs(p.z) <= kFarthest_m;
+}
+
+Vec3 widened(const Float3& p) { return {p.x, p.y, p.z}; }
+
+// A triangle has area when its normal can be formed in float. Differences of floats and their products are exact in
+// double, or nearly so, hence collinear corners give exactly 0.
+bool has_area(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 n = cross(b - a, c - a);
+  return dot(n, n) >= static_cast<double>(std::numeric_limits<float>::min());
+}
+
+// Keeps the triangles whose `keep` is not 0 and moves the ranges along. Meshes left without triangles go.
+void keep_triangles(RawScene& raw, const std::vector<std::uint8_t>& keep) {
+  std::vector<MeshRange> ranges;
+  std::vector<MeshInfo> meshes;
+  std::uint32_t out = 0;
+  for (std::size_t m = 0; m < raw.ranges.size(); ++m) {
+    MeshRange range = raw.ranges[m];
+    const std::uint32_t first = range.first_triangle, end = first + range.triangle_count;
+    range.first_triangle = out;
+    for (std::uint32_t t = first; t < end; ++t)
+      if (keep[t]) raw.triangles[out++] = raw.triangles[t];
+    range.triangle_count = out - range.first_triangle;
+    if (range.triangle_count == 0) continue;
+    ranges.push_back(range);
+    meshes.push_back(std::move(raw.meshes[m]));
+    meshes.back().triangle_count = range.triangle_count;
+  }
+  raw.triangles.resize(out);
+  raw.ranges = std::move(ranges);
+  raw.meshes = std::move(meshes);
+}
+
+template <class Keep>
+std::size_t drop_unless(RawScene& raw, Keep&& sound_triangle) {
+  std::vector<std::uint8_t> keep(raw.triangles.size());
+  tbb::parallel_for(std::size_t{0}, keep.size(),
+                    [&](std::size_t t) { keep[t] = sound_triangle(raw.triangles[t]) ? 1 : 0; });
+  const auto dropped = static_cast<std::size_t>(std::ranges::count(keep, 0));
+  if (dropped > 0) keep_triangles(raw, keep);
+  return dropped;
+}
+
+// Corners in ascending order, so that triangles over the same three points compare equal whatever their first corner
+// and winding.
+std::array<Float3, 3> sorted_corners(const std::vector<Float3>& positions, const Triangle& t) {
+  const auto less = [](const Float3& a, const Float3& b) {
+    return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
+  };
+  std::array<Float3, 3> c{positions[t[0]], positions[t[1]], positions[t[2]]};
+  if (less(c[1], c[0])) std::swap(c[0], c[1]);
+  if (less(c[2], c[1])) std::swap(c[1], c[2]);
+  if (less(c[1], c[0])) std::swap(c[0], c[1]);
+  return c;
+}
+
+std::uint64_t hash(const std::array<Float3, 3>& corners) {
+  std::uint64_t h = 0x9E3779B97F4A7C15;
+  for (const Float3& p : corners)
+    for (const float value : {p.x, p.y, p.z}) {
+      h = (h ^ std::bit_cast<std::uint32_t>(value)) * 0xD6E8FEB86659FD93;
+      h ^= h >> 32;
+    }
+  return h;
+}
+
+// Of several triangles over the very same points the first stays, a surveyed one before any that only blocks: a ray
+// meets them at the same distance, and its point counts.
+std::size_t drop_duplicates(RawScene& raw, const std::vector<Float3>& positions) {
+  struct Entry {
+    std::uint64_t hash;
+    std::uint32_t triangle;
+    std::uint32_t rank;  // 0 surveyed, 1 blocking
+  };
+  std::vector<Entry> entries(raw.triangles.size());
+  tbb::parallel_for(std::size_t{0}, raw.ranges.size(), [&](std::size_t m) {
+    const std::uint32_t rank = raw.meshes[m].role == Role::surveyed ? 0 : 1;
+    const std::uint32_t first = raw.ranges[m].first_triangle;
+    tbb::parallel_for(first, first + raw.ranges[m].triangle_count, [&](std::uint32_t t) {
+      entries[t] = {hash(sorted_corners(positions, raw.triangles[t])), t, rank};
+    });
+  });
+  tbb::parallel_sort(entries, [](const Entry& a, const Entry& b) {
+    return a.hash != b.hash ? a.hash < b.hash : a.rank != b.rank ? a.rank < b.rank : a.triangle < b.triangle;
+  });
+  std::vector<std::uint8_t> keep(raw.triangles.size(), 1);
+  std::size_t dropped = 0;
+  for (std::size_t i = 0; i < entries.size();) {
+    std::size_t end = i + 1;
+    while (end < entries.size() && entries[end].hash == entries[i].hash) ++end;
+    for (std::size_t j = i + 1; j < end; ++j) {  // runs are one long but for duplicates and the rare collision
+      const auto corners = sorted_corners(positions, raw.triangles[entries[j].triangle]);
+      for (std::size_t k = i; k < j; ++k)
+        if (keep[entries[k].triangle] && sorted_corners(positions, raw.triangles[entries[k].triangle]) == corners) {
+          keep[entries[j].triangle] = 0;
+          ++dropped;
+          break;
+        }
+    }
+    i = end;
+  }
+  if (dropped > 0) keep_triangles(raw, keep);
+  return dropped;
+}
+
+template <class T>
+void compact(std::vector<T>& values, const std::vector<std::uint32_t>& kept) {
+  if (values.empty()) return;
+  for (std::size_t i = 0; i < kept.size(); ++i) values[i] = values[kept[i]];
+  values.resize(kept.size());
+}
+
+// Numbers of the vertices that triangles use, ascending; renumbers the triangles to them.
+std::vector<std::uint32_t> renumber(std::vector<Triangle>& triangles, std::size_t vertices) {
+  std::vector<std::uint32_t> place(vertices, 0);
+  for (const Triangle& t : triangles)
+    for (const std::uint32_t v : t) place[v] = 1;
+  std::vector<std::uint32_t> kept;
+  for (std::uint32_t v = 0; v < vertices; ++v)
+    if (place[v]) {
+      place[v] = static_cast<std::uint32_t>(kept.size());
+      kept.push_back(v);
+    }
+  tbb::parallel_for(std::size_t{0}, triangles.size(), [&](std::size_t t) {
+    for (std::uint32_t& v : triangles[t]) v = place[v];
+  });
+  return kept;
+}
+
+void clean_search_area(RawScene& raw) {
+  const auto unsound = [&](const Triangle& t) {
+    for (const std::uint32_t v : t) {
+      if (!sound(raw.search_positions[v])) return true;
+      if (!raw.search_uvs.empty() && !(std::isfinite(raw.search_uvs[v].u) && std::isfinite(raw.search_uvs[v].v)))
+        return true;
+    }
+    return !has_area(raw.search_positions[t[0]], raw.search_positions[t[1]], raw.search_positions[t[2]]);
+  };
+  const std::size_t dropped = std::erase_if(raw.search_triangles, unsound);
+  if (dropped > 0)
+    raw.notes.push_back("dropped " + std::to_string(dropped) +
+                        " triangles of the search area that are not finite or have no area");
+  const auto kept = renumber(raw.search_triangles, raw.search_positions.size());
+  compact(raw.search_positions, kept);
+  compact(raw.search_uvs, kept);
+}
+
+double spacing_of_floats_at(double magnitude) {
+  const auto value = static_cast<float>(magnitude);
+  return static_cast<double>(std::nextafter(value, std::numeric_limits<float>::infinity())) -
+         static_cast<double>(value);
+}
+
+void note_lost_precision(RawScene& raw, const Box& local) {
+  constexpr double kWorthSaying_m = 1e-5;  // a tenth of the finest scanner noise
+  const double farthest = std::max({std::abs(local.min.x), std::abs(local.min.y), std::abs(local.min.z),
+                                    std::abs(local.max.x), std::abs(local.max.y), std::abs(local.max.z)});
+  const double lost = raw.coarsest_input_spacing_m;
+  if (lost < kWorthSaying_m || lost < 8 * spacing_of_floats_at(farthest)) return;
+  char metres[32];
+  std::snprintf(metres, sizeof metres, "%.3g", lost);
+  raw.notes.push_back(
+      std::string("large coordinates are baked into float32 vertices, which the file resolves only to ") + metres +
+      " m; export with the offset in a node's translation instead");
+}
+
+}  // namespace
+
+Vec3 local_origin(const Box& bounds) {
+  if (bounds.empty()) return {};
+  const Vec3 size = bounds.size();
+  const double extent = std::max({size.x, size.y, size.z});
+  double unit = extent > 0 ? std::pow(10.0, std::ceil(std::log10(extent))) : 1.0;
+  if (!(unit > 1e-9)) unit = 1e-9;
+  const auto rounded = [&](double value) { return std::round(value / unit) * unit + 0.0; };
+  const Vec3 centre = bounds.centre();
+  return {rounded(centre.x), rounded(centre.y), rounded(centre.z)};
+}
+
+std::shared_ptr<const SceneData> finish_scene(RawScene&& raw, const std::string& source) {
+  const std::size_t given = raw.triangles.size();
+  const std::size_t not_finite = drop_unless(raw, [&](const Triangle& t) {
+    return sound(raw.positions[t[0]]) && sound(raw.positions[t[1]]) && sound(raw.positions[t[2]]);
+  });
+  Box bounds;
+  for (const Triangle& t : raw.triangles)
+    for (const std::uint32_t v : t) bounds.extend(raw.positions[v]);
+
+  auto data = std::make_shared<SceneData>();
+  data->origin = local_origin(bounds);
+  data->positions.resize(raw.positions.size());
+  tbb::parallel_for(std::size_t{0}, raw.positions.size(), [&](std::size_t v) {
+    if (!sound(raw.positions[v])) return;  // unused by now
+    const Vec3 p = raw.positions[v] - data->origin;
+    data->positions[v] = {static_cast<float>(p.x) + 0.0F, static_cast<float>(p.y) + 0.0F,
+                          static_cast<float>(p.z) + 0.0F};  // no −0
+  });
+  raw.positions = {};
+  const std::size_t flat = drop_unless(raw, [&](const Triangle& t) {
+    return has_area(widened(data->positions[t[0]]), widened(data->positions[t[1]]), widened(data->positions[t[2]]));
+  });
+  const std::size_t duplicates = drop_duplicates(raw, data->positions);
+
+  if (not_finite > 0)
+    raw.notes.push_back("dropped " + std::to_string(not_finite) +
+                        " triangles with a vertex that is not finite or beyond 1e9 m");
+  if (flat > 0) raw.notes.push_back("dropped " + std::to_string(flat) + " triangles without area");
+  if (duplicates > 0)
+    raw.notes.push_back("dropped " + std::to_string(duplicates) + " exact duplicates of other triangles");
+  if (std::ranges::none_of(raw.meshes, [](const MeshInfo& mesh) { return mesh.role == Role::surveyed; }))
+    throw Error(
+        Errc::malformed_file,
+        source + ": nothing to survey: " +
+            (given == 0 ? std::string("the scene has no triangles of surveyed or blocking meshes")
+             : raw.triangles.empty()
+                 ? "all " + std::to_string(given) + " triangles are without area or not finite"
+                 : "all " + std::to_string(raw.triangles.size()) + " triangles only block; mark meshes as surveyed"),
+        raw.notes);
+
+  const auto kept = renumber(raw.triangles, data->positions.size());
+  if (kept.size() != data->positions.size()) {
+    compact(data->positions, kept);
+    compact(raw.normals, kept);
+    compact(raw.texcoords, kept);
+    compact(raw.colours, kept);
+  }
+  for (const Float3& p : data->positions) data->local_bounds.extend(widened(p));
+  note_lost_precision(raw, data->local_bounds);
+  clean_search_area(raw);
+
+  data->normals = std::move(raw.normals);
+  data->texcoords = std::move(raw.texcoords);
+  data->colours = std::move(raw.colours);
+  data->triangles = std::move(raw.triangles);
+  data->ranges = std::move(raw.ranges);
+  data->meshes = std::move(raw.meshes);
+  data->materials = std::move(raw.materials);
+  if (data->materials.empty()) data->materials.emplace_back();
+  data->images = std::move(raw.images);
+  data->search_positions = std::move(raw.search_positions);
+  data->search_uvs = std::move(raw.search_uvs);
+  data->search_triangles = std::move(raw.search_triangles);
+  data->notes = std::move(raw.notes);
+  data->defaults_json = std::move(raw.defaults_json);
+  return data;
+}
+
+}  // namespace vantage

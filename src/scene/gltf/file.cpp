@@ -1,0 +1,401 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/gltf/file.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <string_view>
+#include <system_error>
+
+namespace vantage::gltf {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::uint32_t kGlbMagic = 0x46546C67, kJsonChunk = 0x4E4F534A, kBinaryChunk = 0x004E4942;
+constexpr int kDeepestJson = 128;  // readers recurse; real files nest about ten levels
+
+// Extensions that a file may require. Those that change positions are understood; the others only change how surfaces
+// look or carry information that no survey needs.
+constexpr std::string_view kUnderstood[] = {"KHR_mesh_quantization", "EXT_mesh_gpu_instancing",
+                                            "KHR_texture_transform"};
+constexpr std::string_view kWithoutEffect[] = {"KHR_materials_anisotropy",
+                                               "KHR_materials_clearcoat",
+                                               "KHR_materials_diffuse_transmission",
+                                               "KHR_materials_dispersion",
+                                               "KHR_materials_emissive_strength",
+                                               "KHR_materials_ior",
+                                               "KHR_materials_iridescence",
+                                               "KHR_materials_pbrSpecularGlossiness",
+                                               "KHR_materials_sheen",
+                                               "KHR_materials_specular",
+                                               "KHR_materials_transmission",
+                                               "KHR_materials_unlit",
+                                               "KHR_materials_variants",
+                                               "KHR_materials_volume",
+                                               "KHR_lights_punctual",
+                                               "EXT_lights_image_based",
+                                               "EXT_lights_ies",
+                                               "KHR_texture_basisu",
+                                               "EXT_texture_webp",
+                                               "EXT_texture_avif",
+                                               "MSFT_texture_dds",
+                                               "KHR_xmp_json_ld",
+                                               "KHR_animation_pointer",
+                                               "EXT_structural_metadata",
+                                               "EXT_mesh_features",
+                                               "EXT_instance_features"};
+
+std::vector<std::uint8_t> read_file(const std::filesystem::path& path, const std::string& what) {
+  std::error_code failure;
+  const auto status = std::filesystem::status(path, failure);
+  if (!std::filesystem::exists(status)) throw Error(Errc::io, what + ": there is no file " + path.string());
+  if (!std::filesystem::is_regular_file(status)) throw Error(Errc::io, what + ": " + path.string() + " is not a file");
+  const auto size = std::filesystem::file_size(path, failure);
+  std::ifstream stream(path, std::ios::binary);
+  if (failure || !stream) throw Error(Errc::io, what + ": " + path.string() + " cannot be opened for reading");
+  std::vector<std::uint8_t> bytes(size);
+  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
+  if (static_cast<std::uintmax_t>(stream.gcount()) != size)
+    throw Error(Errc::io, what + ": " + path.string() + " could be read only up to byte " +
+                              std::to_string(stream.gcount()) + " of " + std::to_string(size));
+  return bytes;
+}
+
+std::uint32_t little_endian(Bytes bytes, std::size_t offset) {
+  return static_cast<std::uint32_t>(bytes[offset]) | static_cast<std::uint32_t>(bytes[offset + 1]) << 8 |
+         static_cast<std::uint32_t>(bytes[offset + 2]) << 16 | static_cast<std::uint32_t>(bytes[offset + 3]) << 24;
+}
+
+// Deepest nesting of arrays and objects; brackets inside strings do not count.
+int nesting(Bytes text) {
+  int depth = 0, deepest = 0;
+  bool in_string = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const std::uint8_t c = text[i];
+    if (in_string) {
+      if (c == '\\') ++i;
+      if (c == '"') in_string = false;
+    } else if (c == '"') {
+      in_string = true;
+    } else if (c == '{' || c == '[') {
+      deepest = std::max(deepest, ++depth);
+    } else if (c == '}' || c == ']') {
+      --depth;
+    }
+  }
+  return deepest;
+}
+
+std::string percent_decoded(const std::string& uri) {
+  const auto digit = [](char c) {
+    return c >= '0' && c <= '9'   ? c - '0'
+           : c >= 'a' && c <= 'f' ? c - 'a' + 10
+           : c >= 'A' && c <= 'F' ? c - 'A' + 10
+                                  : -1;
+  };
+  std::string out;
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    if (uri[i] == '%' && i + 2 < uri.size() && digit(uri[i + 1]) >= 0 && digit(uri[i + 2]) >= 0) {
+      out += static_cast<char>(digit(uri[i + 1]) * 16 + digit(uri[i + 2]));
+      i += 2;
+    } else {
+      out += uri[i];
+    }
+  }
+  return out;
+}
+
+// tinygltf takes a default where an integer is negative, fractional or too large; here each is an error.
+void check_members(const File& file, const json& object, const std::string& where,
+                   std::initializer_list<const char*> names) {
+  for (const char* name : names) {
+    const auto it = object.find(name);
+    if (it == object.end()) continue;
+    if (!it->is_number_unsigned() ||
+        it->get<std::uint64_t>() > static_cast<std::uint64_t>(std::numeric_limits<int>::max()))
+      throw file.malformed(where + ": " + name + " is " + quoted(it->dump()) + ", not an index or a size");
+  }
+}
+
+}  // namespace
+
+std::string quoted(const std::string& text) {
+  constexpr std::size_t kLongest = 60;
+  return text.size() <= kLongest ? "\"" + text + "\"" : "\"" + text.substr(0, kLongest) + "…\"";
+}
+
+File::File(const std::filesystem::path& path) : path_(path), bytes_(read_file(path, "the scene cannot be read")) {
+  const Bytes glb_chunk = open_container();
+  check_version();
+  check_extensions();
+  check_integers();
+  load_buffers(glb_chunk);
+  read_structure();
+}
+
+Error File::malformed(const std::string& what) const {
+  return Error(Errc::malformed_file, path_.string() + ": " + what);
+}
+
+Bytes File::open_container() {
+  const Bytes all = bytes_;
+  if (all.size() < 4 || little_endian(all, 0) != kGlbMagic) {
+    parse(all);
+    return {};
+  }
+  if (all.size() < 12) throw malformed("the GLB header is cut off after " + std::to_string(all.size()) + " bytes");
+  if (const auto version = little_endian(all, 4); version != 2)
+    throw malformed("this is GLB version " + std::to_string(version) + "; export it as glTF 2.0");
+  const std::size_t length = little_endian(all, 8);
+  if (length > all.size())
+    throw malformed("the file is truncated: its header announces " + std::to_string(length) + " bytes, it has " +
+                    std::to_string(all.size()) + "; copy or export it again");
+  Bytes text, binary;
+  bool has_text = false, has_binary = false;
+  for (std::size_t at = 12; at + 8 <= length;) {
+    const std::size_t size = little_endian(all, at);
+    const std::uint32_t type = little_endian(all, at + 4);
+    at += 8;
+    if (size > length - at)
+      throw malformed("the GLB chunk at byte " + std::to_string(at - 8) + " announces " + std::to_string(size) +
+                      " bytes, " + std::to_string(length - at) + " are left");
+    if (type == kJsonChunk && !has_text) {
+      text = all.subspan(at, size);
+      has_text = true;
+    } else if (type == kBinaryChunk && !has_binary) {
+      binary = all.subspan(at, size);
+      has_binary = true;
+    }
+    at += size;
+  }
+  if (!has_text) throw malformed("the GLB has no JSON chunk");
+  parse(text);
+  return binary;
+}
+
+void File::parse(Bytes text) {
+  if (const int depth = nesting(text); depth > kDeepestJson)
+    throw malformed("the JSON nests " + std::to_string(depth) + " levels deep; at most " +
+                    std::to_string(kDeepestJson) + " are read");
+  try {
+    json_ = json::parse(text.begin(), text.end());
+  } catch (const json::exception& problem) {
+    throw malformed("neither a GLB nor a glTF JSON text: " + std::string(problem.what()));
+  }
+  if (!json_.is_object()) throw malformed("the JSON is not an object, so not a glTF");
+}
+
+void File::check_version() const {
+  const auto asset = json_.find("asset");
+  if (asset == json_.end() || !asset->is_object() || !asset->contains("version") || !(*asset)["version"].is_string())
+    throw malformed("there is no asset.version, so this is not a glTF");
+  const auto version = (*asset)["version"].get<std::string>();
+  if (!version.starts_with("2.")) throw malformed("this is glTF " + quoted(version) + "; export it as glTF 2.0");
+}
+
+void File::check_extensions() const {
+  const auto required = json_.find("extensionsRequired");
+  if (required == json_.end()) return;
+  if (!required->is_array()) throw malformed("extensionsRequired is not an array");
+  for (const json& entry : *required) {
+    if (!entry.is_string()) throw malformed("extensionsRequired holds " + quoted(entry.dump()) + ", not a name");
+    const auto name = entry.get<std::string>();
+    if (name == "KHR_draco_mesh_compression" || name == "EXT_meshopt_compression" || name == "KHR_meshopt_compression")
+      throw malformed("its meshes are compressed with " + name +
+                      ", which vantage does not read; export without mesh compression, or decompress it (e.g. with "
+                      "gltf-transform)");
+    if (std::ranges::find(kUnderstood, name) == std::end(kUnderstood) &&
+        std::ranges::find(kWithoutEffect, name) == std::end(kWithoutEffect))
+      throw malformed("it requires the extension " + quoted(name) + ", which vantage does not know; export without it");
+  }
+}
+
+void File::check_integers() const {
+  const auto each = [&](const json& parent, const char* array, const std::string& where, auto&& check) {
+    const auto it = parent.find(array);
+    if (it == parent.end()) return;
+    if (!it->is_array()) throw malformed(where + array + " is not an array");
+    for (std::size_t i = 0; i < it->size(); ++i) {
+      const std::string element = where + array + " " + std::to_string(i);
+      if (!(*it)[i].is_object()) throw malformed(element + " is not an object");
+      check((*it)[i], element);
+    }
+  };
+  const auto indices = [&](const json& object, const char* name, const std::string& where) {
+    const auto it = object.find(name);
+    if (it == object.end()) return;
+    if (!it->is_array()) throw malformed(where + ": " + name + " is not an array");
+    for (const json& index : *it)
+      if (!index.is_number_unsigned() ||
+          index.get<std::uint64_t>() > static_cast<std::uint64_t>(std::numeric_limits<int>::max()))
+        throw malformed(where + ": " + name + " holds " + quoted(index.dump()) + ", not an index");
+  };
+  each(json_, "accessors", "", [&](const json& accessor, const std::string& where) {
+    check_members(*this, accessor, where, {"bufferView", "byteOffset", "componentType", "count"});
+    const auto sparse = accessor.find("sparse");
+    if (sparse == accessor.end()) return;
+    if (!sparse->is_object()) throw malformed(where + ": sparse is not an object");
+    check_members(*this, *sparse, where + " sparse", {"count"});
+    for (const char* part : {"indices", "values"}) {
+      if (!sparse->contains(part) || !(*sparse)[part].is_object()) throw malformed(where + ": sparse has no " + part);
+      check_members(*this, (*sparse)[part], where + " sparse " + part, {"bufferView", "byteOffset", "componentType"});
+    }
+  });
+  each(json_, "buffers", "", [](const json&, const std::string&) {});
+  each(json_, "images", "",
+       [&](const json& image, const std::string& where) { check_members(*this, image, where, {"bufferView"}); });
+  each(json_, "bufferViews", "", [&](const json& view, const std::string& where) {
+    for (const char* name : {"byteOffset", "byteLength"})
+      if (view.contains(name) && !view[name].is_number_unsigned())
+        throw malformed(where + ": " + name + " is " + quoted(view[name].dump()) + ", not a size");
+    check_members(*this, view, where, {"buffer", "byteStride"});
+  });
+  each(json_, "meshes", "", [&](const json& mesh, const std::string& where) {
+    each(mesh, "primitives", where + " ", [&](const json& primitive, const std::string& primitive_where) {
+      check_members(*this, primitive, primitive_where, {"indices", "material", "mode"});
+      const auto attributes = primitive.find("attributes");
+      if (attributes == primitive.end()) return;
+      if (!attributes->is_object()) throw malformed(primitive_where + ": attributes is not an object");
+      for (const auto& [name, value] : attributes->items())
+        check_members(*this, *attributes, primitive_where, {name.c_str()});
+    });
+  });
+  each(json_, "nodes", "", [&](const json& node, const std::string& where) {
+    check_members(*this, node, where, {"mesh"});
+    indices(node, "children", where);
+    for (const char* name : {"matrix", "translation", "rotation", "scale"}) {
+      const auto it = node.find(name);
+      if (it == node.end()) continue;
+      const std::size_t size = name[0] == 'm' ? 16 : name[0] == 'r' ? 4 : 3;
+      if (!it->is_array() || it->size() != size ||
+          !std::ranges::all_of(*it, [](const json& value) { return value.is_number(); }))
+        throw malformed(where + ": " + name + " is not an array of " + std::to_string(size) + " numbers");
+    }
+  });
+  each(json_, "scenes", "", [&](const json& scene, const std::string& where) { indices(scene, "nodes", where); });
+  each(json_, "materials", "", [](const json&, const std::string&) {});
+  each(json_, "textures", "", [&](const json& texture, const std::string& where) {
+    check_members(*this, texture, where, {"source", "sampler"});
+  });
+  each(json_, "samplers", "", [](const json&, const std::string&) {});
+  check_members(*this, json_, "the file", {"scene"});
+}
+
+std::vector<std::uint8_t> File::read_uri(const std::string& uri, const std::string& what) const {
+  if (uri.starts_with("data:")) {
+    std::vector<std::uint8_t> bytes;
+    std::string type;
+    if (!tinygltf::IsDataURI(uri) || !tinygltf::DecodeDataURI(&bytes, type, uri, 0, false))
+      throw malformed(what + " has a data URI that is not base64 of a known kind: " + quoted(uri));
+    return bytes;
+  }
+  if (uri.find("://") != std::string::npos)
+    throw malformed(what + " lies at " + quoted(uri) + "; only files are read: download it first");
+  return read_file(path_.parent_path() / std::filesystem::path(percent_decoded(uri)),
+                   path_.string() + ": " + what + " is missing");
+}
+
+void File::load_buffers(Bytes glb_chunk) {
+  const auto list = json_.find("buffers");
+  if (list == json_.end()) return;
+  own_buffers_.resize(list->size());
+  buffers_.resize(list->size());
+  for (std::size_t i = 0; i < list->size(); ++i) {
+    const json& buffer = (*list)[i];
+    const std::string name = "buffer " + std::to_string(i);
+    if (!buffer.contains("byteLength") || !buffer["byteLength"].is_number_unsigned())
+      throw malformed(name + " has no byteLength");
+    const auto length = buffer["byteLength"].get<std::uint64_t>();
+    Bytes bytes = glb_chunk;
+    if (const auto uri = buffer.find("uri"); uri != buffer.end()) {
+      if (!uri->is_string()) throw malformed(name + ": uri is not a string");
+      own_buffers_[i] = read_uri(uri->get<std::string>(), name);
+      bytes = own_buffers_[i];
+    } else if (i != 0 || glb_chunk.data() == nullptr) {
+      throw malformed(name + " has no uri, and there is no GLB chunk for it");
+    }
+    if (length > bytes.size())
+      throw malformed(name + " is truncated: it announces " + std::to_string(length) + " bytes, " +
+                      std::to_string(bytes.size()) + " are there");
+    buffers_[i] = bytes.first(length);
+  }
+}
+
+void File::read_structure() {
+  json structure = json::object();
+  for (const char* part : {"asset", "accessors", "bufferViews", "extensionsUsed", "materials", "meshes", "nodes",
+                           "samplers", "scene", "scenes", "textures"})
+    if (const auto it = json_.find(part); it != json_.end()) structure[part] = *it;
+  const std::string text = structure.dump();
+  tinygltf::TinyGLTF loader;
+  std::string error, warning;
+  bool read = false;
+  try {
+    read =
+        text.size() <= std::numeric_limits<unsigned int>::max() &&
+        loader.LoadASCIIFromString(&model_, &error, &warning, text.data(), static_cast<unsigned int>(text.size()), "");
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& problem) {
+    error += problem.what();
+  }
+  while (!error.empty() && error.back() == '\n') error.pop_back();
+  if (!read) throw malformed(error.empty() ? "it is not a glTF" : error);
+  // tinygltf leaves out primitives that it cannot read.
+  for (std::size_t i = 0; i < model_.meshes.size(); ++i) {
+    const auto primitives = json_["meshes"][i].find("primitives");
+    if (primitives != json_["meshes"][i].end() && primitives->size() != model_.meshes[i].primitives.size())
+      throw malformed("mesh " + std::to_string(i) + " has a primitive without attributes");
+  }
+}
+
+Bytes File::view(int index, const std::string& user) const {
+  if (index < 0 || static_cast<std::size_t>(index) >= model_.bufferViews.size())
+    throw malformed(user + " refers to buffer view " + std::to_string(index) + "; there are " +
+                    std::to_string(model_.bufferViews.size()));
+  const tinygltf::BufferView& view = model_.bufferViews[static_cast<std::size_t>(index)];
+  const std::string name = "buffer view " + std::to_string(index);
+  if (view.buffer < 0 || static_cast<std::size_t>(view.buffer) >= buffers_.size())
+    throw malformed(name + " refers to buffer " + std::to_string(view.buffer) + "; there are " +
+                    std::to_string(buffers_.size()));
+  const Bytes buffer = buffers_[static_cast<std::size_t>(view.buffer)];
+  if (view.byteOffset > buffer.size() || view.byteLength > buffer.size() - view.byteOffset)
+    throw malformed(name + " spans bytes " + std::to_string(view.byteOffset) + " + " + std::to_string(view.byteLength) +
+                    " of buffer " + std::to_string(view.buffer) + ", which has " + std::to_string(buffer.size()));
+  return buffer.subspan(view.byteOffset, view.byteLength);
+}
+
+std::vector<std::uint8_t> File::image(int index) const {
+  const auto images = json_.find("images");
+  const std::string name = "image " + std::to_string(index);
+  if (images == json_.end() || index < 0 || static_cast<std::size_t>(index) >= images->size())
+    throw malformed("there is no " + name);
+  const json& image = (*images)[static_cast<std::size_t>(index)];
+  if (const auto view_index = image.find("bufferView"); view_index != image.end()) {
+    const Bytes bytes = view(view_index->get<int>(), name);
+    return {bytes.begin(), bytes.end()};
+  }
+  const auto uri = image.find("uri");
+  if (uri == image.end() || !uri->is_string()) throw malformed(name + " has neither uri nor bufferView");
+  return read_uri(uri->get<std::string>(), name);
+}
+
+const nlohmann::json& File::find(const char* array, int index, std::initializer_list<const char*> path) const {
+  static const json kNone;
+  const auto elements = json_.find(array);
+  if (elements == json_.end() || !elements->is_array() || index < 0 ||
+      static_cast<std::size_t>(index) >= elements->size())
+    return kNone;
+  const json* at = &(*elements)[static_cast<std::size_t>(index)];
+  for (const char* key : path) {
+    const auto member = at->find(key);
+    if (member == at->end()) return kNone;
+    at = &*member;
+  }
+  return *at;
+}
+
+}  // namespace vantage::gltf

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// A glTF file in memory: its JSON, the structure that tinygltf read from it, and the bytes that its buffers and images
+// name.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <initializer_list>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#define TINYGLTF_NO_STB_IMAGE
+#define TINYGLTF_NO_STB_IMAGE_WRITE
+#define TINYGLTF_NO_EXTERNAL_IMAGE
+#include <tiny_gltf.h>
+
+#include "vantage/error.hpp"
+
+namespace vantage::gltf {
+
+using Bytes = std::span<const std::uint8_t>;
+
+// tinygltf parses scenes, nodes, meshes, accessors and materials. Buffers and images are read here, where each can be
+// checked and named in a message; tinygltf never sees them. Nothing in `model` is trusted: indices and ranges are
+// checked where they are used.
+class File {
+ public:
+  // Throws Error: io, malformed_file.
+  explicit File(const std::filesystem::path& path);
+
+  const tinygltf::Model& model() const { return model_; }
+  const nlohmann::json& document() const { return json_; }
+  // Bytes of a buffer view. Throws Error malformed_file where it, or its buffer, does not exist or ends too early.
+  Bytes view(int index, const std::string& user) const;
+  // Encoded bytes of an image. Throws Error: io, malformed_file.
+  std::vector<std::uint8_t> image(int index) const;
+  // A member of an element, e.g. ("nodes", 3, {"extras", "vantage"}); null where there is none.
+  const nlohmann::json& find(const char* array, int index, std::initializer_list<const char*> path) const;
+
+  // An error in this file: "FILE: what".
+  Error malformed(const std::string& what) const;
+
+ private:
+  Bytes open_container();
+  void parse(Bytes text);
+  void check_version() const;
+  void check_extensions() const;
+  void check_integers() const;
+  void load_buffers(Bytes glb_chunk);
+  void read_structure();
+  std::vector<std::uint8_t> read_uri(const std::string& uri, const std::string& what) const;
+
+  std::filesystem::path path_;
+  std::vector<std::uint8_t> bytes_;                     // the whole file; a GLB's buffer 0 stays in here
+  std::vector<std::vector<std::uint8_t>> own_buffers_;  // the others
+  std::vector<Bytes> buffers_;
+  nlohmann::json json_;
+  tinygltf::Model model_;
+};
+
+// "TEXT" in quotes, shortened where it is long, for messages.
+std::string quoted(const std::string& text);
+
+}  // namespace vantage::gltf

@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: Apache-2.0
+// From a glTF file to a scene: places every mesh in the survey frame, sorts it by role, and hands all of it over to be
+// cleaned.
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <new>
+
+#include "scene/gltf/file.hpp"
+#include "scene/gltf/material.hpp"
+#include "scene/gltf/node_tree.hpp"
+#include "scene/gltf/primitive.hpp"
+#include "scene/raw_scene.hpp"
+#include "vantage/scene.hpp"
+
+namespace vantage {
+namespace gltf {
+namespace {
+
+constexpr std::size_t kBlock = 4096;
+constexpr std::size_t kMostTriangles = std::size_t{1} << 31;
+
+// A mesh that is to be read: one primitive as one node places it.
+struct Job {
+  const PlacedMesh* placed = nullptr;
+  std::size_t primitive = 0;
+  std::optional<Role> role;  // empty: nothing says
+  double diffuse = 0;
+  const MaterialInfo* material = nullptr;
+};
+
+template <class Body>
+void in_blocks(std::size_t count, Body&& body) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, kBlock),
+                    [&](const tbb::blocked_range<std::size_t>& range) {
+                      std::vector<double> values(4 * kBlock);
+                      for (std::size_t first = range.begin(); first < range.end(); first += kBlock)
+                        body(first, std::min(kBlock, range.end() - first), values.data());
+                    });
+}
+
+// Makes an optional per-vertex array as long as the positions are, once some mesh has it.
+template <class T>
+void extend(std::vector<T>& values, bool present, std::size_t size, T fallback) {
+  if (present || !values.empty()) values.resize(size, fallback);
+}
+
+std::uint32_t packed_colour(const double* rgba, int components) {
+  std::uint32_t out = 0;
+  for (int c = 0; c < 4; ++c) {
+    const double value = c < components ? rgba[c] : 1.0;
+    const auto byte =
+        static_cast<std::uint32_t>(std::lround(255 * std::clamp(std::isfinite(value) ? value : 1.0, 0.0, 1.0)));
+    out |= byte << (8 * c);
+  }
+  return out;
+}
+
+class Loader {
+ public:
+  Loader(const std::filesystem::path& path, const SceneOptions& options)
+      : file_(path), options_(options), materials_(file_, raw_.notes) {}
+
+  RawScene load() {
+    const auto placed = flatten_scene(file_, options_, raw_.notes);
+    std::vector<Job> jobs = list_jobs(placed);
+    for (const Job& job : jobs) read(job);
+    note_skipped();
+    raw_.materials = std::move(materials_.materials);
+    raw_.images = std::move(materials_.images);
+    const auto& asset = file_.document().at("asset");
+    const auto extras = asset.find("extras");
+    if (extras != asset.end() && extras->is_object() && extras->contains("vantage"))
+      raw_.defaults_json = (*extras)["vantage"].dump();
+    return std::move(raw_);
+  }
+
+ private:
+  std::vector<Job> list_jobs(const std::vector<PlacedMesh>& placed) {
+    std::vector<Job> jobs;
+    bool some_surveyed = false;
+    for (const PlacedMesh& mesh : placed) {
+      const Marks mesh_marks = read_marks(file_, "meshes", mesh.mesh, "mesh " + std::to_string(mesh.mesh));
+      const auto& primitives = file_.model().meshes[static_cast<std::size_t>(mesh.mesh)].primitives;
+      for (std::size_t p = 0; p < primitives.size(); ++p) {
+        const MaterialInfo& material = materials_.get(primitives[p].material);
+        Job job{&mesh, p, mesh.pattern_role, 0, &material};
+        for (const Marks* marks : {&mesh.marks, &mesh_marks, &material.marks})
+          if (!job.role) job.role = marks->role;
+        const std::optional<double> given[] = {mesh.marks.diffuse, mesh_marks.diffuse, material.marks.diffuse,
+                                               material.luminance};
+        const auto first = std::ranges::find_if(given, [](const auto& value) { return value.has_value(); });
+        job.diffuse = first != std::end(given) ? **first : options_.default_diffuse;
+        some_surveyed = some_surveyed || job.role == Role::surveyed;
+        jobs.push_back(job);
+      }
+    }
+    for (Job& job : jobs)
+      if (!job.role) job.role = some_surveyed ? Role::blocking : Role::surveyed;
+    return jobs;
+  }
+
+  void read(const Job& job) {
+    if (job.role == Role::ignore) return;
+    const auto primitive = read_primitive(file_, job.placed->mesh, job.primitive, skipped_);
+    if (!primitive || primitive->triangles.empty()) return;
+    const std::size_t instances = job.placed->world_from_mesh.size();
+    const std::size_t triangles = job.role == Role::search ? raw_.search_triangles.size() : raw_.triangles.size();
+    const std::size_t vertices = job.role == Role::search ? raw_.search_positions.size() : raw_.positions.size();
+    if (instances > kMostTriangles || primitive->triangles.size() * instances > kMostTriangles - triangles ||
+        primitive->position->count() * instances > std::numeric_limits<std::uint32_t>::max() - vertices)
+      throw file_.malformed("node " + quoted(job.placed->name) +
+                            ": more than 2^31 triangles or 2^32 vertices; split the scene");
+    if (job.role == Role::search) {
+      for (const Affine& world_from_mesh : job.placed->world_from_mesh) append_search(*primitive, world_from_mesh);
+      return;
+    }
+    raw_.ranges.push_back({static_cast<std::uint32_t>(raw_.triangles.size()),
+                           static_cast<std::uint32_t>(primitive->triangles.size() * instances), job.material->index});
+    raw_.meshes.push_back({job.placed->name, *job.role, job.diffuse, raw_.ranges.back().triangle_count});
+    for (const Affine& world_from_mesh : job.placed->world_from_mesh)
+      append(*primitive, *job.material, world_from_mesh);
+  }
+
+  void append_triangles(const Primitive& primitive, const Affine& world_from_mesh, std::size_t first_vertex,
+                        std::vector<Triangle>& out) {
+    const auto offset = static_cast<std::uint32_t>(first_vertex);
+    const bool mirrored = world_from_mesh.determinant() < 0;
+    mirrored_meshes_ += mirrored ? 1 : 0;
+    for (const Triangle& t : primitive.triangles)
+      out.push_back(mirrored ? Triangle{t[0] + offset, t[2] + offset, t[1] + offset}
+                             : Triangle{t[0] + offset, t[1] + offset, t[2] + offset});
+  }
+
+  void append_positions(const Primitive& primitive, const Affine& world_from_mesh, std::vector<Vec3>& out) {
+    const std::size_t first = out.size();
+    out.resize(first + primitive.position->count());
+    in_blocks(primitive.position->count(), [&](std::size_t begin, std::size_t n, double* values) {
+      primitive.position->read(begin, n, values);
+      for (std::size_t i = 0; i < n; ++i)
+        out[first + begin + i] = world_from_mesh.point({values[3 * i], values[3 * i + 1], values[3 * i + 2]});
+    });
+    if (primitive.position->is_float()) measure_spacing(*primitive.position, world_from_mesh);
+  }
+
+  // How far apart neighbouring float32 values lie at this primitive's coordinates, once the node has scaled them.
+  void measure_spacing(const Accessor& position, const Affine& world_from_mesh) {
+    double scale = 0;
+    for (int c = 0; c < 3; ++c)
+      scale = std::max(scale, std::sqrt(dot(world_from_mesh.column(c), world_from_mesh.column(c))));
+    double farthest = 0;
+    std::mutex mutex;
+    in_blocks(position.count(), [&](std::size_t begin, std::size_t n, double* values) {
+      position.read(begin, n, values);
+      double block = 0;
+      for (std::size_t i = 0; i < 3 * n; ++i)
+        if (std::isfinite(values[i])) block = std::max(block, std::abs(values[i]));
+      const std::scoped_lock lock(mutex);
+      farthest = std::max(farthest, block);
+    });
+    if (farthest * scale > 1e9) return;  // dropped as broken later
+    const double spacing = std::ldexp(1.0, std::ilogb(std::max(farthest, 1e-30)) - 23) * scale;
+    raw_.coarsest_input_spacing_m = std::max(raw_.coarsest_input_spacing_m, spacing);
+  }
+
+  void append(const Primitive& primitive, const MaterialInfo& material, const Affine& world_from_mesh) {
+    const std::size_t first = raw_.positions.size(), count = primitive.position->count();
+    append_triangles(primitive, world_from_mesh, first, raw_.triangles);
+    append_positions(primitive, world_from_mesh, raw_.positions);
+    extend(raw_.normals, primitive.normal != nullptr, first + count, Float3{});
+    if (primitive.normal) {
+      const Affine map = world_from_mesh.normal_map();
+      in_blocks(count, [&](std::size_t begin, std::size_t n, double* values) {
+        primitive.normal->read(begin, n, values);
+        for (std::size_t i = 0; i < n; ++i) {
+          const Vec3 normal = map.vector({values[3 * i], values[3 * i + 1], values[3 * i + 2]});
+          const double length = std::sqrt(dot(normal, normal));
+          if (!(length > 0) || !std::isfinite(length)) continue;  // stays (0, 0, 0): none
+          const Vec3 unit = normal * (1 / length);
+          raw_.normals[first + begin + i] = {static_cast<float>(unit.x), static_cast<float>(unit.y),
+                                             static_cast<float>(unit.z)};
+        }
+      });
+    }
+    const auto texcoord = primitive.texcoord(file_, material.texcoord_set);
+    extend(raw_.texcoords, texcoord != nullptr, first + count, Float2{});
+    if (texcoord)
+      in_blocks(count, [&](std::size_t begin, std::size_t n, double* values) {
+        texcoord->read(begin, n, values);
+        const auto& m = material.uv_map;
+        for (std::size_t i = 0; i < n; ++i) {
+          const double u = values[2 * i], v = values[2 * i + 1];
+          raw_.texcoords[first + begin + i] = {static_cast<float>(m[0][0] * u + m[0][1] * v + m[0][2]),
+                                               static_cast<float>(m[1][0] * u + m[1][1] * v + m[1][2])};
+        }
+      });
+    extend(raw_.colours, primitive.colour != nullptr, first + count, std::uint32_t{0xFFFFFFFF});
+    if (primitive.colour) {
+      const int components = primitive.colour->components();
+      in_blocks(count, [&](std::size_t begin, std::size_t n, double* values) {
+        primitive.colour->read(begin, n, values);
+        for (std::size_t i = 0; i < n; ++i)
+          raw_.colours[first + begin + i] =
+              packed_colour(values + i * static_cast<std::size_t>(components), components);
+      });
+    }
+  }
+
+  void append_search(const Primitive& primitive, const Affine& world_from_mesh) {
+    const std::size_t first = raw_.search_positions.size(), count = primitive.position->count();
+    append_triangles(primitive, world_from_mesh, first, raw_.search_triangles);
+    append_positions(primitive, world_from_mesh, raw_.search_positions);
+    const auto uv = primitive.texcoord(file_, 0);
+    if (!uv) {
+      search_without_uv_ = true;
+      return;
+    }
+    std::vector<double> values(2 * count);
+    uv->read(0, count, values.data());
+    raw_.search_uvs.resize(first);
+    for (std::size_t i = 0; i < count; ++i) raw_.search_uvs.push_back({values[2 * i], values[2 * i + 1]});
+  }
+
+  void note_skipped() {
+    const auto note = [&](std::size_t count, const std::string& what) {
+      if (count > 0) raw_.notes.push_back(std::to_string(count) + " " + what);
+    };
+    note(skipped_.points_or_lines, "primitives of points or lines were ignored");
+    note(skipped_.without_positions, "primitives without positions were ignored");
+    note(skipped_.morphed, "primitives have morph targets, which are not applied");
+    note(skipped_.cut_short, "triangle lists end with one or two left-over vertices, which were ignored");
+    note(mirrored_meshes_, "meshes are mirrored by their node; their winding was turned to keep normals outward");
+    if (search_without_uv_ && !raw_.search_uvs.empty())
+      raw_.notes.emplace_back("part of the search area has no (u, v), so that of the rest is not used");
+    if (search_without_uv_) raw_.search_uvs.clear();
+  }
+
+  File file_;
+  const SceneOptions& options_;
+  RawScene raw_;
+  MaterialTable materials_;
+  SkippedPrimitives skipped_;
+  std::size_t mirrored_meshes_ = 0;
+  bool search_without_uv_ = false;
+};
+
+}  // namespace
+}  // namespace gltf
+
+Scene Scene::load(const std::filesystem::path& file, const SceneOptions& options) {
+  if (!(options.default_diffuse >= 0 && options.default_diffuse <= 1))
+    throw Error(Errc::invalid_argument,
+                "default_diffuse must be in [0, 1]; " + std::to_string(options.default_diffuse) + " was given");
+  try {
+    return Scene(finish_scene(gltf::Loader(file, options).load(), file.string()));
+  } catch (const std::bad_alloc&) {
+    throw Error(Errc::out_of_memory, file.string() + ": the scene does not fit into memory");
+  } catch (const std::length_error&) {
+    throw Error(Errc::out_of_memory, file.string() + ": the scene does not fit into memory");
+  }
+}
+
+}  // namespace vantage

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/gltf/material.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/image.hpp"
+
+namespace vantage::gltf {
+namespace {
+
+using nlohmann::json;
+
+double number(const json& object, const char* name, double fallback) {
+  const auto it = object.find(name);
+  return it != object.end() && it->is_number() ? it->get<double>() : fallback;
+}
+
+// n numbers, or the fallback where the member is absent or something else.
+template <std::size_t N>
+std::array<double, N> numbers(const json& object, const char* name, std::array<double, N> fallback) {
+  const auto it = object.find(name);
+  if (it == object.end() || !it->is_array() || it->size() != N ||
+      !std::ranges::all_of(*it, [](const json& v) { return v.is_number(); }))
+    return fallback;
+  for (std::size_t i = 0; i < N; ++i) fallback[i] = (*it)[i].get<double>();
+  return fallback;
+}
+
+void read_uv_map(const json& transform, MaterialInfo& info) {
+  const auto offset = numbers<2>(transform, "offset", {0, 0});
+  const auto scale = numbers<2>(transform, "scale", {1, 1});
+  const double angle = number(transform, "rotation", 0), c = std::cos(angle), s = std::sin(angle);
+  // translation · rotation · scale, as the extension defines it
+  info.uv_map[0][0] = c * scale[0];
+  info.uv_map[0][1] = s * scale[1];
+  info.uv_map[0][2] = offset[0];
+  info.uv_map[1][0] = -s * scale[0];
+  info.uv_map[1][1] = c * scale[1];
+  info.uv_map[1][2] = offset[1];
+  if (const auto set = transform.find("texCoord"); set != transform.end() && set->is_number_unsigned())
+    info.texcoord_set = static_cast<int>(std::min<std::uint64_t>(set->get<std::uint64_t>(), 1000));
+}
+
+}  // namespace
+
+const MaterialInfo& MaterialTable::get(int index) {
+  if (const auto it = read_.find(index); it != read_.end()) return it->second;
+  MaterialInfo info;
+  Material material;
+  if (index >= 0) {
+    if (static_cast<std::size_t>(index) >= file_.model().materials.size())
+      throw file_.malformed("a primitive refers to material " + std::to_string(index) + "; there are " +
+                            std::to_string(file_.model().materials.size()));
+    info.marks = read_marks(file_, "materials", index, "material " + std::to_string(index));
+    const json& pbr = file_.find("materials", index, {"pbrMetallicRoughness"});
+    const auto factor = numbers<4>(pbr, "baseColorFactor", {-1, 1, 1, 1});
+    if (factor[0] >= 0)
+      for (std::size_t c = 0; c < 4; ++c) material.base_colour[c] = static_cast<float>(std::clamp(factor[c], 0.0, 1.0));
+    const json& texture = file_.find("materials", index, {"pbrMetallicRoughness", "baseColorTexture"});
+    if (const auto texture_index = texture.find("index");
+        texture_index != texture.end() && texture_index->is_number_unsigned()) {
+      const int number_of_texture = texture_index->get<int>();
+      material.image = image(number_of_texture);
+      info.texcoord_set = static_cast<int>(std::clamp(number(texture, "texCoord", 0), 0.0, 1000.0));
+      const json& transform = file_.find(
+          "materials", index, {"pbrMetallicRoughness", "baseColorTexture", "extensions", "KHR_texture_transform"});
+      if (transform.is_object()) read_uv_map(transform, info);
+      const auto& textures = file_.model().textures;
+      if (number_of_texture >= 0 && static_cast<std::size_t>(number_of_texture) < textures.size()) {
+        const int sampler = textures[static_cast<std::size_t>(number_of_texture)].sampler;
+        if (sampler >= 0 && static_cast<std::size_t>(sampler) < file_.model().samplers.size()) {
+          const auto& wrap = file_.model().samplers[static_cast<std::size_t>(sampler)];
+          material.repeat_u = wrap.wrapS != TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
+          material.repeat_v = wrap.wrapT != TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
+        }
+      }
+    } else if (factor[0] >= 0) {
+      // Luminance of linear RGB, ITU-R BT.709.
+      info.luminance = std::clamp(0.2126 * static_cast<double>(material.base_colour[0]) +
+                                      0.7152 * static_cast<double>(material.base_colour[1]) +
+                                      0.0722 * static_cast<double>(material.base_colour[2]),
+                                  0.0, 1.0);
+    }
+    if (material.image < 0) info.texcoord_set = -1;
+  }
+  info.index = static_cast<std::uint32_t>(materials.size());
+  materials.push_back(material);
+  return read_.emplace(index, info).first->second;
+}
+
+std::int32_t MaterialTable::image(int texture) {
+  const auto& textures = file_.model().textures;
+  if (texture < 0 || static_cast<std::size_t>(texture) >= textures.size()) {
+    notes_.push_back("texture " + std::to_string(texture) + " does not exist; its material keeps its plain colour");
+    return -1;
+  }
+  const int source = textures[static_cast<std::size_t>(texture)].source;
+  if (const auto it = read_images_.find(source); it != read_images_.end()) return it->second;
+  std::int32_t place = -1;
+  std::string problem = "its format is not PNG or JPEG";
+  if (source >= 0) {
+    try {
+      Image decoded = decode_image(file_.image(source), problem);
+      if (decoded.width > 0) {
+        place = static_cast<std::int32_t>(images.size());
+        images.push_back(std::move(decoded));
+      }
+    } catch (const Error& error) {
+      problem = error.what();
+    }
+  }
+  if (place < 0)
+    notes_.push_back("texture " + std::to_string(texture) +
+                     " cannot be read, its material keeps its plain colour: " + problem);
+  read_images_.emplace(source, place);
+  return place;
+}
+
+}  // namespace vantage::gltf

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// Base colours and their textures.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/gltf/file.hpp"
+#include "scene/gltf/node_tree.hpp"
+#include "scene/scene_data.hpp"
+
+namespace vantage::gltf {
+
+// A glTF material as far as points need it.
+struct MaterialInfo {
+  std::uint32_t index = 0;                       // into the table's materials
+  Marks marks;                                   // of its extras
+  std::optional<double> luminance;               // of the base colour factor, where the file gives one and no texture
+  int texcoord_set = -1;                         // of the base colour texture; -1 without one
+  double uv_map[2][3] = {{1, 0, 0}, {0, 1, 0}};  // KHR_texture_transform: uv' = map · (u, v, 1)
+};
+
+// Reads each material once, when it is first used, and each image likewise. An image that cannot be read costs only
+// colour: it is left out and noted.
+class MaterialTable {
+ public:
+  MaterialTable(const File& file, std::vector<std::string>& notes) : file_(file), notes_(notes) {}
+  // REQUIRES: nothing; -1 is the default material. Throws Error malformed_file.
+  const MaterialInfo& get(int material);
+
+  std::vector<Material> materials;
+  std::vector<Image> images;
+
+ private:
+  std::int32_t image(int texture);
+
+  const File& file_;
+  std::vector<std::string>& notes_;
+  std::map<int, MaterialInfo> read_;
+  std::map<int, std::int32_t> read_images_;  // by glTF image
+};
+
+}  // namespace vantage::gltf

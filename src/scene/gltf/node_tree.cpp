@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/gltf/node_tree.hpp"
+
+#include <cmath>
+#include <memory>
+#include <span>
+
+#include "scene/glob.hpp"
+#include "scene/gltf/accessor.hpp"
+
+namespace vantage::gltf {
+namespace {
+
+constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
+
+// Role patterns, and whether each has matched a node yet.
+class Patterns {
+ public:
+  explicit Patterns(const SceneOptions& options) {
+    add(options.surveyed, Role::surveyed);
+    add(options.blocking, Role::blocking);
+    add(options.search, Role::search);
+    add(options.ignore, Role::ignore);
+  }
+  // The last list that names the node decides, so that `surveyed *` with `blocking ground` does what it says.
+  std::optional<Role> role(const std::string& name) {
+    std::optional<Role> role;
+    for (Entry& entry : entries_)
+      if (glob_matches(entry.pattern, name)) {
+        entry.matched = true;
+        role = entry.role;
+      }
+    return role;
+  }
+  void check(const std::vector<std::string>& names) const {
+    for (const Entry& entry : entries_) {
+      if (entry.matched) continue;
+      std::vector<std::string> details;
+      for (std::size_t i = 0; i < names.size() && i < 20; ++i) details.push_back("node " + quoted(names[i]));
+      if (names.size() > details.size())
+        details.push_back("and " + std::to_string(names.size() - details.size()) + " more");
+      std::string some;
+      for (std::size_t i = 0; i < names.size() && i < 3; ++i) some += (i ? ", " : "") + quoted(names[i]);
+      throw Error(Errc::invalid_argument,
+                  "the pattern " + quoted(entry.pattern) + " matches no node; nodes are " + some +
+                      (names.size() > 3 ? ", …" : ""),
+                  std::move(details));
+    }
+  }
+
+ private:
+  struct Entry {
+    std::string pattern;
+    Role role;
+    bool matched = false;
+  };
+  void add(const std::vector<std::string>& patterns, Role role) {
+    for (const std::string& pattern : patterns) entries_.push_back({pattern, role});
+  }
+  std::vector<Entry> entries_;
+};
+
+std::string node_name(const tinygltf::Model& model, int index) {
+  const tinygltf::Node& node = model.nodes[static_cast<std::size_t>(index)];
+  if (!node.name.empty()) return node.name;
+  if (node.mesh >= 0 && static_cast<std::size_t>(node.mesh) < model.meshes.size() &&
+      !model.meshes[static_cast<std::size_t>(node.mesh)].name.empty())
+    return model.meshes[static_cast<std::size_t>(node.mesh)].name;
+  return "node " + std::to_string(index);
+}
+
+Vec3 vec3(std::span<const double> values, double fallback) {
+  return values.size() == 3 ? Vec3{values[0], values[1], values[2]} : Vec3{fallback, fallback, fallback};
+}
+
+void normalise(double (&q)[4], const File& file, const std::string& where) {
+  const double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+  if (!(length > 1e-6) || !std::isfinite(length)) throw file.malformed(where + ": its rotation is no unit quaternion");
+  for (double& value : q) value /= length;
+}
+
+Affine local_transform(const File& file, const tinygltf::Node& node, const std::string& where) {
+  if (node.matrix.size() == 16) {
+    const std::vector<double>& m = node.matrix;  // column-major
+    const double last[4] = {m[3], m[7], m[11], m[15] - 1};
+    for (const double value : last)
+      if (!(std::abs(value) <= 1e-6))
+        throw file.malformed(where + ": its matrix is not affine, the last row must be 0 0 0 1");
+    return {{{m[0], m[4], m[8], m[12]}, {m[1], m[5], m[9], m[13]}, {m[2], m[6], m[10], m[14]}}};
+  }
+  double q[4] = {0, 0, 0, 1};
+  if (node.rotation.size() == 4) {
+    std::copy_n(node.rotation.begin(), 4, q);
+    normalise(q, file, where);
+  }
+  return Affine::from_trs(vec3(node.translation, 0), q, vec3(node.scale, 1));
+}
+
+// Transforms of EXT_mesh_gpu_instancing, relative to the node.
+std::vector<Affine> instance_transforms(const File& file, int node, const std::string& where) {
+  if (file.find("nodes", node, {"extensions", kInstancing}).is_null()) return {Affine{}};
+  std::unique_ptr<Accessor> parts[3];
+  const char* const names[3] = {"TRANSLATION", "ROTATION", "SCALE"};
+  std::size_t count = 0;
+  for (int i = 0; i < 3; ++i) {
+    const nlohmann::json& index = file.find("nodes", node, {"extensions", kInstancing, "attributes", names[i]});
+    if (index.is_null()) continue;
+    if (!index.is_number_unsigned())
+      throw file.malformed(where + " instances " + names[i] + ": " + quoted(index.dump()) + " is no accessor");
+    parts[i] = std::make_unique<Accessor>(file, index.get<int>(), where + " instances " + names[i],
+                                          i == 1 ? std::initializer_list<int>{4} : std::initializer_list<int>{3});
+    if (count != 0 && parts[i]->count() != count)
+      throw file.malformed(where + ": its instances have " + std::to_string(count) + " and " +
+                           std::to_string(parts[i]->count()) + " entries");
+    count = parts[i]->count();
+  }
+  if (count == 0) throw file.malformed(where + ": " + kInstancing + " lists no instances");
+  std::vector<Affine> out(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    double t[3] = {0, 0, 0}, q[4] = {0, 0, 0, 1}, s[3] = {1, 1, 1};
+    if (parts[0]) parts[0]->read(i, 1, t);
+    if (parts[1]) {
+      parts[1]->read(i, 1, q);
+      normalise(q, file, where + " instance " + std::to_string(i));
+    }
+    if (parts[2]) parts[2]->read(i, 1, s);
+    out[i] = Affine::from_trs({t[0], t[1], t[2]}, q, {s[0], s[1], s[2]});
+  }
+  return out;
+}
+
+std::vector<int> root_nodes(const File& file, const SceneOptions& options) {
+  const tinygltf::Model& model = file.model();
+  if (options.scene_index && *options.scene_index >= model.scenes.size())
+    throw Error(Errc::invalid_argument, "scene " + std::to_string(*options.scene_index) +
+                                            " was asked for; the file has " + std::to_string(model.scenes.size()) +
+                                            ", numbered from 0");
+  if (model.scenes.empty()) {  // a library of nodes: take all that have no parent
+    std::vector<bool> has_parent(model.nodes.size());
+    for (const auto& node : model.nodes)
+      for (const int child : node.children)
+        if (child >= 0 && static_cast<std::size_t>(child) < has_parent.size())
+          has_parent[static_cast<std::size_t>(child)] = true;
+    std::vector<int> roots;
+    for (std::size_t i = 0; i < has_parent.size(); ++i)
+      if (!has_parent[i]) roots.push_back(static_cast<int>(i));
+    return roots;
+  }
+  const std::size_t index = options.scene_index       ? *options.scene_index
+                            : model.defaultScene >= 0 ? static_cast<std::size_t>(model.defaultScene)
+                                                      : 0;
+  if (index >= model.scenes.size())
+    throw file.malformed("its default scene is " + std::to_string(index) + "; there are " +
+                         std::to_string(model.scenes.size()));
+  return model.scenes[index].nodes;
+}
+
+}  // namespace
+
+Marks read_marks(const File& file, const char* array, int index, const std::string& name) {
+  const nlohmann::json& object = file.find(array, index, {"extras", "vantage"});
+  if (object.is_null()) return {};
+  const std::string where = name + ": extras.vantage";
+  if (!object.is_object()) throw file.malformed(where + " is not an object");
+  Marks marks;
+  if (const auto role = object.find("role"); role != object.end()) {
+    const std::string text = role->is_string() ? role->get<std::string>() : role->dump();
+    if (text == "surveyed")
+      marks.role = Role::surveyed;
+    else if (text == "blocking")
+      marks.role = Role::blocking;
+    else if (text == "search")
+      marks.role = Role::search;
+    else if (text == "ignore")
+      marks.role = Role::ignore;
+    else
+      throw file.malformed(where + ".role is " + quoted(text) + "; use surveyed, blocking, search or ignore");
+  }
+  if (const auto diffuse = object.find("diffuse"); diffuse != object.end()) {
+    if (!diffuse->is_number() || !(diffuse->get<double>() >= 0 && diffuse->get<double>() <= 1))
+      throw file.malformed(where + ".diffuse is " + quoted(diffuse->dump()) + "; it must be a number from 0 to 1");
+    marks.diffuse = diffuse->get<double>();
+  }
+  return marks;
+}
+
+std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& options, std::vector<std::string>& notes) {
+  const tinygltf::Model& model = file.model();
+  struct Visit {
+    int node;
+    int parent;
+    Affine world_from_parent;
+    std::optional<Role> pattern_role;
+    Marks marks;
+  };
+  std::vector<Visit> stack;  // an own stack: node trees may be deeper than the thread's
+  const std::vector<int> roots = root_nodes(file, options);
+  for (auto it = roots.rbegin(); it != roots.rend(); ++it)
+    stack.push_back({*it, -1, Affine::survey_from_gltf(), {}, {}});
+  Patterns patterns(options);
+  std::vector<PlacedMesh> placed;
+  std::vector<std::string> names;
+  std::vector<bool> visited(model.nodes.size());
+  std::size_t skinned = 0;
+  while (!stack.empty()) {
+    Visit visit = std::move(stack.back());
+    stack.pop_back();
+    const std::string who = visit.parent < 0 ? "the scene" : "node " + std::to_string(visit.parent);
+    if (visit.node < 0 || static_cast<std::size_t>(visit.node) >= model.nodes.size())
+      throw file.malformed(who + " refers to node " + std::to_string(visit.node) + "; there are " +
+                           std::to_string(model.nodes.size()));
+    const auto index = static_cast<std::size_t>(visit.node);
+    const tinygltf::Node& node = model.nodes[index];
+    const std::string name = node_name(model, visit.node);
+    const std::string where = "node " + std::to_string(visit.node) + (node.name.empty() ? "" : " " + quoted(node.name));
+    if (visited[index]) throw file.malformed(where + " is reached twice: a cycle, or a node with two parents");
+    visited[index] = true;
+    names.push_back(name);
+    if (const auto role = patterns.role(name)) visit.pattern_role = role;
+    const Marks own = read_marks(file, "nodes", visit.node, where);
+    if (own.role) visit.marks.role = own.role;
+    if (own.diffuse) visit.marks.diffuse = own.diffuse;
+    const Affine world_from_node = visit.world_from_parent * local_transform(file, node, where);
+    if (!world_from_node.finite()) throw file.malformed(where + ": its transform is not finite");
+    if (node.mesh >= 0) {
+      if (static_cast<std::size_t>(node.mesh) >= model.meshes.size())
+        throw file.malformed(where + " refers to mesh " + std::to_string(node.mesh) + "; there are " +
+                             std::to_string(model.meshes.size()));
+      if (node.skin >= 0) ++skinned;
+      PlacedMesh mesh{visit.node,         node.mesh,  name, instance_transforms(file, visit.node, where),
+                      visit.pattern_role, visit.marks};
+      for (Affine& transform : mesh.world_from_mesh) {
+        transform = world_from_node * transform;
+        if (!transform.finite()) throw file.malformed(where + ": the transform of an instance is not finite");
+      }
+      placed.push_back(std::move(mesh));
+    }
+    for (auto it = node.children.rbegin(); it != node.children.rend(); ++it)
+      stack.push_back({*it, visit.node, world_from_node, visit.pattern_role, visit.marks});
+  }
+  patterns.check(names);
+  if (skinned > 0)
+    notes.push_back(std::to_string(skinned) + " skinned meshes stand as modelled: skins are not applied");
+  return placed;
+}
+
+}  // namespace vantage::gltf

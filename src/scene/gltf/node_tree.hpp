@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// The nodes of one glTF scene, flattened: which mesh stands where, and what was said about it on the way down.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/affine.hpp"
+#include "scene/gltf/file.hpp"
+#include "vantage/scene.hpp"
+
+namespace vantage::gltf {
+
+// What extras say of an element.
+struct Marks {
+  std::optional<Role> role;
+  std::optional<double> diffuse;
+};
+// Throws Error malformed_file for an unknown role or a diffuse coefficient outside [0, 1].
+Marks read_marks(const File& file, const char* array, int index, const std::string& name);
+
+// A node that carries a mesh.
+struct PlacedMesh {
+  int node = 0, mesh = 0;
+  std::string name;                     // the node's, else the mesh's, else "node N"
+  std::vector<Affine> world_from_mesh;  // survey frame; several with EXT_mesh_gpu_instancing
+  std::optional<Role> pattern_role;     // by the nearest node whose name matches a pattern
+  Marks marks;                          // by the nearest node that has them
+};
+
+// Throws Error: malformed_file (cycles, nodes with two parents, matrices that are not finite or not affine),
+// invalid_argument (scene index out of range, a pattern that matches no node).
+std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& options, std::vector<std::string>& notes);
+
+}  // namespace vantage::gltf

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/gltf/primitive.hpp"
+
+#include <limits>
+
+namespace vantage::gltf {
+namespace {
+
+// Triangles of the three modes; `at` gives the i-th of n indices. Strips and fans turn with repeated indices, which
+// make no triangle.
+template <class At>
+std::vector<Triangle> triangulate(int mode, std::size_t n, At&& at) {
+  std::vector<Triangle> out;
+  if (n < 3) return out;
+  if (mode == TINYGLTF_MODE_TRIANGLES) {
+    out.resize(n / 3);
+    for (std::size_t t = 0; t < out.size(); ++t) out[t] = {at(3 * t), at(3 * t + 1), at(3 * t + 2)};
+    return out;
+  }
+  for (std::size_t i = 0; i + 2 < n; ++i) {
+    const Triangle t = mode == TINYGLTF_MODE_TRIANGLE_FAN ? Triangle{at(i + 1), at(i + 2), at(0)}
+                                                          : Triangle{at(i), at(i + 1 + i % 2), at(i + 2 - i % 2)};
+    if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) out.push_back(t);
+  }
+  return out;
+}
+
+}  // namespace
+
+std::unique_ptr<Accessor> Primitive::texcoord(const File& file, int set) const {
+  if (set < 0 || set > 1 || texcoords[set] < 0) return nullptr;
+  const std::string semantic = "TEXCOORD_" + std::to_string(set);
+  auto accessor =
+      std::make_unique<Accessor>(file, texcoords[set], name + " " + semantic, std::initializer_list<int>{2});
+  if (accessor->count() != position->count())
+    throw file.malformed(accessor->name() + " has " + std::to_string(accessor->count()) + " elements for " +
+                         std::to_string(position->count()) + " positions");
+  return accessor;
+}
+
+std::unique_ptr<Primitive> read_primitive(const File& file, int mesh, std::size_t index, SkippedPrimitives& skipped) {
+  const tinygltf::Primitive& primitive = file.model().meshes[static_cast<std::size_t>(mesh)].primitives[index];
+  auto out = std::make_unique<Primitive>();
+  out->name = "mesh " + std::to_string(mesh) + " primitive " + std::to_string(index);
+  out->material = primitive.material;
+  if (primitive.mode < TINYGLTF_MODE_POINTS || primitive.mode > TINYGLTF_MODE_TRIANGLE_FAN)
+    throw file.malformed(out->name + " has the mode " + std::to_string(primitive.mode) + "; glTF has 0 to 6");
+  if (primitive.mode < TINYGLTF_MODE_TRIANGLES) {
+    ++skipped.points_or_lines;
+    return nullptr;
+  }
+  const auto attribute = [&](const char* semantic) {
+    const auto it = primitive.attributes.find(semantic);
+    return it == primitive.attributes.end() ? -1 : it->second;
+  };
+  if (attribute("POSITION") < 0) {
+    ++skipped.without_positions;
+    return nullptr;
+  }
+  if (!primitive.targets.empty()) ++skipped.morphed;
+  const auto read = [&](const char* semantic, std::initializer_list<int> components) -> std::unique_ptr<Accessor> {
+    const int accessor_index = attribute(semantic);
+    if (accessor_index < 0) return nullptr;
+    auto accessor = std::make_unique<Accessor>(file, accessor_index, out->name + " " + semantic, components);
+    if (out->position && accessor->count() != out->position->count())
+      throw file.malformed(accessor->name() + " has " + std::to_string(accessor->count()) + " elements for " +
+                           std::to_string(out->position->count()) + " positions");
+    return accessor;
+  };
+  out->position = read("POSITION", {3});
+  out->normal = read("NORMAL", {3});
+  out->colour = read("COLOR_0", {4, 3});
+  out->texcoords[0] = attribute("TEXCOORD_0");
+  out->texcoords[1] = attribute("TEXCOORD_1");
+  if (out->position->count() > std::numeric_limits<std::uint32_t>::max())
+    throw file.malformed(out->position->name() + " has too many elements");
+  std::size_t corners = out->position->count();
+  if (primitive.indices >= 0) {
+    const Accessor accessor(file, primitive.indices, out->name + " indices", {1});
+    const auto indices = accessor.read_indices(out->position->count());
+    corners = indices.size();
+    out->triangles = triangulate(primitive.mode, corners, [&](std::size_t i) { return indices[i]; });
+  } else {
+    out->triangles = triangulate(primitive.mode, corners, [](std::size_t i) { return static_cast<std::uint32_t>(i); });
+  }
+  if (primitive.mode == TINYGLTF_MODE_TRIANGLES && corners % 3 != 0) ++skipped.cut_short;
+  return out;
+}
+
+}  // namespace vantage::gltf

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// A scene in the survey frame in double precision, before cleaning and before a local origin is taken off.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "scene/scene_data.hpp"
+
+namespace vantage {
+
+struct RawScene {
+  std::vector<Vec3> positions;
+  std::vector<Float3> normals;         // empty, or one per position
+  std::vector<Float2> texcoords;       // empty, or one per position
+  std::vector<std::uint32_t> colours;  // empty, or one per position
+  std::vector<Triangle> triangles;
+  std::vector<MeshRange> ranges;
+  std::vector<MeshInfo> meshes;
+  std::vector<Material> materials;
+  std::vector<Image> images;
+  std::vector<Vec3> search_positions;
+  std::vector<Uv> search_uvs;
+  std::vector<Triangle> search_triangles;
+  // Coarsest spacing, in metres, of the float32 values from which positions were read, at those positions; 0 where they
+  // were exact.
+  double coarsest_input_spacing_m = 0;
+  std::vector<std::string> notes;
+  std::string defaults_json = "{}";
+};
+
+// Drops triangles that no ray can meet soundly (not finite, absurdly far, without area, exact duplicates), takes off
+// the local origin in double, rounds to float and removes unused vertices. What was dropped is said in the notes.
+// Throws Error malformed_file, prefixed with `source`, where no surveyed triangle is left.
+std::shared_ptr<const SceneData> finish_scene(RawScene&& raw, const std::string& source);
+
+// The local origin for a box of coordinates: its centre, rounded to a multiple of the smallest power of ten that is not
+// below the largest extent. So a site modelled around 0 keeps 0, and one that was shifted by kilometres gets the very
+// same local coordinates as the unshifted one, while no local coordinate exceeds 5.5 times the extent.
+Vec3 local_origin(const Box& bounds);
+
+}  // namespace vantage
