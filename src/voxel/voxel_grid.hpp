@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The surveyed voxels (section 4.1): a cubic grid of 2^depth cells a side over the surveyed meshes, of which those that a surveyed
-// triangle touches are kept, in Morton order. The one definition of "which voxel".
+// The surveyed voxels (section 4.1): a cubic grid of 2^depth cells a side over the surveyed meshes, of which those that
+// a surveyed triangle touches are kept, in Morton order. The one definition of "which voxel".
 #pragma once
 
 #include <array>
@@ -23,9 +23,9 @@ std::array<std::uint32_t, 3> morton_decode(std::uint64_t key);
 
 class VoxelGrid {
  public:
-  // Equation 2. The cube's side is 1.002 × the largest extent of the surveyed meshes, centred on their bounds, and nudged within that
-  // margin where a surveyed axis-aligned plane would lie on a voxel face (docs/method.md).
-  // Throws Error invalid_argument: user size not positive, or so small that the depth exceeds max_voxel_depth.
+  // Equation 2. The cube's side is 1.002 × the largest extent of the surveyed meshes, centred on their bounds, and
+  // nudged within that margin where a surveyed axis-aligned plane would lie on a voxel face (docs/method.md). Throws
+  // Error invalid_argument: user size not positive, or so small that the depth exceeds max_voxel_depth.
   static VoxelGrid build(const SceneData& scene, double user_size_m);
 
   int depth() const { return depth_; }
@@ -34,10 +34,11 @@ class VoxelGrid {
   std::uint64_t size() const { return size_; }              // N_v
   // Sorted Morton key of the voxel with this rank, and back.
   std::uint64_t key(std::uint64_t rank) const;
-  std::uint32_t find(std::uint64_t key) const;              // rank, or no_voxel
-  // Voxel coordinates of a local-frame point, in float arithmetic: floor((p − min) · (1 / voxel_size)); empty outside the cube.
+  std::uint32_t find(std::uint64_t key) const;  // rank, or no_voxel
+  // Voxel coordinates of a local-frame point, in float arithmetic: floor((p − min) · (1 / voxel_size)); empty outside
+  // the cube.
   std::optional<std::array<std::uint32_t, 3>> cell_of(const Float3& p) const;
-  std::uint32_t rank_of(const Float3& p) const;             // find(morton(cell_of(p))), no_voxel outside
+  std::uint32_t rank_of(const Float3& p) const;  // find(morton(cell_of(p))), no_voxel outside
 
   // What is uploaded: bricks of 8³ voxels in Morton order and a hash table over them (shaders/shared/voxel_types.h).
   std::span<const VoxelBrick> bricks() const { return bricks_; }
@@ -54,9 +55,9 @@ class VoxelGrid {
   std::vector<BrickSlot> slots_;
 };
 
-// Conservative voxelization: all cells of the grid whose closed box a triangle of `triangles` (local frame) touches, as sorted Morton
-// keys without duplicates. Exact in double precision (separating axes: Akenine-Möller, Fast 3D Triangle-Box Overlap Testing, 2001).
-// Parallel; the result does not depend on the number of threads.
+// Conservative voxelization: all cells of the grid whose closed box a triangle of `triangles` (local frame) touches, as
+// sorted Morton keys without duplicates. Exact in double precision (separating axes: Akenine-Möller, Fast 3D
+// Triangle-Box Overlap Testing, 2001). Parallel; the result does not depend on the number of threads.
 std::vector<std::uint64_t> voxelize(std::span<const Float3> positions, std::span<const Triangle> triangles,
                                     const std::array<double, 3>& min, double voxel_size, int depth);
 

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "voxel/grid_fit.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <sstream>
+#include <tuple>
+#include <vector>
+
+#include "vantage/error.hpp"
+#include "voxel/voxel_grid.hpp"
+
+namespace vantage {
+namespace {
+
+constexpr double margin_share = 0.001;  // on either side: the cube's side is 1.002 extents
+constexpr double max_tilt =
+    1.0 / 128;  // off the axis; what counts is the thickness, this only keeps small facets of curves out
+
+// A surveyed triangle that is nearly square to an axis: its extent along that axis, relative to the grid's min.
+struct Slab {
+  double low, high;
+  std::uint64_t weight;  // area, as an integer so that sums do not depend on their order
+};
+
+using Points = std::array<std::array<double, 3>, 3>;
+
+Points points_of(std::span<const Float3> positions, const Triangle& t) {
+  Points p;
+  for (int c = 0; c < 3; ++c) p[c] = {positions[t[c]].x, positions[t[c]].y, positions[t[c]].z};
+  return p;
+}
+
+std::vector<Slab> slabs_of(std::span<const Float3> positions, std::span<const std::span<const Triangle>> surveyed,
+                           int axis, double min, double thickest, double area_unit) {
+  tbb::enumerable_thread_specific<std::vector<Slab>> collected;
+  for (const auto& mesh : surveyed)
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mesh.size(), 4096), [&](const tbb::blocked_range<std::size_t>&
+                                                                                     range) {
+      std::vector<Slab>& slabs = collected.local();
+      for (std::size_t t = range.begin(); t != range.end(); ++t) {
+        const Points p = points_of(positions, mesh[t]);
+        const double low = std::min({p[0][axis], p[1][axis], p[2][axis]}),
+                     high = std::max({p[0][axis], p[1][axis], p[2][axis]});
+        if (high - low > thickest) continue;
+        const Vec3 a{p[0][0], p[0][1], p[0][2]}, b{p[1][0], p[1][1], p[1][2]}, c{p[2][0], p[2][1], p[2][2]};
+        const Vec3 n = cross(b - a, c - a);
+        const double along = axis == 0 ? n.x : axis == 1 ? n.y : n.z, squared = dot(n, n);
+        if (along * along < squared * (1 - max_tilt * max_tilt)) continue;
+        slabs.push_back({low - min, high - min, static_cast<std::uint64_t>(0.5 * std::sqrt(squared) / area_unit) + 1});
+      }
+    });
+  std::vector<Slab> all;
+  for (const auto& slabs : collected) all.insert(all.end(), slabs.begin(), slabs.end());
+  return all;
+}
+
+// Weight of the slabs that come within `clearance` of a face.
+std::uint64_t weight_near_faces(std::span<const Slab> slabs, double voxel, double clearance) {
+  std::uint64_t sum = 0;
+  for (const Slab& s : slabs)
+    if (std::ceil((s.low - clearance) / voxel) <= std::floor((s.high + clearance) / voxel)) sum += s.weight;
+  return sum;
+}
+
+// The smallest shift of the grid, at most `most` either way, that leaves the least weight within `clearance` of a face.
+double best_shift(std::span<const Slab> slabs, double voxel, double clearance, double most) {
+  struct Event {
+    double at;
+    std::int64_t change;
+  };
+  std::vector<Event> events;
+  std::int64_t weight = 0;  // at −most
+  for (const Slab& s : slabs) {
+    // A shift of x puts face k within reach where s.low − clearance <= k·voxel + x <= s.high + clearance.
+    const auto first = std::ceil((s.low - clearance - most) / voxel),
+               last = std::floor((s.high + clearance + most) / voxel);
+    for (double k = first; k <= last; ++k) {
+      const double from = s.low - clearance - k * voxel, to = s.high + clearance - k * voxel;
+      const auto change = static_cast<std::int64_t>(s.weight);
+      if (from <= -most)
+        weight += change;
+      else
+        events.push_back({from, change});
+      if (to < most) events.push_back({to, -change});
+    }
+  }
+  tbb::parallel_sort(events.begin(), events.end(), [](const Event& a, const Event& b) {
+    return std::tie(a.at, a.change) < std::tie(b.at, b.change);
+  });
+
+  const double narrowest = clearance / 16;  // a gap that rounding of the grid's min cannot leave
+  std::tuple<std::int64_t, double, double> best{std::numeric_limits<std::int64_t>::max(), 0, 0};
+  double gap_start = -most;
+  const auto offer = [&](double gap_end) {
+    if (gap_end - gap_start < narrowest) return;
+    const double inset = narrowest / 2;
+    const double x = std::clamp(0.0, gap_start + inset, gap_end - inset);
+    best = std::min(best, {weight, std::abs(x), -x});
+  };
+  for (const Event& e : events) {
+    offer(e.at);
+    gap_start = e.at;
+    weight += e.change;
+  }
+  offer(most);
+  return -std::get<2>(best);
+}
+
+}  // namespace
+
+double face_clearance(double reach_m, double voxel_size_m) {
+  return std::min(std::max(16 * 0x1p-24 * reach_m, 1e-3 * voxel_size_m), voxel_size_m / 8);
+}
+
+GridFit fit_grid(const SceneData& scene, std::span<const std::span<const Triangle>> surveyed, double user_size_m) {
+  if (!(user_size_m > 0) || !std::isfinite(user_size_m)) {
+    std::ostringstream what;
+    what << "the user size of voxels must be positive and finite, in metres; it is " << user_size_m;
+    throw Error(Errc::invalid_argument, what.str());
+  }
+  GridFit fit;
+  Box bounds;
+  for (const auto& mesh : surveyed)
+    for (const Triangle& t : mesh)
+      for (const std::uint32_t v : t) bounds.extend({scene.positions[v].x, scene.positions[v].y, scene.positions[v].z});
+  if (bounds.empty()) {
+    fit.inverse_size = static_cast<float>(1 / user_size_m);
+    return fit;
+  }
+  const std::array<double, 3> low{bounds.min.x, bounds.min.y, bounds.min.z},
+      high{bounds.max.x, bounds.max.y, bounds.max.z};
+  const double extent = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
+  double reach = 0;
+  for (int axis = 0; axis < 3; ++axis) reach = std::max({reach, std::abs(low[axis]), std::abs(high[axis])});
+  // Coordinates too large for their extent leave no room in the usual margin for the rounding of min itself.
+  const double margin = std::max(margin_share * extent, 4 * 0x1p-23 * reach);
+  const double side = extent + 2 * margin;
+
+  double size = side;
+  while (size > user_size_m) {
+    size /= 2;
+    if (++fit.depth > max_voxel_depth) {
+      std::ostringstream what;
+      what << "a user size of " << user_size_m << " m is too small for surveyed meshes " << extent
+           << " m wide; the smallest that works is " << side / std::ldexp(1.0, max_voxel_depth) << " m";
+      throw Error(Errc::invalid_argument, what.str());
+    }
+  }
+  fit.inverse_size = static_cast<float>(1 / size);
+  if (1.0 / fit.inverse_size > user_size_m) fit.inverse_size = std::nextafter(fit.inverse_size, HUGE_VALF);
+  const double voxel = 1.0 / fit.inverse_size;
+  const double cube = std::ldexp(voxel, fit.depth);
+
+  if (!scene.local_bounds.empty())
+    for (const double c : {scene.local_bounds.min.x, scene.local_bounds.min.y, scene.local_bounds.min.z,
+                           scene.local_bounds.max.x, scene.local_bounds.max.y, scene.local_bounds.max.z})
+      reach = std::max(reach, std::abs(c));
+  const double clearance = face_clearance(std::max(reach, cube), voxel);
+  for (int axis = 0; axis < 3; ++axis) {
+    fit.min[axis] = static_cast<float>(0.5 * (low[axis] + high[axis]) - 0.5 * cube);
+    const double min = fit.min[axis];
+    const auto slabs = slabs_of(scene.positions, surveyed, axis, min, 4 * clearance, extent * extent * 0x1p-30);
+    if (weight_near_faces(slabs, voxel, clearance) == 0) continue;
+    const double slack = std::min(low[axis] - min, min + cube - high[axis]) - 0.25 * margin;
+    const double most = std::min(slack, voxel / 2);
+    if (most <= 0) continue;
+    const double shift = best_shift(slabs, voxel, 1.125 * clearance, most);
+    const float moved = static_cast<float>(min + shift);
+    std::vector<Slab> shifted(slabs);
+    for (Slab& s : shifted) {
+      s.low -= moved - min;
+      s.high -= moved - min;
+    }
+    if (weight_near_faces(shifted, voxel, clearance) < weight_near_faces(slabs, voxel, clearance))
+      fit.min[axis] = moved;
+  }
+  return fit;
+}
+
+}  // namespace vantage

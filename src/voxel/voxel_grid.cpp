@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "voxel/voxel_grid.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "voxel/grid_fit.hpp"
+#include "voxel/voxel_bricks.hpp"
+
+namespace vantage {
+namespace {
+
+std::uint64_t brick_key(const VoxelBrick& brick) {
+  return morton_encode(brick.x, brick.y, brick.z) << (3 * brick_bits);
+}
+
+}  // namespace
+
+VoxelGrid VoxelGrid::build(const SceneData& scene, double user_size_m) {
+  const auto surveyed = surveyed_triangles(scene);
+  const GridFit fit = fit_grid(scene, surveyed, user_size_m);
+  VoxelGrid grid;
+  grid.depth_ = fit.depth;
+  grid.inverse_size_ = fit.inverse_size;
+  grid.voxel_size_ = 1.0 / fit.inverse_size;
+  grid.min_ = fit.min;
+  VoxelBricks marked =
+      mark_bricks(scene.positions, surveyed, {{fit.min[0], fit.min[1], fit.min[2]}, fit.inverse_size}, fit.depth);
+  grid.size_ = marked.voxels;
+  grid.bricks_ = std::move(marked.bricks);
+  grid.slots_ = std::move(marked.slots);
+  return grid;
+}
+
+std::uint64_t VoxelGrid::key(std::uint64_t rank) const {
+  // Of bricks with the same `first` only the last holds voxels.
+  const auto after = std::upper_bound(bricks_.begin(), bricks_.end(), rank,
+                                      [](std::uint64_t r, const VoxelBrick& b) { return r < b.first; });
+  const VoxelBrick& brick = *std::prev(after);
+  auto left = static_cast<int>(rank - brick.first);
+  std::uint32_t word = 0;
+  for (int set = std::popcount(brick.mask[0]); left >= set; set = std::popcount(brick.mask[word])) {
+    left -= set;
+    ++word;
+  }
+  std::uint32_t bits = brick.mask[word];
+  for (; left > 0; --left) bits &= bits - 1;
+  return brick_key(brick) | (word * 32 + static_cast<std::uint32_t>(std::countr_zero(bits)));
+}
+
+std::uint32_t VoxelGrid::find(std::uint64_t key) const {
+  const auto [x, y, z] = morton_decode(key >> (3 * brick_bits));
+  const std::uint32_t index = find_brick(slots_, x, y, z);
+  if (index == no_brick) return no_voxel;
+  const VoxelBrick& brick = bricks_[index];
+  const auto bit = static_cast<std::uint32_t>(key & 511);
+  const std::uint32_t word = bit / 32, flag = std::uint32_t{1} << (bit % 32);
+  if (!(brick.mask[word] & flag)) return no_voxel;
+  auto rank = brick.first + static_cast<std::uint32_t>(std::popcount(brick.mask[word] & (flag - 1)));
+  for (std::uint32_t w = 0; w < word; ++w) rank += static_cast<std::uint32_t>(std::popcount(brick.mask[w]));
+  return rank;
+}
+
+std::optional<std::array<std::uint32_t, 3>> VoxelGrid::cell_of(const Float3& p) const {
+  const float cells = static_cast<float>(1u << depth_);
+  const std::array<float, 3> scaled{(p.x - min_[0]) * inverse_size_, (p.y - min_[1]) * inverse_size_,
+                                    (p.z - min_[2]) * inverse_size_};
+  std::array<std::uint32_t, 3> cell;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!(scaled[axis] >= 0 && scaled[axis] < cells)) return std::nullopt;
+    cell[axis] = static_cast<std::uint32_t>(scaled[axis]);
+  }
+  return cell;
+}
+
+std::uint32_t VoxelGrid::rank_of(const Float3& p) const {
+  const auto cell = cell_of(p);
+  return cell ? find(morton_encode((*cell)[0], (*cell)[1], (*cell)[2])) : no_voxel;
+}
+
+std::vector<std::uint64_t> voxelize(std::span<const Float3> positions, std::span<const Triangle> triangles,
+                                    const std::array<double, 3>& min, double voxel_size, int depth) {
+  // A size that is the reciprocal of a float stands for that float.
+  double inverse = 1 / voxel_size;
+  if (1.0 / static_cast<float>(inverse) == voxel_size) inverse = static_cast<float>(inverse);
+  const std::array<std::span<const Triangle>, 1> meshes{triangles};
+  const VoxelBricks marked = mark_bricks(positions, meshes, {min, inverse}, depth);
+  std::vector<std::uint64_t> keys;
+  keys.reserve(marked.voxels);
+  for (const VoxelBrick& brick : marked.bricks)
+    for (std::uint32_t word = 0; word < brick_mask_words; ++word)
+      for (std::uint32_t bits = brick.mask[word]; bits; bits &= bits - 1)
+        keys.push_back(brick_key(brick) | (word * 32 + static_cast<std::uint32_t>(std::countr_zero(bits))));
+  return keys;
+}
+
+}  // namespace vantage
