@@ -1,6 +1,54 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cstdio>
+#include <new>
+#include <string>
 
+#include <CLI/CLI.hpp>
+#include <spdlog/spdlog.h>
+
+#include "cli/command.hpp"
+#include "cli/console.hpp"
+#include "cli/interrupts.hpp"
 #include "vantage/vantage.hpp"
 
-int main() { std::printf("vantage %s\n", vantage::version()); }
+namespace vantage::cli {
+namespace {
+
+int run(int argc, char** argv) {
+  Interrupts interrupts;
+  Console console;
+  Program program{.console = console, .stop = interrupts.token()};
+  CLI::App app{"vantage plans terrestrial LiDAR surveys: where should the scanner stand?", "vantage"};
+  app.set_version_flag("--version", std::string("vantage ") + version());
+  app.require_subcommand(1);
+  add_info(app, program);
+  add_generate(app, program);
+  add_scan(app, program);
+  add_evaluate(app, program);
+  add_plan(app, program);
+  try {
+    app.parse(argc, argv);
+    return program.selected();
+  } catch (const CLI::Success& help_or_version) {
+    return app.exit(help_or_version);
+  } catch (const CLI::ParseError& error) {
+    const auto named = app.get_subcommands();
+    spdlog::error("{}; see vantage {}--help", error.what(), named.empty() ? "" : named.front()->get_name() + " ");
+    return exit_usage;
+  } catch (const Error& error) {
+    std::string message = error.what();
+    for (const auto& line : error.details()) message += "\n  - " + line;
+    spdlog::error("{}", message);
+    return error.code() == Errc::invalid_argument ? exit_usage : exit_failed;
+  } catch (const std::bad_alloc&) {
+    spdlog::error("this machine has not enough memory for it; coarser voxels (--user-size) or a smaller scene need less");
+    return exit_failed;
+  } catch (const std::exception& error) {
+    spdlog::error("{}", error.what());
+    return exit_failed;
+  }
+}
+
+}  // namespace
+}  // namespace vantage::cli
+
+int main(int argc, char** argv) { return vantage::cli::run(argc, argv); }

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// The program's commands: one file each, one function each.
+#pragma once
+
+#include <functional>
+#include <stop_token>
+
+#include <CLI/CLI.hpp>
+
+#include "cli/console.hpp"
+
+namespace vantage::cli {
+
+enum ExitCode : int { exit_ok = 0, exit_failed = 1, exit_usage = 2 };
+
+// What a command finds around it.
+struct Program {
+  Console& console;
+  std::stop_token stop;
+  std::function<int()> selected = {};  // set by the command that the user named
+};
+
+// A subcommand whose options live as long as the program; `run` is called after parsing and returns the exit code.
+template <class Options>
+void add_command(CLI::App& app, Program& program, const char* name, const char* help, int (*run)(CLI::App&, Options&, Program&)) {
+  CLI::App* command = app.add_subcommand(name, help);
+  auto options = std::make_shared<Options>();
+  options->add(*command);
+  command->callback([command, options, run, &program] {
+    program.selected = [command, options, run, &program] { return run(*command, *options, program); };
+  });
+}
+
+void add_info(CLI::App& app, Program& program);
+void add_generate(CLI::App& app, Program& program);
+void add_scan(CLI::App& app, Program& program);
+void add_evaluate(CLI::App& app, Program& program);
+void add_plan(CLI::App& app, Program& program);
+
+}  // namespace vantage::cli

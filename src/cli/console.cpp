@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/console.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <mutex>
+
+#include <spdlog/sinks/base_sink.h>
+
+#include "vantage/error.hpp"
+
+namespace vantage::cli {
+
+// Log lines go above the status line, which is drawn again below them.
+class TerminalSink : public spdlog::sinks::base_sink<std::mutex> {
+ public:
+  const bool interactive = isatty(STDERR_FILENO) == 1;
+
+  void set_status(const std::string& line) {
+    const std::scoped_lock lock(mutex_);
+    if (!interactive || line == status_) return;
+    status_ = line;
+    write("\r\033[K" + status_);
+  }
+
+ protected:
+  void sink_it_(const spdlog::details::log_msg& message) override {
+    const char* kind = message.level >= spdlog::level::err    ? "error: "
+                       : message.level == spdlog::level::warn ? "warning: "
+                                                              : "";
+    std::string line = "vantage: " + (kind + std::string(message.payload.data(), message.payload.size())) + "\n";
+    if (!status_.empty()) line = "\r\033[K" + line + status_;
+    write(line);
+  }
+  void flush_() override { std::fflush(stderr); }
+
+ private:
+  static void write(const std::string& text) {
+    std::fwrite(text.data(), 1, text.size(), stderr);
+    std::fflush(stderr);
+  }
+  std::string status_;
+};
+
+Console::Console() : sink_(std::make_shared<TerminalSink>()) {
+  spdlog::set_default_logger(std::make_shared<spdlog::logger>("vantage", sink_));
+}
+
+Console::~Console() { set_status(""); }
+
+bool Console::interactive() const { return sink_->interactive; }
+
+void Console::set_status(const std::string& line) { sink_->set_status(line); }
+
+void Console::print(const std::string& text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
+    throw Error(Errc::io, "cannot write to standard output");
+}
+
+void Console::print(const nlohmann::json& object) {
+  print(object.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+}
+
+std::string duration_text(double seconds) {
+  char text[32];
+  if (seconds < 99.5)
+    std::snprintf(text, sizeof text, "%.0f s", seconds);
+  else if (seconds < 99.5 * 60)
+    std::snprintf(text, sizeof text, "%.1f min", seconds / 60);
+  else
+    std::snprintf(text, sizeof text, "%.1f h", seconds / 3600);
+  return text;
+}
+
+ProgressLine::ProgressLine(Console& console, std::string label)
+    : console_(console), label_(std::move(label)), start_(Clock::now()), last_(start_) {}
+
+ProgressLine::~ProgressLine() { console_.set_status(""); }
+
+void ProgressLine::update(double done, const std::string& note, double seconds_left) {
+  constexpr std::chrono::duration<double> redraw{0.1}, line_every{10};
+  const auto now = Clock::now();
+  if (now - last_ < (console_.interactive() ? redraw : line_every)) return;
+  last_ = now;
+  done = std::clamp(done, 0.0, 1.0);
+  const double elapsed = std::chrono::duration<double>(now - start_).count();
+  if (seconds_left < 0 && done > 0) seconds_left = elapsed * (1 - done) / done;
+
+  char percent[16];
+  std::snprintf(percent, sizeof percent, "%3.0f %%", 100 * done);
+  std::string tail = percent;
+  if (seconds_left >= 0) tail += ", " + duration_text(seconds_left) + " left";
+  if (!note.empty()) tail += ", " + note;
+  if (!console_.interactive()) {
+    spdlog::info("{} {}", label_, tail);
+    return;
+  }
+  constexpr std::size_t bar_width = 24;
+  const auto filled = static_cast<std::size_t>(done * bar_width);
+  console_.set_status(label_ + " [" + std::string(filled, '=') + std::string(bar_width - filled, ' ') + "] " + tail);
+}
+
+}  // namespace vantage::cli

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the program says: logs and progress on standard error, results on standard output.
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <string>
+
+#include <nlohmann/json.hpp>
+#include <spdlog/spdlog.h>
+
+namespace vantage::cli {
+
+class TerminalSink;
+
+// The standard logger's owner. Log through spdlog::info and its like; a progress line is kept out of their way.
+class Console {
+ public:
+  Console();
+  ~Console();
+  Console(const Console&) = delete;
+  Console& operator=(const Console&) = delete;
+
+  bool interactive() const;                  // standard error is a terminal
+  void set_status(const std::string& line);  // the last line of a terminal; empty: none
+  void print(const std::string& text);       // standard output; throws Error io where that is closed or full
+  void print(const nlohmann::json& object);
+
+ private:
+  std::shared_ptr<TerminalSink> sink_;
+};
+
+// A bar with the time left on a terminal, a line now and then elsewhere.
+class ProgressLine {
+ public:
+  ProgressLine(Console& console, std::string label);
+  ~ProgressLine();
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+
+  // `done` in [0, 1]; `seconds_left` < 0: judged by the time passed. `note` stands behind the numbers.
+  void update(double done, const std::string& note = {}, double seconds_left = -1);
+  void set_label(std::string label) { label_ = std::move(label); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Console& console_;
+  std::string label_;
+  Clock::time_point start_, last_;
+};
+
+// "42 s", "3.5 min", "2.1 h"
+std::string duration_text(double seconds);
+
+}  // namespace vantage::cli

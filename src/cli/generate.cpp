@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <filesystem>
+
+#include <spdlog/spdlog.h>
+
+#include "cli/command.hpp"
+#include "cli/options.hpp"
+#include "vantage/scene.hpp"
+#include "vantage/error.hpp"
+
+namespace vantage::cli {
+namespace {
+
+struct GenerateOptions {
+  std::string name;
+  std::uint64_t triangles = 20'000;
+  std::optional<std::string> output;
+  bool json = false;
+
+  void add(CLI::App& command) {
+    std::string names;
+    for (const auto& scene : built_in_scene_names()) names += (names.empty() ? "" : ", ") + scene;
+    command.add_option("name", name, names)->type_name("NAME");
+    add_value(command, "--triangles", "N", "Wished number of triangles of industrial, 20000 and up; 20000 otherwise",
+              [this](const std::string& text, const std::string& what) {
+                triangles = parse_count(text, what, 1, 1'000'000'000);
+              });
+    add_text(command, "-o,--output", "FILE", "Where to write the scene: a .glb file", output);
+    command.add_flag("--json", json, "Print one JSON object");
+  }
+};
+
+int generate(CLI::App&, GenerateOptions& options, Program& program) {
+  if (options.name.empty()) throw Error(Errc::invalid_argument, "generate: which scene? See vantage generate --help");
+  if (!options.output) throw Error(Errc::invalid_argument, "generate: say where to write it with -o scene.glb");
+  write_built_in_scene(options.name, options.triangles, *options.output);
+  const Scene scene = Scene::load(*options.output);
+  const auto bytes = std::filesystem::file_size(*options.output);
+  if (options.json)
+    program.console.print(nlohmann::json{{"name", options.name},
+                                         {"file", *options.output},
+                                         {"triangles", scene.triangle_count()},
+                                         {"meshes", scene.meshes().size()},
+                                         {"bytes", bytes}});
+  else
+    program.console.print(fmt::format("{}: {} triangles in {} meshes, {:.1f} MB\n", *options.output, scene.triangle_count(),
+                                      scene.meshes().size(), static_cast<double>(bytes) * 1e-6));
+  return exit_ok;
+}
+
+}  // namespace
+
+void add_generate(CLI::App& app, Program& program) {
+  add_command<GenerateOptions>(app, program, "generate", "Write a built-in scene", generate);
+}
+
+}  // namespace vantage::cli

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/options.hpp"
+
+#include <algorithm>
+#include <fstream>
+
+#include "vantage/error.hpp"
+
+namespace vantage::cli {
+namespace {
+
+std::string long_name(const std::string& names) { return names.substr(names.find("--")); }
+
+std::string scalar_text(const nlohmann::json& value, const std::string& what) {
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_number() || value.is_boolean()) return value.dump();
+  if (!value.is_array())
+    throw Error(Errc::invalid_argument, what + ": " + value.dump() + " is no number, text, true, false or list");
+  std::string joined;
+  for (const auto& item : value) {
+    if (item.is_structured()) throw Error(Errc::invalid_argument, what + ": " + value.dump() + " is nested too deeply");
+    joined += (joined.empty() ? "" : ",") + scalar_text(item, what);
+  }
+  return joined;
+}
+
+bool takes_many(const CLI::Option& option) { return option.get_items_expected_max() > 1; }
+
+CLI::Option* find_option(CLI::App& command, const std::string& key) { return command.get_option_no_throw("--" + key); }
+
+bool known_to_any_command(CLI::App& command, const std::string& key) {
+  const auto all = command.get_parent()->get_subcommands([](const CLI::App*) { return true; });
+  return std::any_of(all.begin(), all.end(), [&](CLI::App* other) { return find_option(*other, key) != nullptr; });
+}
+
+}  // namespace
+
+CLI::Option* add_value(CLI::App& app, const std::string& names, const std::string& unit, const std::string& help, Setter set) {
+  return app
+      .add_option_function<std::string>(
+          names, [set = std::move(set), what = long_name(names)](const std::string& text) { set(text, what); }, help)
+      ->type_name(unit);
+}
+
+CLI::Option* add_values(CLI::App& app, const std::string& names, const std::string& unit, const std::string& help, Setter set) {
+  return app
+      .add_option_function<std::vector<std::string>>(
+          names,
+          [set = std::move(set), what = long_name(names)](const std::vector<std::string>& texts) {
+            for (const auto& text : texts) set(text, what);
+          },
+          help)
+      ->type_name(unit)
+      ->allow_extra_args(false);
+}
+
+CLI::Option* add_number(CLI::App& app, const std::string& names, const std::string& unit, const std::string& help,
+                        std::optional<double>& target, const Interval& interval) {
+  return add_value(app, names, unit, help, [&target, interval](const std::string& text, const std::string& what) {
+    target = parse_number(text, what, interval);
+  });
+}
+
+CLI::Option* add_text(CLI::App& app, const std::string& names, const std::string& unit, const std::string& help,
+                      std::optional<std::string>& target) {
+  return add_value(app, names, unit, help, [&target](const std::string& text, const std::string&) { target = text; });
+}
+
+CLI::Option* add_texts(CLI::App& app, const std::string& names, const std::string& unit, const std::string& help,
+                       std::vector<std::string>& target) {
+  return add_values(app, names, unit, help,
+                    [&target](const std::string& text, const std::string&) { target.push_back(text); });
+}
+
+void apply_layer(CLI::App& command, const nlohmann::json& values, const std::string& source,
+                 const std::function<bool(const std::string&)>& accepts) {
+  for (const auto& [written_key, value] : values.items()) {
+    std::string key = written_key;
+    std::replace(key.begin(), key.end(), '_', '-');
+    if (accepts && !accepts(key)) continue;
+    CLI::Option* option = find_option(command, key);
+    if (key == "config" || key == "help" || (!option && !known_to_any_command(command, key)))
+      throw Error(Errc::invalid_argument, source + ": there is no option '" + written_key + "'");
+    if (!option || option->count() > 0 || value.is_null()) continue;
+
+    if (takes_many(*option) && value.is_array()) {
+      for (const auto& item : value) option->add_result(scalar_text(item, source + ": " + written_key));
+    } else {
+      option->add_result(scalar_text(value, source + ": " + written_key));
+    }
+    try {
+      if (option->count() > 0) option->run_callback();
+    } catch (const Error& error) {
+      throw Error(error.code(), source + ": " + error.what());
+    } catch (const CLI::Error& error) {
+      throw Error(Errc::invalid_argument, source + ": " + written_key + ": " + error.what());
+    }
+  }
+}
+
+nlohmann::json read_json(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw Error(Errc::io, file + ": cannot be opened");
+  try {
+    auto value = nlohmann::json::parse(stream);
+    if (value.is_object()) return value;
+  } catch (const nlohmann::json::exception& error) {
+    throw Error(Errc::malformed_file, file + ": is not JSON: " + error.what());
+  }
+  throw Error(Errc::malformed_file, file + ": must hold a JSON object");
+}
+
+}  // namespace vantage::cli

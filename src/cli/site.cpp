@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/site.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <set>
+
+#include <spdlog/spdlog.h>
+
+#include "cli/options.hpp"
+#include "cli/parse.hpp"
+
+namespace vantage::cli {
+namespace {
+
+// Options that a preset states, and so takes out of the scene's hands.
+const std::set<std::string> preset_keys{"step", "horizontal", "vertical", "range", "noise"};
+// Options that a scene may carry defaults for: what is measured, never where files go.
+const std::set<std::string> scene_keys{"scanner", "step",    "heading",   "horizontal", "vertical", "height",
+                                       "range",   "noise",   "user-size", "spacing",    "security", "slope",
+                                       "headroom", "min-area"};
+
+template <std::size_t N>
+Setter numbers_into(std::optional<std::array<double, N>>& target, std::size_t fewest, const Interval& interval) {
+  return [&target, fewest, interval](const std::string& text, const std::string& what) {
+    const auto values = parse_numbers(text, what, fewest, N, interval);
+    std::array<double, N> all{};
+    for (std::size_t k = 0; k < N; ++k) all[k] = values[std::min(k, values.size() - 1)];
+    target = all;
+  };
+}
+
+std::string trimmed(std::string line) {
+  while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
+  return line;
+}
+
+Scanner resolve_scanner(const SiteOptions& options, double scale) {
+  Scanner scanner;
+  scanner.height_m *= scale;
+  scanner.min_range_m *= scale;
+  scanner.max_range_m *= scale;
+  if (options.scanner) {
+    const double height = scanner.height_m;
+    scanner = load_scanner(default_presets_file(), *options.scanner);
+    scanner.height_m = height;
+  }
+  if (options.step) {
+    scanner.azimuth_step = Angle::degrees((*options.step)[0]);
+    scanner.zenith_step = Angle::degrees((*options.step)[1]);
+  }
+  if (options.heading) scanner.heading = Angle::degrees(*options.heading);
+  if (options.horizontal) scanner.horizontal_angle = Angle::degrees(*options.horizontal);
+  if (options.vertical) scanner.vertical_angle = Angle::degrees(*options.vertical);
+  if (options.height) scanner.height_m = *options.height;
+  if (options.range) {
+    scanner.min_range_m = (*options.range)[0];
+    scanner.max_range_m = (*options.range)[1];
+    if (!(scanner.min_range_m < scanner.max_range_m))
+      throw Error(Errc::invalid_argument, "--range: the nearest distance must be below the farthest, and " +
+                                              std::to_string(scanner.min_range_m) + " is not below " +
+                                              std::to_string(scanner.max_range_m));
+  }
+  if (options.noise) scanner.noise = load_noise(*options.noise);
+  scanner.check();
+  return scanner;
+}
+
+nlohmann::json given_options(const SiteOptions& options, const Scanner& scanner) {
+  nlohmann::json given = nlohmann::json::object();
+  const auto add_patterns = [&](const char* key, const std::vector<std::string>& patterns) {
+    if (!patterns.empty()) given[key] = patterns;
+  };
+  add_patterns("surveyed", options.roles.surveyed);
+  add_patterns("blocking", options.roles.blocking);
+  add_patterns("search", options.roles.search);
+  add_patterns("ignore", options.roles.ignore);
+  if (options.scene_index) given["scene-index"] = *options.scene_index;
+  if (options.diffuse) given["diffuse"] = *options.diffuse;
+  std::string noise = scanner.noise.empty() ? "off" : options.noise ? *options.noise : options.scanner.value_or("off");
+  if (noise.ends_with(".csv")) noise = std::filesystem::absolute(noise).string();
+  given["noise"] = noise;
+  return given;
+}
+
+// One line on what was made up for a scene of unusual size.
+void tell_scaled(const SiteOptions& options, const Site& site, double scale) {
+  std::string made_up;
+  const auto add = [&](bool given, const std::string& text) {
+    if (!given) made_up += (made_up.empty() ? "" : ", ") + text;
+  };
+  add(options.user_size.has_value(), fmt::format("user-size {:.3g}", site.config.user_size_m));
+  add(options.spacing.has_value(), fmt::format("spacing {:.3g}", site.config.point_spacing_m));
+  add(options.height.has_value(), fmt::format("height {:.3g}", site.scanner.height_m));
+  add(options.range || options.scanner, fmt::format("range {:.3g},{:.3g}", site.scanner.min_range_m, site.scanner.max_range_m));
+  add(options.security.has_value(),
+      fmt::format("security {:.3g},{:.3g},{:.3g}", site.security.lower_m, site.security.upper_m, site.security.radius_m));
+  if (made_up.empty()) return;
+  const Vec3 size = site.scene.bounds().size();
+  spdlog::info("the scene measures {:.3g} x {:.3g} x {:.3g} m, unlike a site: lengths taken as {:.2g} times the usual ({})", size.x,
+               size.y, size.z, scale, made_up);
+}
+
+}  // namespace
+
+void SiteOptions::add(CLI::App& command) {
+  command.add_option("scene", scene, "The site: a .glb or .gltf file")->type_name("SCENE");
+
+  add_texts(command, "--surveyed", "PATTERN", "Nodes to survey, by name; * and ? stand for any text and any letter", roles.surveyed)
+      ->group("Scene");
+  add_texts(command, "--blocking", "PATTERN", "Nodes that only block rays and stations", roles.blocking)->group("Scene");
+  add_texts(command, "--search", "PATTERN", "Nodes where stations may stand", roles.search)->group("Scene");
+  add_texts(command, "--ignore", "PATTERN", "Nodes to leave out", roles.ignore)->group("Scene");
+  add_text(command, "--scene-index", "N", "Which scene of the file; the file's own default otherwise", scene_index)->group("Scene");
+  add_number(command, "--diffuse", "R", "Diffuse reflection coefficient where the file gives none, 0 to 1", diffuse,
+             {.low = 0, .high = 1})
+      ->group("Scene");
+
+  add_text(command, "--scanner", "PRESET", "A scanner that `vantage info` lists, as rtc360 or rtc360@6mm", scanner)->group("Scanner");
+  add_value(command, "--step", "DEG[,DEG]", "Angle between rays: both, or azimuth and zenith",
+            numbers_into(step, 1, positive))
+      ->group("Scanner");
+  add_number(command, "--heading", "DEG", "Azimuth of the middle of the horizontal sweep, from +X towards +Y", heading, any_number)
+      ->group("Scanner");
+  add_number(command, "--horizontal", "DEG", "Horizontal wide angle", horizontal, {.low = 0, .high = 360, .low_included = false})
+      ->group("Scanner");
+  add_number(command, "--vertical", "DEG", "Vertical wide angle, over both sides of the head: 300 is zenith 0 to 150", vertical,
+             {.low = 0, .high = 360, .low_included = false})
+      ->group("Scanner");
+  add_number(command, "--height", "M", "Height of the scanner's head above the ground", height, not_negative)->group("Scanner");
+  add_value(command, "--range", "MIN,MAX", "Nearest and farthest distance measured, in metres", numbers_into(range, 2, not_negative))
+      ->group("Scanner");
+  add_text(command, "--noise", "TABLE", "Range noise: off, a scanner's name (rtc360), or a CSV file", noise)->group("Scanner");
+
+  add_number(command, "--user-size", "M", "Upper bound of the voxel size", user_size, positive)->group("Measure");
+  add_number(command, "--spacing", "M", "Wanted distance between points; sets the goal density", spacing, positive)->group("Measure");
+
+  add_value(command, "--security", "H1,H2,R",
+            "Clear space a station needs: two spheres of radius R at heights H1 and H2 above the ground; R 0: none",
+            numbers_into(security, 3, not_negative))
+      ->group("Placement");
+  add_number(command, "--slope", "DEG", "Steepest ground that counts as walkable, where the scene marks no search area", slope,
+             {.low = 0, .high = 90, .high_included = false})
+      ->group("Placement");
+  add_number(command, "--headroom", "M", "Clear height that walkable ground needs", headroom, not_negative)->group("Placement");
+  add_number(command, "--min-area", "M2", "Smallest connected piece of walkable ground", min_area, not_negative)->group("Placement");
+
+  add_value(command, "--engine", "ENGINE", "automatic, ray_query, compute_bvh or embree",
+            [this](const std::string& text, const std::string& what) {
+              try {
+                engine = engine_from_string(text);
+              } catch (const Error& error) {
+                throw Error(error.code(), what + ": " + error.what());
+              }
+            })
+      ->group("Run");
+  add_value(command, "--device", "N", "Number of the device, as `vantage info` lists it",
+            [this](const std::string& text, const std::string& what) {
+              device = static_cast<std::uint32_t>(parse_count(text, what, 0, 0xFFFF));
+            })
+      ->group("Run");
+  add_value(command, "--seed", "N", "Seed of noise, samples and search; 1 otherwise",
+            [this](const std::string& text, const std::string& what) { seed = parse_count(text, what); })
+      ->group("Run");
+  command.add_flag("--validation", validation, "Check every Vulkan call with the validation layer")->group("Run");
+  add_text(command, "--config", "FILE", "JSON file of options, keyed by their long names; what is typed goes before it", config_file)
+      ->group("Run");
+}
+
+double length_scale(const Box& bounds) {
+  const Vec3 size = bounds.size();
+  const double extent = std::max({size.x, size.y, size.z});
+  if ((extent >= 2 && extent <= 200) || !(extent > 0)) return 1;
+  const double scale = extent / 20;
+  const double unit = std::pow(10, std::floor(std::log10(scale)) - 1);
+  return std::round(scale / unit) * unit;
+}
+
+NoiseTable load_noise(const std::string& name) {
+  if (name == "off" || name == "none" || name == "false") return {};
+  if (name == "rtc360") return rtc360_noise();
+  if (!name.ends_with(".csv")) {
+    const Scanner scanner = load_scanner(default_presets_file(), name);
+    if (scanner.noise.empty())
+      throw Error(Errc::invalid_argument, "--noise: the maker of '" + name + "' states no noise table; give a CSV file or off");
+    return scanner.noise;
+  }
+  std::ifstream stream(name);
+  if (!stream) throw Error(Errc::io, name + ": cannot be opened");
+  NoiseTable table;
+  std::string line;
+  for (std::size_t number = 1; std::getline(stream, line); ++number) {
+    line = trimmed(line);
+    if (line.empty() || line.starts_with('#')) continue;
+    const std::string what = name + ", line " + std::to_string(number);
+    const auto cells = split(line, ',');
+    const bool header = table.distances_m.empty();
+    if (cells.size() < 2 || (!header && cells.size() != table.distances_m.size() + 1))
+      throw Error(Errc::malformed_file, what + ": '" + line + "' must have " +
+                                            (header ? std::string("`reflectivity` and the distances in metres")
+                                                    : std::to_string(table.distances_m.size() + 1) + " cells"));
+    if (!header) table.reflectivities.push_back(parse_number(cells[0], what, {.low = 0, .high = 1}));
+    for (std::size_t k = 1; k < cells.size(); ++k)
+      (header ? table.distances_m : table.sigma_m).push_back(parse_number(cells[k], what, not_negative));
+  }
+  if (table.reflectivities.empty()) throw Error(Errc::malformed_file, name + ": holds no line of standard deviations");
+  const auto ascending = [](const std::vector<double>& values) {
+    return std::adjacent_find(values.begin(), values.end(), std::greater_equal<>()) == values.end();
+  };
+  if (!ascending(table.distances_m) || !ascending(table.reflectivities))
+    throw Error(Errc::malformed_file, name + ": distances and reflectivities must rise");
+  return table;
+}
+
+const SearchArea& Site::area() {
+  if (!area_) area_ = SearchArea::build(scene, walkable);
+  return *area_;
+}
+
+const ClashChecker& Site::clash() {
+  if (!clash_) clash_.emplace(scene, security);
+  return *clash_;
+}
+
+nlohmann::json Site::as_options() const {
+  nlohmann::json options = {{"step", {scanner.azimuth_step.in_degrees(), scanner.zenith_step.in_degrees()}},
+          {"heading", scanner.heading.in_degrees()},
+          {"horizontal", scanner.horizontal_angle.in_degrees()},
+          {"vertical", scanner.vertical_angle.in_degrees()},
+          {"height", scanner.height_m},
+          {"range", {scanner.min_range_m, scanner.max_range_m}},
+          {"user-size", config.user_size_m},
+          {"spacing", config.point_spacing_m},
+          {"security", {security.lower_m, security.upper_m, security.radius_m}},
+          {"slope", walkable.max_slope.in_degrees()},
+          {"headroom", walkable.headroom_m},
+          {"min-area", walkable.min_area_m2},
+          {"seed", config.seed}};
+  options.update(given);
+  return options;
+}
+
+Site open_site(CLI::App& command, SiteOptions& options) {
+  if (options.config_file) apply_layer(command, read_json(*options.config_file), *options.config_file);
+  if (options.scene.empty()) throw Error(Errc::invalid_argument, command.get_name() + ": which scene? Give a .glb or .gltf file");
+  if (options.scene_index) options.roles.scene_index = parse_count(*options.scene_index, "--scene-index", 0, 0xFFFFFFFF);
+  if (options.diffuse) options.roles.default_diffuse = *options.diffuse;
+
+  Scene scene = Scene::load(options.scene, options.roles);
+  for (const auto& note : scene.notes()) spdlog::info("{}: {}", options.scene, note);
+  const bool own_preset = options.scanner.has_value();
+  apply_layer(command, nlohmann::json::parse(scene.defaults_json()), options.scene, [own_preset](const std::string& key) {
+    return scene_keys.contains(key) && !(own_preset && preset_keys.contains(key));
+  });
+
+  const double scale = length_scale(scene.bounds());
+  Site site{.scene = std::move(scene), .scanner = resolve_scanner(options, scale), .config = {}, .security = {}, .walkable = {}};
+  site.config.engine = options.engine;
+  site.config.device_index = options.device;
+  site.config.seed = options.seed;
+  site.config.validation = options.validation;
+  site.config.user_size_m = options.user_size.value_or(site.config.user_size_m * scale);
+  site.config.point_spacing_m = options.spacing.value_or(site.config.point_spacing_m * scale);
+  site.config.noise = !site.scanner.noise.empty();
+  if (options.security) {
+    site.security = {(*options.security)[0], (*options.security)[1], (*options.security)[2]};
+  } else {
+    site.security.lower_m *= scale;
+    site.security.upper_m *= scale;
+    site.security.radius_m *= scale;
+  }
+  if (options.slope) site.walkable.max_slope = Angle::degrees(*options.slope);
+  site.walkable.headroom_m = options.headroom.value_or(site.walkable.headroom_m * scale);
+  site.walkable.min_area_m2 = options.min_area.value_or(site.walkable.min_area_m2 * scale * scale);
+  site.given = given_options(options, site.scanner);
+  if (scale != 1) tell_scaled(options, site, scale);
+  return site;
+}
+
+}  // namespace vantage::cli

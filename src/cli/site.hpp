@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// What most commands share: a scene, a scanner, where it may stand and what to trace with.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "vantage/vantage.hpp"
+
+namespace vantage::cli {
+
+// The options as given; empty where nothing was said. add() registers them with a command; the object must outlive the parsing.
+struct SiteOptions {
+  std::string scene;
+  SceneOptions roles;
+  std::optional<std::string> scene_index;
+  std::optional<double> diffuse;
+
+  std::optional<std::string> scanner;
+  std::optional<std::array<double, 2>> step;
+  std::optional<double> heading, horizontal, vertical, height;
+  std::optional<std::array<double, 2>> range;
+  std::optional<std::string> noise;
+
+  std::optional<double> user_size, spacing;
+  std::optional<std::array<double, 3>> security;
+  std::optional<double> slope, headroom, min_area;
+
+  Engine engine = Engine::automatic;
+  std::optional<std::uint32_t> device;
+  std::uint64_t seed = 1;
+  bool validation = false;
+
+  std::optional<std::string> config_file;
+
+  void add(CLI::App& command);
+};
+
+// Everything resolved: explicit options, else the configuration file, else the scene's own defaults, else built-in figures.
+// A preset that the user names is as explicit as the figures it stands for.
+struct Site {
+  Scene scene;
+  Scanner scanner;
+  SimulatorConfig config;
+  SecurityVolume security;
+  WalkableOptions walkable;
+  nlohmann::json given;  // options that the values above do not show: roles and where the noise came from
+
+  // The search area, made on first use. Throws Error invalid_argument where nothing is walkable.
+  const SearchArea& area();
+  const ClashChecker& clash();
+  // Every value as an option, so that it can be given to --config again.
+  nlohmann::json as_options() const;
+
+  std::optional<SearchArea> area_ = std::nullopt;
+  std::optional<ClashChecker> clash_ = std::nullopt;
+};
+
+// Applies the layers below the command line to all options of `command`, loads the scene and checks every value.
+Site open_site(CLI::App& command, SiteOptions& options);
+
+// Lengths for a scene whose size is unlike a site's: the built-in figures times this. 1 from 2 m to 200 m; otherwise the largest
+// extent over 20 m, with two significant digits.
+double length_scale(const Box& bounds);
+
+// --noise: off, a preset's name, or a CSV file with a header `reflectivity,<distance in metres>,…` and a line of standard
+// deviations in metres for each reflectivity.
+NoiseTable load_noise(const std::string& name);
+
+}  // namespace vantage::cli

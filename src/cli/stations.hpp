@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which stations a command works on: typed, read from a table, or taken from a plan's front.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "cli/parse.hpp"
+#include "cli/site.hpp"
+
+namespace vantage::cli {
+
+struct StationOptions {
+  std::vector<StationText> typed;
+  std::optional<std::string> file;
+  std::optional<std::uint64_t> entry;
+
+  void add(CLI::App& command);
+  // From 1 to `most` stations, in the order given, typed ones first. Throws Error: io, malformed_file, invalid_argument.
+  std::vector<StationText> read(std::size_t most) const;
+};
+
+struct SiteStation {
+  PlacedStation placed;
+  bool has_uv = false;  // false: the head was given and no search area lies under it
+};
+
+// Heads stay where they are given; (u, v) go to the ground below and up by the scanner's height. Both are checked for clashes.
+std::vector<SiteStation> place(Site& site, const std::vector<StationText>& stations);
+
+Network to_network(const std::vector<SiteStation>& stations);
+// {position, uv, status}; null where there is none.
+nlohmann::json to_json(const SiteStation& station);
+// One warning a station that cannot be used.
+void warn_of_unusable(const std::vector<SiteStation>& stations);
+
+}  // namespace vantage::cli
