@@ -16,7 +16,7 @@ enum ExitCode : int { exit_ok = 0, exit_failed = 1, exit_usage = 2 };
 // What a command finds around it.
 struct Program {
   Console& console;
-  std::stop_token stop;
+  std::stop_token stop, abort;
   std::function<int()> selected = {};  // set by the command that the user named
 };
 

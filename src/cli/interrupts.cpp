@@ -9,6 +9,29 @@
 #include <spdlog/spdlog.h>
 
 namespace vantage::cli {
+namespace {
+
+[[noreturn]] void die() {
+  constexpr char farewell[] = "\nvantage: aborted\n";
+  [[maybe_unused]] const auto written = write(STDERR_FILENO, farewell, sizeof farewell - 1);
+  _exit(130);
+}
+
+void watch(const std::stop_token& finished, const sigset_t& signals, std::stop_source stop, std::stop_source abort) {
+  constexpr timespec tick{.tv_sec = 0, .tv_nsec = 50'000'000};
+  int ticks_left = 200;
+  while (!finished.stop_requested()) {
+    if (sigtimedwait(&signals, nullptr, &tick) < 0) {
+      if (abort.stop_requested() && --ticks_left == 0) die();
+    } else if (stop.request_stop()) {
+      spdlog::warn("stopping in good order; once more to abort");
+    } else if (!abort.request_stop()) {
+      die();
+    }
+  }
+}
+
+}  // namespace
 
 Interrupts::Interrupts() {
   sigset_t signals;
@@ -16,18 +39,8 @@ Interrupts::Interrupts() {
   sigaddset(&signals, SIGINT);
   sigaddset(&signals, SIGTERM);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-  watcher_ = std::jthread([signals, source = source_](std::stop_token finished) mutable {
-    const timespec patience{.tv_sec = 0, .tv_nsec = 50'000'000};
-    while (!finished.stop_requested()) {
-      if (sigtimedwait(&signals, nullptr, &patience) < 0) continue;
-      if (!source.request_stop()) {
-        constexpr char farewell[] = "\nvantage: aborted\n";
-        [[maybe_unused]] const auto written = write(STDERR_FILENO, farewell, sizeof farewell - 1);
-        _exit(130);
-      }
-      spdlog::warn("stopping; once more to abort at once");
-    }
-  });
+  watcher_ = std::jthread(
+      [signals, stop = stop_, abort = abort_](const std::stop_token& finished) { watch(finished, signals, stop, abort); });
 }
 
 }  // namespace vantage::cli

@@ -6,15 +6,17 @@
 
 namespace vantage::cli {
 
-// Turns the first SIGINT or SIGTERM into a stop request, after which work ends in good order; the second ends the program at once.
+// Turns SIGINT and SIGTERM into requests. The first asks work to end in good order, the second to drop whatever can be dropped; a
+// third, or ten seconds without an end after the second, kills the program.
 // Make it before any other thread: threads inherit the blocked signals.
 class Interrupts {
  public:
   Interrupts();
-  std::stop_token token() const { return source_.get_token(); }
+  std::stop_token stop() const { return stop_.get_token(); }
+  std::stop_token abort() const { return abort_.get_token(); }
 
  private:
-  std::stop_source source_;
+  std::stop_source stop_, abort_;
   std::jthread watcher_;
 };
 

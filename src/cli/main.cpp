@@ -16,7 +16,7 @@ namespace {
 int run(int argc, char** argv) {
   Interrupts interrupts;
   Console console;
-  Program program{.console = console, .stop = interrupts.token()};
+  Program program{.console = console, .stop = interrupts.stop(), .abort = interrupts.abort()};
   CLI::App app{"vantage plans terrestrial LiDAR surveys: where should the scanner stand?", "vantage"};
   app.set_version_flag("--version", std::string("vantage ") + version());
   app.require_subcommand(1);

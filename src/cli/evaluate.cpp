@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
+#include <spdlog/spdlog.h>
+
+#include "cli/command.hpp"
+#include "cli/options.hpp"
+#include "cli/run_report.hpp"
+#include "cli/site.hpp"
+#include "cli/stations.hpp"
+
+namespace vantage::cli {
+namespace {
+
+constexpr std::size_t most_stations = 64;  // a bit each in a voxel's mask
+
+struct EvaluateCommandOptions {
+  SiteOptions site;
+  StationOptions stations;
+  bool exact = false, skip = false, no_overlap = false;
+  std::optional<SampleSize> sample;
+  std::optional<double> error;
+  std::optional<std::string> cartography, matrix, picture;
+  bool json = false;
+
+  void add(CLI::App& command) {
+    site.add(command);
+    stations.add(command);
+    auto* exact_flag = command.add_flag("--exact", exact, "Trace every ray; the default")->group("Evaluation");
+    auto* skip_flag = command
+                          .add_flag("--skip", skip,
+                                    "Leave out rays that cannot change a count; points off the surveyed meshes are not counted then")
+                          ->group("Evaluation");
+    auto* sample_option = add_value(command, "--sample", "N|P%", "Estimate from so many surveyed voxels, or that share of them",
+                                    [this](const std::string& text, const std::string& what) { sample = parse_sample(text, what); })
+                              ->group("Evaluation");
+    auto* error_option = add_number(command, "--error", "E", "Estimate with as many voxels as this standard error takes", error,
+                                    {.low = 1e-6, .high = 1})
+                             ->group("Evaluation");
+    sample_option->excludes(exact_flag)->excludes(skip_flag);
+    error_option->excludes(exact_flag)->excludes(skip_flag)->excludes(sample_option);
+    command.add_flag("--no-overlap", no_overlap, "Coverage only")->group("Evaluation");
+    add_text(command, "--cartography", "FILE", "Write every surveyed voxel with its count, in false colours: .ply", cartography)
+        ->group("Results");
+    add_text(command, "--overlap-csv", "FILE", "Write the overlap matrix: .csv", matrix)->group("Results");
+    add_text(command, "--picture", "FILE", "Draw the stations and their overlaps from above: .png or .svg", picture)->group("Results");
+    command.add_flag("--json", json, "Print one JSON object");
+  }
+};
+
+NetworkCounts evaluate_sample(Simulator& simulator, const Network& network, std::uint64_t voxels, bool overlap,
+                              const Progress& progress) {
+  return simulator.evaluate_sampled({&network, 1}, {.voxels = voxels, .overlap = overlap}, progress).front();
+}
+
+// Grows the sample until both standard errors are at most `error`; they fall with the square root of its size.
+NetworkCounts evaluate_to_error(Simulator& simulator, const Network& network, double error, bool overlap, const Progress& progress) {
+  constexpr double margin = 1.1, most_growth = 64;
+  const std::uint64_t all = simulator.voxel_count();
+  for (std::uint64_t voxels = std::min<std::uint64_t>(5'000, all);;) {
+    NetworkCounts counts = evaluate_sample(simulator, network, voxels, overlap, progress);
+    double reached = coverage_estimate(counts, simulator.goal_density(), all).standard_error;
+    if (overlap) reached = std::max(reached, overlap_estimate(counts, all).standard_error);
+    spdlog::info("{} voxels: standard error {:.2g}", voxels, reached);
+    if (reached <= error || voxels >= all || counts.cancelled) return counts;
+    const double growth = std::clamp(margin * (reached / error) * (reached / error), 1.25, most_growth);
+    voxels = std::min(all, static_cast<std::uint64_t>(std::ceil(static_cast<double>(voxels) * growth)));
+  }
+}
+
+nlohmann::json matrix_json(const OverlapMatrix& overlap) {
+  nlohmann::json rows = nlohmann::json::array();
+  for (std::size_t i = 0; i < overlap.size(); ++i) rows.push_back(overlap.row(i));
+  return rows;
+}
+
+int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& program) {
+  const Stopwatch watch;
+  Site site = open_site(command, options.site);
+  const auto stations = place(site, options.stations.read(most_stations));
+  warn_of_unusable(stations);
+  const bool sampled = options.sample || options.error;
+  const bool overlap = !options.no_overlap;
+  if (options.cartography && sampled)
+    throw Error(Errc::invalid_argument, "--cartography: shows every voxel, and so needs --exact");
+  if ((options.matrix || options.picture) && !overlap)
+    throw Error(Errc::invalid_argument, "--overlap-csv and --picture show overlaps, which --no-overlap leaves out");
+
+  Simulator simulator(site.scene, site.scanner, site.config);
+  tell_engine(simulator);
+  tell_grid(simulator);
+  const Network network = to_network(stations);
+  ProgressLine line(program.console, "evaluate");
+  const Progress progress{.report = [&](double done) { line.update(done); }, .stop = program.stop};
+  VoxelField field;
+  const NetworkCounts counts =
+      options.error    ? evaluate_to_error(simulator, network, *options.error, overlap, progress)
+      : options.sample ? evaluate_sample(simulator, network, options.sample->of(simulator.voxel_count()), overlap, progress)
+                       : simulator.evaluate(network,
+                                            {.overlap = overlap, .skip = options.skip, .field = options.cartography ? &field : nullptr},
+                                            progress);
+  if (counts.cancelled) {
+    spdlog::error("stopped before the end; nothing was written");
+    return exit_failed;
+  }
+  const std::uint64_t voxels = simulator.voxel_count();
+  const Estimate covered = coverage_estimate(counts, simulator.goal_density(), voxels);
+  const Estimate overlapped = overlap ? overlap_estimate(counts, voxels) : Estimate{};
+  const OverlapMatrix matrix = overlap ? overlap_matrix(counts) : OverlapMatrix{};
+
+  if (options.cartography) write_coverage_ply(*options.cartography, simulator, field);
+  if (options.matrix) write_overlap_csv(*options.matrix, matrix);
+  if (options.picture) {
+    std::vector<PlacedStation> placed;
+    for (const auto& station : stations) placed.push_back(station.placed);
+    draw_plan_view(*options.picture, site.scene, site.area(), placed, matrix, fmt::format("coverage {:.3f}", covered.value));
+  }
+
+  nlohmann::json rows = nlohmann::json::array();
+  for (std::size_t k = 0; k < stations.size(); ++k) {
+    auto row = to_json(stations[k]);
+    row["points"] = nullptr;
+    row["points_on_surveyed"] = nullptr;
+    if (!sampled && !counts.points.empty()) row["points"] = counts.points[k];
+    if (!sampled && !counts.points_on_surveyed.empty()) row["points_on_surveyed"] = counts.points_on_surveyed[k];
+    rows.push_back(std::move(row));
+  }
+  if (options.json) {
+    nlohmann::json json{{"coverage", covered.value},
+                        {"coverage_se", covered.standard_error},
+                        {"overlap", nullptr},
+                        {"overlap_se", nullptr},
+                        {"overlap_matrix", nullptr},
+                        {"stations", std::move(rows)},
+                        {"voxels", voxels},
+                        {"voxel_size", simulator.voxel_size_m()},
+                        {"goal_density", simulator.goal_density()},
+                        {"rays", counts.rays},
+                        {"sample", nullptr},
+                        {"seconds", seconds_json(watch, counts.trace_seconds)},
+                        {"engine", to_string(simulator.engine().engine)},
+                        {"device", simulator.engine().device},
+                        {"seed", site.config.seed},
+                        {"options", site.as_options()},
+                        {"version", version()}};
+    if (overlap) {
+      json["overlap"] = overlapped.value;
+      json["overlap_se"] = overlapped.standard_error;
+      json["overlap_matrix"] = matrix_json(matrix);
+    }
+    if (sampled) json["sample"] = counts.voxels;
+    program.console.print(json);
+  } else {
+    std::string text;
+    for (std::size_t k = 0; k < stations.size(); ++k) {
+      const Vec3& head = stations[k].placed.position;
+      text += fmt::format("station {:>2}  {:<5}  {:.3f},{:.3f},{:.3f}", k, to_string(stations[k].placed.status), head.x, head.y, head.z);
+      if (rows[k]["points_on_surveyed"].is_number()) text += fmt::format("  {} points on surveyed meshes", rows[k]["points_on_surveyed"].get<std::uint64_t>());
+      text += "\n";
+    }
+    const auto with_error = [&](const Estimate& estimate) {
+      return sampled ? fmt::format("{:.4f} ± {:.4f}", estimate.value, estimate.standard_error) : fmt::format("{:.4f}", estimate.value);
+    };
+    text += "coverage " + with_error(covered) + "\n";
+    if (overlap) text += "overlap  " + with_error(overlapped) + "\n";
+    program.console.print(text);
+  }
+  return exit_ok;
+}
+
+}  // namespace
+
+void add_evaluate(CLI::App& app, Program& program) {
+  add_command<EvaluateCommandOptions>(app, program, "evaluate", "Coverage and overlap of a network of stations", evaluate);
+}
+
+}  // namespace vantage::cli

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <map>
+
+#include <spdlog/spdlog.h>
+
+#include "cli/command.hpp"
+#include "cli/options.hpp"
+#include "cli/run_report.hpp"
+#include "cli/site.hpp"
+#include "cli/stations.hpp"
+
+namespace vantage::cli {
+namespace {
+
+const std::map<std::string, std::uint32_t> output_bits{{"range", scan_range}, {"normal", scan_normal},
+                                                       {"reflectivity", scan_reflectivity}, {"ids", scan_ids},
+                                                       {"colour", scan_colour}};
+
+struct ScanOptions {
+  SiteOptions site;
+  StationOptions stations;
+  std::optional<std::string> output;
+  std::uint32_t outputs = scan_position | scan_reflectivity | scan_colour;
+  bool json = false;
+
+  void add(CLI::App& command) {
+    site.add(command);
+    stations.add(command);
+    add_text(command, "-o,--output", "FILE", "Where to write the points: .ply or .las; nothing is written otherwise", output);
+    add_value(command, "--outputs", "LIST", "What each point carries: any of range,normal,reflectivity,ids,colour; reflectivity,colour otherwise",
+              [this](const std::string& text, const std::string& what) {
+                outputs = scan_position;
+                for (const auto part : split(text, ',')) {
+                  const auto bit = output_bits.find(std::string(part));
+                  if (bit == output_bits.end())
+                    throw Error(Errc::invalid_argument,
+                                what + ": '" + std::string(part) + "' is none of range, normal, reflectivity, ids, colour");
+                  outputs |= bit->second;
+                }
+              });
+    command.add_flag("--json", json, "Print one JSON object");
+  }
+};
+
+int scan(CLI::App& command, ScanOptions& options, Program& program) {
+  const Stopwatch watch;
+  Site site = open_site(command, options.site);
+  const auto typed = options.stations.read(65535);  // what a LAS point source id can tell apart, station 0 included
+  const auto stations = place(site, typed);
+  for (const auto& station : stations)
+    if (station.placed.status == StationStatus::hole)
+      throw Error(Errc::invalid_argument, fmt::format("no ground under u,v = {:g},{:g}: a scan needs a place to stand",
+                                                      station.placed.uv.u, station.placed.uv.v));
+    else if (station.placed.status == StationStatus::clash)
+      spdlog::warn("something stands within the security volume of the station at {:.6g},{:.6g},{:.6g}", station.placed.position.x,
+                   station.placed.position.y, station.placed.position.z);
+
+  Simulator simulator(site.scene, site.scanner, site.config);
+  tell_engine(simulator);
+  tell_grid(simulator);
+
+  std::optional<PointCloudWriter> writer;
+  if (options.output) writer.emplace(*options.output, simulator.origin(), options.outputs);
+  ScanSummary sum;
+  nlohmann::json rows = nlohmann::json::array();
+  ProgressLine line(program.console, "scan");
+  for (std::size_t k = 0; k < stations.size(); ++k) {
+    const Progress progress{.report = [&](double done) {
+                              line.update((static_cast<double>(k) + done) / static_cast<double>(stations.size()));
+                            },
+                            .stop = program.stop};
+    const ScanSummary one = simulator.scan({.position = stations[k].placed.position}, static_cast<std::uint32_t>(k),
+                                           writer ? options.outputs : 0,
+                                           [&](const ScanChunk& chunk) {
+                                             if (writer) writer->write(chunk, static_cast<std::uint16_t>(k));
+                                           },
+                                           progress);
+    if (one.cancelled) {
+      spdlog::error("stopped; no file was written");
+      return exit_failed;
+    }
+    sum.rays += one.rays;
+    sum.points += one.points;
+    sum.points_on_surveyed += one.points_on_surveyed;
+    sum.trace_seconds += one.trace_seconds;
+    auto row = to_json(stations[k]);
+    row["points"] = one.points;
+    row["points_on_surveyed"] = one.points_on_surveyed;
+    row["hits_on_surveyed"] = one.hits_on_surveyed;
+    rows.push_back(std::move(row));
+  }
+  if (writer) writer->close();
+
+  if (options.json) {
+    nlohmann::json json{{"rays", sum.rays},
+                        {"points", sum.points},
+                        {"points_on_surveyed", sum.points_on_surveyed},
+                        {"stations", std::move(rows)},
+                        {"seconds", seconds_json(watch, sum.trace_seconds)},
+                        {"engine", to_string(simulator.engine().engine)},
+                        {"device", simulator.engine().device},
+                        {"seed", site.config.seed},
+                        {"options", site.as_options()},
+                        {"version", version()}};
+    if (options.output) json["file"] = *options.output;
+    program.console.print(json);
+  } else {
+    std::string text;
+    for (const auto& row : rows)
+      text += fmt::format("station at {:.3f},{:.3f},{:.3f}: {} points, {} on surveyed meshes\n", row["position"][0].get<double>(),
+                          row["position"][1].get<double>(), row["position"][2].get<double>(), row["points"].get<std::uint64_t>(),
+                          row["points_on_surveyed"].get<std::uint64_t>());
+    text += fmt::format("{} rays, {} points, {} on surveyed meshes\n", sum.rays, sum.points, sum.points_on_surveyed);
+    if (options.output) text += "written to " + *options.output + "\n";
+    program.console.print(text);
+  }
+  return exit_ok;
+}
+
+}  // namespace
+
+void add_scan(CLI::App& app, Program& program) {
+  add_command<ScanOptions>(app, program, "scan", "Simulate stations and write their points", scan);
+}
+
+}  // namespace vantage::cli
