@@ -1,1 +1,29 @@
+# Installs the library, its headers and data, the program, and what find_package(vantage) and pkg-config need.
+include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)
+
+install(
+  TARGETS vantage
+  EXPORT vantageTargets
+  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
+  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+  RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR}
+  FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+if(TARGET vantage-cli)
+  install(TARGETS vantage-cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endif()
+install(FILES ${PROJECT_SOURCE_DIR}/data/scanners.json DESTINATION ${CMAKE_INSTALL_DATADIR}/vantage)
+
+set(VANTAGE_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/vantage)
+install(EXPORT vantageTargets NAMESPACE vantage:: DESTINATION ${VANTAGE_PACKAGE_DIR})
+set(VANTAGE_EMBREE_MAJOR ${embree_VERSION_MAJOR})
+configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/vantageConfig.cmake.in ${PROJECT_BINARY_DIR}/vantageConfig.cmake
+                              INSTALL_DESTINATION ${VANTAGE_PACKAGE_DIR})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/vantageConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/vantageConfig.cmake ${PROJECT_BINARY_DIR}/vantageConfigVersion.cmake
+        DESTINATION ${VANTAGE_PACKAGE_DIR})
+
+# Paths in the .pc hang on its own place, so that an installed tree can be moved.
+file(RELATIVE_PATH VANTAGE_PC_PREFIX ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
+configure_file(${PROJECT_SOURCE_DIR}/cmake/vantage.pc.in ${PROJECT_BINARY_DIR}/vantage.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/vantage.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

@@ -83,7 +83,8 @@ void apply_layer(CLI::App& command, const nlohmann::json& values, const std::str
       throw Error(Errc::invalid_argument, source + ": there is no option '" + written_key + "'");
     if (!option || option->count() > 0 || value.is_null()) continue;
 
-    if (takes_many(*option) && value.is_array()) {
+    const bool one_point = value.is_array() && !value.empty() && value[0].is_number();
+    if (takes_many(*option) && value.is_array() && !one_point) {
       for (const auto& item : value) option->add_result(scalar_text(item, source + ": " + written_key));
     } else {
       option->add_result(scalar_text(value, source + ": " + written_key));

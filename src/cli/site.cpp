@@ -16,11 +16,11 @@ namespace vantage::cli {
 namespace {
 
 // Options that a preset states, and so takes out of the scene's hands.
-const std::set<std::string> preset_keys{"step", "horizontal", "vertical", "range", "noise"};
+const std::set<std::string> preset_keys{"step", "horizontal", "vertical", "zenith-start", "range", "noise"};
 // Options that a scene may carry defaults for: what is measured, never where files go.
-const std::set<std::string> scene_keys{"scanner", "step",    "heading",   "horizontal", "vertical", "height",
-                                       "range",   "noise",   "user-size", "spacing",    "security", "slope",
-                                       "headroom", "min-area"};
+const std::set<std::string> scene_keys{"scanner", "step",  "heading", "horizontal", "vertical", "zenith-start",
+                                       "height",  "range", "noise",   "user-size",  "spacing",  "security",
+                                       "slope",   "headroom", "min-area", "station"};
 
 template <std::size_t N>
 Setter numbers_into(std::optional<std::array<double, N>>& target, std::size_t fewest, const Interval& interval) {
@@ -54,6 +54,7 @@ Scanner resolve_scanner(const SiteOptions& options, double scale) {
   if (options.heading) scanner.heading = Angle::degrees(*options.heading);
   if (options.horizontal) scanner.horizontal_angle = Angle::degrees(*options.horizontal);
   if (options.vertical) scanner.vertical_angle = Angle::degrees(*options.vertical);
+  if (options.zenith_start) scanner.zenith_start = Angle::degrees(*options.zenith_start);
   if (options.height) scanner.height_m = *options.height;
   if (options.range) {
     scanner.min_range_m = (*options.range)[0];
@@ -128,6 +129,9 @@ void SiteOptions::add(CLI::App& command) {
       ->group("Scanner");
   add_number(command, "--vertical", "DEG", "Vertical wide angle, over both sides of the head: 300 is zenith 0 to 150", vertical,
              {.low = 0, .high = 360, .low_included = false})
+      ->group("Scanner");
+  add_number(command, "--zenith-start", "DEG", "Zenith of the first ray; above 0 for scanners that cannot look straight up",
+             zenith_start, {.low = 0, .high = 180, .high_included = false})
       ->group("Scanner");
   add_number(command, "--height", "M", "Height of the scanner's head above the ground", height, not_negative)->group("Scanner");
   add_value(command, "--range", "MIN,MAX", "Nearest and farthest distance measured, in metres", numbers_into(range, 2, not_negative))
@@ -229,6 +233,7 @@ nlohmann::json Site::as_options() const {
           {"heading", scanner.heading.in_degrees()},
           {"horizontal", scanner.horizontal_angle.in_degrees()},
           {"vertical", scanner.vertical_angle.in_degrees()},
+          {"zenith-start", scanner.zenith_start.in_degrees()},
           {"height", scanner.height_m},
           {"range", {scanner.min_range_m, scanner.max_range_m}},
           {"user-size", config.user_size_m},
@@ -251,12 +256,14 @@ Site open_site(CLI::App& command, SiteOptions& options) {
   Scene scene = Scene::load(options.scene, options.roles);
   for (const auto& note : scene.notes()) spdlog::info("{}: {}", options.scene, note);
   const bool own_preset = options.scanner.has_value();
-  apply_layer(command, nlohmann::json::parse(scene.defaults_json()), options.scene, [own_preset](const std::string& key) {
-    return scene_keys.contains(key) && !(own_preset && preset_keys.contains(key));
+  const CLI::Option* station_file = command.get_option_no_throw("--stations");
+  const bool own_stations = station_file && station_file->count() > 0;
+  apply_layer(command, nlohmann::json::parse(scene.defaults_json()), options.scene, [&](const std::string& key) {
+    return scene_keys.contains(key) && !(own_preset && preset_keys.contains(key)) && !(own_stations && key == "station");
   });
 
   const double scale = length_scale(scene.bounds());
-  Site site{.scene = std::move(scene), .scanner = resolve_scanner(options, scale), .config = {}, .security = {}, .walkable = {}};
+  Site site{.scene = std::move(scene), .scanner = resolve_scanner(options, scale), .config = {}, .security = {}, .walkable = {}, .given = {}};
   site.config.engine = options.engine;
   site.config.device_index = options.device;
   site.config.seed = options.seed;

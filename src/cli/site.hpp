@@ -24,7 +24,7 @@ struct SiteOptions {
 
   std::optional<std::string> scanner;
   std::optional<std::array<double, 2>> step;
-  std::optional<double> heading, horizontal, vertical, height;
+  std::optional<double> heading, horizontal, vertical, zenith_start, height;
   std::optional<std::array<double, 2>> range;
   std::optional<std::string> noise;
 
