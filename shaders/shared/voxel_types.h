@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Surveyed voxels on the device: bricks of 8³ voxels in Morton order, found through an open-addressing hash table.
 #ifndef VANTAGE_SHARED_VOXEL_TYPES_H
 #define VANTAGE_SHARED_VOXEL_TYPES_H
