@@ -25,6 +25,8 @@ enum class StopReason {
   stagnated,        ///< No improvement for long.
   flat,             ///< The objective does not change over a whole population.
   invalid_objective,///< Every value of an iteration was NaN.
+  ill_conditioned,  ///< The covariance's condition number passed 1e14.
+  diverged,         ///< Steps grew without bound.
   max_time,
   cancelled,
 };
@@ -58,7 +60,8 @@ struct CmaEsConfig {
   std::uint64_t seed = 1;
 };
 
-/// CMA-ES (Hansen: The CMA Evolution Strategy, A Tutorial, 2016). ask() gives λ points, tell() takes their values in order.
+/// CMA-ES (Hansen: The CMA Evolution Strategy, A Tutorial, 2016) with IPOP restarts (Auger, Hansen 2005). ask() gives λ points,
+/// tell() takes their values in order. Bounds are kept by a smooth transform of the coordinates. Not thread-safe; two can coexist.
 class CmaEs {
  public:
   /// Throws Error invalid_argument.
@@ -66,18 +69,26 @@ class CmaEs {
   CmaEs(CmaEs&&) noexcept;
   CmaEs& operator=(CmaEs&&) noexcept;
   ~CmaEs();
-  /// λ points, row-major, inside the bounds. Valid until the next call of a non-const member.
+  /// λ points, row-major, inside the bounds. Valid until the next tell() or load(). Asked again before tell(), it gives the same points.
   std::span<const double> ask();
-  /// REQUIRES: one value per asked point. NaN counts as worst.
+  /// Between ask() and tell(): puts x in the place of point `index`, as if it had been drawn. Throws Error invalid_argument outside the bounds.
+  void replace(std::size_t index, std::span<const double> x);
+  /// Between ask() and tell(): draws `coordinates` of point `index` again, given its others, and returns the point.
+  std::span<const double> resample(std::size_t index, std::span<const std::size_t> coordinates);
+  /// REQUIRES: one value per asked point. A value that is not finite counts as worst.
   void tell(std::span<const double> values);
   StopReason stop_reason() const noexcept;
+  /// Of all restarts. Its f is +infinity until a finite value was told.
   const ParetoPoint& best() const noexcept;
-  std::size_t population() const noexcept;
+  std::size_t population() const noexcept;  ///< λ now: it doubles at a restart.
   std::size_t evaluations() const noexcept;
   std::size_t iterations() const noexcept;
+  std::size_t restarts() const noexcept;
   double sigma() const noexcept;
-  void save(std::ostream&) const;   ///< Complete state, binary, versioned. Only between tell() and ask().
-  void load(std::istream&);         ///< Throws Error malformed_file.
+  void save(std::ostream&) const;   ///< Complete state, binary, versioned. Only between tell() and ask(). Throws Error io.
+  /// Goes on from a saved state to the same bits. The object must have been made with the same dimension and settings, but for the
+  /// limits (max_*, target, tolerances), which are its own. Throws Error malformed_file and is unchanged then.
+  void load(std::istream&);
 
  private:
   struct Impl;
@@ -86,6 +97,16 @@ class CmaEs {
 
 // ---- several objectives ----------------------------------------------------------------------------------------------
 
+/// Which optimiser make_optimiser() makes.
+enum class MoAlgorithm {
+  mo_cma_es,      ///< MoCmaEs, as MoCmaEsConfig::scheme says.
+  nsga2,          ///< NSGA-II (Deb, Pratap, Agarwal, Meyarivan 2002): baseline.
+  random_search,  ///< Uniform points, the best μ kept: baseline.
+};
+std::string to_string(MoAlgorithm);
+MoAlgorithm mo_algorithm_from_string(const std::string&);  ///< Throws Error invalid_argument and lists the algorithms.
+
+/// Settings of every multi-objective optimiser; the baselines pass over what they have no use for.
 struct MoCmaEsConfig {
   /// generational: μ parents, μ offspring each iteration. steady_state: one at a time, or `batch` at a time.
   enum class Scheme { generational, steady_state };
@@ -95,35 +116,70 @@ struct MoCmaEsConfig {
   double sigma0 = 0.2;                    ///< Share of the range where there are bounds, else absolute.
   std::optional<Bounds> bounds = std::nullopt;
   std::vector<double> reference = {};     ///< Reference point of the hypervolume; empty: (1, …, 1).
-  std::vector<std::vector<double>> start = {};  ///< First points of the initial population; the rest is uniform in the bounds.
+  /// First points of the initial population; the rest is uniform in the bounds, or without bounds normal around the first (or 0).
+  std::vector<std::vector<double>> start = {};
   std::size_t max_iterations = 0;         ///< Of μ evaluations each. 0: no limit.
   std::size_t max_evaluations = 0;        ///< 0: no limit.
   std::optional<double> target_hypervolume = std::nullopt;
   std::size_t stagnation_iterations = 0;  ///< Stop when the hypervolume has not grown for so many. 0: never.
+  double stagnation_tolerance = 1e-6;     ///< Growth over those iterations, as a share of the hypervolume, that counts as none.
+  double x_tolerance = 1e-12;             ///< Stop when all steps of all members are below this share of the range (absolute without bounds).
   std::uint64_t seed = 1;
 };
 
+/// What all multi-objective optimisers have in common: ask() for points, evaluate them, tell() their objectives. All objectives
+/// are minimised. Not thread-safe; two can coexist. The same seed and values give the same bits.
+class MultiObjectiveOptimiser {
+ public:
+  virtual ~MultiObjectiveOptimiser() = default;
+  /// Points to evaluate, row-major, inside the bounds: the initial population first, then offspring. Valid until the next tell()
+  /// or load(). Asked again before tell(), it gives the same points.
+  virtual std::span<const double> ask() = 0;
+  /// Between ask() and tell(): puts x in the place of point `index`, as if it had been drawn. Throws Error invalid_argument outside the bounds.
+  virtual void replace(std::size_t index, std::span<const double> x) = 0;
+  /// Between ask() and tell(): draws `coordinates` of point `index` again, given its others, and returns the point.
+  virtual std::span<const double> resample(std::size_t index, std::span<const std::size_t> coordinates) = 0;
+  /// REQUIRES: objectives values per asked point, row-major, in order. A point with a value that is not finite counts as
+  /// dominated by all that have none.
+  virtual void tell(std::span<const double> values) = 0;
+  virtual StopReason stop_reason() const noexcept = 0;
+  virtual std::vector<ParetoPoint> front() const = 0;       ///< Non-dominated members of the population, sorted by f[0].
+  virtual std::vector<ParetoPoint> population() const = 0;
+  virtual double hypervolume() const = 0;                   ///< Of the population against the reference point.
+  virtual std::size_t evaluations() const noexcept = 0;
+  virtual std::size_t iterations() const noexcept = 0;      ///< evaluations / μ.
+  /// Complete state, binary, versioned. Only between tell() and ask(). Throws Error io.
+  virtual void save(std::ostream&) const = 0;
+  /// Goes on from a saved state to the same bits. The object must have been made with the same dimension, objectives and settings, but for the
+  /// limits (max_*, target, stagnation, tolerance), which are its own. Throws Error malformed_file and is unchanged then.
+  virtual void load(std::istream&) = 0;
+};
+
+/// Throws Error invalid_argument.
+std::unique_ptr<MultiObjectiveOptimiser> make_optimiser(MoAlgorithm algorithm, std::size_t dimension, std::size_t objectives,
+                                                        const MoCmaEsConfig& config = {});
+
 /// MO-CMA-ES (Igel, Hansen, Roth: Covariance Matrix Adaptation for Multi-objective Optimization, 2007; Voß, Hansen, Igel: Improved
 /// Step Size Adaptation for the MO-CMA-ES, 2010) with hypervolume indicator selection.
-class MoCmaEs {
+class MoCmaEs final : public MultiObjectiveOptimiser {
  public:
   /// Throws Error invalid_argument.
   MoCmaEs(std::size_t dimension, std::size_t objectives, const MoCmaEsConfig& config = {});
   MoCmaEs(MoCmaEs&&) noexcept;
   MoCmaEs& operator=(MoCmaEs&&) noexcept;
-  ~MoCmaEs();
-  /// Points to evaluate, row-major: the initial population first, then offspring. Valid until the next call of a non-const member.
-  std::span<const double> ask();
-  /// REQUIRES: objectives values per asked point, row-major, in order. A point with a NaN counts as dominated by all.
-  void tell(std::span<const double> values);
-  StopReason stop_reason() const noexcept;
-  std::vector<ParetoPoint> front() const;       ///< Non-dominated members of the population, sorted by f[0].
-  std::vector<ParetoPoint> population() const;
-  double hypervolume() const;                   ///< Of the population against the reference point.
-  std::size_t evaluations() const noexcept;
-  std::size_t iterations() const noexcept;      ///< evaluations / μ.
-  void save(std::ostream&) const;
-  void load(std::istream&);
+  ~MoCmaEs() override;
+  std::span<const double> ask() override;
+  void replace(std::size_t index, std::span<const double> x) override;
+  std::span<const double> resample(std::size_t index, std::span<const std::size_t> coordinates) override;
+  void tell(std::span<const double> values) override;
+  StopReason stop_reason() const noexcept override;
+  std::vector<ParetoPoint> front() const override;
+  std::vector<ParetoPoint> population() const override;
+  double hypervolume() const override;
+  std::size_t evaluations() const noexcept override;
+  std::size_t iterations() const noexcept override;
+  void save(std::ostream&) const override;
+  void load(std::istream&) override;
 
  private:
   struct Impl;
