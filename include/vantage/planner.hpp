@@ -10,6 +10,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "vantage/objective.hpp"
@@ -47,6 +48,7 @@ struct PlanConfig {
   std::size_t population = 0;        ///< 0: 10 for coverage_fix, else 100.
   std::size_t iterations = 100;      ///< Of `population` evaluations each.
   double sigma0 = 0.2;
+  MoAlgorithm algorithm = MoAlgorithm::mo_cma_es;  ///< Of the problems with several objectives.
   MoCmaEsConfig::Scheme scheme = MoCmaEsConfig::Scheme::steady_state;
   std::size_t batch = 0;             ///< Offspring at once in the steady state; 0: chosen by the engine.
   std::uint64_t sample_voxels = 0;   ///< 0: exact search; else sampled with so many voxels.
@@ -121,5 +123,17 @@ PlanResult plan(Simulator& simulator, const SearchArea& area, const ClashChecker
 std::vector<PlacedStation> place_stations(const SearchArea& area, const ClashChecker& clash, double height_m,
                                           std::span<const double> uvs);
 Network to_network(std::span<const PlacedStation> stations);
+
+/// The overlap graph as registration sees it: which stations hang together, and by what.
+struct Connectivity {
+  std::size_t parts = 0;          ///< Connected parts.
+  std::vector<std::size_t> part;  ///< Per station, the part it is in, from 0.
+  std::vector<std::pair<std::size_t, std::size_t>> bridges;  ///< Links without which a part falls in two, i < j.
+  /// Where there is one part: the weakest link of the strongest spanning tree, and its overlap. What the registration hangs by.
+  std::pair<std::size_t, std::size_t> weakest_link{0, 0};
+  double weakest_overlap = 0;
+};
+/// Links are the pairs whose overlap is above 0 and at least `min_overlap`.
+Connectivity connectivity(const OverlapMatrix& overlap, double min_overlap);
 
 }  // namespace vantage

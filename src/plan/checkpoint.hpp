@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a search needs to go on to the same bits: the state at its last snapshot and the values it has seen since. The optimiser
+// asks for the same points again, so those values are told to it in place of evaluations; a batch may be cut anywhere.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "plan/network_evaluator.hpp"
+#include "vantage/planner.hpp"
+
+namespace vantage {
+
+struct SearchSnapshot {
+  std::string optimiser;  // as its save() wrote it; empty: not yet asked
+  std::vector<PlanIteration> history;
+  std::uint64_t drawn = 0, redrawn = 0;
+};
+
+struct Checkpoint {
+  std::string identity;  // lines "name = value" of everything that must match
+  SearchSnapshot snapshot;
+  std::vector<NetworkValue> since;  // in the order of asking
+  double seconds = 0, trace_seconds = 0;
+};
+
+// Throws Error io.
+void write_checkpoint(const std::filesystem::path& file, const Checkpoint& checkpoint);
+// Empty where there is no such file. Throws Error: io, malformed_file (damaged, or of another version).
+std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& file);
+// Throws Error invalid_argument that lists what differs.
+void require_same_run(const std::filesystem::path& file, const std::string& found, const std::string& wanted);
+
+}  // namespace vantage

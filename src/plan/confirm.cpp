@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plan/confirm.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+namespace vantage {
+namespace {
+
+bool blind(const Network& network) {
+  return std::none_of(network.begin(), network.end(), [](const Station& s) { return s.active; });
+}
+
+}  // namespace
+
+std::vector<PlanEntry> confirm_front(const SearchOutcome& found, const DecisionSpace& space, const PlanConfig& config,
+                                     NetworkEvaluator& evaluator, const std::function<void(const PlanProgress&)>& watch,
+                                     std::stop_token abort) {
+  using Clock = std::chrono::steady_clock;
+  const auto start = Clock::now();
+  std::vector<PlanEntry> entries;
+  std::vector<Network> networks, seeing;
+  for (const ParetoPoint& point : found.front) {
+    PlanEntry& entry = entries.emplace_back();
+    entry.x = point.x;
+    entry.stations = space.decode(point.x);
+    entry.exact_overlap_matrix = OverlapMatrix(entry.stations.size());
+    entry.points_on_surveyed.assign(entry.stations.size(), 0);
+    networks.push_back(to_network(entry.stations));
+    if (!blind(networks.back())) seeing.push_back(networks.back());
+  }
+  const auto report = [&](std::size_t done, double part) {
+    if (!watch) return;
+    const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    const double rate = seconds > 0 ? (static_cast<double>(done) + part) / seconds : 0;
+    watch({.iteration = done,
+           .iterations = entries.size(),
+           .evaluations = found.evaluations,
+           .hypervolume = found.hypervolume,
+           .evaluations_per_second = rate,
+           .seconds_left = rate > 0 ? (static_cast<double>(entries.size() - done) - part) / rate : 0,
+           .phase = "confirm"});
+  };
+
+  // A search that samples did not keep its standard errors, nor the overlap where it is no objective. The same sample is drawn again.
+  if (config.sample_voxels > 0 && !seeing.empty()) {
+    const auto estimates = evaluator.estimate(seeing, {.report = {}, .stop = abort});
+    std::size_t next = 0;
+    for (std::size_t k = 0; k < entries.size(); ++k) {
+      if (blind(networks[k])) continue;
+      PlanEntry& entry = entries[k];
+      if (estimates) {
+        const NetworkEstimate& e = (*estimates)[next++];
+        entry.coverage = e.coverage.value, entry.coverage_se = e.coverage.standard_error;
+        entry.overlap = e.overlap.value, entry.overlap_se = e.overlap.standard_error;
+      } else {
+        entry.coverage = 1 - found.front[k].f[0];
+        if (space.needs_overlap()) entry.overlap = 1 - found.front[k].f[1];
+      }
+    }
+  }
+  for (std::size_t k = 0; k < entries.size() && !abort.stop_requested(); ++k) {
+    report(k, 0);
+    PlanEntry& entry = entries[k];
+    std::optional<ConfirmedNetwork> exact = ConfirmedNetwork{};
+    if (!blind(networks[k])) {
+      exact = evaluator.confirm(networks[k], {.report = [&](double done) { report(k, done); }, .stop = abort});
+      if (!exact) break;
+      entry.exact_overlap_matrix = std::move(exact->overlaps);
+      entry.points_on_surveyed = std::move(exact->points_on_surveyed);
+    }
+    entry.confirmed = true;
+    entry.exact_coverage = exact->coverage, entry.exact_overlap = exact->overlap;
+  }
+  report(entries.size(), 0);
+  if (config.sample_voxels == 0) {
+    for (std::size_t k = 0; k < entries.size(); ++k) {
+      PlanEntry& entry = entries[k];
+      entry.coverage = entry.confirmed ? entry.exact_coverage : 1 - found.front[k].f[0];
+      if (entry.confirmed) entry.overlap = entry.exact_overlap;
+      else if (space.needs_overlap()) entry.overlap = 1 - found.front[k].f[1];
+    }
+  }
+  std::sort(entries.begin(), entries.end(), [](const PlanEntry& a, const PlanEntry& b) {
+    return std::make_tuple(-a.coverage, -a.overlap, a.stations.size(), std::cref(a.x)) <
+           std::make_tuple(-b.coverage, -b.overlap, b.stations.size(), std::cref(b.x));
+  });
+  return entries;
+}
+
+}  // namespace vantage

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <stop_token>
+#include <vector>
+
+#include "plan/search.hpp"
+
+namespace vantage {
+
+// The front as entries, by falling coverage: what the search saw with its standard errors, and beside it the exact values.
+std::vector<PlanEntry> confirm_front(const SearchOutcome& found, const DecisionSpace& space, const PlanConfig& config,
+                                     NetworkEvaluator& evaluator, const std::function<void(const PlanProgress&)>& watch,
+                                     std::stop_token abort);
+
+}  // namespace vantage

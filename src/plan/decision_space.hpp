@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// The search space of section 4.4: decision vectors and the networks they stand for.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "plan/site.hpp"
+#include "vantage/planner.hpp"
+
+namespace vantage {
+
+class DecisionSpace {
+ public:
+  // Throws Error invalid_argument.
+  DecisionSpace(const Site& site, const PlanConfig& config);
+
+  std::size_t dimension() const;
+  std::size_t objectives() const { return objectives_; }
+  bool minimises_stations() const { return minimises_; }
+  bool needs_overlap() const { return overlap_; }
+  Bounds bounds() const;
+
+  // Equation 7; how many stations of x are searched for. The kept ones come on top.
+  std::size_t placed_count(std::span<const double> x) const;
+  // Kept stations first, then those of x.
+  std::vector<PlacedStation> decode(std::span<const double> x) const;
+  // Coordinates of x that belong to station `i` of decode(x), which is no kept one.
+  std::vector<std::size_t> coordinates(std::size_t i) const;
+  std::size_t kept() const { return kept_.size(); }
+  // x whose stations stand at config.start; further ones repeat them. Throws where one is outside the search area.
+  std::vector<double> encode(std::span<const Vec3> heads) const;
+  // Objective vector, all minimised (Table 2). `parts`: connected parts of the network's links, 1 where nobody asks.
+  void objectives_of(std::span<const double> x, double coverage, double overlap, std::size_t parts, std::span<double> f) const;
+
+ private:
+  double height(std::span<const double> x, std::size_t i) const;
+  const Site& site_;
+  std::size_t min_, max_, objectives_;
+  bool minimises_, overlap_, heights_;
+  std::array<double, 2> height_bounds_{};
+  std::vector<PlacedStation> kept_;
+};
+
+}  // namespace vantage

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "plan/site.hpp"
+
+namespace vantage {
+
+// Lines "name = value" of everything that decides the bits of a search. Two runs with the same text may share a checkpoint.
+std::string identity(const Simulator& simulator, const Site& site, const SearchArea& area, const PlanConfig& config,
+                     std::size_t batch);
+
+}  // namespace vantage

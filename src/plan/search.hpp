@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// The search loop: asks, draws stations out of holes, evaluates, tells, keeps the history and the checkpoint, and knows when to stop.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "plan/decision_space.hpp"
+#include "plan/network_evaluator.hpp"
+
+namespace vantage {
+
+struct SearchSetup {
+  const DecisionSpace& space;
+  const PlanConfig& config;
+  NetworkEvaluator& evaluator;
+  std::size_t batch = 1;  // offspring at once in the steady state
+  std::string identity = {};
+  std::function<void(const PlanProgress&)> watch = {};
+  std::stop_token stop = {};
+};
+
+struct SearchOutcome {
+  std::vector<ParetoPoint> front;
+  std::vector<PlanIteration> history;
+  double hypervolume = 0;
+  std::uint64_t evaluations = 0, resumed_evaluations = 0;
+  std::uint64_t drawn = 0, redrawn = 0;
+  StopReason stop_reason = StopReason::running;
+  double seconds = 0, trace_seconds = 0;
+};
+
+SearchOutcome search(const SearchSetup& setup);
+
+}  // namespace vantage

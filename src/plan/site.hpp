@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where stations may stand, as the search sees it: SearchArea and ClashChecker behind two functions, so that the search can be
+// tested on sites made of formulas. The functions must be safe to call from several threads.
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "vantage/planner.hpp"
+
+namespace vantage {
+
+struct Site {
+  Uv uv_min, uv_max;
+  std::function<std::optional<Vec3>(Uv)> locate;            // ground under (u, v)
+  std::function<std::optional<Uv>(const Vec3&)> project;    // and back
+  std::function<bool(const Vec3&)> clashes;                 // by ground point
+  double height_m = 0;                                      // of the scanner's head
+};
+
+// Borrows both.
+Site make_site(const SearchArea& area, const ClashChecker& clash, double height_m);
+
+PlacedStation place_station(const Site& site, Uv uv, double height_m);
+
+}  // namespace vantage

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plan/strategy.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace vantage {
+namespace {
+
+class SingleObjective final : public Strategy {
+ public:
+  SingleObjective(std::size_t dimension, const CmaEsConfig& config) : optimiser_(dimension, config) {}
+  std::span<const double> ask() override { return optimiser_.ask(); }
+  std::span<const double> resample(std::size_t index, std::span<const std::size_t> coordinates) override {
+    return optimiser_.resample(index, coordinates);
+  }
+  void tell(std::span<const double> values) override { optimiser_.tell(values); }
+  std::vector<ParetoPoint> front() const override {
+    if (optimiser_.best().x.empty()) return {};
+    return {optimiser_.best()};
+  }
+  double hypervolume() const override {
+    return optimiser_.best().f.empty() ? 0 : std::max(0.0, 1 - optimiser_.best().f[0]);
+  }
+  std::size_t evaluations() const override { return optimiser_.evaluations(); }
+  StopReason stop_reason() const override { return optimiser_.stop_reason(); }
+  void save(std::ostream& out) const override { optimiser_.save(out); }
+  void load(std::istream& in) override { optimiser_.load(in); }
+
+ private:
+  CmaEs optimiser_;
+};
+
+class MultiObjective final : public Strategy {
+ public:
+  explicit MultiObjective(std::unique_ptr<MultiObjectiveOptimiser> optimiser) : optimiser_(std::move(optimiser)) {}
+  std::span<const double> ask() override { return optimiser_->ask(); }
+  std::span<const double> resample(std::size_t index, std::span<const std::size_t> coordinates) override {
+    return optimiser_->resample(index, coordinates);
+  }
+  void tell(std::span<const double> values) override { optimiser_->tell(values); }
+  std::vector<ParetoPoint> front() const override { return optimiser_->front(); }
+  double hypervolume() const override { return optimiser_->hypervolume(); }
+  std::size_t evaluations() const override { return optimiser_->evaluations(); }
+  StopReason stop_reason() const override { return optimiser_->stop_reason(); }
+  void save(std::ostream& out) const override { optimiser_->save(out); }
+  void load(std::istream& in) override { optimiser_->load(in); }
+
+ private:
+  std::unique_ptr<MultiObjectiveOptimiser> optimiser_;
+};
+
+// Enough to spend any budget: each restart doubles the population.
+constexpr std::size_t kRestarts = 9;
+
+}  // namespace
+
+std::size_t population_of(const PlanConfig& config) {
+  if (config.population > 0) return config.population;
+  return config.problem == Problem::coverage_fix ? 10 : 100;
+}
+
+std::unique_ptr<Strategy> make_strategy(const DecisionSpace& space, const PlanConfig& config, std::size_t batch) {
+  if (config.problem == Problem::coverage_fix) {
+    CmaEsConfig cma{.population = population_of(config), .sigma0 = config.sigma0, .bounds = space.bounds(), .restarts = kRestarts,
+                    .seed = config.seed};
+    if (!config.start.empty()) cma.start = space.encode(config.start);
+    return std::make_unique<SingleObjective>(space.dimension(), cma);
+  }
+  MoCmaEsConfig mo{.scheme = config.scheme, .population = population_of(config), .batch = batch, .sigma0 = config.sigma0,
+                   .bounds = space.bounds(), .seed = config.seed};
+  if (!config.start.empty()) mo.start = {space.encode(config.start)};
+  return std::make_unique<MultiObjective>(make_optimiser(config.algorithm, space.dimension(), space.objectives(), mo));
+}
+
+}  // namespace vantage
