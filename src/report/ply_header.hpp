@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// The header of a binary PLY whose number of vertices is only known at the end: it has the same length whatever the number.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "vantage/version.hpp"
+
+namespace vantage {
+
+struct PlyProperty {
+  const char* type;
+  const char* name;
+};
+
+class PlyHeader {
+ public:
+  explicit PlyHeader(std::vector<PlyProperty> properties) : properties_(std::move(properties)) {}
+
+  std::string text(std::uint64_t vertices) const {
+    const std::string count = std::to_string(vertices);
+    // The comment makes up for the digits that the number lacks; leading zeros would be octal to some readers.
+    std::string text = "ply\nformat binary_little_endian 1.0\ncomment vantage " + std::string(version()) + " " +
+                       std::string(20 - count.size(), '.') + "\nelement vertex " + count + "\n";
+    for (const auto& [type, name] : properties_) text.append("property ").append(type).append(" ").append(name).append("\n");
+    return text + "end_header\n";
+  }
+
+ private:
+  std::vector<PlyProperty> properties_;
+};
+
+}  // namespace vantage

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// Numbers as text that reads back to the same bits, whatever the locale.
+#pragma once
+
+#include <charconv>
+#include <concepts>
+#include <string>
+
+namespace vantage {
+
+inline std::string number(double value) {
+  char buffer[32];
+  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr};
+}
+inline std::string number(std::integral auto value) { return std::to_string(value); }
+
+// With so many digits after the point, for people.
+inline std::string fixed(double value, int digits) {
+  char buffer[400];
+  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::fixed, digits).ptr};
+}
+
+}  // namespace vantage
