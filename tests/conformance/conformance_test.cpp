@@ -1,0 +1,623 @@
+// SPDX-License-Identifier: Apache-2.0
+// What every engine must do alike, on every device of this machine.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <numeric>
+#include <ostream>
+#include <random>
+#include <stop_token>
+#include <tuple>
+
+#include "conformance/sites.hpp"
+#include "core/normal_table.hpp"
+#include "core/philox.hpp"
+#include "scan/noise_model.hpp"
+
+namespace vantage {
+
+void PrintTo(const EngineInfo& info, std::ostream* out) { *out << to_string(info.engine) << " on " << info.device; }
+
+namespace test {
+namespace {
+
+constexpr double goal_density = 12.5;
+constexpr std::uint32_t all_outputs = Tracer::range | Tracer::position | Tracer::normal | Tracer::reflectivity |
+                                      Tracer::primitive | Tracer::barycentric | Tracer::voxel;
+
+// Nearer than this to an edge or a voxel face, rounding may decide otherwise; such rays are at most one in 100 000.
+constexpr double undecided_m = 1e-4;
+constexpr double undecided_share = 1e-5;
+
+std::vector<EngineInfo> usable_engines() {
+  std::vector<EngineInfo> usable;
+  for (EngineInfo& info : list_engines()) {
+    if (info.usable) usable.push_back(std::move(info));
+  }
+  return usable;
+}
+
+std::string name_of(const testing::TestParamInfo<EngineInfo>& info) {
+  return to_string(info.param.engine) + "_" + std::to_string(info.param.device_index);
+}
+
+float bits_apart(float a, float b) {
+  return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b) ? 0.0f : 1.0f;
+}
+
+class Conformance : public testing::TestWithParam<EngineInfo> {
+ protected:
+  static std::unique_ptr<Tracer> make(const Site& site, bool noisy, std::uint64_t max_rays = 0) {
+    TraceScene scene = site.trace_scene(noisy);
+    scene.max_rays_per_dispatch = max_rays;
+    auto tracer = make_tracer(GetParam().engine, GetParam().device_index, scene);
+    tracer->set_goal_density(goal_density);
+    return tracer;
+  }
+
+  // Kept from test to test: building an engine costs more than most tests.
+  static Tracer& tracer(const Site& site, bool noisy) {
+    static std::map<std::tuple<Engine, std::uint32_t, std::string, bool>, std::unique_ptr<Tracer>> made;
+    auto& kept = made[{GetParam().engine, GetParam().device_index, site.name, noisy}];
+    if (!kept) kept = make(site, noisy);
+    return *kept;
+  }
+
+  static Tracer::RawChunk scan(const Site& site, bool noisy, std::size_t station, std::uint32_t outputs = all_outputs) {
+    Tracer::RawChunk chunk;
+    tracer(site, noisy).scan(site.stations[station], 0, site.rays(), outputs, chunk);
+    return chunk;
+  }
+
+  static std::uint32_t stations_of(const Site& site) { return static_cast<std::uint32_t>(site.stations.size()); }
+
+  static NetworkCounts count(const Site& site, bool noisy, const Tracer::CountOptions& options) {
+    return tracer(site, noisy).count(site.stations, stations_of(site), options, {});
+  }
+};
+
+// ---- scans
+// -----------------------------------------------------------------------------------------------------------
+
+void compare_with_reference(const Site& site, const std::vector<ReferenceHit>& reference, const Tracer::RawChunk& chunk,
+                            std::size_t& undecided) {
+  const SceneData& scene = *site.scene;
+  for (std::size_t k = 0; k < reference.size(); ++k) {
+    const ReferenceHit& expected = reference[k];
+    const bool hit = chunk.primitive[k] != ReferenceHit::none, wanted = expected.triangle != ReferenceHit::none;
+    const auto mesh = [&](std::uint32_t triangle) {
+      return triangle == ReferenceHit::none ? -1 : static_cast<int>(scene.mesh_of(triangle));
+    };
+    ASSERT_EQ(hit, std::isfinite(chunk.range[k])) << "ray " << k;
+    if (mesh(chunk.primitive[k]) != mesh(expected.triangle) || chunk.voxel[k] != expected.voxel) {
+      ++undecided;
+      EXPECT_LT(std::min(expected.edge_distance, expected.face_distance), undecided_m)
+          << "ray " << k << " at range " << chunk.range[k] << ", " << expected.range;
+      continue;
+    }
+    if (!wanted) continue;
+    if (chunk.primitive[k] != expected.triangle) {
+      EXPECT_LT(std::min(expected.edge_distance, expected.gap), undecided_m) << "ray " << k;
+      continue;
+    }
+    EXPECT_NEAR(chunk.range[k], expected.range, 2e-5) << "ray " << k;
+    EXPECT_NEAR(chunk.position[k].x, expected.point.x, 2e-5) << "ray " << k;
+    EXPECT_NEAR(chunk.position[k].y, expected.point.y, 2e-5) << "ray " << k;
+    EXPECT_NEAR(chunk.position[k].z, expected.point.z, 2e-5) << "ray " << k;
+    EXPECT_NEAR(chunk.normal[k].x, expected.normal.x, 1e-5) << "ray " << k;
+    EXPECT_NEAR(chunk.normal[k].y, expected.normal.y, 1e-5) << "ray " << k;
+    EXPECT_NEAR(chunk.normal[k].z, expected.normal.z, 1e-5) << "ray " << k;
+    EXPECT_NEAR(chunk.reflectivity[k], expected.reflectivity, 1e-5) << "ray " << k;
+    if (testing::Test::HasFailure()) return;
+  }
+}
+
+TEST_P(Conformance, ScansMatchADoublePrecisionReference) {
+  for (const Site& site : sites()) {
+    for (const bool noisy : {false, true}) {
+      std::size_t undecided = 0, rays = 0;
+      for (std::size_t s = 0; s < site.stations.size(); ++s) {
+        SCOPED_TRACE(site.name + ", station " + std::to_string(s) + (noisy ? ", noise" : ""));
+        const std::vector<ReferenceHit>& reference = site.reference(s, noisy);
+        compare_with_reference(site, reference, scan(site, noisy, s), undecided);
+        rays += reference.size();
+        if (HasFailure()) return;
+      }
+      EXPECT_LE(static_cast<double>(undecided), std::ceil(undecided_share * static_cast<double>(rays))) << site.name;
+      RecordProperty(site.name + (noisy ? "_noisy" : ""), static_cast<int>(undecided));
+    }
+  }
+}
+
+TEST_P(Conformance, BarycentricWeightsGiveThePoint) {
+  const Site& site = sites()[2];
+  const Tracer::RawChunk chunk = scan(site, false, 0);
+  std::size_t hits = 0;
+  for (std::size_t k = 0; k < chunk.primitive.size(); ++k) {
+    if (chunk.primitive[k] == ReferenceHit::none) continue;
+    ++hits;
+    const Triangle& t = site.scene->triangles[chunk.primitive[k]];
+    const double u = chunk.barycentric[k].x, v = chunk.barycentric[k].y;
+    const auto mix = [&](auto member) {
+      return (1 - u - v) * site.scene->positions[t[0]].*member + u * site.scene->positions[t[1]].*member +
+             v * site.scene->positions[t[2]].*member;
+    };
+    ASSERT_NEAR(mix(&Float3::x), chunk.position[k].x, 1e-4) << "ray " << k;
+    ASSERT_NEAR(mix(&Float3::y), chunk.position[k].y, 1e-4) << "ray " << k;
+    ASSERT_NEAR(mix(&Float3::z), chunk.position[k].z, 1e-4) << "ray " << k;
+  }
+  EXPECT_GT(hits, 10'000u);
+}
+
+// Points are made of range, origin and direction without contraction: equal bits on every device.
+TEST_P(Conformance, PositionsAreRangeTimesDirectionToTheBit) {
+  const Site& site = sites()[2];
+  const RayPattern& pattern = *site.pattern;
+  for (const bool noisy : {false, true}) {
+    const Tracer::RawChunk chunk = scan(site, noisy, 1);
+    float apart = 0;
+    for (std::size_t k = 0; k < chunk.range.size(); ++k) {
+      if (!std::isfinite(chunk.range[k])) continue;
+      const std::size_t i = k / pattern.columns(), j = k % pattern.columns();
+      const Float3 d{pattern.sin_zenith[i] * pattern.cos_azimuth[j], pattern.sin_zenith[i] * pattern.sin_azimuth[j],
+                     pattern.cos_zenith[i]};
+      const Float3& o = site.stations[1].origin;
+      apart += bits_apart(chunk.position[k].x, o.x + chunk.range[k] * d.x) +
+               bits_apart(chunk.position[k].y, o.y + chunk.range[k] * d.y) +
+               bits_apart(chunk.position[k].z, o.z + chunk.range[k] * d.z);
+      if (chunk.voxel[k] != no_voxel) {
+        ASSERT_EQ(chunk.voxel[k], site.grid->rank_of(chunk.position[k])) << "ray " << k;
+      }
+    }
+    EXPECT_EQ(apart, 0);
+  }
+}
+
+TEST_P(Conformance, NoiseIsKeyedByRayAndPlace) {
+  const Site& site = sites()[2];
+  const Tracer::RawChunk clean = scan(site, false, 0), noisy = scan(site, true, 0);
+  std::size_t moved = 0;
+  for (std::size_t k = 0; k < clean.range.size(); ++k) {
+    ASSERT_EQ(clean.primitive[k], noisy.primitive[k]) << "noise must not change what is hit";
+    if (!std::isfinite(clean.range[k])) continue;
+    const std::uint32_t bits = philox4x32(site.noise->seed, {static_cast<std::uint32_t>(k), 0, 0, noise_stream})[0];
+    const double expected =
+        normal_from_bits(bits, normal_table()) * model_sigma(*site.noise, clean.range[k], clean.reflectivity[k]);
+    ASSERT_NEAR(noisy.range[k] - clean.range[k], expected, 2e-6) << "ray " << k;
+    moved += noisy.range[k] != clean.range[k];
+  }
+  EXPECT_GT(moved, 10'000u);
+
+  TraceStation elsewhere = site.stations[0];
+  elsewhere.place = 5;
+  Tracer::RawChunk other;
+  tracer(site, true).scan(elsewhere, 0, site.rays(), Tracer::range, other);
+  std::size_t differing = 0;
+  for (std::size_t k = 0; k < other.range.size(); ++k) differing += other.range[k] != noisy.range[k];
+  EXPECT_GT(differing, moved / 2);
+}
+
+void expect_same(const Tracer::RawChunk& part, const Tracer::RawChunk& whole, std::size_t first, std::size_t n) {
+  const auto same = [&](const auto& a, const auto& b, const char* what) {
+    ASSERT_EQ(a.size(), n) << what;
+    EXPECT_TRUE(std::equal(a.begin(), a.end(), b.begin() + static_cast<std::ptrdiff_t>(first)))
+        << what << " from ray " << first;
+  };
+  same(part.range, whole.range, "range");
+  same(part.position, whole.position, "position");
+  same(part.normal, whole.normal, "normal");
+  same(part.reflectivity, whole.reflectivity, "reflectivity");
+  same(part.primitive, whole.primitive, "primitive");
+  same(part.barycentric, whole.barycentric, "barycentric");
+  same(part.voxel, whole.voxel, "voxel");
+}
+
+TEST_P(Conformance, ChunksOfAnySizeGiveTheSameScan) {
+  const Site& site = sites()[2];
+  const Tracer::RawChunk whole = scan(site, true, 2);
+  const std::uint64_t columns = site.pattern->columns(), rows = site.pattern->rows();
+  Tracer::RawChunk part;
+  for (const std::uint64_t row : {std::uint64_t{0}, rows / 2 + 3, rows - 1}) {
+    tracer(site, true).scan(site.stations[2], row * columns, columns, all_outputs, part);
+    expect_same(part, whole, row * columns, columns);
+  }
+  for (std::uint64_t row = 0; row < rows; row += 23) {
+    const std::uint64_t n = std::min<std::uint64_t>(23, rows - row);
+    tracer(site, true).scan(site.stations[2], row * columns, n * columns, all_outputs, part);
+    expect_same(part, whole, row * columns, n * columns);
+  }
+  const std::uint64_t preferred = tracer(site, true).preferred_scan_rays();
+  EXPECT_GT(preferred, 0u);
+  EXPECT_EQ(preferred % columns, 0u);
+}
+
+TEST_P(Conformance, OnlyTheOutputsAskedForAreMade) {
+  const Site& site = sites()[2];
+  for (const bool noisy : {false, true}) {
+    const Tracer::RawChunk whole = scan(site, noisy, 0);
+    for (std::uint32_t output = 1; output < all_outputs; output <<= 1) {
+      const Tracer::RawChunk one = scan(site, noisy, 0, output);
+      const auto check = [&](std::uint32_t bit, const auto& got, const auto& expected) {
+        if (output == bit) {
+          EXPECT_EQ(got, expected) << "output " << output;
+        } else {
+          EXPECT_TRUE(got.empty()) << "output " << bit << " was made for " << output;
+        }
+      };
+      check(Tracer::range, one.range, whole.range);
+      check(Tracer::position, one.position, whole.position);
+      check(Tracer::normal, one.normal, whole.normal);
+      check(Tracer::reflectivity, one.reflectivity, whole.reflectivity);
+      check(Tracer::primitive, one.primitive, whole.primitive);
+      check(Tracer::barycentric, one.barycentric, whole.barycentric);
+      check(Tracer::voxel, one.voxel, whole.voxel);
+    }
+  }
+}
+
+// ---- exact counts
+// ----------------------------------------------------------------------------------------------------
+
+// Counts and pairs by the book, from a voxel field.
+NetworkCounts counted_slowly(const VoxelField& field, std::uint32_t stations, bool masks) {
+  NetworkCounts counts;
+  counts.voxels = field.count.size();
+  counts.stations = stations;
+  for (const std::uint32_t n : field.count) {
+    if (n >= goal_density) {
+      ++counts.saturated;
+    } else {
+      counts.partial_points += n;
+    }
+  }
+  if (!masks) return counts;
+  counts.seen.resize(stations);
+  for (const std::uint64_t mask : field.stations) {
+    for (std::uint32_t i = 0; i < stations; ++i) counts.seen[i] += mask >> i & 1;
+  }
+  for (std::uint32_t i = 0; i < stations; ++i) {
+    for (std::uint32_t j = i + 1; j < stations; ++j) {
+      std::uint64_t both = 0;
+      for (const std::uint64_t mask : field.stations) both += (mask >> i & 1) & (mask >> j & 1);
+      counts.shared.push_back(both);
+    }
+  }
+  return counts;
+}
+
+void expect_equal_counts(const NetworkCounts& got, const NetworkCounts& expected) {
+  EXPECT_EQ(got.voxels, expected.voxels);
+  EXPECT_EQ(got.stations, expected.stations);
+  EXPECT_EQ(got.saturated, expected.saturated);
+  EXPECT_EQ(got.partial_points, expected.partial_points);
+  EXPECT_EQ(got.seen, expected.seen);
+  EXPECT_EQ(got.shared, expected.shared);
+}
+
+TEST_P(Conformance, CountsAreThePointsOfTheScans) {
+  for (const Site& site : sites()) {
+    for (const bool noisy : {false, true}) {
+      SCOPED_TRACE(site.name + (noisy ? ", noise" : ""));
+      VoxelField expected;
+      expected.count.resize(site.grid->size());
+      expected.stations.resize(site.grid->size());
+      std::vector<std::uint64_t> points, on_surveyed;
+      for (std::size_t s = 0; s < site.stations.size(); ++s) {
+        const Tracer::RawChunk chunk = scan(site, noisy, s, Tracer::voxel | Tracer::primitive);
+        points.push_back(static_cast<std::uint64_t>(std::count_if(
+            chunk.primitive.begin(), chunk.primitive.end(), [](std::uint32_t p) { return p != ReferenceHit::none; })));
+        on_surveyed.push_back(0);
+        for (const std::uint32_t voxel : chunk.voxel) {
+          if (voxel == no_voxel) continue;
+          ++expected.count[voxel];
+          expected.stations[voxel] |= std::uint64_t{1} << s;
+          ++on_surveyed.back();
+        }
+      }
+      for (const bool masks : {true, false}) {
+        VoxelField field;
+        const NetworkCounts counts = count(site, noisy, {masks, false, &field});
+        EXPECT_EQ(field.count, expected.count);
+        EXPECT_EQ(field.stations, masks ? expected.stations : std::vector<std::uint64_t>{});
+        EXPECT_EQ(counts.points, points);
+        EXPECT_EQ(counts.points_on_surveyed, on_surveyed);
+        EXPECT_EQ(counts.rays, site.rays() * site.stations.size());
+        EXPECT_FALSE(counts.cancelled);
+        expect_equal_counts(counts, counted_slowly(expected, stations_of(site), masks));
+      }
+    }
+  }
+}
+
+TEST_P(Conformance, TotalsMatchTheReference) {
+  for (const Site& site : sites()) {
+    SCOPED_TRACE(site.name);
+    VoxelField expected;
+    expected.count.resize(site.grid->size());
+    expected.stations.resize(site.grid->size());
+    double points = 0, on_surveyed = 0;
+    for (std::size_t s = 0; s < site.stations.size(); ++s) {
+      for (const ReferenceHit& hit : site.reference(s, true)) {
+        points += hit.triangle != ReferenceHit::none;
+        on_surveyed += hit.voxel != no_voxel;
+        if (hit.voxel != no_voxel) ++expected.count[hit.voxel];
+      }
+    }
+    const NetworkCounts counts = count(site, true, {false, false, nullptr});
+    const auto total = [](const std::vector<std::uint64_t>& v) {
+      return static_cast<double>(std::accumulate(v.begin(), v.end(), std::uint64_t{0}));
+    };
+    EXPECT_NEAR(total(counts.points), points, 1e-4 * points);
+    EXPECT_NEAR(total(counts.points_on_surveyed), on_surveyed, 1e-4 * on_surveyed);
+    const double reached = coverage(counted_slowly(expected, stations_of(site), false), goal_density);
+    EXPECT_NEAR(coverage(counts, goal_density), reached, 1e-4 * reached);
+  }
+}
+
+TEST_P(Conformance, StationsKeepTheirPlaceInTheNetwork) {
+  const Site& site = sites()[1];
+  std::vector<TraceStation> stations{site.stations[0], site.stations[1]};
+  stations[0].place = 63;
+  stations[1].place = 2;
+  VoxelField field;
+  const NetworkCounts counts = tracer(site, false).count(stations, 64, {true, false, &field}, {});
+  ASSERT_EQ(counts.points.size(), 64u);
+  ASSERT_EQ(counts.seen.size(), 64u);
+  ASSERT_EQ(counts.shared.size(), 64u * 63 / 2);
+  for (std::uint32_t i = 0; i < 64; ++i) {
+    EXPECT_EQ(counts.points[i] > 0, i == 63 || i == 2);
+    EXPECT_EQ(counts.seen[i] > 0, i == 63 || i == 2);
+  }
+  expect_equal_counts(counts, counted_slowly(field, 64, true));
+  const NetworkCounts none = tracer(site, false).count({}, 3, {true, true, nullptr}, {});
+  EXPECT_EQ(none.seen, (std::vector<std::uint64_t>{0, 0, 0}));
+  EXPECT_EQ(none.saturated + none.partial_points, 0u);
+  EXPECT_EQ(none.voxels, site.grid->size());
+}
+
+TEST_P(Conformance, DispatchesOfAnySizeGiveTheSameCounts) {
+  const Site& site = sites()[2];
+  VoxelField whole, part;
+  const NetworkCounts expected = count(site, true, {true, false, &whole});
+  for (const std::uint64_t max_rays : {std::uint64_t{1}, std::uint64_t{7777}, site.rays() * 2}) {
+    const auto small = make(site, true, max_rays);
+    const NetworkCounts counts = small->count(site.stations, stations_of(site), {true, false, &part}, {});
+    EXPECT_EQ(part.count, whole.count) << max_rays;
+    EXPECT_EQ(part.stations, whole.stations) << max_rays;
+    EXPECT_EQ(counts.points, expected.points);
+    expect_equal_counts(counts, expected);
+  }
+}
+
+TEST_P(Conformance, ACancelledCountSaysSoAndLeavesTheEngineWell) {
+  const Site& site = sites()[2];
+  const auto small = make(site, false, 20'000);
+  std::vector<TraceStation> many;
+  for (std::uint32_t i = 0; i < 40; ++i) many.push_back({site.stations[i % 3].origin, i});
+  std::stop_source stop;
+  double last = 0;
+  bool ascending = true;
+  const Progress progress{[&](double done) {
+                            ascending &= done >= last;
+                            last = done;
+                            if (done > 0.4) stop.request_stop();
+                          },
+                          stop.get_token()};
+  const NetworkCounts cut = small->count(many, 40, {true, true, nullptr}, progress);
+  EXPECT_TRUE(cut.cancelled);
+  EXPECT_TRUE(ascending);
+  EXPECT_GT(last, 0.4);
+  EXPECT_LT(last, 0.9);
+  VoxelField again, expected;
+  const NetworkCounts after = small->count(site.stations, stations_of(site), {true, false, &again}, {});
+  EXPECT_FALSE(after.cancelled);
+  count(site, false, {true, false, &expected});
+  EXPECT_EQ(again.count, expected.count);
+  EXPECT_EQ(again.stations, expected.stations);
+}
+
+// ---- skipping
+// --------------------------------------------------------------------------------------------------------
+
+// Random heads inside and outside the site, some of them within a surveyed brick.
+std::vector<TraceStation> random_stations(const Site& site, std::uint32_t n, std::uint64_t seed) {
+  RandomStream random(seed);
+  const Box& box = site.scene->local_bounds;
+  const Vec3 size = box.size();
+  std::vector<TraceStation> stations;
+  for (std::uint32_t i = 0; i < n; ++i) {
+    Vec3 p{box.min.x + size.x * (1.4 * random.uniform() - 0.2), box.min.y + size.y * (1.4 * random.uniform() - 0.2),
+           box.min.z + size.z * (1.4 * random.uniform() - 0.2)};
+    if (i % 4 == 3) {  // a few voxels off a surveyed surface
+      const auto cell = morton_decode(
+          site.grid->key(static_cast<std::uint64_t>(random.uniform() * static_cast<double>(site.grid->size()))));
+      const auto at = [&](int axis) {
+        return site.grid->min()[axis] + (cell[axis] + 0.5 + 3 * random.uniform()) * site.grid->voxel_size();
+      };
+      p = {at(0), at(1), at(2)};
+    }
+    stations.push_back({{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)}, i});
+  }
+  return stations;
+}
+
+TEST_P(Conformance, SkippingChangesNoVoxel) {
+  for (const Site& site : sites()) {
+    std::vector<TraceStation> stations = random_stations(site, 12, 99);
+    for (const TraceStation& station : site.stations)
+      stations.push_back({station.origin, static_cast<std::uint32_t>(stations.size())});
+    const auto n = static_cast<std::uint32_t>(stations.size());
+    for (const bool noisy : {false, true}) {
+      SCOPED_TRACE(site.name + (noisy ? ", noise" : ""));
+      VoxelField all, skipped;
+      const NetworkCounts expected = tracer(site, noisy).count(stations, n, {true, false, &all}, {});
+      const NetworkCounts counts = tracer(site, noisy).count(stations, n, {true, true, &skipped}, {});
+      EXPECT_EQ(skipped.count, all.count);
+      EXPECT_EQ(skipped.stations, all.stations);
+      EXPECT_EQ(counts.points_on_surveyed, expected.points_on_surveyed);
+      EXPECT_TRUE(counts.points.empty());
+      EXPECT_LT(counts.rays, expected.rays);
+      expect_equal_counts(counts, expected);
+    }
+  }
+}
+
+// ---- samples
+// ---------------------------------------------------------------------------------------------------------
+
+// The counts of a sample by the book, from the voxel field of the exact evaluation.
+NetworkCounts sampled_slowly(const VoxelField& field, const Tracer::SampleJob& job, std::uint32_t stations) {
+  const auto pick = [&](std::size_t first, std::size_t step) {
+    VoxelField part;
+    for (std::size_t i = first; i < job.sample.size(); i += step) {
+      part.count.push_back(field.count[job.sample[i]]);
+      part.stations.push_back(field.stations[job.sample[i]]);
+    }
+    return part;
+  };
+  const VoxelField sample = pick(0, 1);
+  NetworkCounts counts = counted_slowly(sample, stations, job.masks);
+  for (std::uint32_t g = 0; g < job.groups; ++g)
+    counts.groups.push_back(counted_slowly(pick(g, job.groups), stations, job.masks));
+  for (std::size_t i = 1; i < sample.count.size(); ++i) {
+    const double step =
+        std::min(sample.count[i] / goal_density, 1.0) - std::min(sample.count[i - 1] / goal_density, 1.0);
+    counts.successive_difference_sum += step * step;
+  }
+  return counts;
+}
+
+void expect_equal_samples(const NetworkCounts& got, const NetworkCounts& expected) {
+  expect_equal_counts(got, expected);
+  EXPECT_NEAR(got.successive_difference_sum, expected.successive_difference_sum,
+              1e-9 * (1 + expected.successive_difference_sum));
+  ASSERT_EQ(got.groups.size(), expected.groups.size());
+  for (std::size_t g = 0; g < got.groups.size(); ++g) {
+    SCOPED_TRACE("group " + std::to_string(g));
+    expect_equal_counts(got.groups[g], expected.groups[g]);
+  }
+}
+
+// Each voxel its own group: then the groups are the voxels.
+Tracer::SampleJob voxel_by_voxel(std::span<const std::uint32_t> sample, bool masks) {
+  return {sample, static_cast<std::uint32_t>(sample.size()), masks, 0};
+}
+
+TEST_P(Conformance, ASampleOfAllVoxelsIsTheExactEvaluation) {
+  for (const Site& site : sites()) {
+    std::vector<std::uint32_t> everything(site.grid->size());
+    std::iota(everything.begin(), everything.end(), 0u);
+    std::vector<std::vector<TraceStation>> networks{site.stations, random_stations(site, 8, 7)};
+    const std::vector<std::uint32_t> sizes{4, 8};
+    for (const bool noisy : {false, true}) {
+      SCOPED_TRACE(site.name + (noisy ? ", noise" : ""));
+      const Tracer::SampleJob job{everything, 20, true, 0};
+      const std::vector<NetworkCounts> sampled = tracer(site, noisy).count_sampled(networks, sizes, job, {});
+      ASSERT_EQ(sampled.size(), networks.size());
+      for (std::size_t n = 0; n < networks.size(); ++n) {
+        VoxelField field;
+        const NetworkCounts exact = tracer(site, noisy).count(networks[n], sizes[n], {true, false, &field}, {});
+        expect_equal_counts(sampled[n], exact);
+        expect_equal_samples(sampled[n], sampled_slowly(field, job, sizes[n]));
+      }
+    }
+  }
+}
+
+TEST_P(Conformance, EverySampledVoxelIsCountedAsTheExactEvaluationDoes) {
+  for (const Site& site : sites()) {
+    std::vector<std::uint32_t> sample;
+    for (std::uint32_t rank = 5; rank < site.grid->size(); rank += 29) sample.push_back(rank);
+    const std::vector<std::vector<TraceStation>> networks{site.stations, random_stations(site, 6, 12)};
+    const std::vector<std::uint32_t> sizes{4, 6};
+    for (const bool noisy : {false, true}) {
+      SCOPED_TRACE(site.name + (noisy ? ", noise" : ""));
+      const Tracer::SampleJob job = voxel_by_voxel(sample, true);
+      const auto sampled = tracer(site, noisy).count_sampled(networks, sizes, job, {});
+      for (std::size_t n = 0; n < networks.size(); ++n) {
+        VoxelField field;
+        tracer(site, noisy).count(networks[n], sizes[n], {true, true, &field}, {});
+        expect_equal_samples(sampled[n], sampled_slowly(field, job, sizes[n]));
+      }
+    }
+  }
+}
+
+TEST_P(Conformance, SamplesStopAtTheGoalOnlyWhereAsked) {
+  const Site& site = sites()[2];
+  std::vector<std::uint32_t> sample;
+  for (std::uint32_t rank = 0; rank < site.grid->size(); rank += 7) sample.push_back(rank);
+  const std::vector<std::vector<TraceStation>> networks{site.stations};
+  const std::vector<std::uint32_t> sizes{4};
+  const Tracer::SampleJob whole{sample, 20, false, 0}, stopping{sample, 20, false, 13};
+  const NetworkCounts a = tracer(site, true).count_sampled(networks, sizes, whole, {})[0];
+  const NetworkCounts b = tracer(site, true).count_sampled(networks, sizes, stopping, {})[0];
+  expect_equal_samples(b, a);
+  EXPECT_TRUE(a.seen.empty());
+  EXPECT_GT(a.saturated, 0u);
+}
+
+TEST_P(Conformance, SamplesDoNotDependOnOrderOrDispatches) {
+  const Site& site = sites()[2];
+  std::vector<std::uint32_t> sample;
+  for (std::uint32_t rank = 3; rank < site.grid->size(); rank += 31) sample.push_back(rank);
+  std::vector<std::vector<TraceStation>> networks;
+  std::vector<std::uint32_t> sizes;
+  for (std::uint32_t n = 0; n < 6; ++n) {
+    networks.push_back(random_stations(site, 2 + n, 1000 + n));
+    sizes.push_back(2 + n + n % 2);  // one more than is active
+  }
+  networks.emplace_back();  // all in holes
+  sizes.push_back(5);
+  const Tracer::SampleJob job{sample, 20, true, 0};
+  const auto all = tracer(site, true).count_sampled(networks, sizes, job, {});
+  ASSERT_EQ(all.size(), networks.size());
+  EXPECT_EQ(all.back().saturated + all.back().partial_points, 0u);
+
+  std::vector<std::vector<TraceStation>> reversed(networks.rbegin(), networks.rend());
+  std::vector<std::uint32_t> reversed_sizes(sizes.rbegin(), sizes.rend());
+  const auto small = make(site, true, 5000);
+  const auto backwards = small->count_sampled(reversed, reversed_sizes, job, {});
+  for (std::size_t n = 0; n < networks.size(); ++n) {
+    SCOPED_TRACE("network " + std::to_string(n));
+    expect_equal_samples(backwards[networks.size() - 1 - n], all[n]);
+    const auto alone = tracer(site, true).count_sampled({&networks[n], 1}, {&sizes[n], 1}, job, {});
+    expect_equal_samples(alone[0], all[n]);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Engines, Conformance, testing::ValuesIn(usable_engines()), name_of);
+
+// ---- the machine
+// -----------------------------------------------------------------------------------------------------
+
+TEST(Engines, ThisMachineHasThemAll) {
+  for (const Engine engine : {Engine::embree, Engine::ray_query, Engine::compute_bvh}) {
+    std::string refusals;
+    bool usable = false;
+    for (const EngineInfo& info : list_engines()) {
+      if (info.engine != engine) continue;
+      usable |= info.usable;
+      refusals += "\n  " + (info.device.empty() ? "no device" : info.device) + ": " + info.reason;
+    }
+    EXPECT_TRUE(usable) << "no device runs " << to_string(engine)
+                        << "; these tests need Vulkan with ray queries: install mesa-vulkan-drivers >= 24.1 (on Debian "
+                           "12 from bookworm-backports)"
+                        << refusals;
+  }
+}
+
+TEST(Engines, OneIsTheDefault) {
+  const std::vector<EngineInfo> engines = list_engines();
+  EXPECT_EQ(std::count_if(engines.begin(), engines.end(),
+                          [](const EngineInfo& info) { return info.chosen_by_default && info.usable; }),
+            1);
+}
+
+}  // namespace
+}  // namespace test
+}  // namespace vantage

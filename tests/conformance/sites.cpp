@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "conformance/sites.hpp"
+
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <tuple>
+
+#include "scan/noise_model.hpp"
+#include "scan/pattern.hpp"
+#include "scene/raw_scene.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace vantage::test {
+namespace {
+
+using std::numbers::pi;
+
+// Adds meshes to a scene in the survey frame. Only curved parts bring normals.
+class Builder {
+ public:
+  using Normals = std::vector<Float3>;
+
+  void add(const std::string& name, Role role, double diffuse, const std::vector<Vec3>& positions,
+           const std::vector<Triangle>& triangles, Normals normals = {}) {
+    normals.resize(positions.size());
+    const auto base = static_cast<std::uint32_t>(raw_.positions.size());
+    raw_.ranges.push_back(
+        {static_cast<std::uint32_t>(raw_.triangles.size()), static_cast<std::uint32_t>(triangles.size()), 0});
+    raw_.meshes.push_back({name, role, diffuse, static_cast<std::uint32_t>(triangles.size())});
+    raw_.positions.insert(raw_.positions.end(), positions.begin(), positions.end());
+    raw_.normals.insert(raw_.normals.end(), normals.begin(), normals.end());
+    for (const Triangle& t : triangles) raw_.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
+  }
+
+  void box(const std::string& name, Role role, const Vec3& low, const Vec3& high) {
+    std::vector<Vec3> p;
+    for (int i = 0; i < 8; ++i) p.push_back({i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z});
+    add(name, role, 0.6, p,
+        {{0, 2, 1},
+         {1, 2, 3},
+         {4, 5, 6},
+         {5, 7, 6},
+         {0, 1, 4},
+         {1, 5, 4},
+         {2, 6, 3},
+         {3, 6, 7},
+         {0, 4, 2},
+         {2, 4, 6},
+         {1, 3, 5},
+         {3, 7, 5}});
+  }
+
+  // A grid of columns × rows quads over at(u, v), u and v in [0, 1].
+  template <class At>
+  void sheet(const std::string& name, Role role, double diffuse, int columns, int rows, const At& at) {
+    std::vector<Vec3> p;
+    Normals n;
+    for (int j = 0; j <= rows; ++j) {
+      for (int i = 0; i <= columns; ++i) {
+        const auto [position, normal] = at(static_cast<double>(i) / columns, static_cast<double>(j) / rows);
+        p.push_back(position);
+        n.push_back({static_cast<float>(normal.x), static_cast<float>(normal.y), static_cast<float>(normal.z)});
+      }
+    }
+    std::vector<Triangle> t;
+    const auto index = [&](int i, int j) { return static_cast<std::uint32_t>(j * (columns + 1) + i); };
+    for (int j = 0; j < rows; ++j) {
+      for (int i = 0; i < columns; ++i) {
+        t.push_back({index(i, j), index(i + 1, j), index(i + 1, j + 1)});
+        t.push_back({index(i, j), index(i + 1, j + 1), index(i, j + 1)});
+      }
+    }
+    add(name, role, diffuse, p, t, n);
+  }
+
+  std::shared_ptr<const SceneData> finish() { return finish_scene(std::move(raw_), "the boiler house"); }
+
+ private:
+  RawScene raw_;
+};
+
+// A tank, a boiler, a tilted pipe and a cabinet on uneven ground, behind a blocking fence.
+std::shared_ptr<const SceneData> boiler_house() {
+  Builder b;
+  b.sheet("ground", Role::blocking, 0.3, 24, 24, [](double u, double v) {
+    const double x = 16 * u - 8, y = 16 * v - 8;
+    return std::pair(Vec3{x, y, 0.13 * std::sin(0.7 * x) * std::cos(0.9 * y) - 0.2}, Vec3{});
+  });
+  b.sheet("boiler", Role::surveyed, 0.8, 28, 14, [](double u, double v) {
+    const Vec3 n{std::sin(pi * v) * std::cos(2 * pi * u), std::sin(pi * v) * std::sin(2 * pi * u), std::cos(pi * v)};
+    return std::pair(Vec3{1.7, 0.4, 1.31} + n * 1.1, n);
+  });
+  b.sheet("tank", Role::surveyed, 0.24, 20, 3, [](double u, double v) {
+    const Vec3 n{std::cos(2 * pi * u), std::sin(2 * pi * u), 0};
+    return std::pair(Vec3{-2.1, 1.2, 0.1 + 2.3 * v} + n * 0.83, n);
+  });
+  b.sheet("pipe", Role::surveyed, 0.5, 10, 6, [](double u, double v) {
+    const Vec3 n{0, std::cos(2 * pi * u), std::sin(2 * pi * u)};
+    return std::pair(Vec3{-3 + 6.1 * v, -1.4 + 0.7 * v, 2.07 + 0.31 * v} + n * 0.11, n);
+  });
+  b.box("cabinet", Role::surveyed, {-0.63, -2.71, 0.02}, {0.42, -2.04, 1.57});
+  b.box("fence", Role::blocking, {3.2, -3.1, 0}, {3.25, 3.3, 1.1});
+  return b.finish();
+}
+
+std::shared_ptr<const SceneData> built_in(const std::string& name) {
+  const TemporaryFolder folder;
+  const auto file = folder / "scene.glb";
+  write_built_in_scene(name, 0, file);
+  return std::make_shared<const SceneData>(Scene::load(file).data());
+}
+
+Site make_site(const std::string& name, std::shared_ptr<const SceneData> scene, double user_size_m, double step_degrees,
+               const std::vector<Vec3>& heads) {
+  Site site;
+  site.name = name;
+  site.scene = std::move(scene);
+  site.grid = std::make_shared<const VoxelGrid>(VoxelGrid::build(*site.scene, user_size_m));
+  Scanner scanner;
+  scanner.azimuth_step = scanner.zenith_step = Angle::degrees(step_degrees);
+  scanner.heading = Angle::degrees(17);
+  scanner.min_range_m = 0.4;
+  scanner.max_range_m = 60;
+  scanner.noise = rtc360_noise();
+  site.pattern = std::make_shared<const RayPattern>(make_pattern(scanner));
+  site.noise = std::make_shared<const NoiseModel>(make_noise_model(scanner, 4711));
+  scanner.noise = {};
+  site.no_noise = std::make_shared<const NoiseModel>(make_noise_model(scanner, 4711));
+  for (const Vec3& head : heads) {
+    const Vec3 local = head - site.scene->origin;
+    site.stations.push_back({{static_cast<float>(local.x), static_cast<float>(local.y), static_cast<float>(local.z)},
+                             static_cast<std::uint32_t>(site.stations.size())});
+  }
+  return site;
+}
+
+}  // namespace
+
+const std::vector<ReferenceHit>& Site::reference(std::size_t station, bool noisy) const {
+  static std::map<std::tuple<std::string, std::size_t, bool>, std::vector<ReferenceHit>> made;
+  std::vector<ReferenceHit>& hits = made[{name, station, noisy}];
+  if (hits.empty()) hits = ReferenceTracer(trace_scene(noisy)).scan(stations[station]);
+  return hits;
+}
+
+const std::vector<Site>& sites() {
+  static const std::vector<Site> made = [] {
+    std::vector<Site> all;
+    all.push_back(make_site("three-walls", built_in("three-walls"), 0.1, 0.5,
+                            {{0, 0, 1.5}, {1.3, -2.1, 1.7}, {4.1, 12.3, 2.2}, {-3.7, 6.2, 0.9}}));
+    all.push_back(make_site("four-walls", built_in("four-walls"), 0.1, 0.5,
+                            {{0.21, -8.07, 1.5}, {8.11, 0.4, 1.5}, {1.1, 0.7, 1.5}, {-8.3, -8.2, 1.5}}));
+    all.push_back(make_site("boiler-house", boiler_house(), 0.06, 0.6,
+                            {{0.11, -0.52, 1.61}, {4.92, 0.31, 1.83}, {-4.3, -3.2, 1.4}, {1.7, 0.4, 1.31}}));
+    return all;
+  }();
+  return made;
+}
+
+}  // namespace vantage::test

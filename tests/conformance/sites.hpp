@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// The sites on which every engine must give the same answers.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "support/reference_tracer.hpp"
+#include "trace/tracer.hpp"
+
+namespace vantage::test {
+
+struct Site {
+  std::string name;
+  std::shared_ptr<const SceneData> scene;
+  std::shared_ptr<const VoxelGrid> grid;
+  std::shared_ptr<const RayPattern> pattern;
+  std::shared_ptr<const NoiseModel> noise, no_noise;
+  std::vector<TraceStation> stations;  // at least four, places 0, 1, …; inside and outside
+
+  TraceScene trace_scene(bool noisy) const { return {scene, grid, pattern, noisy ? noise : no_noise, 0, false}; }
+  std::uint64_t rays() const { return std::uint64_t{pattern->rows()} * pattern->columns(); }
+  // Made once for each station and kind.
+  const std::vector<ReferenceHit>& reference(std::size_t station, bool noisy) const;
+};
+
+// three-walls, four-walls, boiler-house. Made once.
+const std::vector<Site>& sites();
+
+}  // namespace vantage::test

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "support/reference_tracer.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/normal_table.hpp"
+#include "core/philox.hpp"
+#include "scan/noise_model.hpp"
+
+namespace vantage::test {
+namespace {
+
+constexpr std::uint32_t block_side = 8;
+
+Vec3 widen(const Float3& p) { return {p.x, p.y, p.z}; }
+double length(const Vec3& v) { return std::sqrt(dot(v, v)); }
+Vec3 unit(const Vec3& v) { return v * (1 / length(v)); }
+
+double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const Vec3 ab = b - a;
+  const double along = std::clamp(dot(p - a, ab) / std::max(dot(ab, ab), 1e-300), 0.0, 1.0);
+  return length(p - (a + ab * along));
+}
+
+struct Crossing {
+  bool inside = false;
+  double t = 0, u = 0, v = 0;  // weights of the second and third vertex
+  double boundary = 1e300;     // from the plane's point to the triangle's boundary
+};
+
+Crossing cross_plane(const std::array<Vec3, 3>& corner, const Vec3& o, const Vec3& d) {
+  Crossing c;
+  const Vec3 e1 = corner[1] - corner[0], e2 = corner[2] - corner[0];
+  const Vec3 n = cross(e1, e2);
+  const double slope = dot(n, d);
+  if (slope == 0) return c;
+  c.t = dot(n, corner[0] - o) / slope;
+  const Vec3 p = o + d * c.t, q = p - corner[0];
+  const double area = dot(n, n);
+  c.u = dot(cross(q, e2), n) / area;
+  c.v = dot(cross(e1, q), n) / area;
+  c.inside = c.u >= 0 && c.v >= 0 && c.u + c.v <= 1;
+  for (int k = 0; k < 3; ++k) c.boundary = std::min(c.boundary, distance_to_segment(p, corner[k], corner[(k + 1) % 3]));
+  return c;
+}
+
+class RayTest {
+ public:
+  RayTest(const TraceScene& scene, const TraceStation& station)
+      : s_(scene), station_(station), origin_(widen(station.origin)) {}
+
+  ReferenceHit trace(std::uint64_t ray, const Vec3& d, const std::vector<std::uint32_t>& candidates) const {
+    ReferenceHit hit;
+    const double start = s_.pattern->min_range, end = s_.pattern->max_range;
+    Crossing best;
+    std::vector<std::pair<double, double>> near;  // distance along the ray, boundary distance
+    std::vector<double> inside;
+    for (const std::uint32_t triangle : candidates) {
+      const Crossing c = cross_plane(corners(triangle), origin_, d);
+      if (c.boundary < 1e-2) near.emplace_back(c.t, c.boundary);
+      if (!c.inside) continue;
+      near.emplace_back(c.t, std::min(std::abs(c.t - start), std::abs(c.t - end)));
+      if (c.t < start || c.t > end) continue;
+      inside.push_back(c.t);
+      if (hit.triangle != ReferenceHit::none && c.t >= best.t) continue;
+      best = c;
+      hit.triangle = triangle;
+    }
+    const bool found = hit.triangle != ReferenceHit::none;
+    for (const auto& [t, boundary] : near) {
+      if (!found || t <= best.t + 1e-3) hit.edge_distance = std::min(hit.edge_distance, boundary);
+    }
+    if (!found) return hit;
+    for (const double t : inside) {
+      if (t > best.t) hit.gap = std::min(hit.gap, t - best.t);
+    }
+    hit.t = hit.range = best.t;
+    shade(best, d, hit);
+    if (s_.noise && s_.noise->enabled()) {
+      const std::uint32_t bits = philox4x32(
+          s_.noise->seed,
+          {static_cast<std::uint32_t>(ray), static_cast<std::uint32_t>(ray >> 32), station_.place, noise_stream})[0];
+      hit.range += normal_from_bits(bits, normal_table()) * model_sigma(*s_.noise, hit.t, hit.reflectivity);
+    }
+    hit.point = origin_ + d * hit.range;
+    place(hit);
+    return hit;
+  }
+
+ private:
+  std::array<Vec3, 3> corners(std::uint32_t triangle) const {
+    const Triangle& t = s_.scene->triangles[triangle];
+    return {widen(s_.scene->positions[t[0]]), widen(s_.scene->positions[t[1]]), widen(s_.scene->positions[t[2]])};
+  }
+
+  void shade(const Crossing& c, const Vec3& d, ReferenceHit& hit) const {
+    const std::array<Vec3, 3> corner = corners(hit.triangle);
+    Vec3 n;
+    if (!s_.scene->normals.empty()) {
+      const Triangle& t = s_.scene->triangles[hit.triangle];
+      n = widen(s_.scene->normals[t[0]]) * (1 - c.u - c.v) + widen(s_.scene->normals[t[1]]) * c.u +
+          widen(s_.scene->normals[t[2]]) * c.v;
+    }
+    if (length(n) == 0) n = cross(corner[1] - corner[0], corner[2] - corner[0]);
+    n = unit(n);
+    if (dot(n, d) > 0) n = n * -1;
+    hit.normal = n;
+    hit.reflectivity = std::clamp(-dot(n, d) * s_.scene->meshes[s_.scene->mesh_of(hit.triangle)].diffuse, 0.0, 1.0);
+  }
+
+  void place(ReferenceHit& hit) const {
+    if (s_.scene->meshes[s_.scene->mesh_of(hit.triangle)].role != Role::surveyed) return;
+    const VoxelGrid& grid = *s_.grid;
+    const std::array<double, 3> p{hit.point.x, hit.point.y, hit.point.z};
+    std::array<std::uint32_t, 3> cell;
+    bool inside = true;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double scaled = (p[axis] - grid.min()[axis]) / grid.voxel_size();
+      hit.face_distance = std::min(hit.face_distance, std::abs(scaled - std::round(scaled)) * grid.voxel_size());
+      inside &= scaled >= 0 && scaled < static_cast<double>(1u << grid.depth());
+      cell[axis] = inside ? static_cast<std::uint32_t>(scaled) : 0;
+    }
+    if (inside) hit.voxel = grid.find(morton_encode(cell[0], cell[1], cell[2]));
+  }
+
+  const TraceScene& s_;
+  const TraceStation& station_;
+  Vec3 origin_;
+};
+
+}  // namespace
+
+std::vector<ReferenceHit> ReferenceTracer::scan(const TraceStation& station) const {
+  const RayPattern& pattern = *scene_.pattern;
+  const SceneData& scene = *scene_.scene;
+  const Vec3 origin = widen(station.origin);
+  struct Sphere {
+    Vec3 centre;
+    double radius;
+  };
+  std::vector<Sphere> spheres;
+  for (const Triangle& t : scene.triangles) {
+    const Vec3 a = widen(scene.positions[t[0]]), b = widen(scene.positions[t[1]]), c = widen(scene.positions[t[2]]);
+    const Vec3 centre = (a + b + c) * (1.0 / 3) - origin;
+    spheres.push_back(
+        {centre, std::max({length(a - origin - centre), length(b - origin - centre), length(c - origin - centre)})});
+  }
+
+  const std::uint32_t rows = pattern.rows(), columns = pattern.columns();
+  std::vector<ReferenceHit> hits(std::size_t{rows} * columns);
+  const std::uint32_t wide = (columns + block_side - 1) / block_side, tall = (rows + block_side - 1) / block_side;
+  const RayTest test(scene_, station);
+  tbb::parallel_for(std::uint32_t{0}, wide * tall, [&](std::uint32_t block) {
+    std::vector<std::pair<std::uint64_t, Vec3>> rays;
+    Vec3 axis;
+    for (std::uint32_t i = block / wide * block_side; i < std::min(rows, (block / wide + 1) * block_side); ++i) {
+      for (std::uint32_t j = block % wide * block_side; j < std::min(columns, (block % wide + 1) * block_side); ++j) {
+        // The float products are the definition of a direction.
+        const Float3 d{pattern.sin_zenith[i] * pattern.cos_azimuth[j], pattern.sin_zenith[i] * pattern.sin_azimuth[j],
+                       pattern.cos_zenith[i]};
+        rays.emplace_back(std::uint64_t{i} * columns + j, widen(d));
+        axis = axis + widen(d);
+      }
+    }
+    axis = unit(axis);
+    double half = 0;
+    for (const auto& [ray, d] : rays) half = std::max(half, std::acos(std::clamp(dot(axis, unit(d)), -1.0, 1.0)));
+    std::vector<std::uint32_t> candidates;
+    for (std::size_t t = 0; t < spheres.size(); ++t) {
+      const double away = length(spheres[t].centre), radius = spheres[t].radius + 1e-2;
+      const bool meets = away <= radius || std::acos(std::clamp(dot(axis, spheres[t].centre) / away, -1.0, 1.0)) <=
+                                               half + std::asin(radius / away) + 1e-6;
+      if (meets) candidates.push_back(static_cast<std::uint32_t>(t));
+    }
+    for (const auto& [ray, d] : rays) hits[ray] = test.trace(ray, d, candidates);
+  });
+  return hits;
+}
+
+}  // namespace vantage::test
