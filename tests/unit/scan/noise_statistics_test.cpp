@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <vector>
 
 #include "core/normal_table.hpp"
 #include "core/philox.hpp"
 #include "scan/noise_model.hpp"
 #include "shared/noise_types.h"
+#include "trace/embree/range_noise.hpp"
 
 namespace vantage {
 namespace {
@@ -44,19 +46,27 @@ TEST(NoiseStatistics, TwelvePointsOfTheTable) {
   Scanner scanner;
   scanner.noise = rtc360_noise();
   const NoiseModel model = make_noise_model(scanner, 2022);
+  const RangeNoise noise(std::make_shared<const NoiseModel>(model));
   std::uint32_t place = 0;
   for (const double distance : {3.0, 12.0, 45.0, 110.0}) {
     for (const double reflectivity : {0.05, 0.24, 0.8}) {
       const double sigma = model_sigma(model, distance, reflectivity);
       ASSERT_GT(sigma, 0.0);
-      std::vector<float> z = draws(model.seed, place++);
-      double mean = 0, squares = 0;
-      for (const float value : z) {
-        const double moved = sigma * static_cast<double>(value);
-        ASSERT_LE(std::abs(moved), static_cast<double>(model.reach));
+      EXPECT_NEAR(noise.sigma(static_cast<float>(distance), static_cast<float>(reflectivity)), sigma,
+                  1e-6 * sigma + 1e-9);
+      std::vector<float> z = draws(model.seed, place);
+      double mean = 0, squares = 0, farthest = 0, largest_difference = 0;
+      for (std::uint32_t k = 0; k < rays; ++k) {
+        const float range = static_cast<float>(distance);
+        const double moved = static_cast<double>(noise.displaced(range, static_cast<float>(reflectivity), k, place)) -
+                             static_cast<double>(range);
+        largest_difference = std::max(largest_difference, std::abs(moved - sigma * static_cast<double>(z[k])));
+        farthest = std::max(farthest, std::abs(moved));
         mean += moved / rays;
         squares += moved * moved / rays;
       }
+      EXPECT_LT(largest_difference, 1e-5);  // the last place of the range
+      EXPECT_LE(farthest, static_cast<double>(model.reach) + 1e-5);
       const double sample_sigma = std::sqrt(squares - mean * mean);
       EXPECT_NEAR(sample_sigma / sigma, 1.0, 0.01) << distance << " m, " << reflectivity;
       EXPECT_NEAR(sample_sigma / table_sigma(scanner.noise, distance, reflectivity), 1.0, 0.03)
@@ -64,9 +74,10 @@ TEST(NoiseStatistics, TwelvePointsOfTheTable) {
       EXPECT_LT(std::abs(mean), 3 * sigma / std::sqrt(rays)) << distance << " m, " << reflectivity;
 
       // Kolmogorov–Smirnov at significance 1e-4: √n·D < √(−½ ln(½·1e-4)).
+      ++place;
       std::sort(z.begin(), z.end());
       double largest = 0;
-      for (std::uint32_t k = 0; k < rays; ++k) {
+      for (std::uint32_t k = 0; k < rays; k += 10) {  // every tenth step of the sample: D to 1e-5
         const double expected = truncated_normal_cdf(static_cast<double>(z[k]));
         largest = std::max({largest, (k + 1.0) / rays - expected, expected - static_cast<double>(k) / rays});
       }

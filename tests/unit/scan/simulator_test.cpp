@@ -1,0 +1,389 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vantage/simulator.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <stop_token>
+#include <string>
+
+#include "scan_scenes.hpp"
+#include "vantage/error.hpp"
+
+namespace vantage {
+namespace {
+
+using test::coarse_scanner;
+using test::QuadScene;
+using test::wall_and_floor;
+
+constexpr std::uint32_t everything =
+    scan_range | scan_position | scan_normal | scan_reflectivity | scan_ids | scan_colour | scan_voxel;
+
+SimulatorConfig config(double user_size = 0.5, double spacing = 0.2) {
+  SimulatorConfig c;
+  c.engine = Engine::embree;
+  c.user_size_m = user_size;
+  c.point_spacing_m = spacing;
+  return c;
+}
+
+std::string message_of(const std::function<void()>& call) {
+  try {
+    call();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), Errc::invalid_argument) << e.what();
+    return e.what();
+  }
+  ADD_FAILURE() << "no error";
+  return "";
+}
+
+// All chunks of a scan as one.
+ScanChunk whole_scan(Simulator& simulator, const Station& station, std::uint32_t place, std::uint32_t outputs,
+                     ScanSummary* summary = nullptr, const Panorama* panorama = nullptr) {
+  ScanChunk all;
+  const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
+  const ScanSummary sums = simulator.scan(
+      station, place, outputs,
+      [&](const ScanChunk& chunk) {
+        EXPECT_EQ(chunk.first_ray, all.ray_count);  // in order, without a gap
+        all.ray_count += chunk.ray_count;
+        append(all.range_m, chunk.range_m);
+        append(all.position, chunk.position);
+        append(all.normal, chunk.normal);
+        append(all.reflectivity, chunk.reflectivity);
+        append(all.mesh, chunk.mesh);
+        append(all.primitive, chunk.primitive);
+        append(all.colour, chunk.colour);
+        append(all.voxel, chunk.voxel);
+      },
+      {}, panorama);
+  if (summary) *summary = sums;
+  return all;
+}
+
+TEST(Simulator, DescribesItself) {
+  const Vec3 origin{500'000, 4'500'000, 120};
+  const Scene scene = wall_and_floor(origin).scene();
+  const Simulator simulator(scene, coarse_scanner(), config());
+  EXPECT_EQ(simulator.engine().engine, Engine::embree);
+  EXPECT_EQ(simulator.origin(), origin);
+  EXPECT_EQ(simulator.scene().meshes().size(), 2u);
+  EXPECT_EQ(simulator.scanner().columns(), 360u);
+  EXPECT_EQ(simulator.config().user_size_m, 0.5);
+  // Equation 2: the cube of the surveyed wall, 6 m × 1.002, halved four times.
+  EXPECT_NEAR(simulator.voxel_size_m(), 6.012 / 16, 1e-5);
+  EXPECT_NEAR(simulator.goal_density(), std::pow(6.012 / 16 / 0.2, 2), 1e-3);
+  EXPECT_GE(simulator.voxel_count(), 16u * 10u);
+  for (std::uint64_t rank = 0; rank < simulator.voxel_count(); ++rank) {
+    const Vec3 centre = simulator.voxel_centre(rank) - origin;
+    EXPECT_NEAR(centre.x, 5, 0.51 * simulator.voxel_size_m());
+    EXPECT_LT(std::abs(centre.y), 3.2);
+    EXPECT_GT(centre.z, -1.7);
+    EXPECT_LT(centre.z, 2.7);
+  }
+}
+
+TEST(Simulator, RefusesGoalDensitiesBelowOneAndNamesWhatWorks) {
+  const Scene scene = wall_and_floor().scene();
+  for (const double user_size : {0.3, 0.09, 0.001}) {
+    const std::string says = message_of([&] { Simulator(scene, coarse_scanner(), config(user_size, 0.2)); });
+    EXPECT_NE(says.find("goal density is below 1"), std::string::npos) << says;
+    const std::string before = "at least ";
+    const double named = std::atof(says.substr(says.find(before) + before.size()).c_str());
+    EXPECT_NEAR(named, 6.012 / 16, 1e-4) << says;
+    const Simulator works(scene, coarse_scanner(), config(named, 0.2));
+    EXPECT_GE(works.goal_density(), 1.0);
+    EXPECT_NEAR(works.voxel_size_m(), named, 1e-4);
+    message_of([&] { Simulator(scene, coarse_scanner(), config(named * 0.999, 0.2)); });  // and nothing smaller does
+  }
+  EXPECT_NE(message_of([&] { Simulator(scene, coarse_scanner(), config(10, 7)); }).find("choose a point spacing below"),
+            std::string::npos);
+}
+
+TEST(Simulator, RefusesBadConfigurations) {
+  const Scene scene = wall_and_floor().scene();
+  EXPECT_NE(message_of([&] { Simulator(scene, coarse_scanner(), config(0.5, 0)); }).find("spacing is 0"),
+            std::string::npos);
+  EXPECT_NE(message_of([&] { Simulator(scene, coarse_scanner(), config(-1)); }).find("user size"), std::string::npos);
+  EXPECT_NE(message_of([&] { Simulator(scene, coarse_scanner(-1), config()); }).find("azimuth_step"),
+            std::string::npos);
+}
+
+TEST(Scan, FindsTheWallWhereItIs) {
+  const Vec3 origin{1000, -2000, 50};
+  Simulator simulator(wall_and_floor(origin).scene(), coarse_scanner(), config());
+  ScanSummary summary;
+  const ScanChunk all = whole_scan(simulator, {origin}, 0, everything, &summary);
+  ASSERT_EQ(all.ray_count, 360u * 150u);
+  EXPECT_EQ(summary.rays, all.ray_count);
+  std::uint64_t points = 0, on_wall = 0, counted = 0;
+  for (std::size_t k = 0; k < all.ray_count; ++k) {
+    const RayAngles angles = simulator.scanner().angles(k);
+    const double zenith = angles.zenith.in_radians(), azimuth = angles.azimuth.in_radians();
+    const Vec3 d{std::sin(zenith) * std::cos(azimuth), std::sin(zenith) * std::sin(azimuth), std::cos(zenith)};
+    const double to_wall = 5 / d.x, to_floor = -1.5 / d.z;
+    const bool wall = to_wall > 0 && std::abs(to_wall * d.y) < 3 && to_wall * d.z < 2.5 && to_wall * d.z > -1.5;
+    const bool floor = to_floor > 0 && std::abs(to_floor * d.x) < 10 && std::abs(to_floor * d.y) < 10;
+    if (!wall && !floor) {
+      EXPECT_TRUE(std::isinf(all.range_m[k]));
+      EXPECT_EQ(all.mesh[k], -1);
+      EXPECT_EQ(all.primitive[k], 0xFFFFFFFFu);
+      EXPECT_EQ(all.colour[k], 0u);
+      EXPECT_EQ(all.voxel[k], 0xFFFFFFFFu);
+      continue;
+    }
+    const double range = wall ? to_wall : to_floor;
+    ++points;
+    on_wall += wall;
+    counted += all.voxel[k] != 0xFFFFFFFFu;
+    ASSERT_NEAR(all.range_m[k], range, 2e-5) << k;
+    EXPECT_EQ(all.mesh[k], wall ? 0 : 1) << k;
+    EXPECT_EQ(all.primitive[k] / 2, wall ? 0u : 1u);
+    EXPECT_NEAR(all.position[k][0], range * d.x, 2e-5);
+    EXPECT_NEAR(all.position[k][1], range * d.y, 2e-5);
+    EXPECT_NEAR(all.position[k][2], range * d.z, 2e-5);
+    EXPECT_NEAR(all.normal[k][wall ? 0 : 2], wall ? -1 : 1, 1e-6);
+    EXPECT_NEAR(all.reflectivity[k], wall ? 0.5 * d.x : -0.2 * d.z, 1e-5);
+    EXPECT_EQ(all.colour[k], 0xFFFFFFFFu);
+    EXPECT_TRUE(wall || all.voxel[k] == 0xFFFFFFFFu);  // a blocking mesh's points do not count
+    if (all.voxel[k] != 0xFFFFFFFFu) {
+      const Vec3 off = simulator.voxel_centre(all.voxel[k]) - origin - d * range;
+      EXPECT_LT(std::max({std::abs(off.x), std::abs(off.y), std::abs(off.z)}), 0.501 * simulator.voxel_size_m());
+    }
+  }
+  EXPECT_GT(on_wall, 1000u);
+  EXPECT_EQ(summary.points, points);
+  EXPECT_EQ(summary.hits_on_surveyed, on_wall);
+  EXPECT_EQ(summary.points_on_surveyed, counted);
+  EXPECT_EQ(counted, on_wall);  // without noise no point leaves its voxel
+  EXPECT_FALSE(summary.cancelled);
+}
+
+TEST(Scan, GivesOnlyWhatWasAskedFor) {
+  Simulator simulator(wall_and_floor().scene(), coarse_scanner(3), config());
+  const ScanChunk all = whole_scan(simulator, {{0, 0, 0}}, 0, everything);
+  const auto check = [&](std::uint32_t outputs) {
+    const ScanChunk some = whole_scan(simulator, {{0, 0, 0}}, 0, outputs);
+    const auto is = [&](const auto& part, const auto& full, std::uint32_t bit) {
+      if (outputs & bit)
+        EXPECT_EQ(part, full) << bit;
+      else
+        EXPECT_TRUE(part.empty()) << bit;
+    };
+    is(some.range_m, all.range_m, scan_range);
+    is(some.mesh, all.mesh, scan_ids);
+    is(some.primitive, all.primitive, scan_ids);
+    is(some.colour, all.colour, scan_colour);
+    is(some.reflectivity, all.reflectivity, scan_reflectivity);
+    is(some.voxel, all.voxel, scan_voxel);
+    EXPECT_EQ(some.position.size(), outputs & scan_position ? all.position.size() : 0);
+    EXPECT_EQ(some.normal.size(), outputs & scan_normal ? all.normal.size() : 0);
+  };
+  for (std::uint32_t bit = 1; bit <= scan_voxel; bit <<= 1) check(bit);
+  check(0);
+  check(scan_range | scan_colour);
+  EXPECT_NE(message_of([&] {
+              simulator.scan({{0, 0, 0}}, 0, 1u << 20, {});
+            }).find("unknown output"),
+            std::string::npos);
+}
+
+TEST(Scan, NoiseIsKeyedBySeedPlaceAndRay) {
+  Scanner scanner = coarse_scanner(2);
+  scanner.noise = {.distances_m = {10}, .reflectivities = {0.5}, .sigma_m = {0.01}};
+  const Scene scene = wall_and_floor().scene();
+  SimulatorConfig c = config();
+  Simulator simulator(scene, scanner, c), again(scene, scanner, c);
+  c.seed = 2;
+  Simulator other_seed(scene, scanner, c);
+  c.noise = false;
+  Simulator clean(scene, scanner, c);
+  const Station station{{0.3, 0.1, 0}};
+  const auto noisy = whole_scan(simulator, station, 0, scan_range).range_m;
+  const auto exact = whole_scan(clean, station, 0, scan_range).range_m;
+  EXPECT_EQ(noisy, whole_scan(again, station, 0, scan_range).range_m);
+  EXPECT_NE(noisy, whole_scan(simulator, station, 1, scan_range).range_m);
+  EXPECT_NE(noisy, whole_scan(other_seed, station, 0, scan_range).range_m);
+  double squares = 0, hits = 0;
+  for (std::size_t k = 0; k < noisy.size(); ++k) {
+    ASSERT_EQ(std::isinf(noisy[k]), std::isinf(exact[k]));
+    if (std::isinf(exact[k])) continue;
+    EXPECT_LE(std::abs(noisy[k] - exact[k]), 0.0501);
+    squares += std::pow(static_cast<double>(noisy[k] - exact[k]), 2);
+    ++hits;
+  }
+  EXPECT_NEAR(std::sqrt(squares / hits), 0.01, 4 * 0.01 / std::sqrt(2 * hits));
+}
+
+TEST(Scan, StopsWhenTold) {
+  Simulator simulator(wall_and_floor().scene(), coarse_scanner(0.1), config());
+  std::stop_source stop;
+  std::uint64_t chunks = 0;
+  double done = 0;
+  const Progress progress{[&](double share) { done = share; }, stop.get_token()};
+  const ScanSummary summary = simulator.scan(
+      {{0, 0, 0}}, 0, scan_range,
+      [&](const ScanChunk&) {
+        if (++chunks == 2) stop.request_stop();
+      },
+      progress);
+  EXPECT_TRUE(summary.cancelled);
+  EXPECT_EQ(chunks, 2u);
+  EXPECT_LT(summary.rays, simulator.scanner().rays());
+  EXPECT_NEAR(done, static_cast<double>(summary.rays) / static_cast<double>(simulator.scanner().rays()), 1e-12);
+}
+
+TEST(Scan, InactiveAndImpossibleStations) {
+  Simulator simulator(wall_and_floor().scene(), coarse_scanner(), config());
+  const ScanSummary summary =
+      simulator.scan({{0, 0, 0}, false}, 0, scan_range, [](const ScanChunk&) { ADD_FAILURE() << "a chunk"; });
+  EXPECT_EQ(summary.rays, 0u);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_NE(message_of([&] { simulator.scan({{0, nan, 0}}, 3, scan_range, {}); }).find("station 4"), std::string::npos);
+}
+
+TEST(Evaluate, AgreesWithScans) {
+  Simulator simulator(wall_and_floor().scene(), coarse_scanner(0.7), config(0.5, 0.04));
+  const Network network{{{0, 0, 0}}, {{1, -2, 0.5}}};
+  VoxelField field;
+  const NetworkCounts counts = simulator.evaluate(network, {.skip = false, .field = &field});
+  VoxelField expected{std::vector<std::uint32_t>(simulator.voxel_count()),
+                      std::vector<std::uint64_t>(simulator.voxel_count())};
+  for (std::uint32_t place = 0; place < 2; ++place) {
+    ScanSummary summary;
+    for (const std::uint32_t voxel : whole_scan(simulator, network[place], place, scan_voxel, &summary).voxel) {
+      if (voxel == 0xFFFFFFFFu) continue;
+      ++expected.count[voxel];
+      expected.stations[voxel] |= 1ull << place;
+    }
+    EXPECT_EQ(counts.points.at(place), summary.points);
+    EXPECT_EQ(counts.points_on_surveyed.at(place), summary.points_on_surveyed);
+  }
+  EXPECT_EQ(field.count, expected.count);
+  EXPECT_EQ(field.stations, expected.stations);
+  const double share = coverage(counts, simulator.goal_density());
+  EXPECT_GT(share, 0.3);
+  EXPECT_LT(share, 1.0);
+}
+
+TEST(Evaluate, TakesOneToSixtyFourStations) {
+  Simulator simulator(wall_and_floor().scene(), coarse_scanner(5), config());
+  EXPECT_NE(message_of([&] { simulator.evaluate({}); }).find("this one has 0"), std::string::npos);
+  EXPECT_NE(message_of([&] {
+              simulator.evaluate(Network(65, Station{{0, 0, 0}}));
+            }).find("this one has 65"),
+            std::string::npos);
+  const Network too_many(65, Station{{0, 0, 0}});
+  EXPECT_NE(message_of([&] { simulator.evaluate_sampled({&too_many, 1}); }).find("1 to 64"), std::string::npos);
+  Network full(64, Station{{0, 0, 0}});
+  const NetworkCounts counts = simulator.evaluate(full);
+  EXPECT_EQ(counts.stations, 64u);
+  EXPECT_EQ(counts.shared.size(), 64u * 63u / 2);
+  EXPECT_DOUBLE_EQ(clustering_coefficient(overlap_matrix(counts)), 1.0);  // all at one place see the same
+  EXPECT_EQ(clustering_coefficient(overlap_matrix(simulator.evaluate({full[0]}))), 0.0);
+}
+
+TEST(Evaluate, InactiveStationsKeepTheirPlace) {
+  Simulator simulator(wall_and_floor().scene(), coarse_scanner(1), config());
+  const Station a{{0, 0, 0}}, b{{1, 1, 0}}, off{{2, 0, 0}, false};
+  const NetworkCounts two = simulator.evaluate({a, b}), four = simulator.evaluate({off, a, off, b});
+  EXPECT_EQ(four.stations, 4u);
+  EXPECT_EQ(four.saturated, two.saturated);
+  EXPECT_EQ(four.partial_points, two.partial_points);
+  EXPECT_EQ(four.seen, (std::vector<std::uint64_t>{0, two.seen[0], 0, two.seen[1]}));
+  EXPECT_EQ(four.shared_by(1, 3), two.shared_by(0, 1));
+  EXPECT_EQ(four.shared_by(0, 1), 0u);
+  EXPECT_EQ(four.points_on_surveyed,
+            (std::vector<std::uint64_t>{0, two.points_on_surveyed[0], 0, two.points_on_surveyed[1]}));
+}
+
+TEST(Evaluate, NetworksWithoutAnActiveStationSeeNothing) {
+  Simulator simulator(wall_and_floor().scene(), coarse_scanner(1), config());
+  const Network none(3, Station{{0, 0, 0}, false}), one{{{0, 0, 0}}};
+  VoxelField field;
+  const NetworkCounts counts = simulator.evaluate(none, {.skip = false, .field = &field});
+  EXPECT_EQ(counts.stations, 3u);
+  EXPECT_EQ(counts.voxels, simulator.voxel_count());
+  EXPECT_EQ(counts.points, std::vector<std::uint64_t>(3, 0));
+  EXPECT_EQ(counts.seen, std::vector<std::uint64_t>(3, 0));
+  EXPECT_EQ(coverage(counts, simulator.goal_density()), 0.0);
+  EXPECT_EQ(clustering_coefficient(overlap_matrix(counts)), 0.0);
+  EXPECT_EQ(field.count, std::vector<std::uint32_t>(simulator.voxel_count(), 0));
+
+  const std::vector<Network> networks{none, one, none};
+  const auto sampled = simulator.evaluate_sampled(networks, {.voxels = 50});
+  ASSERT_EQ(sampled.size(), 3u);
+  EXPECT_EQ(sampled[0].partial_points + sampled[0].saturated, 0u);
+  EXPECT_GT(sampled[1].partial_points + sampled[1].saturated, 0u);
+  ASSERT_EQ(sampled[0].groups.size(), sampled[1].groups.size());
+  for (std::size_t g = 0; g < sampled[0].groups.size(); ++g)
+    EXPECT_EQ(sampled[0].groups[g].voxels, sampled[1].groups[g].voxels);
+  EXPECT_EQ(coverage_estimate(sampled[0], simulator.goal_density(), simulator.voxel_count()).standard_error, 0.0);
+  EXPECT_EQ(overlap_estimate(sampled[2], simulator.voxel_count()).standard_error, 0.0);
+  EXPECT_EQ(simulator.evaluate_sampled(std::vector<Network>{none}, {.voxels = 50})[0].voxels, 50u);
+}
+
+TEST(EvaluateSampled, AllVoxelsAreExact) {
+  Scanner scanner = coarse_scanner(0.7);
+  scanner.noise = {.distances_m = {10}, .reflectivities = {0.5}, .sigma_m = {0.02}};
+  Simulator simulator(wall_and_floor().scene(), scanner, config(0.2, 0.1));
+  const Network network{{{0, 0, 0}}, {{1, -2, 0.5}}, {{3, 1, -0.4}}};
+  const NetworkCounts exact = simulator.evaluate(network);
+  const NetworkCounts all = simulator.evaluate_sampled({&network, 1}, {.voxels = simulator.voxel_count() + 10})[0];
+  EXPECT_EQ(all.voxels, exact.voxels);
+  EXPECT_EQ(all.saturated, exact.saturated);
+  EXPECT_EQ(all.partial_points, exact.partial_points);
+  EXPECT_EQ(all.seen, exact.seen);
+  EXPECT_EQ(all.shared, exact.shared);
+  EXPECT_EQ(coverage_estimate(all, simulator.goal_density(), simulator.voxel_count()).standard_error, 0.0);
+
+  const NetworkCounts stopped = simulator.evaluate_sampled(
+      {&network, 1}, {.voxels = simulator.voxel_count(), .overlap = false, .stop_at_goal = true})[0];
+  EXPECT_EQ(coverage(stopped, simulator.goal_density()), coverage(exact, simulator.goal_density()));
+  EXPECT_NE(message_of([&] {
+              simulator.evaluate_sampled({&network, 1}, {.voxels = 0});
+            }).find("at least one"),
+            std::string::npos);
+}
+
+TEST(EvaluateSampled, SizeForAWantedError) {
+  Simulator simulator(wall_and_floor().scene(), coarse_scanner(0.5), config(0.03, 0.02));
+  const std::vector<Network> networks{{{{0, 0, 0}}}, {{{1, -2, 0.5}}, {{3, 1, -0.4}}, {{2, 2, 0}}}};
+  ASSERT_GT(simulator.voxel_count(), 20'000u);
+  for (const bool overlap : {false, true}) {
+    std::uint64_t before = 0;
+    for (const double wanted : {0.02, 0.003, 0.002}) {
+      const std::uint64_t size = simulator.voxels_for_standard_error(networks, wanted, overlap);
+      EXPECT_GE(size, before);
+      EXPECT_LE(size, simulator.voxel_count());
+      before = size;
+      for (const NetworkCounts& counts : simulator.evaluate_sampled(networks, {.voxels = size, .overlap = overlap})) {
+        EXPECT_LE(coverage_estimate(counts, simulator.goal_density(), simulator.voxel_count()).standard_error, wanted);
+        EXPECT_LE(overlap ? overlap_estimate(counts, simulator.voxel_count()).standard_error : 0.0, wanted);
+      }
+    }
+    EXPECT_GT(before, 5000u);
+  }
+  EXPECT_EQ(simulator.voxels_for_standard_error(networks, 1e-9), simulator.voxel_count());
+  EXPECT_NE(message_of([&] { simulator.voxels_for_standard_error(networks, 0); }).find("above 0"), std::string::npos);
+}
+
+TEST(Simulator, TwoCoexistAndCanBeMoved) {
+  const Scene scene = wall_and_floor().scene();
+  Simulator a(scene, coarse_scanner(2), config()), b(scene, coarse_scanner(3), config());
+  const Network network{{{0, 0, 0}}};
+  const std::uint64_t points = a.evaluate(network).points_on_surveyed[0];
+  EXPECT_GT(points, b.evaluate(network).points_on_surveyed[0]);
+  Simulator moved(std::move(a));
+  EXPECT_EQ(moved.evaluate(network).points_on_surveyed[0], points);
+  b = std::move(moved);
+  EXPECT_EQ(b.evaluate(network).points_on_surveyed[0], points);
+}
+
+}  // namespace
+}  // namespace vantage
