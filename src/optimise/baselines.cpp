@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "optimise/baselines.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "optimise/hypervolume.hpp"
+#include "optimise/variation.hpp"
+#include "vantage/error.hpp"
+
+namespace vantage::optimise {
+namespace {
+
+std::vector<double> fitness_of(std::span<const Solution> members) {
+  std::vector<double> fitness;
+  for (const Solution& s : members) fitness.insert(fitness.end(), s.fitness.begin(), s.fitness.end());
+  return fitness;
+}
+
+}  // namespace
+
+std::vector<double> crowding_distances(std::span<const double> fitness, std::size_t m,
+                                       std::span<const std::size_t> rank) {
+  const std::size_t k = rank.size();
+  std::vector<double> distance(k, 0.0);
+  std::vector<std::size_t> order(k);
+  for (std::size_t j = 0; j < m; ++j) {
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+      return rank[a] != rank[b] ? rank[a] < rank[b] : fitness[a * m + j] < fitness[b * m + j];
+    });
+    for (std::size_t begin = 0, end = 0; begin < k; begin = end) {
+      while (end < k && rank[order[end]] == rank[order[begin]]) ++end;
+      const double low = fitness[order[begin] * m + j], range = fitness[order[end - 1] * m + j] - low;
+      distance[order[begin]] = distance[order[end - 1]] = std::numeric_limits<double>::infinity();
+      if (!(range > 0) || !std::isfinite(range)) continue;
+      for (std::size_t i = begin + 1; i + 1 < end; ++i)
+        distance[order[i]] += (fitness[order[i + 1] * m + j] - fitness[order[i - 1] * m + j]) / range;
+    }
+  }
+  return distance;
+}
+
+Baseline::Baseline(std::string name, std::size_t dimension, std::size_t objectives, const MoCmaEsConfig& config)
+    : common_(std::move(name), dimension, objectives, config) {
+  if (!common_.box.bounded())
+    throw Error(Errc::invalid_argument, common_.name + " needs bounds; give them, or take MO-CMA-ES");
+}
+
+std::span<const double> Baseline::ask() {
+  if (common_.asked() != 0) return common_.points();
+  const std::size_t mu = common_.config.population;
+  common_.begin_ask(mu);
+  if (!members_.empty()) before_offspring();
+  for (std::size_t k = 0; k < mu; ++k)
+    std::ranges::copy(members_.empty() ? common_.initial_point(k) : make_point(), common_.point(k).begin());
+  return common_.points();
+}
+
+void Baseline::replace(std::size_t index, std::span<const double> x) {
+  common_.require_asked("replace");
+  common_.require_index(index);
+  common_.box.require_inside(x);
+  std::ranges::copy(x, common_.point(index).begin());
+}
+
+std::span<const double> Baseline::resample(std::size_t index, std::span<const std::size_t> coordinates) {
+  common_.require_asked("resample");
+  common_.require_index(index);
+  common_.require_coordinates(coordinates);
+  if (coordinates.empty()) return common_.point(index);
+  const auto x = members_.empty() ? common_.initial_point(common_.config.start.size()) : make_point();
+  for (const std::size_t i : coordinates) common_.point(index)[i] = x[i];
+  return common_.point(index);
+}
+
+void Baseline::tell(std::span<const double> values) {
+  auto solutions = common_.take(values);
+  std::move(solutions.begin(), solutions.end(), std::back_inserter(members_));
+  if (members_.size() > common_.config.population) {
+    const auto keep = choose(fitness_of(members_));
+    std::size_t i = 0;
+    std::erase_if(members_, [&](const Solution&) { return !keep[i++]; });
+  }
+  common_.watch(members_, false);
+}
+
+std::vector<ParetoPoint> Baseline::population() const {
+  std::vector<ParetoPoint> result;
+  for (const Solution& s : members_) result.push_back({s.x, s.f});
+  return result;
+}
+
+void Baseline::save(std::ostream& out) const {
+  common_.require_not_asked("save");
+  StateWriter w;
+  common_.save(w);
+  w.put(std::uint64_t{members_.size()});
+  for (const Solution& s : members_) MoCommon::save(w, s);
+  w.write(out, common_.name);
+}
+
+void Baseline::load(std::istream& in) {
+  StateReader r(in, common_.name);
+  MoCommon::Progress progress = common_.read(r);
+  std::vector<Solution> members(r.size(common_.config.population + 1));
+  for (Solution& s : members) s = common_.load_solution(r);
+  r.end();
+  common_.restore(std::move(progress));
+  members_ = std::move(members);
+}
+
+void Nsga2::before_offspring() {
+  const auto fitness = fitness_of(members_);
+  rank_ = ranks({fitness, common_.objectives});
+  crowding_ = crowding_distances(fitness, common_.objectives, rank_);
+}
+
+std::size_t Nsga2::tournament() {
+  const std::size_t a = common_.random.index(members_.size()), b = common_.random.index(members_.size());
+  if (rank_[a] != rank_[b]) return rank_[a] < rank_[b] ? a : b;
+  return crowding_[a] >= crowding_[b] ? a : b;
+}
+
+std::vector<double> Nsga2::make_point() {
+  const auto unit = [&](const Solution& s) {
+    std::vector<double> t(s.x.size());
+    for (std::size_t i = 0; i < t.size(); ++i) t[i] = common_.box.to_unit(s.x[i], i);
+    return t;
+  };
+  const auto first = unit(members_[tournament()]), second = unit(members_[tournament()]);
+  auto child = make_child(first, second, {}, common_.random);
+  for (std::size_t i = 0; i < child.size(); ++i) child[i] = common_.box.from_unit(child[i], i);
+  return child;
+}
+
+std::vector<char> Nsga2::choose(std::span<const double> fitness) const {
+  const auto rank = ranks({fitness, common_.objectives});
+  const auto crowding = crowding_distances(fitness, common_.objectives, rank);
+  std::vector<std::size_t> order(rank.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return rank[a] != rank[b] ? rank[a] < rank[b] : crowding[a] > crowding[b];
+  });
+  std::vector<char> keep(rank.size(), 0);
+  for (std::size_t i = 0; i < common_.config.population; ++i) keep[order[i]] = 1;
+  return keep;
+}
+
+}  // namespace vantage::optimise

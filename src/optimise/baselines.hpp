@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// What MO-CMA-ES is compared with, behind the same interface: NSGA-II and random search.
+#pragma once
+
+#include "optimise/mo_common.hpp"
+
+namespace vantage::optimise {
+
+class Baseline : public MultiObjectiveOptimiser {
+ public:
+  Baseline(std::string name, std::size_t dimension, std::size_t objectives, const MoCmaEsConfig& config);
+
+  std::span<const double> ask() final;
+  void replace(std::size_t index, std::span<const double> x) final;
+  std::span<const double> resample(std::size_t index, std::span<const std::size_t> coordinates) final;
+  void tell(std::span<const double> values) final;
+  StopReason stop_reason() const noexcept final { return common_.stop_reason(); }
+  std::vector<ParetoPoint> front() const final { return front_of(pointers(members_)); }
+  std::vector<ParetoPoint> population() const final;
+  double hypervolume() const final { return common_.hypervolume(members_); }
+  std::size_t evaluations() const noexcept final { return common_.evaluations; }
+  std::size_t iterations() const noexcept final { return common_.evaluations / common_.config.population; }
+  void save(std::ostream& out) const final;
+  void load(std::istream& in) final;
+
+ protected:
+  // One more point, in the user's coordinates, once there is a population.
+  virtual std::vector<double> make_point() = 0;
+  // Members and offspring together, of which a population is to be kept.
+  virtual std::vector<char> choose(std::span<const double> fitness) const = 0;
+  virtual void before_offspring() {}
+
+  MoCommon common_;
+  std::vector<Solution> members_;
+};
+
+// Deb, Pratap, Agarwal, Meyarivan: A Fast and Elitist Multiobjective Genetic Algorithm: NSGA-II, 2002.
+class Nsga2 final : public Baseline {
+ public:
+  Nsga2(std::size_t dimension, std::size_t objectives, const MoCmaEsConfig& config)
+      : Baseline("NSGA-II", dimension, objectives, config) {}
+
+ private:
+  std::vector<double> make_point() override;
+  std::vector<char> choose(std::span<const double> fitness) const override;
+  void before_offspring() override;
+  std::size_t tournament();
+
+  std::vector<std::size_t> rank_;
+  std::vector<double> crowding_;
+};
+
+// Uniform points; those that NSGA-II's baseline and MO-CMA-ES would keep by rank and hypervolume are kept.
+class RandomSearch final : public Baseline {
+ public:
+  RandomSearch(std::size_t dimension, std::size_t objectives, const MoCmaEsConfig& config)
+      : Baseline("random search", dimension, objectives, config) {}
+
+ private:
+  std::vector<double> make_point() override { return common_.initial_point(common_.config.start.size()); }
+  std::vector<char> choose(std::span<const double> fitness) const override {
+    return select(fitness, common_.reference, common_.config.population);
+  }
+};
+
+// Crowding distance within each rank; the ends of a front are infinitely far from their neighbours.
+std::vector<double> crowding_distances(std::span<const double> fitness, std::size_t objectives,
+                                       std::span<const std::size_t> rank);
+
+}  // namespace vantage::optimise

@@ -1,0 +1,462 @@
+// SPDX-License-Identifier: Apache-2.0
+// Hansen: The CMA Evolution Strategy, A Tutorial, 2016: weights (49)–(53), paths (43), (45), covariance (47), step
+// (44), and the stopping rules of its appendix B.3. Restarts: Auger, Hansen: A Restart CMA Evolution Strategy With
+// Increasing Population Size, 2005.
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <string>
+
+#include "optimise/box.hpp"
+#include "optimise/conditional.hpp"
+#include "optimise/normal_stream.hpp"
+#include "optimise/state_file.hpp"
+#include "vantage/error.hpp"
+#include "vantage/optimiser.hpp"
+
+namespace vantage {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using optimise::Box;
+using optimise::NormalStream;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kMaxCondition = 1e14;
+constexpr double kMaxGrowth = 1e4;           // of the step along the longest axis, times its share of sigma0
+constexpr std::size_t kFlatIterations = 20;  // the step grows a thousandfold meanwhile
+constexpr std::size_t kMaxHistory = 20000;
+constexpr std::size_t kMaxPopulation = std::size_t{1} << 20;
+constexpr std::string_view kKind = "CMA-ES";
+
+std::span<double> as_span(VectorXd& v) { return {v.data(), static_cast<std::size_t>(v.size())}; }
+std::span<const double> as_span(const VectorXd& v) { return {v.data(), static_cast<std::size_t>(v.size())}; }
+std::span<const double> as_span(const MatrixXd& a) { return {a.data(), static_cast<std::size_t>(a.size())}; }
+
+// Learning rates and weights, which depend on n and λ alone.
+struct Strategy {
+  Strategy() = default;
+  Strategy(double n, std::size_t lambda, bool active);
+
+  VectorXd weights;  // all λ, negative ones last
+  std::size_t mu = 0;
+  double mu_eff = 0, c_sigma = 0, d_sigma = 0, c_c = 0, c_1 = 0, c_mu = 0, expected_norm = 0;
+};
+
+Strategy::Strategy(double n, std::size_t lambda, bool active) : weights(static_cast<Eigen::Index>(lambda)) {
+  for (std::size_t i = 0; i < lambda; ++i)
+    weights[static_cast<Eigen::Index>(i)] =
+        std::log((static_cast<double>(lambda) + 1) / 2) - std::log(static_cast<double>(i) + 1);
+  mu = lambda / 2;
+  const auto split = static_cast<Eigen::Index>(mu);
+  auto positive = weights.head(split), negative = weights.tail(weights.size() - split);
+  mu_eff = positive.sum() * positive.sum() / positive.squaredNorm();
+  const double mu_eff_negative = negative.sum() * negative.sum() / negative.squaredNorm();
+  c_sigma = (mu_eff + 2) / (n + mu_eff + 5);
+  d_sigma = 1 + 2 * std::max(0.0, std::sqrt((mu_eff - 1) / (n + 1)) - 1) + c_sigma;
+  c_c = (4 + mu_eff / n) / (n + 4 + 2 * mu_eff / n);
+  c_1 = 2 / ((n + 1.3) * (n + 1.3) + mu_eff);
+  c_mu = std::min(1 - c_1, 2 * (0.25 + mu_eff + 1 / mu_eff - 2) / ((n + 2) * (n + 2) + mu_eff));
+  expected_norm = std::sqrt(n) * (1 - 1 / (4 * n) + 1 / (21 * n * n));
+  positive /= positive.sum();
+  if (!active) {
+    negative.setZero();
+    return;
+  }
+  const double limit =
+      std::min({1 + c_1 / c_mu, 1 + 2 * mu_eff_negative / (mu_eff + 2), (1 - c_1 - c_mu) / (n * c_mu)});
+  negative *= limit / negative.cwiseAbs().sum();
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+bool is_stall(StopReason reason) {
+  return reason == StopReason::converged || reason == StopReason::stagnated || reason == StopReason::flat ||
+         reason == StopReason::ill_conditioned || reason == StopReason::diverged;
+}
+
+}  // namespace
+
+struct CmaEs::Impl {
+  Impl(std::size_t dimension, const CmaEsConfig& c);
+
+  void begin_run();  // a fresh distribution with the present λ
+  void draw();
+  double phenotype(double g, std::size_t axis) const {
+    return box.bounded() ? box.from_unit(optimise::squeeze(g), axis) : g;
+  }
+  double genotype(double x, std::size_t axis) const {
+    return box.bounded() ? optimise::unsqueeze(box.to_unit(x, axis)) : x;
+  }
+  // Puts the genotype mean + sigma · steps.col(k) into the points.
+  void express(std::size_t k);
+  void update(const std::vector<std::size_t>& order);
+  void decompose();
+  StopReason stall(const std::vector<double>& sorted) const;
+  StopReason limit() const;
+  void require_asked(const char* what) const;
+  void require_index(std::size_t index) const;
+
+  const std::size_t n;
+  CmaEsConfig config;
+  Box box;
+  NormalStream random;
+  std::size_t lambda;
+  Strategy strategy;
+
+  VectorXd mean, path_c, path_sigma, axis_lengths;
+  MatrixXd covariance, axes;
+  double sigma = 0;
+  std::size_t decomposed_at = 0;  // evaluations of the run
+  std::size_t evaluations = 0, iterations = 0, restarts = 0, run_iterations = 0, run_evaluations = 0,
+              flat_iterations = 0;
+  std::vector<double> best_history, median_history;  // of the run
+  ParetoPoint best;
+  StopReason reason = StopReason::running;
+
+  bool asked = false;
+  MatrixXd steps;  // one column a point, (genotype − mean) / sigma
+  std::vector<double> points;
+};
+
+CmaEs::Impl::Impl(std::size_t dimension, const CmaEsConfig& c)
+    : n(dimension), config(c), box(dimension, c.bounds), random(c.seed) {
+  const auto fail = [](const std::string& what) { throw Error(Errc::invalid_argument, "CMA-ES: " + what); };
+  if (!(config.sigma0 > 0) || !std::isfinite(config.sigma0))
+    fail("sigma0 is " + std::to_string(config.sigma0) + ", it must be positive");
+  if (config.population == 1 || config.population > kMaxPopulation)
+    fail("a population of " + std::to_string(config.population) + " cannot be ranked; give 0 or at least 2");
+  if (!config.start.empty()) box.require_inside(config.start);
+  if (!(config.f_tolerance >= 0) || !(config.x_tolerance >= 0)) fail("tolerances must not be negative");
+  lambda = config.population != 0 ? config.population
+                                  : 4 + static_cast<std::size_t>(3 * std::log(static_cast<double>(dimension)));
+  best.f = {kInfinity};
+  begin_run();
+}
+
+void CmaEs::Impl::begin_run() {
+  const auto size = static_cast<Eigen::Index>(n);
+  strategy = Strategy(static_cast<double>(n), lambda, config.active);
+  sigma = config.sigma0;
+  mean = VectorXd::Zero(size);
+  const bool first = restarts == 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    double& m = mean[static_cast<Eigen::Index>(i)];
+    if (first && !config.start.empty()) {
+      m = genotype(config.start[i], i);
+    } else if (box.bounded()) {
+      m = random.uniform();
+    } else {
+      m = (config.start.empty() ? 0.0 : config.start[i]) + (first ? 0.0 : sigma * random.normal());
+    }
+  }
+  path_c = path_sigma = VectorXd::Zero(size);
+  axis_lengths = VectorXd::Ones(size);
+  covariance = axes = MatrixXd::Identity(size, size);
+  decomposed_at = run_iterations = run_evaluations = flat_iterations = 0;
+  best_history.clear();
+  median_history.clear();
+}
+
+void CmaEs::Impl::express(std::size_t k) {
+  const auto column = steps.col(static_cast<Eigen::Index>(k));
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto axis = static_cast<Eigen::Index>(i);
+    points[k * n + i] = phenotype(mean[axis] + sigma * column[axis], i);
+  }
+}
+
+void CmaEs::Impl::draw() {
+  steps.resize(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(lambda));
+  points.resize(n * lambda);
+  VectorXd normals(static_cast<Eigen::Index>(n));
+  for (std::size_t k = 0; k < lambda; ++k) {
+    random.fill_normal(as_span(normals));
+    steps.col(static_cast<Eigen::Index>(k)).noalias() = axes * axis_lengths.cwiseProduct(normals);
+    express(k);
+  }
+}
+
+void CmaEs::Impl::require_asked(const char* what) const {
+  if (!asked) throw Error(Errc::invalid_argument, std::string("CMA-ES: ") + what + "() needs points from ask() first");
+}
+
+void CmaEs::Impl::require_index(std::size_t index) const {
+  if (index >= lambda)
+    throw Error(Errc::invalid_argument,
+                "CMA-ES: point " + std::to_string(index) + " of " + std::to_string(lambda) + " does not exist");
+}
+
+void CmaEs::Impl::update(const std::vector<std::size_t>& order) {
+  const Strategy& s = strategy;
+  const double dimension = static_cast<double>(n);
+  VectorXd step = VectorXd::Zero(mean.size());
+  for (std::size_t i = 0; i < s.mu; ++i)
+    step += s.weights[static_cast<Eigen::Index>(i)] * steps.col(static_cast<Eigen::Index>(order[i]));
+  mean += sigma * step;
+
+  const auto whitened = [&](const VectorXd& y) -> VectorXd {
+    return (axes.transpose() * y).cwiseQuotient(axis_lengths);
+  };
+  path_sigma *= 1 - s.c_sigma;
+  path_sigma += std::sqrt(s.c_sigma * (2 - s.c_sigma) * s.mu_eff) * (axes * whitened(step));
+  const double norm = path_sigma.norm();
+  const double settled = std::sqrt(1 - std::pow(1 - s.c_sigma, 2.0 * static_cast<double>(run_iterations + 1)));
+  const bool moving = norm / settled >= (1.4 + 2 / (dimension + 1)) * s.expected_norm;  // then hold path_c back
+  path_c *= 1 - s.c_c;
+  if (!moving) path_c += std::sqrt(s.c_c * (2 - s.c_c) * s.mu_eff) * step;
+
+  const double lost = moving ? s.c_1 * s.c_c * (2 - s.c_c) : 0.0;
+  covariance *= 1 + lost - s.c_1 - s.c_mu * s.weights.sum();
+  MatrixXd scaled(steps.rows(), steps.cols());
+  VectorXd weights = s.weights;
+  for (std::size_t i = 0; i < lambda; ++i) {
+    const auto column = static_cast<Eigen::Index>(i);
+    scaled.col(column) = steps.col(static_cast<Eigen::Index>(order[i]));
+    // A long bad step must not take more than its length in the present metric, or C would lose its definiteness.
+    if (weights[column] < 0)
+      weights[column] *= dimension / std::max(whitened(scaled.col(column)).squaredNorm(), 1e-300);
+  }
+  covariance.noalias() += s.c_1 * path_c * path_c.transpose();
+  covariance.noalias() += s.c_mu * scaled * weights.asDiagonal() * scaled.transpose();
+  sigma *= std::exp(std::min(1.0, s.c_sigma / s.d_sigma * (norm / s.expected_norm - 1)));
+  sigma = std::max(sigma, 1e-300);  // stall() has it stop long before
+}
+
+void CmaEs::Impl::decompose() {
+  const double wait = 1 / ((strategy.c_1 + strategy.c_mu) * static_cast<double>(n) * 10);
+  if (static_cast<double>(run_evaluations - decomposed_at) < wait * static_cast<double>(lambda)) return;
+  decomposed_at = run_evaluations;
+  covariance = 0.5 * (covariance + covariance.transpose()).eval();
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(covariance);
+  axes = solver.eigenvectors();
+  // Rounding can make the smallest value negative at a condition number near 1e16; stall() sees that one.
+  axis_lengths = solver.eigenvalues().cwiseMax(solver.eigenvalues().maxCoeff() * 1e-18).cwiseSqrt();
+}
+
+StopReason CmaEs::Impl::stall(const std::vector<double>& sorted) const {
+  if (!mean.allFinite() || !covariance.allFinite() || !axis_lengths.allFinite() || !std::isfinite(sigma))
+    return StopReason::diverged;
+  if (flat_iterations >= kFlatIterations) return StopReason::flat;
+  const double longest = axis_lengths.maxCoeff(), shortest = axis_lengths.minCoeff();
+  if (sigma * longest > kMaxGrowth * config.sigma0 * std::max(1.0, std::sqrt(longest))) return StopReason::diverged;
+  if (longest * longest > kMaxCondition * shortest * shortest) return StopReason::ill_conditioned;
+
+  const double length = std::max(path_c.cwiseAbs().maxCoeff(), std::sqrt(covariance.diagonal().maxCoeff()));
+  if (sigma * length < config.x_tolerance * config.sigma0) return StopReason::converged;
+  const std::size_t recent = 10 + (30 * n + lambda - 1) / lambda;
+  if (config.f_tolerance > 0 && flat_iterations == 0 && best_history.size() > recent) {
+    const auto [low, high] =
+        std::minmax_element(best_history.end() - static_cast<std::ptrdiff_t>(recent), best_history.end());
+    if (std::max(*high, sorted.back()) - std::min(*low, sorted.front()) < config.f_tolerance)
+      return StopReason::converged;
+  }
+  // Steps too small to change the mean, along an axis (one an iteration, in turn) or a coordinate.
+  const auto axis = static_cast<Eigen::Index>(run_iterations % n);
+  if (mean == mean + 0.1 * sigma * axis_lengths[axis] * axes.col(axis)) return StopReason::converged;
+  for (Eigen::Index i = 0; i < mean.size(); ++i)
+    if (mean[i] == mean[i] + 0.2 * sigma * std::sqrt(covariance(i, i))) return StopReason::converged;
+
+  const std::size_t window = std::clamp<std::size_t>(run_iterations / 5, 120 + 30 * n / lambda, kMaxHistory);
+  if (best_history.size() >= window && config.f_tolerance > 0) {
+    const auto no_better = [&](const std::vector<double>& history) {
+      const auto third = static_cast<std::ptrdiff_t>(3 * window / 10);
+      const auto begin = history.end() - static_cast<std::ptrdiff_t>(window);
+      return median({history.end() - third, history.end()}) >= median({begin, begin + third});
+    };
+    if (no_better(best_history) && no_better(median_history)) return StopReason::stagnated;
+  }
+  return StopReason::running;
+}
+
+StopReason CmaEs::Impl::limit() const {
+  if (config.target && best.f[0] <= *config.target) return StopReason::target_reached;
+  if (config.max_evaluations != 0 && evaluations >= config.max_evaluations) return StopReason::max_evaluations;
+  if (config.max_iterations != 0 && iterations >= config.max_iterations) return StopReason::max_iterations;
+  return StopReason::running;
+}
+
+CmaEs::CmaEs(std::size_t dimension, const CmaEsConfig& config) : impl_(std::make_unique<Impl>(dimension, config)) {}
+CmaEs::CmaEs(CmaEs&&) noexcept = default;
+CmaEs& CmaEs::operator=(CmaEs&&) noexcept = default;
+CmaEs::~CmaEs() = default;
+
+std::span<const double> CmaEs::ask() {
+  if (!impl_->asked) impl_->draw();
+  impl_->asked = true;
+  return impl_->points;
+}
+
+void CmaEs::replace(std::size_t index, std::span<const double> x) {
+  impl_->require_asked("replace");
+  impl_->require_index(index);
+  impl_->box.require_inside(x);
+  auto column = impl_->steps.col(static_cast<Eigen::Index>(index));
+  for (std::size_t i = 0; i < impl_->n; ++i) {
+    const auto axis = static_cast<Eigen::Index>(i);
+    double& old = impl_->points[index * impl_->n + i];
+    if (old == x[i]) continue;  // its genotype may lie beyond a bound: it stays as drawn
+    old = x[i];
+    column[axis] = (impl_->genotype(x[i], i) - impl_->mean[axis]) / impl_->sigma;
+  }
+}
+
+std::span<const double> CmaEs::resample(std::size_t index, std::span<const std::size_t> coordinates) {
+  Impl& s = *impl_;
+  s.require_asked("resample");
+  s.require_index(index);
+  MatrixXd columns(static_cast<Eigen::Index>(s.n), static_cast<Eigen::Index>(coordinates.size()));
+  VectorXd step = s.steps.col(static_cast<Eigen::Index>(index));
+  for (std::size_t k = 0; k < coordinates.size(); ++k) {
+    if (coordinates[k] >= s.n)
+      throw Error(Errc::invalid_argument, "CMA-ES: coordinate " + std::to_string(coordinates[k]) + " does not exist");
+    const auto axis = static_cast<Eigen::Index>(coordinates[k]);
+    columns.col(static_cast<Eigen::Index>(k)) = s.axes.row(axis).transpose().cwiseQuotient(s.axis_lengths);
+    step[axis] = 0;
+  }
+  if (!coordinates.empty()) {
+    const VectorXd rest = (s.axes.transpose() * step).cwiseQuotient(s.axis_lengths);
+    const VectorXd drawn = optimise::draw_conditional(columns, rest, s.random);
+    for (std::size_t k = 0; k < coordinates.size(); ++k) {
+      const auto axis = static_cast<Eigen::Index>(coordinates[k]);
+      s.steps(axis, static_cast<Eigen::Index>(index)) = drawn[static_cast<Eigen::Index>(k)];
+    }
+    s.express(index);
+  }
+  return std::span(s.points).subspan(index * s.n, s.n);
+}
+
+void CmaEs::tell(std::span<const double> values) {
+  Impl& s = *impl_;
+  s.require_asked("tell");
+  if (values.size() != s.lambda)
+    throw Error(Errc::invalid_argument, "CMA-ES: " + std::to_string(values.size()) + " values for " +
+                                            std::to_string(s.lambda) + " points; give one for each");
+  std::vector<double> f(values.begin(), values.end());
+  for (double& v : f)
+    if (!std::isfinite(v)) v = kInfinity;
+  std::vector<std::size_t> order(s.lambda);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return f[a] < f[b]; });
+  std::sort(f.begin(), f.end());
+  s.asked = false;
+  s.evaluations += s.lambda;
+  s.run_evaluations += s.lambda;
+  ++s.iterations;
+  if (f.front() == kInfinity) {
+    s.reason = StopReason::invalid_objective;
+    return;
+  }
+  if (f.front() < s.best.f[0]) {
+    const auto first = s.points.begin() + static_cast<std::ptrdiff_t>(order[0] * s.n);
+    s.best = {{first, first + static_cast<std::ptrdiff_t>(s.n)}, {f.front()}};
+  }
+  s.best_history.push_back(f.front());
+  s.median_history.push_back(f[s.lambda / 2]);
+  if (s.best_history.size() > 2 * kMaxHistory) {
+    const auto surplus = static_cast<std::ptrdiff_t>(s.best_history.size() - kMaxHistory);
+    s.best_history.erase(s.best_history.begin(), s.best_history.begin() + surplus);
+    s.median_history.erase(s.median_history.begin(), s.median_history.begin() + surplus);
+  }
+  if (f.front() == f.back()) {
+    // A plateau says nothing about shape: only look further afield.
+    ++s.flat_iterations;
+    s.sigma *= std::exp(0.2 + s.strategy.c_sigma / s.strategy.d_sigma);
+  } else {
+    s.flat_iterations = 0;
+    s.update(order);
+  }
+  ++s.run_iterations;
+  if (s.covariance.allFinite()) s.decompose();
+  s.reason = s.limit();
+  if (s.reason != StopReason::running) return;
+  s.reason = s.stall(f);
+  if (is_stall(s.reason) && s.restarts < s.config.restarts && s.lambda <= kMaxPopulation / 2) {
+    ++s.restarts;
+    s.lambda *= 2;
+    s.begin_run();
+    s.reason = StopReason::running;
+  } else if (s.reason == StopReason::diverged) {
+    s.begin_run();  // what is asked for after all is finite again
+  }
+}
+
+StopReason CmaEs::stop_reason() const noexcept { return impl_->reason; }
+const ParetoPoint& CmaEs::best() const noexcept { return impl_->best; }
+std::size_t CmaEs::population() const noexcept { return impl_->lambda; }
+std::size_t CmaEs::evaluations() const noexcept { return impl_->evaluations; }
+std::size_t CmaEs::iterations() const noexcept { return impl_->iterations; }
+std::size_t CmaEs::restarts() const noexcept { return impl_->restarts; }
+double CmaEs::sigma() const noexcept { return impl_->sigma; }
+
+void CmaEs::save(std::ostream& out) const {
+  const Impl& s = *impl_;
+  if (s.asked) throw Error(Errc::invalid_argument, "CMA-ES: save() between ask() and tell(); tell first");
+  optimise::StateWriter w;
+  w.put(std::uint64_t{s.n});
+  w.put(std::uint64_t{s.config.population});
+  w.put(s.config.sigma0);
+  w.put(s.config.active);
+  w.put(s.config.start);
+  w.put(s.box.lower());
+  w.put(s.box.upper());
+  for (const std::size_t v :
+       {s.random.seed(), s.random.block(), s.lambda, s.decomposed_at, s.evaluations, s.iterations, s.restarts,
+        s.run_iterations, s.run_evaluations, s.flat_iterations, static_cast<std::size_t>(s.reason)})
+    w.put(std::uint64_t{v});
+  w.put(s.sigma);
+  for (const VectorXd* v : {&s.mean, &s.path_c, &s.path_sigma, &s.axis_lengths}) w.put(as_span(*v));
+  for (const MatrixXd* a : {&s.covariance, &s.axes}) w.put(as_span(*a));
+  w.put(s.best_history);
+  w.put(s.median_history);
+  w.put(s.best.x);
+  w.put(s.best.f[0]);
+  w.write(out, kKind);
+}
+
+void CmaEs::load(std::istream& in) {
+  optimise::StateReader r(in, kKind);
+  auto next = std::make_unique<Impl>(impl_->n, impl_->config);
+  Impl& s = *next;
+  r.expect(std::uint64_t{s.n}, "dimension");
+  r.expect(std::uint64_t{s.config.population}, "population");
+  r.expect(s.config.sigma0, "sigma0");
+  r.expect(std::uint64_t{s.config.active}, "active flag");
+  r.expect(s.config.start, "start");
+  r.expect(s.box.lower(), "lower bounds");
+  r.expect(s.box.upper(), "upper bounds");
+  const std::uint64_t seed = r.integer();
+  s.random.seek(seed, r.integer());
+  s.lambda = std::max<std::size_t>(2, r.size(kMaxPopulation + 1));
+  constexpr std::size_t kMany = std::size_t{1} << 62;
+  for (std::size_t* v : {&s.decomposed_at, &s.evaluations, &s.iterations, &s.restarts, &s.run_iterations,
+                         &s.run_evaluations, &s.flat_iterations})
+    *v = r.size(kMany);
+  s.reason = static_cast<StopReason>(r.size(static_cast<std::size_t>(StopReason::cancelled) + 1));
+  s.strategy = Strategy(static_cast<double>(s.n), s.lambda, s.config.active);
+  s.sigma = r.positive();
+  const auto fill = [&](double* out, std::size_t count) {
+    for (const double v : r.finite_reals(count)) *out++ = v;
+  };
+  for (VectorXd* v : {&s.mean, &s.path_c, &s.path_sigma, &s.axis_lengths}) fill(v->data(), s.n);
+  for (MatrixXd* a : {&s.covariance, &s.axes}) fill(a->data(), s.n * s.n);
+  s.best_history = r.reals();
+  s.median_history = r.reals(s.best_history.size());
+  s.best.x = r.reals();
+  s.best.f[0] = r.real();
+  r.end();
+  const StopReason limit = s.limit();  // the limits may have been raised meanwhile
+  if (limit != StopReason::running || s.reason == StopReason::max_evaluations ||
+      s.reason == StopReason::max_iterations || s.reason == StopReason::target_reached)
+    s.reason = limit;
+  impl_ = std::move(next);
+}
+
+}  // namespace vantage

@@ -1,0 +1,345 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <sstream>
+
+#include "vantage/error.hpp"
+#include "vantage/optimiser.hpp"
+
+namespace vantage {
+
+void PrintTo(MoAlgorithm algorithm, std::ostream* out) { *out << to_string(algorithm); }
+
+namespace {
+
+using Scheme = MoCmaEsConfig::Scheme;
+using Objectives = std::function<std::vector<double>(std::span<const double>)>;
+
+// Distances to (0, …) and (1, …): the front is f1 = (1 − √f0)², with hypervolume 5/6 against (1, 1).
+std::vector<double> two_spheres(std::span<const double> x) {
+  double a = 0, b = 0;
+  for (const double v : x) {
+    a += v * v;
+    b += (v - 1) * (v - 1);
+  }
+  const double n = static_cast<double>(x.size());
+  return {a / n, b / n};
+}
+
+std::vector<double> three_spheres(std::span<const double> x) {
+  auto f = two_spheres(x);
+  double c = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) c += (x[i] - (i % 2 == 0 ? 0.2 : 0.8)) * (x[i] - (i % 2 == 0 ? 0.2 : 0.8));
+  f.push_back(c / static_cast<double>(x.size()));
+  return f;
+}
+
+void step(MultiObjectiveOptimiser& optimiser, std::size_t n, const Objectives& f) {
+  const auto points = optimiser.ask();
+  std::vector<double> values;
+  for (std::size_t k = 0; k < points.size(); k += n) {
+    const auto one = f(points.subspan(k, n));
+    values.insert(values.end(), one.begin(), one.end());
+  }
+  optimiser.tell(values);
+}
+
+StopReason run(MultiObjectiveOptimiser& optimiser, std::size_t n, const Objectives& f,
+               std::size_t max_evaluations = 200000) {
+  while (optimiser.stop_reason() == StopReason::running && optimiser.evaluations() < max_evaluations)
+    step(optimiser, n, f);
+  return optimiser.stop_reason();
+}
+
+struct Variant {
+  MoAlgorithm algorithm;
+  Scheme scheme;
+  std::size_t batch;
+};
+
+class EveryOptimiser : public testing::TestWithParam<Variant> {
+ protected:
+  MoCmaEsConfig config(std::size_t n) const {
+    MoCmaEsConfig c;
+    c.scheme = GetParam().scheme;
+    c.batch = GetParam().batch;
+    c.population = 20;
+    c.bounds = Bounds::uniform(n, -1, 2);
+    return c;
+  }
+  std::unique_ptr<MultiObjectiveOptimiser> make(std::size_t n, std::size_t m, const MoCmaEsConfig& c) const {
+    return make_optimiser(GetParam().algorithm, n, m, c);
+  }
+};
+INSTANTIATE_TEST_SUITE_P(, EveryOptimiser,
+                         testing::Values(Variant{MoAlgorithm::mo_cma_es, Scheme::generational, 1},
+                                         Variant{MoAlgorithm::mo_cma_es, Scheme::steady_state, 1},
+                                         Variant{MoAlgorithm::mo_cma_es, Scheme::steady_state, 7},
+                                         Variant{MoAlgorithm::nsga2, Scheme::generational, 1},
+                                         Variant{MoAlgorithm::random_search, Scheme::generational, 1}),
+                         [](const auto& test) {
+                           return to_string(test.param.algorithm) +
+                                  (test.param.scheme == Scheme::generational
+                                       ? ""
+                                       : "_steady" + std::to_string(test.param.batch));
+                         });
+
+TEST_P(EveryOptimiser, NearsAKnownFront) {
+  const std::size_t n = 4;
+  auto c = config(n);
+  c.max_evaluations = 4000;
+  auto optimiser = make(n, 2, c);
+  EXPECT_EQ(run(*optimiser, n, two_spheres), StopReason::max_evaluations);
+  EXPECT_GT(optimiser->hypervolume(), GetParam().algorithm == MoAlgorithm::random_search ? 0.55 : 0.78);
+  EXPECT_LT(optimiser->hypervolume(), 5.0 / 6);
+  const auto front = optimiser->front();
+  for (std::size_t i = 0; i < front.size(); ++i) {
+    EXPECT_EQ(front[i].f, two_spheres(front[i].x));
+    if (i == 0) continue;
+    EXPECT_LE(front[i - 1].f[0], front[i].f[0]);
+    EXPECT_GE(front[i - 1].f[1], front[i].f[1]);
+  }
+  EXPECT_EQ(optimiser->population().size(), 20u);
+  EXPECT_EQ(optimiser->iterations(), optimiser->evaluations() / 20);
+}
+
+TEST_P(EveryOptimiser, AsksInsideTheBounds) {
+  EXPECT_TRUE(rc::check([&] {
+    const auto n = *rc::gen::inRange<std::size_t>(1, 5);
+    auto c = config(n);
+    c.population = *rc::gen::inRange<std::size_t>(1, 12);
+    c.seed = *rc::gen::arbitrary<std::uint64_t>();
+    c.sigma0 = *rc::gen::element(1e-3, 0.2, 5.0);
+    for (std::size_t i = 0; i < n; ++i) {
+      c.bounds->lower[i] = *rc::gen::inRange(-1000, 1000) / 7.0;
+      c.bounds->upper[i] = c.bounds->lower[i] + *rc::gen::inRange(1, 1000) / 13.0;
+    }
+    auto optimiser = make(n, 2, c);
+    for (int round = 0; round < 20; ++round) {
+      step(*optimiser, n, [&](std::span<const double> x) {
+        for (std::size_t i = 0; i < n; ++i) RC_ASSERT(x[i] >= c.bounds->lower[i] && x[i] <= c.bounds->upper[i]);
+        return std::vector{x[0], x[n - 1] - 2 * x[0]};  // leads to bounds
+      });
+    }
+  }));
+}
+
+TEST_P(EveryOptimiser, SameSeedSameBitsAndResumeToThem) {
+  const std::size_t n = 5;
+  for (const std::size_t m : {2, 3}) {
+    const Objectives f = m == 2 ? Objectives(two_spheres) : Objectives(three_spheres);
+    auto c = config(n);
+    c.max_evaluations = 600;
+    c.stagnation_iterations = 1000;
+    auto whole = make(n, m, c), parted = make(n, m, c);
+    while (whole->stop_reason() == StopReason::running) {
+      ASSERT_TRUE(std::ranges::equal(whole->ask(), parted->ask()));
+      // Redrawn points must resume as well.
+      const std::vector<std::size_t> coordinates = {3, 1};
+      whole->resample(0, coordinates);
+      parted->resample(0, coordinates);
+      ASSERT_TRUE(std::ranges::equal(whole->ask(), parted->ask()));
+      step(*whole, n, f);
+      step(*parted, n, f);
+      std::stringstream file;
+      parted->save(file);
+      parted = make(n, m, c);
+      parted->load(file);
+    }
+    EXPECT_EQ(parted->stop_reason(), whole->stop_reason());
+    EXPECT_EQ(parted->hypervolume(), whole->hypervolume());
+    const auto a = whole->population(), b = parted->population();
+    for (std::size_t i = 0; i < a.size(); ++i) EXPECT_EQ(a[i].x, b[i].x);
+  }
+}
+
+TEST_P(EveryOptimiser, ResumesUnderRaisedLimits) {
+  const std::size_t n = 3;
+  auto c = config(n);
+  c.max_iterations = 3;
+  auto optimiser = make(n, 2, c);
+  EXPECT_EQ(run(*optimiser, n, two_spheres), StopReason::max_iterations);
+  std::stringstream file;
+  optimiser->save(file);
+  c.max_iterations = 5;
+  auto resumed = make(n, 2, c);
+  resumed->load(file);
+  EXPECT_EQ(resumed->stop_reason(), StopReason::running);
+  EXPECT_EQ(run(*resumed, n, two_spheres), StopReason::max_iterations);
+  EXPECT_GE(resumed->iterations(), 5u);
+}
+
+TEST_P(EveryOptimiser, StopsWithAReason) {
+  const std::size_t n = 3;
+  const auto reason = [&](MoCmaEsConfig c, const Objectives& f) {
+    auto optimiser = make(n, 2, c);
+    const StopReason result = run(*optimiser, n, f);
+    for (const double v : optimiser->ask()) EXPECT_TRUE(std::isfinite(v));
+    return result;
+  };
+  auto c = config(n);
+  const double nan = std::nan(""), infinity = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(reason(c, [&](auto) { return std::vector{nan, 0.0}; }), StopReason::invalid_objective);
+  EXPECT_EQ(reason(c, [&](auto) { return std::vector{-infinity, 0.0}; }), StopReason::invalid_objective);
+  EXPECT_EQ(reason(c, [](auto) { return std::vector{0.5, 0.5}; }), StopReason::flat);
+  EXPECT_EQ(reason(c, [](auto) { return std::vector{1.0, 2.0}; }), StopReason::flat);  // outside the reference
+  c.max_evaluations = 100;
+  EXPECT_EQ(reason(c, two_spheres), StopReason::max_evaluations);
+  c = config(n);
+  c.target_hypervolume = 0.4;
+  EXPECT_EQ(reason(c, two_spheres), StopReason::target_reached);
+  c = config(n);
+  c.stagnation_iterations = 5;
+  c.stagnation_tolerance = 1e-3;
+  EXPECT_EQ(reason(c, two_spheres), StopReason::stagnated);
+}
+
+TEST_P(EveryOptimiser, LivesWithFailingObjectives) {
+  const std::size_t n = 3;
+  auto c = config(n);
+  c.max_evaluations = 3000;
+  auto optimiser = make(n, 2, c);
+  run(*optimiser, n, [](std::span<const double> x) {
+    return x[1] < 0.3 ? std::vector{std::nan(""), 1.0} : two_spheres(x);
+  });
+  EXPECT_GT(optimiser->hypervolume(), 0.5);
+  for (const auto& p : optimiser->front())
+    for (const double v : p.f) EXPECT_TRUE(std::isfinite(v));
+}
+
+TEST_P(EveryOptimiser, StartsFromGivenPoints) {
+  const std::size_t n = 2;
+  auto c = config(n);
+  c.start = {{0.25, 0.5}, {0.75, 1}};
+  auto optimiser = make(n, 2, c);
+  const auto points = optimiser->ask();
+  EXPECT_EQ(std::vector<double>(points.begin(), points.begin() + 4), (std::vector<double>{0.25, 0.5, 0.75, 1}));
+}
+
+TEST_P(EveryOptimiser, ReplacedPointsAreTheOnesKept) {
+  const std::size_t n = 2;
+  auto optimiser = make(n, 2, config(n));
+  step(*optimiser, n, two_spheres);
+  for (int round = 0; round < 40; ++round) {
+    const std::size_t count = optimiser->ask().size() / n;
+    std::vector<double> values;
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::vector<double> x = {0.5, 0.125 * static_cast<double>(k % 8)};
+      optimiser->replace(k, x);
+      const auto f = two_spheres(x);
+      values.insert(values.end(), f.begin(), f.end());
+    }
+    optimiser->tell(values);
+  }
+  for (const auto& p : optimiser->population()) EXPECT_EQ(p.f, two_spheres(p.x));
+  optimiser->ask();
+  EXPECT_THROW(optimiser->replace(0, std::vector<double>{0, 3}), Error);
+  EXPECT_THROW(optimiser->replace(1000, std::vector<double>{0, 0}), Error);
+}
+
+TEST_P(EveryOptimiser, ResamplesOnlyWhatItIsTold) {
+  const std::size_t n = 4;
+  auto optimiser = make(n, 2, config(n));
+  for (int round = 0; round < 30; ++round) {
+    const auto points = optimiser->ask();
+    const std::vector<double> before(points.begin(), points.end());
+    const std::vector<std::size_t> coordinates = {2};
+    const auto now = optimiser->resample(0, coordinates);
+    for (const std::size_t i : {0, 1, 3}) EXPECT_EQ(now[i], before[i]);
+    EXPECT_TRUE(now[2] >= -1 && now[2] <= 2);
+    step(*optimiser, n, two_spheres);
+  }
+  optimiser->ask();
+  EXPECT_THROW(optimiser->resample(0, std::vector<std::size_t>{4}), Error);
+}
+
+TEST_P(EveryOptimiser, RefusesDamagedStatesAndStaysAsItWas) {
+  const std::size_t n = 3;
+  auto optimiser = make(n, 2, config(n));
+  for (int i = 0; i < 5; ++i) step(*optimiser, n, two_spheres);
+  std::stringstream file;
+  optimiser->save(file);
+  const std::string good = file.str();
+  const auto refuses = [&](const std::string& bytes) {
+    std::stringstream in(bytes);
+    try {
+      optimiser->load(in);
+    } catch (const Error& e) {
+      return e.code() == Errc::malformed_file;
+    }
+    return false;
+  };
+  for (std::size_t i = 0; i < good.size(); i += 37) {
+    std::string bad = good;
+    bad[i] = static_cast<char>(bad[i] ^ 0x10);
+    EXPECT_TRUE(refuses(bad)) << i;
+  }
+  for (std::size_t size = 0; size < good.size(); size += 97) EXPECT_TRUE(refuses(good.substr(0, size))) << size;
+  auto other = make(n, 3, config(n));
+  std::stringstream in(good), again(good);
+  EXPECT_THROW(other->load(in), Error);
+  const double hypervolume = optimiser->hypervolume();
+  optimiser->load(again);
+  EXPECT_EQ(optimiser->hypervolume(), hypervolume);
+}
+
+TEST_P(EveryOptimiser, RefusesWhatItCannotDo) {
+  auto c = config(2);
+  EXPECT_THROW(make(2, 0, c), Error);
+  EXPECT_THROW(make(2, 7, c), Error);
+  EXPECT_THROW(make(3, 2, c), Error);
+  auto bad = c;
+  bad.population = 0;
+  EXPECT_THROW(make(2, 2, bad), Error);
+  bad = c;
+  bad.reference = {1, 1, 1};
+  EXPECT_THROW(make(2, 2, bad), Error);
+  bad = c;
+  bad.start = {{0, 5}};
+  EXPECT_THROW(make(2, 2, bad), Error);
+  auto optimiser = make(2, 2, c);
+  EXPECT_THROW(optimiser->tell({}), Error);
+  optimiser->ask();
+  std::stringstream file;
+  EXPECT_THROW(optimiser->save(file), Error);
+  EXPECT_THROW(optimiser->tell(std::vector<double>(3)), Error);
+}
+
+TEST(MoCmaEs, ConvergesToOnePoint) {
+  // Both objectives agree, so that the population shrinks onto their minimum.
+  MoCmaEsConfig c;
+  c.population = 4;
+  c.bounds = Bounds::uniform(2, 0, 1);
+  c.scheme = Scheme::generational;
+  MoCmaEs optimiser(2, 2, c);
+  const auto reason = run(optimiser, 2, [](std::span<const double> x) {
+    const double f = (x[0] - 0.3) * (x[0] - 0.3) + (x[1] - 0.6) * (x[1] - 0.6);
+    return std::vector{f, f};
+  });
+  EXPECT_TRUE(reason == StopReason::converged || reason == StopReason::flat) << to_string(reason);
+  EXPECT_NEAR(optimiser.front().front().x[0], 0.3, 1e-6);
+}
+
+TEST(MoCmaEs, WorksWithoutBounds) {
+  MoCmaEsConfig c;
+  c.population = 20;
+  c.sigma0 = 1;
+  c.start = {{5, 5, 5}};
+  c.max_evaluations = 4000;
+  MoCmaEs optimiser(3, 2, c);
+  run(optimiser, 3, two_spheres);
+  EXPECT_GT(optimiser.hypervolume(), 0.78);
+}
+
+TEST(MoAlgorithm, NamesRoundTrip) {
+  for (const auto a : {MoAlgorithm::mo_cma_es, MoAlgorithm::nsga2, MoAlgorithm::random_search})
+    EXPECT_EQ(mo_algorithm_from_string(to_string(a)), a);
+  EXPECT_THROW(mo_algorithm_from_string("spea2"), Error);
+}
+
+}  // namespace
+}  // namespace vantage
