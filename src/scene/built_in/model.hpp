@@ -47,5 +47,6 @@ nlohmann::json to_json(const Defaults& defaults);
 
 Model three_walls();
 Model four_walls();
+Model industrial(std::size_t triangles);
 
 }  // namespace vantage::built_in

@@ -3,35 +3,13 @@
 // counts hold no point of the ground, and its search area is not intersectable.
 #include <cmath>
 
-#include "scene/built_in/model.hpp"
+#include "scene/built_in/shapes.hpp"
 
 namespace vantage::built_in {
 namespace {
 
 constexpr double kWallDiffuse = 0.1;
 constexpr std::array<float, 3> kWallColour{0.55F, 0.5F, 0.45F}, kFloorColour{0.3F, 0.32F, 0.3F};
-
-Float3 rounded(const Vec3& p) { return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)}; }
-
-// A rectangle from `corner` over the edges `across` and `up`, in columns × rows cells of two triangles; its normal is
-// across × up.
-void add_rectangle(Mesh& mesh, const Vec3& corner, const Vec3& across, const Vec3& up, int columns, int rows) {
-  const auto first = static_cast<std::uint32_t>(mesh.positions.size());
-  const Vec3 n = cross(across, up);
-  const Float3 normal = rounded(n * (1 / std::sqrt(dot(n, n))));
-  for (int j = 0; j <= rows; ++j)
-    for (int i = 0; i <= columns; ++i) {
-      mesh.positions.push_back(
-          rounded(corner + across * (static_cast<double>(i) / columns) + up * (static_cast<double>(j) / rows)));
-      mesh.normals.push_back(normal);
-    }
-  const auto width = static_cast<std::uint32_t>(columns) + 1;
-  for (std::uint32_t j = 0; j < static_cast<std::uint32_t>(rows); ++j)
-    for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(columns); ++i) {
-      const std::uint32_t a = first + j * width + i, b = a + 1, c = a + width, d = c + 1;
-      mesh.indices.insert(mesh.indices.end(), {a, b, d, a, d, c});
-    }
-}
 
 Part wall(const std::string& name, const Vec3& corner, const Vec3& across, double height, int columns, int rows) {
   Part part{name, Role::surveyed, kWallDiffuse, kWallColour, {}};

@@ -8,15 +8,17 @@
 namespace vantage {
 
 std::span<const std::string> built_in_scene_names() noexcept {
-  static const std::array<std::string, 2> kNames{"three-walls", "four-walls"};
+  static const std::array<std::string, 3> kNames{"three-walls", "four-walls", "industrial"};
   return kNames;
 }
 
-void write_built_in_scene(const std::string& name, std::size_t, const std::filesystem::path& file) {
+void write_built_in_scene(const std::string& name, std::size_t triangles, const std::filesystem::path& file) {
   if (name == "three-walls") return built_in::write_glb(built_in::three_walls(), file);
   if (name == "four-walls") return built_in::write_glb(built_in::four_walls(), file);
 
-  throw Error(Errc::invalid_argument, "there is no built-in scene \"" + name + "\"; use three-walls or four-walls");
+  if (name == "industrial") return built_in::write_glb(built_in::industrial(triangles), file);
+  throw Error(Errc::invalid_argument,
+              "there is no built-in scene \"" + name + "\"; use three-walls, four-walls or industrial");
 }
 
 }  // namespace vantage

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// Solid shapes as triangles, as fine as a detail asks for. Normals point outward and windings agree with them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "scene/built_in/model.hpp"
+
+namespace vantage::built_in {
+
+Vec3 unit(const Vec3& v);
+Float3 to_float(const Vec3& v);
+
+// A rectangle from `corner` over the edges `across` and `up`, in columns × rows cells of two triangles; its normal is
+// across × up.
+void add_rectangle(Mesh& mesh, const Vec3& corner, const Vec3& across, const Vec3& up, int columns, int rows);
+
+// How finely shapes are cut: the largest distance between a round surface and its triangles.
+struct Detail {
+  double sagitta_m = 1e-3;
+  bool rough() const { return sagitta_m > 5e-3; }  // small parts are hinted at
+  int around(double radius) const;                 // sides of a circle
+  int along(double length) const;                  // rows of a round surface
+  int across(double length) const;                 // cells along an edge of a flat face
+};
+
+// Right-handed axes at a point.
+struct Frame {
+  Vec3 origin, x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
+  Frame at(const Vec3& point) const { return {point, x, y, z}; }
+  Frame ahead(double distance) const { return at(origin + z * distance); }
+  Vec3 point(double px, double py, double pz) const { return origin + x * px + y * py + z * pz; }
+};
+// Axes with z along `direction`; y is horizontal where that is possible.
+Frame frame_along(const Vec3& origin, const Vec3& direction);
+// `frame` turned about an axis through `centre`.
+Frame turned(const Frame& frame, const Vec3& centre, const Vec3& axis, double angle);
+
+// A circle in the xy plane of a frame, with its normal's parts along the radius and along z.
+struct Ring {
+  Frame frame;
+  double radius = 0, normal_out = 1, normal_ahead = 0;
+};
+
+// Point (ahead, radius) of a profile that is turned about the z axis.
+struct ProfilePoint {
+  double ahead = 0, radius = 0;
+};
+
+enum Face : unsigned { kLeft = 1, kRight = 2, kFront = 4, kBack = 8, kBottom = 16, kTop = 32 };  // −x +x −y +y −z +z
+
+// Adds shapes to a mesh, or only counts their triangles, which is what the search for the right detail needs.
+class Shaper {
+ public:
+  Shaper(const Detail& detail, bool counting) : detail_(detail), counting_(counting) {}
+
+  const Detail& detail() const { return detail_; }
+  std::size_t triangles() const { return triangles_; }
+  Mesh take() { return std::move(mesh_); }
+
+  // Joins each ring to the next with `sides` quadrilaterals; walking ahead, the outside is where the profile's left is.
+  // A ring of radius 0 is a point.
+  void skin(std::span<const Ring> rings, int sides);
+  // A turned profile with sharp edges at its points.
+  void turn(const Frame& frame, std::span<const ProfilePoint> profile, int sides);
+  // A cylinder from `frame` over `length`, each end closed or not.
+  void cylinder(const Frame& frame, double radius, double length, bool close_start, bool close_end);
+  void rod(const Vec3& from, const Vec3& to, double radius, bool close = true);
+  // A dished head: half an ellipsoid of the given height over a circle, bulging along +z.
+  void head(const Frame& frame, double radius, double height, int sides);
+  // A part of a torus around the frame's z axis, from angle 0 at x.
+  void hoop(const Frame& frame, double radius, double tube_radius, double angle);
+  // An upright regular prism with its top but no bottom: bolts, nuts, plates that lie on something.
+  void prism(const Frame& frame, double radius, double height, int sides);
+  // Counter-clockwise seen from outside; left out where it has no area.
+  void triangle(const Vec3& a, const Vec3& b, const Vec3& c);
+  void face(const Vec3& corner, const Vec3& across, const Vec3& up);
+  // A box between two corners of the frame, without the faces in `omitted`.
+  void box(const Frame& frame, const Vec3& low, const Vec3& high, unsigned omitted = 0);
+  void box(const Vec3& low, const Vec3& high, unsigned omitted = 0) { box(Frame{}, low, high, omitted); }
+  // A bar of rectangular section between two points; `width` lies across, horizontally, `height` upright.
+  void bar(const Vec3& from, const Vec3& to, double width, double height);
+  // A wide-flange section from `frame` over `length`: web along y, flanges along x. The start is open, the end closed
+  // on request.
+  void wide_flange(const Frame& frame, double width, double depth, double length, bool close_start, bool close_end);
+
+ private:
+  void strip(const Vec3& a, const Vec3& b, const Vec3& ahead, const Vec3& normal);
+
+  Detail detail_;
+  bool counting_;
+  std::size_t triangles_ = 0;
+  Mesh mesh_;
+};
+
+}  // namespace vantage::built_in

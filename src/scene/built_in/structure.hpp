@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// Steelwork: frames, decks, railings, stairs, ladders, cable trays. What stands on the ground has no face on it.
+#pragma once
+
+#include <vector>
+
+#include "scene/built_in/shapes.hpp"
+
+namespace vantage::built_in {
+
+// A column of wide-flange section with its foot plate and bolts.
+void add_column(Shaper& shaper, const Vec3& foot, double height, double width);
+// A horizontal beam of wide-flange section whose top is at the height of `from` and `to`.
+void add_beam(Shaper& shaper, const Vec3& from, const Vec3& to, double width, double depth);
+
+// A deck over a rectangle at height z: plate with edge beams, or bearing bars and cross rods where `grating` is set.
+struct Deck {
+  double x0 = 0, y0 = 0, x1 = 0, y1 = 0, z = 0;
+  bool grating = false;
+};
+void add_deck(Shaper& shaper, const Deck& deck);
+
+// A railing along a polyline on a deck: posts, two rails and a toe plate.
+void add_railing(Shaper& shaper, const std::vector<Vec3>& path);
+
+// Stairs from `foot` on the ground up to `top`: stringers, treads and railings on both sides.
+void add_stairs(Shaper& shaper, Shaper& railing, const Vec3& foot, const Vec3& top, double width);
+
+// A ladder at `foot`, climbing to `height`, which leans against something in the direction −out; with a safety cage
+// above 2.2 m.
+void add_ladder(Shaper& shaper, const Vec3& foot, const Vec3& out, double height);
+
+// A ladder-type cable tray with cables between two points on one axis.
+void add_cable_tray(Shaper& tray, Shaper& cables, const Vec3& from, const Vec3& to, double width);
+
+}  // namespace vantage::built_in
