@@ -66,12 +66,15 @@ void write_front_csv(const std::filesystem::path& file, const PlanResult& result
 /// Pictures, drawn as .png or .svg by extension.
 void draw_front(const std::filesystem::path& file, const PlanResult& result, const PlanConfig& config);
 void draw_hypervolume(const std::filesystem::path& file, const PlanResult& result, const PlanConfig& config);
+/// The front at five moments of the search, as the search saw it (figure 9 of the method).
+void draw_history_fronts(const std::filesystem::path& file, const PlanResult& result, const PlanConfig& config);
 /// The site from above in shaded relief, the search area, the stations and the links between them, as wide as their overlap is large.
 void draw_plan_view(const std::filesystem::path& file, const Scene& scene, const SearchArea& area,
                     std::span<const PlacedStation> stations, const OverlapMatrix& overlap, const std::string& title);
 
-/// Writes a whole result folder: front.csv, front.json, history.csv, and for the chosen compromise coverage.ply, overlap.csv, stations.csv,
-/// and the pictures front.png, hypervolume.png, plan.png (each also as .svg). Returns the index of the chosen entry.
+/// Writes a whole result folder: front.csv, front.json, history.csv, fronts.csv (every iteration's front), and for the chosen compromise
+/// coverage.ply, overlap.csv, stations.csv, and the pictures front.png, hypervolume.png, history.png, plan.png (each also as .svg).
+/// Makes the folder where there is none. Returns the index of the chosen entry.
 std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& result, const PlanConfig& config, Simulator& simulator,
                        const SearchArea& area);
 

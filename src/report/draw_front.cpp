@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <string>
+
+#include "report/front_view.hpp"
+#include "report/text.hpp"
+#include "vantage/export.hpp"
+
+namespace vantage {
+namespace {
+
+constexpr double kWidth = 780, kHeight = 600;
+
+Rect frame(bool bar) { return {86, 72, kWidth - 86 - (bar ? 110 : 30), kHeight - 72 - 106}; }
+
+}  // namespace
+
+void draw_front(const std::filesystem::path& file, const PlanResult& result, const PlanConfig& config) {
+  const FrontView view(config);
+  const bool sampled = config.sample_voxels > 0;
+  std::vector<FrontDot> dots;
+  bool any_confirmed = false;
+  for (const PlanEntry& entry : result.front) {
+    if (sampled || !entry.confirmed) dots.push_back(view.searched(entry));
+    if (entry.confirmed) dots.push_back(view.confirmed(entry)), any_confirmed = true;
+  }
+  Canvas canvas(kWidth, kHeight);
+  const Rect area = frame(view.coloured());
+  std::string subtitle = problem_line(config);
+  if (config.problem == Problem::coverage_fix) subtitle += ", best coverage " + fixed(result.hypervolume, 3);
+  else subtitle += ", hypervolume " + fixed(result.hypervolume, 3);
+  subtitle += " after " + std::to_string(result.evaluations) + " evaluations";
+  const Chart chart(canvas, area, view.x_axis(dots), view.y_axis(dots),
+                    config.problem == Problem::coverage_fix ? "Best network found" : "Pareto front", subtitle);
+  if (view.coloured()) draw_station_bar(canvas, area, config);
+
+  std::vector<Rect> taken;
+  const auto occupy = [&](Point p, double r) { taken.push_back({p.x - r, p.y - r, 2 * r, 2 * r}); };
+  for (const PlanEntry& entry : result.front) {
+    const FrontDot seen = view.searched(entry), exact = view.confirmed(entry);
+    const Point a = chart.at(seen.x, seen.y), b = chart.at(exact.x, exact.y);
+    if (!sampled && entry.confirmed) continue;
+    if (entry.confirmed) canvas.line(a, b, {.colour = style::pale, .width = 1});
+    canvas.circle(a, 4, {.colour = view.coloured() ? view.colour(seen) : style::blue, .width = 1.1, .opacity = 0.75});
+    occupy(a, 5);
+  }
+  for (const PlanEntry& entry : result.front) {
+    if (!entry.confirmed) continue;
+    const FrontDot exact = view.confirmed(entry);
+    const Point p = chart.at(exact.x, exact.y);
+    canvas.disc(p, 5.4, {1, 1, 1});
+    canvas.disc(p, 4.5, view.colour(exact));
+    occupy(p, 6);
+  }
+
+  std::vector<LegendItem> legend;
+  const Colour key = view.coloured() ? style::faint : style::blue;
+  if (any_confirmed) legend.push_back({LegendItem::Mark::filled, key, "every ray"});
+  if (sampled) legend.push_back({LegendItem::Mark::hollow, key, "search estimate, " + std::to_string(config.sample_voxels) + " voxels"});
+  else if (!any_confirmed) legend.push_back({LegendItem::Mark::hollow, key, "as the search saw it"});
+  if (!result.front.empty() && config.problem != Problem::coverage_fix) {
+    const PlanEntry& chosen = result.front[compromise(result, config.problem)];
+    const FrontDot dot = chosen.confirmed ? view.confirmed(chosen) : view.searched(chosen);
+    const Point p = chart.at(dot.x, dot.y);
+    canvas.circle(p, 9, {.colour = style::orange, .width = 2.2});
+    occupy(p, 11);
+    std::string words = fixed(chosen.confirmed ? chosen.exact_coverage : chosen.coverage, 3) + " coverage";
+    if (!view.by_count()) words += ", " + fixed(chosen.confirmed ? chosen.exact_overlap : chosen.overlap, 3) + " overlap";
+    if (view.by_count() || view.coloured()) words += ", " + std::to_string(chosen.stations.size()) + " stations";
+    const TextStyle text{.size = 12.5, .colour = style::orange, .across = Align::middle, .halo = 2};
+    const Rect place = place_label(p, 13, canvas.text_width(words, text) + 6, 18,
+                                   {area.x + 4, area.y + 4, area.width - 8, area.height - 8}, taken);
+    canvas.text({place.x + place.width / 2, place.y + place.height / 2}, words, text);
+    legend.push_back({LegendItem::Mark::ring, style::orange, "compromise: largest product of gains"});
+  }
+  draw_legend(canvas, {area.x, kHeight - 24}, legend);
+  canvas.save(file);
+}
+
+void draw_history_fronts(const std::filesystem::path& file, const PlanResult& result, const PlanConfig& config) {
+  const FrontView view(config);
+  // Five moments, closer together at the start, where the front still moves.
+  std::vector<const PlanIteration*> moments;
+  if (!result.history.empty()) {
+    const double last = static_cast<double>(result.history.size() - 1);
+    for (const double share : {0.0, 0.04, 0.16, 0.45, 1.0}) {
+      const PlanIteration* line = &result.history[static_cast<std::size_t>(share * last + 0.5)];
+      if (moments.empty() || moments.back() != line) moments.push_back(line);
+    }
+  }
+  std::vector<FrontDot> dots;
+  for (const PlanIteration* line : moments)
+    for (const auto& f : line->front) dots.push_back(view.objectives(f));
+  Canvas canvas(kWidth, kHeight);
+  const Rect area = frame(false);
+  const Chart chart(canvas, area, view.x_axis(dots), view.y_axis(dots), "Convergence of the front",
+                    problem_line(config) + ", as the search saw it");
+  std::vector<LegendItem> legend;
+  for (std::size_t k = 0; k < moments.size(); ++k) {
+    const double t = moments.size() == 1 ? 1 : static_cast<double>(k) / static_cast<double>(moments.size() - 1);
+    const Colour colour = ramp(std::array<Colour, 3>{{{0.96, 0.72, 0.42}, {0.80, 0.36, 0.42}, style::blue}}, t);
+    for (const auto& f : moments[k]->front) {
+      const FrontDot dot = view.objectives(f);
+      canvas.disc(chart.at(dot.x, dot.y), 3.6, colour, 0.85);
+    }
+    legend.push_back({LegendItem::Mark::filled, colour, "iteration " + std::to_string(moments[k]->iteration)});
+  }
+  draw_legend(canvas, {area.x - 40, kHeight - 24}, legend);
+  canvas.save(file);
+}
+
+}  // namespace vantage

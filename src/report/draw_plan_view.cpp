@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+
+#include "report/chart.hpp"
+#include "report/outline.hpp"
+#include "report/relief.hpp"
+#include "report/spread.hpp"
+#include "report/text.hpp"
+#include "vantage/error.hpp"
+#include "vantage/export.hpp"
+
+namespace vantage {
+namespace {
+
+constexpr double kLeast = 0.01;          // overlaps below are not drawn, as in figure 12 of the method
+constexpr double kMostWidth = 9;         // of the strongest link
+constexpr double kDisc = 10.5;           // radius of a station's number
+constexpr std::size_t kPixelsPerUnit = 2, kSupersampling = 2;
+constexpr Colour kStation{0.10, 0.22, 0.45}, kLink{0.16, 0.34, 0.66}, kSkipped{0.72, 0.12, 0.12}, kSearch{0.05, 0.45, 0.25};
+
+// What the map must show: surveyed meshes, search area and stations; ground that reaches further is cut off.
+Box window_of(const SceneData& scene, const SearchMesh& mesh, std::span<const PlacedStation> stations) {
+  Box box;
+  for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+    if (scene.meshes[m].role != Role::surveyed) continue;
+    const MeshRange& range = scene.ranges[m];
+    for (std::uint32_t t = range.first_triangle; t < range.first_triangle + range.triangle_count; ++t)
+      for (const std::uint32_t v : scene.triangles[t])
+        box.extend(scene.origin + Vec3{scene.positions[v].x, scene.positions[v].y, scene.positions[v].z});
+  }
+  for (const auto& t : mesh.triangles)
+    for (const std::uint32_t v : t) box.extend(mesh.positions[v]);
+  for (const PlacedStation& s : stations)
+    if (s.status != StationStatus::hole) box.extend(s.position);
+  if (box.empty()) throw Error(Errc::invalid_argument, "draw_plan_view: there is neither a surveyed mesh nor a search area");
+  const double margin = 0.03 * std::max({box.size().x, box.size().y, 0.1});
+  box.min = box.min - Vec3{margin, margin, 0}, box.max = box.max + Vec3{margin, margin, 0};
+  return box;
+}
+
+// Below a roof a map would show the roof. Where most of the search area is covered, the site is cut just above the scanners.
+double section_height(const SearchMesh& mesh, const HeightBuffer& heights, const SceneData& scene, std::span<const PlacedStation> stations) {
+  const MapWindow& w = heights.window;
+  double covered = 0, all = 0;
+  std::vector<double> grounds;
+  for (const auto& t : mesh.triangles) {
+    const Vec3 &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
+    const Vec3 centre = (a + b + c) * (1.0 / 3), n = cross(b - a, c - a);
+    const double area = std::abs(n.z) / 2;
+    const double column = (centre.x - w.x_min) / w.pixel_m, row = (w.y_max - centre.y) / w.pixel_m;
+    if (column < 0 || row < 0 || column >= static_cast<double>(w.columns) || row >= static_cast<double>(w.rows)) continue;
+    const float top = heights.z[static_cast<std::size_t>(row) * w.columns + static_cast<std::size_t>(column)];
+    all += area;
+    if (double{top} + scene.origin.z > centre.z + 1.5) covered += area;
+    grounds.push_back(centre.z);
+  }
+  if (!(covered > 0.5 * all)) return std::numeric_limits<double>::infinity();
+  double head = std::numeric_limits<double>::lowest();
+  for (const PlacedStation& s : stations)
+    if (s.status != StationStatus::hole) head = std::max(head, s.position.z);
+  if (head > std::numeric_limits<double>::lowest()) return head + 0.2;
+  std::nth_element(grounds.begin(), grounds.begin() + static_cast<std::ptrdiff_t>(grounds.size() / 2), grounds.end());
+  return grounds[grounds.size() / 2] + 2;
+}
+
+double link_width(double overlap, double most) { return 0.8 + (kMostWidth - 0.8) * overlap / most; }
+double link_opacity(double overlap, double most) { return 0.35 + 0.55 * overlap / most; }
+
+void draw_scale_bar(Canvas& canvas, const Rect& map, double metre) {
+  double length = 1;
+  while (length * metre > 0.25 * map.width) length /= 10;
+  for (const double factor : {50.0, 20.0, 10.0, 5.0, 2.0, 1.0})
+    if (factor * length * metre <= 0.25 * map.width) {
+      length *= factor;
+      break;
+    }
+  const std::string words = number(length) + " m";
+  const double width = length * metre;
+  const Rect box{map.x + 10, map.bottom() - 40, std::max(width, canvas.text_width(words, {.size = 12.5})) + 20, 32};
+  canvas.fill(box, {1, 1, 1}, 0.8);
+  const double x = box.x + 10, y = box.bottom() - 8;
+  canvas.line({x, y}, {x + width, y}, {.width = 2});
+  for (const double end : {x, x + width}) canvas.line({end, y - 4}, {end, y + 1}, {.width = 2});
+  canvas.text({x + width / 2, y - 14}, words, {.size = 12.5, .across = Align::middle});
+}
+
+}  // namespace
+
+void draw_plan_view(const std::filesystem::path& file, const Scene& scene, const SearchArea& area,
+                    std::span<const PlacedStation> stations, const OverlapMatrix& overlap, const std::string& title) {
+  if (overlap.size() != stations.size() && overlap.size() != 0)
+    throw Error(Errc::invalid_argument, "draw_plan_view: " + std::to_string(stations.size()) + " stations, but an overlap matrix of " +
+                                            std::to_string(overlap.size()));
+  const SceneData& data = scene.data();
+  const SearchMesh& mesh = area.mesh();
+  const Box window = window_of(data, mesh, stations);
+  const double metre = std::min(700 / window.size().x, 640 / window.size().y);  // canvas units
+  const Rect map{86, 68, std::floor(window.size().x * metre), std::floor(window.size().y * metre)};
+  constexpr double kPanel = 196, kPanelHeight = 330;
+  Canvas canvas(map.right() + 26 + kPanel, std::max(map.bottom() + 64, map.y + kPanelHeight));
+
+  const std::size_t fine = kPixelsPerUnit * kSupersampling;
+  const MapWindow pixels{.x_min = window.min.x,
+                         .y_max = window.max.y,
+                         .pixel_m = 1 / (metre * static_cast<double>(fine)),
+                         .columns = static_cast<std::size_t>(map.width) * fine,
+                         .rows = static_cast<std::size_t>(map.height) * fine};
+  HeightBuffer heights = look_from_above(data, pixels, std::numeric_limits<double>::infinity());
+  const double cut = section_height(mesh, heights, data, stations);
+  if (std::isfinite(cut)) heights = look_from_above(data, pixels, cut);
+  std::string subtitle = "Site from above";
+  if (std::isfinite(cut)) subtitle += ", cut at z = " + fixed(cut, 1) + " m";
+  if (mesh.triangles.size() > 0 && area.derived()) subtitle += "; search area derived from walkable surfaces";
+  const Chart chart(canvas, map,
+                    {.label = "x (m)", .low = window.min.x, .high = window.min.x + map.width / metre, .wanted_ticks = 7},
+                    {.label = "y (m)", .low = window.max.y - map.height / metre, .high = window.max.y, .wanted_ticks = 7}, title, subtitle);
+  canvas.image(map, halve(shade(data, heights), pixels.columns), pixels.columns / 2);
+
+  canvas.clip(map);
+  for (const auto& [a, b] : outline(mesh))
+    canvas.line(chart.at(a.x, a.y), chart.at(b.x, b.y), {.colour = kSearch, .width = 1.3, .opacity = 0.8});
+  canvas.unclip();
+  canvas.rectangle(map, {.colour = style::faint, .width = 1});
+
+  // Stations: a disc with its number, moved aside with a leader where several stand close together.
+  std::vector<std::size_t> shown;
+  std::vector<Point> anchors;
+  for (std::size_t i = 0; i < stations.size(); ++i) {
+    if (stations[i].status == StationStatus::hole) continue;
+    shown.push_back(i);
+    anchors.push_back(chart.at(stations[i].position.x, stations[i].position.y));
+  }
+  std::vector<Point> discs = spread(anchors, kDisc);
+  for (Point& p : discs) p = {std::clamp(p.x, map.x + kDisc, map.right() - kDisc), std::clamp(p.y, map.y + kDisc, map.bottom() - kDisc)};
+
+  struct Link {
+    std::size_t a, b;
+    double overlap;
+  };
+  std::vector<Link> links;
+  double most = 0;
+  if (overlap.size() == stations.size()) {
+    for (std::size_t a = 0; a < shown.size(); ++a) {
+      for (std::size_t b = a + 1; b < shown.size(); ++b) {
+        const double value = overlap(shown[a], shown[b]);
+        if (value < kLeast) continue;
+        links.push_back({a, b, value});
+        most = std::max(most, value);
+      }
+    }
+  }
+  std::sort(links.begin(), links.end(), [](const Link& a, const Link& b) { return a.overlap < b.overlap; });
+  for (const Link& link : links) {
+    const double width = link_width(link.overlap, most);
+    canvas.line(discs[link.a], discs[link.b], {.colour = {1, 1, 1}, .width = width + 1.6, .opacity = 0.45});
+    canvas.line(discs[link.a], discs[link.b], {.colour = kLink, .width = width, .opacity = link_opacity(link.overlap, most)});
+  }
+  for (std::size_t k = 0; k < shown.size(); ++k) {
+    if (std::hypot(discs[k].x - anchors[k].x, discs[k].y - anchors[k].y) < 2) continue;
+    canvas.line(anchors[k], discs[k], {.colour = kStation, .width = 1.4});
+    canvas.disc(anchors[k], 3, kStation);
+  }
+  for (std::size_t k = 0; k < shown.size(); ++k) {
+    const bool skipped = stations[shown[k]].status != StationStatus::ok;
+    canvas.disc(discs[k], kDisc + 1.3, {1, 1, 1});
+    canvas.disc(discs[k], kDisc, skipped ? Colour{0.75, 0.75, 0.76} : kStation);
+    canvas.text(discs[k], std::to_string(shown[k] + 1),
+                {.size = 11.5, .bold = true, .colour = skipped ? style::ink : Colour{1, 1, 1}, .across = Align::middle});
+    if (!skipped) continue;
+    const double r = 0.72 * kDisc;
+    canvas.line({discs[k].x - r, discs[k].y - r}, {discs[k].x + r, discs[k].y + r}, {.colour = kSkipped, .width = 2.2});
+    canvas.line({discs[k].x - r, discs[k].y + r}, {discs[k].x + r, discs[k].y - r}, {.colour = kSkipped, .width = 2.2});
+  }
+  draw_scale_bar(canvas, map, metre);
+
+  const double left = map.right() + 24;
+  Point at{left, map.y + 8};
+  const auto words = [&](const std::string& text) { canvas.text({at.x + 34, at.y}, text, {.size = 12.5}); };
+  const auto swatch = [&](const Colour& colour, const std::string& text) {
+    canvas.fill({at.x, at.y - 7, 24, 14}, colour);
+    words(text);
+    at.y += 24;
+  };
+  const bool blocking = std::any_of(data.meshes.begin(), data.meshes.end(), [](const MeshInfo& m) { return m.role == Role::blocking; });
+  swatch(kSurveyedTint, "surveyed");
+  if (blocking) swatch(kBlockingTint, "not surveyed");
+  canvas.line({at.x, at.y}, {at.x + 24, at.y}, {.colour = kSearch, .width = 1.6});
+  words("search area");
+  at.y += 28;
+  canvas.disc({at.x + 12, at.y}, kDisc, kStation);
+  canvas.text({at.x + 12, at.y}, "1", {.size = 11.5, .bold = true, .colour = {1, 1, 1}, .across = Align::middle});
+  words("station");
+  at.y += 28;
+  if (std::any_of(stations.begin(), stations.end(), [](const PlacedStation& s) { return s.status == StationStatus::clash; })) {
+    const double r = 0.72 * kDisc;
+    const Point c{at.x + 12, at.y};
+    canvas.disc(c, kDisc, {0.75, 0.75, 0.76});
+    canvas.line({c.x - r, c.y - r}, {c.x + r, c.y + r}, {.colour = kSkipped, .width = 2.2});
+    canvas.line({c.x - r, c.y + r}, {c.x + r, c.y - r}, {.colour = kSkipped, .width = 2.2});
+    words("skipped: clash");
+    at.y += 28;
+  }
+  const auto holes = std::count_if(stations.begin(), stations.end(), [](const PlacedStation& s) { return s.status == StationStatus::hole; });
+  if (holes > 0) {
+    canvas.text(at, std::to_string(holes) + (holes == 1 ? " station in a hole," : " stations in holes,"), {.size = 12.5});
+    canvas.text({at.x, at.y + 17}, "not shown", {.size = 12.5});
+    at.y += 45;
+  }
+  if (!links.empty()) {
+    at.y += 6;
+    canvas.text(at, "Overlap of two stations", {.size = 12.5, .bold = true});
+    at.y += 22;
+    std::vector<double> samples = nice_ticks(0, most, 3);
+    std::erase_if(samples, [](double v) { return v < kLeast; });
+    const auto labels = tick_labels(samples);
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+      canvas.line({at.x, at.y}, {at.x + 24, at.y},
+                  {.colour = kLink, .width = link_width(samples[k], most), .opacity = link_opacity(samples[k], most)});
+      words(labels[k]);
+      at.y += 22;
+    }
+    canvas.text(at, "largest " + fixed(most, 3), {.size = 12.5, .colour = style::faint});
+    canvas.text({at.x, at.y + 17}, "below " + number(kLeast) + " not drawn", {.size = 12.5, .colour = style::faint});
+  } else if (stations.size() > 1 && overlap.size() == stations.size()) {
+    canvas.text({at.x, at.y + 6}, "no overlap above " + number(kLeast), {.size = 12.5, .colour = style::faint});
+  }
+  canvas.save(file);
+}
+
+}  // namespace vantage

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <system_error>
+
+#include "report/tables.hpp"
+#include "report/text.hpp"
+#include "vantage/error.hpp"
+#include "vantage/export.hpp"
+
+namespace vantage {
+
+std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& result, const PlanConfig& config, Simulator& simulator,
+                       const SearchArea& area) {
+  std::error_code failed;
+  std::filesystem::create_directories(folder, failed);
+  if (failed) throw Error(Errc::io, "cannot make the folder " + folder.string() + ": " + failed.message());
+  const std::size_t chosen = compromise(result, config.problem);
+  const PlanEntry& entry = result.front[chosen];
+
+  write_front_csv(folder / "front.csv", result, config);
+  write_text(folder / "front.json", front_json(result, config, simulator));
+  write_history_csv(folder / "history.csv", result, config);
+  write_fronts_csv(folder / "fronts.csv", result, config);
+  write_stations_csv(folder / "stations.csv", entry.stations);
+
+  VoxelField field;
+  const NetworkCounts counts = simulator.evaluate(to_network(entry.stations), {.overlap = true, .field = &field});
+  const OverlapMatrix overlap = overlap_matrix(counts);
+  write_overlap_csv(folder / "overlap.csv", overlap);
+  write_coverage_ply(folder / "coverage.ply", simulator, field);
+
+  const double exact = coverage(counts, simulator.goal_density());
+  const std::string title = std::to_string(entry.stations.size()) + (entry.stations.size() == 1 ? " station" : " stations") +
+                            ": coverage " + fixed(exact, 3) + ", overlap " + fixed(clustering_coefficient(overlap), 3);
+  for (const char* extension : {".png", ".svg"}) {
+    const auto picture = [&](const char* name) { return folder / (std::string(name) + extension); };
+    draw_front(picture("front"), result, config);
+    draw_hypervolume(picture("hypervolume"), result, config);
+    draw_history_fronts(picture("history"), result, config);
+    draw_plan_view(picture("plan"), simulator.scene(), area, entry.stations, overlap, title);
+  }
+  return chosen;
+}
+
+}  // namespace vantage
