@@ -20,6 +20,12 @@ struct NoiseTable {
   bool empty() const { return sigma_m.empty(); }
 };
 
+/// Direction of a ray in the survey frame.
+struct RayAngles {
+  Angle zenith;   ///< From straight up.
+  Angle azimuth;  ///< From +X towards +Y; grows from heading − H/2 without wrapping.
+};
+
 /// A terrestrial laser scanner (section 3.2). Rays: floor(H/Δh) azimuths times floor(V/2/Δv) zeniths; both floors guarded by 1e-9.
 /// Ray (i, j): zenith θ₀ + (i + ½)·Δv, azimuth heading − H/2 + (j + ½)·Δh, direction (sin θ cos φ, sin θ sin φ, cos θ); its index is
 /// i·columns + j everywhere.
@@ -39,6 +45,7 @@ struct Scanner {
   std::uint32_t rows() const;     ///< Zenith steps.
   std::uint32_t columns() const;  ///< Azimuth steps.
   std::uint64_t rays() const { return std::uint64_t{rows()} * columns(); }
+  RayAngles angles(std::uint64_t ray) const;  ///< REQUIRES: ray < rays().
   /// Throws Error invalid_argument with the member and its value.
   void check() const;
 };

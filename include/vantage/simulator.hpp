@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "vantage/objective.hpp"
+#include "vantage/panorama.hpp"
 #include "vantage/progress.hpp"
 #include "vantage/scanner.hpp"
 #include "vantage/scene.hpp"
@@ -69,7 +70,7 @@ enum ScanOutput : std::uint32_t {
   scan_normal = 4,         ///< unit, turned towards the scanner
   scan_reflectivity = 8,   ///< R·(I·(−N)) in [0, 1]
   scan_ids = 16,           ///< mesh and primitive
-  scan_colour = 32,        ///< RGBA of the material
+  scan_colour = 32,        ///< RGBA of the panorama where one is given, else of the material
   scan_voxel = 64,         ///< surveyed voxel the point counts in
 };
 
@@ -83,7 +84,7 @@ struct ScanChunk {
   std::vector<float> reflectivity;
   std::vector<std::int32_t> mesh;              ///< Index into Scene::meshes(); −1 without a hit.
   std::vector<std::uint32_t> primitive;        ///< Triangle of the scene (all meshes in order); 2³²−1 without a hit.
-  std::vector<std::uint32_t> colour;           ///< 0xAABBGGRR.
+  std::vector<std::uint32_t> colour;           ///< 0xAABBGGRR, sRGB; 0 without a hit.
   std::vector<std::uint32_t> voxel;            ///< Rank of the surveyed voxel in Morton order; 2³²−1 where the point does not count.
 };
 
@@ -120,7 +121,8 @@ struct SampleOptions {
 /// Not thread-safe: one Simulator per thread. Same inputs, seed and engine: same result, bit for bit.
 class Simulator {
  public:
-  /// Throws Error: invalid_argument (goal density below 1, bad scanner), no_suitable_device, out_of_memory.
+  /// Throws Error: invalid_argument (goal density below 1, with the smallest user size that works; bad scanner), no_suitable_device,
+  /// out_of_memory.
   Simulator(const Scene& scene, const Scanner& scanner, const SimulatorConfig& config = {});
   Simulator(Simulator&&) noexcept;
   Simulator& operator=(Simulator&&) noexcept;
@@ -137,8 +139,10 @@ class Simulator {
   Vec3 voxel_centre(std::uint64_t rank) const; ///< Survey frame. REQUIRES: rank < voxel_count().
 
   /// Scans one station in chunks of rows; `sink` sees them in ray order. `place` is the station's place in its network: it keys the noise.
+  /// With a panorama, colours are looked up in it by direction, as in the paper. An inactive station has no chunks.
   ScanSummary scan(const Station& station, std::uint32_t place, std::uint32_t outputs,
-                   const std::function<void(const ScanChunk&)>& sink, const Progress& progress = {});
+                   const std::function<void(const ScanChunk&)>& sink, const Progress& progress = {},
+                   const Panorama* panorama = nullptr);
 
   /// Every ray of every station. REQUIRES: 1 to 64 stations. A cancelled evaluation says so in `cancelled`.
   NetworkCounts evaluate(const Network& network, const EvaluateOptions& options = {}, const Progress& progress = {});
@@ -146,6 +150,12 @@ class Simulator {
   /// Networks on a sample of the voxels; one submission for all.
   std::vector<NetworkCounts> evaluate_sampled(std::span<const Network> networks, const SampleOptions& options = {},
                                               const Progress& progress = {});
+
+  /// How many voxels `evaluate_sampled` needs so that no standard error, of coverage and, with `overlap`, of overlap, exceeds `wanted`
+  /// on any of `networks`. Found on pilot samples that grow until one holds; at most `voxel_count()`, then the error is 0.
+  /// Throws Error invalid_argument unless wanted > 0.
+  std::uint64_t voxels_for_standard_error(std::span<const Network> networks, double wanted, bool overlap = true,
+                                          const Progress& progress = {});
 
  private:
   struct Impl;

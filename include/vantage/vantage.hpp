@@ -6,6 +6,7 @@
 #include "vantage/export.hpp"
 #include "vantage/objective.hpp"
 #include "vantage/optimiser.hpp"
+#include "vantage/panorama.hpp"
 #include "vantage/placement.hpp"
 #include "vantage/planner.hpp"
 #include "vantage/progress.hpp"

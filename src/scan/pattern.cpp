@@ -22,9 +22,9 @@ RayPattern make_pattern(const Scanner& scanner) {
   RayPattern pattern;
   pattern.zenith_step = scanner.zenith_step.in_radians();
   pattern.azimuth_step = scanner.azimuth_step.in_radians();
-  pattern.first_zenith = scanner.zenith_start.in_radians() + 0.5 * pattern.zenith_step;
-  pattern.first_azimuth =
-      scanner.heading.in_radians() - 0.5 * scanner.horizontal_angle.in_radians() + 0.5 * pattern.azimuth_step;
+  const RayAngles first = scanner.angles(0);
+  pattern.first_zenith = first.zenith.in_radians();
+  pattern.first_azimuth = first.azimuth.in_radians();
   pattern.min_range = static_cast<float>(scanner.min_range_m);
   pattern.max_range = static_cast<float>(scanner.max_range_m);
   fill(pattern.sin_zenith, pattern.cos_zenith, pattern.first_zenith, pattern.zenith_step, scanner.rows());

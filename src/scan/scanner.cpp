@@ -68,6 +68,13 @@ std::uint32_t Scanner::rows() const { return static_cast<std::uint32_t>(steps(ze
 
 std::uint32_t Scanner::columns() const { return static_cast<std::uint32_t>(steps(horizontal_angle, azimuth_step)); }
 
+RayAngles Scanner::angles(std::uint64_t ray) const {
+  const double row = static_cast<double>(ray / columns()), column = static_cast<double>(ray % columns());
+  return {Angle::radians(zenith_start.in_radians() + (row + 0.5) * zenith_step.in_radians()),
+          Angle::radians(heading.in_radians() - 0.5 * horizontal_angle.in_radians() +
+                         (column + 0.5) * azimuth_step.in_radians())};
+}
+
 void Scanner::check() const {
   if (!std::isfinite(heading.in_degrees())) refuse("heading in degrees", heading.in_degrees(), "finite");
   const double horizontal = horizontal_angle.in_degrees(), vertical = vertical_angle.in_degrees();

@@ -39,6 +39,16 @@ TEST(Scanner, FloorsAreGuarded) {
   EXPECT_EQ(narrow.columns(), 1u);
 }
 
+TEST(Scanner, AnglesFollowTheIndex) {
+  Scanner scanner = with_step(0.1);
+  scanner.heading = Angle::degrees(10);
+  EXPECT_NEAR(scanner.angles(0).zenith.in_degrees(), 0.05, 1e-12);
+  EXPECT_NEAR(scanner.angles(0).azimuth.in_degrees(), -169.95, 1e-12);
+  const std::uint64_t ray = 700ull * 3600 + 1800;
+  EXPECT_NEAR(scanner.angles(ray).zenith.in_degrees(), 70.05, 1e-12);
+  EXPECT_NEAR(scanner.angles(ray).azimuth.in_degrees(), 10.05, 1e-12);
+}
+
 TEST(Scanner, DefaultAndPaperScannersPass) {
   EXPECT_NO_THROW(Scanner{}.check());
   Scanner scanner = with_step(0.0286);

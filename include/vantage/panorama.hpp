@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Equirectangular images around a station: colours for its points, and pictures of what it sees.
+///
+/// Every image here covers the full sphere as someone at the station sees it: the heading in the middle, azimuth falling from left to
+/// right (what lies to the right is on the right), zenith at the top, nadir at the bottom.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "vantage/progress.hpp"
+#include "vantage/types.hpp"
+
+namespace vantage {
+
+class Scene;
+struct SimulatorConfig;
+
+/// An image in sRGB with 8 bits a channel, row by row from the top.
+struct RgbaImage {
+  std::uint32_t width = 0, height = 0;
+  std::vector<std::uint8_t> rgba;
+};
+
+/// Reads a PNG or JPEG. Throws Error: io, malformed_file.
+RgbaImage read_image(const std::filesystem::path& file);
+/// Writes a PNG, whole or not at all. Throws Error: io, invalid_argument (pixels missing).
+void write_png(const std::filesystem::path& file, const RgbaImage& image);
+
+/// A panoramic photograph that gives a scan its colours (section 3.2). Immutable; safe to read from any thread.
+class Panorama {
+ public:
+  /// `heading` is the azimuth of the image's middle. Throws Error invalid_argument for an empty image.
+  explicit Panorama(RgbaImage image, Angle heading = {});
+  /// Throws Error: io, malformed_file.
+  static Panorama load(const std::filesystem::path& file, Angle heading = {});
+  /// Colour in a direction, 0xAABBGGRR: bilinear in the stored values, around the seam and up to the poles.
+  std::uint32_t colour(Angle zenith, Angle azimuth) const;
+  const RgbaImage& image() const noexcept { return image_; }
+  Angle heading() const noexcept { return heading_; }
+
+ private:
+  RgbaImage image_;
+  Angle heading_;
+};
+
+/// What a rendered panorama shows (figure 2).
+enum class PanoramaView {
+  colour,        ///< Material colours, shaded by a lamp at the station, so that form shows.
+  range,         ///< Distance on a logarithmic scale.
+  normal,        ///< (1 + n) / 2 as red, green, blue.
+  reflectivity,  ///< R·(I·(−N)).
+  mesh,          ///< One colour a mesh, shaded.
+};
+std::string to_string(PanoramaView);
+/// Throws Error invalid_argument and lists the views.
+PanoramaView panorama_view_from_string(const std::string&);
+/// All of them.
+std::span<const PanoramaView> panorama_views() noexcept;
+
+struct PanoramaOptions {
+  std::uint32_t width = 2048;     ///< Pixels; even. The height is half of it.
+  std::uint32_t supersample = 2;  ///< Rays a pixel and direction, 1 to 8: edges get smooth.
+  Angle heading = {};             ///< Azimuth of the image's middle.
+  double min_range_m = 0.1;       ///< What is nearer is not seen.
+  double max_range_m = 1000;      ///< What is farther is sky.
+};
+
+/// A rendered view and the scale of its colours.
+struct PanoramaImage {
+  PanoramaView view = PanoramaView::colour;
+  RgbaImage image;
+  double scale_low = 0, scale_high = 0;  ///< range: metres at the scale's ends; reflectivity: 0 and the largest.
+};
+
+/// Renders panoramas of a scene. Not thread-safe. Memory grows with the image, not with supersampling (2 bytes a ray for `range` apart).
+class PanoramaRenderer {
+ public:
+  /// Takes engine and device from `config`; the rest of it has no part. Throws Error: invalid_argument, no_suitable_device.
+  PanoramaRenderer(const Scene& scene, const PanoramaOptions& options, const SimulatorConfig& config);
+  PanoramaRenderer(PanoramaRenderer&&) noexcept;
+  PanoramaRenderer& operator=(PanoramaRenderer&&) noexcept;
+  ~PanoramaRenderer();
+  /// The views asked for, in their order, from `position` (survey frame). Empty where `progress` stopped it.
+  std::vector<PanoramaImage> render(const Vec3& position, std::span<const PanoramaView> views, const Progress& progress = {});
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace vantage

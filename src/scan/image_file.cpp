@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fstream>
+#include <iterator>
+
+#include "core/atomic_file.hpp"
+#include "scene/image.hpp"
+#include "vantage/error.hpp"
+#include "vantage/panorama.hpp"
+
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#define STB_IMAGE_WRITE_STATIC
+#define STBI_WRITE_NO_STDIO
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
+#include <stb_image_write.h>
+#pragma GCC diagnostic pop
+
+namespace vantage {
+
+RgbaImage read_image(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw Error(Errc::io, "cannot read the image " + file.string());
+  const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  if (in.bad()) throw Error(Errc::io, "cannot read the image " + file.string());
+  std::string problem;
+  Image image = decode_image(bytes, problem);
+  if (image.rgba.empty())
+    throw Error(Errc::malformed_file, file.string() + " is no PNG or JPEG that can be read: " + problem);
+  return {image.width, image.height, std::move(image.rgba)};
+}
+
+void write_png(const std::filesystem::path& file, const RgbaImage& image) {
+  const std::size_t size = std::size_t{4} * image.width * image.height;
+  if (size == 0 || image.rgba.size() != size) {
+    throw Error(Errc::invalid_argument,
+                "cannot write " + file.string() + ": an image of " + std::to_string(image.width) + " × " +
+                    std::to_string(image.height) + " pixels must have " + std::to_string(size) +
+                    " bytes and at least one pixel; it has " + std::to_string(image.rgba.size()));
+  }
+  AtomicFile out(file);
+  const auto append = [](void* context, void* data, int bytes) {
+    static_cast<AtomicFile*>(context)->write(data, static_cast<std::size_t>(bytes));
+  };
+  if (!stbi_write_png_to_func(append, &out, static_cast<int>(image.width), static_cast<int>(image.height), 4,
+                              image.rgba.data(), static_cast<int>(4 * image.width)))
+    throw Error(Errc::out_of_memory, "cannot write " + file.string() + ": not enough memory to compress it");
+  out.commit();
+}
+
+}  // namespace vantage

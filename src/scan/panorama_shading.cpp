@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scan/panorama_shading.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace vantage {
+namespace {
+
+constexpr std::array<float, 2> ring_pixels{1.0f, 3.6f};
+constexpr int taps_a_ring = 8;
+constexpr float flat_cosine =
+    0.06f;  // a neighbour must rise this much over the tangent plane to count: hides facets of round pipes
+constexpr float obscurance_strength = 1.5f;
+constexpr LinearColour zenith_sky{0.24f, 0.41f, 0.72f, 1}, horizon_sky{0.76f, 0.84f, 0.92f, 1},
+    below{0.42f, 0.44f, 0.46f, 1};
+
+float dot(const std::array<float, 3>& a, const std::array<float, 3>& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+}  // namespace
+
+PanoramaShading::PanoramaShading(std::uint32_t rows, std::uint32_t columns, std::uint32_t supersample,
+                                 double first_azimuth, double extent_m)
+    : rows_(rows),
+      columns_(columns),
+      step_(static_cast<float>(std::numbers::pi / rows)),
+      extent_(static_cast<float>(extent_m)) {
+  for (std::uint32_t i = 0; i < rows; ++i) {
+    const double zenith = (i + 0.5) * std::numbers::pi / rows;
+    sin_zenith_.push_back(static_cast<float>(std::sin(zenith)));
+    cos_zenith_.push_back(static_cast<float>(std::cos(zenith)));
+  }
+  for (std::uint32_t j = 0; j < columns; ++j) {
+    const double azimuth = first_azimuth + j * 2 * std::numbers::pi / columns;
+    sin_azimuth_.push_back(static_cast<float>(std::sin(azimuth)));
+    cos_azimuth_.push_back(static_cast<float>(std::cos(azimuth)));
+  }
+  for (std::size_t ring = 0; ring < ring_pixels.size(); ++ring) {
+    const float radius = ring_pixels[ring] * static_cast<float>(supersample);
+    for (int k = 0; k < taps_a_ring; ++k) {
+      const double angle = (k + 0.5 * static_cast<double>(ring)) * 2 * std::numbers::pi / taps_a_ring;
+      const int down = static_cast<int>(std::lround(static_cast<double>(radius) * std::sin(angle)));
+      taps_.push_back({down, radius * static_cast<float>(std::cos(angle)), radius});
+      reach_ = std::max(reach_, static_cast<std::uint32_t>(std::abs(down)));
+    }
+  }
+}
+
+float PanoramaShading::light(const RowWindow& window, std::uint32_t row, std::uint32_t column) const {
+  const PanoramaRow& here = window[row];
+  const float range = here.range[column];
+  const std::array<float, 3>& normal = here.normal[column];
+  const std::array<float, 3> view = direction(row, column);
+  // Near the poles a ray step across is narrower than one down.
+  const float stretch = std::min(1 / sin_zenith_[row], static_cast<float>(columns_) / 64);
+
+  float covered = 0;
+  for (const Tap& tap : taps_) {
+    const std::int64_t other_row = static_cast<std::int64_t>(row) + tap.down;
+    if (other_row < 0 || other_row >= rows_ || !window.holds(other_row)) continue;
+    const auto across = static_cast<std::int64_t>(std::lround(tap.across * stretch));
+    const auto other_column =
+        static_cast<std::uint32_t>((column + across + 4 * static_cast<std::int64_t>(columns_)) % columns_);
+    const auto there = static_cast<std::uint32_t>(other_row);
+    const float other_range = window[there].range[other_column];
+    if (!std::isfinite(other_range)) continue;
+    const std::array<float, 3> other = direction(there, other_column);
+    std::array<float, 3> between;
+    for (int i = 0; i < 3; ++i) between[i] = other[i] * other_range - view[i] * range;
+    const float length = std::sqrt(dot(between, between));
+    if (!(length > 0)) continue;
+    const float rise = dot(between, normal) / length - flat_cosine;
+    if (rise <= 0) continue;
+    const float near =
+        length / (8 * tap.radius * step_ * range);  // what is far in front casts no crease, only a faint outline
+    covered += rise / (1 + near * near);
+  }
+  const float open = 1 / (1 + obscurance_strength * 4 * covered / static_cast<float>(taps_.size()));
+  const float facing = std::clamp(-dot(view, normal), 0.0f, 1.0f);
+  const float up = 0.5f + 0.5f * normal[2];
+  return open * (0.22f + 0.24f * up + 0.62f * facing);
+}
+
+float PanoramaShading::clearness(float range) const { return 1 - 0.45f * (1 - std::exp(-0.4f * range / extent_)); }
+
+LinearColour PanoramaShading::haze() const { return horizon_sky; }
+
+LinearColour PanoramaShading::sky(std::uint32_t row) const {
+  const float height = cos_zenith_[row];
+  const LinearColour& end = height >= 0 ? zenith_sky : below;
+  const float share = height >= 0 ? std::pow(height, 0.6f) : std::min(1.0f, -6 * height);
+  LinearColour colour{0, 0, 0, 1};
+  for (int i = 0; i < 3; ++i) colour[i] = horizon_sky[i] + (end[i] - horizon_sky[i]) * share;
+  return colour;
+}
+
+}  // namespace vantage

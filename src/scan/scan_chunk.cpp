@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scan/scan_chunk.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
+
+#include <functional>
+
+#include "scan/surface_colour.hpp"
+
+namespace vantage {
+namespace {
+
+constexpr std::uint32_t no_primitive = 0xFFFFFFFFu;
+constexpr std::size_t grain = 4096;
+
+// Neighbouring rays hit the same mesh mostly, so the last one is tried before searching.
+class MeshLookup {
+ public:
+  explicit MeshLookup(const SceneData& scene) : scene_(scene) {}
+  std::uint32_t operator()(std::uint32_t primitive) {
+    const MeshRange& range = scene_.ranges[last_];
+    if (primitive - range.first_triangle >= range.triangle_count) last_ = scene_.mesh_of(primitive);
+    return last_;
+  }
+
+ private:
+  const SceneData& scene_;
+  std::uint32_t last_ = 0;
+};
+
+struct Sums {
+  std::uint64_t points = 0, counted = 0, surveyed = 0;
+  friend Sums operator+(const Sums& a, const Sums& b) {
+    return {a.points + b.points, a.counted + b.counted, a.surveyed + b.surveyed};
+  }
+};
+
+Sums sum_rays(const Tracer::RawChunk& raw, std::size_t count, const SceneData& scene) {
+  return tbb::parallel_reduce(
+      tbb::blocked_range<std::size_t>(0, count, grain), Sums{},
+      [&](const tbb::blocked_range<std::size_t>& range, Sums sums) {
+        MeshLookup mesh_of(scene);
+        for (std::size_t k = range.begin(); k != range.end(); ++k) {
+          if (raw.primitive[k] == no_primitive) continue;
+          ++sums.points;
+          sums.counted += raw.voxel[k] != no_voxel;
+          sums.surveyed += scene.meshes[mesh_of(raw.primitive[k])].role == Role::surveyed;
+        }
+        return sums;
+      },
+      std::plus<>());
+}
+
+// One element an output for each ray; the arrays that were not asked for stay empty.
+template <class To, class Make>
+void fill(std::vector<To>& to, std::size_t count, Make make) {
+  to.resize(count);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
+                    [&](const tbb::blocked_range<std::size_t>& range) { make(range.begin(), range.end()); });
+}
+
+std::array<float, 3> array_of(const Float3& v) { return {v.x, v.y, v.z}; }
+
+}  // namespace
+
+std::uint32_t raw_outputs(std::uint32_t outputs, bool with_panorama) {
+  std::uint32_t raw = Tracer::primitive | Tracer::voxel;
+  if (outputs & scan_range) raw |= Tracer::range;
+  if (outputs & scan_position) raw |= Tracer::position;
+  if (outputs & scan_normal) raw |= Tracer::normal;
+  if (outputs & scan_reflectivity) raw |= Tracer::reflectivity;
+  if ((outputs & scan_colour) && !with_panorama) raw |= Tracer::barycentric;
+  return raw;
+}
+
+void fill_chunk(ScanChunk& chunk, Tracer::RawChunk& raw, std::uint32_t outputs, const SceneData& scene,
+                const Scanner& scanner, const Panorama* panorama, ScanSummary& summary) {
+  const auto count = static_cast<std::size_t>(chunk.ray_count);
+  const Sums sums = sum_rays(raw, count, scene);
+  summary.rays += chunk.ray_count;
+  summary.points += sums.points;
+  summary.points_on_surveyed += sums.counted;
+  summary.hits_on_surveyed += sums.surveyed;
+
+  if (outputs & scan_position) {
+    fill(chunk.position, count, [&](std::size_t k, std::size_t end) {
+      for (; k != end; ++k) chunk.position[k] = array_of(raw.position[k]);
+    });
+  }
+  if (outputs & scan_normal) {
+    fill(chunk.normal, count, [&](std::size_t k, std::size_t end) {
+      for (; k != end; ++k) chunk.normal[k] = array_of(raw.normal[k]);
+    });
+  }
+  if (outputs & scan_ids) {
+    fill(chunk.mesh, count, [&](std::size_t k, std::size_t end) {
+      MeshLookup mesh_of(scene);
+      for (; k != end; ++k)
+        chunk.mesh[k] = raw.primitive[k] == no_primitive ? -1 : static_cast<std::int32_t>(mesh_of(raw.primitive[k]));
+    });
+  }
+  if (outputs & scan_colour) {
+    fill(chunk.colour, count, [&](std::size_t k, std::size_t end) {
+      MeshLookup mesh_of(scene);
+      for (; k != end; ++k) {
+        if (raw.primitive[k] == no_primitive) {
+          chunk.colour[k] = 0;
+        } else if (panorama) {
+          const RayAngles angles = scanner.angles(chunk.first_ray + k);
+          chunk.colour[k] = panorama->colour(angles.zenith, angles.azimuth);
+        } else {
+          chunk.colour[k] = surface_colour(scene, mesh_of(raw.primitive[k]), raw.primitive[k], raw.barycentric[k]);
+        }
+      }
+    });
+  }
+  // The rest goes over as it is. Swapped, so that both sides keep their memory from chunk to chunk.
+  if (outputs & scan_ids) {
+    chunk.primitive.swap(raw.primitive);
+    chunk.primitive.resize(count);
+  }
+  if (outputs & scan_range) {
+    chunk.range_m.swap(raw.range);
+    chunk.range_m.resize(count);
+  }
+  if (outputs & scan_reflectivity) {
+    chunk.reflectivity.swap(raw.reflectivity);
+    chunk.reflectivity.resize(count);
+  }
+  if (outputs & scan_voxel) {
+    chunk.voxel.swap(raw.voxel);
+    chunk.voxel.resize(count);
+  }
+}
+
+}  // namespace vantage

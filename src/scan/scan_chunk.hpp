@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "scene/scene_data.hpp"
+#include "trace/tracer.hpp"
+#include "vantage/panorama.hpp"
+#include "vantage/scanner.hpp"
+#include "vantage/simulator.hpp"
+
+namespace vantage {
+
+// What an engine must fill for `outputs` (ScanOutput bits), and for the sums of a scan, which are always taken.
+std::uint32_t raw_outputs(std::uint32_t outputs, bool with_panorama);
+
+// Turns an engine's rays into what the user asked for; mesh and colour are derived here. Adds to `summary`.
+// `chunk.first_ray` and `chunk.ray_count` are set already; its other arrays are overwritten.
+void fill_chunk(ScanChunk& chunk, Tracer::RawChunk& raw, std::uint32_t outputs, const SceneData& scene,
+                const Scanner& scanner, const Panorama* panorama, ScanSummary& summary);
+
+}  // namespace vantage

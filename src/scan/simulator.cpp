@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vantage/simulator.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <sstream>
+#include <utility>
+
+#include "scan/noise_model.hpp"
+#include "scan/pattern.hpp"
+#include "scan/scan_chunk.hpp"
+#include "scan/voxel_sample.hpp"
+#include "trace/tracer.hpp"
+#include "vantage/error.hpp"
+#include "voxel/voxel_grid.hpp"
+
+namespace vantage {
+namespace {
+
+constexpr std::size_t max_stations = 64;  // bits of a station mask
+constexpr std::uint32_t sample_groups = 20;
+constexpr std::uint32_t known_outputs =
+    scan_range | scan_position | scan_normal | scan_reflectivity | scan_ids | scan_colour | scan_voxel;
+
+// Six digits, rounded up: as a user size it still gives the voxel size that it names.
+std::string rounded_up(double metres) {
+  const double digit = std::pow(10.0, std::floor(std::log10(metres)) - 5);
+  std::ostringstream text;
+  text.precision(7);
+  text << std::ceil(metres / digit + 1e-3) * digit;
+  return text.str();
+}
+
+[[noreturn]] void refuse_goal_density(const VoxelGrid& grid, const SimulatorConfig& config) {
+  const double spacing = config.point_spacing_m;
+  const double smallest = grid.voxel_size() >= spacing ? grid.voxel_size() : 2 * grid.voxel_size();
+  std::ostringstream what;
+  what << "a user size of " << config.user_size_m << " m makes voxels smaller than the point spacing of " << spacing
+       << " m, so that the goal density is below 1: ";
+  if (grid.voxel_size() < spacing && grid.depth() == 0)
+    what << "all surveyed meshes fit in " << grid.voxel_size() << " m; choose a point spacing below that";
+  else
+    what << "choose a user size of at least " << rounded_up(smallest) << " m, or a smaller point spacing";
+  throw Error(Errc::invalid_argument, what.str());
+}
+
+std::shared_ptr<const VoxelGrid> build_grid(const SceneData& scene, const SimulatorConfig& config) {
+  if (!(std::isfinite(config.point_spacing_m) && config.point_spacing_m > 0)) {
+    throw Error(Errc::invalid_argument,
+                "the point spacing is " + std::to_string(config.point_spacing_m) + " m, but must be above 0");
+  }
+  // A user size below the spacing cannot work. The grid is then built for the spacing, to say what would.
+  const bool too_small = config.user_size_m > 0 && config.user_size_m < config.point_spacing_m;
+  auto grid =
+      std::make_shared<VoxelGrid>(VoxelGrid::build(scene, too_small ? config.point_spacing_m : config.user_size_m));
+  if (too_small || grid->voxel_size() < config.point_spacing_m) refuse_goal_density(*grid, config);
+  return grid;
+}
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+// What a network without an active station leaves: the voxels, and zeros.
+NetworkCounts nothing_seen(std::uint64_t voxels, std::size_t stations, bool overlap) {
+  NetworkCounts counts;
+  counts.voxels = voxels;
+  counts.stations = static_cast<std::uint32_t>(stations);
+  if (overlap) {
+    counts.seen.assign(stations, 0);
+    counts.shared.assign(stations * (stations - 1) / 2, 0);
+  }
+  return counts;
+}
+
+}  // namespace
+
+struct Simulator::Impl {
+  Impl(const Scene& s, const Scanner& sc, const SimulatorConfig& c) : scene(s), scanner(sc), config(c) {
+    scanner.check();
+    grid = build_grid(data(), config);
+    goal = grid->voxel_size() * grid->voxel_size() / (config.point_spacing_m * config.point_spacing_m);
+    pattern = std::make_shared<RayPattern>(make_pattern(scanner));
+    noise = config.noise ? make_noise_model(scanner, config.seed) : NoiseModel{.sigma = {}, .seed = config.seed};
+    // Shares the scene's storage for as long as the engine wants it.
+    const auto kept = std::make_shared<const Scene>(scene);
+    tracer = make_tracer(config.engine, config.device_index,
+                         {.scene = {kept, &kept->data()},
+                          .grid = grid,
+                          .pattern = pattern,
+                          .noise = std::make_shared<const NoiseModel>(noise),
+                          .max_rays_per_dispatch = config.max_rays_per_dispatch,
+                          .validation = config.validation});
+    tracer->set_goal_density(goal);
+  }
+
+  const SceneData& data() const { return scene.data(); }
+
+  TraceStation trace_station(const Station& station, std::size_t place) const {
+    const Vec3 local = station.position - data().origin;
+    if (!(std::isfinite(local.x) && std::isfinite(local.y) && std::isfinite(local.z))) {
+      std::ostringstream what;
+      what << "station " << place + 1 << " stands at (" << station.position.x << ", " << station.position.y << ", "
+           << station.position.z << "); a position must be finite";
+      throw Error(Errc::invalid_argument, what.str());
+    }
+    return {{static_cast<float>(local.x), static_cast<float>(local.y), static_cast<float>(local.z)},
+            static_cast<std::uint32_t>(place)};
+  }
+
+  std::vector<TraceStation> active_stations(const Network& network) const {
+    if (network.empty() || network.size() > max_stations) {
+      throw Error(Errc::invalid_argument, "a network has 1 to " + std::to_string(max_stations) +
+                                              " stations; this one has " + std::to_string(network.size()));
+    }
+    std::vector<TraceStation> active;
+    for (std::size_t place = 0; place < network.size(); ++place) {
+      if (network[place].active) active.push_back(trace_station(network[place], place));
+    }
+    return active;
+  }
+
+  // Of the size asked for last; the optimiser asks for one size all the time.
+  const std::vector<std::uint32_t>& sample(std::uint64_t size) {
+    size = std::min(size, grid->size());
+    if (sampled.size() != size) sampled = voxel_sample(grid->size(), size, config.seed);
+    return sampled;
+  }
+
+  Scene scene;
+  Scanner scanner;
+  SimulatorConfig config;
+  std::shared_ptr<const VoxelGrid> grid;
+  double goal = 0;
+  std::shared_ptr<const RayPattern> pattern;
+  NoiseModel noise;
+  std::vector<std::uint32_t> sampled;
+  std::unique_ptr<Tracer> tracer;
+};
+
+Simulator::Simulator(const Scene& scene, const Scanner& scanner, const SimulatorConfig& config)
+    : impl_(std::make_unique<Impl>(scene, scanner, config)) {}
+Simulator::Simulator(Simulator&&) noexcept = default;
+Simulator& Simulator::operator=(Simulator&&) noexcept = default;
+Simulator::~Simulator() = default;
+
+const EngineInfo& Simulator::engine() const noexcept { return impl_->tracer->info(); }
+const Scanner& Simulator::scanner() const noexcept { return impl_->scanner; }
+const Scene& Simulator::scene() const noexcept { return impl_->scene; }
+const SimulatorConfig& Simulator::config() const noexcept { return impl_->config; }
+Vec3 Simulator::origin() const noexcept { return impl_->data().origin; }
+std::uint64_t Simulator::voxel_count() const noexcept { return impl_->grid->size(); }
+double Simulator::voxel_size_m() const noexcept { return impl_->grid->voxel_size(); }
+double Simulator::goal_density() const noexcept { return impl_->goal; }
+
+Vec3 Simulator::voxel_centre(std::uint64_t rank) const {
+  const auto [x, y, z] = morton_decode(impl_->grid->key(rank));
+  const auto& min = impl_->grid->min();
+  const double size = impl_->grid->voxel_size();
+  return origin() + Vec3{static_cast<double>(min[0]) + (x + 0.5) * size, static_cast<double>(min[1]) + (y + 0.5) * size,
+                         static_cast<double>(min[2]) + (z + 0.5) * size};
+}
+
+ScanSummary Simulator::scan(const Station& station, std::uint32_t place, std::uint32_t outputs,
+                            const std::function<void(const ScanChunk&)>& sink, const Progress& progress,
+                            const Panorama* panorama) {
+  if (outputs & ~known_outputs)
+    throw Error(Errc::invalid_argument, "scan: unknown output bits " + std::to_string(outputs & ~known_outputs));
+  ScanSummary summary;
+  if (!station.active) return summary;
+  const TraceStation from = impl_->trace_station(station, place);
+  const std::uint64_t columns = impl_->pattern->columns(), rays = columns * impl_->pattern->rows();
+  const std::uint64_t rows_at_once = std::max<std::uint64_t>(1, impl_->tracer->preferred_scan_rays() / columns);
+  Tracer::RawChunk raw;
+  ScanChunk chunk;
+  for (std::uint64_t first = 0; first < rays; first += chunk.ray_count) {
+    if (progress.stopped()) {
+      summary.cancelled = true;
+      break;
+    }
+    chunk.first_ray = first;
+    chunk.ray_count = std::min(rows_at_once * columns, rays - first);
+    const auto start = std::chrono::steady_clock::now();
+    impl_->tracer->scan(from, first, chunk.ray_count, raw_outputs(outputs, panorama != nullptr), raw);
+    summary.trace_seconds += seconds_since(start);
+    fill_chunk(chunk, raw, outputs, impl_->data(), impl_->scanner, panorama, summary);
+    if (sink) sink(chunk);
+    progress(static_cast<double>(first + chunk.ray_count) / static_cast<double>(rays));
+  }
+  return summary;
+}
+
+NetworkCounts Simulator::evaluate(const Network& network, const EvaluateOptions& options, const Progress& progress) {
+  const std::vector<TraceStation> active = impl_->active_stations(network);
+  if (active.empty()) {
+    if (options.field) {
+      options.field->count.assign(voxel_count(), 0);
+      options.field->stations.assign(voxel_count(), 0);
+    }
+    NetworkCounts counts = nothing_seen(voxel_count(), network.size(), options.overlap);
+    counts.points_on_surveyed.assign(network.size(), 0);
+    if (!options.skip) counts.points.assign(network.size(), 0);
+    return counts;
+  }
+  return impl_->tracer->count(active, static_cast<std::uint32_t>(network.size()),
+                              {.masks = options.overlap, .skip = options.skip, .field = options.field}, progress);
+}
+
+std::vector<NetworkCounts> Simulator::evaluate_sampled(std::span<const Network> networks, const SampleOptions& options,
+                                                       const Progress& progress) {
+  if (options.voxels == 0) throw Error(Errc::invalid_argument, "a sample must have at least one voxel");
+  const std::vector<std::uint32_t>& sample = impl_->sample(options.voxels);
+  std::vector<NetworkCounts> all(networks.size());
+  // Networks without an active station are not the engine's concern.
+  std::vector<std::vector<TraceStation>> traced;
+  std::vector<std::uint32_t> sizes;
+  std::vector<std::size_t> places;
+  for (std::size_t k = 0; k < networks.size(); ++k) {
+    std::vector<TraceStation> active = impl_->active_stations(networks[k]);
+    if (active.empty()) {
+      all[k] = nothing_seen(sample.size(), networks[k].size(), options.overlap);
+      for (std::uint32_t g = 0; g < sample_groups; ++g)
+        all[k].groups.push_back(
+            nothing_seen((sample.size() + sample_groups - 1 - g) / sample_groups, networks[k].size(), options.overlap));
+      continue;
+    }
+    traced.push_back(std::move(active));
+    sizes.push_back(static_cast<std::uint32_t>(networks[k].size()));
+    places.push_back(k);
+  }
+  if (traced.empty()) return all;
+  const bool stop_at_goal = options.stop_at_goal && !options.overlap;
+  std::vector<NetworkCounts> counts =
+      impl_->tracer->count_sampled(traced, sizes,
+                                   {.sample = sample,
+                                    .groups = sample_groups,
+                                    .masks = options.overlap,
+                                    .stop_at = stop_at_goal ? static_cast<std::uint32_t>(std::ceil(impl_->goal)) : 0},
+                                   progress);
+  for (std::size_t k = 0; k < counts.size(); ++k) all[places[k]] = std::move(counts[k]);
+  return all;
+}
+
+std::uint64_t Simulator::voxels_for_standard_error(std::span<const Network> networks, double wanted, bool overlap,
+                                                   const Progress& progress) {
+  if (!(wanted > 0))
+    throw Error(Errc::invalid_argument,
+                "the wanted standard error is " + std::to_string(wanted) + ", but must be above 0");
+  constexpr std::uint64_t first_pilot = 5000;  // below it pair overlaps, and errors themselves, are not to be trusted
+  constexpr double reserve = 1.1;              // the pilot's error is an estimate too
+  const std::uint64_t population = voxel_count();
+  for (std::uint64_t size = std::min(first_pilot, population);;) {
+    if (size >= population) return population;
+    double error = 0;
+    for (const NetworkCounts& counts : evaluate_sampled(networks, {.voxels = size, .overlap = overlap}, progress)) {
+      error = std::max(error, coverage_estimate(counts, goal_density(), population).standard_error);
+      if (overlap) error = std::max(error, overlap_estimate(counts, population).standard_error);
+    }
+    if (error <= wanted || progress.stopped()) return size;
+    // error² = s²·(1/n − 1/N) gives s², and that the n for the wanted error.
+    const double n = static_cast<double>(size), all = static_cast<double>(population);
+    const double variance = error * error / (1 / n - 1 / all);
+    const double needed = reserve / (wanted * wanted / variance + 1 / all);
+    size = needed >= all ? population : std::max(static_cast<std::uint64_t>(needed), size + size / 8);
+  }
+}
+
+}  // namespace vantage

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trace/embree/embree_tracer.hpp"
+
+#include <tbb/task_arena.h>
+
+#include <fstream>
+#include <string>
+#include <utility>
+
+#include "trace/embree/count_network.hpp"
+#include "trace/embree/sample_networks.hpp"
+#include "trace/embree/scan_station.hpp"
+#include "trace/embree/station_rays.hpp"
+
+namespace vantage {
+namespace {
+
+std::string processor_name() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);) {
+    const std::size_t colon = line.find(": ");
+    if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
+  }
+  return "CPU";
+}
+
+class EmbreeTracer final : public Tracer {
+ public:
+  explicit EmbreeTracer(const TraceScene& scene) : rays_(scene), info_(embree_engine_info()) {}
+
+  const EngineInfo& info() const override { return info_; }
+
+  void scan(const TraceStation& station, std::uint64_t first_ray, std::uint64_t ray_count, std::uint32_t outputs,
+            RawChunk& chunk) override {
+    scan_station(rays_, station, first_ray, ray_count, outputs, chunk);
+  }
+
+  std::uint64_t preferred_scan_rays() const override {
+    constexpr std::uint64_t wanted = std::uint64_t{1} << 20;
+    const std::uint64_t columns = rays_.pattern().columns();
+    const std::uint64_t rows = std::max<std::uint64_t>(RayTile::side, wanted / columns / RayTile::side * RayTile::side);
+    return rows * columns;
+  }
+
+  NetworkCounts count(std::span<const TraceStation> stations, std::uint32_t station_count, const CountOptions& options,
+                      const Progress& progress) override {
+    return count_network(rays_, stations, station_count, goal_density_, options, progress);
+  }
+
+  std::vector<NetworkCounts> count_sampled(std::span<const std::vector<TraceStation>> networks,
+                                           std::span<const std::uint32_t> station_counts, const SampleJob& job,
+                                           const Progress& progress) override {
+    return sample_networks(rays_, networks, station_counts, goal_density_, job, progress);
+  }
+
+ private:
+  StationRays rays_;
+  EngineInfo info_;
+};
+
+}  // namespace
+
+EngineInfo embree_engine_info() {
+  EngineInfo info;
+  info.engine = Engine::embree;
+  info.device = processor_name() + " (" + std::to_string(tbb::this_task_arena::max_concurrency()) + " threads)";
+  info.driver = "Embree " RTC_VERSION_STRING;
+  info.usable = true;
+  info.reason = "runs on every CPU";
+  return info;
+}
+
+std::unique_ptr<Tracer> make_embree_tracer(const TraceScene& scene) { return std::make_unique<EmbreeTracer>(scene); }
+
+}  // namespace vantage

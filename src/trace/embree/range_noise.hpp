@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// Algorithm 1: how far noise moves a point along its ray.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <utility>
+
+#include "core/normal_table.hpp"
+#include "core/philox.hpp"
+#include "trace/tracer.hpp"
+
+namespace vantage {
+
+class RangeNoise {
+ public:
+  explicit RangeNoise(std::shared_ptr<const NoiseModel> model) : model_(std::move(model)), rows_(normal_table()) {}
+
+  bool enabled() const { return model_ && model_->enabled(); }
+  float reach() const { return enabled() ? model_->reach : 0.0f; }
+
+  // Bilinear in normalised distance and reflectivity, both clamped to [0, 1].
+  float sigma(float t, float reflectivity) const {
+    constexpr std::uint32_t cells = NoiseModel::side - 1;
+    const auto place = [](float normalised, std::uint32_t& cell) {
+      const float clamped = normalised > 0.0f ? (normalised < 1.0f ? normalised : 1.0f) : 0.0f;
+      const float scaled = clamped * static_cast<float>(cells);
+      cell = static_cast<std::uint32_t>(scaled);
+      if (cell >= cells) cell = cells - 1;
+      return scaled - static_cast<float>(cell);
+    };
+    std::uint32_t column, row;
+    const float across = place((t - model_->min_range) * model_->inverse_span, column);
+    const float down = place(reflectivity, row);
+    const float* s = model_->sigma.data() + row * NoiseModel::side + column;
+    const float upper = s[0] + (s[1] - s[0]) * across;
+    const float lower = s[NoiseModel::side] + (s[NoiseModel::side + 1] - s[NoiseModel::side]) * across;
+    return upper + (lower - upper) * down;
+  }
+
+  // REQUIRES: enabled().
+  float displaced(float t, float reflectivity, std::uint64_t ray, std::uint32_t place) const {
+    const std::uint32_t bits = philox4x32(
+        model_->seed, {static_cast<std::uint32_t>(ray), static_cast<std::uint32_t>(ray >> 32), place, noise_stream})[0];
+    return t + normal_from_bits(bits, rows_) * sigma(t, reflectivity);
+  }
+
+ private:
+  std::shared_ptr<const NoiseModel> model_;
+  std::span<const float> rows_;
+};
+
+}  // namespace vantage

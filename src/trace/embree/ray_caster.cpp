@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trace/embree/ray_caster.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <utility>
+
+namespace vantage {
+namespace {
+
+constexpr std::uint32_t packet = 8;
+constexpr std::uint32_t packets = RayBundle::capacity / packet;
+
+// How far past the nearest hit Embree goes on searching, relative to its distance. Far more than its box tests round
+// by, so that no box with a coincident triangle is passed over.
+constexpr float slack = 1 + 0x1p-18f;
+
+#if VANTAGE_EMBREE_MAJOR >= 4
+using RtcContext = RTCRayQueryContext;
+#else
+using RtcContext = RTCIntersectContext;
+#endif
+
+struct Context {
+  RtcContext rtc;  // first: Embree hands its address to the filter
+  RayBundle* rays;
+};
+
+// Called for every triangle that a ray meets nearer than its present end.
+void keep_least(const RTCFilterFunctionNArguments* args) {
+  RayBundle& rays = *reinterpret_cast<Context*>(args->context)->rays;
+  const unsigned n = args->N;
+  for (unsigned i = 0; i < n; ++i) {
+    if (args->valid[i] == 0) continue;
+    float& end = RTCRayN_tfar(args->ray, n, i);  // the candidate's distance
+    const unsigned ray = RTCRayN_id(args->ray, n, i);
+    const unsigned primitive = RTCHitN_primID(args->hit, n, i);
+    if (end < rays.t[ray] || (end == rays.t[ray] && primitive < rays.primitive[ray])) {
+      rays.t[ray] = end;
+      rays.primitive[ray] = primitive;
+      end *= slack;
+    } else {
+      args->valid[i] = 0;
+    }
+  }
+}
+
+}  // namespace
+
+RayCaster::RayCaster(std::shared_ptr<const SceneData> scene) : scene_(std::move(scene)), device_(embree::new_device()) {
+  RTCDevice device = device_.get();
+  tree_.reset(rtcNewScene(device));
+  rtcSetSceneFlags(tree_.get(), RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneBuildQuality(tree_.get(), RTC_BUILD_QUALITY_MEDIUM);
+  const embree::Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
+  // Vertices are copied: Embree reads past the end of a buffer that it shares.
+  if (!scene_->positions.empty()) {
+    void* vertices = rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                             sizeof(Float3), scene_->positions.size());
+    embree::check(device, "taking the scene's vertices");
+    std::memcpy(vertices, scene_->positions.data(), scene_->positions.size() * sizeof(Float3));
+    rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, scene_->triangles.data(), 0,
+                               sizeof(Triangle), scene_->triangles.size());
+  }
+  rtcSetGeometryIntersectFilterFunction(geometry.get(), keep_least);
+  rtcCommitGeometry(geometry.get());
+  rtcAttachGeometry(tree_.get(), geometry.get());
+  rtcCommitScene(tree_.get());
+  embree::check(device, "building the tree over " + std::to_string(scene_->triangles.size()) + " triangles");
+}
+
+void RayCaster::cast(RayBundle& rays) const {
+  if (rays.size == 0) return;
+  alignas(64) RTCRayHit8 hits[packets];
+  const std::uint32_t used = (rays.size + packet - 1) / packet;
+  for (std::uint32_t i = rays.size; i < used * packet; ++i) {
+    rays.x[i] = rays.y[i] = rays.z[i] = 1;
+    rays.end[i] = -std::numeric_limits<float>::infinity();  // an end before the start: no ray
+  }
+  for (std::uint32_t p = 0; p < used; ++p) {
+    RTCRay8& ray = hits[p].ray;
+    for (std::uint32_t lane = 0; lane < packet; ++lane) {
+      const std::uint32_t i = p * packet + lane;
+      ray.org_x[lane] = rays.origin.x;
+      ray.org_y[lane] = rays.origin.y;
+      ray.org_z[lane] = rays.origin.z;
+      ray.tnear[lane] = rays.start;
+      ray.dir_x[lane] = rays.x[i];
+      ray.dir_y[lane] = rays.y[i];
+      ray.dir_z[lane] = rays.z[i];
+      ray.time[lane] = 0;
+      ray.tfar[lane] = rays.end[i];
+      ray.mask[lane] = 0xFFFFFFFFu;
+      ray.id[lane] = i;
+      ray.flags[lane] = 0;
+      hits[p].hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
+      hits[p].hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
+    }
+  }
+  std::fill_n(rays.t, used * packet, std::numeric_limits<float>::infinity());
+  std::fill_n(rays.primitive, used * packet, RayBundle::no_hit);
+
+  Context context;
+  context.rays = &rays;
+#if VANTAGE_EMBREE_MAJOR >= 4
+  rtcInitRayQueryContext(&context.rtc);
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  arguments.context = &context.rtc;
+  for (std::uint32_t p = 0; p < used; ++p) {
+    alignas(32) int valid[packet];
+    for (std::uint32_t lane = 0; lane < packet; ++lane) valid[lane] = p * packet + lane < rays.size ? -1 : 0;
+    rtcIntersect8(valid, tree_.get(), &hits[p], &arguments);
+  }
+#else
+  rtcInitIntersectContext(&context.rtc);
+  context.rtc.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcIntersectNM(tree_.get(), &context.rtc, reinterpret_cast<RTCRayHitN*>(hits), packet, used, sizeof(RTCRayHit8));
+#endif
+}
+
+}  // namespace vantage

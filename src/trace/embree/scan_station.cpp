@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trace/embree/scan_station.hpp"
+
+#include <tbb/blocked_range2d.h>
+#include <tbb/parallel_for.h>
+
+namespace vantage {
+namespace {
+
+Float3 narrow(const std::array<double, 3>& v) {
+  return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
+}
+
+// Fills the elements of one tile. `first_ray` is the chunk's.
+void scan_tile(const StationRays& station_rays, const TraceStation& station, const RayTile& tile,
+               std::uint64_t first_ray, std::uint32_t outputs, Tracer::RawChunk& chunk) {
+  RayBundle rays;
+  station_rays.gather(station, tile, station_rays.pattern().max_range, rays);
+  station_rays.caster().cast(rays);
+  const Surface& surface = station_rays.surface();
+  const RangeNoise& noise = station_rays.noise();
+  const bool need_weights =
+      (outputs & (Tracer::normal | Tracer::barycentric | Tracer::reflectivity)) != 0 || noise.enabled();
+  const bool need_normal = (outputs & (Tracer::normal | Tracer::reflectivity)) != 0 || noise.enabled();
+
+  for (std::uint32_t slot = 0; slot < rays.size; ++slot) {
+    const std::uint64_t ray = station_rays.ray(tile.row + slot / tile.columns, tile.column + slot % tile.columns);
+    const std::uint64_t k = ray - first_ray;
+    const std::uint32_t triangle = rays.primitive[slot];
+    const bool hit = triangle != RayBundle::no_hit;
+    float range = std::numeric_limits<float>::infinity(), reflectivity = 0;
+    Float3 point, normal;
+    std::array<double, 2> weights{};
+    if (hit) {
+      const Float3 d{rays.x[slot], rays.y[slot], rays.z[slot]};
+      range = surface.distance(triangle, rays.origin, d, rays.t[slot]);
+      if (need_weights) weights = surface.barycentric(triangle, rays.origin, d, range);
+      if (need_normal) {
+        const std::array<double, 3> unit = surface.normal(triangle, d, weights);
+        normal = narrow(unit);
+        reflectivity = surface.reflectivity(triangle, d, unit);
+      }
+      if (noise.enabled()) range = noise.displaced(range, reflectivity, ray, station.place);
+      point = StationRays::point(rays, slot, range);
+    }
+    if (outputs & Tracer::range) chunk.range[k] = range;
+    if (outputs & Tracer::position) chunk.position[k] = point;
+    if (outputs & Tracer::normal) chunk.normal[k] = normal;
+    if (outputs & Tracer::reflectivity) chunk.reflectivity[k] = reflectivity;
+    if (outputs & Tracer::primitive) chunk.primitive[k] = triangle;
+    if (outputs & Tracer::barycentric)
+      chunk.barycentric[k] = {static_cast<float>(weights[0]), static_cast<float>(weights[1])};
+    if (outputs & Tracer::voxel)
+      chunk.voxel[k] = hit && surface.surveyed(triangle) ? station_rays.grid().rank_of(point) : no_voxel;
+  }
+}
+
+}  // namespace
+
+void scan_station(const StationRays& rays, const TraceStation& station, std::uint64_t first_ray,
+                  std::uint64_t ray_count, std::uint32_t outputs, Tracer::RawChunk& chunk) {
+  const auto size = [&](std::uint32_t output) { return static_cast<std::size_t>(outputs & output ? ray_count : 0); };
+  chunk.range.resize(size(Tracer::range));
+  chunk.position.resize(size(Tracer::position));
+  chunk.normal.resize(size(Tracer::normal));
+  chunk.reflectivity.resize(size(Tracer::reflectivity));
+  chunk.primitive.resize(size(Tracer::primitive));
+  chunk.barycentric.resize(size(Tracer::barycentric));
+  chunk.voxel.resize(size(Tracer::voxel));
+
+  const std::uint32_t columns = rays.pattern().columns();
+  const auto first_row = static_cast<std::uint32_t>(first_ray / columns),
+             row_count = static_cast<std::uint32_t>(ray_count / columns);
+  const std::uint32_t tall = (row_count + RayTile::side - 1) / RayTile::side,
+                      wide = (columns + RayTile::side - 1) / RayTile::side;
+  tbb::parallel_for(tbb::blocked_range2d<std::uint32_t>(0, tall, 1, 0, wide, 16), [&](const auto& range) {
+    for (std::uint32_t a = range.rows().begin(); a < range.rows().end(); ++a) {
+      for (std::uint32_t b = range.cols().begin(); b < range.cols().end(); ++b) {
+        RayTile tile{first_row + a * RayTile::side, b * RayTile::side, 0, 0};
+        tile.rows = std::min(RayTile::side, first_row + row_count - tile.row);
+        tile.columns = std::min(RayTile::side, columns - tile.column);
+        scan_tile(rays, station, tile, first_ray, outputs, chunk);
+      }
+    }
+  });
+}
+
+}  // namespace vantage

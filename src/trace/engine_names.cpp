@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <utility>
+
+#include "vantage/error.hpp"
+#include "vantage/simulator.hpp"
+
+namespace vantage {
+namespace {
+
+constexpr std::array<std::pair<Engine, const char*>, 4> names{{{Engine::automatic, "auto"},
+                                                               {Engine::ray_query, "ray_query"},
+                                                               {Engine::compute_bvh, "compute_bvh"},
+                                                               {Engine::embree, "embree"}}};
+
+}  // namespace
+
+std::string to_string(Engine engine) {
+  for (const auto& [known, name] : names) {
+    if (known == engine) return name;
+  }
+  return "unknown";
+}
+
+Engine engine_from_string(const std::string& text) {
+  std::string known;
+  for (const auto& [engine, name] : names) {
+    if (text == name) return engine;
+    known += (known.empty() ? "" : ", ") + std::string(name);
+  }
+  throw Error(Errc::invalid_argument, "unknown engine '" + text + "'; choose one of " + known);
+}
+
+}  // namespace vantage

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pairs are counted on bit planes: the masks of 64 voxels, a word each, are transposed into a word a station (Warren:
+// Hacker's Delight, 2nd edition, 2012, section 7-3), so that one AND and one population count serve 64 voxels.
+#include "trace/field_counts.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <vector>
+
+#include "trace/target_clones.hpp"
+
+namespace vantage {
+namespace {
+
+constexpr std::size_t block = 64;  // voxels a block: bits a word
+
+struct Sums {
+  std::uint64_t saturated = 0, partial_points = 0;
+  std::vector<std::uint64_t> seen, shared;
+
+  void add(const Sums& other) {
+    saturated += other.saturated;
+    partial_points += other.partial_points;
+    for (std::size_t i = 0; i < seen.size(); ++i) seen[i] += other.seen[i];
+    for (std::size_t i = 0; i < shared.size(); ++i) shared[i] += other.shared[i];
+  }
+};
+
+void transpose(std::array<std::uint64_t, block>& rows) {
+  std::uint64_t low = 0x00000000FFFFFFFFu;
+  for (std::size_t half = 32; half != 0; half >>= 1, low ^= low << half) {
+    for (std::size_t i = 0; i < block; i = ((i | half) + 1) & ~half) {
+      const std::uint64_t swapped = ((rows[i] >> half) ^ rows[i | half]) & low;
+      rows[i] ^= swapped << half;
+      rows[i | half] ^= swapped;
+    }
+  }
+}
+
+VANTAGE_TARGET_CLONES
+void add_pairs(const std::uint64_t* masks, std::size_t n, std::size_t stations, std::uint64_t* seen,
+               std::uint64_t* shared) {
+  for (std::size_t first = 0; first < n; first += block) {
+    std::array<std::uint64_t, block> planes{};
+    const std::size_t end = std::min(n, first + block);
+    std::uint64_t any = 0;
+    for (std::size_t k = first; k < end; ++k) any |= planes[k - first] = masks[k];
+    if (any == 0) continue;
+    transpose(planes);
+    std::uint64_t* pair = shared;
+    for (std::size_t i = 0; i < stations; ++i) {
+      const std::uint64_t plane = planes[i];
+      const std::size_t rest = stations - i - 1;
+      if (plane != 0) {
+        seen[i] += static_cast<std::uint64_t>(std::popcount(plane));
+        for (std::size_t j = 0; j < rest; ++j)
+          pair[j] += static_cast<std::uint64_t>(std::popcount(plane & planes[i + 1 + j]));
+      }
+      pair += rest;
+    }
+  }
+}
+
+}  // namespace
+
+NetworkCounts reduce_field(std::span<const std::uint32_t> counts, std::span<const std::uint64_t> masks,
+                           std::uint32_t stations, double goal_density) {
+  const std::size_t pairs = masks.empty() ? 0 : std::size_t{stations} * (stations - 1) / 2;
+  Sums zero;
+  zero.seen.resize(masks.empty() ? 0 : stations);
+  zero.shared.resize(pairs);
+  const double goal = std::ceil(goal_density);
+
+  constexpr std::size_t grain = 1024;  // blocks
+  const std::size_t blocks = (counts.size() + block - 1) / block;
+  const Sums sums = tbb::parallel_reduce(
+      tbb::blocked_range<std::size_t>(0, blocks, grain), zero,
+      [&](const tbb::blocked_range<std::size_t>& range, Sums part) {
+        const std::size_t first = range.begin() * block, end = std::min(counts.size(), range.end() * block);
+        for (std::size_t k = first; k < end; ++k) {
+          if (counts[k] >= goal) {
+            ++part.saturated;
+          } else {
+            part.partial_points += counts[k];
+          }
+        }
+        if (!masks.empty())
+          add_pairs(masks.data() + first, end - first, stations, part.seen.data(), part.shared.data());
+        return part;
+      },
+      [](Sums a, const Sums& b) {
+        a.add(b);
+        return a;
+      });
+
+  NetworkCounts result;
+  result.voxels = counts.size();
+  result.stations = stations;
+  result.saturated = sums.saturated;
+  result.partial_points = sums.partial_points;
+  result.seen = sums.seen;
+  result.shared = sums.shared;
+  return result;
+}
+
+}  // namespace vantage

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trace/sample_counts.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "trace/field_counts.hpp"
+
+namespace vantage {
+
+NetworkCounts reduce_sample(std::span<const std::uint32_t> counts, std::span<const std::uint64_t> masks,
+                            std::uint32_t groups, std::uint32_t stations, double goal_density) {
+  NetworkCounts all = reduce_field(counts, masks, stations, goal_density);
+  std::vector<std::uint32_t> group_counts;
+  std::vector<std::uint64_t> group_masks;
+  for (std::uint32_t g = 0; g < groups; ++g) {
+    group_counts.clear();
+    group_masks.clear();
+    for (std::size_t i = g; i < counts.size(); i += groups) {
+      group_counts.push_back(counts[i]);
+      if (!masks.empty()) group_masks.push_back(masks[i]);
+    }
+    all.groups.push_back(reduce_field(group_counts, group_masks, stations, goal_density));
+    // A group without voxels still has its stations' zeros.
+    if (!masks.empty() && all.groups.back().seen.empty()) {
+      all.groups.back().seen.resize(all.seen.size());
+      all.groups.back().shared.resize(all.shared.size());
+    }
+  }
+  const auto filled = [&](std::uint32_t count) { return std::min(count / goal_density, 1.0); };
+  for (std::size_t i = 1; i < counts.size(); ++i) {
+    const double step = filled(counts[i]) - filled(counts[i - 1]);
+    all.successive_difference_sum += step * step;
+  }
+  return all;
+}
+
+}  // namespace vantage

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "vantage/objective.hpp"
+
+namespace vantage {
+
+// reduce_field over a sample's counts and masks, in order of rank, with the groups (element i is in group i % groups)
+// and the successive differences that standard errors need.
+NetworkCounts reduce_sample(std::span<const std::uint32_t> counts, std::span<const std::uint64_t> masks,
+                            std::uint32_t groups, std::uint32_t stations, double goal_density);
+
+}  // namespace vantage

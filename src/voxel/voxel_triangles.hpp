@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which surveyed triangles can be hit within a voxel.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "scene/scene_data.hpp"
+#include "voxel/voxel_grid.hpp"
+
+namespace vantage {
+
+// Lists of scene triangles, one list a voxel: those of voxel number i are triangle[offset[i]] … triangle[offset[i + 1]
+// − 1], ascending.
+struct VoxelTriangles {
+  std::vector<std::uint32_t> offset;  // n + 1
+  std::vector<std::uint32_t> triangle;
+};
+
+// Surveyed triangles that touch each voxel's cube widened by `margin_m` on every side. Parallel; the result does not
+// depend on the number of threads. REQUIRES: ranks ascending, without duplicates, below grid.size(); margin_m >= 0.
+// Throws Error out_of_memory where the lists would hold more than 2^32 − 1 triangles.
+VoxelTriangles triangles_touching(const SceneData& scene, const VoxelGrid& grid, std::span<const std::uint32_t> ranks,
+                                  double margin_m);
+
+}  // namespace vantage
