@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "vantage/scene.hpp"
@@ -19,7 +20,7 @@ namespace vantage {
 struct WalkableOptions {
   Angle max_slope = Angle::degrees(35);  ///< Between a triangle's normal and up.
   double headroom_m = 2.0;               ///< Clear height needed above the surface.
-  double min_area_m2 = 0.25;             ///< Connected parts smaller than this are left out.
+  double min_area_m2 = 0.25;  ///< Connected parts smaller than this, or far narrower than its side, are left out.
 };
 
 /// A triangle mesh with (u, v) per vertex, survey frame. What `SearchArea` is built from and can hand out for drawing.
@@ -34,15 +35,21 @@ struct SearchMesh {
 class SearchArea {
  public:
   /// The scene's marked search area; where it has none, or none with (u, v), charts in true proportion are made.
-  /// Throws Error: invalid_argument when nothing is walkable, with what to do.
+  /// Where no ground is found around the model, a horizontal plane is laid under it, at its lowest point, and reaches
+  /// out on every side by the model's largest extent. `description()` says what was done. Throws Error:
+  /// invalid_argument when the scene has neither a mesh nor a usable search area.
   static SearchArea build(const Scene& scene, const WalkableOptions& options = {});
+  /// Throws Error: invalid_argument when no triangle has an area in (u, v), or the arrays do not fit together.
   static SearchArea from_mesh(SearchMesh mesh);
 
   Uv uv_min() const noexcept;
   Uv uv_max() const noexcept;
-  bool derived() const noexcept;      ///< True: made from walkable surfaces.
+  bool derived() const noexcept;  ///< True: made from walkable surfaces, or a plane laid under the model.
+  const std::string& description() const noexcept;  ///< Where the search area comes from, for logs and reports.
   const SearchMesh& mesh() const noexcept;
-  /// Ground point under (u, v), survey frame; empty in a hole. Points on an edge or a vertex are always found.
+  /// Ground point under (u, v), survey frame; empty in a hole. Points on an edge or a vertex are always found, and so
+  /// is what lies outside by no more than 1e-9 of the (u, v) extent. Where charts overlap, the first triangle of the
+  /// mesh wins.
   std::optional<Vec3> locate(Uv uv) const;
   /// (u, v) of the point of the search area straight above or below `ground`, the nearest in height; empty outside.
   std::optional<Uv> project(const Vec3& ground) const;
@@ -54,15 +61,16 @@ class SearchArea {
 
 /// The security volume of section 4.3: two spheres above the ground.
 struct SecurityVolume {
-  double lower_m = 0.6;    ///< h1: height of the lower sphere's centre above the ground.
-  double upper_m = 1.35;   ///< h2.
-  double radius_m = 0.5;   ///< r; 0 switches the check off.
+  double lower_m = 0.6;   ///< h1: height of the lower sphere's centre above the ground.
+  double upper_m = 1.35;  ///< h2.
+  double radius_m = 0.5;  ///< r; 0 switches the check off.
 };
 
 /// Distance queries against all surveyed and blocking meshes. Safe to use from any thread.
 class ClashChecker {
  public:
-  /// Throws Error invalid_argument where radius_m >= lower_m > 0 (the ground itself would clash) or a value is negative.
+  /// Throws Error invalid_argument where radius_m >= lower_m (the ground itself would clash), unless the check is off,
+  /// or where a value is negative or not finite.
   ClashChecker(const Scene& scene, const SecurityVolume& volume = {});
   /// Whether one of the spheres above `ground` (survey frame) comes closer to a mesh than its radius.
   bool clashes(const Vec3& ground) const;

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <sstream>
+
+#include "placement/mesh_tree.hpp"
+#include "scene/scene_data.hpp"
+#include "vantage/error.hpp"
+#include "vantage/placement.hpp"
+
+namespace vantage {
+
+struct ClashChecker::Impl {
+  Vec3 origin;
+  SecurityVolume volume;
+  MeshTree tree;
+};
+
+ClashChecker::ClashChecker(const Scene& scene, const SecurityVolume& volume) {
+  for (const auto& [name, value] :
+       {std::pair{"lower_m", volume.lower_m}, {"upper_m", volume.upper_m}, {"radius_m", volume.radius_m}})
+    if (!(value >= 0) || !std::isfinite(value)) {
+      std::ostringstream what;
+      what << "the security volume's " << name << " must be finite and not negative; it is " << value;
+      throw Error(Errc::invalid_argument, what.str());
+    }
+  if (volume.radius_m > 0 && volume.radius_m >= volume.lower_m) {
+    std::ostringstream what;
+    what << "the security volume's radius of " << volume.radius_m
+         << " m must be less than the height of its lower sphere, " << volume.lower_m
+         << " m, or the ground itself would clash; 0 switches the check off";
+    throw Error(Errc::invalid_argument, what.str());
+  }
+  impl_ = std::make_shared<const Impl>(Impl{scene.data().origin, volume, MeshTree(scene.data())});
+}
+
+bool ClashChecker::clashes(const Vec3& ground) const {
+  const SecurityVolume& v = impl_->volume;
+  if (v.radius_m == 0) return false;
+  const Vec3 local = ground - impl_->origin;
+  return impl_->tree.within(local + Vec3{0, 0, v.lower_m}, v.radius_m) ||
+         impl_->tree.within(local + Vec3{0, 0, v.upper_m}, v.radius_m);
+}
+
+double ClashChecker::distance(const Vec3& point, double limit_m) const {
+  return impl_->tree.distance(point - impl_->origin, limit_m);
+}
+
+}  // namespace vantage

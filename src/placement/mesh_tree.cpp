@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "placement/mesh_tree.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <string>
+
+#include "core/embree.hpp"
+
+namespace vantage {
+namespace {
+
+struct Buffers {
+  const Float3* positions;
+  const Triangle* triangles;
+};
+
+struct Query {
+  Buffers buffers;
+  Vec3 point;
+  double best;         // nearest so far
+  double good_enough;  // no nearer one need be found
+};
+
+Vec3 wide(const Float3& p) { return {p.x, p.y, p.z}; }
+
+// A radius for Embree's boxes that loses nothing to the rounding of the point and of the radius to float.
+float query_radius(const Query& query) {
+  const double reach = std::max({std::abs(query.point.x), std::abs(query.point.y), std::abs(query.point.z)});
+  return static_cast<float>((query.best + 4 * reach * 0x1p-23) * (1 + 0x1p-20));
+}
+
+bool visit(RTCPointQueryFunctionArguments* arguments) {
+  Query& query = *static_cast<Query*>(arguments->userPtr);
+  const Triangle& t = query.buffers.triangles[arguments->primID];
+  const double distance =
+      distance_to_triangle(query.point, wide(query.buffers.positions[t[0]]), wide(query.buffers.positions[t[1]]),
+                           wide(query.buffers.positions[t[2]]));
+  if (!(distance < query.best)) return false;
+  query.best = distance;
+  arguments->query->radius = distance < query.good_enough ? 0 : query_radius(query);
+  return true;
+}
+
+double squared(const Vec3& v) { return dot(v, v); }
+
+double squared_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const Vec3 edge = b - a;
+  const double length = squared(edge);
+  const double x = length > 0 ? std::clamp(dot(p - a, edge) / length, 0.0, 1.0) : 0.0;
+  return squared(p - (a + edge * x));
+}
+
+}  // namespace
+
+double distance_to_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 normal = cross(b - a, c - a);
+  const double area = squared(normal);
+  // Above the inside the plane is nearest, anywhere else the outline.
+  if (area > 0 && dot(cross(b - a, p - a), normal) >= 0 && dot(cross(c - b, p - b), normal) >= 0 &&
+      dot(cross(a - c, p - c), normal) >= 0)
+    return std::abs(dot(p - a, normal)) / std::sqrt(area);
+  return std::sqrt(std::min({squared_to_segment(p, a, b), squared_to_segment(p, b, c), squared_to_segment(p, c, a)}));
+}
+
+struct MeshTree::Impl {
+  embree::Device device = embree::new_device();
+  embree::Scene tree;
+  Buffers buffers{};  // the geometry's own, so they live as long as the tree
+
+  explicit Impl(const SceneData& scene) : tree(rtcNewScene(device.get())) {
+    rtcSetSceneFlags(tree.get(), RTC_SCENE_FLAG_ROBUST);
+    if (!scene.triangles.empty()) {
+      const embree::Geometry geometry(rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
+      auto* positions = static_cast<Float3*>(rtcSetNewGeometryBuffer(
+          geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Float3), scene.positions.size()));
+      auto* triangles = static_cast<Triangle*>(rtcSetNewGeometryBuffer(
+          geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(Triangle), scene.triangles.size()));
+      embree::check(device.get(), "taking the scene's triangles for distances");
+      std::copy(scene.positions.begin(), scene.positions.end(), positions);
+      std::copy(scene.triangles.begin(), scene.triangles.end(), triangles);
+      buffers = {positions, triangles};
+      rtcCommitGeometry(geometry.get());
+      rtcAttachGeometry(tree.get(), geometry.get());
+    }
+    rtcCommitScene(tree.get());
+    embree::check(device.get(),
+                  "building the tree for distances over " + std::to_string(scene.triangles.size()) + " triangles");
+  }
+
+  double nearest(const Vec3& point, double limit, double good_enough) const {
+    Query query{buffers, point, limit, good_enough};
+    RTCPointQuery ball{};
+    ball.x = static_cast<float>(point.x);
+    ball.y = static_cast<float>(point.y);
+    ball.z = static_cast<float>(point.z);
+    ball.radius = query_radius(query);
+    RTCPointQueryContext context;
+    rtcInitPointQueryContext(&context);
+    rtcPointQuery(tree.get(), &ball, &context, visit, &query);
+    return query.best;
+  }
+};
+
+MeshTree::MeshTree(const SceneData& scene) : impl_(std::make_unique<Impl>(scene)) {}
+MeshTree::~MeshTree() = default;
+MeshTree::MeshTree(MeshTree&&) noexcept = default;
+MeshTree& MeshTree::operator=(MeshTree&&) noexcept = default;
+
+double MeshTree::distance(const Vec3& point, double limit) const { return impl_->nearest(point, limit, 0); }
+
+bool MeshTree::within(const Vec3& point, double radius) const { return impl_->nearest(point, radius, radius) < radius; }
+
+bool MeshTree::covered(const Vec3& point, double from, double to) const {
+  RTCRay ray{};
+  ray.org_x = static_cast<float>(point.x);
+  ray.org_y = static_cast<float>(point.y);
+  ray.org_z = static_cast<float>(point.z);
+  ray.dir_z = 1;
+  ray.tnear = static_cast<float>(from);
+  ray.tfar = static_cast<float>(to);
+  ray.mask = ~0u;
+#if VANTAGE_EMBREE_MAJOR >= 4
+  rtcOccluded1(impl_->tree.get(), &ray);
+#else
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded1(impl_->tree.get(), &context, &ray);
+#endif
+  return ray.tfar < 0;
+}
+
+}  // namespace vantage

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// All surveyed and blocking triangles in an Embree scene, for distances and for lines of sight on the host.
+#pragma once
+
+#include <array>
+#include <memory>
+
+#include "scene/scene_data.hpp"
+#include "vantage/types.hpp"
+
+namespace vantage {
+
+// Safe to read from any thread. Local frame throughout.
+class MeshTree {
+ public:
+  // Keeps no reference to `scene`. Throws Error: out_of_memory, device_failure.
+  explicit MeshTree(const SceneData& scene);
+  ~MeshTree();
+  MeshTree(MeshTree&&) noexcept;
+  MeshTree& operator=(MeshTree&&) noexcept;
+
+  // Distance from `point` to the nearest triangle, at most `limit`, in double on the float vertices.
+  double distance(const Vec3& point, double limit) const;
+  // Whether a triangle comes nearer to `point` than `radius`. Cheaper than the distance: the first such triangle
+  // settles it.
+  bool within(const Vec3& point, double radius) const;
+  // Whether a triangle lies on the segment from `point` + `from` to `point` + `to` straight up.
+  bool covered(const Vec3& point, double from, double to) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+// Distance from p to the closed triangle (a, b, c), which may be degenerate.
+double distance_to_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
+
+}  // namespace vantage

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// Convex hulls in the plane and the smallest rectangles around them.
+#pragma once
+
+#include <vector>
+
+#include "vantage/types.hpp"
+
+namespace vantage {
+
+// Counter-clockwise, without collinear points (Andrew, Another Efficient Algorithm for Convex Hulls in Two Dimensions,
+// 1979).
+std::vector<Uv> convex_hull(std::vector<Uv> points);
+double hull_area(const std::vector<Uv>& hull);
+
+// A rectangle given by its direction: the points' coordinates along (cosine, sine) lie in [min.u, max.u], across in
+// [min.v, max.v].
+struct Rectangle {
+  double cosine = 1, sine = 0;
+  Uv min, max;
+  double area() const { return (max.u - min.u) * (max.v - min.v); }
+  Uv along(Uv p) const { return {cosine * p.u + sine * p.v, cosine * p.v - sine * p.u}; }
+};
+// The rectangle of least area. Axis-aligned unless another direction saves a tenth, so that u and v follow x and y
+// where they may.
+Rectangle smallest_rectangle(const std::vector<Uv>& hull);
+
+}  // namespace vantage

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <string>
+#include <utility>
+
+#include "placement/plane_quadtree.hpp"
+#include "placement/walkable.hpp"
+#include "scene/scene_data.hpp"
+#include "vantage/error.hpp"
+#include "vantage/placement.hpp"
+
+namespace vantage {
+
+struct SearchArea::Impl {
+  SearchMesh mesh;
+  bool derived = false;
+  std::string description;
+  std::optional<PlaneQuadtree> in_uv;
+  // Over the mesh seen from above. Only stations given by X, Y, Z need it, so it is built when the first one asks.
+  mutable std::once_flag plan_once;
+  mutable std::vector<Uv> plan_points;
+  mutable std::optional<PlaneQuadtree> in_plan;
+
+  Impl(SearchMesh given, bool was_derived, std::string how)
+      : mesh(std::move(given)), derived(was_derived), description(std::move(how)) {
+    if (mesh.uvs.size() != mesh.positions.size())
+      throw Error(Errc::invalid_argument, "a search area needs one (u, v) per position; it has " +
+                                              std::to_string(mesh.uvs.size()) + " for " +
+                                              std::to_string(mesh.positions.size()));
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+      for (const std::uint32_t v : mesh.triangles[t])
+        if (v >= mesh.positions.size())
+          throw Error(Errc::invalid_argument, "triangle " + std::to_string(t) +
+                                                  " of the search area refers to position " + std::to_string(v) +
+                                                  "; there are " + std::to_string(mesh.positions.size()));
+    // A position that is not finite must not be interpolated: its triangles are no candidates.
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+      const Vec3& p = mesh.positions[v];
+      if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+        mesh.uvs[v] = {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
+    }
+    in_uv.emplace(mesh.uvs, mesh.triangles);
+    if (in_uv->empty())
+      throw Error(Errc::invalid_argument,
+                  "none of the search area's " + std::to_string(mesh.triangles.size()) +
+                      " triangles has an area in (u, v); give it texture coordinates that unfold it");
+  }
+
+  Vec3 position(const TrianglePoint& at) const {  // equation 6, without h
+    const auto& t = mesh.triangles[at.triangle];
+    return mesh.positions[t[0]] * (1 - at.s - at.t) + mesh.positions[t[1]] * at.s + mesh.positions[t[2]] * at.t;
+  }
+
+  const PlaneQuadtree& plan() const {
+    std::call_once(plan_once, [this] {
+      plan_points.reserve(mesh.positions.size());
+      for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+        const bool usable = std::isfinite(mesh.uvs[v].u) && std::isfinite(mesh.uvs[v].v);
+        plan_points.push_back(usable ? Uv{mesh.positions[v].x, mesh.positions[v].y} : mesh.uvs[v]);
+      }
+      in_plan.emplace(plan_points, mesh.triangles);
+    });
+    return *in_plan;
+  }
+};
+
+SearchArea SearchArea::build(const Scene& scene, const WalkableOptions& options) {
+  const SceneData& data = scene.data();
+  if (!data.search_uvs.empty() && !data.search_triangles.empty() &&
+      !PlaneQuadtree(data.search_uvs, data.search_triangles).empty()) {
+    SearchArea area;
+    area.impl_ = std::make_shared<const Impl>(SearchMesh{data.search_positions, data.search_uvs, data.search_triangles},
+                                              false, "as the scene marks it, with its own (u, v)");
+    return area;
+  }
+  WalkableSurface surface = find_walkable_surface(data, options);
+  SearchArea area;
+  area.impl_ = std::make_shared<const Impl>(std::move(surface.mesh), surface.derived, std::move(surface.description));
+  return area;
+}
+
+SearchArea SearchArea::from_mesh(SearchMesh mesh) {
+  SearchArea area;
+  area.impl_ = std::make_shared<const Impl>(std::move(mesh), false, "as given");
+  return area;
+}
+
+Uv SearchArea::uv_min() const noexcept { return impl_->in_uv->min(); }
+Uv SearchArea::uv_max() const noexcept { return impl_->in_uv->max(); }
+bool SearchArea::derived() const noexcept { return impl_->derived; }
+const std::string& SearchArea::description() const noexcept { return impl_->description; }
+const SearchMesh& SearchArea::mesh() const noexcept { return impl_->mesh; }
+
+std::optional<Vec3> SearchArea::locate(Uv uv) const {
+  const auto at = impl_->in_uv->find(uv);
+  if (!at) return std::nullopt;
+  return impl_->position(*at);
+}
+
+std::optional<Uv> SearchArea::project(const Vec3& ground) const {
+  std::optional<Uv> result;
+  double nearest = std::numeric_limits<double>::infinity();
+  impl_->plan().find_all({ground.x, ground.y}, [&](const TrianglePoint& at) {
+    const double distance = std::abs(impl_->position(at).z - ground.z);
+    if (!(distance < nearest)) return;
+    nearest = distance;
+    const auto& t = impl_->mesh.triangles[at.triangle];
+    const Uv i = impl_->mesh.uvs[t[0]], j = impl_->mesh.uvs[t[1]], k = impl_->mesh.uvs[t[2]];
+    const double r = 1 - at.s - at.t;
+    result = Uv{r * i.u + at.s * j.u + at.t * k.u, r * i.v + at.s * j.v + at.t * k.v};
+  });
+  return result;
+}
+
+}  // namespace vantage

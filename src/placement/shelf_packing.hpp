@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// Packs rectangles side by side on shelves.
+#pragma once
+
+#include <vector>
+
+#include "vantage/types.hpp"
+
+namespace vantage {
+
+struct Packing {
+  std::vector<Uv> corner;  // lower left of each rectangle, in the order given
+  Uv size;                 // of the rectangle around all
+};
+
+// Rectangles keep their orientation and stay `gap` apart. Of several shelf widths the one that wastes least is taken,
+// near a square where that costs nothing. A single rectangle fills the whole.
+Packing pack_shelves(const std::vector<Uv>& sizes, double gap);
+
+}  // namespace vantage

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "placement/surface_pieces.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace vantage {
+namespace {
+
+using Corners = std::array<Vec3, 3>;
+
+enum class Share : std::uint8_t { none, some, all };
+
+struct Part {
+  std::uint32_t source;
+  Corners corners;
+};
+
+class Splitter {
+ public:
+  Splitter(double spacing_m, const std::function<bool(const Vec3&)>& clear)
+      : longest_(spacing_m * spacing_m), clear_(clear) {}
+
+  // Appends the largest clear parts, unless all of the triangle is clear.
+  Share split(const Corners& p, std::uint32_t source, std::vector<Part>& parts, int depth = 0) const {
+    std::array<double, 3> length;
+    for (int e = 0; e < 3; ++e) {
+      const Vec3 edge = p[(e + 1) % 3] - p[e];
+      length[e] = dot(edge, edge);
+    }
+    const int e = static_cast<int>(std::max_element(length.begin(), length.end()) - length.begin());
+    if (length[e] <= longest_ || depth == max_depth)
+      return clear_((p[0] + p[1] + p[2]) * (1.0 / 3)) ? Share::all : Share::none;
+    const Vec3 a = p[e], b = p[(e + 1) % 3], c = p[(e + 2) % 3], middle = (a + b) * 0.5;
+    const Corners first{a, middle, c}, second{middle, b, c};
+    const Share left = split(first, source, parts, depth + 1), right = split(second, source, parts, depth + 1);
+    if (left == right && left != Share::some) return left;
+    if (left == Share::all) parts.push_back({source, first});
+    if (right == Share::all) parts.push_back({source, second});
+    return Share::some;
+  }
+
+ private:
+  static constexpr int max_depth = 40;  // halving the area 40 times is enough for any spacing that callers choose
+  double longest_;
+  const std::function<bool(const Vec3&)>& clear_;
+};
+
+Corners corners_of(const SurfacePieces& pieces, std::uint32_t piece) {
+  const Triangle& t = pieces.triangles[piece];
+  return {pieces.points[t[0]], pieces.points[t[1]], pieces.points[t[2]]};
+}
+
+}  // namespace
+
+SurfacePieces clear_pieces(std::vector<Vec3> points, std::span<const Triangle> triangles, double spacing_m,
+                           const std::function<bool(const Vec3&)>& clear) {
+  const Splitter splitter(spacing_m, clear);
+  std::vector<Share> share(triangles.size());
+  tbb::enumerable_thread_specific<std::vector<Part>> collected;
+  tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, static_cast<std::uint32_t>(triangles.size())),
+                    [&](const tbb::blocked_range<std::uint32_t>& range) {
+                      std::vector<Part>& parts = collected.local();
+                      for (std::uint32_t t = range.begin(); t != range.end(); ++t)
+                        share[t] = splitter.split(
+                            {points[triangles[t][0]], points[triangles[t][1]], points[triangles[t][2]]}, t, parts);
+                    });
+  // One thread does a whole source, so a stable sort by source restores the order that a single thread would give.
+  std::vector<Part> parts;
+  for (const auto& some : collected) parts.insert(parts.end(), some.begin(), some.end());
+  std::stable_sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.source < b.source; });
+
+  SurfacePieces result;
+  result.points = std::move(points);
+  auto part = parts.begin();
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    if (share[t] == Share::all) {
+      result.triangles.push_back(triangles[t]);
+      result.source.push_back(t);
+    }
+    for (; part != parts.end() && part->source == t; ++part) {
+      const auto first = static_cast<std::uint32_t>(result.points.size());
+      result.points.insert(result.points.end(), part->corners.begin(), part->corners.end());
+      result.triangles.push_back({first, first + 1, first + 2});
+      result.source.push_back(t);
+    }
+  }
+  return result;
+}
+
+double piece_area(const SurfacePieces& pieces, std::uint32_t piece) {
+  const Corners p = corners_of(pieces, piece);
+  const Vec3 n = cross(p[1] - p[0], p[2] - p[0]);
+  return 0.5 * std::sqrt(dot(n, n));
+}
+
+double piece_plan_area(const SurfacePieces& pieces, std::uint32_t piece) {
+  const Corners p = corners_of(pieces, piece);
+  return 0.5 * std::abs(cross(p[1] - p[0], p[2] - p[0]).z);
+}
+
+}  // namespace vantage
