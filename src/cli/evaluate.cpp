@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cmath>
-
 #include <spdlog/spdlog.h>
 
 #include "cli/command.hpp"
@@ -48,24 +46,13 @@ struct EvaluateCommandOptions {
   }
 };
 
-NetworkCounts evaluate_sample(Simulator& simulator, const Network& network, std::uint64_t voxels, bool overlap,
+NetworkCounts evaluate_sample(Simulator& simulator, const Network& network, const EvaluateCommandOptions& options,
                               const Progress& progress) {
+  const bool overlap = !options.no_overlap;
+  const std::uint64_t voxels = options.error
+                                   ? simulator.voxels_for_standard_error({&network, 1}, *options.error, overlap, progress)
+                                   : options.sample->of(simulator.voxel_count());
   return simulator.evaluate_sampled({&network, 1}, {.voxels = voxels, .overlap = overlap}, progress).front();
-}
-
-// Grows the sample until both standard errors are at most `error`; they fall with the square root of its size.
-NetworkCounts evaluate_to_error(Simulator& simulator, const Network& network, double error, bool overlap, const Progress& progress) {
-  constexpr double margin = 1.1, most_growth = 64;
-  const std::uint64_t all = simulator.voxel_count();
-  for (std::uint64_t voxels = std::min<std::uint64_t>(5'000, all);;) {
-    NetworkCounts counts = evaluate_sample(simulator, network, voxels, overlap, progress);
-    double reached = coverage_estimate(counts, simulator.goal_density(), all).standard_error;
-    if (overlap) reached = std::max(reached, overlap_estimate(counts, all).standard_error);
-    spdlog::info("{} voxels: standard error {:.2g}", voxels, reached);
-    if (reached <= error || voxels >= all || counts.cancelled) return counts;
-    const double growth = std::clamp(margin * (reached / error) * (reached / error), 1.25, most_growth);
-    voxels = std::min(all, static_cast<std::uint64_t>(std::ceil(static_cast<double>(voxels) * growth)));
-  }
 }
 
 nlohmann::json matrix_json(const OverlapMatrix& overlap) {
@@ -94,11 +81,9 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
   const Progress progress{.report = [&](double done) { line.update(done); }, .stop = program.stop};
   VoxelField field;
   const NetworkCounts counts =
-      options.error    ? evaluate_to_error(simulator, network, *options.error, overlap, progress)
-      : options.sample ? evaluate_sample(simulator, network, options.sample->of(simulator.voxel_count()), overlap, progress)
-                       : simulator.evaluate(network,
-                                            {.overlap = overlap, .skip = options.skip, .field = options.cartography ? &field : nullptr},
-                                            progress);
+      sampled ? evaluate_sample(simulator, network, options, progress)
+              : simulator.evaluate(network, {.overlap = overlap, .skip = options.skip, .field = options.cartography ? &field : nullptr},
+                                   progress);
   if (counts.cancelled) {
     spdlog::error("stopped before the end; nothing was written");
     return exit_failed;

@@ -8,6 +8,7 @@
 
 #include "cli/command.hpp"
 #include "cli/options.hpp"
+#include "cli/site.hpp"
 #include "vantage/vantage.hpp"
 
 namespace vantage::cli {
@@ -94,7 +95,7 @@ int info(CLI::App&, InfoOptions& options, Program& program) {
       return a.rays_per_second.value_or(-1) > b.rays_per_second.value_or(-1);
     });
   }
-  const auto presets = default_presets_file();
+  const auto presets = presets_file();
   const auto scanners = list_scanners(presets);
 
   if (options.json) {

@@ -135,22 +135,6 @@ void settle_problem(PlanOptions& options) {
   config.stations_max = high;
 }
 
-// An hour's search must not end at a folder that cannot be written.
-void prepare_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  const auto probe = folder / ".writable";
-  if (!error) {
-    try {
-      write_text(probe, "");
-      std::filesystem::remove(probe, error);
-    } catch (const Error& failure) {
-      throw Error(Errc::io, folder.string() + ": cannot be written to", {failure.what()});
-    }
-  }
-  if (error) throw Error(Errc::io, folder.string() + ": cannot be made: " + error.message());
-}
-
 std::vector<Vec3> heads_of(Site& site, const std::vector<StationText>& stations, const std::string& what) {
   std::vector<Vec3> heads;
   for (const auto& station : place(site, stations)) {
@@ -209,7 +193,7 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   settle_problem(options);
   if (!options.output) throw Error(Errc::invalid_argument, "plan: say where the results go with -o DIR");
   const std::filesystem::path folder = *options.output;
-  prepare_folder(folder);
+  make_folder(folder);  // an hour's search must not end at a folder that cannot be written
 
   PlanConfig& config = options.config;
   config.start = heads_of(site, options.start, "--start");

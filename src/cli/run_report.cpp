@@ -3,6 +3,9 @@
 
 #include <spdlog/spdlog.h>
 
+#include "vantage/error.hpp"
+#include "vantage/export.hpp"
+
 namespace vantage::cli {
 
 void tell_engine(const Simulator& simulator) {
@@ -13,6 +16,21 @@ void tell_engine(const Simulator& simulator) {
 void tell_grid(const Simulator& simulator) {
   spdlog::info("{} surveyed voxels of {:.4g} m, goal {:.1f} points each; {} rays a station", simulator.voxel_count(),
                simulator.voxel_size_m(), simulator.goal_density(), simulator.scanner().rays());
+}
+
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  const auto probe = folder / ".writable";
+  if (!error) {
+    try {
+      write_text(probe, "");
+      std::filesystem::remove(probe, error);
+    } catch (const Error& failure) {
+      throw Error(Errc::io, folder.string() + ": cannot be written to", {failure.what()});
+    }
+  }
+  if (error) throw Error(Errc::io, folder.string() + ": cannot be made: " + error.message());
 }
 
 }  // namespace vantage::cli

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <filesystem>
 
 #include <nlohmann/json.hpp>
 
@@ -25,5 +26,8 @@ inline nlohmann::json seconds_json(const Stopwatch& watch, double trace_seconds)
 // The engine's line: always said, so that no result hides what made it.
 void tell_engine(const Simulator& simulator);
 void tell_grid(const Simulator& simulator);
+
+// Makes the folder and tries it out. Throws Error io where nothing can be written to it.
+void make_folder(const std::filesystem::path& folder);
 
 }  // namespace vantage::cli

@@ -16,10 +16,17 @@ const std::map<std::string, std::uint32_t> output_bits{{"range", scan_range}, {"
                                                        {"reflectivity", scan_reflectivity}, {"ids", scan_ids},
                                                        {"colour", scan_colour}};
 
+Panorama load_panorama(const std::string& text, const std::string& what) {
+  const auto comma = text.rfind(',');
+  if (comma == std::string::npos) return Panorama::load(text);
+  return Panorama::load(text.substr(0, comma), Angle::degrees(parse_number(text.substr(comma + 1), what)));
+}
+
 struct ScanOptions {
   SiteOptions site;
   StationOptions stations;
   std::optional<std::string> output;
+  std::vector<Panorama> panoramas;
   std::uint32_t outputs = scan_position | scan_reflectivity | scan_colour;
   bool json = false;
 
@@ -38,6 +45,9 @@ struct ScanOptions {
                   outputs |= bit->second;
                 }
               });
+    add_values(command, "--panorama", "FILE[,DEG]",
+               "Panoramic photograph that colours a station's points, with the azimuth of its middle; the k-th is the k-th station's",
+               [this](const std::string& text, const std::string& what) { panoramas.push_back(load_panorama(text, what)); });
     command.add_flag("--json", json, "Print one JSON object");
   }
 };
@@ -47,6 +57,8 @@ int scan(CLI::App& command, ScanOptions& options, Program& program) {
   Site site = open_site(command, options.site);
   const auto typed = options.stations.read(65535);  // what a LAS point source id can tell apart, station 0 included
   const auto stations = place(site, typed);
+  if (options.panoramas.size() > stations.size())
+    throw Error(Errc::invalid_argument, fmt::format("--panorama: {} pictures for {} stations", options.panoramas.size(), stations.size()));
   for (const auto& station : stations)
     if (station.placed.status == StationStatus::hole)
       throw Error(Errc::invalid_argument, fmt::format("no ground under u,v = {:g},{:g}: a scan needs a place to stand",
@@ -74,7 +86,7 @@ int scan(CLI::App& command, ScanOptions& options, Program& program) {
                                            [&](const ScanChunk& chunk) {
                                              if (writer) writer->write(chunk, static_cast<std::uint16_t>(k));
                                            },
-                                           progress);
+                                           progress, k < options.panoramas.size() ? &options.panoramas[k] : nullptr);
     if (one.cancelled) {
       spdlog::error("stopped; no file was written");
       return exit_failed;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <set>
@@ -44,7 +45,7 @@ Scanner resolve_scanner(const SiteOptions& options, double scale) {
   scanner.max_range_m *= scale;
   if (options.scanner) {
     const double height = scanner.height_m;
-    scanner = load_scanner(default_presets_file(), *options.scanner);
+    scanner = load_scanner(presets_file(), *options.scanner);
     scanner.height_m = height;
   }
   if (options.step) {
@@ -173,6 +174,14 @@ void SiteOptions::add(CLI::App& command) {
       ->group("Run");
 }
 
+std::filesystem::path presets_file() {
+  std::error_code error;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
+  const auto beside = program.parent_path().parent_path() / "share" / "vantage" / "scanners.json";
+  if (std::getenv("VANTAGE_DATA") || error || !std::filesystem::exists(beside, error)) return default_presets_file();
+  return beside;
+}
+
 double length_scale(const Box& bounds) {
   const Vec3 size = bounds.size();
   const double extent = std::max({size.x, size.y, size.z});
@@ -186,7 +195,7 @@ NoiseTable load_noise(const std::string& name) {
   if (name == "off" || name == "none" || name == "false") return {};
   if (name == "rtc360") return rtc360_noise();
   if (!name.ends_with(".csv")) {
-    const Scanner scanner = load_scanner(default_presets_file(), name);
+    const Scanner scanner = load_scanner(presets_file(), name);
     if (scanner.noise.empty())
       throw Error(Errc::invalid_argument, "--noise: the maker of '" + name + "' states no noise table; give a CSV file or off");
     return scanner.noise;
@@ -221,6 +230,17 @@ NoiseTable load_noise(const std::string& name) {
 const SearchArea& Site::area() {
   if (!area_) area_ = SearchArea::build(scene, walkable);
   return *area_;
+}
+
+bool Site::has_area() {
+  if (scene.has_search_area() || area_) return true;
+  try {
+    area();
+    return true;
+  } catch (const Error& error) {
+    if (error.code() != Errc::invalid_argument) throw;
+    return false;
+  }
 }
 
 const ClashChecker& Site::clash() {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/stations.hpp"
 
+#include <cmath>
+
 #include <spdlog/spdlog.h>
 
 #include "cli/options.hpp"
@@ -68,6 +70,21 @@ std::vector<StationText> StationOptions::read(std::size_t most) const {
   return stations;
 }
 
+namespace {
+
+// Where a given head's tripod stands: on the search area where its (u, v) is known and lies below, else the scanner's height lower.
+Vec3 ground_below(Site& site, const StationText& station) {
+  constexpr double same_place_m = 1e-3;
+  const Vec3 head = *station.position;
+  if (station.uv && site.has_area()) {
+    const auto ground = site.area().locate(*station.uv);
+    if (ground && std::hypot(ground->x - head.x, ground->y - head.y) < same_place_m && ground->z <= head.z) return *ground;
+  }
+  return head - Vec3{0, 0, site.scanner.height_m};
+}
+
+}  // namespace
+
 std::vector<SiteStation> place(Site& site, const std::vector<StationText>& stations) {
   const double height = site.scanner.height_m;
   std::vector<SiteStation> placed;
@@ -78,12 +95,12 @@ std::vector<SiteStation> place(Site& site, const std::vector<StationText>& stati
       continue;
     }
     SiteStation result{{.uv = {}, .position = *station.position}, false};
-    const Vec3 ground = *station.position - Vec3{0, 0, height};
+    const Vec3 ground = ground_below(site, station);
     if (site.clash().clashes(ground)) result.placed.status = StationStatus::clash;
     if (station.uv) {
       result.placed.uv = *station.uv;
       result.has_uv = true;
-    } else if (site.scene.has_search_area()) {
+    } else if (site.has_area()) {
       if (const auto uv = site.area().project(ground)) {
         result.placed.uv = *uv;
         result.has_uv = true;
