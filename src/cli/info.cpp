@@ -8,7 +8,7 @@
 
 #include "cli/command.hpp"
 #include "cli/options.hpp"
-#include "cli/site.hpp"
+#include "cli/scanners.hpp"
 #include "vantage/vantage.hpp"
 
 namespace vantage::cli {

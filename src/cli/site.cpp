@@ -3,15 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <set>
 
 #include <spdlog/spdlog.h>
 
 #include "cli/options.hpp"
 #include "cli/parse.hpp"
+#include "cli/scanners.hpp"
 
 namespace vantage::cli {
 namespace {
@@ -31,11 +30,6 @@ Setter numbers_into(std::optional<std::array<double, N>>& target, std::size_t fe
     for (std::size_t k = 0; k < N; ++k) all[k] = values[std::min(k, values.size() - 1)];
     target = all;
   };
-}
-
-std::string trimmed(std::string line) {
-  while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
-  return line;
 }
 
 Scanner resolve_scanner(const SiteOptions& options, double scale) {
@@ -174,14 +168,6 @@ void SiteOptions::add(CLI::App& command) {
       ->group("Run");
 }
 
-std::filesystem::path presets_file() {
-  std::error_code error;
-  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
-  const auto beside = program.parent_path().parent_path() / "share" / "vantage" / "scanners.json";
-  if (std::getenv("VANTAGE_DATA") || error || !std::filesystem::exists(beside, error)) return default_presets_file();
-  return beside;
-}
-
 double length_scale(const Box& bounds) {
   const Vec3 size = bounds.size();
   const double extent = std::max({size.x, size.y, size.z});
@@ -189,42 +175,6 @@ double length_scale(const Box& bounds) {
   const double scale = extent / 20;
   const double unit = std::pow(10, std::floor(std::log10(scale)) - 1);
   return std::round(scale / unit) * unit;
-}
-
-NoiseTable load_noise(const std::string& name) {
-  if (name == "off" || name == "none" || name == "false") return {};
-  if (name == "rtc360") return rtc360_noise();
-  if (!name.ends_with(".csv")) {
-    const Scanner scanner = load_scanner(presets_file(), name);
-    if (scanner.noise.empty())
-      throw Error(Errc::invalid_argument, "--noise: the maker of '" + name + "' states no noise table; give a CSV file or off");
-    return scanner.noise;
-  }
-  std::ifstream stream(name);
-  if (!stream) throw Error(Errc::io, name + ": cannot be opened");
-  NoiseTable table;
-  std::string line;
-  for (std::size_t number = 1; std::getline(stream, line); ++number) {
-    line = trimmed(line);
-    if (line.empty() || line.starts_with('#')) continue;
-    const std::string what = name + ", line " + std::to_string(number);
-    const auto cells = split(line, ',');
-    const bool header = table.distances_m.empty();
-    if (cells.size() < 2 || (!header && cells.size() != table.distances_m.size() + 1))
-      throw Error(Errc::malformed_file, what + ": '" + line + "' must have " +
-                                            (header ? std::string("`reflectivity` and the distances in metres")
-                                                    : std::to_string(table.distances_m.size() + 1) + " cells"));
-    if (!header) table.reflectivities.push_back(parse_number(cells[0], what, {.low = 0, .high = 1}));
-    for (std::size_t k = 1; k < cells.size(); ++k)
-      (header ? table.distances_m : table.sigma_m).push_back(parse_number(cells[k], what, not_negative));
-  }
-  if (table.reflectivities.empty()) throw Error(Errc::malformed_file, name + ": holds no line of standard deviations");
-  const auto ascending = [](const std::vector<double>& values) {
-    return std::adjacent_find(values.begin(), values.end(), std::greater_equal<>()) == values.end();
-  };
-  if (!ascending(table.distances_m) || !ascending(table.reflectivities))
-    throw Error(Errc::malformed_file, name + ": distances and reflectivities must rise");
-  return table;
 }
 
 const SearchArea& Site::area() {

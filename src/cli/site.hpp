@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -71,12 +70,5 @@ Site open_site(CLI::App& command, SiteOptions& options);
 // Lengths for a scene whose size is unlike a site's: the built-in figures times this. 1 from 2 m to 200 m; otherwise the largest
 // extent over 20 m, with two significant digits.
 double length_scale(const Box& bounds);
-
-// The presets file that was installed with this program, wherever that tree now lies; else default_presets_file().
-std::filesystem::path presets_file();
-
-// --noise: off, a preset's name, or a CSV file with a header `reflectivity,<distance in metres>,…` and a line of standard
-// deviations in metres for each reflectivity.
-NoiseTable load_noise(const std::string& name);
 
 }  // namespace vantage::cli
