@@ -9,6 +9,7 @@
 #include <chrono>
 #include <functional>
 
+#include "trace/embree/tile_plan.hpp"
 #include "trace/embree/voxel_cursor.hpp"
 #include "trace/field_counts.hpp"
 
@@ -55,10 +56,11 @@ class VoxelCounter {
   bool masks_;
 };
 
-TileSums count_tile(const StationRays& station_rays, const TraceStation& station, const RayTile& tile, float end,
+TileSums count_tile(const StationRays& station_rays, const TraceStation& station, const PlannedTile& planned,
                     VoxelCursor& voxels, const VoxelCounter& counter) {
+  const RayTile& tile = planned.tile;
   RayBundle rays;
-  station_rays.gather(station, tile, end, rays);
+  station_rays.gather(station, tile, planned.end, rays);
   station_rays.caster().cast(rays);
 
   TileSums sums;
@@ -96,12 +98,8 @@ NetworkCounts count_network(const StationRays& rays, std::span<const TraceStatio
   field.count.assign(rays.grid().size(), 0);
   field.stations.assign(options.masks ? rays.grid().size() : 0, 0);
 
-  const RayPattern& pattern = rays.pattern();
-  const std::uint32_t wide = (pattern.columns() + RayTile::side - 1) / RayTile::side;
-  const std::uint32_t tall = (pattern.rows() + RayTile::side - 1) / RayTile::side;
-  const std::uint64_t tiles = std::uint64_t{wide} * tall;
   // A tenth of a second or so between two looks at the stop token.
-  const std::uint64_t chunk = 4096 * static_cast<std::uint64_t>(tbb::this_task_arena::max_concurrency());
+  const std::size_t chunk = 4096 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
 
   std::uint64_t traced = 0;
   std::vector<std::uint64_t> points(options.skip ? 0 : station_count), on_surveyed(station_count);
@@ -109,28 +107,24 @@ NetworkCounts count_network(const StationRays& rays, std::span<const TraceStatio
   for (std::size_t s = 0; s < stations.size() && !cancelled; ++s) {
     const TraceStation& station = stations[s];
     const VoxelCounter counter(field, station, options.masks);
+    const std::vector<PlannedTile> tiles = options.skip ? tiles_with_bricks(rays, station) : all_tiles(rays.pattern());
     TileSums sums;
-    for (std::uint64_t first = 0; first < tiles; first += chunk) {
+    for (std::size_t first = 0; first < tiles.size(); first += chunk) {
       if (progress.stopped()) {
         cancelled = true;
         break;
       }
-      const std::uint64_t end = std::min(tiles, first + chunk);
+      const std::size_t end = std::min(tiles.size(), first + chunk);
       sums = sums + tbb::parallel_reduce(
-                        tbb::blocked_range<std::uint64_t>(first, end, 16), TileSums{},
+                        tbb::blocked_range<std::size_t>(first, end, 16), TileSums{},
                         [&](const auto& range, TileSums part) {
                           VoxelCursor voxels(rays.grid());
-                          for (std::uint64_t k = range.begin(); k < range.end(); ++k) {
-                            RayTile tile{static_cast<std::uint32_t>(k / wide) * RayTile::side,
-                                         static_cast<std::uint32_t>(k % wide) * RayTile::side, 0, 0};
-                            tile.rows = std::min(RayTile::side, pattern.rows() - tile.row);
-                            tile.columns = std::min(RayTile::side, pattern.columns() - tile.column);
-                            part = part + count_tile(rays, station, tile, pattern.max_range, voxels, counter);
-                          }
+                          for (std::size_t k = range.begin(); k < range.end(); ++k)
+                            part = part + count_tile(rays, station, tiles[k], voxels, counter);
                           return part;
                         },
                         std::plus<>());
-      progress((static_cast<double>(s) + static_cast<double>(end) / static_cast<double>(tiles)) /
+      progress((static_cast<double>(s) + static_cast<double>(end) / static_cast<double>(tiles.size())) /
                static_cast<double>(stations.size()));
     }
     traced += sums.rays;

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trace/embree/tile_plan.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <atomic>
+#include <cmath>
+
+#include "trace/rays_of_box.hpp"
+
+namespace vantage {
+namespace {
+
+std::uint32_t tiles_across(std::uint32_t rays) { return (rays + RayTile::side - 1) / RayTile::side; }
+
+RayTile tile_at(const RayPattern& pattern, std::uint32_t a, std::uint32_t b) {
+  RayTile tile{a * RayTile::side, b * RayTile::side, 0, 0};
+  tile.rows = std::min(RayTile::side, pattern.rows() - tile.row);
+  tile.columns = std::min(RayTile::side, pattern.columns() - tile.column);
+  return tile;
+}
+
+void raise(float& value, float to) {
+  const std::atomic_ref<float> shared(value);
+  float old = shared.load(std::memory_order_relaxed);
+  while (old < to && !shared.compare_exchange_weak(old, to, std::memory_order_relaxed)) {
+  }
+}
+
+}  // namespace
+
+std::vector<PlannedTile> all_tiles(const RayPattern& pattern) {
+  std::vector<PlannedTile> tiles;
+  for (std::uint32_t a = 0; a < tiles_across(pattern.rows()); ++a) {
+    for (std::uint32_t b = 0; b < tiles_across(pattern.columns()); ++b)
+      tiles.push_back({tile_at(pattern, a, b), pattern.max_range});
+  }
+  return tiles;
+}
+
+std::vector<PlannedTile> tiles_with_bricks(const StationRays& rays, const TraceStation& station) {
+  const RayPattern& pattern = rays.pattern();
+  const VoxelGrid& grid = rays.grid();
+  const double reach = static_cast<double>(rays.noise().reach());
+  // Noise that may carry a point through the head to its other side would need the rays of that side.
+  if (reach > 0 && reach >= static_cast<double>(pattern.min_range)) return all_tiles(pattern);
+
+  const std::uint32_t wide = tiles_across(pattern.columns());
+  std::vector<float> ends(std::size_t{wide} * tiles_across(pattern.rows()), 0.0f);
+  const Vec3 head{station.origin.x, station.origin.y, station.origin.z};
+  const Vec3 min{grid.min()[0], grid.min()[1], grid.min()[2]};
+  const double side = grid.voxel_size() * (1 << brick_bits), cube = grid.voxel_size() * (1 << grid.depth());
+  // Of what is rounded on the way to a voxel nothing is larger than this.
+  const double magnitude = std::sqrt(dot(head, head)) + std::sqrt(dot(min, min)) + 2 * cube;
+  const double pad = rounding_pad(magnitude);
+  // Embree's distance of a hit, by which it ends a ray, is off from the point's by no more than Surface::distance
+  // allows; twice that.
+  const double stretch = 1 + std::ldexp(2.0, -Surface::plane_trust);
+
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, grid.bricks().size(), 1024), [&](const auto& range) {
+    for (std::size_t k = range.begin(); k < range.end(); ++k) {
+      const VoxelBrick& brick = grid.bricks()[k];
+      const Vec3 corner = min + Vec3{brick.x * side, brick.y * side, brick.z * side} - head;
+      const Vec3 low = corner - Vec3{pad, pad, pad}, high = corner + Vec3{side + pad, side + pad, side + pad};
+      const RayRanges seen = rays_of_box(pattern, low, high);
+      if (seen.empty()) continue;
+      const Vec3 far{std::max(-low.x, high.x), std::max(-low.y, high.y), std::max(-low.z, high.z)};
+      const auto end = static_cast<float>((std::sqrt(dot(far, far)) + reach) * stretch);
+      for (const RayRanges::Range& columns : seen.columns) {
+        if (columns.empty()) continue;
+        for (std::uint32_t a = seen.rows.begin / RayTile::side; a <= (seen.rows.end - 1) / RayTile::side; ++a) {
+          for (std::uint32_t b = columns.begin / RayTile::side; b <= (columns.end - 1) / RayTile::side; ++b)
+            raise(ends[std::size_t{a} * wide + b], end);
+        }
+      }
+    }
+  });
+
+  std::vector<PlannedTile> tiles;
+  for (std::uint32_t k = 0; k < ends.size(); ++k) {
+    if (ends[k] > pattern.min_range)
+      tiles.push_back({tile_at(pattern, k / wide, k % wide), std::min(ends[k], pattern.max_range)});
+  }
+  return tiles;
+}
+
+}  // namespace vantage

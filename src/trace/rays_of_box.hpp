@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// The inverse of the ray pattern: which rays pass through a box.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "trace/tracer.hpp"
+
+namespace vantage {
+
+// Every ray that meets the box lies in one of these rows and one of these column ranges (two where the box lies across
+// the pattern's seam); other rays may too.
+struct RayRanges {
+  struct Range {
+    std::uint32_t begin = 0, end = 0;
+    bool empty() const { return begin >= end; }
+  };
+  Range rows;
+  std::array<Range, 2> columns;
+  bool empty() const { return rows.empty() || (columns[0].empty() && columns[1].empty()); }
+};
+
+// `low` and `high`: corners of the box relative to the head. Bounds are widened by more than the directions' rounding.
+RayRanges rays_of_box(const RayPattern& pattern, const Vec3& low, const Vec3& high);
+
+// How far a box must be widened on each side so that no point that float arithmetic puts into it lies outside: a point
+// is origin + t·d, and its cell the floor of (p − min)·inverse_size, five roundings of at most 2^−24 of `reach`, the
+// largest of the magnitudes involved (coordinates of head, box and grid, and the distance). Three times that.
+double rounding_pad(double reach);
+
+}  // namespace vantage
