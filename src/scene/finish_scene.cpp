@@ -227,7 +227,8 @@ std::shared_ptr<const SceneData> finish_scene(RawScene&& raw, const std::string&
   if (flat > 0) raw.notes.push_back("dropped " + std::to_string(flat) + " triangles without area");
   if (duplicates > 0)
     raw.notes.push_back("dropped " + std::to_string(duplicates) + " exact duplicates of other triangles");
-  if (std::ranges::none_of(raw.meshes, [](const MeshInfo& mesh) { return mesh.role == Role::surveyed; }))
+  if (raw.triangles.empty() ||
+      std::ranges::none_of(raw.meshes, [](const MeshInfo& mesh) { return mesh.role == Role::surveyed; }))
     throw Error(
         Errc::malformed_file,
         source + ": nothing to survey: " +

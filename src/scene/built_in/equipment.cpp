@@ -173,11 +173,11 @@ void add_pump(Shaper& pump, Shaper& motor, Shaper& base, const Vec3& s, double d
                                  {0.5, 0.11}, {0.56, 0.11},       {0.57, 0.07},       {0.75, 0.06}, {0.75, 0}};
   pump.turn(f, casing, pump.detail().around(0.2));
   add_bolts(pump, f.ahead(t), flange.bolt_circle, flange.bolt_radius, flange.bolts);
-  pump.box({s.x - 0.09, s.y + 0.26, 0.16}, {s.x + 0.09, s.y + 0.34, axis - 0.215}, kBottom | kTop);
+  pump.box({s.x - 0.09, s.y + 0.26, 0.16}, {s.x + 0.09, s.y + 0.34, axis - 0.19}, kBottom | kTop);
   const Frame up = frame_along({s.x, s.y + 0.3, axis + 0.23}, kUp);
   const double length = discharge_height - axis - 0.23;
   const ProfilePoint neck[] = {
-      {-0.03, 0.075}, {length - t, 0.06}, {length - t, flange.radius}, {length, flange.radius}, {length, 0.07}};
+      {-0.03, 0.075}, {length - t, 0.06}, {length - t, flange.radius}, {length, flange.radius}, {length, 0.06}};
   pump.turn(up, neck, pump.detail().around(0.07));
   add_bolts(pump, Frame{up.origin, up.x, up.y * -1, up.z * -1}.ahead(-(length - t)), flange.bolt_circle,
             flange.bolt_radius, flange.bolts);
@@ -186,7 +186,7 @@ void add_pump(Shaper& pump, Shaper& motor, Shaper& base, const Vec3& s, double d
   add_motor(motor, f.ahead(0.98), 0.17, 0.42, true);
   motor.box({s.x - 0.07, s.y + 1.1, axis + 0.165}, {s.x + 0.07, s.y + 1.28, axis + 0.28}, kBottom);
   for (const double y : {1.06, 1.32})
-    base.box({s.x - 0.15, s.y + y, 0.16}, {s.x + 0.15, s.y + y + 0.05, axis - 0.13}, kBottom | kTop);
+    base.box({s.x - 0.09, s.y + y, 0.16}, {s.x + 0.09, s.y + y + 0.05, axis - 0.13}, kBottom | kTop);
 }
 
 void add_cabinet(Shaper& shaper, const Vec3& low, const Vec3& high) {

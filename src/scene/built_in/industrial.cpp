@@ -153,7 +153,7 @@ void Plant::rack() {
       add_beam(steel, {x, -kRackHalf + 0.08, top}, {x, kRackHalf - 0.08, top}, 0.12, 0.18);
   for (int i = 0; i + 1 < 4; ++i)
     for (const double y : {-kRackHalf, kRackHalf})
-      for (const double top : {kLower - 0.2, kUpper - 0.2})
+      for (const double top : {kLower - 0.2, kUpper})
         add_beam(steel, {kRackX[i] + 0.08, y, top}, {kRackX[i + 1] - 0.08, y, top}, 0.1, 0.16);
   for (const double y : {-kRackHalf, kRackHalf}) {  // wind bracing in the middle bay
     steel.bar({kRackX[1] + 0.09, y + 0.02, 0.35}, {kRackX[2] - 0.09, y + 0.02, kLower - 0.45}, 0.012, 0.07);
@@ -161,15 +161,21 @@ void Plant::rack() {
   }
 }
 
+// How far below a pipe's axis an open block of this half width may end without showing its inside, however coarse the
+// pipe.
+double hidden_in(double pipe_radius, double half_width) {
+  return 0.8 * std::sqrt(pipe_radius * pipe_radius - half_width * half_width);
+}
+
 // A block between beam and pipe.
 void Plant::shoe(Shaper& shaper, const Vec3& pipe, double radius, double beam_top) {
   shaper.box({pipe.x - 0.05, pipe.y - 0.025, beam_top + 0.001},
-             {pipe.x + 0.05, pipe.y + 0.025, pipe.z - radius + 0.004}, kBottom | kTop);
+             {pipe.x + 0.05, pipe.y + 0.025, pipe.z - hidden_in(radius, 0.025)}, kBottom | kTop);
 }
 
 // A post from the ground to the underside of a pipe.
 void Plant::support(Shaper& shaper, const Vec3& under, double pipe_radius) {
-  const double top = under.z - pipe_radius + 0.004;
+  const double top = under.z - hidden_in(pipe_radius, 0.035);
   shaper.box({under.x - 0.1, under.y - 0.1, 0}, {under.x + 0.1, under.y + 0.1, 0.02}, kBottom);
   shaper.box({under.x - 0.035, under.y - 0.035, 0.02}, {under.x + 0.035, under.y + 0.035, top}, kBottom | kTop);
 }
@@ -188,43 +194,43 @@ void Plant::rack_piping() {
     PipeOptions options;
   };
   const double end_west = -1.95, end_east = 7.15;
-  const double z1 = on(kLower, 0.11), z2 = on(kLower, 0.08), z3 = on(kLower, 0.06), z5 = on(kUpper, 0.05),
+  const double z1 = on(kLower, 0.09), z2 = on(kLower, 0.08), z3 = on(kLower, 0.06), z5 = on(kUpper, 0.05),
                z4 = on(kLower, 0.05);
   const double tank_face = kTankX + kTankRadius - 0.02;
   const Line lines[] = {
       {"pipe-feed-2",
        kWater,
-       0.35,
-       0.11,
+       0.395,
+       0.09,
        kLower,
-       {{tank_face, 1.4, 1.9}, {-3.55, 1.4, 1.9}, {-3.55, 0.35, 1.9}, {-2.1, 0.35, 1.9}, {-2.1, 0.35, z1}},
+       {{tank_face, 1.4, 1.8}, {-3.55, 1.4, 1.8}, {-3.55, 0.395, 1.8}, {-2.1, 0.395, 1.8}, {-2.1, 0.395, z1}},
        {},
        {.blind_end = true, .valves = {{0, 0.55}}}},
       {"pipe-feed-1",
        kWater,
-       0.7,
+       0.735,
        0.08,
        kLower,
-       {{tank_face, 4.7, 1.55}, {-2.5, 4.7, 1.55}, {-2.5, 0.7, 1.55}, {-2.5, 0.7, z2}},
+       {{tank_face, 4.7, 1.55}, {-2.5, 4.7, 1.55}, {-2.5, 0.735, 1.55}, {-2.5, 0.735, z2}},
        {},
        {.blind_end = true, .valves = {{0, 0.45}}}},
       {"pipe-feed-3",
        kWater,
-       -0.75,
+       -0.78,
        0.06,
        kLower,
-       {{tank_face, -1.9, 1.3}, {-2.3, -1.9, 1.3}, {-2.3, -0.75, 1.3}, {-2.3, -0.75, z3}},
+       {{tank_face, -1.9, 1.3}, {-2.3, -1.9, 1.3}, {-2.3, -0.78, 1.3}, {-2.3, -0.78, z3}},
        {},
        {.blind_end = true, .valves = {{0, 0.45}}}},
-      {"pipe-product", kProduct, -0.5, 0.10, kLower, {}, {}, {.blind_start = true, .blind_end = true}},
-      {"pipe-water", kWater, -0.2, 0.08, kLower, {}, {}, {.blind_start = true, .blind_end = true}},
+      {"pipe-product", kProduct, -0.49, 0.08, kLower, {}, {}, {.blind_start = true, .blind_end = true}},
+      {"pipe-water", kWater, -0.17, 0.08, kLower, {}, {}, {.blind_start = true, .blind_end = true}},
       {"pipe-drum-feed",
        kProduct,
-       0.08,
+       0.105,
        0.05,
        kLower,
        {},
-       {{7.22, 0.08, z4}, {7.22, 5.2, z4}, {7.22, 5.2, 2.1}, {6.23, 5.2, 2.1}},
+       {{7.22, 0.105, z4}, {7.22, 5.2, z4}, {7.22, 5.2, 2.1}, {6.23, 5.2, 2.1}},
        {.blind_start = true, .valves = {{1, 0.25}}}},
       {"pipe-reactor-feed",
        kProduct,
@@ -258,6 +264,7 @@ void Plant::drain_piping() {
             {6.1, kHeaderSouth, kHeaderZ}},
            0.1, {.flange_at_start = false, .blind_end = true, .valves = {{2, 0.2}, {3, 0.93}}});
   for (const double x : {2.9, 0.2, -2.4, -5.0}) support(posts, {x, kHeaderNorth, kHeaderZ}, 0.1);
+  support(posts, {7.22, 2.6, kLower + 0.06 + 0.05}, 0.05);
   for (const double y : {5.7, 3.1, -0.3, -3.4, -5.6}) support(posts, {kHeaderX, y, kHeaderZ}, 0.1);
   for (const double x : {-6.2, -3.2, -0.6, 2.3, 4.5}) support(posts, {x, kHeaderSouth, kHeaderZ}, 0.1);
   for (int i = 0; i < 3; ++i)
@@ -273,20 +280,20 @@ void Plant::pump_piping() {
              {{kPumpX[i], kHeaderSouth + 0.08, kHeaderZ}, {kPumpX[i], kSuctionY - 0.001, kHeaderZ}}, 0.07,
              {.flange_at_start = false, .valves = {{0, 0.45}}});
     add_pipe(part("pipe-discharge-" + number, kWater),
-             {{kPumpX[i], kSuctionY + 0.3, 0.901}, {kPumpX[i], kSuctionY + 0.3, 3.0}}, 0.06,
+             {{kPumpX[i], kSuctionY + 0.3, 0.901}, {kPumpX[i], kSuctionY + 0.3, 3.03}}, 0.06,
              {.flange_at_end = false, .valves = {{0, 0.24}}});
   }
   const double y = kSuctionY + 0.3;
   Shaper& header = part("pipe-discharge-header", kWater);
-  add_pipe(header, {{5.9, y, 3.08}, {0.4, y, 3.08}, {0.4, -0.2, 3.08}, {0.4, -0.2, kLower + 0.06 + 0.16 - 0.02}}, 0.1,
+  add_pipe(header, {{5.9, y, 3.1}, {0.75, y, 3.1}, {0.75, -0.17, 3.1}, {0.75, -0.17, kLower + 0.06 + 0.16 - 0.02}}, 0.1,
            {.flange_at_end = false, .blind_start = true});
   Shaper& posts = part("pipe-discharge-posts", kSteel);
   for (const double x : {2.35, 4.45}) {
     add_column(posts, {x, y, 0}, 2.9, 0.14);
-    posts.box({x - 0.06, y - 0.05, 2.901}, {x + 0.06, y + 0.05, 2.985}, kBottom | kTop);
+    posts.box({x - 0.06, y - 0.05, 2.901}, {x + 0.06, y + 0.05, 3.02}, kBottom | kTop);
   }
-  add_column(posts, {0.4, -3.4, 0}, 2.9, 0.14);
-  posts.box({0.35, -3.46, 2.901}, {0.45, -3.34, 2.985}, kBottom | kTop);
+  add_column(posts, {0.75, -3.4, 0}, 2.9, 0.14);
+  posts.box({0.7, -3.46, 2.901}, {0.8, -3.34, 3.02}, kBottom | kTop);
 }
 
 void Plant::vapour_piping() {
@@ -317,12 +324,12 @@ void Plant::vapour_piping() {
            {.flange_at_end = false, .blind_end = true, .valves = {{0, 0.4}}});
   Shaper& exchanger_lines = part("pipe-exchangers", kProduct);
   add_pipe(exchanger_lines,
-           {{3.2, -3.0, 2.17}, {3.2, -3.0, 3.09}, {3.2, -0.5, 3.09}, {3.2, -0.5, kLower + 0.06 + 0.19}}, 0.07,
+           {{3.2, -3.0, 2.17}, {3.2, -3.0, 3.1}, {3.2, -0.49, 3.1}, {3.2, -0.49, kLower + 0.06 + 0.15}}, 0.07,
            {.flange_at_end = false});
-  for (const double x : {3.6, 5.1})
+  for (const double x : {3.6, 4.4})
     add_pipe(exchanger_lines, {{x, -3.0, 1.16}, {x, -3.0, 1.54}}, 0.07,
              {.flange_at_start = false, .flange_at_end = false, .flange_every_m = 0.2});
-  add_pipe(exchanger_lines, {{6.2, -3.0, 2.17}, {6.2, -3.0, 3.66}, {6.2, -0.35, 3.66}, {6.2, -0.35, upper + 0.17}},
+  add_pipe(exchanger_lines, {{6.2, -3.0, 2.17}, {6.2, -3.0, 3.84}, {6.2, -0.35, 3.84}, {6.2, -0.35, upper + 0.16}},
            0.07, {.flange_at_end = false, .valves = {{1, 0.45}}});
   add_pipe(exchanger_lines, {{6.1, -3.32, 0.85}, {6.1, -3.75, 0.85}, {6.1, -3.75, 0.3}, {6.9, -3.75, 0.3}}, 0.05,
            {.blind_end = true});
@@ -370,7 +377,7 @@ void Plant::platforms() {
   add_stairs(stairs_north, stairs_north_rails, {-1.1, 3.4, 0}, {north.x0, 3.4, north.z}, 0.95);
   add_ladder(part("ladder-west", kYellow), {-3.525, kDeckWest.y1 + 0.04, 0}, {0, 1, 0}, kDeckWest.z + 1.1);
   add_ladder(part("ladder-north", kYellow), {north.x1 + 0.04, 3.4, 0}, {1, 0, 0}, north.z + 1.1);
-  add_ladder(part("ladder-tank-2", kYellow), {kTankX - kTankRadius - 0.1, kTankY[1], 0}, {-1, 0, 0}, 3.2);
+  add_ladder(part("ladder-tank-2", kYellow), {kTankX, kTankY[1] - kTankRadius - 0.1, 0}, {0, -1, 0}, 3.15);
 }
 
 void Plant::electrical() {

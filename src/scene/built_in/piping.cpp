@@ -32,7 +32,10 @@ std::vector<Bend> bends_of(const std::vector<Vec3>& route, double radius) {
     const double sine = length_of(axis);
     bends[i].angle = std::atan2(sine, dot(unit(in), unit(out)));
     bends[i].axis = axis * (1 / sine);
-    bends[i].cut = std::min(3 * radius * std::tan(bends[i].angle / 2), 0.46 * std::min(length_of(in), length_of(out)));
+    // two bends share a run; one alone may take nearly all of it
+    const double before = (i == 1 ? 0.92 : 0.46) * length_of(in),
+                 after = (i + 2 == route.size() ? 0.92 : 0.46) * length_of(out);
+    bends[i].cut = std::min({3 * radius * std::tan(bends[i].angle / 2), before, after});
   }
   return bends;
 }

@@ -70,7 +70,7 @@ void add_deck(Shaper& shaper, const Deck& d) {
   }
 }
 
-void add_railing(Shaper& shaper, const std::vector<Vec3>& path) {
+void add_railing(Shaper& shaper, const std::vector<Vec3>& path, bool hanging) {
   constexpr double kHeight = 1.1, kRail = 0.021, kPost = 0.021, kPitch = 1.2, kToeHeight = 0.1, kToeGap = 0.01,
                    kToeWidth = 0.006;
   for (std::size_t i = 0; i + 1 < path.size(); ++i) {
@@ -79,7 +79,7 @@ void add_railing(Shaper& shaper, const std::vector<Vec3>& path) {
     const int gaps = std::max(1, static_cast<int>(std::ceil(length_of(along) / kPitch)));
     for (int k = i == 0 ? 0 : 1; k <= gaps; ++k) {
       const Vec3 foot = path[i] + along * (static_cast<double>(k) / gaps);
-      shaper.cylinder(Frame{foot}, kPost, kHeight - kRail, false, false);
+      shaper.cylinder(Frame{foot}, kPost, kHeight - kRail, hanging, false);
     }
     shaper.rod(path[i] + kUp * kHeight, path[i + 1] + kUp * kHeight, kRail);
     shaper.rod(path[i] + kUp * (0.5 * kHeight), path[i + 1] + kUp * (0.5 * kHeight), 0.7 * kRail, false);
@@ -95,18 +95,19 @@ void add_stairs(Shaper& shaper, Shaper& railing, const Vec3& foot, const Vec3& t
   const Vec3 run = top - foot;
   const Vec3 level = unit({run.x, run.y, 0}), side = cross(kUp, level);
   const int steps = static_cast<int>(std::ceil(run.z / kRise));
-  for (const double s : {-0.5, 0.5}) {
-    const Vec3 offset = side * (s * (width - kStringerWidth));
-    const Vec3 low = foot + offset + kUp * 0.12 - level * 0.02, high = top + offset - kUp * 0.14;
-    shaper.bar(low, high, kStringerWidth, kStringer);
-    const Vec3 rail = side * (s * (width - 0.06));
-    add_railing(railing, {foot + rail + run * 0.04 + kUp * 0.1, top + rail - run * 0.02 + kUp * 0.05});
+  constexpr double kDrop = 0.06;  // of the stringers' middle below the line through the treads
+  const double slope = run.z / length_of(run), clear = 0.5 * kStringer / std::sqrt(1 - slope * slope);
+  const double first = (clear + kDrop) / run.z;
+  for (const double s : {-1.0, 1.0}) {
+    const Vec3 stringer = side * (s * 0.5 * (width - kStringerWidth)) - kUp * kDrop;
+    shaper.bar(foot + run * first + stringer, top - level * 0.08 + stringer, kStringerWidth, kStringer);
+    const Vec3 rail = side * (s * (0.5 * width + 0.024)) - kUp * 0.1;
+    add_railing(railing, {foot + run * (first + 0.02) + rail, top - run * 0.03 + rail}, true);
   }
   for (int i = 1; i < steps; ++i) {
     const Vec3 nose = foot + run * (static_cast<double>(i) / steps) - level * (0.5 * kTreadDepth);
-    const Frame f{nose, level, side, kUp};
-    shaper.box(f, {0, -0.5 * width + kStringerWidth, -kTreadHeight}, {kTreadDepth, 0.5 * width - kStringerWidth, 0},
-               kFront | kBack);
+    const double half = 0.5 * width - kStringerWidth - 0.002;
+    shaper.box(Frame{nose, level, side, kUp}, {0, -half, -kTreadHeight}, {kTreadDepth, half, 0});
   }
 }
 

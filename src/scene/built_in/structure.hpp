@@ -20,8 +20,9 @@ struct Deck {
 };
 void add_deck(Shaper& shaper, const Deck& deck);
 
-// A railing along a polyline on a deck: posts, two rails and a toe plate.
-void add_railing(Shaper& shaper, const std::vector<Vec3>& path);
+// A railing along a polyline: posts and two rails; a toe plate where it is level. On a deck the posts' lower ends are
+// hidden; `hanging` posts, beside a stringer, are closed there.
+void add_railing(Shaper& shaper, const std::vector<Vec3>& path, bool hanging = false);
 
 // Stairs from `foot` on the ground up to `top`: stringers, treads and railings on both sides.
 void add_stairs(Shaper& shaper, Shaper& railing, const Vec3& foot, const Vec3& top, double width);
