@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <optional>
 #include <string>
 
 #include "core/embree.hpp"
@@ -42,6 +43,20 @@ bool visit(RTCPointQueryFunctionArguments* arguments) {
   query.best = distance;
   arguments->query->radius = distance < query.good_enough ? 0 : query_radius(query);
   return true;
+}
+
+RTCRay ray_of(const Vec3& point, const Vec3& way, double from, double to) {
+  RTCRay ray{};
+  ray.org_x = static_cast<float>(point.x);
+  ray.org_y = static_cast<float>(point.y);
+  ray.org_z = static_cast<float>(point.z);
+  ray.dir_x = static_cast<float>(way.x);
+  ray.dir_y = static_cast<float>(way.y);
+  ray.dir_z = static_cast<float>(way.z);
+  ray.tnear = static_cast<float>(from);
+  ray.tfar = static_cast<float>(to);
+  ray.mask = ~0u;
+  return ray;
 }
 
 double squared(const Vec3& v) { return dot(v, v); }
@@ -90,6 +105,8 @@ struct MeshTree::Impl {
                   "building the tree for distances over " + std::to_string(scene.triangles.size()) + " triangles");
   }
 
+  std::optional<std::uint32_t> first_hit(const Vec3& point, const Vec3& way) const;
+
   double nearest(const Vec3& point, double limit, double good_enough) const {
     Query query{buffers, point, limit, good_enough};
     RTCPointQuery ball{};
@@ -104,6 +121,21 @@ struct MeshTree::Impl {
   }
 };
 
+std::optional<std::uint32_t> MeshTree::Impl::first_hit(const Vec3& point, const Vec3& way) const {
+  RTCRayHit hit{};
+  hit.ray = ray_of(point, way, 0, std::numeric_limits<double>::infinity());
+  hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+#if VANTAGE_EMBREE_MAJOR >= 4
+  rtcIntersect1(tree.get(), &hit);
+#else
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(tree.get(), &context, &hit);
+#endif
+  if (hit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+  return hit.hit.primID;
+}
+
 MeshTree::MeshTree(const SceneData& scene) : impl_(std::make_unique<Impl>(scene)) {}
 MeshTree::~MeshTree() = default;
 MeshTree::MeshTree(MeshTree&&) noexcept = default;
@@ -114,14 +146,7 @@ double MeshTree::distance(const Vec3& point, double limit) const { return impl_-
 bool MeshTree::within(const Vec3& point, double radius) const { return impl_->nearest(point, radius, radius) < radius; }
 
 bool MeshTree::covered(const Vec3& point, double from, double to) const {
-  RTCRay ray{};
-  ray.org_x = static_cast<float>(point.x);
-  ray.org_y = static_cast<float>(point.y);
-  ray.org_z = static_cast<float>(point.z);
-  ray.dir_z = 1;
-  ray.tnear = static_cast<float>(from);
-  ray.tfar = static_cast<float>(to);
-  ray.mask = ~0u;
+  RTCRay ray = ray_of(point, {0, 0, 1}, from, to);
 #if VANTAGE_EMBREE_MAJOR >= 4
   rtcOccluded1(impl_->tree.get(), &ray);
 #else
@@ -130,6 +155,19 @@ bool MeshTree::covered(const Vec3& point, double from, double to) const {
   rtcOccluded1(impl_->tree.get(), &context, &ray);
 #endif
   return ray.tfar < 0;
+}
+
+bool MeshTree::inside_solid(const Vec3& point) const {
+  int fronts = 0;
+  for (const Vec3& way : {Vec3{0, 0, 1}, Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, -1, 0}}) {
+    const auto hit = impl_->first_hit(point, way);
+    if (!hit) return false;
+    const Triangle& t = impl_->buffers.triangles[*hit];
+    const Vec3 a = wide(impl_->buffers.positions[t[0]]);
+    const Vec3 normal = cross(wide(impl_->buffers.positions[t[1]]) - a, wide(impl_->buffers.positions[t[2]]) - a);
+    if (dot(normal, way) <= 0 && ++fronts > 1) return false;
+  }
+  return true;
 }
 
 }  // namespace vantage

@@ -83,24 +83,24 @@ void PlaneQuadtree::subdivide(std::uint32_t node, const Cell& cell, std::vector<
   const Uv middle{0.5 * (cell.min.u + cell.max.u), 0.5 * (cell.min.v + cell.max.v)};
   std::array<Cell, 4> cells;
   std::array<std::vector<std::uint32_t>, 4> lists;
-  std::size_t sum = 0, most = 0;
+  std::size_t copies = 0, most = 0;
   for (int q = 0; q < 4; ++q) {
     cells[q] = {{q & 1 ? middle.u : cell.min.u, q & 2 ? middle.v : cell.min.v},
                 {q & 1 ? cell.max.u : middle.u, q & 2 ? cell.max.v : middle.v}};
     for (const std::uint32_t t : items)
       if (overlaps(t, cells[q])) lists[q].push_back(t);
-    const std::size_t count = partial(lists[q], cells[q]);
-    sum += count;
-    most = std::max(most, count);
+    copies += lists[q].size();
+    most = std::max(most, partial(lists[q], cells[q]));
   }
-  // Triangles in a pile, or around one vertex, are copied by subdivision but not parted.
-  const bool parted = 4 * most <= 3 * crowd || 5 * sum <= 6 * crowd;
+  // Triangles in a pile, or around one vertex, are copied by subdivision but not parted. A crowd in one corner is
+  // neither yet.
+  const bool parted = 4 * most <= 3 * crowd, cornered = 5 * copies <= 6 * items.size();
+  idle = parted ? 0 : cornered ? idle : idle + 1;
   items = {};
   const auto child = static_cast<std::uint32_t>(nodes_.size());
   nodes_[node].child = child;
   nodes_.resize(nodes_.size() + 4);
-  for (std::uint32_t q = 0; q < 4; ++q)
-    subdivide(child + q, cells[q], std::move(lists[q]), depth + 1, parted ? 0 : idle + 1);
+  for (std::uint32_t q = 0; q < 4; ++q) subdivide(child + q, cells[q], std::move(lists[q]), depth + 1, idle);
 }
 
 bool PlaneQuadtree::overlaps(std::uint32_t triangle, const Cell& cell) const {

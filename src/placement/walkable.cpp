@@ -126,8 +126,9 @@ WalkableSurface derive_walkable(const SceneData& scene, const MeshTree& tree, co
 
   const double from = first_height(scene.local_bounds, options.headroom_m), to = std::max(options.headroom_m, 2 * from);
   const double spacing = std::max(options.headroom_m / 5, extent / 512);
-  const SurfacePieces pieces =
-      clear_pieces(points, upward, spacing, [&](const Vec3& p) { return !tree.covered(p, from, to); });
+  const SurfacePieces pieces = clear_pieces(points, upward, spacing, [&](const Vec3& p) {
+    return !tree.covered(p, from, to) && !tree.inside_solid(p + Vec3{0, 0, from});
+  });
   std::vector<Chart> charts = make_charts(pieces, weld_share * extent);
   std::vector<char> fit(charts.size());
   tbb::parallel_for(std::size_t{0}, charts.size(), [&](std::size_t i) {

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "placement_scenes.hpp"
+#include "vantage/error.hpp"
+#include "vantage/placement.hpp"
+
+namespace vantage {
+namespace {
+
+const Vec3 origin{1000, 2000, 30};  // of the scenes that Builder makes
+
+Scene wall_and_ground() {
+  return test::Builder().floor(-10, -10, 10, 10, 0).quad({2, -5, 0}, {2, 5, 0}, {2, 5, 3}, {2, -5, 3}).scene();
+}
+
+TEST(ClashChecker, KeepsTheRadiusFromAWall) {
+  const ClashChecker checker(wall_and_ground());
+  EXPECT_FALSE(checker.clashes(origin + Vec3{0, 0, 0}));
+  EXPECT_FALSE(checker.clashes(origin + Vec3{1.4999, 0, 0}));
+  EXPECT_TRUE(checker.clashes(origin + Vec3{1.5001, 0, 0}));
+  EXPECT_TRUE(checker.clashes(origin + Vec3{2.4999, 0, 0}));
+  EXPECT_FALSE(checker.clashes(origin + Vec3{2.5001, 0, 0}));
+}
+
+TEST(ClashChecker, EitherSphereCounts) {
+  const SecurityVolume volume{.lower_m = 0.6, .upper_m = 1.5, .radius_m = 0.4};
+  const Scene beam = test::Builder().box({0, -1, 1.9}, {0.1, 1, 2.5}).scene(),
+              kerb = test::Builder().box({0, -1, 0}, {0.1, 1, 0.21}).scene();
+  EXPECT_FALSE(ClashChecker(beam, volume).clashes(origin + Vec3{0.05, 0, -0.0001}));
+  EXPECT_TRUE(ClashChecker(beam, volume).clashes(origin + Vec3{0.05, 0, 0.0001}));
+  EXPECT_FALSE(ClashChecker(kerb, volume).clashes(origin + Vec3{0.05, 0, 0.0101}));
+  EXPECT_TRUE(ClashChecker(kerb, volume).clashes(origin + Vec3{0.05, 0, 0.0099}));
+}
+
+TEST(ClashChecker, BlockingMeshesClashToo) {
+  SceneData data = test::Builder().box({0, -1, 0}, {0.1, 1, 3}).data();
+  data.meshes[0].role = Role::blocking;
+  EXPECT_TRUE(ClashChecker(Scene(std::make_shared<const SceneData>(data))).clashes(origin + Vec3{0.3, 0, 0}));
+}
+
+TEST(ClashChecker, RadiusZeroSwitchesItOff) {
+  const ClashChecker off(wall_and_ground(), {.lower_m = 0, .upper_m = 0, .radius_m = 0});
+  EXPECT_FALSE(off.clashes(origin + Vec3{2, 0, 0}));
+}
+
+TEST(ClashChecker, MeasuresDistancesInTheSurveyFrame) {
+  const ClashChecker checker(wall_and_ground());
+  EXPECT_NEAR(checker.distance(origin + Vec3{1, 0, 1.5}, 10), 1, 1e-12);
+  EXPECT_NEAR(checker.distance(origin + Vec3{1, 0, 0.25}, 10), 0.25, 1e-12);
+  EXPECT_NEAR(checker.distance(origin + Vec3{1, 0, 0.25}, 0.1), 0.1, 1e-12);
+  EXPECT_NEAR(checker.distance(origin + Vec3{5, 6, 4}, 100), std::sqrt(9 + 1 + 1), 1e-12);
+}
+
+TEST(ClashChecker, RefusesVolumesThatMakeNoSense) {
+  const double nan = std::nan(""), inf = std::numeric_limits<double>::infinity();
+  for (const SecurityVolume& volume : {SecurityVolume{0.5, 1.35, 0.5},
+                                       {0.6, 1.35, -0.1},
+                                       {-1, 1.35, 0.5},
+                                       {0.6, nan, 0.5},
+                                       {0.6, 1.35, inf},
+                                       {0, 1.35, 0.5}}) {
+    try {
+      ClashChecker(wall_and_ground(), volume);
+      FAIL() << volume.lower_m << ' ' << volume.upper_m << ' ' << volume.radius_m;
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), Errc::invalid_argument);
+      EXPECT_NE(std::string(e.what()).find("security volume"), std::string::npos);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace vantage
