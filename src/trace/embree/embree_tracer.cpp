@@ -50,12 +50,13 @@ class EmbreeTracer final : public Tracer {
   std::vector<NetworkCounts> count_sampled(std::span<const std::vector<TraceStation>> networks,
                                            std::span<const std::uint32_t> station_counts, const SampleJob& job,
                                            const Progress& progress) override {
-    return sample_networks(rays_, networks, station_counts, goal_density_, job, progress);
+    return sample_networks(rays_, networks, station_counts, goal_density_, job, sample_, progress);
   }
 
  private:
   StationRays rays_;
   EngineInfo info_;
+  std::unique_ptr<SampledVoxels> sample_;  // of the last sampled evaluation
 };
 
 }  // namespace

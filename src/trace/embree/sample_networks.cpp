@@ -1,34 +1,99 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trace/embree/sample_networks.hpp"
 
-#include "trace/embree/count_network.hpp"
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+
+#include "trace/embree/voxel_counter.hpp"
+#include "trace/rays_of_box.hpp"
 #include "trace/sample_counts.hpp"
 
 namespace vantage {
+namespace {
+
+constexpr std::size_t block = 512;  // voxels a task: long enough that its occluders pay
+constexpr std::size_t pairs_at_once = std::size_t{1}
+                                      << 22;  // (network, voxel), so that memory does not grow with the population
+
+// Nothing in sight has larger coordinates, relative or absolute. A power of two, so that most calls keep the last one's
+// sample.
+double magnitude(const StationRays& rays, std::span<const std::vector<TraceStation>> networks) {
+  const VoxelGrid& grid = rays.grid();
+  const Vec3 min{grid.min()[0], grid.min()[1], grid.min()[2]};
+  double farthest = 0;
+  for (const std::vector<TraceStation>& network : networks) {
+    for (const TraceStation& station : network) {
+      const Vec3 head{station.origin.x, station.origin.y, station.origin.z};
+      farthest = std::max(farthest, std::sqrt(dot(head, head)));
+    }
+  }
+  const double sum = farthest + std::sqrt(dot(min, min)) + 2 * grid.voxel_size() * (1 << grid.depth());
+  return std::exp2(std::ceil(std::log2(sum)));
+}
+
+}  // namespace
 
 std::vector<NetworkCounts> sample_networks(const StationRays& rays, std::span<const std::vector<TraceStation>> networks,
                                            std::span<const std::uint32_t> station_counts, double goal_density,
-                                           const Tracer::SampleJob& job, const Progress& progress) {
-  std::vector<NetworkCounts> results;
-  for (std::size_t n = 0; n < networks.size(); ++n) {
-    VoxelField field;
-    Tracer::CountOptions options;
-    options.masks = job.masks;
-    options.field = &field;
-    const NetworkCounts full =
-        count_network(rays, networks[n], station_counts[n], goal_density, options, {{}, progress.stop});
-    std::vector<std::uint32_t> counts;
-    std::vector<std::uint64_t> masks;
-    for (const std::uint32_t rank : job.sample) {
-      counts.push_back(field.count[rank]);
-      if (job.masks) masks.push_back(field.stations[rank]);
+                                           const Tracer::SampleJob& job, std::unique_ptr<SampledVoxels>& kept,
+                                           const Progress& progress) {
+  const double pad = rounding_pad(magnitude(rays, networks));
+  // A hit lies on its triangle but for Embree's doubt about edges, which a slant stretches; its point within the
+  // noise's reach of it.
+  const double margin = static_cast<double>(rays.noise().reach()) + 64 * pad;
+  if (!kept || !kept->made_for(job.sample, margin))
+    kept = std::make_unique<SampledVoxels>(rays.scene(), rays.grid(), job.sample, margin);
+  const SampledVoxels& voxels = *kept;
+
+  const std::size_t n = voxels.size(), blocks = (n + block - 1) / block;
+  const std::size_t at_once = std::clamp<std::size_t>(pairs_at_once / std::max<std::size_t>(n, 1), 1,
+                                                      std::max<std::size_t>(networks.size(), 1));
+  const std::size_t chunk = 32 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+  std::vector<std::uint32_t> counts(at_once * n);
+  std::vector<std::uint64_t> masks(job.masks ? at_once * n : 0);
+
+  std::vector<NetworkCounts> results(networks.size());
+  bool cancelled = false;
+  for (std::size_t first = 0; first < networks.size(); first += at_once) {
+    const auto begun = std::chrono::steady_clock::now();
+    const std::size_t here = std::min(at_once, networks.size() - first);
+    std::fill(counts.begin(), counts.end(), 0u);
+    std::fill(masks.begin(), masks.end(), std::uint64_t{0});
+    std::vector<std::uint64_t> traced(here);
+    for (std::size_t begin = 0; begin < here * blocks && !cancelled; begin += chunk) {
+      const std::size_t end = std::min(here * blocks, begin + chunk);
+      tbb::parallel_for(tbb::blocked_range<std::size_t>(begin, end, 1), [&](const auto& range) {
+        for (std::size_t task = range.begin(); task < range.end(); ++task) {
+          const std::size_t network = task / blocks, start = task % blocks * block;
+          SampledVoxelCounter counter(rays, voxels, networks[first + network], pad);
+          for (std::size_t i = start; i < std::min(n, start + block); ++i) {
+            const SampledVoxelCounter::Result result = counter.count(i, job.masks ? 0 : job.stop_at);
+            counts[network * n + i] = result.count;
+            if (job.masks) masks[network * n + i] = result.mask;
+          }
+          std::atomic_ref(traced[network]).fetch_add(counter.traced(), std::memory_order_relaxed);
+        }
+      });
+      cancelled = progress.stopped();
+      progress((static_cast<double>(first) + static_cast<double>(end) / static_cast<double>(blocks)) /
+               static_cast<double>(networks.size()));
     }
-    results.push_back(reduce_sample(counts, masks, job.groups, station_counts[n], goal_density));
-    results.back().rays = full.rays;
-    results.back().trace_seconds = full.trace_seconds;
-    results.back().cancelled = full.cancelled;
-    progress(static_cast<double>(n + 1) / static_cast<double>(networks.size()));
+    for (std::size_t k = 0; k < here; ++k) {
+      const std::span<const std::uint32_t> own_counts(counts.data() + k * n, n);
+      const std::span<const std::uint64_t> own_masks(masks.data() + (job.masks ? k * n : 0), job.masks ? n : 0);
+      results[first + k] = reduce_sample(own_counts, own_masks, job.groups, station_counts[first + k], goal_density);
+      results[first + k].rays = traced[k];
+    }
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+    for (std::size_t k = 0; k < here; ++k) results[first + k].trace_seconds = seconds / static_cast<double>(here);
   }
+  for (NetworkCounts& result : results) result.cancelled = cancelled;
   return results;
 }
 

@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
+#include "trace/embree/sampled_voxels.hpp"
 #include "trace/embree/station_rays.hpp"
 
 namespace vantage {
 
-// Tracer::count_sampled on the CPU.
+// Tracer::count_sampled on the CPU. `kept`: the last call's sample, made anew where this one's is another.
 std::vector<NetworkCounts> sample_networks(const StationRays& rays, std::span<const std::vector<TraceStation>> networks,
                                            std::span<const std::uint32_t> station_counts, double goal_density,
-                                           const Tracer::SampleJob& job, const Progress& progress);
+                                           const Tracer::SampleJob& job, std::unique_ptr<SampledVoxels>& kept,
+                                           const Progress& progress);
 
 }  // namespace vantage
