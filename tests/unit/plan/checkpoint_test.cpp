@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plan/checkpoint.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+
+#include "support/temporary_folder.hpp"
+#include "vantage/error.hpp"
+
+namespace vantage {
+namespace {
+
+Checkpoint sample() {
+  Checkpoint c{.identity = "scene = 1\nseed = 2\n", .snapshot = {}, .since = {}, .seconds = 12.5, .trace_seconds = 3.25};
+  c.snapshot.optimiser = std::string("bits \0 and bytes", 16);
+  c.snapshot.drawn = 100, c.snapshot.redrawn = 7;
+  c.snapshot.history = {{.iteration = 1, .evaluations = 20, .hypervolume = 0.1, .front = {{0.5, 0.25}, {0.25, 0.5}}, .seconds = 1},
+                        {.iteration = 2, .evaluations = 40, .hypervolume = 0.2, .front = {}, .seconds = 2}};
+  c.since = {{.coverage = 0.125, .overlap = 0.75, .parts = 2}, {.coverage = 1.0 / 3, .overlap = 0, .parts = 1}};
+  return c;
+}
+
+std::string content(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+TEST(Checkpoint, ReadsBackWhatWasWritten) {
+  const test::TemporaryFolder folder;
+  EXPECT_FALSE(read_checkpoint(folder / "none"));
+  const Checkpoint c = sample();
+  write_checkpoint(folder / "c", c);
+  const auto back = read_checkpoint(folder / "c");
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->identity, c.identity);
+  EXPECT_EQ(back->snapshot.optimiser, c.snapshot.optimiser);
+  EXPECT_EQ(back->snapshot.drawn, 100u);
+  EXPECT_EQ(back->snapshot.redrawn, 7u);
+  EXPECT_EQ(back->seconds, 12.5);
+  EXPECT_EQ(back->trace_seconds, 3.25);
+  ASSERT_EQ(back->snapshot.history.size(), 2u);
+  EXPECT_EQ(back->snapshot.history[0].front, c.snapshot.history[0].front);
+  EXPECT_EQ(back->snapshot.history[1].evaluations, 40u);
+  ASSERT_EQ(back->since.size(), 2u);
+  EXPECT_EQ(back->since[1].coverage, 1.0 / 3);
+  EXPECT_EQ(back->since[0].parts, 2u);
+  write_checkpoint(folder / "again", *back);
+  EXPECT_EQ(content(folder / "again"), content(folder / "c"));
+}
+
+TEST(Checkpoint, RefusesTruncationsAndFlippedBytes) {
+  const test::TemporaryFolder folder;
+  write_checkpoint(folder / "c", sample());
+  const std::string whole = content(folder / "c");
+  const auto refused = [&](const std::string& bytes) {
+    std::ofstream(folder / "bad", std::ios::binary | std::ios::trunc) << bytes;
+    try {
+      read_checkpoint(folder / "bad");
+      return false;
+    } catch (const Error& e) {
+      return e.code() == Errc::malformed_file;
+    }
+  };
+  for (std::size_t size = 0; size < whole.size(); size += 5) EXPECT_TRUE(refused(whole.substr(0, size))) << size;
+  for (std::size_t at = 0; at < whole.size(); at += 5) {
+    std::string flipped = whole;
+    flipped[at] = static_cast<char>(flipped[at] ^ 0x20);
+    EXPECT_TRUE(refused(flipped)) << at;
+  }
+  EXPECT_TRUE(refused(whole + "x"));
+}
+
+TEST(Checkpoint, NamesWhatDiffers) {
+  EXPECT_NO_THROW(require_same_run("c", "a = 1\nb = 2\n", "a = 1\nb = 2\n"));
+  try {
+    require_same_run("c", "a = 1\nb = 2\nc = 3\n", "a = 1\nb = 5\n");
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), Errc::invalid_argument);
+    EXPECT_NE(std::string(e.what()).find("b = 2, this run b = 5"), std::string::npos) << e.what();
+    EXPECT_EQ(e.details().size(), 2u);
+  }
+}
+
+}  // namespace
+}  // namespace vantage

@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plan/search.hpp"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <iterator>
+#include <random>
+#include <stdexcept>
+
+#include "support/temporary_folder.hpp"
+#include "unit/plan/toy_survey.hpp"
+#include "vantage/error.hpp"
+
+extern char** environ;
+
+namespace vantage {
+namespace {
+
+using test::bits_of;
+using test::toy_config;
+using test::toy_search;
+using test::ToyEvaluator;
+
+constexpr Problem kProblems[] = {Problem::coverage_fix, Problem::coverage_overlap_fix, Problem::coverage_min,
+                                 Problem::coverage_overlap_min};
+
+class EveryProblem : public testing::TestWithParam<Problem> {};
+INSTANTIATE_TEST_SUITE_P(Search, EveryProblem, testing::ValuesIn(kProblems), [](const auto& problem) {
+  std::string name = to_string(problem.param);
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+});
+
+TEST_P(EveryProblem, SameSeedSameBitsWhateverTheChunk) {
+  const PlanConfig config = toy_config(GetParam());
+  ToyEvaluator one, many;
+  many.at_once = 0;
+  const SearchOutcome a = toy_search(config, one), b = toy_search(config, many);
+  EXPECT_EQ(bits_of(a), bits_of(b));
+  EXPECT_EQ(a.evaluations, 600u);
+  EXPECT_EQ(a.stop_reason, StopReason::max_iterations);
+  EXPECT_EQ(one.largest_batch, 1u);
+  EXPECT_GT(many.largest_batch, 1u);
+
+  PlanConfig other = config;
+  other.seed = 8;
+  ToyEvaluator again;
+  EXPECT_NE(bits_of(toy_search(other, again)), bits_of(a));
+}
+
+TEST_P(EveryProblem, StaysOutOfHolesAndClashes) {
+  PlanConfig config = toy_config(GetParam());
+  ToyEvaluator evaluator;
+  std::uint64_t idle = 0;
+  evaluator.before_each = [&](const Network& network) {
+    for (const Station& s : network) idle += s.active ? 0 : 1;
+  };
+  const SearchOutcome drawn_again = toy_search(config, evaluator);
+  const std::uint64_t idle_with = idle;
+  EXPECT_GT(drawn_again.redrawn, 0u);
+  EXPECT_GT(drawn_again.drawn, drawn_again.redrawn);
+  config.redraws = 0, idle = 0;
+  ToyEvaluator plain;
+  plain.before_each = evaluator.before_each;
+  const SearchOutcome as_drawn = toy_search(config, plain);
+  EXPECT_EQ(as_drawn.redrawn, 0u);
+  EXPECT_LT(10 * idle_with, idle);
+}
+
+TEST_P(EveryProblem, FrontIsNonDominatedAndHistoryGrows) {
+  ToyEvaluator evaluator;
+  const SearchOutcome outcome = toy_search(toy_config(GetParam()), evaluator);
+  ASSERT_FALSE(outcome.front.empty());
+  std::vector<double> f;
+  for (const ParetoPoint& point : outcome.front) f.insert(f.end(), point.f.begin(), point.f.end());
+  for (const std::size_t rank : non_dominated_ranks(f, outcome.front[0].f.size())) EXPECT_EQ(rank, 0u);
+  ASSERT_GE(outcome.history.size(), 5u);
+  for (std::size_t k = 1; k < outcome.history.size(); ++k) {
+    EXPECT_GT(outcome.history[k].iteration, outcome.history[k - 1].iteration);
+    EXPECT_GE(outcome.history[k].hypervolume, outcome.history[k - 1].hypervolume - 1e-12);
+  }
+  EXPECT_EQ(outcome.history.back().evaluations, outcome.evaluations);
+  EXPECT_EQ(outcome.history.back().hypervolume, outcome.hypervolume);
+}
+
+// Cut after every so many evaluations, also in the middle of a batch, and gone on with.
+TEST_P(EveryProblem, ResumesToTheSameBits) {
+  const test::TemporaryFolder folder;
+  PlanConfig config = toy_config(GetParam());
+  ToyEvaluator whole;
+  const std::string wanted = bits_of(toy_search(config, whole));
+
+  config.checkpoint = folder / "run.checkpoint";
+  config.resume = true;
+  std::mt19937 random(3);
+  std::uint64_t calls = 0;
+  for (int cut = 0;; ++cut) {
+    ASSERT_LT(cut, 200);
+    std::stop_source stop;
+    ToyEvaluator evaluator;
+    std::uint64_t left = 1 + random() % 60;
+    evaluator.before_each = [&](const Network&) {
+      if (--left == 0) stop.request_stop();
+    };
+    const SearchOutcome outcome = toy_search(config, evaluator, stop.get_token());
+    calls += evaluator.evaluated;
+    if (outcome.stop_reason != StopReason::max_iterations) {
+      EXPECT_EQ(outcome.stop_reason, StopReason::cancelled);
+      continue;
+    }
+    EXPECT_GT(cut, 8);
+    EXPECT_EQ(bits_of(outcome), wanted);
+    break;
+  }
+  EXPECT_LE(calls, 600u);  // nothing that was known was evaluated again; fewer where a network came up twice
+}
+
+TEST_P(EveryProblem, ResumesToTheSameBitsAfterKill9) {
+  const test::TemporaryFolder folder;
+  const std::string problem = to_string(GetParam());
+  ToyEvaluator evaluator;
+  const std::string wanted = bits_of(toy_search(toy_config(GetParam()), evaluator));
+  const std::string checkpoint = folder / "run.checkpoint", output = folder / "out.txt";
+  std::string runner = VANTAGE_SEARCH_RUNNER;
+  char* const arguments[] = {runner.data(), const_cast<char*>(problem.c_str()), const_cast<char*>(checkpoint.c_str()),
+                             const_cast<char*>(output.c_str()), nullptr};
+  std::mt19937 random(std::random_device{}());
+  int kills = 0;
+  for (bool finished = false; !finished;) {
+    ASSERT_LT(kills, 400);
+    pid_t child = 0;
+    ASSERT_EQ(posix_spawn(&child, runner.c_str(), nullptr, nullptr, arguments, environ), 0);
+    // Later each time, so that a slow machine gets on too.
+    usleep(static_cast<useconds_t>(random() % static_cast<unsigned>(20'000 + 3'000 * kills)));
+    kill(child, SIGKILL);
+    int status = 0;
+    ASSERT_EQ(waitpid(child, &status, 0), child);
+    finished = WIFEXITED(status);
+    if (finished) {
+      ASSERT_EQ(WEXITSTATUS(status), 0);
+    } else {
+      ++kills;
+    }
+  }
+  std::ifstream in(output);
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(in), {}), wanted) << "after " << kills << " kills";
+  EXPECT_GT(kills, 3);
+}
+
+TEST(Search, GoesOnWithMoreIterationsAsIfTheyHadBeenAskedForAtOnce) {
+  const test::TemporaryFolder folder;
+  PlanConfig config = toy_config(Problem::coverage_overlap_fix);
+  ToyEvaluator whole;
+  const std::string wanted = bits_of(toy_search(config, whole));
+  config.checkpoint = folder / "run.checkpoint";
+  config.iterations = 10;
+  ToyEvaluator first, second;
+  EXPECT_EQ(toy_search(config, first).resumed_evaluations, 0u);
+  config.iterations = 30, config.resume = true;
+  const SearchOutcome outcome = toy_search(config, second);
+  EXPECT_EQ(bits_of(outcome), wanted);
+  EXPECT_EQ(outcome.resumed_evaluations, 200u);
+  EXPECT_EQ(second.evaluated, 400u);
+}
+
+TEST(Search, RefusesTheCheckpointOfAnotherRun) {
+  const test::TemporaryFolder folder;
+  PlanConfig config = toy_config(Problem::coverage_fix);
+  config.checkpoint = folder / "run.checkpoint";
+  config.iterations = 2;
+  ToyEvaluator evaluator;
+  toy_search(config, evaluator);
+  config.seed = 99, config.resume = true;
+  try {
+    toy_search(config, evaluator);
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), Errc::invalid_argument);
+    EXPECT_NE(std::string(e.what()).find("seed = 7"), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find("seed = 99"), std::string::npos) << e.what();
+  }
+}
+
+TEST(Search, KeepsTheCheckpointWhenAnEvaluationFails) {
+  const test::TemporaryFolder folder;
+  PlanConfig config = toy_config(Problem::coverage_overlap_min);
+  ToyEvaluator whole;
+  const std::string wanted = bits_of(toy_search(config, whole));
+  config.checkpoint = folder / "run.checkpoint", config.resume = true;
+  ToyEvaluator failing;
+  failing.before_each = [&](const Network&) {
+    if (failing.evaluated == 333) throw Error(Errc::device_failure, "the device is gone");
+  };
+  EXPECT_THROW(toy_search(config, failing), Error);
+  ToyEvaluator rest;
+  EXPECT_EQ(bits_of(toy_search(config, rest)), wanted);
+  EXPECT_EQ(rest.evaluated, whole.evaluated - 333);
+}
+
+TEST(Search, StopsAtItsLimits) {
+  PlanConfig config = toy_config(Problem::coverage_overlap_fix);
+  ToyEvaluator evaluator;
+  config.target_hypervolume = 0.2;
+  const SearchOutcome reached = toy_search(config, evaluator);
+  EXPECT_EQ(reached.stop_reason, StopReason::target_reached);
+  EXPECT_GE(reached.hypervolume, 0.2);
+  EXPECT_LT(reached.evaluations, 600u);
+
+  config.target_hypervolume.reset();
+  config.max_seconds = 1e-6;
+  const SearchOutcome timed = toy_search(config, evaluator);
+  EXPECT_EQ(timed.stop_reason, StopReason::max_time);
+  EXPECT_LT(timed.evaluations, 600u);
+
+  config.max_seconds = 0;
+  config.stagnation_iterations = 3;
+  config.iterations = 5000;
+  ToyEvaluator slow;
+  const SearchOutcome stale = toy_search(config, slow);
+  EXPECT_EQ(stale.stop_reason, StopReason::stagnated);
+  EXPECT_LT(stale.evaluations, 100'000u);
+}
+
+TEST(Search, TellsHowFarItIs) {
+  PlanConfig config = toy_config(Problem::coverage_min);
+  ToyEvaluator evaluator;
+  std::uint64_t last = 0, calls = 0;
+  const SearchOutcome outcome = toy_search(config, evaluator, {}, 4, [&](const PlanProgress& p) {
+    EXPECT_GE(p.evaluations, last);
+    EXPECT_EQ(p.iterations, 30u);
+    EXPECT_EQ(p.phase, "search");
+    EXPECT_GE(p.seconds_left, 0);
+    last = p.evaluations;
+    ++calls;
+  });
+  EXPECT_EQ(last, outcome.evaluations);
+  EXPECT_GT(calls, 30u);
+}
+
+TEST(Search, StartsWhereItIsTold) {
+  PlanConfig config = toy_config(Problem::coverage_fix);
+  config.start = {{1, 1, 4.5}, {9, 1, 4.5}, {9, 9, 4.5}, {1, 9, 4.5}};
+  config.sigma0 = 1e-3;
+  config.iterations = 1;
+  ToyEvaluator evaluator;
+  evaluator.before_each = [&](const Network& network) {
+    ASSERT_EQ(network.size(), 4u);
+    EXPECT_NEAR(network[1].position.x, 9, 0.2);
+    EXPECT_NEAR(network[3].position.y, 9, 0.2);
+    EXPECT_EQ(network[3].position.z, 4.5);
+  };
+  toy_search(config, evaluator);
+}
+
+TEST(Search, FindsTheBestNetworkOfAKnownSite) {
+  // Eight targets and eight stations: each can stand on its own target.
+  PlanConfig config{.problem = Problem::coverage_fix, .stations_min = 8, .stations_max = 8, .population = 20, .iterations = 400, .seed = 5};
+  ToyEvaluator evaluator;
+  EXPECT_GT(toy_search(config, evaluator).hypervolume, 0.97);
+}
+
+}  // namespace
+}  // namespace vantage
