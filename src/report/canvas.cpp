@@ -49,6 +49,7 @@ struct Canvas::Impl {
     cairo_stroke(context.get());
   }
   void trace(std::span<const Point> points) const {
+    cairo_new_path(context.get());  // text leaves its end behind as a point
     for (const Point& p : points) cairo_line_to(context.get(), p.x, p.y);
   }
   void font(const TextStyle& style) const {
@@ -92,24 +93,27 @@ void Canvas::polygon(std::span<const Point> points, const Colour& colour, double
 }
 
 void Canvas::rectangle(const Rect& r, const Pen& pen) {
+  cairo_new_path(impl_->context.get());
   cairo_rectangle(impl_->context.get(), r.x, r.y, r.width, r.height);
   impl_->stroke(pen);
 }
 
 void Canvas::fill(const Rect& r, const Colour& colour, double opacity) {
+  cairo_new_path(impl_->context.get());
   cairo_rectangle(impl_->context.get(), r.x, r.y, r.width, r.height);
   impl_->source(colour, opacity);
   cairo_fill(impl_->context.get());
 }
 
 void Canvas::disc(Point centre, double radius, const Colour& colour, double opacity) {
+  cairo_new_path(impl_->context.get());
   cairo_arc(impl_->context.get(), centre.x, centre.y, radius, 0, 2 * std::numbers::pi);
   impl_->source(colour, opacity);
   cairo_fill(impl_->context.get());
 }
 
 void Canvas::circle(Point centre, double radius, const Pen& pen) {
-  cairo_new_sub_path(impl_->context.get());
+  cairo_new_path(impl_->context.get());
   cairo_arc(impl_->context.get(), centre.x, centre.y, radius, 0, 2 * std::numbers::pi);
   impl_->stroke(pen);
 }
@@ -164,6 +168,7 @@ void Canvas::image(const Rect& r, std::span<const std::uint32_t> pixels, std::si
 
 void Canvas::clip(const Rect& r) {
   cairo_save(impl_->context.get());
+  cairo_new_path(impl_->context.get());
   cairo_rectangle(impl_->context.get(), r.x, r.y, r.width, r.height);
   cairo_clip(impl_->context.get());
 }

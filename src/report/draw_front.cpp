@@ -29,7 +29,7 @@ void draw_front(const std::filesystem::path& file, const PlanResult& result, con
   std::string subtitle = problem_line(config);
   if (config.problem == Problem::coverage_fix) subtitle += ", best coverage " + fixed(result.hypervolume, 3);
   else subtitle += ", hypervolume " + fixed(result.hypervolume, 3);
-  subtitle += " after " + std::to_string(result.evaluations) + " evaluations";
+  subtitle += " after " + grouped(result.evaluations) + " evaluations";
   const Chart chart(canvas, area, view.x_axis(dots), view.y_axis(dots),
                     config.problem == Problem::coverage_fix ? "Best network found" : "Pareto front", subtitle);
   if (view.coloured()) draw_station_bar(canvas, area, config);
@@ -56,7 +56,7 @@ void draw_front(const std::filesystem::path& file, const PlanResult& result, con
   std::vector<LegendItem> legend;
   const Colour key = view.coloured() ? style::faint : style::blue;
   if (any_confirmed) legend.push_back({LegendItem::Mark::filled, key, "every ray"});
-  if (sampled) legend.push_back({LegendItem::Mark::hollow, key, "search estimate, " + std::to_string(config.sample_voxels) + " voxels"});
+  if (sampled) legend.push_back({LegendItem::Mark::hollow, key, "search estimate, " + grouped(config.sample_voxels) + " voxels"});
   else if (!any_confirmed) legend.push_back({LegendItem::Mark::hollow, key, "as the search saw it"});
   if (!result.front.empty() && config.problem != Problem::coverage_fix) {
     const PlanEntry& chosen = result.front[compromise(result, config.problem)];

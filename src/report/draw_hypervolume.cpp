@@ -28,12 +28,15 @@ void draw_hypervolume(const std::filesystem::path& file, const PlanResult& resul
   x.ticks = nice_ticks(0, x.high, 8);
   std::erase_if(x.ticks, [](double t) { return t != static_cast<double>(static_cast<long long>(t)); });
   const Axis y = axis_over(single ? "Best coverage so far" : "Hypervolume (reference point 1, largest value 1)", low, high, 0, 1);
+  std::string reason = to_string(result.stop_reason);
+  std::replace(reason.begin(), reason.end(), '_', ' ');
   const Chart chart(canvas, area, x, y, single ? "Best coverage over the search" : "Hypervolume over the search",
-                    problem_line(config) + ", stopped: " + to_string(result.stop_reason));
+                    problem_line(config) + ", stopped: " + reason);
   if (config.target_hypervolume) {
     const double target = *config.target_hypervolume;
     canvas.line(chart.at(x.low, target), chart.at(x.high, target), {.colour = style::orange, .width = 1.2, .dashes = {6, 4}});
-    canvas.text(chart.at(x.low + 0.01 * (x.high - x.low), target) , "target " + number(target),
+    const Point beside = chart.at(x.low + 0.01 * (x.high - x.low), target);
+    canvas.text({beside.x, beside.y - 5}, "target " + number(target),
                 {.size = 12.5, .colour = style::orange, .down = Align::end, .halo = 2});
   }
   std::vector<Point> curve;

@@ -70,22 +70,30 @@ double section_height(const SearchMesh& mesh, const HeightBuffer& heights, const
 double link_width(double overlap, double most) { return 0.8 + (kMostWidth - 0.8) * overlap / most; }
 double link_opacity(double overlap, double most) { return 0.35 + 0.55 * overlap / most; }
 
-void draw_scale_bar(Canvas& canvas, const Rect& map, double metre) {
-  double length = 1;
-  while (length * metre > 0.25 * map.width) length /= 10;
-  for (const double factor : {50.0, 20.0, 10.0, 5.0, 2.0, 1.0})
-    if (factor * length * metre <= 0.25 * map.width) {
+void draw_station(Canvas& canvas, Point at, std::size_t number, bool skipped) {
+  canvas.disc(at, kDisc + 1.3, {1, 1, 1});
+  if (skipped) {  // the cross sticks out from under the number
+    const double r = 1.25 * kDisc;
+    for (const double side : {-1.0, 1.0})
+      canvas.line({at.x - r, at.y - side * r}, {at.x + r, at.y + side * r}, {.colour = kSkipped, .width = 3});
+  }
+  canvas.disc(at, kDisc, skipped ? Colour{0.93, 0.93, 0.94} : kStation);
+  canvas.text(at, std::to_string(number),
+              {.size = 11.5, .bold = true, .colour = skipped ? kSkipped : Colour{1, 1, 1}, .across = Align::middle});
+}
+
+// A bar of a round length, at most `widest` wide.
+void draw_scale_bar(Canvas& canvas, Point at, double widest, double metre) {
+  double length = std::pow(10.0, std::floor(std::log10(widest / metre)));
+  for (const double factor : {5.0, 2.0})
+    if (factor * length * metre <= widest) {
       length *= factor;
       break;
     }
-  const std::string words = number(length) + " m";
   const double width = length * metre;
-  const Rect box{map.x + 10, map.bottom() - 40, std::max(width, canvas.text_width(words, {.size = 12.5})) + 20, 32};
-  canvas.fill(box, {1, 1, 1}, 0.8);
-  const double x = box.x + 10, y = box.bottom() - 8;
-  canvas.line({x, y}, {x + width, y}, {.width = 2});
-  for (const double end : {x, x + width}) canvas.line({end, y - 4}, {end, y + 1}, {.width = 2});
-  canvas.text({x + width / 2, y - 14}, words, {.size = 12.5, .across = Align::middle});
+  canvas.line(at, {at.x + width, at.y}, {.width = 2});
+  for (const double end : {at.x, at.x + width}) canvas.line({end, at.y - 4}, {end, at.y + 4}, {.width = 2});
+  canvas.text({at.x + width / 2, at.y - 14}, number(length) + " m", {.size = 12.5, .across = Align::middle});
 }
 
 }  // namespace
@@ -100,8 +108,13 @@ void draw_plan_view(const std::filesystem::path& file, const Scene& scene, const
   const Box window = window_of(data, mesh, stations);
   const double metre = std::min(700 / window.size().x, 640 / window.size().y);  // canvas units
   const Rect map{86, 68, std::floor(window.size().x * metre), std::floor(window.size().y * metre)};
-  constexpr double kPanel = 196, kPanelHeight = 330;
-  Canvas canvas(map.right() + 26 + kPanel, std::max(map.bottom() + 64, map.y + kPanelHeight));
+  const auto count = [&](StationStatus status) {
+    return std::count_if(stations.begin(), stations.end(), [&](const PlacedStation& s) { return s.status == status; });
+  };
+  const auto clashes = count(StationStatus::clash), holes = count(StationStatus::hole);
+  constexpr double kPanel = 196;
+  const double panel_height = 330 + (clashes > 0 ? 28 : 0) + (holes > 0 ? 45 : 0);  // what the legend may need
+  Canvas canvas(map.right() + 26 + kPanel, std::max(map.bottom() + 64, map.y + panel_height));
 
   const std::size_t fine = kPixelsPerUnit * kSupersampling;
   const MapWindow pixels{.x_min = window.min.x,
@@ -122,7 +135,7 @@ void draw_plan_view(const std::filesystem::path& file, const Scene& scene, const
 
   canvas.clip(map);
   for (const auto& [a, b] : outline(mesh))
-    canvas.line(chart.at(a.x, a.y), chart.at(b.x, b.y), {.colour = kSearch, .width = 1.3, .opacity = 0.8});
+    canvas.line(chart.at(a.x, a.y), chart.at(b.x, b.y), {.colour = kSearch, .width = 1.3, .opacity = 0.85, .dashes = {6, 4}});
   canvas.unclip();
   canvas.rectangle(map, {.colour = style::faint, .width = 1});
 
@@ -164,19 +177,8 @@ void draw_plan_view(const std::filesystem::path& file, const Scene& scene, const
     canvas.line(anchors[k], discs[k], {.colour = kStation, .width = 1.4});
     canvas.disc(anchors[k], 3, kStation);
   }
-  for (std::size_t k = 0; k < shown.size(); ++k) {
-    const bool skipped = stations[shown[k]].status != StationStatus::ok;
-    canvas.disc(discs[k], kDisc + 1.3, {1, 1, 1});
-    canvas.disc(discs[k], kDisc, skipped ? Colour{0.75, 0.75, 0.76} : kStation);
-    canvas.text(discs[k], std::to_string(shown[k] + 1),
-                {.size = 11.5, .bold = true, .colour = skipped ? style::ink : Colour{1, 1, 1}, .across = Align::middle});
-    if (!skipped) continue;
-    const double r = 0.72 * kDisc;
-    canvas.line({discs[k].x - r, discs[k].y - r}, {discs[k].x + r, discs[k].y + r}, {.colour = kSkipped, .width = 2.2});
-    canvas.line({discs[k].x - r, discs[k].y + r}, {discs[k].x + r, discs[k].y - r}, {.colour = kSkipped, .width = 2.2});
-  }
-  draw_scale_bar(canvas, map, metre);
-
+  for (std::size_t k = 0; k < shown.size(); ++k)
+    draw_station(canvas, discs[k], shown[k] + 1, stations[shown[k]].status != StationStatus::ok);
   const double left = map.right() + 24;
   Point at{left, map.y + 8};
   const auto words = [&](const std::string& text) { canvas.text({at.x + 34, at.y}, text, {.size = 12.5}); };
@@ -188,23 +190,17 @@ void draw_plan_view(const std::filesystem::path& file, const Scene& scene, const
   const bool blocking = std::any_of(data.meshes.begin(), data.meshes.end(), [](const MeshInfo& m) { return m.role == Role::blocking; });
   swatch(kSurveyedTint, "surveyed");
   if (blocking) swatch(kBlockingTint, "not surveyed");
-  canvas.line({at.x, at.y}, {at.x + 24, at.y}, {.colour = kSearch, .width = 1.6});
+  canvas.line({at.x, at.y}, {at.x + 24, at.y}, {.colour = kSearch, .width = 1.6, .dashes = {6, 4}});
   words("search area");
   at.y += 28;
-  canvas.disc({at.x + 12, at.y}, kDisc, kStation);
-  canvas.text({at.x + 12, at.y}, "1", {.size = 11.5, .bold = true, .colour = {1, 1, 1}, .across = Align::middle});
+  draw_station(canvas, {at.x + 12, at.y}, 1, false);
   words("station");
   at.y += 28;
-  if (std::any_of(stations.begin(), stations.end(), [](const PlacedStation& s) { return s.status == StationStatus::clash; })) {
-    const double r = 0.72 * kDisc;
-    const Point c{at.x + 12, at.y};
-    canvas.disc(c, kDisc, {0.75, 0.75, 0.76});
-    canvas.line({c.x - r, c.y - r}, {c.x + r, c.y + r}, {.colour = kSkipped, .width = 2.2});
-    canvas.line({c.x - r, c.y + r}, {c.x + r, c.y - r}, {.colour = kSkipped, .width = 2.2});
+  if (clashes > 0) {
+    draw_station(canvas, {at.x + 12, at.y}, 2, true);
     words("skipped: clash");
     at.y += 28;
   }
-  const auto holes = std::count_if(stations.begin(), stations.end(), [](const PlacedStation& s) { return s.status == StationStatus::hole; });
   if (holes > 0) {
     canvas.text(at, std::to_string(holes) + (holes == 1 ? " station in a hole," : " stations in holes,"), {.size = 12.5});
     canvas.text({at.x, at.y + 17}, "not shown", {.size = 12.5});
@@ -228,6 +224,7 @@ void draw_plan_view(const std::filesystem::path& file, const Scene& scene, const
   } else if (stations.size() > 1 && overlap.size() == stations.size()) {
     canvas.text({at.x, at.y + 6}, "no overlap above " + number(kLeast), {.size = 12.5, .colour = style::faint});
   }
+  draw_scale_bar(canvas, {left + 1, std::max(map.bottom() - 6, at.y + 60)}, kPanel - 40, metre);
   canvas.save(file);
 }
 

@@ -15,7 +15,8 @@ namespace {
 constexpr std::uint32_t kNothing = 0xFFFFFFFFu;
 // Surfaces steeper than this show no area from above; they are drawn as lines, or walls without thickness would vanish.
 constexpr double kSteep = 0.1;
-constexpr double kLineWidth = 3;  // pixels of the buffer
+// Width of such a line in pixels of the buffer: big walls stand out, small parts keep their shape.
+double line_width(double length) { return std::clamp(0.08 * length, 3.0, 9.0); }
 
 struct Corner {
   double x, y, z;  // pixels and metres
@@ -43,11 +44,12 @@ class Painter {
 
   void line(const Corner& a, const Corner& b, std::uint32_t id) {
     const double dx = b.x - a.x, dy = b.y - a.y, length = std::max(std::abs(dx), std::abs(dy));
+    const double half = line_width(length) / 2;
     const int steps = static_cast<int>(std::ceil(length)) + 1;
     for (int s = 0; s <= steps; ++s) {
       const double t = static_cast<double>(s) / steps, x = a.x + t * dx, y = a.y + t * dy;
-      const auto [x0, x1] = range(x - kLineWidth / 2, x + kLineWidth / 2, target_.window.columns);
-      const auto [y0, y1] = range(y - kLineWidth / 2, y + kLineWidth / 2, target_.window.rows);
+      const auto [x0, x1] = range(x - half, x + half, target_.window.columns);
+      const auto [y0, y1] = range(y - half, y + half, target_.window.rows);
       for (std::size_t j = y0; j < y1; ++j)
         for (std::size_t i = x0; i < x1; ++i) put(i, j, a.z + t * (b.z - a.z), id);
     }
@@ -154,8 +156,8 @@ std::vector<std::uint32_t> shade(const SceneData& scene, const HeightBuffer& hei
       if (t == kNothing) continue;
       const auto n = normal_of(scene, t);
       const double lit = std::max(0.0, n[0] * kLight[0] + n[1] * kLight[1] + n[2] * kLight[2]);
-      double light = 0.50 + 0.62 * lit;
-      if (n[2] < kSteep) light = 0.42;
+      double light = 0.58 + 0.52 * lit;
+      if (n[2] < kSteep) light = 0.5;
       light *= 1 - 0.38 * std::clamp((double{near[k]} - heights.z[k]) / near_scale, 0.0, 1.0);
       light *= 1 - 0.38 * std::clamp((double{far[k]} - heights.z[k]) / far_scale, 0.0, 1.0);
       const bool surveyed = scene.meshes[scene.mesh_of(t)].role == Role::surveyed;

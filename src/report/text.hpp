@@ -4,6 +4,7 @@
 
 #include <charconv>
 #include <concepts>
+#include <cstdint>
 #include <string>
 
 namespace vantage {
@@ -18,6 +19,13 @@ inline std::string number(std::integral auto value) { return std::to_string(valu
 inline std::string fixed(double value, int digits) {
   char buffer[400];
   return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::fixed, digits).ptr};
+}
+
+// "1 234 567", for people.
+inline std::string grouped(std::uint64_t value) {
+  std::string text = std::to_string(value);
+  for (std::size_t at = text.size(); at > 3;) text.insert(at -= 3, "\u2009");  // a thin space
+  return text;
 }
 
 }  // namespace vantage
