@@ -73,7 +73,7 @@ void draw_plan_view(const std::filesystem::path& file, const Scene& scene, const
                     std::span<const PlacedStation> stations, const OverlapMatrix& overlap, const std::string& title);
 
 /// Writes a whole result folder: front.csv, front.json, history.csv, fronts.csv (every iteration's front), and for the chosen compromise
-/// coverage.ply, overlap.csv, stations.csv, and the pictures front.png, hypervolume.png, history.png, plan.png (each also as .svg).
+/// coverage.ply, overlap.csv, stations.csv, and the pictures front.png, hypervolume.png, history.png (with several objectives), plan.png (each also as .svg).
 /// Makes the folder where there is none. Returns the index of the chosen entry.
 std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& result, const PlanConfig& config, Simulator& simulator,
                        const SearchArea& area);

@@ -4,7 +4,9 @@
 #include <cairo-svg.h>
 #include <cairo.h>
 
+#include <map>
 #include <numbers>
+#include <regex>
 
 #include "core/atomic_file.hpp"
 #include "vantage/error.hpp"
@@ -33,6 +35,21 @@ void require(cairo_status_t status, const std::filesystem::path& file) {
   if (status == CAIRO_STATUS_SUCCESS) return;
   throw Error(status == CAIRO_STATUS_NO_MEMORY ? Errc::out_of_memory : Errc::io,
               "cannot draw " + file.string() + ": " + cairo_status_to_string(status));
+}
+
+// cairo numbers surfaces and images over the life of the process; numbered from 0 in each file, equal pictures are equal files.
+std::string with_own_numbers(const std::string& svg) {
+  static const std::regex kName("([\"#(])(surface|image|mask|source|clip|pattern)([0-9]+)");
+  std::map<std::string, std::size_t> numbers;
+  std::string out;
+  std::size_t last = 0;
+  for (auto it = std::sregex_iterator(svg.begin(), svg.end(), kName); it != std::sregex_iterator(); ++it) {
+    const auto begin = static_cast<std::size_t>(it->position(3));
+    const std::size_t number = numbers.try_emplace((*it)[2].str() + (*it)[3].str(), numbers.size()).first->second;
+    out.append(svg, last, begin - last).append(std::to_string(number));
+    last = begin + static_cast<std::size_t>(it->length(3));
+  }
+  return out.append(svg, last);
 }
 
 }  // namespace
@@ -197,6 +214,7 @@ void Canvas::save(const std::filesystem::path& file) const {
     play(surface.get(), 1);
     cairo_surface_finish(surface.get());
     require(cairo_surface_status(surface.get()), file);
+    bytes = with_own_numbers(bytes);
   } else {
     throw Error(Errc::invalid_argument, "cannot draw " + file.string() + ": \"" + extension + "\" is neither .png nor .svg");
   }

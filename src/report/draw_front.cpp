@@ -27,11 +27,11 @@ void draw_front(const std::filesystem::path& file, const PlanResult& result, con
   Canvas canvas(kWidth, kHeight);
   const Rect area = frame(view.coloured());
   std::string subtitle = problem_line(config);
-  if (config.problem == Problem::coverage_fix) subtitle += ", best coverage " + fixed(result.hypervolume, 3);
+  if (view.single()) subtitle += ", best coverage " + fixed(result.hypervolume, 3);
   else subtitle += ", hypervolume " + fixed(result.hypervolume, 3);
   subtitle += " after " + grouped(result.evaluations) + " evaluations";
   const Chart chart(canvas, area, view.x_axis(dots), view.y_axis(dots),
-                    config.problem == Problem::coverage_fix ? "Best network found" : "Pareto front", subtitle);
+                    view.single() ? "Best network found" : "Pareto front", subtitle);
   if (view.coloured()) draw_station_bar(canvas, area, config);
 
   std::vector<Rect> taken;
@@ -58,11 +58,11 @@ void draw_front(const std::filesystem::path& file, const PlanResult& result, con
   if (any_confirmed) legend.push_back({LegendItem::Mark::filled, key, "every ray"});
   if (sampled) legend.push_back({LegendItem::Mark::hollow, key, "search estimate, " + grouped(config.sample_voxels) + " voxels"});
   else if (!any_confirmed) legend.push_back({LegendItem::Mark::hollow, key, "as the search saw it"});
-  if (!result.front.empty() && config.problem != Problem::coverage_fix) {
+  if (!result.front.empty()) {
     const PlanEntry& chosen = result.front[compromise(result, config.problem)];
     const FrontDot dot = chosen.confirmed ? view.confirmed(chosen) : view.searched(chosen);
     const Point p = chart.at(dot.x, dot.y);
-    canvas.circle(p, 9, {.colour = style::orange, .width = 2.2});
+    if (!view.single()) canvas.circle(p, 9, {.colour = style::orange, .width = 2.2});
     occupy(p, 11);
     std::string words = fixed(chosen.confirmed ? chosen.exact_coverage : chosen.coverage, 3) + " coverage";
     if (!view.by_count()) words += ", " + fixed(chosen.confirmed ? chosen.exact_overlap : chosen.overlap, 3) + " overlap";
@@ -71,7 +71,7 @@ void draw_front(const std::filesystem::path& file, const PlanResult& result, con
     const Rect place = place_label(p, 13, canvas.text_width(words, text) + 6, 18,
                                    {area.x + 4, area.y + 4, area.width - 8, area.height - 8}, taken);
     canvas.text({place.x + place.width / 2, place.y + place.height / 2}, words, text);
-    legend.push_back({LegendItem::Mark::ring, style::orange, "compromise: largest product of gains"});
+    if (!view.single()) legend.push_back({LegendItem::Mark::ring, style::orange, "compromise: largest product of gains"});
   }
   draw_legend(canvas, {area.x, kHeight - 24}, legend);
   canvas.save(file);

@@ -12,7 +12,8 @@ const char* const kCoverage = "Coverage (1: every surveyed voxel at its goal den
 const char* const kOverlap = "Overlap (average clustering coefficient)";
 
 template <class Get>
-Axis share_axis(const std::string& label, const std::vector<FrontDot>& dots, Get get) {
+Axis share_axis(const std::string& label, const std::vector<FrontDot>& dots, bool whole, Get get) {
+  if (whole) return axis_over(label, 0, 1, 0, 1);
   double low = 1, high = 0;
   for (const FrontDot& dot : dots) low = std::min(low, get(dot)), high = std::max(high, get(dot));
   if (dots.empty()) low = 0, high = 1;
@@ -46,7 +47,7 @@ FrontDot FrontView::objectives(std::span<const double> f) const {
 }
 
 Axis FrontView::x_axis(const std::vector<FrontDot>& dots) const {
-  if (!by_count()) return share_axis(kCoverage, dots, [](const FrontDot& d) { return d.x; });
+  if (!by_count()) return share_axis(kCoverage, dots, single(), [](const FrontDot& d) { return d.x; });
   const double low = static_cast<double>(config_.fixed.size() + config_.stations_min);
   const double high = static_cast<double>(config_.fixed.size() + config_.stations_max);
   Axis axis{.label = "Number of stations", .low = low - 0.5, .high = high + 0.5};
@@ -56,7 +57,7 @@ Axis FrontView::x_axis(const std::vector<FrontDot>& dots) const {
 }
 
 Axis FrontView::y_axis(const std::vector<FrontDot>& dots) const {
-  return share_axis(by_count() ? kCoverage : kOverlap, dots, [](const FrontDot& d) { return d.y; });
+  return share_axis(by_count() ? kCoverage : kOverlap, dots, single(), [](const FrontDot& d) { return d.y; });
 }
 
 Colour FrontView::colour(const FrontDot& dot) const {

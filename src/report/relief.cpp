@@ -16,7 +16,7 @@ constexpr std::uint32_t kNothing = 0xFFFFFFFFu;
 // Surfaces steeper than this show no area from above; they are drawn as lines, or walls without thickness would vanish.
 constexpr double kSteep = 0.1;
 // Width of such a line in pixels of the buffer: big walls stand out, small parts keep their shape.
-double line_width(double length) { return std::clamp(0.08 * length, 3.0, 9.0); }
+double line_width(double length) { return std::clamp(0.15 * length, 3.0, 14.0); }
 
 struct Corner {
   double x, y, z;  // pixels and metres
@@ -157,7 +157,7 @@ std::vector<std::uint32_t> shade(const SceneData& scene, const HeightBuffer& hei
       const auto n = normal_of(scene, t);
       const double lit = std::max(0.0, n[0] * kLight[0] + n[1] * kLight[1] + n[2] * kLight[2]);
       double light = 0.58 + 0.52 * lit;
-      if (n[2] < kSteep) light = 0.5;
+      if (n[2] < kSteep) light = 0.62;
       light *= 1 - 0.38 * std::clamp((double{near[k]} - heights.z[k]) / near_scale, 0.0, 1.0);
       light *= 1 - 0.38 * std::clamp((double{far[k]} - heights.z[k]) / far_scale, 0.0, 1.0);
       const bool surveyed = scene.meshes[scene.mesh_of(t)].role == Role::surveyed;

@@ -35,7 +35,7 @@ std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& re
     const auto picture = [&](const char* name) { return folder / (std::string(name) + extension); };
     draw_front(picture("front"), result, config);
     draw_hypervolume(picture("hypervolume"), result, config);
-    draw_history_fronts(picture("history"), result, config);
+    if (config.problem != Problem::coverage_fix) draw_history_fronts(picture("history"), result, config);
     draw_plan_view(picture("plan"), simulator.scene(), area, entry.stations, overlap, title);
   }
   return chosen;

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "vantage/export.hpp"
+
+namespace vantage::test {
+
+inline std::string content(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+inline std::size_t entries(const std::filesystem::path& folder) {
+  return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder), {}));
+}
+
+// The value at a byte; advances it.
+template <class T>
+T take(const std::string& bytes, std::size_t& at) {
+  T value{};
+  if (at + sizeof value <= bytes.size()) std::memcpy(&value, bytes.data() + at, sizeof value);
+  at += sizeof value;
+  return value;
+}
+
+// A made-up result with a front of `entries` networks.
+inline PlanResult sample_result(const PlanConfig& config, std::size_t entries) {
+  PlanResult result;
+  const bool counts = config.problem == Problem::coverage_min || config.problem == Problem::coverage_overlap_min;
+  for (std::size_t k = 0; k < entries; ++k) {
+    const double t = entries > 1 ? static_cast<double>(k) / static_cast<double>(entries - 1) : 0;
+    PlanEntry e;
+    const std::size_t n = counts ? station_count_from_alpha(1 - t, config.stations_min, config.stations_max) : config.stations_max;
+    for (std::size_t i = 0; i < n; ++i) {
+      const double u = 0.1 + 0.8 * static_cast<double>(i) / 64;
+      e.stations.push_back({.uv = {u, t}, .position = {1 / 3.0 + 10 * u, 10 * t, 1.85}, .status = StationStatus::ok});
+      e.x.insert(e.x.end(), {u, t});
+    }
+    e.x.resize(2 * config.stations_max);
+    if (counts) e.x.push_back(1 - t);
+    e.coverage = 0.95 - 0.5 * t * t, e.overlap = 0.1 + 0.8 * t;
+    e.coverage_se = 0.001, e.overlap_se = 0.01;
+    e.exact_coverage = e.coverage - 0.002, e.exact_overlap = e.overlap + 0.004, e.confirmed = true;
+    e.exact_overlap_matrix = OverlapMatrix(n);
+    e.points_on_surveyed.assign(n, 1000 + k);
+    result.front.push_back(e);
+  }
+  for (std::size_t it = 1; it <= 20; ++it) {
+    PlanIteration line{.iteration = it, .evaluations = 10 * it, .hypervolume = 0.5 + 0.02 * static_cast<double>(it), .front = {},
+                       .seconds = 0.5 * static_cast<double>(it)};
+    for (const PlanEntry& e : result.front) {
+      const double worse = 0.01 * static_cast<double>(20 - it);
+      std::vector<double> f{1 - e.coverage + worse};
+      if (config.problem == Problem::coverage_overlap_fix || config.problem == Problem::coverage_overlap_min) f.push_back(1 - e.overlap + worse);
+      if (counts) f.push_back(e.x.back());
+      line.front.push_back(f);
+    }
+    result.history.push_back(line);
+  }
+  result.hypervolume = 0.9, result.evaluations = 200, result.drawn = 800, result.redrawn = 40;
+  result.stop_reason = StopReason::max_iterations;
+  result.seconds = 12.5, result.trace_seconds = 10;
+  return result;
+}
+
+}  // namespace vantage::test

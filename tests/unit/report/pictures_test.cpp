@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "report/chart.hpp"
+#include "report/outline.hpp"
+#include "report/relief.hpp"
+#include "report/spread.hpp"
+#include "support/temporary_folder.hpp"
+#include "unit/report/files.hpp"
+#include "vantage/error.hpp"
+
+namespace vantage {
+namespace {
+
+TEST(Chart, TicksAreRoundAndInside) {
+  EXPECT_EQ(nice_ticks(0, 1, 5), (std::vector<double>{0, 0.2, 0.4, 0.6000000000000001, 0.8, 1}));
+  EXPECT_EQ(tick_labels(nice_ticks(0, 1, 5)), (std::vector<std::string>{"0.0", "0.2", "0.4", "0.6", "0.8", "1.0"}));
+  EXPECT_EQ(tick_labels(nice_ticks(-30, 30, 6)), (std::vector<std::string>{"-30", "-20", "-10", "0", "10", "20", "30"}));
+  EXPECT_EQ(tick_labels(nice_ticks(4'500'000.2, 4'500'020.1, 4)).front(), "4500005");
+  std::mt19937 random(2);
+  for (int round = 0; round < 1000; ++round) {
+    const double low = std::ldexp(static_cast<double>(random()) - 2e9, -static_cast<int>(random() % 60));
+    const double high = low + std::ldexp(1.0 + static_cast<double>(random()), -static_cast<int>(random() % 30));
+    if (!(high - low > 1e-9 * std::abs(low))) continue;
+    const auto ticks = nice_ticks(low, high, 6);
+    EXPECT_LE(ticks.size(), 13u);
+    EXPECT_GE(ticks.size(), 2u) << low << " " << high;
+    for (const double t : ticks) EXPECT_TRUE(t >= low - 1e-6 * (high - low) && t <= high + 1e-6 * (high - low));
+  }
+}
+
+TEST(Chart, AxesHoldTheirDataAndNoTickBeyondWhatCanBe) {
+  const Axis narrow = axis_over("", 0.985, 0.985, 0, 1);
+  EXPECT_LT(narrow.low, 0.985);
+  EXPECT_GT(narrow.high, 0.985);
+  const Axis full = axis_over("", 0.2, 1, 0, 1);
+  EXPECT_GT(full.high, 1);  // a dot at 1 is whole
+  EXPECT_LE(full.ticks.back(), 1);
+}
+
+TEST(Chart, LabelsKeepOffEachOther) {
+  std::mt19937 random(5);
+  std::vector<Rect> taken;
+  for (int k = 0; k < 12; ++k) {
+    const Point at{100 + static_cast<double>(random() % 400), 100 + static_cast<double>(random() % 300)};
+    const Rect r = place_label(at, 10, 80, 16, {0, 0, 600, 500}, taken);
+    EXPECT_GE(r.x, 0);
+    EXPECT_LE(r.right(), 600);
+  }
+  for (std::size_t i = 0; i < taken.size(); ++i)
+    for (std::size_t j = i + 1; j < taken.size(); ++j) EXPECT_FALSE(taken[i].overlaps(taken[j])) << i << " " << j;
+}
+
+TEST(Spread, PartsWhatOverlapsAndLeavesTheRest) {
+  std::vector<Point> anchors(9, Point{50, 50});
+  anchors.push_back({200, 200});
+  for (int k = 0; k < 20; ++k) anchors.push_back({300 + 3.0 * k, 100.0 + k % 3});
+  const auto discs = spread(anchors, 10);
+  for (std::size_t i = 0; i < discs.size(); ++i)
+    for (std::size_t j = i + 1; j < discs.size(); ++j)
+      EXPECT_GT(std::hypot(discs[i].x - discs[j].x, discs[i].y - discs[j].y), 20) << i << " " << j;
+  EXPECT_EQ(discs[9].x, 200);
+  EXPECT_LT(std::hypot(discs[0].x - 50, discs[0].y - 50), 60);
+}
+
+TEST(Outline, SeamsAreNoEdges) {
+  // Two squares side by side, the second with vertices of its own, as a chart's seam makes them.
+  SearchMesh mesh;
+  for (const double left : {0.0, 1.0})
+    for (const auto& [x, y] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}}) mesh.positions.push_back({left + x, y, 0});
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}};
+  const auto edges = outline(mesh);
+  EXPECT_EQ(edges.size(), 6u);
+  for (const auto& [a, b] : edges) EXPECT_FALSE(a.x == 1 && b.x == 1);
+}
+
+// A floor of 4 x 4 m at z = 0, a table of 2 x 2 m at z = 1 in its middle, a wall without thickness at x = -1.5, in local coordinates.
+Scene room() {
+  std::vector<Vec3> p;
+  std::vector<std::array<std::uint32_t, 3>> t;
+  const auto quad = [&](Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
+    const auto n = static_cast<std::uint32_t>(p.size());
+    p.insert(p.end(), {a, b, c, d});
+    t.insert(t.end(), {{n, n + 1, n + 2}, {n, n + 2, n + 3}});
+  };
+  quad({-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0});
+  quad({-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1});
+  quad({-1.5, -1, 0}, {-1.5, 1, 0}, {-1.5, 1, 2}, {-1.5, -1, 2});
+  return Scene::from_triangles(p, t);
+}
+
+TEST(Relief, ShowsTheTopmostSurface) {
+  const Scene scene = room();
+  const SceneData& data = scene.data();
+  const MapWindow window{.x_min = -4, .y_max = 4, .pixel_m = 0.04, .columns = 200, .rows = 200};
+  const auto z_at = [&](const HeightBuffer& h, double x, double y) {
+    return h.z[static_cast<std::size_t>((4 - y) / 0.04) * 200 + static_cast<std::size_t>((x + 4) / 0.04)] + data.origin.z;
+  };
+  const HeightBuffer open = look_from_above(data, window, 1e9);
+  EXPECT_NEAR(z_at(open, 0.3, 0.2), 1, 1e-6);
+  EXPECT_NEAR(z_at(open, 1.7, 1.7), 0, 1e-6);
+  EXPECT_NEAR(z_at(open, -1.5, 0.5), 2, 1e-6);  // the wall is there, though it covers no area
+  EXPECT_FALSE(std::isfinite(z_at(open, 3, 0)));
+  const HeightBuffer cut = look_from_above(data, window, 0.5);
+  EXPECT_NEAR(z_at(cut, 0.3, 0.2), 0, 1e-6);
+  const auto pixels = shade(data, open);
+  EXPECT_EQ(pixels[100 * 200 + 190], 0u);
+  EXPECT_EQ(pixels[100 * 200 + 105] >> 24, 255u);
+  const auto half = halve(pixels, 200);
+  EXPECT_EQ(half.size(), 100u * 100);
+  EXPECT_EQ(half[50 * 100 + 52], pixels[100 * 200 + 105]);  // amid an even surface
+}
+
+TEST(Pictures, EveryFrontIsDrawnAsPngAndSvg) {
+  const test::TemporaryFolder folder;
+  for (const Problem problem :
+       {Problem::coverage_fix, Problem::coverage_overlap_fix, Problem::coverage_min, Problem::coverage_overlap_min}) {
+    PlanConfig config{.problem = problem, .stations_min = 2, .stations_max = 9, .sample_voxels = 1000};
+    const PlanResult result = test::sample_result(config, problem == Problem::coverage_fix ? 1 : 12);
+    for (const char* name : {"a.png", "a.svg"}) {
+      const auto drawn = [&](auto draw) {
+        draw(folder / name, result, config);
+        const std::string bytes = test::content(folder / name);
+        if (std::string(name) == "a.png") {
+          EXPECT_EQ(bytes.substr(0, 8), "\x89PNG\r\n\x1A\n");
+          EXPECT_EQ(static_cast<unsigned char>(bytes[18]) * 256 + static_cast<unsigned char>(bytes[19]), 1560);  // width
+        } else {
+          EXPECT_EQ(bytes.substr(0, 5), "<?xml");
+          EXPECT_NE(bytes.find("</svg>"), std::string::npos);
+        }
+        draw(folder / (std::string("again") + name).c_str(), result, config);
+        EXPECT_TRUE(test::content(folder / (std::string("again") + name).c_str()) == bytes) << to_string(problem) << " " << name;
+      };
+      drawn(draw_front);
+      drawn(draw_hypervolume);
+      drawn(draw_history_fronts);
+    }
+  }
+}
+
+TEST(Pictures, DrawResultsThatHoldLittle) {
+  const test::TemporaryFolder folder;
+  for (const Problem problem :
+       {Problem::coverage_fix, Problem::coverage_overlap_fix, Problem::coverage_min, Problem::coverage_overlap_min}) {
+    PlanConfig config{.problem = problem, .stations_min = 1, .stations_max = 1};
+    if (problem == Problem::coverage_min || problem == Problem::coverage_overlap_min) config.stations_max = 64;
+    draw_front(folder / "empty.png", {}, config);
+    draw_hypervolume(folder / "empty.png", {}, config);
+    draw_history_fronts(folder / "empty.png", {}, config);
+    PlanResult one = test::sample_result(config, 1);
+    one.front[0].confirmed = false;
+    one.front[0].coverage = 0, one.front[0].overlap = 0;
+    one.history.resize(1);
+    one.history[0].hypervolume = 0;
+    draw_front(folder / "one.png", one, config);
+    draw_hypervolume(folder / "one.png", one, config);
+    draw_history_fronts(folder / "one.png", one, config);
+  }
+  EXPECT_EQ(test::entries(folder.path()), 2u);
+}
+
+TEST(Pictures, RefuseOtherFormats) {
+  const test::TemporaryFolder folder;
+  EXPECT_THROW(draw_hypervolume(folder / "a.pdf", {}, {}), Error);
+  EXPECT_EQ(test::entries(folder.path()), 0u);
+}
+
+TEST(Pictures, PlanViewDrawsEveryKindOfStation) {
+  const test::TemporaryFolder folder;
+  SearchMesh mesh;
+  mesh.positions = {{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}};
+  mesh.uvs = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  const SearchArea area = SearchArea::from_mesh(mesh);
+  const std::vector<PlacedStation> stations{{.uv = {0.2, 0.2}, .position = {-1, -1, 1.8}, .status = StationStatus::ok},
+                                            {.uv = {0.2, 0.2}, .position = {-1, -1, 1.8}, .status = StationStatus::ok},
+                                            {.uv = {0.9, 0.9}, .position = {1.6, 1.6, 1.8}, .status = StationStatus::clash},
+                                            {.uv = {5, 5}, .position = {}, .status = StationStatus::hole}};
+  OverlapMatrix overlap(4);
+  overlap.set(0, 1, 0.7);
+  draw_plan_view(folder / "plan.png", room(), area, stations, overlap, "A room");
+  draw_plan_view(folder / "plan.svg", room(), area, stations, overlap, "A room");
+  draw_plan_view(folder / "none.png", room(), area, {}, {}, "No station");
+  EXPECT_EQ(test::entries(folder.path()), 3u);
+  EXPECT_THROW(draw_plan_view(folder / "bad.png", room(), area, stations, OverlapMatrix(3), "Wrong"), Error);
+}
+
+}  // namespace
+}  // namespace vantage
