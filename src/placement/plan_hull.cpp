@@ -2,6 +2,7 @@
 #include "placement/plan_hull.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <tuple>
@@ -10,6 +11,25 @@ namespace vantage {
 namespace {
 
 double turn(Uv a, Uv b, Uv c) { return (b.u - a.u) * (c.v - a.v) - (b.v - a.v) * (c.u - a.u); }
+
+// Drops what lies inside the octagon of the outermost points of eight directions, which of a large mesh is nearly all
+// (Akl and Toussaint, A Fast Convex Hull Algorithm, 1978).
+void drop_inside(std::vector<Uv>& points) {
+  if (points.size() < 100) return;
+  constexpr std::array<Uv, 8> ways{{{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
+  std::array<Uv, 8> corner;
+  for (std::size_t w = 0; w < ways.size(); ++w)
+    corner[w] = *std::max_element(points.begin(), points.end(), [way = ways[w]](Uv a, Uv b) {
+      return way.u * a.u + way.v * a.v < way.u * b.u + way.v * b.v;
+    });
+  std::erase_if(points, [&](Uv p) {
+    for (std::size_t w = 0; w < corner.size(); ++w) {
+      const Uv a = corner[w], b = corner[(w + 1) % corner.size()];
+      if (a != b && turn(a, b, p) <= 0) return false;
+    }
+    return true;
+  });
+}
 
 Rectangle rectangle_along(const std::vector<Uv>& hull, double cosine, double sine) {
   constexpr double inf = std::numeric_limits<double>::infinity();
@@ -25,6 +45,7 @@ Rectangle rectangle_along(const std::vector<Uv>& hull, double cosine, double sin
 }  // namespace
 
 std::vector<Uv> convex_hull(std::vector<Uv> points) {
+  drop_inside(points);
   const auto less = [](Uv a, Uv b) { return std::tie(a.u, a.v) < std::tie(b.u, b.v); };
   std::sort(points.begin(), points.end(), less);
   points.erase(std::unique(points.begin(), points.end()), points.end());

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "placement/plane_quadtree.hpp"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -30,77 +32,163 @@ double side_of(Uv a, Uv b, Uv p) {
 
 bool finite(Uv p) { return std::isfinite(p.u) && std::isfinite(p.v); }
 
+bool is_candidate(Uv a, Uv b, Uv c) {
+  if (!finite(a) || !finite(b) || !finite(c)) return false;
+  const double longest = std::max({dot(b - a, b - a), dot(c - b, c - b), dot(a - c, a - c)});
+  return std::abs(cross(b - a, c - a)) > no_area * longest;
+}
+
+// A triangle with its box relative to the tree's corner, rounded outwards.
+struct Item {
+  float u_min, u_max, v_min, v_max;
+  std::uint32_t triangle;
+};
+
+float below(double x) { return std::nextafter(static_cast<float>(x), -HUGE_VALF); }
+float above(double x) { return std::nextafter(static_cast<float>(x), HUGE_VALF); }
+
 }  // namespace
+
+// Builds nodes for a cell and all below it. Large cells go to threads of their own; the result is the same.
+class PlaneQuadtree::Builder {
+ public:
+  struct Subtree {
+    std::vector<Node> nodes{1};  // the root first
+    std::vector<std::uint32_t> items;
+  };
+
+  explicit Builder(const PlaneQuadtree& tree)
+      : tree_(tree),
+        // A regular mesh is parted after log4(n) levels; the rest is for crowded places.
+        max_depth_(static_cast<int>(std::ceil(std::log2(static_cast<double>(tree.candidates_)) / 2)) + 8) {}
+
+  Subtree build(const Cell& cell, std::vector<Item> items) const {
+    Subtree result;
+    subdivide(result, 0, cell, std::move(items), 0, 0);
+    return result;
+  }
+
+ private:
+  static constexpr int threaded_levels = 3;
+  static constexpr std::size_t worth_a_thread = 20000;
+
+  void subdivide(Subtree& out, std::uint32_t node, const Cell& cell, std::vector<Item> items, int depth,
+                 int idle) const {
+    const std::size_t crowd = partial(items, cell);
+    if (crowd <= leaf_size || depth >= max_depth_ || idle >= patience) {
+      out.nodes[node] = {0, static_cast<std::uint32_t>(out.items.size()), static_cast<std::uint32_t>(items.size())};
+      for (const Item& item : items) out.items.push_back(item.triangle);
+      return;
+    }
+    const Uv middle{0.5 * (cell.min.u + cell.max.u), 0.5 * (cell.min.v + cell.max.v)};
+    std::array<Cell, 4> cells;
+    std::array<std::vector<Item>, 4> lists;
+    for (int q = 0; q < 4; ++q)
+      cells[q] = {{q & 1 ? middle.u : cell.min.u, q & 2 ? middle.v : cell.min.v},
+                  {q & 1 ? cell.max.u : middle.u, q & 2 ? cell.max.v : middle.v}};
+    const double slack = tree_.slack_, u = middle.u - tree_.min_.u, v = middle.v - tree_.min_.v;
+    for (const Item& item : items) {
+      const bool left = item.u_min <= u + slack, right = item.u_max >= u - slack;
+      const bool lower = item.v_min <= v + slack, upper = item.v_max >= v - slack;
+      const bool single = left != right && lower != upper;
+      for (int q = 0; q < 4; ++q)
+        if ((q & 1 ? right : left) && (q & 2 ? upper : lower) && (single || tree_.overlaps(item.triangle, cells[q])))
+          lists[q].push_back(item);
+    }
+    std::size_t copies = 0, most = 0;
+    for (int q = 0; q < 4; ++q) {
+      copies += lists[q].size();
+      most = std::max(most, partial(lists[q], cells[q]));
+    }
+    // Triangles in a pile, or around one vertex, are copied by subdivision but not parted. A crowd in one corner is
+    // neither yet.
+    const bool parted = 4 * most <= 3 * crowd, cornered = 5 * copies <= 6 * items.size();
+    idle = parted ? 0 : cornered ? idle : idle + 1;
+    const bool threaded = depth < threaded_levels && items.size() >= worth_a_thread;
+    items = {};
+    const auto child = static_cast<std::uint32_t>(out.nodes.size());
+    out.nodes[node].child = child;
+    out.nodes.resize(out.nodes.size() + 4);
+    if (!threaded) {
+      for (std::uint32_t q = 0; q < 4; ++q) subdivide(out, child + q, cells[q], std::move(lists[q]), depth + 1, idle);
+      return;
+    }
+    std::array<Subtree, 4> parts;
+    tbb::parallel_for(0, 4, [&](int q) { subdivide(parts[q], 0, cells[q], std::move(lists[q]), depth + 1, idle); });
+    for (std::uint32_t q = 0; q < 4; ++q) append(out, child + q, parts[q]);
+  }
+
+  // Triangles that do not cover the whole cell; those that do would cover all its children too, so only the others
+  // count. Not counted where the cell is a leaf anyway.
+  std::size_t partial(const std::vector<Item>& items, const Cell& cell) const {
+    if (items.size() <= leaf_size) return 0;
+    const double u_min = cell.min.u - tree_.min_.u, u_max = cell.max.u - tree_.min_.u;
+    const double v_min = cell.min.v - tree_.min_.v, v_max = cell.max.v - tree_.min_.v;
+    std::size_t count = 0;
+    for (const Item& item : items) {
+      const bool around = item.u_min <= u_min && item.u_max >= u_max && item.v_min <= v_min && item.v_max >= v_max;
+      count += !(around && tree_.covers(item.triangle, cell));
+    }
+    return count;
+  }
+
+  // Puts a subtree's root in the place of `node` and the rest at the end.
+  static void append(Subtree& out, std::uint32_t node, const Subtree& part) {
+    const auto first_node = static_cast<std::uint32_t>(out.nodes.size()),
+               first_item = static_cast<std::uint32_t>(out.items.size());
+    const auto moved = [&](Node n) {
+      if (n.child != 0) n.child += first_node - 1;
+      n.first += first_item;
+      return n;
+    };
+    out.nodes[node] = moved(part.nodes[0]);
+    for (std::size_t i = 1; i < part.nodes.size(); ++i) out.nodes.push_back(moved(part.nodes[i]));
+    out.items.insert(out.items.end(), part.items.begin(), part.items.end());
+  }
+
+  const PlaneQuadtree& tree_;
+  int max_depth_;
+};
 
 PlaneQuadtree::PlaneQuadtree(std::span<const Uv> points, std::span<const Triangle> triangles)
     : points_(points), triangles_(triangles) {
   constexpr double inf = std::numeric_limits<double>::infinity();
   min_ = {inf, inf};
   max_ = {-inf, -inf};
-  std::vector<std::uint32_t> items;
-  items.reserve(triangles.size());
+  std::vector<std::uint32_t> candidates;
+  candidates.reserve(triangles.size());
   for (std::uint32_t t = 0; t < triangles.size(); ++t) {
     const Uv a = points[triangles[t][0]], b = points[triangles[t][1]], c = points[triangles[t][2]];
-    if (!finite(a) || !finite(b) || !finite(c)) continue;
-    const double longest = std::max({dot(b - a, b - a), dot(c - b, c - b), dot(a - c, a - c)});
-    if (!(std::abs(cross(b - a, c - a)) > no_area * longest)) continue;
-    items.push_back(t);
-    for (const Uv p : {a, b, c}) {
-      min_ = {std::min(min_.u, p.u), std::min(min_.v, p.v)};
-      max_ = {std::max(max_.u, p.u), std::max(max_.v, p.v)};
-    }
+    if (!is_candidate(a, b, c)) continue;
+    candidates.push_back(t);
+    min_ = {std::min({min_.u, a.u, b.u, c.u}), std::min({min_.v, a.v, b.v, c.v})};
+    max_ = {std::max({max_.u, a.u, b.u, c.u}), std::max({max_.v, a.v, b.v, c.v})};
   }
-  candidates_ = static_cast<std::uint32_t>(items.size());
+  candidates_ = static_cast<std::uint32_t>(candidates.size());
   if (empty()) {
     min_ = max_ = {};
     return;
   }
   const double magnitude = std::max({std::abs(min_.u), std::abs(min_.v), std::abs(max_.u), std::abs(max_.v)});
   slack_ = slack_share * std::max(max_.u - min_.u, max_.v - min_.v) + 0x1p-48 * magnitude;
-  // A regular mesh is parted after log4(n) levels; the rest is for crowded places.
-  max_depth_ = static_cast<int>(std::ceil(std::log2(static_cast<double>(candidates_)) / 2)) + 8;
-  nodes_.emplace_back();
-  subdivide(0, {min_, max_}, std::move(items), 0, 0);
+
+  std::vector<Item> items;
+  items.reserve(candidates.size());
+  for (const std::uint32_t t : candidates) {
+    const Uv a = points[triangles[t][0]] - min_, b = points[triangles[t][1]] - min_, c = points[triangles[t][2]] - min_;
+    items.push_back({below(std::min({a.u, b.u, c.u})), above(std::max({a.u, b.u, c.u})),
+                     below(std::min({a.v, b.v, c.v})), above(std::max({a.v, b.v, c.v})), t});
+  }
+  Builder::Subtree tree = Builder(*this).build({min_, max_}, std::move(items));
+  nodes_ = std::move(tree.nodes);
+  items_ = std::move(tree.items);
   nodes_.shrink_to_fit();
   items_.shrink_to_fit();
 }
 
-void PlaneQuadtree::subdivide(std::uint32_t node, const Cell& cell, std::vector<std::uint32_t> items, int depth,
-                              int idle) {
-  // Triangles that cover the whole cell would cover all its children too: only the others count.
-  const auto partial = [this](const std::vector<std::uint32_t>& list, const Cell& c) {
-    std::size_t count = 0;
-    for (const std::uint32_t t : list) count += !covers(t, c);
-    return count;
-  };
-  const std::size_t crowd = items.size() <= leaf_size ? 0 : partial(items, cell);
-  const auto keep = [&] {
-    nodes_[node] = {0, static_cast<std::uint32_t>(items_.size()), static_cast<std::uint32_t>(items.size())};
-    items_.insert(items_.end(), items.begin(), items.end());
-  };
-  if (crowd <= leaf_size || depth >= max_depth_ || idle >= patience) return keep();
-
-  const Uv middle{0.5 * (cell.min.u + cell.max.u), 0.5 * (cell.min.v + cell.max.v)};
-  std::array<Cell, 4> cells;
-  std::array<std::vector<std::uint32_t>, 4> lists;
-  std::size_t copies = 0, most = 0;
-  for (int q = 0; q < 4; ++q) {
-    cells[q] = {{q & 1 ? middle.u : cell.min.u, q & 2 ? middle.v : cell.min.v},
-                {q & 1 ? cell.max.u : middle.u, q & 2 ? cell.max.v : middle.v}};
-    for (const std::uint32_t t : items)
-      if (overlaps(t, cells[q])) lists[q].push_back(t);
-    copies += lists[q].size();
-    most = std::max(most, partial(lists[q], cells[q]));
-  }
-  // Triangles in a pile, or around one vertex, are copied by subdivision but not parted. A crowd in one corner is
-  // neither yet.
-  const bool parted = 4 * most <= 3 * crowd, cornered = 5 * copies <= 6 * items.size();
-  idle = parted ? 0 : cornered ? idle : idle + 1;
-  items = {};
-  const auto child = static_cast<std::uint32_t>(nodes_.size());
-  nodes_[node].child = child;
-  nodes_.resize(nodes_.size() + 4);
-  for (std::uint32_t q = 0; q < 4; ++q) subdivide(child + q, cells[q], std::move(lists[q]), depth + 1, idle);
+bool PlaneQuadtree::any_candidate(std::span<const Uv> points, std::span<const Triangle> triangles) {
+  return std::any_of(triangles.begin(), triangles.end(),
+                     [&](const Triangle& t) { return is_candidate(points[t[0]], points[t[1]], points[t[2]]); });
 }
 
 bool PlaneQuadtree::overlaps(std::uint32_t triangle, const Cell& cell) const {

@@ -32,6 +32,9 @@ class PlaneQuadtree {
   // REQUIRES: indices below points.size(); both arrays outlive the tree.
   PlaneQuadtree(std::span<const Uv> points, std::span<const Triangle> triangles);
 
+  // Whether the tree would have a candidate.
+  static bool any_candidate(std::span<const Uv> points, std::span<const Triangle> triangles);
+
   bool empty() const { return candidates_ == 0; }
   std::uint32_t candidates() const { return candidates_; }
   Uv min() const { return min_; }  // bounds of the candidates
@@ -53,7 +56,7 @@ class PlaneQuadtree {
   struct Cell {
     Uv min, max;
   };
-  void subdivide(std::uint32_t node, const Cell& cell, std::vector<std::uint32_t> items, int depth, int idle);
+  class Builder;
   std::span<const std::uint32_t> leaf_at(Uv p) const;  // empty outside
   bool overlaps(std::uint32_t triangle, const Cell& cell) const;
   bool covers(std::uint32_t triangle, const Cell& cell) const;
@@ -65,7 +68,6 @@ class PlaneQuadtree {
   std::span<const Uv> points_;
   std::span<const Triangle> triangles_;
   std::uint32_t candidates_ = 0;
-  int max_depth_ = 0;
   double slack_ = 0;
   Uv min_, max_;
   std::vector<Node> nodes_;

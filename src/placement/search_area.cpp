@@ -68,8 +68,7 @@ struct SearchArea::Impl {
 
 SearchArea SearchArea::build(const Scene& scene, const WalkableOptions& options) {
   const SceneData& data = scene.data();
-  if (!data.search_uvs.empty() && !data.search_triangles.empty() &&
-      !PlaneQuadtree(data.search_uvs, data.search_triangles).empty()) {
+  if (!data.search_uvs.empty() && PlaneQuadtree::any_candidate(data.search_uvs, data.search_triangles)) {
     SearchArea area;
     area.impl_ = std::make_shared<const Impl>(SearchMesh{data.search_positions, data.search_uvs, data.search_triangles},
                                               false, "as the scene marks it, with its own (u, v)");

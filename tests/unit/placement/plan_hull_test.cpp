@@ -11,7 +11,7 @@ namespace {
 
 std::vector<Uv> any_points() {
   std::vector<Uv> points;
-  const int n = *rc::gen::inRange(3, 40);
+  const int n = *rc::gen::inRange(3, 300);
   for (int i = 0; i < n; ++i) points.push_back({*rc::gen::inRange(-20, 21) * 0.5, *rc::gen::inRange(-20, 21) * 0.5});
   return points;
 }
