@@ -214,8 +214,9 @@ std::vector<ScannerPreset> list_scanners(const std::filesystem::path& presets) {
   for (const auto& [key, entry] : document.scanners().items()) {
     const Scanner scanner = read_scanner(document, key, "");
     char figures[160];
-    std::snprintf(figures, sizeof figures, ": %.4g° × %.4g°, %.3g to %.4g m, %s; ",
-                  scanner.horizontal_angle.in_degrees(), scanner.vertical_angle.in_degrees(), scanner.min_range_m,
+    std::snprintf(figures, sizeof figures, ": %.4g° around, zenith %.4g° to %.4g°, %.3g to %.4g m, %s; ",
+                  scanner.horizontal_angle.in_degrees(), scanner.zenith_start.in_degrees(),
+                  scanner.zenith_start.in_degrees() + scanner.vertical_angle.in_degrees() / 2, scanner.min_range_m,
                   scanner.max_range_m, scanner.noise.empty() ? "no noise table" : "noise table");
     list.push_back({key, entry["name"].get<std::string>() + figures + "settings " + names_of(entry["settings"]) +
                              " (default " + entry["default_setting"].get<std::string>() + ")"});

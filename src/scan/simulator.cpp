@@ -218,7 +218,7 @@ std::vector<NetworkCounts> Simulator::evaluate_sampled(std::span<const Network> 
   std::vector<std::size_t> places;
   for (std::size_t k = 0; k < networks.size(); ++k) {
     std::vector<TraceStation> active = impl_->active_stations(networks[k]);
-    if (active.empty()) {
+    if (active.empty() || sample.empty()) {
       all[k] = nothing_seen(sample.size(), networks[k].size(), options.overlap);
       for (std::uint32_t g = 0; g < sample_groups; ++g)
         all[k].groups.push_back(

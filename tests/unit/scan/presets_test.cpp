@@ -21,6 +21,12 @@ TEST(Presets, HoldTheScannersOfTheTrade) {
   for (const ScannerPreset& preset : list_scanners(presets)) {
     keys.push_back(preset.key);
     EXPECT_NE(preset.summary.find("settings"), std::string::npos);
+    if (preset.key == "vz-400i") {
+      EXPECT_EQ(preset.summary,
+                "RIEGL VZ-400i: 360° around, zenith 30° to 130°, 1.5 to 800 m, noise table; settings 20mdeg, 40mdeg, "
+                "40mdeg-1200khz "
+                "(default 40mdeg)");
+    }
     EXPECT_NO_THROW(load_scanner(presets, preset.key).check());
   }
   EXPECT_EQ(keys, (std::vector<std::string>{"focus-x330", "rtc360", "vz-400i", "x7", "zf5016"}));
