@@ -37,7 +37,7 @@ class SearchArea {
   /// The scene's marked search area; where it has none, or none with (u, v), charts in true proportion are made.
   /// Where no ground is found around the model, a horizontal plane is laid under it, at its lowest point, and reaches
   /// out on every side by the model's largest extent. `description()` says what was done. Throws Error:
-  /// invalid_argument when the scene has neither a mesh nor a usable search area.
+  /// invalid_argument when the scene has neither a mesh nor a usable search area, or an option is out of its range.
   static SearchArea build(const Scene& scene, const WalkableOptions& options = {});
   /// Throws Error: invalid_argument when no triangle has an area in (u, v), or the arrays do not fit together.
   static SearchArea from_mesh(SearchMesh mesh);

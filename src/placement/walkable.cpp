@@ -170,9 +170,24 @@ WalkableSurface lay_plane(const SceneData& scene, const MeshTree& tree) {
   return surface;
 }
 
+void check(const WalkableOptions& options) {
+  const double slope = options.max_slope.in_degrees();
+  const auto refuse = [](const char* what, double value, const char* wanted) {
+    std::ostringstream text;
+    text << what << " must be " << wanted << "; it is " << value;
+    throw Error(Errc::invalid_argument, text.str());
+  };
+  if (!(slope >= 0 && slope < 90)) refuse("the largest slope of a walkable surface", slope, "in [0°, 90°)");
+  if (!(options.headroom_m >= 0) || !std::isfinite(options.headroom_m))
+    refuse("the headroom above a walkable surface, in metres,", options.headroom_m, "finite and not negative");
+  if (!(options.min_area_m2 >= 0) || !std::isfinite(options.min_area_m2))
+    refuse("the smallest area of a walkable part, in m²,", options.min_area_m2, "finite and not negative");
+}
+
 }  // namespace
 
 WalkableSurface find_walkable_surface(const SceneData& scene, const WalkableOptions& options) {
+  check(options);
   if (!scene.search_triangles.empty()) {
     WalkableSurface marked = unfold_marked(scene, options);
     if (!marked.mesh.triangles.empty()) return marked;

@@ -144,6 +144,15 @@ TEST(Walkable, AMarkedAreaWithoutUvIsUnfolded) {
   EXPECT_EQ(SearchArea::build(Scene(std::make_shared<const SceneData>(data))).mesh().triangles.size(), 3u);
 }
 
+TEST(Walkable, RefusesOptionsThatMakeNoSense) {
+  const Scene scene = test::Builder().floor(-1, -1, 1, 1, 0).scene();
+  for (const WalkableOptions& options : {WalkableOptions{Angle::degrees(90)},
+                                         {Angle::degrees(-1)},
+                                         {Angle::degrees(30), -1},
+                                         {Angle::degrees(30), 2, std::nan("")}})
+    EXPECT_THROW(SearchArea::build(scene, options), Error);
+}
+
 TEST(Walkable, NothingAtAllIsAnError) { EXPECT_THROW(find_walkable_surface(SceneData{}, {}), Error); }
 
 }  // namespace
