@@ -10,7 +10,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")"
 
 readonly mesa_minimum=24.1 # the first release whose lavapipe has VK_KHR_ray_query
 readonly packages=(
-  g++ cmake ninja-build git ca-certificates
+  g++ cmake ninja-build pkgconf git ca-certificates
   libvulkan-dev libvulkan-volk-dev libvulkan1 glslang-tools spirv-tools spirv-headers
   libembree-dev libtbb-dev libeigen3-dev libglm-dev libtinygltf-dev nlohmann-json3-dev
   libstb-dev libcli11-dev libspdlog-dev libcairo2-dev

@@ -22,6 +22,10 @@ int run(int argc, char** argv) {
   app.require_subcommand(0, 1);
   add_info(app, program);
   add_generate(app, program);
+  add_scan(app, program);
+  add_panorama(app, program);
+  add_evaluate(app, program);
+  add_plan(app, program);
   try {
     app.parse(argc, argv);
     if (!program.selected) throw Error(Errc::invalid_argument, "which command? See vantage --help");

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/parse.hpp"
+
+#include <gtest/gtest.h>
+
+#include "vantage/error.hpp"
+
+namespace vantage::cli {
+namespace {
+
+template <class F>
+std::string refusal(F&& read) {
+  try {
+    read();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), Errc::invalid_argument);
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(Parse, NumbersAreWholeTexts) {
+  EXPECT_EQ(parse_number("1.5", "--x"), 1.5);
+  EXPECT_EQ(parse_number(" +2e-3 ", "--x"), 2e-3);
+  EXPECT_EQ(parse_number("-.5", "--x"), -0.5);
+  for (const char* text : {"", " ", "abc", "1.5m", "1,5", "0x10", "+-1", "--1", "1 2"})
+    EXPECT_NE(refusal([&] { parse_number(text, "--x"); }).find("is not a number"), std::string::npos) << text;
+}
+
+TEST(Parse, NumbersAreFinite) {
+  for (const char* text : {"nan", "inf", "-inf", "NaN"})
+    EXPECT_NE(refusal([&] { parse_number(text, "--x"); }).find("is not a finite number"), std::string::npos) << text;
+  EXPECT_NE(refusal([] { parse_number("1e999", "--x"); }).find("too large"), std::string::npos);
+}
+
+TEST(Parse, RefusalsNameOptionValueAndInterval) {
+  EXPECT_EQ(refusal([] { parse_number("0", "--step", positive); }), "--step: '0' must be above 0");
+  EXPECT_EQ(refusal([] { parse_number("-1", "--height", not_negative); }), "--height: '-1' must be at least 0");
+  EXPECT_EQ(refusal([] { parse_number("361", "--horizontal", {.low = 0, .high = 360, .low_included = false}); }),
+            "--horizontal: '361' must be above 0 and at most 360");
+}
+
+TEST(Parse, CountsAreWholeNumbersInRange) {
+  EXPECT_EQ(parse_count("18446744073709551615", "--seed"), 18446744073709551615u);
+  EXPECT_EQ(refusal([] { parse_count("18446744073709551616", "--seed"); }),
+            "--seed: '18446744073709551616' must be at least 0 and fit in 64 bits");
+  EXPECT_EQ(refusal([] { parse_count("65", "--stations", 1, 64); }), "--stations: '65' must lie between 1 and 64");
+  for (const char* text : {"", "-1", "1.5", "1e3", "eight"})
+    EXPECT_NE(refusal([&] { parse_count(text, "--n"); }).find("is not a whole number"), std::string::npos) << text;
+}
+
+TEST(Parse, StationsAreHeadsOrUvs) {
+  EXPECT_EQ(parse_station("1,-2,3.5", "--station").position, (Vec3{1, -2, 3.5}));
+  EXPECT_EQ(parse_station("0.25,0.5", "--station").uv, (Uv{0.25, 0.5}));
+  for (const char* text : {"1", "1,2,3,4", "", "1;2;3"})
+    EXPECT_NE(refusal([&] { parse_station(text, "--station"); }).find("is no station"), std::string::npos) << text;
+  EXPECT_NE(refusal([] { parse_station("1,nan,3", "--station"); }).find("'nan' is not a finite number"), std::string::npos);
+}
+
+TEST(Parse, CountRanges) {
+  const auto one = parse_count_range("8", "--stations", 1, 64), many = parse_count_range("8..20", "--stations", 1, 64);
+  EXPECT_EQ(one.low, 8u);
+  EXPECT_EQ(one.high, 8u);
+  EXPECT_EQ(many.low, 8u);
+  EXPECT_EQ(many.high, 20u);
+  EXPECT_NE(refusal([] { parse_count_range("8..4", "--stations", 1, 64); }).find("must not fall"), std::string::npos);
+  for (const char* text : {"0", "65", "0..4", "4..65", "..4", "4..", "4...6", "a..b", "4-6"})
+    EXPECT_NE(refusal([&] { parse_count_range(text, "--stations", 1, 64); }), "accepted") << text;
+}
+
+TEST(Parse, SamplesAreNumbersOrShares) {
+  EXPECT_EQ(parse_sample("20000", "--sample").of(1'000'000), 20'000u);
+  EXPECT_EQ(parse_sample("20000", "--sample").of(500), 500u);
+  EXPECT_EQ(parse_sample("5%", "--sample").of(1000), 50u);
+  EXPECT_EQ(parse_sample("0.25", "--sample").of(1000), 250u);
+  EXPECT_EQ(parse_sample("100%", "--sample").of(1000), 1000u);
+  EXPECT_EQ(parse_sample("0.0001", "--sample").of(1000), 1u);
+  for (const char* text : {"0", "0%", "101%", "1.5", "-1", "%"})
+    EXPECT_NE(refusal([&] { parse_sample(text, "--sample"); }), "accepted") << text;
+}
+
+TEST(Parse, Durations) {
+  EXPECT_EQ(parse_duration("90", "--max-time"), 90);
+  EXPECT_EQ(parse_duration("90s", "--max-time"), 90);
+  EXPECT_EQ(parse_duration("1.5min", "--max-time"), 90);
+  EXPECT_EQ(parse_duration("2m", "--max-time"), 120);
+  EXPECT_EQ(parse_duration("2h", "--max-time"), 7200);
+  for (const char* text : {"0", "-1s", "soon", "h", "1d"})
+    EXPECT_NE(refusal([&] { parse_duration(text, "--max-time"); }), "accepted") << text;
+}
+
+}  // namespace
+}  // namespace vantage::cli

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// A whole plan from the command line: what it writes, that it repeats itself, and that it stops when told to.
+#include <signal.h>
+
+#include <chrono>
+#include <filesystem>
+#include <thread>
+
+#include "program.hpp"
+
+namespace vantage::test {
+namespace {
+
+class Plan : public ProgramTest {
+ protected:
+  std::vector<std::string> plan(const std::string& folder, const std::vector<std::string>& more) const {
+    auto all = coarse("plan", {"--population", "6", "--iterations", "3", "--sample", "200", "-o", path(folder)});
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+  static void drop_times(nlohmann::json& object) {
+    for (auto it = object.begin(); it != object.end();)
+      if (it.key().find("seconds") != std::string::npos)
+        it = object.erase(it);
+      else {
+        if (it->is_object()) drop_times(*it);
+        ++it;
+      }
+  }
+};
+
+TEST_F(Plan, WritesEverythingAndPrintsTheFront) {
+  const auto front = json_of(plan("plan", {"--problem", "coverage-overlap-fix", "--stations", "4"}));
+  for (const char* key : {"problem", "objectives", "hypervolume", "evaluations", "stop_reason", "front", "seconds", "engine", "device", "seed"})
+    EXPECT_TRUE(front.contains(key)) << key;
+  EXPECT_EQ(front["problem"], "coverage-overlap-fix");
+  EXPECT_GE(front["evaluations"], 18);
+  ASSERT_FALSE(front["front"].empty());
+  for (const auto& entry : front["front"]) {
+    EXPECT_EQ(entry["station_count"], 4);
+    EXPECT_EQ(entry["stations"].size(), 4u);
+    EXPECT_TRUE(entry["exact"].contains("coverage"));
+    EXPECT_TRUE(entry["exact"].contains("overlap"));
+  }
+  EXPECT_EQ(nlohmann::json::parse(read("plan/front.json")), front);
+  for (const char* name : {"front.csv", "front.json", "history.csv", "coverage.ply", "overlap.csv", "stations.csv", "front.png", "front.svg",
+                           "hypervolume.png", "hypervolume.svg", "plan.png", "plan.svg", "config.json"})
+    EXPECT_GT(read(std::string("plan/") + name).size(), 0u) << name;
+}
+
+TEST_F(Plan, EvaluateGivesBackTheSameNumbers) {
+  const auto front = json_of(plan("plan", {"--problem", "coverage-overlap-fix", "--stations", "4"}));
+  for (std::size_t k = 0; k < front["front"].size(); ++k) {
+    const auto again = json_of({"evaluate", scene_, "--engine", "embree", "--config", path("plan/config.json"), "--stations",
+                                path("plan/front.json"), "--entry", std::to_string(k)});
+    EXPECT_EQ(again["coverage"], front["front"][k]["exact"]["coverage"]) << k;
+    EXPECT_EQ(again["overlap"], front["front"][k]["exact"]["overlap"]) << k;
+  }
+  const auto chosen = json_of(coarse("evaluate", {"--stations", path("plan/stations.csv")}));
+  bool found = false;
+  for (const auto& entry : front["front"]) found |= entry["exact"]["coverage"] == chosen["coverage"];
+  EXPECT_TRUE(found);
+}
+
+TEST_F(Plan, TheSameSeedGivesTheSameFront) {
+  for (const char* problem : {"coverage-fix", "coverage-overlap-min"}) {
+    const std::string stations = std::string(problem) == "coverage-fix" ? "2" : "2..4";
+    auto first = json_of(plan("first", {"--problem", problem, "--stations", stations, "--seed", "5"}));
+    auto second = json_of(plan("second", {"--problem", problem, "--stations", stations, "--seed", "5"}));
+    auto other = json_of(plan("other", {"--problem", problem, "--stations", stations, "--seed", "6"}));
+    drop_times(first);
+    drop_times(second);
+    EXPECT_EQ(first, second);
+    EXPECT_NE(first["front"], other["front"]);
+  }
+}
+
+TEST_F(Plan, TheProblemFollowsFromTheStations) {
+  EXPECT_EQ(json_of(plan("a", {"--stations", "3"}))["problem"], "coverage-overlap-fix");
+  EXPECT_EQ(json_of(plan("b", {"--stations", "2..3"}))["problem"], "coverage-overlap-min");
+}
+
+TEST_F(Plan, FirstInterruptEndsInGoodOrder) {
+  const Outcome outcome =
+      run_program(plan("plan", {"--stations", "3", "--iterations", "10000000", "--json"}), [&](int process) {
+        for (int tries = 0; tries < 600 && !std::filesystem::exists(path("plan/config.json")); ++tries)
+          std::this_thread::sleep_for(std::chrono::milliseconds(50));
+        std::this_thread::sleep_for(std::chrono::milliseconds(300));
+        kill(process, SIGINT);
+      });
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  const auto front = nlohmann::json::parse(outcome.out, nullptr, false);
+  ASSERT_TRUE(front.is_object()) << outcome.err;
+  EXPECT_EQ(front["stop_reason"], "cancelled");
+  EXPECT_TRUE(std::filesystem::exists(path("plan/front.json")));
+
+  const auto resumed = json_of(plan("plan", {"--stations", "3", "--resume", "--iterations", "1"}));
+  EXPECT_GE(resumed["evaluations"], front["evaluations"]);
+}
+
+}  // namespace
+}  // namespace vantage::test

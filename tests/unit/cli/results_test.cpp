@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+// What scan, evaluate and the small commands hand out.
+#include <filesystem>
+#include <fstream>
+
+#include "program.hpp"
+
+namespace vantage::test {
+namespace {
+
+const std::vector<std::string> four_heads{"--station", "8,0,1.5", "--station", "-8,0,1.5", "--station", "0,8,1.5", "--station", "0,-8,1.5"};
+
+class Results : public ProgramTest {
+ protected:
+  std::vector<std::string> evaluate(const std::vector<std::string>& more) const {
+    auto all = four_heads;
+    all.insert(all.end(), more.begin(), more.end());
+    return coarse("evaluate", all);
+  }
+};
+
+TEST_F(Results, InfoListsEnginesAndScanners) {
+  const auto info = json_of({"info"});
+  bool embree = false;
+  std::size_t chosen = 0;
+  for (const auto& engine : info["engines"]) {
+    embree |= engine["engine"] == "embree" && engine["usable"] == true;
+    chosen += engine["chosen_by_default"] == true;
+    EXPECT_NE(engine["reason"], "");
+  }
+  EXPECT_TRUE(embree);
+  EXPECT_EQ(chosen, 1u);
+  EXPECT_GE(info["scanners"].size(), 5u);
+}
+
+TEST_F(Results, GenerateGivesTheSameBytes) {
+  const auto made = json_of({"generate", "three-walls", "-o", path("a.glb")});
+  EXPECT_EQ(made["triangles"], 6);
+  EXPECT_EQ(made["bytes"], read("a.glb").size());
+  json_of({"generate", "three-walls", "-o", path("b.glb")});
+  EXPECT_EQ(read("a.glb"), read("b.glb"));
+}
+
+TEST_F(Results, EvaluateHasItsKeys) {
+  const auto result = json_of(evaluate({}));
+  for (const char* key : {"coverage", "coverage_se", "overlap", "overlap_se", "overlap_matrix", "stations", "voxels", "voxel_size",
+                          "goal_density", "rays", "sample", "seconds", "engine", "device"})
+    EXPECT_TRUE(result.contains(key)) << key;
+  EXPECT_GT(result["coverage"].get<double>(), 0.5);
+  EXPECT_LE(result["coverage"].get<double>(), 1.0);
+  EXPECT_EQ(result["coverage_se"], 0);
+  EXPECT_EQ(result["overlap"], 0);  // each sees another wall
+  EXPECT_EQ(result["overlap_matrix"].size(), 4u);
+  EXPECT_TRUE(result["sample"].is_null());
+  EXPECT_EQ(result["rays"], 4 * 360 * 150);
+  EXPECT_EQ(result["engine"], "embree");
+  ASSERT_EQ(result["stations"].size(), 4u);
+  for (const auto& station : result["stations"]) {
+    EXPECT_EQ(station["status"], "ok");
+    EXPECT_GT(station["points"].get<std::uint64_t>(), 0u);
+    EXPECT_GE(station["points"].get<std::uint64_t>(), station["points_on_surveyed"].get<std::uint64_t>());
+    EXPECT_EQ(station["position"].size(), 3u);
+    EXPECT_EQ(station["uv"].size(), 2u);
+  }
+}
+
+TEST_F(Results, SkippingAndFullSamplesChangeNoCoverage) {
+  const auto all = json_of(evaluate({"--exact"})), skipped = json_of(evaluate({"--skip"})), sampled = json_of(evaluate({"--sample", "100%"}));
+  EXPECT_EQ(skipped["coverage"], all["coverage"]);
+  EXPECT_EQ(skipped["overlap"], all["overlap"]);
+  EXPECT_TRUE(skipped["stations"][0]["points"].is_null());
+  EXPECT_EQ(skipped["stations"][0]["points_on_surveyed"], all["stations"][0]["points_on_surveyed"]);
+  EXPECT_LT(skipped["rays"], all["rays"]);
+  EXPECT_EQ(sampled["coverage"], all["coverage"]);
+  EXPECT_EQ(sampled["coverage_se"], 0);
+  EXPECT_EQ(sampled["sample"], all["voxels"]);
+}
+
+TEST_F(Results, AWantedErrorIsReached) {
+  const auto result = json_of({"evaluate", scene_, "--engine", "embree", "--station", "8,0,1.5", "--step", "0.5", "--spacing", "0.05",
+                               "--error", "0.01"});
+  EXPECT_GT(result["coverage_se"].get<double>(), 0);
+  EXPECT_LE(result["coverage_se"].get<double>(), 0.01);
+  EXPECT_LT(result["sample"], result["voxels"]);
+}
+
+TEST_F(Results, StationsComeFromTables) {
+  write("heads.csv", "x,y,z\n8,0,1.5\n-8,0,1.5\n0,8,1.5\n0,-8,1.5\n");
+  auto typed = json_of(evaluate({})), read_in = json_of(coarse("evaluate", {"--stations", path("heads.csv")}));
+  typed.erase("seconds");
+  read_in.erase("seconds");
+  EXPECT_EQ(read_in, typed);
+}
+
+TEST_F(Results, PlacesOnTheSearchAreaAreFoundAgain) {
+  const auto heads = json_of(evaluate({}));
+  std::vector<std::string> uvs;
+  for (const auto& station : heads["stations"])
+    uvs.insert(uvs.end(), {"--station", station["uv"][0].dump() + "," + station["uv"][1].dump()});
+  const auto again = json_of(coarse("evaluate", uvs));
+  for (std::size_t k = 0; k < 4; ++k)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      EXPECT_NEAR(again["stations"][k]["position"][axis].get<double>(), heads["stations"][k]["position"][axis].get<double>(), 1e-6);
+  EXPECT_NEAR(again["coverage"].get<double>(), heads["coverage"].get<double>(), 1e-3);
+}
+
+TEST_F(Results, HolesAndClashesAreToldAndLeftOut) {
+  const Outcome outcome = run_program(coarse("evaluate", {"--station", "8,0,1.5", "--station", "99,99", "--station", "5.1,0,1.5", "--json"}));
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const auto result = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(result["stations"][0]["status"], "ok");
+  EXPECT_EQ(result["stations"][1]["status"], "hole");
+  EXPECT_TRUE(result["stations"][1]["position"].is_null());
+  EXPECT_EQ(result["stations"][2]["status"], "clash");
+  EXPECT_EQ(result["coverage"], json_of(coarse("evaluate", {"--station", "8,0,1.5"}))["coverage"]);
+  EXPECT_NE(outcome.err.find("warning: station 1"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("warning: station 2"), std::string::npos) << outcome.err;
+}
+
+TEST_F(Results, ScanCountsWhatItWrites) {
+  for (const char* name : {"cloud.ply", "cloud.las"}) {
+    auto arguments = coarse("scan", four_heads);
+    arguments.insert(arguments.end(), {"-o", path(name)});
+    const auto result = json_of(arguments);
+    for (const char* key : {"rays", "points", "points_on_surveyed", "stations", "seconds", "engine", "device"})
+      EXPECT_TRUE(result.contains(key)) << key;
+    EXPECT_EQ(result["rays"], 4 * 360 * 150);
+    std::uint64_t sum = 0;
+    for (const auto& station : result["stations"]) sum += station["points"].get<std::uint64_t>();
+    EXPECT_EQ(result["points"], sum);
+    EXPECT_GT(sum, 0u);
+    const std::string bytes = read(name);
+    if (std::string(name).ends_with("ply")) {
+      const auto count = bytes.find("element vertex ");
+      ASSERT_NE(count, std::string::npos);
+      EXPECT_EQ(std::stoull(bytes.substr(count + 15, 24)), sum);
+    } else {
+      EXPECT_EQ(bytes.substr(0, 4), "LASF");
+    }
+  }
+  EXPECT_EQ(files(), (std::vector<std::string>{"cloud.las", "cloud.ply"}));
+}
+
+TEST_F(Results, ScanWithoutAFileOnlyCounts) {
+  const auto result = json_of(coarse("scan", four_heads));
+  EXPECT_GT(result["points"].get<std::uint64_t>(), 0u);
+  EXPECT_EQ(files(), std::vector<std::string>{});
+}
+
+TEST_F(Results, PanoramasArePictures) {
+  const auto result = json_of(coarse("panorama", {"--station", "8,0,1.5", "--width", "64", "--views", "range,mesh", "-o", path("views")}));
+  EXPECT_EQ(files(), (std::vector<std::string>{"views/station_0_mesh.png", "views/station_0_range.png"}));
+  EXPECT_EQ(read("views/station_0_range.png").substr(1, 3), "PNG");
+  EXPECT_EQ(result["stations"][0]["pictures"].size(), 2u);
+}
+
+TEST_F(Results, EvaluateWritesItsTablesAndPictures) {
+  json_of(evaluate({"--cartography", path("coverage.ply"), "--overlap-csv", path("overlap.csv"), "--picture", path("plan.png")}));
+  EXPECT_EQ(files(), (std::vector<std::string>{"coverage.ply", "overlap.csv", "plan.png"}));
+  EXPECT_EQ(read("coverage.ply").substr(0, 3), "ply");
+  EXPECT_EQ(read("plan.png").substr(1, 3), "PNG");
+}
+
+}  // namespace
+}  // namespace vantage::test
