@@ -75,6 +75,10 @@ CLI::Option* add_texts(CLI::App& app, const std::string& names, const std::strin
 void apply_layer(CLI::App& command, const nlohmann::json& values, const std::string& source,
                  const std::function<bool(const std::string&)>& accepts) {
   for (const auto& [written_key, value] : values.items()) {
+    if (value.is_object()) {
+      apply_layer(command, value, source, accepts);
+      continue;
+    }
     std::string key = written_key;
     std::replace(key.begin(), key.end(), '_', '-');
     if (accepts && !accepts(key)) continue;

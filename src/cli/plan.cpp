@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <filesystem>
-#include <thread>
 
 #include <spdlog/spdlog.h>
 
@@ -14,7 +14,7 @@ namespace vantage::cli {
 namespace {
 
 constexpr std::size_t most_stations = 64;
-// What a sampled search needs for errors of .002 in coverage, and of .007 in overlap (docs/benchmarks.md).
+// What a sampled search needs for errors of .002 in coverage, and of .007 in overlap, on large sites (docs/benchmarks.md).
 constexpr std::uint64_t sample_for_coverage = 20'000, sample_for_overlap = 100'000;
 
 struct PlanOptions {
@@ -116,6 +116,13 @@ bool wants_overlap(Problem problem) {
   return problem == Problem::coverage_overlap_fix || problem == Problem::coverage_overlap_min;
 }
 
+// On small sites a quarter of the voxels does; but some thousands it should be.
+std::uint64_t default_sample(const PlanConfig& config, std::uint64_t voxels) {
+  const bool overlap = wants_overlap(config.problem) || config.min_link_overlap > 0;
+  const std::uint64_t enough = std::max<std::uint64_t>(voxels / 4, 5'000);
+  return std::min({overlap ? sample_for_overlap : sample_for_coverage, enough, voxels});
+}
+
 // Problem and number of stations say much about each other; what is missing follows from what is there.
 void settle_problem(PlanOptions& options) {
   if (!options.stations) throw Error(Errc::invalid_argument, "--stations: how many? Give N, or A..B to search the number too");
@@ -208,9 +215,7 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   tell_engine(simulator);
   tell_grid(simulator);
   if (!options.exact)
-    config.sample_voxels = options.sample ? options.sample->of(simulator.voxel_count())
-                                          : (wants_overlap(config.problem) || config.min_link_overlap > 0 ? sample_for_overlap
-                                                                                                         : sample_for_coverage);
+    config.sample_voxels = options.sample ? options.sample->of(simulator.voxel_count()) : default_sample(config, simulator.voxel_count());
   write_text(folder / "config.json", as_options(site, config).dump(2) + "\n");
 
   PlanResult result;
