@@ -28,9 +28,24 @@ bool takes_many(const CLI::Option& option) { return option.get_items_expected_ma
 
 CLI::Option* find_option(CLI::App& command, const std::string& key) { return command.get_option_no_throw("--" + key); }
 
+std::vector<CLI::App*> all_commands(CLI::App& command) {
+  return command.get_parent()->get_subcommands([](const CLI::App*) { return true; });
+}
+
 bool known_to_any_command(CLI::App& command, const std::string& key) {
-  const auto all = command.get_parent()->get_subcommands([](const CLI::App*) { return true; });
+  const auto all = all_commands(command);
   return std::any_of(all.begin(), all.end(), [&](CLI::App* other) { return find_option(*other, key) != nullptr; });
+}
+
+bool names_another_command(CLI::App& command, const std::string& key) {
+  const auto all = all_commands(command);
+  return key != command.get_name() && std::any_of(all.begin(), all.end(), [&](CLI::App* other) { return other->get_name() == key; });
+}
+
+// Whether something above has decided against this option: --exact against a configured sample.
+bool excluded(const CLI::Option& option) {
+  const auto& others = option.get_excludes();
+  return std::any_of(others.begin(), others.end(), [](const CLI::Option* other) { return other->count() > 0; });
 }
 
 }  // namespace
@@ -76,7 +91,7 @@ void apply_layer(CLI::App& command, const nlohmann::json& values, const std::str
                  const std::function<bool(const std::string&)>& accepts) {
   for (const auto& [written_key, value] : values.items()) {
     if (value.is_object()) {
-      apply_layer(command, value, source, accepts);
+      if (!names_another_command(command, written_key)) apply_layer(command, value, source, accepts);
       continue;
     }
     std::string key = written_key;
@@ -85,7 +100,7 @@ void apply_layer(CLI::App& command, const nlohmann::json& values, const std::str
     CLI::Option* option = find_option(command, key);
     if (key == "config" || key == "help" || (!option && !known_to_any_command(command, key)))
       throw Error(Errc::invalid_argument, source + ": there is no option '" + written_key + "'");
-    if (!option || option->count() > 0 || value.is_null()) continue;
+    if (!option || option->count() > 0 || excluded(*option) || value.is_null()) continue;
 
     const bool one_point = value.is_array() && !value.empty() && value[0].is_number();
     if (takes_many(*option) && value.is_array() && !one_point) {

@@ -29,7 +29,8 @@ CLI::Option* add_texts(CLI::App& app, const std::string& names, const std::strin
                        std::vector<std::string>& target);
 
 // Sets the options of `command` that `values` names and nothing above has set yet. Keys are long option names, with - or _ between
-// words; an object groups options. `accepts` filters keys; one that it lets through and no command of the program knows is an error. `source` opens messages.
+// words; an object groups options, for one command alone where its key is that command's
+// name. `accepts` filters keys; one that it lets through and no command of the program knows is an error. `source` opens messages.
 void apply_layer(CLI::App& command, const nlohmann::json& values, const std::string& source,
                  const std::function<bool(const std::string& key)>& accepts = {});
 

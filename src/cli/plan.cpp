@@ -154,7 +154,7 @@ std::vector<Vec3> heads_of(Site& site, const std::vector<StationText>& stations,
 }
 
 nlohmann::json as_options(const Site& site, const PlanConfig& config) {
-  nlohmann::json options = site.as_options();
+  nlohmann::json options;
   options["problem"] = to_string(config.problem);
   options["stations"] = config.stations_min == config.stations_max
                             ? std::to_string(config.stations_min)
@@ -179,7 +179,9 @@ nlohmann::json as_options(const Site& site, const PlanConfig& config) {
   };
   add_heads("start", config.start);
   add_heads("keep", config.fixed);
-  return options;
+  nlohmann::json all = site.as_options();
+  all["plan"] = std::move(options);
+  return all;
 }
 
 std::string summary(const PlanResult& result, const PlanConfig& config, std::size_t chosen, const std::string& folder) {
