@@ -79,7 +79,7 @@ struct ScanChunk {
   std::uint64_t first_ray = 0;
   std::uint64_t ray_count = 0;
   std::vector<float> range_m;
-  std::vector<std::array<float, 3>> position;  ///< Local frame: survey position = `Simulator::origin()` + this.
+  std::vector<std::array<float, 3>> position;  ///< Local frame: survey position = `Simulator::origin()` + this. NaN without a hit.
   std::vector<std::array<float, 3>> normal;
   std::vector<float> reflectivity;
   std::vector<std::int32_t> mesh;              ///< Index into Scene::meshes(); −1 without a hit.

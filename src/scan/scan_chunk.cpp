@@ -6,6 +6,7 @@
 #include <tbb/parallel_reduce.h>
 
 #include <functional>
+#include <limits>
 
 #include "scan/surface_colour.hpp"
 
@@ -61,6 +62,9 @@ void fill(std::vector<To>& to, std::size_t count, Make make) {
                     [&](const tbb::blocked_range<std::size_t>& range) { make(range.begin(), range.end()); });
 }
 
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+constexpr std::array<float, 3> nowhere{nan, nan, nan};
+
 std::array<float, 3> array_of(const Float3& v) { return {v.x, v.y, v.z}; }
 
 }  // namespace
@@ -86,7 +90,7 @@ void fill_chunk(ScanChunk& chunk, Tracer::RawChunk& raw, std::uint32_t outputs, 
 
   if (outputs & scan_position) {
     fill(chunk.position, count, [&](std::size_t k, std::size_t end) {
-      for (; k != end; ++k) chunk.position[k] = array_of(raw.position[k]);
+      for (; k != end; ++k) chunk.position[k] = raw.primitive[k] == no_primitive ? nowhere : array_of(raw.position[k]);
     });
   }
   if (outputs & scan_normal) {
