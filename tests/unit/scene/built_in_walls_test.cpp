@@ -124,6 +124,23 @@ TEST(BuiltInScenes, AreTheSameBytesEveryTime) {
   }
 }
 
+TEST(BuiltInScenes, TheFilesInDataAreUpToDate) {
+  const test::TemporaryFolder folder;
+  const std::pair<const char*, const char*> files[] = {
+      {"three-walls", "three_walls.glb"}, {"four-walls", "four_walls.glb"}, {"industrial", "industrial_20k.glb"}};
+  for (const auto& [name, file] : files) {
+    write_built_in_scene(name, 20'000, folder / file);
+    const Scene fresh = Scene::load(folder / file),
+                kept = Scene::load(std::filesystem::path(VANTAGE_DATA_FOLDER) / file);
+    EXPECT_EQ(fresh.defaults_json(), kept.defaults_json());
+    ASSERT_EQ(fresh.data().triangles, kept.data().triangles) << "make data/" << file << " again, see data/README.md";
+    for (std::size_t v = 0; v < fresh.data().positions.size(); ++v) {  // another sine may round otherwise
+      const Float3 &a = fresh.data().positions[v], &b = kept.data().positions[v];
+      ASSERT_TRUE(std::abs(a.x - b.x) < 1e-5 && std::abs(a.y - b.y) < 1e-5 && std::abs(a.z - b.z) < 1e-5) << file;
+    }
+  }
+}
+
 TEST(BuiltInScenes, UnknownNamesAreRefused) {
   const test::TemporaryFolder folder;
   try {
