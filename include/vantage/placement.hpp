@@ -74,6 +74,8 @@ class ClashChecker {
   ClashChecker(const Scene& scene, const SecurityVolume& volume = {});
   /// Whether one of the spheres above `ground` (survey frame) comes closer to a mesh than its radius.
   bool clashes(const Vec3& ground) const;
+  /// Whether nothing stands between two points (survey frame), as two scanners' heads.
+  bool sees(const Vec3& a, const Vec3& b) const;
   /// Distance from a point to the nearest mesh, at most `limit_m`.
   double distance(const Vec3& point, double limit_m) const;
 

@@ -32,6 +32,12 @@ std::string to_string(Problem);                 ///< "coverage-fix", …
 Problem problem_from_string(const std::string&);  ///< Throws Error invalid_argument and lists the problems.
 std::vector<std::string> objective_names(Problem);
 
+/// Weights of the scalarised fitness (equation 1, with section 5.1.2's Φ): λ1 coverage + λ2 Φ + λ3 Δ, where Φ = 2^((N_max − N)/(N_max −
+/// N_min)) − 1 and Δ = 1 / connected parts of the graph of stations that see each other within range. A baseline.
+struct FitnessWeights {
+  double coverage = 0.4, station_count = 0.4, visibility = 0.2;
+};
+
 /// What became of one station of a decision vector.
 enum class StationStatus { ok, hole, clash };
 std::string to_string(StationStatus);
@@ -52,7 +58,8 @@ struct PlanConfig {
   MoCmaEsConfig::Scheme scheme = MoCmaEsConfig::Scheme::steady_state;
   std::size_t batch = 0;             ///< Offspring at once in the steady state; 0: chosen by the engine.
   std::uint64_t sample_voxels = 0;   ///< 0: exact search; else sampled with so many voxels.
-  /// Head positions of an initial network: the first mean of CMA-ES, a first member of MO-CMA-ES; empty: random.
+  /// Head positions of an initial network: the first mean of CMA-ES, a first member of MO-CMA-ES; empty: random. Where the number of
+  /// stations is searched, the first N of them are a first member for each N that they suffice for.
   std::vector<Vec3> start = {};
   std::vector<Vec3> fixed = {};      ///< Stations to keep (already scanned): the first of every network, added to stations_min..max.
   /// Lowest and highest height of the head above the search area, searched per station; empty: the scanner's height for all.
@@ -60,6 +67,8 @@ struct PlanConfig {
   /// Above 0: a network is only wanted if links of at least this Overlap_ij connect all its stations. Others are ranked behind
   /// every connected one, by how many parts they fall into.
   double min_link_overlap = 0;
+  /// Only with coverage_min: instead of a front, CMA-ES looks for the one network with the largest fitness.
+  std::optional<FitnessWeights> fitness = std::nullopt;
   std::size_t redraws = 8;           ///< How often a candidate's stations in holes or clashes are drawn again.
   double max_seconds = 0;            ///< Of this call's search; looked at between evaluations. 0: no limit.
   std::optional<double> target_hypervolume = std::nullopt;
@@ -72,11 +81,16 @@ struct PlanConfig {
   bool resume = false;
 };
 
+/// "1 - coverage", … in the order of the objective vectors; "1 - fitness" where there is a fitness.
+std::vector<std::string> objective_names(const PlanConfig& config);
+/// Whether the search ends with one network, by CMA-ES: coverage_fix, or a fitness.
+bool has_one_objective(const PlanConfig& config);
+
 /// One network of the front.
 struct PlanEntry {
   std::vector<double> x;          ///< Decision vector: u1, v1, …, uN, vN [, h1, …, hN] [, α].
   std::vector<PlacedStation> stations;
-  double coverage = 0, overlap = 0;              ///< As the search saw them.
+  double coverage = 0, overlap = 0;              ///< As the search saw them; NaN where it kept none and nothing was confirmed.
   double coverage_se = 0, overlap_se = 0;        ///< Standard errors; 0 when exact.
   bool confirmed = false;                        ///< Whether the exact values below were computed.
   double exact_coverage = 0, exact_overlap = 0;  ///< Evaluated again with every ray.
@@ -87,15 +101,15 @@ struct PlanEntry {
 /// One line of the history, an iteration each.
 struct PlanIteration {
   std::size_t iteration = 0, evaluations = 0;
-  double hypervolume = 0;                         ///< For coverage_fix: the best coverage.
+  double hypervolume = 0;                         ///< With one objective: the best coverage or fitness.
   std::vector<std::vector<double>> front;         ///< Objective vectors.
   double seconds = 0;                             ///< Since the start. Never part of what must be reproducible.
 };
 
 struct PlanResult {
-  std::vector<PlanEntry> front;    ///< By falling coverage. One entry for coverage_fix.
+  std::vector<PlanEntry> front;    ///< By falling coverage. One entry where there is one objective.
   std::vector<PlanIteration> history;
-  double hypervolume = 0;          ///< Final, as the search saw it; reference point (1, …, 1).
+  double hypervolume = 0;          ///< Final, as the search saw it; reference point (1, …, 1). With one objective: coverage or fitness.
   std::uint64_t evaluations = 0;
   std::uint64_t redrawn = 0, drawn = 0;  ///< Stations drawn again out of a hole or a clash, and all drawn.
   std::uint64_t resumed_evaluations = 0; ///< How many of the evaluations a checkpoint brought.
@@ -118,6 +132,26 @@ struct PlanProgress {
 /// checkpoint) and what the simulator throws; the checkpoint is written before an exception leaves.
 PlanResult plan(Simulator& simulator, const SearchArea& area, const ClashChecker& clash, const PlanConfig& config,
                 const std::function<void(const PlanProgress&)>& watch = {}, std::stop_token stop = {}, std::stop_token abort = {});
+
+struct GreedyConfig {
+  std::size_t stations = 4;        ///< How many to choose.
+  std::size_t candidates = 300;    ///< Positions to choose from, spread evenly over the search area's (u, v).
+  std::uint64_t sample_voxels = 20'000;  ///< 0: with every ray.
+};
+
+/// What `greedy_network` chose.
+struct GreedyResult {
+  std::vector<PlacedStation> stations;  ///< In the order of choosing: the first k are the choice for k.
+  std::vector<double> coverage;         ///< After each.
+  std::uint64_t evaluations = 0;
+  bool cancelled = false;
+};
+
+/// Greedy set cover: takes the candidate that adds most coverage, again and again. Coverage is submodular, so a candidate's gain can only
+/// shrink and most need not be looked at twice (Minoux: Accelerated greedy algorithms for maximizing submodular set functions, 1978).
+/// A baseline, and a first network for `PlanConfig::start`. Throws Error invalid_argument where no candidate can stand.
+GreedyResult greedy_network(Simulator& simulator, const SearchArea& area, const ClashChecker& clash, const GreedyConfig& config = {},
+                            const Progress& progress = {});
 
 /// Decision vector to stations: locate, raise by `height_m`, check for clashes.
 std::vector<PlacedStation> place_stations(const SearchArea& area, const ClashChecker& clash, double height_m,

@@ -41,6 +41,10 @@ bool ClashChecker::clashes(const Vec3& ground) const {
          impl_->tree.within(local + Vec3{0, 0, v.upper_m}, v.radius_m);
 }
 
+bool ClashChecker::sees(const Vec3& a, const Vec3& b) const {
+  return !impl_->tree.between(a - impl_->origin, b - impl_->origin);
+}
+
 double ClashChecker::distance(const Vec3& point, double limit_m) const {
   return impl_->tree.distance(point - impl_->origin, limit_m);
 }

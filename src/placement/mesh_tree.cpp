@@ -106,6 +106,7 @@ struct MeshTree::Impl {
   }
 
   std::optional<std::uint32_t> first_hit(const Vec3& point, const Vec3& way) const;
+  bool occluded(RTCRay ray) const;
 
   double nearest(const Vec3& point, double limit, double good_enough) const {
     Query query{buffers, point, limit, good_enough};
@@ -145,17 +146,22 @@ double MeshTree::distance(const Vec3& point, double limit) const { return impl_-
 
 bool MeshTree::within(const Vec3& point, double radius) const { return impl_->nearest(point, radius, radius) < radius; }
 
-bool MeshTree::covered(const Vec3& point, double from, double to) const {
-  RTCRay ray = ray_of(point, {0, 0, 1}, from, to);
+bool MeshTree::Impl::occluded(RTCRay ray) const {
 #if VANTAGE_EMBREE_MAJOR >= 4
-  rtcOccluded1(impl_->tree.get(), &ray);
+  rtcOccluded1(tree.get(), &ray);
 #else
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  rtcOccluded1(impl_->tree.get(), &context, &ray);
+  rtcOccluded1(tree.get(), &context, &ray);
 #endif
   return ray.tfar < 0;
 }
+
+bool MeshTree::covered(const Vec3& point, double from, double to) const {
+  return impl_->occluded(ray_of(point, {0, 0, 1}, from, to));
+}
+
+bool MeshTree::between(const Vec3& a, const Vec3& b) const { return impl_->occluded(ray_of(a, b - a, 0, 1)); }
 
 bool MeshTree::inside_solid(const Vec3& point) const {
   int fronts = 0;

@@ -26,6 +26,8 @@ class MeshTree {
   bool within(const Vec3& point, double radius) const;
   // Whether a triangle lies on the segment from `point` + `from` to `point` + `to` straight up.
   bool covered(const Vec3& point, double from, double to) const;
+  // Whether a triangle lies on the segment from a to b.
+  bool between(const Vec3& a, const Vec3& b) const;
   // Whether there are surfaces straight above and level to all four sides, and the nearest of them show their backs:
   // `point` lies within a closed solid, such as a tank, and not within a room, nor under a roof that is a mere sheet.
   // One of the five may show its front, as where another solid stands on this one.

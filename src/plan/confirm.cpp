@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -32,6 +33,11 @@ std::vector<PlanEntry> confirm_front(const SearchOutcome& found, const DecisionS
     networks.push_back(to_network(entry.stations));
     if (!blind(networks.back())) seeing.push_back(networks.back());
   }
+  const auto take_objectives = [&](PlanEntry& entry, const ParetoPoint& point) {
+    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+    entry.coverage = config.fitness ? unknown : 1 - point.f[0];
+    entry.overlap = space.needs_overlap() ? 1 - point.f[1] : unknown;
+  };
   const auto report = [&](std::size_t done, double part) {
     if (!watch) return;
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
@@ -57,8 +63,7 @@ std::vector<PlanEntry> confirm_front(const SearchOutcome& found, const DecisionS
         entry.coverage = e.coverage.value, entry.coverage_se = e.coverage.standard_error;
         entry.overlap = e.overlap.value, entry.overlap_se = e.overlap.standard_error;
       } else {
-        entry.coverage = 1 - found.front[k].f[0];
-        if (space.needs_overlap()) entry.overlap = 1 - found.front[k].f[1];
+        take_objectives(entry, found.front[k]);
       }
     }
   }
@@ -79,15 +84,15 @@ std::vector<PlanEntry> confirm_front(const SearchOutcome& found, const DecisionS
   if (config.sample_voxels == 0) {
     for (std::size_t k = 0; k < entries.size(); ++k) {
       PlanEntry& entry = entries[k];
-      entry.coverage = entry.confirmed ? entry.exact_coverage : 1 - found.front[k].f[0];
-      if (entry.confirmed) entry.overlap = entry.exact_overlap;
-      else if (space.needs_overlap()) entry.overlap = 1 - found.front[k].f[1];
+      if (entry.confirmed) entry.coverage = entry.exact_coverage, entry.overlap = entry.exact_overlap;
+      else take_objectives(entry, found.front[k]);
     }
   }
-  std::sort(entries.begin(), entries.end(), [](const PlanEntry& a, const PlanEntry& b) {
-    return std::make_tuple(-a.coverage, -a.overlap, a.stations.size(), std::cref(a.x)) <
-           std::make_tuple(-b.coverage, -b.overlap, b.stations.size(), std::cref(b.x));
-  });
+  const auto rank = [](const PlanEntry& e) {
+    const auto falling = [](double value) { return value == value ? -value : 1.0; };  // NaN last, or it would be no order
+    return std::make_tuple(falling(e.coverage), falling(e.overlap), e.stations.size(), e.x);
+  };
+  std::sort(entries.begin(), entries.end(), [&](const PlanEntry& a, const PlanEntry& b) { return rank(a) < rank(b); });
   return entries;
 }
 

@@ -31,6 +31,12 @@ void check(const PlanConfig& config) {
   if (!(config.max_seconds >= 0)) refuse("max_seconds must not be negative, not " + std::to_string(config.max_seconds));
   if (!(config.min_link_overlap >= 0 && config.min_link_overlap < 1))
     refuse("min_link_overlap must lie in [0, 1), not " + std::to_string(config.min_link_overlap));
+  if (config.fitness) {
+    if (config.problem != Problem::coverage_min) refuse("a fitness needs coverage-min, not " + to_string(config.problem));
+    if (config.min_link_overlap > 0) refuse("a fitness has its own measure of connectedness; leave min_link_overlap at 0");
+    for (const double weight : {config.fitness->coverage, config.fitness->station_count, config.fitness->visibility})
+      if (!(weight >= 0 && weight <= 1)) refuse("the weights of a fitness lie in [0, 1], not " + std::to_string(weight));
+  }
   if (config.heights_m) {
     const auto [low, high] = *config.heights_m;
     if (!(low > 0 && low <= high && std::isfinite(high)))
@@ -44,10 +50,11 @@ DecisionSpace::DecisionSpace(const Site& site, const PlanConfig& config)
     : site_(site),
       min_(config.stations_min),
       max_(config.stations_max),
-      objectives_(objective_names(config.problem).size()),
+      objectives_(objective_names(config).size()),
       minimises_(config.problem == Problem::coverage_min || config.problem == Problem::coverage_overlap_min),
       overlap_(config.problem == Problem::coverage_overlap_fix || config.problem == Problem::coverage_overlap_min),
-      heights_(config.heights_m.has_value()) {
+      heights_(config.heights_m.has_value()),
+      fitness_(config.fitness) {
   check(config);
   if (heights_) height_bounds_ = *config.heights_m;
   for (const Vec3& head : config.fixed) {
@@ -113,8 +120,21 @@ std::vector<double> DecisionSpace::encode(std::span<const Vec3> heads) const {
   return x;
 }
 
+std::vector<std::vector<double>> DecisionSpace::encode_each(std::span<const Vec3> heads) const {
+  std::vector<std::vector<double>> xs{encode(heads)};
+  if (minimises_)
+    for (std::size_t n = std::min(heads.size(), max_) - 1; n >= min_ && n < heads.size(); --n) xs.push_back(encode(heads.first(n)));
+  return xs;
+}
+
 void DecisionSpace::objectives_of(std::span<const double> x, double coverage, double overlap, std::size_t parts,
                                   std::span<double> f) const {
+  if (fitness_) {
+    const double spared = max_ == min_ ? 1 : static_cast<double>(max_ - placed_count(x)) / static_cast<double>(max_ - min_);
+    f[0] = 1 - (fitness_->coverage * coverage + fitness_->station_count * (std::exp2(spared) - 1) +
+                fitness_->visibility / static_cast<double>(parts));
+    return;
+  }
   std::size_t k = 0;
   f[k++] = 1 - coverage;
   if (overlap_) f[k++] = 1 - overlap;

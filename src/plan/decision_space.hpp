@@ -29,9 +29,13 @@ class DecisionSpace {
   // Coordinates of x that belong to station `i` of decode(x), which is no kept one.
   std::vector<std::size_t> coordinates(std::size_t i) const;
   std::size_t kept() const { return kept_.size(); }
-  // x whose stations stand at config.start; further ones repeat them. Throws where one is outside the search area.
+  // x whose stations stand at `heads`; further ones repeat them. Throws where one is outside the search area.
   std::vector<double> encode(std::span<const Vec3> heads) const;
-  // Objective vector, all minimised (Table 2). `parts`: connected parts of the network's links, 1 where nobody asks.
+  // An x for each number of stations that `heads` suffice for, the largest number first.
+  std::vector<std::vector<double>> encode_each(std::span<const Vec3> heads) const;
+  // Connected parts that the objectives depend on and that need no simulation: of the visibility graph where there is a fitness, else 1.
+  std::size_t parts_of(const Network& network) const { return fitness_ ? visibility_parts(site_, network) : 1; }
+  // Objective vector, all minimised (Table 2, or 1 - fitness). `parts`: connected parts of the network, 1 where nobody asks.
   void objectives_of(std::span<const double> x, double coverage, double overlap, std::size_t parts, std::span<double> f) const;
 
  private:
@@ -39,6 +43,7 @@ class DecisionSpace {
   const Site& site_;
   std::size_t min_, max_, objectives_;
   bool minimises_, overlap_, heights_;
+  std::optional<FitnessWeights> fitness_;
   std::array<double, 2> height_bounds_{};
   std::vector<PlacedStation> kept_;
 };

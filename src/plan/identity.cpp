@@ -102,6 +102,11 @@ std::string identity(const Simulator& simulator, const Site& site, const SearchA
   lines.add("sample voxels", config.sample_voxels);
   lines.add("redraws", std::uint64_t{config.redraws});
   lines.add("minimum link overlap", config.min_link_overlap);
+  if (config.fitness) {
+    lines.add("fitness weight of coverage", config.fitness->coverage);
+    lines.add("fitness weight of station count", config.fitness->station_count);
+    lines.add("fitness weight of visibility", config.fitness->visibility);
+  }
   lines.add("lowest height", config.heights_m ? (*config.heights_m)[0] : scanner.height_m);
   lines.add("highest height", config.heights_m ? (*config.heights_m)[1] : scanner.height_m);
   lines.add_hash("initial network", hash_of(config.start));

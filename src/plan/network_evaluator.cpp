@@ -31,7 +31,7 @@ std::optional<std::vector<NetworkValue>> CachingEvaluator::evaluate(std::span<co
   for (const Network& network : networks) {
     keys.push_back(key_of(network));
     const bool blind = std::none_of(network.begin(), network.end(), [](const Station& s) { return s.active; });
-    if (blind) known_.try_emplace(keys.back(), NetworkValue{.parts = std::max<std::size_t>(network.size(), 1)});
+    if (blind) known_.try_emplace(keys.back(), NetworkValue{.coverage = 0, .overlap = 0, .parts = std::max<std::size_t>(network.size(), 1)});
     if (!known_.contains(keys.back()) && fresh_index.try_emplace(keys.back(), fresh.size()).second) fresh.push_back(network);
   }
   if (!fresh.empty()) {

@@ -7,13 +7,15 @@
 
 namespace vantage {
 
-Site make_site(const SearchArea& area, const ClashChecker& clash, double height_m) {
+Site make_site(const SearchArea& area, const ClashChecker& clash, const Scanner& scanner) {
   return {.uv_min = area.uv_min(),
           .uv_max = area.uv_max(),
           .locate = [&area](Uv uv) { return area.locate(uv); },
           .project = [&area](const Vec3& ground) { return area.project(ground); },
           .clashes = [&clash](const Vec3& ground) { return clash.clashes(ground); },
-          .height_m = height_m};
+          .sees = [&clash](const Vec3& a, const Vec3& b) { return clash.sees(a, b); },
+          .height_m = scanner.height_m,
+          .range_m = scanner.max_range_m};
 }
 
 std::vector<PlacedStation> place_stations(const SearchArea& area, const ClashChecker& clash, double height_m,
@@ -21,7 +23,9 @@ std::vector<PlacedStation> place_stations(const SearchArea& area, const ClashChe
   if (uvs.size() % 2 != 0)
     throw Error(Errc::invalid_argument,
                 "place_stations: (u, v) pairs are wanted, " + std::to_string(uvs.size()) + " values were given");
-  const Site site = make_site(area, clash, height_m);
+  Scanner scanner;
+  scanner.height_m = height_m;
+  const Site site = make_site(area, clash, scanner);
   std::vector<PlacedStation> stations;
   stations.reserve(uvs.size() / 2);
   for (std::size_t i = 0; i < uvs.size(); i += 2) stations.push_back(place_station(site, {uvs[i], uvs[i + 1]}, height_m));

@@ -28,7 +28,7 @@ std::size_t batch_of(const Simulator& simulator, const PlanConfig& config) {
 PlanResult plan(Simulator& simulator, const SearchArea& area, const ClashChecker& clash, const PlanConfig& config,
                 const std::function<void(const PlanProgress&)>& watch, std::stop_token stop, std::stop_token abort) {
   const auto start = std::chrono::steady_clock::now();
-  const Site site = make_site(area, clash, simulator.scanner().height_m);
+  const Site site = make_site(area, clash, simulator.scanner());
   const DecisionSpace space(site, config);
   SimulatorEvaluator evaluator(simulator, {.sample_voxels = config.sample_voxels,
                                            .overlap = space.needs_overlap(),

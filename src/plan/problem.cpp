@@ -40,6 +40,13 @@ std::vector<std::string> objective_names(Problem problem) {
   return {};
 }
 
+std::vector<std::string> objective_names(const PlanConfig& config) {
+  if (config.fitness) return {"1 - fitness"};
+  return objective_names(config.problem);
+}
+
+bool has_one_objective(const PlanConfig& config) { return config.fitness || config.problem == Problem::coverage_fix; }
+
 std::string to_string(StationStatus status) {
   switch (status) {
     case StationStatus::ok: return "ok";

@@ -84,8 +84,10 @@ class Search {
 
     const std::size_t m = space_.objectives();
     std::vector<double> f(count * m);
-    for (std::size_t k = 0; k < count; ++k)
-      space_.objectives_of(x(k), values[k].coverage, values[k].overlap, values[k].parts, std::span(f).subspan(k * m, m));
+    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t k) {
+      const std::size_t parts = std::max(values[k].parts, space_.parts_of(networks_[k]));
+      space_.objectives_of(x(k), values[k].coverage, values[k].overlap, parts, std::span(f).subspan(k * m, m));
+    });
     strategy_->tell(f);
     record();
     if (checkpoint_due()) {

@@ -12,6 +12,18 @@ PlacedStation place_station(const Site& site, Uv uv, double height_m) {
   return station;
 }
 
+std::size_t visibility_parts(const Site& site, const Network& network) {
+  OverlapMatrix seen(network.size());
+  for (std::size_t i = 0; i < network.size(); ++i) {
+    for (std::size_t j = i + 1; j < network.size(); ++j) {
+      if (!network[i].active || !network[j].active) continue;
+      const Vec3 &a = network[i].position, &b = network[j].position;
+      if (dot(a - b, a - b) <= site.range_m * site.range_m && site.sees(a, b)) seen.set(i, j, 1);
+    }
+  }
+  return connectivity(seen, 1).parts;
+}
+
 Network to_network(std::span<const PlacedStation> stations) {
   Network network;
   network.reserve(stations.size());

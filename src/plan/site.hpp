@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "vantage/planner.hpp"
+#include "vantage/scanner.hpp"
 
 namespace vantage {
 
@@ -15,12 +16,17 @@ struct Site {
   std::function<std::optional<Vec3>(Uv)> locate;            // ground under (u, v)
   std::function<std::optional<Uv>(const Vec3&)> project;    // and back
   std::function<bool(const Vec3&)> clashes;                 // by ground point
+  std::function<bool(const Vec3&, const Vec3&)> sees;       // one head the other, nothing between
   double height_m = 0;                                      // of the scanner's head
+  double range_m = 0;                                       // how far a scanner sees
 };
 
 // Borrows both.
-Site make_site(const SearchArea& area, const ClashChecker& clash, double height_m);
+Site make_site(const SearchArea& area, const ClashChecker& clash, const Scanner& scanner);
 
 PlacedStation place_station(const Site& site, Uv uv, double height_m);
+
+// Connected parts of the graph of stations that see each other within range. A skipped station is a part of its own.
+std::size_t visibility_parts(const Site& site, const Network& network);
 
 }  // namespace vantage

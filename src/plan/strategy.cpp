@@ -57,11 +57,11 @@ constexpr std::size_t kRestarts = 9;
 
 std::size_t population_of(const PlanConfig& config) {
   if (config.population > 0) return config.population;
-  return config.problem == Problem::coverage_fix ? 10 : 100;
+  return has_one_objective(config) ? 10 : 100;
 }
 
 std::unique_ptr<Strategy> make_strategy(const DecisionSpace& space, const PlanConfig& config, std::size_t batch) {
-  if (config.problem == Problem::coverage_fix) {
+  if (has_one_objective(config)) {
     CmaEsConfig cma{.population = population_of(config), .sigma0 = config.sigma0, .bounds = space.bounds(), .restarts = kRestarts,
                     .seed = config.seed};
     if (!config.start.empty()) cma.start = space.encode(config.start);
@@ -69,7 +69,8 @@ std::unique_ptr<Strategy> make_strategy(const DecisionSpace& space, const PlanCo
   }
   MoCmaEsConfig mo{.scheme = config.scheme, .population = population_of(config), .batch = batch, .sigma0 = config.sigma0,
                    .bounds = space.bounds(), .seed = config.seed};
-  if (!config.start.empty()) mo.start = {space.encode(config.start)};
+  if (!config.start.empty()) mo.start = space.encode_each(config.start);
+  if (mo.start.size() > mo.population) mo.start.resize(mo.population);
   return std::make_unique<MultiObjective>(make_optimiser(config.algorithm, space.dimension(), space.objectives(), mo));
 }
 

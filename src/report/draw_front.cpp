@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "report/front_view.hpp"
+#include "report/pictures.hpp"
 #include "report/text.hpp"
 #include "vantage/export.hpp"
 
@@ -11,11 +13,14 @@ namespace {
 
 constexpr double kWidth = 780, kHeight = 600;
 
+// An aborted search may not know a value.
+bool known(const FrontDot& dot) { return std::isfinite(dot.x) && std::isfinite(dot.y); }
+
 Rect frame(bool bar) { return {86, 72, kWidth - 86 - (bar ? 110 : 30), kHeight - 72 - 106}; }
 
 }  // namespace
 
-void draw_front(const std::filesystem::path& file, const PlanResult& result, const PlanConfig& config) {
+std::unique_ptr<Canvas> front_picture(const PlanResult& result, const PlanConfig& config) {
   const FrontView view(config);
   const bool sampled = config.sample_voxels > 0;
   std::vector<FrontDot> dots;
@@ -24,10 +29,11 @@ void draw_front(const std::filesystem::path& file, const PlanResult& result, con
     if (sampled || !entry.confirmed) dots.push_back(view.searched(entry));
     if (entry.confirmed) dots.push_back(view.confirmed(entry)), any_confirmed = true;
   }
-  Canvas canvas(kWidth, kHeight);
+  auto page = std::make_unique<Canvas>(kWidth, kHeight);
+  Canvas& canvas = *page;
   const Rect area = frame(view.coloured());
   std::string subtitle = problem_line(config);
-  if (view.single()) subtitle += ", best coverage " + fixed(result.hypervolume, 3);
+  if (view.single()) subtitle += std::string(", best ") + (config.fitness ? "fitness " : "coverage ") + fixed(result.hypervolume, 3);
   else subtitle += ", hypervolume " + fixed(result.hypervolume, 3);
   subtitle += " after " + grouped(result.evaluations) + " evaluations";
   const Chart chart(canvas, area, view.x_axis(dots), view.y_axis(dots),
@@ -38,6 +44,7 @@ void draw_front(const std::filesystem::path& file, const PlanResult& result, con
   const auto occupy = [&](Point p, double r) { taken.push_back({p.x - r, p.y - r, 2 * r, 2 * r}); };
   for (const PlanEntry& entry : result.front) {
     const FrontDot seen = view.searched(entry), exact = view.confirmed(entry);
+    if (!known(seen)) continue;
     const Point a = chart.at(seen.x, seen.y), b = chart.at(exact.x, exact.y);
     if (!sampled && entry.confirmed) continue;
     if (entry.confirmed) canvas.line(a, b, {.colour = style::pale, .width = 1});
@@ -58,8 +65,9 @@ void draw_front(const std::filesystem::path& file, const PlanResult& result, con
   if (any_confirmed) legend.push_back({LegendItem::Mark::filled, key, "every ray"});
   if (sampled) legend.push_back({LegendItem::Mark::hollow, key, "search estimate, " + grouped(config.sample_voxels) + " voxels"});
   else if (!any_confirmed) legend.push_back({LegendItem::Mark::hollow, key, "as the search saw it"});
-  if (!result.front.empty()) {
-    const PlanEntry& chosen = result.front[compromise(result, config.problem)];
+  const PlanEntry* best = result.front.empty() ? nullptr : &result.front[compromise(result, config.problem)];
+  if (best && known(best->confirmed ? view.confirmed(*best) : view.searched(*best))) {
+    const PlanEntry& chosen = *best;
     const FrontDot dot = chosen.confirmed ? view.confirmed(chosen) : view.searched(chosen);
     const Point p = chart.at(dot.x, dot.y);
     if (!view.single()) canvas.circle(p, 9, {.colour = style::orange, .width = 2.2});
@@ -74,10 +82,10 @@ void draw_front(const std::filesystem::path& file, const PlanResult& result, con
     if (!view.single()) legend.push_back({LegendItem::Mark::ring, style::orange, "compromise: largest product of gains"});
   }
   draw_legend(canvas, {area.x, kHeight - 24}, legend);
-  canvas.save(file);
+  return page;
 }
 
-void draw_history_fronts(const std::filesystem::path& file, const PlanResult& result, const PlanConfig& config) {
+std::unique_ptr<Canvas> history_picture(const PlanResult& result, const PlanConfig& config) {
   const FrontView view(config);
   // Five moments, closer together at the start, where the front still moves.
   std::vector<const PlanIteration*> moments;
@@ -91,7 +99,8 @@ void draw_history_fronts(const std::filesystem::path& file, const PlanResult& re
   std::vector<FrontDot> dots;
   for (const PlanIteration* line : moments)
     for (const auto& f : line->front) dots.push_back(view.objectives(f));
-  Canvas canvas(kWidth, kHeight);
+  auto page = std::make_unique<Canvas>(kWidth, kHeight);
+  Canvas& canvas = *page;
   const Rect area = frame(false);
   const Chart chart(canvas, area, view.x_axis(dots), view.y_axis(dots), "Convergence of the front",
                     problem_line(config) + ", as the search saw it");
@@ -106,7 +115,15 @@ void draw_history_fronts(const std::filesystem::path& file, const PlanResult& re
     legend.push_back({LegendItem::Mark::filled, colour, "iteration " + std::to_string(moments[k]->iteration)});
   }
   draw_legend(canvas, {area.x - 40, kHeight - 24}, legend);
-  canvas.save(file);
+  return page;
+}
+
+void draw_front(const std::filesystem::path& file, const PlanResult& result, const PlanConfig& config) {
+  front_picture(result, config)->save(file);
+}
+
+void draw_history_fronts(const std::filesystem::path& file, const PlanResult& result, const PlanConfig& config) {
+  history_picture(result, config)->save(file);
 }
 
 }  // namespace vantage

@@ -2,15 +2,18 @@
 #include <algorithm>
 
 #include "report/front_view.hpp"
+#include "report/pictures.hpp"
 #include "report/text.hpp"
 #include "vantage/export.hpp"
 
 namespace vantage {
 
-void draw_hypervolume(const std::filesystem::path& file, const PlanResult& result, const PlanConfig& config) {
-  const bool single = config.problem == Problem::coverage_fix;
+std::unique_ptr<Canvas> hypervolume_picture(const PlanResult& result, const PlanConfig& config) {
+  const bool single = has_one_objective(config);
+  const std::string best = config.fitness ? "Best fitness" : "Best coverage";
   constexpr double kWidth = 780, kHeight = 500;
-  Canvas canvas(kWidth, kHeight);
+  auto page = std::make_unique<Canvas>(kWidth, kHeight);
+  Canvas& canvas = *page;
   const Rect area{86, 72, kWidth - 86 - 30, kHeight - 72 - 70};
 
   double low = 1, high = 0, last = 1;
@@ -27,10 +30,10 @@ void draw_hypervolume(const std::filesystem::path& file, const PlanResult& resul
   }
   x.ticks = nice_ticks(0, x.high, 8);
   std::erase_if(x.ticks, [](double t) { return t != static_cast<double>(static_cast<long long>(t)); });
-  const Axis y = axis_over(single ? "Best coverage so far" : "Hypervolume (reference point 1, largest value 1)", low, high, 0, 1);
+  const Axis y = axis_over(single ? best + " so far" : "Hypervolume (reference point 1, largest value 1)", low, high, 0, 1);
   std::string reason = to_string(result.stop_reason);
   std::replace(reason.begin(), reason.end(), '_', ' ');
-  const Chart chart(canvas, area, x, y, single ? "Best coverage over the search" : "Hypervolume over the search",
+  const Chart chart(canvas, area, x, y, single ? best + " over the search" : "Hypervolume over the search",
                     problem_line(config) + ", stopped: " + reason);
   if (config.target_hypervolume) {
     const double target = *config.target_hypervolume;
@@ -50,7 +53,11 @@ void draw_hypervolume(const std::filesystem::path& file, const PlanResult& resul
     canvas.text({std::min(curve.back().x + 4, area.right() - 6), curve.back().y + 12}, fixed(result.history.back().hypervolume, 4),
                 {.size = 13, .bold = true, .colour = style::blue, .across = Align::end, .down = Align::start, .halo = 2});
   }
-  canvas.save(file);
+  return page;
+}
+
+void draw_hypervolume(const std::filesystem::path& file, const PlanResult& result, const PlanConfig& config) {
+  hypervolume_picture(result, config)->save(file);
 }
 
 }  // namespace vantage

@@ -7,6 +7,7 @@
 
 #include "report/chart.hpp"
 #include "report/outline.hpp"
+#include "report/pictures.hpp"
 #include "report/relief.hpp"
 #include "report/spread.hpp"
 #include "report/text.hpp"
@@ -98,8 +99,8 @@ void draw_scale_bar(Canvas& canvas, Point at, double widest, double metre) {
 
 }  // namespace
 
-void draw_plan_view(const std::filesystem::path& file, const Scene& scene, const SearchArea& area,
-                    std::span<const PlacedStation> stations, const OverlapMatrix& overlap, const std::string& title) {
+std::unique_ptr<Canvas> plan_view_picture(const Scene& scene, const SearchArea& area, std::span<const PlacedStation> stations,
+                                          const OverlapMatrix& overlap, const std::string& title) {
   if (overlap.size() != stations.size() && overlap.size() != 0)
     throw Error(Errc::invalid_argument, "draw_plan_view: " + std::to_string(stations.size()) + " stations, but an overlap matrix of " +
                                             std::to_string(overlap.size()));
@@ -112,9 +113,10 @@ void draw_plan_view(const std::filesystem::path& file, const Scene& scene, const
     return std::count_if(stations.begin(), stations.end(), [&](const PlacedStation& s) { return s.status == status; });
   };
   const auto clashes = count(StationStatus::clash), holes = count(StationStatus::hole);
-  constexpr double kPanel = 196;
-  const double panel_height = 330 + (clashes > 0 ? 28 : 0) + (holes > 0 ? 45 : 0);  // what the legend may need
-  Canvas canvas(map.right() + 26 + kPanel, std::max(map.bottom() + 64, map.y + panel_height));
+  constexpr double kPanel = 224;
+  const double panel_height = 352 + (clashes > 0 ? 28 : 0) + (holes > 0 ? 45 : 0);  // what the legend may need
+  auto page = std::make_unique<Canvas>(map.right() + 26 + kPanel, std::max(map.bottom() + 64, map.y + panel_height));
+  Canvas& canvas = *page;
 
   const std::size_t fine = kPixelsPerUnit * kSupersampling;
   const MapWindow pixels{.x_min = window.min.x,
@@ -153,15 +155,20 @@ void draw_plan_view(const std::filesystem::path& file, const Scene& scene, const
   struct Link {
     std::size_t a, b;
     double overlap;
+    bool bridge;
   };
   std::vector<Link> links;
   double most = 0;
+  bool any_bridge = false;
   if (overlap.size() == stations.size()) {
+    const auto bridges = connectivity(overlap, kLeast).bridges;
     for (std::size_t a = 0; a < shown.size(); ++a) {
       for (std::size_t b = a + 1; b < shown.size(); ++b) {
         const double value = overlap(shown[a], shown[b]);
         if (value < kLeast) continue;
-        links.push_back({a, b, value});
+        const bool bridge = std::binary_search(bridges.begin(), bridges.end(), std::pair{shown[a], shown[b]});
+        links.push_back({a, b, value, bridge});
+        any_bridge = any_bridge || bridge;
         most = std::max(most, value);
       }
     }
@@ -170,7 +177,7 @@ void draw_plan_view(const std::filesystem::path& file, const Scene& scene, const
   for (const Link& link : links) {
     const double width = link_width(link.overlap, most);
     canvas.line(discs[link.a], discs[link.b], {.colour = {1, 1, 1}, .width = width + 1.6, .opacity = 0.45});
-    canvas.line(discs[link.a], discs[link.b], {.colour = kLink, .width = width, .opacity = link_opacity(link.overlap, most)});
+    canvas.line(discs[link.a], discs[link.b], {.colour = link.bridge ? style::orange : kLink, .width = width, .opacity = link_opacity(link.overlap, most)});
   }
   for (std::size_t k = 0; k < shown.size(); ++k) {
     if (std::hypot(discs[k].x - anchors[k].x, discs[k].y - anchors[k].y) < 2) continue;
@@ -219,13 +226,23 @@ void draw_plan_view(const std::filesystem::path& file, const Scene& scene, const
       words(labels[k]);
       at.y += 22;
     }
+    if (any_bridge) {
+      canvas.line({at.x, at.y}, {at.x + 24, at.y}, {.colour = style::orange, .width = 3, .opacity = 0.8});
+      words("the only link of two parts");
+      at.y += 22;
+    }
     canvas.text(at, "largest " + fixed(most, 3), {.size = 12.5, .colour = style::faint});
     canvas.text({at.x, at.y + 17}, "below " + number(kLeast) + " not drawn", {.size = 12.5, .colour = style::faint});
   } else if (stations.size() > 1 && overlap.size() == stations.size()) {
     canvas.text({at.x, at.y + 6}, "no overlap above " + number(kLeast), {.size = 12.5, .colour = style::faint});
   }
   draw_scale_bar(canvas, {left + 1, std::max(map.bottom() - 6, at.y + 60)}, kPanel - 40, metre);
-  canvas.save(file);
+  return page;
+}
+
+void draw_plan_view(const std::filesystem::path& file, const Scene& scene, const SearchArea& area,
+                    std::span<const PlacedStation> stations, const OverlapMatrix& overlap, const std::string& title) {
+  plan_view_picture(scene, area, stations, overlap, title)->save(file);
 }
 
 }  // namespace vantage

@@ -37,6 +37,7 @@ FrontDot FrontView::objectives(std::span<const double> f) const {
     return static_cast<double>(config_.fixed.size() + station_count_from_alpha(alpha, config_.stations_min, config_.stations_max));
   };
   const double all = static_cast<double>(config_.fixed.size() + config_.stations_max);
+  if (config_.fitness) return {1 - f[0], 0, all};
   switch (config_.problem) {
     case Problem::coverage_fix: return {1 - f[0], 0, all};
     case Problem::coverage_overlap_fix: return {1 - f[0], 1 - f[1], all};

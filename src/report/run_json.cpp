@@ -69,12 +69,30 @@ ordered_json plan_json(const PlanConfig& plan) {
                        {"target_hypervolume", nullptr},
                        {"stagnation_iterations", plan.stagnation_iterations},
                        {"seed", plan.seed}};
+  if (plan.fitness)
+    json["fitness"] = {{"coverage", plan.fitness->coverage},
+                       {"station_count", plan.fitness->station_count},
+                       {"visibility", plan.fitness->visibility}};
   if (plan.heights_m) json["heights_m"] = *plan.heights_m;
   if (plan.target_hypervolume) json["target_hypervolume"] = *plan.target_hypervolume;
   return json;
 }
 
-ordered_json entry_json(const PlanEntry& entry) {
+// What registration will hang by. Stations are numbered from 1, as in the tables and pictures.
+ordered_json links_json(const OverlapMatrix& overlap, double min_overlap) {
+  const Connectivity graph = connectivity(overlap, min_overlap);
+  ordered_json bridges = ordered_json::array();
+  for (const auto& [i, j] : graph.bridges) bridges.push_back({i + 1, j + 1});
+  ordered_json json = {{"min_overlap", min_overlap}, {"parts", graph.parts}, {"bridges", std::move(bridges)}, {"weakest", nullptr}};
+  if (graph.parts == 1 && overlap.size() > 1)
+    json["weakest"] = {{"stations", {graph.weakest_link.first + 1, graph.weakest_link.second + 1}}, {"overlap", graph.weakest_overlap}};
+  return json;
+}
+
+// Links of less overlap are not drawn either.
+constexpr double kLeastOverlap = 0.01;
+
+ordered_json entry_json(const PlanEntry& entry, const PlanConfig& config) {
   ordered_json stations = ordered_json::array();
   for (std::size_t i = 0; i < entry.stations.size(); ++i) {
     const PlacedStation& s = entry.stations[i];
@@ -91,7 +109,10 @@ ordered_json entry_json(const PlanEntry& entry) {
                        {"exact", nullptr},
                        {"stations", std::move(stations)},
                        {"x", entry.x}};
-  if (entry.confirmed) json["exact"] = {{"coverage", entry.exact_coverage}, {"overlap", entry.exact_overlap}};
+  if (entry.confirmed) {
+    json["exact"] = {{"coverage", entry.exact_coverage}, {"overlap", entry.exact_overlap}};
+    json["links"] = links_json(entry.exact_overlap_matrix, config.min_link_overlap > 0 ? config.min_link_overlap : kLeastOverlap);
+  }
   return json;
 }
 
@@ -122,9 +143,9 @@ std::string run_parameters_json(const Simulator& simulator, const PlanConfig* pl
 
 std::string front_json(const PlanResult& result, const PlanConfig& config, const Simulator& simulator) {
   ordered_json front = ordered_json::array();
-  for (const PlanEntry& entry : result.front) front.push_back(entry_json(entry));
+  for (const PlanEntry& entry : result.front) front.push_back(entry_json(entry, config));
   ordered_json json = {{"problem", to_string(config.problem)},
-                       {"objectives", objective_names(config.problem)},
+                       {"objectives", objective_names(config)},
                        {"hypervolume", result.hypervolume},
                        {"evaluations", result.evaluations},
                        {"stations_drawn", result.drawn},

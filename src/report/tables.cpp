@@ -52,8 +52,8 @@ void write_front_csv(const std::filesystem::path& file, const PlanResult& result
 }
 
 void write_history_csv(const std::filesystem::path& file, const PlanResult& result, const PlanConfig& config) {
-  const bool single = config.problem == Problem::coverage_fix;
-  std::string text = std::string("iteration,evaluations,") + (single ? "best_coverage" : "hypervolume") + ",front_size,seconds\n";
+  const char* measure = config.fitness ? "best_fitness" : has_one_objective(config) ? "best_coverage" : "hypervolume";
+  std::string text = std::string("iteration,evaluations,") + measure + ",front_size,seconds\n";
   for (const PlanIteration& line : result.history)
     text += number(line.iteration) + "," + number(line.evaluations) + "," + number(line.hypervolume) + "," +
             number(line.front.size()) + "," + number(line.seconds) + "\n";
@@ -62,7 +62,7 @@ void write_history_csv(const std::filesystem::path& file, const PlanResult& resu
 
 void write_fronts_csv(const std::filesystem::path& file, const PlanResult& result, const PlanConfig& config) {
   std::string text = "iteration";
-  for (const std::string& name : objective_names(config.problem)) text += "," + name;
+  for (const std::string& name : objective_names(config)) text += "," + name;
   text += "\n";
   for (const PlanIteration& line : result.history) {
     for (const auto& f : line.front) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <system_error>
 
+#include "report/pictures.hpp"
 #include "report/tables.hpp"
 #include "report/text.hpp"
 #include "vantage/error.hpp"
@@ -31,13 +32,13 @@ std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& re
   const double exact = coverage(counts, simulator.goal_density());
   const std::string title = std::to_string(entry.stations.size()) + (entry.stations.size() == 1 ? " station" : " stations") +
                             ": coverage " + fixed(exact, 3) + ", overlap " + fixed(clustering_coefficient(overlap), 3);
-  for (const char* extension : {".png", ".svg"}) {
-    const auto picture = [&](const char* name) { return folder / (std::string(name) + extension); };
-    draw_front(picture("front"), result, config);
-    draw_hypervolume(picture("hypervolume"), result, config);
-    if (config.problem != Problem::coverage_fix) draw_history_fronts(picture("history"), result, config);
-    draw_plan_view(picture("plan"), simulator.scene(), area, entry.stations, overlap, title);
-  }
+  const auto save = [&](const std::string& name, const std::unique_ptr<Canvas>& picture) {
+    for (const char* extension : {".png", ".svg"}) picture->save(folder / (name + extension));
+  };
+  save("front", front_picture(result, config));
+  save("hypervolume", hypervolume_picture(result, config));
+  if (!has_one_objective(config)) save("history", history_picture(result, config));
+  save("plan", plan_view_picture(simulator.scene(), area, entry.stations, overlap, title));
   return chosen;
 }
 

@@ -55,6 +55,14 @@ TEST(ClashChecker, MeasuresDistancesInTheSurveyFrame) {
   EXPECT_NEAR(checker.distance(origin + Vec3{5, 6, 4}, 100), std::sqrt(9 + 1 + 1), 1e-12);
 }
 
+TEST(ClashChecker, SeesWhatNothingHides) {
+  const ClashChecker checker(wall_and_ground());  // the wall begins at x = 2
+  EXPECT_TRUE(checker.sees(origin + Vec3{-1, 0, 1}, origin + Vec3{1.99, 0, 1}));
+  EXPECT_FALSE(checker.sees(origin + Vec3{-1, 0, 1}, origin + Vec3{2.5, 0, 1}));
+  EXPECT_FALSE(checker.sees(origin + Vec3{2.5, 0, 1}, origin + Vec3{-1, 0, 1}));
+  EXPECT_TRUE(checker.sees(origin + Vec3{-1, 0, 1}, origin + Vec3{-1, 0, 1}));
+}
+
 TEST(ClashChecker, RefusesVolumesThatMakeNoSense) {
   const double nan = std::nan(""), inf = std::numeric_limits<double>::infinity();
   for (const SecurityVolume& volume : {SecurityVolume{0.5, 1.35, 0.5},

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "unit/plan/toy_survey.hpp"
 #include "vantage/error.hpp"
 
@@ -75,6 +77,50 @@ TEST(DecisionSpace, ObjectivesOfTable2) {
   EXPECT_EQ(f(Problem::coverage_min, 2, 1), (std::vector<double>{0.25, 0.25}));
   EXPECT_EQ(f(Problem::coverage_overlap_min, 2, 1), (std::vector<double>{0.25, 0.5, 0.25}));
   EXPECT_EQ(f(Problem::coverage_overlap_min, 2, 3), (std::vector<double>{2.25, 2.5, 2.25}));
+}
+
+TEST(DecisionSpace, FitnessOfEquation1) {
+  const Site site = test::toy_site();
+  PlanConfig config = config_of(Problem::coverage_min, 4, 12);
+  config.fitness = FitnessWeights{};
+  const DecisionSpace space(site, config);
+  ASSERT_EQ(space.objectives(), 1u);
+  std::vector<double> x(25, 0.1), f(1);
+  const auto fitness = [&](double alpha, double coverage, std::size_t parts) {
+    x.back() = alpha;
+    space.objectives_of(x, coverage, 0, parts, f);
+    return 1 - f[0];
+  };
+  EXPECT_NEAR(fitness(0, 0.83, 1), 0.4 * 0.83 + 0.4 + 0.2, 1e-15);  // the paper's best: 0.93
+  EXPECT_NEAR(fitness(0, 0.83, 1), 0.93, 0.005);
+  EXPECT_NEAR(fitness(1, 1, 4), 0.4 + 0.2 / 4, 1e-15);
+  EXPECT_NEAR(fitness(0.5, 0, 2), 0.4 * (std::sqrt(2.0) - 1) + 0.1, 1e-15);
+
+  config.problem = Problem::coverage_overlap_min;
+  EXPECT_THROW(DecisionSpace(site, config), Error);
+}
+
+TEST(VisibilityParts, CountsWhoSeesWhomWithinRange) {
+  const Site site = test::toy_site();  // a wall at y = 5, range 6 m
+  const Network network{{{1, 1, 0}, true}, {{6, 1, 0}, true}, {{9, 4, 0}, true}, {{1, 9, 0}, true}, {{9, 9, 0}, true}};
+  EXPECT_EQ(visibility_parts(site, network), 3u);  // 1-2-3, 4, 5
+  Network skipped = network;
+  skipped[1].active = false;
+  EXPECT_EQ(visibility_parts(site, skipped), 5u);
+  EXPECT_EQ(visibility_parts(site, Network(1)), 1u);
+}
+
+TEST(DecisionSpace, EncodesAnInitialNetworkForEachNumber) {
+  const Site site = test::toy_site();
+  const std::vector<Vec3> heads{{1, 2, 4.5}, {8, 9, 4.5}, {9, 1, 4.5}};
+  const DecisionSpace space(site, config_of(Problem::coverage_min, 2, 4));
+  const auto xs = space.encode_each(heads);
+  ASSERT_EQ(xs.size(), 2u);
+  EXPECT_EQ(space.placed_count(xs[0]), 3u);
+  EXPECT_EQ(space.placed_count(xs[1]), 2u);
+  EXPECT_EQ(space.decode(xs[1])[1].uv, (Uv{0.8, 0.9}));
+  const DecisionSpace fixed(site, config_of(Problem::coverage_overlap_fix, 3, 3));
+  EXPECT_EQ(fixed.encode_each(heads).size(), 1u);
 }
 
 TEST(DecisionSpace, EncodesAnInitialNetwork) {

@@ -258,6 +258,60 @@ TEST(Search, StartsWhereItIsTold) {
   toy_search(config, evaluator);
 }
 
+TEST(Search, MaximisesTheFitness) {
+  PlanConfig config = toy_config(Problem::coverage_min);
+  config.stations_min = 1;
+  config.fitness = FitnessWeights{};
+  config.iterations = 100;
+  ToyEvaluator evaluator;
+  const SearchOutcome outcome = toy_search(config, evaluator);
+  ASSERT_EQ(outcome.front.size(), 1u);
+  EXPECT_GT(outcome.hypervolume, 0.6);  // one station alone: .4 for its number, .2 for seeing itself, and its coverage
+  EXPECT_LE(outcome.hypervolume, 1);
+  EXPECT_NEAR(outcome.hypervolume, 1 - outcome.front[0].f[0], 1e-15);
+}
+
+TEST(Search, WantsNetworksThatHangTogether) {
+  // Stations are linked within 4 m; the targets, 8 m apart, pull them away from each other.
+  class Linked final : public NetworkEvaluator {
+   public:
+    std::size_t chunk() const override { return 0; }
+    std::optional<std::vector<NetworkValue>> evaluate(std::span<const Network> networks, const Progress&) override {
+      std::vector<NetworkValue> values;
+      for (const Network& n : networks) {
+        values.push_back(ToyEvaluator::value_of(n));
+        OverlapMatrix near(n.size());
+        for (std::size_t i = 0; i < n.size(); ++i)
+          for (std::size_t j = i + 1; j < n.size(); ++j)
+            if (std::hypot(n[i].position.x - n[j].position.x, n[i].position.y - n[j].position.y) < 4) near.set(i, j, 1);
+        if (count_parts) values.back().parts = connectivity(near, 1).parts;
+      }
+      return values;
+    }
+    std::optional<std::vector<NetworkEstimate>> estimate(std::span<const Network>, const Progress&) override { return std::nullopt; }
+    std::optional<ConfirmedNetwork> confirm(const Network&, const Progress&) override { return std::nullopt; }
+    double trace_seconds() const override { return 0; }
+    bool count_parts = true;
+  };
+  PlanConfig config = toy_config(Problem::coverage_overlap_fix);
+  config.iterations = 60;
+  const Site site = test::toy_site();
+  const DecisionSpace space(site, config);
+  const auto parted = [&](bool count_parts) {
+    Linked evaluator, judge;
+    evaluator.count_parts = count_parts;
+    const SearchOutcome outcome = search({.space = space, .config = config, .evaluator = evaluator});
+    std::size_t n = 0;
+    for (const ParetoPoint& point : outcome.front) {
+      const std::vector<Network> network{to_network(space.decode(point.x))};
+      n += (*judge.evaluate(network, {}))[0].parts > 1 ? 1 : 0;
+    }
+    return n;
+  };
+  EXPECT_GT(parted(false), 0u);
+  EXPECT_EQ(parted(true), 0u);
+}
+
 TEST(Search, FindsTheBestNetworkOfAKnownSite) {
   // Eight targets and eight stations: each can stand on its own target.
   PlanConfig config{.problem = Problem::coverage_fix, .stations_min = 8, .stations_max = 8, .population = 20, .iterations = 400, .seed = 5};

@@ -31,7 +31,9 @@ inline Site toy_site() {
             return Uv{p.x / 10, p.y / 10};
           },
           .clashes = [](const Vec3& ground) { return ground.x < 0.5; },  // a wall along one side
-          .height_m = 1.5};
+          .sees = [](const Vec3& a, const Vec3& b) { return (a.y < 5) == (b.y < 5); },  // a wall in the middle
+          .height_m = 1.5,
+          .range_m = 6};
 }
 
 // Coverage: how near the closest station is to each of 8 targets on a circle. Overlap: how close the stations stand together.

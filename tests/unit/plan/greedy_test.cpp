@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plan/greedy.hpp"
+
+#include <gtest/gtest.h>
+
+#include "unit/plan/toy_survey.hpp"
+#include "vantage/error.hpp"
+
+namespace vantage {
+namespace {
+
+TEST(Greedy, ChoosesAsTheEagerAlgorithmDoes) {
+  const Site site = test::toy_site();
+  test::ToyEvaluator lazy, eager;
+  lazy.at_once = 0;
+  const GreedyConfig config{.stations = 6, .candidates = 150};
+  const GreedyResult result = choose_greedily(site, lazy, config, {});
+  ASSERT_EQ(result.stations.size(), 6u);
+  EXPECT_FALSE(result.cancelled);
+  EXPECT_EQ(result.evaluations, lazy.evaluated);
+
+  // All candidates, tried again at every step. Choosing one station of each is how to get at them.
+  test::ToyEvaluator recorder;
+  std::vector<Station> candidates;
+  recorder.before_each = [&](const Network& n) { candidates.push_back(n[0]); };
+  choose_greedily(site, recorder, {.stations = 1, .candidates = 150}, {});
+  ASSERT_EQ(candidates.size(), 150u);
+  Network chosen;
+  for (std::size_t step = 0; step < 6; ++step) {
+    double best = -1;
+    Station taken;
+    for (const Station& c : candidates) {
+      Network with = chosen;
+      with.push_back(c);
+      const double value = test::ToyEvaluator::value_of(with).coverage;
+      if (value > best) best = value, taken = c;
+    }
+    chosen.push_back(taken);
+    EXPECT_EQ(result.stations[step].position, taken.position) << step;
+    EXPECT_NEAR(result.coverage[step], best, 1e-12);
+  }
+  EXPECT_LT(result.evaluations, 6u * 150 / 2);  // most candidates were looked at once
+}
+
+TEST(Greedy, CandidatesStandOnlyWhereTheyMay) {
+  const Site site = test::toy_site();
+  test::ToyEvaluator evaluator;
+  const GreedyResult result = choose_greedily(site, evaluator, {.stations = 40, .candidates = 50}, {});
+  EXPECT_EQ(result.stations.size(), 40u);
+  for (const PlacedStation& s : result.stations) EXPECT_EQ(s.status, StationStatus::ok);
+  EXPECT_THROW(choose_greedily(site, evaluator, {.stations = 8, .candidates = 5}, {}), Error);
+  EXPECT_THROW(choose_greedily(site, evaluator, {.stations = 65, .candidates = 500}, {}), Error);
+  Site nowhere = site;
+  nowhere.locate = [](Uv) { return std::nullopt; };
+  EXPECT_THROW(choose_greedily(nowhere, evaluator, {}, {}), Error);
+}
+
+TEST(Greedy, StopsWhenTold) {
+  const Site site = test::toy_site();
+  test::ToyEvaluator evaluator;
+  std::stop_source stop;
+  evaluator.before_each = [&](const Network&) {
+    if (evaluator.evaluated == 60) stop.request_stop();
+  };
+  const GreedyResult result = choose_greedily(site, evaluator, {.stations = 6, .candidates = 50}, {.report = {}, .stop = stop.get_token()});
+  EXPECT_TRUE(result.cancelled);
+  EXPECT_GT(result.stations.size(), 0u);
+  EXPECT_LT(result.stations.size(), 6u);
+}
+
+TEST(Greedy, SeedsTheSearch) {
+  const Site site = test::toy_site();
+  test::ToyEvaluator evaluator;
+  const GreedyResult greedy = choose_greedily(site, evaluator, {.stations = 8, .candidates = 200}, {});
+  PlanConfig config = test::toy_config(Problem::coverage_min);
+  config.iterations = 1;
+  for (const PlacedStation& s : greedy.stations) config.start.push_back(s.position);
+  const SearchOutcome seeded = test::toy_search(config, evaluator);
+  config.start.clear();
+  const SearchOutcome random = test::toy_search(config, evaluator);
+  EXPECT_GT(seeded.hypervolume, random.hypervolume);
+}
+
+}  // namespace
+}  // namespace vantage
