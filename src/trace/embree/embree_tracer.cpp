@@ -44,7 +44,7 @@ class EmbreeTracer final : public Tracer {
 
   NetworkCounts count(std::span<const TraceStation> stations, std::uint32_t station_count, const CountOptions& options,
                       const Progress& progress) override {
-    return count_network(rays_, stations, station_count, goal_density_, options, progress);
+    return count_network(rays_, stations, station_count, goal_density_, options, field_, progress);
   }
 
   std::vector<NetworkCounts> count_sampled(std::span<const std::vector<TraceStation>> networks,
@@ -56,6 +56,7 @@ class EmbreeTracer final : public Tracer {
  private:
   StationRays rays_;
   EngineInfo info_;
+  VoxelField field_;
   std::unique_ptr<SampledVoxels> sample_;  // of the last sampled evaluation
 };
 

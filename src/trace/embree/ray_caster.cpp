@@ -25,25 +25,34 @@ using RtcContext = RTCIntersectContext;
 
 struct Context {
   RtcContext rtc;  // first: Embree hands its address to the filter
-  RayBundle* rays;
+  float* t;        // by the ray's id
+  std::uint32_t* primitive;
 };
 
 // Called for every triangle that a ray meets nearer than its present end.
 void keep_least(const RTCFilterFunctionNArguments* args) {
-  RayBundle& rays = *reinterpret_cast<Context*>(args->context)->rays;
+  const Context& context = *reinterpret_cast<const Context*>(args->context);
   const unsigned n = args->N;
   for (unsigned i = 0; i < n; ++i) {
     if (args->valid[i] == 0) continue;
     float& end = RTCRayN_tfar(args->ray, n, i);  // the candidate's distance
     const unsigned ray = RTCRayN_id(args->ray, n, i);
     const unsigned primitive = RTCHitN_primID(args->hit, n, i);
-    if (end < rays.t[ray] || (end == rays.t[ray] && primitive < rays.primitive[ray])) {
-      rays.t[ray] = end;
-      rays.primitive[ray] = primitive;
+    if (end < context.t[ray] || (end == context.t[ray] && primitive < context.primitive[ray])) {
+      context.t[ray] = end;
+      context.primitive[ray] = primitive;
       end *= slack;
     } else {
       args->valid[i] = 0;
     }
+  }
+}
+
+// Called for the first triangle that a ray of any_hit() meets.
+void note(const RTCFilterFunctionNArguments* args) {
+  for (unsigned i = 0; i < args->N; ++i) {
+    if (args->valid[i] != 0)
+      *reinterpret_cast<const Context*>(args->context)->primitive = RTCHitN_primID(args->hit, args->N, i);
   }
 }
 
@@ -65,10 +74,49 @@ RayCaster::RayCaster(std::shared_ptr<const SceneData> scene) : scene_(std::move(
                                sizeof(Triangle), scene_->triangles.size());
   }
   rtcSetGeometryIntersectFilterFunction(geometry.get(), keep_least);
+  rtcSetGeometryOccludedFilterFunction(geometry.get(), note);
   rtcCommitGeometry(geometry.get());
   rtcAttachGeometry(tree_.get(), geometry.get());
   rtcCommitScene(tree_.get());
   embree::check(device, "building the tree over " + std::to_string(scene_->triangles.size()) + " triangles");
+}
+
+std::uint32_t RayCaster::nearest_hit(const Float3& origin, const Float3& d, float start, float end, float& t) const {
+  float best = std::numeric_limits<float>::infinity();
+  std::uint32_t primitive = RayBundle::no_hit;
+  Context context{{}, &best, &primitive};
+  RTCRayHit hit;
+  hit.ray = {origin.x, origin.y, origin.z, start, d.x, d.y, d.z, 0, end, 0xFFFFFFFFu, 0, 0};
+  hit.hit.geomID = hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+#if VANTAGE_EMBREE_MAJOR >= 4
+  rtcInitRayQueryContext(&context.rtc);
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  arguments.context = &context.rtc;
+  rtcIntersect1(tree_.get(), &hit, &arguments);
+#else
+  rtcInitIntersectContext(&context.rtc);
+  rtcIntersect1(tree_.get(), &context.rtc, &hit);
+#endif
+  t = best;
+  return primitive;
+}
+
+std::uint32_t RayCaster::any_hit(const Float3& origin, const Float3& d, float start, float end) const {
+  std::uint32_t primitive = RayBundle::no_hit;
+  Context context{{}, nullptr, &primitive};
+  RTCRay ray{origin.x, origin.y, origin.z, start, d.x, d.y, d.z, 0, end, 0xFFFFFFFFu, 0, 0};
+#if VANTAGE_EMBREE_MAJOR >= 4
+  rtcInitRayQueryContext(&context.rtc);
+  RTCOccludedArguments arguments;
+  rtcInitOccludedArguments(&arguments);
+  arguments.context = &context.rtc;
+  rtcOccluded1(tree_.get(), &ray, &arguments);
+#else
+  rtcInitIntersectContext(&context.rtc);
+  rtcOccluded1(tree_.get(), &context.rtc, &ray);
+#endif
+  return primitive;
 }
 
 void RayCaster::cast(RayBundle& rays) const {
@@ -102,8 +150,7 @@ void RayCaster::cast(RayBundle& rays) const {
   std::fill_n(rays.t, used * packet, std::numeric_limits<float>::infinity());
   std::fill_n(rays.primitive, used * packet, RayBundle::no_hit);
 
-  Context context;
-  context.rays = &rays;
+  Context context{{}, rays.t, rays.primitive};
 #if VANTAGE_EMBREE_MAJOR >= 4
   rtcInitRayQueryContext(&context.rtc);
   RTCIntersectArguments arguments;

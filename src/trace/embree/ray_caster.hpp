@@ -36,6 +36,11 @@ class RayCaster {
   // order in which it visits them, so its tree is searched a little past the nearest hit, and the choice is ours.
   void cast(RayBundle& rays) const;
 
+  // The same hit for one ray alone, from `start` to `end`; or no_hit.
+  std::uint32_t nearest_hit(const Float3& origin, const Float3& d, float start, float end, float& t) const;
+  // Some triangle that the ray hits on the way, or no_hit. Faster.
+  std::uint32_t any_hit(const Float3& origin, const Float3& d, float start, float end) const;
+
  private:
   std::shared_ptr<const SceneData> scene_;
   embree::Device device_;

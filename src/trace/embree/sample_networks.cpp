@@ -43,10 +43,10 @@ std::vector<NetworkCounts> sample_networks(const StationRays& rays, std::span<co
                                            std::span<const std::uint32_t> station_counts, double goal_density,
                                            const Tracer::SampleJob& job, std::unique_ptr<SampledVoxels>& kept,
                                            const Progress& progress) {
-  const double pad = rounding_pad(magnitude(rays, networks));
-  // A hit lies on its triangle but for Embree's doubt about edges, which a slant stretches; its point within the
-  // noise's reach of it.
-  const double margin = static_cast<double>(rays.noise().reach()) + 64 * pad;
+  const double size = magnitude(rays, networks), pad = rounding_pad(size);
+  const double margin =
+      static_cast<double>(rays.noise().reach_within(static_cast<float>(size) + rays.noise().reach())) +
+      triangle_margin(pad);
   if (!kept || !kept->made_for(job.sample, margin))
     kept = std::make_unique<SampledVoxels>(rays.scene(), rays.grid(), job.sample, margin);
   const SampledVoxels& voxels = *kept;

@@ -32,12 +32,6 @@ class SeenTriangle {
     }
   }
 
-  // Whether Embree might report a hit with its plane for a ray from the head along d.
-  bool may_hit(const Vec3& d) const {
-    const double e0 = dot(edge_[0], d), e1 = dot(edge_[1], d), e2 = dot(edge_[2], d);
-    return (e0 >= -tolerance_[0] && e1 >= -tolerance_[1] && e2 >= -tolerance_[2]) ||
-           (e0 <= tolerance_[0] && e1 <= tolerance_[1] && e2 <= tolerance_[2]);
-  }
   // Whether Embree is bound to report one. REQUIRES: cosine(d) >= steep.
   bool must_hit(const Vec3& d) const {
     return dot(edge_[0], d) > tolerance_[0] && dot(edge_[1], d) > tolerance_[1] && dot(edge_[2], d) > tolerance_[2];

@@ -11,6 +11,7 @@
 #include "trace/embree/range_noise.hpp"
 #include "trace/embree/ray_caster.hpp"
 #include "trace/embree/surface.hpp"
+#include "trace/embree/voxel_lookup.hpp"
 #include "trace/tracer.hpp"
 
 namespace vantage {
@@ -30,7 +31,8 @@ class StationRays {
         pattern_(scene.pattern),
         noise_(scene.noise),
         caster_(scene.scene),
-        surface_(scene.scene) {}
+        surface_(scene.scene),
+        prefixes_(*scene.grid) {}
 
   const SceneData& scene() const { return *scene_; }
   const VoxelGrid& grid() const { return *grid_; }
@@ -38,6 +40,7 @@ class StationRays {
   const RangeNoise& noise() const { return noise_; }
   const RayCaster& caster() const { return caster_; }
   const Surface& surface() const { return surface_; }
+  VoxelLookup voxels() const { return {*grid_, prefixes_}; }
 
   Float3 direction(std::uint32_t row, std::uint32_t column) const {
     const RayPattern& p = *pattern_;
@@ -53,13 +56,16 @@ class StationRays {
     rays.origin = station.origin;
     rays.start = p.min_range;
     rays.size = tile.rows * tile.columns;
-    std::uint32_t slot = 0;
-    for (std::uint32_t i = tile.row; i < tile.row + tile.rows; ++i) {
-      const float sine = p.sin_zenith[i], cosine = p.cos_zenith[i];
-      for (std::uint32_t j = tile.column; j < tile.column + tile.columns; ++j, ++slot) {
-        rays.x[slot] = sine * p.cos_azimuth[j];
-        rays.y[slot] = sine * p.sin_azimuth[j];
-        rays.z[slot] = cosine;
+    const float *const cosines = p.cos_azimuth.data() + tile.column, *const sines = p.sin_azimuth.data() + tile.column;
+    for (std::uint32_t i = 0; i < tile.rows; ++i) {
+      const float sine = p.sin_zenith[tile.row + i], cosine = p.cos_zenith[tile.row + i];
+      float* __restrict const x = rays.x + i * tile.columns;
+      float* __restrict const y = rays.y + i * tile.columns;
+      float* __restrict const z = rays.z + i * tile.columns;
+      for (std::uint32_t j = 0; j < tile.columns; ++j) {
+        x[j] = sine * cosines[j];
+        y[j] = sine * sines[j];
+        z[j] = cosine;
       }
     }
     std::fill_n(rays.end, rays.size, end);
@@ -86,6 +92,7 @@ class StationRays {
   RangeNoise noise_;
   RayCaster caster_;
   Surface surface_;
+  BrickPrefixes prefixes_;
 };
 
 }  // namespace vantage

@@ -19,6 +19,8 @@ class Surface {
 
   bool surveyed(std::uint32_t triangle) const { return (surveyed_[triangle / 64] >> (triangle % 64) & 1) != 0; }
 
+  void prefetch(std::uint32_t triangle) const { __builtin_prefetch(&planes_[triangle]); }
+
   // Distance to the triangle's plane along d, in double and rounded once. Where it differs from `rough`, Embree's
   // distance, by more than one part in 2^plane_trust the ray lies in the plane within rounding, the plane says nothing,
   // and `rough` stands.

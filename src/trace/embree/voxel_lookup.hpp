@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <tbb/parallel_for.h>
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+#include "voxel/voxel_grid.hpp"
+
+namespace vantage {
+
+// Set voxels of each brick before each 64 bits of its mask, so that a rank takes one population count. 16 bytes a
+// brick. Immutable.
+class BrickPrefixes {
+ public:
+  static constexpr std::uint32_t words = 8;
+
+  explicit BrickPrefixes(const VoxelGrid& grid) : before_(grid.bricks().size()) {
+    tbb::parallel_for(std::size_t{0}, before_.size(), [&](std::size_t k) {
+      int sum = 0;
+      for (std::uint32_t w = 0; w < words; ++w) {
+        before_[k][w] = static_cast<std::uint16_t>(sum);
+        sum += std::popcount(word(grid.bricks()[k], w));
+      }
+    });
+  }
+  static std::uint64_t word(const VoxelBrick& brick, std::uint32_t w) {
+    return brick.mask[2 * w] | std::uint64_t{brick.mask[2 * w + 1]} << 32;
+  }
+  void prefetch(std::uint32_t brick) const { __builtin_prefetch(&before_[brick]); }
+  std::uint32_t before(std::uint32_t brick, std::uint32_t w) const { return before_[brick][w]; }
+
+ private:
+  std::vector<std::array<std::uint16_t, words>> before_;
+};
+
+// VoxelGrid::rank_of for the points of a bundle, in steps that go over all of them: the arithmetic goes through vector
+// registers, and many loads are under way at once, for at any resolution worth the name neither hash table nor bricks
+// fit into a cache.
+class VoxelLookup {
+ public:
+  static constexpr std::uint32_t capacity = 256;
+
+  VoxelLookup(const VoxelGrid& grid, const BrickPrefixes& prefixes)
+      : prefixes_(prefixes),
+        bricks_(grid.bricks().data()),
+        slots_(grid.slots().data()),
+        slot_mask_(static_cast<std::uint32_t>(grid.slots().size()) - 1),
+        min_(grid.min()),
+        inverse_size_(grid.inverse_size()),
+        cells_(grid.slots().empty() ? 0.0f : static_cast<float>(1u << grid.depth())) {}
+
+  void clear() { size_ = 0; }
+  // REQUIRES: no more than `capacity` since clear().
+  void add(const Float3& p) {
+    x_[size_] = p.x;
+    y_[size_] = p.y;
+    z_[size_] = p.z;
+    ++size_;
+  }
+
+  // Calls f(rank) for every point that lies in a surveyed voxel, in order. Inlined, to be compiled for the caller's
+  // target.
+  template <class F>
+  [[gnu::always_inline]] void each_rank(const F& f) {
+    find_cells();
+    const std::uint32_t runs = find_runs();
+    for (std::uint32_t r = 0; r < runs; ++r) find_brick(runs_[r]);
+    std::uint32_t k = 0;
+    for (std::uint32_t r = 0; r < runs; ++r) {
+      const std::uint32_t index = runs_[r].slot, end = runs_[r].end;
+      if (index == empty_slot) {
+        k = end;
+        continue;
+      }
+      const VoxelBrick& brick = bricks_[index];
+      for (; k < end; ++k) {
+        const std::uint32_t w = code_[k] / 64;
+        const std::uint64_t word = BrickPrefixes::word(brick, w), flag = std::uint64_t{1} << (code_[k] % 64);
+        if ((word & flag) == 0) continue;
+        f(brick.first + prefixes_.before(index, w) + static_cast<std::uint32_t>(std::popcount(word & (flag - 1))));
+      }
+    }
+  }
+
+ private:
+  struct Run {            // of points in one brick
+    std::uint32_t point;  // one of them
+    std::uint32_t slot;   // where to look; then the brick's index
+    std::uint32_t end;
+  };
+
+  // As VoxelGrid::cell_of.
+  [[gnu::always_inline]] void find_cells() {
+    const float min_x = min_[0], min_y = min_[1], min_z = min_[2], inverse = inverse_size_, cells = cells_;
+    const std::uint32_t mask = slot_mask_;
+    for (std::uint32_t p = 0; p < size_; ++p) {
+      const float x = (x_[p] - min_x) * inverse, y = (y_[p] - min_y) * inverse, z = (z_[p] - min_z) * inverse;
+      const bool inside = (x >= 0) & (x < cells) & (y >= 0) & (y < cells) & (z >= 0) & (z < cells);
+      // Through int: a conversion that every processor has.
+      const std::uint32_t i = static_cast<std::uint32_t>(static_cast<int>(inside ? x : 0.0f));
+      const std::uint32_t j = static_cast<std::uint32_t>(static_cast<int>(inside ? y : 0.0f));
+      const std::uint32_t k = static_cast<std::uint32_t>(static_cast<int>(inside ? z : 0.0f));
+      a_[p] = inside ? i >> brick_bits : empty_slot;
+      b_[p] = j >> brick_bits;
+      c_[p] = k >> brick_bits;
+      slot_[p] = brick_hash(i >> brick_bits, j >> brick_bits, k >> brick_bits) & mask;
+      code_[p] = spread(i) | spread(j) << 1 | spread(k) << 2;
+    }
+  }
+  static std::uint32_t spread(std::uint32_t i) { return (i & 1) | (i & 2) << 2 | (i & 4) << 4; }
+
+  [[gnu::always_inline]] std::uint32_t find_runs() {
+    std::uint32_t runs = 0;
+    for (std::uint32_t p = 0; p < size_; ++p) {
+      if (p == 0 || ((a_[p] ^ a_[p - 1]) | (b_[p] ^ b_[p - 1]) | (c_[p] ^ c_[p - 1])) != 0) {
+        runs_[runs++] = {p, slot_[p], 0};
+        __builtin_prefetch(&slots_[slot_[p]]);
+      }
+      runs_[runs - 1].end = p + 1;
+    }
+    return runs;
+  }
+
+  [[gnu::always_inline]] void find_brick(Run& run) const {
+    const std::uint32_t a = a_[run.point], b = b_[run.point], c = c_[run.point];
+    if (a == empty_slot) {
+      run.slot = empty_slot;
+      return;
+    }
+    const BrickSlot* slot = &slots_[run.slot];
+    while (slot->brick != empty_slot && (slot->x != a || slot->y != b || slot->z != c)) {
+      run.slot = (run.slot + 1) & slot_mask_;
+      slot = &slots_[run.slot];
+    }
+    run.slot = slot->brick;
+    if (run.slot == empty_slot) return;
+    __builtin_prefetch(&bricks_[run.slot]);  // a brick may lie across two lines
+    __builtin_prefetch(&bricks_[run.slot].mask[brick_mask_words - 1]);
+    prefixes_.prefetch(run.slot);
+  }
+
+  const BrickPrefixes& prefixes_;
+  const VoxelBrick* bricks_;
+  const BrickSlot* slots_;
+  std::uint32_t slot_mask_;
+  std::array<float, 3> min_;
+  float inverse_size_, cells_;
+  std::uint32_t size_ = 0;
+  alignas(64) std::array<float, capacity> x_, y_, z_;
+  alignas(64) std::array<std::uint32_t, capacity> a_, b_, c_;    // brick coordinates; a is empty_slot outside the cube
+  alignas(64) std::array<std::uint32_t, capacity> slot_, code_;  // where the hash says; Morton code in the brick
+  std::array<Run, capacity> runs_;
+};
+
+}  // namespace vantage
