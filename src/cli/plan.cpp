@@ -22,7 +22,7 @@ struct PlanOptions {
   std::optional<Problem> problem;
   std::optional<CountRange> stations;
   PlanConfig config;
-  bool exact = false, resume = false, json = false;
+  bool exact = false, greedy = false, resume = false, json = false;
   std::optional<SampleSize> sample;
   std::vector<StationText> start, keep;
   std::optional<std::string> output;
@@ -58,7 +58,23 @@ struct PlanOptions {
                 config.min_link_overlap = parse_number(text, what, {.low = 0, .high = 1});
               })
         ->group("Problem");
+    add_value(command, "--fitness", "L1,L2,L3",
+              "With coverage-min: one network by a fitness of coverage, number and visibility with these weights, as 0.4,0.4,0.2",
+              [this](const std::string& text, const std::string& what) {
+                const auto weights = parse_numbers(text, what, 3, 3, not_negative);
+                config.fitness = FitnessWeights{weights[0], weights[1], weights[2]};
+              })
+        ->group("Problem");
 
+    add_value(command, "--algorithm", "NAME", "Optimiser of several objectives: mo_cma_es, or a baseline: nsga2, random_search",
+              [this](const std::string& text, const std::string& what) {
+                try {
+                  config.algorithm = mo_algorithm_from_string(text);
+                } catch (const Error& error) {
+                  throw Error(error.code(), what + ": " + error.what());
+                }
+              })
+        ->group("Search");
     add_size(command, "--population", "M", "Networks per iteration; 10 for coverage-fix, else 100", config.population, 2, 100'000);
     add_size(command, "--iterations", "K", "Iterations of M networks each; 100 otherwise", config.iterations, 1, 100'000'000);
     add_size(command, "--batch", "B", "Networks asked for at once by the steady state; by the engine otherwise", config.batch, 1,
@@ -81,6 +97,12 @@ struct PlanOptions {
         ->group("Search");
     add_values(command, "--start", "X,Y,Z|U,V", "A station of the network to start from; repeat it for each",
                [this](const std::string& text, const std::string& what) { start.push_back(parse_station(text, what)); })
+        ->group("Search");
+    add_value(command, "--seed-with", "greedy", "Start from a greedy choice of stations",
+              [this](const std::string& text, const std::string& what) {
+                if (text != "greedy") throw Error(Errc::invalid_argument, what + ": '" + text + "' is not greedy");
+                greedy = true;
+              })
         ->group("Search");
     add_value(command, "--max-time", "T", "Stop searching after so long: 90, 90s, 15min or 2h",
               [this](const std::string& text, const std::string& what) { config.max_seconds = parse_duration(text, what); })
@@ -163,6 +185,8 @@ nlohmann::json as_options(const Site& site, const PlanConfig& config) {
   options["iterations"] = config.iterations;
   options["sigma"] = config.sigma0;
   options["scheme"] = config.scheme == MoCmaEsConfig::Scheme::generational ? "generational" : "steady-state";
+  options["algorithm"] = to_string(config.algorithm);
+  if (config.fitness) options["fitness"] = {config.fitness->coverage, config.fitness->station_count, config.fitness->visibility};
   if (config.batch > 0) options["batch"] = config.batch;
   options["redraws"] = config.redraws;
   if (config.sample_voxels > 0)
@@ -184,6 +208,24 @@ nlohmann::json as_options(const Site& site, const PlanConfig& config) {
   return all;
 }
 
+// What the search calls its progress by.
+const char* value_name(const PlanConfig& config) {
+  return !has_one_objective(config) ? "hypervolume" : config.fitness ? "fitness" : "coverage";
+}
+
+// Heads of a greedy choice for the largest network; empty where it was stopped.
+std::vector<Vec3> greedy_start(Site& site, Simulator& simulator, const PlanConfig& config, Program& program) {
+  ProgressLine line(program.console, "greedy");
+  const GreedyResult greedy = greedy_network(simulator, site.area(), site.clash(),
+                                             {.stations = config.stations_max, .sample_voxels = std::min<std::uint64_t>(config.sample_voxels, sample_for_coverage)},
+                                             {.report = [&](double done) { line.update(done); }, .stop = program.stop});
+  std::vector<Vec3> heads;
+  if (greedy.cancelled) return heads;
+  for (const auto& station : greedy.stations) heads.push_back(station.position);
+  spdlog::info("greedy: {} stations cover {:.4f}", heads.size(), greedy.coverage.back());
+  return heads;
+}
+
 std::string summary(const PlanResult& result, const PlanConfig& config, std::size_t chosen, const std::string& folder) {
   std::string text = "coverage  overlap  stations\n";
   for (std::size_t k = 0; k < result.front.size(); ++k) {
@@ -192,7 +234,7 @@ std::string summary(const PlanResult& result, const PlanConfig& config, std::siz
                         entry.confirmed ? entry.exact_overlap : entry.overlap, entry.stations.size(), k == chosen ? "  <- compromise" : "");
   }
   text += fmt::format("{} evaluations, {} {:.4f}, stopped: {}\n", result.evaluations,
-                      config.problem == Problem::coverage_fix ? "best coverage" : "hypervolume", result.hypervolume,
+                      value_name(config), result.hypervolume,
                       to_string(result.stop_reason));
   return text + "results in " + folder + "\n";
 }
@@ -218,6 +260,10 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   tell_grid(simulator);
   if (!options.exact)
     config.sample_voxels = options.sample ? options.sample->of(simulator.voxel_count()) : default_sample(config, simulator.voxel_count());
+  if (options.greedy) {
+    if (!options.start.empty()) throw Error(Errc::invalid_argument, "--seed-with and --start both say where to start: give one");
+    config.start = greedy_start(site, simulator, config, program);
+  }
   write_text(folder / "config.json", as_options(site, config).dump(2) + "\n");
 
   PlanResult result;
@@ -229,7 +275,7 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
           line.set_label(now.phase);
           const double done = now.iterations > 0 ? static_cast<double>(now.iteration) / static_cast<double>(now.iterations) : 0;
           line.update(done, fmt::format("{} {:.4f}, {} networks, {:.3g} a second",
-                                        config.problem == Problem::coverage_fix ? "coverage" : "hypervolume", now.hypervolume,
+                                        value_name(config), now.hypervolume,
                                         now.evaluations, now.evaluations_per_second),
                       now.seconds_left);
         },
