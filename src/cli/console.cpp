@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/console.hpp"
 
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -21,7 +22,10 @@ class TerminalSink : public spdlog::sinks::base_sink<std::mutex> {
   void set_status(const std::string& line) {
     const std::scoped_lock lock(mutex_);
     if (!interactive || line == status_) return;
-    status_ = line;
+    // A line that wraps could not be taken back.
+    winsize window{};
+    const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &window) == 0 && window.ws_col > 1;
+    status_ = known ? line.substr(0, window.ws_col - 1u) : line;
     write("\r\033[K" + status_);
   }
 
