@@ -277,10 +277,10 @@ void Plant::pump_piping() {
   for (int i = 0; i < 3; ++i) {
     const std::string number = std::to_string(i + 1);
     add_pipe(part("pipe-suction-" + number, kWater),
-             {{kPumpX[i], kHeaderSouth + 0.08, kHeaderZ}, {kPumpX[i], kSuctionY - 0.001, kHeaderZ}}, 0.07,
+             {{kPumpX[i], kHeaderSouth + 0.08, kHeaderZ}, {kPumpX[i], kSuctionY + 0.001, kHeaderZ}}, 0.07,
              {.flange_at_start = false, .valves = {{0, 0.45}}});
     add_pipe(part("pipe-discharge-" + number, kWater),
-             {{kPumpX[i], kSuctionY + 0.3, 0.901}, {kPumpX[i], kSuctionY + 0.3, 3.03}}, 0.06,
+             {{kPumpX[i], kSuctionY + 0.3, 0.899}, {kPumpX[i], kSuctionY + 0.3, 3.03}}, 0.06,
              {.flange_at_end = false, .valves = {{0, 0.24}}});
   }
   const double y = kSuctionY + 0.3;
