@@ -2,7 +2,7 @@
 add_library(vantage_flags INTERFACE)
 target_compile_options(
   vantage_flags
-  INTERFACE -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Wold-style-cast
+  INTERFACE -Wall -Wextra -Wshadow $<$<COMPILE_LANGUAGE:CXX>:-Wnon-virtual-dtor> $<$<COMPILE_LANGUAGE:CXX>:-Wold-style-cast>
             # Shader and host must round alike: a contracted multiply-add would move a point across a voxel face.
             -ffp-contract=off
             # GCC 12 sees overlapping copies in "literal" + std::string (its bug 105651).

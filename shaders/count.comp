@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// Counts one station's points in the surveyed voxels (equations 8 and 9): a thread a ray.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "lib/references.glsl"
+#include "lib/pattern.glsl"
+#include "lib/shade.glsl"
+#include "lib/voxel.glsl"
+#include "trace/engine.glsl"
+
+layout(local_size_x = 128) in;  // block_columns × block_rows
+layout(constant_id = 0) const bool with_noise = false;
+layout(constant_id = 1) const bool with_masks = true;
+layout(constant_id = 2) const bool with_tiles = false;
+layout(push_constant, scalar) uniform Push { CountPush push; };
+
+void main() {
+  const uvec2 in_block = place_in_block(gl_LocalInvocationIndex);
+  uint row, column;
+  float far = push.parameters.at.max_range;
+  bool alive = true;
+  if (with_tiles) {
+    const uint k = gl_WorkGroupID.z * tile_groups_y + gl_WorkGroupID.y;
+    alive = k < push.tile_list.at[0];
+    const uint tile = alive ? push.tile_list.at[1u + k] : 0u;
+    const uint tiles_in_row = (push.parameters.at.columns + tile_side - 1u) / tile_side;
+    const uint blocks_in_row = tile_side / block_columns;
+    row = (tile / tiles_in_row) * tile_side + (gl_WorkGroupID.x / blocks_in_row) * block_rows + in_block.y;
+    column = (tile % tiles_in_row) * tile_side + (gl_WorkGroupID.x % blocks_in_row) * block_columns + in_block.x;
+    far = min(far, push.tile_far.at[tile]);
+  } else {
+    row = push.first_row + gl_WorkGroupID.y * block_rows + in_block.y;
+    column = gl_WorkGroupID.x * block_columns + in_block.x;
+  }
+  alive = alive && row < push.first_row + push.row_count && column < push.parameters.at.columns;
+
+  bool is_point = false, counted = false;
+  if (alive) {
+    const vec3 direction = ray_direction(push.parameters, row, column);
+    const Hit hit = trace(push.parameters, push.origin, direction, push.parameters.at.min_range, far, want_nearest);
+    is_point = hit.id != no_primitive;
+    if (is_point && (hit.id & surveyed_bit) != 0u) {
+      float t = hit.t;
+      if (with_noise) {
+        const uint triangle = hit.id & ~surveyed_bit;
+        const vec3 normal = oriented_normal(push.parameters, triangle, hit.barycentric, direction);
+        t = noisy_range(push.parameters, t, reflectivity_of(push.parameters, triangle, normal, direction),
+                        uint64_t(row) * push.parameters.at.columns + column, push.place);
+      }
+      const uint rank = rank_of(push.parameters, point_on_ray(push.origin, direction, t));
+      if (rank != no_rank) {
+        counted = true;
+        atomicAdd(push.counts.at[rank], 1u);
+        if (with_masks) {
+          const uint bit = 1u << (push.place & 31u);
+          // Reading first spares most of the atomics; a stale read only costs one.
+          if ((push.masks.at[rank] & bit) == 0u) atomicOr(push.masks.at[rank], bit);
+        }
+      }
+    }
+  }
+  const uint points = subgroupAdd(is_point ? 1u : 0u), counted_points = subgroupAdd(counted ? 1u : 0u);
+  if (subgroupElect()) {
+    if (points > 0u) add64(push.station_counters, 4u * push.place, points);
+    if (counted_points > 0u) add64(push.station_counters, 4u * push.place + 2u, counted_points);
+  }
+}

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// Directions of the scan pattern, from tables that the host made in double.
+#ifndef VANTAGE_LIB_PATTERN
+#define VANTAGE_LIB_PATTERN
+#include "lib/references.glsl"
+
+vec3 ray_direction(Parameters parameters, uint row, uint column) {
+  const float s = parameters.at.sin_zenith.at[row];
+  precise vec3 d = vec3(s * parameters.at.cos_azimuth.at[column], s * parameters.at.sin_azimuth.at[column],
+                        parameters.at.cos_zenith.at[row]);
+  return d;
+}
+
+vec3 point_on_ray(vec3 origin, vec3 direction, float t) {
+  precise vec3 step = t * direction;
+  precise vec3 p = origin + step;
+  return p;
+}
+
+// Places the rays of a workgroup in a block of 16 × 8 so that 8 in sequence form 4 × 2, 32 form 8 × 4: a subgroup's rays stay together.
+uvec2 place_in_block(uint i) {
+  const uint column = (i & 3u) | ((i >> 3) & 1u) << 2 | ((i >> 5) & 1u) << 3;
+  const uint row = ((i >> 2) & 1u) | ((i >> 4) & 1u) << 1 | ((i >> 6) & 1u) << 2;
+  return uvec2(column, row);
+}
+
+#endif

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which rays of the pattern pass a box: the inverse of the scan pattern.
+#ifndef VANTAGE_LIB_RAYS_OF_BOX
+#define VANTAGE_LIB_RAYS_OF_BOX
+#include "lib/angles.glsl"
+#include "lib/references.glsl"
+
+// Rows [row0, row1] and up to two runs of columns: the second holds what lies beyond a full turn. Empty runs have end < begin.
+struct RayWindow {
+  int row0, row1;
+  int column0, column1;
+  int wrapped0, wrapped1;
+};
+
+int row_count_of(RayWindow w) { return max(w.row1 - w.row0 + 1, 0); }
+int first_run_of(RayWindow w) { return max(w.column1 - w.column0 + 1, 0); }
+int column_count_of(RayWindow w) { return first_run_of(w) + max(w.wrapped1 - w.wrapped0 + 1, 0); }
+
+// Ray k of the window, row by row.
+uvec2 ray_in_window(RayWindow w, int columns, int k) {
+  const int column = k % columns, run = first_run_of(w);
+  return uvec2(w.row0 + k / columns, column < run ? w.column0 + column : w.wrapped0 + column - run);
+}
+
+// All rays from the coordinate origin that may meet the box [low, high], and few others.
+RayWindow rays_of_box(Parameters parameters, vec3 low, vec3 high) {
+  const float rows = float(parameters.at.rows), columns = float(parameters.at.columns);
+  // Zenith: the horizontal distance is least at the point of the box nearest to the axis, largest at a corner.
+  const vec2 nearest = clamp(vec2(0), low.xy, high.xy);
+  const vec2 farthest = max(abs(low.xy), abs(high.xy));
+  const float least = length(nearest), largest = length(farthest);
+  const float zenith0 = angle_of(high.z > 0.0 ? least : largest, high.z) - angle_slack;
+  const float zenith1 = angle_of(low.z > 0.0 ? largest : least, low.z) + angle_slack;
+  const float row_scale = 1.0 / parameters.at.zenith_step;
+  RayWindow w;
+  w.row0 = int(max(ceil((zenith0 - parameters.at.first_zenith) * row_scale), 0.0));
+  w.row1 = int(min(floor((zenith1 - parameters.at.first_zenith) * row_scale), rows - 1.0));
+
+  float start = 0.0, width = 2.0 * pi;
+  if (least > 0.0) {
+    // Corners as seen from the direction of the nearest point, from where they all lie within a right angle.
+    const vec2 axis = nearest;
+    float lowest = pi, highest = -pi;
+    for (int k = 0; k < 4; ++k) {
+      const vec2 corner = vec2((k & 1) != 0 ? high.x : low.x, (k & 2) != 0 ? high.y : low.y);
+      const float a = angle_of(axis.x * corner.y - axis.y * corner.x, dot(axis, corner));
+      lowest = min(lowest, a);
+      highest = max(highest, a);
+    }
+    start = angle_of(axis.y, axis.x) + lowest - angle_slack - parameters.at.first_azimuth;
+    start -= floor(start / (2.0 * pi)) * 2.0 * pi;
+    width = highest - lowest + 2.0 * angle_slack;
+  }
+  const float column_scale = 1.0 / parameters.at.azimuth_step;
+  if (width >= 1.9 * pi) {
+    w.column0 = 0;
+    w.column1 = int(columns) - 1;
+    w.wrapped0 = 0;
+    w.wrapped1 = -1;
+    return w;
+  }
+  w.column0 = int(ceil(start * column_scale));
+  w.column1 = int(min(floor((start + width) * column_scale), columns - 1.0));
+  w.wrapped0 = int(max(ceil((start - 2.0 * pi) * column_scale), 0.0));
+  w.wrapped1 = int(min(floor((start + width - 2.0 * pi) * column_scale), columns - 1.0));
+  return w;
+}
+
+#endif

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// Arrays in device memory, reached by address.
+#ifndef VANTAGE_LIB_REFERENCES
+#define VANTAGE_LIB_REFERENCES
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_buffer_reference2 : require
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_arithmetic : require
+#extension GL_KHR_shader_subgroup_ballot : require
+
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Floats { float at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Uints { uint at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Vec2s { vec2 at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Vec3s { vec3 at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 16) buffer Vec4s { vec4 at[]; };
+layout(buffer_reference) buffer Bricks;
+layout(buffer_reference) buffer Slots;
+layout(buffer_reference) buffer Nodes;
+layout(buffer_reference) buffer BvhTriangles;
+layout(buffer_reference) buffer Parameters;
+layout(buffer_reference) buffer SampleVoxels;
+layout(buffer_reference) buffer SampleTriangles;
+layout(buffer_reference) buffer SampleStations;
+layout(buffer_reference) buffer SampleRays;
+layout(buffer_reference) buffer SampleItems;
+
+#include "shared/trace_types.h"
+
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Bricks { VoxelBrick at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer Slots { BrickSlot at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer Nodes { BvhNode at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer BvhTriangles { BvhTriangle at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer Parameters { TraceParameters at; };
+layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer SampleVoxels { SampleVoxel at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer SampleTriangles { SampleTriangle at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer SampleStations { SampleStation at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SampleRays { SampleRay at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SampleItems { SampleItem at[]; };
+
+// Whether an array is there at all; a macro, since glslang cannot overload on reference types.
+#define GIVEN(array) (uint64_t(array) != 0ul)
+
+// Adds to a 64-bit sum kept as two words, low first. Commutes, so the sum does not depend on the order of the adders.
+void add64(Uints sums, uint low, uint value) {
+  const uint before = atomicAdd(sums.at[low], value);
+  if (before + value < before) atomicAdd(sums.at[low + 1], 1);
+}
+
+#endif

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lists the rays of the real pattern that may put a point into a sampled voxel. A thread a pair of slot and voxel; pairs with many rays are
+// queued in parts, and the same code with QUEUE defined works through the queue, a thread a part.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "lib/references.glsl"
+#include "lib/sample.glsl"
+
+layout(local_size_x = 128) in;
+layout(push_constant, scalar) uniform Push { SamplePush push; };
+
+// Whether the ray passes near enough to the triangle that any engine might report a hit. The tolerance is 2^-16 of the largest coordinate,
+// tens of times the rounding of the engines' own tests.
+bool may_hit(SampleTriangle triangle, vec3 origin, vec3 d) {
+  const vec3 size = abs(d);
+  const bool major_x = size.x >= size.y && size.x >= size.z, major_y = !major_x && size.y >= size.z;
+  const vec3 s = major_x ? d.yzx : major_y ? d.zxy : d;
+  const vec3 p = triangle.a - origin, q = triangle.b - origin, r = triangle.c - origin;
+  const vec3 a = major_x ? p.yzx : major_y ? p.zxy : p, b = major_x ? q.yzx : major_y ? q.zxy : q,
+             c = major_x ? r.yzx : major_y ? r.zxy : r;
+  const vec2 shear = s.xy / s.z;
+  const vec2 u = a.xy - shear * a.z, v = b.xy - shear * b.z, w = c.xy - shear * c.z;
+  const vec3 largest = max(max(abs(a), abs(b)), abs(c));
+  const float reach = max(max(largest.x, largest.y), largest.z) * (1.0 / 65536.0);
+  const float eu = w.x * v.y - w.y * v.x, ev = u.x * w.y - u.y * w.x, ew = v.x * u.y - v.y * u.x;
+  const float tu = reach * (abs(v.x) + abs(v.y) + abs(w.x) + abs(w.y) + reach), tv = reach * (abs(u.x) + abs(u.y) + abs(w.x) + abs(w.y) + reach),
+              tw = reach * (abs(u.x) + abs(u.y) + abs(v.x) + abs(v.y) + reach);
+  return (eu >= -tu && ev >= -tv && ew >= -tw) || (eu <= tu && ev <= tv && ew <= tw);
+}
+
+bool is_candidate(Cube cube, vec3 origin, uint row, uint column, uint first_triangle, uint end_triangle) {
+  const vec3 d = ray_direction(push.parameters, row, column);
+  const vec2 range = passage(cube, d);
+  if (range.x > range.y || range.y + push.parameters.at.noise_reach < push.parameters.at.min_range ||
+      range.x - push.parameters.at.noise_reach > push.parameters.at.max_range)
+    return false;
+  for (uint t = first_triangle; t < end_triangle; ++t)
+    if (may_hit(push.triangles.at[t], origin, d)) return true;
+  return false;
+}
+
+void main() {
+#ifdef QUEUE
+  const uint k = (gl_WorkGroupID.y * sample_groups_x + gl_WorkGroupID.x) * 128u + gl_LocalInvocationIndex;
+  const uint queued = push.control.at[control_items];
+  const bool alive = queued <= push.item_capacity && k < queued;
+  SampleItem item = SampleItem(push.first_voxel, push.first_slot, 0u);
+  if (alive) item = push.items.at[k];
+#else
+  SampleItem item = SampleItem(push.first_voxel + gl_WorkGroupID.x * 128u + gl_LocalInvocationIndex, push.first_slot + gl_WorkGroupID.y, 0u);
+  const bool alive = item.voxel < push.end_voxel;
+  if (!alive) item.voxel = push.first_voxel;
+#endif
+  const SampleVoxel voxel = push.voxels.at[item.voxel];
+  const uint end_triangle = push.voxels.at[item.voxel + 1u].first_triangle;
+  const vec3 origin = push.stations.at[item.slot].origin;
+  const Cube cube = cube_of(push.parameters, voxel, origin);
+
+  uvec2 found = uvec2(0);  // a bit a ray
+  RayWindow window;
+  int columns = 0, first = 0;
+  if (alive) {
+    window = rays_of_box(push.parameters, cube.low, cube.high);
+    window.row0 = max(window.row0, int(push.first_row));
+    window.row1 = min(window.row1, int(push.end_row) - 1);
+    columns = column_count_of(window);
+    // 64 bits would be needed only for patterns of over 2^31 rays, which the host refuses.
+    const int count = row_count_of(window) * columns;
+#ifdef QUEUE
+    first = int(item.part * sample_part);
+    const int end = min(first + int(sample_part), count);
+#else
+    int end = count;
+    if (count > int(sample_part)) {
+      const uint parts = (uint(count) + sample_part - 1u) / sample_part;
+      const uint at = atomicAdd(push.control.at[control_items], parts);
+      for (uint p = 0; p < parts && at + p < push.item_capacity; ++p) push.items.at[at + p] = SampleItem(item.voxel, item.slot, p);
+      end = 0;
+    }
+#endif
+    for (int k = first; k < end; ++k) {
+      const uvec2 ray = ray_in_window(window, columns, k);
+      if (is_candidate(cube, origin, ray.x, ray.y, voxel.first_triangle, end_triangle)) {
+        const int bit = k - first;
+        if (bit < 32) found.x |= 1u << bit;
+        else found.y |= 1u << (bit - 32);
+      }
+    }
+  }
+
+  // One atomic a subgroup.
+  const uint mine = uint(bitCount(found.x) + bitCount(found.y));
+  const uint before = subgroupExclusiveAdd(mine), all = subgroupAdd(mine);
+  uint base = 0u;
+  if (subgroupElect() && all > 0u) base = atomicAdd(push.control.at[control_rays], all);
+  uint at = subgroupBroadcastFirst(base) + before;
+  while ((found.x | found.y) != 0u) {
+    const int bit = found.x != 0u ? findLSB(found.x) : 32 + findLSB(found.y);
+    if (bit < 32) found.x &= found.x - 1u;
+    else found.y &= found.y - 1u;
+    const uvec2 ray = ray_in_window(window, columns, first + bit);
+    if (at < push.ray_capacity) push.rays.at[at] = SampleRay(item.voxel, item.slot, ray.x * push.parameters.at.columns + ray.y);
+    ++at;
+  }
+}

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// Traces the listed rays up to the far side of their voxel's cube and counts the points that land in it: a thread a ray.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "lib/references.glsl"
+#include "lib/sample.glsl"
+#include "lib/shade.glsl"
+#include "lib/voxel.glsl"
+#include "trace/engine.glsl"
+
+layout(local_size_x = 128) in;
+layout(constant_id = 0) const bool with_noise = false;
+layout(constant_id = 1) const bool with_masks = true;
+layout(push_constant, scalar) uniform Push { SamplePush push; };
+
+void main() {
+  const uint k = (gl_WorkGroupID.y * sample_groups_x + gl_WorkGroupID.x) * 128u + gl_LocalInvocationIndex;
+  const uint listed = push.control.at[control_rays];
+  uint network = 0u;
+  bool traced = false;
+  if (listed <= push.ray_capacity && k < listed) {
+    const SampleRay job = push.rays.at[k];
+    const SampleStation station = push.stations.at[job.slot];
+    const SampleVoxel voxel = push.voxels.at[job.voxel];
+    network = station.network;
+    const uint entry = network * push.voxel_count + job.voxel;
+    traced = push.stop_at == 0u || push.counts.at[entry] < push.stop_at;
+    if (traced) {
+      const uint row = job.ray / push.parameters.at.columns, column = job.ray % push.parameters.at.columns;
+      const vec3 direction = ray_direction(push.parameters, row, column);
+      const Cube cube = cube_of(push.parameters, voxel, station.origin);
+      const vec2 range = passage(cube, direction);
+      const float reach = push.parameters.at.noise_reach + cube.slack;
+      const Hit hit = trace(push.parameters, station.origin, direction, push.parameters.at.min_range,
+                            min(push.parameters.at.max_range, range.y + reach), range.x - reach);
+      if (hit.id != no_primitive && (hit.id & surveyed_bit) != 0u) {
+        float t = hit.t;
+        if (with_noise) {
+          const uint triangle = hit.id & ~surveyed_bit;
+          const vec3 normal = oriented_normal(push.parameters, triangle, hit.barycentric, direction);
+          t = noisy_range(push.parameters, t, reflectivity_of(push.parameters, triangle, normal, direction), uint64_t(job.ray),
+                          station.place);
+        }
+        uvec3 cell;
+        if (cell_of(push.parameters, point_on_ray(station.origin, direction, t), cell) && cell == uvec3(voxel.x, voxel.y, voxel.z)) {
+          atomicAdd(push.counts.at[entry], 1u);
+          if (with_masks) {
+            const uint word = (network * push.mask_words + (station.place >> 5)) * push.voxel_count + job.voxel;
+            const uint bit = 1u << (station.place & 31u);
+            if ((push.masks.at[word] & bit) == 0u) atomicOr(push.masks.at[word], bit);
+          }
+        }
+      }
+    }
+  }
+  // Neighbouring rays mostly belong to one network: one addition a subgroup then.
+  const uint lowest = subgroupMin(traced ? network : 0xFFFFFFFFu), highest = subgroupMax(traced ? network : 0u);
+  const uint rays = subgroupAdd(traced ? 1u : 0u);
+  if (lowest == highest) {
+    if (subgroupElect()) add64(push.network_rays, 2u * lowest, rays);
+  } else if (traced) {
+    add64(push.network_rays, 2u * network, 1u);
+  }
+}

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scans rows of one station into the arrays that are wanted: a thread a ray.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "lib/references.glsl"
+#include "lib/pattern.glsl"
+#include "lib/shade.glsl"
+#include "lib/voxel.glsl"
+#include "trace/engine.glsl"
+
+layout(local_size_x = 128) in;  // block_columns × block_rows
+layout(constant_id = 0) const bool with_noise = false;
+layout(push_constant, scalar) uniform Push { ScanPush push; };
+
+void main() {
+  const uvec2 in_block = place_in_block(gl_LocalInvocationIndex);
+  const uint row = push.first_row + gl_WorkGroupID.y * block_rows + in_block.y;
+  const uint column = gl_WorkGroupID.x * block_columns + in_block.x;
+  if (row >= push.first_row + push.row_count || column >= push.parameters.at.columns) return;
+  const uint k = (row - push.first_row) * push.parameters.at.columns + column;
+
+  const vec3 direction = ray_direction(push.parameters, row, column);
+  const Hit hit = trace(push.parameters, push.origin, direction, push.parameters.at.min_range,
+                        push.parameters.at.max_range, want_nearest);
+  const bool is_point = hit.id != no_primitive;
+  const uint triangle = hit.id & ~surveyed_bit;
+  float t = uintBitsToFloat(0x7F800000u);
+  vec3 normal = vec3(0);
+  float reflectivity = 0.0;
+  uint rank = no_rank;
+  vec3 position = vec3(uintBitsToFloat(0x7FC00000u));
+  if (is_point) {
+    t = hit.t;
+    if (with_noise || GIVEN(push.normal) || GIVEN(push.reflectivity)) {
+      normal = oriented_normal(push.parameters, triangle, hit.barycentric, direction);
+      reflectivity = reflectivity_of(push.parameters, triangle, normal, direction);
+    }
+    if (with_noise)
+      t = noisy_range(push.parameters, t, reflectivity, uint64_t(row) * push.parameters.at.columns + column, push.place);
+    position = point_on_ray(push.origin, direction, t);
+    if (GIVEN(push.voxel) && (hit.id & surveyed_bit) != 0u) rank = rank_of(push.parameters, position);
+  }
+  if (GIVEN(push.range)) push.range.at[k] = t;
+  if (GIVEN(push.position)) push.position.at[k] = position;
+  if (GIVEN(push.normal)) push.normal.at[k] = normal;
+  if (GIVEN(push.reflectivity)) push.reflectivity.at[k] = reflectivity;
+  if (GIVEN(push.primitive)) push.primitive.at[k] = is_point ? triangle : no_primitive;
+  if (GIVEN(push.barycentric)) push.barycentric.at[k] = is_point ? hit.barycentric : vec2(0);
+  if (GIVEN(push.voxel)) push.voxel.at[k] = rank;
+}

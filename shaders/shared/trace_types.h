@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the tracing kernels are told: one block of parameters for a scene, and a push-constant block for each kernel.
+// Shaders reach every array by its address. Scalar layout; addresses come first, so that C++ and GLSL pad alike.
+#ifndef VANTAGE_SHARED_TRACE_TYPES_H
+#define VANTAGE_SHARED_TRACE_TYPES_H
+#include "host.h"
+#include "noise_types.h"
+#include "voxel_types.h"
+
+#ifdef __cplusplus
+#define VANTAGE_ADDRESS(type) std::uint64_t
+#else
+#define VANTAGE_ADDRESS(type) type
+#endif
+
+VANTAGE_SHARED_BEGIN
+
+VANTAGE_CONST uint surveyed_bit = 0x80000000u;   // of a scene triangle's number: its mesh is surveyed
+VANTAGE_CONST uint no_primitive = 0xFFFFFFFFu;
+VANTAGE_CONST uint no_rank = 0xFFFFFFFFu;
+
+// A workgroup traces a block of neighbouring rays, a tile is a square of blocks.
+VANTAGE_CONST uint block_columns = 16;
+VANTAGE_CONST uint block_rows = 8;
+VANTAGE_CONST uint tile_side = 32;
+VANTAGE_CONST uint blocks_per_tile = (tile_side / block_columns) * (tile_side / block_rows);
+VANTAGE_CONST uint tile_groups_y = 32768;        // tiles along y of an indirect dispatch; the rest goes to z
+
+// A binary BVH node: the boxes of both children. A child is a node's index, or a leaf: bit 31, triangle count − 1 in bits 28–30, first
+// triangle in the rest.
+VANTAGE_CONST uint bvh_leaf_bit = 0x80000000u;
+VANTAGE_CONST uint bvh_leaf_count_shift = 28;
+VANTAGE_CONST uint bvh_leaf_first_mask = 0x0FFFFFFFu;
+VANTAGE_CONST uint bvh_stack_size = 64;
+struct BvhNode {
+  vec3 min0;
+  uint child0;
+  vec3 max0;
+  uint child1;
+  vec3 min1;
+  uint unused0;
+  vec3 max1;
+  uint unused1;
+};
+
+// A triangle in leaf order; id is the scene's number with the surveyed bit.
+struct BvhTriangle {
+  vec3 a;
+  uint id;
+  vec3 b;
+  uint unused0;
+  vec3 c;
+  uint unused1;
+};
+
+struct TraceParameters {
+  VANTAGE_ADDRESS(Floats) sin_zenith;
+  VANTAGE_ADDRESS(Floats) cos_zenith;
+  VANTAGE_ADDRESS(Floats) sin_azimuth;
+  VANTAGE_ADDRESS(Floats) cos_azimuth;
+  VANTAGE_ADDRESS(Bricks) bricks;
+  VANTAGE_ADDRESS(Slots) slots;
+  VANTAGE_ADDRESS(Uints) primitive_ids;   // ray_query: triangle of the acceleration structure → scene's number with the surveyed bit
+  VANTAGE_ADDRESS(Nodes) nodes;           // compute_bvh
+  VANTAGE_ADDRESS(BvhTriangles) bvh_triangles;
+  // For normals, reflectivity and noise only; 0 where the run needs none.
+  VANTAGE_ADDRESS(Vec3s) positions;
+  VANTAGE_ADDRESS(Vec3s) normals;         // 0: geometric normals
+  VANTAGE_ADDRESS(Uints) triangles;       // three vertex numbers each
+  VANTAGE_ADDRESS(Floats) diffuse;        // per scene triangle
+  VANTAGE_ADDRESS(Floats) sigma;
+  VANTAGE_ADDRESS(Vec4s) normal_table;
+  uint rows;
+  uint columns;
+  float min_range;
+  float max_range;
+  vec3 voxel_min;
+  float voxel_inverse_size;
+  uint voxel_cells;                       // along each side of the grid
+  uint slot_mask;
+  uint brick_count;
+  float brick_size;                       // metres
+  vec3 bounds_min;                        // of all triangles
+  float noise_reach;
+  vec3 bounds_max;
+  float noise_min_range;
+  float noise_inverse_span;
+  uint seed_low;
+  uint seed_high;
+  float zenith_step;                      // radians
+  float azimuth_step;
+  float first_zenith;
+  float first_azimuth;
+  uint has_normals;
+};
+
+// Counts of one station. station_counters: 4 words a station, points and points that count, 64 bits each.
+struct CountPush {
+  VANTAGE_ADDRESS(Parameters) parameters;
+  VANTAGE_ADDRESS(Uints) counts;
+  VANTAGE_ADDRESS(Uints) masks;           // the 32-bit word that holds the station's bit, of every voxel
+  VANTAGE_ADDRESS(Uints) station_counters;
+  VANTAGE_ADDRESS(Floats) tile_far;
+  VANTAGE_ADDRESS(Uints) tile_list;       // number of tiles, then the tiles
+  vec3 origin;
+  uint place;
+  uint first_row;
+  uint row_count;
+};
+
+// Which tiles of directions see a surveyed brick, and how far the last one reaches.
+struct TilePush {
+  VANTAGE_ADDRESS(Parameters) parameters;
+  VANTAGE_ADDRESS(Uints) tile_far;        // bits of a non-negative float, which order as the float does; 0: nothing to see
+  VANTAGE_ADDRESS(Uints) tile_list;
+  VANTAGE_ADDRESS(Uints) dispatch;        // three words: an indirect dispatch
+  VANTAGE_ADDRESS(Uints) rays;            // rays of the listed tiles are added here, 64 bits
+  vec3 origin;
+  uint first_row;
+  uint row_count;
+  uint padding;
+};
+
+struct ScanPush {
+  VANTAGE_ADDRESS(Parameters) parameters;
+  VANTAGE_ADDRESS(Floats) range;          // an output that is not wanted has address 0
+  VANTAGE_ADDRESS(Vec3s) position;
+  VANTAGE_ADDRESS(Vec3s) normal;
+  VANTAGE_ADDRESS(Floats) reflectivity;
+  VANTAGE_ADDRESS(Uints) primitive;
+  VANTAGE_ADDRESS(Vec2s) barycentric;
+  VANTAGE_ADDRESS(Uints) voxel;
+  vec3 origin;
+  uint place;
+  uint first_row;
+  uint row_count;
+};
+
+// Keeps counts from wrapping: no count exceeds count_limit after it, and a dispatch adds less than the rest.
+VANTAGE_CONST uint count_limit = 0x80000000u;
+struct ClampPush {
+  VANTAGE_ADDRESS(Uints) counts;
+  uint voxel_count;
+  uint padding;
+};
+
+// Reduction of counts and masks, of one network or many, in interleaved groups: voxel k is in group k % groups. Totals of group g of
+// network n start at word (n · groups + g) · totals_stride: saturated voxels; points of the others (64 bits); the sum of squared
+// differences to the voxel before (64 bits); then seen[stations]; then shared[pairs].
+VANTAGE_CONST uint reduce_voxels = 256;    // voxels of a workgroup at a time
+VANTAGE_CONST uint reduce_rounds = 16;
+VANTAGE_CONST uint totals_saturated = 0;
+VANTAGE_CONST uint totals_partial = 1;
+VANTAGE_CONST uint totals_difference = 3;  // of min(count / goal, 1) in units of 1 / difference_scale
+VANTAGE_CONST uint totals_seen = 5;
+VANTAGE_CONST uint difference_scale = 4096;
+struct ReducePush {
+  VANTAGE_ADDRESS(Uints) counts;           // [network][voxel]
+  VANTAGE_ADDRESS(Uints) masks;            // [network][word][voxel]
+  VANTAGE_ADDRESS(Uints) totals;
+  VANTAGE_ADDRESS(Uints) station_counts;   // per network
+  uint voxel_count;
+  uint goal;                               // points that saturate a voxel
+  float difference_unit;                   // difference_scale / goal density
+  uint mask_words;                         // 0, 1 or 2
+  uint groups;
+  uint totals_stride;
+  uint first_network;
+  uint with_differences;
+};
+
+// Sampled evaluation. A slot is one station of one network; a pair is a slot and a sampled voxel.
+struct SampleVoxel {
+  uint x, y, z;                            // voxel coordinates
+  uint first_triangle;                     // of those that touch the cube; up to the next voxel's first
+};
+struct SampleTriangle {
+  vec3 a, b, c;                            // local frame
+};
+struct SampleStation {
+  vec3 origin;
+  uint place;
+  uint network;                            // within the batch
+};
+struct SampleRay {
+  uint voxel;                              // within the sample
+  uint slot;
+  uint ray;
+};
+// Part of a pair with more than sample_part rays.
+struct SampleItem {
+  uint voxel;
+  uint slot;
+  uint part;
+};
+VANTAGE_CONST uint sample_part = 64;
+VANTAGE_CONST uint sample_groups_x = 32768; // of an indirect dispatch; the rest goes to y
+// Control words of one chunk.
+VANTAGE_CONST uint control_rays = 0;        // rays listed, or wanted: more than the capacity means that the chunk must be cut
+VANTAGE_CONST uint control_items = 1;
+VANTAGE_CONST uint control_dispatch = 4;    // three words
+VANTAGE_CONST uint control_words = 8;
+struct SamplePush {
+  VANTAGE_ADDRESS(Parameters) parameters;
+  VANTAGE_ADDRESS(SampleVoxels) voxels;
+  VANTAGE_ADDRESS(SampleTriangles) triangles;
+  VANTAGE_ADDRESS(SampleStations) stations;
+  VANTAGE_ADDRESS(SampleRays) rays;
+  VANTAGE_ADDRESS(SampleItems) items;
+  VANTAGE_ADDRESS(Uints) control;
+  VANTAGE_ADDRESS(Uints) counts;           // [network][voxel]
+  VANTAGE_ADDRESS(Uints) masks;            // [network][word][voxel]
+  VANTAGE_ADDRESS(Uints) network_rays;     // 64 bits a network
+  uint voxel_count;                        // of the sample
+  uint first_voxel;
+  uint end_voxel;
+  uint first_slot;
+  uint first_row;
+  uint end_row;
+  uint ray_capacity;
+  uint item_capacity;
+  uint mask_words;
+  uint stop_at;                            // points at which a voxel needs no more; 0: never
+};
+
+VANTAGE_SHARED_END
+#endif

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// Projects the surveyed bricks on the sphere of directions around a station: a thread a brick. Every tile of rays that may see a brick
+// learns how far the farthest one reaches; the rest see nothing that counts. Bricks are widened by the noise's reach and by more than all
+// rounding, so nothing that counts is lost.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "lib/rays_of_box.glsl"
+#include "lib/references.glsl"
+
+layout(local_size_x = 128) in;
+layout(push_constant, scalar) uniform Push { TilePush push; };
+
+void mark(int row0, int row1, int column0, int column1, uint far) {
+  if (row0 > row1 || column0 > column1) return;
+  const uint tiles_in_row = (push.parameters.at.columns + tile_side - 1u) / tile_side;
+  for (uint r = uint(row0) / tile_side; r <= uint(row1) / tile_side; ++r)
+    for (uint c = uint(column0) / tile_side; c <= uint(column1) / tile_side; ++c) {
+      const uint tile = r * tiles_in_row + c;
+      // Reading first spares most atomics; values only grow.
+      if (push.tile_far.at[tile] < far) atomicMax(push.tile_far.at[tile], far);
+    }
+}
+
+void main() {
+  const uint i = gl_GlobalInvocationID.x;
+  if (i >= push.parameters.at.brick_count) return;
+  const VoxelBrick brick = push.parameters.at.bricks.at[i];
+  const float size = push.parameters.at.brick_size;
+  const vec3 corner = push.parameters.at.voxel_min + vec3(brick.x, brick.y, brick.z) * size;
+  const vec3 largest = max(abs(corner), abs(push.origin)) + size;
+  const float slack = max(max(largest.x, largest.y), largest.z) * (1.0 / 262144.0) + push.parameters.at.noise_reach;
+  const vec3 low = corner - push.origin - slack, high = corner - push.origin + (size + slack);
+  if (length(clamp(vec3(0), low, high)) > push.parameters.at.max_range) return;
+  const uint far = floatBitsToUint(length(max(abs(low), abs(high))) * 1.0001);
+  const RayWindow window = rays_of_box(push.parameters, low, high);
+  mark(window.row0, window.row1, window.column0, window.column1, far);
+  mark(window.row0, window.row1, window.wrapped0, window.wrapped1, far);
+}

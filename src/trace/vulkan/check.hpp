@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+// The one place where a VkResult becomes an exception.
+#pragma once
+
+#include <volk.h>
+
+namespace vantage::vulkan {
+
+// Throws Error: out_of_memory, device_failure. `what` names the call for the message.
+void check(VkResult result, const char* what);
+
+}  // namespace vantage::vulkan

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trace/vulkan/commands.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "trace/vulkan/check.hpp"
+
+namespace vantage::vulkan {
+namespace {
+
+constexpr VkDeviceSize staging_bytes = VkDeviceSize{32} << 20;
+
+void barrier(VkCommandBuffer commands, VkPipelineStageFlags from_stage, VkAccessFlags from, VkPipelineStageFlags to_stage,
+             VkAccessFlags to) {
+  VkMemoryBarrier memory{VK_STRUCTURE_TYPE_MEMORY_BARRIER, nullptr, from, to};
+  vkCmdPipelineBarrier(commands, from_stage, to_stage, 0, 1, &memory, 0, nullptr, 0, nullptr);
+}
+
+}  // namespace
+
+void shader_after_transfer(VkCommandBuffer commands) {
+  barrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
+          VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT,
+          VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_INDIRECT_COMMAND_READ_BIT);
+}
+
+void shader_after_shader(VkCommandBuffer commands) {
+  barrier(commands, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
+          VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT,
+          VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_INDIRECT_COMMAND_READ_BIT |
+              VK_ACCESS_TRANSFER_READ_BIT | VK_ACCESS_TRANSFER_WRITE_BIT);
+}
+
+Commands::Commands(Device& device) : device_(device) {
+  VkCommandPoolCreateInfo pool_info{};
+  pool_info.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
+  pool_info.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
+  pool_info.queueFamilyIndex = device.abilities().queue_family;
+  VkCommandPool pool = VK_NULL_HANDLE;
+  check(vkCreateCommandPool(device.handle(), &pool_info, nullptr, &pool), "vkCreateCommandPool");
+  pool_ = UniqueCommandPool(device.handle(), pool);
+  VkCommandBufferAllocateInfo allocate{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO, nullptr, pool, VK_COMMAND_BUFFER_LEVEL_PRIMARY, 1};
+  check(vkAllocateCommandBuffers(device.handle(), &allocate, &commands_), "vkAllocateCommandBuffers");
+  VkFenceCreateInfo fence_info{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO, nullptr, 0};
+  VkFence fence = VK_NULL_HANDLE;
+  check(vkCreateFence(device.handle(), &fence_info, nullptr, &fence), "vkCreateFence");
+  fence_ = UniqueFence(device.handle(), fence);
+  VkQueryPoolCreateInfo queries{};
+  queries.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
+  queries.queryType = VK_QUERY_TYPE_TIMESTAMP;
+  queries.queryCount = 2;
+  VkQueryPool query_pool = VK_NULL_HANDLE;
+  check(vkCreateQueryPool(device.handle(), &queries, nullptr, &query_pool), "vkCreateQueryPool");
+  timestamps_ = UniqueQueryPool(device.handle(), query_pool);
+}
+
+double Commands::run(const std::function<void(VkCommandBuffer)>& record) {
+  VkCommandBufferBeginInfo begin{};
+  begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
+  begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+  check(vkBeginCommandBuffer(commands_, &begin), "vkBeginCommandBuffer");
+  vkCmdResetQueryPool(commands_, timestamps_.get(), 0, 2);
+  vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, timestamps_.get(), 0);
+  record(commands_);
+  // What was written must be visible to a host that reads mapped memory.
+  barrier(commands_, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_WRITE_BIT, VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
+  vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, timestamps_.get(), 1);
+  check(vkEndCommandBuffer(commands_), "vkEndCommandBuffer");
+
+  VkSubmitInfo submit{};
+  submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
+  submit.commandBufferCount = 1;
+  submit.pCommandBuffers = &commands_;
+  check(vkQueueSubmit(device_.queue(), 1, &submit, fence_.get()), "vkQueueSubmit");
+  const VkFence fence = fence_.get();
+  check(vkWaitForFences(device_.handle(), 1, &fence, VK_TRUE, UINT64_MAX), "vkWaitForFences");
+  check(vkResetFences(device_.handle(), 1, &fence), "vkResetFences");
+  device_.instance().check_validation();
+
+  std::array<std::uint64_t, 2> ticks{};
+  check(vkGetQueryPoolResults(device_.handle(), timestamps_.get(), 0, 2, sizeof ticks, ticks.data(), sizeof ticks[0],
+                              VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
+        "vkGetQueryPoolResults");
+  return static_cast<double>(ticks[1] - ticks[0]) * device_.timestamp_period_ns() * 1e-9;
+}
+
+void Commands::upload(const Buffer& to, const void* data, VkDeviceSize bytes) {
+  if (bytes == 0) return;
+  const VkDeviceSize wanted = std::min(bytes, staging_bytes);
+  if (!staging_up_ || staging_up_.size() < wanted) staging_up_ = Buffer(device_, wanted, Buffer::Where::upload, "staging up");
+  for (VkDeviceSize done = 0; done < bytes; done += staging_up_.size()) {
+    const VkDeviceSize part = std::min(staging_up_.size(), bytes - done);
+    std::memcpy(staging_up_.mapped<void>(), static_cast<const std::byte*>(data) + done, part);
+    run([&](VkCommandBuffer c) {
+      const VkBufferCopy region{0, done, part};
+      vkCmdCopyBuffer(c, staging_up_.handle(), to.handle(), 1, &region);
+    });
+  }
+}
+
+void Commands::download(const Buffer& from, void* data, VkDeviceSize bytes, VkDeviceSize offset) {
+  if (bytes == 0) return;
+  const VkDeviceSize wanted = std::min(bytes, staging_bytes);
+  if (!staging_down_ || staging_down_.size() < wanted)
+    staging_down_ = Buffer(device_, wanted, Buffer::Where::download, "staging down");
+  for (VkDeviceSize done = 0; done < bytes; done += staging_down_.size()) {
+    const VkDeviceSize part = std::min(staging_down_.size(), bytes - done);
+    run([&](VkCommandBuffer c) {
+      const VkBufferCopy region{offset + done, 0, part};
+      vkCmdCopyBuffer(c, from.handle(), staging_down_.handle(), 1, &region);
+    });
+    std::memcpy(static_cast<std::byte*>(data) + done, staging_down_.mapped<void>(), part);
+  }
+}
+
+}  // namespace vantage::vulkan

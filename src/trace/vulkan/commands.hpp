@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// Recording and submitting work: one command buffer, one submission per batch, one fence.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "trace/vulkan/buffer.hpp"
+#include "trace/vulkan/device.hpp"
+#include "trace/vulkan/unique.hpp"
+
+namespace vantage::vulkan {
+
+class Commands {
+ public:
+  explicit Commands(Device& device);
+
+  // Records what `record` does to the command buffer, submits it and waits. Returns the seconds that the device spent on it.
+  // Throws Error device_failure, also for what the validation layer found.
+  double run(const std::function<void(VkCommandBuffer)>& record);
+
+  // Copies host memory into a device buffer, and back, through mapped buffers of bounded size.
+  void upload(const Buffer& to, const void* data, VkDeviceSize bytes);
+  void download(const Buffer& from, void* data, VkDeviceSize bytes, VkDeviceSize offset = 0);
+
+ private:
+  Device& device_;
+  UniqueCommandPool pool_;
+  UniqueFence fence_;
+  UniqueQueryPool timestamps_;
+  VkCommandBuffer commands_ = VK_NULL_HANDLE;
+  Buffer staging_up_, staging_down_;
+};
+
+// The two barriers that our work needs.
+void shader_after_transfer(VkCommandBuffer);  // shaders (and indirect dispatches) see earlier fills and copies
+void shader_after_shader(VkCommandBuffer);    // shaders, indirect dispatches and copies see what earlier shaders wrote
+
+// A device buffer holding `values`.
+template <class T>
+Buffer make_device_buffer(Device& device, Commands& commands, std::span<const T> values, const char* name, VkBufferUsageFlags extra = 0) {
+  static_assert(std::is_trivially_copyable_v<T>);
+  Buffer buffer(device, values.size_bytes(), Buffer::Where::device, name, extra);
+  commands.upload(buffer, values.data(), values.size_bytes());
+  return buffer;
+}
+
+}  // namespace vantage::vulkan

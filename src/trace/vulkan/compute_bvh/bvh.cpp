@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trace/vulkan/compute_bvh/bvh.hpp"
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_group.h>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <limits>
+#include <numeric>
+
+namespace vantage {
+namespace {
+
+constexpr std::uint32_t max_leaf = 2;
+constexpr int bins = 16;
+// From here on halves are cut by count, so the depth stays below 40 + log2(2^28 / 2) < bvh_stack_size − 1 entries on the stack.
+constexpr std::uint32_t max_sah_depth = 34;
+constexpr std::size_t parallel_grain = 8192;
+
+struct Bounds3 {
+  std::array<float, 3> min, max;
+  Bounds3() {
+    min.fill(std::numeric_limits<float>::infinity());
+    max.fill(-std::numeric_limits<float>::infinity());
+  }
+  void extend(const Bounds3& b) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      min[k] = std::min(min[k], b.min[k]);
+      max[k] = std::max(max[k], b.max[k]);
+    }
+  }
+  void extend(const Float3& p) {
+    const std::array<float, 3> v{p.x, p.y, p.z};
+    for (std::size_t k = 0; k < 3; ++k) {
+      min[k] = std::min(min[k], v[k]);
+      max[k] = std::max(max[k], v[k]);
+    }
+  }
+  float half_area() const {
+    const float x = max[0] - min[0], y = max[1] - min[1], z = max[2] - min[2];
+    return x < 0 ? 0.0f : x * y + y * z + z * x;
+  }
+};
+
+struct Item {
+  Bounds3 box;
+  std::uint32_t triangle;
+  float centre(std::size_t axis) const { return 0.5f * (box.min[axis] + box.max[axis]); }
+};
+
+// A subtree over items [begin, end) may use node slots [slot, slot + end − begin), which no other subtree touches.
+class Builder {
+ public:
+  explicit Builder(std::vector<Item>& items) : items_(items), nodes_(items.size()) {}
+
+  // Builds the subtree and returns its child word.
+  std::uint32_t build(std::size_t begin, std::size_t end, std::uint32_t slot, std::uint32_t depth) {
+    const std::size_t count = end - begin;
+    if (count <= max_leaf)
+      return bvh_leaf_bit | static_cast<std::uint32_t>(count - 1) << bvh_leaf_count_shift | static_cast<std::uint32_t>(begin);
+    const std::size_t middle = split(begin, end, depth);
+    Bounds3 left, right;
+    std::uint32_t left_word = 0, right_word = 0;
+    const auto build_left = [&] {
+      for (std::size_t i = begin; i < middle; ++i) left.extend(items_[i].box);
+      left_word = build(begin, middle, slot + 1, depth + 1);
+    };
+    const auto build_right = [&] {
+      for (std::size_t i = middle; i < end; ++i) right.extend(items_[i].box);
+      right_word = build(middle, end, slot + static_cast<std::uint32_t>(middle - begin), depth + 1);
+    };
+    if (count > parallel_grain) {
+      tbb::task_group group;
+      group.run(build_left);
+      build_right();
+      group.wait();
+    } else {
+      build_left();
+      build_right();
+    }
+    set_node(slot, left, left_word, right, right_word);
+    return slot;
+  }
+
+  void set_node(std::uint32_t slot, const Bounds3& a, std::uint32_t child0, const Bounds3& b, std::uint32_t child1) {
+    nodes_[slot] = {{a.min[0], a.min[1], a.min[2]}, child0, {a.max[0], a.max[1], a.max[2]}, child1,
+                    {b.min[0], b.min[1], b.min[2]}, 0,      {b.max[0], b.max[1], b.max[2]}, 0};
+  }
+  const std::vector<BvhNode>& nodes() const { return nodes_; }
+
+ private:
+  std::size_t split(std::size_t begin, std::size_t end, std::uint32_t depth) {
+    Bounds3 centres;
+    for (std::size_t i = begin; i < end; ++i) centres.extend(Float3{items_[i].centre(0), items_[i].centre(1), items_[i].centre(2)});
+    std::size_t best_axis = 0;
+    int best_bin = -1;
+    if (depth < max_sah_depth) {
+      float best_cost = std::numeric_limits<float>::infinity();
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const float low = centres.min[axis], extent = centres.max[axis] - low;
+        if (!(extent > 0)) continue;
+        const float scale = static_cast<float>(bins) / extent;
+        std::array<Bounds3, bins> boxes;
+        std::array<std::size_t, bins> counts{};
+        for (std::size_t i = begin; i < end; ++i) {
+          const int bin = bin_of(items_[i].centre(axis), low, scale);
+          boxes[static_cast<std::size_t>(bin)].extend(items_[i].box);
+          ++counts[static_cast<std::size_t>(bin)];
+        }
+        std::array<float, bins> right_cost{};
+        Bounds3 box;
+        std::size_t n = 0;
+        for (int b = bins - 1; b > 0; --b) {
+          box.extend(boxes[static_cast<std::size_t>(b)]);
+          n += counts[static_cast<std::size_t>(b)];
+          right_cost[static_cast<std::size_t>(b)] = n ? box.half_area() * static_cast<float>(n) : 0;
+        }
+        box = Bounds3();
+        n = 0;
+        for (int b = 0; b + 1 < bins; ++b) {
+          box.extend(boxes[static_cast<std::size_t>(b)]);
+          n += counts[static_cast<std::size_t>(b)];
+          if (n == 0 || n == end - begin) continue;
+          const float cost = box.half_area() * static_cast<float>(n) + right_cost[static_cast<std::size_t>(b) + 1];
+          if (cost < best_cost) {
+            best_cost = cost;
+            best_axis = axis;
+            best_bin = b;
+          }
+        }
+      }
+    }
+    const auto first = items_.begin() + static_cast<std::ptrdiff_t>(begin), last = items_.begin() + static_cast<std::ptrdiff_t>(end);
+    if (best_bin >= 0) {
+      const float low = centres.min[best_axis], scale = static_cast<float>(bins) / (centres.max[best_axis] - low);
+      const auto middle = std::stable_partition(
+          first, last, [&](const Item& item) { return bin_of(item.centre(best_axis), low, scale) <= best_bin; });
+      return static_cast<std::size_t>(middle - items_.begin());
+    }
+    // All centres coincide, or the tree is deep already: halves along the longest axis.
+    std::size_t axis = 0;
+    for (std::size_t k = 1; k < 3; ++k)
+      if (centres.max[k] - centres.min[k] > centres.max[axis] - centres.min[axis]) axis = k;
+    const std::size_t middle = begin + (end - begin) / 2;
+    std::nth_element(first, items_.begin() + static_cast<std::ptrdiff_t>(middle), last, [&](const Item& a, const Item& b) {
+      const float x = a.centre(axis), y = b.centre(axis);
+      return x != y ? x < y : a.triangle < b.triangle;
+    });
+    return middle;
+  }
+
+  static int bin_of(float centre, float low, float scale) {
+    return std::clamp(static_cast<int>((centre - low) * scale), 0, bins - 1);
+  }
+
+  std::vector<Item>& items_;
+  std::vector<BvhNode> nodes_;
+};
+
+// Copies the used nodes depth first, so that a node's first child follows it.
+std::vector<BvhNode> compact(const std::vector<BvhNode>& sparse, std::uint32_t root) {
+  std::vector<BvhNode> dense;
+  struct Todo {
+    std::uint32_t slot, parent, child;
+  };
+  std::vector<Todo> todo{{root, no_primitive, 0}};
+  while (!todo.empty()) {
+    const Todo t = todo.back();
+    todo.pop_back();
+    const auto at = static_cast<std::uint32_t>(dense.size());
+    dense.push_back(sparse[t.slot]);
+    if (t.parent != no_primitive) (t.child == 0 ? dense[t.parent].child0 : dense[t.parent].child1) = at;
+    const BvhNode node = dense.back();
+    if (!(node.child1 & bvh_leaf_bit)) todo.push_back({node.child1, at, 1});
+    if (!(node.child0 & bvh_leaf_bit)) todo.push_back({node.child0, at, 0});
+  }
+  return dense;
+}
+
+}  // namespace
+
+Bvh build_bvh(std::span<const Float3> positions, std::span<const Triangle> triangles, std::span<const std::uint32_t> ids) {
+  assert(triangles.size() == ids.size() && triangles.size() < bvh_leaf_first_mask);
+  std::vector<Item> items(triangles.size());
+  tbb::parallel_for(std::size_t{0}, items.size(), [&](std::size_t k) {
+    for (const std::uint32_t vertex : triangles[k]) items[k].box.extend(positions[vertex]);
+    items[k].triangle = static_cast<std::uint32_t>(k);
+  });
+
+  Bvh bvh;
+  Builder builder(items);
+  if (items.size() <= max_leaf) {
+    // The root must be a node: one child holds everything, the other box is empty, which no ray enters.
+    Bounds3 all;
+    for (const auto& item : items) all.extend(item.box);
+    const std::uint32_t leaf = bvh_leaf_bit | static_cast<std::uint32_t>(items.size() - 1) << bvh_leaf_count_shift;
+    bvh.nodes.resize(1);
+    const float infinity = std::numeric_limits<float>::infinity();
+    bvh.nodes[0] = {{all.min[0], all.min[1], all.min[2]}, leaf, {all.max[0], all.max[1], all.max[2]}, leaf,
+                    {infinity, infinity, infinity},       0,    {infinity, infinity, infinity},       0};
+  } else {
+    const std::uint32_t root = builder.build(0, items.size(), 0, 0);
+    bvh.nodes = compact(builder.nodes(), root);
+  }
+  bvh.triangles.resize(items.size());
+  tbb::parallel_for(std::size_t{0}, items.size(), [&](std::size_t k) {
+    const std::uint32_t t = items[k].triangle;
+    const Float3 a = positions[triangles[t][0]], b = positions[triangles[t][1]], c = positions[triangles[t][2]];
+    bvh.triangles[k] = {{a.x, a.y, a.z}, ids[t], {b.x, b.y, b.z}, 0, {c.x, c.y, c.z}, 0};
+  });
+  return bvh;
+}
+
+}  // namespace vantage

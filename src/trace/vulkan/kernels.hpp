@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// The compute pipelines of one engine on one device, each compiled when first used: a run pays only for what it asks for.
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+
+#include "trace/vulkan/device.hpp"
+#include "trace/vulkan/pipeline.hpp"
+
+namespace vantage::vulkan {
+
+enum class Kernel { count, scan, tiles, tile_list, clamp, reduce, sample_list, sample_queue, sample_arguments, sample_trace };
+
+class Kernels {
+ public:
+  // `set_layout` is that of the acceleration structure, or null for compute_bvh.
+  Kernels(const Device& device, Engine engine, VkDescriptorSetLayout set_layout) : device_(device), engine_(engine), set_layout_(set_layout) {}
+
+  // `constants` are the kernel's specialization constants, in the order of their constant_id.
+  const ComputePipeline& get(Kernel kernel, std::array<bool, 3> constants = {});
+
+ private:
+  const Device& device_;
+  Engine engine_;
+  VkDescriptorSetLayout set_layout_;
+  std::map<std::pair<Kernel, std::array<bool, 3>>, ComputePipeline> pipelines_;
+};
+
+}  // namespace vantage::vulkan

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trace/vulkan/ray_query/acceleration_structure.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "trace/vulkan/check.hpp"
+#include "trace/vulkan/ray_query/median_sort.hpp"
+
+namespace vantage::vulkan {
+namespace {
+
+constexpr std::uint32_t blas_triangles = 1u << 23;  // as in shaders/trace/ray_query.glsl
+
+VkDeviceAddress address_of(const Device& device, VkAccelerationStructureKHR structure) {
+  VkAccelerationStructureDeviceAddressInfoKHR info{VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_DEVICE_ADDRESS_INFO_KHR, nullptr, structure};
+  return vkGetAccelerationStructureDeviceAddressKHR(device.handle(), &info);
+}
+
+}  // namespace
+
+AccelerationStructure::Level AccelerationStructure::build(VkAccelerationStructureTypeKHR type, const VkAccelerationStructureGeometryKHR& geometry,
+                                                          std::uint32_t count, const char* name) {
+  VkAccelerationStructureBuildGeometryInfoKHR info{};
+  info.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_BUILD_GEOMETRY_INFO_KHR;
+  info.type = type;
+  info.flags = VK_BUILD_ACCELERATION_STRUCTURE_PREFER_FAST_TRACE_BIT_KHR;
+  info.mode = VK_BUILD_ACCELERATION_STRUCTURE_MODE_BUILD_KHR;
+  info.geometryCount = 1;
+  info.pGeometries = &geometry;
+  VkAccelerationStructureBuildSizesInfoKHR sizes{};
+  sizes.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_BUILD_SIZES_INFO_KHR;
+  vkGetAccelerationStructureBuildSizesKHR(device_.handle(), VK_ACCELERATION_STRUCTURE_BUILD_TYPE_DEVICE_KHR, &info, &count, &sizes);
+
+  Level level;
+  level.storage = Buffer(device_, sizes.accelerationStructureSize, Buffer::Where::device, name,
+                         VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_STORAGE_BIT_KHR);
+  VkAccelerationStructureCreateInfoKHR create{};
+  create.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_CREATE_INFO_KHR;
+  create.buffer = level.storage.handle();
+  create.size = sizes.accelerationStructureSize;
+  create.type = type;
+  VkAccelerationStructureKHR structure = VK_NULL_HANDLE;
+  check(vkCreateAccelerationStructureKHR(device_.handle(), &create, nullptr, &structure), name);
+  level.handle = UniqueAccelerationStructure(device_.handle(), structure);
+
+  const VkDeviceSize alignment = device_.scratch_alignment();
+  const Buffer scratch(device_, sizes.buildScratchSize + alignment, Buffer::Where::device, "acceleration structure scratch");
+  info.dstAccelerationStructure = structure;
+  info.scratchData.deviceAddress = (scratch.address() + alignment - 1) / alignment * alignment;
+  const VkAccelerationStructureBuildRangeInfoKHR range{count, 0, 0, 0};
+  const VkAccelerationStructureBuildRangeInfoKHR* ranges = &range;
+  // A submission of its own, which waits: what follows sees the finished structure, and the scratch may go.
+  commands_.run([&](VkCommandBuffer c) { vkCmdBuildAccelerationStructuresKHR(c, 1, &info, &ranges); });
+  return level;
+}
+
+AccelerationStructure::AccelerationStructure(Device& device, Commands& commands, std::span<const Float3> positions,
+                                             std::span<const Triangle> triangles, std::span<const std::uint32_t> ids)
+    : device_(device), commands_(commands) {
+  std::vector<std::uint32_t> order;
+  if (device.abilities().software()) {
+    order = median_sort(positions, triangles);
+  } else {
+    order.resize(triangles.size());
+    std::iota(order.begin(), order.end(), 0u);
+  }
+  std::vector<Triangle> sorted(order.size());
+  std::vector<std::uint32_t> sorted_ids(order.size());
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    sorted[k] = triangles[order[k]];
+    sorted_ids[k] = ids[order[k]];
+  }
+  ids_ = make_device_buffer<std::uint32_t>(device, commands, sorted_ids, "primitive ids");
+
+  const VkBufferUsageFlags input = VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR;
+  const Buffer vertices = make_device_buffer<Float3>(device, commands, positions, "vertices of the build", input);
+  const Buffer indices = make_device_buffer<Triangle>(device, commands, sorted, "indices of the build", input);
+  std::vector<VkAccelerationStructureInstanceKHR> instances;
+  for (std::size_t first = 0; first < sorted.size(); first += blas_triangles) {
+    const auto count = static_cast<std::uint32_t>(std::min<std::size_t>(blas_triangles, sorted.size() - first));
+    VkAccelerationStructureGeometryKHR geometry{};
+    geometry.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_KHR;
+    geometry.geometryType = VK_GEOMETRY_TYPE_TRIANGLES_KHR;
+    geometry.flags = VK_GEOMETRY_OPAQUE_BIT_KHR;
+    auto& t = geometry.geometry.triangles;
+    t.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_TRIANGLES_DATA_KHR;
+    t.vertexFormat = VK_FORMAT_R32G32B32_SFLOAT;
+    t.vertexData.deviceAddress = vertices.address();
+    t.vertexStride = sizeof(Float3);
+    t.maxVertex = static_cast<std::uint32_t>(positions.size() - 1);
+    t.indexType = VK_INDEX_TYPE_UINT32;
+    t.indexData.deviceAddress = indices.address() + first * sizeof(Triangle);
+    bottom_.push_back(build(VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR, geometry, count, "bottom-level acceleration structure"));
+    VkAccelerationStructureInstanceKHR instance{};
+    instance.transform = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
+    instance.instanceCustomIndex = static_cast<std::uint32_t>(instances.size()) & 0xFFFFFFu;
+    instance.mask = 0xFF;
+    instance.flags = VK_GEOMETRY_INSTANCE_TRIANGLE_FACING_CULL_DISABLE_BIT_KHR;
+    instance.accelerationStructureReference = address_of(device, bottom_.back().handle.get());
+    instances.push_back(instance);
+  }
+  const Buffer instance_buffer = make_device_buffer<VkAccelerationStructureInstanceKHR>(device, commands, instances, "instances", input);
+  VkAccelerationStructureGeometryKHR geometry{};
+  geometry.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_KHR;
+  geometry.geometryType = VK_GEOMETRY_TYPE_INSTANCES_KHR;
+  geometry.flags = VK_GEOMETRY_OPAQUE_BIT_KHR;
+  geometry.geometry.instances.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_INSTANCES_DATA_KHR;
+  geometry.geometry.instances.data.deviceAddress = instance_buffer.address();
+  top_ = build(VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR, geometry, static_cast<std::uint32_t>(instances.size()),
+               "top-level acceleration structure");
+
+  const VkDescriptorSetLayoutBinding binding{0, VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr};
+  VkDescriptorSetLayoutCreateInfo layout_info{};
+  layout_info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
+  layout_info.bindingCount = 1;
+  layout_info.pBindings = &binding;
+  VkDescriptorSetLayout layout = VK_NULL_HANDLE;
+  check(vkCreateDescriptorSetLayout(device.handle(), &layout_info, nullptr, &layout), "vkCreateDescriptorSetLayout");
+  set_layout_ = UniqueSetLayout(device.handle(), layout);
+  const VkDescriptorPoolSize pool_size{VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, 1};
+  VkDescriptorPoolCreateInfo pool_info{};
+  pool_info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
+  pool_info.maxSets = 1;
+  pool_info.poolSizeCount = 1;
+  pool_info.pPoolSizes = &pool_size;
+  VkDescriptorPool pool = VK_NULL_HANDLE;
+  check(vkCreateDescriptorPool(device.handle(), &pool_info, nullptr, &pool), "vkCreateDescriptorPool");
+  pool_ = UniqueDescriptorPool(device.handle(), pool);
+  VkDescriptorSetAllocateInfo allocate{};
+  allocate.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
+  allocate.descriptorPool = pool;
+  allocate.descriptorSetCount = 1;
+  allocate.pSetLayouts = &layout;
+  check(vkAllocateDescriptorSets(device.handle(), &allocate, &set_), "vkAllocateDescriptorSets");
+  const VkAccelerationStructureKHR structure = top_.handle.get();
+  VkWriteDescriptorSetAccelerationStructureKHR structures{};
+  structures.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET_ACCELERATION_STRUCTURE_KHR;
+  structures.accelerationStructureCount = 1;
+  structures.pAccelerationStructures = &structure;
+  VkWriteDescriptorSet write{};
+  write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
+  write.pNext = &structures;
+  write.dstSet = set_;
+  write.descriptorCount = 1;
+  write.descriptorType = VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR;
+  vkUpdateDescriptorSets(device.handle(), 1, &write, 0, nullptr);
+}
+
+}  // namespace vantage::vulkan

@@ -1,0 +1,731 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trace/vulkan/vulkan_tracer.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdlib>
+#include <deque>
+#include <numeric>
+#include <string>
+
+#include "core/normal_table.hpp"
+#include "shared/trace_types.h"
+#include "trace/vulkan/commands.hpp"
+#include "trace/vulkan/compute_bvh/bvh.hpp"
+#include "trace/vulkan/kernels.hpp"
+#include "trace/vulkan/ray_query/acceleration_structure.hpp"
+#include "vantage/error.hpp"
+#include "voxel/voxel_triangles.hpp"
+
+namespace vantage {
+namespace {
+
+using namespace vulkan;
+
+static_assert(std::is_trivially_copyable_v<TraceParameters> && sizeof(Float3) == sizeof(vec3));
+
+constexpr std::uint32_t group_size = 128;
+// A dispatch of so many rays takes a fraction of a watchdog's limit even on a slow device of its kind.
+constexpr std::uint64_t hardware_rays_per_dispatch = std::uint64_t{1} << 26, software_rays_per_dispatch = std::uint64_t{1} << 19;
+
+std::uint32_t groups_of(std::uint64_t threads, std::uint32_t size = group_size) {
+  return static_cast<std::uint32_t>((threads + size - 1) / size);
+}
+
+std::string join(const std::vector<std::string>& parts) {
+  return std::accumulate(parts.begin(), parts.end(), std::string(),
+                         [](std::string all, const std::string& part) { return all.empty() ? part : std::move(all) + ", " + part; });
+}
+
+EngineInfo describe(Engine engine, const DeviceAbilities& abilities, std::uint32_t index) {
+  EngineInfo info;
+  info.engine = engine;
+  info.device = abilities.name;
+  info.driver = abilities.driver;
+  info.device_index = index;
+  info.software = abilities.software();
+  std::vector<std::string> lacks = abilities.compute_lacks;
+  if (engine == Engine::ray_query) lacks.insert(lacks.end(), abilities.ray_query_lacks.begin(), abilities.ray_query_lacks.end());
+  info.usable = lacks.empty();
+  if (!info.usable) {
+    info.reason = "lacks " + join(lacks);
+    if (engine == Engine::ray_query && info.software && abilities.compute_lacks.empty())
+      info.reason += "; install mesa-vulkan-drivers >= 24.1";
+  } else {
+    info.reason = info.software ? "a software device" : "usable";
+  }
+  return info;
+}
+
+bool validation_wanted(const TraceScene& scene) {
+  const char* variable = std::getenv("VANTAGE_VALIDATION");
+  return scene.validation || (variable && *variable && std::string(variable) != "0");
+}
+
+class VulkanTracer final : public Tracer {
+ public:
+  VulkanTracer(const EngineInfo& info, std::shared_ptr<Instance> instance, VkPhysicalDevice physical, const DeviceAbilities& abilities,
+               const TraceScene& scene)
+      : info_(info),
+        scene_(scene),
+        device_(std::move(instance), physical, abilities, info.engine == Engine::ray_query),
+        commands_(device_),
+        kernels_(build_traversal()) {
+    if (scene.pattern->rows() > 0xFFFFu * block_rows || std::uint64_t{scene.pattern->rows()} * scene.pattern->columns() >= std::uint64_t{1} << 31)
+      throw Error(Errc::invalid_argument, "the scan pattern has " + std::to_string(scene.pattern->rows()) + " x " +
+                                              std::to_string(scene.pattern->columns()) +
+                                              " rays; this engine takes fewer than 2^31 a station: use larger steps");
+    upload_scene();
+  }
+
+  const EngineInfo& info() const override { return info_; }
+  std::uint64_t preferred_scan_rays() const override { return std::min(rays_per_dispatch(), std::uint64_t{1} << 22); }
+
+  void scan(const TraceStation& station, std::uint64_t first_ray, std::uint64_t ray_count, std::uint32_t outputs, RawChunk& chunk) override;
+  NetworkCounts count(std::span<const TraceStation> stations, std::uint32_t station_count, const CountOptions& options,
+                      const Progress& progress) override;
+  std::vector<NetworkCounts> count_sampled(std::span<const std::vector<TraceStation>> networks, std::span<const std::uint32_t> station_counts,
+                                           const SampleJob& job, const Progress& progress) override;
+
+ private:
+  Kernels build_traversal();
+  void upload_scene();
+  void upload_shading();
+  void upload_sample(std::span<const std::uint32_t> sample);
+  void write_parameters() { commands_.upload(parameters_buffer_, &parameters_, sizeof parameters_); }
+  VkDescriptorSet set() const { return structure_ ? structure_->set() : VK_NULL_HANDLE; }
+  bool noise() const { return scene_.noise && scene_.noise->enabled(); }
+  std::uint64_t rays_per_dispatch() const {
+    if (scene_.max_rays_per_dispatch > 0) return scene_.max_rays_per_dispatch;
+    return info_.software ? software_rays_per_dispatch : hardware_rays_per_dispatch;
+  }
+  std::uint32_t goal_points() const {
+    return static_cast<std::uint32_t>(std::min(std::ceil(goal_density_), static_cast<double>(count_limit)));
+  }
+  std::uint32_t rows_per_dispatch() const {
+    const std::uint64_t rows = rays_per_dispatch() / scene_.pattern->columns() / tile_side * tile_side;
+    return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(rows, tile_side, 0xFFFFu * std::uint64_t{block_rows}));
+  }
+
+  // Grows a buffer that is kept from call to call.
+  void ensure(Buffer& buffer, VkDeviceSize bytes, const char* name, VkBufferUsageFlags extra = 0) {
+    if (!buffer || buffer.size() < bytes) {
+      buffer = Buffer();  // the old one goes first, so that both never exist at once
+      buffer = Buffer(device_, bytes, Buffer::Where::device, name, extra);
+    }
+  }
+  template <class T>
+  Buffer to_device(std::span<const T> values, const char* name) {
+    return make_device_buffer<T>(device_, commands_, values, name);
+  }
+
+  // Records the reduction of `networks` blocks of counts and masks, and reads totals back into counts.
+  struct Reduction {
+    std::uint64_t counts, masks;  // addresses
+    std::uint32_t voxels, groups, mask_words;
+    bool differences;
+  };
+  void record_reduction(VkCommandBuffer c, const Reduction& r, std::uint32_t first_network, std::uint32_t networks, std::uint32_t stride);
+  void read_totals(std::span<NetworkCounts> counts, std::span<const std::uint32_t> station_counts, const Reduction& r, std::uint32_t stride);
+  void prepare_totals(std::span<const std::uint32_t> station_counts, std::uint32_t groups, std::uint32_t stride);
+
+  EngineInfo info_;
+  TraceScene scene_;
+  Device device_;
+  Commands commands_;
+  std::unique_ptr<AccelerationStructure> structure_;  // ray_query
+  Buffer nodes_, bvh_triangles_;                      // compute_bvh
+  TraceParameters parameters_{};                      // before kernels_, whose making fills a part of it
+  Kernels kernels_;
+  Buffer parameters_buffer_, sin_zenith_, cos_zenith_, sin_azimuth_, cos_azimuth_, bricks_, slots_;
+  Buffer positions_, normals_, triangles_, diffuse_, sigma_, normal_table_;  // filled when first needed
+  Buffer counts_, masks_, station_counters_, totals_, station_counts_;
+  Buffer tile_far_, tile_list_, tile_dispatch_, tile_rays_;
+
+  std::vector<std::uint32_t> sample_;  // what the sample buffers hold
+  Buffer sample_voxels_, sample_triangles_, sample_stations_, sample_rays_, sample_items_, sample_control_, network_rays_;
+  double rays_per_pair_ = 8;           // as seen so far; sizes the chunks, not the results
+};
+
+Kernels VulkanTracer::build_traversal() {
+  const SceneData& scene = *scene_.scene;
+  std::vector<std::uint32_t> ids(scene.triangles.size());
+  for (std::size_t m = 0; m < scene.ranges.size(); ++m) {
+    const std::uint32_t bit = scene.meshes[m].role == Role::surveyed ? surveyed_bit : 0;
+    for (std::uint32_t t = 0; t < scene.ranges[m].triangle_count; ++t)
+      ids[scene.ranges[m].first_triangle + t] = (scene.ranges[m].first_triangle + t) | bit;
+  }
+  if (info_.engine == Engine::ray_query) {
+    structure_ = std::make_unique<AccelerationStructure>(device_, commands_, scene.positions, scene.triangles, ids);
+    parameters_.primitive_ids = structure_->primitive_ids();
+    return Kernels(device_, info_.engine, structure_->set_layout());
+  }
+  const Bvh bvh = build_bvh(scene.positions, scene.triangles, ids);
+  nodes_ = to_device<BvhNode>(bvh.nodes, "BVH nodes");
+  bvh_triangles_ = to_device<BvhTriangle>(bvh.triangles, "BVH triangles");
+  parameters_.nodes = nodes_.address();
+  parameters_.bvh_triangles = bvh_triangles_.address();
+  return Kernels(device_, info_.engine, VK_NULL_HANDLE);
+}
+
+void VulkanTracer::upload_scene() {
+  const RayPattern& pattern = *scene_.pattern;
+  const VoxelGrid& grid = *scene_.grid;
+  sin_zenith_ = to_device<float>(pattern.sin_zenith, "sin zenith");
+  cos_zenith_ = to_device<float>(pattern.cos_zenith, "cos zenith");
+  sin_azimuth_ = to_device<float>(pattern.sin_azimuth, "sin azimuth");
+  cos_azimuth_ = to_device<float>(pattern.cos_azimuth, "cos azimuth");
+  bricks_ = to_device<VoxelBrick>(grid.bricks(), "voxel bricks");
+  slots_ = to_device<BrickSlot>(grid.slots(), "brick slots");
+  TraceParameters& p = parameters_;
+  p.sin_zenith = sin_zenith_.address();
+  p.cos_zenith = cos_zenith_.address();
+  p.sin_azimuth = sin_azimuth_.address();
+  p.cos_azimuth = cos_azimuth_.address();
+  p.bricks = bricks_.address();
+  p.slots = slots_.address();
+  p.rows = pattern.rows();
+  p.columns = pattern.columns();
+  p.min_range = pattern.min_range;
+  p.max_range = pattern.max_range;
+  p.voxel_min = {grid.min()[0], grid.min()[1], grid.min()[2]};
+  p.voxel_inverse_size = grid.inverse_size();
+  p.voxel_cells = 1u << grid.depth();
+  p.slot_mask = static_cast<std::uint32_t>(grid.slots().size() - 1);
+  p.brick_count = static_cast<std::uint32_t>(grid.bricks().size());
+  p.brick_size = static_cast<float>(grid.voxel_size() * (1u << brick_bits));
+  const Box& bounds = scene_.scene->local_bounds;
+  p.bounds_min = {static_cast<float>(bounds.min.x), static_cast<float>(bounds.min.y), static_cast<float>(bounds.min.z)};
+  p.bounds_max = {static_cast<float>(bounds.max.x), static_cast<float>(bounds.max.y), static_cast<float>(bounds.max.z)};
+  p.zenith_step = static_cast<float>(pattern.zenith_step);
+  p.azimuth_step = static_cast<float>(pattern.azimuth_step);
+  p.first_zenith = static_cast<float>(pattern.first_zenith);
+  p.first_azimuth = static_cast<float>(pattern.first_azimuth);
+  p.has_normals = scene_.scene->normals.empty() ? 0 : 1;
+  if (noise()) {
+    const NoiseModel& model = *scene_.noise;
+    sigma_ = to_device<float>(model.sigma, "sigma table");
+    normal_table_ = to_device<float>(normal_table(), "normal table");
+    p.sigma = sigma_.address();
+    p.normal_table = normal_table_.address();
+    p.noise_reach = model.reach;
+    p.noise_min_range = model.min_range;
+    p.noise_inverse_span = model.inverse_span;
+    p.seed_low = static_cast<std::uint32_t>(model.seed);
+    p.seed_high = static_cast<std::uint32_t>(model.seed >> 32);
+  }
+  parameters_buffer_ = Buffer(device_, sizeof parameters_, Buffer::Where::device, "trace parameters");
+  if (noise())
+    upload_shading();
+  else
+    write_parameters();
+}
+
+void VulkanTracer::upload_shading() {
+  if (positions_) return;
+  const SceneData& scene = *scene_.scene;
+  positions_ = to_device<Float3>(scene.positions, "positions");
+  triangles_ = to_device<Triangle>(scene.triangles, "triangles");
+  std::vector<float> diffuse(scene.triangles.size());
+  for (std::size_t m = 0; m < scene.ranges.size(); ++m)
+    std::fill_n(diffuse.begin() + scene.ranges[m].first_triangle, scene.ranges[m].triangle_count, static_cast<float>(scene.meshes[m].diffuse));
+  diffuse_ = to_device<float>(diffuse, "diffuse coefficients");
+  if (!scene.normals.empty()) normals_ = to_device<Float3>(scene.normals, "normals");
+  parameters_.positions = positions_.address();
+  parameters_.triangles = triangles_.address();
+  parameters_.diffuse = diffuse_.address();
+  parameters_.normals = scene.normals.empty() ? 0 : normals_.address();
+  write_parameters();
+}
+
+void VulkanTracer::scan(const TraceStation& station, std::uint64_t first_ray, std::uint64_t ray_count, std::uint32_t outputs, RawChunk& chunk) {
+  const std::uint32_t columns = scene_.pattern->columns();
+  if (outputs & (normal | reflectivity)) upload_shading();
+  const auto rows = static_cast<std::uint32_t>(ray_count / columns);
+
+  ScanPush push{};
+  push.parameters = parameters_buffer_.address();
+  push.origin = {station.origin.x, station.origin.y, station.origin.z};
+  push.place = station.place;
+  std::array<Buffer, 7> buffers;
+  std::size_t used = 0;
+  struct Copy {
+    const Buffer* from;
+    void* to;
+    VkDeviceSize bytes;
+  };
+  std::vector<Copy> copies;
+  const auto want = [&](std::uint32_t bit, auto& array, std::uint64_t& address, const char* name) {
+    array.clear();
+    if (!(outputs & bit)) return;
+    array.resize(ray_count);
+    const VkDeviceSize bytes = ray_count * sizeof array[0];
+    Buffer& buffer = buffers[used++] = Buffer(device_, bytes, Buffer::Where::device, name);
+    address = buffer.address();
+    copies.push_back({&buffer, array.data(), bytes});
+  };
+  want(range, chunk.range, push.range, "scan range");
+  want(position, chunk.position, push.position, "scan position");
+  want(normal, chunk.normal, push.normal, "scan normal");
+  want(reflectivity, chunk.reflectivity, push.reflectivity, "scan reflectivity");
+  want(primitive, chunk.primitive, push.primitive, "scan primitive");
+  want(barycentric, chunk.barycentric, push.barycentric, "scan barycentric");
+  want(voxel, chunk.voxel, push.voxel, "scan voxel");
+
+  // The arrays hold rays from first_ray on; a part's rows are counted from there, so its outputs move along.
+  const ComputePipeline& pipeline = kernels_.get(Kernel::scan, {noise()});
+  const auto first_row = static_cast<std::uint32_t>(first_ray / columns);
+  for (std::uint32_t row = 0; row < rows; row += rows_per_dispatch()) {
+    ScanPush part = push;
+    part.first_row = first_row + row;
+    part.row_count = std::min(rows_per_dispatch(), rows - row);
+    const std::uint64_t skip = std::uint64_t{row} * columns;
+    for (auto [address, size] : {std::pair{&part.range, sizeof(float)}, {&part.position, sizeof(Float3)}, {&part.normal, sizeof(Float3)},
+                                 {&part.reflectivity, sizeof(float)}, {&part.primitive, sizeof(std::uint32_t)},
+                                 {&part.barycentric, sizeof(Float2)}, {&part.voxel, sizeof(std::uint32_t)}})
+      if (*address) *address += skip * size;
+    commands_.run([&](VkCommandBuffer c) {
+      pipeline.dispatch(c, part, set(), groups_of(columns, block_columns), groups_of(part.row_count, block_rows));
+    });
+  }
+  for (const Copy& copy : copies) commands_.download(*copy.from, copy.to, copy.bytes);
+}
+
+void VulkanTracer::prepare_totals(std::span<const std::uint32_t> station_counts, std::uint32_t groups, std::uint32_t stride) {
+  ensure(totals_, station_counts.size() * groups * stride * sizeof(std::uint32_t), "totals");
+  ensure(station_counts_, station_counts.size_bytes(), "station counts");
+  commands_.upload(station_counts_, station_counts.data(), station_counts.size_bytes());
+  commands_.run([&](VkCommandBuffer c) { vkCmdFillBuffer(c, totals_.handle(), 0, VK_WHOLE_SIZE, 0); });
+}
+
+void VulkanTracer::record_reduction(VkCommandBuffer c, const Reduction& r, std::uint32_t first_network, std::uint32_t networks,
+                                    std::uint32_t stride) {
+  ReducePush push{};
+  push.counts = r.counts;
+  push.masks = r.masks;
+  push.totals = totals_.address();
+  push.station_counts = station_counts_.address();
+  push.voxel_count = r.voxels;
+  push.goal = goal_points();
+  push.difference_unit = static_cast<float>(difference_scale / goal_density_);
+  push.mask_words = r.mask_words;
+  push.groups = r.groups;
+  push.totals_stride = stride;
+  push.first_network = first_network;
+  push.with_differences = r.differences ? 1 : 0;
+  const std::uint32_t in_group = groups_of(r.voxels, r.groups);
+  kernels_.get(Kernel::reduce).dispatch(c, push, VK_NULL_HANDLE, groups_of(in_group, reduce_voxels * reduce_rounds), r.groups, networks);
+}
+
+void VulkanTracer::read_totals(std::span<NetworkCounts> counts, std::span<const std::uint32_t> station_counts, const Reduction& r,
+                               std::uint32_t stride) {
+  std::vector<std::uint32_t> totals(counts.size() * r.groups * stride);
+  commands_.download(totals_, totals.data(), totals.size() * sizeof totals[0]);
+  for (std::size_t n = 0; n < counts.size(); ++n) {
+    NetworkCounts& sum = counts[n];
+    const std::uint32_t stations = station_counts[n], pairs = stations * (stations - 1) / 2;
+    sum.voxels = r.voxels;
+    sum.stations = stations;
+    if (r.mask_words) {
+      sum.seen.assign(stations, 0);
+      sum.shared.assign(pairs, 0);
+    }
+    std::uint64_t difference = 0;
+    for (std::uint32_t g = 0; g < r.groups; ++g) {
+      const std::uint32_t* t = totals.data() + (n * r.groups + g) * stride;
+      NetworkCounts group;
+      group.voxels = (r.voxels + r.groups - 1 - g) / r.groups;
+      group.stations = stations;
+      group.saturated = t[totals_saturated];
+      group.partial_points = t[totals_partial] | std::uint64_t{t[totals_partial + 1]} << 32;
+      difference += t[totals_difference] | std::uint64_t{t[totals_difference + 1]} << 32;
+      if (r.mask_words) {
+        group.seen.assign(t + totals_seen, t + totals_seen + stations);
+        group.shared.assign(t + totals_seen + stations, t + totals_seen + stations + pairs);
+        for (std::uint32_t k = 0; k < stations; ++k) sum.seen[k] += group.seen[k];
+        for (std::uint32_t k = 0; k < pairs; ++k) sum.shared[k] += group.shared[k];
+      }
+      sum.saturated += group.saturated;
+      sum.partial_points += group.partial_points;
+      if (r.groups > 1) sum.groups.push_back(std::move(group));
+    }
+    sum.successive_difference_sum = static_cast<double>(difference) / (double{difference_scale} * difference_scale);
+  }
+}
+
+NetworkCounts VulkanTracer::count(std::span<const TraceStation> stations, std::uint32_t station_count, const CountOptions& options,
+                                  const Progress& progress) {
+  const auto voxels = static_cast<std::uint32_t>(scene_.grid->size());
+  const std::uint32_t columns = scene_.pattern->columns(), rows = scene_.pattern->rows();
+  const std::uint32_t mask_words = options.masks ? (station_count > 32 ? 2 : 1) : 0;
+  ensure(counts_, voxels * sizeof(std::uint32_t), "counts");
+  if (mask_words) ensure(masks_, std::uint64_t{voxels} * mask_words * sizeof(std::uint32_t), "station masks");
+  ensure(station_counters_, 64 * 4 * sizeof(std::uint32_t), "station counters");
+  const std::uint32_t tiles_in_row = groups_of(columns, tile_side), tiles = tiles_in_row * groups_of(rows, tile_side);
+  if (options.skip) {
+    ensure(tile_far_, tiles * sizeof(float), "tile far");
+    ensure(tile_list_, (std::uint64_t{tiles} + 1) * sizeof(std::uint32_t), "tile list");
+    ensure(tile_dispatch_, 3 * sizeof(std::uint32_t), "tile dispatch", VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
+    ensure(tile_rays_, 2 * sizeof(std::uint32_t), "tile rays");
+  }
+  const std::array<std::uint32_t, 1> station_counts{station_count};
+  const std::uint32_t stride = totals_seen + station_count + station_count * (station_count - 1) / 2;
+  prepare_totals(station_counts, 1, stride);
+
+  NetworkCounts result;
+  result.trace_seconds = commands_.run([&](VkCommandBuffer c) {
+    vkCmdFillBuffer(c, counts_.handle(), 0, VK_WHOLE_SIZE, 0);
+    if (mask_words) vkCmdFillBuffer(c, masks_.handle(), 0, VK_WHOLE_SIZE, 0);
+    vkCmdFillBuffer(c, station_counters_.handle(), 0, VK_WHOLE_SIZE, 0);
+    if (options.skip) vkCmdFillBuffer(c, tile_rays_.handle(), 0, VK_WHOLE_SIZE, 0);
+  });
+
+  const auto record_tiles = [&](VkCommandBuffer c, const TilePush& push) {
+    vkCmdFillBuffer(c, tile_far_.handle(), 0, VK_WHOLE_SIZE, 0);
+    shader_after_transfer(c);
+    kernels_.get(Kernel::tiles).dispatch(c, push, VK_NULL_HANDLE, groups_of(scene_.grid->bricks().size()));
+    shader_after_shader(c);
+  };
+  const auto record_list = [&](VkCommandBuffer c, const TilePush& push) {
+    vkCmdFillBuffer(c, tile_list_.handle(), 0, sizeof(std::uint32_t), 0);
+    vkCmdFillBuffer(c, tile_dispatch_.handle(), 0, VK_WHOLE_SIZE, 0);
+    shader_after_transfer(c);
+    kernels_.get(Kernel::tile_list).dispatch(c, push, VK_NULL_HANDLE, groups_of(std::uint64_t{groups_of(push.row_count, tile_side)} * tiles_in_row));
+    shader_after_shader(c);
+  };
+
+  // Dispatches are collected up to this many rays a submission: enough to keep a device busy, few enough to report and to stop.
+  const std::uint64_t rays_per_submission = info_.software ? rays_per_dispatch() : 8 * rays_per_dispatch();
+  std::vector<std::pair<std::size_t, std::uint32_t>> todo;  // station, first row
+  for (std::size_t s = 0; s < stations.size(); ++s)
+    for (std::uint32_t row = 0; row < rows; row += rows_per_dispatch()) todo.emplace_back(s, row);
+  std::uint64_t since_clamp = 0;
+  for (std::size_t k = 0; k < todo.size();) {
+    if (progress.stopped()) {
+      result.cancelled = true;
+      break;
+    }
+    result.trace_seconds += commands_.run([&](VkCommandBuffer c) {
+      for (std::uint64_t recorded = 0; k < todo.size() && recorded < rays_per_submission; ++k) {
+        const TraceStation& station = stations[todo[k].first];
+        CountPush push{};
+        push.parameters = parameters_buffer_.address();
+        push.counts = counts_.address();
+        push.masks = mask_words ? masks_.address() + std::uint64_t{station.place / 32} * voxels * sizeof(std::uint32_t) : 0;
+        push.station_counters = station_counters_.address();
+        push.origin = {station.origin.x, station.origin.y, station.origin.z};
+        push.place = station.place;
+        push.first_row = todo[k].second;
+        push.row_count = std::min(rows_per_dispatch(), rows - push.first_row);
+        const std::uint64_t rays = std::uint64_t{push.row_count} * columns;
+        if (since_clamp + rays > count_limit - 1) {
+          shader_after_shader(c);
+          const std::uint32_t groups = groups_of(voxels);
+          kernels_.get(Kernel::clamp).dispatch(c, ClampPush{counts_.address(), voxels, 0}, VK_NULL_HANDLE, std::min(groups, 32768u),
+                                               groups_of(groups, 32768u));
+          shader_after_shader(c);
+          since_clamp = 0;
+        }
+        since_clamp += rays;
+        recorded += rays;
+        const ComputePipeline& pipeline = kernels_.get(Kernel::count, {noise(), options.masks, options.skip});
+        if (!options.skip) {
+          pipeline.dispatch(c, push, set(), groups_of(columns, block_columns), groups_of(push.row_count, block_rows));
+          continue;
+        }
+        push.tile_far = tile_far_.address();
+        push.tile_list = tile_list_.address();
+        TilePush tile{};
+        tile.parameters = push.parameters;
+        tile.tile_far = tile_far_.address();
+        tile.tile_list = tile_list_.address();
+        tile.dispatch = tile_dispatch_.address();
+        tile.rays = tile_rays_.address();
+        tile.origin = push.origin;
+        tile.first_row = push.first_row;
+        tile.row_count = push.row_count;
+        shader_after_shader(c);  // the dispatch before still reads the list
+        if (push.first_row == 0) record_tiles(c, tile);
+        record_list(c, tile);
+        pipeline.bind(c, &push, set());
+        vkCmdDispatchIndirect(c, tile_dispatch_.handle(), 0);
+      }
+    });
+    progress(static_cast<double>(k) / static_cast<double>(todo.size()));
+  }
+
+  const Reduction reduction{counts_.address(), mask_words ? masks_.address() : 0, voxels, 1, mask_words, false};
+  result.trace_seconds += commands_.run([&](VkCommandBuffer c) { record_reduction(c, reduction, 0, 1, stride); });
+  read_totals({&result, 1}, station_counts, reduction, stride);
+
+  std::array<std::uint64_t, 64 * 2> counters{};
+  commands_.download(station_counters_, counters.data(), sizeof counters);
+  result.points_on_surveyed.assign(station_count, 0);
+  if (!options.skip) result.points.assign(station_count, 0);
+  for (const TraceStation& station : stations) {
+    if (!options.skip) result.points[station.place] = counters[2 * station.place];
+    result.points_on_surveyed[station.place] = counters[2 * station.place + 1];
+  }
+  result.rays = std::uint64_t{rows} * columns * stations.size();
+  if (options.skip) commands_.download(tile_rays_, &result.rays, sizeof result.rays);
+  if (options.field) {
+    options.field->count.resize(voxels);
+    commands_.download(counts_, options.field->count.data(), voxels * sizeof(std::uint32_t));
+    options.field->stations.assign(options.masks ? voxels : 0, 0);
+    std::vector<std::uint32_t> word(voxels);
+    for (std::uint32_t w = 0; w < mask_words; ++w) {
+      commands_.download(masks_, word.data(), voxels * sizeof(std::uint32_t), std::uint64_t{w} * voxels * sizeof(std::uint32_t));
+      for (std::uint32_t v = 0; v < voxels; ++v) options.field->stations[v] |= std::uint64_t{word[v]} << (32 * w);
+    }
+  }
+  return result;
+}
+
+void VulkanTracer::upload_sample(std::span<const std::uint32_t> sample) {
+  if (sample_voxels_ && std::equal(sample.begin(), sample.end(), sample_.begin(), sample_.end())) return;
+  const VoxelGrid& grid = *scene_.grid;
+  const SceneData& scene = *scene_.scene;
+  // Wider than the slack of cube_of in shaders/lib/sample.glsl for any station within range.
+  const Box& b = scene.local_bounds;
+  const double largest = std::max({std::abs(b.min.x), std::abs(b.min.y), std::abs(b.min.z), std::abs(b.max.x), std::abs(b.max.y), std::abs(b.max.z)}) +
+                         static_cast<double>(scene_.pattern->max_range);
+  const double margin = static_cast<double>(parameters_.noise_reach) + largest * 0x1p-17;
+  const VoxelTriangles touching = triangles_touching(scene, grid, sample, margin);
+  std::vector<SampleVoxel> voxels(sample.size() + 1);
+  for (std::size_t k = 0; k < sample.size(); ++k) {
+    const auto [x, y, z] = morton_decode(grid.key(sample[k]));
+    voxels[k] = {x, y, z, touching.offset[k]};
+  }
+  voxels.back() = {0, 0, 0, touching.offset.back()};
+  std::vector<SampleTriangle> triangles(touching.triangle.size());
+  for (std::size_t k = 0; k < triangles.size(); ++k) {
+    const Triangle& t = scene.triangles[touching.triangle[k]];
+    const auto at = [&](std::size_t corner) {
+      const Float3& p = scene.positions[t[corner]];
+      return vec3{p.x, p.y, p.z};
+    };
+    triangles[k] = {at(0), at(1), at(2)};
+  }
+  sample_voxels_ = to_device<SampleVoxel>(voxels, "sample voxels");
+  sample_triangles_ = to_device<SampleTriangle>(triangles, "sample triangles");
+  sample_.assign(sample.begin(), sample.end());
+}
+
+std::vector<NetworkCounts> VulkanTracer::count_sampled(std::span<const std::vector<TraceStation>> networks,
+                                                       std::span<const std::uint32_t> station_counts, const SampleJob& job,
+                                                       const Progress& progress) {
+  std::vector<NetworkCounts> results(networks.size());
+  if (networks.empty()) return results;
+  upload_sample(job.sample);
+  const auto voxels = static_cast<std::uint32_t>(job.sample.size());
+  const std::uint32_t most = *std::max_element(station_counts.begin(), station_counts.end());
+  const std::uint32_t mask_words = job.masks ? (most > 32 ? 2 : 1) : 0;
+  const std::uint32_t stride = totals_seen + most + most * (most - 1) / 2;
+  prepare_totals(station_counts, job.groups, stride);
+
+  // A batch of networks shares counts and masks; a chunk of a batch is what one list of rays can hold.
+  const std::uint64_t entries = std::uint64_t{1} << 25;
+  const std::size_t batch_size = static_cast<std::size_t>(std::clamp<std::uint64_t>(entries / std::max(voxels, 1u), 1, networks.size()));
+  const std::uint32_t ray_capacity =
+      std::max<std::uint32_t>(info_.software ? 1u << 20 : 1u << 24, 2 * scene_.pattern->columns());
+  const std::uint32_t item_capacity = std::max(1u << 16, 2 * scene_.pattern->columns() / sample_part);
+  const std::uint32_t chunks_per_submission = info_.software ? 1 : 64;
+  ensure(sample_rays_, std::uint64_t{ray_capacity} * sizeof(SampleRay), "sample rays");
+  ensure(sample_items_, std::uint64_t{item_capacity} * sizeof(SampleItem), "sample items");
+  ensure(sample_control_, chunks_per_submission * control_words * sizeof(std::uint32_t), "sample control", VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
+  ensure(counts_, std::uint64_t{voxels} * batch_size * sizeof(std::uint32_t), "counts");
+  if (mask_words) ensure(masks_, std::uint64_t{voxels} * batch_size * mask_words * sizeof(std::uint32_t), "station masks");
+  ensure(network_rays_, networks.size() * sizeof(std::uint64_t), "network rays");
+  commands_.run([&](VkCommandBuffer c) { vkCmdFillBuffer(c, network_rays_.handle(), 0, VK_WHOLE_SIZE, 0); });
+
+  SamplePush base{};
+  base.parameters = parameters_buffer_.address();
+  base.voxels = sample_voxels_.address();
+  base.triangles = sample_triangles_.address();
+  base.rays = sample_rays_.address();
+  base.items = sample_items_.address();
+  base.counts = counts_.address();
+  base.masks = mask_words ? masks_.address() : 0;
+  base.voxel_count = voxels;
+  base.ray_capacity = ray_capacity;
+  base.item_capacity = item_capacity;
+  base.mask_words = mask_words;
+  base.stop_at = job.masks ? 0 : job.stop_at;
+
+  struct Chunk {
+    std::uint32_t first_slot, end_slot, first_voxel, end_voxel, first_row, end_row;
+    std::uint64_t pairs() const { return std::uint64_t{end_slot - first_slot} * (end_voxel - first_voxel); }
+  };
+  bool cancelled = false;
+  double seconds = 0;
+  Reduction reduction{counts_.address(), base.masks, voxels, job.groups, mask_words, true};
+  for (std::size_t first = 0; first < networks.size() && !cancelled; first += batch_size) {
+    const std::size_t end = std::min(first + batch_size, networks.size());
+    std::vector<SampleStation> slots;
+    for (std::size_t n = first; n < end; ++n)
+      for (const TraceStation& s : networks[n])
+        slots.push_back({{s.origin.x, s.origin.y, s.origin.z}, s.place, static_cast<std::uint32_t>(n - first)});
+    ensure(sample_stations_, slots.size() * sizeof(SampleStation), "sample stations");
+    commands_.upload(sample_stations_, slots.data(), slots.size() * sizeof(SampleStation));
+    base.stations = sample_stations_.address();
+    base.network_rays = network_rays_.address() + first * sizeof(std::uint64_t);
+    commands_.run([&](VkCommandBuffer c) {
+      vkCmdFillBuffer(c, counts_.handle(), 0, VK_WHOLE_SIZE, 0);
+      if (mask_words) vkCmdFillBuffer(c, masks_.handle(), 0, VK_WHOLE_SIZE, 0);
+    });
+
+    // The next chunk from the front of what is left, as large as the list will probably hold.
+    std::deque<Chunk> todo;
+    if (!slots.empty() && voxels > 0) todo.push_back({0, static_cast<std::uint32_t>(slots.size()), 0, voxels, 0, scene_.pattern->rows()});
+    const auto cut = [&](const Chunk& c) -> std::array<Chunk, 2> {
+      Chunk a = c, b = c;
+      if (c.end_slot - c.first_slot > 1) {
+        a.end_slot = b.first_slot = c.first_slot + (c.end_slot - c.first_slot) / 2;
+      } else if (c.end_voxel - c.first_voxel > 1) {
+        a.end_voxel = b.first_voxel = c.first_voxel + (c.end_voxel - c.first_voxel) / 2;
+      } else {
+        a.end_row = b.first_row = c.first_row + (c.end_row - c.first_row) / 2;
+      }
+      return {a, b};
+    };
+    const double all_pairs = static_cast<double>(slots.size()) * voxels;
+    double done_pairs = 0;
+    while (!todo.empty()) {
+      if (progress.stopped()) {
+        cancelled = true;
+        break;
+      }
+      std::vector<Chunk> chunks;
+      while (!todo.empty() && chunks.size() < chunks_per_submission) {
+        Chunk chunk = todo.front();
+        todo.pop_front();
+        // 65 535 groups a dimension is what every device offers.
+        while (chunk.end_slot - chunk.first_slot > 0xFFFFu || groups_of(chunk.end_voxel - chunk.first_voxel) > 0xFFFFu ||
+               (chunk.pairs() > 1 && static_cast<double>(chunk.pairs()) * rays_per_pair_ * 1.5 > ray_capacity)) {
+          const auto [a, b] = cut(chunk);
+          todo.push_front(b);
+          chunk = a;
+        }
+        chunks.push_back(chunk);
+      }
+      std::vector<std::uint32_t> control(chunks.size() * control_words);
+      seconds += commands_.run([&](VkCommandBuffer c) {
+        vkCmdFillBuffer(c, sample_control_.handle(), 0, VK_WHOLE_SIZE, 0);
+        shader_after_transfer(c);
+        for (std::size_t k = 0; k < chunks.size(); ++k) {
+          const Chunk& chunk = chunks[k];
+          SamplePush push = base;
+          push.control = sample_control_.address() + k * control_words * sizeof(std::uint32_t);
+          push.first_voxel = chunk.first_voxel;
+          push.end_voxel = chunk.end_voxel;
+          push.first_slot = chunk.first_slot;
+          push.first_row = chunk.first_row;
+          push.end_row = chunk.end_row;
+          const VkDeviceSize dispatch = (k * control_words + control_dispatch) * sizeof(std::uint32_t);
+          shader_after_shader(c);  // the chunk before still reads the list
+          kernels_.get(Kernel::sample_list)
+              .dispatch(c, push, VK_NULL_HANDLE, groups_of(chunk.end_voxel - chunk.first_voxel), chunk.end_slot - chunk.first_slot);
+          shader_after_shader(c);
+          kernels_.get(Kernel::sample_arguments, {false}).dispatch(c, push, VK_NULL_HANDLE, 1);
+          shader_after_shader(c);
+          kernels_.get(Kernel::sample_queue).bind(c, &push, VK_NULL_HANDLE);
+          vkCmdDispatchIndirect(c, sample_control_.handle(), dispatch);
+          shader_after_shader(c);
+          kernels_.get(Kernel::sample_arguments, {true}).dispatch(c, push, VK_NULL_HANDLE, 1);
+          shader_after_shader(c);
+          kernels_.get(Kernel::sample_trace, {noise(), job.masks}).bind(c, &push, set());
+          vkCmdDispatchIndirect(c, sample_control_.handle(), dispatch);
+        }
+      });
+      commands_.download(sample_control_, control.data(), control.size() * sizeof control[0]);
+      for (std::size_t k = chunks.size(); k-- > 0;) {
+        const std::uint32_t listed = control[k * control_words + control_rays], queued = control[k * control_words + control_items];
+        if (listed > ray_capacity || queued > item_capacity) {
+          const auto [a, b] = cut(chunks[k]);
+          todo.push_front(b);
+          todo.push_front(a);
+        } else {
+          done_pairs += static_cast<double>(chunks[k].pairs()) * (chunks[k].end_row - chunks[k].first_row) / scene_.pattern->rows();
+        }
+        if (chunks[k].pairs() > 1000) rays_per_pair_ = 0.5 * (rays_per_pair_ + static_cast<double>(listed) / static_cast<double>(chunks[k].pairs()));
+      }
+      progress((static_cast<double>(first) + static_cast<double>(end - first) * done_pairs / all_pairs) / static_cast<double>(networks.size()));
+    }
+    seconds += commands_.run([&](VkCommandBuffer c) {
+      record_reduction(c, reduction, static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(end - first), stride);
+    });
+  }
+  read_totals(results, station_counts, reduction, stride);
+  std::vector<std::uint64_t> rays(networks.size());
+  commands_.download(network_rays_, rays.data(), rays.size() * sizeof rays[0]);
+  for (std::size_t n = 0; n < results.size(); ++n) {
+    results[n].rays = rays[n];
+    results[n].cancelled = cancelled;
+    results[n].trace_seconds = seconds / static_cast<double>(results.size());
+  }
+  return results;
+}
+
+}  // namespace
+
+std::vector<EngineInfo> list_vulkan_engines() {
+  std::vector<EngineInfo> engines;
+  try {
+    const auto instance = Instance::get(false);
+    const auto devices = instance->physical_devices();
+    for (std::uint32_t d = 0; d < devices.size(); ++d) {
+      const DeviceAbilities abilities = abilities_of(devices[d]);
+      engines.push_back(describe(Engine::ray_query, abilities, d));
+      engines.push_back(describe(Engine::compute_bvh, abilities, d));
+    }
+    if (!devices.empty()) return engines;
+    throw Error(Errc::no_suitable_device, "Vulkan finds no device; install a driver (Debian: mesa-vulkan-drivers >= 24.1)");
+  } catch (const Error& error) {
+    for (const Engine engine : {Engine::ray_query, Engine::compute_bvh}) {
+      EngineInfo info;
+      info.engine = engine;
+      info.device = "none";
+      info.reason = error.what();
+      engines.push_back(info);
+    }
+  }
+  return engines;
+}
+
+std::unique_ptr<Tracer> make_vulkan_tracer(Engine engine, std::optional<std::uint32_t> device, const TraceScene& scene) {
+  const auto instance = Instance::get(validation_wanted(scene));
+  const auto devices = instance->physical_devices();
+  std::vector<std::string> refusals;
+  std::optional<std::uint32_t> best;
+  DeviceAbilities best_abilities;
+  // Hardware before software, discrete before integrated, then the most memory.
+  const auto better = [](const DeviceAbilities& a, const DeviceAbilities& b) {
+    const auto rank = [](const DeviceAbilities& x) {
+      return x.type == VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU ? 3 : x.type == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU ? 2 : x.software() ? 0 : 1;
+    };
+    return rank(a) != rank(b) ? rank(a) > rank(b) : a.memory_bytes > b.memory_bytes;
+  };
+  for (std::uint32_t d = 0; d < devices.size(); ++d) {
+    if (device && *device != d) continue;
+    const DeviceAbilities abilities = abilities_of(devices[d]);
+    const EngineInfo info = describe(engine, abilities, d);
+    if (!info.usable)
+      refusals.push_back("device " + std::to_string(d) + ", " + info.device + ": " + info.reason);
+    else if (!best || better(abilities, best_abilities)) {
+      best = d;
+      best_abilities = abilities;
+    }
+  }
+  if (device && *device >= devices.size()) refusals.push_back("there are only " + std::to_string(devices.size()) + " devices, counted from 0");
+  if (!best)
+    throw Error(Errc::no_suitable_device,
+                "no Vulkan device can run the engine " + to_string(engine) +
+                    (engine == Engine::ray_query ? "; it needs VK_KHR_ray_query: a GPU with ray tracing, or mesa-vulkan-drivers >= 24.1 for the software device"
+                                                 : "; it needs Vulkan 1.2"),
+                std::move(refusals));
+  return std::make_unique<VulkanTracer>(describe(engine, best_abilities, *best), instance, devices[*best], best_abilities, scene);
+}
+
+}  // namespace vantage
