@@ -19,6 +19,7 @@ namespace {
 
 constexpr double kLeast = 0.01;          // overlaps below are not drawn, as in figure 12 of the method
 constexpr double kMostWidth = 9;         // of the strongest link
+constexpr double kStrong = 0.1;          // if none is stronger, a link of this overlap would be as wide
 constexpr double kDisc = 10.5;           // radius of a station's number
 constexpr std::size_t kPixelsPerUnit = 2, kSupersampling = 2;
 constexpr Colour kStation{0.10, 0.22, 0.45}, kLink{0.16, 0.34, 0.66}, kSkipped{0.72, 0.12, 0.12}, kSearch{0.05, 0.45, 0.25};
@@ -173,11 +174,12 @@ std::unique_ptr<Canvas> plan_view_picture(const Scene& scene, const SearchArea& 
       }
     }
   }
+  const double scale = std::max(most, kStrong);
   std::sort(links.begin(), links.end(), [](const Link& a, const Link& b) { return a.overlap < b.overlap; });
   for (const Link& link : links) {
-    const double width = link_width(link.overlap, most);
+    const double width = link_width(link.overlap, scale);
     canvas.line(discs[link.a], discs[link.b], {.colour = {1, 1, 1}, .width = width + 1.6, .opacity = 0.45});
-    canvas.line(discs[link.a], discs[link.b], {.colour = link.bridge ? style::orange : kLink, .width = width, .opacity = link_opacity(link.overlap, most)});
+    canvas.line(discs[link.a], discs[link.b], {.colour = link.bridge ? style::orange : kLink, .width = width, .opacity = link_opacity(link.overlap, scale)});
   }
   for (std::size_t k = 0; k < shown.size(); ++k) {
     if (std::hypot(discs[k].x - anchors[k].x, discs[k].y - anchors[k].y) < 2) continue;
@@ -217,12 +219,12 @@ std::unique_ptr<Canvas> plan_view_picture(const Scene& scene, const SearchArea& 
     at.y += 6;
     canvas.text(at, "Overlap of two stations", {.size = 12.5, .bold = true});
     at.y += 22;
-    std::vector<double> samples = nice_ticks(0, most, 3);
+    std::vector<double> samples = nice_ticks(0, scale, 3);
     std::erase_if(samples, [](double v) { return v < kLeast; });
     const auto labels = tick_labels(samples);
     for (std::size_t k = 0; k < samples.size(); ++k) {
       canvas.line({at.x, at.y}, {at.x + 24, at.y},
-                  {.colour = kLink, .width = link_width(samples[k], most), .opacity = link_opacity(samples[k], most)});
+                  {.colour = kLink, .width = link_width(samples[k], scale), .opacity = link_opacity(samples[k], scale)});
       words(labels[k]);
       at.y += 22;
     }
