@@ -137,6 +137,7 @@ struct GreedyConfig {
   std::size_t stations = 4;        ///< How many to choose.
   std::size_t candidates = 300;    ///< Positions to choose from, spread evenly over the search area's (u, v).
   std::uint64_t sample_voxels = 20'000;  ///< 0: with every ray.
+  std::vector<Vec3> fixed = {};    ///< Stations that are there already; neither counted nor returned.
 };
 
 /// What `greedy_network` chose.

@@ -217,7 +217,7 @@ const char* value_name(const PlanConfig& config) {
 std::vector<Vec3> greedy_start(Site& site, Simulator& simulator, const PlanConfig& config, Program& program) {
   ProgressLine line(program.console, "greedy");
   const GreedyResult greedy = greedy_network(simulator, site.area(), site.clash(),
-                                             {.stations = config.stations_max, .sample_voxels = std::min<std::uint64_t>(config.sample_voxels, sample_for_coverage)},
+                                             {.stations = config.stations_max, .sample_voxels = std::min<std::uint64_t>(config.sample_voxels, sample_for_coverage), .fixed = config.fixed},
                                              {.report = [&](double done) { line.update(done); }, .stop = program.stop});
   std::vector<Vec3> heads;
   if (greedy.cancelled) return heads;

@@ -38,8 +38,9 @@ struct Candidate {
 }  // namespace
 
 GreedyResult choose_greedily(const Site& site, NetworkEvaluator& evaluator, const GreedyConfig& config, const Progress& progress) {
-  if (config.stations < 1 || config.stations > 64)
-    throw Error(Errc::invalid_argument, "greedy: 1 to 64 stations can be chosen, not " + std::to_string(config.stations));
+  if (config.stations < 1 || config.stations + config.fixed.size() > 64)
+    throw Error(Errc::invalid_argument, "greedy: 1 to 64 stations can be chosen, kept ones included, not " +
+                                            std::to_string(config.stations + config.fixed.size()));
   if (config.candidates < 1) throw Error(Errc::invalid_argument, "greedy: at least one candidate is needed");
   std::vector<Candidate> candidates;
   for (std::size_t k = 0; k < kTries * config.candidates && candidates.size() < config.candidates; ++k) {
@@ -51,8 +52,18 @@ GreedyResult choose_greedily(const Site& site, NetworkEvaluator& evaluator, cons
                                             " positions is in the search area and free of clashes");
 
   GreedyResult result;
-  std::vector<PlacedStation> chosen;
+  std::vector<PlacedStation>& chosen = result.stations;
+  Network kept;
+  for (const Vec3& head : config.fixed) kept.push_back({.position = head, .active = true});
   double covered = 0;
+  if (!kept.empty()) {
+    const std::vector<Network> one{kept};
+    const auto value = evaluator.evaluate(one, {.report = {}, .stop = progress.stop});
+    ++result.evaluations;
+    result.cancelled = !value;
+    if (!value) return result;
+    covered = value->front().coverage;
+  }
   std::vector<std::size_t> order(candidates.size());
   for (std::size_t k = 0; k < order.size(); ++k) order[k] = k, candidates[k].gain = 2;  // above any gain: all are evaluated first
   const auto better = [&](std::size_t a, std::size_t b) {
@@ -82,16 +93,15 @@ GreedyResult choose_greedily(const Site& site, NetworkEvaluator& evaluator, cons
     }
     std::vector<Network> networks;
     for (const std::size_t k : stale) {
-      std::vector<PlacedStation> stations = chosen;
-      stations.push_back(candidates[k].station);
-      networks.push_back(to_network(stations));
+      Network& network = networks.emplace_back(kept);
+      for (const PlacedStation& station : chosen) network.push_back({.position = station.position, .active = true});
+      network.push_back({.position = candidates[k].station.position, .active = true});
     }
     const std::size_t chunk = evaluator.chunk() == 0 ? networks.size() : evaluator.chunk();
     for (std::size_t at = 0; at < networks.size(); at += chunk) {
       const std::size_t n = std::min(chunk, networks.size() - at);
       const auto values = evaluator.evaluate(std::span(networks).subspan(at, n), {.report = {}, .stop = progress.stop});
       if (!values || progress.stopped()) {
-        result.stations = chosen;
         result.cancelled = true;
         return result;
       }
@@ -103,7 +113,6 @@ GreedyResult choose_greedily(const Site& site, NetworkEvaluator& evaluator, cons
       result.evaluations += n;
     }
   }
-  result.stations = std::move(chosen);
   return result;
 }
 

@@ -11,6 +11,8 @@ namespace vantage {
 
 std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& result, const PlanConfig& config, Simulator& simulator,
                        const SearchArea& area) {
+  if (result.front.empty())
+    throw Error(Errc::invalid_argument, "there is nothing to write: the search ended before its first networks were evaluated");
   std::error_code failed;
   std::filesystem::create_directories(folder, failed);
   if (failed) throw Error(Errc::io, "cannot make the folder " + folder.string() + ": " + failed.message());

@@ -55,6 +55,19 @@ TEST(Greedy, CandidatesStandOnlyWhereTheyMay) {
   EXPECT_THROW(choose_greedily(nowhere, evaluator, {}, {}), Error);
 }
 
+TEST(Greedy, AddsToWhatIsThere) {
+  const Site site = test::toy_site();
+  test::ToyEvaluator evaluator;
+  const GreedyResult alone = choose_greedily(site, evaluator, {.stations = 4, .candidates = 150}, {});
+  GreedyConfig config{.stations = 2, .candidates = 150};
+  config.fixed = {alone.stations[0].position, alone.stations[1].position};
+  const GreedyResult rest = choose_greedily(site, evaluator, config, {});
+  ASSERT_EQ(rest.stations.size(), 2u);
+  EXPECT_EQ(rest.stations[0].position, alone.stations[2].position);
+  EXPECT_EQ(rest.stations[1].position, alone.stations[3].position);
+  EXPECT_NEAR(rest.coverage[1], alone.coverage[3], 1e-12);
+}
+
 TEST(Greedy, StopsWhenTold) {
   const Site site = test::toy_site();
   test::ToyEvaluator evaluator;
