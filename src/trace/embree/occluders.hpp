@@ -27,7 +27,7 @@ class Occluders {
   bool stop_ray(const Vec3& d, double t) {
     for (std::size_t k = 0; k < size_; ++k) {
       const SeenTriangle& triangle = kept_[k].triangle;
-      if (triangle.cosine(d) < SeenTriangle::steep) continue;
+      if (!triangle.is_steep(d)) continue;
       const double own = triangle.distance(d);
       if (own > nearest_ && own * (1 + SeenTriangle::distance_doubt) < t && triangle.must_hit(d)) return first(k);
     }

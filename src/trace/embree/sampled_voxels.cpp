@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "trace/embree/seen_triangle.hpp"
 #include "voxel/voxel_triangles.hpp"
 
 namespace vantage {
@@ -14,12 +15,13 @@ namespace {
 Vec3 widen(const Float3& p) { return {p.x, p.y, p.z}; }
 
 SampledVoxels::Listed listed(const Float3& a, const Float3& b, const Float3& c) {
-  SampledVoxels::Listed result{a, b, c, 0, 0, {}, 0};
+  SampledVoxels::Listed result{a, b, c, 0, 0, 0, {}, 0};
   const Vec3 e1 = widen(b) - widen(a), e2 = widen(c) - widen(a), e3 = widen(c) - widen(b);
   result.longest =
       std::nextafter(static_cast<float>(std::sqrt(std::max({dot(e1, e1), dot(e2, e2), dot(e3, e3)}))), HUGE_VALF);
   const Vec3 n = cross(e1, e2);
   const double length = std::sqrt(dot(n, n));
+  result.slenderness = static_cast<float>(SeenTriangle::slenderness(widen(a), widen(b), widen(c), length));
   if (length > 0) result.normal = n * (1 / length);
   result.offset = dot(result.normal, widen(a));
   return result;

@@ -15,9 +15,10 @@ class SampledVoxels {
  public:
   struct Listed {
     Float3 a, b, c;
-    float longest = 0;  // edge
-    float gap = 0;      // it is at least so far outside the cube
-    Vec3 normal;        // unit; its plane is normal · p = offset
+    float longest = 0;      // edge
+    float gap = 0;          // it is at least so far outside the cube
+    float slenderness = 0;  // as SeenTriangle has it
+    Vec3 normal;            // unit; its plane is normal · p = offset
     double offset = 0;
   };
 

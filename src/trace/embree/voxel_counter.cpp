@@ -15,7 +15,7 @@ namespace {
 constexpr std::uint32_t few = 2;
 // Embree's distance and the point's differ by at most one part in 2^plane_trust; twice that.
 const double trust = std::ldexp(2.0, -Surface::plane_trust);
-// Below this cosine the plane may not be what decides the point's distance.
+// Below this cosine, over slenderness, the plane may not be what decides the point's distance.
 constexpr double grazing = 0x1p-11;
 
 Vec3 relative(const Float3& p, const Vec3& head) { return Vec3{p.x, p.y, p.z} - head; }
@@ -59,6 +59,7 @@ void SampledVoxelCounter::see_triangles(std::size_t voxel, const Vec3& head, dou
     const double longest = static_cast<double>(t.longest);
     seen_.push_back({{narrow(cross(a, b)), narrow(cross(b, c)), narrow(cross(c, a))},
                      static_cast<float>(doubt * (farthest + 2 * reach + longest) * longest),
+                     t.slenderness,
                      t.normal,
                      t.offset - dot(t.normal, head)});
   }
@@ -90,15 +91,17 @@ double SampledVoxelCounter::nearest_hit(const Fan& fan, std::uint32_t i, const C
   double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < seen_.size(); ++k) {
     if ((fan.may_hit[i] >> std::min<std::size_t>(k, 31) & 1) == 0) continue;
-    const double slope = dot(seen_[k].normal, d), cosine = std::abs(slope);
-    if (cosine < grazing) {
+    const double slope = dot(seen_[k].normal, d), cosine = std::abs(slope),
+                 slenderness = static_cast<double>(seen_[k].slenderness);
+    if (!(cosine >= grazing * slenderness)) {
       nearest = std::min(nearest, cube.nearest * (1 - trust));
       continue;
     }
     const double t = seen_[k].height / slope;
     const Vec3 p = d * t - cube.centre;
     if (std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) > cube.half) continue;
-    nearest = std::min(nearest, t * (1 - (cosine < SeenTriangle::steep ? trust : SeenTriangle::distance_doubt)));
+    nearest = std::min(nearest,
+                       t * (1 - (cosine < SeenTriangle::steep * slenderness ? trust : SeenTriangle::distance_doubt)));
   }
   return nearest;
 }

@@ -44,6 +44,7 @@ class SampledVoxelCounter {
   struct SeenPlane {
     std::array<Float3, 3> edge;  // normals of the planes through head and edges
     float tolerance;
+    float slenderness;
     Vec3 normal;
     double height;
   };

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trace/embree/voxel_lookup.hpp"
+
+#include <gtest/gtest.h>
+
+#include "trace_scenes.hpp"
+
+namespace vantage {
+namespace {
+
+TEST(VoxelLookup, IsRankOfForEveryPoint) {
+  RandomStream random(21);
+  std::vector<Float3> corners;
+  for (int k = 0; k < 600; ++k)
+    corners.push_back({test::between(random, -3, 3), test::between(random, -2, 2), test::between(random, 0, 1.5)});
+  const auto scene = test::SceneBuilder().mesh(Role::surveyed, corners).finish();
+  for (const double size : {3.0, 0.31, 0.04}) {
+    const VoxelGrid grid = VoxelGrid::build(*scene, size);
+    const BrickPrefixes prefixes(grid);
+    VoxelLookup lookup(grid, prefixes);
+    std::size_t found = 0;
+    for (int run = 0; run < 100; ++run) {
+      lookup.clear();
+      std::vector<std::uint32_t> expected, ranks;
+      const Float3 centre{test::between(random, -3.3, 3.3), test::between(random, -2.3, 2.3),
+                          test::between(random, -0.3, 1.8)};
+      const double spread = run % 3 == 0 ? 8 : 0.2;
+      for (std::uint32_t k = 0; k < VoxelLookup::capacity; ++k) {
+        Float3 p{centre.x + test::between(random, -spread, spread), centre.y + test::between(random, -spread, spread),
+                 centre.z + test::between(random, -spread, spread)};
+        if (k % 50 == 7) p.x = std::numeric_limits<float>::quiet_NaN();
+        if (k % 50 == 8) p.y = -std::numeric_limits<float>::infinity();
+        if (k % 50 == 9) p.z = 3e38f;
+        if (k % 50 == 10) p = {grid.min()[0], grid.min()[1], grid.min()[2]};
+        lookup.add(p);
+        if (grid.rank_of(p) != no_voxel) expected.push_back(grid.rank_of(p));
+      }
+      lookup.each_rank([&](std::uint32_t rank) { ranks.push_back(rank); });
+      ASSERT_EQ(ranks, expected);
+      found += ranks.size();
+    }
+    EXPECT_GT(found, 300u);
+  }
+}
+
+}  // namespace
+}  // namespace vantage
