@@ -19,7 +19,7 @@ shared uint sums[5];
 // min(count / goal, 1) in units of 1 / difference_scale.
 int ratio_of(uint count) {
   precise float scaled = float(count) * push.difference_unit;
-  return count >= push.goal ? int(difference_scale) : int(scaled);
+  return count >= push.goal ? int(difference_scale) : int(scaled + 0.5);
 }
 
 // Pair number to (i, j), i < j, in the order (0, 1), (0, 2), …, (1, 2), …
@@ -68,8 +68,8 @@ void main() {
       partial_high += count >> 16;
     }
     if (push.with_differences != 0u && inside && voxel > 0u) {
-      const int difference = ratio_of(count) - ratio_of(push.counts.at[counts + voxel - 1u]);
-      const uint square = uint(difference * difference);
+      const uint difference = uint(abs(ratio_of(count) - ratio_of(push.counts.at[counts + voxel - 1u])));
+      const uint square = difference * difference;
       difference_low += square & 0xFFFFu;
       difference_high += square >> 16;
     }

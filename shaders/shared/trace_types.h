@@ -153,7 +153,7 @@ VANTAGE_CONST uint totals_saturated = 0;
 VANTAGE_CONST uint totals_partial = 1;
 VANTAGE_CONST uint totals_difference = 3;  // of min(count / goal, 1) in units of 1 / difference_scale
 VANTAGE_CONST uint totals_seen = 5;
-VANTAGE_CONST uint difference_scale = 4096;
+VANTAGE_CONST uint difference_scale = 65535;  // the largest whose square fits a word
 struct ReducePush {
   VANTAGE_ADDRESS(Uints) counts;           // [network][voxel]
   VANTAGE_ADDRESS(Uints) masks;            // [network][word][voxel]

@@ -2,14 +2,13 @@
 // trace() over our own binary BVH.
 //
 // Hits depend on nothing but ray and triangles, to the bit, on every device:
-// - A triangle is hit when the ray's projection lies inside or on its projection, in coordinates sheared so that the ray is the z axis
-//   (Woop, Benthin, Wald: Watertight Ray/Triangle Intersection, 2013). Each vertex is sheared by itself, so neighbours agree about it; an
-//   edge test compares two rounded products, whose order is the exact one unless they are equal, and equal counts as inside for both
+// - A triangle is hit when the ray lies inside or on it in sheared coordinates. Each vertex is sheared by itself, so neighbours agree
+//   about it; an edge test compares two rounded products, whose order is the exact one unless they are equal, and equal counts as inside for both
 //   neighbours. So no ray passes between two triangles that share an edge or a vertex.
-// - Only +, − and × are used, uncontracted, so all devices round alike.
+// - Only +, − and × are used, uncontracted, so all devices round alike (lib/sheared_triangle.glsl, lib/exact.glsl).
 // - The hit's t is clamped to what the triangle's own box, widened by more than all rounding, allows. Every box above holds that box and is
 //   widened more, so no box is culled that may hold the nearest hit; of equal hits the lower triangle number wins.
-#include "lib/exact.glsl"
+#include "lib/sheared_triangle.glsl"
 #include "trace/hit.glsl"
 
 struct SlabRay {
@@ -29,18 +28,12 @@ SlabRay slab_ray(vec3 origin, vec3 inverse, float widening) {
 Hit trace(Parameters parameters, vec3 origin, vec3 direction, float t_min, float t_max, float enough) {
   Hit best = Hit(t_max, no_primitive, vec2(0));
 
-  // Shear: the largest component of the direction becomes z.
-  const vec3 size = abs(direction);
-  const bool major_x = size.x >= size.y && size.x >= size.z;
-  const bool major_y = !major_x && size.y >= size.z;
-  precise vec3 d = major_x ? direction.yzx : major_y ? direction.zxy : direction;
-  const float shear_z = exact_reciprocal(d.z);
-  precise float shear_x = d.x * shear_z;
-  precise float shear_y = d.y * shear_z;
+  const Shear shear = shear_along(direction);
 
   // Boxes are widened by more than the rounding of shear and slabs: 2^-20 of the largest coordinate that takes part.
   const vec3 extent = max(max(abs(parameters.at.bounds_min), abs(parameters.at.bounds_max)), abs(origin));
   const float widening = 2.0 * max(max(extent.x, extent.y), extent.z) * (1.0 / 1048576.0);
+  const vec3 size = abs(direction);
   precise vec3 safe = vec3(size.x < 1e-12 ? 1e-12 : direction.x, size.y < 1e-12 ? 1e-12 : direction.y,
                            size.z < 1e-12 ? 1e-12 : direction.z);
   const vec3 inverse = vec3(exact_reciprocal(safe.x), exact_reciprocal(safe.y), exact_reciprocal(safe.z));
@@ -70,30 +63,14 @@ Hit trace(Parameters parameters, vec3 origin, vec3 direction, float t_min, float
       const uint count = ((current >> bvh_leaf_count_shift) & 7u) + 1u;
       for (uint i = 0; i < count; ++i) {
         const BvhTriangle triangle = parameters.at.bvh_triangles.at[first + i];
-        precise vec3 p = triangle.a - origin;
-        precise vec3 q = triangle.b - origin;
-        precise vec3 r = triangle.c - origin;
-        precise vec3 a = major_x ? p.yzx : major_y ? p.zxy : p;
-        precise vec3 b = major_x ? q.yzx : major_y ? q.zxy : q;
-        precise vec3 c = major_x ? r.yzx : major_y ? r.zxy : r;
-        precise float ax = a.x - shear_x * a.z;
-        precise float ay = a.y - shear_y * a.z;
-        precise float bx = b.x - shear_x * b.z;
-        precise float by = b.y - shear_y * b.z;
-        precise float cx = c.x - shear_x * c.z;
-        precise float cy = c.y - shear_y * c.z;
-        precise float u = cx * by - cy * bx;
-        precise float v = ax * cy - ay * cx;
-        precise float w = bx * ay - by * ax;
-        if ((u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0)) continue;
-        precise float area = u + v + w;
+        const ShearedTriangle corners = sheared(shear, origin, triangle.a, triangle.b, triangle.c);
+        const vec3 edges = edge_functions(corners);
+        if (any(lessThan(edges, vec3(0))) && any(greaterThan(edges, vec3(0)))) continue;
+        precise float area = edges.x + edges.y + edges.z;
         if (area == 0.0) continue;
-        const float inverse_area = exact_reciprocal(area);
-        precise float weight_b = v * inverse_area;
-        precise float weight_c = w * inverse_area;
-        precise float weight_a = u * inverse_area;
-        precise float z = weight_a * a.z + weight_b * b.z + weight_c * c.z;
-        precise float t = z * shear_z;
+        precise vec3 weights = edges * exact_reciprocal(area);
+        precise float z = weights.x * corners.a.z + weights.y * corners.b.z + weights.z * corners.c.z;
+        precise float t = z * shear.z;
         precise vec3 lower = min(min(triangle.a, triangle.b), triangle.c);
         precise vec3 upper = max(max(triangle.a, triangle.b), triangle.c);
         precise vec3 s = lower * triangle_ray.inverse - triangle_ray.low;
@@ -102,7 +79,7 @@ Hit trace(Parameters parameters, vec3 origin, vec3 direction, float t_min, float
         t = min(max(t, max(max(near.x, near.y), near.z)), min(min(far.x, far.y), far.z));
         // Of equal hits the lower triangle number wins; the surveyed bit is no part of the number.
         if (t >= t_min && (t < best.t || (t == best.t && (triangle.id & ~surveyed_bit) < (best.id & ~surveyed_bit)))) {
-          best = Hit(t, triangle.id, vec2(weight_b, weight_c));
+          best = Hit(t, triangle.id, weights.yz);
         }
       }
     }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/run_report.hpp"
 
+#include <string>
+
 #include <spdlog/spdlog.h>
 
 #include "vantage/error.hpp"
@@ -10,7 +12,11 @@ namespace vantage::cli {
 
 void tell_engine(const Simulator& simulator) {
   const EngineInfo& info = simulator.engine();
-  spdlog::info("{} on {}{}{}", to_string(info.engine), info.device, info.reason.empty() ? "" : ": ", info.reason);
+  std::string reason;
+  if (simulator.config().engine == Engine::automatic && !simulator.config().device_index)
+    for (const auto& engine : list_engines())
+      if (engine.chosen_by_default) reason = ": " + engine.reason;
+  spdlog::info("{} on {}{}", to_string(info.engine), info.device, reason);
 }
 
 void tell_grid(const Simulator& simulator) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The only file that names every engine.
 #include <algorithm>
+#include <string>
 #include <utility>
 
 #include "trace/embree/embree_tracer.hpp"
@@ -11,8 +12,15 @@
 namespace vantage {
 namespace {
 
-// What `automatic` stands for: a hardware GPU by ray query where it has that, else by our own BVH; else the CPU.
-std::size_t default_engine(const std::vector<EngineInfo>& engines) {
+// What `automatic` stands for: a hardware GPU by ray query where it has that, else by our own BVH; else the CPU. Of the engines on one
+// device, where that was named, the first usable one.
+std::size_t default_engine(const std::vector<EngineInfo>& engines, std::optional<std::uint32_t> device_index = std::nullopt) {
+  if (device_index) {
+    const auto on_device = std::find_if(engines.begin(), engines.end(), [&](const EngineInfo& e) {
+      return e.engine != Engine::embree && e.usable && e.device_index == *device_index;
+    });
+    if (on_device != engines.end()) return static_cast<std::size_t>(on_device - engines.begin());
+  }
   for (const Engine wanted : {Engine::ray_query, Engine::compute_bvh})
     for (std::size_t k = 0; k < engines.size(); ++k)
       if (engines[k].engine == wanted && engines[k].usable && !engines[k].software) return k;
@@ -37,11 +45,15 @@ std::vector<EngineInfo> list_engines() {
 std::unique_ptr<Tracer> make_tracer(Engine engine, std::optional<std::uint32_t> device_index, const TraceScene& scene) {
   if (engine == Engine::automatic) {
     const auto engines = list_engines();
-    const EngineInfo& chosen = engines[default_engine(engines)];
+    const EngineInfo& chosen = engines[default_engine(engines, device_index)];
     engine = chosen.engine;
     if (!device_index && engine != Engine::embree) device_index = chosen.device_index;
   }
-  if (engine == Engine::embree) return make_embree_tracer(scene);
+  if (engine == Engine::embree) {
+    if (device_index.value_or(0) != 0)
+      throw Error(Errc::no_suitable_device, "there is no device " + std::to_string(*device_index) + " for embree, which has only device 0");
+    return make_embree_tracer(scene);
+  }
   return make_vulkan_tracer(engine, device_index, scene);
 }
 

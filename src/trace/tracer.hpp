@@ -76,7 +76,7 @@ class Tracer {
   enum RawOutput : std::uint32_t { range = 1, position = 2, normal = 4, reflectivity = 8, primitive = 16, barycentric = 32, voxel = 64 };
   virtual void scan(const TraceStation& station, std::uint64_t first_ray, std::uint64_t ray_count, std::uint32_t outputs,
                     RawChunk& chunk) = 0;
-  virtual std::uint64_t preferred_scan_rays() const = 0;  // a good chunk for scan()
+  virtual std::uint64_t preferred_scan_rays() const = 0;  // a good chunk for scan(): whole rows
 
   // Exact: counts all rays of all stations. Inactive stations are left out by the caller; `station_count` is N_stations with them.
   struct CountOptions {

@@ -81,7 +81,10 @@ class VulkanTracer final : public Tracer {
   }
 
   const EngineInfo& info() const override { return info_; }
-  std::uint64_t preferred_scan_rays() const override { return std::min(rays_per_dispatch(), std::uint64_t{1} << 22); }
+  std::uint64_t preferred_scan_rays() const override {
+    const std::uint64_t columns = scene_.pattern->columns();
+    return std::max<std::uint64_t>(1, std::min(rays_per_dispatch(), std::uint64_t{1} << 22) / columns) * columns;
+  }
 
   void scan(const TraceStation& station, std::uint64_t first_ray, std::uint64_t ray_count, std::uint32_t outputs, RawChunk& chunk) override;
   NetworkCounts count(std::span<const TraceStation> stations, std::uint32_t station_count, const CountOptions& options,
