@@ -60,10 +60,16 @@ class Conformance : public testing::TestWithParam<EngineInfo> {
     return tracer;
   }
 
+  using Tracers = std::map<std::tuple<Engine, std::uint32_t, std::string, bool>, std::unique_ptr<Tracer>>;
+  static Tracers& tracers() {
+    static Tracers made;
+    return made;
+  }
+  static void TearDownTestSuite() { tracers().clear(); }  // before drivers and layers tear themselves down
+
   // Kept from test to test: building an engine costs more than most tests.
   static Tracer& tracer(const Site& site, bool noisy) {
-    static std::map<std::tuple<Engine, std::uint32_t, std::string, bool>, std::unique_ptr<Tracer>> made;
-    auto& kept = made[{GetParam().engine, GetParam().device_index, site.name, noisy}];
+    auto& kept = tracers()[{GetParam().engine, GetParam().device_index, site.name, noisy}];
     if (!kept) kept = make(site, noisy);
     return *kept;
   }

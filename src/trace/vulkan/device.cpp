@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdio>
 #include <cstring>
 #include <optional>
 
@@ -109,6 +110,8 @@ Instance::Instance(bool validation) {
 Instance::~Instance() {
   if (messenger_) vkDestroyDebugUtilsMessengerEXT(instance_, messenger_, nullptr);
   if (instance_) vkDestroyInstance(instance_, nullptr);
+  // Too late for an exception, and what was left undestroyed is reported here.
+  for (const std::string& message : messages_) std::fprintf(stderr, "vantage: the Vulkan validation layer reports: %s\n", message.c_str());
 }
 
 VkBool32 Instance::on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,

@@ -77,6 +77,20 @@ TEST_F(Plan, TheSameSeedGivesTheSameFront) {
   }
 }
 
+// On the software device, or any other with ray queries: what the README's first command does, with coarse rays.
+TEST_F(Plan, RayQueriesGiveTheSameFrontAgain) {
+  const auto by_ray_query = [&](const std::string& folder) {
+    auto arguments = plan(folder, {"--stations", "3", "--seed", "5"});
+    *std::find(arguments.begin(), arguments.end(), "embree") = "ray_query";
+    auto front = json_of(arguments);
+    drop_times(front);
+    return front;
+  };
+  const auto first = by_ray_query("first");
+  EXPECT_EQ(first["engine"], "ray_query");
+  EXPECT_EQ(first, by_ray_query("second"));
+}
+
 TEST_F(Plan, TheProblemFollowsFromTheStations) {
   EXPECT_EQ(json_of(plan("a", {"--stations", "3"}))["problem"], "coverage-overlap-fix");
   EXPECT_EQ(json_of(plan("b", {"--stations", "2..3"}))["problem"], "coverage-overlap-min");
