@@ -114,6 +114,11 @@ struct MoCmaEsConfig {
   std::size_t population = 100;           ///< μ.
   std::size_t batch = 1;                  ///< Offspring asked for at once in the steady state, so that a GPU is kept full.
   double sigma0 = 0.2;                    ///< Share of the range where there are bounds, else absolute.
+  /// The next three are for the steady state; all 0 gives it as published. With them it needs a fraction of the evaluations on
+  /// planning problems and leaves local fronts (docs/optimisers.md has both measured).
+  double guided = 0.5;                    ///< Share of parents drawn by their hypervolume contribution, not uniformly from the front.
+  double spread = 0.25;                   ///< Share of steps that also follow the differences to the parent's neighbours on the front.
+  double recombined = 0.15;               ///< Share of offspring by crossover and mutation, as in NSGA-II. Needs bounds.
   std::optional<Bounds> bounds = std::nullopt;
   std::vector<double> reference = {};     ///< Reference point of the hypervolume; empty: (1, …, 1).
   /// First points of the initial population; the rest is uniform in the bounds, or without bounds normal around the first (or 0).

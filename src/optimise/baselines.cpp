@@ -11,15 +11,6 @@
 #include "vantage/error.hpp"
 
 namespace vantage::optimise {
-namespace {
-
-std::vector<double> fitness_of(std::span<const Solution> members) {
-  std::vector<double> fitness;
-  for (const Solution& s : members) fitness.insert(fitness.end(), s.fitness.begin(), s.fitness.end());
-  return fitness;
-}
-
-}  // namespace
 
 std::vector<double> crowding_distances(std::span<const double> fitness, std::size_t m,
                                        std::span<const std::size_t> rank) {
@@ -71,7 +62,7 @@ std::span<const double> Baseline::resample(std::size_t index, std::span<const st
   common_.require_index(index);
   common_.require_coordinates(coordinates);
   if (coordinates.empty()) return common_.point(index);
-  const auto x = members_.empty() ? common_.initial_point(common_.config.start.size()) : make_point();
+  const auto x = members_.empty() ? common_.random_point() : make_point();
   for (const std::size_t i : coordinates) common_.point(index)[i] = x[i];
   return common_.point(index);
 }
@@ -84,7 +75,7 @@ void Baseline::tell(std::span<const double> values) {
     std::size_t i = 0;
     std::erase_if(members_, [&](const Solution&) { return !keep[i++]; });
   }
-  common_.watch(members_, false);
+  common_.watch(members_, [] { return false; });
 }
 
 std::vector<ParetoPoint> Baseline::population() const {

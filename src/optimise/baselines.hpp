@@ -57,7 +57,7 @@ class RandomSearch final : public Baseline {
       : Baseline("random search", dimension, objectives, config) {}
 
  private:
-  std::vector<double> make_point() override { return common_.initial_point(common_.config.start.size()); }
+  std::vector<double> make_point() override { return common_.random_point(); }
   std::vector<char> choose(std::span<const double> fitness) const override {
     return select(fitness, common_.reference, common_.config.population);
   }

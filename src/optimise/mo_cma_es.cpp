@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// Igel, Hansen, Roth: Covariance Matrix Adaptation for Multi-objective Optimization, 2007 (the strategy of each member:
-// algorithms 1–4); Voß, Hansen, Igel: Improved Step Size Adaptation for the MO-CMA-ES, 2010 (success of the
-// generational scheme); Igel, Suttorp, Hansen: Steady-State Selection and Efficient Covariance Matrix Update in the
-// Multi-objective CMA-ES, 2007; Krause, Igel: A More Efficient Rank-one Covariance Matrix Update for Evolution
-// Strategies, 2015 (triangular factor).
+// Generational: Voß, Hansen, Igel: Improved Step Size Adaptation for the MO-CMA-ES, 2010.
+// Steady state: Igel, Suttorp, Hansen: Steady-State Selection and Efficient Covariance Matrix Update in the
+// Multi-objective CMA-ES, 2007. Guided parents and spread steps: Krause, Glasmachers, Hansen, Igel: Unbounded
+// Population MO-CMA-ES for the Bi-objective BBOB Test Suite, 2016, here with a bounded population and any number of
+// objectives.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <numeric>
+#include <utility>
 
 #include "optimise/conditional.hpp"
 #include "optimise/hypervolume.hpp"
 #include "optimise/mo_common.hpp"
+#include "optimise/step_strategy.hpp"
+#include "optimise/variation.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage {
@@ -23,94 +25,71 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using optimise::MoCommon;
+using optimise::Shape;
 using optimise::Solution;
+using optimise::StepStrategy;
 using Scheme = MoCmaEsConfig::Scheme;
 
-constexpr double kTargetSuccess = 1 / 5.5;
-constexpr double kSuccessRate = kTargetSuccess / (2 + kTargetSuccess);
-constexpr double kSuccessThreshold = 0.44;
-constexpr double kPenalty = 1e-6;
-constexpr int kRedraws = 10;       // before what lies outside the box is clipped
-constexpr double kMaxSigma = 1e6;  // keeps samples finite where every step succeeds
+constexpr double kPenalty = 1e-6;  // per squared unit by which a point was clipped
+constexpr int kRedraws = 1;        // of a whole point, before what lies outside the box is clipped
+// As many again of chosen coordinates, which are few and seldom all at a bound.
+constexpr int kPartialRedraws = 16;
+constexpr double kExtremes = 0.2;        // share of guided parents that are the best in one objective
+constexpr double kExponent = 2;          // others in proportion to their contribution to this power
+constexpr double kNeighbourShare = 0.4;  // of a spread step's variance
 constexpr std::string_view kKind = "MO-CMA-ES";
 
-// The shape of a member's steps: C = factor · factorᵀ and its evolution path. Never changed once made, so that it can
-// be shared.
-struct Shape {
-  MatrixXd factor;
-  VectorXd path;
-};
+std::span<const double> as_span(const VectorXd& v) { return {v.data(), static_cast<std::size_t>(v.size())}; }
 
 struct Member : Solution {
   VectorXd genotype;  // unit coordinates; may lie outside the box, where x is clipped
-  double sigma = 0, success = kTargetSuccess;
-  std::shared_ptr<const Shape> shape;
+  StepStrategy strategy;
   std::uint64_t id = 0;
 };
 
 struct Offspring {
-  VectorXd genotype;
-  VectorXd step;  // in unit coordinates, divided by the parent's sigma
-  double penalty = 0, sigma = 0, success = 0;
-  std::shared_ptr<const Shape> shape;  // the parent's
   std::uint64_t parent = 0;
-  VectorXd origin;  // the parent's unit coordinates
+  StepStrategy strategy;  // the parent's
+  VectorXd origin;        // the parent's genotype
+  VectorXd genotype;
+  double penalty = 0;
+  bool recombined = false;  // its place says nothing about the strategy's steps
+  bool mixed = false;       // nor did the strategy's normal distribution alone give it
 };
 
-// A ← factor of decay · A Aᵀ + gain · v vᵀ; false if rounding broke it.
-bool update_factor(MatrixXd& a, double decay, double gain, VectorXd v) {
-  const Index n = a.rows();
-  const double scale = std::sqrt(decay);
-  double b = 1;
-  for (Index j = 0; j < n; ++j) {
-    const double old = scale * a(j, j), w = v[j];
-    const double now = std::sqrt(old * old + gain / b * w * w);
-    const double gamma = old * old * b + gain * w * w;
-    if (!(old > 0) || !std::isfinite(now) || !(gamma > 0)) return false;
-    const Index rest = n - j - 1;
-    auto column = a.col(j).tail(rest);
-    auto remaining = v.tail(rest);
-    column *= scale;
-    remaining -= (w / old) * column;
-    column = (now / old) * column + (now * gain * w / gamma) * remaining;
-    a(j, j) = now;
-    b += gain * w * w / (old * old);
-  }
-  return true;
-}
+// The front of the population, as the choice of parents needs it.
+struct Front {
+  std::vector<std::size_t> members;
+  std::vector<double> weight_sums;    // by contribution; empty where parents are not guided
+  std::vector<std::size_t> extremes;  // the best member in each objective
+  std::vector<double> low, high;      // of the fitness
+};
 
 }  // namespace
 
 struct MoCmaEs::Impl {
-  Impl(std::size_t dimension, std::size_t objectives, const MoCmaEsConfig& config)
-      : common("MO-CMA-ES", dimension, objectives, config) {
-    const auto n = static_cast<Index>(dimension);
-    initial_shape = std::make_shared<const Shape>(Shape{MatrixXd::Identity(n, n), VectorXd::Zero(n)});
-  }
+  Impl(std::size_t dimension, std::size_t objectives, const MoCmaEsConfig& config);
 
-  VectorXd to_unit(std::span<const double> x) const {
-    VectorXd t(static_cast<Index>(x.size()));
-    for (std::size_t i = 0; i < x.size(); ++i) t[static_cast<Index>(i)] = common.box.to_unit(x[i], i);
-    return t;
-  }
+  VectorXd to_unit(std::span<const double> x) const;
   bool within(double t) const { return !common.box.bounded() || (t >= 0 && t <= 1); }
   bool within(const VectorXd& t) const {
     return std::all_of(t.begin(), t.end(), [&](double v) { return within(v); });
   }
-  // Offspring of a member, into point k.
-  void draw(const Member& parent, std::size_t k);
-  // Puts unit coordinates, clipped where they lie outside, into point k, with the penalty and the step that belong to
-  // it.
-  void express(std::size_t k, VectorXd t);
-  std::vector<std::size_t> choose_parents(std::size_t count);
+
+  Front front() const;
+  std::size_t choose_parent(const Front& front);
+  void begin_offspring(const Member& parent, std::size_t k);
+  void draw_step(const Member& parent, const Front* front, std::size_t k);
+  void recombine(const Member& parent, std::size_t k);
+  VectorXd neighbour_step(const Member& parent, const Front& front);
+  // Puts unit coordinates, clipped where they lie outside, into point k, with the penalty that belongs to it.
+  void express(std::size_t k, VectorXd genotype);
 
   void tell_initial(std::vector<Solution> solutions);
   void tell_generation(std::vector<Solution> solutions);
   void tell_one(Solution solution, const Offspring& offspring);
-  Member make_member(Solution solution, const Offspring& offspring, bool success) const;
-  void adapt_step(double& sigma, double& success_rate, bool success) const;
+  Member make_member(Solution solution, const Offspring& offspring, bool succeeded);
   bool converged() const;
-  std::size_t find(std::uint64_t id) const;
 
   MoCommon common;
   std::shared_ptr<const Shape> initial_shape;
@@ -119,94 +98,165 @@ struct MoCmaEs::Impl {
   std::vector<Offspring> pending;
 };
 
-void MoCmaEs::Impl::express(std::size_t k, VectorXd t) {
+MoCmaEs::Impl::Impl(std::size_t dimension, std::size_t objectives, const MoCmaEsConfig& config)
+    : common("MO-CMA-ES", dimension, objectives, config), initial_shape(Shape::identity(dimension)) {
+  for (const double share : {config.guided, config.spread, config.recombined})
+    if (!(share >= 0 && share <= 1))
+      throw Error(Errc::invalid_argument, "MO-CMA-ES: a share of " + std::to_string(share) + " is not in 0 to 1");
+}
+
+VectorXd MoCmaEs::Impl::to_unit(std::span<const double> x) const {
+  VectorXd t(static_cast<Index>(x.size()));
+  for (std::size_t i = 0; i < x.size(); ++i) t[static_cast<Index>(i)] = common.box.to_unit(x[i], i);
+  return t;
+}
+
+// ---- offspring
+// -------------------------------------------------------------------------------------------------------
+
+Front MoCmaEs::Impl::front() const {
+  const std::size_t m = common.objectives;
+  Front front;
+  const auto fitness = optimise::fitness_of(members);
+  const auto rank = optimise::ranks({fitness, m});
+  std::vector<double> values;
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    if (rank[i] != 0) continue;
+    front.members.push_back(i);
+    values.insert(values.end(), members[i].fitness.begin(), members[i].fitness.end());
+  }
+  for (std::size_t j = 0; j < m; ++j) {
+    const auto [low, high] = std::minmax_element(
+        front.members.begin(), front.members.end(),
+        [&](std::size_t a, std::size_t b) { return members[a].fitness[j] < members[b].fitness[j]; });
+    front.extremes.push_back(*low);
+    front.low.push_back(members[*low].fitness[j]);
+    front.high.push_back(members[*high].fitness[j]);
+  }
+  if (common.config.guided == 0) return front;
+  const auto contributions = optimise::contributions({values, m}, optimise::reach_over(values, common.reference));
+  double sum = 0;
+  for (const double c : contributions) front.weight_sums.push_back(sum += std::pow(c, kExponent));
+  return front;
+}
+
+std::size_t MoCmaEs::Impl::choose_parent(const Front& front) {
+  optimise::NormalStream& random = common.random;
+  if (common.config.guided > 0 && random.uniform() < common.config.guided) {
+    if (random.uniform() < kExtremes) return front.extremes[random.index(common.objectives)];
+    const double sum = front.weight_sums.back();
+    if (sum > 0) {
+      const auto chosen =
+          std::upper_bound(front.weight_sums.begin(), front.weight_sums.end() - 1, random.uniform() * sum);
+      return front.members[static_cast<std::size_t>(chosen - front.weight_sums.begin())];
+    }
+  }
+  return front.members[random.index(front.members.size())];
+}
+
+void MoCmaEs::Impl::begin_offspring(const Member& parent, std::size_t k) {
+  pending[k] = {.parent = parent.id, .strategy = parent.strategy, .origin = parent.genotype, .genotype = {}};
+}
+
+void MoCmaEs::Impl::express(std::size_t k, VectorXd genotype) {
   Offspring& o = pending[k];
   const auto point = common.point(k);
   o.penalty = 0;
   for (std::size_t i = 0; i < common.dimension; ++i) {
-    const auto axis = static_cast<Index>(i);
-    if (!within(t[axis])) {
-      const double clipped = std::clamp(t[axis], 0.0, 1.0);
-      o.penalty += kPenalty * (t[axis] - clipped) * (t[axis] - clipped);
-      point[i] = common.box.from_unit(clipped, i);
-    } else {
-      point[i] = common.box.from_unit(t[axis], i);
+    double t = genotype[static_cast<Index>(i)];
+    if (!within(t)) {
+      const double clipped = std::clamp(t, 0.0, 1.0);
+      o.penalty += kPenalty * (t - clipped) * (t - clipped);
+      t = clipped;
+    }
+    point[i] = common.box.from_unit(t, i);
+  }
+  // The genotype stays where it fell: truncated steps would teach the path to lead away from the bound.
+  o.genotype = std::move(genotype);
+}
+
+void MoCmaEs::Impl::draw_step(const Member& parent, const Front* front, std::size_t k) {
+  begin_offspring(parent, k);
+  const auto n = static_cast<Index>(common.dimension);
+  const MatrixXd& factor = parent.strategy.shape->factor;
+  VectorXd centre = parent.genotype, genotype, normals(n);
+  double scale = parent.strategy.sigma;
+  if (front != nullptr && common.config.spread > 0 && common.random.uniform() < common.config.spread) {
+    centre += std::sqrt(kNeighbourShare) * neighbour_step(parent, *front);
+    scale *= std::sqrt(1 - kNeighbourShare);
+    pending[k].mixed = true;
+  }
+  for (int redraw = 0; redraw <= kRedraws; ++redraw) {
+    common.random.fill_normal({normals.data(), common.dimension});
+    genotype = centre;
+    for (Index i = 0; i < n; ++i) genotype.tail(n - i) += (scale * normals[i]) * factor.col(i).tail(n - i);
+    if (within(genotype)) break;
+  }
+  express(k, std::move(genotype));
+}
+
+// A normal step in the plane of the differences to the two members that are nearest on the front.
+VectorXd MoCmaEs::Impl::neighbour_step(const Member& parent, const Front& front) {
+  const Member* nearest[2] = {nullptr, nullptr};
+  double distance[2] = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+  for (const std::size_t i : front.members) {
+    if (members[i].id == parent.id) continue;
+    double d = 0;
+    for (std::size_t j = 0; j < common.objectives; ++j) {
+      const double range = front.high[j] - front.low[j];
+      const double difference = range > 0 ? (members[i].fitness[j] - parent.fitness[j]) / range : 0.0;
+      d += difference * difference;
+    }
+    if (d < distance[0]) {
+      distance[1] = std::exchange(distance[0], d);
+      nearest[1] = std::exchange(nearest[0], &members[i]);
+    } else if (d < distance[1]) {
+      distance[1] = d;
+      nearest[1] = &members[i];
     }
   }
-  o.step = (t - o.origin) / o.sigma;
-  o.genotype = std::move(t);
+  VectorXd step = VectorXd::Zero(parent.genotype.size());
+  for (const Member* neighbour : nearest)
+    if (neighbour != nullptr) step += std::sqrt(0.5) * common.random.normal() * (neighbour->genotype - parent.genotype);
+  return step;
 }
 
-// Drawn again a few times while outside the box, then clipped. A step keeps the point where it fell, not where it was
-// clipped: the half of a normal that truncation leaves would teach the path to lead away from the bound.
-void MoCmaEs::Impl::draw(const Member& parent, std::size_t k) {
-  const auto n = static_cast<Index>(common.dimension);
-  Offspring& o = pending[k];
-  o.sigma = parent.sigma;
-  o.success = parent.success;
-  o.shape = parent.shape;
-  o.parent = parent.id;
-  o.origin = parent.genotype;
-  VectorXd normals(n), t = o.origin;
-  common.random.fill_normal({normals.data(), common.dimension});
-  const MatrixXd& factor = o.shape->factor;
-  for (int attempt = 0;; ++attempt) {
-    for (Index i = 0; i < n; ++i) t.tail(n - i) += (o.sigma * normals[i]) * factor.col(i).tail(n - i);
-    if (attempt == kRedraws || within(t)) break;
-    common.random.fill_normal({normals.data(), common.dimension});
-    t = o.origin;
+void MoCmaEs::Impl::recombine(const Member& parent, std::size_t k) {
+  begin_offspring(parent, k);
+  const Member& other = members[common.random.index(members.size())];
+  const VectorXd first = to_unit(parent.x), second = to_unit(other.x);
+  const optimise::VariationConfig variation;
+  auto child = optimise::make_child(as_span(first), as_span(second), variation, common.random);
+  if (std::ranges::equal(child, as_span(first)) || std::ranges::equal(child, as_span(second))) {  // known already
+    double& t = child[common.random.index(child.size())];
+    t = optimise::mutate(t, variation.mutation_index, common.random);
   }
-  express(k, std::move(t));
-}
-
-std::vector<std::size_t> MoCmaEs::Impl::choose_parents(std::size_t count) {
-  std::vector<std::size_t> result(count);
-  if (common.config.scheme == Scheme::generational) {
-    std::iota(result.begin(), result.end(), std::size_t{0});
-    return result;
+  VectorXd genotype = Eigen::Map<const VectorXd>(child.data(), first.size());
+  // A coordinate that is handed on whole keeps its place beyond the bound, and so the child's offspring stay at it too.
+  for (Index i = 0; i < genotype.size(); ++i) {
+    if (genotype[i] == first[i]) {
+      genotype[i] = parent.genotype[i];
+    } else if (genotype[i] == second[i]) {
+      genotype[i] = other.genotype[i];
+    }
   }
-  std::vector<double> fitness;
-  for (const Member& member : members) fitness.insert(fitness.end(), member.fitness.begin(), member.fitness.end());
-  const auto rank = optimise::ranks({fitness, common.objectives});
-  std::vector<std::size_t> best;
-  for (std::size_t i = 0; i < members.size(); ++i)
-    if (rank[i] == 0) best.push_back(i);
-  for (std::size_t& parent : result) parent = best[common.random.index(best.size())];
-  return result;
+  pending[k].recombined = pending[k].mixed = true;
+  express(k, std::move(genotype));
 }
 
-void MoCmaEs::Impl::adapt_step(double& sigma, double& success_rate, bool success) const {
-  const double damping = 1 + static_cast<double>(common.dimension) / 2;
-  success_rate = (1 - kSuccessRate) * success_rate + (success ? kSuccessRate : 0.0);
-  sigma *= std::exp((success_rate - kTargetSuccess) / (damping * (1 - kTargetSuccess)));
-  sigma = std::clamp(sigma, 1e-300, kMaxSigma);
-}
+// ---- selection
+// -------------------------------------------------------------------------------------------------------
 
-Member MoCmaEs::Impl::make_member(Solution solution, const Offspring& o, bool success) const {
-  const double n = static_cast<double>(common.dimension);
-  const double c_c = 2 / (n + 2), c_cov = 2 / (n * n + 6);
+Member MoCmaEs::Impl::make_member(Solution solution, const Offspring& o, bool succeeded) {
   Member member;
   static_cast<Solution&>(member) = std::move(solution);
   member.genotype = o.genotype;
-  member.sigma = o.sigma;
-  member.success = o.success;
-  adapt_step(member.sigma, member.success, success);
-  Shape shape = *o.shape;
-  shape.path *= 1 - c_c;
-  double decay = 1 - c_cov;
-  if (member.success < kSuccessThreshold) {
-    shape.path += std::sqrt(c_c * (2 - c_c)) * o.step;
-  } else {
-    decay += c_cov * c_c * (2 - c_c);
-  }
-  const bool sound = update_factor(shape.factor, decay, c_cov, shape.path) && shape.factor.allFinite();
-  member.shape = sound ? std::make_shared<const Shape>(std::move(shape)) : initial_shape;
+  member.strategy = o.strategy;
+  member.id = next_id++;
+  if (o.recombined) return member;
+  member.strategy.adapt_sigma(succeeded);
+  member.strategy.adapt_shape((o.genotype - o.origin) / o.strategy.sigma);
   return member;
-}
-
-std::size_t MoCmaEs::Impl::find(std::uint64_t id) const {
-  const auto found = std::find_if(members.begin(), members.end(), [&](const Member& m) { return m.id == id; });
-  return static_cast<std::size_t>(found - members.begin());
 }
 
 void MoCmaEs::Impl::tell_initial(std::vector<Solution> solutions) {
@@ -214,8 +264,8 @@ void MoCmaEs::Impl::tell_initial(std::vector<Solution> solutions) {
     Member member;
     static_cast<Solution&>(member) = std::move(solution);
     member.genotype = to_unit(member.x);
-    member.sigma = common.config.sigma0;
-    member.shape = initial_shape;
+    member.strategy.sigma = common.config.sigma0;
+    member.strategy.shape = initial_shape;
     member.id = next_id++;
     members.push_back(std::move(member));
   }
@@ -223,36 +273,25 @@ void MoCmaEs::Impl::tell_initial(std::vector<Solution> solutions) {
 
 // (μ + μ): an offspring succeeds when it is selected.
 void MoCmaEs::Impl::tell_generation(std::vector<Solution> solutions) {
-  const std::size_t mu = members.size(), m = common.objectives, total = mu + solutions.size();
-  std::vector<double> fitness;
-  fitness.reserve(total * m);
-  for (const Member& member : members) fitness.insert(fitness.end(), member.fitness.begin(), member.fitness.end());
+  const std::size_t mu = members.size();
+  auto fitness = optimise::fitness_of(members);
   for (const Solution& s : solutions) fitness.insert(fitness.end(), s.fitness.begin(), s.fitness.end());
-  std::vector<char> selected = optimise::select(fitness, common.reference, mu);
-
+  const auto selected = optimise::select(fitness, common.reference, mu);
   std::vector<Member> next;
   next.reserve(mu);
-  for (std::size_t k = 0; k < solutions.size(); ++k) {
-    if (selected[mu + k]) {
-      next.push_back(make_member(std::move(solutions[k]), pending[k], true));
-      next.back().id = next_id++;
-    }
-    adapt_step(members[k].sigma, members[k].success, selected[mu + k]);
+  for (std::size_t k = 0; k < mu; ++k) {
+    if (selected[mu + k]) next.push_back(make_member(std::move(solutions[k]), pending[k], true));
+    members[k].strategy.adapt_sigma(selected[mu + k]);
   }
-  std::vector<Member> survivors;
-  survivors.reserve(mu);
   for (std::size_t i = 0; i < mu; ++i)
-    if (selected[i]) survivors.push_back(std::move(members[i]));
-  std::move(next.begin(), next.end(), std::back_inserter(survivors));
-  members = std::move(survivors);
+    if (selected[i]) next.push_back(std::move(members[i]));
+  members = std::move(next);
 }
 
 // (μ + 1): an offspring succeeds when it is selected and its rank among the μ + 1 is not worse than its parent's.
 void MoCmaEs::Impl::tell_one(Solution solution, const Offspring& offspring) {
   const std::size_t mu = members.size(), m = common.objectives;
-  std::vector<double> fitness;
-  fitness.reserve((mu + 1) * m);
-  for (const Member& member : members) fitness.insert(fitness.end(), member.fitness.begin(), member.fitness.end());
+  auto fitness = optimise::fitness_of(members);
   fitness.insert(fitness.end(), solution.fitness.begin(), solution.fitness.end());
   const auto rank = optimise::ranks({fitness, m});
   const std::size_t worst = *std::max_element(rank.begin(), rank.end());
@@ -265,19 +304,23 @@ void MoCmaEs::Impl::tell_one(Solution solution, const Offspring& offspring) {
                         fitness.begin() + static_cast<std::ptrdiff_t>((i + 1) * m));
   }
   const std::size_t removed = last[optimise::surplus(last_fitness, common.reference, 1).front()];
-  const std::size_t parent = find(offspring.parent);
-  const bool success = removed != mu && (parent == mu || rank[mu] <= rank[parent]);
-  if (parent < mu) adapt_step(members[parent].sigma, members[parent].success, success);
-  if (removed == mu) return;
-  members[removed] = make_member(std::move(solution), offspring, success);
-  members[removed].id = next_id++;
+  // Another offspring of the same batch may have taken the parent's place.
+  const auto parent =
+      std::find_if(members.begin(), members.end(), [&](const Member& p) { return p.id == offspring.parent; });
+  const bool orphan = parent == members.end();
+  const bool succeeded =
+      removed != mu && (orphan || rank[mu] <= rank[static_cast<std::size_t>(parent - members.begin())]);
+  if (!orphan && !offspring.recombined) parent->strategy.adapt_sigma(succeeded);
+  if (removed != mu) members[removed] = make_member(std::move(solution), offspring, succeeded);
 }
 
 bool MoCmaEs::Impl::converged() const {
-  return std::all_of(members.begin(), members.end(), [&](const Member& member) {
-    return member.sigma * member.shape->factor.rowwise().norm().maxCoeff() < common.config.x_tolerance;
-  });
+  return std::all_of(members.begin(), members.end(),
+                     [&](const Member& member) { return member.strategy.reach() < common.config.x_tolerance; });
 }
+
+// ---- interface
+// -------------------------------------------------------------------------------------------------------
 
 MoCmaEs::MoCmaEs(std::size_t dimension, std::size_t objectives, const MoCmaEsConfig& config)
     : impl_(std::make_unique<Impl>(dimension, objectives, config)) {}
@@ -289,18 +332,26 @@ std::span<const double> MoCmaEs::ask() {
   Impl& s = *impl_;
   MoCommon& c = s.common;
   if (c.asked() != 0) return c.points();
-  const std::size_t mu = c.config.population;
-  if (s.members.empty()) {
-    c.begin_ask(mu);
-    s.pending.assign(mu, {});
-    for (std::size_t k = 0; k < mu; ++k) std::ranges::copy(c.initial_point(k), c.point(k).begin());
-    return c.points();
-  }
-  const std::size_t count = c.config.scheme == Scheme::generational ? mu : c.config.batch;
-  const auto parents = s.choose_parents(count);
+  const bool steady = c.config.scheme == Scheme::steady_state && !s.members.empty();
+  const std::size_t count = steady ? c.config.batch : c.config.population;
   c.begin_ask(count);
   s.pending.assign(count, {});
-  for (std::size_t k = 0; k < count; ++k) s.draw(s.members[parents[k]], k);
+  if (s.members.empty()) {
+    for (std::size_t k = 0; k < count; ++k) std::ranges::copy(c.initial_point(k), c.point(k).begin());
+  } else if (steady) {
+    const Front front = s.front();
+    const double recombined = c.box.bounded() ? c.config.recombined : 0.0;
+    for (std::size_t k = 0; k < count; ++k) {
+      const Member& parent = s.members[s.choose_parent(front)];
+      if (recombined > 0 && c.random.uniform() < recombined) {
+        s.recombine(parent, k);
+      } else {
+        s.draw_step(parent, &front, k);
+      }
+    }
+  } else {
+    for (std::size_t k = 0; k < count; ++k) s.draw_step(s.members[k], nullptr, k);
+  }
   return c.points();
 }
 
@@ -310,11 +361,9 @@ void MoCmaEs::replace(std::size_t index, std::span<const double> x) {
   s.common.require_index(index);
   s.common.box.require_inside(x);
   std::ranges::copy(x, s.common.point(index).begin());
-  if (s.members.empty()) return;
   Offspring& o = s.pending[index];
   o.penalty = 0;
   o.genotype = s.to_unit(x);
-  o.step = (o.genotype - o.origin) / o.sigma;
 }
 
 std::span<const double> MoCmaEs::resample(std::size_t index, std::span<const std::size_t> coordinates) {
@@ -325,15 +374,17 @@ std::span<const double> MoCmaEs::resample(std::size_t index, std::span<const std
   c.require_coordinates(coordinates);
   if (coordinates.empty()) return c.point(index);
   if (s.members.empty()) {
-    const auto x = c.initial_point(c.config.start.size());
+    const auto x = c.random_point();
     for (const std::size_t i : coordinates) c.point(index)[i] = x[i];
     return c.point(index);
   }
   const Offspring& o = s.pending[index];
   const auto n = static_cast<Index>(c.dimension), k = static_cast<Index>(coordinates.size());
-  const auto lower = o.shape->factor.triangularView<Eigen::Lower>();
+  const auto lower = o.strategy.shape->factor.triangularView<Eigen::Lower>();
   MatrixXd columns = MatrixXd::Zero(n, k);
-  VectorXd step = o.step;
+  VectorXd step = (o.genotype - o.origin) / o.strategy.sigma;
+  // Of a mixed offspring the other coordinates tell nothing about these.
+  if (o.mixed) step.setZero();
   for (Index j = 0; j < k; ++j) {
     const auto axis = static_cast<Index>(coordinates[static_cast<std::size_t>(j)]);
     columns(axis, j) = 1;
@@ -341,18 +392,18 @@ std::span<const double> MoCmaEs::resample(std::size_t index, std::span<const std
   }
   lower.solveInPlace(columns);
   const VectorXd rest = lower.solve(step);
-  VectorXd t = o.genotype;
-  for (int redraw = 0; redraw < kRedraws; ++redraw) {
+  VectorXd genotype = o.genotype;
+  for (int redraw = 0; redraw <= kPartialRedraws; ++redraw) {
     const VectorXd drawn = optimise::draw_conditional(columns, rest, c.random);
     bool fits = true;
     for (Index j = 0; j < k; ++j) {
       const auto axis = static_cast<Index>(coordinates[static_cast<std::size_t>(j)]);
-      t[axis] = o.origin[axis] + o.sigma * drawn[j];
-      fits &= s.within(t[axis]);
+      genotype[axis] = o.origin[axis] + o.strategy.sigma * drawn[j];
+      fits &= s.within(genotype[axis]);
     }
     if (fits) break;
   }
-  s.express(index, std::move(t));
+  s.express(index, std::move(genotype));
   return c.point(index);
 }
 
@@ -369,7 +420,7 @@ void MoCmaEs::tell(std::span<const double> values) {
     for (std::size_t k = 0; k < solutions.size(); ++k) s.tell_one(std::move(solutions[k]), s.pending[k]);
   }
   s.pending.clear();
-  s.common.watch(s.members, s.converged());
+  s.common.watch(s.members, [&] { return s.converged(); });
 }
 
 StopReason MoCmaEs::stop_reason() const noexcept { return impl_->common.stop_reason(); }
@@ -392,13 +443,14 @@ void MoCmaEs::save(std::ostream& out) const {
   w.put(std::uint64_t{s.members.size()});
   for (const Member& member : s.members) {
     MoCommon::save(w, member);
+    const Shape& shape = *member.strategy.shape;
     w.put(member.id);
-    w.put(std::span(member.genotype.data(), s.common.dimension));
-    w.put(member.sigma);
-    w.put(member.success);
-    w.put(std::span(member.shape->path.data(), static_cast<std::size_t>(member.shape->path.size())));
-    for (Index j = 0; j < member.shape->factor.cols(); ++j)
-      w.put(std::span(member.shape->factor.col(j).data() + j, s.common.dimension - static_cast<std::size_t>(j)));
+    w.put(as_span(member.genotype));
+    w.put(member.strategy.sigma);
+    w.put(member.strategy.success);
+    w.put(as_span(shape.path));
+    for (Index j = 0; j < shape.factor.cols(); ++j)
+      w.put(std::span(shape.factor.col(j).data() + j, s.common.dimension - static_cast<std::size_t>(j)));
   }
   w.write(out, kKind);
 }
@@ -406,25 +458,26 @@ void MoCmaEs::save(std::ostream& out) const {
 void MoCmaEs::load(std::istream& in) {
   optimise::StateReader r(in, kKind);
   const MoCommon& mine = impl_->common;
-  auto next = std::make_unique<Impl>(mine.dimension, mine.objectives, mine.config);
+  const std::size_t n = mine.dimension;
+  auto next = std::make_unique<Impl>(n, mine.objectives, mine.config);
   next->common.restore(mine.read(r));
   next->next_id = r.integer();
-  const std::size_t count = r.size(mine.config.population + 1), n = mine.dimension;
+  const std::size_t count = r.size(mine.config.population + 1);
   for (std::size_t i = 0; i < count; ++i) {
     Member member;
     static_cast<Solution&>(member) = next->common.load_solution(r);
     member.id = r.integer();
     member.genotype.resize(static_cast<Index>(n));
     std::ranges::copy(r.finite_reals(n), member.genotype.data());
-    member.sigma = r.positive();
-    member.success = r.finite();
+    member.strategy.sigma = r.positive();
+    member.strategy.success = r.finite();
     Shape shape = *next->initial_shape;
     std::ranges::copy(r.finite_reals(n), shape.path.data());
     for (std::size_t j = 0; j < n; ++j) {
       const auto column = r.finite_reals(n - j);
       std::ranges::copy(column, shape.factor.col(static_cast<Index>(j)).data() + j);
     }
-    member.shape = std::make_shared<const Shape>(std::move(shape));
+    member.strategy.shape = std::make_shared<const Shape>(std::move(shape));
     next->members.push_back(std::move(member));
   }
   r.end();

@@ -16,6 +16,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kFlatIterations = 10;
 constexpr std::size_t kMaxPopulation = std::size_t{1} << 20;
 constexpr std::size_t kMaxObjectives = 6;
+constexpr double kOverreach = 0.1;
 
 [[noreturn]] void fail(const std::string& message) { throw Error(Errc::invalid_argument, message); }
 
@@ -48,7 +49,10 @@ MoCommon::MoCommon(std::string n, std::size_t d, std::size_t m, const MoCmaEsCon
 }
 
 std::vector<double> MoCommon::initial_point(std::size_t k) {
-  if (k < config.start.size()) return config.start[k];
+  return k < config.start.size() ? config.start[k] : random_point();
+}
+
+std::vector<double> MoCommon::random_point() {
   std::vector<double> x(dimension);
   for (std::size_t i = 0; i < dimension; ++i) {
     const double centre = config.start.empty() ? 0.0 : config.start.front()[i];
@@ -163,7 +167,7 @@ void MoCommon::save(StateWriter& w) const {
   w.put(std::uint64_t{config.population});
   w.put(std::uint64_t{config.batch});
   w.put(static_cast<std::uint64_t>(config.scheme));
-  w.put(config.sigma0);
+  for (const double v : {config.sigma0, config.guided, config.spread, config.recombined}) w.put(v);
   w.put(box.lower());
   w.put(box.upper());
   w.put(reference);
@@ -186,6 +190,9 @@ MoCommon::Progress MoCommon::read(StateReader& r) const {
   r.expect(std::uint64_t{config.batch}, "batch");
   r.expect(static_cast<std::uint64_t>(config.scheme), "scheme");
   r.expect(config.sigma0, "sigma0");
+  r.expect(config.guided, "guided share");
+  r.expect(config.spread, "spread share");
+  r.expect(config.recombined, "recombined share");
   r.expect(box.lower(), "lower bound");
   r.expect(box.upper(), "upper bound");
   r.expect(reference, "reference");
@@ -240,47 +247,26 @@ std::vector<ParetoPoint> front_of(std::span<const Solution* const> members) {
   return result;
 }
 
+std::vector<double> reach_over(std::span<const double> fitness, std::span<const double> reference) {
+  const std::size_t m = reference.size();
+  std::vector<double> low(m, kInfinity), high(m, -kInfinity), result(reference.begin(), reference.end());
+  for (std::size_t i = 0; i < fitness.size(); ++i) {
+    if (!std::isfinite(fitness[i])) continue;
+    low[i % m] = std::min(low[i % m], fitness[i]);
+    high[i % m] = std::max(high[i % m], fitness[i]);
+  }
+  for (std::size_t j = 0; j < m; ++j) {
+    if (high[j] < reference[j]) continue;
+    const double range = high[j] > low[j] ? high[j] - low[j] : std::max(1.0, std::abs(high[j]));
+    result[j] = high[j] + kOverreach * range;
+  }
+  return result;
+}
+
 std::vector<std::size_t> surplus(std::span<const double> fitness, std::span<const double> reference,
                                  std::size_t count) {
-  const std::size_t m = reference.size(), k = fitness.size() / m;
   if (count == 0) return {};
-  std::vector<std::size_t> outside;
-  std::vector<double> far;
-  std::vector<double> low(m, kInfinity), high(m, -kInfinity);
-  for (std::size_t i = 0; i < k; ++i) {
-    const auto f = fitness.subspan(i * m, m);
-    if (inside(f, reference)) continue;
-    outside.push_back(i);
-    far.insert(far.end(), f.begin(), f.end());
-    for (std::size_t j = 0; j < m; ++j) {
-      if (!std::isfinite(f[j])) continue;
-      low[j] = std::min(low[j], f[j]);
-      high[j] = std::max(high[j], f[j]);
-    }
-  }
-  if (outside.empty()) return least_contributors({fitness, m}, reference, count);
-
-  std::vector<double> beyond(m);
-  for (std::size_t j = 0; j < m; ++j) {
-    const double spread = high[j] - low[j];
-    beyond[j] = high[j] < low[j] ? reference[j] : std::max(reference[j], high[j] + (spread > 0 ? spread : 1.0));
-  }
-  std::vector<std::size_t> result;
-  for (const std::size_t i : least_contributors({far, m}, beyond, std::min(count, outside.size())))
-    result.push_back(outside[i]);
-  if (result.size() == count) return result;
-
-  std::vector<std::size_t> index;
-  std::vector<double> near;
-  for (std::size_t i = 0; i < k; ++i) {
-    const auto f = fitness.subspan(i * m, m);
-    if (!inside(f, reference)) continue;
-    index.push_back(i);
-    near.insert(near.end(), f.begin(), f.end());
-  }
-  for (const std::size_t i : least_contributors({near, m}, reference, count - result.size()))
-    result.push_back(index[i]);
-  return result;
+  return least_contributors({fitness, reference.size()}, reach_over(fitness, reference), count);
 }
 
 std::vector<char> select(std::span<const double> fitness, std::span<const double> reference, std::size_t count) {

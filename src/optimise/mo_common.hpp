@@ -26,8 +26,9 @@ class MoCommon {
   // Throws Error invalid_argument. `name` begins the messages.
   MoCommon(std::string name, std::size_t dimension, std::size_t objectives, const MoCmaEsConfig& config);
 
-  // Point k of the initial population.
+  // Point k of the initial population: as given, then random.
   std::vector<double> initial_point(std::size_t k);
+  std::vector<double> random_point();
 
   void begin_ask(std::size_t count);  // makes room for the points
   std::span<double> point(std::size_t k) { return std::span(points_).subspan(k * dimension, dimension); }
@@ -41,13 +42,14 @@ class MoCommon {
   // get +infinity.
   std::vector<Solution> take(std::span<const double> values, std::span<const double> penalties = {});
 
-  // Stop rules, after every tell(). `members` is the population, `converged` whether its steps have become too small.
-  template <typename Members>
-  void watch(const Members& members, bool converged) {
+  // Stop rules, after every tell(). `members` is the population, `converged` tells whether its steps have become too
+  // small.
+  template <typename Members, typename Converged>
+  void watch(const Members& members, const Converged& converged) {
     if (!due()) return;
     std::vector<double> values;
     for (const auto& member : members) values.insert(values.end(), member.f.begin(), member.f.end());
-    judge(values, converged);
+    judge(values, converged());
   }
   StopReason stop_reason() const { return progress_.reason; }
 
@@ -103,9 +105,19 @@ std::vector<const Solution*> pointers(const Members& members) {
   return result;
 }
 
-// Which `count` of a set of mutually non-dominated fitness vectors (row-major) to drop. Those outside the reference go
-// first, least contribution against a reference that lies beyond all of them; then the least contributors of those
-// inside.
+template <typename Members>
+std::vector<double> fitness_of(const Members& members) {
+  std::vector<double> fitness;
+  for (const auto& member : members) fitness.insert(fitness.end(), member.fitness.begin(), member.fitness.end());
+  return fitness;
+}
+
+// The reference point, moved out along each objective in which fitness vectors (row-major) lie on or beyond it, to a
+// tenth of their range beyond them. So a front is spread before it has reached the reference, and one that has reached
+// it at one end does not lose the other.
+std::vector<double> reach_over(std::span<const double> fitness, std::span<const double> reference);
+// Which `count` of a set of mutually non-dominated fitness vectors to drop: the least contributors against
+// reach_over().
 std::vector<std::size_t> surplus(std::span<const double> fitness, std::span<const double> reference, std::size_t count);
 
 // Marks the `count` points to keep: by rank, the last front cut by surplus().

@@ -59,6 +59,7 @@ struct Variant {
   MoAlgorithm algorithm;
   Scheme scheme;
   std::size_t batch;
+  bool published = false;  // neither guided parents nor spread steps nor recombination
 };
 
 class EveryOptimiser : public testing::TestWithParam<Variant> {
@@ -69,6 +70,7 @@ class EveryOptimiser : public testing::TestWithParam<Variant> {
     c.batch = GetParam().batch;
     c.population = 20;
     c.bounds = Bounds::uniform(n, -1, 2);
+    if (GetParam().published) c.guided = c.spread = c.recombined = 0;
     return c;
   }
   std::unique_ptr<MultiObjectiveOptimiser> make(std::size_t n, std::size_t m, const MoCmaEsConfig& c) const {
@@ -78,6 +80,7 @@ class EveryOptimiser : public testing::TestWithParam<Variant> {
 INSTANTIATE_TEST_SUITE_P(, EveryOptimiser,
                          testing::Values(Variant{MoAlgorithm::mo_cma_es, Scheme::generational, 1},
                                          Variant{MoAlgorithm::mo_cma_es, Scheme::steady_state, 1},
+                                         Variant{MoAlgorithm::mo_cma_es, Scheme::steady_state, 1, true},
                                          Variant{MoAlgorithm::mo_cma_es, Scheme::steady_state, 7},
                                          Variant{MoAlgorithm::nsga2, Scheme::generational, 1},
                                          Variant{MoAlgorithm::random_search, Scheme::generational, 1}),
@@ -85,7 +88,8 @@ INSTANTIATE_TEST_SUITE_P(, EveryOptimiser,
                            return to_string(test.param.algorithm) +
                                   (test.param.scheme == Scheme::generational
                                        ? ""
-                                       : "_steady" + std::to_string(test.param.batch));
+                                       : "_steady" + std::to_string(test.param.batch)) +
+                                  (test.param.published ? "_published" : "");
                          });
 
 TEST_P(EveryOptimiser, NearsAKnownFront) {
@@ -301,6 +305,15 @@ TEST_P(EveryOptimiser, RefusesWhatItCannotDo) {
   bad = c;
   bad.start = {{0, 5}};
   EXPECT_THROW(make(2, 2, bad), Error);
+  if (GetParam().algorithm == MoAlgorithm::mo_cma_es) {
+    for (const double share : {-0.1, 1.1, std::nan("")}) {
+      for (double MoCmaEsConfig::*of : {&MoCmaEsConfig::guided, &MoCmaEsConfig::spread, &MoCmaEsConfig::recombined}) {
+        bad = c;
+        bad.*of = share;
+        EXPECT_THROW(make(2, 2, bad), Error);
+      }
+    }
+  }
   auto optimiser = make(2, 2, c);
   EXPECT_THROW(optimiser->tell({}), Error);
   optimiser->ask();
@@ -333,6 +346,37 @@ TEST(MoCmaEs, WorksWithoutBounds) {
   MoCmaEs optimiser(3, 2, c);
   run(optimiser, 3, two_spheres);
   EXPECT_GT(optimiser.hypervolume(), 0.78);
+}
+
+// Distance to a line of points behind many local fronts, as in ZDT4: small steps alone stay on the first one that they meet.
+std::vector<double> rippled(std::span<const double> x) {
+  double g = 1;
+  for (std::size_t i = 1; i < x.size(); ++i) g += x[i] * x[i] + 1 - std::cos(6 * 3.14159265358979 * x[i]);
+  return {x[0], g - std::sqrt(std::max(0.0, x[0]))};
+}
+
+TEST(MoCmaEs, RecombinationLeavesLocalFronts) {
+  const std::size_t n = 6;
+  const auto reached = [&](double recombined) {
+    MoCmaEsConfig c;
+    c.population = 20;
+    c.bounds = Bounds::uniform(n, -2, 2);
+    c.bounds->lower[0] = 0;
+    c.bounds->upper[0] = 1;
+    c.reference = {2, 5};
+    c.recombined = recombined;
+    c.max_evaluations = 6000;
+    double sum = 0;
+    for (c.seed = 1; c.seed <= 3; ++c.seed) {
+      MoCmaEs optimiser(n, 2, c);
+      run(optimiser, n, rippled);
+      sum += optimiser.hypervolume() / 3;
+    }
+    return sum;
+  };
+  const double best = 8 + 2.0 / 3 + 1;  // ∫ of 5 − 1 + √f over [0, 1], then 5 up to the reference
+  EXPECT_GT(reached(0.15), 0.97 * best);
+  EXPECT_LT(reached(0), 0.95 * best);
 }
 
 TEST(MoAlgorithm, NamesRoundTrip) {
