@@ -2,7 +2,7 @@
 // Counts one station's points in the surveyed voxels (equations 8 and 9): a thread a ray.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "lib/references.glsl"
+#include "lib/parameters.glsl"
 #include "lib/pattern.glsl"
 #include "lib/shade.glsl"
 #include "lib/voxel.glsl"
@@ -17,13 +17,13 @@ layout(push_constant, scalar) uniform Push { CountPush push; };
 void main() {
   const uvec2 in_block = place_in_block(gl_LocalInvocationIndex);
   uint row, column;
-  float far = push.parameters.at.max_range;
+  float far = parameters.max_range;
   bool alive = true;
   if (with_tiles) {
     const uint k = gl_WorkGroupID.z * tile_groups_y + gl_WorkGroupID.y;
     alive = k < push.tile_list.at[0];
     const uint tile = alive ? push.tile_list.at[1u + k] : 0u;
-    const uint tiles_in_row = (push.parameters.at.columns + tile_side - 1u) / tile_side;
+    const uint tiles_in_row = (parameters.columns + tile_side - 1u) / tile_side;
     const uint blocks_in_row = tile_side / block_columns;
     row = (tile / tiles_in_row) * tile_side + (gl_WorkGroupID.x / blocks_in_row) * block_rows + in_block.y;
     column = (tile % tiles_in_row) * tile_side + (gl_WorkGroupID.x % blocks_in_row) * block_columns + in_block.x;
@@ -32,22 +32,22 @@ void main() {
     row = push.first_row + gl_WorkGroupID.y * block_rows + in_block.y;
     column = gl_WorkGroupID.x * block_columns + in_block.x;
   }
-  alive = alive && row < push.first_row + push.row_count && column < push.parameters.at.columns;
+  alive = alive && row < push.first_row + push.row_count && column < parameters.columns;
 
   bool is_point = false, counted = false;
   if (alive) {
-    const vec3 direction = ray_direction(push.parameters, row, column);
-    const Hit hit = trace(push.parameters, push.origin, direction, push.parameters.at.min_range, far, want_nearest);
+    const vec3 direction = ray_direction(row, column);
+    const Hit hit = trace(push.origin, direction, parameters.min_range, far, want_nearest);
     is_point = hit.id != no_primitive;
     if (is_point && (hit.id & surveyed_bit) != 0u) {
       float t = hit.t;
       if (with_noise) {
         const uint triangle = hit.id & ~surveyed_bit;
-        const vec3 normal = oriented_normal(push.parameters, triangle, hit.barycentric, direction);
-        t = noisy_range(push.parameters, t, reflectivity_of(push.parameters, triangle, normal, direction),
-                        uint64_t(row) * push.parameters.at.columns + column, push.place);
+        const vec3 normal = oriented_normal(triangle, hit.barycentric, direction);
+        t = noisy_range(t, reflectivity_of(triangle, normal, direction),
+                        uint64_t(row) * parameters.columns + column, push.place);
       }
-      const uint rank = rank_of(push.parameters, point_on_ray(push.origin, direction, t));
+      const uint rank = rank_of(point_on_ray(push.origin, direction, t));
       if (rank != no_rank) {
         counted = true;
         atomicAdd(push.counts.at[rank], 1u);

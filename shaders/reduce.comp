@@ -14,13 +14,9 @@ const uint words = reduce_voxels / 32u;
 shared uint low[reduce_voxels];
 shared uint high[reduce_voxels];
 shared uint seen[64 * words];
-shared uint sums[5];
-
-// min(count / goal, 1) in units of 1 / difference_scale.
-int ratio_of(uint count) {
-  precise float scaled = float(count) * push.difference_unit;
-  return count >= push.goal ? int(difference_scale) : int(scaled + 0.5);
-}
+// Saturated voxels and edges; then sums of 64 bits, low word first.
+shared uint flags[2];
+shared uint sums[6];
 
 // Pair number to (i, j), i < j, in the order (0, 1), (0, 2), …, (1, 2), …
 uvec2 pair_of(uint p, uint n) {
@@ -32,13 +28,18 @@ uvec2 pair_of(uint p, uint n) {
   return uvec2(i, i + 1u + p);
 }
 
-// Adds low + 2^16 · high to a 64-bit sum.
-void add_halves(uint at, uint low_half, uint high_half) {
-  if (low_half > 0u) add64(push.totals, at, low_half);
-  if (high_half > 0u) {
-    add64(push.totals, at, high_half << 16);
-    atomicAdd(push.totals.at[at + 1u], high_half >> 16);
-  }
+// Adds to a 64-bit sum of the workgroup.
+void add(uint at, uint64_t value) {
+  if (value == 0ul) return;
+  const uint low = uint(value), before = atomicAdd(sums[at], low);
+  const uint high = uint(value >> 32) + (before + low < before ? 1u : 0u);
+  if (high > 0u) atomicAdd(sums[at + 1u], high);
+}
+
+// Adds it to the totals.
+void publish(uint at, uint sum) {
+  add64(push.totals, at, sums[sum]);
+  if (sums[sum + 1u] > 0u) atomicAdd(push.totals.at[at + 1u], sums[sum + 1u]);
 }
 
 void main() {
@@ -50,28 +51,38 @@ void main() {
   const uint counts = gl_WorkGroupID.z * push.voxel_count;
   const uint masks = counts * push.mask_words;
   const uint totals = (network * push.groups + group) * push.totals_stride;
-  uint saturated = 0u, partial_low = 0u, partial_high = 0u, difference_low = 0u, difference_high = 0u;
+  uint saturated = 0u, edges = 0u;
+  uint64_t partial = 0ul, squares = 0ul, edge_points = 0ul;
   // Of pair thread + 256 k; 64 stations have 2016 pairs.
   uint shared_counts[8];
   for (int k = 0; k < 8; ++k) shared_counts[k] = 0u;
   uint seen_count = 0u;
-  if (thread < 5u) sums[thread] = 0u;
+  if (thread < 2u) flags[thread] = 0u;
+  if (thread < 6u) sums[thread] = 0u;
 
   for (uint round = 0u; round < reduce_rounds; ++round) {  // the same for all threads, so the barriers are met by all
     const uint voxel = group + push.groups * ((gl_WorkGroupID.x * reduce_rounds + round) * reduce_voxels + thread);
     const bool inside = voxel < push.voxel_count;
     const uint count = inside ? push.counts.at[counts + voxel] : 0u;
-    if (inside && count >= push.goal) {
+    const bool full = count >= push.goal;
+    if (inside && full) {
       ++saturated;
     } else {
-      partial_low += count & 0xFFFFu;  // halves, so that no sum of a workgroup overflows
-      partial_high += count >> 16;
+      partial += count;
     }
     if (push.with_differences != 0u && inside && voxel > 0u) {
-      const uint difference = uint(abs(ratio_of(count) - ratio_of(push.counts.at[counts + voxel - 1u])));
-      const uint square = difference * difference;
-      difference_low += square & 0xFFFFu;
-      difference_high += square >> 16;
+      const uint before = push.counts.at[counts + voxel - 1u];
+      const bool full_before = before >= push.goal;
+      const uint c = count >> push.difference_shift, d = before >> push.difference_shift;
+      if (full != full_before) {
+        const uint partly = full ? d : c;
+        ++edges;
+        edge_points += partly;
+        squares += uint64_t(partly) * partly;
+      } else if (!full) {
+        const uint step = max(c, d) - min(c, d);
+        squares += uint64_t(step) * step;
+      }
     }
     if (push.mask_words > 0u) {
       barrier();
@@ -101,16 +112,18 @@ void main() {
   }
 
   barrier();
-  if (saturated > 0u) atomicAdd(sums[0], saturated);
-  if (partial_low > 0u) atomicAdd(sums[1], partial_low);
-  if (partial_high > 0u) atomicAdd(sums[2], partial_high);
-  if (difference_low > 0u) atomicAdd(sums[3], difference_low);
-  if (difference_high > 0u) atomicAdd(sums[4], difference_high);
+  if (saturated > 0u) atomicAdd(flags[0], saturated);
+  if (edges > 0u) atomicAdd(flags[1], edges);
+  add(0u, partial);
+  add(2u, squares);
+  add(4u, edge_points);
   barrier();
   if (thread == 0u) {
-    if (sums[0] > 0u) atomicAdd(push.totals.at[totals + totals_saturated], sums[0]);
-    add_halves(totals + totals_partial, sums[1], sums[2]);
-    add_halves(totals + totals_difference, sums[3], sums[4]);
+    if (flags[0] > 0u) atomicAdd(push.totals.at[totals + totals_saturated], flags[0]);
+    if (flags[1] > 0u) atomicAdd(push.totals.at[totals + totals_edges], flags[1]);
+    publish(totals + totals_partial, 0u);
+    publish(totals + totals_squares, 2u);
+    publish(totals + totals_edge_points, 4u);
   }
   if (push.mask_words > 0u) {
     if (thread < n && seen_count > 0u) atomicAdd(push.totals.at[totals + totals_seen + thread], seen_count);

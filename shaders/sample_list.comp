@@ -3,7 +3,7 @@
 // queued in parts, and the same code with QUEUE defined works through the queue, a thread a part.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "lib/references.glsl"
+#include "lib/parameters.glsl"
 #include "lib/sample.glsl"
 
 layout(local_size_x = 128) in;
@@ -29,10 +29,10 @@ bool may_hit(SampleTriangle triangle, vec3 origin, vec3 d) {
 }
 
 bool is_candidate(Cube cube, vec3 origin, uint row, uint column, uint first_triangle, uint end_triangle) {
-  const vec3 d = ray_direction(push.parameters, row, column);
+  const vec3 d = ray_direction(row, column);
   const vec2 range = passage(cube, d);
-  if (range.x > range.y || range.y + push.parameters.at.noise_reach < push.parameters.at.min_range ||
-      range.x - push.parameters.at.noise_reach > push.parameters.at.max_range)
+  if (range.x > range.y || range.y + parameters.noise_reach < parameters.min_range ||
+      range.x - parameters.noise_reach > parameters.max_range)
     return false;
   for (uint t = first_triangle; t < end_triangle; ++t)
     if (may_hit(push.triangles.at[t], origin, d)) return true;
@@ -54,13 +54,13 @@ void main() {
   const SampleVoxel voxel = push.voxels.at[item.voxel];
   const uint end_triangle = push.voxels.at[item.voxel + 1u].first_triangle;
   const vec3 origin = push.stations.at[item.slot].origin;
-  const Cube cube = cube_of(push.parameters, voxel, origin);
+  const Cube cube = cube_of(voxel, origin);
 
   uvec2 found = uvec2(0);  // a bit a ray
   RayWindow window;
   int columns = 0, first = 0;
   if (alive) {
-    window = rays_of_box(push.parameters, cube.low, cube.high);
+    window = rays_of_box(cube.low, cube.high);
     window.row0 = max(window.row0, int(push.first_row));
     window.row1 = min(window.row1, int(push.end_row) - 1);
     columns = column_count_of(window);
@@ -99,7 +99,7 @@ void main() {
     if (bit < 32) found.x &= found.x - 1u;
     else found.y &= found.y - 1u;
     const uvec2 ray = ray_in_window(window, columns, first + bit);
-    if (at < push.ray_capacity) push.rays.at[at] = SampleRay(item.voxel, item.slot, ray.x * push.parameters.at.columns + ray.y);
+    if (at < push.ray_capacity) push.rays.at[at] = SampleRay(item.voxel, item.slot, ray.x * parameters.columns + ray.y);
     ++at;
   }
 }

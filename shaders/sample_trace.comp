@@ -2,7 +2,7 @@
 // Traces the listed rays up to the far side of their voxel's cube and counts the points that land in it: a thread a ray.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "lib/references.glsl"
+#include "lib/parameters.glsl"
 #include "lib/sample.glsl"
 #include "lib/shade.glsl"
 #include "lib/voxel.glsl"
@@ -26,23 +26,23 @@ void main() {
     const uint entry = network * push.voxel_count + job.voxel;
     traced = push.stop_at == 0u || push.counts.at[entry] < push.stop_at;
     if (traced) {
-      const uint row = job.ray / push.parameters.at.columns, column = job.ray % push.parameters.at.columns;
-      const vec3 direction = ray_direction(push.parameters, row, column);
-      const Cube cube = cube_of(push.parameters, voxel, station.origin);
+      const uint row = job.ray / parameters.columns, column = job.ray % parameters.columns;
+      const vec3 direction = ray_direction(row, column);
+      const Cube cube = cube_of(voxel, station.origin);
       const vec2 range = passage(cube, direction);
-      const float reach = push.parameters.at.noise_reach + cube.slack;
-      const Hit hit = trace(push.parameters, station.origin, direction, push.parameters.at.min_range,
-                            min(push.parameters.at.max_range, range.y + reach), range.x - reach);
+      const float reach = parameters.noise_reach + cube.slack;
+      const Hit hit = trace(station.origin, direction, parameters.min_range,
+                            min(parameters.max_range, range.y + reach), range.x - reach);
       if (hit.id != no_primitive && (hit.id & surveyed_bit) != 0u) {
         float t = hit.t;
         if (with_noise) {
           const uint triangle = hit.id & ~surveyed_bit;
-          const vec3 normal = oriented_normal(push.parameters, triangle, hit.barycentric, direction);
-          t = noisy_range(push.parameters, t, reflectivity_of(push.parameters, triangle, normal, direction), uint64_t(job.ray),
+          const vec3 normal = oriented_normal(triangle, hit.barycentric, direction);
+          t = noisy_range(t, reflectivity_of(triangle, normal, direction), uint64_t(job.ray),
                           station.place);
         }
         uvec3 cell;
-        if (cell_of(push.parameters, point_on_ray(station.origin, direction, t), cell) && cell == uvec3(voxel.x, voxel.y, voxel.z)) {
+        if (cell_of(point_on_ray(station.origin, direction, t), cell) && cell == uvec3(voxel.x, voxel.y, voxel.z)) {
           atomicAdd(push.counts.at[entry], 1u);
           if (with_masks) {
             const uint word = (network * push.mask_words + (station.place >> 5)) * push.voxel_count + job.voxel;

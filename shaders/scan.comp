@@ -2,7 +2,7 @@
 // Scans rows of one station into the arrays that are wanted: a thread a ray.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "lib/references.glsl"
+#include "lib/parameters.glsl"
 #include "lib/pattern.glsl"
 #include "lib/shade.glsl"
 #include "lib/voxel.glsl"
@@ -16,12 +16,12 @@ void main() {
   const uvec2 in_block = place_in_block(gl_LocalInvocationIndex);
   const uint row = push.first_row + gl_WorkGroupID.y * block_rows + in_block.y;
   const uint column = gl_WorkGroupID.x * block_columns + in_block.x;
-  if (row >= push.first_row + push.row_count || column >= push.parameters.at.columns) return;
-  const uint k = (row - push.first_row) * push.parameters.at.columns + column;
+  if (row >= push.first_row + push.row_count || column >= parameters.columns) return;
+  const uint k = (row - push.first_row) * parameters.columns + column;
 
-  const vec3 direction = ray_direction(push.parameters, row, column);
-  const Hit hit = trace(push.parameters, push.origin, direction, push.parameters.at.min_range,
-                        push.parameters.at.max_range, want_nearest);
+  const vec3 direction = ray_direction(row, column);
+  const Hit hit = trace(push.origin, direction, parameters.min_range,
+                        parameters.max_range, want_nearest);
   const bool is_point = hit.id != no_primitive;
   const uint triangle = hit.id & ~surveyed_bit;
   float t = uintBitsToFloat(0x7F800000u);
@@ -32,13 +32,13 @@ void main() {
   if (is_point) {
     t = hit.t;
     if (with_noise || GIVEN(push.normal) || GIVEN(push.reflectivity)) {
-      normal = oriented_normal(push.parameters, triangle, hit.barycentric, direction);
-      reflectivity = reflectivity_of(push.parameters, triangle, normal, direction);
+      normal = oriented_normal(triangle, hit.barycentric, direction);
+      reflectivity = reflectivity_of(triangle, normal, direction);
     }
     if (with_noise)
-      t = noisy_range(push.parameters, t, reflectivity, uint64_t(row) * push.parameters.at.columns + column, push.place);
+      t = noisy_range(t, reflectivity, uint64_t(row) * parameters.columns + column, push.place);
     position = point_on_ray(push.origin, direction, t);
-    if (GIVEN(push.voxel) && (hit.id & surveyed_bit) != 0u) rank = rank_of(push.parameters, position);
+    if (GIVEN(push.voxel) && (hit.id & surveyed_bit) != 0u) rank = rank_of(position);
   }
   if (GIVEN(push.range)) push.range.at[k] = t;
   if (GIVEN(push.position)) push.position.at[k] = position;

@@ -5,14 +5,14 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/rays_of_box.glsl"
-#include "lib/references.glsl"
+#include "lib/parameters.glsl"
 
 layout(local_size_x = 128) in;
 layout(push_constant, scalar) uniform Push { TilePush push; };
 
 void mark(int row0, int row1, int column0, int column1, uint far) {
   if (row0 > row1 || column0 > column1) return;
-  const uint tiles_in_row = (push.parameters.at.columns + tile_side - 1u) / tile_side;
+  const uint tiles_in_row = (parameters.columns + tile_side - 1u) / tile_side;
   for (uint r = uint(row0) / tile_side; r <= uint(row1) / tile_side; ++r)
     for (uint c = uint(column0) / tile_side; c <= uint(column1) / tile_side; ++c) {
       const uint tile = r * tiles_in_row + c;
@@ -23,16 +23,16 @@ void mark(int row0, int row1, int column0, int column1, uint far) {
 
 void main() {
   const uint i = gl_GlobalInvocationID.x;
-  if (i >= push.parameters.at.brick_count) return;
-  const VoxelBrick brick = push.parameters.at.bricks.at[i];
-  const float size = push.parameters.at.brick_size;
-  const vec3 corner = push.parameters.at.voxel_min + vec3(brick.x, brick.y, brick.z) * size;
+  if (i >= parameters.brick_count) return;
+  const VoxelBrick brick = parameters.bricks.at[i];
+  const float size = parameters.brick_size;
+  const vec3 corner = parameters.voxel_min + vec3(brick.x, brick.y, brick.z) * size;
   const vec3 largest = max(abs(corner), abs(push.origin)) + size;
-  const float slack = max(max(largest.x, largest.y), largest.z) * (1.0 / 262144.0) + push.parameters.at.noise_reach;
+  const float slack = max(max(largest.x, largest.y), largest.z) * (1.0 / 262144.0) + parameters.noise_reach;
   const vec3 low = corner - push.origin - slack, high = corner - push.origin + (size + slack);
-  if (length(clamp(vec3(0), low, high)) > push.parameters.at.max_range) return;
+  if (length(clamp(vec3(0), low, high)) > parameters.max_range) return;
   const uint far = floatBitsToUint(length(max(abs(low), abs(high))) * 1.0001);
-  const RayWindow window = rays_of_box(push.parameters, low, high);
+  const RayWindow window = rays_of_box(low, high);
   mark(window.row0, window.row1, window.column0, window.column1, far);
   mark(window.row0, window.row1, window.wrapped0, window.wrapped1, far);
 }

@@ -2,12 +2,12 @@
 // Directions of the scan pattern, from tables that the host made in double.
 #ifndef VANTAGE_LIB_PATTERN
 #define VANTAGE_LIB_PATTERN
-#include "lib/references.glsl"
+#include "lib/parameters.glsl"
 
-vec3 ray_direction(Parameters parameters, uint row, uint column) {
-  const float s = parameters.at.sin_zenith.at[row];
-  precise vec3 d = vec3(s * parameters.at.cos_azimuth.at[column], s * parameters.at.sin_azimuth.at[column],
-                        parameters.at.cos_zenith.at[row]);
+vec3 ray_direction(uint row, uint column) {
+  const float s = parameters.sin_zenith.at[row];
+  precise vec3 d = vec3(s * parameters.cos_azimuth.at[column], s * parameters.sin_azimuth.at[column],
+                        parameters.cos_zenith.at[row]);
   return d;
 }
 

@@ -3,7 +3,7 @@
 #ifndef VANTAGE_LIB_RAYS_OF_BOX
 #define VANTAGE_LIB_RAYS_OF_BOX
 #include "lib/angles.glsl"
-#include "lib/references.glsl"
+#include "lib/parameters.glsl"
 
 // Rows [row0, row1] and up to two runs of columns: the second holds what lies beyond a full turn. Empty runs have end < begin.
 struct RayWindow {
@@ -23,18 +23,18 @@ uvec2 ray_in_window(RayWindow w, int columns, int k) {
 }
 
 // All rays from the coordinate origin that may meet the box [low, high], and few others.
-RayWindow rays_of_box(Parameters parameters, vec3 low, vec3 high) {
-  const float rows = float(parameters.at.rows), columns = float(parameters.at.columns);
+RayWindow rays_of_box(vec3 low, vec3 high) {
+  const float rows = float(parameters.rows), columns = float(parameters.columns);
   // Zenith: the horizontal distance is least at the point of the box nearest to the axis, largest at a corner.
   const vec2 nearest = clamp(vec2(0), low.xy, high.xy);
   const vec2 farthest = max(abs(low.xy), abs(high.xy));
   const float least = length(nearest), largest = length(farthest);
   const float zenith0 = angle_of(high.z > 0.0 ? least : largest, high.z) - angle_slack;
   const float zenith1 = angle_of(low.z > 0.0 ? largest : least, low.z) + angle_slack;
-  const float row_scale = 1.0 / parameters.at.zenith_step;
+  const float row_scale = 1.0 / parameters.zenith_step;
   RayWindow w;
-  w.row0 = int(max(ceil((zenith0 - parameters.at.first_zenith) * row_scale), 0.0));
-  w.row1 = int(min(floor((zenith1 - parameters.at.first_zenith) * row_scale), rows - 1.0));
+  w.row0 = int(max(ceil((zenith0 - parameters.first_zenith) * row_scale), 0.0));
+  w.row1 = int(min(floor((zenith1 - parameters.first_zenith) * row_scale), rows - 1.0));
 
   float start = 0.0, width = 2.0 * pi;
   if (least > 0.0) {
@@ -47,11 +47,11 @@ RayWindow rays_of_box(Parameters parameters, vec3 low, vec3 high) {
       lowest = min(lowest, a);
       highest = max(highest, a);
     }
-    start = angle_of(axis.y, axis.x) + lowest - angle_slack - parameters.at.first_azimuth;
+    start = angle_of(axis.y, axis.x) + lowest - angle_slack - parameters.first_azimuth;
     start -= floor(start / (2.0 * pi)) * 2.0 * pi;
     width = highest - lowest + 2.0 * angle_slack;
   }
-  const float column_scale = 1.0 / parameters.at.azimuth_step;
+  const float column_scale = 1.0 / parameters.azimuth_step;
   if (width >= 1.9 * pi) {
     w.column0 = 0;
     w.column1 = int(columns) - 1;

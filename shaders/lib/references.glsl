@@ -17,9 +17,8 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Vec3s { vec3
 layout(buffer_reference, scalar, buffer_reference_align = 16) buffer Vec4s { vec4 at[]; };
 layout(buffer_reference) buffer Bricks;
 layout(buffer_reference) buffer Slots;
-layout(buffer_reference) buffer Nodes;
-layout(buffer_reference) buffer BvhTriangles;
-layout(buffer_reference) buffer Parameters;
+layout(buffer_reference) buffer NodeQuarters;
+layout(buffer_reference) buffer TriangleCorners;
 layout(buffer_reference) buffer SampleVoxels;
 layout(buffer_reference) buffer SampleTriangles;
 layout(buffer_reference) buffer SampleStations;
@@ -30,9 +29,8 @@ layout(buffer_reference) buffer SampleItems;
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Bricks { VoxelBrick at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer Slots { BrickSlot at[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer Nodes { BvhNode at[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer BvhTriangles { BvhTriangle at[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer Parameters { TraceParameters at; };
+layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer NodeQuarters { uvec4 at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer TriangleCorners { uvec4 at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer SampleVoxels { SampleVoxel at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer SampleTriangles { SampleTriangle at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer SampleStations { SampleStation at[]; };

@@ -12,9 +12,9 @@ struct Cube {
   float slack;
 };
 
-Cube cube_of(Parameters parameters, SampleVoxel voxel, vec3 origin) {
-  const float size = 1.0 / parameters.at.voxel_inverse_size;
-  const vec3 corner = parameters.at.voxel_min + vec3(voxel.x, voxel.y, voxel.z) * size;
+Cube cube_of(SampleVoxel voxel, vec3 origin) {
+  const float size = 1.0 / parameters.voxel_inverse_size;
+  const vec3 corner = parameters.voxel_min + vec3(voxel.x, voxel.y, voxel.z) * size;
   const vec3 largest = max(abs(corner), abs(origin)) + size;
   const float slack = max(max(largest.x, largest.y), largest.z) * (1.0 / 262144.0);
   return Cube(corner - origin - slack, corner - origin + (size + slack), slack);

@@ -4,7 +4,7 @@
 #define VANTAGE_LIB_SHADE
 #include "lib/exact.glsl"
 #include "lib/philox.glsl"
-#include "lib/references.glsl"
+#include "lib/parameters.glsl"
 
 vec3 unit_or(vec3 v, vec3 otherwise) {
   const float square = exact_dot(v, v);
@@ -14,24 +14,24 @@ vec3 unit_or(vec3 v, vec3 otherwise) {
 }
 
 // Interpolated vertex normal, the triangle's own where the file has none; turned towards the scanner.
-vec3 oriented_normal(Parameters parameters, uint triangle, vec2 barycentric, vec3 direction) {
-  const uint i = parameters.at.triangles.at[3u * triangle], j = parameters.at.triangles.at[3u * triangle + 1u],
-             k = parameters.at.triangles.at[3u * triangle + 2u];
+vec3 oriented_normal(uint triangle, vec2 barycentric, vec3 direction) {
+  const uint i = parameters.triangles.at[3u * triangle], j = parameters.triangles.at[3u * triangle + 1u],
+             k = parameters.triangles.at[3u * triangle + 2u];
   vec3 n = vec3(0);
-  if (parameters.at.has_normals != 0u) {
+  if (parameters.has_normals != 0u) {
     precise float rest = 1.0 - barycentric.x;
     precise float w = rest - barycentric.y;
-    precise vec3 a = w * parameters.at.normals.at[i];
-    precise vec3 b = barycentric.x * parameters.at.normals.at[j];
-    precise vec3 c = barycentric.y * parameters.at.normals.at[k];
+    precise vec3 a = w * parameters.normals.at[i];
+    precise vec3 b = barycentric.x * parameters.normals.at[j];
+    precise vec3 c = barycentric.y * parameters.normals.at[k];
     precise vec3 ab = a + b;
     precise vec3 abc = ab + c;
     n = unit_or(abc, vec3(0));
   }
   if (n == vec3(0)) {
-    const vec3 p = parameters.at.positions.at[i];
-    precise vec3 e = parameters.at.positions.at[j] - p;
-    precise vec3 f = parameters.at.positions.at[k] - p;
+    const vec3 p = parameters.positions.at[i];
+    precise vec3 e = parameters.positions.at[j] - p;
+    precise vec3 f = parameters.positions.at[k] - p;
     // Scaled first, so that tiny triangles do not underflow.
     precise float largest = max(max(max(abs(e.x), abs(e.y)), abs(e.z)), max(max(abs(f.x), abs(f.y)), abs(f.z)));
     precise vec3 es = e * exact_reciprocal(largest);
@@ -42,12 +42,12 @@ vec3 oriented_normal(Parameters parameters, uint triangle, vec2 barycentric, vec
 }
 
 // R (I · (−N)), section 3.2.
-float reflectivity_of(Parameters parameters, uint triangle, vec3 normal, vec3 direction) {
-  precise float r = parameters.at.diffuse.at[triangle] * -exact_dot(normal, direction);
+float reflectivity_of(uint triangle, vec3 normal, vec3 direction) {
+  precise float r = parameters.diffuse.at[triangle] * -exact_dot(normal, direction);
   return clamp(r, 0.0, 1.0);
 }
 
-float normal_from_bits(Parameters parameters, uint u) {
+float normal_from_bits(uint u) {
   const uint m = u & 0x7FFFFFFFu;
   uint row = normal_octaves * normal_segments;
   precise float f = 0.0;
@@ -57,7 +57,7 @@ float normal_from_bits(Parameters parameters, uint u) {
     row = e * normal_segments + ((x >> 27) & 15u);
     f = float((x >> 3) & 0xFFFFFFu) * (1.0 / 16777216.0);
   }
-  const vec4 c = parameters.at.normal_table.at[row];
+  const vec4 c = parameters.normal_table.at[row];
   precise float a = c.w * f;
   precise float b = a + c.z;
   precise float d = b * f;
@@ -67,17 +67,17 @@ float normal_from_bits(Parameters parameters, uint u) {
   return (u & 0x80000000u) != 0u ? -z : z;
 }
 
-float sigma_at(Parameters parameters, float t, float reflectivity) {
-  precise float from_start = t - parameters.at.noise_min_range;
-  precise float normalised = from_start * parameters.at.noise_inverse_span;
+float sigma_at(float t, float reflectivity) {
+  precise float from_start = t - parameters.noise_min_range;
+  precise float normalised = from_start * parameters.noise_inverse_span;
   precise float x = clamp(normalised, 0.0, 1.0) * 100.0;
   precise float y = reflectivity * 100.0;
   const uint i = min(uint(x), noise_table_side - 2u), j = min(uint(y), noise_table_side - 2u);
   precise float fx = x - float(i);
   precise float fy = y - float(j);
   const uint at = j * noise_table_side + i;
-  const float s00 = parameters.at.sigma.at[at], s01 = parameters.at.sigma.at[at + 1u];
-  const float s10 = parameters.at.sigma.at[at + noise_table_side], s11 = parameters.at.sigma.at[at + noise_table_side + 1u];
+  const float s00 = parameters.sigma.at[at], s01 = parameters.sigma.at[at + 1u];
+  const float s10 = parameters.sigma.at[at + noise_table_side], s11 = parameters.sigma.at[at + noise_table_side + 1u];
   precise float d0 = s01 - s00;
   precise float e0 = fx * d0;
   precise float low = s00 + e0;
@@ -91,10 +91,10 @@ float sigma_at(Parameters parameters, float t, float reflectivity) {
 }
 
 // Range with noise. Depends on nothing but seed, station, ray and hit.
-float noisy_range(Parameters parameters, float t, float reflectivity, uint64_t ray, uint place) {
-  const uint u = philox4x32(uvec2(parameters.at.seed_low, parameters.at.seed_high),
+float noisy_range(float t, float reflectivity, uint64_t ray, uint place) {
+  const uint u = philox4x32(uvec2(parameters.seed_low, parameters.seed_high),
                             uvec4(uint(ray), uint(ray >> 32), place, noise_stream)).x;
-  precise float displacement = sigma_at(parameters, t, reflectivity) * normal_from_bits(parameters, u);
+  precise float displacement = sigma_at(t, reflectivity) * normal_from_bits(u);
   precise float moved = t + displacement;
   return moved;
 }

@@ -61,8 +61,8 @@ struct TraceParameters {
   VANTAGE_ADDRESS(Bricks) bricks;
   VANTAGE_ADDRESS(Slots) slots;
   VANTAGE_ADDRESS(Uints) primitive_ids;   // ray_query: triangle of the acceleration structure → scene's number with the surveyed bit
-  VANTAGE_ADDRESS(Nodes) nodes;           // compute_bvh
-  VANTAGE_ADDRESS(BvhTriangles) bvh_triangles;
+  VANTAGE_ADDRESS(NodeQuarters) nodes;    // compute_bvh: BvhNode and BvhTriangle, 16 bytes at a time
+  VANTAGE_ADDRESS(TriangleCorners) bvh_triangles;
   // For normals, reflectivity and noise only; 0 where the run needs none.
   VANTAGE_ADDRESS(Vec3s) positions;
   VANTAGE_ADDRESS(Vec3s) normals;         // 0: geometric normals
@@ -96,7 +96,6 @@ struct TraceParameters {
 
 // Counts of one station. station_counters: 4 words a station, points and points that count, 64 bits each.
 struct CountPush {
-  VANTAGE_ADDRESS(Parameters) parameters;
   VANTAGE_ADDRESS(Uints) counts;
   VANTAGE_ADDRESS(Uints) masks;           // the 32-bit word that holds the station's bit, of every voxel
   VANTAGE_ADDRESS(Uints) station_counters;
@@ -110,7 +109,6 @@ struct CountPush {
 
 // Which tiles of directions see a surveyed brick, and how far the last one reaches.
 struct TilePush {
-  VANTAGE_ADDRESS(Parameters) parameters;
   VANTAGE_ADDRESS(Uints) tile_far;        // bits of a non-negative float, which order as the float does; 0: nothing to see
   VANTAGE_ADDRESS(Uints) tile_list;
   VANTAGE_ADDRESS(Uints) dispatch;        // three words: an indirect dispatch
@@ -122,7 +120,6 @@ struct TilePush {
 };
 
 struct ScanPush {
-  VANTAGE_ADDRESS(Parameters) parameters;
   VANTAGE_ADDRESS(Floats) range;          // an output that is not wanted has address 0
   VANTAGE_ADDRESS(Vec3s) position;
   VANTAGE_ADDRESS(Vec3s) normal;
@@ -145,15 +142,18 @@ struct ClampPush {
 };
 
 // Reduction of counts and masks, of one network or many, in interleaved groups: voxel k is in group k % groups. Totals of group g of
-// network n start at word (n · groups + g) · totals_stride: saturated voxels; points of the others (64 bits); the sum of squared
-// differences to the voxel before (64 bits); then seen[stations]; then shared[pairs].
+// network n start at word (n · groups + g) · totals_stride: saturated voxels; points of the others (64 bits); three sums over successive
+// voxels, from which the host makes Σ (r(k) − r(k−1))² of r = min(count / goal, 1) without rounding; then seen[stations]; then
+// shared[pairs]. With c = count >> difference_shift where the voxel is not saturated: squares (64 bits) adds (c(k) − c(k−1))² where neither
+// voxel is saturated and c² where one is; edge_points (64 bits) adds c where one is; edges counts those.
 VANTAGE_CONST uint reduce_voxels = 256;    // voxels of a workgroup at a time
 VANTAGE_CONST uint reduce_rounds = 16;
 VANTAGE_CONST uint totals_saturated = 0;
 VANTAGE_CONST uint totals_partial = 1;
-VANTAGE_CONST uint totals_difference = 3;  // of min(count / goal, 1) in units of 1 / difference_scale
-VANTAGE_CONST uint totals_seen = 5;
-VANTAGE_CONST uint difference_scale = 65535;  // the largest whose square fits a word
+VANTAGE_CONST uint totals_squares = 3;
+VANTAGE_CONST uint totals_edge_points = 5;
+VANTAGE_CONST uint totals_edges = 7;
+VANTAGE_CONST uint totals_seen = 8;
 struct ReducePush {
   VANTAGE_ADDRESS(Uints) counts;           // [network][voxel]
   VANTAGE_ADDRESS(Uints) masks;            // [network][word][voxel]
@@ -161,7 +161,7 @@ struct ReducePush {
   VANTAGE_ADDRESS(Uints) station_counts;   // per network
   uint voxel_count;
   uint goal;                               // points that saturate a voxel
-  float difference_unit;                   // difference_scale / goal density
+  uint difference_shift;                   // keeps the sum of squares within 64 bits
   uint mask_words;                         // 0, 1 or 2
   uint groups;
   uint totals_stride;
@@ -201,7 +201,6 @@ VANTAGE_CONST uint control_items = 1;
 VANTAGE_CONST uint control_dispatch = 4;    // three words
 VANTAGE_CONST uint control_words = 8;
 struct SamplePush {
-  VANTAGE_ADDRESS(Parameters) parameters;
   VANTAGE_ADDRESS(SampleVoxels) voxels;
   VANTAGE_ADDRESS(SampleTriangles) triangles;
   VANTAGE_ADDRESS(SampleStations) stations;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // trace() over our own binary BVH.
 //
-// Hits depend on nothing but ray and triangles, to the bit, on every device:
-// - A triangle is hit when the ray lies inside or on it in sheared coordinates. Each vertex is sheared by itself, so neighbours agree
-//   about it; an edge test compares two rounded products, whose order is the exact one unless they are equal, and equal counts as inside for both
-//   neighbours. So no ray passes between two triangles that share an edge or a vertex.
-// - Only +, − and × are used, uncontracted, so all devices round alike (lib/sheared_triangle.glsl, lib/exact.glsl).
+// Hits depend on nothing but ray and triangles, to the bit, on every device and in every order of traversal:
+// - A triangle is hit when the ray passes inside or on its projection, in sheared coordinates (lib/sheared_triangle.glsl). Each vertex is sheared by itself, so neighbours agree about it; an
+//   edge test compares two rounded products, whose order is the exact one unless they are equal, and equal counts as inside for both. So no ray passes between two triangles
+//   that share an edge or a vertex.
+// - Only +, − and × are used, uncontracted, so all devices round alike.
 // - The hit's t is clamped to what the triangle's own box, widened by more than all rounding, allows. Every box above holds that box and is
 //   widened more, so no box is culled that may hold the nearest hit; of equal hits the lower triangle number wins.
 #include "lib/sheared_triangle.glsl"
@@ -25,66 +25,91 @@ SlabRay slab_ray(vec3 origin, vec3 inverse, float widening) {
   return SlabRay(inverse, low, high);
 }
 
-Hit trace(Parameters parameters, vec3 origin, vec3 direction, float t_min, float t_max, float enough) {
-  Hit best = Hit(t_max, no_primitive, vec2(0));
+// The ray's way through the box [low, high]: from x to y.
+vec2 passage_of(SlabRay ray, vec3 low, vec3 high) {
+  precise vec3 a = low * ray.inverse - ray.low;
+  precise vec3 b = high * ray.inverse - ray.high;
+  const vec3 near = min(a, b), far = max(a, b);
+  return vec2(max(max(near.x, near.y), near.z), min(min(far.x, far.y), far.z));
+}
 
+// The same where a last bit more or less does no harm: contraction is welcome.
+vec2 rough_passage_of(SlabRay ray, vec3 low, vec3 high) {
+  const vec3 a = low * ray.inverse - ray.low, b = high * ray.inverse - ray.high;
+  const vec3 near = min(a, b), far = max(a, b);
+  return vec2(max(max(near.x, near.y), near.z), min(min(far.x, far.y), far.z));
+}
+
+Hit trace(vec3 origin, vec3 direction, float t_min, float t_max, float enough) {
+  Hit best = Hit(t_max, no_primitive, vec2(0));
   const Shear shear = shear_along(direction);
 
   // Boxes are widened by more than the rounding of shear and slabs: 2^-20 of the largest coordinate that takes part.
-  const vec3 extent = max(max(abs(parameters.at.bounds_min), abs(parameters.at.bounds_max)), abs(origin));
+  const vec3 extent = max(max(abs(parameters.bounds_min), abs(parameters.bounds_max)), abs(origin));
   const float widening = 2.0 * max(max(extent.x, extent.y), extent.z) * (1.0 / 1048576.0);
   const vec3 size = abs(direction);
   precise vec3 safe = vec3(size.x < 1e-12 ? 1e-12 : direction.x, size.y < 1e-12 ? 1e-12 : direction.y,
                            size.z < 1e-12 ? 1e-12 : direction.z);
   const vec3 inverse = vec3(exact_reciprocal(safe.x), exact_reciprocal(safe.y), exact_reciprocal(safe.z));
-  const SlabRay triangle_ray = slab_ray(origin, inverse, widening);
   const SlabRay node_ray = slab_ray(origin, inverse, 2.0 * widening);
 
   uint stack[bvh_stack_size];
+  float enters[bvh_stack_size];  // where the ray enters what is on the stack
   uint depth = 0;
   uint current = 0;  // the root is always a node
   for (;;) {
     if ((current & bvh_leaf_bit) == 0u) {
-      const BvhNode node = parameters.at.nodes.at[current];
-      const vec3 a0 = node.min0 * node_ray.inverse - node_ray.low, b0 = node.max0 * node_ray.inverse - node_ray.high;
-      const vec3 a1 = node.min1 * node_ray.inverse - node_ray.low, b1 = node.max1 * node_ray.inverse - node_ray.high;
-      const vec3 near0 = min(a0, b0), far0 = max(a0, b0), near1 = min(a1, b1), far1 = max(a1, b1);
-      const float enter0 = max(max(near0.x, near0.y), max(near0.z, t_min)), leave0 = min(min(far0.x, far0.y), min(far0.z, best.t));
-      const float enter1 = max(max(near1.x, near1.y), max(near1.z, t_min)), leave1 = min(min(far1.x, far1.y), min(far1.z, best.t));
-      const bool hit0 = enter0 <= leave0, hit1 = enter1 <= leave1;
+      NodeQuarters node = parameters.nodes;
+      const uvec4 word0 = node.at[4u * current], word1 = node.at[4u * current + 1u], word2 = node.at[4u * current + 2u],
+                  word3 = node.at[4u * current + 3u];
+      const uint child0 = word0.w, child1 = word1.w;
+      const vec2 way0 = rough_passage_of(node_ray, uintBitsToFloat(word0.xyz), uintBitsToFloat(word1.xyz)),
+                 way1 = rough_passage_of(node_ray, uintBitsToFloat(word2.xyz), uintBitsToFloat(word3.xyz));
+      const float enter0 = max(way0.x, t_min), enter1 = max(way1.x, t_min);
+      const bool hit0 = enter0 <= min(way0.y, best.t), hit1 = enter1 <= min(way1.y, best.t);
       if (hit0 || hit1) {
         const bool first0 = hit0 && (!hit1 || enter0 <= enter1);
-        current = first0 ? node.child0 : node.child1;
-        if (hit0 && hit1) stack[depth++] = first0 ? node.child1 : node.child0;
+        current = first0 ? child0 : child1;
+        if (hit0 && hit1) {
+          stack[depth] = first0 ? child1 : child0;
+          enters[depth] = first0 ? enter1 : enter0;
+          ++depth;
+        }
         continue;
       }
     } else {
       const uint first = current & bvh_leaf_first_mask;
-      const uint count = ((current >> bvh_leaf_count_shift) & 7u) + 1u;
-      for (uint i = 0; i < count; ++i) {
-        const BvhTriangle triangle = parameters.at.bvh_triangles.at[first + i];
-        const ShearedTriangle corners = sheared(shear, origin, triangle.a, triangle.b, triangle.c);
+      const uint end = first + ((current >> bvh_leaf_count_shift) & 7u);
+      for (uint i = first; i <= end; ++i) {
+        const uvec4 word_a = parameters.bvh_triangles.at[3u * i], word_b = parameters.bvh_triangles.at[3u * i + 1u],
+                    word_c = parameters.bvh_triangles.at[3u * i + 2u];
+        const vec3 corner_a = uintBitsToFloat(word_a.xyz), corner_b = uintBitsToFloat(word_b.xyz), corner_c = uintBitsToFloat(word_c.xyz);
+        const uint id = word_a.w;
+        const ShearedTriangle corners = sheared(shear, origin, corner_a, corner_b, corner_c);
         const vec3 edges = edge_functions(corners);
-        if (any(lessThan(edges, vec3(0))) && any(greaterThan(edges, vec3(0)))) continue;
         precise float area = edges.x + edges.y + edges.z;
-        if (area == 0.0) continue;
-        precise vec3 weights = edges * exact_reciprocal(area);
-        precise float z = weights.x * corners.a.z + weights.y * corners.b.z + weights.z * corners.c.z;
-        precise float t = z * shear.z;
-        precise vec3 lower = min(min(triangle.a, triangle.b), triangle.c);
-        precise vec3 upper = max(max(triangle.a, triangle.b), triangle.c);
-        precise vec3 s = lower * triangle_ray.inverse - triangle_ray.low;
-        precise vec3 e = upper * triangle_ray.inverse - triangle_ray.high;
-        const vec3 near = min(s, e), far = max(s, e);
-        t = min(max(t, max(max(near.x, near.y), near.z)), min(min(far.x, far.y), far.z));
-        // Of equal hits the lower triangle number wins; the surveyed bit is no part of the number.
-        if (t >= t_min && (t < best.t || (t == best.t && (triangle.id & ~surveyed_bit) < (best.id & ~surveyed_bit)))) {
-          best = Hit(t, triangle.id, weights.yz);
+        const float least = min(min(edges.x, edges.y), edges.z), most = max(max(edges.x, edges.y), edges.z);
+        if ((least >= 0.0 || most <= 0.0) && area != 0.0) {
+          precise vec3 weights = edges * exact_reciprocal(area);
+          precise float z = weights.x * corners.a.z + weights.y * corners.b.z + weights.z * corners.c.z;
+          precise float t = z * shear.z;
+          const vec2 way = passage_of(slab_ray(origin, inverse, widening), min(min(corner_a, corner_b), corner_c),
+                                      max(max(corner_a, corner_b), corner_c));
+          t = min(max(t, way.x), way.y);
+          // Of equal hits the lower triangle number wins; the surveyed bit is no part of the number.
+          if (t >= t_min && (t < best.t || (t == best.t && (id & ~surveyed_bit) < (best.id & ~surveyed_bit))))
+            best = Hit(t, id, weights.yz);
         }
       }
     }
-    if (depth == 0u || best.t < enough) break;
-    current = stack[--depth];
+    if (best.t < enough) break;
+    bool found = false;
+    while (depth > 0u && !found) {
+      --depth;
+      found = enters[depth] <= best.t;
+    }
+    if (!found) break;
+    current = stack[depth];
   }
   return best;
 }

@@ -2,9 +2,9 @@
 // What trace() returns, whatever the engine.
 #ifndef VANTAGE_TRACE_HIT
 #define VANTAGE_TRACE_HIT
-#include "lib/references.glsl"
+#include "lib/parameters.glsl"
 
-// Hit trace(parameters, origin, direction, t_min, t_max, enough): the nearest hit in [t_min, t_max]. An engine may return any hit nearer than
+// Hit trace(origin, direction, t_min, t_max, enough): the nearest hit in [t_min, t_max]. An engine may return any hit nearer than
 // `enough` where the caller only wants to know that there is one.
 const float want_nearest = -1.0;
 

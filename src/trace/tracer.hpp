@@ -49,6 +49,7 @@ struct TraceScene {
   std::shared_ptr<const NoiseModel> noise;
   std::uint64_t max_rays_per_dispatch = 0;  // 0: the engine's choice
   bool validation = false;
+  bool sort_triangles = true;               // for drivers that build on the order given; off only to measure what sorting gains
 };
 
 // A station as an engine sees it.

@@ -11,13 +11,20 @@ namespace {
 
 constexpr VkDeviceSize staging_bytes = VkDeviceSize{32} << 20;
 
-void barrier(VkCommandBuffer commands, VkPipelineStageFlags from_stage, VkAccessFlags from, VkPipelineStageFlags to_stage,
-             VkAccessFlags to) {
+void barrier(VkCommandBuffer commands, VkPipelineStageFlags from_stage, VkAccessFlags from,
+             VkPipelineStageFlags to_stage, VkAccessFlags to) {
   VkMemoryBarrier memory{VK_STRUCTURE_TYPE_MEMORY_BARRIER, nullptr, from, to};
   vkCmdPipelineBarrier(commands, from_stage, to_stage, 0, 1, &memory, 0, nullptr, 0, nullptr);
 }
 
 }  // namespace
+
+void record_update(VkCommandBuffer commands, const Buffer& to, const void* data, VkDeviceSize bytes) {
+  constexpr VkDeviceSize most = 65536;  // of one command
+  for (VkDeviceSize done = 0; done < bytes; done += most)
+    vkCmdUpdateBuffer(commands, to.handle(), done, std::min(most, bytes - done),
+                      static_cast<const std::byte*>(data) + done);
+}
 
 void shader_after_transfer(VkCommandBuffer commands) {
   barrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
@@ -40,7 +47,8 @@ Commands::Commands(Device& device) : device_(device) {
   VkCommandPool pool = VK_NULL_HANDLE;
   check(vkCreateCommandPool(device.handle(), &pool_info, nullptr, &pool), "vkCreateCommandPool");
   pool_ = UniqueCommandPool(device.handle(), pool);
-  VkCommandBufferAllocateInfo allocate{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO, nullptr, pool, VK_COMMAND_BUFFER_LEVEL_PRIMARY, 1};
+  VkCommandBufferAllocateInfo allocate{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO, nullptr, pool,
+                                       VK_COMMAND_BUFFER_LEVEL_PRIMARY, 1};
   check(vkAllocateCommandBuffers(device.handle(), &allocate, &commands_), "vkAllocateCommandBuffers");
   VkFenceCreateInfo fence_info{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO, nullptr, 0};
   VkFence fence = VK_NULL_HANDLE;
@@ -63,8 +71,10 @@ double Commands::run(const std::function<void(VkCommandBuffer)>& record) {
   vkCmdResetQueryPool(commands_, timestamps_.get(), 0, 2);
   vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, timestamps_.get(), 0);
   record(commands_);
-  // What was written must be visible to a host that reads mapped memory.
-  barrier(commands_, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_WRITE_BIT, VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
+  // What was written must be visible to a host that reads mapped memory, and to the next submission.
+  barrier(commands_, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_WRITE_BIT,
+          VK_PIPELINE_STAGE_HOST_BIT | VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
+          VK_ACCESS_HOST_READ_BIT | VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT);
   vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, timestamps_.get(), 1);
   check(vkEndCommandBuffer(commands_), "vkEndCommandBuffer");
 
@@ -85,10 +95,40 @@ double Commands::run(const std::function<void(VkCommandBuffer)>& record) {
   return static_cast<double>(ticks[1] - ticks[0]) * device_.timestamp_period_ns() * 1e-9;
 }
 
+double Commands::run_and_download(const std::function<void(VkCommandBuffer)>& record,
+                                  std::span<const Download> wanted) {
+  VkDeviceSize bytes = 0;
+  for (const Download& d : wanted) bytes += d.bytes;
+  if (bytes > staging_bytes) {
+    const double seconds = run(record);
+    for (const Download& d : wanted) download(d.from, d.to, d.bytes);
+    return seconds;
+  }
+  if (!staging_down_ || staging_down_.size() < bytes)
+    staging_down_ = Buffer(device_, bytes, Buffer::Where::download, "staging down");
+  const double seconds = run([&](VkCommandBuffer c) {
+    record(c);
+    shader_after_shader(c);
+    VkDeviceSize at = 0;
+    for (const Download& d : wanted) {
+      const VkBufferCopy region{0, at, d.bytes};
+      vkCmdCopyBuffer(c, d.from.handle(), staging_down_.handle(), 1, &region);
+      at += d.bytes;
+    }
+  });
+  VkDeviceSize at = 0;
+  for (const Download& d : wanted) {
+    std::memcpy(d.to, staging_down_.mapped<std::byte>() + at, d.bytes);
+    at += d.bytes;
+  }
+  return seconds;
+}
+
 void Commands::upload(const Buffer& to, const void* data, VkDeviceSize bytes) {
   if (bytes == 0) return;
   const VkDeviceSize wanted = std::min(bytes, staging_bytes);
-  if (!staging_up_ || staging_up_.size() < wanted) staging_up_ = Buffer(device_, wanted, Buffer::Where::upload, "staging up");
+  if (!staging_up_ || staging_up_.size() < wanted)
+    staging_up_ = Buffer(device_, wanted, Buffer::Where::upload, "staging up");
   for (VkDeviceSize done = 0; done < bytes; done += staging_up_.size()) {
     const VkDeviceSize part = std::min(staging_up_.size(), bytes - done);
     std::memcpy(staging_up_.mapped<void>(), static_cast<const std::byte*>(data) + done, part);

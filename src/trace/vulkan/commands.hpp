@@ -17,9 +17,17 @@ class Commands {
  public:
   explicit Commands(Device& device);
 
-  // Records what `record` does to the command buffer, submits it and waits. Returns the seconds that the device spent on it.
-  // Throws Error device_failure, also for what the validation layer found.
+  // Records what `record` does to the command buffer, submits it and waits. Returns the seconds that the device spent
+  // on it. Throws Error device_failure, also for what the validation layer found.
   double run(const std::function<void(VkCommandBuffer)>& record);
+
+  // The same, with buffers read back in the same submission, as `record` left them.
+  struct Download {
+    const Buffer& from;
+    void* to;
+    VkDeviceSize bytes;
+  };
+  double run_and_download(const std::function<void(VkCommandBuffer)>& record, std::span<const Download> wanted);
 
   // Copies host memory into a device buffer, and back, through mapped buffers of bounded size.
   void upload(const Buffer& to, const void* data, VkDeviceSize bytes);
@@ -34,13 +42,17 @@ class Commands {
   Buffer staging_up_, staging_down_;
 };
 
+// Records that `data` is written to the front of the buffer; for small arrays, whose bytes travel with the commands.
+void record_update(VkCommandBuffer, const Buffer& to, const void* data, VkDeviceSize bytes);
+
 // The two barriers that our work needs.
 void shader_after_transfer(VkCommandBuffer);  // shaders (and indirect dispatches) see earlier fills and copies
 void shader_after_shader(VkCommandBuffer);    // shaders, indirect dispatches and copies see what earlier shaders wrote
 
 // A device buffer holding `values`.
 template <class T>
-Buffer make_device_buffer(Device& device, Commands& commands, std::span<const T> values, const char* name, VkBufferUsageFlags extra = 0) {
+Buffer make_device_buffer(Device& device, Commands& commands, std::span<const T> values, const char* name,
+                          VkBufferUsageFlags extra = 0) {
   static_assert(std::is_trivially_copyable_v<T>);
   Buffer buffer(device, values.size_bytes(), Buffer::Where::device, name, extra);
   commands.upload(buffer, values.data(), values.size_bytes());

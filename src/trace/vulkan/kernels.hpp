@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The compute pipelines of one engine on one device, each compiled when first used: a run pays only for what it asks for.
+// The compute pipelines of one engine on one device, each compiled when first used: a run pays only for what it asks
+// for.
 #pragma once
 
 #include <array>
@@ -11,12 +12,22 @@
 
 namespace vantage::vulkan {
 
-enum class Kernel { count, scan, tiles, tile_list, clamp, reduce, sample_list, sample_queue, sample_arguments, sample_trace };
+enum class Kernel {
+  count,
+  scan,
+  tiles,
+  tile_list,
+  clamp,
+  reduce,
+  sample_list,
+  sample_queue,
+  sample_arguments,
+  sample_trace
+};
 
 class Kernels {
  public:
-  // `set_layout` is that of the acceleration structure, or null for compute_bvh.
-  Kernels(const Device& device, Engine engine, VkDescriptorSetLayout set_layout) : device_(device), engine_(engine), set_layout_(set_layout) {}
+  Kernels(const Device& device, Engine engine, const TraceSet& set) : device_(device), engine_(engine), set_(set) {}
 
   // `constants` are the kernel's specialization constants, in the order of their constant_id.
   const ComputePipeline& get(Kernel kernel, std::array<bool, 3> constants = {});
@@ -24,7 +35,7 @@ class Kernels {
  private:
   const Device& device_;
   Engine engine_;
-  VkDescriptorSetLayout set_layout_;
+  const TraceSet& set_;
   std::map<std::pair<Kernel, std::array<bool, 3>>, ComputePipeline> pipelines_;
 };
 

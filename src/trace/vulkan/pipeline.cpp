@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trace/vulkan/pipeline.hpp"
 
+#include <cstddef>
 #include <vector>
 
 #include "trace/vulkan/check.hpp"
 
 namespace vantage::vulkan {
 
-ComputePipeline::ComputePipeline(const Device& device, const std::uint32_t* words, std::size_t size_in_bytes, std::uint32_t push_bytes,
-                                 std::span<const std::uint32_t> constants, VkDescriptorSetLayout set_layout, const char* name)
-    : push_bytes_(push_bytes) {
+ComputePipeline::ComputePipeline(const Device& device, const std::uint32_t* words, std::size_t size_in_bytes,
+                                 std::uint32_t push_bytes, std::span<const Constant> constants, const TraceSet& set,
+                                 const char* name)
+    : push_bytes_(push_bytes), set_(set.handle()) {
   VkShaderModuleCreateInfo module_info{};
   module_info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
   module_info.codeSize = size_in_bytes;
@@ -21,7 +23,8 @@ ComputePipeline::ComputePipeline(const Device& device, const std::uint32_t* word
   const VkPushConstantRange range{VK_SHADER_STAGE_COMPUTE_BIT, 0, push_bytes};
   VkPipelineLayoutCreateInfo layout_info{};
   layout_info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
-  layout_info.setLayoutCount = set_layout ? 1 : 0;
+  const VkDescriptorSetLayout set_layout = set.layout();
+  layout_info.setLayoutCount = 1;
   layout_info.pSetLayouts = &set_layout;
   layout_info.pushConstantRangeCount = 1;
   layout_info.pPushConstantRanges = &range;
@@ -30,9 +33,11 @@ ComputePipeline::ComputePipeline(const Device& device, const std::uint32_t* word
   layout_ = UniquePipelineLayout(device.handle(), layout);
 
   std::vector<VkSpecializationMapEntry> entries;
-  for (std::uint32_t k = 0; k < constants.size(); ++k) entries.push_back({k, k * 4, 4});
-  const VkSpecializationInfo specialization{static_cast<std::uint32_t>(entries.size()), entries.data(), constants.size_bytes(),
-                                            constants.data()};
+  for (std::uint32_t k = 0; k < constants.size(); ++k)
+    entries.push_back({constants[k].id, static_cast<std::uint32_t>(k * sizeof(Constant) + offsetof(Constant, value)),
+                       sizeof(std::uint32_t)});
+  const VkSpecializationInfo specialization{static_cast<std::uint32_t>(entries.size()), entries.data(),
+                                            constants.size_bytes(), constants.data()};
   VkComputePipelineCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
   info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
@@ -47,9 +52,9 @@ ComputePipeline::ComputePipeline(const Device& device, const std::uint32_t* word
   device.name(VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<std::uint64_t>(pipeline), name);
 }
 
-void ComputePipeline::bind(VkCommandBuffer commands, const void* push, VkDescriptorSet set) const {
+void ComputePipeline::bind(VkCommandBuffer commands, const void* push) const {
   vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline_.get());
-  if (set) vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout_.get(), 0, 1, &set, 0, nullptr);
+  vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout_.get(), 0, 1, &set_, 0, nullptr);
   vkCmdPushConstants(commands, layout_.get(), VK_SHADER_STAGE_COMPUTE_BIT, 0, push_bytes_, push);
 }
 

@@ -28,15 +28,20 @@ static_assert(std::is_trivially_copyable_v<TraceParameters> && sizeof(Float3) ==
 
 constexpr std::uint32_t group_size = 128;
 // A dispatch of so many rays takes a fraction of a watchdog's limit even on a slow device of its kind.
-constexpr std::uint64_t hardware_rays_per_dispatch = std::uint64_t{1} << 26, software_rays_per_dispatch = std::uint64_t{1} << 19;
+constexpr double seconds_per_submission = 0.25;
+constexpr std::uint32_t stations_per_submission = 16, parts_per_submission = 256;
+constexpr std::uint32_t dispatch_words = 3;  // of an indirect dispatch
+constexpr std::uint64_t hardware_rays_per_dispatch = std::uint64_t{1} << 26,
+                        software_rays_per_dispatch = std::uint64_t{1} << 19;
 
 std::uint32_t groups_of(std::uint64_t threads, std::uint32_t size = group_size) {
   return static_cast<std::uint32_t>((threads + size - 1) / size);
 }
 
 std::string join(const std::vector<std::string>& parts) {
-  return std::accumulate(parts.begin(), parts.end(), std::string(),
-                         [](std::string all, const std::string& part) { return all.empty() ? part : std::move(all) + ", " + part; });
+  return std::accumulate(parts.begin(), parts.end(), std::string(), [](std::string all, const std::string& part) {
+    return all.empty() ? part : std::move(all) + ", " + part;
+  });
 }
 
 EngineInfo describe(Engine engine, const DeviceAbilities& abilities, std::uint32_t index) {
@@ -47,7 +52,8 @@ EngineInfo describe(Engine engine, const DeviceAbilities& abilities, std::uint32
   info.device_index = index;
   info.software = abilities.software();
   std::vector<std::string> lacks = abilities.compute_lacks;
-  if (engine == Engine::ray_query) lacks.insert(lacks.end(), abilities.ray_query_lacks.begin(), abilities.ray_query_lacks.end());
+  if (engine == Engine::ray_query)
+    lacks.insert(lacks.end(), abilities.ray_query_lacks.begin(), abilities.ray_query_lacks.end());
   info.usable = lacks.empty();
   if (!info.usable) {
     info.reason = "lacks " + join(lacks);
@@ -66,39 +72,43 @@ bool validation_wanted(const TraceScene& scene) {
 
 class VulkanTracer final : public Tracer {
  public:
-  VulkanTracer(const EngineInfo& info, std::shared_ptr<Instance> instance, VkPhysicalDevice physical, const DeviceAbilities& abilities,
-               const TraceScene& scene)
+  VulkanTracer(const EngineInfo& info, std::shared_ptr<Instance> instance, VkPhysicalDevice physical,
+               const DeviceAbilities& abilities, const TraceScene& scene)
       : info_(info),
         scene_(scene),
         device_(std::move(instance), physical, abilities, info.engine == Engine::ray_query),
         commands_(device_),
-        kernels_(build_traversal()) {
-    if (scene.pattern->rows() > 0xFFFFu * block_rows || std::uint64_t{scene.pattern->rows()} * scene.pattern->columns() >= std::uint64_t{1} << 31)
+        set_(build_traversal()),
+        kernels_(device_, info.engine, set_) {
+    if (scene.pattern->rows() > 0xFFFFu * block_rows ||
+        std::uint64_t{scene.pattern->rows()} * scene.pattern->columns() >= std::uint64_t{1} << 31)
       throw Error(Errc::invalid_argument, "the scan pattern has " + std::to_string(scene.pattern->rows()) + " x " +
                                               std::to_string(scene.pattern->columns()) +
                                               " rays; this engine takes fewer than 2^31 a station: use larger steps");
+    rays_per_submission_ = rays_per_dispatch();
     upload_scene();
   }
 
   const EngineInfo& info() const override { return info_; }
   std::uint64_t preferred_scan_rays() const override {
     const std::uint64_t columns = scene_.pattern->columns();
-    return std::max<std::uint64_t>(1, std::min(rays_per_dispatch(), std::uint64_t{1} << 22) / columns) * columns;
+    return std::max<std::uint64_t>(std::min(rays_per_dispatch(), std::uint64_t{1} << 22) / columns, 1) * columns;
   }
 
-  void scan(const TraceStation& station, std::uint64_t first_ray, std::uint64_t ray_count, std::uint32_t outputs, RawChunk& chunk) override;
+  void scan(const TraceStation& station, std::uint64_t first_ray, std::uint64_t ray_count, std::uint32_t outputs,
+            RawChunk& chunk) override;
   NetworkCounts count(std::span<const TraceStation> stations, std::uint32_t station_count, const CountOptions& options,
                       const Progress& progress) override;
-  std::vector<NetworkCounts> count_sampled(std::span<const std::vector<TraceStation>> networks, std::span<const std::uint32_t> station_counts,
-                                           const SampleJob& job, const Progress& progress) override;
+  std::vector<NetworkCounts> count_sampled(std::span<const std::vector<TraceStation>> networks,
+                                           std::span<const std::uint32_t> station_counts, const SampleJob& job,
+                                           const Progress& progress) override;
 
  private:
-  Kernels build_traversal();
+  TraceSet build_traversal();
   void upload_scene();
   void upload_shading();
   void upload_sample(std::span<const std::uint32_t> sample);
   void write_parameters() { commands_.upload(parameters_buffer_, &parameters_, sizeof parameters_); }
-  VkDescriptorSet set() const { return structure_ ? structure_->set() : VK_NULL_HANDLE; }
   bool noise() const { return scene_.noise && scene_.noise->enabled(); }
   std::uint64_t rays_per_dispatch() const {
     if (scene_.max_rays_per_dispatch > 0) return scene_.max_rays_per_dispatch;
@@ -106,6 +116,11 @@ class VulkanTracer final : public Tracer {
   }
   std::uint32_t goal_points() const {
     return static_cast<std::uint32_t>(std::min(std::ceil(goal_density_), static_cast<double>(count_limit)));
+  }
+  // So that even `voxels` squares of almost the goal fit in 64 bits: 0 for every goal that scanners reach.
+  std::uint32_t difference_shift(std::uint32_t voxels) const {
+    const int bits = 2 * static_cast<int>(std::bit_width(goal_points())) + static_cast<int>(std::bit_width(voxels));
+    return static_cast<std::uint32_t>(std::max(0, bits - 62) / 2);
   }
   std::uint32_t rows_per_dispatch() const {
     const std::uint64_t rows = rays_per_dispatch() / scene_.pattern->columns() / tile_side * tile_side;
@@ -130,9 +145,12 @@ class VulkanTracer final : public Tracer {
     std::uint32_t voxels, groups, mask_words;
     bool differences;
   };
-  void record_reduction(VkCommandBuffer c, const Reduction& r, std::uint32_t first_network, std::uint32_t networks, std::uint32_t stride);
-  void read_totals(std::span<NetworkCounts> counts, std::span<const std::uint32_t> station_counts, const Reduction& r, std::uint32_t stride);
-  void prepare_totals(std::span<const std::uint32_t> station_counts, std::uint32_t groups, std::uint32_t stride);
+  void record_reduction(VkCommandBuffer c, const Reduction& r, std::uint32_t first_network, std::uint32_t networks,
+                        std::uint32_t stride);
+  void read_totals(std::span<NetworkCounts> counts, std::span<const std::uint32_t> station_counts,
+                   std::span<const std::uint32_t> totals, const Reduction& r, std::uint32_t stride) const;
+  void ensure_totals(std::size_t networks, std::uint32_t groups, std::uint32_t stride);
+  void record_totals_start(VkCommandBuffer c, std::span<const std::uint32_t> station_counts);
 
   EngineInfo info_;
   TraceScene scene_;
@@ -140,19 +158,25 @@ class VulkanTracer final : public Tracer {
   Commands commands_;
   std::unique_ptr<AccelerationStructure> structure_;  // ray_query
   Buffer nodes_, bvh_triangles_;                      // compute_bvh
-  TraceParameters parameters_{};                      // before kernels_, whose making fills a part of it
+  TraceParameters parameters_{};                      // before set_, whose making fills a part of it
+  Buffer parameters_buffer_;
+  TraceSet set_;
   Kernels kernels_;
-  Buffer parameters_buffer_, sin_zenith_, cos_zenith_, sin_azimuth_, cos_azimuth_, bricks_, slots_;
+  Buffer sin_zenith_, cos_zenith_, sin_azimuth_, cos_azimuth_, bricks_, slots_;
   Buffer positions_, normals_, triangles_, diffuse_, sigma_, normal_table_;  // filled when first needed
   Buffer counts_, masks_, station_counters_, totals_, station_counts_;
   Buffer tile_far_, tile_list_, tile_dispatch_, tile_rays_;
+  std::uint64_t rays_per_submission_ = 0;  // follows the speed seen; sizes the submissions, not the results
 
   std::vector<std::uint32_t> sample_;  // what the sample buffers hold
-  Buffer sample_voxels_, sample_triangles_, sample_stations_, sample_rays_, sample_items_, sample_control_, network_rays_;
-  double rays_per_pair_ = 8;           // as seen so far; sizes the chunks, not the results
+  Buffer sample_voxels_, sample_triangles_, sample_stations_, sample_rays_, sample_items_, sample_control_,
+      network_rays_;
+  double rays_per_pair_ = 8;  // as seen so far; sizes the chunks, not the results
 };
 
-Kernels VulkanTracer::build_traversal() {
+TraceSet VulkanTracer::build_traversal() {
+  parameters_buffer_ = Buffer(device_, sizeof parameters_, Buffer::Where::device, "trace parameters",
+                              VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
   const SceneData& scene = *scene_.scene;
   std::vector<std::uint32_t> ids(scene.triangles.size());
   for (std::size_t m = 0; m < scene.ranges.size(); ++m) {
@@ -161,16 +185,17 @@ Kernels VulkanTracer::build_traversal() {
       ids[scene.ranges[m].first_triangle + t] = (scene.ranges[m].first_triangle + t) | bit;
   }
   if (info_.engine == Engine::ray_query) {
-    structure_ = std::make_unique<AccelerationStructure>(device_, commands_, scene.positions, scene.triangles, ids);
+    structure_ = std::make_unique<AccelerationStructure>(device_, commands_, scene.positions, scene.triangles, ids,
+                                                         scene_.sort_triangles);
     parameters_.primitive_ids = structure_->primitive_ids();
-    return Kernels(device_, info_.engine, structure_->set_layout());
+    return TraceSet(device_, parameters_buffer_, structure_->handle());
   }
   const Bvh bvh = build_bvh(scene.positions, scene.triangles, ids);
   nodes_ = to_device<BvhNode>(bvh.nodes, "BVH nodes");
   bvh_triangles_ = to_device<BvhTriangle>(bvh.triangles, "BVH triangles");
   parameters_.nodes = nodes_.address();
   parameters_.bvh_triangles = bvh_triangles_.address();
-  return Kernels(device_, info_.engine, VK_NULL_HANDLE);
+  return TraceSet(device_, parameters_buffer_, VK_NULL_HANDLE);
 }
 
 void VulkanTracer::upload_scene() {
@@ -219,7 +244,6 @@ void VulkanTracer::upload_scene() {
     p.seed_low = static_cast<std::uint32_t>(model.seed);
     p.seed_high = static_cast<std::uint32_t>(model.seed >> 32);
   }
-  parameters_buffer_ = Buffer(device_, sizeof parameters_, Buffer::Where::device, "trace parameters");
   if (noise())
     upload_shading();
   else
@@ -233,7 +257,8 @@ void VulkanTracer::upload_shading() {
   triangles_ = to_device<Triangle>(scene.triangles, "triangles");
   std::vector<float> diffuse(scene.triangles.size());
   for (std::size_t m = 0; m < scene.ranges.size(); ++m)
-    std::fill_n(diffuse.begin() + scene.ranges[m].first_triangle, scene.ranges[m].triangle_count, static_cast<float>(scene.meshes[m].diffuse));
+    std::fill_n(diffuse.begin() + scene.ranges[m].first_triangle, scene.ranges[m].triangle_count,
+                static_cast<float>(scene.meshes[m].diffuse));
   diffuse_ = to_device<float>(diffuse, "diffuse coefficients");
   if (!scene.normals.empty()) normals_ = to_device<Float3>(scene.normals, "normals");
   parameters_.positions = positions_.address();
@@ -243,13 +268,13 @@ void VulkanTracer::upload_shading() {
   write_parameters();
 }
 
-void VulkanTracer::scan(const TraceStation& station, std::uint64_t first_ray, std::uint64_t ray_count, std::uint32_t outputs, RawChunk& chunk) {
+void VulkanTracer::scan(const TraceStation& station, std::uint64_t first_ray, std::uint64_t ray_count,
+                        std::uint32_t outputs, RawChunk& chunk) {
   const std::uint32_t columns = scene_.pattern->columns();
-  if (outputs & (normal | reflectivity)) upload_shading();
+  if (outputs & (normal | reflectivity | barycentric)) upload_shading();
   const auto rows = static_cast<std::uint32_t>(ray_count / columns);
 
   ScanPush push{};
-  push.parameters = parameters_buffer_.address();
   push.origin = {station.origin.x, station.origin.y, station.origin.z};
   push.place = station.place;
   std::array<Buffer, 7> buffers;
@@ -285,26 +310,33 @@ void VulkanTracer::scan(const TraceStation& station, std::uint64_t first_ray, st
     part.first_row = first_row + row;
     part.row_count = std::min(rows_per_dispatch(), rows - row);
     const std::uint64_t skip = std::uint64_t{row} * columns;
-    for (auto [address, size] : {std::pair{&part.range, sizeof(float)}, {&part.position, sizeof(Float3)}, {&part.normal, sizeof(Float3)},
-                                 {&part.reflectivity, sizeof(float)}, {&part.primitive, sizeof(std::uint32_t)},
-                                 {&part.barycentric, sizeof(Float2)}, {&part.voxel, sizeof(std::uint32_t)}})
+    for (auto [address, size] : {std::pair{&part.range, sizeof(float)},
+                                 {&part.position, sizeof(Float3)},
+                                 {&part.normal, sizeof(Float3)},
+                                 {&part.reflectivity, sizeof(float)},
+                                 {&part.primitive, sizeof(std::uint32_t)},
+                                 {&part.barycentric, sizeof(Float2)},
+                                 {&part.voxel, sizeof(std::uint32_t)}})
       if (*address) *address += skip * size;
     commands_.run([&](VkCommandBuffer c) {
-      pipeline.dispatch(c, part, set(), groups_of(columns, block_columns), groups_of(part.row_count, block_rows));
+      pipeline.dispatch(c, part, groups_of(columns, block_columns), groups_of(part.row_count, block_rows));
     });
   }
   for (const Copy& copy : copies) commands_.download(*copy.from, copy.to, copy.bytes);
 }
 
-void VulkanTracer::prepare_totals(std::span<const std::uint32_t> station_counts, std::uint32_t groups, std::uint32_t stride) {
-  ensure(totals_, station_counts.size() * groups * stride * sizeof(std::uint32_t), "totals");
-  ensure(station_counts_, station_counts.size_bytes(), "station counts");
-  commands_.upload(station_counts_, station_counts.data(), station_counts.size_bytes());
-  commands_.run([&](VkCommandBuffer c) { vkCmdFillBuffer(c, totals_.handle(), 0, VK_WHOLE_SIZE, 0); });
+void VulkanTracer::ensure_totals(std::size_t networks, std::uint32_t groups, std::uint32_t stride) {
+  ensure(totals_, networks * groups * stride * sizeof(std::uint32_t), "totals");
+  ensure(station_counts_, networks * sizeof(std::uint32_t), "station counts");
 }
 
-void VulkanTracer::record_reduction(VkCommandBuffer c, const Reduction& r, std::uint32_t first_network, std::uint32_t networks,
-                                    std::uint32_t stride) {
+void VulkanTracer::record_totals_start(VkCommandBuffer c, std::span<const std::uint32_t> station_counts) {
+  record_update(c, station_counts_, station_counts.data(), station_counts.size_bytes());
+  vkCmdFillBuffer(c, totals_.handle(), 0, VK_WHOLE_SIZE, 0);
+}
+
+void VulkanTracer::record_reduction(VkCommandBuffer c, const Reduction& r, std::uint32_t first_network,
+                                    std::uint32_t networks, std::uint32_t stride) {
   ReducePush push{};
   push.counts = r.counts;
   push.masks = r.masks;
@@ -312,20 +344,19 @@ void VulkanTracer::record_reduction(VkCommandBuffer c, const Reduction& r, std::
   push.station_counts = station_counts_.address();
   push.voxel_count = r.voxels;
   push.goal = goal_points();
-  push.difference_unit = static_cast<float>(difference_scale / goal_density_);
+  push.difference_shift = difference_shift(r.voxels);
   push.mask_words = r.mask_words;
   push.groups = r.groups;
   push.totals_stride = stride;
   push.first_network = first_network;
   push.with_differences = r.differences ? 1 : 0;
   const std::uint32_t in_group = groups_of(r.voxels, r.groups);
-  kernels_.get(Kernel::reduce).dispatch(c, push, VK_NULL_HANDLE, groups_of(in_group, reduce_voxels * reduce_rounds), r.groups, networks);
+  kernels_.get(Kernel::reduce)
+      .dispatch(c, push, groups_of(in_group, reduce_voxels * reduce_rounds), r.groups, networks);
 }
 
-void VulkanTracer::read_totals(std::span<NetworkCounts> counts, std::span<const std::uint32_t> station_counts, const Reduction& r,
-                               std::uint32_t stride) {
-  std::vector<std::uint32_t> totals(counts.size() * r.groups * stride);
-  commands_.download(totals_, totals.data(), totals.size() * sizeof totals[0]);
+void VulkanTracer::read_totals(std::span<NetworkCounts> counts, std::span<const std::uint32_t> station_counts,
+                               std::span<const std::uint32_t> totals, const Reduction& r, std::uint32_t stride) const {
   for (std::size_t n = 0; n < counts.size(); ++n) {
     NetworkCounts& sum = counts[n];
     const std::uint32_t stations = station_counts[n], pairs = stations * (stations - 1) / 2;
@@ -335,7 +366,7 @@ void VulkanTracer::read_totals(std::span<NetworkCounts> counts, std::span<const 
       sum.seen.assign(stations, 0);
       sum.shared.assign(pairs, 0);
     }
-    std::uint64_t difference = 0;
+    std::uint64_t squares = 0, edge_points = 0, edges = 0;
     for (std::uint32_t g = 0; g < r.groups; ++g) {
       const std::uint32_t* t = totals.data() + (n * r.groups + g) * stride;
       NetworkCounts group;
@@ -343,7 +374,9 @@ void VulkanTracer::read_totals(std::span<NetworkCounts> counts, std::span<const 
       group.stations = stations;
       group.saturated = t[totals_saturated];
       group.partial_points = t[totals_partial] | std::uint64_t{t[totals_partial + 1]} << 32;
-      difference += t[totals_difference] | std::uint64_t{t[totals_difference + 1]} << 32;
+      squares += t[totals_squares] | std::uint64_t{t[totals_squares + 1]} << 32;
+      edge_points += t[totals_edge_points] | std::uint64_t{t[totals_edge_points + 1]} << 32;
+      edges += t[totals_edges];
       if (r.mask_words) {
         group.seen.assign(t + totals_seen, t + totals_seen + stations);
         group.shared.assign(t + totals_seen + stations, t + totals_seen + stations + pairs);
@@ -354,12 +387,15 @@ void VulkanTracer::read_totals(std::span<NetworkCounts> counts, std::span<const 
       sum.partial_points += group.partial_points;
       if (r.groups > 1) sum.groups.push_back(std::move(group));
     }
-    sum.successive_difference_sum = static_cast<double>(difference) / (double{difference_scale} * difference_scale);
+    // Where one voxel is saturated, (1 − c / goal)² = 1 − 2 c / goal + c² / goal².
+    const double unit = std::ldexp(1.0, static_cast<int>(difference_shift(r.voxels))) / goal_density_;
+    sum.successive_difference_sum = static_cast<double>(squares) * unit * unit -
+                                    2 * static_cast<double>(edge_points) * unit + static_cast<double>(edges);
   }
 }
 
-NetworkCounts VulkanTracer::count(std::span<const TraceStation> stations, std::uint32_t station_count, const CountOptions& options,
-                                  const Progress& progress) {
+NetworkCounts VulkanTracer::count(std::span<const TraceStation> stations, std::uint32_t station_count,
+                                  const CountOptions& options, const Progress& progress) {
   const auto voxels = static_cast<std::uint32_t>(scene_.grid->size());
   const std::uint32_t columns = scene_.pattern->columns(), rows = scene_.pattern->rows();
   const std::uint32_t mask_words = options.masks ? (station_count > 32 ? 2 : 1) : 0;
@@ -368,118 +404,163 @@ NetworkCounts VulkanTracer::count(std::span<const TraceStation> stations, std::u
   ensure(station_counters_, 64 * 4 * sizeof(std::uint32_t), "station counters");
   const std::uint32_t tiles_in_row = groups_of(columns, tile_side), tiles = tiles_in_row * groups_of(rows, tile_side);
   if (options.skip) {
-    ensure(tile_far_, tiles * sizeof(float), "tile far");
-    ensure(tile_list_, (std::uint64_t{tiles} + 1) * sizeof(std::uint32_t), "tile list");
-    ensure(tile_dispatch_, 3 * sizeof(std::uint32_t), "tile dispatch", VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
+    ensure(tile_far_, std::uint64_t{tiles} * stations_per_submission * sizeof(std::uint32_t), "tile far");
+    ensure(tile_list_, (std::uint64_t{tiles} * stations_per_submission + parts_per_submission) * sizeof(std::uint32_t),
+           "tile list");
+    ensure(tile_dispatch_, parts_per_submission * dispatch_words * sizeof(std::uint32_t), "tile dispatch",
+           VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
     ensure(tile_rays_, 2 * sizeof(std::uint32_t), "tile rays");
   }
   const std::array<std::uint32_t, 1> station_counts{station_count};
   const std::uint32_t stride = totals_seen + station_count + station_count * (station_count - 1) / 2;
-  prepare_totals(station_counts, 1, stride);
+  ensure_totals(1, 1, stride);
+  const Reduction reduction{counts_.address(), mask_words ? masks_.address() : 0, voxels, 1, mask_words, false};
+
+  struct Part {  // rows of a station
+    std::uint32_t station, first_row, row_count, slot;
+    std::uint64_t list;  // its list of tiles within tile_list_, in words
+  };
+  const auto tile_push = [&](const Part& part, std::size_t k) {
+    TilePush push{};
+    push.tile_far = tile_far_.address() + std::uint64_t{part.slot} * tiles * sizeof(std::uint32_t);
+    push.tile_list = tile_list_.address() + part.list * sizeof(std::uint32_t);
+    push.dispatch = tile_dispatch_.address() + k * dispatch_words * sizeof(std::uint32_t);
+    push.rays = tile_rays_.address();
+    const Float3& origin = stations[part.station].origin;
+    push.origin = {origin.x, origin.y, origin.z};
+    push.first_row = part.first_row;
+    push.row_count = part.row_count;
+    return push;
+  };
+  std::uint64_t since_clamp = 0;
+  const auto record_parts = [&](VkCommandBuffer c, std::span<const Part> parts) {
+    if (options.skip) {
+      vkCmdFillBuffer(c, tile_far_.handle(), 0, VK_WHOLE_SIZE, 0);
+      vkCmdFillBuffer(c, tile_list_.handle(), 0, VK_WHOLE_SIZE, 0);
+      vkCmdFillBuffer(c, tile_dispatch_.handle(), 0, VK_WHOLE_SIZE, 0);
+    }
+    shader_after_transfer(c);
+    if (options.skip) {
+      for (std::size_t k = 0; k < parts.size(); ++k)
+        if (k == 0 || parts[k].slot != parts[k - 1].slot)
+          kernels_.get(Kernel::tiles).dispatch(c, tile_push(parts[k], k), groups_of(scene_.grid->bricks().size()));
+      shader_after_shader(c);
+      for (std::size_t k = 0; k < parts.size(); ++k)
+        kernels_.get(Kernel::tile_list)
+            .dispatch(c, tile_push(parts[k], k),
+                      groups_of(std::uint64_t{groups_of(parts[k].row_count, tile_side)} * tiles_in_row));
+      shader_after_shader(c);
+    }
+    // Counts are sums, so the parts need not wait for each other.
+    const ComputePipeline& pipeline = kernels_.get(Kernel::count, {noise(), options.masks, options.skip});
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+      const Part& part = parts[k];
+      const TraceStation& station = stations[part.station];
+      const std::uint64_t rays = std::uint64_t{part.row_count} * columns;
+      if (since_clamp + rays > count_limit - 1) {
+        shader_after_shader(c);
+        const std::uint32_t groups = groups_of(voxels);
+        kernels_.get(Kernel::clamp)
+            .dispatch(c, ClampPush{counts_.address(), voxels, 0}, std::min(groups, 32768u), groups_of(groups, 32768u));
+        shader_after_shader(c);
+        since_clamp = 0;
+      }
+      since_clamp += rays;
+      CountPush push{};
+      push.counts = counts_.address();
+      push.masks =
+          mask_words ? masks_.address() + std::uint64_t{station.place / 32} * voxels * sizeof(std::uint32_t) : 0;
+      push.station_counters = station_counters_.address();
+      push.origin = {station.origin.x, station.origin.y, station.origin.z};
+      push.place = station.place;
+      push.first_row = part.first_row;
+      push.row_count = part.row_count;
+      if (!options.skip) {
+        pipeline.dispatch(c, push, groups_of(columns, block_columns), groups_of(push.row_count, block_rows));
+        continue;
+      }
+      const TilePush tile = tile_push(part, k);
+      push.tile_far = tile.tile_far;
+      push.tile_list = tile.tile_list;
+      pipeline.bind(c, &push);
+      vkCmdDispatchIndirect(c, tile_dispatch_.handle(), k * dispatch_words * sizeof(std::uint32_t));
+    }
+  };
 
   NetworkCounts result;
-  result.trace_seconds = commands_.run([&](VkCommandBuffer c) {
-    vkCmdFillBuffer(c, counts_.handle(), 0, VK_WHOLE_SIZE, 0);
-    if (mask_words) vkCmdFillBuffer(c, masks_.handle(), 0, VK_WHOLE_SIZE, 0);
-    vkCmdFillBuffer(c, station_counters_.handle(), 0, VK_WHOLE_SIZE, 0);
-    if (options.skip) vkCmdFillBuffer(c, tile_rays_.handle(), 0, VK_WHOLE_SIZE, 0);
-  });
-
-  const auto record_tiles = [&](VkCommandBuffer c, const TilePush& push) {
-    vkCmdFillBuffer(c, tile_far_.handle(), 0, VK_WHOLE_SIZE, 0);
-    shader_after_transfer(c);
-    kernels_.get(Kernel::tiles).dispatch(c, push, VK_NULL_HANDLE, groups_of(scene_.grid->bricks().size()));
-    shader_after_shader(c);
-  };
-  const auto record_list = [&](VkCommandBuffer c, const TilePush& push) {
-    vkCmdFillBuffer(c, tile_list_.handle(), 0, sizeof(std::uint32_t), 0);
-    vkCmdFillBuffer(c, tile_dispatch_.handle(), 0, VK_WHOLE_SIZE, 0);
-    shader_after_transfer(c);
-    kernels_.get(Kernel::tile_list).dispatch(c, push, VK_NULL_HANDLE, groups_of(std::uint64_t{groups_of(push.row_count, tile_side)} * tiles_in_row));
-    shader_after_shader(c);
-  };
-
-  // Dispatches are collected up to this many rays a submission: enough to keep a device busy, few enough to report and to stop.
-  const std::uint64_t rays_per_submission = info_.software ? rays_per_dispatch() : 8 * rays_per_dispatch();
-  std::vector<std::pair<std::size_t, std::uint32_t>> todo;  // station, first row
-  for (std::size_t s = 0; s < stations.size(); ++s)
-    for (std::uint32_t row = 0; row < rows; row += rows_per_dispatch()) todo.emplace_back(s, row);
-  std::uint64_t since_clamp = 0;
-  for (std::size_t k = 0; k < todo.size();) {
-    if (progress.stopped()) {
-      result.cancelled = true;
-      break;
-    }
-    result.trace_seconds += commands_.run([&](VkCommandBuffer c) {
-      for (std::uint64_t recorded = 0; k < todo.size() && recorded < rays_per_submission; ++k) {
-        const TraceStation& station = stations[todo[k].first];
-        CountPush push{};
-        push.parameters = parameters_buffer_.address();
-        push.counts = counts_.address();
-        push.masks = mask_words ? masks_.address() + std::uint64_t{station.place / 32} * voxels * sizeof(std::uint32_t) : 0;
-        push.station_counters = station_counters_.address();
-        push.origin = {station.origin.x, station.origin.y, station.origin.z};
-        push.place = station.place;
-        push.first_row = todo[k].second;
-        push.row_count = std::min(rows_per_dispatch(), rows - push.first_row);
-        const std::uint64_t rays = std::uint64_t{push.row_count} * columns;
-        if (since_clamp + rays > count_limit - 1) {
-          shader_after_shader(c);
-          const std::uint32_t groups = groups_of(voxels);
-          kernels_.get(Kernel::clamp).dispatch(c, ClampPush{counts_.address(), voxels, 0}, VK_NULL_HANDLE, std::min(groups, 32768u),
-                                               groups_of(groups, 32768u));
-          shader_after_shader(c);
-          since_clamp = 0;
-        }
-        since_clamp += rays;
-        recorded += rays;
-        const ComputePipeline& pipeline = kernels_.get(Kernel::count, {noise(), options.masks, options.skip});
-        if (!options.skip) {
-          pipeline.dispatch(c, push, set(), groups_of(columns, block_columns), groups_of(push.row_count, block_rows));
-          continue;
-        }
-        push.tile_far = tile_far_.address();
-        push.tile_list = tile_list_.address();
-        TilePush tile{};
-        tile.parameters = push.parameters;
-        tile.tile_far = tile_far_.address();
-        tile.tile_list = tile_list_.address();
-        tile.dispatch = tile_dispatch_.address();
-        tile.rays = tile_rays_.address();
-        tile.origin = push.origin;
-        tile.first_row = push.first_row;
-        tile.row_count = push.row_count;
-        shader_after_shader(c);  // the dispatch before still reads the list
-        if (push.first_row == 0) record_tiles(c, tile);
-        record_list(c, tile);
-        pipeline.bind(c, &push, set());
-        vkCmdDispatchIndirect(c, tile_dispatch_.handle(), 0);
-      }
-    });
-    progress(static_cast<double>(k) / static_cast<double>(todo.size()));
-  }
-
-  const Reduction reduction{counts_.address(), mask_words ? masks_.address() : 0, voxels, 1, mask_words, false};
-  result.trace_seconds += commands_.run([&](VkCommandBuffer c) { record_reduction(c, reduction, 0, 1, stride); });
-  read_totals({&result, 1}, station_counts, reduction, stride);
-
   std::array<std::uint64_t, 64 * 2> counters{};
-  commands_.download(station_counters_, counters.data(), sizeof counters);
+  std::uint64_t tile_rays = 0;
+  std::vector<std::uint32_t> totals(stride);
+  std::vector<Commands::Download> wanted{{totals_, totals.data(), stride * sizeof(std::uint32_t)},
+                                         {station_counters_, counters.data(), sizeof counters}};
+  if (options.skip) wanted.push_back({tile_rays_, &tile_rays, sizeof tile_rays});
+
+  // As much work a submission as reports and stops in time.
+  const std::uint64_t all_rays = std::uint64_t{rows} * columns * stations.size();
+  std::uint64_t done_rays = 0;
+  std::uint32_t station = 0, row = 0;
+  for (bool first = true, last = false; !last; first = false) {
+    std::vector<Part> parts;
+    std::uint64_t rays = 0, list = 0;
+    std::uint32_t slots = 0;
+    result.cancelled = progress.stopped();
+    while (!result.cancelled && station < stations.size() && rays < rays_per_submission_ &&
+           parts.size() < parts_per_submission) {
+      const bool same_station = !parts.empty() && parts.back().station == station;
+      if (!same_station && slots == stations_per_submission) break;
+      if (!same_station) ++slots;
+      const std::uint32_t row_count = std::min(rows_per_dispatch(), rows - row);
+      parts.push_back({station, row, row_count, slots - 1, list});
+      list += 1 + std::uint64_t{groups_of(row_count, tile_side)} * tiles_in_row;
+      rays += std::uint64_t{row_count} * columns;
+      row += row_count;
+      if (row == rows) {
+        row = 0;
+        ++station;
+      }
+    }
+    last = result.cancelled || station == stations.size();
+    const auto record = [&](VkCommandBuffer c) {
+      if (first) {
+        vkCmdFillBuffer(c, counts_.handle(), 0, voxels * sizeof(std::uint32_t), 0);
+        if (mask_words)
+          vkCmdFillBuffer(c, masks_.handle(), 0, std::uint64_t{voxels} * mask_words * sizeof(std::uint32_t), 0);
+        vkCmdFillBuffer(c, station_counters_.handle(), 0, VK_WHOLE_SIZE, 0);
+        if (options.skip) vkCmdFillBuffer(c, tile_rays_.handle(), 0, VK_WHOLE_SIZE, 0);
+        record_totals_start(c, station_counts);
+      }
+      record_parts(c, parts);
+      if (!last) return;
+      shader_after_shader(c);
+      record_reduction(c, reduction, 0, 1, stride);
+    };
+    const double seconds = commands_.run_and_download(
+        record, last ? std::span<const Commands::Download>(wanted) : std::span<const Commands::Download>());
+    result.trace_seconds += seconds;
+    done_rays += rays;
+    if (rays >= rays_per_dispatch() && seconds > 0)
+      rays_per_submission_ =
+          static_cast<std::uint64_t>(std::clamp(static_cast<double>(rays) / seconds * seconds_per_submission,
+                                                static_cast<double>(rays_per_dispatch()), 1e12));
+    if (!result.cancelled) progress(static_cast<double>(done_rays) / static_cast<double>(all_rays));
+  }
+  read_totals({&result, 1}, station_counts, totals, reduction, stride);
+
   result.points_on_surveyed.assign(station_count, 0);
   if (!options.skip) result.points.assign(station_count, 0);
-  for (const TraceStation& station : stations) {
-    if (!options.skip) result.points[station.place] = counters[2 * station.place];
-    result.points_on_surveyed[station.place] = counters[2 * station.place + 1];
+  for (const TraceStation& each : stations) {
+    if (!options.skip) result.points[each.place] = counters[2 * each.place];
+    result.points_on_surveyed[each.place] = counters[2 * each.place + 1];
   }
-  result.rays = std::uint64_t{rows} * columns * stations.size();
-  if (options.skip) commands_.download(tile_rays_, &result.rays, sizeof result.rays);
+  result.rays = options.skip ? tile_rays : all_rays;
   if (options.field) {
     options.field->count.resize(voxels);
     commands_.download(counts_, options.field->count.data(), voxels * sizeof(std::uint32_t));
     options.field->stations.assign(options.masks ? voxels : 0, 0);
     std::vector<std::uint32_t> word(voxels);
     for (std::uint32_t w = 0; w < mask_words; ++w) {
-      commands_.download(masks_, word.data(), voxels * sizeof(std::uint32_t), std::uint64_t{w} * voxels * sizeof(std::uint32_t));
+      commands_.download(masks_, word.data(), voxels * sizeof(std::uint32_t),
+                         std::uint64_t{w} * voxels * sizeof(std::uint32_t));
       for (std::uint32_t v = 0; v < voxels; ++v) options.field->stations[v] |= std::uint64_t{word[v]} << (32 * w);
     }
   }
@@ -492,7 +573,8 @@ void VulkanTracer::upload_sample(std::span<const std::uint32_t> sample) {
   const SceneData& scene = *scene_.scene;
   // Wider than the slack of cube_of in shaders/lib/sample.glsl for any station within range.
   const Box& b = scene.local_bounds;
-  const double largest = std::max({std::abs(b.min.x), std::abs(b.min.y), std::abs(b.min.z), std::abs(b.max.x), std::abs(b.max.y), std::abs(b.max.z)}) +
+  const double largest = std::max({std::abs(b.min.x), std::abs(b.min.y), std::abs(b.min.z), std::abs(b.max.x),
+                                   std::abs(b.max.y), std::abs(b.max.z)}) +
                          static_cast<double>(scene_.pattern->max_range);
   const double margin = static_cast<double>(parameters_.noise_reach) + largest * 0x1p-17;
   const VoxelTriangles touching = triangles_touching(scene, grid, sample, margin);
@@ -517,8 +599,8 @@ void VulkanTracer::upload_sample(std::span<const std::uint32_t> sample) {
 }
 
 std::vector<NetworkCounts> VulkanTracer::count_sampled(std::span<const std::vector<TraceStation>> networks,
-                                                       std::span<const std::uint32_t> station_counts, const SampleJob& job,
-                                                       const Progress& progress) {
+                                                       std::span<const std::uint32_t> station_counts,
+                                                       const SampleJob& job, const Progress& progress) {
   std::vector<NetworkCounts> results(networks.size());
   if (networks.empty()) return results;
   upload_sample(job.sample);
@@ -526,25 +608,30 @@ std::vector<NetworkCounts> VulkanTracer::count_sampled(std::span<const std::vect
   const std::uint32_t most = *std::max_element(station_counts.begin(), station_counts.end());
   const std::uint32_t mask_words = job.masks ? (most > 32 ? 2 : 1) : 0;
   const std::uint32_t stride = totals_seen + most + most * (most - 1) / 2;
-  prepare_totals(station_counts, job.groups, stride);
+  ensure_totals(networks.size(), job.groups, stride);
 
   // A batch of networks shares counts and masks; a chunk of a batch is what one list of rays can hold.
   const std::uint64_t entries = std::uint64_t{1} << 25;
-  const std::size_t batch_size = static_cast<std::size_t>(std::clamp<std::uint64_t>(entries / std::max(voxels, 1u), 1, networks.size()));
+  const std::size_t batch_size =
+      static_cast<std::size_t>(std::clamp<std::uint64_t>(entries / std::max(voxels, 1u), 1, networks.size()));
   const std::uint32_t ray_capacity =
       std::max<std::uint32_t>(info_.software ? 1u << 20 : 1u << 24, 2 * scene_.pattern->columns());
   const std::uint32_t item_capacity = std::max(1u << 16, 2 * scene_.pattern->columns() / sample_part);
   const std::uint32_t chunks_per_submission = info_.software ? 1 : 64;
   ensure(sample_rays_, std::uint64_t{ray_capacity} * sizeof(SampleRay), "sample rays");
   ensure(sample_items_, std::uint64_t{item_capacity} * sizeof(SampleItem), "sample items");
-  ensure(sample_control_, chunks_per_submission * control_words * sizeof(std::uint32_t), "sample control", VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
+  ensure(sample_control_, chunks_per_submission * control_words * sizeof(std::uint32_t), "sample control",
+         VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
   ensure(counts_, std::uint64_t{voxels} * batch_size * sizeof(std::uint32_t), "counts");
-  if (mask_words) ensure(masks_, std::uint64_t{voxels} * batch_size * mask_words * sizeof(std::uint32_t), "station masks");
+  if (mask_words)
+    ensure(masks_, std::uint64_t{voxels} * batch_size * mask_words * sizeof(std::uint32_t), "station masks");
   ensure(network_rays_, networks.size() * sizeof(std::uint64_t), "network rays");
-  commands_.run([&](VkCommandBuffer c) { vkCmdFillBuffer(c, network_rays_.handle(), 0, VK_WHOLE_SIZE, 0); });
+  commands_.run([&](VkCommandBuffer c) {
+    vkCmdFillBuffer(c, network_rays_.handle(), 0, VK_WHOLE_SIZE, 0);
+    record_totals_start(c, station_counts);
+  });
 
   SamplePush base{};
-  base.parameters = parameters_buffer_.address();
   base.voxels = sample_voxels_.address();
   base.triangles = sample_triangles_.address();
   base.rays = sample_rays_.address();
@@ -581,7 +668,8 @@ std::vector<NetworkCounts> VulkanTracer::count_sampled(std::span<const std::vect
 
     // The next chunk from the front of what is left, as large as the list will probably hold.
     std::deque<Chunk> todo;
-    if (!slots.empty() && voxels > 0) todo.push_back({0, static_cast<std::uint32_t>(slots.size()), 0, voxels, 0, scene_.pattern->rows()});
+    if (!slots.empty() && voxels > 0)
+      todo.push_back({0, static_cast<std::uint32_t>(slots.size()), 0, voxels, 0, scene_.pattern->rows()});
     const auto cut = [&](const Chunk& c) -> std::array<Chunk, 2> {
       Chunk a = c, b = c;
       if (c.end_slot - c.first_slot > 1) {
@@ -605,7 +693,8 @@ std::vector<NetworkCounts> VulkanTracer::count_sampled(std::span<const std::vect
         Chunk chunk = todo.front();
         todo.pop_front();
         // 65 535 groups a dimension is what every device offers.
-        while (chunk.end_slot - chunk.first_slot > 0xFFFFu || groups_of(chunk.end_voxel - chunk.first_voxel) > 0xFFFFu ||
+        while (chunk.end_slot - chunk.first_slot > 0xFFFFu ||
+               groups_of(chunk.end_voxel - chunk.first_voxel) > 0xFFFFu ||
                (chunk.pairs() > 1 && static_cast<double>(chunk.pairs()) * rays_per_pair_ * 1.5 > ray_capacity)) {
           const auto [a, b] = cut(chunk);
           todo.push_front(b);
@@ -629,38 +718,46 @@ std::vector<NetworkCounts> VulkanTracer::count_sampled(std::span<const std::vect
           const VkDeviceSize dispatch = (k * control_words + control_dispatch) * sizeof(std::uint32_t);
           shader_after_shader(c);  // the chunk before still reads the list
           kernels_.get(Kernel::sample_list)
-              .dispatch(c, push, VK_NULL_HANDLE, groups_of(chunk.end_voxel - chunk.first_voxel), chunk.end_slot - chunk.first_slot);
+              .dispatch(c, push, groups_of(chunk.end_voxel - chunk.first_voxel), chunk.end_slot - chunk.first_slot);
           shader_after_shader(c);
-          kernels_.get(Kernel::sample_arguments, {false}).dispatch(c, push, VK_NULL_HANDLE, 1);
+          kernels_.get(Kernel::sample_arguments, {false}).dispatch(c, push, 1);
           shader_after_shader(c);
-          kernels_.get(Kernel::sample_queue).bind(c, &push, VK_NULL_HANDLE);
+          kernels_.get(Kernel::sample_queue).bind(c, &push);
           vkCmdDispatchIndirect(c, sample_control_.handle(), dispatch);
           shader_after_shader(c);
-          kernels_.get(Kernel::sample_arguments, {true}).dispatch(c, push, VK_NULL_HANDLE, 1);
+          kernels_.get(Kernel::sample_arguments, {true}).dispatch(c, push, 1);
           shader_after_shader(c);
-          kernels_.get(Kernel::sample_trace, {noise(), job.masks}).bind(c, &push, set());
+          kernels_.get(Kernel::sample_trace, {noise(), job.masks}).bind(c, &push);
           vkCmdDispatchIndirect(c, sample_control_.handle(), dispatch);
         }
       });
       commands_.download(sample_control_, control.data(), control.size() * sizeof control[0]);
       for (std::size_t k = chunks.size(); k-- > 0;) {
-        const std::uint32_t listed = control[k * control_words + control_rays], queued = control[k * control_words + control_items];
+        const std::uint32_t listed = control[k * control_words + control_rays],
+                            queued = control[k * control_words + control_items];
         if (listed > ray_capacity || queued > item_capacity) {
           const auto [a, b] = cut(chunks[k]);
           todo.push_front(b);
           todo.push_front(a);
         } else {
-          done_pairs += static_cast<double>(chunks[k].pairs()) * (chunks[k].end_row - chunks[k].first_row) / scene_.pattern->rows();
+          done_pairs += static_cast<double>(chunks[k].pairs()) * (chunks[k].end_row - chunks[k].first_row) /
+                        scene_.pattern->rows();
         }
-        if (chunks[k].pairs() > 1000) rays_per_pair_ = 0.5 * (rays_per_pair_ + static_cast<double>(listed) / static_cast<double>(chunks[k].pairs()));
+        if (chunks[k].pairs() > 1000)
+          rays_per_pair_ =
+              0.5 * (rays_per_pair_ + static_cast<double>(listed) / static_cast<double>(chunks[k].pairs()));
       }
-      progress((static_cast<double>(first) + static_cast<double>(end - first) * done_pairs / all_pairs) / static_cast<double>(networks.size()));
+      progress((static_cast<double>(first) + static_cast<double>(end - first) * done_pairs / all_pairs) /
+               static_cast<double>(networks.size()));
     }
     seconds += commands_.run([&](VkCommandBuffer c) {
-      record_reduction(c, reduction, static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(end - first), stride);
+      record_reduction(c, reduction, static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(end - first),
+                       stride);
     });
   }
-  read_totals(results, station_counts, reduction, stride);
+  std::vector<std::uint32_t> totals(networks.size() * job.groups * stride);
+  commands_.download(totals_, totals.data(), totals.size() * sizeof totals[0]);
+  read_totals(results, station_counts, totals, reduction, stride);
   std::vector<std::uint64_t> rays(networks.size());
   commands_.download(network_rays_, rays.data(), rays.size() * sizeof rays[0]);
   for (std::size_t n = 0; n < results.size(); ++n) {
@@ -684,7 +781,8 @@ std::vector<EngineInfo> list_vulkan_engines() {
       engines.push_back(describe(Engine::compute_bvh, abilities, d));
     }
     if (!devices.empty()) return engines;
-    throw Error(Errc::no_suitable_device, "Vulkan finds no device; install a driver (Debian: mesa-vulkan-drivers >= 24.1)");
+    throw Error(Errc::no_suitable_device,
+                "Vulkan finds no device; install a driver (Debian: mesa-vulkan-drivers >= 24.1)");
   } catch (const Error& error) {
     for (const Engine engine : {Engine::ray_query, Engine::compute_bvh}) {
       EngineInfo info;
@@ -697,7 +795,8 @@ std::vector<EngineInfo> list_vulkan_engines() {
   return engines;
 }
 
-std::unique_ptr<Tracer> make_vulkan_tracer(Engine engine, std::optional<std::uint32_t> device, const TraceScene& scene) {
+std::unique_ptr<Tracer> make_vulkan_tracer(Engine engine, std::optional<std::uint32_t> device,
+                                           const TraceScene& scene) {
   const auto instance = Instance::get(validation_wanted(scene));
   const auto devices = instance->physical_devices();
   std::vector<std::string> refusals;
@@ -706,7 +805,10 @@ std::unique_ptr<Tracer> make_vulkan_tracer(Engine engine, std::optional<std::uin
   // Hardware before software, discrete before integrated, then the most memory.
   const auto better = [](const DeviceAbilities& a, const DeviceAbilities& b) {
     const auto rank = [](const DeviceAbilities& x) {
-      return x.type == VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU ? 3 : x.type == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU ? 2 : x.software() ? 0 : 1;
+      return x.type == VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU     ? 3
+             : x.type == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU ? 2
+             : x.software()                                     ? 0
+                                                                : 1;
     };
     return rank(a) != rank(b) ? rank(a) > rank(b) : a.memory_bytes > b.memory_bytes;
   };
@@ -721,14 +823,17 @@ std::unique_ptr<Tracer> make_vulkan_tracer(Engine engine, std::optional<std::uin
       best_abilities = abilities;
     }
   }
-  if (device && *device >= devices.size()) refusals.push_back("there are only " + std::to_string(devices.size()) + " devices, counted from 0");
+  if (device && *device >= devices.size())
+    refusals.push_back("there are only " + std::to_string(devices.size()) + " devices, counted from 0");
   if (!best)
     throw Error(Errc::no_suitable_device,
                 "no Vulkan device can run the engine " + to_string(engine) +
-                    (engine == Engine::ray_query ? "; it needs VK_KHR_ray_query: a GPU with ray tracing, or mesa-vulkan-drivers >= 24.1 for the software device"
+                    (engine == Engine::ray_query ? "; it needs VK_KHR_ray_query: a GPU with ray tracing, or "
+                                                   "mesa-vulkan-drivers >= 24.1 for the software device"
                                                  : "; it needs Vulkan 1.2"),
                 std::move(refusals));
-  return std::make_unique<VulkanTracer>(describe(engine, best_abilities, *best), instance, devices[*best], best_abilities, scene);
+  return std::make_unique<VulkanTracer>(describe(engine, best_abilities, *best), instance, devices[*best],
+                                        best_abilities, scene);
 }
 
 }  // namespace vantage

@@ -13,13 +13,15 @@ namespace {
 constexpr std::uint32_t blas_triangles = 1u << 23;  // as in shaders/trace/ray_query.glsl
 
 VkDeviceAddress address_of(const Device& device, VkAccelerationStructureKHR structure) {
-  VkAccelerationStructureDeviceAddressInfoKHR info{VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_DEVICE_ADDRESS_INFO_KHR, nullptr, structure};
+  VkAccelerationStructureDeviceAddressInfoKHR info{VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_DEVICE_ADDRESS_INFO_KHR,
+                                                   nullptr, structure};
   return vkGetAccelerationStructureDeviceAddressKHR(device.handle(), &info);
 }
 
 }  // namespace
 
-AccelerationStructure::Level AccelerationStructure::build(VkAccelerationStructureTypeKHR type, const VkAccelerationStructureGeometryKHR& geometry,
+AccelerationStructure::Level AccelerationStructure::build(VkAccelerationStructureTypeKHR type,
+                                                          const VkAccelerationStructureGeometryKHR& geometry,
                                                           std::uint32_t count, const char* name) {
   VkAccelerationStructureBuildGeometryInfoKHR info{};
   info.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_BUILD_GEOMETRY_INFO_KHR;
@@ -30,7 +32,8 @@ AccelerationStructure::Level AccelerationStructure::build(VkAccelerationStructur
   info.pGeometries = &geometry;
   VkAccelerationStructureBuildSizesInfoKHR sizes{};
   sizes.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_BUILD_SIZES_INFO_KHR;
-  vkGetAccelerationStructureBuildSizesKHR(device_.handle(), VK_ACCELERATION_STRUCTURE_BUILD_TYPE_DEVICE_KHR, &info, &count, &sizes);
+  vkGetAccelerationStructureBuildSizesKHR(device_.handle(), VK_ACCELERATION_STRUCTURE_BUILD_TYPE_DEVICE_KHR, &info,
+                                          &count, &sizes);
 
   Level level;
   level.storage = Buffer(device_, sizes.accelerationStructureSize, Buffer::Where::device, name,
@@ -45,7 +48,8 @@ AccelerationStructure::Level AccelerationStructure::build(VkAccelerationStructur
   level.handle = UniqueAccelerationStructure(device_.handle(), structure);
 
   const VkDeviceSize alignment = device_.scratch_alignment();
-  const Buffer scratch(device_, sizes.buildScratchSize + alignment, Buffer::Where::device, "acceleration structure scratch");
+  const Buffer scratch(device_, sizes.buildScratchSize + alignment, Buffer::Where::device,
+                       "acceleration structure scratch");
   info.dstAccelerationStructure = structure;
   info.scratchData.deviceAddress = (scratch.address() + alignment - 1) / alignment * alignment;
   const VkAccelerationStructureBuildRangeInfoKHR range{count, 0, 0, 0};
@@ -56,10 +60,11 @@ AccelerationStructure::Level AccelerationStructure::build(VkAccelerationStructur
 }
 
 AccelerationStructure::AccelerationStructure(Device& device, Commands& commands, std::span<const Float3> positions,
-                                             std::span<const Triangle> triangles, std::span<const std::uint32_t> ids)
+                                             std::span<const Triangle> triangles, std::span<const std::uint32_t> ids,
+                                             bool sort)
     : device_(device), commands_(commands) {
   std::vector<std::uint32_t> order;
-  if (device.abilities().software()) {
+  if (sort && device.abilities().software()) {
     order = median_sort(positions, triangles);
   } else {
     order.resize(triangles.size());
@@ -91,7 +96,8 @@ AccelerationStructure::AccelerationStructure(Device& device, Commands& commands,
     t.maxVertex = static_cast<std::uint32_t>(positions.size() - 1);
     t.indexType = VK_INDEX_TYPE_UINT32;
     t.indexData.deviceAddress = indices.address() + first * sizeof(Triangle);
-    bottom_.push_back(build(VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR, geometry, count, "bottom-level acceleration structure"));
+    bottom_.push_back(
+        build(VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR, geometry, count, "bottom-level acceleration structure"));
     VkAccelerationStructureInstanceKHR instance{};
     instance.transform = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
     instance.instanceCustomIndex = static_cast<std::uint32_t>(instances.size()) & 0xFFFFFFu;
@@ -100,7 +106,8 @@ AccelerationStructure::AccelerationStructure(Device& device, Commands& commands,
     instance.accelerationStructureReference = address_of(device, bottom_.back().handle.get());
     instances.push_back(instance);
   }
-  const Buffer instance_buffer = make_device_buffer<VkAccelerationStructureInstanceKHR>(device, commands, instances, "instances", input);
+  const Buffer instance_buffer =
+      make_device_buffer<VkAccelerationStructureInstanceKHR>(device, commands, instances, "instances", input);
   VkAccelerationStructureGeometryKHR geometry{};
   geometry.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_KHR;
   geometry.geometryType = VK_GEOMETRY_TYPE_INSTANCES_KHR;
@@ -109,42 +116,6 @@ AccelerationStructure::AccelerationStructure(Device& device, Commands& commands,
   geometry.geometry.instances.data.deviceAddress = instance_buffer.address();
   top_ = build(VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR, geometry, static_cast<std::uint32_t>(instances.size()),
                "top-level acceleration structure");
-
-  const VkDescriptorSetLayoutBinding binding{0, VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr};
-  VkDescriptorSetLayoutCreateInfo layout_info{};
-  layout_info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
-  layout_info.bindingCount = 1;
-  layout_info.pBindings = &binding;
-  VkDescriptorSetLayout layout = VK_NULL_HANDLE;
-  check(vkCreateDescriptorSetLayout(device.handle(), &layout_info, nullptr, &layout), "vkCreateDescriptorSetLayout");
-  set_layout_ = UniqueSetLayout(device.handle(), layout);
-  const VkDescriptorPoolSize pool_size{VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, 1};
-  VkDescriptorPoolCreateInfo pool_info{};
-  pool_info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
-  pool_info.maxSets = 1;
-  pool_info.poolSizeCount = 1;
-  pool_info.pPoolSizes = &pool_size;
-  VkDescriptorPool pool = VK_NULL_HANDLE;
-  check(vkCreateDescriptorPool(device.handle(), &pool_info, nullptr, &pool), "vkCreateDescriptorPool");
-  pool_ = UniqueDescriptorPool(device.handle(), pool);
-  VkDescriptorSetAllocateInfo allocate{};
-  allocate.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
-  allocate.descriptorPool = pool;
-  allocate.descriptorSetCount = 1;
-  allocate.pSetLayouts = &layout;
-  check(vkAllocateDescriptorSets(device.handle(), &allocate, &set_), "vkAllocateDescriptorSets");
-  const VkAccelerationStructureKHR structure = top_.handle.get();
-  VkWriteDescriptorSetAccelerationStructureKHR structures{};
-  structures.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET_ACCELERATION_STRUCTURE_KHR;
-  structures.accelerationStructureCount = 1;
-  structures.pAccelerationStructures = &structure;
-  VkWriteDescriptorSet write{};
-  write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
-  write.pNext = &structures;
-  write.dstSet = set_;
-  write.descriptorCount = 1;
-  write.descriptorType = VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR;
-  vkUpdateDescriptorSets(device.handle(), 1, &write, 0, nullptr);
 }
 
 }  // namespace vantage::vulkan

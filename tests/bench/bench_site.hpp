@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// What every benchmark of tracing starts from: a scene, its stations, a scanner, and the engines to compare.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "vantage/simulator.hpp"
+
+namespace vantage::bench {
+
+struct SiteOptions {
+  std::string scene;
+  std::string station_file;        // x,y,z a line under a header
+  std::vector<std::string> typed;  // "x,y,z"
+  double step_deg = 0.0286;        // Table 4 of the method, as are the rest
+  double spacing_m = 0.005;
+  double user_size_m = 0.01;
+  bool noise = false;
+  std::vector<std::string> engines;  // empty: all usable ones
+  std::uint32_t repeats = 5;
+
+  void add(CLI::App& command);
+  Network stations() const;
+  Scanner scanner() const;
+  SimulatorConfig config() const;
+  // The usable ones among those named.
+  std::vector<EngineInfo> engines_here() const;
+};
+
+class Stopwatch {
+ public:
+  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace vantage::bench

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rates.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <limits>
+#include <memory>
+
+#include "scan/noise_model.hpp"
+#include "scan/pattern.hpp"
+#include "trace/tracer.hpp"
+
+namespace vantage::bench {
+namespace {
+
+struct Way {
+  std::string name;
+  std::size_t tracer;
+  bool skip;
+  double best = std::numeric_limits<double>::infinity(), device = 0;  // seconds
+  NetworkCounts counts{};
+};
+
+bool same(const NetworkCounts& a, const NetworkCounts& b) {
+  return a.saturated == b.saturated && a.partial_points == b.partial_points && a.seen == b.seen && a.shared == b.shared;
+}
+
+}  // namespace
+
+void RatesOptions::add(CLI::App& command) {
+  site.add(command);
+  command.add_option("--first", first, "Only the first stations; 0: all")->capture_default_str();
+  command.add_flag("--unsorted", unsorted,
+                   "Also ray_query over triangles in the file's order, where that is not the default");
+}
+
+void run_rates(const RatesOptions& options) {
+  const Scene scene = Scene::load(options.site.scene);
+  Network network = options.site.stations();
+  if (options.first > 0 && options.first < network.size()) network.resize(options.first);
+  const Scanner scanner = options.site.scanner();
+  const auto grid = std::make_shared<const VoxelGrid>(VoxelGrid::build(scene.data(), options.site.user_size_m));
+  const double goal = grid->voxel_size() * grid->voxel_size() / (options.site.spacing_m * options.site.spacing_m);
+  TraceScene traced{
+      .scene = {std::make_shared<const Scene>(scene), &scene.data()},
+      .grid = grid,
+      .pattern = std::make_shared<const RayPattern>(make_pattern(scanner)),
+      .noise = std::make_shared<const NoiseModel>(options.site.noise ? make_noise_model(scanner, 1) : NoiseModel{})};
+  std::vector<TraceStation> stations;
+  for (const Station& station : network) {
+    const Vec3 p = station.position - scene.data().origin;
+    stations.push_back({{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)},
+                        static_cast<std::uint32_t>(stations.size())});
+  }
+
+  std::vector<std::unique_ptr<Tracer>> tracers;
+  std::vector<Way> ways;
+  const auto add = [&](const EngineInfo& info, const std::string& suffix) {
+    const Stopwatch watch;
+    tracers.push_back(make_tracer(
+        info.engine, info.engine == Engine::embree ? std::nullopt : std::optional(info.device_index), traced));
+    tracers.back()->set_goal_density(goal);
+    std::fprintf(stderr, "%s%s on %s: ready after %.2f s\n", to_string(info.engine).c_str(), suffix.c_str(),
+                 info.device.c_str(), watch.seconds());
+    for (const bool skip : {false, true})
+      ways.push_back({.name = to_string(info.engine) + suffix, .tracer = tracers.size() - 1, .skip = skip});
+  };
+  for (const EngineInfo& info : options.site.engines_here()) {
+    add(info, "");
+    if (options.unsorted && info.engine == Engine::ray_query) {
+      traced.sort_triangles = false;
+      add(info, "-unsorted");
+      traced.sort_triangles = true;
+    }
+  }
+
+  // The first round warms up and is not counted.
+  for (std::uint32_t round = 0; round <= options.site.repeats; ++round)
+    for (Way& way : ways) {
+      const Stopwatch watch;
+      NetworkCounts counts = tracers[way.tracer]->count(stations, static_cast<std::uint32_t>(stations.size()),
+                                                        {.masks = true, .skip = way.skip}, {});
+      const double seconds = watch.seconds();
+      if (round > 0 && seconds < way.best) {
+        way.best = seconds;
+        way.device = counts.trace_seconds;
+      }
+      way.counts = std::move(counts);
+    }
+  std::printf("# %zu triangles, %zu stations, %llu rays each, %llu voxels of %.4g m, goal %.3f\n",
+              scene.triangle_count(), stations.size(), static_cast<unsigned long long>(scanner.rays()),
+              static_cast<unsigned long long>(grid->size()), grid->voxel_size(), goal);
+  std::printf(
+      "engine,skip,milliseconds,device_milliseconds,traced_rays,million_rays_per_second,coverage,same_counts_as_"
+      "without_skipping\n");
+  for (std::size_t k = 0; k < ways.size(); ++k) {
+    const Way& way = ways[k];
+    std::printf("%s,%d,%.3f,%.3f,%llu,%.2f,%.9f,%d\n", way.name.c_str(), way.skip, way.best * 1e3, way.device * 1e3,
+                static_cast<unsigned long long>(way.counts.rays),
+                static_cast<double>(scanner.rays() * stations.size()) / way.best * 1e-6, coverage(way.counts, goal),
+                same(way.counts, ways[k - (way.skip ? 1 : 0)].counts));
+  }
+}
+
+}  // namespace vantage::bench

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "bench_site.hpp"
+
+namespace vantage::bench {
+
+struct RatesOptions {
+  SiteOptions site;
+  std::uint32_t first = 0;  // only so many stations; 0: all
+  bool unsorted = false;    // also the driver's structure over triangles in file order
+
+  void add(CLI::App& command);
+};
+
+// Prints a CSV line an engine and way, best of the repeats, which take turns.
+void run_rates(const RatesOptions& options);
+
+}  // namespace vantage::bench

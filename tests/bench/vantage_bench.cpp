@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// Run time against error, and rates, on one machine in one run. Times of different machines do not compare; ratios
+// within a run do.
+#include <cstdio>
+
+#include "population.hpp"
+#include "rates.hpp"
+#include "vantage/error.hpp"
+
+int main(int argc, char** argv) {
+  CLI::App app("Benchmarks of vantage");
+  app.require_subcommand(1);
+  vantage::bench::RatesOptions rates;
+  rates.add(
+      *app.add_subcommand("rates", "Rays a second of every engine, with and without skipping, counting included"));
+  vantage::bench::PopulationOptions population;
+  population.add(
+      *app.add_subcommand("population", "Sampled evaluation of many networks: time and error at several sample sizes"));
+  CLI11_PARSE(app, argc, argv);
+  try {
+    if (app.got_subcommand("rates")) vantage::bench::run_rates(rates);
+    if (app.got_subcommand("population")) vantage::bench::run_population(population);
+  } catch (const vantage::Error& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+  return 0;
+}
