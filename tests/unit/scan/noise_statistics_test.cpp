@@ -13,6 +13,7 @@
 #include "scan/noise_model.hpp"
 #include "shared/noise_types.h"
 #include "trace/embree/range_noise.hpp"
+#include "vantage/simulator.hpp"
 
 namespace vantage {
 namespace {
@@ -45,7 +46,7 @@ double correlation(const std::vector<float>& a, const std::vector<float>& b, std
 TEST(NoiseStatistics, TwelvePointsOfTheTable) {
   Scanner scanner;
   scanner.noise = rtc360_noise();
-  const NoiseModel model = make_noise_model(scanner, 2022);
+  const NoiseModel model = make_noise_model(scanner, SimulatorConfig{}.seed);
   const RangeNoise noise(std::make_shared<const NoiseModel>(model));
   std::uint32_t place = 0;
   for (const double distance : {3.0, 12.0, 45.0, 110.0}) {
@@ -84,6 +85,23 @@ TEST(NoiseStatistics, TwelvePointsOfTheTable) {
       EXPECT_LT(std::sqrt(rays) * largest, std::sqrt(-0.5 * std::log(0.5e-4))) << distance << " m, " << reflectivity;
     }
   }
+}
+
+// Whatever the seed: the squared means of 200 samples, in standard errors, add up to χ² of 200 degrees of freedom, whose 5·10⁻⁵ quantiles
+// are 131 and 288.
+TEST(NoiseStatistics, MeansScatterAsChanceDoes) {
+  constexpr std::uint32_t samples = 200, size = 100'000;
+  const auto table = normal_table();
+  std::vector<double> squares(samples);
+  tbb::parallel_for(std::uint32_t{0}, samples, [&](std::uint32_t seed) {
+    double sum = 0;
+    for (std::uint32_t k = 0; k < size; ++k) sum += static_cast<double>(normal_from_bits(philox4x32(seed, {k, 0, 0, noise_stream})[0], table));
+    squares[seed] = sum * sum / size;
+  });
+  double total = 0;
+  for (const double square : squares) total += square;
+  EXPECT_GT(total, 131);
+  EXPECT_LT(total, 288);
 }
 
 TEST(NoiseStatistics, NeighboursAreUncorrelated) {
