@@ -52,6 +52,8 @@ class MultiObjective final : public Strategy {
 
 // Enough to spend any budget: each restart doubles the population.
 constexpr std::size_t kRestarts = 9;
+// When to restart: less is to be gained than a sample's standard error, or stations move by less than 1/250 of the search area.
+constexpr double kCoverageTolerance = 1e-3, kStepTolerance = 0.02;
 
 }  // namespace
 
@@ -63,7 +65,7 @@ std::size_t population_of(const PlanConfig& config) {
 std::unique_ptr<Strategy> make_strategy(const DecisionSpace& space, const PlanConfig& config, std::size_t batch) {
   if (has_one_objective(config)) {
     CmaEsConfig cma{.population = population_of(config), .sigma0 = config.sigma0, .bounds = space.bounds(), .restarts = kRestarts,
-                    .seed = config.seed};
+                    .f_tolerance = kCoverageTolerance, .x_tolerance = kStepTolerance, .seed = config.seed};
     if (!config.start.empty()) cma.start = space.encode(config.start);
     return std::make_unique<SingleObjective>(space.dimension(), cma);
   }
