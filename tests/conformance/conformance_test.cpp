@@ -9,7 +9,6 @@
 #include <map>
 #include <memory>
 #include <numeric>
-#include <ostream>
 #include <random>
 #include <stop_token>
 #include <tuple>
@@ -18,12 +17,9 @@
 #include "core/normal_table.hpp"
 #include "core/philox.hpp"
 #include "scan/noise_model.hpp"
+#include "support/engines.hpp"
 
-namespace vantage {
-
-void PrintTo(const EngineInfo& info, std::ostream* out) { *out << to_string(info.engine) << " on " << info.device; }
-
-namespace test {
+namespace vantage::test {
 namespace {
 
 constexpr double goal_density = 12.5;
@@ -33,18 +29,6 @@ constexpr std::uint32_t all_outputs = Tracer::range | Tracer::position | Tracer:
 // Nearer than this to an edge or a voxel face, rounding may decide otherwise; such rays are at most one in 100 000.
 constexpr double undecided_m = 1e-4;
 constexpr double undecided_share = 1e-5;
-
-std::vector<EngineInfo> usable_engines() {
-  std::vector<EngineInfo> usable;
-  for (EngineInfo& info : list_engines()) {
-    if (info.usable) usable.push_back(std::move(info));
-  }
-  return usable;
-}
-
-std::string name_of(const testing::TestParamInfo<EngineInfo>& info) {
-  return to_string(info.param.engine) + "_" + std::to_string(info.param.device_index);
-}
 
 float bits_apart(float a, float b) {
   return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b) ? 0.0f : 1.0f;
@@ -269,6 +253,29 @@ TEST_P(Conformance, OnlyTheOutputsAskedForAreMade) {
       check(Tracer::barycentric, one.barycentric, whole.barycentric);
       check(Tracer::voxel, one.voxel, whole.voxel);
     }
+  }
+}
+
+TEST_P(Conformance, ANewEngineCanBeAskedForAnyOutputFirst) {
+  const Site& site = sites()[2];
+  const std::uint64_t rays = 40 * site.pattern->columns(), first = 80 * site.pattern->columns();
+  for (std::uint32_t output = 1; output < all_outputs; output <<= 1) {
+    const auto fresh = make(site, false);
+    Tracer::RawChunk one, all;
+    fresh->scan(site.stations[0], first, rays, output, one);
+    tracer(site, false).scan(site.stations[0], first, rays, all_outputs, all);
+    const auto check = [&](std::uint32_t bit, const auto& got, const auto& expected) {
+      if (output != bit) return;
+      ASSERT_EQ(got.size(), expected.size()) << "output " << output;
+      EXPECT_TRUE(same_bits(got.data(), expected.data(), got.size())) << "output " << output;
+    };
+    check(Tracer::range, one.range, all.range);
+    check(Tracer::position, one.position, all.position);
+    check(Tracer::normal, one.normal, all.normal);
+    check(Tracer::reflectivity, one.reflectivity, all.reflectivity);
+    check(Tracer::primitive, one.primitive, all.primitive);
+    check(Tracer::barycentric, one.barycentric, all.barycentric);
+    check(Tracer::voxel, one.voxel, all.voxel);
   }
 }
 
@@ -603,7 +610,8 @@ TEST_P(Conformance, SamplesDoNotDependOnOrderOrDispatches) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Engines, Conformance, testing::ValuesIn(usable_engines()), name_of);
+INSTANTIATE_TEST_SUITE_P(Engines, Conformance, testing::ValuesIn(usable_engines()),
+                         [](const auto& instance) { return name_of(instance.param); });
 
 // ---- the machine
 // -----------------------------------------------------------------------------------------------------
@@ -632,5 +640,4 @@ TEST(Engines, OneIsTheDefault) {
 }
 
 }  // namespace
-}  // namespace test
-}  // namespace vantage
+}  // namespace vantage::test
