@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Hansen: The CMA Evolution Strategy, A Tutorial, 2016: weights (49)–(53), paths (43), (45), covariance (47), step
-// (44), and the stopping rules of its appendix B.3. Restarts: Auger, Hansen: A Restart CMA Evolution Strategy With
-// Increasing Population Size, 2005.
+// (44), and the stopping rules of its appendix B.3. Share of the negative update that is given back: Hansen, Ros:
+// Benchmarking a Weighted Negative Covariance Matrix Update on the BBOB-2010 Noiseless Testbed, 2010. Restarts: Auger,
+// Hansen: A Restart CMA Evolution Strategy With Increasing Population Size, 2005.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -26,7 +27,10 @@ using optimise::NormalStream;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kMaxCondition = 1e14;
-constexpr double kMaxGrowth = 1e4;           // of the step along the longest axis, times its share of sigma0
+constexpr double kMaxGrowth = 1e4;  // of the step along the longest axis, times its share of sigma0
+// Share of what the worse half takes from the covariance that the better half gives back; the old covariance keeps the
+// rest.
+constexpr double kReturned = 0.5;
 constexpr std::size_t kFlatIterations = 20;  // the step grows a thousandfold meanwhile
 constexpr std::size_t kMaxHistory = 20000;
 constexpr std::size_t kMaxPopulation = std::size_t{1} << 20;
@@ -41,18 +45,19 @@ struct Strategy {
   Strategy() = default;
   Strategy(double n, std::size_t lambda, bool active);
 
-  VectorXd weights;  // all λ, negative ones last
+  VectorXd weights;   // of the best μ in the mean
+  VectorXd learning;  // of all λ in the covariance, negative ones last
   std::size_t mu = 0;
   double mu_eff = 0, c_sigma = 0, d_sigma = 0, c_c = 0, c_1 = 0, c_mu = 0, expected_norm = 0;
 };
 
-Strategy::Strategy(double n, std::size_t lambda, bool active) : weights(static_cast<Eigen::Index>(lambda)) {
+Strategy::Strategy(double n, std::size_t lambda, bool active) : learning(static_cast<Eigen::Index>(lambda)) {
   for (std::size_t i = 0; i < lambda; ++i)
-    weights[static_cast<Eigen::Index>(i)] =
+    learning[static_cast<Eigen::Index>(i)] =
         std::log((static_cast<double>(lambda) + 1) / 2) - std::log(static_cast<double>(i) + 1);
   mu = lambda / 2;
   const auto split = static_cast<Eigen::Index>(mu);
-  auto positive = weights.head(split), negative = weights.tail(weights.size() - split);
+  auto positive = learning.head(split), negative = learning.tail(learning.size() - split);
   mu_eff = positive.sum() * positive.sum() / positive.squaredNorm();
   const double mu_eff_negative = negative.sum() * negative.sum() / negative.squaredNorm();
   c_sigma = (mu_eff + 2) / (n + mu_eff + 5);
@@ -62,6 +67,7 @@ Strategy::Strategy(double n, std::size_t lambda, bool active) : weights(static_c
   c_mu = std::min(1 - c_1, 2 * (0.25 + mu_eff + 1 / mu_eff - 2) / ((n + 2) * (n + 2) + mu_eff));
   expected_norm = std::sqrt(n) * (1 - 1 / (4 * n) + 1 / (21 * n * n));
   positive /= positive.sum();
+  weights = positive;
   if (!active) {
     negative.setZero();
     return;
@@ -69,6 +75,7 @@ Strategy::Strategy(double n, std::size_t lambda, bool active) : weights(static_c
   const double limit =
       std::min({1 + c_1 / c_mu, 1 + 2 * mu_eff_negative / (mu_eff + 2), (1 - c_1 - c_mu) / (n * c_mu)});
   negative *= limit / negative.cwiseAbs().sum();
+  positive *= 1 + kReturned * limit;
 }
 
 double median(std::vector<double> values) {
@@ -214,9 +221,9 @@ void CmaEs::Impl::update(const std::vector<std::size_t>& order) {
   if (!moving) path_c += std::sqrt(s.c_c * (2 - s.c_c) * s.mu_eff) * step;
 
   const double lost = moving ? s.c_1 * s.c_c * (2 - s.c_c) : 0.0;
-  covariance *= 1 + lost - s.c_1 - s.c_mu * s.weights.sum();
+  covariance *= 1 + lost - s.c_1 - s.c_mu * s.learning.sum();
   MatrixXd scaled(steps.rows(), steps.cols());
-  VectorXd weights = s.weights;
+  VectorXd weights = s.learning;
   for (std::size_t i = 0; i < lambda; ++i) {
     const auto column = static_cast<Eigen::Index>(i);
     scaled.col(column) = steps.col(static_cast<Eigen::Index>(order[i]));

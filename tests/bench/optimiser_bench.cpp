@@ -50,7 +50,7 @@ std::vector<Reference> read_references(const std::string& path) {
 }
 
 struct Options {
-  std::size_t seeds = 11, evaluations = 50000, batch = 1;
+  std::size_t seeds = 11, first_seed = 1, evaluations = 50000, batch = 1;
   std::vector<std::string> problems, parts;
   std::string scheme, algorithm = "mo_cma_es", references = VANTAGE_OPTIMISER_REFERENCES;
   MoCmaEsConfig search;
@@ -82,7 +82,7 @@ template <typename Run>
 Summary over_seeds(const Options& options, const Run& run) {
   std::vector<double> values(options.seeds);
   tbb::parallel_for(
-      std::size_t{0}, options.seeds, [&](std::size_t i) { values[i] = run(i + 1); }, tbb::simple_partitioner());
+      std::size_t{0}, options.seeds, [&](std::size_t i) { values[i] = run(options.first_seed + i); }, tbb::simple_partitioner());
   return summarise(values);
 }
 
@@ -278,6 +278,7 @@ int main(int argc, char** argv) {
   Options options;
   CLI::App app{"Optimisers beside other libraries"};
   app.add_option("--seeds", options.seeds, "Runs of each problem")->check(CLI::Range(1, 1000));
+  app.add_option("--first-seed", options.first_seed);
   app.add_option("--problem", options.problems, "Only these problems");
   app.add_option("--part", options.parts, "Only these tables")
       ->check(CLI::IsMember({"hypervolume", "budget", "station", "cma-es", "overhead"}));
