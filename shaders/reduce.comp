@@ -14,6 +14,7 @@ const uint words = reduce_voxels / 32u;
 shared uint low[reduce_voxels];
 shared uint high[reduce_voxels];
 shared uint seen[64 * words];
+shared uint any_seen[reduce_voxels];  // per subgroup
 // Saturated voxels and edges; then sums of 64 bits, low word first.
 shared uint flags[2];
 shared uint sums[6];
@@ -55,7 +56,13 @@ void main() {
   uint64_t partial = 0ul, squares = 0ul, edge_points = 0ul;
   // Of pair thread + 256 k; 64 stations have 2016 pairs.
   uint shared_counts[8];
-  for (int k = 0; k < 8; ++k) shared_counts[k] = 0u;
+  uint pair_stations[8];
+  for (uint k = 0u; k < 8u; ++k) {
+    shared_counts[k] = 0u;
+    const uint p = thread + 256u * k;
+    const uvec2 pair = p < pairs ? pair_of(p, n) : uvec2(0);
+    pair_stations[k] = pair.x | pair.y << 8;
+  }
   uint seen_count = 0u;
   if (thread < 2u) flags[thread] = 0u;
   if (thread < 6u) sums[thread] = 0u;
@@ -88,7 +95,12 @@ void main() {
       barrier();
       low[thread] = inside ? push.masks.at[masks + voxel] : 0u;
       high[thread] = inside && push.mask_words > 1u ? push.masks.at[masks + push.voxel_count + voxel] : 0u;
+      const uint any_low = subgroupOr(low[thread]), any_high = subgroupOr(high[thread]);
+      if (subgroupElect()) any_seen[gl_SubgroupID] = any_low | any_high;
       barrier();
+      uint any_of_all = 0u;
+      for (uint g = 0u; g < gl_NumSubgroups; ++g) any_of_all |= any_seen[g];
+      if (any_of_all == 0u) continue;  // whole stretches of voxels are often out of sight; the same for all threads
       for (uint k = thread; k < n * words; k += 256u) {
         const uint station = k / words, word = k % words;
         uint bits = 0u;
@@ -103,7 +115,7 @@ void main() {
         for (uint w = 0u; w < words; ++w) seen_count += bitCount(seen[thread * words + w]);
       uint k = 0u;
       for (uint p = thread; p < pairs; p += 256u, ++k) {
-        const uvec2 pair = pair_of(p, n);
+        const uvec2 pair = uvec2(pair_stations[k] & 0xFFu, pair_stations[k] >> 8);
         uint both = 0u;
         for (uint w = 0u; w < words; ++w) both += bitCount(seen[pair.x * words + w] & seen[pair.y * words + w]);
         shared_counts[k] += both;

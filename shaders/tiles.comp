@@ -24,9 +24,9 @@ void mark(int row0, int row1, int column0, int column1, uint far) {
 void main() {
   const uint i = gl_GlobalInvocationID.x;
   if (i >= parameters.brick_count) return;
-  const VoxelBrick brick = parameters.bricks.at[i];
+  const uvec3 brick = parameters.bricks.at[brick_quarters * i].xyz;
   const float size = parameters.brick_size;
-  const vec3 corner = parameters.voxel_min + vec3(brick.x, brick.y, brick.z) * size;
+  const vec3 corner = parameters.voxel_min + vec3(brick) * size;
   const vec3 largest = max(abs(corner), abs(push.origin)) + size;
   const float slack = max(max(largest.x, largest.y), largest.z) * (1.0 / 262144.0) + parameters.noise_reach;
   const vec3 low = corner - push.origin - slack, high = corner - push.origin + (size + slack);

@@ -15,7 +15,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Uints { uint
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Vec2s { vec2 at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Vec3s { vec3 at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) buffer Vec4s { vec4 at[]; };
-layout(buffer_reference) buffer Bricks;
+layout(buffer_reference) buffer BrickQuarters;
 layout(buffer_reference) buffer Slots;
 layout(buffer_reference) buffer NodeQuarters;
 layout(buffer_reference) buffer TriangleCorners;
@@ -27,7 +27,7 @@ layout(buffer_reference) buffer SampleItems;
 
 #include "shared/trace_types.h"
 
-layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Bricks { VoxelBrick at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer BrickQuarters { uvec4 at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer Slots { BrickSlot at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer NodeQuarters { uvec4 at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer TriangleCorners { uvec4 at[]; };
@@ -36,6 +36,8 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Sam
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer SampleStations { SampleStation at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SampleRays { SampleRay at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SampleItems { SampleItem at[]; };
+
+const uint brick_quarters = 5u;  // 16 bytes each, of a VoxelBrick
 
 // Whether an array is there at all; a macro, since glslang cannot overload on reference types.
 #define GIVEN(array) (uint64_t(array) != 0ul)

@@ -31,12 +31,18 @@ uint rank_of_cell(uvec3 cell) {
   const uvec3 m = cell & 7u;
   const uvec3 spread = (m & 1u) | (m & 2u) << 2 | (m & 4u) << 4;
   const uint code = spread.x | spread.y << 1 | spread.z << 2;
-  const uint word = code >> 5;
-  const uint bits = parameters.bricks.at[slot].mask[word];
-  if ((bits >> (code & 31u) & 1u) == 0u) return no_rank;
-  uint rank = parameters.bricks.at[slot].first + bitCount(bits & ((1u << (code & 31u)) - 1u));
-  for (uint w = 0; w < word; ++w) rank += bitCount(parameters.bricks.at[slot].mask[w]);
-  return rank;
+  // The brick's 16 bytes of place and first rank, then four quarters of its mask.
+  const uint brick = brick_quarters * slot, quarter = code >> 7, word = code >> 5 & 3u;
+  const uvec4 bits = parameters.bricks.at[brick + 1u + quarter];
+  const uint one = 1u << (code & 31u);
+  const uint all = 0xFFFFFFFFu;
+  const uvec4 below = uvec4(word > 0u ? all : one - 1u, word > 1u ? all : word == 1u ? one - 1u : 0u,
+                            word > 2u ? all : word == 2u ? one - 1u : 0u, word == 3u ? one - 1u : 0u);
+  const uvec4 at = uvec4(word == 0u ? one : 0u, word == 1u ? one : 0u, word == 2u ? one : 0u, word == 3u ? one : 0u);
+  if ((bits & at) == uvec4(0)) return no_rank;
+  ivec4 set = bitCount(bits & below);
+  for (uint q = 0; q < quarter; ++q) set += bitCount(parameters.bricks.at[brick + 1u + q]);
+  return parameters.bricks.at[brick].w + uint(set.x + set.y + set.z + set.w);
 }
 
 uint rank_of(vec3 p) {

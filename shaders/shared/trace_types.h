@@ -58,7 +58,7 @@ struct TraceParameters {
   VANTAGE_ADDRESS(Floats) cos_zenith;
   VANTAGE_ADDRESS(Floats) sin_azimuth;
   VANTAGE_ADDRESS(Floats) cos_azimuth;
-  VANTAGE_ADDRESS(Bricks) bricks;
+  VANTAGE_ADDRESS(BrickQuarters) bricks;  // VoxelBrick, 16 bytes at a time
   VANTAGE_ADDRESS(Slots) slots;
   VANTAGE_ADDRESS(Uints) primitive_ids;   // ray_query: triangle of the acceleration structure → scene's number with the surveyed bit
   VANTAGE_ADDRESS(NodeQuarters) nodes;    // compute_bvh: BvhNode and BvhTriangle, 16 bytes at a time

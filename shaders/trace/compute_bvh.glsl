@@ -67,13 +67,15 @@ Hit trace(vec3 origin, vec3 direction, float t_min, float t_max, float enough) {
                  way1 = rough_passage_of(node_ray, uintBitsToFloat(word2.xyz), uintBitsToFloat(word3.xyz));
       const float enter0 = max(way0.x, t_min), enter1 = max(way1.x, t_min);
       const bool hit0 = enter0 <= min(way0.y, best.t), hit1 = enter1 <= min(way1.y, best.t);
+      const bool first0 = hit0 && (!hit1 || enter0 <= enter1);
       if (hit0 || hit1) {
-        const bool first0 = hit0 && (!hit1 || enter0 <= enter1);
-        current = first0 ? child0 : child1;
         if (hit0 && hit1) {
           stack[depth] = first0 ? child1 : child0;
           enters[depth] = first0 ? enter1 : enter0;
           ++depth;
+          current = first0 ? child0 : child1;
+        } else {
+          current = hit0 ? child0 : child1;
         }
         continue;
       }
@@ -102,7 +104,7 @@ Hit trace(vec3 origin, vec3 direction, float t_min, float t_max, float enough) {
         }
       }
     }
-    if (best.t < enough) break;
+    if (depth == 0u || best.t < enough) break;
     bool found = false;
     while (depth > 0u && !found) {
       --depth;

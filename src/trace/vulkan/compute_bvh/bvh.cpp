@@ -14,7 +14,7 @@ namespace vantage {
 namespace {
 
 constexpr std::uint32_t max_leaf = 2;
-constexpr int bins = 16;
+constexpr int bins = 32;
 // From here on halves are cut by count, so the depth stays below 40 + log2(2^28 / 2) < bvh_stack_size − 1 entries on the stack.
 constexpr std::uint32_t max_sah_depth = 34;
 constexpr std::size_t parallel_grain = 8192;
