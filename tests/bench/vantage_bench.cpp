@@ -3,6 +3,7 @@
 // within a run do.
 #include <cstdio>
 
+#include "bare_embree.hpp"
 #include "population.hpp"
 #include "rates.hpp"
 #include "vantage/error.hpp"
@@ -16,9 +17,12 @@ int main(int argc, char** argv) {
   vantage::bench::PopulationOptions population;
   population.add(
       *app.add_subcommand("population", "Sampled evaluation of many networks: time and error at several sample sizes"));
+  vantage::bench::BareEmbreeOptions bare_embree;
+  bare_embree.add(*app.add_subcommand("embree", "The embree engine, counting, beside a bare loop over the same rays"));
   CLI11_PARSE(app, argc, argv);
   try {
     if (app.got_subcommand("rates")) vantage::bench::run_rates(rates);
+    if (app.got_subcommand("embree")) vantage::bench::run_bare_embree(bare_embree);
     if (app.got_subcommand("population")) vantage::bench::run_population(population);
   } catch (const vantage::Error& error) {
     std::fprintf(stderr, "%s\n", error.what());
