@@ -2,6 +2,7 @@
 #include "trace/embree/ray_caster.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <string>
@@ -16,6 +17,11 @@ constexpr std::uint32_t packets = RayBundle::capacity / packet;
 // How far past the nearest hit Embree goes on searching, relative to its distance. Far more than its box tests round
 // by, so that no box with a coincident triangle is passed over.
 constexpr float slack = 1 + 0x1p-18f;
+
+// Embree takes a direction's component below 1e-18 for +1e-18, but its sign as it was: such a ray, and its neighbours
+// in a packet, then miss every box. At 1 km a component below this moves a point by less than 1e-13 m.
+constexpr float least_component = 1e-16f;
+float safe(float component) { return std::abs(component) < least_component ? 0.0f : component; }
 
 #if VANTAGE_EMBREE_MAJOR >= 4
 using RtcContext = RTCRayQueryContext;
@@ -86,7 +92,7 @@ std::uint32_t RayCaster::nearest_hit(const Float3& origin, const Float3& d, floa
   std::uint32_t primitive = RayBundle::no_hit;
   Context context{{}, &best, &primitive};
   RTCRayHit hit;
-  hit.ray = {origin.x, origin.y, origin.z, start, d.x, d.y, d.z, 0, end, 0xFFFFFFFFu, 0, 0};
+  hit.ray = {origin.x, origin.y, origin.z, start, safe(d.x), safe(d.y), safe(d.z), 0, end, 0xFFFFFFFFu, 0, 0};
   hit.hit.geomID = hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
 #if VANTAGE_EMBREE_MAJOR >= 4
   rtcInitRayQueryContext(&context.rtc);
@@ -105,7 +111,7 @@ std::uint32_t RayCaster::nearest_hit(const Float3& origin, const Float3& d, floa
 std::uint32_t RayCaster::any_hit(const Float3& origin, const Float3& d, float start, float end) const {
   std::uint32_t primitive = RayBundle::no_hit;
   Context context{{}, nullptr, &primitive};
-  RTCRay ray{origin.x, origin.y, origin.z, start, d.x, d.y, d.z, 0, end, 0xFFFFFFFFu, 0, 0};
+  RTCRay ray{origin.x, origin.y, origin.z, start, safe(d.x), safe(d.y), safe(d.z), 0, end, 0xFFFFFFFFu, 0, 0};
 #if VANTAGE_EMBREE_MAJOR >= 4
   rtcInitRayQueryContext(&context.rtc);
   RTCOccludedArguments arguments;
@@ -135,9 +141,9 @@ void RayCaster::cast(RayBundle& rays) const {
       ray.org_y[lane] = rays.origin.y;
       ray.org_z[lane] = rays.origin.z;
       ray.tnear[lane] = rays.start;
-      ray.dir_x[lane] = rays.x[i];
-      ray.dir_y[lane] = rays.y[i];
-      ray.dir_z[lane] = rays.z[i];
+      ray.dir_x[lane] = safe(rays.x[i]);
+      ray.dir_y[lane] = safe(rays.y[i]);
+      ray.dir_z[lane] = safe(rays.z[i]);
       ray.time[lane] = 0;
       ray.tfar[lane] = rays.end[i];
       ray.mask[lane] = 0xFFFFFFFFu;

@@ -111,6 +111,35 @@ TEST(RayCaster, RaysStartAndEndWhereToldTo) {
   EXPECT_EQ(rays.primitive[2], RayBundle::no_hit);
 }
 
+// A component of a hair below 0 must not turn the ray, or its neighbours in the packet, away.
+TEST(RayCaster, TinyComponentsLoseNoRay) {
+  std::vector<Float3> ceiling;  // of many triangles, so that there are boxes
+  for (int i = 0; i < 400; ++i) {
+    const float x = -3.1f + 0.3f * static_cast<float>(i % 20), y = -3.1f + 0.3f * static_cast<float>(i / 20);
+    for (const Float3& p : {Float3{x, y, 2}, Float3{x + 0.3f, y, 2}, Float3{x + 0.3f, y + 0.3f, 2}, Float3{x, y, 2},
+                            Float3{x + 0.3f, y + 0.3f, 2}, Float3{x, y + 0.3f, 2}})
+      ceiling.push_back(p);
+  }
+  const RayCaster caster(test::SceneBuilder().mesh(Role::surveyed, ceiling).finish());
+  for (const float tiny : {-0.0f, -1e-44f, -1e-30f, -1.8e-23f, -0.9e-18f, -1.1e-18f, -1e-17f, -1e-12f, 1e-23f}) {
+    RayBundle rays;
+    rays.size = 16;
+    for (std::uint32_t i = 0; i < rays.size; ++i) {
+      rays.x[i] = i == 6 ? tiny : -1e-3f * static_cast<float>(8 - static_cast<int>(i));
+      rays.y[i] = i == 9 ? tiny : -1e-3f;
+      rays.z[i] = 1;
+      rays.end[i] = 100;
+    }
+    caster.cast(rays);
+    for (std::uint32_t i = 0; i < rays.size; ++i) {
+      EXPECT_NE(rays.primitive[i], RayBundle::no_hit) << "component " << tiny << ", ray " << i;
+      float t = 0;
+      EXPECT_EQ(caster.nearest_hit(rays.origin, {rays.x[i], rays.y[i], rays.z[i]}, 0, 100, t), rays.primitive[i]);
+      EXPECT_NE(caster.any_hit(rays.origin, {rays.x[i], rays.y[i], rays.z[i]}, 0, 100), RayBundle::no_hit);
+    }
+  }
+}
+
 TEST(RayCaster, AnEmptySceneIsNeverHit) {
   const RayCaster caster(std::make_shared<const SceneData>());
   RandomStream random(1);
