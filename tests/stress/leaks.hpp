@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rays aimed at the edges and vertices of closed meshes from inside: whichever hits nothing has leaked.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "scene/scene_data.hpp"
+#include "vantage/simulator.hpp"
+
+namespace vantage::test {
+
+// Every straight line from near the centre crosses the surface once.
+struct ClosedMesh {
+  std::string name;
+  std::vector<Vec3> positions;
+  std::vector<Triangle> triangles;
+  double core_m = 0;  // rays start within this distance of the centre
+};
+ClosedMesh cube();          // 12 triangles
+ClosedMesh bumpy_sphere();  // 8192 triangles
+ClosedMesh sliver_prism();  // 2 m high; 64 of its 160 triangles are 1 : 10⁶
+std::vector<ClosedMesh> closed_meshes();
+
+struct Leaks {
+  std::uint64_t edge_rays = 0, edge_escapes = 0, vertex_rays = 0, vertex_escapes = 0;
+};
+// Half of the rays are aimed at random points of random edges, half at random vertices; each batch of up to 10⁶ turns
+// the mesh another way and starts at another point. Directions are rounded to float, so rays pass their targets within
+// about 1e-7 of the distance, on any side.
+Leaks count_leaks(const EngineInfo& engine, const ClosedMesh& mesh, std::uint64_t rays);
+
+}  // namespace vantage::test

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stress/leaks.hpp"
+
+#include "stress/engine_suite.hpp"
+
+namespace vantage::test {
+namespace {
+
+using Leakage = EngineSuite;
+
+// compute_bvh must be tight. The other two are Embree's and the driver's: bounded, so that a change for the worse
+// shows.
+TEST_P(Leakage, RaysAtEdgesAndVerticesStayInside) {
+  const bool tight = GetParam().engine == Engine::compute_bvh;
+  for (const ClosedMesh& mesh : closed_meshes()) {
+    const Leaks leaks = count_leaks(GetParam(), mesh, 100'000);
+    const auto bound = [&](std::uint64_t rays) { return tight ? 0.0 : 0.02 * static_cast<double>(rays); };
+    EXPECT_GT(leaks.edge_rays, 40'000u);
+    EXPECT_GT(leaks.vertex_rays, 40'000u);
+    EXPECT_LE(static_cast<double>(leaks.edge_escapes), bound(leaks.edge_rays)) << mesh.name;
+    EXPECT_LE(static_cast<double>(leaks.vertex_escapes), bound(leaks.vertex_rays)) << mesh.name;
+  }
+}
+VANTAGE_EVERY_ENGINE(Leakage);
+
+}  // namespace
+}  // namespace vantage::test
