@@ -18,9 +18,7 @@ std::vector<EngineInfo> usable_engines() {
   return usable;
 }
 
-std::string name_of(const EngineInfo& info) {
-  return to_string(info.engine) + "_" + std::to_string(info.device_index);
-}
+std::string name_of(const EngineInfo& info) { return to_string(info.engine) + "_" + std::to_string(info.device_index); }
 
 }  // namespace test
 }  // namespace vantage
