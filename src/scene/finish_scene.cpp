@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "scene/coplanar.hpp"
 #include "scene/raw_scene.hpp"
 #include "vantage/error.hpp"
 
@@ -247,6 +248,10 @@ std::shared_ptr<const SceneData> finish_scene(RawScene&& raw, const std::string&
   }
   for (const Float3& p : data->positions) data->local_bounds.extend(widened(p));
   note_lost_precision(raw, data->local_bounds);
+  if (const std::size_t n = count_coplanar(data->positions, raw.triangles, raw.ranges, raw.meshes); n > 0)
+    raw.notes.push_back(std::to_string(n) +
+                        " surveyed triangles lie in the plane of blocking ones and overlap them: where rays come there, "
+                        "rounding decides which is hit; keep them 0.1 mm apart");
   clean_search_area(raw);
 
   data->normals = std::move(raw.normals);

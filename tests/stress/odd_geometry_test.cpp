@@ -4,6 +4,7 @@
 #include <limits>
 #include <string>
 
+#include "stress/coplanar.hpp"
 #include "stress/engine_suite.hpp"
 #include "support/glb_builder.hpp"
 #include "support/temporary_folder.hpp"
@@ -86,6 +87,25 @@ TEST_P(OddGeometry, SurveyedOverBlockingWithTheSameCornersCounts) {
   const Scene scene = yard.scene();
   EXPECT_TRUE(noted(scene, "dropped 2 exact duplicates"));
   expect_same(count(GetParam(), scene), clean);
+}
+
+// In one plane but cut otherwise, rounding decides: said with a count, and every point still lies in that plane.
+TEST_P(OddGeometry, SurveyedInTheVeryPlaneOfBlockingIsNoted) {
+  Yard yard;
+  yard.mesh("behind", "blocking", {-3, 0, -2, 3, 0, -2, 0, 4, -2});
+  yard.mesh("beside", "blocking", {2, 0, -2, 4, 0, -2, 4, 3, -2});  // touches the first triangle's edge only
+  const Scene scene = yard.scene();
+  EXPECT_TRUE(noted(scene, "2 surveyed triangles lie in the plane of blocking ones"));
+  EXPECT_FALSE(noted(Yard().scene(), "in the plane of"));
+  for (const CoplanarFigures& f : measure_coplanar(GetParam(), 1)) {
+    EXPECT_GT(f.rays, 1000u) << f.name;
+    EXPECT_EQ(f.missed, 0u) << f.name;
+    EXPECT_LT(f.off_m, 1e-5) << f.name;
+    if (f.apart) {
+      EXPECT_EQ(f.counted, f.rays) << f.name;
+    }
+    EXPECT_EQ(f.noted, !f.apart) << f.name;
+  }
 }
 
 // Slivers as thin as float32 resolves do not disturb what lies behind: the wall cut into a fan of them counts as one.

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "stress/coplanar.hpp"
 #include "stress/leaks.hpp"
 #include "stress/moved_scene.hpp"
 #include "stress/odd_rays.hpp"
@@ -27,6 +28,7 @@ std::string number(double value) {
 }
 std::string count(std::uint64_t value) { return std::to_string(value); }
 std::string share(std::uint64_t part, std::uint64_t whole) {
+  if (part == whole) return count(part) + " (100 %)";
   return count(part) + " (" + number(100 * static_cast<double>(part) / static_cast<double>(whole)) + " %)";
 }
 
@@ -80,8 +82,9 @@ void baked(const std::vector<EngineInfo>&, double) {
   head({"baked into float32 vertices at", "what the load notes"});
   for (const Move& move : {Move{"(0, 0, 0)", {}}, Move{"1 km", {1000, 1000, 0}}, Move{"100 km", {100'000, 100'000, 0}},
                            Move{"UTM (500 000, 4 500 000)", {500'000, 4'500'000, 230}}}) {
+    const Scene scene = yard(move, true);
     std::string notes;
-    for (const std::string& note : yard(move, true).notes()) notes += (notes.empty() ? "" : "; ") + note;
+    for (const std::string& note : scene.notes()) notes += (notes.empty() ? "" : "; ") + note;
     row({move.name, notes.empty() ? "nothing" : notes});
   }
 }
@@ -99,6 +102,15 @@ void sweep(const std::vector<EngineInfo>& engines, double size) {
            number(100 * s.spread()) + " %"});
     }
   }
+}
+
+void coplanar(const std::vector<EngineInfo>& engines, double size) {
+  head({"surveyed sheet and blocking wall", "engine", "rays into the sheet", "counted on the sheet", "hit neither",
+        "off the plane by up to (m)"});
+  for (const EngineInfo& engine : engines)
+    for (const CoplanarFigures& f : measure_coplanar(engine, 0.25 / size))
+      row({f.name, to_string(engine.engine), count(f.rays), share(f.counted, f.rays), count(f.missed),
+           number(f.off_m)});
 }
 
 void odd(const std::vector<EngineInfo>& engines, double size) {
@@ -135,9 +147,9 @@ void reference(const std::vector<EngineInfo>& engines, double) {
 
 int run(int argc, char** argv) {
   using Part = std::function<void(const std::vector<EngineInfo>&, double)>;
-  const std::vector<std::pair<std::string, Part>> parts{{"moved", moved}, {"turned", turned},      {"baked", baked},
-                                                        {"sweep", sweep}, {"leaks", leaks},        {"odd", odd},
-                                                        {"edges", edges}, {"reference", reference}};
+  const std::vector<std::pair<std::string, Part>> parts{{"moved", moved}, {"turned", turned}, {"baked", baked},
+                                                        {"sweep", sweep}, {"leaks", leaks},   {"coplanar", coplanar},
+                                                        {"odd", odd},     {"edges", edges},   {"reference", reference}};
   std::vector<std::string> wanted;
   double size = 1;
   for (int i = 1; i < argc; ++i) {

@@ -49,9 +49,15 @@ SweepFigures sweep_wall(const EngineInfo& engine, int axis, int steps) {
   const double face = min + size * std::ceil((1.0 - min) / size);
   Scanner scanner;
   scanner.azimuth_step = scanner.zenith_step = Angle::degrees(1);
+  std::vector<double> places;
+  for (int step = 0; step <= steps; ++step) places.push_back(face + size * step / steps);
+  for (const double at : {face, face + size}) {  // and every float about either face
+    float place = static_cast<float>(at);
+    for (int ulp = 0; ulp < 3; ++ulp) place = std::nextafter(place, -1e9f);
+    for (int ulp = 0; ulp < 7; ++ulp, place = std::nextafter(place, 1e9f)) places.push_back(static_cast<double>(place));
+  }
   SweepFigures figures;
-  for (int step = 0; step <= steps; ++step) {
-    const double place = face + size * step / steps;
+  for (const double place : places) {
     Simulator simulator(room(axis, place), scanner,
                         {.engine = engine.engine,
                          .device_index = engine.device_index,

@@ -11,7 +11,8 @@ struct SweepFigures {
   double spread() const { return (most - least) / most; }
 };
 // A room whose walls hold the grid, and in it a wall square to `axis` (2: a slab) that goes from one voxel face to the
-// next in `steps` steps; the station goes with it, so that only the voxels' cut changes.
+// next in `steps` steps, and through the seven floats about either face; the station goes with it, so that only the
+// voxels' cut changes.
 SweepFigures sweep_wall(const EngineInfo& engine, int axis, int steps);
 
 }  // namespace vantage::test
