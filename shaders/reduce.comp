@@ -5,6 +5,7 @@
 // Masks of 256 voxels are turned into one bit string a station; pairs are then counted 32 voxels at a time.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #include "lib/references.glsl"
 
 layout(local_size_x = 256) in;
@@ -67,10 +68,25 @@ void main() {
   if (thread < 2u) flags[thread] = 0u;
   if (thread < 6u) sums[thread] = 0u;
 
-  for (uint round = 0u; round < reduce_rounds; ++round) {  // the same for all threads, so the barriers are met by all
+  // All loads first, so that they wait together.
+  uint counts_of[reduce_rounds];
+  uint some = 0u;  // a bit a round
+  [[unroll]] for (uint round = 0u; round < reduce_rounds; ++round) {
+    const uint voxel = group + push.groups * ((gl_WorkGroupID.x * reduce_rounds + round) * reduce_voxels + thread);
+    counts_of[round] = voxel < push.voxel_count ? push.counts.at[counts + voxel] : 0u;
+    if (counts_of[round] > 0u) some |= 1u << round;
+  }
+  // Long stretches of voxels are often out of sight, and where there is no point there is no station.
+  const uint some_of_subgroup = subgroupOr(some);
+  if (subgroupElect()) any_seen[gl_SubgroupID] = some_of_subgroup;
+  barrier();
+  uint some_of_all = 0u;
+  for (uint g = 0u; g < gl_NumSubgroups; ++g) some_of_all |= any_seen[g];
+
+  [[dont_unroll]] for (uint round = 0u; round < reduce_rounds; ++round) {  // the same for all threads, so the barriers are met by all
     const uint voxel = group + push.groups * ((gl_WorkGroupID.x * reduce_rounds + round) * reduce_voxels + thread);
     const bool inside = voxel < push.voxel_count;
-    const uint count = inside ? push.counts.at[counts + voxel] : 0u;
+    const uint count = counts_of[round];
     const bool full = count >= push.goal;
     if (inside && full) {
       ++saturated;
@@ -91,16 +107,11 @@ void main() {
         squares += uint64_t(step) * step;
       }
     }
-    if (push.mask_words > 0u) {
+    if (push.mask_words > 0u && (some_of_all >> round & 1u) != 0u) {
       barrier();
-      low[thread] = inside ? push.masks.at[masks + voxel] : 0u;
-      high[thread] = inside && push.mask_words > 1u ? push.masks.at[masks + push.voxel_count + voxel] : 0u;
-      const uint any_low = subgroupOr(low[thread]), any_high = subgroupOr(high[thread]);
-      if (subgroupElect()) any_seen[gl_SubgroupID] = any_low | any_high;
+      low[thread] = count > 0u ? push.masks.at[masks + voxel] : 0u;
+      high[thread] = count > 0u && push.mask_words > 1u ? push.masks.at[masks + push.voxel_count + voxel] : 0u;
       barrier();
-      uint any_of_all = 0u;
-      for (uint g = 0u; g < gl_NumSubgroups; ++g) any_of_all |= any_seen[g];
-      if (any_of_all == 0u) continue;  // whole stretches of voxels are often out of sight; the same for all threads
       for (uint k = thread; k < n * words; k += 256u) {
         const uint station = k / words, word = k % words;
         uint bits = 0u;

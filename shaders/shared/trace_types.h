@@ -147,7 +147,7 @@ struct ClampPush {
 // shared[pairs]. With c = count >> difference_shift where the voxel is not saturated: squares (64 bits) adds (c(k) − c(k−1))² where neither
 // voxel is saturated and c² where one is; edge_points (64 bits) adds c where one is; edges counts those.
 VANTAGE_CONST uint reduce_voxels = 256;    // voxels of a workgroup at a time
-VANTAGE_CONST uint reduce_rounds = 16;
+VANTAGE_CONST uint reduce_rounds = 16;     // at most 32
 VANTAGE_CONST uint totals_saturated = 0;
 VANTAGE_CONST uint totals_partial = 1;
 VANTAGE_CONST uint totals_squares = 3;

@@ -72,7 +72,8 @@ void run_population(const PopulationOptions& options) {
 
     std::vector<Objectives> exact(compared);
     double exact_ms = 0, exact_best = std::numeric_limits<double>::infinity(), device = 0, rays = 0;
-    if (compared > 0) simulator.evaluate(networks[0]);
+    // A graphics card's first run is slow; a CPU's takes long enough to bury that.
+    if (compared > 0 && !info.software && info.engine != Engine::embree) simulator.evaluate(networks[0]);
     for (std::size_t k = 0; k < compared; ++k) {
       const Stopwatch watch;
       const NetworkCounts counts = simulator.evaluate(networks[k]);
