@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Networks of 1, 2 and 64 stations, all in holes, seeing nothing in common; and more points than 32 bits hold.
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -95,6 +97,34 @@ TEST_P(Networks, WithoutAnActiveStationOrACommonVoxelHaveNoOverlap) {
   EXPECT_GT(counts.seen[0], 0u);
   EXPECT_EQ(clustering_coefficient(overlap_matrix(counts)), 0);
   EXPECT_GT(coverage(counts, engine.goal_density()), 0);
+}
+// Five stations of 2³⁰ rays each, nearly all of them skipped: what keeps counts from wrapping comes in between, and
+// must leave them as they are.
+TEST_P(Networks, OfMoreThan32BitsOfRaysAddUpTheirStations) {
+  const std::vector<Vec3> corners{{-0.1, 20, 1.4}, {0.1, 20, 1.4}, {0.1, 20, 1.6}, {-0.1, 20, 1.6}};
+  const std::vector<std::array<std::uint32_t, 3>> triangles{{0, 1, 2}, {0, 2, 3}};
+  Scanner scanner;
+  scanner.azimuth_step = Angle::degrees(360.0 / 32'768);
+  scanner.zenith_step = Angle::degrees(150.0 / 32'767);
+  Simulator engine(Scene::from_triangles(corners, triangles), scanner,
+                   {.engine = GetParam().engine,
+                    .device_index = GetParam().device_index,
+                    .user_size_m = 0.05,
+                    .point_spacing_m = 0.001,
+                    .max_rays_per_dispatch = std::uint64_t{1} << 29});
+  Network network;
+  for (const double x : {-2.0, -1.0, 0.0, 1.1, 2.3}) network.push_back({{x, 0.1 * x, 1.5}});
+  ASSERT_GT(engine.scanner().rays() * network.size(), std::uint64_t{1} << 32);
+  std::vector<std::uint32_t> sum(engine.voxel_count());
+  for (const Station& station : network) {
+    VoxelField one;
+    engine.evaluate({station}, {.overlap = false, .field = &one});
+    for (std::size_t v = 0; v < sum.size(); ++v) sum[v] += one.count[v];
+  }
+  VoxelField field;
+  engine.evaluate(network, {.field = &field});
+  EXPECT_EQ(field.count, sum);
+  EXPECT_GT(*std::max_element(sum.begin(), sum.end()), 500u);
 }
 VANTAGE_EVERY_ENGINE(Networks);
 
