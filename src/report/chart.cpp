@@ -44,6 +44,25 @@ std::vector<std::string> tick_labels(const std::vector<double>& ticks) {
   return labels;
 }
 
+std::vector<double> logarithmic_ticks(double low, double high) {
+  const bool few = std::log10(high / low) < 2.5;
+  std::vector<double> ticks;
+  for (int power = static_cast<int>(std::floor(std::log10(low))); std::pow(10.0, power) <= high; ++power)
+    for (const double factor : {1.0, 2.0, 5.0}) {
+      const double tick = factor * std::pow(10.0, power);
+      if ((few || factor == 1) && tick >= low * (1 - 1e-9) && tick <= high * (1 + 1e-9)) ticks.push_back(tick);
+    }
+  return ticks;
+}
+
+std::vector<std::string> logarithmic_labels(const std::vector<double>& ticks) {
+  std::vector<std::string> labels;
+  for (const double t : ticks)
+    labels.push_back(t < 0.99 ? fixed(t, static_cast<int>(-std::floor(std::log10(t) + 1e-9)))
+                              : grouped(static_cast<std::uint64_t>(std::llround(t))));
+  return labels;
+}
+
 Axis axis_over(std::string label, double low, double high, double least, double most) {
   const double span = std::max(high - low, 0.02 * std::max({1e-9, std::abs(high), most - least}));
   const double middle = (low + high) / 2;
@@ -61,12 +80,17 @@ Axis axis_over(std::string label, double low, double high, double least, double 
 
 Chart::Chart(Canvas& canvas, const Rect& area, Axis x, Axis y, const std::string& title, const std::string& subtitle)
     : area_(area), x_(std::move(x)), y_(std::move(y)) {
-  if (x_.ticks.empty()) x_.ticks = nice_ticks(x_.low, x_.high, x_.wanted_ticks);
-  if (y_.ticks.empty()) y_.ticks = nice_ticks(y_.low, y_.high, y_.wanted_ticks);
+  for (Axis* axis : {&x_, &y_})
+    if (axis->ticks.empty())
+      axis->ticks = axis->logarithmic ? logarithmic_ticks(axis->low, axis->high)
+                                      : nice_ticks(axis->low, axis->high, axis->wanted_ticks);
   canvas.text({area_.x, subtitle.empty() ? area_.y - 20 : area_.y - 36}, title, {.size = 17, .bold = true});
   if (!subtitle.empty()) canvas.text({area_.x, area_.y - 15}, subtitle, {.size = 12.5, .colour = style::faint});
 
-  const auto x_labels = tick_labels(x_.ticks), y_labels = tick_labels(y_.ticks);
+  const auto labels = [](const Axis& axis) {
+    return axis.logarithmic ? logarithmic_labels(axis.ticks) : tick_labels(axis.ticks);
+  };
+  const auto x_labels = labels(x_), y_labels = labels(y_);
   double widest = 0;
   for (std::size_t i = 0; i < x_.ticks.size(); ++i) {
     const double px = at(x_.ticks[i], y_.low).x;
@@ -88,7 +112,11 @@ Chart::Chart(Canvas& canvas, const Rect& area, Axis x, Axis y, const std::string
 }
 
 Point Chart::at(double x, double y) const {
-  return {area_.x + (x - x_.low) / (x_.high - x_.low) * area_.width, area_.bottom() - (y - y_.low) / (y_.high - y_.low) * area_.height};
+  const auto share = [](const Axis& axis, double value) {
+    return axis.logarithmic ? std::log(value / axis.low) / std::log(axis.high / axis.low)
+                            : (value - axis.low) / (axis.high - axis.low);
+  };
+  return {area_.x + share(x_, x) * area_.width, area_.bottom() - share(y_, y) * area_.height};
 }
 
 Rect place_label(Point at, double gap, double width, double height, const Rect& inside, std::vector<Rect>& taken) {

@@ -13,12 +13,17 @@ namespace vantage {
 std::vector<double> nice_ticks(double low, double high, int wanted);
 // The text of ticks that belong together: as many digits after the point as the step needs.
 std::vector<std::string> tick_labels(const std::vector<double>& ticks);
+// Powers of ten inside [low, high], and where these are few their double and fivefold too. REQUIRES: low > 0.
+std::vector<double> logarithmic_ticks(double low, double high);
+// Each with the digits that it needs itself.
+std::vector<std::string> logarithmic_labels(const std::vector<double>& ticks);
 
 struct Axis {
   std::string label;
   double low = 0, high = 1;
   std::vector<double> ticks = {};  // empty: nice ones
   int wanted_ticks = 6;
+  bool logarithmic = false;  // low > 0
 };
 
 // Widens [low, high] by a margin, within [least, most] but where the data lie outside.

@@ -4,6 +4,8 @@
 #include <cstdio>
 
 #include "bare_embree.hpp"
+#include "error.hpp"
+#include "growth.hpp"
 #include "population.hpp"
 #include "rates.hpp"
 #include "vantage/error.hpp"
@@ -19,13 +21,20 @@ int main(int argc, char** argv) {
       *app.add_subcommand("population", "Sampled evaluation of many networks: time and error at several sample sizes"));
   vantage::bench::BareEmbreeOptions bare_embree;
   bare_embree.add(*app.add_subcommand("embree", "The embree engine, counting, beside a bare loop over the same rays"));
+  vantage::bench::ErrorOptions error;
+  error.add(*app.add_subcommand("error", "Time against error: exact, sampled, and with coarser steps and voxels"));
+  vantage::bench::GrowthOptions growth;
+  growth.add(
+      *app.add_subcommand("growth", "Time and memory over triangles, stations, voxels and the size of the sample"));
   CLI11_PARSE(app, argc, argv);
   try {
     if (app.got_subcommand("rates")) vantage::bench::run_rates(rates);
     if (app.got_subcommand("embree")) vantage::bench::run_bare_embree(bare_embree);
     if (app.got_subcommand("population")) vantage::bench::run_population(population);
-  } catch (const vantage::Error& error) {
-    std::fprintf(stderr, "%s\n", error.what());
+    if (app.got_subcommand("error")) vantage::bench::run_error(error);
+    if (app.got_subcommand("growth")) vantage::bench::run_growth(growth);
+  } catch (const vantage::Error& failure) {
+    std::fprintf(stderr, "%s\n", failure.what());
     return 1;
   }
   return 0;

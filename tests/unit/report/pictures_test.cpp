@@ -32,6 +32,22 @@ TEST(Chart, TicksAreRoundAndInside) {
   }
 }
 
+TEST(Chart, LogarithmicTicksArePowersOfTenAndMoreWhereTheseAreFew) {
+  const auto many = logarithmic_ticks(0.003, 2000), few = logarithmic_ticks(0.9, 60);
+  EXPECT_EQ(logarithmic_labels(many), (std::vector<std::string>{"0.01", "0.1", "1", "10", "100", "1\u2009000"}));
+  EXPECT_EQ(logarithmic_labels(few), (std::vector<std::string>{"1", "2", "5", "10", "20", "50"}));
+  EXPECT_EQ(logarithmic_labels(logarithmic_ticks(0.02, 0.5)), (std::vector<std::string>{"0.02", "0.05", "0.1", "0.2", "0.5"}));
+}
+
+TEST(Chart, LogarithmicAxesGiveEveryFactorTheSameLength) {
+  Canvas canvas(400, 300);
+  const Chart chart(canvas, {50, 50, 300, 200}, {.label = "x", .low = 1, .high = 1000, .logarithmic = true},
+                    {.label = "y", .low = 0, .high = 2}, "");
+  EXPECT_NEAR(chart.at(10, 0).x, 150, 1e-9);
+  EXPECT_NEAR(chart.at(100, 1).x, 250, 1e-9);
+  EXPECT_NEAR(chart.at(1, 1).y, 150, 1e-9);
+}
+
 TEST(Chart, AxesHoldTheirDataAndNoTickBeyondWhatCanBe) {
   const Axis narrow = axis_over("", 0.985, 0.985, 0, 1);
   EXPECT_LT(narrow.low, 0.985);

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// Networks to measure on: not one lucky set of stations, but many that differ in number and place.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "vantage/placement.hpp"
+#include "vantage/scene.hpp"
+#include "vantage/simulator.hpp"
+
+namespace vantage::bench {
+
+// Networks of so many stations anywhere on the search area, clear of every mesh. Throws Error invalid_argument where
+// there is no room for one.
+std::vector<Network> networks_on_search_area(const Scene& scene, std::size_t count, std::size_t stations,
+                                             double height_m, std::uint64_t seed);
+
+// The stations themselves, then networks of at least half of them, drawn, each moved sideways by up to spread_m but
+// kept clear of every mesh.
+std::vector<Network> networks_like(const Network& stations, const ClashChecker& checker, std::size_t count,
+                                   double spread_m, std::uint64_t seed);
+
+}  // namespace vantage::bench
