@@ -246,6 +246,7 @@ class EngineRun {
         trials_.push_back(
             {.way = Way::sampled, .amount = static_cast<double>(size), .overlap = overlap, .simulator = full});
     for (const double factor : options_.coarser) {
+      if (factor == 1) continue;
       trials_.push_back({.way = Way::coarser_steps, .amount = factor, .simulator = add_simulator(factor, 1)});
       trials_.push_back(
           {.way = Way::coarser_steps_and_voxels, .amount = factor, .simulator = add_simulator(factor, factor)});
@@ -268,7 +269,8 @@ class EngineRun {
         const SampleOptions sample{.voxels = static_cast<std::uint64_t>(trial.amount)};
         for (const NetworkCounts& counts : simulator->evaluate_sampled(population_.first(compared_), sample)) {
           trial.values.push_back(estimate(counts, *simulator, true));
-          alone->values.push_back(trial.values.back());  // coverage is the same with masks and without
+          const Objectives& both = trial.values.back();  // coverage is the same with masks and without
+          alone->values.push_back({.coverage = both.coverage, .coverage_se = both.coverage_se});
         }
       }
       simulators_.pop_back();
@@ -311,7 +313,7 @@ void ErrorOptions::add(CLI::App& command) {
   command.add_option("--patience", patience_s, "A way that takes more seconds than these is timed once only")
       ->capture_default_str();
   command.add_option("--sizes", sizes, "Sizes of the voxel sample")->delimiter(',')->capture_default_str();
-  command.add_option("--coarser", coarser, "How many times coarser the naive ways are")
+  command.add_option("--coarser", coarser, "How many times coarser the naive ways are; 1: leave them out")
       ->delimiter(',')
       ->check(CLI::Range(1.0, 1000.0))
       ->capture_default_str();
