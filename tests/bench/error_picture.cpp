@@ -97,7 +97,8 @@ void draw_exact(Canvas& canvas, const Chart& chart, const std::vector<ErrorDot>&
   }
 }
 
-void draw_panel(Canvas& canvas, const Rect& area, const std::vector<ErrorDot>& dots, const Quantity& quantity) {
+void draw_panel(Canvas& canvas, const Rect& area, const std::vector<ErrorDot>& dots, const Quantity& quantity,
+                const std::string& time_label) {
   std::vector<double> times, errors;
   for (const ErrorDot& dot : dots) {
     times.push_back(dot.milliseconds);
@@ -105,7 +106,7 @@ void draw_panel(Canvas& canvas, const Rect& area, const std::vector<ErrorDot>& d
     if (dot.*quantity.predicted > 0) errors.push_back(dot.*quantity.predicted);
   }
   if (errors.empty()) errors.push_back(1e-3);
-  const Axis x = axis_of("Milliseconds a candidate", times), y = axis_of(quantity.label, errors);
+  const Axis x = axis_of(time_label, times), y = axis_of(quantity.label, errors);
   const Chart chart(canvas, area, x, y, "");
   std::vector<Rect> taken;
 
@@ -162,16 +163,16 @@ void draw_panel(Canvas& canvas, const Rect& area, const std::vector<ErrorDot>& d
 }  // namespace
 
 std::unique_ptr<Canvas> error_picture(const std::vector<ErrorDot>& dots, const std::string& title,
-                                      const std::string& subtitle) {
+                                      const std::string& subtitle, const std::string& time_label) {
   auto page = std::make_unique<Canvas>(kWidth, kHeight);
   Canvas& canvas = *page;
   canvas.text({24, 30}, title, {.size = 18, .bold = true});
   canvas.text({24, 54}, subtitle, {.size = 12.5, .colour = style::faint});
   constexpr double top = 124, height = 400, width = 470;
   draw_panel(canvas, {96, top, width, height}, dots,
-             {"Error of the coverage (rms)", &ErrorDot::coverage_rms, &ErrorDot::coverage_se});
+             {"Error of the coverage (rms)", &ErrorDot::coverage_rms, &ErrorDot::coverage_se}, time_label);
   draw_panel(canvas, {kWidth - 24 - width, top, width, height}, dots,
-             {"Error of the clustering coefficient (rms)", &ErrorDot::overlap_rms, &ErrorDot::overlap_se});
+             {"Error of the clustering coefficient (rms)", &ErrorDot::overlap_rms, &ErrorDot::overlap_se}, time_label);
   using Mark = LegendItem::Mark;
   std::vector<LegendItem> items;
   for (const Way way : {Way::sampled, Way::coarser_steps, Way::coarser_steps_and_voxels, Way::coarser_voxels}) {

@@ -22,6 +22,6 @@ struct ErrorDot {
 
 // Time against error, both logarithmic: coverage left, clustering coefficient right.
 std::unique_ptr<Canvas> error_picture(const std::vector<ErrorDot>& dots, const std::string& title,
-                                      const std::string& subtitle);
+                                      const std::string& subtitle, const std::string& time_label);
 
 }  // namespace vantage::bench
