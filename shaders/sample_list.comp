@@ -28,6 +28,22 @@ bool may_hit(SampleTriangle triangle, vec3 origin, vec3 d) {
   return (eu >= -tu && ev >= -tv && ew >= -tw) || (eu <= tu && ev <= tv && ew <= tw);
 }
 
+// No point of a hit nearer than t is moved further than this.
+float reach_within(float t) {
+  if (parameters.noise_reach == 0.0) return 0.0;
+  const float scaled = (t - parameters.noise_min_range) * parameters.noise_inverse_span * 100.0 + 1.01;
+  return parameters.noise_reaches.at[uint(clamp(scaled, 0.0, 100.0))];
+}
+
+// One past the triangles that a point in the cube may come from: noise is small near the station, and the lists are made for any distance.
+uint end_of_triangles(Cube cube, uint first_triangle, uint end_triangle) {
+  const float farthest = length(max(abs(cube.low), abs(cube.high)));
+  const float limit = reach_within(farthest + parameters.noise_reach) + 4.0 * cube.slack;
+  uint end = first_triangle;
+  while (end < end_triangle && push.triangles.at[end].gap <= limit) ++end;
+  return end;
+}
+
 bool is_candidate(Cube cube, vec3 origin, uint row, uint column, uint first_triangle, uint end_triangle) {
   const vec3 d = ray_direction(row, column);
   const vec2 range = passage(cube, d);
@@ -52,14 +68,14 @@ void main() {
   if (!alive) item.voxel = push.first_voxel;
 #endif
   const SampleVoxel voxel = push.voxels.at[item.voxel];
-  const uint end_triangle = push.voxels.at[item.voxel + 1u].first_triangle;
   const vec3 origin = push.stations.at[item.slot].origin;
   const Cube cube = cube_of(voxel, origin);
+  const uint end_triangle = end_of_triangles(cube, voxel.first_triangle, push.voxels.at[item.voxel + 1u].first_triangle);
 
   uvec2 found = uvec2(0);  // a bit a ray
   RayWindow window;
   int columns = 0, first = 0;
-  if (alive) {
+  if (alive && end_triangle > voxel.first_triangle) {
     window = rays_of_box(cube.low, cube.high);
     window.row0 = max(window.row0, int(push.first_row));
     window.row1 = min(window.row1, int(push.end_row) - 1);

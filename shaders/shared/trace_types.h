@@ -69,6 +69,7 @@ struct TraceParameters {
   VANTAGE_ADDRESS(Uints) triangles;       // three vertex numbers each
   VANTAGE_ADDRESS(Floats) diffuse;        // per scene triangle
   VANTAGE_ADDRESS(Floats) sigma;
+  VANTAGE_ADDRESS(Floats) noise_reaches;  // by column of sigma: no hit up to there is moved further
   VANTAGE_ADDRESS(Vec4s) normal_table;
   uint rows;
   uint columns;
@@ -176,6 +177,7 @@ struct SampleVoxel {
 };
 struct SampleTriangle {
   vec3 a, b, c;                            // local frame
+  float gap;                               // it is at least so far outside the cube; a voxel's triangles stand in its order
 };
 struct SampleStation {
   vec3 origin;

@@ -11,6 +11,7 @@
 
 #include "core/normal_table.hpp"
 #include "core/philox.hpp"
+#include "trace/noise_reach.hpp"
 #include "trace/tracer.hpp"
 
 namespace vantage {
@@ -18,25 +19,14 @@ namespace vantage {
 class RangeNoise {
  public:
   explicit RangeNoise(std::shared_ptr<const NoiseModel> model) : model_(std::move(model)), rows_(normal_table()) {
-    if (!enabled()) return;
-    for (std::uint32_t c = 0; c < NoiseModel::side; ++c) {
-      float most = c > 0 ? reaches_[c - 1] : 0.0f;
-      for (std::uint32_t r = 0; r < NoiseModel::side; ++r)
-        most = std::max(most,
-                        model_->sigma[r * NoiseModel::side + c] * (static_cast<float>(normal_limit) * (1 + 0x1p-20f)));
-      reaches_[c] = most;
-    }
+    if (enabled()) reaches_ = noise_reaches(*model_);
   }
 
   bool enabled() const { return model_ && model_->enabled(); }
   float reach() const { return enabled() ? model_->reach : 0.0f; }
   // No point of a hit nearer than t is moved further than this.
   float reach_within(float t) const {
-    if (!enabled()) return 0;
-    const float scaled =
-        (t - model_->min_range) * model_->inverse_span * static_cast<float>(NoiseModel::side - 1) + 1.01f;
-    return reaches_[scaled > 0 ? std::min(NoiseModel::side - 1, static_cast<std::uint32_t>(std::min(scaled, 1e6f)))
-                               : 0];
+    return enabled() ? vantage::reach_within(*model_, reaches_, t) : 0.0f;
   }
 
   // Bilinear in normalised distance and reflectivity, both clamped to [0, 1].
@@ -68,7 +58,7 @@ class RangeNoise {
  private:
   std::shared_ptr<const NoiseModel> model_;
   std::span<const float> rows_;
-  std::array<float, NoiseModel::side> reaches_{};  // by column: of all hits up to there
+  NoiseReaches reaches_{};
 };
 
 }  // namespace vantage

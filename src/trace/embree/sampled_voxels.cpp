@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "trace/embree/seen_triangle.hpp"
+#include "trace/triangle_gap.hpp"
 #include "voxel/voxel_triangles.hpp"
 
 namespace vantage {
@@ -27,19 +28,6 @@ SampledVoxels::Listed listed(const Float3& a, const Float3& b, const Float3& c) 
   return result;
 }
 
-// How far the triangle's bounding box is from the voxel's cube, along the axis where that is most; rounded down.
-float gap(const SampledVoxels::Listed& t, const VoxelGrid& grid, const std::array<std::uint32_t, 3>& cell) {
-  double most = 0;
-  const auto along = [&](int axis, float a, float b, float c) {
-    const double low = grid.min()[axis] + cell[axis] * grid.voxel_size(), high = low + grid.voxel_size();
-    most = std::max({most, low - std::max({a, b, c}), std::min({a, b, c}) - high});
-  };
-  along(0, t.a.x, t.b.x, t.c.x);
-  along(1, t.a.y, t.b.y, t.c.y);
-  along(2, t.a.z, t.b.z, t.c.z);
-  return std::nextafter(static_cast<float>(most), -HUGE_VALF);
-}
-
 }  // namespace
 
 SampledVoxels::SampledVoxels(const SceneData& scene, const VoxelGrid& grid, std::span<const std::uint32_t> ranks,
@@ -53,7 +41,7 @@ SampledVoxels::SampledVoxels(const SceneData& scene, const VoxelGrid& grid, std:
     for (std::uint32_t k = offset_[i]; k < offset_[i + 1]; ++k) {
       const Triangle& t = scene.triangles[lists.triangle[k]];
       listed_[k] = listed(scene.positions[t[0]], scene.positions[t[1]], scene.positions[t[2]]);
-      listed_[k].gap = gap(listed_[k], grid, cells_[i]);
+      listed_[k].gap = triangle_gap(listed_[k].a, listed_[k].b, listed_[k].c, grid, cells_[i]);
     }
     std::sort(listed_.begin() + offset_[i], listed_.begin() + offset_[i + 1],
               [](const Listed& a, const Listed& b) { return a.gap < b.gap; });

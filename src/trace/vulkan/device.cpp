@@ -57,13 +57,18 @@ std::vector<std::string> extensions_of(VkPhysicalDevice device) {
 
 std::shared_ptr<Instance> Instance::get(bool validation) {
   static std::mutex mutex;
-  static std::array<std::weak_ptr<Instance>, 2> instances;
+  static std::weak_ptr<Instance> watched;
+  // Kept for good: some drivers cannot be loaded and unloaded any number of times. Never destroyed, since at exit they may be gone first.
+  static auto& kept = *new std::shared_ptr<Instance>;
   const std::lock_guard lock(mutex);
-  auto& slot = instances[validation ? 1 : 0];
-  if (auto instance = slot.lock()) return instance;
-  std::shared_ptr<Instance> instance(new Instance(validation));
-  slot = instance;
-  return instance;
+  if (validation) {
+    // Not kept, so that what was left undestroyed is told.
+    auto instance = watched.lock();
+    if (!instance) watched = instance = std::shared_ptr<Instance>(new Instance(true));
+    return instance;
+  }
+  if (!kept) kept.reset(new Instance(false));
+  return kept;
 }
 
 Instance::Instance(bool validation) {

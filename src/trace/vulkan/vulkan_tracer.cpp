@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trace/vulkan/vulkan_tracer.hpp"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -12,6 +14,8 @@
 
 #include "core/normal_table.hpp"
 #include "shared/trace_types.h"
+#include "trace/noise_reach.hpp"
+#include "trace/triangle_gap.hpp"
 #include "trace/vulkan/commands.hpp"
 #include "trace/vulkan/compute_bvh/bvh.hpp"
 #include "trace/vulkan/kernels.hpp"
@@ -107,7 +111,8 @@ class VulkanTracer final : public Tracer {
   TraceSet build_traversal();
   void upload_scene();
   void upload_shading();
-  void upload_sample(std::span<const std::uint32_t> sample);
+  void upload_sample(std::span<const std::uint32_t> sample, std::span<const std::vector<TraceStation>> networks);
+  double sample_reach(std::span<const std::vector<TraceStation>> networks) const;
   void write_parameters() { commands_.upload(parameters_buffer_, &parameters_, sizeof parameters_); }
   bool noise() const { return scene_.noise && scene_.noise->enabled(); }
   std::uint64_t rays_per_dispatch() const {
@@ -163,12 +168,14 @@ class VulkanTracer final : public Tracer {
   TraceSet set_;
   Kernels kernels_;
   Buffer sin_zenith_, cos_zenith_, sin_azimuth_, cos_azimuth_, bricks_, slots_;
-  Buffer positions_, normals_, triangles_, diffuse_, sigma_, normal_table_;  // filled when first needed
+  Buffer positions_, normals_, triangles_, diffuse_, sigma_, noise_reaches_, normal_table_;  // filled when first needed
   Buffer counts_, masks_, station_counters_, totals_, station_counts_;
   Buffer tile_far_, tile_list_, tile_dispatch_, tile_rays_;
   std::uint64_t rays_per_submission_ = 0;  // follows the speed seen; sizes the submissions, not the results
 
   std::vector<std::uint32_t> sample_;  // what the sample buffers hold
+  double sample_margin_ = 0;           // how far from its voxel a triangle is listed there
+  NoiseReaches reaches_{};             // where there is noise
   Buffer sample_voxels_, sample_triangles_, sample_stations_, sample_rays_, sample_items_, sample_control_,
       network_rays_;
   double rays_per_pair_ = 8;  // as seen so far; sizes the chunks, not the results
@@ -237,6 +244,9 @@ void VulkanTracer::upload_scene() {
     sigma_ = to_device<float>(model.sigma, "sigma table");
     normal_table_ = to_device<float>(normal_table(), "normal table");
     p.sigma = sigma_.address();
+    reaches_ = noise_reaches(model);
+    noise_reaches_ = to_device<float>(reaches_, "noise reaches");
+    p.noise_reaches = noise_reaches_.address();
     p.normal_table = normal_table_.address();
     p.noise_reach = model.reach;
     p.noise_min_range = model.min_range;
@@ -567,8 +577,7 @@ NetworkCounts VulkanTracer::count(std::span<const TraceStation> stations, std::u
   return result;
 }
 
-void VulkanTracer::upload_sample(std::span<const std::uint32_t> sample) {
-  if (sample_voxels_ && std::equal(sample.begin(), sample.end(), sample_.begin(), sample_.end())) return;
+void VulkanTracer::upload_sample(std::span<const std::uint32_t> sample, std::span<const std::vector<TraceStation>> networks) {
   const VoxelGrid& grid = *scene_.grid;
   const SceneData& scene = *scene_.scene;
   // Wider than the slack of cube_of in shaders/lib/sample.glsl for any station within range.
@@ -576,26 +585,51 @@ void VulkanTracer::upload_sample(std::span<const std::uint32_t> sample) {
   const double largest = std::max({std::abs(b.min.x), std::abs(b.min.y), std::abs(b.min.z), std::abs(b.max.x),
                                    std::abs(b.max.y), std::abs(b.max.z)}) +
                          static_cast<double>(scene_.pattern->max_range);
-  const double margin = static_cast<double>(parameters_.noise_reach) + largest * 0x1p-17;
+  const double margin = sample_reach(networks) + largest * 0x1p-17;
+  if (sample_voxels_ && margin <= sample_margin_ && std::ranges::equal(sample, sample_)) return;
   const VoxelTriangles touching = triangles_touching(scene, grid, sample, margin);
   std::vector<SampleVoxel> voxels(sample.size() + 1);
-  for (std::size_t k = 0; k < sample.size(); ++k) {
-    const auto [x, y, z] = morton_decode(grid.key(sample[k]));
-    voxels[k] = {x, y, z, touching.offset[k]};
-  }
-  voxels.back() = {0, 0, 0, touching.offset.back()};
   std::vector<SampleTriangle> triangles(touching.triangle.size());
-  for (std::size_t k = 0; k < triangles.size(); ++k) {
-    const Triangle& t = scene.triangles[touching.triangle[k]];
-    const auto at = [&](std::size_t corner) {
-      const Float3& p = scene.positions[t[corner]];
-      return vec3{p.x, p.y, p.z};
-    };
-    triangles[k] = {at(0), at(1), at(2)};
-  }
+  const auto corner = [](const Float3& p) { return vec3{p.x, p.y, p.z}; };
+  tbb::parallel_for(std::size_t{0}, sample.size(), [&](std::size_t k) {
+    const auto cell = morton_decode(grid.key(sample[k]));
+    voxels[k] = {cell[0], cell[1], cell[2], touching.offset[k]};
+    for (std::uint32_t i = touching.offset[k]; i < touching.offset[k + 1]; ++i) {
+      const Triangle& t = scene.triangles[touching.triangle[i]];
+      const Float3 &a = scene.positions[t[0]], &b = scene.positions[t[1]], &c = scene.positions[t[2]];
+      triangles[i] = {corner(a), corner(b), corner(c), triangle_gap(a, b, c, grid, cell)};
+    }
+    std::sort(triangles.begin() + touching.offset[k], triangles.begin() + touching.offset[k + 1],
+              [](const SampleTriangle& a, const SampleTriangle& b) { return a.gap < b.gap; });
+  });
+  voxels.back() = {0, 0, 0, touching.offset.back()};
   sample_voxels_ = to_device<SampleVoxel>(voxels, "sample voxels");
   sample_triangles_ = to_device<SampleTriangle>(triangles, "sample triangles");
   sample_.assign(sample.begin(), sample.end());
+  sample_margin_ = margin;
+}
+
+// How far noise may move a point into a voxel, seen from any station of the networks.
+double VulkanTracer::sample_reach(std::span<const std::vector<TraceStation>> networks) const {
+  if (!noise()) return 0;
+  const VoxelGrid& grid = *scene_.grid;
+  const double side = std::ldexp(grid.voxel_size(), static_cast<int>(grid.depth()));
+  double farthest = grid.voxel_size();
+  for (const auto& network : networks) {
+    for (const TraceStation& station : network) {
+      const double head[3] = {station.origin.x, station.origin.y, station.origin.z};
+      double square = 0;
+      for (int axis = 0; axis < 3; ++axis) {
+        const double from_low = head[axis] - grid.min()[axis];
+        const double most = std::max(std::abs(from_low), std::abs(from_low - side));
+        square += most * most;
+      }
+      farthest = std::max(farthest, std::sqrt(square));
+    }
+  }
+  // In coarse steps, so that lists made for some networks mostly do for the next.
+  farthest = std::exp2(std::ceil(4 * std::log2(farthest)) / 4);
+  return static_cast<double>(reach_within(*scene_.noise, reaches_, static_cast<float>(farthest) + parameters_.noise_reach));
 }
 
 std::vector<NetworkCounts> VulkanTracer::count_sampled(std::span<const std::vector<TraceStation>> networks,
@@ -603,7 +637,7 @@ std::vector<NetworkCounts> VulkanTracer::count_sampled(std::span<const std::vect
                                                        const SampleJob& job, const Progress& progress) {
   std::vector<NetworkCounts> results(networks.size());
   if (networks.empty()) return results;
-  upload_sample(job.sample);
+  upload_sample(job.sample, networks);
   const auto voxels = static_cast<std::uint32_t>(job.sample.size());
   const std::uint32_t most = *std::max_element(station_counts.begin(), station_counts.end());
   const std::uint32_t mask_words = job.masks ? (most > 32 ? 2 : 1) : 0;
