@@ -12,8 +12,6 @@
 #include <memory>
 
 #include "core/embree.hpp"
-#include "scan/pattern.hpp"
-#include "trace/tracer.hpp"
 
 namespace vantage::bench {
 namespace {
@@ -107,22 +105,13 @@ void BareEmbreeOptions::add(CLI::App& command) { site.add(command); }
 
 void run_bare_embree(const BareEmbreeOptions& options) {
   const Scene scene = Scene::load(options.site.scene);
-  const Network network = options.site.stations();
-  const Scanner scanner = options.site.scanner();
-  const auto grid = std::make_shared<const VoxelGrid>(VoxelGrid::build(scene.data(), options.site.user_size_m));
-  const auto pattern = std::make_shared<const RayPattern>(make_pattern(scanner));
-  const TraceScene traced{.scene = {std::make_shared<const Scene>(scene), &scene.data()}, .grid = grid, .pattern = pattern,
-                          .noise = std::make_shared<const NoiseModel>()};
-  const auto engine = make_tracer(Engine::embree, std::nullopt, traced);
-  engine->set_goal_density(grid->voxel_size() * grid->voxel_size() / (options.site.spacing_m * options.site.spacing_m));
+  const TracedSite site = options.site.traced(scene, options.site.stations());
+  const RayPattern& pattern = *site.scene.pattern;
+  const auto engine = make_tracer(Engine::embree, std::nullopt, site.scene);
+  engine->set_goal_density(site.goal_density);
   const embree::Device device = embree::new_device();
   const embree::Scene tree = tree_of(device.get(), scene.data());
 
-  std::vector<TraceStation> stations;
-  for (const Station& station : network) {
-    const Vec3 p = station.position - scene.data().origin;
-    stations.push_back({{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)}, static_cast<std::uint32_t>(stations.size())});
-  }
   std::vector<Way> ways{{"rtcIntersect8"}, {"rtcIntersectNM"}, {"engine, counting"}};
 #if VANTAGE_EMBREE_MAJOR >= 4
   ways.erase(ways.begin() + 1);  // Embree 4 has no streams
@@ -131,17 +120,18 @@ void run_bare_embree(const BareEmbreeOptions& options) {
     for (Way& way : ways) {
       const Stopwatch watch;
       if (&way == &ways.back()) {
-        engine->count(stations, static_cast<std::uint32_t>(stations.size()), {.masks = true, .skip = false}, {});
+        engine->count(site.stations, static_cast<std::uint32_t>(site.stations.size()), {.masks = true, .skip = false}, {});
       } else {
-        for (const TraceStation& station : stations) trace(tree.get(), *pattern, station.origin, &way != &ways.front());
+        for (const TraceStation& station : site.stations) trace(tree.get(), pattern, station.origin, &way != &ways.front());
       }
       if (round > 0) way.best = std::min(way.best, watch.seconds());
     }
-  const double rays = static_cast<double>(scanner.rays() * stations.size());
+  const std::uint64_t rays_each = options.site.scanner().rays();
+  const double rays = static_cast<double>(rays_each * site.stations.size());
   double bare = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k + 1 < ways.size(); ++k) bare = std::min(bare, ways[k].best);
-  std::printf("# %zu triangles, %zu stations, %llu rays each, %llu voxels\n", scene.triangle_count(), stations.size(),
-              static_cast<unsigned long long>(scanner.rays()), static_cast<unsigned long long>(grid->size()));
+  std::printf("# %zu triangles, %zu stations, %llu rays each, %llu voxels\n", scene.triangle_count(), site.stations.size(),
+              static_cast<unsigned long long>(rays_each), static_cast<unsigned long long>(site.scene.grid->size()));
   std::printf("way,million_rays_per_second,share_of_the_faster_bare_loop\n");
   for (const Way& way : ways) std::printf("%s,%.2f,%.3f\n", way.name, rays / way.best * 1e-6, bare / way.best);
 }

@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <fstream>
+#include <memory>
 #include <sstream>
 
+#include "scan/noise_model.hpp"
+#include "scan/pattern.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage::bench {
@@ -59,6 +62,23 @@ SimulatorConfig SiteOptions::config() const {
   config.point_spacing_m = spacing_m;
   config.noise = noise;
   return config;
+}
+
+TracedSite SiteOptions::traced(const Scene& site, const Network& network) const {
+  const auto grid = std::make_shared<const VoxelGrid>(VoxelGrid::build(site.data(), user_size_m));
+  TracedSite traced{.scene = {.scene = {std::make_shared<const Scene>(site), &site.data()},
+                              .grid = grid,
+                              .pattern = std::make_shared<const RayPattern>(make_pattern(scanner())),
+                              .noise = std::make_shared<const NoiseModel>(noise ? make_noise_model(scanner(), 1)
+                                                                                : NoiseModel{})},
+                    .stations = {},
+                    .goal_density = grid->voxel_size() * grid->voxel_size() / (spacing_m * spacing_m)};
+  for (const Station& station : network) {
+    const Vec3 p = station.position - site.data().origin;
+    traced.stations.push_back({{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)},
+                               static_cast<std::uint32_t>(traced.stations.size())});
+  }
+  return traced;
 }
 
 std::vector<EngineInfo> SiteOptions::engines_here() const {

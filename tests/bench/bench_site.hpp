@@ -8,9 +8,18 @@
 #include <string>
 #include <vector>
 
+#include "trace/tracer.hpp"
+#include "vantage/scene.hpp"
 #include "vantage/simulator.hpp"
 
 namespace vantage::bench {
+
+// What an engine is built from, for benchmarks of engines alone.
+struct TracedSite {
+  TraceScene scene;
+  std::vector<TraceStation> stations;
+  double goal_density = 0;
+};
 
 struct SiteOptions {
   std::string scene;
@@ -27,6 +36,7 @@ struct SiteOptions {
   Network stations() const;
   Scanner scanner() const;
   SimulatorConfig config() const;
+  TracedSite traced(const Scene& site, const Network& network) const;
   // The usable ones among those named.
   std::vector<EngineInfo> engines_here() const;
 };

@@ -15,6 +15,7 @@
 
 #include "networks.hpp"
 #include "report/text.hpp"
+#include "support/temporary_folder.hpp"
 #include "trace/vulkan/device.hpp"
 #include "vantage/error.hpp"
 #include "vantage/export.hpp"
@@ -28,22 +29,6 @@ struct Row {
   std::uint32_t stations = 0;
   double user_size_m = 0;
   std::uint64_t sample = 0;
-};
-
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "vantage-growth-XXXXXX").string();
-    if (!mkdtemp(name.data())) throw Error(Errc::io, "cannot make a folder like " + name);
-    path = name;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  std::filesystem::path path;
 };
 
 // Runs `work` in a process of its own and returns its text. The parent starts no thread before, so that a fork is safe.
@@ -243,7 +228,7 @@ void GrowthOptions::add(CLI::App& command) {
 }
 
 void run_growth(const GrowthOptions& options) {
-  const TemporaryFolder scenes;
+  const test::TemporaryFolder scenes;
   const std::string listed = in_child([&] {
     SiteOptions site;
     site.engines = options.engines;
@@ -266,7 +251,7 @@ void run_growth(const GrowthOptions& options) {
   std::fputs(markdown.c_str(), stdout);
   for (const std::string& engine : engines)
     for (const Row& row : rows_of(options)) {
-      const std::filesystem::path file = scenes.path / (std::to_string(row.triangles) + ".glb");
+      const std::filesystem::path file = scenes.path() / (std::to_string(row.triangles) + ".glb");
       if (!std::filesystem::exists(file))
         in_child([&] {
           write_built_in_scene("industrial", row.triangles, file);

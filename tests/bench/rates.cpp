@@ -7,10 +7,6 @@
 #include <limits>
 #include <memory>
 
-#include "scan/noise_model.hpp"
-#include "scan/pattern.hpp"
-#include "trace/tracer.hpp"
-
 namespace vantage::bench {
 namespace {
 
@@ -40,28 +36,15 @@ void run_rates(const RatesOptions& options) {
   const Scene scene = Scene::load(options.site.scene);
   Network network = options.site.stations();
   if (options.first > 0 && options.first < network.size()) network.resize(options.first);
-  const Scanner scanner = options.site.scanner();
-  const auto grid = std::make_shared<const VoxelGrid>(VoxelGrid::build(scene.data(), options.site.user_size_m));
-  const double goal = grid->voxel_size() * grid->voxel_size() / (options.site.spacing_m * options.site.spacing_m);
-  TraceScene traced{
-      .scene = {std::make_shared<const Scene>(scene), &scene.data()},
-      .grid = grid,
-      .pattern = std::make_shared<const RayPattern>(make_pattern(scanner)),
-      .noise = std::make_shared<const NoiseModel>(options.site.noise ? make_noise_model(scanner, 1) : NoiseModel{})};
-  std::vector<TraceStation> stations;
-  for (const Station& station : network) {
-    const Vec3 p = station.position - scene.data().origin;
-    stations.push_back({{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)},
-                        static_cast<std::uint32_t>(stations.size())});
-  }
+  TracedSite site = options.site.traced(scene, network);
 
   std::vector<std::unique_ptr<Tracer>> tracers;
   std::vector<Way> ways;
   const auto add = [&](const EngineInfo& info, const std::string& suffix) {
     const Stopwatch watch;
     tracers.push_back(make_tracer(
-        info.engine, info.engine == Engine::embree ? std::nullopt : std::optional(info.device_index), traced));
-    tracers.back()->set_goal_density(goal);
+        info.engine, info.engine == Engine::embree ? std::nullopt : std::optional(info.device_index), site.scene));
+    tracers.back()->set_goal_density(site.goal_density);
     std::fprintf(stderr, "%s%s on %s: ready after %.2f s\n", to_string(info.engine).c_str(), suffix.c_str(),
                  info.device.c_str(), watch.seconds());
     for (const bool skip : {false, true})
@@ -70,9 +53,9 @@ void run_rates(const RatesOptions& options) {
   for (const EngineInfo& info : options.site.engines_here()) {
     add(info, "");
     if (options.unsorted && info.engine == Engine::ray_query) {
-      traced.sort_triangles = false;
+      site.scene.sort_triangles = false;
       add(info, "-unsorted");
-      traced.sort_triangles = true;
+      site.scene.sort_triangles = true;
     }
   }
 
@@ -81,7 +64,7 @@ void run_rates(const RatesOptions& options) {
     for (Way& way : ways) {
       const Stopwatch watch;
       const std::clock_t cpu_start = std::clock();
-      NetworkCounts counts = tracers[way.tracer]->count(stations, static_cast<std::uint32_t>(stations.size()),
+      NetworkCounts counts = tracers[way.tracer]->count(site.stations, static_cast<std::uint32_t>(site.stations.size()),
                                                         {.masks = true, .skip = way.skip}, {});
       const double seconds = watch.seconds(), cpu = static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC;
       if (round > 0) way.cpu = std::min(way.cpu, cpu);
@@ -91,9 +74,11 @@ void run_rates(const RatesOptions& options) {
       }
       way.counts = std::move(counts);
     }
+  const std::uint64_t rays = options.site.scanner().rays();
+  const VoxelGrid& grid = *site.scene.grid;
   std::printf("# %zu triangles, %zu stations, %llu rays each, %llu voxels of %.4g m, goal %.3f\n",
-              scene.triangle_count(), stations.size(), static_cast<unsigned long long>(scanner.rays()),
-              static_cast<unsigned long long>(grid->size()), grid->voxel_size(), goal);
+              scene.triangle_count(), site.stations.size(), static_cast<unsigned long long>(rays),
+              static_cast<unsigned long long>(grid.size()), grid.voxel_size(), site.goal_density);
   std::printf(
       "engine,skip,milliseconds,device_milliseconds,cpu_milliseconds,traced_rays,million_rays_per_second,coverage,same_"
       "counts_as_"
@@ -102,7 +87,7 @@ void run_rates(const RatesOptions& options) {
     const Way& way = ways[k];
     std::printf("%s,%d,%.3f,%.3f,%.3f,%llu,%.2f,%.9f,%d\n", way.name.c_str(), way.skip, way.best * 1e3,
                 way.device * 1e3, way.cpu * 1e3, static_cast<unsigned long long>(way.counts.rays),
-                static_cast<double>(scanner.rays() * stations.size()) / way.best * 1e-6, coverage(way.counts, goal),
+                static_cast<double>(rays * site.stations.size()) / way.best * 1e-6, coverage(way.counts, site.goal_density),
                 same(way.counts, ways[k - (way.skip ? 1 : 0)].counts));
   }
 }

@@ -18,6 +18,8 @@
 #include "core/philox.hpp"
 #include "scan/noise_model.hpp"
 #include "support/engines.hpp"
+#include "support/expect_counts.hpp"
+#include "support/reference_counts.hpp"
 
 namespace vantage::test {
 namespace {
@@ -198,18 +200,35 @@ bool same_bits(const T* a, const T* b, std::size_t n) {
   return std::memcmp(a, b, n * sizeof(T)) == 0;
 }
 
+// Calls visit(output, a's array, b's array, name) for every output of a scan.
+template <typename Visit>
+void for_each_output(const Tracer::RawChunk& a, const Tracer::RawChunk& b, const Visit& visit) {
+  visit(Tracer::range, a.range, b.range, "range");
+  visit(Tracer::position, a.position, b.position, "position");
+  visit(Tracer::normal, a.normal, b.normal, "normal");
+  visit(Tracer::reflectivity, a.reflectivity, b.reflectivity, "reflectivity");
+  visit(Tracer::primitive, a.primitive, b.primitive, "primitive");
+  visit(Tracer::barycentric, a.barycentric, b.barycentric, "barycentric");
+  visit(Tracer::voxel, a.voxel, b.voxel, "voxel");
+}
+
 void expect_same(const Tracer::RawChunk& part, const Tracer::RawChunk& whole, std::size_t first, std::size_t n) {
-  const auto same = [&](const auto& a, const auto& b, const char* what) {
-    ASSERT_EQ(a.size(), n) << what;
-    EXPECT_TRUE(same_bits(a.data(), b.data() + first, n)) << what << " from ray " << first;
-  };
-  same(part.range, whole.range, "range");
-  same(part.position, whole.position, "position");
-  same(part.normal, whole.normal, "normal");
-  same(part.reflectivity, whole.reflectivity, "reflectivity");
-  same(part.primitive, whole.primitive, "primitive");
-  same(part.barycentric, whole.barycentric, "barycentric");
-  same(part.voxel, whole.voxel, "voxel");
+  for_each_output(part, whole, [&](std::uint32_t, const auto& a, const auto& b, const char* name) {
+    ASSERT_EQ(a.size(), n) << name;
+    EXPECT_TRUE(same_bits(a.data(), b.data() + first, n)) << name << " from ray " << first;
+  });
+}
+
+// `one` has what `whole` has of `output`, and nothing else.
+void expect_only(std::uint32_t output, const Tracer::RawChunk& one, const Tracer::RawChunk& whole) {
+  for_each_output(one, whole, [&](std::uint32_t bit, const auto& got, const auto& expected, const char* name) {
+    if (bit == output) {
+      ASSERT_EQ(got.size(), expected.size()) << name;
+      EXPECT_TRUE(same_bits(got.data(), expected.data(), got.size())) << name;
+    } else {
+      EXPECT_TRUE(got.empty()) << name << " was made for output " << output;
+    }
+  });
 }
 
 TEST_P(Conformance, ChunksOfAnySizeGiveTheSameScan) {
@@ -235,88 +254,25 @@ TEST_P(Conformance, OnlyTheOutputsAskedForAreMade) {
   const Site& site = sites()[2];
   for (const bool noisy : {false, true}) {
     const Tracer::RawChunk whole = scan(site, noisy, 0);
-    for (std::uint32_t output = 1; output < all_outputs; output <<= 1) {
-      const Tracer::RawChunk one = scan(site, noisy, 0, output);
-      const auto check = [&](std::uint32_t bit, const auto& got, const auto& expected) {
-        if (output == bit) {
-          ASSERT_EQ(got.size(), expected.size()) << "output " << output;
-          EXPECT_TRUE(same_bits(got.data(), expected.data(), got.size())) << "output " << output;
-        } else {
-          EXPECT_TRUE(got.empty()) << "output " << bit << " was made for " << output;
-        }
-      };
-      check(Tracer::range, one.range, whole.range);
-      check(Tracer::position, one.position, whole.position);
-      check(Tracer::normal, one.normal, whole.normal);
-      check(Tracer::reflectivity, one.reflectivity, whole.reflectivity);
-      check(Tracer::primitive, one.primitive, whole.primitive);
-      check(Tracer::barycentric, one.barycentric, whole.barycentric);
-      check(Tracer::voxel, one.voxel, whole.voxel);
-    }
+    for (std::uint32_t output = 1; output < all_outputs; output <<= 1)
+      expect_only(output, scan(site, noisy, 0, output), whole);
   }
 }
 
 TEST_P(Conformance, ANewEngineCanBeAskedForAnyOutputFirst) {
   const Site& site = sites()[2];
   const std::uint64_t rays = 40 * site.pattern->columns(), first = 80 * site.pattern->columns();
+  Tracer::RawChunk all;
+  tracer(site, false).scan(site.stations[0], first, rays, all_outputs, all);
   for (std::uint32_t output = 1; output < all_outputs; output <<= 1) {
-    const auto fresh = make(site, false);
-    Tracer::RawChunk one, all;
-    fresh->scan(site.stations[0], first, rays, output, one);
-    tracer(site, false).scan(site.stations[0], first, rays, all_outputs, all);
-    const auto check = [&](std::uint32_t bit, const auto& got, const auto& expected) {
-      if (output != bit) return;
-      ASSERT_EQ(got.size(), expected.size()) << "output " << output;
-      EXPECT_TRUE(same_bits(got.data(), expected.data(), got.size())) << "output " << output;
-    };
-    check(Tracer::range, one.range, all.range);
-    check(Tracer::position, one.position, all.position);
-    check(Tracer::normal, one.normal, all.normal);
-    check(Tracer::reflectivity, one.reflectivity, all.reflectivity);
-    check(Tracer::primitive, one.primitive, all.primitive);
-    check(Tracer::barycentric, one.barycentric, all.barycentric);
-    check(Tracer::voxel, one.voxel, all.voxel);
+    Tracer::RawChunk one;
+    make(site, false)->scan(site.stations[0], first, rays, output, one);
+    expect_only(output, one, all);
   }
 }
 
 // ---- exact counts
 // ----------------------------------------------------------------------------------------------------
-
-// Counts and pairs by the book, from a voxel field.
-NetworkCounts counted_slowly(const VoxelField& field, std::uint32_t stations, bool masks) {
-  NetworkCounts counts;
-  counts.voxels = field.count.size();
-  counts.stations = stations;
-  for (const std::uint32_t n : field.count) {
-    if (n >= goal_density) {
-      ++counts.saturated;
-    } else {
-      counts.partial_points += n;
-    }
-  }
-  if (!masks) return counts;
-  counts.seen.resize(stations);
-  for (const std::uint64_t mask : field.stations) {
-    for (std::uint32_t i = 0; i < stations; ++i) counts.seen[i] += mask >> i & 1;
-  }
-  for (std::uint32_t i = 0; i < stations; ++i) {
-    for (std::uint32_t j = i + 1; j < stations; ++j) {
-      std::uint64_t both = 0;
-      for (const std::uint64_t mask : field.stations) both += (mask >> i & 1) & (mask >> j & 1);
-      counts.shared.push_back(both);
-    }
-  }
-  return counts;
-}
-
-void expect_equal_counts(const NetworkCounts& got, const NetworkCounts& expected) {
-  EXPECT_EQ(got.voxels, expected.voxels);
-  EXPECT_EQ(got.stations, expected.stations);
-  EXPECT_EQ(got.saturated, expected.saturated);
-  EXPECT_EQ(got.partial_points, expected.partial_points);
-  EXPECT_EQ(got.seen, expected.seen);
-  EXPECT_EQ(got.shared, expected.shared);
-}
 
 TEST_P(Conformance, CountsAreThePointsOfTheScans) {
   for (const Site& site : sites()) {
@@ -347,7 +303,7 @@ TEST_P(Conformance, CountsAreThePointsOfTheScans) {
         EXPECT_EQ(counts.points_on_surveyed, on_surveyed);
         EXPECT_EQ(counts.rays, site.rays() * site.stations.size());
         EXPECT_FALSE(counts.cancelled);
-        expect_equal_counts(counts, counted_slowly(expected, stations_of(site), masks));
+        expect_equal_counts(counts, reference_counts(field, stations_of(site), goal_density));
       }
     }
   }
@@ -358,7 +314,6 @@ TEST_P(Conformance, TotalsMatchTheReference) {
     SCOPED_TRACE(site.name);
     VoxelField expected;
     expected.count.resize(site.grid->size());
-    expected.stations.resize(site.grid->size());
     double points = 0, on_surveyed = 0;
     for (std::size_t s = 0; s < site.stations.size(); ++s) {
       for (const ReferenceHit& hit : site.reference(s, true)) {
@@ -373,7 +328,7 @@ TEST_P(Conformance, TotalsMatchTheReference) {
     };
     EXPECT_NEAR(total(counts.points), points, 1e-4 * points);
     EXPECT_NEAR(total(counts.points_on_surveyed), on_surveyed, 1e-4 * on_surveyed);
-    const double reached = coverage(counted_slowly(expected, stations_of(site), false), goal_density);
+    const double reached = coverage(reference_counts(expected, stations_of(site), goal_density), goal_density);
     EXPECT_NEAR(coverage(counts, goal_density), reached, 1e-4 * reached);
   }
 }
@@ -392,7 +347,7 @@ TEST_P(Conformance, StationsKeepTheirPlaceInTheNetwork) {
     EXPECT_EQ(counts.points[i] > 0, i == 63 || i == 2);
     EXPECT_EQ(counts.seen[i] > 0, i == 63 || i == 2);
   }
-  expect_equal_counts(counts, counted_slowly(field, 64, true));
+  expect_equal_counts(counts, reference_counts(field, 64, goal_density));
   const NetworkCounts none = tracer(site, false).count({}, 3, {true, true, nullptr}, {});
   EXPECT_EQ(none.seen, (std::vector<std::uint64_t>{0, 0, 0}));
   EXPECT_EQ(none.saturated + none.partial_points, 0u);
@@ -495,14 +450,14 @@ NetworkCounts sampled_slowly(const VoxelField& field, const Tracer::SampleJob& j
     VoxelField part;
     for (std::size_t i = first; i < job.sample.size(); i += step) {
       part.count.push_back(field.count[job.sample[i]]);
-      part.stations.push_back(field.stations[job.sample[i]]);
+      if (job.masks) part.stations.push_back(field.stations[job.sample[i]]);
     }
     return part;
   };
   const VoxelField sample = pick(0, 1);
-  NetworkCounts counts = counted_slowly(sample, stations, job.masks);
+  NetworkCounts counts = reference_counts(sample, stations, goal_density);
   for (std::uint32_t g = 0; g < job.groups; ++g)
-    counts.groups.push_back(counted_slowly(pick(g, job.groups), stations, job.masks));
+    counts.groups.push_back(reference_counts(pick(g, job.groups), stations, goal_density));
   for (std::size_t i = 1; i < sample.count.size(); ++i) {
     const double step =
         std::min(sample.count[i] / goal_density, 1.0) - std::min(sample.count[i - 1] / goal_density, 1.0);

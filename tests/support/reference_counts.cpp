@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "support/reference_counts.hpp"
+
+namespace vantage::test {
+
+NetworkCounts reference_counts(const VoxelField& field, std::uint32_t stations, double goal_density) {
+  NetworkCounts counts;
+  counts.voxels = field.count.size();
+  counts.stations = stations;
+  for (const std::uint32_t n : field.count) {
+    if (n >= goal_density) {
+      ++counts.saturated;
+    } else {
+      counts.partial_points += n;
+    }
+  }
+  if (field.stations.empty()) return counts;
+  for (std::uint32_t i = 0; i < stations; ++i) {
+    counts.seen.push_back(0);
+    for (const std::uint64_t mask : field.stations) counts.seen[i] += mask >> i & 1;
+    for (std::uint32_t j = i + 1; j < stations; ++j) {
+      counts.shared.push_back(0);
+      for (const std::uint64_t mask : field.stations) counts.shared.back() += (mask >> i & 1) & (mask >> j & 1);
+    }
+  }
+  return counts;
+}
+
+}  // namespace vantage::test
