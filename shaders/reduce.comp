@@ -16,7 +16,7 @@ shared uint low[reduce_voxels];
 shared uint high[reduce_voxels];
 shared uint seen[64 * words];
 shared uint any_seen[reduce_voxels];  // per subgroup
-// Saturated voxels and edges; then sums of 64 bits, low word first.
+// Weight of saturated voxels, and edges; then sums of 64 bits, low word first.
 shared uint flags[2];
 shared uint sums[6];
 
@@ -53,6 +53,7 @@ void main() {
   const uint counts = gl_WorkGroupID.z * push.voxel_count;
   const uint masks = counts * push.mask_words;
   const uint totals = (network * push.groups + group) * push.totals_stride;
+  const bool weighted = uint64_t(push.weights) != 0ul;
   uint saturated = 0u, edges = 0u;
   uint64_t partial = 0ul, squares = 0ul, edge_points = 0ul;
   // Of pair thread + 256 k; 64 stations have 2016 pairs.
@@ -88,10 +89,11 @@ void main() {
     const bool inside = voxel < push.voxel_count;
     const uint count = counts_of[round];
     const bool full = count >= push.goal;
+    const uint weight = !weighted ? 1u : inside ? push.weights.at[voxel / 4u] >> (voxel % 4u * 8u) & 0xFFu : 0u;
     if (inside && full) {
-      ++saturated;
+      saturated += weight;
     } else {
-      partial += count;
+      partial += uint64_t(count) * weight;
     }
     if (push.with_differences != 0u && inside && voxel > 0u) {
       const uint before = push.counts.at[counts + voxel - 1u];
@@ -142,7 +144,7 @@ void main() {
   add(4u, edge_points);
   barrier();
   if (thread == 0u) {
-    if (flags[0] > 0u) atomicAdd(push.totals.at[totals + totals_saturated], flags[0]);
+    if (flags[0] > 0u) add64(push.totals, totals + totals_saturated, flags[0]);
     if (flags[1] > 0u) atomicAdd(push.totals.at[totals + totals_edges], flags[1]);
     publish(totals + totals_partial, 0u);
     publish(totals + totals_squares, 2u);

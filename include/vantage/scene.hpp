@@ -10,6 +10,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "vantage/types.hpp"
@@ -32,6 +33,8 @@ struct MeshInfo {
   Role role = Role::surveyed;    ///< `surveyed` or `blocking`; the others are no meshes of the loaded scene.
   double diffuse = 0.5;          ///< Diffuse reflection coefficient R of its material, in [0, 1].
   std::uint32_t triangle_count = 0;
+  /// What a voxel of it counts in coverage, 1 to 255, relative to voxels of other surveyed meshes.
+  std::uint32_t weight = 1;
 };
 
 /// How `Scene::load` reads a file. Patterns are shell globs (`*`, `?`) on node names (a node without one goes by its mesh's); a node hands
@@ -42,6 +45,8 @@ struct SceneOptions {
   std::vector<std::string> blocking = {};  ///< Nodes that only block.
   std::vector<std::string> search = {};    ///< Nodes that form the search area.
   std::vector<std::string> ignore = {};    ///< Nodes that are left out.
+  /// Nodes by pattern, and what their voxels count in coverage; the last that matches a node holds.
+  std::vector<std::pair<std::string, std::uint32_t>> weights = {};
   std::optional<std::size_t> scene_index = std::nullopt;  ///< Which glTF scene; empty: the file's default.
   double default_diffuse = 0.5;  ///< R where neither extras nor a plain base colour (its luminance) give one.
 };
@@ -51,7 +56,7 @@ class Scene {
  public:
   /// Loads a .glb or .gltf file. Y up becomes Z up: (x, y, z) ↦ (x, −z, y).
   /// Throws Error: io, malformed_file (bad reference, unknown required extension, nothing to survey), invalid_argument (a pattern that
-  /// matches nothing, a scene index or coefficient out of range), out_of_memory.
+  /// matches nothing, a scene index, weight or coefficient out of range), out_of_memory.
   static Scene load(const std::filesystem::path& file, const SceneOptions& options = {});
 
   /// One surveyed mesh from an indexed triangle list in the survey frame. Throws Error: invalid_argument (an index or coefficient out of
@@ -69,7 +74,7 @@ class Scene {
   std::span<const std::string> notes() const noexcept;
   /// The `vantage` object of the file's `asset.extras` as JSON text ("{}" where absent): default parameters of built-in scenes.
   const std::string& defaults_json() const noexcept;
-  /// Hash of everything that can change a result: geometry, roles, materials, search area. Names do not count.
+  /// Hash of everything that can change a result: geometry, roles, weights, materials, search area. Names do not count.
   std::uint64_t fingerprint() const noexcept;
 
   /// Internal storage, for the library's own modules.

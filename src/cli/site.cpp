@@ -73,6 +73,8 @@ nlohmann::json given_options(const SiteOptions& options, const Scanner& scanner)
   add_patterns("blocking", options.roles.blocking);
   add_patterns("search", options.roles.search);
   add_patterns("ignore", options.roles.ignore);
+  for (const auto& [pattern, weight] : options.roles.weights)
+    given["weight"].push_back(pattern + "=" + std::to_string(weight));
   if (options.scene_index) given["scene-index"] = *options.scene_index;
   if (options.diffuse) given["diffuse"] = *options.diffuse;
   std::string noise = scanner.noise.empty() ? "off" : options.noise ? *options.noise : options.scanner.value_or("off");
@@ -109,6 +111,16 @@ void SiteOptions::add(CLI::App& command) {
   add_texts(command, "--blocking", "PATTERN", "Nodes that only block rays and stations", roles.blocking)->group("Scene");
   add_texts(command, "--search", "PATTERN", "Nodes where stations may stand", roles.search)->group("Scene");
   add_texts(command, "--ignore", "PATTERN", "Nodes to leave out", roles.ignore)->group("Scene");
+  add_values(command, "--weight", "PATTERN=W",
+             "What a voxel of these nodes counts in coverage, 1 to 255, where others count 1; may be repeated",
+             [this](const std::string& text, const std::string& what) {
+               const std::size_t equals = text.rfind('=');
+               if (equals == std::string::npos || equals == 0)
+                 throw Error(Errc::invalid_argument, what + ": \"" + text + "\" is not PATTERN=W, as \"facade*=5\"");
+               roles.weights.emplace_back(text.substr(0, equals),
+                                          static_cast<std::uint32_t>(parse_count(text.substr(equals + 1), what, 1, 255)));
+             })
+      ->group("Scene");
   add_text(command, "--scene-index", "N", "Which scene of the file; the file's own default otherwise", scene_index)->group("Scene");
   add_number(command, "--diffuse", "R", "Diffuse reflection coefficient where the file gives none, 0 to 1", diffuse,
              {.low = 0, .high = 1})

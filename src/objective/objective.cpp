@@ -18,10 +18,10 @@ std::uint64_t NetworkCounts::shared_by(std::size_t i, std::size_t j) const {
 }
 
 double coverage(const NetworkCounts& counts, double goal_density) {
-  if (counts.voxels == 0) return 0;
+  if (counts.weight == 0) return 0;
   const double filled =
       static_cast<double>(counts.saturated) + static_cast<double>(counts.partial_points) / goal_density;
-  return std::min(filled / static_cast<double>(counts.voxels), 1.0);  // rounding may pass 1 in the last place
+  return std::min(filled / static_cast<double>(counts.weight), 1.0);  // rounding may pass 1 in the last place
 }
 
 OverlapMatrix overlap_matrix(const NetworkCounts& counts) {

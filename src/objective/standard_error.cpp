@@ -18,11 +18,14 @@ double unsampled_share(const NetworkCounts& counts, std::uint64_t population) {
   return 1.0 - static_cast<double>(counts.voxels) / static_cast<double>(population);
 }
 
-// What the sample holds without one of its groups. Only what overlaps need.
+// What the sample holds without one of its groups.
 NetworkCounts without_group(const NetworkCounts& all, const NetworkCounts& group) {
   NetworkCounts rest;
   rest.stations = all.stations;
   rest.voxels = all.voxels - group.voxels;
+  rest.weight = all.weight - group.weight;
+  rest.saturated = all.saturated - group.saturated;
+  rest.partial_points = all.partial_points - group.partial_points;
   rest.seen.resize(all.seen.size());
   rest.shared.resize(all.shared.size());
   std::transform(all.seen.begin(), all.seen.end(), group.seen.begin(), rest.seen.begin(), std::minus<>());
@@ -30,17 +33,19 @@ NetworkCounts without_group(const NetworkCounts& all, const NetworkCounts& group
   return rest;
 }
 
-// The delete-one-group replicates; empty where there are fewer than two groups.
-std::vector<OverlapMatrix> replicates(const NetworkCounts& counts) {
-  std::vector<OverlapMatrix> found;
+// `of` each delete-one-group replicate; empty where there are fewer than two groups.
+template <class Value>
+std::vector<Value> replicates(const NetworkCounts& counts, const std::function<Value(const NetworkCounts&)>& of) {
+  std::vector<Value> found;
   for (const NetworkCounts& group : counts.groups) {
-    if (group.voxels > 0) found.push_back(overlap_matrix(without_group(counts, group)));
+    if (group.voxels > 0) found.push_back(of(without_group(counts, group)));
   }
   if (found.size() < 2) found.clear();
   return found;
 }
 
 double jackknife_error(const std::vector<double>& values, double unsampled) {
+  if (values.empty()) return largest_error;
   const double groups = static_cast<double>(values.size());
   double mean = 0, squares = 0;
   for (const double value : values) mean += value / groups;
@@ -58,6 +63,11 @@ Estimate coverage_estimate(const NetworkCounts& counts, double goal_density, std
     estimate.standard_error = largest_error;
     return estimate;
   }
+  if (counts.weight != counts.voxels) {
+    const auto of = [&](const NetworkCounts& rest) { return coverage(rest, goal_density); };
+    estimate.standard_error = jackknife_error(replicates<double>(counts, of), unsampled);
+    return estimate;
+  }
   const double n = static_cast<double>(counts.voxels);
   estimate.standard_error = std::sqrt(unsampled * counts.successive_difference_sum / (2 * n * (n - 1)));
   return estimate;
@@ -67,9 +77,8 @@ Estimate overlap_estimate(const NetworkCounts& counts, std::uint64_t population)
   Estimate estimate{clustering_coefficient(overlap_matrix(counts)), 0};
   const double unsampled = unsampled_share(counts, population);
   if (unsampled == 0 || counts.seen.empty()) return estimate;
-  std::vector<double> values;
-  for (const OverlapMatrix& replicate : replicates(counts)) values.push_back(clustering_coefficient(replicate));
-  estimate.standard_error = values.empty() ? largest_error : jackknife_error(values, unsampled);
+  const auto of = [](const NetworkCounts& rest) { return clustering_coefficient(overlap_matrix(rest)); };
+  estimate.standard_error = jackknife_error(replicates<double>(counts, of), unsampled);
   return estimate;
 }
 
@@ -77,12 +86,12 @@ OverlapMatrix overlap_standard_errors(const NetworkCounts& counts, std::uint64_t
   OverlapMatrix errors(counts.stations);
   const double unsampled = unsampled_share(counts, population);
   if (unsampled == 0 || counts.seen.empty()) return errors;
-  const std::vector<OverlapMatrix> without = replicates(counts);
+  const std::vector<OverlapMatrix> without = replicates<OverlapMatrix>(counts, overlap_matrix);
   std::vector<double> values(without.size());
   for (std::size_t i = 0; i < counts.stations; ++i) {
     for (std::size_t j = i + 1; j < counts.stations; ++j) {
       for (std::size_t g = 0; g < without.size(); ++g) values[g] = without[g](i, j);
-      errors.set(i, j, values.empty() ? largest_error : jackknife_error(values, unsampled));
+      errors.set(i, j, jackknife_error(values, unsampled));
     }
   }
   return errors;

@@ -63,9 +63,10 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 }
 
 // What a network without an active station leaves: the voxels, and zeros.
-NetworkCounts nothing_seen(std::uint64_t voxels, std::size_t stations, bool overlap) {
+NetworkCounts nothing_seen(std::uint64_t voxels, std::uint64_t weight, std::size_t stations, bool overlap) {
   NetworkCounts counts;
   counts.voxels = voxels;
+  counts.weight = weight;
   counts.stations = static_cast<std::uint32_t>(stations);
   if (overlap) {
     counts.seen.assign(stations, 0);
@@ -119,6 +120,13 @@ struct Simulator::Impl {
       if (network[place].active) active.push_back(trace_station(network[place], place));
     }
     return active;
+  }
+
+  // Of every `step`-th voxel of a sample.
+  std::uint64_t weight_of(std::span<const std::uint32_t> ranks, std::size_t first, std::size_t step) const {
+    std::uint64_t sum = 0;
+    for (std::size_t i = first; i < ranks.size(); i += step) sum += grid->weight(ranks[i]);
+    return sum;
   }
 
   // Of the size asked for last; the optimiser asks for one size all the time.
@@ -198,7 +206,7 @@ NetworkCounts Simulator::evaluate(const Network& network, const EvaluateOptions&
       options.field->count.assign(voxel_count(), 0);
       options.field->stations.assign(voxel_count(), 0);
     }
-    NetworkCounts counts = nothing_seen(voxel_count(), network.size(), options.overlap);
+    NetworkCounts counts = nothing_seen(voxel_count(), impl_->grid->total_weight(), network.size(), options.overlap);
     counts.points_on_surveyed.assign(network.size(), 0);
     if (!options.skip) counts.points.assign(network.size(), 0);
     return counts;
@@ -219,10 +227,11 @@ std::vector<NetworkCounts> Simulator::evaluate_sampled(std::span<const Network> 
   for (std::size_t k = 0; k < networks.size(); ++k) {
     std::vector<TraceStation> active = impl_->active_stations(networks[k]);
     if (active.empty() || sample.empty()) {
-      all[k] = nothing_seen(sample.size(), networks[k].size(), options.overlap);
+      all[k] = nothing_seen(sample.size(), impl_->weight_of(sample, 0, 1), networks[k].size(), options.overlap);
       for (std::uint32_t g = 0; g < sample_groups; ++g)
-        all[k].groups.push_back(
-            nothing_seen((sample.size() + sample_groups - 1 - g) / sample_groups, networks[k].size(), options.overlap));
+        all[k].groups.push_back(nothing_seen((sample.size() + sample_groups - 1 - g) / sample_groups,
+                                             impl_->weight_of(sample, g, sample_groups), networks[k].size(),
+                                             options.overlap));
       continue;
     }
     traced.push_back(std::move(active));

@@ -25,7 +25,7 @@ Scene Scene::from_triangles(std::span<const Vec3> positions, std::span<const std
   raw.triangles.assign(triangles.begin(), triangles.end());
   const auto count = static_cast<std::uint32_t>(triangles.size());
   raw.ranges = {{0, count, 0}};
-  raw.meshes = {{"triangles", Role::surveyed, diffuse, count}};
+  raw.meshes = {{.name = "triangles", .diffuse = diffuse, .triangle_count = count}};
   return Scene(finish_scene(std::move(raw), "the triangle list"));
 }
 

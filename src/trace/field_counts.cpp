@@ -20,10 +20,11 @@ namespace {
 constexpr std::size_t block = 64;  // voxels a block: bits a word
 
 struct Sums {
-  std::uint64_t saturated = 0, partial_points = 0;
+  std::uint64_t weight = 0, saturated = 0, partial_points = 0;
   std::vector<std::uint64_t> seen, shared;
 
   void add(const Sums& other) {
+    weight += other.weight;
     saturated += other.saturated;
     partial_points += other.partial_points;
     for (std::size_t i = 0; i < seen.size(); ++i) seen[i] += other.seen[i];
@@ -69,7 +70,7 @@ void add_pairs(const std::uint64_t* masks, std::size_t n, std::size_t stations, 
 }  // namespace
 
 NetworkCounts reduce_field(std::span<const std::uint32_t> counts, std::span<const std::uint64_t> masks,
-                           std::uint32_t stations, double goal_density) {
+                           std::uint32_t stations, double goal_density, std::span<const std::uint8_t> weights) {
   const std::size_t pairs = masks.empty() ? 0 : std::size_t{stations} * (stations - 1) / 2;
   Sums zero;
   zero.seen.resize(masks.empty() ? 0 : stations);
@@ -83,10 +84,12 @@ NetworkCounts reduce_field(std::span<const std::uint32_t> counts, std::span<cons
       [&](const tbb::blocked_range<std::size_t>& range, Sums part) {
         const std::size_t first = range.begin() * block, end = std::min(counts.size(), range.end() * block);
         for (std::size_t k = first; k < end; ++k) {
+          const std::uint64_t weight = weights.empty() ? 1 : weights[k];
+          part.weight += weight;
           if (counts[k] >= goal) {
-            ++part.saturated;
+            part.saturated += weight;
           } else {
-            part.partial_points += counts[k];
+            part.partial_points += weight * counts[k];
           }
         }
         if (!masks.empty())
@@ -101,6 +104,7 @@ NetworkCounts reduce_field(std::span<const std::uint32_t> counts, std::span<cons
   NetworkCounts result;
   result.voxels = counts.size();
   result.stations = stations;
+  result.weight = sums.weight;
   result.saturated = sums.saturated;
   result.partial_points = sums.partial_points;
   result.seen = sums.seen;

@@ -9,18 +9,22 @@
 namespace vantage {
 
 NetworkCounts reduce_sample(std::span<const std::uint32_t> counts, std::span<const std::uint64_t> masks,
-                            std::uint32_t groups, std::uint32_t stations, double goal_density) {
-  NetworkCounts all = reduce_field(counts, masks, stations, goal_density);
+                            std::uint32_t groups, std::uint32_t stations, double goal_density,
+                            std::span<const std::uint8_t> weights) {
+  NetworkCounts all = reduce_field(counts, masks, stations, goal_density, weights);
   std::vector<std::uint32_t> group_counts;
   std::vector<std::uint64_t> group_masks;
+  std::vector<std::uint8_t> group_weights;
   for (std::uint32_t g = 0; g < groups; ++g) {
     group_counts.clear();
     group_masks.clear();
+    group_weights.clear();
     for (std::size_t i = g; i < counts.size(); i += groups) {
       group_counts.push_back(counts[i]);
       if (!masks.empty()) group_masks.push_back(masks[i]);
+      if (!weights.empty()) group_weights.push_back(weights[i]);
     }
-    all.groups.push_back(reduce_field(group_counts, group_masks, stations, goal_density));
+    all.groups.push_back(reduce_field(group_counts, group_masks, stations, goal_density, group_weights));
     // A group without voxels still has its stations' zeros.
     if (!masks.empty() && all.groups.back().seen.empty()) {
       all.groups.back().seen.resize(all.seen.size());

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numeric>
 
 #include "voxel/grid_fit.hpp"
 #include "voxel/voxel_bricks.hpp"
+#include "voxel/voxel_weights.hpp"
 
 namespace vantage {
 namespace {
@@ -30,6 +32,8 @@ VoxelGrid VoxelGrid::build(const SceneData& scene, double user_size_m) {
   grid.size_ = marked.voxels;
   grid.bricks_ = std::move(marked.bricks);
   grid.slots_ = std::move(marked.slots);
+  grid.weights_ = voxel_weights(scene, grid);
+  grid.total_weight_ = grid.weights_.empty() ? grid.size_ : std::accumulate(grid.weights_.begin(), grid.weights_.end(), std::uint64_t{0});
   return grid;
 }
 

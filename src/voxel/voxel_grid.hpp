@@ -44,6 +44,10 @@ class VoxelGrid {
   std::span<const VoxelBrick> bricks() const { return bricks_; }
   std::span<const BrickSlot> slots() const { return slots_; }  // a power of two of them
   float inverse_size() const { return inverse_size_; }
+  // What each voxel counts in coverage, by rank (voxel_weights.hpp); empty: 1 each.
+  std::span<const std::uint8_t> weights() const { return weights_; }
+  std::uint32_t weight(std::uint64_t rank) const { return weights_.empty() ? 1 : weights_[rank]; }
+  std::uint64_t total_weight() const { return total_weight_; }
 
  private:
   int depth_ = 0;
@@ -53,6 +57,8 @@ class VoxelGrid {
   std::uint64_t size_ = 0;
   std::vector<VoxelBrick> bricks_;
   std::vector<BrickSlot> slots_;
+  std::vector<std::uint8_t> weights_;
+  std::uint64_t total_weight_ = 0;
 };
 
 // Conservative voxelization: all cells of the grid whose closed box a triangle of `triangles` (local frame) touches, as

@@ -303,7 +303,7 @@ TEST_P(Conformance, CountsAreThePointsOfTheScans) {
         EXPECT_EQ(counts.points_on_surveyed, on_surveyed);
         EXPECT_EQ(counts.rays, site.rays() * site.stations.size());
         EXPECT_FALSE(counts.cancelled);
-        expect_equal_counts(counts, reference_counts(field, stations_of(site), goal_density));
+        expect_equal_counts(counts, reference_counts(field, stations_of(site), goal_density, site.grid->weights()));
       }
     }
   }
@@ -328,7 +328,7 @@ TEST_P(Conformance, TotalsMatchTheReference) {
     };
     EXPECT_NEAR(total(counts.points), points, 1e-4 * points);
     EXPECT_NEAR(total(counts.points_on_surveyed), on_surveyed, 1e-4 * on_surveyed);
-    const double reached = coverage(reference_counts(expected, stations_of(site), goal_density), goal_density);
+    const double reached = coverage(reference_counts(expected, stations_of(site), goal_density, site.grid->weights()), goal_density);
     EXPECT_NEAR(coverage(counts, goal_density), reached, 1e-4 * reached);
   }
 }
@@ -445,19 +445,23 @@ TEST_P(Conformance, SkippingChangesNoVoxel) {
 // ---------------------------------------------------------------------------------------------------------
 
 // The counts of a sample by the book, from the voxel field of the exact evaluation.
-NetworkCounts sampled_slowly(const VoxelField& field, const Tracer::SampleJob& job, std::uint32_t stations) {
+NetworkCounts sampled_slowly(const Site& site, const VoxelField& field, const Tracer::SampleJob& job,
+                             std::uint32_t stations) {
+  VoxelField sample;
   const auto pick = [&](std::size_t first, std::size_t step) {
-    VoxelField part;
+    sample = {};
+    std::vector<std::uint8_t> weights;
     for (std::size_t i = first; i < job.sample.size(); i += step) {
-      part.count.push_back(field.count[job.sample[i]]);
-      if (job.masks) part.stations.push_back(field.stations[job.sample[i]]);
+      sample.count.push_back(field.count[job.sample[i]]);
+      if (job.masks) sample.stations.push_back(field.stations[job.sample[i]]);
+      weights.push_back(static_cast<std::uint8_t>(site.grid->weight(job.sample[i])));
     }
-    return part;
+    return reference_counts(sample, stations, goal_density, weights);
   };
-  const VoxelField sample = pick(0, 1);
-  NetworkCounts counts = reference_counts(sample, stations, goal_density);
-  for (std::uint32_t g = 0; g < job.groups; ++g)
-    counts.groups.push_back(reference_counts(pick(g, job.groups), stations, goal_density));
+  std::vector<NetworkCounts> groups;
+  for (std::uint32_t g = 0; g < job.groups; ++g) groups.push_back(pick(g, job.groups));
+  NetworkCounts counts = pick(0, 1);
+  counts.groups = std::move(groups);
   for (std::size_t i = 1; i < sample.count.size(); ++i) {
     const double step =
         std::min(sample.count[i] / goal_density, 1.0) - std::min(sample.count[i - 1] / goal_density, 1.0);
@@ -497,7 +501,7 @@ TEST_P(Conformance, ASampleOfAllVoxelsIsTheExactEvaluation) {
         VoxelField field;
         const NetworkCounts exact = tracer(site, noisy).count(networks[n], sizes[n], {true, false, &field}, {});
         expect_equal_counts(sampled[n], exact);
-        expect_equal_samples(sampled[n], sampled_slowly(field, job, sizes[n]));
+        expect_equal_samples(sampled[n], sampled_slowly(site, field, job, sizes[n]));
       }
     }
   }
@@ -516,7 +520,7 @@ TEST_P(Conformance, EverySampledVoxelIsCountedAsTheExactEvaluationDoes) {
       for (std::size_t n = 0; n < networks.size(); ++n) {
         VoxelField field;
         tracer(site, noisy).count(networks[n], sizes[n], {true, true, &field}, {});
-        expect_equal_samples(sampled[n], sampled_slowly(field, job, sizes[n]));
+        expect_equal_samples(sampled[n], sampled_slowly(site, field, job, sizes[n]));
       }
     }
   }

@@ -22,18 +22,18 @@ class Builder {
   using Normals = std::vector<Float3>;
 
   void add(const std::string& name, Role role, double diffuse, const std::vector<Vec3>& positions,
-           const std::vector<Triangle>& triangles, Normals normals = {}) {
+           const std::vector<Triangle>& triangles, Normals normals = {}, std::uint32_t weight = 1) {
     normals.resize(positions.size());
     const auto base = static_cast<std::uint32_t>(raw_.positions.size());
     raw_.ranges.push_back(
         {static_cast<std::uint32_t>(raw_.triangles.size()), static_cast<std::uint32_t>(triangles.size()), 0});
-    raw_.meshes.push_back({name, role, diffuse, static_cast<std::uint32_t>(triangles.size())});
+    raw_.meshes.push_back({name, role, diffuse, static_cast<std::uint32_t>(triangles.size()), weight});
     raw_.positions.insert(raw_.positions.end(), positions.begin(), positions.end());
     raw_.normals.insert(raw_.normals.end(), normals.begin(), normals.end());
     for (const Triangle& t : triangles) raw_.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
   }
 
-  void box(const std::string& name, Role role, const Vec3& low, const Vec3& high) {
+  void box(const std::string& name, Role role, const Vec3& low, const Vec3& high, std::uint32_t weight = 1) {
     std::vector<Vec3> p;
     for (int i = 0; i < 8; ++i) p.push_back({i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z});
     add(name, role, 0.6, p,
@@ -48,7 +48,8 @@ class Builder {
          {0, 4, 2},
          {2, 4, 6},
          {1, 3, 5},
-         {3, 7, 5}});
+         {3, 7, 5}},
+        {}, weight);
   }
 
   // A grid of columns × rows quads over at(u, v), u and v in [0, 1].
@@ -80,7 +81,7 @@ class Builder {
   RawScene raw_;
 };
 
-// A tank, a boiler, a tilted pipe and a cabinet on uneven ground, behind a blocking fence.
+// A tank, a boiler, a tilted pipe and a cabinet, which weighs most, on uneven ground, behind a blocking fence.
 std::shared_ptr<const SceneData> boiler_house() {
   Builder b;
   b.sheet("ground", Role::blocking, 0.3, 24, 24, [](double u, double v) {
@@ -99,7 +100,7 @@ std::shared_ptr<const SceneData> boiler_house() {
     const Vec3 n{0, std::cos(2 * pi * u), std::sin(2 * pi * u)};
     return std::pair(Vec3{-3 + 6.1 * v, -1.4 + 0.7 * v, 2.07 + 0.31 * v} + n * 0.11, n);
   });
-  b.box("cabinet", Role::surveyed, {-0.63, -2.71, 0.02}, {0.42, -2.04, 1.57});
+  b.box("cabinet", Role::surveyed, {-0.63, -2.71, 0.02}, {0.42, -2.04, 1.57}, 255);
   b.box("fence", Role::blocking, {3.2, -3.1, 0}, {3.25, 3.3, 1.1});
   return b.finish();
 }

@@ -10,6 +10,7 @@ namespace vantage::test {
 // Everything that an objective is made of; not rays, points or times.
 inline void expect_equal_counts(const NetworkCounts& got, const NetworkCounts& expected) {
   EXPECT_EQ(got.voxels, expected.voxels);
+  EXPECT_EQ(got.weight, expected.weight);
   EXPECT_EQ(got.stations, expected.stations);
   EXPECT_EQ(got.saturated, expected.saturated);
   EXPECT_EQ(got.partial_points, expected.partial_points);

@@ -3,15 +3,18 @@
 
 namespace vantage::test {
 
-NetworkCounts reference_counts(const VoxelField& field, std::uint32_t stations, double goal_density) {
+NetworkCounts reference_counts(const VoxelField& field, std::uint32_t stations, double goal_density,
+                               std::span<const std::uint8_t> weights) {
   NetworkCounts counts;
   counts.voxels = field.count.size();
   counts.stations = stations;
-  for (const std::uint32_t n : field.count) {
+  for (std::size_t k = 0; k < field.count.size(); ++k) {
+    const std::uint32_t n = field.count[k], weight = weights.empty() ? 1 : weights[k];
+    counts.weight += weight;
     if (n >= goal_density) {
-      ++counts.saturated;
+      counts.saturated += weight;
     } else {
-      counts.partial_points += n;
+      counts.partial_points += std::uint64_t{n} * weight;
     }
   }
   if (field.stations.empty()) return counts;

@@ -30,6 +30,7 @@ struct Job {
   std::size_t primitive = 0;
   std::optional<Role> role;  // empty: nothing says
   double diffuse = 0;
+  std::uint32_t weight = 1;
   const MaterialInfo* material = nullptr;
 };
 
@@ -88,9 +89,13 @@ class Loader {
       const auto& primitives = file_.model().meshes[static_cast<std::size_t>(mesh.mesh)].primitives;
       for (std::size_t p = 0; p < primitives.size(); ++p) {
         const MaterialInfo& material = materials_.get(primitives[p].material);
-        Job job{&mesh, p, mesh.pattern_role, 0, &material};
-        for (const Marks* marks : {&mesh.marks, &mesh_marks, &material.marks})
+        Job job{&mesh, p, mesh.pattern_role, 0, 1, &material};
+        std::optional<std::uint32_t> weight = mesh.pattern_weight;
+        for (const Marks* marks : {&mesh.marks, &mesh_marks, &material.marks}) {
           if (!job.role) job.role = marks->role;
+          if (!weight) weight = marks->weight;
+        }
+        job.weight = weight.value_or(1);
         const std::optional<double> given[] = {mesh.marks.diffuse, mesh_marks.diffuse, material.marks.diffuse,
                                                material.luminance};
         const auto first = std::ranges::find_if(given, [](const auto& value) { return value.has_value(); });
@@ -121,7 +126,7 @@ class Loader {
     }
     raw_.ranges.push_back({static_cast<std::uint32_t>(raw_.triangles.size()),
                            static_cast<std::uint32_t>(primitive->triangles.size() * instances), job.material->index});
-    raw_.meshes.push_back({job.placed->name, *job.role, job.diffuse, raw_.ranges.back().triangle_count});
+    raw_.meshes.push_back({job.placed->name, *job.role, job.diffuse, raw_.ranges.back().triangle_count, job.weight});
     for (const Affine& world_from_mesh : job.placed->world_from_mesh)
       append(*primitive, *job.material, world_from_mesh);
   }

@@ -13,24 +13,20 @@ namespace {
 
 constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
 
-// Role patterns, and whether each has matched a node yet.
+// Patterns of names, what each says of the nodes that it matches, and whether it has matched one yet.
+template <class Value>
 class Patterns {
  public:
-  explicit Patterns(const SceneOptions& options) {
-    add(options.surveyed, Role::surveyed);
-    add(options.blocking, Role::blocking);
-    add(options.search, Role::search);
-    add(options.ignore, Role::ignore);
-  }
-  // The last list that names the node decides, so that `surveyed *` with `blocking ground` does what it says.
-  std::optional<Role> role(const std::string& name) {
-    std::optional<Role> role;
+  void add(const std::string& pattern, Value value) { entries_.push_back({pattern, value}); }
+  // The last that names the node decides.
+  std::optional<Value> find(const std::string& name) {
+    std::optional<Value> value;
     for (Entry& entry : entries_)
       if (glob_matches(entry.pattern, name)) {
         entry.matched = true;
-        role = entry.role;
+        value = entry.value;
       }
-    return role;
+    return value;
   }
   void check(const std::vector<std::string>& names) const {
     for (const Entry& entry : entries_) {
@@ -51,14 +47,34 @@ class Patterns {
  private:
   struct Entry {
     std::string pattern;
-    Role role;
+    Value value;
     bool matched = false;
   };
-  void add(const std::vector<std::string>& patterns, Role role) {
-    for (const std::string& pattern : patterns) entries_.push_back({pattern, role});
-  }
   std::vector<Entry> entries_;
 };
+
+// In this order, so that `surveyed *` with `blocking ground` does what it says.
+Patterns<Role> role_patterns(const SceneOptions& options) {
+  Patterns<Role> roles;
+  for (const std::string& pattern : options.surveyed) roles.add(pattern, Role::surveyed);
+  for (const std::string& pattern : options.blocking) roles.add(pattern, Role::blocking);
+  for (const std::string& pattern : options.search) roles.add(pattern, Role::search);
+  for (const std::string& pattern : options.ignore) roles.add(pattern, Role::ignore);
+  return roles;
+}
+
+constexpr std::uint32_t kMostWeight = 255;  // a byte a voxel
+
+Patterns<std::uint32_t> weight_patterns(const SceneOptions& options) {
+  Patterns<std::uint32_t> weights;
+  for (const auto& [pattern, weight] : options.weights) {
+    if (weight < 1 || weight > kMostWeight)
+      throw Error(Errc::invalid_argument, "the weight of " + quoted(pattern) + " is " + std::to_string(weight) +
+                                              "; it must be a whole number from 1 to 255");
+    weights.add(pattern, weight);
+  }
+  return weights;
+}
 
 std::string node_name(const tinygltf::Model& model, int index) {
   const tinygltf::Node& node = model.nodes[static_cast<std::size_t>(index)];
@@ -181,6 +197,11 @@ Marks read_marks(const File& file, const char* array, int index, const std::stri
       throw file.malformed(where + ".diffuse is " + quoted(diffuse->dump()) + "; it must be a number from 0 to 1");
     marks.diffuse = diffuse->get<double>();
   }
+  if (const auto weight = object.find("weight"); weight != object.end()) {
+    if (!weight->is_number_unsigned() || weight->get<std::uint64_t>() < 1 || weight->get<std::uint64_t>() > kMostWeight)
+      throw file.malformed(where + ".weight is " + quoted(weight->dump()) + "; it must be a whole number from 1 to 255");
+    marks.weight = weight->get<std::uint32_t>();
+  }
   return marks;
 }
 
@@ -191,13 +212,15 @@ std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& opti
     int parent;
     Affine world_from_parent;
     std::optional<Role> pattern_role;
+    std::optional<std::uint32_t> pattern_weight;
     Marks marks;
   };
   std::vector<Visit> stack;  // an own stack: node trees may be deeper than the thread's
   const std::vector<int> roots = root_nodes(file, options);
   for (auto it = roots.rbegin(); it != roots.rend(); ++it)
-    stack.push_back({*it, -1, Affine::survey_from_gltf(), {}, {}});
-  Patterns patterns(options);
+    stack.push_back({*it, -1, Affine::survey_from_gltf(), {}, {}, {}});
+  Patterns<Role> roles = role_patterns(options);
+  Patterns<std::uint32_t> weights = weight_patterns(options);
   std::vector<PlacedMesh> placed;
   std::vector<std::string> names;
   std::vector<bool> visited(model.nodes.size());
@@ -216,10 +239,12 @@ std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& opti
     if (visited[index]) throw file.malformed(where + " is reached twice: a cycle, or a node with two parents");
     visited[index] = true;
     names.push_back(name);
-    if (const auto role = patterns.role(name)) visit.pattern_role = role;
+    if (const auto role = roles.find(name)) visit.pattern_role = role;
+    if (const auto weight = weights.find(name)) visit.pattern_weight = weight;
     const Marks own = read_marks(file, "nodes", visit.node, where);
     if (own.role) visit.marks.role = own.role;
     if (own.diffuse) visit.marks.diffuse = own.diffuse;
+    if (own.weight) visit.marks.weight = own.weight;
     const Affine world_from_node = visit.world_from_parent * local_transform(file, node, where);
     if (!world_from_node.finite()) throw file.malformed(where + ": its transform is not finite");
     if (node.mesh >= 0) {
@@ -228,7 +253,7 @@ std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& opti
                              std::to_string(model.meshes.size()));
       if (node.skin >= 0) ++skinned;
       PlacedMesh mesh{visit.node,         node.mesh,  name, instance_transforms(file, visit.node, where),
-                      visit.pattern_role, visit.marks};
+                      visit.pattern_role, visit.pattern_weight, visit.marks};
       for (Affine& transform : mesh.world_from_mesh) {
         transform = world_from_node * transform;
         if (!transform.finite()) throw file.malformed(where + ": the transform of an instance is not finite");
@@ -236,9 +261,10 @@ std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& opti
       placed.push_back(std::move(mesh));
     }
     for (auto it = node.children.rbegin(); it != node.children.rend(); ++it)
-      stack.push_back({*it, visit.node, world_from_node, visit.pattern_role, visit.marks});
+      stack.push_back({*it, visit.node, world_from_node, visit.pattern_role, visit.pattern_weight, visit.marks});
   }
-  patterns.check(names);
+  roles.check(names);
+  weights.check(names);
   if (skinned > 0)
     notes.push_back(std::to_string(skinned) + " skinned meshes stand as modelled: skins are not applied");
   return placed;

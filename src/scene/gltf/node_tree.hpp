@@ -2,6 +2,7 @@
 // The nodes of one glTF scene, flattened: which mesh stands where, and what was said about it on the way down.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,8 +17,9 @@ namespace vantage::gltf {
 struct Marks {
   std::optional<Role> role;
   std::optional<double> diffuse;
+  std::optional<std::uint32_t> weight;
 };
-// Throws Error malformed_file for an unknown role or a diffuse coefficient outside [0, 1].
+// Throws Error malformed_file for an unknown role, a diffuse coefficient outside [0, 1] or a weight outside 1 … 255.
 Marks read_marks(const File& file, const char* array, int index, const std::string& name);
 
 // A node that carries a mesh.
@@ -26,6 +28,7 @@ struct PlacedMesh {
   std::string name;                     // the node's, else the mesh's, else "node N"
   std::vector<Affine> world_from_mesh;  // survey frame; several with EXT_mesh_gpu_instancing
   std::optional<Role> pattern_role;     // by the nearest node whose name matches a pattern
+  std::optional<std::uint32_t> pattern_weight;
   Marks marks;                          // by the nearest node that has them
 };
 

@@ -58,6 +58,10 @@ std::vector<NetworkCounts> sample_networks(const StationRays& rays, std::span<co
   std::vector<std::uint32_t> counts(at_once * n);
   std::vector<std::uint64_t> masks(job.masks ? at_once * n : 0);
 
+  std::vector<std::uint8_t> weights;
+  if (!rays.grid().weights().empty())
+    for (const std::uint32_t rank : job.sample) weights.push_back(rays.grid().weights()[rank]);
+
   std::vector<NetworkCounts> results(networks.size());
   bool cancelled = false;
   for (std::size_t first = 0; first < networks.size(); first += at_once) {
@@ -87,7 +91,8 @@ std::vector<NetworkCounts> sample_networks(const StationRays& rays, std::span<co
     for (std::size_t k = 0; k < here; ++k) {
       const std::span<const std::uint32_t> own_counts(counts.data() + k * n, n);
       const std::span<const std::uint64_t> own_masks(masks.data() + (job.masks ? k * n : 0), job.masks ? n : 0);
-      results[first + k] = reduce_sample(own_counts, own_masks, job.groups, station_counts[first + k], goal_density);
+      results[first + k] = reduce_sample(own_counts, own_masks, job.groups, station_counts[first + k], goal_density,
+                                         weights);
       results[first + k].rays = traced[k];
     }
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();

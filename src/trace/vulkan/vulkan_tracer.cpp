@@ -143,12 +143,20 @@ class VulkanTracer final : public Tracer {
   Buffer to_device(std::span<const T> values, const char* name) {
     return make_device_buffer<T>(device_, commands_, values, name);
   }
+  // In whole words, as shaders read them.
+  Buffer bytes_to_device(std::span<const std::uint8_t> bytes, const char* name) {
+    std::vector<std::uint8_t> padded(bytes.begin(), bytes.end());
+    padded.resize((bytes.size() + 3) / 4 * 4);
+    return to_device<std::uint8_t>(padded, name);
+  }
 
   // Records the reduction of `networks` blocks of counts and masks, and reads totals back into counts.
   struct Reduction {
     std::uint64_t counts, masks;  // addresses
     std::uint32_t voxels, groups, mask_words;
     bool differences;
+    std::uint64_t weights = 0;              // address, where voxels have any
+    std::vector<std::uint64_t> weight = {};  // of each group then
   };
   void record_reduction(VkCommandBuffer c, const Reduction& r, std::uint32_t first_network, std::uint32_t networks,
                         std::uint32_t stride);
@@ -169,6 +177,7 @@ class VulkanTracer final : public Tracer {
   Kernels kernels_;
   Buffer sin_zenith_, cos_zenith_, sin_azimuth_, cos_azimuth_, bricks_, slots_;
   Buffer positions_, normals_, triangles_, diffuse_, sigma_, noise_reaches_, normal_table_;  // filled when first needed
+  Buffer weights_;  // of voxels, where they have any
   Buffer counts_, masks_, station_counters_, totals_, station_counts_;
   Buffer tile_far_, tile_list_, tile_dispatch_, tile_rays_;
   std::uint64_t rays_per_submission_ = 0;  // follows the speed seen; sizes the submissions, not the results
@@ -177,7 +186,7 @@ class VulkanTracer final : public Tracer {
   double sample_margin_ = 0;           // how far from its voxel a triangle is listed there
   NoiseReaches reaches_{};             // where there is noise
   Buffer sample_voxels_, sample_triangles_, sample_stations_, sample_rays_, sample_items_, sample_control_,
-      network_rays_;
+      network_rays_, sample_weights_;
   double rays_per_pair_ = 8;  // as seen so far; sizes the chunks, not the results
 };
 
@@ -212,6 +221,7 @@ void VulkanTracer::upload_scene() {
   cos_zenith_ = to_device<float>(pattern.cos_zenith, "cos zenith");
   sin_azimuth_ = to_device<float>(pattern.sin_azimuth, "sin azimuth");
   cos_azimuth_ = to_device<float>(pattern.cos_azimuth, "cos azimuth");
+  if (!grid.weights().empty()) weights_ = bytes_to_device(grid.weights(), "voxel weights");
   bricks_ = to_device<VoxelBrick>(grid.bricks(), "voxel bricks");
   slots_ = to_device<BrickSlot>(grid.slots(), "brick slots");
   TraceParameters& p = parameters_;
@@ -352,6 +362,7 @@ void VulkanTracer::record_reduction(VkCommandBuffer c, const Reduction& r, std::
   push.masks = r.masks;
   push.totals = totals_.address();
   push.station_counts = station_counts_.address();
+  push.weights = r.weights;
   push.voxel_count = r.voxels;
   push.goal = goal_points();
   push.difference_shift = difference_shift(r.voxels);
@@ -382,7 +393,8 @@ void VulkanTracer::read_totals(std::span<NetworkCounts> counts, std::span<const 
       NetworkCounts group;
       group.voxels = (r.voxels + r.groups - 1 - g) / r.groups;
       group.stations = stations;
-      group.saturated = t[totals_saturated];
+      group.weight = r.weights ? r.weight[g] : group.voxels;
+      group.saturated = t[totals_saturated] | std::uint64_t{t[totals_saturated + 1]} << 32;
       group.partial_points = t[totals_partial] | std::uint64_t{t[totals_partial + 1]} << 32;
       squares += t[totals_squares] | std::uint64_t{t[totals_squares + 1]} << 32;
       edge_points += t[totals_edge_points] | std::uint64_t{t[totals_edge_points + 1]} << 32;
@@ -393,6 +405,7 @@ void VulkanTracer::read_totals(std::span<NetworkCounts> counts, std::span<const 
         for (std::uint32_t k = 0; k < stations; ++k) sum.seen[k] += group.seen[k];
         for (std::uint32_t k = 0; k < pairs; ++k) sum.shared[k] += group.shared[k];
       }
+      sum.weight += group.weight;
       sum.saturated += group.saturated;
       sum.partial_points += group.partial_points;
       if (r.groups > 1) sum.groups.push_back(std::move(group));
@@ -424,7 +437,11 @@ NetworkCounts VulkanTracer::count(std::span<const TraceStation> stations, std::u
   const std::array<std::uint32_t, 1> station_counts{station_count};
   const std::uint32_t stride = totals_seen + station_count + station_count * (station_count - 1) / 2;
   ensure_totals(1, 1, stride);
-  const Reduction reduction{counts_.address(), mask_words ? masks_.address() : 0, voxels, 1, mask_words, false};
+  Reduction reduction{counts_.address(), mask_words ? masks_.address() : 0, voxels, 1, mask_words, false};
+  if (weights_) {
+    reduction.weights = weights_.address();
+    reduction.weight = {scene_.grid->total_weight()};
+  }
 
   struct Part {  // rows of a station
     std::uint32_t station, first_row, row_count, slot;
@@ -603,6 +620,11 @@ void VulkanTracer::upload_sample(std::span<const std::uint32_t> sample, std::spa
               [](const SampleTriangle& a, const SampleTriangle& b) { return a.gap < b.gap; });
   });
   voxels.back() = {0, 0, 0, touching.offset.back()};
+  if (weights_) {
+    std::vector<std::uint8_t> weights;
+    for (const std::uint32_t rank : sample) weights.push_back(grid.weights()[rank]);
+    sample_weights_ = bytes_to_device(weights, "sample weights");
+  }
   sample_voxels_ = to_device<SampleVoxel>(voxels, "sample voxels");
   sample_triangles_ = to_device<SampleTriangle>(triangles, "sample triangles");
   sample_.assign(sample.begin(), sample.end());
@@ -685,6 +707,12 @@ std::vector<NetworkCounts> VulkanTracer::count_sampled(std::span<const std::vect
   bool cancelled = false;
   double seconds = 0;
   Reduction reduction{counts_.address(), base.masks, voxels, job.groups, mask_words, true};
+  if (weights_) {
+    reduction.weights = sample_weights_.address();
+    reduction.weight.resize(job.groups);
+    for (std::size_t k = 0; k < job.sample.size(); ++k)
+      reduction.weight[k % job.groups] += scene_.grid->weight(job.sample[k]);
+  }
   for (std::size_t first = 0; first < networks.size() && !cancelled; first += batch_size) {
     const std::size_t end = std::min(first + batch_size, networks.size());
     std::vector<SampleStation> slots;

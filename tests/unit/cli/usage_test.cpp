@@ -34,7 +34,8 @@ TEST_F(Usage, NumbersMustMakeSense) {
       {"--range", "5"},        {"--range", "10,5"},       {"--user-size", "inf"}, {"--user-size", "0"},  {"--spacing", "-0.01"},
       {"--security", "1,2"},   {"--security", "1,2,nan"}, {"--horizontal", "0"},  {"--vertical", "400"}, {"--seed", "-3"},
       {"--seed", "1.5"},       {"--engine", "cuda"},      {"--diffuse", "2"},     {"--station", "1"},    {"--station", "1,2,x"},
-      {"--scanner", "nokia3310"}, {"--noise", "loud"},    {"--sample", "0"},      {"--error", "0"},      {"--device", "99"}};
+      {"--scanner", "nokia3310"}, {"--noise", "loud"},    {"--sample", "0"},      {"--error", "0"},      {"--device", "99"},
+      {"--weight", "wall"},    {"--weight", "*=0"},        {"--weight", "*=256"},  {"--weight", "roof=2"}};
   for (const auto& [option, value] : cases) {
     SCOPED_TRACE(option + " " + value);
     auto arguments = coarse("evaluate", {});

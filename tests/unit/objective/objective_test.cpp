@@ -45,7 +45,7 @@ double clustering_by_definition(const OverlapMatrix& a) {
 TEST(Coverage, IsEquation8) {
   NetworkCounts counts;
   EXPECT_EQ(coverage(counts, 2.5), 0.0);  // no surveyed voxel at all
-  counts.voxels = 10;
+  counts.voxels = counts.weight = 10;
   counts.saturated = 4;
   counts.partial_points = 5;
   EXPECT_DOUBLE_EQ(coverage(counts, 2.5), (4 + 5 / 2.5) / 10);
@@ -54,9 +54,18 @@ TEST(Coverage, IsEquation8) {
   EXPECT_EQ(coverage(counts, 2.5), 1.0);
 }
 
+TEST(Coverage, IsTheWeightedMean) {
+  NetworkCounts counts;  // three voxels of weight 1 and one of weight 5: full, half, none; full
+  counts.voxels = 4;
+  counts.weight = 8;
+  counts.saturated = 1 + 5;
+  counts.partial_points = 2;
+  EXPECT_DOUBLE_EQ(coverage(counts, 4), (1 + 0.5 + 5) / 8);
+}
+
 TEST(Coverage, IsExactForCountsBeyond32Bits) {
   NetworkCounts counts;
-  counts.voxels = 1ull << 40;
+  counts.voxels = counts.weight = 1ull << 40;
   counts.saturated = 1ull << 39;
   counts.partial_points = 1ull << 41;
   EXPECT_EQ(coverage(counts, 8), 0.75);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Roles and diffuse coefficients: extras, patterns, their order, and what holds where nothing is said.
+// Roles, weights and diffuse coefficients: extras, patterns, their order, and what holds where nothing is said.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -156,6 +156,38 @@ TEST(Roles, WrongMarksAreErrorsThatNameTheNode) {
     GlbBuilder builder;
     builder.triangle("tank", mark);
     EXPECT_NE(message(builder, {}, Errc::malformed_file).find("\"tank\""), std::string::npos) << mark;
+  }
+}
+
+TEST(Weights, FollowTheRulesOfRoles) {
+  GlbBuilder builder;
+  builder.triangle("wall", {{"weight", 3}});
+  builder.triangle("door", {{"weight", 7}});
+  builder.triangle("floor");
+  const int group = builder.node({{"name", "facade"}, {"extras", {{"vantage", {{"weight", 9}}}}}});
+  builder.child(group, {{"name", "statue"}, {"mesh", 0}, {"translation", {50, 0, 0}}});
+  const auto weights = [&](const SceneOptions& options) {
+    std::map<std::string, std::uint32_t> all;
+    const Scene scene = load(builder, options);
+    for (const MeshInfo& info : scene.meshes()) all[info.name] = info.weight;
+    return all;
+  };
+  using Weights = std::map<std::string, std::uint32_t>;
+  EXPECT_EQ(weights({}), (Weights{{"wall", 3}, {"door", 7}, {"floor", 1}, {"statue", 9}}));
+  SceneOptions options;
+  options.weights = {{"*oor", 255}, {"door", 2}, {"facade", 4}};
+  EXPECT_EQ(weights(options), (Weights{{"wall", 3}, {"door", 2}, {"floor", 255}, {"statue", 4}}));
+  const auto plain = load(builder), other = load(builder, options);
+  EXPECT_NE(plain.fingerprint(), other.fingerprint());
+
+  options.weights = {{"door", 256}};
+  EXPECT_NE(message(builder, options, Errc::invalid_argument).find("256"), std::string::npos);
+  options.weights = {{"window", 2}};
+  EXPECT_NE(message(builder, options, Errc::invalid_argument).find("window"), std::string::npos);
+  for (const json& mark : {json{{"weight", 0}}, json{{"weight", 256}}, json{{"weight", 1.5}}, json{{"weight", "high"}}}) {
+    GlbBuilder wrong;
+    wrong.triangle("tank", mark);
+    EXPECT_NE(message(wrong, {}, Errc::malformed_file).find("\"tank\""), std::string::npos) << mark;
   }
 }
 

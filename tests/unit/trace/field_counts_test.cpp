@@ -41,6 +41,17 @@ TEST(FieldCounts, EqualTheBookForAnySizeAndNumberOfStations) {
   }
 }
 
+TEST(FieldCounts, WeightsCountInCoverageAlone) {
+  const VoxelField field = random_field(70'001, 15, 3);
+  RandomStream random(8);
+  std::vector<std::uint8_t> weights(field.count.size());
+  for (std::uint8_t& weight : weights) weight = static_cast<std::uint8_t>(1 + random.bits() % 255);
+  const NetworkCounts weighted = reduce_field(field.count, field.stations, 15, 37.3, weights);
+  test::expect_equal_counts(weighted, test::reference_counts(field, 15, 37.3, weights));
+  EXPECT_EQ(weighted.shared, reduce_field(field.count, field.stations, 15, 37.3).shared);
+  EXPECT_GT(weighted.weight, 2 * weighted.voxels);
+}
+
 TEST(FieldCounts, AVoxelIsFullAtTheGoalRoundedUp) {
   const std::vector<std::uint32_t> counts{60, 61, 62, 0xFFFFFFFFu};
   EXPECT_EQ(reduce_field(counts, {}, 1, 61.3).saturated, 2u);
