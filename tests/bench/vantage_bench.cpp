@@ -6,6 +6,7 @@
 #include "bare_embree.hpp"
 #include "error.hpp"
 #include "growth.hpp"
+#include "intervals.hpp"
 #include "population.hpp"
 #include "rates.hpp"
 #include "vantage/error.hpp"
@@ -26,12 +27,15 @@ int main(int argc, char** argv) {
   vantage::bench::GrowthOptions growth;
   growth.add(
       *app.add_subcommand("growth", "Time and memory over triangles, stations, voxels and the size of the sample"));
+  vantage::bench::IntervalsOptions intervals;
+  intervals.add(*app.add_subcommand("intervals", "How often a sample's 95 % intervals hold the value of every ray"));
   CLI11_PARSE(app, argc, argv);
   try {
     if (app.got_subcommand("rates")) vantage::bench::run_rates(rates);
     if (app.got_subcommand("embree")) vantage::bench::run_bare_embree(bare_embree);
     if (app.got_subcommand("population")) vantage::bench::run_population(population);
     if (app.got_subcommand("error")) vantage::bench::run_error(error);
+    if (app.got_subcommand("intervals")) vantage::bench::run_intervals(intervals);
     if (app.got_subcommand("growth")) vantage::bench::run_growth(growth);
   } catch (const vantage::Error& failure) {
     std::fprintf(stderr, "%s\n", failure.what());
