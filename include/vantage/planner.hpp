@@ -95,6 +95,7 @@ struct PlanEntry {
   bool confirmed = false;                        ///< Whether the exact values below were computed.
   double exact_coverage = 0, exact_overlap = 0;  ///< Evaluated again with every ray.
   OverlapMatrix exact_overlap_matrix;
+  bool dominated = false;  ///< Judged by every ray, another confirmed entry is as good in all objectives and better in one.
   std::vector<std::uint64_t> points_on_surveyed; ///< Per station, exact.
 };
 
@@ -110,6 +111,7 @@ struct PlanResult {
   std::vector<PlanEntry> front;    ///< By falling coverage. One entry where there is one objective.
   std::vector<PlanIteration> history;
   double hypervolume = 0;          ///< Final, as the search saw it; reference point (1, …, 1). With one objective: coverage or fitness.
+  double exact_hypervolume = 0;    ///< The same by every ray; NaN where an abort left entries unconfirmed.
   std::uint64_t evaluations = 0;
   std::uint64_t redrawn = 0, drawn = 0;  ///< Stations drawn again out of a hole or a clash, and all drawn.
   std::uint64_t resumed_evaluations = 0; ///< How many of the evaluations a checkpoint brought.
@@ -121,7 +123,8 @@ struct PlanResult {
 struct PlanProgress {
   std::size_t iteration = 0, iterations = 0;
   std::uint64_t evaluations = 0;
-  double hypervolume = 0, evaluations_per_second = 0, seconds_left = 0;
+  double hypervolume = 0, evaluations_per_second = 0;
+  double seconds_left = 0;  ///< Below 0: not known yet.
   std::string phase;  ///< "search" or "confirm"
 };
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include <spdlog/spdlog.h>
@@ -231,11 +232,12 @@ std::string summary(const PlanResult& result, const PlanConfig& config, std::siz
   for (std::size_t k = 0; k < result.front.size(); ++k) {
     const PlanEntry& entry = result.front[k];
     text += fmt::format("  {:.4f}   {:.4f}  {:>4}{}\n", entry.confirmed ? entry.exact_coverage : entry.coverage,
-                        entry.confirmed ? entry.exact_overlap : entry.overlap, entry.stations.size(), k == chosen ? "  <- compromise" : "");
+                        entry.confirmed ? entry.exact_overlap : entry.overlap, entry.stations.size(), k == chosen ? "  <- compromise" : entry.dominated ? "  dominated" : "");
   }
-  text += fmt::format("{} evaluations, {} {:.4f}, stopped: {}\n", result.evaluations,
-                      value_name(config), result.hypervolume,
-                      to_string(result.stop_reason));
+  text += fmt::format("{} evaluations, {} {:.4f}", result.evaluations, value_name(config), result.hypervolume);
+  if (config.sample_voxels > 0 && !std::isnan(result.exact_hypervolume))
+    text += fmt::format(" ({:.4f} by every ray)", result.exact_hypervolume);
+  text += fmt::format(", stopped: {}\n", to_string(result.stop_reason));
   return text + "results in " + folder + "\n";
 }
 

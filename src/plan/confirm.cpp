@@ -47,7 +47,7 @@ std::vector<PlanEntry> confirm_front(const SearchOutcome& found, const DecisionS
            .evaluations = found.evaluations,
            .hypervolume = found.hypervolume,
            .evaluations_per_second = rate,
-           .seconds_left = rate > 0 ? (static_cast<double>(entries.size() - done) - part) / rate : 0,
+           .seconds_left = rate > 0 ? (static_cast<double>(entries.size() - done) - part) / rate : -1,
            .phase = "confirm"});
   };
 
@@ -94,6 +94,25 @@ std::vector<PlanEntry> confirm_front(const SearchOutcome& found, const DecisionS
   };
   std::sort(entries.begin(), entries.end(), [&](const PlanEntry& a, const PlanEntry& b) { return rank(a) < rank(b); });
   return entries;
+}
+
+double judge_by_every_ray(std::vector<PlanEntry>& entries, const DecisionSpace& space, const PlanConfig& config) {
+  const std::size_t objectives = space.objectives();
+  std::vector<double> values;
+  std::vector<PlanEntry*> judged;
+  for (PlanEntry& entry : entries) {
+    if (!entry.confirmed) continue;
+    std::size_t parts = space.parts_of(to_network(entry.stations));
+    if (config.min_link_overlap > 0) parts = connectivity(entry.exact_overlap_matrix, config.min_link_overlap).parts;
+    values.resize(values.size() + objectives);
+    space.objectives_of(entry.x, entry.exact_coverage, entry.exact_overlap, parts,
+                        std::span(values).last(objectives));
+    judged.push_back(&entry);
+  }
+  const std::vector<std::size_t> ranks = non_dominated_ranks(values, objectives);
+  for (std::size_t k = 0; k < judged.size(); ++k) judged[k]->dominated = ranks[k] > 0;
+  if (judged.empty() || judged.size() < entries.size()) return std::numeric_limits<double>::quiet_NaN();
+  return hypervolume(values, objectives, std::vector<double>(objectives, 1.0));
 }
 
 }  // namespace vantage

@@ -46,6 +46,7 @@ PlanResult plan(Simulator& simulator, const SearchArea& area, const ClashChecker
 
   PlanResult result;
   result.front = confirm_front(found, space, config, evaluator, watch, abort);
+  result.exact_hypervolume = judge_by_every_ray(result.front, space, config);
   result.history = std::move(found.history);
   result.hypervolume = found.hypervolume;
   result.evaluations = found.evaluations, result.resumed_evaluations = found.resumed_evaluations;

@@ -34,7 +34,7 @@ std::unique_ptr<Canvas> front_picture(const PlanResult& result, const PlanConfig
   const Rect area = frame(view.coloured());
   std::string subtitle = problem_line(config);
   if (view.single()) subtitle += std::string(", best ") + (config.fitness ? "fitness " : "coverage ") + fixed(result.hypervolume, 3);
-  else subtitle += ", hypervolume " + fixed(result.hypervolume, 3);
+  else subtitle += ", hypervolume " + fixed(std::isnan(result.exact_hypervolume) ? result.hypervolume : result.exact_hypervolume, 3);
   subtitle += " after " + grouped(result.evaluations) + " evaluations";
   const Chart chart(canvas, area, view.x_axis(dots), view.y_axis(dots),
                     view.single() ? "Best network found" : "Pareto front", subtitle);
@@ -51,19 +51,22 @@ std::unique_ptr<Canvas> front_picture(const PlanResult& result, const PlanConfig
     canvas.circle(a, 4, {.colour = view.coloured() ? view.colour(seen) : style::blue, .width = 1.1, .opacity = 0.75});
     occupy(a, 5);
   }
+  bool any_dominated = false;
   for (const PlanEntry& entry : result.front) {
     if (!entry.confirmed) continue;
     const FrontDot exact = view.confirmed(entry);
     const Point p = chart.at(exact.x, exact.y);
-    canvas.disc(p, 5.4, {1, 1, 1});
-    canvas.disc(p, 4.5, view.colour(exact));
+    canvas.disc(p, entry.dominated ? 3.6 : 5.4, {1, 1, 1});
+    canvas.disc(p, entry.dominated ? 2.7 : 4.5, view.colour(exact), entry.dominated ? 0.5 : 1);
+    any_dominated |= entry.dominated;
     occupy(p, 6);
   }
 
   std::vector<LegendItem> legend;
   const Colour key = view.coloured() ? style::faint : style::blue;
   if (any_confirmed) legend.push_back({LegendItem::Mark::filled, key, "every ray"});
-  if (sampled) legend.push_back({LegendItem::Mark::hollow, key, "search estimate, " + grouped(config.sample_voxels) + " voxels"});
+  if (any_dominated) legend.push_back({LegendItem::Mark::small, key, "dominated"});
+  if (sampled) legend.push_back({LegendItem::Mark::hollow, key, "search, " + grouped(config.sample_voxels) + " voxels"});
   else if (!any_confirmed) legend.push_back({LegendItem::Mark::hollow, key, "as the search saw it"});
   const PlanEntry* best = result.front.empty() ? nullptr : &result.front[compromise(result, config.problem)];
   if (best && known(best->confirmed ? view.confirmed(*best) : view.searched(*best))) {

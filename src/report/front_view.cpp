@@ -82,6 +82,7 @@ void draw_legend(Canvas& canvas, Point at, std::span<const LegendItem> items) {
     const Point mark{at.x + 9, at.y};
     switch (item.mark) {
       case LegendItem::Mark::filled: canvas.disc(mark, 4.5, item.colour); break;
+      case LegendItem::Mark::small: canvas.disc(mark, 2.7, item.colour, 0.5); break;
       case LegendItem::Mark::hollow: canvas.circle(mark, 4, {.colour = item.colour, .width = 1.2}); break;
       case LegendItem::Mark::ring: canvas.circle(mark, 8, {.colour = item.colour, .width = 2}); break;
       case LegendItem::Mark::line: canvas.line({at.x, at.y}, {at.x + 18, at.y}, {.colour = item.colour, .width = 2}); break;

@@ -41,7 +41,7 @@ std::string problem_line(const PlanConfig& config);
 
 // One row of symbols with words, from `at` to the right.
 struct LegendItem {
-  enum class Mark { filled, hollow, ring, line } mark = Mark::filled;
+  enum class Mark { filled, small, hollow, ring, line } mark = Mark::filled;
   Colour colour = {};
   std::string text = {};
 };

@@ -110,7 +110,7 @@ ordered_json entry_json(const PlanEntry& entry, const PlanConfig& config) {
                        {"stations", std::move(stations)},
                        {"x", entry.x}};
   if (entry.confirmed) {
-    json["exact"] = {{"coverage", entry.exact_coverage}, {"overlap", entry.exact_overlap}};
+    json["exact"] = {{"coverage", entry.exact_coverage}, {"overlap", entry.exact_overlap}, {"dominated", entry.dominated}};
     json["links"] = links_json(entry.exact_overlap_matrix, config.min_link_overlap > 0 ? config.min_link_overlap : kLeastOverlap);
   }
   return json;
@@ -147,6 +147,7 @@ std::string front_json(const PlanResult& result, const PlanConfig& config, const
   ordered_json json = {{"problem", to_string(config.problem)},
                        {"objectives", objective_names(config)},
                        {"hypervolume", result.hypervolume},
+                       {"exact_hypervolume", result.exact_hypervolume},
                        {"evaluations", result.evaluations},
                        {"stations_drawn", result.drawn},
                        {"stations_redrawn", result.redrawn},

@@ -25,7 +25,7 @@ void write_overlap_csv(const std::filesystem::path& file, const OverlapMatrix& o
 void write_front_csv(const std::filesystem::path& file, const PlanResult& result, const PlanConfig& config) {
   std::size_t most = 0;
   for (const PlanEntry& entry : result.front) most = std::max(most, entry.stations.size());
-  std::string text = "entry,station_count,coverage,coverage_se,overlap,overlap_se,exact_coverage,exact_overlap";
+  std::string text = "entry,station_count,coverage,coverage_se,overlap,overlap_se,exact_coverage,exact_overlap,dominated";
   if (objective_names(config.problem).back() == "alpha") text += ",alpha";
   for (std::size_t i = 0; i < most; ++i)
     for (const char* name : {"x", "y", "z", "u", "v", "status"}) text += "," + std::string(name) + number(i + 1);
@@ -34,7 +34,8 @@ void write_front_csv(const std::filesystem::path& file, const PlanResult& result
     const PlanEntry& e = result.front[k];
     text += number(k + 1) + "," + number(e.stations.size()) + "," + number(e.coverage) + "," + number(e.coverage_se) + "," +
             number(e.overlap) + "," + number(e.overlap_se) + ",";
-    text += e.confirmed ? number(e.exact_coverage) + "," + number(e.exact_overlap) : std::string(",");
+    text += e.confirmed ? number(e.exact_coverage) + "," + number(e.exact_overlap) + "," + (e.dominated ? "1" : "0")
+                        : std::string(",,");
     if (objective_names(config.problem).back() == "alpha") text += "," + number(e.x.back());
     for (std::size_t i = 0; i < most; ++i) {
       if (i >= e.stations.size()) {

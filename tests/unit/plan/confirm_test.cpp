@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "unit/plan/toy_survey.hpp"
 
 namespace vantage {
@@ -73,6 +75,29 @@ TEST(ConfirmFront, AbortLeavesWhatTheSearchSaw) {
       }
     }
   }
+}
+
+TEST(JudgeByEveryRay, MarksWhatIsDominatedAndMeasuresTheRest) {
+  const Site site = test::toy_site();
+  const PlanConfig config = test::toy_config(Problem::coverage_overlap_fix);
+  const DecisionSpace space(site, config);
+  const auto entry = [&](double coverage, double overlap) {
+    PlanEntry e;
+    e.x.assign(space.dimension(), 0.5);
+    e.confirmed = true;
+    e.exact_coverage = coverage, e.exact_overlap = overlap;
+    e.coverage = 1 - coverage;  // what the search saw does not count
+    return e;
+  };
+  std::vector<PlanEntry> entries{entry(0.9, 0.2), entry(0.5, 0.6), entry(0.4, 0.6), entry(0.5, 0.5)};
+  EXPECT_DOUBLE_EQ(judge_by_every_ray(entries, space, config), 0.9 * 0.2 + 0.5 * 0.4);
+  EXPECT_FALSE(entries[0].dominated);
+  EXPECT_FALSE(entries[1].dominated);
+  EXPECT_TRUE(entries[2].dominated);
+  EXPECT_TRUE(entries[3].dominated);
+  entries[1].confirmed = false;
+  EXPECT_TRUE(std::isnan(judge_by_every_ray(entries, space, config)));
+  EXPECT_FALSE(entries[2].dominated) << "only confirmed entries are compared";
 }
 
 TEST(ConfirmFront, NetworksInHolesNeedNoSimulation) {
