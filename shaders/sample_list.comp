@@ -5,34 +5,28 @@
 #extension GL_GOOGLE_include_directive : require
 #include "lib/parameters.glsl"
 #include "lib/sample.glsl"
+#include "lib/sheared_triangle.glsl"
 
 layout(local_size_x = 128) in;
 layout(push_constant, scalar) uniform Push { SamplePush push; };
 
 // Whether the ray passes near enough to the triangle that any engine might report a hit. The tolerance is 2^-16 of the largest coordinate,
 // tens of times the rounding of the engines' own tests.
-bool may_hit(SampleTriangle triangle, vec3 origin, vec3 d) {
-  const vec3 size = abs(d);
-  const bool major_x = size.x >= size.y && size.x >= size.z, major_y = !major_x && size.y >= size.z;
-  const vec3 s = major_x ? d.yzx : major_y ? d.zxy : d;
-  const vec3 p = triangle.a - origin, q = triangle.b - origin, r = triangle.c - origin;
-  const vec3 a = major_x ? p.yzx : major_y ? p.zxy : p, b = major_x ? q.yzx : major_y ? q.zxy : q,
-             c = major_x ? r.yzx : major_y ? r.zxy : r;
-  const vec2 shear = s.xy / s.z;
-  const vec2 u = a.xy - shear * a.z, v = b.xy - shear * b.z, w = c.xy - shear * c.z;
-  const vec3 largest = max(max(abs(a), abs(b)), abs(c));
-  const float reach = max(max(largest.x, largest.y), largest.z) * (1.0 / 65536.0);
-  const float eu = w.x * v.y - w.y * v.x, ev = u.x * w.y - u.y * w.x, ew = v.x * u.y - v.y * u.x;
-  const float tu = reach * (abs(v.x) + abs(v.y) + abs(w.x) + abs(w.y) + reach), tv = reach * (abs(u.x) + abs(u.y) + abs(w.x) + abs(w.y) + reach),
-              tw = reach * (abs(u.x) + abs(u.y) + abs(v.x) + abs(v.y) + reach);
-  return (eu >= -tu && ev >= -tv && ew >= -tw) || (eu <= tu && ev <= tv && ew <= tw);
+bool may_hit(Shear shear, vec3 origin, SampleTriangle triangle) {
+  const ShearedTriangle t = sheared(shear, origin, triangle.a, triangle.b, triangle.c);
+  const vec3 edges = edge_functions(t);
+  const vec3 a = abs(t.a), b = abs(t.b), c = abs(t.c);
+  // Shears are at most 1, so no coordinate was larger than this before.
+  const float reach = max(max(max(a.x, a.y) + a.z, max(b.x, b.y) + b.z), max(c.x, c.y) + c.z) * (1.0 / 65536.0);
+  const vec3 sums = vec3(a.x + a.y, b.x + b.y, c.x + c.y);
+  const vec3 slack = reach * (sums.yxx + sums.zzy + reach);
+  return all(greaterThanEqual(edges, -slack)) || all(lessThanEqual(edges, slack));
 }
 
 // No point of a hit nearer than t is moved further than this.
 float reach_within(float t) {
   if (parameters.noise_reach == 0.0) return 0.0;
-  const float scaled = (t - parameters.noise_min_range) * parameters.noise_inverse_span * 100.0 + 1.01;
-  return parameters.noise_reaches.at[uint(clamp(scaled, 0.0, 100.0))];
+  return parameters.noise_reaches.at[reach_column(t, parameters.noise_min_range, parameters.noise_inverse_span)];
 }
 
 // One past the triangles that a point in the cube may come from: noise is small near the station, and the lists are made for any distance.
@@ -50,8 +44,9 @@ bool is_candidate(Cube cube, vec3 origin, uint row, uint column, uint first_tria
   if (range.x > range.y || range.y + parameters.noise_reach < parameters.min_range ||
       range.x - parameters.noise_reach > parameters.max_range)
     return false;
+  const Shear shear = shear_along(d);
   for (uint t = first_triangle; t < end_triangle; ++t)
-    if (may_hit(push.triangles.at[t], origin, d)) return true;
+    if (may_hit(shear, origin, push.triangles.at[t])) return true;
   return false;
 }
 

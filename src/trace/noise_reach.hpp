@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "core/normal_table.hpp"
+#include "shared/noise_types.h"
 #include "trace/tracer.hpp"
 
 namespace vantage {
@@ -24,10 +25,9 @@ inline NoiseReaches noise_reaches(const NoiseModel& model) {
   return reaches;
 }
 
-// No point of a hit nearer than t is moved further than this. `reach_within` in shaders/sample_list.comp is the same.
+// No point of a hit nearer than t is moved further than this.
 inline float reach_within(const NoiseModel& model, const NoiseReaches& reaches, float t) {
-  const float scaled = (t - model.min_range) * model.inverse_span * static_cast<float>(NoiseModel::side - 1) + 1.01f;
-  return reaches[scaled > 0 ? std::min(NoiseModel::side - 1, static_cast<std::uint32_t>(std::min(scaled, 1e6f))) : 0];
+  return reaches[reach_column(t, model.min_range, model.inverse_span)];
 }
 
 }  // namespace vantage
