@@ -19,6 +19,7 @@ void main() {
   uint row, column;
   float far = parameters.max_range;
   bool alive = true;
+  Starts starts = from_the_root;
   if (with_tiles) {
     const uint k = gl_WorkGroupID.z * tile_groups_y + gl_WorkGroupID.y;
     alive = k < push.tile_list.at[0];
@@ -28,6 +29,7 @@ void main() {
     row = (tile / tiles_in_row) * tile_side + (gl_WorkGroupID.x / blocks_in_row) * block_rows + in_block.y;
     column = (tile % tiles_in_row) * tile_side + (gl_WorkGroupID.x % blocks_in_row) * block_columns + in_block.x;
     far = min(far, push.tile_far.at[tile]);
+    starts = Starts(uint64_t(push.starts), k * tile_starts);
   } else {
     row = push.first_row + gl_WorkGroupID.y * block_rows + in_block.y;
     column = gl_WorkGroupID.x * block_columns + in_block.x;
@@ -37,7 +39,7 @@ void main() {
   bool is_point = false, counted = false;
   if (alive) {
     const vec3 direction = ray_direction(row, column);
-    const Hit hit = trace(push.origin, direction, parameters.min_range, far, want_nearest);
+    const Hit hit = trace(push.origin, direction, parameters.min_range, far, want_nearest, starts);
     is_point = hit.id != no_primitive;
     if (is_point && (hit.id & surveyed_bit) != 0u) {
       float t = hit.t;

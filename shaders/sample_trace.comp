@@ -32,7 +32,7 @@ void main() {
       const vec2 range = passage(cube, direction);
       const float reach = parameters.noise_reach + cube.slack;
       const Hit hit = trace(station.origin, direction, parameters.min_range,
-                            min(parameters.max_range, range.y + reach), range.x - reach);
+                            min(parameters.max_range, range.y + reach), range.x - reach, from_the_root);
       if (hit.id != no_primitive && (hit.id & surveyed_bit) != 0u) {
         float t = hit.t;
         if (with_noise) {

@@ -21,7 +21,7 @@ void main() {
 
   const vec3 direction = ray_direction(row, column);
   const Hit hit = trace(push.origin, direction, parameters.min_range,
-                        parameters.max_range, want_nearest);
+                        parameters.max_range, want_nearest, from_the_root);
   const bool is_point = hit.id != no_primitive;
   const uint triangle = hit.id & ~surveyed_bit;
   float t = uintBitsToFloat(0x7F800000u);

@@ -19,6 +19,7 @@ layout(buffer_reference) buffer BrickQuarters;
 layout(buffer_reference) buffer Slots;
 layout(buffer_reference) buffer NodeQuarters;
 layout(buffer_reference) buffer TriangleCorners;
+layout(buffer_reference) buffer TileStarts;
 layout(buffer_reference) buffer SampleVoxels;
 layout(buffer_reference) buffer SampleTriangles;
 layout(buffer_reference) buffer SampleStations;
@@ -31,6 +32,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer Br
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer Slots { BrickSlot at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer NodeQuarters { uvec4 at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer TriangleCorners { uvec4 at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 8) buffer TileStarts { TileStart at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer SampleVoxels { SampleVoxel at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer SampleTriangles { SampleTriangle at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer SampleStations { SampleStation at[]; };

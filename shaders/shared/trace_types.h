@@ -53,6 +53,13 @@ struct BvhTriangle {
   uint unused1;
 };
 
+// A node at which the rays of a tile may start, and how near its box is: infinity where there is none.
+struct TileStart {
+  uint node;
+  float near;
+};
+VANTAGE_CONST uint tile_starts = 24;             // of every tile, nearest first
+
 struct TraceParameters {
   VANTAGE_ADDRESS(Floats) sin_zenith;
   VANTAGE_ADDRESS(Floats) cos_zenith;
@@ -102,6 +109,7 @@ struct CountPush {
   VANTAGE_ADDRESS(Uints) station_counters;
   VANTAGE_ADDRESS(Floats) tile_far;
   VANTAGE_ADDRESS(Uints) tile_list;       // number of tiles, then the tiles
+  VANTAGE_ADDRESS(TileStarts) starts;     // compute_bvh: tile_starts for each listed tile
   vec3 origin;
   uint place;
   uint first_row;
@@ -114,6 +122,7 @@ struct TilePush {
   VANTAGE_ADDRESS(Uints) tile_list;
   VANTAGE_ADDRESS(Uints) dispatch;        // three words: an indirect dispatch
   VANTAGE_ADDRESS(Uints) rays;            // rays of the listed tiles are added here, 64 bits
+  VANTAGE_ADDRESS(TileStarts) starts;
   vec3 origin;
   uint first_row;
   uint row_count;

@@ -9,6 +9,7 @@
 // - The hit's t is clamped to what the triangle's own box, widened by more than all rounding, allows. Every box above holds that box and is
 //   widened more, so no box is culled that may hold the nearest hit; of equal hits the lower triangle number wins.
 #include "lib/sheared_triangle.glsl"
+#include "lib/widening.glsl"
 #include "trace/hit.glsl"
 
 struct SlabRay {
@@ -40,13 +41,11 @@ vec2 rough_passage_of(SlabRay ray, vec3 low, vec3 high) {
   return vec2(max(max(near.x, near.y), near.z), min(min(far.x, far.y), far.z));
 }
 
-Hit trace(vec3 origin, vec3 direction, float t_min, float t_max, float enough) {
+Hit trace(vec3 origin, vec3 direction, float t_min, float t_max, float enough, Starts starts) {
   Hit best = Hit(t_max, no_primitive, vec2(0));
   const Shear shear = shear_along(direction);
 
-  // Boxes are widened by more than the rounding of shear and slabs: 2^-20 of the largest coordinate that takes part.
-  const vec3 extent = max(max(abs(parameters.bounds_min), abs(parameters.bounds_max)), abs(origin));
-  const float widening = 2.0 * max(max(extent.x, extent.y), extent.z) * (1.0 / 1048576.0);
+  const float widening = widening_of(origin);
   const vec3 size = abs(direction);
   precise vec3 safe = vec3(size.x < 1e-12 ? 1e-12 : direction.x, size.y < 1e-12 ? 1e-12 : direction.y,
                            size.z < 1e-12 ? 1e-12 : direction.z);
@@ -57,6 +56,11 @@ Hit trace(vec3 origin, vec3 direction, float t_min, float t_max, float enough) {
   float enters[bvh_stack_size];  // where the ray enters what is on the stack
   uint depth = 0;
   uint current = 0;  // the root is always a node
+  uint started = tile_starts;
+  if (starts.list != 0ul) {
+    current = TileStarts(starts.list).at[starts.first].node;
+    started = 1u;
+  }
   for (;;) {
     if ((current & bvh_leaf_bit) == 0u) {
       NodeQuarters node = parameters.nodes;
@@ -104,14 +108,21 @@ Hit trace(vec3 origin, vec3 direction, float t_min, float t_max, float enough) {
         }
       }
     }
-    if (depth == 0u || best.t < enough) break;
+    if (best.t < enough) break;
     bool found = false;
     while (depth > 0u && !found) {
       --depth;
       found = enters[depth] <= best.t;
     }
-    if (!found) break;
-    current = stack[depth];
+    if (found) {
+      current = stack[depth];
+    } else {
+      if (started == tile_starts) break;
+      const TileStart start = TileStarts(starts.list).at[starts.first + started];
+      if (start.near > best.t) break;
+      current = start.node;
+      ++started;
+    }
   }
   return best;
 }

@@ -4,9 +4,17 @@
 #define VANTAGE_TRACE_HIT
 #include "lib/parameters.glsl"
 
-// Hit trace(origin, direction, t_min, t_max, enough): the nearest hit in [t_min, t_max]. An engine may return any hit nearer than
+// Hit trace(origin, direction, t_min, t_max, enough, starts): the nearest hit in [t_min, t_max]. An engine may return any hit nearer than
 // `enough` where the caller only wants to know that there is one.
 const float want_nearest = -1.0;
+
+// Where the traversal may start: nodes that hold all that the ray can hit, `first` on of the TileStarts at this address. Engines that know
+// no nodes pass them over.
+struct Starts {
+  uint64_t list;
+  uint first;
+};
+const Starts from_the_root = Starts(0ul, 0u);
 
 struct Hit {
   float t;

@@ -22,7 +22,7 @@ vec2 barycentric_of(uint triangle, vec3 origin, vec3 direction, vec2 otherwise) 
   return weights;
 }
 
-Hit trace(vec3 origin, vec3 direction, float t_min, float t_max, float enough) {
+Hit trace(vec3 origin, vec3 direction, float t_min, float t_max, float enough, Starts starts) {
   Hit hit = Hit(t_max, no_primitive, vec2(0));
   rayQueryEXT query;
   rayQueryInitializeEXT(query, acceleration_structure, gl_RayFlagsOpaqueEXT, 0xFF, origin, t_min, direction, t_max);

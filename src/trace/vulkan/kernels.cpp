@@ -35,6 +35,8 @@ Shader shader_of(Kernel kernel, Engine engine) {
       return {"tiles", shaders::tiles, shaders::tiles_size, sizeof(TilePush), 0};
     case Kernel::tile_list:
       return {"tile list", shaders::tile_list, shaders::tile_list_size, sizeof(TilePush), 0};
+    case Kernel::tile_starts:
+      return {"tile starts", shaders::tile_starts, shaders::tile_starts_size, sizeof(TilePush), 0};
     case Kernel::clamp:
       return {"clamp", shaders::clamp, shaders::clamp_size, sizeof(ClampPush), 0};
     case Kernel::reduce:

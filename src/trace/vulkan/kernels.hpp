@@ -17,6 +17,7 @@ enum class Kernel {
   scan,
   tiles,
   tile_list,
+  tile_starts,
   clamp,
   reduce,
   sample_list,

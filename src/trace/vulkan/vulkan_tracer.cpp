@@ -179,7 +179,7 @@ class VulkanTracer final : public Tracer {
   Buffer positions_, normals_, triangles_, diffuse_, sigma_, noise_reaches_, normal_table_;  // filled when first needed
   Buffer weights_;  // of voxels, where they have any
   Buffer counts_, masks_, station_counters_, totals_, station_counts_;
-  Buffer tile_far_, tile_list_, tile_dispatch_, tile_rays_;
+  Buffer tile_far_, tile_list_, tile_dispatch_, tile_rays_, tile_starts_;
   std::uint64_t rays_per_submission_ = 0;  // follows the speed seen; sizes the submissions, not the results
 
   std::vector<std::uint32_t> sample_;  // what the sample buffers hold
@@ -426,13 +426,15 @@ NetworkCounts VulkanTracer::count(std::span<const TraceStation> stations, std::u
   if (mask_words) ensure(masks_, std::uint64_t{voxels} * mask_words * sizeof(std::uint32_t), "station masks");
   ensure(station_counters_, 64 * 4 * sizeof(std::uint32_t), "station counters");
   const std::uint32_t tiles_in_row = groups_of(columns, tile_side), tiles = tiles_in_row * groups_of(rows, tile_side);
+  const std::uint64_t list_words = std::uint64_t{tiles} * stations_per_submission + parts_per_submission;
+  const bool with_starts = info_.engine == Engine::compute_bvh;
   if (options.skip) {
     ensure(tile_far_, std::uint64_t{tiles} * stations_per_submission * sizeof(std::uint32_t), "tile far");
-    ensure(tile_list_, (std::uint64_t{tiles} * stations_per_submission + parts_per_submission) * sizeof(std::uint32_t),
-           "tile list");
+    ensure(tile_list_, list_words * sizeof(std::uint32_t), "tile list");
     ensure(tile_dispatch_, parts_per_submission * dispatch_words * sizeof(std::uint32_t), "tile dispatch",
            VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
     ensure(tile_rays_, 2 * sizeof(std::uint32_t), "tile rays");
+    if (with_starts) ensure(tile_starts_, list_words * tile_starts * sizeof(TileStart), "tile starts");
   }
   const std::array<std::uint32_t, 1> station_counts{station_count};
   const std::uint32_t stride = totals_seen + station_count + station_count * (station_count - 1) / 2;
@@ -453,6 +455,7 @@ NetworkCounts VulkanTracer::count(std::span<const TraceStation> stations, std::u
     push.tile_list = tile_list_.address() + part.list * sizeof(std::uint32_t);
     push.dispatch = tile_dispatch_.address() + k * dispatch_words * sizeof(std::uint32_t);
     push.rays = tile_rays_.address();
+    if (with_starts) push.starts = tile_starts_.address() + part.list * tile_starts * sizeof(TileStart);
     const Float3& origin = stations[part.station].origin;
     push.origin = {origin.x, origin.y, origin.z};
     push.first_row = part.first_row;
@@ -477,6 +480,11 @@ NetworkCounts VulkanTracer::count(std::span<const TraceStation> stations, std::u
             .dispatch(c, tile_push(parts[k], k),
                       groups_of(std::uint64_t{groups_of(parts[k].row_count, tile_side)} * tiles_in_row));
       shader_after_shader(c);
+      for (std::size_t k = 0; with_starts && k < parts.size(); ++k)
+        kernels_.get(Kernel::tile_starts)
+            .dispatch(c, tile_push(parts[k], k),
+                      groups_of(std::uint64_t{groups_of(parts[k].row_count, tile_side)} * tiles_in_row));
+      if (with_starts) shader_after_shader(c);
     }
     // Counts are sums, so the parts need not wait for each other.
     const ComputePipeline& pipeline = kernels_.get(Kernel::count, {noise(), options.masks, options.skip});
@@ -509,6 +517,7 @@ NetworkCounts VulkanTracer::count(std::span<const TraceStation> stations, std::u
       const TilePush tile = tile_push(part, k);
       push.tile_far = tile.tile_far;
       push.tile_list = tile.tile_list;
+      push.starts = tile.starts;
       pipeline.bind(c, &push);
       vkCmdDispatchIndirect(c, tile_dispatch_.handle(), k * dispatch_words * sizeof(std::uint32_t));
     }

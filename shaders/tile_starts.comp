@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// Finds for every listed tile the nodes of the BVH at which its rays may start: a thread a tile. The rays of a tile leave one point in almost
+// one direction, so far down the tree they all decide alike; the tile decides once for its 1024 rays.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "lib/parameters.glsl"
+#include "lib/widening.glsl"
+
+layout(local_size_x = 128) in;
+layout(push_constant, scalar) uniform Push { TilePush push; };
+
+// What lies on the inner side of four planes through the origin, and not beyond far. The planes hold all rays of a tile: two upright ones
+// through its first and last column, and two that touch the cones of its first and last row.
+struct Beam {
+  vec3 planes[4];
+  float far;
+};
+
+Beam beam_of(uint tile, float far) {
+  const uint tiles_in_row = (parameters.columns + tile_side - 1u) / tile_side;
+  const uint row0 = tile / tiles_in_row * tile_side, column0 = tile % tiles_in_row * tile_side;
+  const uint row1 = min(row0 + tile_side, parameters.rows) - 1u, column1 = min(column0 + tile_side, parameters.columns) - 1u;
+  const vec2 first = vec2(parameters.cos_azimuth.at[column0], parameters.sin_azimuth.at[column0]),
+             last = vec2(parameters.cos_azimuth.at[column1], parameters.sin_azimuth.at[column1]);
+  Beam beam = Beam(vec3[4](vec3(0), vec3(0), vec3(0), vec3(0)), far);
+  // Wider tiles than 120° are not convex enough to be held by planes: everything is inside of (0, 0, 0).
+  const float spread = length(first + last) * 0.5;  // cosine of half the width
+  if (spread < 0.5 || float(column1 - column0) * parameters.azimuth_step > 2.1) return beam;
+  const vec2 middle = (first + last) / (2.0 * spread);
+  beam.planes[0] = vec3(-first.y, first.x, 0);
+  beam.planes[1] = vec3(last.y, -last.x, 0);
+  // A ray at zenith θ and horizontal distance ρ has ρ·cos θ0 ≥ z·sin θ0 from row 0 on, and ρ·cos θ1 ≤ z·sin θ1 up to row 1. Along the
+  // middle it goes u with u ≤ ρ ≤ u / spread.
+  const float cos0 = parameters.cos_zenith.at[row0], cos1 = parameters.cos_zenith.at[row1];
+  const float wide = 1.00001 / spread;
+  beam.planes[2] = vec3(middle * (cos0 > 0.0 ? cos0 * wide : cos0), -parameters.sin_zenith.at[row0]);
+  beam.planes[3] = vec3(middle * (cos1 < 0.0 ? -cos1 * wide : -cos1), parameters.sin_zenith.at[row1]);
+  return beam;
+}
+
+// Distance of the box from the origin; negative where it is out of the beam.
+float distance_in(Beam beam, vec3 low, vec3 high) {
+  for (uint k = 0u; k < 4u; ++k) {
+    const vec3 farthest = max(beam.planes[k] * low, beam.planes[k] * high);
+    if (farthest.x + farthest.y + farthest.z < 0.0) return -1.0;
+  }
+  const float near = length(clamp(vec3(0), low, high)) * 0.999999;
+  return near <= beam.far ? near : -1.0;
+}
+
+void main() {
+  const uint k = gl_GlobalInvocationID.x;
+  if (k >= push.tile_list.at[0]) return;
+  const uint tile = push.tile_list.at[1u + k];
+  const Beam beam = beam_of(tile, min(parameters.max_range, push.tile_far.at[tile]));
+  // Twice as wide as the rays' own boxes of nodes, so that what a ray would enter is in the beam.
+  const float widening = 4.0 * widening_of(push.origin);
+
+  // Nodes that may still be opened, first in first out, and those at which rays start, nearest first: together at most tile_starts.
+  uint waiting[tile_starts];
+  TileStart starts[tile_starts];
+  uint head = 0u, waiting_count = 1u, start_count = 0u;
+  float waiting_near[tile_starts];
+  waiting[0] = 0u;
+  waiting_near[0] = 0.0;
+  while (waiting_count > 0u) {
+    const uint at = head++ % tile_starts;
+    --waiting_count;
+    const uint node = waiting[at];
+    const float near = waiting_near[at];
+    const uvec4 word0 = parameters.nodes.at[4u * node], word1 = parameters.nodes.at[4u * node + 1u],
+                word2 = parameters.nodes.at[4u * node + 2u], word3 = parameters.nodes.at[4u * node + 3u];
+    const uint children[2] = uint[2](word0.w, word1.w);
+    const float nears[2] = float[2](distance_in(beam, uintBitsToFloat(word0.xyz) - push.origin - widening, uintBitsToFloat(word1.xyz) - push.origin + widening),
+                                    distance_in(beam, uintBitsToFloat(word2.xyz) - push.origin - widening, uintBitsToFloat(word3.xyz) - push.origin + widening));
+    uint inside = 0u, leaves = 0u;
+    for (uint c = 0u; c < 2u; ++c)
+      if (nears[c] >= 0.0) {
+        ++inside;
+        if ((children[c] & bvh_leaf_bit) != 0u) ++leaves;
+      }
+    // A leaf's box is its parent's to test, so the parent is where rays start.
+    if (leaves > 0u || start_count + waiting_count + inside > tile_starts) {
+      uint place = start_count++;
+      for (; place > 0u && starts[place - 1u].near > near; --place) starts[place] = starts[place - 1u];
+      starts[place] = TileStart(node, near);
+    } else {
+      for (uint c = 0u; c < 2u; ++c)
+        if (nears[c] >= 0.0) {
+          const uint free = (head + waiting_count++) % tile_starts;
+          waiting[free] = children[c];
+          waiting_near[free] = nears[c];
+        }
+    }
+  }
+  for (uint s = 0u; s < tile_starts; ++s)
+    push.starts.at[k * tile_starts + s] = s < start_count ? starts[s] : TileStart(0u, uintBitsToFloat(0x7F800000u));
+}
