@@ -39,12 +39,10 @@ Beam beam_of(uint tile, float far) {
 }
 
 // Distance of the box from the origin; negative where it is out of the beam.
-float distance_in(Beam beam, vec3 low, vec3 high) {
-  for (uint k = 0u; k < 4u; ++k) {
-    const vec3 farthest = max(beam.planes[k] * low, beam.planes[k] * high);
-    if (farthest.x + farthest.y + farthest.z < 0.0) return -1.0;
-  }
-  const float near = length(clamp(vec3(0), low, high)) * 0.999999;
+float distance_in(Beam beam, vec3 centre, vec3 half_size) {
+  for (uint k = 0u; k < 4u; ++k)
+    if (dot(beam.planes[k], centre) + dot(abs(beam.planes[k]), half_size) < 0.0) return -1.0;
+  const float near = length(max(abs(centre) - half_size, vec3(0))) * 0.999999;
   return near <= beam.far ? near : -1.0;
 }
 
@@ -71,8 +69,8 @@ void main() {
     const uvec4 word0 = parameters.nodes.at[4u * node], word1 = parameters.nodes.at[4u * node + 1u],
                 word2 = parameters.nodes.at[4u * node + 2u], word3 = parameters.nodes.at[4u * node + 3u];
     const uint children[2] = uint[2](word0.w, word1.w);
-    const float nears[2] = float[2](distance_in(beam, uintBitsToFloat(word0.xyz) - push.origin - widening, uintBitsToFloat(word1.xyz) - push.origin + widening),
-                                    distance_in(beam, uintBitsToFloat(word2.xyz) - push.origin - widening, uintBitsToFloat(word3.xyz) - push.origin + widening));
+    const float nears[2] = float[2](distance_in(beam, uintBitsToFloat(word0.xyz) - push.origin, uintBitsToFloat(word1.xyz) + widening),
+                                    distance_in(beam, uintBitsToFloat(word2.xyz) - push.origin, uintBitsToFloat(word3.xyz) + widening));
     uint inside = 0u, leaves = 0u;
     for (uint c = 0u; c < 2u; ++c)
       if (nears[c] >= 0.0) {

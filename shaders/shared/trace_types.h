@@ -26,20 +26,20 @@ VANTAGE_CONST uint tile_side = 32;
 VANTAGE_CONST uint blocks_per_tile = (tile_side / block_columns) * (tile_side / block_rows);
 VANTAGE_CONST uint tile_groups_y = 32768;        // tiles along y of an indirect dispatch; the rest goes to z
 
-// A binary BVH node: the boxes of both children. A child is a node's index, or a leaf: bit 31, triangle count − 1 in bits 28–30, first
+// A binary BVH node: the boxes of both children, by centre and half size, which takes a ray fewer minima and maxima than two corners do. A child is a node's index, or a leaf: bit 31, triangle count − 1 in bits 28–30, first
 // triangle in the rest.
 VANTAGE_CONST uint bvh_leaf_bit = 0x80000000u;
 VANTAGE_CONST uint bvh_leaf_count_shift = 28;
 VANTAGE_CONST uint bvh_leaf_first_mask = 0x0FFFFFFFu;
 VANTAGE_CONST uint bvh_stack_size = 64;
 struct BvhNode {
-  vec3 min0;
+  vec3 centre0;
   uint child0;
-  vec3 max0;
+  vec3 half0;
   uint child1;
-  vec3 min1;
+  vec3 centre1;
   uint unused0;
-  vec3 max1;
+  vec3 half1;
   uint unused1;
 };
 

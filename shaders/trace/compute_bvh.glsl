@@ -34,10 +34,17 @@ vec2 passage_of(SlabRay ray, vec3 low, vec3 high) {
   return vec2(max(max(near.x, near.y), near.z), min(min(far.x, far.y), far.z));
 }
 
-// The same where a last bit more or less does no harm: contraction is welcome.
-vec2 rough_passage_of(SlabRay ray, vec3 low, vec3 high) {
-  const vec3 a = low * ray.inverse - ray.low, b = high * ray.inverse - ray.high;
-  const vec3 near = min(a, b), far = max(a, b);
+// The same through a node's box, where a last bit more or less does no harm: contraction is welcome.
+struct NodeRay {
+  vec3 inverse;
+  vec3 size;   // of the inverse
+  vec3 moved;  // origin · inverse
+  float widening;
+};
+
+vec2 passage_of(NodeRay ray, vec3 centre, vec3 half_size) {
+  const vec3 middle = centre * ray.inverse - ray.moved, wide = half_size + ray.widening;
+  const vec3 near = middle - wide * ray.size, far = middle + wide * ray.size;
   return vec2(max(max(near.x, near.y), near.z), min(min(far.x, far.y), far.z));
 }
 
@@ -50,7 +57,7 @@ Hit trace(vec3 origin, vec3 direction, float t_min, float t_max, float enough, S
   precise vec3 safe = vec3(size.x < 1e-12 ? 1e-12 : direction.x, size.y < 1e-12 ? 1e-12 : direction.y,
                            size.z < 1e-12 ? 1e-12 : direction.z);
   const vec3 inverse = vec3(exact_reciprocal(safe.x), exact_reciprocal(safe.y), exact_reciprocal(safe.z));
-  const SlabRay node_ray = slab_ray(origin, inverse, 2.0 * widening);
+  const NodeRay node_ray = NodeRay(inverse, abs(inverse), origin * inverse, 2.0 * widening);
 
   uint stack[bvh_stack_size];
   float enters[bvh_stack_size];  // where the ray enters what is on the stack
@@ -67,8 +74,8 @@ Hit trace(vec3 origin, vec3 direction, float t_min, float t_max, float enough, S
       const uvec4 word0 = node.at[4u * current], word1 = node.at[4u * current + 1u], word2 = node.at[4u * current + 2u],
                   word3 = node.at[4u * current + 3u];
       const uint child0 = word0.w, child1 = word1.w;
-      const vec2 way0 = rough_passage_of(node_ray, uintBitsToFloat(word0.xyz), uintBitsToFloat(word1.xyz)),
-                 way1 = rough_passage_of(node_ray, uintBitsToFloat(word2.xyz), uintBitsToFloat(word3.xyz));
+      const vec2 way0 = passage_of(node_ray, uintBitsToFloat(word0.xyz), uintBitsToFloat(word1.xyz)),
+                 way1 = passage_of(node_ray, uintBitsToFloat(word2.xyz), uintBitsToFloat(word3.xyz));
       const float enter0 = max(way0.x, t_min), enter1 = max(way1.x, t_min);
       const bool hit0 = enter0 <= min(way0.y, best.t), hit1 = enter1 <= min(way1.y, best.t);
       const bool first0 = hit0 && (!hit1 || enter0 <= enter1);

@@ -84,7 +84,7 @@ TEST(ShaderLayout, EveryShaderPlacesSharedMembersAsTheHostDoes) {
   }
   // Loaded 16 bytes at a time: what shaders take these offsets to be.
   const std::map<std::string, Members> by_quarters{
-      {"BvhNode", {{"min0", 0}, {"child0", 12}, {"max0", 16}, {"child1", 28}, {"min1", 32}, {"unused0", 44}, {"max1", 48}, {"unused1", 60}}},
+      {"BvhNode", {{"centre0", 0}, {"child0", 12}, {"half0", 16}, {"child1", 28}, {"centre1", 32}, {"unused0", 44}, {"half1", 48}, {"unused1", 60}}},
       {"BvhTriangle", {{"a", 0}, {"id", 12}, {"b", 16}, {"unused0", 28}, {"c", 32}, {"unused1", 44}}},
       {"VoxelBrick", {{"x", 0}, {"y", 4}, {"z", 8}, {"first", 12}, {"mask", 16}}}};
   for (const auto& [name, members] : by_quarters) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
 #include <limits>
 #include <numeric>
 
@@ -38,11 +39,26 @@ struct Bounds3 {
       max[k] = std::max(max[k], v[k]);
     }
   }
+  // [centre − half_size, centre + half_size] holds the box, whatever the rounding.
+  vec3 centre() const { return {middle(0), middle(1), middle(2)}; }
+  vec3 half_size() const { return {half(0), half(1), half(2)}; }
   float half_area() const {
     const float x = max[0] - min[0], y = max[1] - min[1], z = max[2] - min[2];
     return x < 0 ? 0.0f : x * y + y * z + z * x;
   }
+
+ private:
+  float middle(std::size_t axis) const { return empty() ? 0.0f : 0.5f * (min[axis] + max[axis]); }
+  float half(std::size_t axis) const {
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    return empty() ? -infinity : std::nextafter(std::max(max[axis] - middle(axis), middle(axis) - min[axis]), infinity);
+  }
+  bool empty() const { return min[0] > max[0]; }
 };
+
+BvhNode node_of(const Bounds3& a, std::uint32_t child0, const Bounds3& b, std::uint32_t child1) {
+  return {a.centre(), child0, a.half_size(), child1, b.centre(), 0, b.half_size(), 0};
+}
 
 struct Item {
   Bounds3 box;
@@ -80,14 +96,10 @@ class Builder {
       build_left();
       build_right();
     }
-    set_node(slot, left, left_word, right, right_word);
+    nodes_[slot] = node_of(left, left_word, right, right_word);
     return slot;
   }
 
-  void set_node(std::uint32_t slot, const Bounds3& a, std::uint32_t child0, const Bounds3& b, std::uint32_t child1) {
-    nodes_[slot] = {{a.min[0], a.min[1], a.min[2]}, child0, {a.max[0], a.max[1], a.max[2]}, child1,
-                    {b.min[0], b.min[1], b.min[2]}, 0,      {b.max[0], b.max[1], b.max[2]}, 0};
-  }
   const std::vector<BvhNode>& nodes() const { return nodes_; }
 
  private:
@@ -196,10 +208,7 @@ Bvh build_bvh(std::span<const Float3> positions, std::span<const Triangle> trian
     Bounds3 all;
     for (const auto& item : items) all.extend(item.box);
     const std::uint32_t leaf = bvh_leaf_bit | static_cast<std::uint32_t>(items.size() - 1) << bvh_leaf_count_shift;
-    bvh.nodes.resize(1);
-    const float infinity = std::numeric_limits<float>::infinity();
-    bvh.nodes[0] = {{all.min[0], all.min[1], all.min[2]}, leaf, {all.max[0], all.max[1], all.max[2]}, leaf,
-                    {infinity, infinity, infinity},       0,    {infinity, infinity, infinity},       0};
+    bvh.nodes = {node_of(all, leaf, Bounds3(), leaf)};
   } else {
     const std::uint32_t root = builder.build(0, items.size(), 0, 0);
     bvh.nodes = compact(builder.nodes(), root);
