@@ -33,6 +33,8 @@ static_assert(std::is_trivially_copyable_v<TraceParameters> && sizeof(Float3) ==
 constexpr std::uint32_t group_size = 128;
 // A dispatch of so many rays takes a fraction of a watchdog's limit even on a slow device of its kind.
 constexpr double seconds_per_submission = 0.25;
+// A population of samples is one submission where it takes no longer than this, half of the shortest usual limit.
+constexpr double seconds_per_sampled_submission = 1, first_sampled_rays_per_submission = 1e9;
 constexpr std::uint32_t stations_per_submission = 16, parts_per_submission = 256;
 constexpr std::uint32_t dispatch_words = 3;  // of an indirect dispatch
 constexpr std::uint64_t hardware_rays_per_dispatch = std::uint64_t{1} << 26,
@@ -74,6 +76,24 @@ bool validation_wanted(const TraceScene& scene) {
   return scene.validation || (variable && *variable && std::string(variable) != "0");
 }
 
+// Part of a batch of networks whose rays one list probably holds: slots × sampled voxels, or some rows of a single pair.
+struct SampleChunk {
+  std::uint32_t first_slot, end_slot, first_voxel, end_voxel, first_row, end_row;
+
+  std::uint64_t pairs() const { return std::uint64_t{end_slot - first_slot} * (end_voxel - first_voxel); }
+  std::array<SampleChunk, 2> halves() const {
+    SampleChunk a = *this, b = *this;
+    if (end_slot - first_slot > 1) {
+      a.end_slot = b.first_slot = first_slot + (end_slot - first_slot) / 2;
+    } else if (end_voxel - first_voxel > 1) {
+      a.end_voxel = b.first_voxel = first_voxel + (end_voxel - first_voxel) / 2;
+    } else {
+      a.end_row = b.first_row = first_row + (end_row - first_row) / 2;
+    }
+    return {a, b};
+  }
+};
+
 class VulkanTracer final : public Tracer {
  public:
   VulkanTracer(const EngineInfo& info, std::shared_ptr<Instance> instance, VkPhysicalDevice physical,
@@ -90,6 +110,7 @@ class VulkanTracer final : public Tracer {
                                               std::to_string(scene.pattern->columns()) +
                                               " rays; this engine takes fewer than 2^31 a station: use larger steps");
     rays_per_submission_ = rays_per_dispatch();
+    if (!info_.software) sampled_rays_per_submission_ = first_sampled_rays_per_submission;
     upload_scene();
   }
 
@@ -111,6 +132,7 @@ class VulkanTracer final : public Tracer {
   TraceSet build_traversal();
   void upload_scene();
   void upload_shading();
+  void record_chunk(VkCommandBuffer c, const SampleChunk& chunk, SamplePush push, std::size_t k, bool masks);
   void upload_sample(std::span<const std::uint32_t> sample, std::span<const std::vector<TraceStation>> networks);
   double sample_reach(std::span<const std::vector<TraceStation>> networks) const;
   void write_parameters() { commands_.upload(parameters_buffer_, &parameters_, sizeof parameters_); }
@@ -187,7 +209,9 @@ class VulkanTracer final : public Tracer {
   NoiseReaches reaches_{};             // where there is noise
   Buffer sample_voxels_, sample_triangles_, sample_stations_, sample_rays_, sample_items_, sample_control_,
       network_rays_, sample_weights_;
-  double rays_per_pair_ = 8;  // as seen so far; sizes the chunks, not the results
+  // As seen so far; they size chunks and submissions, not the results.
+  double rays_per_pair_ = 8;
+  double sampled_rays_per_submission_ = 0;
 };
 
 TraceSet VulkanTracer::build_traversal() {
@@ -607,9 +631,9 @@ void VulkanTracer::upload_sample(std::span<const std::uint32_t> sample, std::spa
   const VoxelGrid& grid = *scene_.grid;
   const SceneData& scene = *scene_.scene;
   // Wider than the slack of cube_of in shaders/lib/sample.glsl for any station within range.
-  const Box& b = scene.local_bounds;
-  const double largest = std::max({std::abs(b.min.x), std::abs(b.min.y), std::abs(b.min.z), std::abs(b.max.x),
-                                   std::abs(b.max.y), std::abs(b.max.z)}) +
+  const Box& bounds = scene.local_bounds;
+  const double largest = std::max({std::abs(bounds.min.x), std::abs(bounds.min.y), std::abs(bounds.min.z),
+                                   std::abs(bounds.max.x), std::abs(bounds.max.y), std::abs(bounds.max.z)}) +
                          static_cast<double>(scene_.pattern->max_range);
   const double margin = sample_reach(networks) + largest * 0x1p-17;
   if (sample_voxels_ && margin <= sample_margin_ && std::ranges::equal(sample, sample_)) return;
@@ -626,7 +650,7 @@ void VulkanTracer::upload_sample(std::span<const std::uint32_t> sample, std::spa
       triangles[i] = {corner(a), corner(b), corner(c), triangle_gap(a, b, c, grid, cell)};
     }
     std::sort(triangles.begin() + touching.offset[k], triangles.begin() + touching.offset[k + 1],
-              [](const SampleTriangle& a, const SampleTriangle& b) { return a.gap < b.gap; });
+              [](const SampleTriangle& one, const SampleTriangle& other) { return one.gap < other.gap; });
   });
   voxels.back() = {0, 0, 0, touching.offset.back()};
   if (weights_) {
@@ -663,6 +687,30 @@ double VulkanTracer::sample_reach(std::span<const std::vector<TraceStation>> net
   return static_cast<double>(reach_within(*scene_.noise, reaches_, static_cast<float>(farthest) + parameters_.noise_reach));
 }
 
+// Records the listing and tracing of one chunk, whose control words are number k of the submission.
+void VulkanTracer::record_chunk(VkCommandBuffer c, const SampleChunk& chunk, SamplePush push, std::size_t k, bool masks) {
+  push.control = sample_control_.address() + k * control_words * sizeof(std::uint32_t);
+  push.first_voxel = chunk.first_voxel;
+  push.end_voxel = chunk.end_voxel;
+  push.first_slot = chunk.first_slot;
+  push.first_row = chunk.first_row;
+  push.end_row = chunk.end_row;
+  const VkDeviceSize dispatch = (k * control_words + control_dispatch) * sizeof(std::uint32_t);
+  shader_after_shader(c);  // the chunk before still reads the list
+  kernels_.get(Kernel::sample_list)
+      .dispatch(c, push, groups_of(chunk.end_voxel - chunk.first_voxel), chunk.end_slot - chunk.first_slot);
+  shader_after_shader(c);
+  kernels_.get(Kernel::sample_arguments, {false}).dispatch(c, push, 1);
+  shader_after_shader(c);
+  kernels_.get(Kernel::sample_queue).bind(c, &push);
+  vkCmdDispatchIndirect(c, sample_control_.handle(), dispatch);
+  shader_after_shader(c);
+  kernels_.get(Kernel::sample_arguments, {true}).dispatch(c, push, 1);
+  shader_after_shader(c);
+  kernels_.get(Kernel::sample_trace, {noise(), masks}).bind(c, &push);
+  vkCmdDispatchIndirect(c, sample_control_.handle(), dispatch);
+}
+
 std::vector<NetworkCounts> VulkanTracer::count_sampled(std::span<const std::vector<TraceStation>> networks,
                                                        std::span<const std::uint32_t> station_counts,
                                                        const SampleJob& job, const Progress& progress) {
@@ -682,19 +730,12 @@ std::vector<NetworkCounts> VulkanTracer::count_sampled(std::span<const std::vect
   const std::uint32_t ray_capacity =
       std::max<std::uint32_t>(info_.software ? 1u << 20 : 1u << 24, 2 * scene_.pattern->columns());
   const std::uint32_t item_capacity = std::max(1u << 16, 2 * scene_.pattern->columns() / sample_part);
-  const std::uint32_t chunks_per_submission = info_.software ? 1 : 64;
   ensure(sample_rays_, std::uint64_t{ray_capacity} * sizeof(SampleRay), "sample rays");
   ensure(sample_items_, std::uint64_t{item_capacity} * sizeof(SampleItem), "sample items");
-  ensure(sample_control_, chunks_per_submission * control_words * sizeof(std::uint32_t), "sample control",
-         VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
   ensure(counts_, std::uint64_t{voxels} * batch_size * sizeof(std::uint32_t), "counts");
   if (mask_words)
     ensure(masks_, std::uint64_t{voxels} * batch_size * mask_words * sizeof(std::uint32_t), "station masks");
   ensure(network_rays_, networks.size() * sizeof(std::uint64_t), "network rays");
-  commands_.run([&](VkCommandBuffer c) {
-    vkCmdFillBuffer(c, network_rays_.handle(), 0, VK_WHOLE_SIZE, 0);
-    record_totals_start(c, station_counts);
-  });
 
   SamplePush base{};
   base.voxels = sample_voxels_.address();
@@ -709,12 +750,10 @@ std::vector<NetworkCounts> VulkanTracer::count_sampled(std::span<const std::vect
   base.mask_words = mask_words;
   base.stop_at = job.masks ? 0 : job.stop_at;
 
-  struct Chunk {
-    std::uint32_t first_slot, end_slot, first_voxel, end_voxel, first_row, end_row;
-    std::uint64_t pairs() const { return std::uint64_t{end_slot - first_slot} * (end_voxel - first_voxel); }
-  };
   bool cancelled = false;
   double seconds = 0;
+  std::vector<std::uint32_t> totals(networks.size() * job.groups * stride);
+  std::vector<std::uint64_t> rays(networks.size());
   Reduction reduction{counts_.address(), base.masks, voxels, job.groups, mask_words, true};
   if (weights_) {
     reduction.weights = sample_weights_.address();
@@ -729,108 +768,96 @@ std::vector<NetworkCounts> VulkanTracer::count_sampled(std::span<const std::vect
       for (const TraceStation& s : networks[n])
         slots.push_back({{s.origin.x, s.origin.y, s.origin.z}, s.place, static_cast<std::uint32_t>(n - first)});
     ensure(sample_stations_, slots.size() * sizeof(SampleStation), "sample stations");
-    commands_.upload(sample_stations_, slots.data(), slots.size() * sizeof(SampleStation));
     base.stations = sample_stations_.address();
     base.network_rays = network_rays_.address() + first * sizeof(std::uint64_t);
-    commands_.run([&](VkCommandBuffer c) {
+    const auto record_start = [&](VkCommandBuffer c) {
+      if (first == 0) {
+        record_update(c, station_counts_, station_counts.data(), station_counts.size_bytes());
+        vkCmdFillBuffer(c, network_rays_.handle(), 0, VK_WHOLE_SIZE, 0);
+      }
+      record_update(c, sample_stations_, slots.data(), slots.size() * sizeof(SampleStation));
       vkCmdFillBuffer(c, counts_.handle(), 0, VK_WHOLE_SIZE, 0);
       if (mask_words) vkCmdFillBuffer(c, masks_.handle(), 0, VK_WHOLE_SIZE, 0);
-    });
+    };
 
-    // The next chunk from the front of what is left, as large as the list will probably hold.
-    std::deque<Chunk> todo;
+    // All of a batch goes into one submission where the device is quick enough for it; what turns out too long for the list comes again in
+    // pieces, and the reduction with it.
+    std::deque<SampleChunk> todo;
     if (!slots.empty() && voxels > 0)
       todo.push_back({0, static_cast<std::uint32_t>(slots.size()), 0, voxels, 0, scene_.pattern->rows()});
-    const auto cut = [&](const Chunk& c) -> std::array<Chunk, 2> {
-      Chunk a = c, b = c;
-      if (c.end_slot - c.first_slot > 1) {
-        a.end_slot = b.first_slot = c.first_slot + (c.end_slot - c.first_slot) / 2;
-      } else if (c.end_voxel - c.first_voxel > 1) {
-        a.end_voxel = b.first_voxel = c.first_voxel + (c.end_voxel - c.first_voxel) / 2;
-      } else {
-        a.end_row = b.first_row = c.first_row + (c.end_row - c.first_row) / 2;
-      }
-      return {a, b};
-    };
     const double all_pairs = static_cast<double>(slots.size()) * voxels;
     double done_pairs = 0;
-    while (!todo.empty()) {
+    bool started = false;
+    do {
       if (progress.stopped()) {
         cancelled = true;
         break;
       }
-      std::vector<Chunk> chunks;
-      while (!todo.empty() && chunks.size() < chunks_per_submission) {
-        Chunk chunk = todo.front();
+      // Chunks from the front of what is left, as large as the list will probably hold.
+      std::vector<SampleChunk> chunks;
+      for (double expected = 0; !todo.empty() && (chunks.empty() || expected < sampled_rays_per_submission_);) {
+        SampleChunk chunk = todo.front();
         todo.pop_front();
         // 65 535 groups a dimension is what every device offers.
         while (chunk.end_slot - chunk.first_slot > 0xFFFFu ||
                groups_of(chunk.end_voxel - chunk.first_voxel) > 0xFFFFu ||
                (chunk.pairs() > 1 && static_cast<double>(chunk.pairs()) * rays_per_pair_ * 1.5 > ray_capacity)) {
-          const auto [a, b] = cut(chunk);
+          const auto [a, b] = chunk.halves();
           todo.push_front(b);
           chunk = a;
         }
+        expected += static_cast<double>(chunk.pairs()) * rays_per_pair_;
         chunks.push_back(chunk);
       }
-      std::vector<std::uint32_t> control(chunks.size() * control_words);
-      seconds += commands_.run([&](VkCommandBuffer c) {
+      const bool last = todo.empty();
+      std::vector<std::uint32_t> control(std::max<std::size_t>(chunks.size(), 1) * control_words);
+      ensure(sample_control_, control.size() * sizeof control[0], "sample control", VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
+      std::vector<Commands::Download> wanted{{sample_control_, control.data(), control.size() * sizeof control[0]}};
+      if (last && end == networks.size()) {
+        wanted.push_back({totals_, totals.data(), totals.size() * sizeof totals[0]});
+        wanted.push_back({network_rays_, rays.data(), rays.size() * sizeof rays[0]});
+      }
+      const auto record = [&](VkCommandBuffer c) {
+        if (!started) record_start(c);
         vkCmdFillBuffer(c, sample_control_.handle(), 0, VK_WHOLE_SIZE, 0);
-        shader_after_transfer(c);
-        for (std::size_t k = 0; k < chunks.size(); ++k) {
-          const Chunk& chunk = chunks[k];
-          SamplePush push = base;
-          push.control = sample_control_.address() + k * control_words * sizeof(std::uint32_t);
-          push.first_voxel = chunk.first_voxel;
-          push.end_voxel = chunk.end_voxel;
-          push.first_slot = chunk.first_slot;
-          push.first_row = chunk.first_row;
-          push.end_row = chunk.end_row;
-          const VkDeviceSize dispatch = (k * control_words + control_dispatch) * sizeof(std::uint32_t);
-          shader_after_shader(c);  // the chunk before still reads the list
-          kernels_.get(Kernel::sample_list)
-              .dispatch(c, push, groups_of(chunk.end_voxel - chunk.first_voxel), chunk.end_slot - chunk.first_slot);
-          shader_after_shader(c);
-          kernels_.get(Kernel::sample_arguments, {false}).dispatch(c, push, 1);
-          shader_after_shader(c);
-          kernels_.get(Kernel::sample_queue).bind(c, &push);
-          vkCmdDispatchIndirect(c, sample_control_.handle(), dispatch);
-          shader_after_shader(c);
-          kernels_.get(Kernel::sample_arguments, {true}).dispatch(c, push, 1);
-          shader_after_shader(c);
-          kernels_.get(Kernel::sample_trace, {noise(), job.masks}).bind(c, &push);
-          vkCmdDispatchIndirect(c, sample_control_.handle(), dispatch);
+        if (last) {
+          const VkDeviceSize of_network = std::uint64_t{job.groups} * stride * sizeof totals[0];
+          vkCmdFillBuffer(c, totals_.handle(), first * of_network, (end - first) * of_network, 0);
         }
-      });
-      commands_.download(sample_control_, control.data(), control.size() * sizeof control[0]);
+        shader_after_transfer(c);
+        for (std::size_t k = 0; k < chunks.size(); ++k) record_chunk(c, chunks[k], base, k, job.masks);
+        if (!last) return;
+        shader_after_shader(c);
+        record_reduction(c, reduction, static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(end - first),
+                         stride);
+      };
+      const double taken = commands_.run_and_download(record, wanted);
+      started = true;
+      seconds += taken;
+      double listed_rays = 0;
       for (std::size_t k = chunks.size(); k-- > 0;) {
         const std::uint32_t listed = control[k * control_words + control_rays],
                             queued = control[k * control_words + control_items];
         if (listed > ray_capacity || queued > item_capacity) {
-          const auto [a, b] = cut(chunks[k]);
+          const auto [a, b] = chunks[k].halves();
           todo.push_front(b);
           todo.push_front(a);
         } else {
           done_pairs += static_cast<double>(chunks[k].pairs()) * (chunks[k].end_row - chunks[k].first_row) /
                         scene_.pattern->rows();
+          listed_rays += listed;
         }
         if (chunks[k].pairs() > 1000)
           rays_per_pair_ =
               0.5 * (rays_per_pair_ + static_cast<double>(listed) / static_cast<double>(chunks[k].pairs()));
       }
-      progress((static_cast<double>(first) + static_cast<double>(end - first) * done_pairs / all_pairs) /
+      if (listed_rays > 0.5 * ray_capacity)
+        sampled_rays_per_submission_ = listed_rays / std::max(taken, 1e-6) * seconds_per_sampled_submission;
+      progress((static_cast<double>(first) + static_cast<double>(end - first) * done_pairs / std::max(all_pairs, 1.0)) /
                static_cast<double>(networks.size()));
-    }
-    seconds += commands_.run([&](VkCommandBuffer c) {
-      record_reduction(c, reduction, static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(end - first),
-                       stride);
-    });
+    } while (!todo.empty());
   }
-  std::vector<std::uint32_t> totals(networks.size() * job.groups * stride);
-  commands_.download(totals_, totals.data(), totals.size() * sizeof totals[0]);
   read_totals(results, station_counts, totals, reduction, stride);
-  std::vector<std::uint64_t> rays(networks.size());
-  commands_.download(network_rays_, rays.data(), rays.size() * sizeof rays[0]);
   for (std::size_t n = 0; n < results.size(); ++n) {
     results[n].rays = rays[n];
     results[n].cancelled = cancelled;
