@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // vantage-stress: prints the tables of docs/stability.md, each under the command that makes it.
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -10,6 +11,7 @@
 
 #include "stress/coplanar.hpp"
 #include "stress/leaks.hpp"
+#include "stress/many_points.hpp"
 #include "stress/moved_scene.hpp"
 #include "stress/odd_rays.hpp"
 #include "stress/reference_differences.hpp"
@@ -145,17 +147,28 @@ void reference(const std::vector<EngineInfo>& engines, double) {
   }
 }
 
+void many(const std::vector<EngineInfo>& engines, double size) {
+  head({"stations", "engine", "rays", "points", "the voxel's count", "goal", "coverage", "from 64 bits", "from 32 that wrapped"});
+  for (const EngineInfo& engine : engines)
+    for (const ManyPoints& m : trace_many_points(engine, 0.028 / std::sqrt(size)))
+      row({count(m.stations), to_string(engine.engine), count(m.rays), count(m.points), count(m.count), number(m.goal),
+           number(m.coverage), number(m.wanted()), number(m.wrapped())});
+}
+
 int run(int argc, char** argv) {
   using Part = std::function<void(const std::vector<EngineInfo>&, double)>;
   const std::vector<std::pair<std::string, Part>> parts{{"moved", moved}, {"turned", turned}, {"baked", baked},
                                                         {"sweep", sweep}, {"leaks", leaks},   {"coplanar", coplanar},
-                                                        {"odd", odd},     {"edges", edges},   {"reference", reference}};
-  std::vector<std::string> wanted;
+                                                        {"odd", odd},     {"edges", edges},   {"reference", reference}, {"many", many}};
+  const std::string costly = "many";  // minutes on a graphics card: only where asked for
+  std::vector<std::string> wanted, wanted_engines;
   double size = 1;
   for (int i = 1; i < argc; ++i) {
     const std::string argument = argv[i];
     if (argument == "--size" && i + 1 < argc) {
       size = std::atof(argv[++i]);
+    } else if (argument == "--engine" && i + 1 < argc) {
+      wanted_engines.push_back(argv[++i]);
     } else {
       wanted.push_back(argument);
     }
@@ -168,15 +181,20 @@ int run(int argc, char** argv) {
   }
   if (!known) {
     std::fprintf(stderr,
-                 "usage: vantage-stress [--size SHARE] [PART...]\nprints tables as Markdown; SHARE of the full size in "
-                 "(0, 1]; parts:");
+                 "usage: vantage-stress [--size SHARE] [--engine NAME]... [PART...]\nprints tables as Markdown; SHARE of the "
+                 "full size in (0, 1]; %s only where asked for; parts:",
+                 costly.c_str());
     for (const auto& part : parts) std::fprintf(stderr, " %s", part.first.c_str());
     std::fprintf(stderr, "\n");
     return 2;
   }
-  const std::vector<EngineInfo> engines = usable_engines();
+  std::vector<EngineInfo> engines = usable_engines();
+  if (!wanted_engines.empty())
+    std::erase_if(engines, [&](const EngineInfo& engine) {
+      return std::find(wanted_engines.begin(), wanted_engines.end(), to_string(engine.engine)) == wanted_engines.end();
+    });
   for (const auto& [name, part] : parts) {
-    if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), name) == wanted.end()) continue;
+    if (wanted.empty() ? name == costly : std::find(wanted.begin(), wanted.end(), name) == wanted.end()) continue;
     std::printf("\n`vantage-stress %s`\n\n", name.c_str());
     part(engines, size);
   }
