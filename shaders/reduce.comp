@@ -12,8 +12,9 @@ layout(local_size_x = 256) in;
 layout(push_constant, scalar) uniform Push { ReducePush push; };
 
 const uint words = reduce_voxels / 32u;
-shared uint low[reduce_voxels];
-shared uint high[reduce_voxels];
+// A word of padding after each 32, so that equal places of the words lie in different banks.
+shared uint low[reduce_voxels + words];
+shared uint high[reduce_voxels + words];
 shared uint seen[64 * words];
 shared uint any_seen[reduce_voxels];  // per subgroup
 // Weight of saturated voxels, and edges; then sums of 64 bits, low word first.
@@ -111,14 +112,14 @@ void main() {
     }
     if (push.mask_words > 0u && (some_of_all >> round & 1u) != 0u) {
       barrier();
-      low[thread] = count > 0u ? push.masks.at[masks + voxel] : 0u;
-      high[thread] = count > 0u && push.mask_words > 1u ? push.masks.at[masks + push.voxel_count + voxel] : 0u;
+      low[thread + thread / 32u] = count > 0u ? push.masks.at[masks + voxel] : 0u;
+      high[thread + thread / 32u] = count > 0u && push.mask_words > 1u ? push.masks.at[masks + push.voxel_count + voxel] : 0u;
       barrier();
       for (uint k = thread; k < n * words; k += 256u) {
         const uint station = k / words, word = k % words;
         uint bits = 0u;
         for (uint v = 0u; v < 32u; ++v) {
-          const uint mask = station < 32u ? low[word * 32u + v] : high[word * 32u + v];
+          const uint mask = station < 32u ? low[word * 33u + v] : high[word * 33u + v];
           bits |= (mask >> (station & 31u) & 1u) << v;
         }
         seen[k] = bits;
