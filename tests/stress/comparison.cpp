@@ -93,9 +93,9 @@ double sigma_difference(Tracer& noisy, Tracer& clean, const NoiseModel& noise, c
   return largest;
 }
 
-BruteForce brute_force_objectives(std::uint64_t voxels, double goal_density,
+BruteForce brute_force_objectives(const VoxelGrid& grid, double goal_density,
                                   std::span<const std::vector<ReferenceHit>> stations) {
-  std::vector<double> points(voxels);
+  std::vector<double> points(grid.size());
   std::vector<std::set<std::uint32_t>> visible(stations.size());
   for (std::size_t s = 0; s < stations.size(); ++s) {
     for (const ReferenceHit& hit : stations[s]) {
@@ -105,7 +105,13 @@ BruteForce brute_force_objectives(std::uint64_t voxels, double goal_density,
     }
   }
   BruteForce result;
-  for (const double n : points) result.coverage += std::min(n / goal_density, 1.0) / static_cast<double>(voxels);
+  double weights = 0;
+  for (std::uint32_t v = 0; v < points.size(); ++v) {
+    const auto weight = static_cast<double>(grid.weight(v));
+    result.coverage += weight * std::min(points[v] / goal_density, 1.0);
+    weights += weight;
+  }
+  result.coverage /= weights;
 
   const std::size_t n = stations.size();
   result.overlap = OverlapMatrix(n);

@@ -39,7 +39,7 @@ struct BruteForce {
   double coverage = 0, clustering = 0;
   OverlapMatrix overlap;
 };
-BruteForce brute_force_objectives(std::uint64_t voxels, double goal_density,
+BruteForce brute_force_objectives(const VoxelGrid& grid, double goal_density,
                                   std::span<const std::vector<ReferenceHit>> stations);
 
 }  // namespace vantage::test

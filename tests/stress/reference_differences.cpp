@@ -22,7 +22,7 @@ ReferenceDifferences compare_with_reference(const EngineInfo& engine, const Site
     hits.push_back(site.reference(s, true));
   }
 
-  const BruteForce expected = brute_force_objectives(site.grid->size(), goal_density, hits);
+  const BruteForce expected = brute_force_objectives(*site.grid, goal_density, hits);
   const auto stations = static_cast<std::uint32_t>(site.stations.size());
   const NetworkCounts counts = noisy->count(site.stations, stations, {}, {});
   const OverlapMatrix overlap = overlap_matrix(counts);
