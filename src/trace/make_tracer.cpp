@@ -6,7 +6,7 @@
 
 #include "trace/embree/embree_tracer.hpp"
 #include "trace/tracer.hpp"
-#include "trace/vulkan/vulkan_tracer.hpp"
+#include "trace/vulkan/vulkan_engines.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage {

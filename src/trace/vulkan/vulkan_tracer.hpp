@@ -1,22 +1,144 @@
 // SPDX-License-Identifier: Apache-2.0
-// The two Vulkan engines. They share every shader line but trace().
+// A Vulkan device that traces: scene, acceleration structure and whatever is kept from call to call. ray_query and compute_bvh
+// share all of it but the acceleration structure and the shaders' trace().
+//
+//   vulkan_tracer.cpp    what is uploaded once        count_network.cpp    every ray of a network
+//   scan_station.cpp     points of one station        sample_networks.cpp  the rays of sampled voxels, for many networks
+//   reduction.cpp        from counts and masks to what the objectives need
 #pragma once
 
+#include <algorithm>
+#include <bit>
+#include <cmath>
 #include <cstdint>
 #include <memory>
-#include <optional>
+#include <span>
 #include <vector>
 
+#include "shared/trace_types.h"
+#include "trace/noise_reach.hpp"
 #include "trace/tracer.hpp"
+#include "trace/vulkan/commands.hpp"
+#include "trace/vulkan/kernels.hpp"
+#include "trace/vulkan/ray_query/acceleration_structure.hpp"
 
-namespace vantage {
+namespace vantage::vulkan {
 
-// ray_query and compute_bvh on every device of this machine, usable or not, each with the reason. Where there is no Vulkan at all, two
-// entries without a device say why. Never throws for want of a device.
-std::vector<EngineInfo> list_vulkan_engines();
+inline constexpr std::uint32_t group_size = 128;
+// A dispatch of so many rays takes a fraction of a watchdog's limit even on a slow device of its kind.
+inline constexpr std::uint64_t hardware_rays_per_dispatch = std::uint64_t{1} << 26,
+                               software_rays_per_dispatch = std::uint64_t{1} << 19;
 
-// `engine` is ray_query or compute_bvh; without `device` the best one that has it: hardware before software.
-// Throws Error no_suitable_device with why each device was refused.
-std::unique_ptr<Tracer> make_vulkan_tracer(Engine engine, std::optional<std::uint32_t> device, const TraceScene& scene);
+inline std::uint32_t groups_of(std::uint64_t threads, std::uint32_t size = group_size) {
+  return static_cast<std::uint32_t>((threads + size - 1) / size);
+}
 
-}  // namespace vantage
+struct SampleChunk;
+
+class VulkanTracer final : public Tracer {
+ public:
+  // Throws Error invalid_argument where the pattern has 2^31 rays or more.
+  VulkanTracer(const EngineInfo& info, std::shared_ptr<Instance> instance, VkPhysicalDevice physical,
+               const DeviceAbilities& abilities, const TraceScene& scene);
+
+  const EngineInfo& info() const override { return info_; }
+  std::uint64_t preferred_scan_rays() const override {
+    const std::uint64_t columns = scene_.pattern->columns();
+    return std::max<std::uint64_t>(std::min(rays_per_dispatch(), std::uint64_t{1} << 22) / columns, 1) * columns;
+  }
+
+  void scan(const TraceStation& station, std::uint64_t first_ray, std::uint64_t ray_count, std::uint32_t outputs,
+            RawChunk& chunk) override;
+  NetworkCounts count(std::span<const TraceStation> stations, std::uint32_t station_count, const CountOptions& options,
+                      const Progress& progress) override;
+  std::vector<NetworkCounts> count_sampled(std::span<const std::vector<TraceStation>> networks,
+                                           std::span<const std::uint32_t> station_counts, const SampleJob& job,
+                                           const Progress& progress) override;
+
+ private:
+  TraceSet build_traversal();
+  void upload_scene();
+  void upload_shading();
+  void record_chunk(VkCommandBuffer c, const SampleChunk& chunk, SamplePush push, std::size_t k, bool masks);
+  void upload_sample(std::span<const std::uint32_t> sample, std::span<const std::vector<TraceStation>> networks);
+  double sample_reach(std::span<const std::vector<TraceStation>> networks) const;
+  void write_parameters() { commands_.upload(parameters_buffer_, &parameters_, sizeof parameters_); }
+  bool noise() const { return scene_.noise && scene_.noise->enabled(); }
+  std::uint64_t rays_per_dispatch() const {
+    if (scene_.max_rays_per_dispatch > 0) return scene_.max_rays_per_dispatch;
+    return info_.software ? software_rays_per_dispatch : hardware_rays_per_dispatch;
+  }
+  std::uint32_t goal_points() const {
+    return static_cast<std::uint32_t>(std::min(std::ceil(goal_density_), static_cast<double>(count_limit)));
+  }
+  // So that even `voxels` squares of almost the goal fit in 64 bits: 0 for every goal that scanners reach.
+  std::uint32_t difference_shift(std::uint32_t voxels) const {
+    const int bits = 2 * static_cast<int>(std::bit_width(goal_points())) + static_cast<int>(std::bit_width(voxels));
+    return static_cast<std::uint32_t>(std::max(0, bits - 62) / 2);
+  }
+  std::uint32_t rows_per_dispatch() const {
+    const std::uint64_t rows = rays_per_dispatch() / scene_.pattern->columns() / tile_side * tile_side;
+    return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(rows, tile_side, 0xFFFFu * std::uint64_t{block_rows}));
+  }
+
+  // Grows a buffer that is kept from call to call.
+  void ensure(Buffer& buffer, VkDeviceSize bytes, const char* name, VkBufferUsageFlags extra = 0) {
+    if (!buffer || buffer.size() < bytes) {
+      buffer = Buffer();  // the old one goes first, so that both never exist at once
+      buffer = Buffer(device_, bytes, Buffer::Where::device, name, extra);
+    }
+  }
+  template <class T>
+  Buffer to_device(std::span<const T> values, const char* name) {
+    return make_device_buffer<T>(device_, commands_, values, name);
+  }
+  // In whole words, as shaders read them.
+  Buffer bytes_to_device(std::span<const std::uint8_t> bytes, const char* name) {
+    std::vector<std::uint8_t> padded(bytes.begin(), bytes.end());
+    padded.resize((bytes.size() + 3) / 4 * 4);
+    return to_device<std::uint8_t>(padded, name);
+  }
+
+  // Records the reduction of `networks` blocks of counts and masks, and reads totals back into counts.
+  struct Reduction {
+    std::uint64_t counts, masks;  // addresses
+    std::uint32_t voxels, groups, mask_words;
+    bool differences;
+    std::uint64_t weights = 0;              // address, where voxels have any
+    std::vector<std::uint64_t> weight = {};  // of each group then
+  };
+  void record_reduction(VkCommandBuffer c, const Reduction& r, std::uint32_t first_network, std::uint32_t networks,
+                        std::uint32_t stride);
+  void read_totals(std::span<NetworkCounts> counts, std::span<const std::uint32_t> station_counts,
+                   std::span<const std::uint32_t> totals, const Reduction& r, std::uint32_t stride) const;
+  void ensure_totals(std::size_t networks, std::uint32_t groups, std::uint32_t stride);
+  void record_totals_start(VkCommandBuffer c, std::span<const std::uint32_t> station_counts);
+
+  EngineInfo info_;
+  TraceScene scene_;
+  Device device_;
+  Commands commands_;
+  std::unique_ptr<AccelerationStructure> structure_;  // ray_query
+  Buffer nodes_, bvh_triangles_;                      // compute_bvh
+  TraceParameters parameters_{};                      // before set_, whose making fills a part of it
+  Buffer parameters_buffer_;
+  TraceSet set_;
+  Kernels kernels_;
+  Buffer sin_zenith_, cos_zenith_, sin_azimuth_, cos_azimuth_, bricks_, slots_;
+  Buffer positions_, normals_, triangles_, diffuse_, sigma_, noise_reaches_, normal_table_;  // filled when first needed
+  Buffer weights_;  // of voxels, where they have any
+  Buffer counts_, masks_, station_counters_, totals_, station_counts_;
+  Buffer tile_far_, tile_list_, tile_dispatch_, tile_rays_, tile_starts_;
+  std::uint64_t rays_per_submission_ = 0;  // follows the speed seen; sizes the submissions, not the results
+
+  std::vector<std::uint32_t> sample_;  // what the sample buffers hold
+  double sample_margin_ = 0;           // how far from its voxel a triangle is listed there
+  NoiseReaches reaches_{};             // where there is noise
+  Buffer sample_voxels_, sample_triangles_, sample_stations_, sample_rays_, sample_items_, sample_control_,
+      network_rays_, sample_weights_;
+  // As seen so far; they size chunks and submissions, not the results.
+  double rays_per_pair_ = 8;
+  double sampled_rays_per_submission_ = 0;
+};
+
+}  // namespace vantage::vulkan
