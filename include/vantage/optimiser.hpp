@@ -5,6 +5,7 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <iosfwd>
 #include <memory>
 #include <optional>
@@ -114,11 +115,17 @@ struct MoCmaEsConfig {
   std::size_t population = 100;           ///< μ.
   std::size_t batch = 1;                  ///< Offspring asked for at once in the steady state, so that a GPU is kept full.
   double sigma0 = 0.2;                    ///< Share of the range where there are bounds, else absolute.
-  /// The next three are for the steady state; all 0 gives it as published. With them it needs a fraction of the evaluations on
+  /// The next four are for the steady state; all 0 gives it as published. With them it needs a fraction of the evaluations on
   /// planning problems and leaves local fronts (docs/optimisers.md has both measured).
   double guided = 0.5;                    ///< Share of parents drawn by their hypervolume contribution, not uniformly from the front.
   double spread = 0.25;                   ///< Share of steps that also follow the differences to the parent's neighbours on the front.
   double recombined = 0.15;               ///< Share of offspring by crossover and mutation, as in NSGA-II. Needs bounds.
+  double swapped = 0.4;                   ///< Share of offspring that have one of the parent's `blocks` from elsewhere. Needs bounds.
+  /// Groups of coordinates that mean the same in any order, as the stations of a network do. All of one length, no coordinate twice, and the
+  /// k-th coordinates of all have the same bounds. Empty: there are none.
+  std::vector<std::vector<std::size_t>> blocks = {};
+  /// How many of them, the first ones, count in x. Empty: all. Must give the same for the same x.
+  std::function<std::size_t(std::span<const double> x)> blocks_in_use = {};
   std::optional<Bounds> bounds = std::nullopt;
   std::vector<double> reference = {};     ///< Reference point of the hypervolume; empty: (1, …, 1).
   /// First points of the initial population; the rest is uniform in the bounds, or without bounds normal around the first (or 0).

@@ -11,6 +11,7 @@
 #include <memory>
 #include <utility>
 
+#include "optimise/blocks.hpp"
 #include "optimise/conditional.hpp"
 #include "optimise/hypervolume.hpp"
 #include "optimise/mo_common.hpp"
@@ -55,6 +56,7 @@ struct Offspring {
   double penalty = 0;
   bool recombined = false;  // its place says nothing about the strategy's steps
   bool mixed = false;       // nor did the strategy's normal distribution alone give it
+  bool anywhere = false;    // a block was drawn from the whole box, and is so again
 };
 
 // The front of the population, as the choice of parents needs it.
@@ -81,6 +83,10 @@ struct MoCmaEs::Impl {
   void begin_offspring(const Member& parent, std::size_t k);
   void draw_step(const Member& parent, const Front* front, std::size_t k);
   void recombine(const Member& parent, std::size_t k);
+  // Takes one of the parent's blocks from elsewhere: anywhere in the box, beside another of its blocks, or from a
+  // member of the front.
+  void swap_block(const Member& parent, const Front& front, std::size_t k);
+  std::size_t blocks_in_use(const Member& member) const;
   VectorXd neighbour_step(const Member& parent, const Front& front);
   // Puts unit coordinates, clipped where they lie outside, into point k, with the penalty that belongs to it.
   void express(std::size_t k, VectorXd genotype);
@@ -100,9 +106,10 @@ struct MoCmaEs::Impl {
 
 MoCmaEs::Impl::Impl(std::size_t dimension, std::size_t objectives, const MoCmaEsConfig& config)
     : common("MO-CMA-ES", dimension, objectives, config), initial_shape(Shape::identity(dimension)) {
-  for (const double share : {config.guided, config.spread, config.recombined})
+  for (const double share : {config.guided, config.spread, config.recombined, config.swapped})
     if (!(share >= 0 && share <= 1))
       throw Error(Errc::invalid_argument, "MO-CMA-ES: a share of " + std::to_string(share) + " is not in 0 to 1");
+  optimise::require_blocks(config.blocks, common.box, dimension);
 }
 
 VectorXd MoCmaEs::Impl::to_unit(std::span<const double> x) const {
@@ -224,7 +231,10 @@ VectorXd MoCmaEs::Impl::neighbour_step(const Member& parent, const Front& front)
 void MoCmaEs::Impl::recombine(const Member& parent, std::size_t k) {
   begin_offspring(parent, k);
   const Member& other = members[common.random.index(members.size())];
-  const VectorXd first = to_unit(parent.x), second = to_unit(other.x);
+  const VectorXd first = to_unit(parent.x);
+  VectorXd second = to_unit(other.x), beyond = other.genotype;
+  optimise::align_blocks(as_span(first), {second.data(), common.dimension}, {beyond.data(), common.dimension},
+                         common.config.blocks);
   const optimise::VariationConfig variation;
   auto child = optimise::make_child(as_span(first), as_span(second), variation, common.random);
   if (std::ranges::equal(child, as_span(first)) || std::ranges::equal(child, as_span(second))) {  // known already
@@ -237,10 +247,44 @@ void MoCmaEs::Impl::recombine(const Member& parent, std::size_t k) {
     if (genotype[i] == first[i]) {
       genotype[i] = parent.genotype[i];
     } else if (genotype[i] == second[i]) {
-      genotype[i] = other.genotype[i];
+      genotype[i] = beyond[i];
     }
   }
   pending[k].recombined = pending[k].mixed = true;
+  express(k, std::move(genotype));
+}
+
+std::size_t MoCmaEs::Impl::blocks_in_use(const Member& member) const {
+  const auto& config = common.config;
+  return config.blocks_in_use ? std::clamp<std::size_t>(config.blocks_in_use(member.x), 1, config.blocks.size())
+                              : config.blocks.size();
+}
+
+void MoCmaEs::Impl::swap_block(const Member& parent, const Front& front, std::size_t k) {
+  begin_offspring(parent, k);
+  Offspring& o = pending[k];
+  o.recombined = o.mixed = true;
+  optimise::NormalStream& random = common.random;
+  const auto& blocks = common.config.blocks;
+  const std::size_t in_use = blocks_in_use(parent);
+  VectorXd genotype = parent.genotype;
+  const std::size_t own = random.index(in_use), way = random.index(3);
+  if (way == 0) {
+    o.anywhere = true;
+    for (const std::size_t i : blocks[own]) genotype[static_cast<Index>(i)] = random.uniform();
+    express(k, std::move(genotype));
+    return;
+  }
+  const Member& source = way == 1 ? parent : members[front.members[random.index(front.members.size())]];
+  const bool beside = source.id == parent.id && in_use > 1;
+  const std::size_t taken =
+      beside ? (own + 1 + random.index(in_use - 1)) % in_use : random.index(blocks_in_use(source));
+  for (std::size_t d = 0; d < blocks[own].size(); ++d) {
+    const auto from = static_cast<Index>(blocks[taken][d]), to = static_cast<Index>(blocks[own][d]);
+    o.origin[to] = genotype[to] = source.genotype[from];
+    if (beside)
+      genotype[to] += parent.strategy.sigma * parent.strategy.shape->factor.row(from).norm() * random.normal();
+  }
   express(k, std::move(genotype));
 }
 
@@ -341,9 +385,12 @@ std::span<const double> MoCmaEs::ask() {
   } else if (steady) {
     const Front front = s.front();
     const double recombined = c.box.bounded() ? c.config.recombined : 0.0;
+    const double swapped = c.box.bounded() && !c.config.blocks.empty() ? c.config.swapped : 0.0;
     for (std::size_t k = 0; k < count; ++k) {
       const Member& parent = s.members[s.choose_parent(front)];
-      if (recombined > 0 && c.random.uniform() < recombined) {
+      if (swapped > 0 && c.random.uniform() < swapped) {
+        s.swap_block(parent, front, k);
+      } else if (recombined > 0 && c.random.uniform() < recombined) {
         s.recombine(parent, k);
       } else {
         s.draw_step(parent, &front, k);
@@ -379,6 +426,12 @@ std::span<const double> MoCmaEs::resample(std::size_t index, std::span<const std
     return c.point(index);
   }
   const Offspring& o = s.pending[index];
+  if (o.anywhere) {
+    VectorXd genotype = o.genotype;
+    for (const std::size_t i : coordinates) genotype[static_cast<Index>(i)] = c.random.uniform();
+    s.express(index, std::move(genotype));
+    return c.point(index);
+  }
   const auto n = static_cast<Index>(c.dimension), k = static_cast<Index>(coordinates.size());
   const auto lower = o.strategy.shape->factor.triangularView<Eigen::Lower>();
   MatrixXd columns = MatrixXd::Zero(n, k);

@@ -167,7 +167,10 @@ void MoCommon::save(StateWriter& w) const {
   w.put(std::uint64_t{config.population});
   w.put(std::uint64_t{config.batch});
   w.put(static_cast<std::uint64_t>(config.scheme));
-  for (const double v : {config.sigma0, config.guided, config.spread, config.recombined}) w.put(v);
+  for (const double v : {config.sigma0, config.guided, config.spread, config.recombined, config.swapped}) w.put(v);
+  w.put(std::uint64_t{config.blocks.size()});
+  for (const auto& block : config.blocks)
+    for (const std::size_t i : block) w.put(std::uint64_t{i});
   w.put(box.lower());
   w.put(box.upper());
   w.put(reference);
@@ -193,6 +196,10 @@ MoCommon::Progress MoCommon::read(StateReader& r) const {
   r.expect(config.guided, "guided share");
   r.expect(config.spread, "spread share");
   r.expect(config.recombined, "recombined share");
+  r.expect(config.swapped, "swapped share");
+  r.expect(std::uint64_t{config.blocks.size()}, "number of blocks");
+  for (const auto& block : config.blocks)
+    for (const std::size_t i : block) r.expect(std::uint64_t{i}, "coordinate of a block");
   r.expect(box.lower(), "lower bound");
   r.expect(box.upper(), "upper bound");
   r.expect(reference, "reference");

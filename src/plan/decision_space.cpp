@@ -100,6 +100,15 @@ std::vector<std::size_t> DecisionSpace::coordinates(std::size_t i) const {
   return {2 * k, 2 * k + 1};  // the height cannot leave a hole or a clash
 }
 
+std::vector<std::vector<std::size_t>> DecisionSpace::blocks() const {
+  std::vector<std::vector<std::size_t>> blocks;
+  for (std::size_t k = 0; k < max_; ++k) {
+    auto& block = blocks.emplace_back(std::vector{2 * k, 2 * k + 1});
+    if (heights_) block.push_back(2 * max_ + k);
+  }
+  return blocks;
+}
+
 std::vector<double> DecisionSpace::encode(std::span<const Vec3> heads) const {
   if (heads.empty() || heads.size() > max_)
     refuse("an initial network needs 1 to " + std::to_string(max_) + " positions, " + std::to_string(heads.size()) + " were given");

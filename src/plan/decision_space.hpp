@@ -28,6 +28,8 @@ class DecisionSpace {
   std::vector<PlacedStation> decode(std::span<const double> x) const;
   // Coordinates of x that belong to station `i` of decode(x), which is no kept one.
   std::vector<std::size_t> coordinates(std::size_t i) const;
+  // The coordinates of each station of x, which may change places.
+  std::vector<std::vector<std::size_t>> blocks() const;
   std::size_t kept() const { return kept_.size(); }
   // x whose stations stand at `heads`; further ones repeat them. Throws where one is outside the search area.
   std::vector<double> encode(std::span<const Vec3> heads) const;

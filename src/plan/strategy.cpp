@@ -70,7 +70,9 @@ std::unique_ptr<Strategy> make_strategy(const DecisionSpace& space, const PlanCo
     return std::make_unique<SingleObjective>(space.dimension(), cma);
   }
   MoCmaEsConfig mo{.scheme = config.scheme, .population = population_of(config), .batch = batch, .sigma0 = config.sigma0,
-                   .bounds = space.bounds(), .seed = config.seed};
+                   .blocks = space.blocks(), .bounds = space.bounds(), .seed = config.seed};
+  // The space outlives the strategy.
+  if (space.minimises_stations()) mo.blocks_in_use = [&space](std::span<const double> x) { return space.placed_count(x); };
   if (!config.start.empty()) mo.start = space.encode_each(config.start);
   if (mo.start.size() > mo.population) mo.start.resize(mo.population);
   return std::make_unique<MultiObjective>(make_optimiser(config.algorithm, space.dimension(), space.objectives(), mo));

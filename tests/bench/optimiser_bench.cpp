@@ -22,6 +22,8 @@ namespace {
 
 using Scheme = MoCmaEsConfig::Scheme;
 
+constexpr int kRedraws = 8;  // of stations in holes, as PlanConfig has it
+
 // A line of optimiser_references.csv.
 struct Reference {
   std::string kind, problem;
@@ -53,6 +55,7 @@ struct Options {
   std::size_t seeds = 11, first_seed = 1, evaluations = 50000, batch = 1;
   std::vector<std::string> problems, parts;
   std::string scheme, algorithm = "mo_cma_es", references = VANTAGE_OPTIMISER_REFERENCES;
+  bool blocks = true;
   MoCmaEsConfig search;
 
   bool wants(const std::string& part, const std::string& problem) const {
@@ -64,7 +67,7 @@ struct Options {
 };
 
 struct Summary {
-  double mean = 0, sd = 0, median = 0;
+  double mean = 0, sd = 0, median = 0, lowest = 0;
 };
 
 Summary summarise(std::vector<double> values) {
@@ -74,6 +77,7 @@ Summary summarise(std::vector<double> values) {
   s.sd = values.size() > 1 ? std::sqrt(s.sd / static_cast<double>(values.size() - 1)) : 0;
   std::ranges::sort(values);
   s.median = values[values.size() / 2];
+  s.lowest = values.front();
   return s;
 }
 
@@ -82,7 +86,8 @@ template <typename Run>
 Summary over_seeds(const Options& options, const Run& run) {
   std::vector<double> values(options.seeds);
   tbb::parallel_for(
-      std::size_t{0}, options.seeds, [&](std::size_t i) { values[i] = run(options.first_seed + i); }, tbb::simple_partitioner());
+      std::size_t{0}, options.seeds, [&](std::size_t i) { values[i] = run(options.first_seed + i); },
+      tbb::simple_partitioner());
   return summarise(values);
 }
 
@@ -93,6 +98,7 @@ double run_front(const MoProblem& problem, const Options& options, Scheme scheme
   config.scheme = scheme;
   config.batch = options.batch;
   config.bounds = problem.bounds;
+  if (options.blocks) config.blocks = problem.blocks;
   config.reference.assign(problem.objectives, reference);
   config.max_evaluations = evaluations;
   config.seed = seed;
@@ -103,6 +109,13 @@ double run_front(const MoProblem& problem, const Options& options, Scheme scheme
     const auto points = optimiser->ask();
     const std::size_t count = points.size() / problem.dimension;
     values.resize(count * problem.objectives);
+    for (std::size_t k = 0; k < count && problem.misplaced; ++k) {
+      for (int redraw = 0; redraw < kRedraws; ++redraw) {
+        const auto coordinates = problem.misplaced(points.subspan(k * problem.dimension, problem.dimension));
+        if (coordinates.empty()) break;
+        optimiser->resample(k, coordinates);
+      }
+    }
     for (std::size_t k = 0; k < count; ++k)
       problem.evaluate(points.subspan(k * problem.dimension, problem.dimension),
                        std::span(values).subspan(k * problem.objectives, problem.objectives));
@@ -195,17 +208,19 @@ double run_single(const std::string& name, std::size_t n, double target, std::ui
 
 // Hypervolume on the stand-in for planning after few evaluations, where guided parents and spread steps are to pay.
 void print_station(const Options& options) {
-  if (!options.wants("station", "STATION")) return;
-  std::printf("\nHypervolume on STATION against (1, 1), n = 16\n%-12s %14s %14s %14s\n", "evaluations", "mean", "sd",
-              "scheme");
-  for (const Scheme scheme : {Scheme::steady_state, Scheme::generational}) {
-    const std::string scheme_name = scheme == Scheme::steady_state ? "steady" : "generational";
-    if (!options.scheme.empty() && options.scheme != scheme_name) continue;
-    for (const std::size_t share : {50, 10, 5}) {
-      const std::size_t evaluations = options.evaluations / share;
-      const Summary s = front_over_seeds("STATION", 16, options, scheme, 1, evaluations);
-      std::printf("%-12zu %14.4f %14.2g %14s\n", evaluations, s.mean, s.sd, scheme_name.c_str());
-      std::fflush(stdout);
+  for (const std::string problem : {"STATION", "WALLS", "YARD"}) {
+    if (!options.wants("station", problem)) continue;
+    std::printf("\nHypervolume on %s against (1, 1), n = 16\n%-12s %14s %14s %14s %14s\n", problem.c_str(),
+                "evaluations", "mean", "sd", "lowest", "scheme");
+    for (const Scheme scheme : {Scheme::steady_state, Scheme::generational}) {
+      const std::string scheme_name = scheme == Scheme::steady_state ? "steady" : "generational";
+      if (!options.scheme.empty() && options.scheme != scheme_name) continue;
+      for (const std::size_t share : {50, 10, 5, 1}) {
+        const std::size_t evaluations = options.evaluations / share;
+        const Summary s = front_over_seeds(problem, 16, options, scheme, 1, evaluations);
+        std::printf("%-12zu %14.4f %14.2g %14.4f %14s\n", evaluations, s.mean, s.sd, s.lowest, scheme_name.c_str());
+        std::fflush(stdout);
+      }
     }
   }
 }
@@ -291,6 +306,8 @@ int main(int argc, char** argv) {
   app.add_option("--guided", options.search.guided);
   app.add_option("--spread", options.search.spread);
   app.add_option("--recombined", options.search.recombined);
+  app.add_option("--swapped", options.search.swapped);
+  app.add_flag("!--no-blocks", options.blocks, "Do not tell which coordinates belong together");
   app.add_option("--references", options.references, "Figures of the other libraries");
   CLI11_PARSE(app, argc, argv);
   try {

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "optimise/normal_stream.hpp"
+#include "survey_problem.hpp"
 
 namespace vantage::bench {
 namespace {
@@ -195,6 +196,8 @@ MoProblem mo_problem(const std::string& name, std::size_t n, std::uint64_t seed)
     p.evaluate = dtlz2;
   } else if (name == "STATION") {
     p.evaluate = station;
+  } else if (name == "WALLS" || name == "YARD") {
+    return survey_problem(name, n);
   } else {
     throw std::invalid_argument("unknown problem " + name);
   }

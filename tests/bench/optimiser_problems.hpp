@@ -20,6 +20,9 @@ struct MoProblem {
   std::size_t dimension, objectives;
   Bounds bounds;
   std::function<void(std::span<const double> x, std::span<double> f)> evaluate;
+  // Coordinates of stations in holes, which are to be drawn again; empty where the problem has none.
+  std::function<std::vector<std::size_t>(std::span<const double> x)> misplaced = {};
+  std::vector<std::vector<std::size_t>> blocks = {};  // MoCmaEsConfig::blocks
 };
 
 // Rotations, where the problem has any, are drawn from the seed. Throws std::invalid_argument for an unknown name.

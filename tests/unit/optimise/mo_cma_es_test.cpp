@@ -60,6 +60,7 @@ struct Variant {
   Scheme scheme;
   std::size_t batch;
   bool published = false;  // neither guided parents nor spread steps nor recombination
+  bool blocks = false;     // pairs of coordinates, the last block never in use
 };
 
 class EveryOptimiser : public testing::TestWithParam<Variant> {
@@ -71,6 +72,10 @@ class EveryOptimiser : public testing::TestWithParam<Variant> {
     c.population = 20;
     c.bounds = Bounds::uniform(n, -1, 2);
     if (GetParam().published) c.guided = c.spread = c.recombined = 0;
+    if (GetParam().blocks) {
+      for (std::size_t i = 0; i + 1 < n; i += 2) c.blocks.push_back({i, i + 1});
+      c.blocks_in_use = [n](std::span<const double>) { return n / 2 - 1; };  // none of two: then one
+    }
     return c;
   }
   std::unique_ptr<MultiObjectiveOptimiser> make(std::size_t n, std::size_t m, const MoCmaEsConfig& c) const {
@@ -82,6 +87,7 @@ INSTANTIATE_TEST_SUITE_P(, EveryOptimiser,
                                          Variant{MoAlgorithm::mo_cma_es, Scheme::steady_state, 1},
                                          Variant{MoAlgorithm::mo_cma_es, Scheme::steady_state, 1, true},
                                          Variant{MoAlgorithm::mo_cma_es, Scheme::steady_state, 7},
+                                         Variant{MoAlgorithm::mo_cma_es, Scheme::steady_state, 3, false, true},
                                          Variant{MoAlgorithm::nsga2, Scheme::generational, 1},
                                          Variant{MoAlgorithm::random_search, Scheme::generational, 1}),
                          [](const auto& test) {
@@ -89,7 +95,7 @@ INSTANTIATE_TEST_SUITE_P(, EveryOptimiser,
                                   (test.param.scheme == Scheme::generational
                                        ? ""
                                        : "_steady" + std::to_string(test.param.batch)) +
-                                  (test.param.published ? "_published" : "");
+                                  (test.param.published ? "_published" : "") + (test.param.blocks ? "_blocks" : "");
                          });
 
 TEST_P(EveryOptimiser, NearsAKnownFront) {
@@ -121,6 +127,9 @@ TEST_P(EveryOptimiser, AsksInsideTheBounds) {
     for (std::size_t i = 0; i < n; ++i) {
       c.bounds->lower[i] = *rc::gen::inRange(-1000, 1000) / 7.0;
       c.bounds->upper[i] = c.bounds->lower[i] + *rc::gen::inRange(1, 1000) / 13.0;
+      if (c.blocks.empty() || i < 2) continue;
+      c.bounds->lower[i] = c.bounds->lower[i - 2];
+      c.bounds->upper[i] = c.bounds->upper[i - 2];
     }
     auto optimiser = make(n, 2, c);
     for (int round = 0; round < 20; ++round) {
@@ -307,7 +316,8 @@ TEST_P(EveryOptimiser, RefusesWhatItCannotDo) {
   EXPECT_THROW(make(2, 2, bad), Error);
   if (GetParam().algorithm == MoAlgorithm::mo_cma_es) {
     for (const double share : {-0.1, 1.1, std::nan("")}) {
-      for (double MoCmaEsConfig::*of : {&MoCmaEsConfig::guided, &MoCmaEsConfig::spread, &MoCmaEsConfig::recombined}) {
+      for (double MoCmaEsConfig::*of : {&MoCmaEsConfig::guided, &MoCmaEsConfig::spread, &MoCmaEsConfig::recombined,
+                                         &MoCmaEsConfig::swapped}) {
         bad = c;
         bad.*of = share;
         EXPECT_THROW(make(2, 2, bad), Error);
@@ -377,6 +387,86 @@ TEST(MoCmaEs, RecombinationLeavesLocalFronts) {
   const double best = 8 + 2.0 / 3 + 1;  // ∫ of 5 − 1 + √f over [0, 1], then 5 up to the reference
   EXPECT_GT(reached(0.15), 0.97 * best);
   EXPECT_LT(reached(0), 0.95 * best);
+}
+
+// Four stations of two coordinates before four targets that see a station only when it is near: which stands before which does not matter,
+// and a station that stands before another's target has no way from there. Against it, how far the stations are apart.
+std::vector<double> targets(std::span<const double> x) {
+  double missed = 0, apart = 0;
+  for (const auto& [tx, ty] : {std::pair{0.1, 0.2}, std::pair{0.9, 0.1}, std::pair{0.8, 0.9}, std::pair{0.2, 0.8}}) {
+    double nearest = 0.15;
+    for (std::size_t i = 0; i < x.size(); i += 2) nearest = std::min(nearest, std::hypot(x[i] - tx, x[i + 1] - ty));
+    missed += nearest / 0.15 / 4;
+  }
+  for (std::size_t i = 2; i < x.size(); i += 2) apart += std::hypot(x[i] - x[0], x[i + 1] - x[1]) / 4.5;
+  return {missed, apart};
+}
+
+TEST(MoCmaEs, SwappedBlocksLeaveLocalFronts) {
+  const std::size_t n = 8;
+  const auto reached = [&](double swapped) {
+    MoCmaEsConfig c;
+    c.population = 20;
+    c.bounds = Bounds::uniform(n, 0, 1);
+    c.blocks = {{0, 1}, {2, 3}, {4, 5}, {6, 7}};
+    c.swapped = swapped;
+    c.max_evaluations = 2000;
+    double sum = 0;
+    for (c.seed = 1; c.seed <= 5; ++c.seed) {
+      MoCmaEs optimiser(n, 2, c);
+      run(optimiser, n, targets);
+      sum += optimiser.hypervolume() / 5;
+    }
+    return sum;
+  };
+  EXPECT_GT(reached(0.4), reached(0) + 0.03);
+}
+
+TEST(MoCmaEs, DrawsABlockFromAnywhereAgainFromAnywhere) {
+  MoCmaEsConfig c;
+  c.population = 4;
+  c.batch = 64;
+  c.sigma0 = 1e-6;
+  c.swapped = 1;
+  c.bounds = Bounds::uniform(4, 0, 1);
+  c.blocks = {{0, 1}, {2, 3}};
+  MoCmaEs optimiser(4, 2, c);
+  step(optimiser, 4, two_spheres);
+  const auto known = optimiser.population();
+  const auto is_known = [&](double v, std::size_t d) {
+    for (const ParetoPoint& p : known)
+      if (std::abs(v - p.x[d]) < 1e-4 || std::abs(v - p.x[d + 2]) < 1e-4) return true;
+    return false;
+  };
+  const auto points = optimiser.ask();
+  std::size_t elsewhere = 0;
+  for (std::size_t k = 0; k < 64; ++k) {
+    for (std::size_t b = 0; b < 4; b += 2) {
+      const bool fresh = !is_known(points[4 * k + b], 0) || !is_known(points[4 * k + b + 1], 1);
+      elsewhere += fresh;
+      const std::vector<std::size_t> coordinates{b, b + 1};
+      const auto again = optimiser.resample(k, coordinates);
+      // Beside another block or a member's, it stays there.
+      if (!fresh && is_known(points[4 * k + 2 - b], 0) && is_known(points[4 * k + 3 - b], 1))
+        EXPECT_TRUE(is_known(again[b], 0) && is_known(again[b + 1], 1)) << k;
+    }
+  }
+  EXPECT_GT(elsewhere, 8u);  // a third of 64
+  EXPECT_LT(elsewhere, 40u);
+}
+
+TEST(MoCmaEs, RefusesBlocksThatDoNotChangePlaces) {
+  MoCmaEsConfig c;
+  c.bounds = Bounds{{0, 0, 0, 0}, {1, 1, 1, 2}};
+  for (const std::vector<std::vector<std::size_t>>& blocks :
+       {std::vector<std::vector<std::size_t>>{{0}, {1, 2}}, {{0, 1}, {1, 2}}, {{0, 4}}, {{0}, {3}}, {{}}}) {
+    c.blocks = blocks;
+    EXPECT_THROW(MoCmaEs(4, 2, c), Error);
+  }
+  c.blocks = {{0, 1}, {2, 3}};
+  EXPECT_THROW(MoCmaEs(4, 2, c), Error);
+  c.blocks = {{0}, {2}};
+  EXPECT_NO_THROW(MoCmaEs(4, 2, c));
 }
 
 TEST(MoAlgorithm, NamesRoundTrip) {

@@ -27,6 +27,14 @@ TEST(DecisionSpace, HasTheDimensionsOfSection44) {
   EXPECT_EQ(space.bounds().upper, (std::vector<double>{1, 1, 1, 1, 1, 1, 2.4, 2.4, 2.4, 1}));
 }
 
+TEST(DecisionSpace, KnowsWhichCoordinatesMakeAStation) {
+  const Site site = test::toy_site();
+  PlanConfig config = config_of(Problem::coverage_min, 2, 3);
+  EXPECT_EQ(DecisionSpace(site, config).blocks(), (std::vector<std::vector<std::size_t>>{{0, 1}, {2, 3}, {4, 5}}));
+  config.heights_m = {1.2, 2.4};
+  EXPECT_EQ(DecisionSpace(site, config).blocks(), (std::vector<std::vector<std::size_t>>{{0, 1, 6}, {2, 3, 7}, {4, 5, 8}}));
+}
+
 TEST(DecisionSpace, DecodesByEquation7) {
   const Site site = test::toy_site();
   const DecisionSpace space(site, config_of(Problem::coverage_min, 2, 4));

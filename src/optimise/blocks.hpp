@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// Groups of coordinates that mean the same in any order, as the stations of a network do (MoCmaEsConfig::blocks).
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "optimise/box.hpp"
+
+namespace vantage::optimise {
+
+using Blocks = std::vector<std::vector<std::size_t>>;
+
+// Throws Error invalid_argument where they are not what MoCmaEsConfig says.
+void require_blocks(const Blocks& blocks, const Box& box, std::size_t dimension);
+
+// For each block of `first` one of `second`, each once: the nearest pair first, then the nearest of those left. Unit
+// coordinates.
+std::vector<std::size_t> match_blocks(std::span<const double> first, std::span<const double> second,
+                                      const Blocks& blocks);
+
+// Puts the blocks of `second` into the places of those of `first` that they match, and so those of `along`.
+void align_blocks(std::span<const double> first, std::span<double> second, std::span<double> along,
+                  const Blocks& blocks);
+
+}  // namespace vantage::optimise
