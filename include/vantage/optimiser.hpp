@@ -52,6 +52,10 @@ struct CmaEsConfig {
   std::vector<double> start = {};         ///< Initial mean; empty: random inside the bounds, else 0.
   std::optional<Bounds> bounds = std::nullopt;
   bool active = true;                     ///< Negative weights for the worst half (active CMA).
+  /// As in MoCmaEsConfig. Where there are any, every iteration asks for a tenth of λ more points, at least one: the mean with one block from
+  /// anywhere. One that beats all others of its iteration hands its block to the mean. Needs bounds.
+  std::vector<std::vector<std::size_t>> blocks = {};
+  std::function<std::size_t(std::span<const double> x)> blocks_in_use = {};
   std::size_t restarts = 0;               ///< Restarts with doubled population after a stall (IPOP).
   std::size_t max_iterations = 0;         ///< 0: no limit.
   std::size_t max_evaluations = 0;        ///< 0: no limit.
@@ -70,7 +74,7 @@ class CmaEs {
   CmaEs(CmaEs&&) noexcept;
   CmaEs& operator=(CmaEs&&) noexcept;
   ~CmaEs();
-  /// λ points, row-major, inside the bounds. Valid until the next tell() or load(). Asked again before tell(), it gives the same points.
+  /// λ points, and those with swapped blocks, row-major, inside the bounds. Valid until the next tell() or load(). Asked again before tell(), it gives the same points.
   std::span<const double> ask();
   /// Between ask() and tell(): puts x in the place of point `index`, as if it had been drawn. Throws Error invalid_argument outside the bounds.
   void replace(std::size_t index, std::span<const double> x);

@@ -10,7 +10,7 @@
 namespace vantage::optimise {
 
 void require_blocks(const Blocks& blocks, const Box& box, std::size_t dimension) {
-  const auto fail = [](const std::string& what) { throw Error(Errc::invalid_argument, "MO-CMA-ES: " + what); };
+  const auto fail = [](const std::string& what) { throw Error(Errc::invalid_argument, "optimiser: " + what); };
   std::vector<char> met(dimension, 0);
   for (const auto& block : blocks) {
     if (block.empty() || block.size() != blocks.front().size())
@@ -65,6 +65,18 @@ void align_blocks(std::span<const double> first, std::span<double> second, std::
       along[blocks[b][d]] = old_along[blocks[match[b]][d]];
     }
   }
+}
+
+void save_blocks(StateWriter& w, const Blocks& blocks) {
+  w.put(std::uint64_t{blocks.size()});
+  for (const auto& block : blocks)
+    for (const std::size_t i : block) w.put(std::uint64_t{i});
+}
+
+void expect_blocks(StateReader& r, const Blocks& blocks) {
+  r.expect(std::uint64_t{blocks.size()}, "number of blocks");
+  for (const auto& block : blocks)
+    for (const std::size_t i : block) r.expect(std::uint64_t{i}, "coordinate of a block");
 }
 
 }  // namespace vantage::optimise

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "optimise/box.hpp"
+#include "optimise/state_file.hpp"
 
 namespace vantage::optimise {
 
@@ -23,5 +24,9 @@ std::vector<std::size_t> match_blocks(std::span<const double> first, std::span<c
 // Puts the blocks of `second` into the places of those of `first` that they match, and so those of `along`.
 void align_blocks(std::span<const double> first, std::span<double> second, std::span<double> along,
                   const Blocks& blocks);
+
+// As part of a saved state, which must go on with the same blocks.
+void save_blocks(StateWriter& w, const Blocks& blocks);
+void expect_blocks(StateReader& r, const Blocks& blocks);
 
 }  // namespace vantage::optimise

@@ -10,6 +10,7 @@
 #include <numeric>
 #include <string>
 
+#include "optimise/blocks.hpp"
 #include "optimise/box.hpp"
 #include "optimise/conditional.hpp"
 #include "optimise/normal_stream.hpp"
@@ -34,6 +35,7 @@ constexpr double kReturned = 0.5;
 constexpr std::size_t kFlatIterations = 20;  // the step grows a thousandfold meanwhile
 constexpr std::size_t kMaxHistory = 20000;
 constexpr std::size_t kMaxPopulation = std::size_t{1} << 20;
+constexpr std::size_t kSwapEvery = 10;  // points of an iteration for each one more with a swapped block
 constexpr std::string_view kKind = "CMA-ES";
 
 std::span<double> as_span(VectorXd& v) { return {v.data(), static_cast<std::size_t>(v.size())}; }
@@ -104,8 +106,16 @@ struct CmaEs::Impl {
   }
   // Puts the genotype mean + sigma · steps.col(k) into the points.
   void express(std::size_t k);
+  std::size_t swaps() const {
+    return box.bounded() && !config.blocks.empty() ? std::max<std::size_t>(1, lambda / kSwapEvery) : 0;
+  }
+  std::size_t asked_points() const { return lambda + swaps(); }
+  // Makes point λ + s the mean with one block from anywhere.
+  void swap_block(std::size_t s);
+  // Moves the mean's block to where point λ + s has it; the distribution forgets what it knew of it.
+  void adopt_swap(std::size_t s);
   void update(const std::vector<std::size_t>& order);
-  void decompose();
+  void decompose(bool now);
   StopReason stall(const std::vector<double>& sorted) const;
   StopReason limit() const;
   void require_asked(const char* what) const;
@@ -129,8 +139,9 @@ struct CmaEs::Impl {
   StopReason reason = StopReason::running;
 
   bool asked = false;
-  MatrixXd steps;  // one column a point, (genotype − mean) / sigma
+  MatrixXd steps;  // one column for each of λ points, (genotype − mean) / sigma
   std::vector<double> points;
+  std::vector<std::size_t> swapped;  // the block of each point after those
 };
 
 CmaEs::Impl::Impl(std::size_t dimension, const CmaEsConfig& c)
@@ -141,6 +152,7 @@ CmaEs::Impl::Impl(std::size_t dimension, const CmaEsConfig& c)
   if (config.population == 1 || config.population > kMaxPopulation)
     fail("a population of " + std::to_string(config.population) + " cannot be ranked; give 0 or at least 2");
   if (!config.start.empty()) box.require_inside(config.start);
+  optimise::require_blocks(config.blocks, box, n);
   if (!(config.f_tolerance >= 0) || !(config.x_tolerance >= 0)) fail("tolerances must not be negative");
   lambda = config.population != 0 ? config.population
                                   : 4 + static_cast<std::size_t>(3 * std::log(static_cast<double>(dimension)));
@@ -182,12 +194,34 @@ void CmaEs::Impl::express(std::size_t k) {
 
 void CmaEs::Impl::draw() {
   steps.resize(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(lambda));
-  points.resize(n * lambda);
+  points.resize(n * asked_points());
   VectorXd normals(static_cast<Eigen::Index>(n));
   for (std::size_t k = 0; k < lambda; ++k) {
     random.fill_normal(as_span(normals));
     steps.col(static_cast<Eigen::Index>(k)).noalias() = axes * axis_lengths.cwiseProduct(normals);
     express(k);
+  }
+  swapped.resize(swaps());
+  for (std::size_t s = 0; s < swapped.size(); ++s) swap_block(s);
+}
+
+void CmaEs::Impl::swap_block(std::size_t s) {
+  const auto x = std::span(points).subspan((lambda + s) * n, n);
+  for (std::size_t i = 0; i < n; ++i) x[i] = phenotype(mean[static_cast<Eigen::Index>(i)], i);
+  const std::size_t all = config.blocks.size();
+  swapped[s] = random.index(config.blocks_in_use ? std::clamp<std::size_t>(config.blocks_in_use(x), 1, all) : all);
+  for (const std::size_t i : config.blocks[swapped[s]]) x[i] = box.from_unit(random.uniform(), i);
+}
+
+void CmaEs::Impl::adopt_swap(std::size_t s) {
+  const double variance = covariance.diagonal().mean();
+  for (const std::size_t i : config.blocks[swapped[s]]) {
+    const auto axis = static_cast<Eigen::Index>(i);
+    mean[axis] = genotype(points[(lambda + s) * n + i], i);
+    path_c[axis] = path_sigma[axis] = 0;
+    covariance.row(axis).setZero();
+    covariance.col(axis).setZero();
+    covariance(axis, axis) = variance;
   }
 }
 
@@ -196,9 +230,9 @@ void CmaEs::Impl::require_asked(const char* what) const {
 }
 
 void CmaEs::Impl::require_index(std::size_t index) const {
-  if (index >= lambda)
+  if (index >= asked_points())
     throw Error(Errc::invalid_argument,
-                "CMA-ES: point " + std::to_string(index) + " of " + std::to_string(lambda) + " does not exist");
+                "CMA-ES: point " + std::to_string(index) + " of " + std::to_string(asked_points()) + " does not exist");
 }
 
 void CmaEs::Impl::update(const std::vector<std::size_t>& order) {
@@ -237,9 +271,9 @@ void CmaEs::Impl::update(const std::vector<std::size_t>& order) {
   sigma = std::max(sigma, 1e-300);  // stall() has it stop long before
 }
 
-void CmaEs::Impl::decompose() {
+void CmaEs::Impl::decompose(bool now) {
   const double wait = 1 / ((strategy.c_1 + strategy.c_mu) * static_cast<double>(n) * 10);
-  if (static_cast<double>(run_evaluations - decomposed_at) < wait * static_cast<double>(lambda)) return;
+  if (!now && static_cast<double>(run_evaluations - decomposed_at) < wait * static_cast<double>(lambda)) return;
   decomposed_at = run_evaluations;
   covariance = 0.5 * (covariance + covariance.transpose()).eval();
   const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(covariance);
@@ -305,6 +339,10 @@ void CmaEs::replace(std::size_t index, std::span<const double> x) {
   impl_->require_asked("replace");
   impl_->require_index(index);
   impl_->box.require_inside(x);
+  if (index >= impl_->lambda) {
+    std::ranges::copy(x, impl_->points.begin() + static_cast<std::ptrdiff_t>(index * impl_->n));
+    return;
+  }
   auto column = impl_->steps.col(static_cast<Eigen::Index>(index));
   for (std::size_t i = 0; i < impl_->n; ++i) {
     const auto axis = static_cast<Eigen::Index>(i);
@@ -319,11 +357,16 @@ std::span<const double> CmaEs::resample(std::size_t index, std::span<const std::
   Impl& s = *impl_;
   s.require_asked("resample");
   s.require_index(index);
+  for (const std::size_t i : coordinates)
+    if (i >= s.n) throw Error(Errc::invalid_argument, "CMA-ES: coordinate " + std::to_string(i) + " does not exist");
+  const auto whole = std::span(s.points).subspan(index * s.n, s.n);
+  if (index >= s.lambda) {
+    for (const std::size_t i : coordinates) whole[i] = s.box.from_unit(s.random.uniform(), i);
+    return whole;
+  }
   MatrixXd columns(static_cast<Eigen::Index>(s.n), static_cast<Eigen::Index>(coordinates.size()));
   VectorXd step = s.steps.col(static_cast<Eigen::Index>(index));
   for (std::size_t k = 0; k < coordinates.size(); ++k) {
-    if (coordinates[k] >= s.n)
-      throw Error(Errc::invalid_argument, "CMA-ES: coordinate " + std::to_string(coordinates[k]) + " does not exist");
     const auto axis = static_cast<Eigen::Index>(coordinates[k]);
     columns.col(static_cast<Eigen::Index>(k)) = s.axes.row(axis).transpose().cwiseQuotient(s.axis_lengths);
     step[axis] = 0;
@@ -337,16 +380,24 @@ std::span<const double> CmaEs::resample(std::size_t index, std::span<const std::
     }
     s.express(index);
   }
-  return std::span(s.points).subspan(index * s.n, s.n);
+  return whole;
 }
 
 void CmaEs::tell(std::span<const double> values) {
   Impl& s = *impl_;
   s.require_asked("tell");
-  if (values.size() != s.lambda)
+  if (values.size() != s.asked_points())
     throw Error(Errc::invalid_argument, "CMA-ES: " + std::to_string(values.size()) + " values for " +
-                                            std::to_string(s.lambda) + " points; give one for each");
-  std::vector<double> f(values.begin(), values.end());
+                                            std::to_string(s.asked_points()) + " points; give one for each");
+  const auto split = values.begin() + static_cast<std::ptrdiff_t>(s.lambda);
+  std::vector<double> f(values.begin(), split);
+  std::size_t best_swap = 0;
+  double best_swapped = kInfinity;
+  for (auto v = split; v != values.end(); ++v) {
+    if (!std::isfinite(*v) || *v >= best_swapped) continue;
+    best_swapped = *v;
+    best_swap = static_cast<std::size_t>(v - split);
+  }
   for (double& v : f)
     if (!std::isfinite(v)) v = kInfinity;
   std::vector<std::size_t> order(s.lambda);
@@ -354,16 +405,18 @@ void CmaEs::tell(std::span<const double> values) {
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return f[a] < f[b]; });
   std::sort(f.begin(), f.end());
   s.asked = false;
-  s.evaluations += s.lambda;
+  s.evaluations += values.size();
   s.run_evaluations += s.lambda;
   ++s.iterations;
   if (f.front() == kInfinity) {
     s.reason = StopReason::invalid_objective;
     return;
   }
-  if (f.front() < s.best.f[0]) {
-    const auto first = s.points.begin() + static_cast<std::ptrdiff_t>(order[0] * s.n);
-    s.best = {{first, first + static_cast<std::ptrdiff_t>(s.n)}, {f.front()}};
+  const bool adopts = best_swapped < f.front();
+  if (std::min(f.front(), best_swapped) < s.best.f[0]) {
+    const std::size_t best = adopts ? s.lambda + best_swap : order[0];
+    const auto first = s.points.begin() + static_cast<std::ptrdiff_t>(best * s.n);
+    s.best = {{first, first + static_cast<std::ptrdiff_t>(s.n)}, {std::min(f.front(), best_swapped)}};
   }
   s.best_history.push_back(f.front());
   s.median_history.push_back(f[s.lambda / 2]);
@@ -380,8 +433,9 @@ void CmaEs::tell(std::span<const double> values) {
     s.flat_iterations = 0;
     s.update(order);
   }
+  if (adopts) s.adopt_swap(best_swap);
   ++s.run_iterations;
-  if (s.covariance.allFinite()) s.decompose();
+  if (s.covariance.allFinite()) s.decompose(adopts);
   s.reason = s.limit();
   if (s.reason != StopReason::running) return;
   s.reason = s.stall(f);
@@ -412,6 +466,7 @@ void CmaEs::save(std::ostream& out) const {
   w.put(s.config.sigma0);
   w.put(s.config.active);
   w.put(s.config.start);
+  optimise::save_blocks(w, s.config.blocks);
   w.put(s.box.lower());
   w.put(s.box.upper());
   for (const std::size_t v :
@@ -437,6 +492,7 @@ void CmaEs::load(std::istream& in) {
   r.expect(s.config.sigma0, "sigma0");
   r.expect(std::uint64_t{s.config.active}, "active flag");
   r.expect(s.config.start, "start");
+  optimise::expect_blocks(r, s.config.blocks);
   r.expect(s.box.lower(), "lower bounds");
   r.expect(s.box.upper(), "upper bounds");
   const std::uint64_t seed = r.integer();

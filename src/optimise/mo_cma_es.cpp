@@ -15,6 +15,7 @@
 #include "optimise/conditional.hpp"
 #include "optimise/hypervolume.hpp"
 #include "optimise/mo_common.hpp"
+#include "optimise/steady_front.hpp"
 #include "optimise/step_strategy.hpp"
 #include "optimise/variation.hpp"
 #include "vantage/error.hpp"
@@ -28,6 +29,7 @@ using Eigen::VectorXd;
 using optimise::MoCommon;
 using optimise::Shape;
 using optimise::Solution;
+using optimise::SteadyFront;
 using optimise::StepStrategy;
 using Scheme = MoCmaEsConfig::Scheme;
 
@@ -36,7 +38,6 @@ constexpr int kRedraws = 1;        // of a whole point, before what lies outside
 // As many again of chosen coordinates, which are few and seldom all at a bound.
 constexpr int kPartialRedraws = 16;
 constexpr double kExtremes = 0.2;        // share of guided parents that are the best in one objective
-constexpr double kExponent = 2;          // others in proportion to their contribution to this power
 constexpr double kNeighbourShare = 0.4;  // of a spread step's variance
 constexpr std::string_view kKind = "MO-CMA-ES";
 
@@ -100,12 +101,15 @@ struct MoCmaEs::Impl {
   MoCommon common;
   std::shared_ptr<const Shape> initial_shape;
   std::vector<Member> members;
+  SteadyFront population;  // of the members, in the steady state
   std::uint64_t next_id = 0;
   std::vector<Offspring> pending;
 };
 
 MoCmaEs::Impl::Impl(std::size_t dimension, std::size_t objectives, const MoCmaEsConfig& config)
-    : common("MO-CMA-ES", dimension, objectives, config), initial_shape(Shape::identity(dimension)) {
+    : common("MO-CMA-ES", dimension, objectives, config),
+      initial_shape(Shape::identity(dimension)),
+      population(objectives, common.reference) {
   for (const double share : {config.guided, config.spread, config.recombined, config.swapped})
     if (!(share >= 0 && share <= 1))
       throw Error(Errc::invalid_argument, "MO-CMA-ES: a share of " + std::to_string(share) + " is not in 0 to 1");
@@ -124,26 +128,24 @@ VectorXd MoCmaEs::Impl::to_unit(std::span<const double> x) const {
 Front MoCmaEs::Impl::front() const {
   const std::size_t m = common.objectives;
   Front front;
-  const auto fitness = optimise::fitness_of(members);
-  const auto rank = optimise::ranks({fitness, m});
-  std::vector<double> values;
-  for (std::size_t i = 0; i < members.size(); ++i) {
-    if (rank[i] != 0) continue;
-    front.members.push_back(i);
-    values.insert(values.end(), members[i].fitness.begin(), members[i].fitness.end());
-  }
+  front.members.reserve(members.size());
+  for (std::size_t i = 0; i < members.size(); ++i)
+    if (population.rank(i) == 0) front.members.push_back(i);
   for (std::size_t j = 0; j < m; ++j) {
     const auto [low, high] = std::minmax_element(
         front.members.begin(), front.members.end(),
-        [&](std::size_t a, std::size_t b) { return members[a].fitness[j] < members[b].fitness[j]; });
+        [&](std::size_t a, std::size_t b) { return population.fitness(a)[j] < population.fitness(b)[j]; });
     front.extremes.push_back(*low);
-    front.low.push_back(members[*low].fitness[j]);
-    front.high.push_back(members[*high].fitness[j]);
+    front.low.push_back(population.fitness(*low)[j]);
+    front.high.push_back(population.fitness(*high)[j]);
   }
   if (common.config.guided == 0) return front;
-  const auto contributions = optimise::contributions({values, m}, optimise::reach_over(values, common.reference));
+  front.weight_sums.reserve(front.members.size());
   double sum = 0;
-  for (const double c : contributions) front.weight_sums.push_back(sum += std::pow(c, kExponent));
+  for (const std::size_t i : front.members) {
+    const double contribution = population.contributions()[i];
+    front.weight_sums.push_back(sum += contribution * contribution);
+  }
   return front;
 }
 
@@ -334,26 +336,14 @@ void MoCmaEs::Impl::tell_generation(std::vector<Solution> solutions) {
 
 // (μ + 1): an offspring succeeds when it is selected and its rank among the μ + 1 is not worse than its parent's.
 void MoCmaEs::Impl::tell_one(Solution solution, const Offspring& offspring) {
-  const std::size_t mu = members.size(), m = common.objectives;
-  auto fitness = optimise::fitness_of(members);
-  fitness.insert(fitness.end(), solution.fitness.begin(), solution.fitness.end());
-  const auto rank = optimise::ranks({fitness, m});
-  const std::size_t worst = *std::max_element(rank.begin(), rank.end());
-  std::vector<std::size_t> last;
-  std::vector<double> last_fitness;
-  for (std::size_t i = 0; i <= mu; ++i) {
-    if (rank[i] != worst) continue;
-    last.push_back(i);
-    last_fitness.insert(last_fitness.end(), fitness.begin() + static_cast<std::ptrdiff_t>(i * m),
-                        fitness.begin() + static_cast<std::ptrdiff_t>((i + 1) * m));
-  }
-  const std::size_t removed = last[optimise::surplus(last_fitness, common.reference, 1).front()];
+  const std::size_t mu = members.size();
   // Another offspring of the same batch may have taken the parent's place.
   const auto parent =
       std::find_if(members.begin(), members.end(), [&](const Member& p) { return p.id == offspring.parent; });
   const bool orphan = parent == members.end();
-  const bool succeeded =
-      removed != mu && (orphan || rank[mu] <= rank[static_cast<std::size_t>(parent - members.begin())]);
+  const auto [removed, rank, parent_rank] =
+      population.offer(solution.fitness, static_cast<std::size_t>(parent - members.begin()));
+  const bool succeeded = removed != mu && rank <= parent_rank;
   if (!orphan && !offspring.recombined) parent->strategy.adapt_sigma(succeeded);
   if (removed != mu) members[removed] = make_member(std::move(solution), offspring, succeeded);
 }
@@ -467,10 +457,13 @@ void MoCmaEs::tell(std::span<const double> values) {
   auto solutions = s.common.take(values, penalties);
   if (s.members.empty()) {
     s.tell_initial(std::move(solutions));
+    s.population.assign(optimise::fitness_of(s.members));
   } else if (s.common.config.scheme == Scheme::generational) {
     s.tell_generation(std::move(solutions));
   } else {
+    const std::size_t iteration = (s.common.evaluations - solutions.size()) / s.common.config.population;
     for (std::size_t k = 0; k < solutions.size(); ++k) s.tell_one(std::move(solutions[k]), s.pending[k]);
+    if (iterations() != iteration) s.population.recount();
   }
   s.pending.clear();
   s.common.watch(s.members, [&] { return s.converged(); });
@@ -505,6 +498,7 @@ void MoCmaEs::save(std::ostream& out) const {
     for (Index j = 0; j < shape.factor.cols(); ++j)
       w.put(std::span(shape.factor.col(j).data() + j, s.common.dimension - static_cast<std::size_t>(j)));
   }
+  w.put(s.population.contributions());
   w.write(out, kKind);
 }
 
@@ -533,6 +527,8 @@ void MoCmaEs::load(std::istream& in) {
     member.strategy.shape = std::make_shared<const Shape>(std::move(shape));
     next->members.push_back(std::move(member));
   }
+  const std::vector<double> contributions = r.finite_reals(count);
+  if (count != 0) next->population.assign(optimise::fitness_of(next->members), contributions);
   r.end();
   impl_ = std::move(next);
 }

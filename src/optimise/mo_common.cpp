@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 
+#include "optimise/blocks.hpp"
 #include "optimise/hypervolume.hpp"
 #include "vantage/error.hpp"
 
@@ -168,9 +169,7 @@ void MoCommon::save(StateWriter& w) const {
   w.put(std::uint64_t{config.batch});
   w.put(static_cast<std::uint64_t>(config.scheme));
   for (const double v : {config.sigma0, config.guided, config.spread, config.recombined, config.swapped}) w.put(v);
-  w.put(std::uint64_t{config.blocks.size()});
-  for (const auto& block : config.blocks)
-    for (const std::size_t i : block) w.put(std::uint64_t{i});
+  save_blocks(w, config.blocks);
   w.put(box.lower());
   w.put(box.upper());
   w.put(reference);
@@ -197,9 +196,7 @@ MoCommon::Progress MoCommon::read(StateReader& r) const {
   r.expect(config.spread, "spread share");
   r.expect(config.recombined, "recombined share");
   r.expect(config.swapped, "swapped share");
-  r.expect(std::uint64_t{config.blocks.size()}, "number of blocks");
-  for (const auto& block : config.blocks)
-    for (const std::size_t i : block) r.expect(std::uint64_t{i}, "coordinate of a block");
+  expect_blocks(r, config.blocks);
   r.expect(box.lower(), "lower bound");
   r.expect(box.upper(), "upper bound");
   r.expect(reference, "reference");

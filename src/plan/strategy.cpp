@@ -63,16 +63,19 @@ std::size_t population_of(const PlanConfig& config) {
 }
 
 std::unique_ptr<Strategy> make_strategy(const DecisionSpace& space, const PlanConfig& config, std::size_t batch) {
+  // The space outlives the strategy.
+  const auto in_use = [&space](std::span<const double> x) { return space.placed_count(x); };
   if (has_one_objective(config)) {
     CmaEsConfig cma{.population = population_of(config), .sigma0 = config.sigma0, .bounds = space.bounds(), .restarts = kRestarts,
                     .f_tolerance = kCoverageTolerance, .x_tolerance = kStepTolerance, .seed = config.seed};
+    cma.blocks = space.blocks();
+    if (space.minimises_stations()) cma.blocks_in_use = in_use;
     if (!config.start.empty()) cma.start = space.encode(config.start);
     return std::make_unique<SingleObjective>(space.dimension(), cma);
   }
   MoCmaEsConfig mo{.scheme = config.scheme, .population = population_of(config), .batch = batch, .sigma0 = config.sigma0,
                    .blocks = space.blocks(), .bounds = space.bounds(), .seed = config.seed};
-  // The space outlives the strategy.
-  if (space.minimises_stations()) mo.blocks_in_use = [&space](std::span<const double> x) { return space.placed_count(x); };
+  if (space.minimises_stations()) mo.blocks_in_use = in_use;
   if (!config.start.empty()) mo.start = space.encode_each(config.start);
   if (mo.start.size() > mo.population) mo.start.resize(mo.population);
   return std::make_unique<MultiObjective>(make_optimiser(config.algorithm, space.dimension(), space.objectives(), mo));

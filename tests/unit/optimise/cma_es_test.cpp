@@ -272,5 +272,91 @@ TEST(CmaEs, RefusesDamagedStatesAndStaysAsItWas) {
   EXPECT_EQ(optimiser.iterations(), 5u);
 }
 
+// Three stations before three targets, each seen from nearby alone: two stations before one target have no way to the third.
+double unseen(std::span<const double> x) {
+  double sum = 0;
+  for (const auto& [tx, ty] : {std::pair{0.1, 0.2}, std::pair{0.9, 0.1}, std::pair{0.5, 0.9}}) {
+    double nearest = 0.2;
+    for (std::size_t i = 0; i < 6; i += 2) nearest = std::min(nearest, std::hypot(x[i] - tx, x[i + 1] - ty));
+    sum += nearest;
+  }
+  return sum;
+}
+
+CmaEsConfig block_config() {
+  return {.population = 10,
+          .bounds = Bounds::uniform(8, 0, 1),
+          .blocks = {{0, 1}, {2, 3}, {4, 5}, {6, 7}},
+          .blocks_in_use = [](std::span<const double>) { return std::size_t{3}; }};
+}
+
+TEST(CmaEs, SwappedBlocksLeaveLocalOptima) {
+  std::size_t plain = 0, swapped = 0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    for (const bool blocks : {false, true}) {
+      CmaEsConfig c = block_config();
+      if (!blocks) c.blocks.clear();
+      c.seed = seed;
+      c.max_evaluations = 3000;
+      CmaEs optimiser(8, c);
+      while (optimiser.stop_reason() == StopReason::running) {
+        const auto points = optimiser.ask();
+        std::vector<double> values;
+        for (std::size_t k = 0; k < points.size(); k += 8) values.push_back(unseen(points.subspan(k, 8)));
+        optimiser.tell(values);
+      }
+      (blocks ? swapped : plain) += optimiser.best().f[0] < 0.01;
+    }
+  }
+  EXPECT_EQ(swapped, 10u);
+  EXPECT_LT(plain, 8u);
+}
+
+TEST(CmaEs, AsksForPointsThatDifferFromTheMeanByABlock) {
+  CmaEsConfig c = block_config();
+  c.start.assign(8, 0.5);
+  CmaEs optimiser(8, c);
+  ASSERT_EQ(optimiser.ask().size(), 11u * 8);
+  const auto x = optimiser.ask().subspan(80, 8);
+  std::size_t moved = 0;
+  for (std::size_t b = 0; b < 8; b += 2) moved += x[b] != 0.5 || x[b + 1] != 0.5;
+  EXPECT_EQ(moved, 1u);
+  EXPECT_EQ(x[6], 0.5);  // never the block that is not in use
+  const std::vector<std::size_t> coordinates{2, 3};
+  const double before = x[2];
+  EXPECT_NE(optimiser.resample(10, coordinates)[2], before);
+  EXPECT_THROW(optimiser.tell(std::vector<double>(10, 1.0)), Error);
+  // The best of all is kept.
+  std::vector<double> values(11, 1.0);
+  for (std::size_t k = 0; k < 10; ++k) values[k] += static_cast<double>(k);
+  values[10] = 0.5;
+  optimiser.tell(values);
+  EXPECT_EQ(optimiser.best().f[0], 0.5);
+  EXPECT_EQ(optimiser.evaluations(), 11u);
+}
+
+TEST(CmaEs, ResumesSwapsToTheSameBits) {
+  CmaEs whole(8, block_config());
+  const auto step = [](CmaEs& optimiser) {
+    const auto points = optimiser.ask();
+    std::vector<double> values;
+    for (std::size_t k = 0; k < points.size(); k += 8) values.push_back(unseen(points.subspan(k, 8)));
+    optimiser.tell(values);
+  };
+  for (int i = 0; i < 30; ++i) step(whole);
+  std::stringstream file;
+  whole.save(file);
+  CmaEs parted(8, block_config());
+  parted.load(file);
+  for (int i = 0; i < 30; ++i) step(whole), step(parted);
+  EXPECT_EQ(whole.best().x, parted.best().x);
+  EXPECT_TRUE(std::ranges::equal(whole.ask(), parted.ask()));
+  CmaEsConfig other = block_config();
+  other.blocks.pop_back();
+  file.clear();
+  file.seekg(0);
+  EXPECT_THROW(CmaEs(8, other).load(file), Error);
+}
+
 }  // namespace
 }  // namespace vantage
