@@ -52,7 +52,7 @@ struct CmaEsConfig {
   std::vector<double> start = {};         ///< Initial mean; empty: random inside the bounds, else 0.
   std::optional<Bounds> bounds = std::nullopt;
   bool active = true;                     ///< Negative weights for the worst half (active CMA).
-  /// As in MoCmaEsConfig. Where there are any, every iteration asks for a tenth of λ more points, at least one: the mean with one block from
+  /// As in MoCmaEsConfig. Where there are any, a tenth of an iteration's points, at least one of five, are the mean with one block from
   /// anywhere. One that beats all others of its iteration hands its block to the mean. Needs bounds.
   std::vector<std::vector<std::size_t>> blocks = {};
   std::function<std::size_t(std::span<const double> x)> blocks_in_use = {};
@@ -74,7 +74,7 @@ class CmaEs {
   CmaEs(CmaEs&&) noexcept;
   CmaEs& operator=(CmaEs&&) noexcept;
   ~CmaEs();
-  /// λ points, and those with swapped blocks, row-major, inside the bounds. Valid until the next tell() or load(). Asked again before tell(), it gives the same points.
+  /// population() points, row-major, inside the bounds. Valid until the next tell() or load(). Asked again before tell(), it gives the same points.
   std::span<const double> ask();
   /// Between ask() and tell(): puts x in the place of point `index`, as if it had been drawn. Throws Error invalid_argument outside the bounds.
   void replace(std::size_t index, std::span<const double> x);
@@ -85,7 +85,7 @@ class CmaEs {
   StopReason stop_reason() const noexcept;
   /// Of all restarts. Its f is +infinity until a finite value was told.
   const ParetoPoint& best() const noexcept;
-  std::size_t population() const noexcept;  ///< λ now: it doubles at a restart.
+  std::size_t population() const noexcept;  ///< Points of an iteration now: they double at a restart.
   std::size_t evaluations() const noexcept;
   std::size_t iterations() const noexcept;
   std::size_t restarts() const noexcept;

@@ -35,7 +35,8 @@ constexpr double kReturned = 0.5;
 constexpr std::size_t kFlatIterations = 20;  // the step grows a thousandfold meanwhile
 constexpr std::size_t kMaxHistory = 20000;
 constexpr std::size_t kMaxPopulation = std::size_t{1} << 20;
-constexpr std::size_t kSwapEvery = 10;  // points of an iteration for each one more with a swapped block
+// A tenth of an iteration's points have a swapped block, at least one; none where too few would be left to rank.
+constexpr std::size_t kSwapEvery = 10, kSwapsFrom = 5;
 constexpr std::string_view kKind = "CMA-ES";
 
 std::span<double> as_span(VectorXd& v) { return {v.data(), static_cast<std::size_t>(v.size())}; }
@@ -106,10 +107,10 @@ struct CmaEs::Impl {
   }
   // Puts the genotype mean + sigma · steps.col(k) into the points.
   void express(std::size_t k);
-  std::size_t swaps() const {
-    return box.bounded() && !config.blocks.empty() ? std::max<std::size_t>(1, lambda / kSwapEvery) : 0;
+  std::size_t swaps_of(std::size_t count) const {
+    return box.bounded() && !config.blocks.empty() && count >= kSwapsFrom ? std::max<std::size_t>(1, count / kSwapEvery)
+                                                                          : 0;
   }
-  std::size_t asked_points() const { return lambda + swaps(); }
   // Makes point λ + s the mean with one block from anywhere.
   void swap_block(std::size_t s);
   // Moves the mean's block to where point λ + s has it; the distribution forgets what it knew of it.
@@ -125,7 +126,8 @@ struct CmaEs::Impl {
   CmaEsConfig config;
   Box box;
   NormalStream random;
-  std::size_t lambda;
+  std::size_t asked_points;  // λ and those with swapped blocks
+  std::size_t lambda = 0;
   Strategy strategy;
 
   VectorXd mean, path_c, path_sigma, axis_lengths;
@@ -154,14 +156,15 @@ CmaEs::Impl::Impl(std::size_t dimension, const CmaEsConfig& c)
   if (!config.start.empty()) box.require_inside(config.start);
   optimise::require_blocks(config.blocks, box, n);
   if (!(config.f_tolerance >= 0) || !(config.x_tolerance >= 0)) fail("tolerances must not be negative");
-  lambda = config.population != 0 ? config.population
-                                  : 4 + static_cast<std::size_t>(3 * std::log(static_cast<double>(dimension)));
+  asked_points = config.population != 0 ? config.population
+                                        : 4 + static_cast<std::size_t>(3 * std::log(static_cast<double>(dimension)));
   best.f = {kInfinity};
   begin_run();
 }
 
 void CmaEs::Impl::begin_run() {
   const auto size = static_cast<Eigen::Index>(n);
+  lambda = asked_points - swaps_of(asked_points);
   strategy = Strategy(static_cast<double>(n), lambda, config.active);
   sigma = config.sigma0;
   mean = VectorXd::Zero(size);
@@ -194,14 +197,14 @@ void CmaEs::Impl::express(std::size_t k) {
 
 void CmaEs::Impl::draw() {
   steps.resize(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(lambda));
-  points.resize(n * asked_points());
+  points.resize(n * asked_points);
   VectorXd normals(static_cast<Eigen::Index>(n));
   for (std::size_t k = 0; k < lambda; ++k) {
     random.fill_normal(as_span(normals));
     steps.col(static_cast<Eigen::Index>(k)).noalias() = axes * axis_lengths.cwiseProduct(normals);
     express(k);
   }
-  swapped.resize(swaps());
+  swapped.resize(asked_points - lambda);
   for (std::size_t s = 0; s < swapped.size(); ++s) swap_block(s);
 }
 
@@ -230,9 +233,9 @@ void CmaEs::Impl::require_asked(const char* what) const {
 }
 
 void CmaEs::Impl::require_index(std::size_t index) const {
-  if (index >= asked_points())
+  if (index >= asked_points)
     throw Error(Errc::invalid_argument,
-                "CMA-ES: point " + std::to_string(index) + " of " + std::to_string(asked_points()) + " does not exist");
+                "CMA-ES: point " + std::to_string(index) + " of " + std::to_string(asked_points) + " does not exist");
 }
 
 void CmaEs::Impl::update(const std::vector<std::size_t>& order) {
@@ -386,9 +389,9 @@ std::span<const double> CmaEs::resample(std::size_t index, std::span<const std::
 void CmaEs::tell(std::span<const double> values) {
   Impl& s = *impl_;
   s.require_asked("tell");
-  if (values.size() != s.asked_points())
+  if (values.size() != s.asked_points)
     throw Error(Errc::invalid_argument, "CMA-ES: " + std::to_string(values.size()) + " values for " +
-                                            std::to_string(s.asked_points()) + " points; give one for each");
+                                            std::to_string(s.asked_points) + " points; give one for each");
   const auto split = values.begin() + static_cast<std::ptrdiff_t>(s.lambda);
   std::vector<double> f(values.begin(), split);
   std::size_t best_swap = 0;
@@ -439,9 +442,9 @@ void CmaEs::tell(std::span<const double> values) {
   s.reason = s.limit();
   if (s.reason != StopReason::running) return;
   s.reason = s.stall(f);
-  if (is_stall(s.reason) && s.restarts < s.config.restarts && s.lambda <= kMaxPopulation / 2) {
+  if (is_stall(s.reason) && s.restarts < s.config.restarts && s.asked_points <= kMaxPopulation / 2) {
     ++s.restarts;
-    s.lambda *= 2;
+    s.asked_points *= 2;
     s.begin_run();
     s.reason = StopReason::running;
   } else if (s.reason == StopReason::diverged) {
@@ -451,7 +454,7 @@ void CmaEs::tell(std::span<const double> values) {
 
 StopReason CmaEs::stop_reason() const noexcept { return impl_->reason; }
 const ParetoPoint& CmaEs::best() const noexcept { return impl_->best; }
-std::size_t CmaEs::population() const noexcept { return impl_->lambda; }
+std::size_t CmaEs::population() const noexcept { return impl_->asked_points; }
 std::size_t CmaEs::evaluations() const noexcept { return impl_->evaluations; }
 std::size_t CmaEs::iterations() const noexcept { return impl_->iterations; }
 std::size_t CmaEs::restarts() const noexcept { return impl_->restarts; }
@@ -470,7 +473,7 @@ void CmaEs::save(std::ostream& out) const {
   w.put(s.box.lower());
   w.put(s.box.upper());
   for (const std::size_t v :
-       {s.random.seed(), s.random.block(), s.lambda, s.decomposed_at, s.evaluations, s.iterations, s.restarts,
+       {s.random.seed(), s.random.block(), s.asked_points, s.decomposed_at, s.evaluations, s.iterations, s.restarts,
         s.run_iterations, s.run_evaluations, s.flat_iterations, static_cast<std::size_t>(s.reason)})
     w.put(std::uint64_t{v});
   w.put(s.sigma);
@@ -497,7 +500,8 @@ void CmaEs::load(std::istream& in) {
   r.expect(s.box.upper(), "upper bounds");
   const std::uint64_t seed = r.integer();
   s.random.seek(seed, r.integer());
-  s.lambda = std::max<std::size_t>(2, r.size(kMaxPopulation + 1));
+  s.asked_points = std::max<std::size_t>(2, r.size(kMaxPopulation + 1));
+  s.lambda = s.asked_points - s.swaps_of(s.asked_points);
   constexpr std::size_t kMany = std::size_t{1} << 62;
   for (std::size_t* v : {&s.decomposed_at, &s.evaluations, &s.iterations, &s.restarts, &s.run_iterations,
                          &s.run_evaluations, &s.flat_iterations})
