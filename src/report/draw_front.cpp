@@ -52,14 +52,16 @@ std::unique_ptr<Canvas> front_picture(const PlanResult& result, const PlanConfig
     occupy(a, 5);
   }
   bool any_dominated = false;
-  for (const PlanEntry& entry : result.front) {
-    if (!entry.confirmed) continue;
-    const FrontDot exact = view.confirmed(entry);
-    const Point p = chart.at(exact.x, exact.y);
-    canvas.disc(p, entry.dominated ? 3.6 : 5.4, {1, 1, 1});
-    canvas.disc(p, entry.dominated ? 2.7 : 4.5, view.colour(exact), entry.dominated ? 0.5 : 1);
-    any_dominated |= entry.dominated;
-    occupy(p, 6);
+  for (const bool dominated : {true, false}) {  // the front itself on top
+    for (const PlanEntry& entry : result.front) {
+      if (!entry.confirmed || entry.dominated != dominated) continue;
+      const FrontDot exact = view.confirmed(entry);
+      const Point p = chart.at(exact.x, exact.y);
+      canvas.disc(p, dominated ? 3.6 : 5.4, {1, 1, 1});
+      canvas.disc(p, dominated ? 2.7 : 4.5, view.colour(exact), dominated ? 0.5 : 1);
+      any_dominated |= dominated;
+      occupy(p, 6);
+    }
   }
 
   std::vector<LegendItem> legend;
