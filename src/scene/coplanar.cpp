@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <cstdint>
+#include <mutex>
 #include <utility>
 #include <vector>
 
@@ -90,30 +90,30 @@ bool overlap_in_plane(const Corners& a, const Corners& b, double slack) {
 
 struct Search {
   const Soup &surveyed, &blocking;
-  std::vector<std::atomic<bool>> found;
+  std::mutex mutex;
+  std::vector<CoplanarPair> found;
 };
 
 void compare_pairs(void* user, RTCCollision* pairs, unsigned count) {
   Search& search = *static_cast<Search*>(user);
   for (unsigned k = 0; k < count; ++k) {
-    std::atomic<bool>& found = search.found[pairs[k].primID0];
-    if (found.load(std::memory_order_relaxed)) continue;
-    if (overlap_in_plane(search.surveyed.corners(pairs[k].primID0), search.blocking.corners(pairs[k].primID1),
-                         search.surveyed.slack))
-      found.store(true, std::memory_order_relaxed);
+    const unsigned s = pairs[k].primID0, b = pairs[k].primID1;
+    if (!overlap_in_plane(search.surveyed.corners(s), search.blocking.corners(b), search.surveyed.slack)) continue;
+    const std::lock_guard lock(search.mutex);
+    search.found.push_back({search.blocking.chosen[b], search.surveyed.chosen[s]});
   }
 }
 
 }  // namespace
 
-std::size_t count_coplanar(std::span<const Float3> positions, std::span<const Triangle> triangles,
-                           std::span<const MeshRange> ranges, std::span<const MeshInfo> meshes) {
+Coplanar find_coplanar(std::span<const Float3> positions, std::span<const Triangle> triangles,
+                       std::span<const MeshRange> ranges, std::span<const MeshInfo> meshes) {
   Soup surveyed{positions, triangles, {}}, blocking{positions, triangles, {}};
   for (std::size_t m = 0; m < ranges.size(); ++m) {
     std::vector<std::uint32_t>& chosen = (meshes[m].role == Role::surveyed ? surveyed : blocking).chosen;
     for (std::uint32_t t = 0; t < ranges[m].triangle_count; ++t) chosen.push_back(ranges[m].first_triangle + t);
   }
-  if (surveyed.chosen.empty() || blocking.chosen.empty()) return 0;
+  if (surveyed.chosen.empty() || blocking.chosen.empty()) return {};
   Box box;
   for (std::size_t k = 0; k < surveyed.chosen.size(); ++k) {
     const Box own = surveyed.box(k);
@@ -142,16 +142,16 @@ std::size_t count_coplanar(std::span<const Float3> positions, std::span<const Tr
     return bounds;
   };
   keep_near(surveyed, keep_near(blocking, box));
-  if (surveyed.chosen.empty() || blocking.chosen.empty()) return 0;
+  if (surveyed.chosen.empty() || blocking.chosen.empty()) return {};
 
   const embree::Device device = embree::new_device();
   const embree::Scene surveyed_tree = tree_over(device.get(), surveyed),
                       blocking_tree = tree_over(device.get(), blocking);
-  Search search{surveyed, blocking, std::vector<std::atomic<bool>>(surveyed.chosen.size())};
+  Search search{surveyed, blocking, {}, {}};
   rtcCollide(surveyed_tree.get(), blocking_tree.get(), compare_pairs, &search);
   embree::check(device.get(), "looking for surfaces in one plane");
-  return static_cast<std::size_t>(
-      std::ranges::count_if(search.found, [](const std::atomic<bool>& found) { return found.load(); }));
+  std::ranges::sort(search.found);  // threads found them
+  return {surveyed.slack, std::move(search.found)};
 }
 
 }  // namespace vantage

@@ -1,17 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
+#include <compare>
+#include <cstdint>
 #include <span>
+#include <vector>
 
 #include "scene/scene_data.hpp"
 
 namespace vantage {
 
-// How many triangles of surveyed meshes overlap a triangle of a blocking one in its own plane, to the rounding of float
-// coordinates. Which of the two a ray hits there is up to rounding. Triangles that only touch do not count.
+// Two triangles that overlap in one plane, to the rounding of float coordinates: which of them a ray hits there is up
+// to rounding. Triangles that only touch are none.
+struct CoplanarPair {
+  std::uint32_t blocking = 0, surveyed = 0;
+  friend auto operator<=>(const CoplanarPair&, const CoplanarPair&) = default;
+};
+
+struct Coplanar {
+  double slack_m = 0;               // planes no farther apart were taken for one
+  std::vector<CoplanarPair> pairs;  // ascending
+};
+
+// Triangles of surveyed meshes that lie in the plane of a blocking one and overlap it.
 // Throws Error: out_of_memory, device_failure.
-std::size_t count_coplanar(std::span<const Float3> positions, std::span<const Triangle> triangles,
-                           std::span<const MeshRange> ranges, std::span<const MeshInfo> meshes);
+Coplanar find_coplanar(std::span<const Float3> positions, std::span<const Triangle> triangles,
+                       std::span<const MeshRange> ranges, std::span<const MeshInfo> meshes);
 
 }  // namespace vantage

@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <limits>
 
-#include "scene/coplanar.hpp"
+#include "scene/cut_coplanar.hpp"
 #include "scene/raw_scene.hpp"
 #include "vantage/error.hpp"
 
@@ -217,10 +217,13 @@ std::shared_ptr<const SceneData> finish_scene(RawScene&& raw, const std::string&
                           static_cast<float>(p.z) + 0.0F};  // no −0
   });
   raw.positions = {};
-  const std::size_t flat = drop_unless(raw, [&](const Triangle& t) {
+  const auto has_area_in_float = [&](const Triangle& t) {
     return has_area(widened(data->positions[t[0]]), widened(data->positions[t[1]]), widened(data->positions[t[2]]));
-  });
+  };
+  const std::size_t flat = drop_unless(raw, has_area_in_float);
   const std::size_t duplicates = drop_duplicates(raw, data->positions);
+  const CoplanarCut cut = cut_coplanar(raw, data->positions);
+  if (cut.blocking > 0) drop_unless(raw, has_area_in_float);
 
   if (not_finite > 0)
     raw.notes.push_back("dropped " + std::to_string(not_finite) +
@@ -228,6 +231,10 @@ std::shared_ptr<const SceneData> finish_scene(RawScene&& raw, const std::string&
   if (flat > 0) raw.notes.push_back("dropped " + std::to_string(flat) + " triangles without area");
   if (duplicates > 0)
     raw.notes.push_back("dropped " + std::to_string(duplicates) + " exact duplicates of other triangles");
+  if (cut.blocking > 0)
+    raw.notes.push_back("cut away what of " + std::to_string(cut.blocking) +
+                        " blocking triangles lies in one plane with " + std::to_string(cut.surveyed) +
+                        " surveyed ones, behind these");
   if (raw.triangles.empty() ||
       std::ranges::none_of(raw.meshes, [](const MeshInfo& mesh) { return mesh.role == Role::surveyed; }))
     throw Error(
@@ -248,10 +255,6 @@ std::shared_ptr<const SceneData> finish_scene(RawScene&& raw, const std::string&
   }
   for (const Float3& p : data->positions) data->local_bounds.extend(widened(p));
   note_lost_precision(raw, data->local_bounds);
-  if (const std::size_t n = count_coplanar(data->positions, raw.triangles, raw.ranges, raw.meshes); n > 0)
-    raw.notes.push_back(std::to_string(n) +
-                        " surveyed triangles lie in the plane of blocking ones and overlap them: where rays come there, "
-                        "rounding decides which is hit; keep them 0.1 mm apart");
   clean_search_area(raw);
 
   data->normals = std::move(raw.normals);

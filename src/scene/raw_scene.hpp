@@ -32,7 +32,8 @@ struct RawScene {
 };
 
 // Drops triangles that no ray can meet soundly (not finite, absurdly far, without area, exact duplicates), takes off
-// the local origin in double, rounds to float and removes unused vertices. What was dropped is said in the notes.
+// the local origin in double, rounds to float, cuts blocking triangles back where surveyed ones lie in their plane and
+// removes unused vertices. What was dropped is said in the notes.
 // Throws Error malformed_file, prefixed with `source`, where no surveyed triangle is left.
 std::shared_ptr<const SceneData> finish_scene(RawScene&& raw, const std::string& source);
 

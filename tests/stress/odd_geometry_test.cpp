@@ -89,21 +89,25 @@ TEST_P(OddGeometry, SurveyedOverBlockingWithTheSameCornersCounts) {
   expect_same(count(GetParam(), scene), clean);
 }
 
-// In one plane but cut otherwise, rounding decides: said with a count, and every point still lies in that plane.
-TEST_P(OddGeometry, SurveyedInTheVeryPlaneOfBlockingIsNoted) {
+// In one plane but cut otherwise, what the surveyed surface covers of the blocking one is cut away.
+TEST_P(OddGeometry, SurveyedInTheVeryPlaneOfBlockingIsWhatIsHit) {
+  const auto clean = count(GetParam(), Yard().scene());
   Yard yard;
   yard.mesh("behind", "blocking", {-3, 0, -2, 3, 0, -2, 0, 4, -2});
   yard.mesh("beside", "blocking", {2, 0, -2, 4, 0, -2, 4, 3, -2});  // touches the first triangle's edge only
   const Scene scene = yard.scene();
-  EXPECT_TRUE(noted(scene, "2 surveyed triangles lie in the plane of blocking ones"));
-  EXPECT_FALSE(noted(Yard().scene(), "in the plane of"));
+  EXPECT_TRUE(noted(scene, "1 blocking triangles lies in one plane with 2 surveyed"));
+  EXPECT_FALSE(noted(Yard().scene(), "in one plane"));
+  const Counted got = count(GetParam(), scene);
+  EXPECT_EQ(got.counts.points_on_surveyed, clean.counts.points_on_surveyed);
+  EXPECT_EQ(got.field.count, clean.field.count);
+  EXPECT_EQ(got.field.stations, clean.field.stations);
   for (const CoplanarFigures& f : measure_coplanar(GetParam(), 1)) {
-    EXPECT_GT(f.rays, 1000u) << f.name;
+    EXPECT_GT(f.sheet_rays, 1000u) << f.name;
     EXPECT_EQ(f.missed, 0u) << f.name;
+    EXPECT_EQ(f.counted, f.sheet_rays) << f.name;
+    EXPECT_EQ(f.strayed, 0u) << f.name;
     EXPECT_LT(f.off_m, 1e-5) << f.name;
-    if (f.apart) {
-      EXPECT_EQ(f.counted, f.rays) << f.name;
-    }
     EXPECT_EQ(f.noted, !f.apart) << f.name;
   }
 }

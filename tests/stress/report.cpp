@@ -107,12 +107,12 @@ void sweep(const std::vector<EngineInfo>& engines, double size) {
 }
 
 void coplanar(const std::vector<EngineInfo>& engines, double size) {
-  head({"surveyed sheet and blocking wall", "engine", "rays into the sheet", "counted on the sheet", "hit neither",
-        "off the plane by up to (m)"});
+  head({"surveyed sheet and blocking wall", "engine", "rays into the wall", "hit nothing", "into the sheet",
+        "counted there", "counted beside it", "off the plane by up to (m)"});
   for (const EngineInfo& engine : engines)
     for (const CoplanarFigures& f : measure_coplanar(engine, 0.25 / size))
-      row({f.name, to_string(engine.engine), count(f.rays), share(f.counted, f.rays), count(f.missed),
-           number(f.off_m)});
+      row({f.name, to_string(engine.engine), count(f.wall_rays), count(f.missed), count(f.sheet_rays),
+           share(f.counted, f.sheet_rays), count(f.strayed), number(f.off_m)});
 }
 
 void odd(const std::vector<EngineInfo>& engines, double size) {
@@ -148,7 +148,8 @@ void reference(const std::vector<EngineInfo>& engines, double) {
 }
 
 void many(const std::vector<EngineInfo>& engines, double size) {
-  head({"stations", "engine", "rays", "points", "the voxel's count", "goal", "coverage", "from 64 bits", "from 32 that wrapped"});
+  head({"stations", "engine", "rays", "points", "the voxel's count", "goal", "coverage", "from 64 bits",
+        "from 32 that wrapped"});
   for (const EngineInfo& engine : engines)
     for (const ManyPoints& m : trace_many_points(engine, 0.028 / std::sqrt(size)))
       row({count(m.stations), to_string(engine.engine), count(m.rays), count(m.points), count(m.count), number(m.goal),
@@ -157,9 +158,9 @@ void many(const std::vector<EngineInfo>& engines, double size) {
 
 int run(int argc, char** argv) {
   using Part = std::function<void(const std::vector<EngineInfo>&, double)>;
-  const std::vector<std::pair<std::string, Part>> parts{{"moved", moved}, {"turned", turned}, {"baked", baked},
-                                                        {"sweep", sweep}, {"leaks", leaks},   {"coplanar", coplanar},
-                                                        {"odd", odd},     {"edges", edges},   {"reference", reference}, {"many", many}};
+  const std::vector<std::pair<std::string, Part>> parts{
+      {"moved", moved},       {"turned", turned}, {"baked", baked}, {"sweep", sweep},         {"leaks", leaks},
+      {"coplanar", coplanar}, {"odd", odd},       {"edges", edges}, {"reference", reference}, {"many", many}};
   const std::string costly = "many";  // minutes on a graphics card: only where asked for
   std::vector<std::string> wanted, wanted_engines;
   double size = 1;
@@ -180,10 +181,11 @@ int run(int argc, char** argv) {
     known &= found;
   }
   if (!known) {
-    std::fprintf(stderr,
-                 "usage: vantage-stress [--size SHARE] [--engine NAME]... [PART...]\nprints tables as Markdown; SHARE of the "
-                 "full size in (0, 1]; %s only where asked for; parts:",
-                 costly.c_str());
+    std::fprintf(
+        stderr,
+        "usage: vantage-stress [--size SHARE] [--engine NAME]... [PART...]\nprints tables as Markdown; SHARE of the "
+        "full size in (0, 1]; %s only where asked for; parts:",
+        costly.c_str());
     for (const auto& part : parts) std::fprintf(stderr, " %s", part.first.c_str());
     std::fprintf(stderr, "\n");
     return 2;

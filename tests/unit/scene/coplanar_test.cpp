@@ -25,7 +25,8 @@ struct Meshes {
       positions.push_back({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
     for (std::uint32_t t = 0; t < count; ++t) triangles.push_back({base + 3 * t, base + 3 * t + 1, base + 3 * t + 2});
   }
-  std::size_t count() const { return count_coplanar(positions, triangles, ranges, meshes); }
+  std::vector<CoplanarPair> pairs() const { return find_coplanar(positions, triangles, ranges, meshes).pairs; }
+  std::size_t count() const { return pairs().size(); }
 };
 
 // A plane of random place and tilt, or square to an axis.
@@ -69,7 +70,7 @@ TEST(Coplanar, OnlyOverlapInOnePlaneCounts) {
   }
 }
 
-TEST(Coplanar, EachSurveyedTriangleCountsOnceAndBlockingOnesNever) {
+TEST(Coplanar, PairsAreASurveyedAndABlockingTriangle) {
   std::mt19937 rng(43);
   const Plane plane(rng, false);
   Meshes scene;
@@ -80,9 +81,11 @@ TEST(Coplanar, EachSurveyedTriangleCountsOnceAndBlockingOnesNever) {
   EXPECT_EQ(scene.count(), 0u) << "nothing blocks";
   scene.add(Role::blocking, plane.triangle(-1, -1, 4, -1, -1, 4));
   scene.add(Role::blocking, plane.triangle(-1, -1, 5, -1, -1, 5));
-  EXPECT_EQ(scene.count(), 50u);
   scene.add(Role::surveyed, plane.triangle(-3, -3, -2, -3, -3, -2));
-  EXPECT_EQ(scene.count(), 50u);
+  std::vector<CoplanarPair> expected;
+  for (const std::uint32_t wall : {50u, 51u})
+    for (std::uint32_t k = 0; k < 50; ++k) expected.push_back({wall, k});
+  EXPECT_EQ(scene.pairs(), expected);
 }
 
 }  // namespace

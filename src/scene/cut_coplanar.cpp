@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/cut_coplanar.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <utility>
+
+#include "scene/coplanar.hpp"
+#include "scene/cut_polygon.hpp"
+
+namespace vantage {
+namespace {
+
+using Weights = std::array<double, 3>;  // of a triangle's corners
+
+// A blocking triangle and those in its plane that cover some of it.
+struct Covered {
+  std::uint32_t blocking = 0;
+  std::span<const CoplanarPair> by;
+};
+
+// Coordinates in a triangle's plane; counter-clockwise there is the triangle's own sense.
+class Frame {
+ public:
+  Frame(const std::vector<Float3>& positions, const Triangle& triangle) {
+    const auto at = [&](std::size_t k) {
+      const Float3& p = positions[triangle[k]];
+      return Vec3{p.x, p.y, p.z};
+    };
+    origin_ = at(0);
+    const Vec3 edge = at(1) - origin_, normal = cross(edge, at(2) - origin_);
+    x_ = edge * (1 / std::sqrt(dot(edge, edge)));
+    const Vec3 up = cross(normal, x_);
+    y_ = up * (1 / std::sqrt(dot(up, up)));
+    for (std::size_t k = 0; k < 3; ++k) corners_.push_back(flat(at(k)));
+  }
+
+  PlanePoint flat(const Vec3& p) const { return {dot(p - origin_, x_), dot(p - origin_, y_)}; }
+  Float3 lifted(const PlanePoint& p) const {
+    const Vec3 at = origin_ + x_ * p.x + y_ * p.y;
+    return {static_cast<float>(at.x) + 0.0F, static_cast<float>(at.y) + 0.0F, static_cast<float>(at.z) + 0.0F};
+  }
+  const ConvexPolygon& triangle() const { return corners_; }
+  Weights weights(const PlanePoint& p) const {
+    const PlanePoint &b = corners_[1], &c = corners_[2];
+    const double wc = p.y / c.y, wb = (p.x - wc * c.x) / b.x;
+    return {1 - wb - wc, wb, wc};
+  }
+
+ private:
+  Vec3 origin_, x_, y_;
+  ConvexPolygon corners_;
+};
+
+ConvexPolygon counter_clockwise(ConvexPolygon t) {
+  if ((t[1].x - t[0].x) * (t[2].y - t[0].y) < (t[1].y - t[0].y) * (t[2].x - t[0].x)) std::swap(t[1], t[2]);
+  return t;
+}
+
+std::uint32_t mixed_colour(const std::vector<std::uint32_t>& colours, const Triangle& t, const Weights& w) {
+  std::uint32_t colour = 0;
+  for (int shift = 0; shift < 32; shift += 8) {
+    double value = 0;
+    for (std::size_t k = 0; k < 3; ++k) value += w[k] * static_cast<double>(colours[t[k]] >> shift & 0xFFu);
+    colour |= static_cast<std::uint32_t>(std::lround(std::clamp(value, 0.0, 255.0))) << shift;
+  }
+  return colour;
+}
+
+Float3 mixed_normal(const std::vector<Float3>& normals, const Triangle& t, const Weights& w) {
+  Vec3 n;
+  for (std::size_t k = 0; k < 3; ++k) n = n + Vec3{normals[t[k]].x, normals[t[k]].y, normals[t[k]].z} * w[k];
+  const double length = std::sqrt(dot(n, n));
+  if (!(length > 0)) return {};
+  return {static_cast<float>(n.x / length), static_cast<float>(n.y / length), static_cast<float>(n.z / length)};
+}
+
+// Appends a vertex of triangle `t` at `p`, and returns its number.
+std::uint32_t add_vertex(RawScene& raw, std::vector<Float3>& positions, const Frame& frame, const Triangle& t,
+                         const PlanePoint& p) {
+  const Weights w = frame.weights(p);
+  if (!raw.normals.empty()) raw.normals.push_back(mixed_normal(raw.normals, t, w));
+  if (!raw.texcoords.empty()) {
+    Float2 uv;
+    for (std::size_t k = 0; k < 3; ++k) {
+      uv.x += static_cast<float>(w[k]) * raw.texcoords[t[k]].x;
+      uv.y += static_cast<float>(w[k]) * raw.texcoords[t[k]].y;
+    }
+    raw.texcoords.push_back(uv);
+  }
+  if (!raw.colours.empty()) raw.colours.push_back(mixed_colour(raw.colours, t, w));
+  positions.push_back(frame.lifted(p));
+  return static_cast<std::uint32_t>(positions.size() - 1);
+}
+
+// The runs of pairs with the same blocking triangle.
+std::vector<Covered> by_blocking(std::span<const CoplanarPair> pairs) {
+  std::vector<Covered> runs;
+  for (std::size_t begin = 0, end = 0; begin < pairs.size(); begin = end) {
+    while (end < pairs.size() && pairs[end].blocking == pairs[begin].blocking) ++end;
+    runs.push_back({pairs[begin].blocking, pairs.subspan(begin, end - begin)});
+  }
+  return runs;
+}
+
+std::size_t count_surveyed(std::span<const CoplanarPair> pairs) {
+  std::vector<std::uint32_t> surveyed;
+  for (const CoplanarPair& pair : pairs) surveyed.push_back(pair.surveyed);
+  std::ranges::sort(surveyed);
+  return static_cast<std::size_t>(std::ranges::unique(surveyed).begin() - surveyed.begin());
+}
+
+}  // namespace
+
+CoplanarCut cut_coplanar(RawScene& raw, std::vector<Float3>& positions) {
+  const Coplanar coplanar = find_coplanar(positions, raw.triangles, raw.ranges, raw.meshes);
+  if (coplanar.pairs.empty()) return {};
+  const std::vector<Covered> covered = by_blocking(coplanar.pairs);
+  std::vector<std::vector<ConvexPolygon>> left(covered.size());
+  tbb::parallel_for(std::size_t{0}, covered.size(), [&](std::size_t k) {
+    const Frame frame(positions, raw.triangles[covered[k].blocking]);
+    std::vector<ConvexPolygon> holes;
+    for (const CoplanarPair& pair : covered[k].by) {
+      ConvexPolygon hole;
+      for (const std::uint32_t v : raw.triangles[pair.surveyed])
+        hole.push_back(frame.flat({positions[v].x, positions[v].y, positions[v].z}));
+      holes.push_back(counter_clockwise(std::move(hole)));
+    }
+    left[k] = cut_away(frame.triangle(), holes, coplanar.slack_m);
+  });
+
+  std::vector<Triangle> triangles;
+  std::vector<MeshRange> ranges;
+  std::vector<MeshInfo> meshes;
+  std::size_t next = 0;  // of `covered`
+  for (std::size_t m = 0; m < raw.ranges.size(); ++m) {
+    MeshRange range = raw.ranges[m];
+    const std::uint32_t first = range.first_triangle, end = first + range.triangle_count;
+    range.first_triangle = static_cast<std::uint32_t>(triangles.size());
+    for (std::uint32_t t = first; t < end; ++t) {
+      const Triangle triangle = raw.triangles[t];
+      if (next == covered.size() || covered[next].blocking != t) {
+        triangles.push_back(triangle);
+        continue;
+      }
+      const Frame frame(positions, triangle);
+      for (const ConvexPolygon& part : left[next]) {
+        std::vector<std::uint32_t> corners;
+        for (const PlanePoint& p : part) corners.push_back(add_vertex(raw, positions, frame, triangle, p));
+        for (std::size_t k = 2; k < corners.size(); ++k) triangles.push_back({corners[0], corners[k - 1], corners[k]});
+      }
+      ++next;
+    }
+    range.triangle_count = static_cast<std::uint32_t>(triangles.size()) - range.first_triangle;
+    if (range.triangle_count == 0) continue;
+    ranges.push_back(range);
+    meshes.push_back(std::move(raw.meshes[m]));
+    meshes.back().triangle_count = range.triangle_count;
+  }
+  raw.triangles = std::move(triangles);
+  raw.ranges = std::move(ranges);
+  raw.meshes = std::move(meshes);
+  return {count_surveyed(coplanar.pairs), covered.size()};
+}
+
+}  // namespace vantage

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "scene/raw_scene.hpp"
+
+namespace vantage {
+
+struct CoplanarCut {
+  std::size_t surveyed = 0, blocking = 0;  // triangles that overlapped in one plane
+};
+
+// Where surveyed triangles lie in the plane of blocking ones, cuts that part away from the blocking ones: rays meet
+// the same surface, and it is the surveyed one. New vertices get interpolated attributes. `positions` are the scene's,
+// in the local frame, as raw.triangles index them.
+CoplanarCut cut_coplanar(RawScene& raw, std::vector<Float3>& positions);
+
+}  // namespace vantage
