@@ -447,8 +447,9 @@ TEST(MoCmaEs, DrawsABlockFromAnywhereAgainFromAnywhere) {
       const std::vector<std::size_t> coordinates{b, b + 1};
       const auto again = optimiser.resample(k, coordinates);
       // Beside another block or a member's, it stays there.
-      if (!fresh && is_known(points[4 * k + 2 - b], 0) && is_known(points[4 * k + 3 - b], 1))
+      if (!fresh && is_known(points[4 * k + 2 - b], 0) && is_known(points[4 * k + 3 - b], 1)) {
         EXPECT_TRUE(is_known(again[b], 0) && is_known(again[b + 1], 1)) << k;
+      }
     }
   }
   EXPECT_GT(elsewhere, 8u);  // a third of 64
