@@ -38,14 +38,14 @@ struct MeshInfo {
 };
 
 /// How `Scene::load` reads a file. Patterns are shell globs (`*`, `?`) on node names (a node without one goes by its mesh's); a node hands
-/// its role down to its children. Precedence: pattern, then extras on node, mesh, material; where several lists match one node, the last of
-/// them in the order below. Once any mesh is marked surveyed, meshes without a role block; until then they are surveyed.
+/// its role down to its children. Precedence: pattern, then extras on node, mesh, material; where several patterns match one node, the one
+/// with most letters other than `*` and `?`, and of equals the last in the order below. Once any mesh is marked surveyed, meshes without a role block; until then they are surveyed.
 struct SceneOptions {
   std::vector<std::string> surveyed = {};  ///< Nodes that are surveyed.
   std::vector<std::string> blocking = {};  ///< Nodes that only block.
   std::vector<std::string> search = {};    ///< Nodes that form the search area.
   std::vector<std::string> ignore = {};    ///< Nodes that are left out.
-  /// Nodes by pattern, and what their voxels count in coverage; the last that matches a node holds.
+  /// Nodes by pattern, and what their voxels count in coverage; where several match one node, as with roles.
   std::vector<std::pair<std::string, std::uint32_t>> weights = {};
   std::optional<std::size_t> scene_index = std::nullopt;  ///< Which glTF scene; empty: the file's default.
   double default_diffuse = 0.5;  ///< R where neither extras nor a plain base colour (its luminance) give one.

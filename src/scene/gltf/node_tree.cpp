@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/gltf/node_tree.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <span>
@@ -17,16 +18,16 @@ constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
 template <class Value>
 class Patterns {
  public:
-  void add(const std::string& pattern, Value value) { entries_.push_back({pattern, value}); }
-  // The last that names the node decides.
+  void add(const std::string& pattern, Value value) { entries_.push_back({pattern, value, letters_of(pattern)}); }
+  // Of those that match the node, the one with most letters of its own decides; of equals the last.
   std::optional<Value> find(const std::string& name) {
-    std::optional<Value> value;
-    for (Entry& entry : entries_)
-      if (glob_matches(entry.pattern, name)) {
-        entry.matched = true;
-        value = entry.value;
-      }
-    return value;
+    const Entry* best = nullptr;
+    for (Entry& entry : entries_) {
+      if (!glob_matches(entry.pattern, name)) continue;
+      entry.matched = true;
+      if (!best || entry.letters >= best->letters) best = &entry;
+    }
+    return best ? std::optional(best->value) : std::nullopt;
   }
   void check(const std::vector<std::string>& names) const {
     for (const Entry& entry : entries_) {
@@ -48,12 +49,15 @@ class Patterns {
   struct Entry {
     std::string pattern;
     Value value;
+    std::ptrdiff_t letters;
     bool matched = false;
   };
+  static std::ptrdiff_t letters_of(const std::string& pattern) {
+    return std::ranges::count_if(pattern, [](char c) { return c != '*' && c != '?'; });
+  }
   std::vector<Entry> entries_;
 };
 
-// In this order, so that `surveyed *` with `blocking ground` does what it says.
 Patterns<Role> role_patterns(const SceneOptions& options) {
   Patterns<Role> roles;
   for (const std::string& pattern : options.surveyed) roles.add(pattern, Role::surveyed);

@@ -108,7 +108,7 @@ TEST(Roles, NodeComesBeforeMeshBeforeMaterialAndIsInherited) {
                          {"by node", 0.3}, {"by mesh", 0.2}, {"by material", 0.1}, {"kept child", 0.4}}));
 }
 
-TEST(Roles, PatternsComeBeforeExtrasAndTheLastListWins) {
+TEST(Roles, PatternsComeBeforeExtras) {
   GlbBuilder builder;
   builder.triangle("pipe-1", {{"role", "ignore"}});
   builder.triangle("pipe-2");
@@ -127,6 +127,25 @@ TEST(Roles, PatternsComeBeforeExtrasAndTheLastListWins) {
   EXPECT_EQ(roles(load(builder, options))["wall"], Role::blocking) << "handed down from hall";
   options.ignore = {"pipe-2"};
   EXPECT_EQ(roles(load(builder, options)).count("pipe-2"), 0u);
+}
+
+TEST(Roles, ThePatternWithMostLettersHolds) {
+  GlbBuilder builder;
+  for (const char* name : {"house", "house-roof", "tree"}) builder.triangle(name);
+  SceneOptions options;
+  options.surveyed = {"house*"};
+  options.blocking = {"*"};
+  EXPECT_EQ(roles(load(builder, options)),
+            (std::map<std::string, Role>{
+                {"house", Role::surveyed}, {"house-roof", Role::surveyed}, {"tree", Role::blocking}}));
+  options.ignore = {"*roof"};  // four letters to five
+  EXPECT_EQ(roles(load(builder, options)).at("house-roof"), Role::surveyed);
+  options.ignore = {"*-roof"};  // five to five: the later list
+  EXPECT_FALSE(roles(load(builder, options)).contains("house-roof"));
+  options.weights = {{"house", 3}, {"*", 2}};
+  const Scene scene = load(builder, options);
+  EXPECT_EQ(scene.meshes()[0].weight, 3u);
+  EXPECT_EQ(scene.meshes()[1].weight, 2u);
 }
 
 TEST(Roles, UnnamedNodesGoByTheirMesh) {
