@@ -18,7 +18,7 @@ namespace vantage {
 
 /// How a search area is derived where the scene marks none: upward, gentle and clear surfaces.
 struct WalkableOptions {
-  Angle max_slope = Angle::degrees(35);  ///< Between a triangle's normal and up.
+  Angle max_slope = Angle::degrees(25);  ///< Between a triangle's normal and up; most pitched roofs are steeper.
   double headroom_m = 2.0;               ///< Clear height needed above the surface.
   double min_area_m2 = 0.25;  ///< Connected parts smaller than this, or far narrower than its side, are left out.
 };

@@ -127,7 +127,8 @@ WalkableSurface derive_walkable(const SceneData& scene, const MeshTree& tree, co
   const double from = first_height(scene.local_bounds, options.headroom_m), to = std::max(options.headroom_m, 2 * from);
   const double spacing = std::max(options.headroom_m / 5, extent / 512);
   const SurfacePieces pieces = clear_pieces(points, upward, spacing, [&](const Vec3& p) {
-    return !tree.covered(p, from, to) && !tree.inside_solid(p + Vec3{0, 0, from});
+    return !tree.covered(p, from, to) &&
+           !tree.inside_solid(p + Vec3{0, 0, (from + to) / 2});  // above bumps of the ground
   });
   std::vector<Chart> charts = make_charts(pieces, weld_share * extent);
   std::vector<char> fit(charts.size());

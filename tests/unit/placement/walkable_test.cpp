@@ -56,6 +56,28 @@ TEST(Walkable, GroundOfTwoTrianglesHasAHoleUnderABox) {
   EXPECT_GT(on_top, 100);
 }
 
+// A house drawn as a closed shell stands on ground that goes on beneath it, in bumps that level rays near the ground
+// run into.
+TEST(Walkable, NoPlaceWithinAShellOnBumpyGround) {
+  test::Builder builder;
+  const auto z = [](int x, int y) { return 0.15 * ((x + y) % 2); };
+  for (int x = -10; x < 10; ++x)
+    for (int y = -10; y < 10; ++y) {
+      const double a = x, b = y;
+      builder.quad({a, b, z(x, y)}, {a + 1, b, z(x + 1, y)}, {a + 1, b + 1, z(x + 1, y + 1)}, {a, b + 1, z(x, y + 1)});
+    }
+  builder.box({-4.5, -4.5, -0.5}, {3.5, 3.5, 6});
+  const SearchArea area = SearchArea::build(builder.scene());
+  int outside = 0;
+  for (const Vec3& p : random_places(area, 20000)) {
+    const Vec3 q = p - origin;
+    if (q.z > 1) continue;  // on top of it
+    ++outside;
+    EXPECT_FALSE(q.x > -4 && q.x < 3 && q.y > -4 && q.y < 3) << q.x << ' ' << q.y;
+  }
+  EXPECT_GT(outside, 1000);
+}
+
 TEST(Walkable, FloorUnderAHighPlatformStaysAndBothHaveTheirOwnPlaces) {
   const Scene scene = test::Builder().floor(-5, -5, 5, 5, 0).box({-2, -2, 2.5}, {2, 2, 2.6}).scene();
   const SearchArea area = SearchArea::build(scene);
