@@ -6,9 +6,9 @@
 #include <string>
 
 #include "report/chart.hpp"
-#include "report/outline.hpp"
 #include "report/pictures.hpp"
 #include "report/relief.hpp"
+#include "report/search_tint.hpp"
 #include "report/spread.hpp"
 #include "report/text.hpp"
 #include "vantage/error.hpp"
@@ -17,12 +17,12 @@
 namespace vantage {
 namespace {
 
-constexpr double kLeast = 0.01;          // overlaps below are not drawn, as in figure 12 of the method
+constexpr double kLeast = default_link_overlap;  // overlaps below are not drawn, as in figure 12 of the method
 constexpr double kMostWidth = 9;         // of the strongest link
 constexpr double kStrong = 0.1;          // if none is stronger, a link of this overlap would be as wide
 constexpr double kDisc = 10.5;           // radius of a station's number
 constexpr std::size_t kPixelsPerUnit = 2, kSupersampling = 2;
-constexpr Colour kStation{0.10, 0.22, 0.45}, kLink{0.16, 0.34, 0.66}, kSkipped{0.72, 0.12, 0.12}, kSearch{0.05, 0.45, 0.25};
+constexpr Colour kStation{0.10, 0.22, 0.45}, kLink{0.16, 0.34, 0.66}, kSkipped{0.72, 0.12, 0.12};
 
 // What the map must show: surveyed meshes, search area and stations; ground that reaches further is cut off.
 Box window_of(const SceneData& scene, const SearchMesh& mesh, std::span<const PlacedStation> stations) {
@@ -134,12 +134,9 @@ std::unique_ptr<Canvas> plan_view_picture(const Scene& scene, const SearchArea& 
   const Chart chart(canvas, map,
                     {.label = "x (m)", .low = window.min.x, .high = window.min.x + map.width / metre, .wanted_ticks = 7},
                     {.label = "y (m)", .low = window.max.y - map.height / metre, .high = window.max.y, .wanted_ticks = 7}, title, subtitle);
-  canvas.image(map, halve(shade(data, heights), pixels.columns), pixels.columns / 2);
-
-  canvas.clip(map);
-  for (const auto& [a, b] : outline(mesh))
-    canvas.line(chart.at(a.x, a.y), chart.at(b.x, b.y), {.colour = kSearch, .width = 1.3, .opacity = 0.85, .dashes = {6, 4}});
-  canvas.unclip();
+  std::vector<std::uint32_t> site = shade(data, heights);
+  tint_search_area(site, pixels, mesh);
+  canvas.image(map, halve(site, pixels.columns), pixels.columns / 2);
   canvas.rectangle(map, {.colour = style::faint, .width = 1});
 
   // Stations: a disc with its number, moved aside with a leader where several stand close together.
@@ -199,7 +196,9 @@ std::unique_ptr<Canvas> plan_view_picture(const Scene& scene, const SearchArea& 
   const bool blocking = std::any_of(data.meshes.begin(), data.meshes.end(), [](const MeshInfo& m) { return m.role == Role::blocking; });
   swatch(kSurveyedTint, "surveyed");
   if (blocking) swatch(kBlockingTint, "not surveyed");
-  canvas.line({at.x, at.y}, {at.x + 24, at.y}, {.colour = kSearch, .width = 1.6, .dashes = {6, 4}});
+  canvas.fill({at.x, at.y - 7, 24, 14}, kBlockingTint);
+  canvas.fill({at.x, at.y - 7, 24, 14}, kSearchTint, kSearchOpacity);
+  canvas.rectangle({at.x + 0.5, at.y - 6.5, 23, 13}, {.colour = kSearchTint, .width = 1, .opacity = kSearchRim});
   words("search area");
   at.y += 28;
   draw_station(canvas, {at.x + 12, at.y}, 1, false);

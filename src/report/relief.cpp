@@ -18,54 +18,32 @@ constexpr double kSteep = 0.1;
 // Width of such a line in pixels of the buffer: big walls stand out, small parts keep their shape.
 double line_width(double length) { return std::clamp(0.15 * length, 3.0, 14.0); }
 
-struct Corner {
-  double x, y, z;  // pixels and metres
-};
-
 class Painter {
  public:
   Painter(HeightBuffer& target, double z_cut) : target_(target), z_cut_(z_cut) {}
 
-  void triangle(const std::array<Corner, 3>& c, std::uint32_t id) {
-    const double area = (c[1].x - c[0].x) * (c[2].y - c[0].y) - (c[2].x - c[0].x) * (c[1].y - c[0].y);
-    if (area == 0) return;
-    const auto [x0, x1] = range(std::min({c[0].x, c[1].x, c[2].x}), std::max({c[0].x, c[1].x, c[2].x}), target_.window.columns);
-    const auto [y0, y1] = range(std::min({c[0].y, c[1].y, c[2].y}), std::max({c[0].y, c[1].y, c[2].y}), target_.window.rows);
-    for (std::size_t y = y0; y < y1; ++y) {
-      for (std::size_t x = x0; x < x1; ++x) {
-        const double px = static_cast<double>(x) + 0.5, py = static_cast<double>(y) + 0.5;
-        const double a = ((c[1].x - px) * (c[2].y - py) - (c[2].x - px) * (c[1].y - py)) / area;
-        const double b = ((c[2].x - px) * (c[0].y - py) - (c[0].x - px) * (c[2].y - py)) / area;
-        if (a < 0 || b < 0 || a + b > 1) continue;
-        put(x, y, a * c[0].z + b * c[1].z + (1 - a - b) * c[2].z, id);
-      }
-    }
+  void triangle(const std::array<MapPoint, 3>& c, const std::array<double, 3>& z, std::uint32_t id) {
+    for_each_pixel(target_.window, c, [&](std::size_t pixel, const std::array<double, 3>& weights) {
+      put(pixel, weights[0] * z[0] + weights[1] * z[1] + weights[2] * z[2], id);
+    });
   }
 
-  void line(const Corner& a, const Corner& b, std::uint32_t id) {
+  void line(const MapPoint& a, const MapPoint& b, double z_a, double z_b, std::uint32_t id) {
     const double dx = b.x - a.x, dy = b.y - a.y, length = std::max(std::abs(dx), std::abs(dy));
     const double half = line_width(length) / 2;
     const int steps = static_cast<int>(std::ceil(length)) + 1;
     for (int s = 0; s <= steps; ++s) {
       const double t = static_cast<double>(s) / steps, x = a.x + t * dx, y = a.y + t * dy;
-      const auto [x0, x1] = range(x - half, x + half, target_.window.columns);
-      const auto [y0, y1] = range(y - half, y + half, target_.window.rows);
+      const auto [x0, x1] = pixels_between(x - half, x + half, target_.window.columns);
+      const auto [y0, y1] = pixels_between(y - half, y + half, target_.window.rows);
       for (std::size_t j = y0; j < y1; ++j)
-        for (std::size_t i = x0; i < x1; ++i) put(i, j, a.z + t * (b.z - a.z), id);
+        for (std::size_t i = x0; i < x1; ++i) put(j * target_.window.columns + i, z_a + t * (z_b - z_a), id);
     }
   }
 
  private:
-  // Pixels whose centres lie between low and high.
-  static std::pair<std::size_t, std::size_t> range(double low, double high, std::size_t size) {
-    const double first = std::clamp(std::ceil(low - 0.5), 0.0, static_cast<double>(size));
-    const double past = std::clamp(std::floor(high - 0.5) + 1, first, static_cast<double>(size));
-    return {static_cast<std::size_t>(first), static_cast<std::size_t>(past)};
-  }
-
-  void put(std::size_t x, std::size_t y, double z, std::uint32_t id) {
+  void put(std::size_t k, double z, std::uint32_t id) {
     if (z > z_cut_) return;
-    const std::size_t k = y * target_.window.columns + x;
     if (static_cast<float>(z) <= target_.z[k]) return;
     target_.z[k] = static_cast<float>(z), target_.triangle[k] = id;
   }
@@ -122,14 +100,16 @@ HeightBuffer look_from_above(const SceneData& scene, const MapWindow& window, do
   heights.triangle.assign(window.columns * window.rows, kNothing);
   Painter painter(heights, z_cut - scene.origin.z);
   for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
-    std::array<Corner, 3> c;
+    std::array<MapPoint, 3> c;
+    std::array<double, 3> z;
     const auto p = corners_of(scene, t);
-    for (std::size_t k = 0; k < 3; ++k)
-      c[k] = {(scene.origin.x + double{p[k].x} - window.x_min) / window.pixel_m,
-              (window.y_max - scene.origin.y - double{p[k].y}) / window.pixel_m, double{p[k].z}};
-    painter.triangle(c, t);
+    for (std::size_t k = 0; k < 3; ++k) {
+      c[k] = window.at(scene.origin + Vec3{p[k].x, p[k].y, p[k].z});
+      z[k] = p[k].z;
+    }
+    painter.triangle(c, z, t);
     if (normal_of(scene, t)[2] < kSteep)
-      for (std::size_t k = 0; k < 3; ++k) painter.line(c[k], c[(k + 1) % 3], t);
+      for (std::size_t k = 0; k < 3; ++k) painter.line(c[k], c[(k + 1) % 3], z[k], z[(k + 1) % 3], t);
   }
   return heights;
 }

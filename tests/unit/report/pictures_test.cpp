@@ -5,8 +5,8 @@
 #include <random>
 
 #include "report/chart.hpp"
-#include "report/outline.hpp"
 #include "report/relief.hpp"
+#include "report/search_tint.hpp"
 #include "report/spread.hpp"
 #include "support/temporary_folder.hpp"
 #include "unit/report/files.hpp"
@@ -82,15 +82,30 @@ TEST(Spread, PartsWhatOverlapsAndLeavesTheRest) {
   EXPECT_LT(std::hypot(discs[0].x - 50, discs[0].y - 50), 60);
 }
 
-TEST(Outline, SeamsAreNoEdges) {
-  // Two squares side by side, the second with vertices of its own, as a chart's seam makes them.
+TEST(SearchTint, HasARimAtItsEdgeAndNoneAtSeams) {
+  // Two squares side by side, the second with vertices of its own and cut otherwise, as a chart's seam makes them.
   SearchMesh mesh;
-  for (const double left : {0.0, 1.0})
-    for (const auto& [x, y] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}}) mesh.positions.push_back({left + x, y, 0});
-  mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}};
-  const auto edges = outline(mesh);
-  EXPECT_EQ(edges.size(), 6u);
-  for (const auto& [a, b] : edges) EXPECT_FALSE(a.x == 1 && b.x == 1);
+  for (const auto& [x, y] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}, {1.0, 0.0}, {2.0, 0.0}, {2.0, 1.0}, {1.0, 1.0}, {1.0, 0.4}})
+    mesh.positions.push_back({x, y, 0});
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {4, 5, 8}, {8, 5, 6}, {8, 6, 7}};
+  const MapWindow window{.x_min = -1, .y_max = 2, .pixel_m = 0.02, .columns = 200, .rows = 150};
+  std::vector<std::uint32_t> pixels(window.columns * window.rows, 0xFFFFFFFFu);
+  pixels[60 * window.columns + 60] = 0;  // nothing there: paper
+  tint_search_area(pixels, window, mesh);
+  const auto green_at = [&](double x, double y) {
+    const MapPoint p = window.at({x, y, 0});
+    const std::uint32_t pixel = pixels[static_cast<std::size_t>(p.y) * window.columns + static_cast<std::size_t>(p.x)];
+    EXPECT_EQ(pixel >> 24, 255u);
+    return 255.0 - (pixel >> 16 & 255u);  // red goes first
+  };
+  const double full = 255 * (1 - kSearchTint.r);
+  EXPECT_EQ(green_at(-0.03, 0.5), 0);
+  EXPECT_EQ(green_at(0.5, 1.03), 0);
+  for (const auto& [x, y] : {std::pair{0.5, 0.5}, {0.99, 0.7}, {1.01, 0.41}, {1.3, 0.2}, {0.21, 0.79}})
+    EXPECT_NEAR(green_at(x, y), kSearchOpacity * full, 1) << x << ' ' << y;
+  for (const auto& [x, y] : {std::pair{0.03, 0.5}, {0.5, 0.03}, {1.97, 0.5}, {1.2, 0.97}, {0.01, 0.01}, {0.05, 0.5}})
+    EXPECT_NEAR(green_at(x, y), kSearchRim * full, 1) << x << ' ' << y;
+  EXPECT_NEAR(green_at(0.11, 0.5), kSearchOpacity * full, 1);
 }
 
 // A floor of 4 x 4 m at z = 0, a table of 2 x 2 m at z = 1 in its middle, a wall without thickness at x = -1.5, in local coordinates.

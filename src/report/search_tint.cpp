@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "report/search_tint.hpp"
+
+#include <array>
+#include <cmath>
+
+namespace vantage {
+namespace {
+
+constexpr std::size_t kRim = 4;  // pixels
+
+std::vector<std::uint8_t> covered_pixels(const MapWindow& window, const SearchMesh& mesh) {
+  std::vector<std::uint8_t> covered(window.columns * window.rows, 0);
+  for (const auto& t : mesh.triangles) {
+    std::array<MapPoint, 3> c;
+    for (std::size_t k = 0; k < 3; ++k) c[k] = window.at(mesh.positions[t[k]]);
+    for_each_pixel(window, c, [&](std::size_t pixel, const std::array<double, 3>&) { covered[pixel] = 1; });
+  }
+  return covered;
+}
+
+// Sets in `near` what lies less than `r` pixels, along its line, from one that is `wanted` or from the line's end.
+template <class Wanted>
+void spread_along(std::size_t lines, std::size_t line_step, std::size_t length, std::size_t step, std::size_t r, Wanted&& wanted,
+                  std::vector<std::uint8_t>& near) {
+  for (std::size_t line = 0; line < lines; ++line) {
+    for (const bool forth : {true, false}) {
+      std::size_t since = 0;
+      for (std::size_t i = 0; i < length; ++i) {
+        const std::size_t k = line * line_step + (forth ? i : length - 1 - i) * step;
+        since = wanted(k) ? 0 : since + 1;
+        if (since < r) near[k] = 1;
+      }
+    }
+  }
+}
+
+// Those of the set with another that is not less than `r` columns and rows away, or with the map's border as near.
+std::vector<std::uint8_t> rim_of(const std::vector<std::uint8_t>& set, std::size_t columns, std::size_t r) {
+  const std::size_t rows = set.size() / columns;
+  std::vector<std::uint8_t> across(set.size(), 0), rim(set.size(), 0);
+  spread_along(rows, columns, columns, 1, r, [&](std::size_t k) { return !set[k]; }, across);
+  spread_along(columns, 1, rows, columns, r, [&](std::size_t k) { return across[k]; }, rim);
+  for (std::size_t k = 0; k < set.size(); ++k) rim[k] = rim[k] && set[k];
+  return rim;
+}
+
+// The colour over an opaque pixel, or over white paper.
+std::uint32_t over(std::uint32_t pixel, const Colour& colour, double opacity) {
+  const auto bytes = to_bytes(colour);
+  const std::uint32_t paper = 255 - (pixel >> 24);
+  std::uint32_t mixed = 0xFF000000u;
+  for (int k = 0; k < 3; ++k) {
+    const int shift = 16 - 8 * k;
+    const double below = (pixel >> shift & 255u) + paper;
+    mixed |= static_cast<std::uint32_t>(std::lround(below + opacity * (bytes[static_cast<std::size_t>(k)] - below))) << shift;
+  }
+  return mixed;
+}
+
+}  // namespace
+
+void tint_search_area(std::vector<std::uint32_t>& pixels, const MapWindow& window, const SearchMesh& mesh) {
+  const std::vector<std::uint8_t> covered = covered_pixels(window, mesh), rim = rim_of(covered, window.columns, kRim);
+  for (std::size_t k = 0; k < pixels.size(); ++k)
+    if (covered[k]) pixels[k] = over(pixels[k], kSearchTint, rim[k] ? kSearchRim : kSearchOpacity);
+}
+
+}  // namespace vantage
