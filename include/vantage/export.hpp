@@ -78,8 +78,10 @@ void draw_plan_view(const std::filesystem::path& file, const Scene& scene, const
 std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& result, const PlanConfig& config, Simulator& simulator,
                        const SearchArea& area);
 
-/// The entry of the front with the largest product of its objectives' gains: the compromise shown where one must be chosen.
-std::size_t compromise(const PlanResult& result, Problem problem);
+/// The compromise shown where one must be chosen: the entry of the front with the largest product of its objectives' gains. Where overlap is
+/// an objective, of those whose stations all hang together by link_overlap(config), as far as there are any confirmed: parts of a
+/// network cannot be registered with each other, however well each overlaps in itself.
+std::size_t compromise(const PlanResult& result, const PlanConfig& config);
 
 /// Writes text to a file atomically. Throws Error io.
 void write_text(const std::filesystem::path& file, const std::string& text);

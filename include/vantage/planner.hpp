@@ -173,5 +173,9 @@ struct Connectivity {
 };
 /// Links are the pairs whose overlap is above 0 and at least `min_overlap`.
 Connectivity connectivity(const OverlapMatrix& overlap, double min_overlap);
+/// Two stations of less overlap count as not linked in reports and pictures, unless a plan asks for another bound.
+inline constexpr double default_link_overlap = 0.01;
+/// The bound for a plan's reports: its `min_link_overlap` where it has one, else `default_link_overlap`.
+double link_overlap(const PlanConfig& config);
 
 }  // namespace vantage

@@ -227,12 +227,20 @@ std::vector<Vec3> greedy_start(Site& site, Simulator& simulator, const PlanConfi
   return heads;
 }
 
+// Says where a network does not hang together.
+std::string parts_of(const PlanEntry& entry, const PlanConfig& config) {
+  if (!entry.confirmed || !wants_overlap(config.problem)) return "";
+  const std::size_t parts = connectivity(entry.exact_overlap_matrix, link_overlap(config)).parts;
+  return parts > 1 ? fmt::format("  in {} parts", parts) : "";
+}
+
 std::string summary(const PlanResult& result, const PlanConfig& config, std::size_t chosen, const std::string& folder) {
   std::string text = "coverage  overlap  stations\n";
   for (std::size_t k = 0; k < result.front.size(); ++k) {
     const PlanEntry& entry = result.front[k];
-    text += fmt::format("  {:.4f}   {:.4f}  {:>4}{}\n", entry.confirmed ? entry.exact_coverage : entry.coverage,
-                        entry.confirmed ? entry.exact_overlap : entry.overlap, entry.stations.size(), k == chosen ? "  <- compromise" : entry.dominated ? "  dominated" : "");
+    text += fmt::format("  {:.4f}   {:.4f}  {:>4}{}{}\n", entry.confirmed ? entry.exact_coverage : entry.coverage,
+                        entry.confirmed ? entry.exact_overlap : entry.overlap, entry.stations.size(),
+                        k == chosen ? "  <- compromise" : entry.dominated ? "  dominated" : "", parts_of(entry, config));
   }
   text += fmt::format("{} evaluations, {} {:.4f}", result.evaluations, value_name(config), result.hypervolume);
   if (config.sample_voxels > 0 && !std::isnan(result.exact_hypervolume))

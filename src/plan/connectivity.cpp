@@ -61,4 +61,8 @@ Connectivity connectivity(const OverlapMatrix& overlap, double min_overlap) {
   return result;
 }
 
+double link_overlap(const PlanConfig& config) {
+  return config.min_link_overlap > 0 ? config.min_link_overlap : default_link_overlap;
+}
+
 }  // namespace vantage

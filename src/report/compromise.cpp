@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <utility>
 
 #include "vantage/error.hpp"
 #include "vantage/export.hpp"
 
 namespace vantage {
 
-std::size_t compromise(const PlanResult& result, Problem problem) {
+std::size_t compromise(const PlanResult& result, const PlanConfig& config) {
   if (result.front.empty()) throw Error(Errc::invalid_argument, "compromise: the front is empty");
+  const Problem problem = config.problem;
   const bool overlap = problem == Problem::coverage_overlap_fix || problem == Problem::coverage_overlap_min;
   const bool stations = problem == Problem::coverage_min || problem == Problem::coverage_overlap_min;
   const auto gain = [&](const PlanEntry& entry) {
@@ -16,10 +18,12 @@ std::size_t compromise(const PlanResult& result, Problem problem) {
     if (stations && !entry.x.empty()) product *= 1 - entry.x.back();
     return product;
   };
-  std::size_t best = 0;
-  for (std::size_t k = 1; k < result.front.size(); ++k)
-    if (gain(result.front[k]) > gain(result.front[best])) best = k;
-  return best;
+  const auto in_one_part = [&](const PlanEntry& entry) {
+    return entry.confirmed && connectivity(entry.exact_overlap_matrix, link_overlap(config)).parts == 1;
+  };
+  const auto rank = [&](const PlanEntry& entry) { return std::pair{overlap && in_one_part(entry), gain(entry)}; };
+  return static_cast<std::size_t>(
+      std::ranges::max_element(result.front, {}, rank) - result.front.begin());
 }
 
 }  // namespace vantage

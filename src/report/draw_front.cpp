@@ -70,7 +70,7 @@ std::unique_ptr<Canvas> front_picture(const PlanResult& result, const PlanConfig
   if (any_dominated) legend.push_back({LegendItem::Mark::small, key, "dominated"});
   if (sampled) legend.push_back({LegendItem::Mark::hollow, key, "search, " + grouped(config.sample_voxels) + " voxels"});
   else if (!any_confirmed) legend.push_back({LegendItem::Mark::hollow, key, "as the search saw it"});
-  const PlanEntry* best = result.front.empty() ? nullptr : &result.front[compromise(result, config.problem)];
+  const PlanEntry* best = result.front.empty() ? nullptr : &result.front[compromise(result, config)];
   if (best && known(best->confirmed ? view.confirmed(*best) : view.searched(*best))) {
     const PlanEntry& chosen = *best;
     const FrontDot dot = chosen.confirmed ? view.confirmed(chosen) : view.searched(chosen);
@@ -84,7 +84,9 @@ std::unique_ptr<Canvas> front_picture(const PlanResult& result, const PlanConfig
     const Rect place = place_label(p, 13, canvas.text_width(words, text) + 6, 18,
                                    {area.x + 4, area.y + 4, area.width - 8, area.height - 8}, taken);
     canvas.text({place.x + place.width / 2, place.y + place.height / 2}, words, text);
-    if (!view.single()) legend.push_back({LegendItem::Mark::ring, style::orange, "compromise: largest product of gains"});
+    if (!view.single())
+      legend.push_back({LegendItem::Mark::ring, style::orange,
+                        view.by_count() ? "compromise: largest product of gains" : "compromise: largest product of gains of linked networks"});
   }
   draw_legend(canvas, {area.x, kHeight - 24}, legend);
   return page;

@@ -89,9 +89,6 @@ ordered_json links_json(const OverlapMatrix& overlap, double min_overlap) {
   return json;
 }
 
-// Links of less overlap are not drawn either.
-constexpr double kLeastOverlap = 0.01;
-
 ordered_json entry_json(const PlanEntry& entry, const PlanConfig& config) {
   ordered_json stations = ordered_json::array();
   for (std::size_t i = 0; i < entry.stations.size(); ++i) {
@@ -111,7 +108,7 @@ ordered_json entry_json(const PlanEntry& entry, const PlanConfig& config) {
                        {"x", entry.x}};
   if (entry.confirmed) {
     json["exact"] = {{"coverage", entry.exact_coverage}, {"overlap", entry.exact_overlap}, {"dominated", entry.dominated}};
-    json["links"] = links_json(entry.exact_overlap_matrix, config.min_link_overlap > 0 ? config.min_link_overlap : kLeastOverlap);
+    json["links"] = links_json(entry.exact_overlap_matrix, link_overlap(config));
   }
   return json;
 }
@@ -152,7 +149,7 @@ std::string front_json(const PlanResult& result, const PlanConfig& config, const
                        {"stations_drawn", result.drawn},
                        {"stations_redrawn", result.redrawn},
                        {"stop_reason", to_string(result.stop_reason)}};
-  if (!result.front.empty()) json["compromise"] = compromise(result, config.problem);
+  if (!result.front.empty()) json["compromise"] = compromise(result, config);
   json["front"] = std::move(front);
   json["seconds"] = {{"total", result.seconds}, {"trace", result.trace_seconds}};
   json["engine"] = to_string(simulator.engine().engine);
