@@ -2,6 +2,7 @@
 #include "trace/embree/ray_caster.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -54,11 +55,12 @@ void keep_least(const RTCFilterFunctionNArguments* args) {
   }
 }
 
-// Called for the first triangle that a ray of any_hit() meets.
+// Called for the first triangle that a ray of any_hits() meets.
 void note(const RTCFilterFunctionNArguments* args) {
+  const Context& context = *reinterpret_cast<const Context*>(args->context);
   for (unsigned i = 0; i < args->N; ++i) {
     if (args->valid[i] != 0)
-      *reinterpret_cast<const Context*>(args->context)->primitive = RTCHitN_primID(args->hit, args->N, i);
+      context.primitive[RTCRayN_id(args->ray, args->N, i)] = RTCHitN_primID(args->hit, args->N, i);
   }
 }
 
@@ -87,42 +89,31 @@ RayCaster::RayCaster(std::shared_ptr<const SceneData> scene) : scene_(std::move(
   embree::check(device, "building the tree over " + std::to_string(scene_->triangles.size()) + " triangles");
 }
 
-std::uint32_t RayCaster::nearest_hit(const Float3& origin, const Float3& d, float start, float end, float& t) const {
-  float best = std::numeric_limits<float>::infinity();
-  std::uint32_t primitive = RayBundle::no_hit;
-  Context context{{}, &best, &primitive};
-  RTCRayHit hit;
-  hit.ray = {origin.x, origin.y, origin.z, start, safe(d.x), safe(d.y), safe(d.z), 0, end, 0xFFFFFFFFu, 0, 0};
-  hit.hit.geomID = hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+void RayCaster::any_hits(const Float3& origin, float start, std::span<Probe> probes) const {
+  constexpr std::size_t stream = 64;
+  std::array<std::uint32_t, stream> hit;
+  alignas(64) std::array<RTCRay, stream> rays;
+  for (std::size_t first = 0; first < probes.size(); first += stream) {
+    const std::size_t n = std::min(stream, probes.size() - first);
+    for (std::size_t i = 0; i < n; ++i) {
+      const Probe& probe = probes[first + i];
+      rays[i] = {origin.x,        origin.y, origin.z,  start,       safe(probe.d.x),          safe(probe.d.y),
+                 safe(probe.d.z), 0,        probe.end, 0xFFFFFFFFu, static_cast<unsigned>(i), 0};
+    }
+    hit.fill(RayBundle::no_hit);
+    Context context{{}, nullptr, hit.data()};
 #if VANTAGE_EMBREE_MAJOR >= 4
-  rtcInitRayQueryContext(&context.rtc);
-  RTCIntersectArguments arguments;
-  rtcInitIntersectArguments(&arguments);
-  arguments.context = &context.rtc;
-  rtcIntersect1(tree_.get(), &hit, &arguments);
+    rtcInitRayQueryContext(&context.rtc);
+    RTCOccludedArguments arguments;
+    rtcInitOccludedArguments(&arguments);
+    arguments.context = &context.rtc;
+    for (std::size_t i = 0; i < n; ++i) rtcOccluded1(tree_.get(), &rays[i], &arguments);
 #else
-  rtcInitIntersectContext(&context.rtc);
-  rtcIntersect1(tree_.get(), &context.rtc, &hit);
+    rtcInitIntersectContext(&context.rtc);
+    rtcOccluded1M(tree_.get(), &context.rtc, rays.data(), static_cast<unsigned>(n), sizeof(RTCRay));
 #endif
-  t = best;
-  return primitive;
-}
-
-std::uint32_t RayCaster::any_hit(const Float3& origin, const Float3& d, float start, float end) const {
-  std::uint32_t primitive = RayBundle::no_hit;
-  Context context{{}, nullptr, &primitive};
-  RTCRay ray{origin.x, origin.y, origin.z, start, safe(d.x), safe(d.y), safe(d.z), 0, end, 0xFFFFFFFFu, 0, 0};
-#if VANTAGE_EMBREE_MAJOR >= 4
-  rtcInitRayQueryContext(&context.rtc);
-  RTCOccludedArguments arguments;
-  rtcInitOccludedArguments(&arguments);
-  arguments.context = &context.rtc;
-  rtcOccluded1(tree_.get(), &ray, &arguments);
-#else
-  rtcInitIntersectContext(&context.rtc);
-  rtcOccluded1(tree_.get(), &context.rtc, &ray);
-#endif
-  return primitive;
+    for (std::size_t i = 0; i < n; ++i) probes[first + i].hit = hit[i];
+  }
 }
 
 void RayCaster::cast(RayBundle& rays) const {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 
 #include "core/embree.hpp"
 #include "scene/scene_data.hpp"
@@ -25,6 +26,13 @@ struct RayBundle {
   alignas(64) std::uint32_t primitive[capacity];  // out: scene triangle, or no_hit
 };
 
+// Whether something stands in the way of a ray before `end`.
+struct Probe {
+  Float3 d;
+  float end = 0;
+  std::uint32_t hit = RayBundle::no_hit;  // out: some triangle that the ray hits on the way
+};
+
 // The triangles of a scene in Embree's tree. Safe to use from any thread.
 class RayCaster {
  public:
@@ -36,10 +44,8 @@ class RayCaster {
   // order in which it visits them, so its tree is searched a little past the nearest hit, and the choice is ours.
   void cast(RayBundle& rays) const;
 
-  // The same hit for one ray alone, from `start` to `end`; or no_hit.
-  std::uint32_t nearest_hit(const Float3& origin, const Float3& d, float start, float end, float& t) const;
-  // Some triangle that the ray hits on the way, or no_hit. Faster.
-  std::uint32_t any_hit(const Float3& origin, const Float3& d, float start, float end) const;
+  // Fills `hit` of rays from one point, in any order. Faster.
+  void any_hits(const Float3& origin, float start, std::span<Probe> probes) const;
 
  private:
   std::shared_ptr<const SceneData> scene_;

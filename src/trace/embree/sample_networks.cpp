@@ -17,7 +17,7 @@
 namespace vantage {
 namespace {
 
-constexpr std::size_t block = 512;  // voxels a task: long enough that its occluders pay
+constexpr std::size_t block = SampledVoxelCounter::block;
 constexpr std::size_t pairs_at_once = std::size_t{1}
                                       << 22;  // (network, voxel), so that memory does not grow with the population
 
@@ -44,11 +44,11 @@ std::vector<NetworkCounts> sample_networks(const StationRays& rays, std::span<co
                                            const Tracer::SampleJob& job, std::unique_ptr<SampledVoxels>& kept,
                                            const Progress& progress) {
   const double size = magnitude(rays, networks), pad = rounding_pad(size);
-  const double margin =
-      static_cast<double>(rays.noise().reach_within(static_cast<float>(size) + rays.noise().reach())) +
-      triangle_margin(pad);
-  if (!kept || !kept->made_for(job.sample, margin))
-    kept = std::make_unique<SampledVoxels>(rays.scene(), rays.grid(), job.sample, margin);
+  const double reach = static_cast<double>(rays.noise().reach_within(static_cast<float>(size) + rays.noise().reach()));
+  if (!kept || !kept->made_for(job.sample, pad, reach)) {
+    kept = std::make_unique<SampledVoxels>(rays.scene(), rays.grid(), job.sample, pad, reach,
+                                           reach + triangle_margin(pad));
+  }
   const SampledVoxels& voxels = *kept;
 
   const std::size_t n = voxels.size(), blocks = (n + block - 1) / block;
@@ -75,12 +75,11 @@ std::vector<NetworkCounts> sample_networks(const StationRays& rays, std::span<co
       tbb::parallel_for(tbb::blocked_range<std::size_t>(begin, end, 1), [&](const auto& range) {
         for (std::size_t task = range.begin(); task < range.end(); ++task) {
           const std::size_t network = task / blocks, start = task % blocks * block;
-          SampledVoxelCounter counter(rays, voxels, networks[first + network], pad);
-          for (std::size_t i = start; i < std::min(n, start + block); ++i) {
-            const SampledVoxelCounter::Result result = counter.count(i, job.masks ? 0 : job.stop_at);
-            counts[network * n + i] = result.count;
-            if (job.masks) masks[network * n + i] = result.mask;
-          }
+          const std::size_t many = std::min(block, n - start);
+          SampledVoxelCounter counter(rays, voxels, pad);
+          counter.count(networks[first + network], start, job.masks ? 0 : job.stop_at,
+                        std::span(counts).subspan(network * n + start, many),
+                        job.masks ? std::span(masks).subspan(network * n + start, many) : std::span<std::uint64_t>());
           std::atomic_ref(traced[network]).fetch_add(counter.traced(), std::memory_order_relaxed);
         }
       });
@@ -91,8 +90,8 @@ std::vector<NetworkCounts> sample_networks(const StationRays& rays, std::span<co
     for (std::size_t k = 0; k < here; ++k) {
       const std::span<const std::uint32_t> own_counts(counts.data() + k * n, n);
       const std::span<const std::uint64_t> own_masks(masks.data() + (job.masks ? k * n : 0), job.masks ? n : 0);
-      results[first + k] = reduce_sample(own_counts, own_masks, job.groups, station_counts[first + k], goal_density,
-                                         weights);
+      results[first + k] =
+          reduce_sample(own_counts, own_masks, job.groups, station_counts[first + k], goal_density, weights);
       results[first + k].rays = traced[k];
     }
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();

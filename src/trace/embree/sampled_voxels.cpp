@@ -7,49 +7,161 @@
 #include <cmath>
 
 #include "trace/embree/seen_triangle.hpp"
-#include "trace/triangle_gap.hpp"
 #include "voxel/voxel_triangles.hpp"
 
 namespace vantage {
 namespace {
 
-Vec3 widen(const Float3& p) { return {p.x, p.y, p.z}; }
+using Corners = std::array<Vec3, 3>;
 
-SampledVoxels::Listed listed(const Float3& a, const Float3& b, const Float3& c) {
-  SampledVoxels::Listed result{a, b, c, 0, 0, 0, {}, 0};
-  const Vec3 e1 = widen(b) - widen(a), e2 = widen(c) - widen(a), e3 = widen(c) - widen(b);
-  result.longest =
-      std::nextafter(static_cast<float>(std::sqrt(std::max({dot(e1, e1), dot(e2, e2), dot(e3, e3)}))), HUGE_VALF);
-  const Vec3 n = cross(e1, e2);
-  const double length = std::sqrt(dot(n, n));
-  result.slenderness = static_cast<float>(SeenTriangle::slenderness(widen(a), widen(b), widen(c), length));
-  if (length > 0) result.normal = n * (1 / length);
-  result.offset = dot(result.normal, widen(a));
-  return result;
+Vec3 widen(const Float3& p) { return {p.x, p.y, p.z}; }
+Float3 narrow(const Vec3& p) { return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)}; }
+double length(const Vec3& v) { return std::sqrt(dot(v, v)); }
+double largest(const Vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+
+struct ExactPlane {
+  Vec3 normal;
+  double offset = 0, slenderness = HUGE_VAL;
+};
+
+ExactPlane plane_of(const Corners& t) {
+  const Vec3 n = cross(t[1] - t[0], t[2] - t[0]);
+  const double area = length(n);
+  if (!(area > 0)) return {};
+  return {n * (1 / area), dot(n, t[0]) / area, SeenTriangle::slenderness(t[0], t[1], t[2], area)};
+}
+
+SampledVoxels::Piece piece_of(const Corners& t) {
+  SampledVoxels::Piece piece{};
+  const Vec3 normal = plane_of(t).normal;
+  const std::array<double, 3> lengths{length(t[1] - t[0]), length(t[2] - t[1]), length(t[0] - t[2])};
+  const double longest = std::max({lengths[0], lengths[1], lengths[2]});
+  piece.longest = std::nextafter(static_cast<float>(longest), HUGE_VALF);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3& from = t[k];
+    const Vec3 across = cross(normal, t[(k + 1) % 3] - from);
+    const double size = length(across);
+    const Vec3 inwards = size > 0 ? across * (1 / size) : Vec3{};
+    piece.edge[k] = {narrow(inwards), static_cast<float>(dot(inwards, from)),
+                     std::nextafter(static_cast<float>(longest / lengths[k]), HUGE_VALF)};
+  }
+  return piece;
+}
+
+// Widens `box` by what the plane and the cube around the origin share. Whether that is anything.
+bool extend(Box& box, const ExactPlane& plane, double half) {
+  bool any = false;
+  const auto corner = [&](unsigned k) {
+    return Vec3{k & 1 ? half : -half, k & 2 ? half : -half, k & 4 ? half : -half};
+  };
+  for (unsigned k = 0; k < 8; ++k) {
+    const Vec3 p = corner(k);
+    const double above = dot(plane.normal, p) - plane.offset;
+    for (unsigned axis = 1; axis < 8; axis *= 2) {
+      if (k & axis) continue;
+      const Vec3 q = corner(k | axis);
+      const double other = dot(plane.normal, q) - plane.offset;
+      if ((above > 0 && other > 0) || (above < 0 && other < 0)) continue;
+      any = true;
+      if (above == other) {
+        box.extend(p);
+        box.extend(q);
+      } else {
+        box.extend(p + (q - p) * (above / (above - other)));
+      }
+    }
+  }
+  return any;
 }
 
 }  // namespace
 
 SampledVoxels::SampledVoxels(const SceneData& scene, const VoxelGrid& grid, std::span<const std::uint32_t> ranks,
-                             double margin_m)
-    : margin_m_(margin_m), ranks_(ranks.begin(), ranks.end()), cells_(ranks.size()) {
-  VoxelTriangles lists = triangles_touching(scene, grid, ranks, margin_m);
-  offset_ = std::move(lists.offset);
-  listed_.resize(lists.triangle.size());
-  tbb::parallel_for(std::size_t{0}, cells_.size(), [&](std::size_t i) {
-    cells_[i] = morton_decode(grid.key(ranks[i]));
-    for (std::uint32_t k = offset_[i]; k < offset_[i + 1]; ++k) {
+                             double pad, double reach, double margin)
+    : pad_(pad), reach_(reach), ranks_(ranks.begin(), ranks.end()), offset_(ranks.size() + 1), crossing_(ranks.size()) {
+  const VoxelTriangles lists = triangles_touching(scene, grid, ranks, margin);
+  const std::size_t n = ranks.size();
+  pieces_.resize(lists.triangle.size());
+  std::vector<Plane> planes(lists.triangle.size());
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    places_.cell[axis].resize(n);
+    places_.middle[axis].resize(n);
+    places_.half[axis].resize(n);
+  }
+  const double side = grid.voxel_size();
+  // A hit's point lies on its plane but for rounding.
+  const double half = side / 2 + pad, wide = half + reach + 2 * pad;
+
+  tbb::parallel_for(std::size_t{0}, n, [&](std::size_t i) {
+    const std::array<std::uint32_t, 3> cell = morton_decode(grid.key(ranks[i]));
+    const Vec3 middle =
+        Vec3{grid.min()[0], grid.min()[1], grid.min()[2]} + Vec3{cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5} * side;
+    const std::uint32_t first = lists.offset[i], end = lists.offset[i + 1];
+    const auto corners_of = [&](std::uint32_t k) {
       const Triangle& t = scene.triangles[lists.triangle[k]];
-      listed_[k] = listed(scene.positions[t[0]], scene.positions[t[1]], scene.positions[t[2]]);
-      listed_[k].gap = triangle_gap(listed_[k].a, listed_[k].b, listed_[k].c, grid, cells_[i]);
+      return Corners{widen(scene.positions[t[0]]) - middle, widen(scene.positions[t[1]]) - middle,
+                     widen(scene.positions[t[2]]) - middle};
+    };
+    std::vector<ExactPlane> own;
+    std::vector<std::pair<std::size_t, std::uint32_t>> of;  // plane and triangle
+    for (std::uint32_t k = first; k < end && own.size() <= most_planes; ++k) {
+      const ExactPlane plane = plane_of(corners_of(k));
+      // So near that no hit in the cube is moved by a noticeable part of the pad, however grazing.
+      const auto same = [&](const ExactPlane& other) {
+        const double sign = dot(plane.normal, other.normal) < 0 ? -1 : 1;
+        return std::abs(plane.offset * sign - other.offset) + 3 * wide * largest(plane.normal * sign - other.normal) <=
+               pad * 0x1p-15;
+      };
+      const auto known = std::find_if(own.begin(), own.end(), same);
+      of.emplace_back(known - own.begin(), k);
+      if (known == own.end()) {
+        own.push_back(plane);
+      } else {
+        known->slenderness = std::max(known->slenderness, plane.slenderness);
+      }
     }
-    std::sort(listed_.begin() + offset_[i], listed_.begin() + offset_[i + 1],
-              [](const Listed& a, const Listed& b) { return a.gap < b.gap; });
+    if (own.size() > most_planes) own.clear();
+
+    Box box;
+    std::vector<bool> crosses(own.size());
+    for (std::size_t k = 0; k < own.size(); ++k) crosses[k] = extend(box, own[k], wide);
+    std::uint32_t piece = first, plane = first;
+    for (const bool now : {true, false}) {
+      for (std::size_t k = 0; k < own.size(); ++k) {
+        if (crosses[k] != now) continue;
+        const std::uint32_t from = piece;
+        for (const auto& [place, triangle] : of) {
+          if (place == k) pieces_[piece++] = piece_of(corners_of(triangle));
+        }
+        planes[plane++] = {narrow(own[k].normal), static_cast<float>(own[k].offset),
+                           std::nextafter(static_cast<float>(own[k].slenderness), HUGE_VALF), from, piece};
+      }
+      if (now) crossing_[i] = plane - first;
+    }
+    offset_[i + 1] = plane - first;
+    // Noise may carry a point into the cube from elsewhere. Without it, a point is as near to its plane as to the cube.
+    if (box.empty() || reach > 0) box = {{-half, -half, -half}, {half, half, half}};
+    const auto place = [&](std::size_t axis, double low, double high) {
+      low = std::max(low - pad, -half), high = std::min(high + pad, half);
+      const auto at = static_cast<float>((low + high) / 2);
+      places_.cell[axis][i] = static_cast<std::int32_t>(cell[axis]);
+      places_.middle[axis][i] = at;
+      places_.half[axis][i] = std::nextafter(static_cast<float>(std::max(high - at, at - low)), HUGE_VALF);
+    };
+    place(0, box.min.x, box.max.x);
+    place(1, box.min.y, box.max.y);
+    place(2, box.min.z, box.max.z);
   });
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::uint32_t count = offset_[i + 1];
+    offset_[i + 1] = offset_[i] + count;
+    std::copy_n(planes.begin() + lists.offset[i], count, planes.begin() + offset_[i]);
+  }
+  planes_.assign(planes.begin(), planes.begin() + offset_[n]);
 }
 
-bool SampledVoxels::made_for(std::span<const std::uint32_t> ranks, double margin_m) const {
-  return margin_m_ == margin_m && std::ranges::equal(ranks_, ranks);
+bool SampledVoxels::made_for(std::span<const std::uint32_t> ranks, double pad, double reach) const {
+  return pad_ == pad && reach_ == reach && std::ranges::equal(ranks_, ranks);
 }
 
 }  // namespace vantage

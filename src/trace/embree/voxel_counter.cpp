@@ -5,238 +5,333 @@
 #include <cmath>
 #include <limits>
 
-#include "trace/rays_of_box.hpp"
+#include "trace/embree/seen_triangle.hpp"
 #include "trace/target_clones.hpp"
 
 namespace vantage {
 namespace {
 
-// Rays that are faster one by one.
-constexpr std::uint32_t few = 2;
+constexpr float infinity = std::numeric_limits<float>::infinity();
+constexpr std::size_t rays_at_once = 2048;
+// A voxel's first ray is asked alone for what hides it, and so is the first that this does not hide. Then all are
+// traced.
+constexpr int rounds = 2;
 // Embree's distance and the point's differ by at most one part in 2^plane_trust; twice that.
 const double trust = std::ldexp(2.0, -Surface::plane_trust);
 // Below this cosine, over slenderness, the plane may not be what decides the point's distance.
-constexpr double grazing = 0x1p-11;
+constexpr float grazing = 0x1p-11f;
+// Where a head is higher above a plane than this part of the distance, over slenderness, a more grazing ray meets the
+// plane well beyond the voxel, whatever is rounded on the way.
+constexpr float sure_height = 1.5f * grazing;
+// Where a ray meets a plane is computed in float below: its distance is off by less than this part of the farthest,
+// over the cosine. So half as much again is allowed for what Embree may find, which is at least eight times that.
+constexpr float float_doubt = 0x1p-21f;
+constexpr auto edge_doubt = static_cast<float>(SeenTriangle::edge_doubt * 1.5);
+constexpr auto steep_part = static_cast<float>(1 - SeenTriangle::distance_doubt * 1.5);
+
+// Whether VoxelGrid::cell_of(p) is `cell`.
+bool lies_in(const VoxelGrid& grid, const Float3& p, const std::array<std::uint32_t, 3>& cell) {
+  const std::array<float, 3>& min = grid.min();
+  const auto in = [&](float scaled, std::uint32_t k) {
+    return scaled >= static_cast<float>(k) && scaled < static_cast<float>(k + 1);
+  };
+  return in((p.x - min[0]) * grid.inverse_size(), cell[0]) && in((p.y - min[1]) * grid.inverse_size(), cell[1]) &&
+         in((p.z - min[2]) * grid.inverse_size(), cell[2]);
+}
 
 Vec3 relative(const Float3& p, const Vec3& head) { return Vec3{p.x, p.y, p.z} - head; }
 
 }  // namespace
 
-SampledVoxelCounter::SampledVoxelCounter(const StationRays& rays, const SampledVoxels& voxels,
-                                         std::span<const TraceStation> stations, double pad)
-    : rays_(rays),
-      voxels_(voxels),
-      stations_(stations),
-      pad_(pad),
-      reach_(static_cast<double>(rays.noise().reach())),
-      occluders_(stations.size(), Occluders(static_cast<double>(rays.pattern().min_range))) {}
-
-SampledVoxelCounter::Result SampledVoxelCounter::count(std::size_t voxel, std::uint32_t stop_at) {
-  constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
-  std::uint64_t total = 0;
-  Result result;
-  for (std::size_t s = 0; s < stations_.size(); ++s) {
-    const std::uint64_t points = count_station(voxel, s, stop_at == 0 ? most : stop_at - total);
-    total += points;
-    if (points > 0) result.mask |= std::uint64_t{1} << stations_[s].place;
-    if (stop_at != 0 && total >= stop_at) break;
-  }
-  result.count = static_cast<std::uint32_t>(std::min(total, most));
-  return result;
+SampledVoxelCounter::SampledVoxelCounter(const StationRays& rays, const SampledVoxels& voxels, double pad)
+    : rays_(rays), voxels_(voxels), pad_(pad), reach_(static_cast<double>(rays.noise().reach())) {
+  listed_.resize(rays_at_once + Fan::capacity);
+  fan_.x.fill(1);
+  fan_.y.fill(1);
+  fan_.z.fill(1);
 }
 
+void SampledVoxelCounter::count(std::span<const TraceStation> stations, std::size_t first, std::uint32_t stop_at,
+                                std::span<std::uint32_t> counts, std::span<std::uint64_t> masks) {
+  first_ = first;
+  counts_ = counts;
+  masks_ = masks;
+  for (const TraceStation& station : stations) {
+    station_ = &station;
+    head_ = {station.origin.x, station.origin.y, station.origin.z};
+    bundle_.origin = station.origin;
+    bundle_.start = rays_.pattern().min_range;
+    look_from(first, counts.size());
+    for (std::uint32_t i = 0; i < counts.size(); ++i) {
+      if (stop_at == 0 || counts[i] < stop_at) list_rays(i, stop_at);
+    }
+    settle();
+  }
+}
+
+// Which rays to look at, for the block's voxels from the present head.
 VANTAGE_TARGET_CLONES
-void SampledVoxelCounter::see_triangles(std::size_t voxel, const Vec3& head, double reach, double farthest) {
-  // In float the edge tests below add less than an eighth to Embree's own doubt.
-  constexpr double doubt = SeenTriangle::edge_doubt * 1.125;
-  const auto narrow = [](const Vec3& v) {
-    return Float3{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+void SampledVoxelCounter::look_from(std::size_t first, std::size_t n) {
+  const SampledVoxels::Places& places = voxels_.places();
+  const double side = rays_.grid().voxel_size();
+  const auto along = [&](std::size_t axis, double origin, double* __restrict centre, double* __restrict middle,
+                         double* __restrict half) {
+    const std::int32_t* const cell = places.cell[axis].data() + first;
+    const float *const from = places.middle[axis].data() + first, *const extent = places.half[axis].data() + first;
+    for (std::size_t i = 0; i < n; ++i) {
+      centre[i] = origin + (cell[i] + 0.5) * side;
+      middle[i] = centre[i] + static_cast<double>(from[i]);
+      half[i] = static_cast<double>(extent[i]);
+    }
   };
-  seen_.clear();
-  for (const SampledVoxels::Listed& t : voxels_.triangles(voxel)) {
-    if (static_cast<double>(t.gap) > reach + triangle_margin(pad_)) break;  // the others are farther off
-    const Vec3 a = relative(t.a, head), b = relative(t.b, head), c = relative(t.c, head);
-    const double longest = static_cast<double>(t.longest);
-    seen_.push_back({{narrow(cross(a, b)), narrow(cross(b, c)), narrow(cross(c, a))},
-                     static_cast<float>(doubt * (farthest + 2 * reach + longest) * longest),
-                     t.slenderness,
-                     t.normal,
-                     t.offset - dot(t.normal, head)});
-  }
+  const std::array<float, 3>& min = rays_.grid().min();
+  along(0, min[0] - head_.x, x_.data(), boxes_.x, boxes_.half_x);
+  along(1, min[1] - head_.y, y_.data(), boxes_.y, boxes_.half_y);
+  along(2, min[2] - head_.z, z_.data(), boxes_.z, boxes_.half_z);
+  for (std::size_t i = 0; i < n; ++i) distance_[i] = std::sqrt(x_[i] * x_[i] + y_[i] * y_[i] + z_[i] * z_[i]);
+  boxes_.size = static_cast<std::uint32_t>(n);
+  rays_of_boxes(rays_.pattern(), boxes_);
 }
 
-// Which of the fan's rays Embree might find to hit which of the first 32 triangles, with the last bit for all others.
+// Fills fan_.nearest.
 VANTAGE_TARGET_CLONES
-void SampledVoxelCounter::mark_rays(Fan& fan) const {
+void SampledVoxelCounter::fill_nearest(std::span<const SampledVoxels::Plane> planes, const Cube& cube) {
+  Fan& fan = fan_;
   const std::uint32_t n = (fan.size + 7) / 8 * 8;  // whole vectors; the surplus is never looked at
-  std::fill_n(fan.may_hit, n, 0u);
-  for (std::size_t k = 0; k < seen_.size(); ++k) {
-    const SeenPlane& s = seen_[k];
-    const std::uint32_t bit = std::uint32_t{1} << std::min<std::size_t>(k, 31);
+  const auto trusted = static_cast<float>(1 - trust), pad = static_cast<float>(2 * pad_);
+  const float cx = cube.centre.x, cy = cube.centre.y, cz = cube.centre.z, half = cube.half + pad,
+              nearest_of_all = cube.nearest * trusted, slack = float_doubt * cube.farthest;
+  std::fill_n(fan.nearest.data(), n, planes.empty() ? nearest_of_all : infinity);
+  for (std::size_t k = 0; k < planes.size(); ++k) {
+    const SampledVoxels::Plane& plane = planes[k];
+    const float nx = plane.normal.x, ny = plane.normal.y, nz = plane.normal.z, height = heights_[k],
+                steep = static_cast<float>(SeenTriangle::steep) * plane.slenderness,
+                graze = grazing * plane.slenderness;
+    std::uint32_t any = 0;
     for (std::uint32_t i = 0; i < n; ++i) {
-      const float e0 = s.edge[0].x * fan.x[i] + s.edge[0].y * fan.y[i] + s.edge[0].z * fan.z[i];
-      const float e1 = s.edge[1].x * fan.x[i] + s.edge[1].y * fan.y[i] + s.edge[1].z * fan.z[i];
-      const float e2 = s.edge[2].x * fan.x[i] + s.edge[2].y * fan.y[i] + s.edge[2].z * fan.z[i];
-      const bool front = (e0 >= -s.tolerance) & (e1 >= -s.tolerance) & (e2 >= -s.tolerance);
-      const bool back = (e0 <= s.tolerance) & (e1 <= s.tolerance) & (e2 <= s.tolerance);
-      fan.may_hit[i] |= (front | back) ? bit : 0u;
+      const float slope = nx * fan.x[i] + ny * fan.y[i] + nz * fan.z[i], cosine = std::abs(slope), slant = 1 / cosine;
+      const float t = height / slope;
+      const float px = fan.x[i] * t - cx, py = fan.y[i] * t - cy, pz = fan.z[i] * t - cz;
+      const float beyond = std::max(std::max(std::abs(px), std::abs(py)), std::abs(pz)) - slack * slant;
+      fan.px[i] = px;
+      fan.py[i] = py;
+      fan.pz[i] = pz;
+      fan.slant[i] = slant;
+      any |= beyond <= half ? 1u : 0u;
+      fan.candidate[i] = t * (cosine < steep ? trusted : steep_part) - pad + (beyond <= half ? 0.0f : infinity);
+      fan.nearest[i] = std::min(fan.nearest[i], nearest_of_all + (cosine >= graze ? infinity : 0.0f));
+    }
+    if (any == 0) continue;
+    for (std::uint32_t p = plane.first; p < plane.end; ++p) {
+      const SampledVoxels::Piece& piece = voxels_.piece(p);
+      const float doubt = edge_doubt * (cube.farthest + cube.half + piece.longest);
+      const auto &a = piece.edge[0], &b = piece.edge[1], &c = piece.edge[2];
+      const float ax = a.inwards.x, ay = a.inwards.y, az = a.inwards.z, ao = a.offset, ad = doubt * a.ratio;
+      const float bx = b.inwards.x, by = b.inwards.y, bz = b.inwards.z, bo = b.offset, bd = doubt * b.ratio;
+      const float ex = c.inwards.x, ey = c.inwards.y, ez = c.inwards.z, eo = c.offset, ed = doubt * c.ratio;
+      for (std::uint32_t i = 0; i < n; ++i) {
+        const float px = fan.px[i], py = fan.py[i], pz = fan.pz[i], slant = fan.slant[i];
+        const float outside = std::max(
+            std::max(ao - ad * slant - (ax * px + ay * py + az * pz), bo - bd * slant - (bx * px + by * py + bz * pz)),
+            eo - ed * slant - (ex * px + ey * py + ez * pz));
+        fan.nearest[i] = std::min(fan.nearest[i], fan.candidate[i] + (outside <= 0 ? 0.0f : infinity));
+      }
     }
   }
 }
 
-// Embree reports no hit of ray i that counts nearer than this; infinity where there can be none.
+// Lists the rays that may leave a point in voxel number i of the block.
 VANTAGE_TARGET_CLONES
-double SampledVoxelCounter::nearest_hit(const Fan& fan, std::uint32_t i, const Cube& cube) const {
-  const Vec3 d{fan.x[i], fan.y[i], fan.z[i]};
-  double nearest = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k < seen_.size(); ++k) {
-    if ((fan.may_hit[i] >> std::min<std::size_t>(k, 31) & 1) == 0) continue;
-    const double slope = dot(seen_[k].normal, d), cosine = std::abs(slope),
-                 slenderness = static_cast<double>(seen_[k].slenderness);
-    if (!(cosine >= grazing * slenderness)) {
-      nearest = std::min(nearest, cube.nearest * (1 - trust));
-      continue;
-    }
-    const double t = seen_[k].height / slope;
-    const Vec3 p = d * t - cube.centre;
-    if (std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) > cube.half) continue;
-    nearest = std::min(nearest,
-                       t * (1 - (cosine < SeenTriangle::steep * slenderness ? trust : SeenTriangle::distance_doubt)));
-  }
-  return nearest;
-}
-
-VANTAGE_TARGET_CLONES
-std::uint64_t SampledVoxelCounter::count_station(std::size_t voxel, std::size_t station, std::uint64_t wanted) {
+void SampledVoxelCounter::list_rays(std::uint32_t i, std::uint32_t stop_at) {
   const RayPattern& pattern = rays_.pattern();
-  const VoxelGrid& grid = rays_.grid();
-  const Float3& origin = stations_[station].origin;
-  const Vec3 head{origin.x, origin.y, origin.z};
-  const double side = grid.voxel_size();
-  Cube cube;
-  cube.cell = voxels_.cell(voxel);
-  const double half = side / 2 + pad_;
-  cube.centre = Vec3{grid.min()[0], grid.min()[1], grid.min()[2]} +
-                Vec3{cube.cell[0] + 0.5, cube.cell[1] + 0.5, cube.cell[2] + 0.5} * side - head;
-  const Vec3 size{std::abs(cube.centre.x), std::abs(cube.centre.y), std::abs(cube.centre.z)};
-  const Vec3 near{std::max(size.x - half, 0.0), std::max(size.y - half, 0.0), std::max(size.z - half, 0.0)};
-  const Vec3 far = size + Vec3{half, half, half};
+  const double half = rays_.grid().voxel_size() / 2 + pad_, corner = half * 1.7320509;
   const double first = (pattern.min_range - reach_) * (1 - trust), last = (pattern.max_range + reach_) * (1 + trust);
-  if (first > 0 && dot(far, far) < first * first) return 0;
-  if (dot(near, near) > last * last) return 0;
-
+  if (distance_[i] + corner < first || distance_[i] - corner > last) return;
   // Hits whose points count lie within the noise's reach of the cube.
-  const double farthest = std::sqrt(dot(far, far));
-  const double reach = static_cast<double>(rays_.noise().reach_within(static_cast<float>(farthest + reach_)));
-  cube.half = half + reach + pad_;
-  cube.nearest = std::sqrt(dot(near, near)) - reach - pad_;
-  cube.farthest = farthest + reach + pad_;
-  const Vec3 wide{cube.half, cube.half, cube.half};
-  if (occluders_[station].hide_box(cube.centre - wide, cube.centre + wide)) return 0;
+  const double reach =
+      reach_ > 0 ? static_cast<double>(rays_.noise().reach_within(static_cast<float>(distance_[i] + corner + reach_)))
+                 : 0;
+  const Cube cube{{static_cast<float>(x_[i]), static_cast<float>(y_[i]), static_cast<float>(z_[i])},
+                  static_cast<float>(half + reach + pad_),
+                  static_cast<float>(distance_[i] - corner - reach - 2 * pad_),
+                  static_cast<float>(distance_[i] + corner + reach + 2 * pad_)};
 
-  const Vec3 narrow{half, half, half};
-  const RayRanges window = rays_of_box(pattern, cube.centre - narrow, cube.centre + narrow);
-  if (window.empty()) return 0;
-  see_triangles(voxel, head, reach, farthest);
-  if (seen_.empty()) return 0;
+  std::span<const SampledVoxels::Plane> planes = voxels_.planes(first_ + i);
+  bool sure = !planes.empty();
+  for (std::size_t k = 0; k < planes.size(); ++k) {
+    const SampledVoxels::Plane& plane = planes[k];
+    // In double, so that whatever rounding turned the plane by, it did so around the voxel.
+    heights_[k] = static_cast<float>(plane.normal.x * x_[i] + plane.normal.y * y_[i] + plane.normal.z * z_[i] +
+                                     static_cast<double>(plane.offset));
+    sure &= std::abs(heights_[k]) >= sure_height * plane.slenderness * cube.farthest;
+  }
+  RayRanges window;
+  if (sure) planes = planes.first(voxels_.crossing(first_ + i));
+  if (sure && boxes_.simple[i]) {
+    window.rows = {static_cast<std::uint32_t>(boxes_.row_begin[i]), static_cast<std::uint32_t>(boxes_.row_end[i])};
+    window.columns[0] = {static_cast<std::uint32_t>(boxes_.column_begin[i]),
+                         static_cast<std::uint32_t>(boxes_.column_end[i])};
+  } else {
+    const Vec3 narrow{half, half, half}, centre{x_[i], y_[i], z_[i]};
+    window = rays_of_box(pattern, centre - narrow, centre + narrow);
+  }
+  if (window.empty() || (sure && planes.empty())) return;
 
-  bundle_.origin = origin;
-  bundle_.start = pattern.min_range;
-  bundle_.size = 0;
-  batch_ = 1;  // a first ray alone finds who stands in the way of the others
-  std::uint64_t points = 0;
-  fan_.size = 0;
-  for (const RayRanges::Range& columns : window.columns) {
-    for (std::uint32_t row = window.rows.begin; !columns.empty() && row < window.rows.end; ++row) {
+  Sight sight{i, listed_size_, 0, std::min(cube.farthest * static_cast<float>(1 + trust), pattern.max_range)};
+  const float *const cosines = pattern.cos_azimuth.data(), *const sines = pattern.sin_azimuth.data();
+  const std::uint32_t last_step = pattern.columns() - std::min(pattern.columns(), Fan::step);
+  for (const RayRanges::Range columns : window.columns) {
+    for (std::uint32_t row = window.rows.begin; row < window.rows.end; ++row) {
+      const float sine = pattern.sin_zenith[row], cosine = pattern.cos_zenith[row];
       for (std::uint32_t column = columns.begin; column < columns.end;) {
-        const std::uint32_t n = std::min(columns.end - column, Fan::capacity - fan_.size);
-        fan_.append(pattern, row, column, n);
+        const std::uint32_t size = fan_.size;
+        const auto put = [&](std::uint32_t k) {
+          fan_.x[size + k] = sine * cosines[column + k];
+          fan_.y[size + k] = sine * sines[column + k];
+          fan_.z[size + k] = cosine;
+          fan_.row[size + k] = row;
+          fan_.column[size + k] = column + k;
+        };
+        std::uint32_t n = std::min({columns.end - column, Fan::capacity - size, Fan::step});
+        if (column <= last_step) {
+          for (std::uint32_t k = 0; k < Fan::step; ++k) put(k);
+        } else {
+          n = 1;
+          put(0);
+        }
+        fan_.size += n;
         column += n;
         if (fan_.size < Fan::capacity) continue;
-        points += work_through_fan(station, cube);
-        if (points >= wanted) return points;
+        fill_nearest(planes, cube);
+        list_fan(sight);
+        if (stop_at != 0 && counts_[i] >= stop_at) return;
       }
     }
   }
-  points += work_through_fan(station, cube);
-  return points + cast_pending(station, cube);
+  fill_nearest(planes, cube);
+  list_fan(sight);
+  sight.end = listed_size_;
+  if (sight.end == sight.begin) return;
+  std::swap(listed_[sight.begin], listed_[(sight.begin + sight.end) / 2]);  // what hides the middle may hide all
+  sights_.push_back(sight);
 }
 
-// Empties the fan. Rays that must be traced are, or are left pending.
-std::uint64_t SampledVoxelCounter::work_through_fan(std::size_t station, const Cube& cube) {
-  mark_rays(fan_);
-  std::uint64_t points = 0;
-  for (std::uint32_t i = 0; i < fan_.size; ++i) {
-    if (fan_.may_hit[i] == 0) continue;
-    const double nearest = nearest_hit(fan_, i, cube);
-    if (nearest == std::numeric_limits<double>::infinity()) continue;
-    if (occluders_[station].stop_ray({fan_.x[i], fan_.y[i], fan_.z[i]}, nearest)) continue;
-    const std::uint32_t slot = bundle_.size++;
-    bundle_.x[slot] = fan_.x[i];
-    bundle_.y[slot] = fan_.y[i];
-    bundle_.z[slot] = fan_.z[i];
-    bundle_.end[slot] = std::min(static_cast<float>(cube.farthest * (1 + trust)), rays_.pattern().max_range);
-    pending_[slot] = {fan_.ray[i], nearest};
-    if (bundle_.size < batch_) continue;
-    points += cast_pending(station, cube);
-    batch_ = std::min(RayBundle::capacity, batch_ * 8);
+// Empties the fan: lists what of it may hit.
+void SampledVoxelCounter::list_fan(Sight& sight) {
+  Ray* next = listed_.data() + listed_size_;
+  for (std::uint32_t k = 0; k < fan_.size; ++k) {
+    *next = {{fan_.x[k], fan_.y[k], fan_.z[k]}, fan_.nearest[k], fan_.row[k], fan_.column[k]};
+    next += fan_.nearest[k] < infinity;  // without a branch, which nobody could foresee
   }
+  listed_size_ = static_cast<std::uint32_t>(next - listed_.data());
   fan_.size = 0;
-  return points;
+  if (listed_size_ < rays_at_once) return;
+  sight.end = listed_size_;
+  if (sight.end > sight.begin) sights_.push_back(sight);
+  settle();
+  sight.begin = 0;
 }
 
-std::uint64_t SampledVoxelCounter::cast_pending(std::size_t station, const Cube& cube) {
-  if (bundle_.size == 0) return 0;
-  traced_ += bundle_.size;
-  if (bundle_.size <= few) {
-    cast_singly(station);
-  } else {
-    rays_.caster().cast(bundle_);
-    for (std::uint32_t slot = 0; slot < bundle_.size; ++slot) {
-      if (static_cast<double>(bundle_.t[slot]) < pending_[slot].nearest) remember(station, bundle_.primitive[slot]);
+// Takes from `sight` the rays that a triangle stops for certain, before they come near the voxel.
+void SampledVoxelCounter::drop_hidden(Sight& sight, std::uint32_t by) {
+  if (sight.begin == sight.end) return;
+  const SceneData& scene = rays_.scene();
+  const Triangle& t = scene.triangles[by];
+  const SeenTriangle triangle(relative(scene.positions[t[0]], head_), relative(scene.positions[t[1]], head_),
+                              relative(scene.positions[t[2]], head_));
+  // Nearer triangles may lie before the ray's start.
+  const double nearest = static_cast<double>(bundle_.start) * (1 + SeenTriangle::distance_doubt);
+  std::uint32_t kept = sight.begin;
+  for (std::uint32_t k = sight.begin; k < sight.end; ++k) {
+    const Vec3 d{listed_[k].d.x, listed_[k].d.y, listed_[k].d.z};
+    if (triangle.is_steep(d)) {
+      const double own = triangle.distance(d);
+      if (own > nearest && own * (1 + SeenTriangle::distance_doubt) < static_cast<double>(listed_[k].nearest) &&
+          triangle.must_hit(d))
+        continue;
     }
+    listed_[kept++] = listed_[k];
   }
-  std::uint64_t points = 0;
-  for (std::uint32_t slot = 0; slot < bundle_.size; ++slot) {
-    const std::uint32_t triangle = bundle_.primitive[slot];
-    if (triangle == RayBundle::no_hit || !rays_.surface().surveyed(triangle)) continue;
-    const float range = rays_.range(bundle_, slot, pending_[slot].ray, stations_[station].place);
-    points += rays_.grid().cell_of(StationRays::point(bundle_, slot, range)) == cube.cell;
-  }
-  bundle_.size = 0;
-  return points;
+  sight.end = kept;
 }
 
-// Most rays are stopped before they come near the voxel, and it is faster to learn that than by what: so that is asked
-// first, and only of the others what they hit. As what stops them comes before all that counts, the answer for those
-// that go on is the same.
-void SampledVoxelCounter::cast_singly(std::size_t station) {
-  const RayCaster& caster = rays_.caster();
-  for (std::uint32_t slot = 0; slot < bundle_.size; ++slot) {
-    bundle_.primitive[slot] = RayBundle::no_hit;
-    const Float3 d{bundle_.x[slot], bundle_.y[slot], bundle_.z[slot]};
-    const float before = std::min(std::nextafter(static_cast<float>(pending_[slot].nearest), 0.0f), bundle_.end[slot]);
-    float start = bundle_.start;
-    if (before > start) {
-      const std::uint32_t stopped_by = caster.any_hit(bundle_.origin, d, start, before);
-      if (stopped_by != RayBundle::no_hit) {
-        remember(station, stopped_by);
+// Traces what is listed. Most rays are stopped before they come near the voxel, and it is faster to learn that than by
+// what: so that is asked first, and only of the others what they hit. As what stops them comes before all that counts,
+// the answer for those that go on is the same.
+void SampledVoxelCounter::settle() {
+  visible_.clear();
+  for (int round = 0; round < rounds && !sights_.empty(); ++round) {
+    probes_.clear();
+    for (const Sight& sight : sights_)
+      probes_.push_back({listed_[sight.begin].d, std::min(listed_[sight.begin].nearest, sight.farthest)});
+    rays_.caster().any_hits(bundle_.origin, bundle_.start, probes_);
+    traced_ += probes_.size();
+    // In passes, so that memory answers for many at once.
+    const SceneData& scene = rays_.scene();
+    for (const Probe& probe : probes_) {
+      if (probe.hit != RayBundle::no_hit) __builtin_prefetch(&scene.triangles[probe.hit]);
+    }
+    for (const Probe& probe : probes_) {
+      if (probe.hit == RayBundle::no_hit) continue;
+      for (const std::uint32_t corner : scene.triangles[probe.hit]) __builtin_prefetch(&scene.positions[corner]);
+    }
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < sights_.size(); ++k) {
+      Sight sight = sights_[k];
+      if (probes_[k].hit == RayBundle::no_hit) {
+        sight.probed = true;
+        visible_.push_back(sight);
         continue;
       }
-      start = before;
+      ++sight.begin;
+      drop_hidden(sight, probes_[k].hit);
+      if (sight.begin < sight.end) sights_[kept++] = sight;
     }
-    bundle_.primitive[slot] = caster.nearest_hit(bundle_.origin, d, start, bundle_.end[slot], bundle_.t[slot]);
+    sights_.resize(kept);
   }
+  visible_.insert(visible_.end(), sights_.begin(), sights_.end());
+  cast();
+  sights_.clear();
+  listed_size_ = 0;
 }
 
-void SampledVoxelCounter::remember(std::size_t station, std::uint32_t occluder) {
-  if (occluders_[station].knows(occluder)) return;
-  const SceneData& scene = rays_.scene();
-  const Triangle& t = scene.triangles[occluder];
-  const Vec3 head{bundle_.origin.x, bundle_.origin.y, bundle_.origin.z};
-  occluders_[station].add(occluder,
-                          SeenTriangle(relative(scene.positions[t[0]], head), relative(scene.positions[t[1]], head),
-                                       relative(scene.positions[t[2]], head)));
+// Traces all rays of what is visible, and counts points.
+void SampledVoxelCounter::cast() {
+  bundle_.size = 0;
+  for (const Sight& sight : visible_) {
+    traced_ += sight.end - sight.begin - (sight.probed ? 1 : 0);
+    for (std::uint32_t k = sight.begin; k < sight.end; ++k) {
+      const Ray& ray = listed_[k];
+      const std::uint32_t slot = bundle_.size++;
+      bundle_.x[slot] = ray.d.x;
+      bundle_.y[slot] = ray.d.y;
+      bundle_.z[slot] = ray.d.z;
+      bundle_.end[slot] = sight.farthest;
+      cast_ray_[slot] = k;
+      cast_voxel_[slot] = sight.voxel;
+      if (bundle_.size == RayBundle::capacity) finish();
+    }
+  }
+  finish();
+}
+
+void SampledVoxelCounter::finish() {
+  const Surface& surface = rays_.surface();
+  rays_.caster().cast(bundle_);
+  for (std::uint32_t slot = 0; slot < bundle_.size; ++slot) {
+    if (bundle_.primitive[slot] != RayBundle::no_hit) surface.prefetch(bundle_.primitive[slot]);
+  }
+  const std::uint64_t bit = std::uint64_t{1} << station_->place;
+  for (std::uint32_t slot = 0; slot < bundle_.size; ++slot) {
+    const std::uint32_t triangle = bundle_.primitive[slot], i = cast_voxel_[slot];
+    if (triangle == RayBundle::no_hit || !surface.surveyed(triangle)) continue;
+    const Ray& ray = listed_[cast_ray_[slot]];
+    const float range = rays_.range(bundle_, slot, rays_.ray(ray.row, ray.column), station_->place);
+    if (!lies_in(rays_.grid(), StationRays::point(bundle_, slot, range), voxels_.cell(first_ + i))) continue;
+    if (counts_[i] != std::numeric_limits<std::uint32_t>::max()) ++counts_[i];
+    if (!masks_.empty()) masks_[i] |= bit;
+  }
+  bundle_.size = 0;
 }
 
 }  // namespace vantage

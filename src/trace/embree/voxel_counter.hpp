@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// The points that stations leave in one voxel, from just those rays that can leave one there.
+// The points that stations leave in some voxels, from just those rays that can leave one there.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
-#include "trace/embree/occluders.hpp"
 #include "trace/embree/sampled_voxels.hpp"
-#include "trace/embree/seen_triangle.hpp"
 #include "trace/embree/station_rays.hpp"
+#include "trace/rays_of_box.hpp"
 
 namespace vantage {
 
@@ -17,81 +18,80 @@ namespace vantage {
 // edges, which a slant stretches.
 inline double triangle_margin(double pad) { return 64 * pad; }
 
-// For one network; voxels that follow each other should be neighbours. Not thread-safe.
+// Works on a block of voxels at a time, a station after the other: what all need is computed side by side, and rays are
+// traced many at once. Not thread-safe.
 class SampledVoxelCounter {
  public:
-  // `pad`: rounding_pad() of everything in sight. Borrows all three.
-  SampledVoxelCounter(const StationRays& rays, const SampledVoxels& voxels, std::span<const TraceStation> stations,
-                      double pad);
+  static constexpr std::uint32_t block = BoxBatch::capacity;
 
-  struct Result {
-    std::uint32_t count = 0;  // saturating
-    std::uint64_t mask = 0;
-  };
-  // Every station's points, or, where `stop_at` is not 0, stations' points until there are so many.
-  Result count(std::size_t voxel, std::uint32_t stop_at);
+  // `pad`: rounding_pad() of everything in sight. Borrows both.
+  SampledVoxelCounter(const StationRays& rays, const SampledVoxels& voxels, double pad);
+
+  // Of voxels first, first + 1, …: every station's points (saturating), or, where `stop_at` is not 0, stations' points
+  // until there are so many; and a bit for each station that has one there. `masks` is empty or as long as `counts`.
+  // REQUIRES: no more than `block` voxels; counts and masks are 0.
+  void count(std::span<const TraceStation> stations, std::size_t first, std::uint32_t stop_at,
+             std::span<std::uint32_t> counts, std::span<std::uint64_t> masks);
   std::uint64_t traced() const { return traced_; }
 
  private:
   // Where hits lie whose points count in the voxel: within the noise's reach of its cube. Relative to the head.
   struct Cube {
-    std::array<std::uint32_t, 3> cell{};
-    Vec3 centre;
-    double half = 0;
-    double nearest = 0, farthest = 0;  // distance of any such hit
+    Float3 centre;
+    float half;
+    float nearest, farthest;  // distance of any such hit
   };
-  // One of the voxel's triangles from the present head.
-  struct SeenPlane {
-    std::array<Float3, 3> edge;  // normals of the planes through head and edges
-    float tolerance;
-    float slenderness;
-    Vec3 normal;
-    double height;
-  };
-  // Rays that may cross the cube.
+  // Some of the rays that may cross a cube, side by side.
   struct Fan {
-    static constexpr std::uint32_t capacity = 256;
+    static constexpr std::uint32_t capacity = 64, step = 8;  // so many are written at a time, whatever is needed
     std::uint32_t size = 0;
-    alignas(64) float x[capacity], y[capacity], z[capacity];
-    alignas(64) std::uint32_t may_hit[capacity];
-    std::uint64_t ray[capacity];
-
-    void append(const RayPattern& pattern, std::uint32_t row, std::uint32_t column, std::uint32_t n) {
-      const float sine = pattern.sin_zenith[row], cosine = pattern.cos_zenith[row];
-      const std::uint64_t first = std::uint64_t{row} * pattern.columns() + column;
-      for (std::uint32_t k = 0; k < n; ++k, ++size) {
-        x[size] = sine * pattern.cos_azimuth[column + k];
-        y[size] = sine * pattern.sin_azimuth[column + k];
-        z[size] = cosine;
-        ray[size] = first + k;
-      }
-    }
+    alignas(64) std::array<float, capacity + step> x, y, z;
+    alignas(64) std::array<std::uint32_t, capacity + step> row, column;
+    alignas(64) std::array<float, capacity> nearest;  // no hit that counts is nearer; infinity: there is none
+    alignas(64) std::array<float, capacity> px, py, pz, slant, candidate;  // on the plane at hand
   };
-  struct Pending {
-    std::uint64_t ray;
-    double nearest;  // as nearest_hit() says
+  // Rays that may leave a point in one voxel: listed_ from `begin` to `end`.
+  struct Sight {
+    std::uint32_t voxel = 0;  // of the block
+    std::uint32_t begin = 0, end = 0;
+    float farthest = 0;   // no hit that counts is farther
+    bool probed = false;  // its first ray
+  };
+  struct Ray {
+    Float3 d;
+    float nearest;  // no hit that counts is nearer
+    std::uint32_t row, column;
   };
 
-  void see_triangles(std::size_t voxel, const Vec3& head, double reach, double farthest);
-  void mark_rays(Fan& fan) const;
-  double nearest_hit(const Fan& fan, std::uint32_t i, const Cube& cube) const;
-  std::uint64_t count_station(std::size_t voxel, std::size_t station, std::uint64_t wanted);
-  std::uint64_t work_through_fan(std::size_t station, const Cube& cube);
-  std::uint64_t cast_pending(std::size_t station, const Cube& cube);
-  void cast_singly(std::size_t station);
-  void remember(std::size_t station, std::uint32_t occluder);
+  void look_from(std::size_t first, std::size_t n);
+  void list_rays(std::uint32_t i, std::uint32_t stop_at);
+  void fill_nearest(std::span<const SampledVoxels::Plane> planes, const Cube& cube);
+  void list_fan(Sight& sight);
+  void settle();
+  void drop_hidden(Sight& sight, std::uint32_t by);
+  void cast();
+  void finish();
 
   const StationRays& rays_;
   const SampledVoxels& voxels_;
-  std::span<const TraceStation> stations_;
   double pad_, reach_;
-  std::vector<Occluders> occluders_;  // one a station
-  std::vector<SeenPlane> seen_;
-  Fan fan_{};
-  RayBundle bundle_;
-  std::array<Pending, RayBundle::capacity> pending_;
-  std::uint32_t batch_ = 1;
+  const TraceStation* station_ = nullptr;
+  Vec3 head_;
+  std::size_t first_ = 0;
+  std::span<std::uint32_t> counts_;
+  std::span<std::uint64_t> masks_;
   std::uint64_t traced_ = 0;
+
+  BoxBatch boxes_;
+  alignas(64) std::array<double, block> x_, y_, z_, distance_;  // of the cubes' middles from the head
+  Fan fan_;
+  std::array<float, SampledVoxels::most_planes> heights_;  // of the head over the planes of the voxel at hand
+  std::vector<Ray> listed_;
+  std::uint32_t listed_size_ = 0;
+  std::vector<Sight> sights_, visible_;
+  std::vector<Probe> probes_;
+  RayBundle bundle_;
+  std::array<std::uint32_t, RayBundle::capacity> cast_ray_, cast_voxel_;  // of the bundle
 };
 
 }  // namespace vantage

@@ -6,7 +6,9 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <vector>
 
+#include "cast_one.hpp"
 #include "trace_scenes.hpp"
 
 namespace vantage {
@@ -51,22 +53,29 @@ TEST(RayCaster, HitsDoNotDependOnTheBundle) {
   for (int k = 0; k < 200; ++k) {
     const auto rays = cone(random, k % 2 ? 0.05 : 1.5, 1 + random.bits() % RayBundle::capacity, 100);
     caster.cast(*rays);
+    std::vector<Probe> probes;
+    for (std::uint32_t i = 0; i < rays->size; ++i) probes.push_back({{rays->x[i], rays->y[i], rays->z[i]}, 100});
+    caster.any_hits(rays->origin, 0, probes);
     for (std::uint32_t i = 0; i < rays->size; ++i) {
       const Float3 d{rays->x[i], rays->y[i], rays->z[i]};
       float t = 0;
-      ASSERT_EQ(caster.nearest_hit(rays->origin, d, 0, 100, t), rays->primitive[i]);
+      ASSERT_EQ(probes[i].hit == RayBundle::no_hit, rays->primitive[i] == RayBundle::no_hit);
+      ASSERT_EQ(test::nearest_hit(caster, rays->origin, d, 0, 100, t), rays->primitive[i]);
       ASSERT_EQ(t, rays->t[i]);
-      ASSERT_EQ(caster.any_hit(rays->origin, d, 0, 100) == RayBundle::no_hit, rays->primitive[i] == RayBundle::no_hit);
+      ASSERT_EQ(test::is_stopped(caster, rays->origin, d, 0, 100), rays->primitive[i] != RayBundle::no_hit);
       if (rays->primitive[i] == RayBundle::no_hit) continue;
       ++hits;
       // An end just behind the hit, or a start just before it, changes nothing; an end before it leaves none.
       float again = 0;
-      ASSERT_EQ(caster.nearest_hit(rays->origin, d, std::nextafter(t, 0.0f), std::nextafter(t, 1e9f), again),
+      ASSERT_EQ(test::nearest_hit(caster, rays->origin, d, std::nextafter(t, 0.0f), std::nextafter(t, 1e9f), again),
                 rays->primitive[i]);
       ASSERT_EQ(again, t);
-      ASSERT_EQ(caster.nearest_hit(rays->origin, d, 0, std::nextafter(t, 0.0f), again), RayBundle::no_hit);
-      ASSERT_EQ(caster.any_hit(rays->origin, d, 0, std::nextafter(t, 0.0f)), RayBundle::no_hit);
+      ASSERT_EQ(test::nearest_hit(caster, rays->origin, d, 0, std::nextafter(t, 0.0f), again), RayBundle::no_hit);
+      ASSERT_FALSE(test::is_stopped(caster, rays->origin, d, 0, std::nextafter(t, 0.0f)));
+      probes[i].end = std::nextafter(t, 0.0f);
     }
+    caster.any_hits(rays->origin, 0, probes);
+    for (const Probe& probe : probes) ASSERT_EQ(probe.hit, RayBundle::no_hit);
   }
   EXPECT_GT(hits, 1000u);
 }
@@ -82,7 +91,7 @@ TEST(RayCaster, OfCoincidentTrianglesTheFirstIsHit) {
   for (int k = 0; k < 200; ++k) {
     const Float3 d{test::between(random, -0.4, 0.4), 1, test::between(random, -0.4, 0.4)};
     float t = 0;
-    EXPECT_LT(caster.nearest_hit({}, d, 0, 10, t), 2u);
+    EXPECT_LT(test::nearest_hit(caster, {}, d, 0, 10, t), 2u);
     EXPECT_NEAR(t, 2, 1e-6);
   }
 }
@@ -134,8 +143,9 @@ TEST(RayCaster, TinyComponentsLoseNoRay) {
     for (std::uint32_t i = 0; i < rays.size; ++i) {
       EXPECT_NE(rays.primitive[i], RayBundle::no_hit) << "component " << tiny << ", ray " << i;
       float t = 0;
-      EXPECT_EQ(caster.nearest_hit(rays.origin, {rays.x[i], rays.y[i], rays.z[i]}, 0, 100, t), rays.primitive[i]);
-      EXPECT_NE(caster.any_hit(rays.origin, {rays.x[i], rays.y[i], rays.z[i]}, 0, 100), RayBundle::no_hit);
+      EXPECT_EQ(test::nearest_hit(caster, rays.origin, {rays.x[i], rays.y[i], rays.z[i]}, 0, 100, t),
+                rays.primitive[i]);
+      EXPECT_TRUE(test::is_stopped(caster, rays.origin, {rays.x[i], rays.y[i], rays.z[i]}, 0, 100));
     }
   }
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include "trace_scenes.hpp"
 
@@ -80,6 +81,49 @@ TEST(RaysOfBox, NoCrossingRayIsLeftOut) {
     }
     EXPECT_GT(crossing, 0u);
     EXPECT_LT(listed, 6 * crossing + 2000) << "bounds are loose";
+  }
+}
+
+TEST(RaysOfBoxes, SayWhatOneBoxAloneSays) {
+  RandomStream random(7);
+  const auto boxes = std::make_unique<BoxBatch>();
+  const Scanner scanners[] = {scanner_of(360, 300, 1.0, 0), scanner_of(360, 360, 0.07, 123),
+                              scanner_of(200, 180, 0.9, -170)};
+  for (const Scanner& scanner : scanners) {
+    const RayPattern pattern = make_pattern(scanner);
+    boxes->size = BoxBatch::capacity - 3;
+    for (std::uint32_t i = 0; i < boxes->size; ++i) {
+      const double size = std::pow(10.0, -3 + 3 * random.uniform()), reach = i % 4 == 0 ? size : 2;
+      boxes->x[i] = reach * (2 * random.uniform() - 1);
+      boxes->y[i] = reach * (2 * random.uniform() - 1);
+      boxes->z[i] = i % 8 == 0 ? 0 : reach * (2 * random.uniform() - 1);
+      boxes->half_x[i] = size * random.uniform();
+      boxes->half_y[i] = i % 3 == 0 ? 0 : size * random.uniform();
+      boxes->half_z[i] = size * random.uniform();
+    }
+    boxes->x[0] = boxes->y[0] = boxes->z[0] = 0;
+    rays_of_boxes(pattern, *boxes);
+    std::uint32_t simple = 0;
+    for (std::uint32_t i = 0; i < boxes->size; ++i) {
+      SCOPED_TRACE("box " + std::to_string(i));
+      if (!boxes->simple[i]) continue;
+      ++simple;
+      const Vec3 centre{boxes->x[i], boxes->y[i], boxes->z[i]},
+          half{boxes->half_x[i], boxes->half_y[i], boxes->half_z[i]};
+      const RayRanges alone = rays_of_box(pattern, centre - half, centre + half);
+      EXPECT_TRUE(alone.columns[1].empty());
+      const bool empty = boxes->row_begin[i] >= boxes->row_end[i] || boxes->column_begin[i] >= boxes->column_end[i];
+      ASSERT_EQ(empty, alone.empty());
+      if (empty) continue;
+      // Corners are rounded otherwise: a ray at the very edge may be in one and not in the other.
+      EXPECT_NEAR(boxes->row_begin[i], alone.rows.begin, 1);
+      EXPECT_NEAR(boxes->row_end[i], alone.rows.end, 1);
+      EXPECT_NEAR(boxes->column_begin[i], alone.columns[0].begin, 1);
+      EXPECT_NEAR(boxes->column_end[i], alone.columns[0].end, 1);
+    }
+    EXPECT_GT(simple, boxes->size / 2);
+    EXPECT_LT(simple, boxes->size);
+    EXPECT_FALSE(boxes->simple[0]);
   }
 }
 

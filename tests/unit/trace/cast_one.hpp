@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// What one ray alone meets.
+#pragma once
+
+#include "trace/embree/ray_caster.hpp"
+
+namespace vantage::test {
+
+// The triangle hit, or no_hit, and its distance.
+inline std::uint32_t nearest_hit(const RayCaster& caster, const Float3& origin, const Float3& d, float start, float end,
+                                 float& t) {
+  RayBundle ray;
+  ray.origin = origin;
+  ray.start = start;
+  ray.size = 1;
+  ray.x[0] = d.x;
+  ray.y[0] = d.y;
+  ray.z[0] = d.z;
+  ray.end[0] = end;
+  caster.cast(ray);
+  t = ray.t[0];
+  return ray.primitive[0];
+}
+
+inline bool is_stopped(const RayCaster& caster, const Float3& origin, const Float3& d, float start, float end) {
+  Probe probe{d, end};
+  caster.any_hits(origin, start, {&probe, 1});
+  return probe.hit != RayBundle::no_hit;
+}
+
+}  // namespace vantage::test
