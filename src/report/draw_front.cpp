@@ -86,7 +86,7 @@ std::unique_ptr<Canvas> front_picture(const PlanResult& result, const PlanConfig
     canvas.text({place.x + place.width / 2, place.y + place.height / 2}, words, text);
     if (!view.single())
       legend.push_back({LegendItem::Mark::ring, style::orange,
-                        view.by_count() ? "compromise: largest product of gains" : "compromise: largest product of gains of linked networks"});
+                        view.by_count() ? "compromise: largest product of gains" : "compromise: largest linked product"});
   }
   draw_legend(canvas, {area.x, kHeight - 24}, legend);
   return page;
