@@ -98,7 +98,9 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
   if (options.picture) {
     std::vector<PlacedStation> placed;
     for (const auto& station : stations) placed.push_back(station.placed);
-    draw_plan_view(*options.picture, site.scene, site.area(), placed, matrix, fmt::format("coverage {:.3f}", covered.value));
+    draw_plan_view(*options.picture, site.scene, site.area(), placed, matrix,
+                   fmt::format("{} station{}: coverage {:.3f}, overlap {:.3f}", placed.size(), placed.size() == 1 ? "" : "s",
+                               covered.value, overlapped.value));
   }
 
   nlohmann::json rows = nlohmann::json::array();

@@ -135,7 +135,7 @@ std::unique_ptr<Canvas> plan_view_picture(const Scene& scene, const SearchArea& 
                     {.label = "x (m)", .low = window.min.x, .high = window.min.x + map.width / metre, .wanted_ticks = 7},
                     {.label = "y (m)", .low = window.max.y - map.height / metre, .high = window.max.y, .wanted_ticks = 7}, title, subtitle);
   std::vector<std::uint32_t> site = shade(data, heights);
-  tint_search_area(site, pixels, mesh);
+  tint_search_area(site, heights, data.origin.z, mesh);
   canvas.image(map, halve(site, pixels.columns), pixels.columns / 2);
   canvas.rectangle(map, {.colour = style::faint, .width = 1});
 

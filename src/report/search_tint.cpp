@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/search_tint.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -9,14 +10,24 @@ namespace {
 
 constexpr std::size_t kRim = 4;  // pixels
 
-std::vector<std::uint8_t> covered_pixels(const MapWindow& window, const SearchMesh& mesh) {
-  std::vector<std::uint8_t> covered(window.columns * window.rows, 0);
+constexpr double kHidden_m = 0.3;  // so far below what is seen from above the area does not show
+
+enum Cover : std::uint8_t { none, hidden, shown };
+
+std::vector<std::uint8_t> cover_of(const HeightBuffer& heights, double origin_z, const SearchMesh& mesh) {
+  const MapWindow& window = heights.window;
+  std::vector<std::uint8_t> cover(window.columns * window.rows, none);
   for (const auto& t : mesh.triangles) {
     std::array<MapPoint, 3> c;
     for (std::size_t k = 0; k < 3; ++k) c[k] = window.at(mesh.positions[t[k]]);
-    for_each_pixel(window, c, [&](std::size_t pixel, const std::array<double, 3>&) { covered[pixel] = 1; });
+    for_each_pixel(window, c, [&](std::size_t pixel, const std::array<double, 3>& weights) {
+      double z = -origin_z;
+      for (std::size_t k = 0; k < 3; ++k) z += weights[k] * mesh.positions[t[k]].z;
+      const bool shows = !(double{heights.z[pixel]} > z + kHidden_m);
+      cover[pixel] = std::max<std::uint8_t>(cover[pixel], shows ? shown : hidden);
+    });
   }
-  return covered;
+  return cover;
 }
 
 // Sets in `near` what lies less than `r` pixels, along its line, from one that is `wanted` or from the line's end.
@@ -35,7 +46,7 @@ void spread_along(std::size_t lines, std::size_t line_step, std::size_t length, 
   }
 }
 
-// Those of the set with another that is not less than `r` columns and rows away, or with the map's border as near.
+// Those of the set with another pixel that is not less than `r` columns and rows away, or with the map's border as near.
 std::vector<std::uint8_t> rim_of(const std::vector<std::uint8_t>& set, std::size_t columns, std::size_t r) {
   const std::size_t rows = set.size() / columns;
   std::vector<std::uint8_t> across(set.size(), 0), rim(set.size(), 0);
@@ -60,10 +71,14 @@ std::uint32_t over(std::uint32_t pixel, const Colour& colour, double opacity) {
 
 }  // namespace
 
-void tint_search_area(std::vector<std::uint32_t>& pixels, const MapWindow& window, const SearchMesh& mesh) {
-  const std::vector<std::uint8_t> covered = covered_pixels(window, mesh), rim = rim_of(covered, window.columns, kRim);
-  for (std::size_t k = 0; k < pixels.size(); ++k)
-    if (covered[k]) pixels[k] = over(pixels[k], kSearchTint, rim[k] ? kSearchRim : kSearchOpacity);
+void tint_search_area(std::vector<std::uint32_t>& pixels, const HeightBuffer& heights, double origin_z, const SearchMesh& mesh) {
+  const std::vector<std::uint8_t> cover = cover_of(heights, origin_z, mesh), rim = rim_of(cover, heights.window.columns, kRim);
+  for (std::size_t k = 0; k < pixels.size(); ++k) {
+    if (rim[k])
+      pixels[k] = over(pixels[k], kSearchTint, kSearchRim);
+    else if (cover[k] == shown)
+      pixels[k] = over(pixels[k], kSearchTint, kSearchOpacity);
+  }
 }
 
 }  // namespace vantage

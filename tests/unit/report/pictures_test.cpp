@@ -89,23 +89,30 @@ TEST(SearchTint, HasARimAtItsEdgeAndNoneAtSeams) {
     mesh.positions.push_back({x, y, 0});
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {4, 5, 8}, {8, 5, 6}, {8, 6, 7}};
   const MapWindow window{.x_min = -1, .y_max = 2, .pixel_m = 0.02, .columns = 200, .rows = 150};
+  const auto pixel_of = [&](double x, double y) {
+    const MapPoint p = window.at({x, y, 0});
+    return static_cast<std::size_t>(p.y) * window.columns + static_cast<std::size_t>(p.x);
+  };
   std::vector<std::uint32_t> pixels(window.columns * window.rows, 0xFFFFFFFFu);
   pixels[60 * window.columns + 60] = 0;  // nothing there: paper
-  tint_search_area(pixels, window, mesh);
+  HeightBuffer heights{window, std::vector<float>(pixels.size(), 5), {}};  // at z = 0 with the local frame's origin 5 lower
+  heights.z[pixel_of(1.5, 0.4)] = 5.2f;
+  heights.z[pixel_of(1.5, 0.6)] = 5.4f;
+  tint_search_area(pixels, heights, -5, mesh);
   const auto green_at = [&](double x, double y) {
-    const MapPoint p = window.at({x, y, 0});
-    const std::uint32_t pixel = pixels[static_cast<std::size_t>(p.y) * window.columns + static_cast<std::size_t>(p.x)];
+    const std::uint32_t pixel = pixels[pixel_of(x, y)];
     EXPECT_EQ(pixel >> 24, 255u);
     return 255.0 - (pixel >> 16 & 255u);  // red goes first
   };
   const double full = 255 * (1 - kSearchTint.r);
   EXPECT_EQ(green_at(-0.03, 0.5), 0);
   EXPECT_EQ(green_at(0.5, 1.03), 0);
-  for (const auto& [x, y] : {std::pair{0.5, 0.5}, {0.99, 0.7}, {1.01, 0.41}, {1.3, 0.2}, {0.21, 0.79}})
+  for (const auto& [x, y] : {std::pair{0.5, 0.5}, {0.99, 0.7}, {1.5, 0.4}, {1.01, 0.41}, {1.3, 0.2}, {0.21, 0.79}})
     EXPECT_NEAR(green_at(x, y), kSearchOpacity * full, 1) << x << ' ' << y;
   for (const auto& [x, y] : {std::pair{0.03, 0.5}, {0.5, 0.03}, {1.97, 0.5}, {1.2, 0.97}, {0.01, 0.01}, {0.05, 0.5}})
     EXPECT_NEAR(green_at(x, y), kSearchRim * full, 1) << x << ' ' << y;
   EXPECT_NEAR(green_at(0.11, 0.5), kSearchOpacity * full, 1);
+  EXPECT_EQ(green_at(1.5, 0.6), 0) << "under something";
 }
 
 // A floor of 4 x 4 m at z = 0, a table of 2 x 2 m at z = 1 in its middle, a wall without thickness at x = -1.5, in local coordinates.
