@@ -52,11 +52,11 @@ struct CmaEsConfig {
   std::vector<double> start = {};         ///< Initial mean; empty: random inside the bounds, else 0.
   std::optional<Bounds> bounds = std::nullopt;
   bool active = true;                     ///< Negative weights for the worst half (active CMA).
-  /// As in MoCmaEsConfig. Where there are any, a tenth of an iteration's points, at least one of five, are the mean with one block from
-  /// anywhere. One that beats all others of its iteration hands its block to the mean. Needs bounds.
+  /// As in MoCmaEsConfig. Where there are any, a tenth of an iteration's points (a quarter with blocks_in_use) are the mean with one block from anywhere.
+  /// The one that beats all others hands its block to the mean. Blocks that none of an iteration uses take no part in it. Needs bounds.
   std::vector<std::vector<std::size_t>> blocks = {};
   std::function<std::size_t(std::span<const double> x)> blocks_in_use = {};
-  std::size_t restarts = 0;               ///< Restarts with doubled population after a stall (IPOP).
+  std::size_t restarts = 0;  ///< After a stall: with doubled population (IPOP); where there are blocks, at the best, most of them anywhere.
   std::size_t max_iterations = 0;         ///< 0: no limit.
   std::size_t max_evaluations = 0;        ///< 0: no limit.
   std::optional<double> target = std::nullopt;  ///< Stop at f <= target.

@@ -51,7 +51,7 @@ struct PlacedStation {
 struct PlanConfig {
   Problem problem = Problem::coverage_overlap_fix;
   std::size_t stations_min = 4, stations_max = 4;  ///< Equal for the FIX problems.
-  std::size_t population = 0;        ///< 0: 10 for coverage_fix, else 100.
+  std::size_t population = 0;        ///< 0: 10 for coverage_fix, 20 for a fitness, else 100.
   std::size_t iterations = 100;      ///< Of `population` evaluations each.
   double sigma0 = 0.2;
   MoAlgorithm algorithm = MoAlgorithm::mo_cma_es;  ///< Of the problems with several objectives.

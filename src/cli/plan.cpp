@@ -76,7 +76,7 @@ struct PlanOptions {
                 }
               })
         ->group("Search");
-    add_size(command, "--population", "M", "Networks per iteration; 10 for coverage-fix, else 100", config.population, 2, 100'000);
+    add_size(command, "--population", "M", "Networks per iteration; 10 for coverage-fix, 20 for a fitness, else 100", config.population, 2, 100'000);
     add_size(command, "--iterations", "K", "Iterations of M networks each; 100 otherwise", config.iterations, 1, 100'000'000);
     add_size(command, "--batch", "B", "Networks asked for at once by the steady state; by the engine otherwise", config.batch, 1,
              100'000);

@@ -27,8 +27,9 @@ std::vector<double> crowding_distances(std::span<const double> fitness, std::siz
       const double low = fitness[order[begin] * m + j], range = fitness[order[end - 1] * m + j] - low;
       distance[order[begin]] = distance[order[end - 1]] = std::numeric_limits<double>::infinity();
       if (!(range > 0) || !std::isfinite(range)) continue;
-      for (std::size_t i = begin + 2; i < end; ++i)
-        distance[order[i - 1]] += (fitness[order[i] * m + j] - fitness[order[i - 2] * m + j]) / range;
+      const std::span<const std::size_t> front(order.data() + begin, end - begin);
+      for (auto before = front.begin(); front.end() - before > 2; ++before)
+        distance[before[1]] += (fitness[before[2] * m + j] - fitness[before[0] * m + j]) / range;
     }
   }
   return distance;

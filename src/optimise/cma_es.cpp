@@ -35,8 +35,12 @@ constexpr double kReturned = 0.5;
 constexpr std::size_t kFlatIterations = 20;  // the step grows a thousandfold meanwhile
 constexpr std::size_t kMaxHistory = 20000;
 constexpr std::size_t kMaxPopulation = std::size_t{1} << 20;
-// A tenth of an iteration's points have a swapped block, at least one; none where too few would be left to rank.
-constexpr std::size_t kSwapEvery = 10, kSwapsFrom = 5;
+// Share of an iteration's points that have a swapped block, at least one; none where too few would be left to rank.
+// More where the number of blocks is searched too, and local optima are many.
+constexpr double kSwapped = 0.1, kSwappedOfMany = 0.25;
+constexpr std::size_t kSwapsFrom = 5;
+// Of a run that begins from the best so far: its step as a share of sigma0, and by when it must have caught up.
+constexpr double kNextStep = 0.5, kLateStep = 0.1;
 constexpr std::string_view kKind = "CMA-ES";
 
 std::span<double> as_span(VectorXd& v) { return {v.data(), static_cast<std::size_t>(v.size())}; }
@@ -107,10 +111,24 @@ struct CmaEs::Impl {
   }
   // Puts the genotype mean + sigma · steps.col(k) into the points.
   void express(std::size_t k);
+  bool swaps() const { return box.bounded() && !config.blocks.empty(); }
   std::size_t swaps_of(std::size_t count) const {
-    return box.bounded() && !config.blocks.empty() && count >= kSwapsFrom ? std::max<std::size_t>(1, count / kSwapEvery)
-                                                                          : 0;
+    if (!swaps() || count < kSwapsFrom) return 0;
+    const double share = config.blocks_in_use ? kSwappedOfMany : kSwapped;
+    return std::max(std::size_t{1}, static_cast<std::size_t>(share * static_cast<double>(count)));
   }
+  std::size_t blocks_in_use(std::span<const double> x) const {
+    const std::size_t all = config.blocks.size();
+    return config.blocks_in_use ? std::clamp<std::size_t>(config.blocks_in_use(x), 1, all) : all;
+  }
+  // Puts the mean where the best point is, but for three quarters of its blocks, which may be anywhere.
+  void begin_beside_best();
+  // The search goes on among the first blocks alone, without what the distribution knew of the others.
+  void use_blocks(std::size_t count);
+  // Whatever no point of the iteration made use of takes no part in it.
+  void leave_unused();
+  // Makes a coordinate independent of all others.
+  void forget(Eigen::Index axis, double variance);
   // Makes point λ + s the mean with one block from anywhere.
   void swap_block(std::size_t s);
   // Moves the mean's block to where point λ + s has it; the distribution forgets what it knew of it.
@@ -128,6 +146,8 @@ struct CmaEs::Impl {
   NormalStream random;
   std::size_t asked_points;  // λ and those with swapped blocks
   std::size_t lambda = 0;
+  std::size_t used_blocks = 0;  // of the iteration's points, the most
+  std::size_t used = 0;         // coordinates that are not of blocks beyond those
   Strategy strategy;
 
   VectorXd mean, path_c, path_sigma, axis_lengths;
@@ -137,6 +157,7 @@ struct CmaEs::Impl {
   std::size_t evaluations = 0, iterations = 0, restarts = 0, run_iterations = 0, run_evaluations = 0,
               flat_iterations = 0;
   std::vector<double> best_history, median_history;  // of the run
+  double run_best = kInfinity;
   ParetoPoint best;
   StopReason reason = StopReason::running;
 
@@ -165,7 +186,7 @@ CmaEs::Impl::Impl(std::size_t dimension, const CmaEsConfig& c)
 void CmaEs::Impl::begin_run() {
   const auto size = static_cast<Eigen::Index>(n);
   lambda = asked_points - swaps_of(asked_points);
-  strategy = Strategy(static_cast<double>(n), lambda, config.active);
+  use_blocks(config.blocks.size());
   sigma = config.sigma0;
   mean = VectorXd::Zero(size);
   const bool first = restarts == 0;
@@ -179,12 +200,60 @@ void CmaEs::Impl::begin_run() {
       m = (config.start.empty() ? 0.0 : config.start[i]) + (first ? 0.0 : sigma * random.normal());
     }
   }
+  if (!first && swaps() && !best.x.empty()) begin_beside_best();
   path_c = path_sigma = VectorXd::Zero(size);
   axis_lengths = VectorXd::Ones(size);
   covariance = axes = MatrixXd::Identity(size, size);
   decomposed_at = run_iterations = run_evaluations = flat_iterations = 0;
+  run_best = kInfinity;
   best_history.clear();
   median_history.clear();
+}
+
+void CmaEs::Impl::begin_beside_best() {
+  for (std::size_t i = 0; i < n; ++i) mean[static_cast<Eigen::Index>(i)] = genotype(best.x[i], i);
+  std::vector<std::size_t> order(blocks_in_use(best.x));
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  for (std::size_t k = 0; k < (3 * order.size() + 3) / 4; ++k) {
+    std::swap(order[k], order[k + random.index(order.size() - k)]);
+    for (const std::size_t i : config.blocks[order[k]]) mean[static_cast<Eigen::Index>(i)] = random.uniform();
+  }
+  sigma *= kNextStep;
+}
+
+void CmaEs::Impl::use_blocks(std::size_t count) {
+  used_blocks = count;
+  used = n;
+  for (std::size_t b = count; b < config.blocks.size(); ++b) used -= config.blocks[b].size();
+  strategy = Strategy(static_cast<double>(used), lambda, config.active);
+}
+
+void CmaEs::Impl::forget(Eigen::Index axis, double variance) {
+  path_c[axis] = path_sigma[axis] = 0;
+  covariance.row(axis).setZero();
+  covariance.col(axis).setZero();
+  covariance(axis, axis) = variance;
+}
+
+void CmaEs::Impl::leave_unused() {
+  if (!swaps() || !config.blocks_in_use) return;
+  std::size_t most = 1;
+  for (std::size_t k = 0; k < lambda; ++k) most = std::max(most, blocks_in_use(std::span(points).subspan(k * n, n)));
+  const bool changes = most != used_blocks;
+  if (changes) use_blocks(most);
+  const auto unused = std::span(config.blocks).subspan(most);
+  double variance = covariance.trace();
+  for (const auto& block : unused)
+    for (const std::size_t i : block)
+      variance -= covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i));
+  variance /= static_cast<double>(used);
+  for (const auto& block : unused) {
+    for (const std::size_t i : block) {
+      forget(static_cast<Eigen::Index>(i), variance);
+      steps.row(static_cast<Eigen::Index>(i)).setZero();
+    }
+  }
+  if (changes) decompose(true);
 }
 
 void CmaEs::Impl::express(std::size_t k) {
@@ -211,8 +280,7 @@ void CmaEs::Impl::draw() {
 void CmaEs::Impl::swap_block(std::size_t s) {
   const auto x = std::span(points).subspan((lambda + s) * n, n);
   for (std::size_t i = 0; i < n; ++i) x[i] = phenotype(mean[static_cast<Eigen::Index>(i)], i);
-  const std::size_t all = config.blocks.size();
-  swapped[s] = random.index(config.blocks_in_use ? std::clamp<std::size_t>(config.blocks_in_use(x), 1, all) : all);
+  swapped[s] = random.index(blocks_in_use(x));
   for (const std::size_t i : config.blocks[swapped[s]]) x[i] = box.from_unit(random.uniform(), i);
 }
 
@@ -221,10 +289,7 @@ void CmaEs::Impl::adopt_swap(std::size_t s) {
   for (const std::size_t i : config.blocks[swapped[s]]) {
     const auto axis = static_cast<Eigen::Index>(i);
     mean[axis] = genotype(points[(lambda + s) * n + i], i);
-    path_c[axis] = path_sigma[axis] = 0;
-    covariance.row(axis).setZero();
-    covariance.col(axis).setZero();
-    covariance(axis, axis) = variance;
+    forget(axis, variance);
   }
 }
 
@@ -239,8 +304,9 @@ void CmaEs::Impl::require_index(std::size_t index) const {
 }
 
 void CmaEs::Impl::update(const std::vector<std::size_t>& order) {
+  leave_unused();
   const Strategy& s = strategy;
-  const double dimension = static_cast<double>(n);
+  const double dimension = static_cast<double>(used);
   VectorXd step = VectorXd::Zero(mean.size());
   for (std::size_t i = 0; i < s.mu; ++i)
     step += s.weights[static_cast<Eigen::Index>(i)] * steps.col(static_cast<Eigen::Index>(order[i]));
@@ -275,7 +341,7 @@ void CmaEs::Impl::update(const std::vector<std::size_t>& order) {
 }
 
 void CmaEs::Impl::decompose(bool now) {
-  const double wait = 1 / ((strategy.c_1 + strategy.c_mu) * static_cast<double>(n) * 10);
+  const double wait = 1 / ((strategy.c_1 + strategy.c_mu) * static_cast<double>(used) * 10);
   if (!now && static_cast<double>(run_evaluations - decomposed_at) < wait * static_cast<double>(lambda)) return;
   decomposed_at = run_evaluations;
   covariance = 0.5 * (covariance + covariance.transpose()).eval();
@@ -295,7 +361,9 @@ StopReason CmaEs::Impl::stall(const std::vector<double>& sorted) const {
 
   const double length = std::max(path_c.cwiseAbs().maxCoeff(), std::sqrt(covariance.diagonal().maxCoeff()));
   if (sigma * length < config.x_tolerance * config.sigma0) return StopReason::converged;
-  const std::size_t recent = 10 + (30 * n + lambda - 1) / lambda;
+  if (swaps() && run_best > best.f[0] + config.f_tolerance && sigma * length < kLateStep * config.sigma0)
+    return StopReason::stagnated;
+  const std::size_t recent = 10 + (30 * used + lambda - 1) / lambda;
   if (config.f_tolerance > 0 && flat_iterations == 0 && best_history.size() > recent) {
     const auto [low, high] =
         std::minmax_element(best_history.end() - static_cast<std::ptrdiff_t>(recent), best_history.end());
@@ -308,7 +376,7 @@ StopReason CmaEs::Impl::stall(const std::vector<double>& sorted) const {
   for (Eigen::Index i = 0; i < mean.size(); ++i)
     if (mean[i] == mean[i] + 0.2 * sigma * std::sqrt(covariance(i, i))) return StopReason::converged;
 
-  const std::size_t window = std::clamp<std::size_t>(run_iterations / 5, 120 + 30 * n / lambda, kMaxHistory);
+  const std::size_t window = std::clamp<std::size_t>(run_iterations / 5, 120 + 30 * used / lambda, kMaxHistory);
   if (best_history.size() >= window && config.f_tolerance > 0) {
     const auto no_better = [&](const std::vector<double>& history) {
       const auto third = static_cast<std::ptrdiff_t>(3 * window / 10);
@@ -421,6 +489,7 @@ void CmaEs::tell(std::span<const double> values) {
     const auto first = s.points.begin() + static_cast<std::ptrdiff_t>(best * s.n);
     s.best = {{first, first + static_cast<std::ptrdiff_t>(s.n)}, {std::min(f.front(), best_swapped)}};
   }
+  s.run_best = std::min({s.run_best, f.front(), best_swapped});
   s.best_history.push_back(f.front());
   s.median_history.push_back(f[s.lambda / 2]);
   if (s.best_history.size() > 2 * kMaxHistory) {
@@ -444,7 +513,7 @@ void CmaEs::tell(std::span<const double> values) {
   s.reason = s.stall(f);
   if (is_stall(s.reason) && s.restarts < s.config.restarts && s.asked_points <= kMaxPopulation / 2) {
     ++s.restarts;
-    s.asked_points *= 2;
+    if (!s.swaps()) s.asked_points *= 2;
     s.begin_run();
     s.reason = StopReason::running;
   } else if (s.reason == StopReason::diverged) {
@@ -474,9 +543,10 @@ void CmaEs::save(std::ostream& out) const {
   w.put(s.box.upper());
   for (const std::size_t v :
        {s.random.seed(), s.random.block(), s.asked_points, s.decomposed_at, s.evaluations, s.iterations, s.restarts,
-        s.run_iterations, s.run_evaluations, s.flat_iterations, static_cast<std::size_t>(s.reason)})
+        s.run_iterations, s.run_evaluations, s.flat_iterations, s.used_blocks, static_cast<std::size_t>(s.reason)})
     w.put(std::uint64_t{v});
   w.put(s.sigma);
+  w.put(s.run_best);
   for (const VectorXd* v : {&s.mean, &s.path_c, &s.path_sigma, &s.axis_lengths}) w.put(as_span(*v));
   for (const MatrixXd* a : {&s.covariance, &s.axes}) w.put(as_span(*a));
   w.put(s.best_history);
@@ -506,9 +576,10 @@ void CmaEs::load(std::istream& in) {
   for (std::size_t* v : {&s.decomposed_at, &s.evaluations, &s.iterations, &s.restarts, &s.run_iterations,
                          &s.run_evaluations, &s.flat_iterations})
     *v = r.size(kMany);
+  s.use_blocks(r.size(s.config.blocks.size() + 1));
   s.reason = static_cast<StopReason>(r.size(static_cast<std::size_t>(StopReason::cancelled) + 1));
-  s.strategy = Strategy(static_cast<double>(s.n), s.lambda, s.config.active);
   s.sigma = r.positive();
+  s.run_best = r.real();
   const auto fill = [&](double* out, std::size_t count) {
     for (const double v : r.finite_reals(count)) *out++ = v;
   };

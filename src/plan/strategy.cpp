@@ -50,8 +50,7 @@ class MultiObjective final : public Strategy {
   std::unique_ptr<MultiObjectiveOptimiser> optimiser_;
 };
 
-// Enough to spend any budget: each restart doubles the population.
-constexpr std::size_t kRestarts = 9;
+constexpr std::size_t kRestarts = 1'000'000;  // enough to spend any budget
 // When to restart: less is to be gained than a sample's standard error, or stations move by less than 1/250 of the search area.
 constexpr double kCoverageTolerance = 1e-3, kStepTolerance = 0.02;
 
@@ -59,6 +58,7 @@ constexpr double kCoverageTolerance = 1e-3, kStepTolerance = 0.02;
 
 std::size_t population_of(const PlanConfig& config) {
   if (config.population > 0) return config.population;
+  if (config.fitness) return 20;
   return has_one_objective(config) ? 10 : 100;
 }
 

@@ -15,6 +15,7 @@
 
 #include "optimise/normal_stream.hpp"
 #include "optimiser_problems.hpp"
+#include "survey_problem.hpp"
 #include "vantage/optimiser.hpp"
 
 namespace vantage::bench {
@@ -55,6 +56,7 @@ struct Options {
   std::size_t seeds = 11, first_seed = 1, evaluations = 50000, batch = 1;
   std::vector<std::string> problems, parts;
   std::string scheme, algorithm = "mo_cma_es", references = VANTAGE_OPTIMISER_REFERENCES;
+  std::size_t survey_population = 20;
   bool blocks = true;
   MoCmaEsConfig search;
 
@@ -91,6 +93,19 @@ Summary over_seeds(const Options& options, const Run& run) {
   return summarise(values);
 }
 
+// Draws stations in holes again, as the planner does.
+template <typename Optimiser>
+void place(const MoProblem& problem, Optimiser& optimiser, std::span<const double> points) {
+  const std::size_t n = problem.dimension;
+  for (std::size_t k = 0; k < points.size() / n && problem.misplaced; ++k) {
+    for (int redraw = 0; redraw < kRedraws; ++redraw) {
+      const auto coordinates = problem.misplaced(points.subspan(k * n, n));
+      if (coordinates.empty()) break;
+      optimiser.resample(k, coordinates);
+    }
+  }
+}
+
 // Hypervolume of the population against (reference, …) after so many evaluations.
 double run_front(const MoProblem& problem, const Options& options, Scheme scheme, double reference,
                  std::size_t evaluations, std::uint64_t seed) {
@@ -98,7 +113,7 @@ double run_front(const MoProblem& problem, const Options& options, Scheme scheme
   config.scheme = scheme;
   config.batch = options.batch;
   config.bounds = problem.bounds;
-  if (options.blocks) config.blocks = problem.blocks;
+  if (options.blocks) config.blocks = problem.blocks, config.blocks_in_use = problem.blocks_in_use;
   config.reference.assign(problem.objectives, reference);
   config.max_evaluations = evaluations;
   config.seed = seed;
@@ -109,13 +124,7 @@ double run_front(const MoProblem& problem, const Options& options, Scheme scheme
     const auto points = optimiser->ask();
     const std::size_t count = points.size() / problem.dimension;
     values.resize(count * problem.objectives);
-    for (std::size_t k = 0; k < count && problem.misplaced; ++k) {
-      for (int redraw = 0; redraw < kRedraws; ++redraw) {
-        const auto coordinates = problem.misplaced(points.subspan(k * problem.dimension, problem.dimension));
-        if (coordinates.empty()) break;
-        optimiser->resample(k, coordinates);
-      }
-    }
+    place(problem, *optimiser, points);
     for (std::size_t k = 0; k < count; ++k)
       problem.evaluate(points.subspan(k * problem.dimension, problem.dimension),
                        std::span(values).subspan(k * problem.objectives, problem.objectives));
@@ -225,6 +234,49 @@ void print_station(const Options& options) {
   }
 }
 
+// One objective, CMA-ES set as the planner sets it.
+double run_survey(const MoProblem& problem, const Options& options, std::uint64_t seed) {
+  CmaEsConfig config{.population = options.survey_population,
+                     .bounds = problem.bounds,
+                     .restarts = 1000,
+                     .max_evaluations = options.evaluations,
+                     .f_tolerance = 1e-3,
+                     .x_tolerance = 0.02,
+                     .seed = seed};
+  if (options.blocks) config.blocks = problem.blocks, config.blocks_in_use = problem.blocks_in_use;
+  CmaEs optimiser(problem.dimension, config);
+  std::vector<double> values;
+  while (optimiser.stop_reason() == StopReason::running) {
+    const auto points = optimiser.ask();
+    place(problem, optimiser, points);
+    values.resize(points.size() / problem.dimension);
+    for (std::size_t k = 0; k < values.size(); ++k)
+      problem.evaluate(points.subspan(k * problem.dimension, problem.dimension), std::span(values).subspan(k, 1));
+    optimiser.tell(values);
+  }
+  return 1 - optimiser.best().f[0];
+}
+
+void print_survey(const Options& options) {
+  bool first = true;
+  for (const auto& [name, good] : {std::pair{"FITNESS", 0.93}, std::pair{"COVERAGE", 0.887}}) {
+    if (!options.wants("survey", name)) continue;
+    if (std::exchange(first, false))
+      std::printf(
+          "\nCMA-ES on planning with one objective, %zu evaluations, %zu seeds\n%-10s %10s %10s %10s %10s %10s\n",
+          options.evaluations, options.seeds, "problem", "mean", "sd", "lowest", "good from", "share");
+    const MoProblem problem = std::string(name) == "FITNESS" ? fitness_problem() : coverage_problem("WALLS", 8);
+    std::vector<double> values(options.seeds);
+    const Summary s = over_seeds(options, [&](std::uint64_t seed) {
+      return values[seed - options.first_seed] = run_survey(problem, options, seed);
+    });
+    const auto reached = std::ranges::count_if(values, [&, g = good](double v) { return v >= g; });
+    std::printf("%-10s %10.4f %10.2g %10.4f %10g %10.3f\n", name, s.mean, s.sd, s.lowest, good,
+                static_cast<double>(reached) / static_cast<double>(options.seeds));
+    std::fflush(stdout);
+  }
+}
+
 void print_single(const std::vector<Reference>& references, const Options& options) {
   bool first = true;
   for (const Reference& r : references) {
@@ -296,11 +348,12 @@ int main(int argc, char** argv) {
   app.add_option("--first-seed", options.first_seed);
   app.add_option("--problem", options.problems, "Only these problems");
   app.add_option("--part", options.parts, "Only these tables")
-      ->check(CLI::IsMember({"hypervolume", "budget", "station", "cma-es", "overhead"}));
+      ->check(CLI::IsMember({"hypervolume", "budget", "station", "survey", "cma-es", "overhead"}));
   app.add_option("--evaluations", options.evaluations, "Of each run");
   app.add_option("--scheme", options.scheme, "Only this one")->check(CLI::IsMember({"steady", "generational"}));
   app.add_option("--algorithm", options.algorithm);
   app.add_option("--population", options.search.population);
+  app.add_option("--survey-population", options.survey_population, "Of CMA-ES on planning with one objective");
   app.add_option("--batch", options.batch, "Of the steady state");
   app.add_option("--sigma0", options.search.sigma0, "Share of the range");
   app.add_option("--guided", options.search.guided);
@@ -315,6 +368,7 @@ int main(int argc, char** argv) {
     print_fronts(references, options);
     print_budget(options);
     print_station(options);
+    print_survey(options);
     print_single(references, options);
     print_overhead(options);
   } catch (const std::exception& e) {

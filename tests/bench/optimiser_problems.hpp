@@ -23,6 +23,7 @@ struct MoProblem {
   // Coordinates of stations in holes, which are to be drawn again; empty where the problem has none.
   std::function<std::vector<std::size_t>(std::span<const double> x)> misplaced = {};
   std::vector<std::vector<std::size_t>> blocks = {};  // MoCmaEsConfig::blocks
+  std::function<std::size_t(std::span<const double> x)> blocks_in_use = {};  // likewise
 };
 
 // Rotations, where the problem has any, are drawn from the seed. Throws std::invalid_argument for an unknown name.

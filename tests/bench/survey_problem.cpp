@@ -9,11 +9,13 @@
 #include <stdexcept>
 
 #include "vantage/objective.hpp"
+#include "vantage/planner.hpp"
 
 namespace vantage::bench {
 namespace {
 
 constexpr std::size_t kPatches = 600;
+constexpr std::size_t kFewest = 4, kMost = 12;        // stations of FITNESS
 constexpr double kHead = 1.5, kKeepOff = 0.5;         // m
 constexpr double kVoxel = 0.0783, kSpacing = 0.01;    // m
 constexpr double kStep = 0.1 * 0.017453292519943295;  // of the scanner
@@ -111,6 +113,19 @@ std::shared_ptr<const Survey> make_survey(const std::string& name) {
   return survey;
 }
 
+// Of the heads that see each other past the boxes, all of which reach above the heads' height.
+std::size_t connected_parts(const Survey& survey, const std::vector<std::array<double, 2>>& heads) {
+  const auto sees = [&](const std::array<double, 2>& a, const std::array<double, 2>& b) {
+    const Patch target{b[0], b[1], kHead, 0, 0, survey.prisms.size()};
+    return !survey.hidden(a[0], a[1], target);
+  };
+  OverlapMatrix seen(heads.size());
+  for (std::size_t i = 0; i < heads.size(); ++i)
+    for (std::size_t j = i + 1; j < heads.size(); ++j)
+      if (sees(heads[i], heads[j])) seen.set(i, j, 1);
+  return connectivity(seen, 1).parts;
+}
+
 void evaluate(const Survey& survey, std::span<const double> x, std::span<double> f) {
   const std::size_t n = x.size() / 2;
   std::vector<std::array<double, 2>> heads(n);
@@ -141,22 +156,54 @@ void evaluate(const Survey& survey, std::span<const double> x, std::span<double>
     }
   }
   f[0] = 1 - filled / static_cast<double>(survey.patches.size());
-  f[1] = 1 - clustering_coefficient(overlap);
+  if (f.size() > 1) f[1] = 1 - clustering_coefficient(overlap);
+}
+
+// Section 5.1.2 of the paper: 0.4 coverage, 0.4 number of stations, 0.2 visibility.
+double unfitness(const Survey& survey, std::span<const double> x) {
+  const std::size_t n = station_count_from_alpha(x.back(), kFewest, kMost);
+  double missed = 0;
+  evaluate(survey, x.first(2 * n), {&missed, 1});
+  std::vector<std::array<double, 2>> heads;
+  for (std::size_t i = 0; i < n; ++i) heads.push_back({survey.to_metres(x[2 * i]), survey.to_metres(x[2 * i + 1])});
+  const double spared = static_cast<double>(kMost - n) / (kMost - kFewest);
+  return 1 - (0.4 * (1 - missed) + 0.4 * (std::exp2(spared) - 1) +
+              0.2 / static_cast<double>(connected_parts(survey, heads)));
+}
+
+std::vector<std::size_t> misplaced(const Survey& survey, std::span<const double> x) {
+  std::vector<std::size_t> coordinates;
+  for (std::size_t i = 0; i + 1 < x.size(); i += 2)
+    if (!survey.stands(survey.to_metres(x[i]), survey.to_metres(x[i + 1])))
+      coordinates.insert(coordinates.end(), {i, i + 1});
+  return coordinates;
 }
 
 }  // namespace
+
+MoProblem fitness_problem() {
+  const auto survey = make_survey("WALLS");
+  const std::size_t n = 2 * kMost + 1;
+  MoProblem p{"FITNESS", n, 1, Bounds::uniform(n, 0, 1), {}};
+  const auto in_use = [](std::span<const double> x) { return station_count_from_alpha(x.back(), kFewest, kMost); };
+  p.evaluate = [survey](auto x, auto f) { f[0] = unfitness(*survey, x); };
+  p.misplaced = [survey, in_use](std::span<const double> x) { return misplaced(*survey, x.first(2 * in_use(x))); };
+  for (std::size_t i = 0; i < kMost; ++i) p.blocks.push_back({2 * i, 2 * i + 1});
+  p.blocks_in_use = in_use;
+  return p;
+}
+
+MoProblem coverage_problem(const std::string& name, std::size_t n) {
+  MoProblem p = survey_problem(name, n);
+  p.objectives = 1;
+  return p;
+}
 
 MoProblem survey_problem(const std::string& name, std::size_t n) {
   const auto survey = make_survey(name);
   MoProblem p{name, n, 2, Bounds::uniform(n, 0, 1), {}};
   p.evaluate = [survey](auto x, auto f) { evaluate(*survey, x, f); };
-  p.misplaced = [survey](std::span<const double> x) {
-    std::vector<std::size_t> coordinates;
-    for (std::size_t i = 0; i + 1 < x.size(); i += 2)
-      if (!survey->stands(survey->to_metres(x[i]), survey->to_metres(x[i + 1])))
-        coordinates.insert(coordinates.end(), {i, i + 1});
-    return coordinates;
-  };
+  p.misplaced = [survey](std::span<const double> x) { return misplaced(*survey, x); };
   for (std::size_t i = 0; i + 1 < n; i += 2) p.blocks.push_back({i, i + 1});
   return p;
 }
