@@ -75,7 +75,7 @@ void tint_search_area(std::vector<std::uint32_t>& pixels, const HeightBuffer& he
   const std::vector<std::uint8_t> cover = cover_of(heights, origin_z, mesh), rim = rim_of(cover, heights.window.columns, kRim);
   for (std::size_t k = 0; k < pixels.size(); ++k) {
     if (rim[k])
-      pixels[k] = over(pixels[k], kSearchTint, kSearchRim);
+      pixels[k] = over(pixels[k], kSearchTint, cover[k] == shown ? kSearchRim : kHiddenRim);
     else if (cover[k] == shown)
       pixels[k] = over(pixels[k], kSearchTint, kSearchOpacity);
   }

@@ -97,7 +97,7 @@ TEST(SearchTint, HasARimAtItsEdgeAndNoneAtSeams) {
   pixels[60 * window.columns + 60] = 0;  // nothing there: paper
   HeightBuffer heights{window, std::vector<float>(pixels.size(), 5), {}};  // at z = 0 with the local frame's origin 5 lower
   heights.z[pixel_of(1.5, 0.4)] = 5.2f;
-  heights.z[pixel_of(1.5, 0.6)] = 5.4f;
+  for (const double y : {0.03, 0.6}) heights.z[pixel_of(1.5, y)] = 5.4f;
   tint_search_area(pixels, heights, -5, mesh);
   const auto green_at = [&](double x, double y) {
     const std::uint32_t pixel = pixels[pixel_of(x, y)];
@@ -113,6 +113,7 @@ TEST(SearchTint, HasARimAtItsEdgeAndNoneAtSeams) {
     EXPECT_NEAR(green_at(x, y), kSearchRim * full, 1) << x << ' ' << y;
   EXPECT_NEAR(green_at(0.11, 0.5), kSearchOpacity * full, 1);
   EXPECT_EQ(green_at(1.5, 0.6), 0) << "under something";
+  EXPECT_NEAR(green_at(1.5, 0.03), kHiddenRim * full, 1) << "at the edge, and under something";
 }
 
 // A floor of 4 x 4 m at z = 0, a table of 2 x 2 m at z = 1 in its middle, a wall without thickness at x = -1.5, in local coordinates.
