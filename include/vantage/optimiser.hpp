@@ -140,6 +140,7 @@ struct MoCmaEsConfig {
   std::size_t stagnation_iterations = 0;  ///< Stop when the hypervolume has not grown for so many. 0: never.
   double stagnation_tolerance = 1e-6;     ///< Growth over those iterations, as a share of the hypervolume, that counts as none.
   double x_tolerance = 1e-12;             ///< Stop when all steps of all members are below this share of the range (absolute without bounds).
+  std::size_t restarts = 0;  ///< Of MO-CMA-ES, where it would stop converged or stagnated: the population stays, all steps begin anew at sigma0.
   std::uint64_t seed = 1;
 };
 
@@ -167,7 +168,7 @@ class MultiObjectiveOptimiser {
   /// Complete state, binary, versioned. Only between tell() and ask(). Throws Error io.
   virtual void save(std::ostream&) const = 0;
   /// Goes on from a saved state to the same bits. The object must have been made with the same dimension, objectives and settings, but for the
-  /// limits (max_*, target, stagnation, tolerance), which are its own. Throws Error malformed_file and is unchanged then.
+  /// limits (max_*, target, stagnation, tolerance, restarts), which are its own. Throws Error malformed_file and is unchanged then.
   virtual void load(std::istream&) = 0;
 };
 
@@ -194,6 +195,7 @@ class MoCmaEs final : public MultiObjectiveOptimiser {
   double hypervolume() const override;
   std::size_t evaluations() const noexcept override;
   std::size_t iterations() const noexcept override;
+  std::size_t restarts() const noexcept;  ///< So far.
   void save(std::ostream&) const override;
   void load(std::istream&) override;
 

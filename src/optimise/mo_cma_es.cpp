@@ -97,12 +97,14 @@ struct MoCmaEs::Impl {
   void tell_one(Solution solution, const Offspring& offspring);
   Member make_member(Solution solution, const Offspring& offspring, bool succeeded);
   bool converged() const;
+  void restart_if_stalled();
 
   MoCommon common;
   std::shared_ptr<const Shape> initial_shape;
   std::vector<Member> members;
   SteadyFront population;  // of the members, in the steady state
   std::uint64_t next_id = 0;
+  std::size_t restarts = 0;
   std::vector<Offspring> pending;
 };
 
@@ -353,6 +355,16 @@ bool MoCmaEs::Impl::converged() const {
                      [&](const Member& member) { return member.strategy.reach() < common.config.x_tolerance; });
 }
 
+void MoCmaEs::Impl::restart_if_stalled() {
+  const StopReason reason = common.stop_reason();
+  if ((reason != StopReason::converged && reason != StopReason::stagnated) || restarts >= common.config.restarts)
+    return;
+  for (Member& member : members)
+    member.strategy = {.sigma = common.config.sigma0, .success = StepStrategy::kTargetSuccess, .shape = initial_shape};
+  ++restarts;
+  common.run_on();
+}
+
 // ---- interface
 // -------------------------------------------------------------------------------------------------------
 
@@ -467,6 +479,7 @@ void MoCmaEs::tell(std::span<const double> values) {
   }
   s.pending.clear();
   s.common.watch(s.members, [&] { return s.converged(); });
+  s.restart_if_stalled();
 }
 
 StopReason MoCmaEs::stop_reason() const noexcept { return impl_->common.stop_reason(); }
@@ -478,6 +491,7 @@ std::vector<ParetoPoint> MoCmaEs::population() const {
 }
 double MoCmaEs::hypervolume() const { return impl_->common.hypervolume(impl_->members); }
 std::size_t MoCmaEs::evaluations() const noexcept { return impl_->common.evaluations; }
+std::size_t MoCmaEs::restarts() const noexcept { return impl_->restarts; }
 std::size_t MoCmaEs::iterations() const noexcept { return evaluations() / impl_->common.config.population; }
 
 void MoCmaEs::save(std::ostream& out) const {
@@ -486,6 +500,7 @@ void MoCmaEs::save(std::ostream& out) const {
   optimise::StateWriter w;
   s.common.save(w);
   w.put(s.next_id);
+  w.put(std::uint64_t{s.restarts});
   w.put(std::uint64_t{s.members.size()});
   for (const Member& member : s.members) {
     MoCommon::save(w, member);
@@ -509,6 +524,7 @@ void MoCmaEs::load(std::istream& in) {
   auto next = std::make_unique<Impl>(n, mine.objectives, mine.config);
   next->common.restore(mine.read(r));
   next->next_id = r.integer();
+  next->restarts = r.size(std::size_t{1} << 62);
   const std::size_t count = r.size(mine.config.population + 1);
   for (std::size_t i = 0; i < count; ++i) {
     Member member;
@@ -530,6 +546,7 @@ void MoCmaEs::load(std::istream& in) {
   const std::vector<double> contributions = r.finite_reals(count);
   if (count != 0) next->population.assign(optimise::fitness_of(next->members), contributions);
   r.end();
+  next->restart_if_stalled();  // more may be allowed than when it was saved
   impl_ = std::move(next);
 }
 

@@ -52,6 +52,11 @@ class MoCommon {
     judge(values, converged());
   }
   StopReason stop_reason() const { return progress_.reason; }
+  // Takes back that the search has converged or stagnated.
+  void run_on() {
+    progress_.reason = StopReason::running;
+    progress_.hypervolumes.clear();
+  }
 
   template <typename Members>
   double hypervolume(const Members& members) const {

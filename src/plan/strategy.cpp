@@ -74,7 +74,7 @@ std::unique_ptr<Strategy> make_strategy(const DecisionSpace& space, const PlanCo
     return std::make_unique<SingleObjective>(space.dimension(), cma);
   }
   MoCmaEsConfig mo{.scheme = config.scheme, .population = population_of(config), .batch = batch, .sigma0 = config.sigma0,
-                   .blocks = space.blocks(), .bounds = space.bounds(), .seed = config.seed};
+                   .blocks = space.blocks(), .bounds = space.bounds(), .restarts = kRestarts, .seed = config.seed};
   if (space.minimises_stations()) mo.blocks_in_use = in_use;
   if (!config.start.empty()) mo.start = space.encode_each(config.start);
   if (mo.start.size() > mo.population) mo.start.resize(mo.population);

@@ -316,8 +316,8 @@ TEST_P(EveryOptimiser, RefusesWhatItCannotDo) {
   EXPECT_THROW(make(2, 2, bad), Error);
   if (GetParam().algorithm == MoAlgorithm::mo_cma_es) {
     for (const double share : {-0.1, 1.1, std::nan("")}) {
-      for (double MoCmaEsConfig::*of : {&MoCmaEsConfig::guided, &MoCmaEsConfig::spread, &MoCmaEsConfig::recombined,
-                                         &MoCmaEsConfig::swapped}) {
+      for (double MoCmaEsConfig::*of :
+           {&MoCmaEsConfig::guided, &MoCmaEsConfig::spread, &MoCmaEsConfig::recombined, &MoCmaEsConfig::swapped}) {
         bad = c;
         bad.*of = share;
         EXPECT_THROW(make(2, 2, bad), Error);
@@ -347,6 +347,50 @@ TEST(MoCmaEs, ConvergesToOnePoint) {
   EXPECT_NEAR(optimiser.front().front().x[0], 0.3, 1e-6);
 }
 
+// Two objectives with a front between (0.2, 0.5) and (0.8, 0.5), found with steps no smaller than x_tolerance.
+TEST(MoCmaEs, RestartsItsStepsWhereItWouldStop) {
+  const auto objectives = [](std::span<const double> x) {
+    const double y = (x[1] - 0.5) * (x[1] - 0.5);
+    return std::vector{(x[0] - 0.2) * (x[0] - 0.2) + y, (x[0] - 0.8) * (x[0] - 0.8) + y};
+  };
+  for (const Scheme scheme : {Scheme::generational, Scheme::steady_state}) {
+    for (const bool by_steps : {true, false}) {
+      MoCmaEsConfig c;
+      c.population = 10;
+      c.bounds = Bounds::uniform(2, 0, 1);
+      c.scheme = scheme;
+      if (by_steps) {
+        c.x_tolerance = 0.02;
+      } else {
+        c.stagnation_iterations = 10;
+        c.stagnation_tolerance = 1e-3;
+      }
+      const StopReason expected = by_steps ? StopReason::converged : StopReason::stagnated;
+      MoCmaEs plain(2, 2, c);
+      ASSERT_EQ(run(plain, 2, objectives), expected);
+      EXPECT_EQ(plain.restarts(), 0u);
+
+      c.restarts = 2;
+      MoCmaEs optimiser(2, 2, c);
+      ASSERT_EQ(run(optimiser, 2, objectives), expected);
+      EXPECT_EQ(optimiser.restarts(), 2u);
+      EXPECT_GT(optimiser.evaluations(), plain.evaluations());
+      EXPECT_GT(optimiser.hypervolume(), plain.hypervolume() - 1e-3);  // it may fall by what a truncation costs
+
+      // One that had stopped goes on when more are allowed; stagnation is judged anew, an iteration later.
+      std::stringstream file;
+      plain.save(file);
+      MoCmaEs resumed(2, 2, c);
+      resumed.load(file);
+      ASSERT_EQ(run(resumed, 2, objectives), expected);
+      EXPECT_EQ(resumed.restarts(), 2u);
+      if (!by_steps) continue;
+      EXPECT_EQ(resumed.evaluations(), optimiser.evaluations());
+      EXPECT_EQ(resumed.hypervolume(), optimiser.hypervolume());
+    }
+  }
+}
+
 TEST(MoCmaEs, WorksWithoutBounds) {
   MoCmaEsConfig c;
   c.population = 20;
@@ -358,7 +402,8 @@ TEST(MoCmaEs, WorksWithoutBounds) {
   EXPECT_GT(optimiser.hypervolume(), 0.78);
 }
 
-// Distance to a line of points behind many local fronts, as in ZDT4: small steps alone stay on the first one that they meet.
+// Distance to a line of points behind many local fronts, as in ZDT4: small steps alone stay on the first one that they
+// meet.
 std::vector<double> rippled(std::span<const double> x) {
   double g = 1;
   for (std::size_t i = 1; i < x.size(); ++i) g += x[i] * x[i] + 1 - std::cos(6 * 3.14159265358979 * x[i]);
@@ -389,8 +434,9 @@ TEST(MoCmaEs, RecombinationLeavesLocalFronts) {
   EXPECT_LT(reached(0), 0.95 * best);
 }
 
-// Four stations of two coordinates before four targets that see a station only when it is near: which stands before which does not matter,
-// and a station that stands before another's target has no way from there. Against it, how far the stations are apart.
+// Four stations of two coordinates before four targets that see a station only when it is near: which stands before
+// which does not matter, and a station that stands before another's target has no way from there. Against it, how far
+// the stations are apart.
 std::vector<double> targets(std::span<const double> x) {
   double missed = 0, apart = 0;
   for (const auto& [tx, ty] : {std::pair{0.1, 0.2}, std::pair{0.9, 0.1}, std::pair{0.8, 0.9}, std::pair{0.2, 0.8}}) {
