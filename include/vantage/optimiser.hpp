@@ -85,7 +85,7 @@ class CmaEs {
   StopReason stop_reason() const noexcept;
   /// Of all restarts. Its f is +infinity until a finite value was told.
   const ParetoPoint& best() const noexcept;
-  std::size_t population() const noexcept;  ///< Points of an iteration now: they double at a restart.
+  std::size_t population() const noexcept;  ///< Points of an iteration now: without blocks they double at a restart.
   std::size_t evaluations() const noexcept;
   std::size_t iterations() const noexcept;
   std::size_t restarts() const noexcept;

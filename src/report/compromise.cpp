@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "report/linked.hpp"
 #include "vantage/error.hpp"
 #include "vantage/export.hpp"
 
@@ -18,10 +19,7 @@ std::size_t compromise(const PlanResult& result, const PlanConfig& config) {
     if (stations && !entry.x.empty()) product *= 1 - entry.x.back();
     return product;
   };
-  const auto in_one_part = [&](const PlanEntry& entry) {
-    return entry.confirmed && connectivity(entry.exact_overlap_matrix, link_overlap(config)).parts == 1;
-  };
-  const auto rank = [&](const PlanEntry& entry) { return std::pair{overlap && in_one_part(entry), gain(entry)}; };
+  const auto rank = [&](const PlanEntry& entry) { return std::pair{overlap && linked(entry, config), gain(entry)}; };
   return static_cast<std::size_t>(
       std::ranges::max_element(result.front, {}, rank) - result.front.begin());
 }

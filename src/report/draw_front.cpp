@@ -4,6 +4,7 @@
 #include <string>
 
 #include "report/front_view.hpp"
+#include "report/linked.hpp"
 #include "report/pictures.hpp"
 #include "report/text.hpp"
 #include "vantage/export.hpp"
@@ -84,10 +85,9 @@ std::unique_ptr<Canvas> front_picture(const PlanResult& result, const PlanConfig
     const Rect place = place_label(p, 13, canvas.text_width(words, text) + 6, 18,
                                    {area.x + 4, area.y + 4, area.width - 8, area.height - 8}, taken);
     canvas.text({place.x + place.width / 2, place.y + place.height / 2}, words, text);
-    const bool linked = chosen.confirmed && !view.by_count() && connectivity(chosen.exact_overlap_matrix, link_overlap(config)).parts == 1;
     if (!view.single())
       legend.push_back({LegendItem::Mark::ring, style::orange,
-                        linked ? "compromise: largest linked product" : "compromise: largest product of gains"});
+                        !view.by_count() && linked(chosen, config) ? "compromise: largest linked product" : "compromise: largest product of gains"});
   }
   draw_legend(canvas, {area.x, kHeight - 24}, legend);
   return page;

@@ -136,11 +136,8 @@ CoplanarCut cut_coplanar(RawScene& raw, std::vector<Float3>& positions) {
   });
 
   std::vector<Triangle> triangles;
-  std::vector<MeshRange> ranges;
-  std::vector<MeshInfo> meshes;
   std::size_t next = 0;  // of `covered`
-  for (std::size_t m = 0; m < raw.ranges.size(); ++m) {
-    MeshRange range = raw.ranges[m];
+  for (MeshRange& range : raw.ranges) {
     const std::uint32_t first = range.first_triangle, end = first + range.triangle_count;
     range.first_triangle = static_cast<std::uint32_t>(triangles.size());
     for (std::uint32_t t = first; t < end; ++t) {
@@ -158,14 +155,9 @@ CoplanarCut cut_coplanar(RawScene& raw, std::vector<Float3>& positions) {
       ++next;
     }
     range.triangle_count = static_cast<std::uint32_t>(triangles.size()) - range.first_triangle;
-    if (range.triangle_count == 0) continue;
-    ranges.push_back(range);
-    meshes.push_back(std::move(raw.meshes[m]));
-    meshes.back().triangle_count = range.triangle_count;
   }
   raw.triangles = std::move(triangles);
-  raw.ranges = std::move(ranges);
-  raw.meshes = std::move(meshes);
+  drop_empty_meshes(raw);
   return {count_surveyed(coplanar.pairs), covered.size()};
 }
 

@@ -30,26 +30,18 @@ bool has_area(const Vec3& a, const Vec3& b, const Vec3& c) {
   return dot(n, n) >= static_cast<double>(std::numeric_limits<float>::min());
 }
 
-// Keeps the triangles whose `keep` is not 0 and moves the ranges along. Meshes left without triangles go.
+// Keeps the triangles whose `keep` is not 0 and moves the ranges along.
 void keep_triangles(RawScene& raw, const std::vector<std::uint8_t>& keep) {
-  std::vector<MeshRange> ranges;
-  std::vector<MeshInfo> meshes;
   std::uint32_t out = 0;
-  for (std::size_t m = 0; m < raw.ranges.size(); ++m) {
-    MeshRange range = raw.ranges[m];
+  for (MeshRange& range : raw.ranges) {
     const std::uint32_t first = range.first_triangle, end = first + range.triangle_count;
     range.first_triangle = out;
     for (std::uint32_t t = first; t < end; ++t)
       if (keep[t]) raw.triangles[out++] = raw.triangles[t];
     range.triangle_count = out - range.first_triangle;
-    if (range.triangle_count == 0) continue;
-    ranges.push_back(range);
-    meshes.push_back(std::move(raw.meshes[m]));
-    meshes.back().triangle_count = range.triangle_count;
   }
   raw.triangles.resize(out);
-  raw.ranges = std::move(ranges);
-  raw.meshes = std::move(meshes);
+  drop_empty_meshes(raw);
 }
 
 template <class Keep>
@@ -186,6 +178,19 @@ void note_lost_precision(RawScene& raw, const Box& local) {
 }
 
 }  // namespace
+
+void drop_empty_meshes(RawScene& raw) {
+  std::size_t out = 0;
+  for (std::size_t m = 0; m < raw.ranges.size(); ++m) {
+    if (raw.ranges[m].triangle_count == 0) continue;
+    raw.ranges[out] = raw.ranges[m];
+    if (out != m) raw.meshes[out] = std::move(raw.meshes[m]);
+    raw.meshes[out].triangle_count = raw.ranges[out].triangle_count;
+    ++out;
+  }
+  raw.ranges.resize(out);
+  raw.meshes.resize(out);
+}
 
 Vec3 local_origin(const Box& bounds) {
   if (bounds.empty()) return {};

@@ -37,6 +37,9 @@ struct RawScene {
 // Throws Error malformed_file, prefixed with `source`, where no surveyed triangle is left.
 std::shared_ptr<const SceneData> finish_scene(RawScene&& raw, const std::string& source);
 
+// Meshes left without triangles go. Of the others the counts become those of their ranges.
+void drop_empty_meshes(RawScene& raw);
+
 // The local origin for a box of coordinates: its centre, rounded to a multiple of the smallest power of ten that is not
 // below the largest extent. So a site modelled around 0 keeps 0, and one that was shifted by kilometres gets the very
 // same local coordinates as the unshifted one, while no local coordinate exceeds 5.5 times the extent.
