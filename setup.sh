@@ -15,7 +15,7 @@ readonly packages=(
   libembree-dev libtbb-dev libeigen3-dev libglm-dev libtinygltf-dev nlohmann-json3-dev
   libstb-dev libcli11-dev libspdlog-dev libcairo2-dev
 )
-readonly test_packages=(libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev vulkan-validationlayers)
+readonly test_packages=(libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev vulkan-validationlayers clang-format)
 
 mode=program
 case "${1-}" in

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a set of stations captures of a site, exactly and from a sample: evaluate_network SCENE X Y Z [X Y Z ...]
-#include <vantage/vantage.hpp>
-
 #include <cstdio>
 #include <cstdlib>
+#include <vantage/vantage.hpp>
 
 using namespace vantage;
 
 int main(int argc, char** argv) try {
-  if (argc < 5 || (argc - 2) % 3 != 0) return std::fprintf(stderr, "usage: evaluate_network SCENE X Y Z [X Y Z ...]\n"), 2;
+  if (argc < 5 || (argc - 2) % 3 != 0)
+    return std::fprintf(stderr, "usage: evaluate_network SCENE X Y Z [X Y Z ...]\n"), 2;
 
   const Scene scene = Scene::load(argv[1]);
   Network network;
@@ -25,8 +25,9 @@ int main(int argc, char** argv) try {
   const NetworkCounts sample = simulator.evaluate_sampled({&network, 1}, {.voxels = 5'000}).front();
   const Estimate covered = coverage_estimate(sample, simulator.goal_density(), simulator.voxel_count());
   const Estimate overlapped = overlap_estimate(sample, simulator.voxel_count());
-  std::printf("sampled: coverage %.3f +- %.3f, overlap %.3f +- %.3f, from %llu rays\n", covered.value, covered.standard_error,
-              overlapped.value, overlapped.standard_error, static_cast<unsigned long long>(sample.rays));
+  std::printf("sampled: coverage %.3f +- %.3f, overlap %.3f +- %.3f, from %llu rays\n", covered.value,
+              covered.standard_error, overlapped.value, overlapped.standard_error,
+              static_cast<unsigned long long>(sample.rays));
   return 0;
 } catch (const Error& error) {
   std::fprintf(stderr, "error: %s\n", error.what());

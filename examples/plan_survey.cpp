@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Searches for the best networks of N stations, coverage against overlap, and writes the front: plan_survey SCENE N FOLDER
-#include <vantage/vantage.hpp>
-
+// Searches for the best networks of N stations, coverage against overlap, and writes the front: plan_survey SCENE N
+// FOLDER
 #include <cstdio>
 #include <cstdlib>
+#include <vantage/vantage.hpp>
 
 using namespace vantage;
 
@@ -29,7 +29,8 @@ int main(int argc, char** argv) try {
   });
   std::fprintf(stderr, "\n");
 
-  for (const PlanEntry& entry : result.front) std::printf("coverage %.3f, overlap %.3f\n", entry.exact_coverage, entry.exact_overlap);
+  for (const PlanEntry& entry : result.front)
+    std::printf("coverage %.3f, overlap %.3f\n", entry.exact_coverage, entry.exact_overlap);
   write_plan(argv[3], result, config, simulator, area);
   return 0;
 } catch (const Error& error) {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scans a site from the first free spot of its search area and writes the points: scan_station SCENE POINTS.ply
-#include <vantage/vantage.hpp>
-
 #include <cstdio>
 #include <optional>
+#include <vantage/vantage.hpp>
 
 using namespace vantage;
 
-// The head of a scanner on the first spot of a 16 × 16 grid over (u, v) that has ground below it and nothing close to it.
+// The head of a scanner on the first spot of a 16 × 16 grid over (u, v) that has ground below it and nothing close to
+// it.
 static std::optional<Vec3> free_spot(const Scene& scene, double height_m) {
   const SearchArea area = SearchArea::build(scene);
   const ClashChecker clash(scene);

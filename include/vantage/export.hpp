@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Files that vantage writes: point clouds, coverage cartography, tables and pictures. Every file appears whole or not at all.
+/// Files that vantage writes: point clouds, coverage cartography, tables and pictures. Every file appears whole or not
+/// at all.
 #pragma once
 
 #include <array>
@@ -19,8 +20,8 @@
 
 namespace vantage {
 
-/// Streams a point cloud to a file in constant memory. The format follows the extension: .ply (binary little endian) or .las (1.4).
-/// The file takes its name at close(); destroyed before that, nothing is left.
+/// Streams a point cloud to a file in constant memory. The format follows the extension: .ply (binary little endian) or
+/// .las (1.4). The file takes its name at close(); destroyed before that, nothing is left.
 class PointCloudWriter {
  public:
   /// `outputs` are the ScanOutput bits that chunks will carry; position is required.
@@ -38,8 +39,8 @@ class PointCloudWriter {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The coverage cartography (figures 7b, 11, 17 of the method): every surveyed voxel as a coloured point, from red (no point) over
-/// yellow to green (goal reached), with its ratio, count and station mask. Binary PLY, survey frame.
+/// The coverage cartography (figures 7b, 11, 17 of the method): every surveyed voxel as a coloured point, from red (no
+/// point) over yellow to green (goal reached), with its ratio, count and station mask. Binary PLY, survey frame.
 void write_coverage_ply(const std::filesystem::path& file, const Simulator& simulator, const VoxelField& field);
 
 /// Square matrix with a header line; row and column i are station i.
@@ -53,13 +54,15 @@ struct StationRow {
   std::optional<Vec3> position;
   std::optional<Uv> uv;
 };
-/// Reads a CSV with a header naming x,y,z and/or u,v (any order, other columns ignored). Throws Error: io, malformed_file with the line.
+/// Reads a CSV with a header naming x,y,z and/or u,v (any order, other columns ignored). Throws Error: io,
+/// malformed_file with the line.
 std::vector<StationRow> read_stations_csv(const std::filesystem::path& file);
 
 /// Everything about a run that its results must name: version, engine, device, seed, scene, every parameter. JSON text.
 std::string run_parameters_json(const Simulator& simulator, const PlanConfig* plan = nullptr);
 
-/// `front.json`: keys problem, objectives, hypervolume, evaluations, stop_reason, front, seconds, engine, device, seed, parameters, version.
+/// `front.json`: keys problem, objectives, hypervolume, evaluations, stop_reason, front, seconds, engine, device, seed,
+/// parameters, version.
 std::string front_json(const PlanResult& result, const PlanConfig& config, const Simulator& simulator);
 void write_front_csv(const std::filesystem::path& file, const PlanResult& result, const PlanConfig& config);
 
@@ -68,19 +71,22 @@ void draw_front(const std::filesystem::path& file, const PlanResult& result, con
 void draw_hypervolume(const std::filesystem::path& file, const PlanResult& result, const PlanConfig& config);
 /// The front at five moments of the search, as the search saw it (figure 9 of the method).
 void draw_history_fronts(const std::filesystem::path& file, const PlanResult& result, const PlanConfig& config);
-/// The site from above in shaded relief, the search area, the stations and the links between them, as wide as their overlap is large.
+/// The site from above in shaded relief, the search area, the stations and the links between them, as wide as their
+/// overlap is large.
 void draw_plan_view(const std::filesystem::path& file, const Scene& scene, const SearchArea& area,
                     std::span<const PlacedStation> stations, const OverlapMatrix& overlap, const std::string& title);
 
-/// Writes a whole result folder: front.csv, front.json, history.csv, fronts.csv (every iteration's front), and for the chosen compromise
-/// coverage.ply, overlap.csv, stations.csv, and the pictures front.png, hypervolume.png, history.png (with several objectives), plan.png (each also as .svg).
-/// Makes the folder where there is none. Returns the index of the chosen entry.
-std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& result, const PlanConfig& config, Simulator& simulator,
-                       const SearchArea& area);
+/// Writes a whole result folder: front.csv, front.json, history.csv, fronts.csv (every iteration's front), and for the
+/// chosen compromise coverage.ply, overlap.csv, stations.csv, and the pictures front.png, hypervolume.png, history.png
+/// (with several objectives), plan.png (each also as .svg). Makes the folder where there is none. Returns the index of
+/// the chosen entry.
+std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& result, const PlanConfig& config,
+                       Simulator& simulator, const SearchArea& area);
 
-/// The compromise shown where one must be chosen: the entry of the front with the largest product of its objectives' gains. Where overlap is
-/// an objective, of those whose stations all hang together by link_overlap(config), as far as there are any confirmed: parts of a
-/// network cannot be registered with each other, however well each overlaps in itself.
+/// The compromise shown where one must be chosen: the entry of the front with the largest product of its objectives'
+/// gains. Where overlap is an objective, of those whose stations all hang together by link_overlap(config), as far as
+/// there are any confirmed: parts of a network cannot be registered with each other, however well each overlaps in
+/// itself.
 std::size_t compromise(const PlanResult& result, const PlanConfig& config);
 
 /// Writes text to a file atomically. Throws Error io.

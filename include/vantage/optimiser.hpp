@@ -22,12 +22,12 @@ enum class StopReason {
   max_evaluations,
   max_iterations,
   target_reached,
-  converged,        ///< Steps or differences fell below what numbers can tell apart.
-  stagnated,        ///< No improvement for long.
-  flat,             ///< The objective does not change over a whole population.
-  invalid_objective,///< Every value of an iteration was NaN.
-  ill_conditioned,  ///< The covariance's condition number passed 1e14.
-  diverged,         ///< Steps grew without bound.
+  converged,          ///< Steps or differences fell below what numbers can tell apart.
+  stagnated,          ///< No improvement for long.
+  flat,               ///< The objective does not change over a whole population.
+  invalid_objective,  ///< Every value of an iteration was NaN.
+  ill_conditioned,    ///< The covariance's condition number passed 1e14.
+  diverged,           ///< Steps grew without bound.
   max_time,
   cancelled,
 };
@@ -44,29 +44,32 @@ struct ParetoPoint {
   std::vector<double> x, f;
 };
 
-// ---- single objective ------------------------------------------------------------------------------------------------
+// Single objective.
 
 struct CmaEsConfig {
-  std::size_t population = 0;             ///< λ; 0: 4 + floor(3 ln n).
-  double sigma0 = 0.2;                    ///< Initial step; a share of the range where there are bounds, else absolute.
-  std::vector<double> start = {};         ///< Initial mean; empty: random inside the bounds, else 0.
+  std::size_t population = 0;      ///< λ; 0: 4 + floor(3 ln n).
+  double sigma0 = 0.2;             ///< Initial step; a share of the range where there are bounds, else absolute.
+  std::vector<double> start = {};  ///< Initial mean; empty: random inside the bounds, else 0.
   std::optional<Bounds> bounds = std::nullopt;
-  bool active = true;                     ///< Negative weights for the worst half (active CMA).
-  /// As in MoCmaEsConfig. Where there are any, a tenth of an iteration's points (a quarter with blocks_in_use) are the mean with one block from anywhere.
-  /// The one that beats all others hands its block to the mean. Blocks that none of an iteration uses take no part in it. Needs bounds.
+  bool active = true;  ///< Negative weights for the worst half (active CMA).
+  /// As in MoCmaEsConfig. Where there are any, a tenth of an iteration's points (a quarter with blocks_in_use) are the
+  /// mean with one block from anywhere. The one that beats all others hands its block to the mean. Blocks that none of
+  /// an iteration uses take no part in it. Needs bounds.
   std::vector<std::vector<std::size_t>> blocks = {};
   std::function<std::size_t(std::span<const double> x)> blocks_in_use = {};
-  std::size_t restarts = 0;  ///< After a stall: with doubled population (IPOP); where there are blocks, at the best, most of them anywhere.
-  std::size_t max_iterations = 0;         ///< 0: no limit.
-  std::size_t max_evaluations = 0;        ///< 0: no limit.
+  /// After a stall: with doubled population (IPOP); where there are blocks, at the best, most of them anywhere.
+  std::size_t restarts = 0;
+  std::size_t max_iterations = 0;               ///< 0: no limit.
+  std::size_t max_evaluations = 0;              ///< 0: no limit.
   std::optional<double> target = std::nullopt;  ///< Stop at f <= target.
-  double f_tolerance = 1e-12;             ///< Stop when the best values of recent iterations differ by less. 0: never.
-  double x_tolerance = 1e-12;             ///< Stop when all steps are below this share of sigma0. 0: never.
+  double f_tolerance = 1e-12;  ///< Stop when the best values of recent iterations differ by less. 0: never.
+  double x_tolerance = 1e-12;  ///< Stop when all steps are below this share of sigma0. 0: never.
   std::uint64_t seed = 1;
 };
 
-/// CMA-ES (Hansen: The CMA Evolution Strategy, A Tutorial, 2016) with IPOP restarts (Auger, Hansen 2005). ask() gives λ points,
-/// tell() takes their values in order. Bounds are kept by a smooth transform of the coordinates. Not thread-safe; two can coexist.
+/// CMA-ES (Hansen: The CMA Evolution Strategy, A Tutorial, 2016) with IPOP restarts (Auger, Hansen 2005). ask() gives λ
+/// points, tell() takes their values in order. Bounds are kept by a smooth transform of the coordinates. Not
+/// thread-safe; two can coexist.
 class CmaEs {
  public:
   /// Throws Error invalid_argument.
@@ -74,9 +77,11 @@ class CmaEs {
   CmaEs(CmaEs&&) noexcept;
   CmaEs& operator=(CmaEs&&) noexcept;
   ~CmaEs();
-  /// population() points, row-major, inside the bounds. Valid until the next tell() or load(). Asked again before tell(), it gives the same points.
+  /// population() points, row-major, inside the bounds. Valid until the next tell() or load(). Asked again before
+  /// tell(), it gives the same points.
   std::span<const double> ask();
-  /// Between ask() and tell(): puts x in the place of point `index`, as if it had been drawn. Throws Error invalid_argument outside the bounds.
+  /// Between ask() and tell(): puts x in the place of point `index`, as if it had been drawn. Throws Error
+  /// invalid_argument outside the bounds.
   void replace(std::size_t index, std::span<const double> x);
   /// Between ask() and tell(): draws `coordinates` of point `index` again, given its others, and returns the point.
   std::span<const double> resample(std::size_t index, std::span<const std::size_t> coordinates);
@@ -90,9 +95,11 @@ class CmaEs {
   std::size_t iterations() const noexcept;
   std::size_t restarts() const noexcept;
   double sigma() const noexcept;
-  void save(std::ostream&) const;   ///< Complete state, binary, versioned. Only between tell() and ask(). Throws Error io.
-  /// Goes on from a saved state to the same bits. The object must have been made with the same dimension and settings, but for the
-  /// limits (max_*, target, tolerances), which are its own. Throws Error malformed_file and is unchanged then.
+  /// Complete state, binary, versioned. Only between tell() and ask(). Throws Error io.
+  void save(std::ostream&) const;
+  /// Goes on from a saved state to the same bits. The object must have been made with the same dimension and settings,
+  /// but for the limits (max_*, target, tolerances), which are its own. Throws Error malformed_file and is unchanged
+  /// then.
   void load(std::istream&);
 
  private:
@@ -100,7 +107,7 @@ class CmaEs {
   std::unique_ptr<Impl> impl_;
 };
 
-// ---- several objectives ----------------------------------------------------------------------------------------------
+// Several objectives.
 
 /// Which optimiser make_optimiser() makes.
 enum class MoAlgorithm {
@@ -116,68 +123,74 @@ struct MoCmaEsConfig {
   /// generational: μ parents, μ offspring each iteration. steady_state: one at a time, or `batch` at a time.
   enum class Scheme { generational, steady_state };
   Scheme scheme = Scheme::steady_state;
-  std::size_t population = 100;           ///< μ.
-  std::size_t batch = 1;                  ///< Offspring asked for at once in the steady state, so that a GPU is kept full.
-  double sigma0 = 0.2;                    ///< Share of the range where there are bounds, else absolute.
-  /// The next four are for the steady state; all 0 gives it as published. With them it needs a fraction of the evaluations on
-  /// planning problems and leaves local fronts (docs/optimisers.md has both measured).
-  double guided = 0.5;                    ///< Share of parents drawn by their hypervolume contribution, not uniformly from the front.
-  double spread = 0.25;                   ///< Share of steps that also follow the differences to the parent's neighbours on the front.
-  double recombined = 0.15;               ///< Share of offspring by crossover and mutation, as in NSGA-II. Needs bounds.
-  double swapped = 0.4;                   ///< Share of offspring that have one of the parent's `blocks` from elsewhere. Needs bounds.
-  /// Groups of coordinates that mean the same in any order, as the stations of a network do. All of one length, no coordinate twice, and the
-  /// k-th coordinates of all have the same bounds. Empty: there are none.
+  std::size_t population = 100;  ///< μ.
+  std::size_t batch = 1;         ///< Offspring asked for at once in the steady state, so that a GPU is kept full.
+  double sigma0 = 0.2;           ///< Share of the range where there are bounds, else absolute.
+  /// The next four are for the steady state; all 0 gives it as published. With them it needs a fraction of the
+  /// evaluations on planning problems and leaves local fronts (docs/optimisers.md has both measured).
+  double guided = 0.5;   ///< Share of parents drawn by their hypervolume contribution, not uniformly from the front.
+  double spread = 0.25;  ///< Share of steps that also follow the differences to the parent's neighbours on the front.
+  double recombined = 0.15;  ///< Share of offspring by crossover and mutation, as in NSGA-II. Needs bounds.
+  double swapped = 0.4;  ///< Share of offspring that have one of the parent's `blocks` from elsewhere. Needs bounds.
+  /// Groups of coordinates that mean the same in any order, as the stations of a network do. All of one length, no
+  /// coordinate twice, and the k-th coordinates of all have the same bounds. Empty: there are none.
   std::vector<std::vector<std::size_t>> blocks = {};
   /// How many of them, the first ones, count in x. Empty: all. Must give the same for the same x.
   std::function<std::size_t(std::span<const double> x)> blocks_in_use = {};
   std::optional<Bounds> bounds = std::nullopt;
-  std::vector<double> reference = {};     ///< Reference point of the hypervolume; empty: (1, …, 1).
-  /// First points of the initial population; the rest is uniform in the bounds, or without bounds normal around the first (or 0).
+  std::vector<double> reference = {};  ///< Reference point of the hypervolume; empty: (1, …, 1).
+  /// First points of the initial population; the rest is uniform in the bounds, or without bounds normal around the
+  /// first (or 0).
   std::vector<std::vector<double>> start = {};
-  std::size_t max_iterations = 0;         ///< Of μ evaluations each. 0: no limit.
-  std::size_t max_evaluations = 0;        ///< 0: no limit.
+  std::size_t max_iterations = 0;   ///< Of μ evaluations each. 0: no limit.
+  std::size_t max_evaluations = 0;  ///< 0: no limit.
   std::optional<double> target_hypervolume = std::nullopt;
   std::size_t stagnation_iterations = 0;  ///< Stop when the hypervolume has not grown for so many. 0: never.
-  double stagnation_tolerance = 1e-6;     ///< Growth over those iterations, as a share of the hypervolume, that counts as none.
-  double x_tolerance = 1e-12;             ///< Stop when all steps of all members are below this share of the range (absolute without bounds).
-  std::size_t restarts = 0;  ///< Of MO-CMA-ES, where it would stop converged or stagnated: the population stays, all steps begin anew at sigma0.
+  /// Growth over those iterations, as a share of the hypervolume, that counts as none.
+  double stagnation_tolerance = 1e-6;
+  /// Stop when all steps of all members are below this share of the range (absolute without bounds).
+  double x_tolerance = 1e-12;
+  /// Of MO-CMA-ES, where it would stop converged or stagnated: the population stays, all steps begin anew at sigma0.
+  std::size_t restarts = 0;
   std::uint64_t seed = 1;
 };
 
-/// What all multi-objective optimisers have in common: ask() for points, evaluate them, tell() their objectives. All objectives
-/// are minimised. Not thread-safe; two can coexist. The same seed and values give the same bits.
+/// What all multi-objective optimisers have in common: ask() for points, evaluate them, tell() their objectives. All
+/// objectives are minimised. Not thread-safe; two can coexist. The same seed and values give the same bits.
 class MultiObjectiveOptimiser {
  public:
   virtual ~MultiObjectiveOptimiser() = default;
-  /// Points to evaluate, row-major, inside the bounds: the initial population first, then offspring. Valid until the next tell()
-  /// or load(). Asked again before tell(), it gives the same points.
+  /// Points to evaluate, row-major, inside the bounds: the initial population first, then offspring. Valid until the
+  /// next tell() or load(). Asked again before tell(), it gives the same points.
   virtual std::span<const double> ask() = 0;
-  /// Between ask() and tell(): puts x in the place of point `index`, as if it had been drawn. Throws Error invalid_argument outside the bounds.
+  /// Between ask() and tell(): puts x in the place of point `index`, as if it had been drawn. Throws Error
+  /// invalid_argument outside the bounds.
   virtual void replace(std::size_t index, std::span<const double> x) = 0;
   /// Between ask() and tell(): draws `coordinates` of point `index` again, given its others, and returns the point.
   virtual std::span<const double> resample(std::size_t index, std::span<const std::size_t> coordinates) = 0;
-  /// REQUIRES: objectives values per asked point, row-major, in order. A point with a value that is not finite counts as
-  /// dominated by all that have none.
+  /// REQUIRES: objectives values per asked point, row-major, in order. A point with a value that is not finite counts
+  /// as dominated by all that have none.
   virtual void tell(std::span<const double> values) = 0;
   virtual StopReason stop_reason() const noexcept = 0;
-  virtual std::vector<ParetoPoint> front() const = 0;       ///< Non-dominated members of the population, sorted by f[0].
+  virtual std::vector<ParetoPoint> front() const = 0;  ///< Non-dominated members of the population, sorted by f[0].
   virtual std::vector<ParetoPoint> population() const = 0;
-  virtual double hypervolume() const = 0;                   ///< Of the population against the reference point.
+  virtual double hypervolume() const = 0;  ///< Of the population against the reference point.
   virtual std::size_t evaluations() const noexcept = 0;
-  virtual std::size_t iterations() const noexcept = 0;      ///< evaluations / μ.
+  virtual std::size_t iterations() const noexcept = 0;  ///< evaluations / μ.
   /// Complete state, binary, versioned. Only between tell() and ask(). Throws Error io.
   virtual void save(std::ostream&) const = 0;
-  /// Goes on from a saved state to the same bits. The object must have been made with the same dimension, objectives and settings, but for the
-  /// limits (max_*, target, stagnation, tolerance, restarts), which are its own. Throws Error malformed_file and is unchanged then.
+  /// Goes on from a saved state to the same bits. The object must have been made with the same dimension, objectives
+  /// and settings, but for the limits (max_*, target, stagnation, tolerance, restarts), which are its own. Throws Error
+  /// malformed_file and is unchanged then.
   virtual void load(std::istream&) = 0;
 };
 
 /// Throws Error invalid_argument.
-std::unique_ptr<MultiObjectiveOptimiser> make_optimiser(MoAlgorithm algorithm, std::size_t dimension, std::size_t objectives,
-                                                        const MoCmaEsConfig& config = {});
+std::unique_ptr<MultiObjectiveOptimiser> make_optimiser(MoAlgorithm algorithm, std::size_t dimension,
+                                                        std::size_t objectives, const MoCmaEsConfig& config = {});
 
-/// MO-CMA-ES (Igel, Hansen, Roth: Covariance Matrix Adaptation for Multi-objective Optimization, 2007; Voß, Hansen, Igel: Improved
-/// Step Size Adaptation for the MO-CMA-ES, 2010) with hypervolume indicator selection.
+/// MO-CMA-ES (Igel, Hansen, Roth: Covariance Matrix Adaptation for Multi-objective Optimization, 2007; Voß, Hansen,
+/// Igel: Improved Step Size Adaptation for the MO-CMA-ES, 2010) with hypervolume indicator selection.
 class MoCmaEs final : public MultiObjectiveOptimiser {
  public:
   /// Throws Error invalid_argument.
@@ -204,10 +217,10 @@ class MoCmaEs final : public MultiObjectiveOptimiser {
   std::unique_ptr<Impl> impl_;
 };
 
-// ---- hypervolume -----------------------------------------------------------------------------------------------------
+// Hypervolume.
 
-/// Volume dominated by `points` (k × objectives, row-major, minimised) and bounded by `reference`. Points outside add nothing.
-/// Exact; O(k log k) for 2 and 3 objectives, WFG above, up to 6. Throws Error invalid_argument.
+/// Volume dominated by `points` (k × objectives, row-major, minimised) and bounded by `reference`. Points outside add
+/// nothing. Exact; O(k log k) for 2 and 3 objectives, WFG above, up to 6. Throws Error invalid_argument.
 double hypervolume(std::span<const double> points, std::size_t objectives, std::span<const double> reference);
 /// What each point alone contributes.
 std::vector<double> hypervolume_contributions(std::span<const double> points, std::size_t objectives,

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Equirectangular images around a station: colours for its points, and pictures of what it sees.
 ///
-/// Every image here covers the full sphere as someone at the station sees it: the heading in the middle, azimuth falling from left to
-/// right (what lies to the right is on the right), zenith at the top, nadir at the bottom.
+/// Every image here covers the full sphere as someone at the station sees it: the heading in the middle, azimuth
+/// falling from left to right (what lies to the right is on the right), zenith at the top, nadir at the bottom.
 #pragma once
 
 #include <cstdint>
@@ -77,16 +77,19 @@ struct PanoramaImage {
   double scale_low = 0, scale_high = 0;  ///< range: metres at the scale's ends; reflectivity: 0 and the largest.
 };
 
-/// Renders panoramas of a scene. Not thread-safe. Memory grows with the image, not with supersampling (2 bytes a ray for `range` apart).
+/// Renders panoramas of a scene. Not thread-safe. Memory grows with the image, not with supersampling (2 bytes a ray
+/// for `range` apart).
 class PanoramaRenderer {
  public:
-  /// Takes engine and device from `config`; the rest of it has no part. Throws Error: invalid_argument, no_suitable_device.
+  /// Takes engine and device from `config`; the rest of it has no part. Throws Error: invalid_argument,
+  /// no_suitable_device.
   PanoramaRenderer(const Scene& scene, const PanoramaOptions& options, const SimulatorConfig& config);
   PanoramaRenderer(PanoramaRenderer&&) noexcept;
   PanoramaRenderer& operator=(PanoramaRenderer&&) noexcept;
   ~PanoramaRenderer();
   /// The views asked for, in their order, from `position` (survey frame). Empty where `progress` stopped it.
-  std::vector<PanoramaImage> render(const Vec3& position, std::span<const PanoramaView> views, const Progress& progress = {});
+  std::vector<PanoramaImage> render(const Vec3& position, std::span<const PanoramaView> views,
+                                    const Progress& progress = {});
 
  private:
   struct Impl;

@@ -26,21 +26,23 @@ struct RayAngles {
   Angle azimuth;  ///< From +X towards +Y; grows from heading − H/2 without wrapping.
 };
 
-/// A terrestrial laser scanner (section 3.2). Rays: floor(H/Δh) azimuths times floor(V/2/Δv) zeniths; both floors guarded by 1e-9.
-/// Ray (i, j): zenith θ₀ + (i + ½)·Δv, azimuth heading − H/2 + (j + ½)·Δh, direction (sin θ cos φ, sin θ sin φ, cos θ); its index is
-/// i·columns + j everywhere.
+/// A terrestrial laser scanner (section 3.2). Rays: floor(H/Δh) azimuths times floor(V/2/Δv) zeniths; both floors
+/// guarded by 1e-9. Ray (i, j): zenith θ₀ + (i + ½)·Δv, azimuth heading − H/2 + (j + ½)·Δh, direction (sin θ cos φ, sin
+/// θ sin φ, cos θ); its index is i·columns + j everywhere.
 struct Scanner {
   std::string name = "custom";
-  Angle heading = Angle::degrees(0);              ///< Azimuth of the middle of the horizontal sweep, from +X towards +Y.
-  Angle horizontal_angle = Angle::degrees(360);   ///< H, (0°, 360°].
-  Angle vertical_angle = Angle::degrees(300);     ///< V, (0°, 360°]: the mirror's sweep over both sides, so zeniths θ₀..θ₀ + V/2.
-  Angle zenith_start = Angle::degrees(0);         ///< θ₀; with V/2 at most 180°. Above 0° for scanners that cannot look straight up.
-  Angle azimuth_step = Angle::degrees(0.1);       ///< Δh.
-  Angle zenith_step = Angle::degrees(0.1);        ///< Δv.
-  double height_m = 1.85;                         ///< Of the scanner's head above the search area.
-  double min_range_m = 0.1;                       ///< d_min.
-  double max_range_m = 130.0;                     ///< d_max.
-  NoiseTable noise = {};                          ///< Empty: exact ranges.
+  Angle heading = Angle::degrees(0);             ///< Azimuth of the middle of the horizontal sweep, from +X towards +Y.
+  Angle horizontal_angle = Angle::degrees(360);  ///< H, (0°, 360°].
+  /// V, (0°, 360°]: the mirror's sweep over both sides, so zeniths θ₀..θ₀ + V/2.
+  Angle vertical_angle = Angle::degrees(300);
+  /// θ₀; with V/2 at most 180°. Above 0° for scanners that cannot look straight up.
+  Angle zenith_start = Angle::degrees(0);
+  Angle azimuth_step = Angle::degrees(0.1);  ///< Δh.
+  Angle zenith_step = Angle::degrees(0.1);   ///< Δv.
+  double height_m = 1.85;                    ///< Of the scanner's head above the search area.
+  double min_range_m = 0.1;                  ///< d_min.
+  double max_range_m = 130.0;                ///< d_max.
+  NoiseTable noise = {};                     ///< Empty: exact ranges.
 
   std::uint32_t rows() const;     ///< Zenith steps.
   std::uint32_t columns() const;  ///< Azimuth steps.
@@ -59,8 +61,8 @@ struct ScannerPreset {
   std::string summary;  ///< One line for `vantage info`.
 };
 
-/// A scanner from a presets file (data/scanners.json) by "key" or "key@setting", e.g. "rtc360@6mm"; upper or lower case.
-/// Throws Error: io, malformed_file, invalid_argument (lists what exists).
+/// A scanner from a presets file (data/scanners.json) by "key" or "key@setting", e.g. "rtc360@6mm"; upper or lower
+/// case. Throws Error: io, malformed_file, invalid_argument (lists what exists).
 Scanner load_scanner(const std::filesystem::path& presets, const std::string& name);
 std::vector<ScannerPreset> list_scanners(const std::filesystem::path& presets);
 

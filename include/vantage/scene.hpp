@@ -29,17 +29,18 @@ enum class Role {
 
 /// One mesh of the scene: a glTF primitive as one node places it.
 struct MeshInfo {
-  std::string name;              ///< The node's name, or the mesh's where the node has none.
-  Role role = Role::surveyed;    ///< `surveyed` or `blocking`; the others are no meshes of the loaded scene.
-  double diffuse = 0.5;          ///< Diffuse reflection coefficient R of its material, in [0, 1].
+  std::string name;            ///< The node's name, or the mesh's where the node has none.
+  Role role = Role::surveyed;  ///< `surveyed` or `blocking`; the others are no meshes of the loaded scene.
+  double diffuse = 0.5;        ///< Diffuse reflection coefficient R of its material, in [0, 1].
   std::uint32_t triangle_count = 0;
   /// What a voxel of it counts in coverage, 1 to 255, relative to voxels of other surveyed meshes.
   std::uint32_t weight = 1;
 };
 
-/// How `Scene::load` reads a file. Patterns are shell globs (`*`, `?`) on node names (a node without one goes by its mesh's); a node hands
-/// its role down to its children. Precedence: pattern, then extras on node, mesh, material; where several patterns match one node, the one
-/// with most letters other than `*` and `?`, and of equals the last in the order below. Once any mesh is marked surveyed, meshes without a role block; until then they are surveyed.
+/// How `Scene::load` reads a file. Patterns are shell globs (`*`, `?`) on node names (a node without one goes by its
+/// mesh's); a node hands its role down to its children. Precedence: pattern, then extras on node, mesh, material; where
+/// several patterns match one node, the one with most letters other than `*` and `?`, and of equals the last in the
+/// order below. Once any mesh is marked surveyed, meshes without a role block; until then they are surveyed.
 struct SceneOptions {
   std::vector<std::string> surveyed = {};  ///< Nodes that are surveyed.
   std::vector<std::string> blocking = {};  ///< Nodes that only block.
@@ -55,12 +56,12 @@ struct SceneOptions {
 class Scene {
  public:
   /// Loads a .glb or .gltf file. Y up becomes Z up: (x, y, z) ↦ (x, −z, y).
-  /// Throws Error: io, malformed_file (bad reference, unknown required extension, nothing to survey), invalid_argument (a pattern that
-  /// matches nothing, a scene index, weight or coefficient out of range), out_of_memory.
+  /// Throws Error: io, malformed_file (bad reference, unknown required extension, nothing to survey), invalid_argument
+  /// (a pattern that matches nothing, a scene index, weight or coefficient out of range), out_of_memory.
   static Scene load(const std::filesystem::path& file, const SceneOptions& options = {});
 
-  /// One surveyed mesh from an indexed triangle list in the survey frame. Throws Error: invalid_argument (an index or coefficient out of
-  /// range), malformed_file (no triangle with area).
+  /// One surveyed mesh from an indexed triangle list in the survey frame. Throws Error: invalid_argument (an index or
+  /// coefficient out of range), malformed_file (no triangle with area).
   static Scene from_triangles(std::span<const Vec3> positions, std::span<const std::array<std::uint32_t, 3>> triangles,
                               double diffuse = 0.5);
 
@@ -72,7 +73,8 @@ class Scene {
   bool has_search_area() const noexcept;
   /// Human-readable notes of the load: what was dropped or turned, precision lost, and how much of it.
   std::span<const std::string> notes() const noexcept;
-  /// The `vantage` object of the file's `asset.extras` as JSON text ("{}" where absent): default parameters of built-in scenes.
+  /// The `vantage` object of the file's `asset.extras` as JSON text ("{}" where absent): default parameters of built-in
+  /// scenes.
   const std::string& defaults_json() const noexcept;
   /// Hash of everything that can change a result: geometry, roles, weights, materials, search area. Names do not count.
   std::uint64_t fingerprint() const noexcept;
@@ -88,9 +90,9 @@ class Scene {
 /// Names of the scenes that `write_built_in_scene` can make.
 std::span<const std::string> built_in_scene_names() noexcept;
 
-/// Writes a built-in scene as GLB: `three-walls`, `four-walls` or `industrial`. `triangles` is the wished number for `industrial`
-/// (20 000 and up; met within 2 %), ignored by the others. The same arguments give the same bytes.
-/// Throws Error: invalid_argument, io.
+/// Writes a built-in scene as GLB: `three-walls`, `four-walls` or `industrial`. `triangles` is the wished number for
+/// `industrial` (20 000 and up; met within 2 %), ignored by the others. The same arguments give the same bytes. Throws
+/// Error: invalid_argument, io.
 void write_built_in_scene(const std::string& name, std::size_t triangles, const std::filesystem::path& file);
 
 }  // namespace vantage

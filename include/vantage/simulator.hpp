@@ -34,13 +34,13 @@ Engine engine_from_string(const std::string&);
 /// An engine on a device as `list_engines` finds it.
 struct EngineInfo {
   Engine engine = Engine::embree;
-  std::string device;            ///< "llvmpipe (LLVM 15.0.6, 256 bits)"
-  std::string driver;            ///< Driver or library with version.
+  std::string device;  ///< "llvmpipe (LLVM 15.0.6, 256 bits)"
+  std::string driver;  ///< Driver or library with version.
   std::uint32_t device_index = 0;
   bool usable = false;
-  bool software = false;         ///< A CPU behind a GPU interface.
+  bool software = false;  ///< A CPU behind a GPU interface.
   bool chosen_by_default = false;
-  std::string reason;            ///< Why it was taken or refused.
+  std::string reason;  ///< Why it was taken or refused.
 };
 /// All engines on all devices of this machine, usable or not. Never throws for want of a device.
 std::vector<EngineInfo> list_engines();
@@ -48,11 +48,11 @@ std::vector<EngineInfo> list_engines();
 struct SimulatorConfig {
   Engine engine = Engine::automatic;
   std::optional<std::uint32_t> device_index = std::nullopt;  ///< Empty: the best that has the engine.
-  double user_size_m = 0.1;       ///< Upper bound of the voxel size (equation 2).
-  double point_spacing_m = 0.01;  ///< Wanted spacing n of points; goal density = voxel_size² / n².
-  bool noise = true;              ///< Apply the scanner's noise table, if it has one.
-  std::uint64_t seed = 1;         ///< Of noise and of the voxel sample.
-  bool validation = false;        ///< Load the Vulkan validation layer; its errors become `Error`s.
+  double user_size_m = 0.1;                                  ///< Upper bound of the voxel size (equation 2).
+  double point_spacing_m = 0.01;            ///< Wanted spacing n of points; goal density = voxel_size² / n².
+  bool noise = true;                        ///< Apply the scanner's noise table, if it has one.
+  std::uint64_t seed = 1;                   ///< Of noise and of the voxel sample.
+  bool validation = false;                  ///< Load the Vulkan validation layer; its errors become `Error`s.
   std::uint64_t max_rays_per_dispatch = 0;  ///< 0: chosen so that a dispatch stays well below a watchdog's limit.
 };
 
@@ -65,64 +65,67 @@ using Network = std::vector<Station>;
 
 /// Which arrays of a `ScanChunk` are computed, allocated and transferred. Or them together.
 enum ScanOutput : std::uint32_t {
-  scan_range = 1,          ///< metres from the head, noise included; +infinity where nothing was hit in range
-  scan_position = 2,       ///< survey frame
-  scan_normal = 4,         ///< unit, turned towards the scanner
-  scan_reflectivity = 8,   ///< R·(I·(−N)) in [0, 1]
-  scan_ids = 16,           ///< mesh and primitive
-  scan_colour = 32,        ///< RGBA of the panorama where one is given, else of the material
-  scan_voxel = 64,         ///< surveyed voxel the point counts in
+  scan_range = 1,         ///< metres from the head, noise included; +infinity where nothing was hit in range
+  scan_position = 2,      ///< survey frame
+  scan_normal = 4,        ///< unit, turned towards the scanner
+  scan_reflectivity = 8,  ///< R·(I·(−N)) in [0, 1]
+  scan_ids = 16,          ///< mesh and primitive
+  scan_colour = 32,       ///< RGBA of the panorama where one is given, else of the material
+  scan_voxel = 64,        ///< surveyed voxel the point counts in
 };
 
-/// Results of consecutive rays, dense: element k belongs to ray first_ray + k. Arrays that were not asked for are empty.
+/// Results of consecutive rays, dense: element k belongs to ray first_ray + k. Arrays that were not asked for are
+/// empty.
 struct ScanChunk {
   std::uint64_t first_ray = 0;
   std::uint64_t ray_count = 0;
   std::vector<float> range_m;
-  std::vector<std::array<float, 3>> position;  ///< Local frame: survey position = `Simulator::origin()` + this. NaN without a hit.
+  /// Local frame: survey position = `Simulator::origin()` + this. NaN without a hit.
+  std::vector<std::array<float, 3>> position;
   std::vector<std::array<float, 3>> normal;
   std::vector<float> reflectivity;
-  std::vector<std::int32_t> mesh;              ///< Index into Scene::meshes(); −1 without a hit.
-  std::vector<std::uint32_t> primitive;        ///< Triangle of the scene (all meshes in order); 2³²−1 without a hit.
-  std::vector<std::uint32_t> colour;           ///< 0xAABBGGRR, sRGB; 0 without a hit.
-  std::vector<std::uint32_t> voxel;            ///< Rank of the surveyed voxel in Morton order; 2³²−1 where the point does not count.
+  std::vector<std::int32_t> mesh;        ///< Index into Scene::meshes(); −1 without a hit.
+  std::vector<std::uint32_t> primitive;  ///< Triangle of the scene (all meshes in order); 2³²−1 without a hit.
+  std::vector<std::uint32_t> colour;     ///< 0xAABBGGRR, sRGB; 0 without a hit.
+  /// Rank of the surveyed voxel in Morton order; 2³²−1 where the point does not count.
+  std::vector<std::uint32_t> voxel;
 };
 
 /// Sums over one scan.
 struct ScanSummary {
   std::uint64_t rays = 0, points = 0;
-  std::uint64_t points_on_surveyed = 0;    ///< On a surveyed mesh and inside a surveyed voxel: the points that count.
-  std::uint64_t hits_on_surveyed = 0;      ///< On a surveyed mesh, wherever noise then moved the point.
+  std::uint64_t points_on_surveyed = 0;  ///< On a surveyed mesh and inside a surveyed voxel: the points that count.
+  std::uint64_t hits_on_surveyed = 0;    ///< On a surveyed mesh, wherever noise then moved the point.
   double trace_seconds = 0;
   bool cancelled = false;
 };
 
 /// A voxel field: the cartography of coverage. Element k belongs to the k-th surveyed voxel in Morton order.
 struct VoxelField {
-  std::vector<std::uint32_t> count;    ///< Points, saturating.
-  std::vector<std::uint64_t> stations; ///< Bit i: station i has a point in the voxel.
+  std::vector<std::uint32_t> count;     ///< Points, saturating.
+  std::vector<std::uint64_t> stations;  ///< Bit i: station i has a point in the voxel.
 };
 
 /// How `Simulator::evaluate` works.
 struct EvaluateOptions {
-  bool overlap = true;        ///< Keep station masks and count pairs.
-  bool skip = true;           ///< Leave out rays and ray parts that cannot reach a surveyed voxel. Counts do not change.
-  VoxelField* field = nullptr;///< Where to put the voxel field, if wanted.
+  bool overlap = true;  ///< Keep station masks and count pairs.
+  bool skip = true;     ///< Leave out rays and ray parts that cannot reach a surveyed voxel. Counts do not change.
+  VoxelField* field = nullptr;  ///< Where to put the voxel field, if wanted.
 };
 
 /// What a sampled evaluation draws.
 struct SampleOptions {
-  std::uint64_t voxels = 20'000;   ///< Number of surveyed voxels; as many as there are: all of them.
+  std::uint64_t voxels = 20'000;  ///< Number of surveyed voxels; as many as there are: all of them.
   bool overlap = true;
-  bool stop_at_goal = false;       ///< Stop counting a voxel at the goal density; only without overlap.
+  bool stop_at_goal = false;  ///< Stop counting a voxel at the goal density; only without overlap.
 };
 
 /// Owns device, acceleration structure and voxel grid; keeps a share of the scene.
 /// Not thread-safe: one Simulator per thread. Same inputs, seed and engine: same result, bit for bit.
 class Simulator {
  public:
-  /// Throws Error: invalid_argument (goal density below 1, with the smallest user size that works; bad scanner), no_suitable_device,
-  /// out_of_memory.
+  /// Throws Error: invalid_argument (goal density below 1, with the smallest user size that works; bad scanner),
+  /// no_suitable_device, out_of_memory.
   Simulator(const Scene& scene, const Scanner& scanner, const SimulatorConfig& config = {});
   Simulator(Simulator&&) noexcept;
   Simulator& operator=(Simulator&&) noexcept;
@@ -132,14 +135,15 @@ class Simulator {
   const Scanner& scanner() const noexcept;
   const Scene& scene() const noexcept;
   const SimulatorConfig& config() const noexcept;
-  Vec3 origin() const noexcept;              ///< Local origin; survey = local + origin.
-  std::uint64_t voxel_count() const noexcept;///< N_v of equation 8.
+  Vec3 origin() const noexcept;                ///< Local origin; survey = local + origin.
+  std::uint64_t voxel_count() const noexcept;  ///< N_v of equation 8.
   double voxel_size_m() const noexcept;
-  double goal_density() const noexcept;      ///< Points wanted in a voxel.
-  Vec3 voxel_centre(std::uint64_t rank) const; ///< Survey frame. REQUIRES: rank < voxel_count().
+  double goal_density() const noexcept;         ///< Points wanted in a voxel.
+  Vec3 voxel_centre(std::uint64_t rank) const;  ///< Survey frame. REQUIRES: rank < voxel_count().
 
-  /// Scans one station in chunks of rows; `sink` sees them in ray order. `place` is the station's place in its network: it keys the noise.
-  /// With a panorama, colours are looked up in it by direction, as in the paper. An inactive station has no chunks.
+  /// Scans one station in chunks of rows; `sink` sees them in ray order. `place` is the station's place in its network:
+  /// it keys the noise. With a panorama, colours are looked up in it by direction, as in the paper. An inactive station
+  /// has no chunks.
   ScanSummary scan(const Station& station, std::uint32_t place, std::uint32_t outputs,
                    const std::function<void(const ScanChunk&)>& sink, const Progress& progress = {},
                    const Panorama* panorama = nullptr);
@@ -151,9 +155,9 @@ class Simulator {
   std::vector<NetworkCounts> evaluate_sampled(std::span<const Network> networks, const SampleOptions& options = {},
                                               const Progress& progress = {});
 
-  /// How many voxels `evaluate_sampled` needs so that no standard error, of coverage and, with `overlap`, of overlap, exceeds `wanted`
-  /// on any of `networks`. Found on pilot samples that grow until one holds; at most `voxel_count()`, then the error is 0.
-  /// Throws Error invalid_argument unless wanted > 0.
+  /// How many voxels `evaluate_sampled` needs so that no standard error, of coverage and, with `overlap`, of overlap,
+  /// exceeds `wanted` on any of `networks`. Found on pilot samples that grow until one holds; at most `voxel_count()`,
+  /// then the error is 0. Throws Error invalid_argument unless wanted > 0.
   std::uint64_t voxels_for_standard_error(std::span<const Network> networks, double wanted, bool overlap = true,
                                           const Progress& progress = {});
 

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lets C++ read the structs that the shaders use. Scalar layout: every member at its C++ offset, vec3 four-byte aligned.
+// Lets C++ read the structs that the shaders use. Scalar layout: every member at its C++ offset, vec3 four-byte
+// aligned.
 #ifndef VANTAGE_SHARED_HOST_H
 #define VANTAGE_SHARED_HOST_H
 
 #ifdef __cplusplus
 #include <cstdint>
 namespace vantage {
+// clang-format off
 using uint = std::uint32_t;
 struct vec3 { float x, y, z; };
 struct uvec2 { uint x, y; };
+// clang-format on
 }  // namespace vantage
 #define VANTAGE_SHARED_BEGIN namespace vantage {
 #define VANTAGE_SHARED_END }

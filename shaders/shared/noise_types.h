@@ -8,12 +8,13 @@ VANTAGE_SHARED_BEGIN
 
 VANTAGE_CONST uint noise_table_side = 101;  // σ table: side × side, [reflectivity][distance]
 
-// Standard normal from 32 random bits, with multiplications and additions only, so that every device gets the same bits.
-// u: sign in bit 31, m = low 31 bits; tail probability p = (m + ½)·2^−32. |z| = g(p), the quantile of the normal truncated at ±5:
+// Standard normal from 32 random bits, with multiplications and additions only, so that every device gets the same
+// bits. u: sign in bit 31, m = low 31 bits; tail probability p = (m + ½)·2^−32. |z| = g(p), the quantile of the normal
+// truncated at ±5:
 //   g(p) = Φ⁻¹(1 − (Φ(−5) + p·(1 − 2Φ(−5)))).
 // m = 0 uses row normal_octaves·normal_segments with f = 0. Else e = index of m's highest set bit, x = m << (31 − e),
-// segment s = (x >> 27) & 15, f = ((x >> 3) & 0xFFFFFF)·2^−24, row = e·16 + s, and |z| = ((c3·f + c2)·f + c1)·f + c0, uncontracted.
-// Row layout: c0, c1, c2, c3.
+// segment s = (x >> 27) & 15, f = ((x >> 3) & 0xFFFFFF)·2^−24, row = e·16 + s, and |z| = ((c3·f + c2)·f + c1)·f + c0,
+// uncontracted. Row layout: c0, c1, c2, c3.
 VANTAGE_CONST uint normal_octaves = 31;
 VANTAGE_CONST uint normal_segments = 16;
 VANTAGE_CONST uint normal_rows = normal_octaves * normal_segments + 1;

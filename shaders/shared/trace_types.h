@@ -15,7 +15,7 @@
 
 VANTAGE_SHARED_BEGIN
 
-VANTAGE_CONST uint surveyed_bit = 0x80000000u;   // of a scene triangle's number: its mesh is surveyed
+VANTAGE_CONST uint surveyed_bit = 0x80000000u;  // of a scene triangle's number: its mesh is surveyed
 VANTAGE_CONST uint no_primitive = 0xFFFFFFFFu;
 VANTAGE_CONST uint no_rank = 0xFFFFFFFFu;
 
@@ -24,10 +24,11 @@ VANTAGE_CONST uint block_columns = 16;
 VANTAGE_CONST uint block_rows = 8;
 VANTAGE_CONST uint tile_side = 32;
 VANTAGE_CONST uint blocks_per_tile = (tile_side / block_columns) * (tile_side / block_rows);
-VANTAGE_CONST uint tile_groups_y = 32768;        // tiles along y of an indirect dispatch; the rest goes to z
+VANTAGE_CONST uint tile_groups_y = 32768;  // tiles along y of an indirect dispatch; the rest goes to z
 
-// A binary BVH node: the boxes of both children, by centre and half size, which takes a ray fewer minima and maxima than two corners do. A child is a node's index, or a leaf: bit 31, triangle count − 1 in bits 28–30, first
-// triangle in the rest.
+// A binary BVH node: the boxes of both children, by centre and half size, which takes a ray fewer minima and maxima
+// than two corners do. A child is a node's index, or a leaf: bit 31, triangle count − 1 in bits 28–30, first triangle
+// in the rest.
 VANTAGE_CONST uint bvh_leaf_bit = 0x80000000u;
 VANTAGE_CONST uint bvh_leaf_count_shift = 28;
 VANTAGE_CONST uint bvh_leaf_first_mask = 0x0FFFFFFFu;
@@ -58,7 +59,7 @@ struct TileStart {
   uint node;
   float near;
 };
-VANTAGE_CONST uint tile_starts = 24;             // of every tile, nearest first
+VANTAGE_CONST uint tile_starts = 24;  // of every tile, nearest first
 
 struct TraceParameters {
   VANTAGE_ADDRESS(Floats) sin_zenith;
@@ -67,14 +68,15 @@ struct TraceParameters {
   VANTAGE_ADDRESS(Floats) cos_azimuth;
   VANTAGE_ADDRESS(BrickQuarters) bricks;  // VoxelBrick, 16 bytes at a time
   VANTAGE_ADDRESS(Slots) slots;
-  VANTAGE_ADDRESS(Uints) primitive_ids;   // ray_query: triangle of the acceleration structure → scene's number with the surveyed bit
-  VANTAGE_ADDRESS(NodeQuarters) nodes;    // compute_bvh: BvhNode and BvhTriangle, 16 bytes at a time
+  // ray_query: triangle of the acceleration structure → scene's number with the surveyed bit.
+  VANTAGE_ADDRESS(Uints) primitive_ids;
+  VANTAGE_ADDRESS(NodeQuarters) nodes;  // compute_bvh: BvhNode and BvhTriangle, 16 bytes at a time
   VANTAGE_ADDRESS(TriangleCorners) bvh_triangles;
   // For normals, reflectivity and noise only; 0 where the run needs none.
   VANTAGE_ADDRESS(Vec3s) positions;
-  VANTAGE_ADDRESS(Vec3s) normals;         // 0: geometric normals
-  VANTAGE_ADDRESS(Uints) triangles;       // three vertex numbers each
-  VANTAGE_ADDRESS(Floats) diffuse;        // per scene triangle
+  VANTAGE_ADDRESS(Vec3s) normals;    // 0: geometric normals
+  VANTAGE_ADDRESS(Uints) triangles;  // three vertex numbers each
+  VANTAGE_ADDRESS(Floats) diffuse;   // per scene triangle
   VANTAGE_ADDRESS(Floats) sigma;
   VANTAGE_ADDRESS(Floats) noise_reaches;  // by column of sigma: no hit up to there is moved further
   VANTAGE_ADDRESS(Vec4s) normal_table;
@@ -84,18 +86,18 @@ struct TraceParameters {
   float max_range;
   vec3 voxel_min;
   float voxel_inverse_size;
-  uint voxel_cells;                       // along each side of the grid
+  uint voxel_cells;  // along each side of the grid
   uint slot_mask;
   uint brick_count;
-  float brick_size;                       // metres
-  vec3 bounds_min;                        // of all triangles
+  float brick_size;  // metres
+  vec3 bounds_min;   // of all triangles
   float noise_reach;
   vec3 bounds_max;
   float noise_min_range;
   float noise_inverse_span;
   uint seed_low;
   uint seed_high;
-  float zenith_step;                      // radians
+  float zenith_step;  // radians
   float azimuth_step;
   float first_zenith;
   float first_azimuth;
@@ -105,11 +107,11 @@ struct TraceParameters {
 // Counts of one station. station_counters: 4 words a station, points and points that count, 64 bits each.
 struct CountPush {
   VANTAGE_ADDRESS(Uints) counts;
-  VANTAGE_ADDRESS(Uints) masks;           // the 32-bit word that holds the station's bit, of every voxel
+  VANTAGE_ADDRESS(Uints) masks;  // the 32-bit word that holds the station's bit, of every voxel
   VANTAGE_ADDRESS(Uints) station_counters;
   VANTAGE_ADDRESS(Floats) tile_far;
-  VANTAGE_ADDRESS(Uints) tile_list;       // number of tiles, then the tiles
-  VANTAGE_ADDRESS(TileStarts) starts;     // compute_bvh: tile_starts for each listed tile
+  VANTAGE_ADDRESS(Uints) tile_list;    // number of tiles, then the tiles
+  VANTAGE_ADDRESS(TileStarts) starts;  // compute_bvh: tile_starts for each listed tile
   vec3 origin;
   uint place;
   uint first_row;
@@ -118,10 +120,10 @@ struct CountPush {
 
 // Which tiles of directions see a surveyed brick, and how far the last one reaches.
 struct TilePush {
-  VANTAGE_ADDRESS(Uints) tile_far;        // bits of a non-negative float, which order as the float does; 0: nothing to see
+  VANTAGE_ADDRESS(Uints) tile_far;  // bits of a non-negative float, which order as the float does; 0: nothing to see
   VANTAGE_ADDRESS(Uints) tile_list;
-  VANTAGE_ADDRESS(Uints) dispatch;        // three words: an indirect dispatch
-  VANTAGE_ADDRESS(Uints) rays;            // rays of the listed tiles are added here, 64 bits
+  VANTAGE_ADDRESS(Uints) dispatch;  // three words: an indirect dispatch
+  VANTAGE_ADDRESS(Uints) rays;      // rays of the listed tiles are added here, 64 bits
   VANTAGE_ADDRESS(TileStarts) starts;
   vec3 origin;
   uint first_row;
@@ -130,7 +132,7 @@ struct TilePush {
 };
 
 struct ScanPush {
-  VANTAGE_ADDRESS(Floats) range;          // an output that is not wanted has address 0
+  VANTAGE_ADDRESS(Floats) range;  // an output that is not wanted has address 0
   VANTAGE_ADDRESS(Vec3s) position;
   VANTAGE_ADDRESS(Vec3s) normal;
   VANTAGE_ADDRESS(Floats) reflectivity;
@@ -151,14 +153,14 @@ struct ClampPush {
   uint padding;
 };
 
-// Reduction of counts and masks, of one network or many, in interleaved groups: voxel k is in group k % groups. Totals of group g of
-// network n start at word (n · groups + g) · totals_stride: weight of the saturated voxels (64 bits); points of the others, each times
-// its voxel's weight (64 bits); three sums over successive
-// voxels, from which the host makes Σ (r(k) − r(k−1))² of r = min(count / goal, 1) without rounding; then seen[stations]; then
-// shared[pairs]. With c = count >> difference_shift where the voxel is not saturated: squares (64 bits) adds (c(k) − c(k−1))² where neither
+// Reduction of counts and masks, of one network or many, in interleaved groups: voxel k is in group k % groups. Totals
+// of group g of network n start at word (n · groups + g) · totals_stride: weight of the saturated voxels (64 bits);
+// points of the others, each times its voxel's weight (64 bits); three sums over successive voxels, from which the host
+// makes Σ (r(k) − r(k−1))² of r = min(count / goal, 1) without rounding; then seen[stations]; then shared[pairs]. With
+// c = count >> difference_shift where the voxel is not saturated: squares (64 bits) adds (c(k) − c(k−1))² where neither
 // voxel is saturated and c² where one is; edge_points (64 bits) adds c where one is; edges counts those.
-VANTAGE_CONST uint reduce_voxels = 256;    // voxels of a workgroup at a time
-VANTAGE_CONST uint reduce_rounds = 16;     // at most 32
+VANTAGE_CONST uint reduce_voxels = 256;  // voxels of a workgroup at a time
+VANTAGE_CONST uint reduce_rounds = 16;   // at most 32
 VANTAGE_CONST uint totals_saturated = 0;
 VANTAGE_CONST uint totals_partial = 2;
 VANTAGE_CONST uint totals_squares = 4;
@@ -166,15 +168,15 @@ VANTAGE_CONST uint totals_edge_points = 6;
 VANTAGE_CONST uint totals_edges = 8;
 VANTAGE_CONST uint totals_seen = 9;
 struct ReducePush {
-  VANTAGE_ADDRESS(Uints) counts;           // [network][voxel]
-  VANTAGE_ADDRESS(Uints) masks;            // [network][word][voxel]
+  VANTAGE_ADDRESS(Uints) counts;  // [network][voxel]
+  VANTAGE_ADDRESS(Uints) masks;   // [network][word][voxel]
   VANTAGE_ADDRESS(Uints) totals;
-  VANTAGE_ADDRESS(Uints) station_counts;   // per network
-  VANTAGE_ADDRESS(Uints) weights;          // of voxels, a byte each; 0: all weigh 1
+  VANTAGE_ADDRESS(Uints) station_counts;  // per network
+  VANTAGE_ADDRESS(Uints) weights;         // of voxels, a byte each; 0: all weigh 1
   uint voxel_count;
-  uint goal;                               // points that saturate a voxel
-  uint difference_shift;                   // keeps the sum of squares within 64 bits
-  uint mask_words;                         // 0, 1 or 2
+  uint goal;              // points that saturate a voxel
+  uint difference_shift;  // keeps the sum of squares within 64 bits
+  uint mask_words;        // 0, 1 or 2
   uint groups;
   uint totals_stride;
   uint first_network;
@@ -183,20 +185,20 @@ struct ReducePush {
 
 // Sampled evaluation. A slot is one station of one network; a pair is a slot and a sampled voxel.
 struct SampleVoxel {
-  uint x, y, z;                            // voxel coordinates
-  uint first_triangle;                     // of those that touch the cube; up to the next voxel's first
+  uint x, y, z;         // voxel coordinates
+  uint first_triangle;  // of those that touch the cube; up to the next voxel's first
 };
 struct SampleTriangle {
-  vec3 a, b, c;                            // local frame
-  float gap;                               // it is at least so far outside the cube; a voxel's triangles stand in its order
+  vec3 a, b, c;  // local frame
+  float gap;     // it is at least so far outside the cube; a voxel's triangles stand in its order
 };
 struct SampleStation {
   vec3 origin;
   uint place;
-  uint network;                            // within the batch
+  uint network;  // within the batch
 };
 struct SampleRay {
-  uint voxel;                              // within the sample
+  uint voxel;  // within the sample
   uint slot;
   uint ray;
 };
@@ -207,11 +209,11 @@ struct SampleItem {
   uint part;
 };
 VANTAGE_CONST uint sample_part = 64;
-VANTAGE_CONST uint sample_groups_x = 32768; // of an indirect dispatch; the rest goes to y
+VANTAGE_CONST uint sample_groups_x = 32768;  // of an indirect dispatch; the rest goes to y
 // Control words of one chunk.
-VANTAGE_CONST uint control_rays = 0;        // rays listed, or wanted: more than the capacity means that the chunk must be cut
+VANTAGE_CONST uint control_rays = 0;  // rays listed, or wanted: more than the capacity means that the chunk must be cut
 VANTAGE_CONST uint control_items = 1;
-VANTAGE_CONST uint control_dispatch = 4;    // three words
+VANTAGE_CONST uint control_dispatch = 4;  // three words
 VANTAGE_CONST uint control_words = 8;
 struct SamplePush {
   VANTAGE_ADDRESS(SampleVoxels) voxels;
@@ -220,10 +222,10 @@ struct SamplePush {
   VANTAGE_ADDRESS(SampleRays) rays;
   VANTAGE_ADDRESS(SampleItems) items;
   VANTAGE_ADDRESS(Uints) control;
-  VANTAGE_ADDRESS(Uints) counts;           // [network][voxel]
-  VANTAGE_ADDRESS(Uints) masks;            // [network][word][voxel]
-  VANTAGE_ADDRESS(Uints) network_rays;     // 64 bits a network
-  uint voxel_count;                        // of the sample
+  VANTAGE_ADDRESS(Uints) counts;        // [network][voxel]
+  VANTAGE_ADDRESS(Uints) masks;         // [network][word][voxel]
+  VANTAGE_ADDRESS(Uints) network_rays;  // 64 bits a network
+  uint voxel_count;                     // of the sample
   uint first_voxel;
   uint end_voxel;
   uint first_slot;
@@ -232,7 +234,7 @@ struct SamplePush {
   uint ray_capacity;
   uint item_capacity;
   uint mask_words;
-  uint stop_at;                            // points at which a voxel needs no more; 0: never
+  uint stop_at;  // points at which a voxel needs no more; 0: never
 };
 
 VANTAGE_SHARED_END

@@ -2,10 +2,9 @@
 // The program's commands: one file each, one function each.
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <functional>
 #include <stop_token>
-
-#include <CLI/CLI.hpp>
 
 #include "cli/console.hpp"
 
@@ -22,7 +21,8 @@ struct Program {
 
 // A subcommand whose options live as long as the program; `run` is called after parsing and returns the exit code.
 template <class Options>
-void add_command(CLI::App& app, Program& program, const char* name, const char* help, int (*run)(CLI::App&, Options&, Program&)) {
+void add_command(CLI::App& app, Program& program, const char* name, const char* help,
+                 int (*run)(CLI::App&, Options&, Program&)) {
   CLI::App* command = app.add_subcommand(name, help);
   auto options = std::make_shared<Options>();
   options->add(*command);

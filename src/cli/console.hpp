@@ -2,12 +2,12 @@
 // What the program says: logs and progress on standard error, results on standard output.
 #pragma once
 
+#include <spdlog/spdlog.h>
+
 #include <chrono>
 #include <memory>
-#include <string>
-
 #include <nlohmann/json.hpp>
-#include <spdlog/spdlog.h>
+#include <string>
 
 namespace vantage::cli {
 

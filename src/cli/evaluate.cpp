@@ -25,23 +25,28 @@ struct EvaluateCommandOptions {
     site.add(command);
     stations.add(command);
     auto* exact_flag = command.add_flag("--exact", exact, "Trace every ray; the default")->group("Evaluation");
-    auto* skip_flag = command
-                          .add_flag("--skip", skip,
-                                    "Leave out rays that cannot change a count; points off the surveyed meshes are not counted then")
-                          ->group("Evaluation");
-    auto* sample_option = add_value(command, "--sample", "N|P%", "Estimate from so many surveyed voxels, or that share of them",
-                                    [this](const std::string& text, const std::string& what) { sample = parse_sample(text, what); })
-                              ->group("Evaluation");
-    auto* error_option = add_number(command, "--error", "E", "Estimate with as many voxels as this standard error takes", error,
-                                    {.low = 1e-6, .high = 1})
-                             ->group("Evaluation");
+    auto* skip_flag =
+        command
+            .add_flag("--skip", skip,
+                      "Leave out rays that cannot change a count; points off the surveyed meshes are not counted then")
+            ->group("Evaluation");
+    auto* sample_option =
+        add_value(command, "--sample", "N|P%", "Estimate from so many surveyed voxels, or that share of them",
+                  [this](const std::string& text, const std::string& what) { sample = parse_sample(text, what); })
+            ->group("Evaluation");
+    auto* error_option =
+        add_number(command, "--error", "E", "Estimate with as many voxels as this standard error takes", error,
+                   {.low = 1e-6, .high = 1})
+            ->group("Evaluation");
     sample_option->excludes(exact_flag)->excludes(skip_flag);
     error_option->excludes(exact_flag)->excludes(skip_flag)->excludes(sample_option);
     command.add_flag("--no-overlap", no_overlap, "Coverage only")->group("Evaluation");
-    add_text(command, "--cartography", "FILE", "Write every surveyed voxel with its count, in false colours: .ply", cartography)
+    add_text(command, "--cartography", "FILE", "Write every surveyed voxel with its count, in false colours: .ply",
+             cartography)
         ->group("Results");
     add_text(command, "--overlap-csv", "FILE", "Write the overlap matrix: .csv", matrix)->group("Results");
-    add_text(command, "--picture", "FILE", "Draw the stations and their overlaps from above: .png or .svg", picture)->group("Results");
+    add_text(command, "--picture", "FILE", "Draw the stations and their overlaps from above: .png or .svg", picture)
+        ->group("Results");
     command.add_flag("--json", json, "Print one JSON object");
   }
 };
@@ -49,9 +54,9 @@ struct EvaluateCommandOptions {
 NetworkCounts evaluate_sample(Simulator& simulator, const Network& network, const EvaluateCommandOptions& options,
                               const Progress& progress) {
   const bool overlap = !options.no_overlap;
-  const std::uint64_t voxels = options.error
-                                   ? simulator.voxels_for_standard_error({&network, 1}, *options.error, overlap, progress)
-                                   : options.sample->of(simulator.voxel_count());
+  const std::uint64_t voxels =
+      options.error ? simulator.voxels_for_standard_error({&network, 1}, *options.error, overlap, progress)
+                    : options.sample->of(simulator.voxel_count());
   return simulator.evaluate_sampled({&network, 1}, {.voxels = voxels, .overlap = overlap}, progress).front();
 }
 
@@ -81,9 +86,11 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
   const Progress progress{.report = [&](double done) { line.update(done); }, .stop = program.stop};
   VoxelField field;
   const NetworkCounts counts =
-      sampled ? evaluate_sample(simulator, network, options, progress)
-              : simulator.evaluate(network, {.overlap = overlap, .skip = options.skip, .field = options.cartography ? &field : nullptr},
-                                   progress);
+      sampled
+          ? evaluate_sample(simulator, network, options, progress)
+          : simulator.evaluate(
+                network, {.overlap = overlap, .skip = options.skip, .field = options.cartography ? &field : nullptr},
+                progress);
   if (counts.cancelled) {
     spdlog::error("stopped before the end; nothing was written");
     return exit_failed;
@@ -99,8 +106,8 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
     std::vector<PlacedStation> placed;
     for (const auto& station : stations) placed.push_back(station.placed);
     draw_plan_view(*options.picture, site.scene, site.area(), placed, matrix,
-                   fmt::format("{} station{}: coverage {:.3f}, overlap {:.3f}", placed.size(), placed.size() == 1 ? "" : "s",
-                               covered.value, overlapped.value));
+                   fmt::format("{} station{}: coverage {:.3f}, overlap {:.3f}", placed.size(),
+                               placed.size() == 1 ? "" : "s", covered.value, overlapped.value));
   }
 
   nlohmann::json rows = nlohmann::json::array();
@@ -141,12 +148,15 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
     std::string text;
     for (std::size_t k = 0; k < stations.size(); ++k) {
       const Vec3& head = stations[k].placed.position;
-      text += fmt::format("station {:>2}  {:<5}  {:.3f},{:.3f},{:.3f}", k, to_string(stations[k].placed.status), head.x, head.y, head.z);
-      if (rows[k]["points_on_surveyed"].is_number()) text += fmt::format("  {} points on surveyed meshes", rows[k]["points_on_surveyed"].get<std::uint64_t>());
+      text += fmt::format("station {:>2}  {:<5}  {:.3f},{:.3f},{:.3f}", k, to_string(stations[k].placed.status), head.x,
+                          head.y, head.z);
+      if (rows[k]["points_on_surveyed"].is_number())
+        text += fmt::format("  {} points on surveyed meshes", rows[k]["points_on_surveyed"].get<std::uint64_t>());
       text += "\n";
     }
     const auto with_error = [&](const Estimate& estimate) {
-      return sampled ? fmt::format("{:.4f} ± {:.4f}", estimate.value, estimate.standard_error) : fmt::format("{:.4f}", estimate.value);
+      return sampled ? fmt::format("{:.4f} ± {:.4f}", estimate.value, estimate.standard_error)
+                     : fmt::format("{:.4f}", estimate.value);
     };
     text += "coverage " + with_error(covered) + "\n";
     if (overlap) text += "overlap  " + with_error(overlapped) + "\n";
@@ -158,7 +168,8 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
 }  // namespace
 
 void add_evaluate(CLI::App& app, Program& program) {
-  add_command<EvaluateCommandOptions>(app, program, "evaluate", "Coverage and overlap of a network of stations", evaluate);
+  add_command<EvaluateCommandOptions>(app, program, "evaluate", "Coverage and overlap of a network of stations",
+                                      evaluate);
 }
 
 }  // namespace vantage::cli

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <filesystem>
-
 #include <spdlog/spdlog.h>
+
+#include <filesystem>
 
 #include "cli/command.hpp"
 #include "cli/options.hpp"
-#include "vantage/scene.hpp"
 #include "vantage/error.hpp"
+#include "vantage/scene.hpp"
 
 namespace vantage::cli {
 namespace {
@@ -43,8 +43,9 @@ int generate(CLI::App&, GenerateOptions& options, Program& program) {
                                          {"meshes", scene.meshes().size()},
                                          {"bytes", bytes}});
   else
-    program.console.print(fmt::format("{}: {} triangles in {} meshes, {:.1f} MB\n", *options.output, scene.triangle_count(),
-                                      scene.meshes().size(), static_cast<double>(bytes) * 1e-6));
+    program.console.print(fmt::format("{}: {} triangles in {} meshes, {:.1f} MB\n", *options.output,
+                                      scene.triangle_count(), scene.meshes().size(),
+                                      static_cast<double>(bytes) * 1e-6));
   return exit_ok;
 }
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
 #include <chrono>
 #include <optional>
 #include <vector>
-
-#include <spdlog/spdlog.h>
 
 #include "cli/command.hpp"
 #include "cli/options.hpp"
@@ -19,7 +19,8 @@ struct InfoOptions {
   bool json = false;
 
   void add(CLI::App& command) {
-    add_text(command, "--measure", "SCENE", "Trace a little of this scene with every usable engine and rank them", scene);
+    add_text(command, "--measure", "SCENE", "Trace a little of this scene with every usable engine and rank them",
+             scene);
     command.add_flag("--json", json, "Print one JSON object");
   }
 };
@@ -30,7 +31,8 @@ struct EngineRow {
   std::string failure = {};
 };
 
-// The median of three passes over one station in the middle of the scene, after one to warm up: compile, upload, fault pages in.
+// The median of three passes over one station in the middle of the scene, after one to warm up: compile, upload, fault
+// pages in.
 double measure(const Scene& scene, const EngineInfo& info) {
   const Vec3 size = scene.bounds().size();
   const double extent = std::max({size.x, size.y, size.z});
@@ -39,7 +41,10 @@ double measure(const Scene& scene, const EngineInfo& info) {
   scanner.min_range_m = 0;
   scanner.max_range_m = 4 * extent;
   Simulator simulator(scene, scanner,
-                      {.engine = info.engine, .device_index = info.device_index, .user_size_m = extent / 100, .point_spacing_m = extent / 2000});
+                      {.engine = info.engine,
+                       .device_index = info.device_index,
+                       .user_size_m = extent / 100,
+                       .point_spacing_m = extent / 2000});
   const Network network{{.position = scene.bounds().centre()}};
   std::vector<double> rates;
   for (int pass = 0; pass < 4; ++pass) {
@@ -68,8 +73,12 @@ nlohmann::json to_json(const EngineRow& row) {
 
 std::string to_text(const EngineRow& row) {
   const EngineInfo& info = row.info;
-  std::string text = fmt::format("{} {:<12} {:>2}  {}{}{}\n", info.chosen_by_default ? "*" : info.usable ? " " : "-",
-                                 to_string(info.engine), info.device_index, info.device, info.driver.empty() ? "" : ", ", info.driver);
+  std::string text =
+      fmt::format("{} {:<12} {:>2}  {}{}{}\n",
+                  info.chosen_by_default ? "*"
+                  : info.usable          ? " "
+                                         : "-",
+                  to_string(info.engine), info.device_index, info.device, info.driver.empty() ? "" : ", ", info.driver);
   if (row.rays_per_second) text += fmt::format("    {:.2f} million rays a second\n", *row.rays_per_second * 1e-6);
   if (!row.failure.empty()) text += "    failed: " + row.failure + "\n";
   if (!info.reason.empty()) text += "    " + info.reason + "\n";
@@ -104,7 +113,8 @@ int info(CLI::App&, InfoOptions& options, Program& program) {
                         {"scanners", nlohmann::json::array()},
                         {"scanners_file", presets.string()}};
     for (const auto& row : rows) json["engines"].push_back(to_json(row));
-    for (const auto& scanner : scanners) json["scanners"].push_back({{"key", scanner.key}, {"summary", scanner.summary}});
+    for (const auto& scanner : scanners)
+      json["scanners"].push_back({{"key", scanner.key}, {"summary", scanner.summary}});
     program.console.print(json);
   } else {
     std::string text = fmt::format("vantage {}\n\nengines (* taken by default, - refused):\n", version());

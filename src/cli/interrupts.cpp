@@ -2,11 +2,10 @@
 #include "cli/interrupts.hpp"
 
 #include <signal.h>
+#include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include <ctime>
-
-#include <spdlog/spdlog.h>
 
 namespace vantage::cli {
 namespace {
@@ -39,8 +38,9 @@ Interrupts::Interrupts() {
   sigaddset(&signals, SIGINT);
   sigaddset(&signals, SIGTERM);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-  watcher_ = std::jthread(
-      [signals, stop = stop_, abort = abort_](const std::stop_token& finished) { watch(finished, signals, stop, abort); });
+  watcher_ = std::jthread([signals, stop = stop_, abort = abort_](const std::stop_token& finished) {
+    watch(finished, signals, stop, abort);
+  });
 }
 
 }  // namespace vantage::cli

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <new>
-#include <string>
+#include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
-#include <spdlog/spdlog.h>
+#include <new>
+#include <string>
 
 #include "cli/command.hpp"
 #include "cli/console.hpp"
@@ -42,7 +42,8 @@ int run(int argc, char** argv) {
     spdlog::error("{}", message);
     return error.code() == Errc::invalid_argument ? exit_usage : exit_failed;
   } catch (const std::bad_alloc&) {
-    spdlog::error("this machine has not enough memory for it; coarser voxels (--user-size) or a smaller scene need less");
+    spdlog::error(
+        "this machine has not enough memory for it; coarser voxels (--user-size) or a smaller scene need less");
     return exit_failed;
   } catch (const std::exception& error) {
     spdlog::error("{}", error.what());

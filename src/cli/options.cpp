@@ -39,7 +39,8 @@ bool known_to_any_command(CLI::App& command, const std::string& key) {
 
 bool names_another_command(CLI::App& command, const std::string& key) {
   const auto all = all_commands(command);
-  return key != command.get_name() && std::any_of(all.begin(), all.end(), [&](CLI::App* other) { return other->get_name() == key; });
+  return key != command.get_name() &&
+         std::any_of(all.begin(), all.end(), [&](CLI::App* other) { return other->get_name() == key; });
 }
 
 // Whether something above has decided against this option: --exact against a configured sample.
@@ -50,14 +51,16 @@ bool excluded(const CLI::Option& option) {
 
 }  // namespace
 
-CLI::Option* add_value(CLI::App& app, const std::string& names, const std::string& unit, const std::string& help, Setter set) {
+CLI::Option* add_value(CLI::App& app, const std::string& names, const std::string& unit, const std::string& help,
+                       Setter set) {
   return app
       .add_option_function<std::string>(
           names, [set = std::move(set), what = long_name(names)](const std::string& text) { set(text, what); }, help)
       ->type_name(unit);
 }
 
-CLI::Option* add_values(CLI::App& app, const std::string& names, const std::string& unit, const std::string& help, Setter set) {
+CLI::Option* add_values(CLI::App& app, const std::string& names, const std::string& unit, const std::string& help,
+                        Setter set) {
   return app
       .add_option_function<std::vector<std::string>>(
           names,

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Options as one table: each can be given on the command line, by a configuration file or by a scene, and is read by the same code.
+// Options as one table: each can be given on the command line, by a configuration file or by a scene, and is read by
+// the same code.
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
-
-#include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
 
 #include "cli/parse.hpp"
 
@@ -17,9 +17,11 @@ namespace vantage::cli {
 // `set(text, what)` reads the value; `what` is the option's long name, to open an error message with.
 using Setter = std::function<void(const std::string& text, const std::string& what)>;
 
-CLI::Option* add_value(CLI::App& app, const std::string& names, const std::string& unit, const std::string& help, Setter set);
+CLI::Option* add_value(CLI::App& app, const std::string& names, const std::string& unit, const std::string& help,
+                       Setter set);
 // May be given again and again; each time takes one value.
-CLI::Option* add_values(CLI::App& app, const std::string& names, const std::string& unit, const std::string& help, Setter set);
+CLI::Option* add_values(CLI::App& app, const std::string& names, const std::string& unit, const std::string& help,
+                        Setter set);
 
 CLI::Option* add_number(CLI::App& app, const std::string& names, const std::string& unit, const std::string& help,
                         std::optional<double>& target, const Interval& interval);
@@ -28,9 +30,9 @@ CLI::Option* add_text(CLI::App& app, const std::string& names, const std::string
 CLI::Option* add_texts(CLI::App& app, const std::string& names, const std::string& unit, const std::string& help,
                        std::vector<std::string>& target);
 
-// Sets the options of `command` that `values` names and nothing above has set yet. Keys are long option names, with - or _ between
-// words; an object groups options, for one command alone where its key is that command's
-// name. `accepts` filters keys; one that it lets through and no command of the program knows is an error. `source` opens messages.
+// Sets the options of `command` that `values` names and nothing above has set yet. Keys are long option names, with -
+// or _ between words; an object groups options, for one command alone where its key is that command's name. `accepts`
+// filters keys; one that it lets through and no command of the program knows is an error. `source` opens messages.
 void apply_layer(CLI::App& command, const nlohmann::json& values, const std::string& source,
                  const std::function<bool(const std::string& key)>& accepts = {});
 

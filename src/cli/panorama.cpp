@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <filesystem>
-
 #include <spdlog/spdlog.h>
+
+#include <filesystem>
 
 #include "cli/command.hpp"
 #include "cli/options.hpp"
@@ -51,8 +51,9 @@ int panorama(CLI::App& command, PanoramaCommandOptions& options, Program& progra
   options.picture.max_range_m = site.scanner.max_range_m;
   for (const auto& station : stations)
     if (station.placed.status == StationStatus::hole)
-      throw Error(Errc::invalid_argument, fmt::format("no ground under u,v = {:g},{:g}: a panorama needs a place to stand",
-                                                      station.placed.uv.u, station.placed.uv.v));
+      throw Error(Errc::invalid_argument,
+                  fmt::format("no ground under u,v = {:g},{:g}: a panorama needs a place to stand", station.placed.uv.u,
+                              station.placed.uv.v));
   const std::filesystem::path folder = *options.output;
   make_folder(folder);
 
@@ -61,10 +62,10 @@ int panorama(CLI::App& command, PanoramaCommandOptions& options, Program& progra
   nlohmann::json rows = nlohmann::json::array();
   std::string text;
   for (std::size_t k = 0; k < stations.size(); ++k) {
-    const Progress progress{.report = [&](double done) {
-                              line.update((static_cast<double>(k) + done) / static_cast<double>(stations.size()));
-                            },
-                            .stop = program.stop};
+    const Progress progress{
+        .report =
+            [&](double done) { line.update((static_cast<double>(k) + done) / static_cast<double>(stations.size())); },
+        .stop = program.stop};
     const auto images = renderer.render(stations[k].placed.position, options.views, progress);
     if (images.empty()) {
       spdlog::error("stopped at station {}; the pictures of those before it are in {}", k, folder.string());
@@ -94,7 +95,8 @@ int panorama(CLI::App& command, PanoramaCommandOptions& options, Program& progra
 }  // namespace
 
 void add_panorama(CLI::App& app, Program& program) {
-  add_command<PanoramaCommandOptions>(app, program, "panorama", "Draw what stations see, as equirectangular pictures", panorama);
+  add_command<PanoramaCommandOptions>(app, program, "panorama", "Draw what stations see, as equirectangular pictures",
+                                      panorama);
 }
 
 }  // namespace vantage::cli

@@ -114,15 +114,17 @@ CountRange parse_count_range(std::string_view text, const std::string& what, std
 
 std::uint64_t SampleSize::of(std::uint64_t population) const {
   if (voxels) return std::min(*voxels, population);
-  return std::clamp<std::uint64_t>(static_cast<std::uint64_t>(std::llround(*share * static_cast<double>(population))), 1,
-                                   std::max<std::uint64_t>(population, 1));
+  return std::clamp<std::uint64_t>(static_cast<std::uint64_t>(std::llround(*share * static_cast<double>(population))),
+                                   1, std::max<std::uint64_t>(population, 1));
 }
 
 SampleSize parse_sample(std::string_view text, const std::string& what) {
   constexpr Interval share{.low = 0, .high = 1, .low_included = false};
   if (text.ends_with('%'))
-    return {.voxels = std::nullopt,
-            .share = parse_number(text.substr(0, text.size() - 1), what, {.low = 0, .high = 100, .low_included = false}) / 100};
+    return {
+        .voxels = std::nullopt,
+        .share =
+            parse_number(text.substr(0, text.size() - 1), what, {.low = 0, .high = 100, .low_included = false}) / 100};
   if (text.find('.') != std::string_view::npos)
     return {.voxels = std::nullopt, .share = parse_number(text, what, share)};
   return {.voxels = parse_count(text, what, 1), .share = std::nullopt};
@@ -131,7 +133,8 @@ SampleSize parse_sample(std::string_view text, const std::string& what) {
 double parse_duration(std::string_view text, const std::string& what) {
   double unit = 1;
   std::string_view number = text;
-  for (const auto& [suffix, seconds] : {std::pair<std::string_view, double>{"min", 60}, {"h", 3600}, {"m", 60}, {"s", 1}}) {
+  for (const auto& [suffix, seconds] :
+       {std::pair<std::string_view, double>{"min", 60}, {"h", 3600}, {"m", 60}, {"s", 1}}) {
     if (!text.ends_with(suffix)) continue;
     unit = seconds;
     number.remove_suffix(suffix.size());

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What users type, turned into values. Every function throws Error invalid_argument that quotes the text it could not read.
+// What users type, turned into values. Every function throws Error invalid_argument that quotes the text it could not
+// read.
 #pragma once
 
 #include <array>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-
-#include <spdlog/spdlog.h>
 
 #include "cli/command.hpp"
 #include "cli/options.hpp"
@@ -15,7 +15,8 @@ namespace vantage::cli {
 namespace {
 
 constexpr std::size_t most_stations = 64;
-// What a sampled search needs for errors of .002 in coverage, and of .007 in overlap, on large sites (docs/benchmarks.md).
+// What a sampled search needs for errors of .002 in coverage, and of .007 in overlap, on large sites
+// (docs/benchmarks.md).
 constexpr std::uint64_t sample_for_coverage = 20'000, sample_for_overlap = 100'000;
 
 struct PlanOptions {
@@ -40,7 +41,8 @@ struct PlanOptions {
                 }
               })
         ->group("Problem");
-    add_value(command, "--stations", "N|A..B", "How many stations: N for the fix problems, A to B for the min problems, up to 64",
+    add_value(command, "--stations", "N|A..B",
+              "How many stations: N for the fix problems, A to B for the min problems, up to 64",
               [this](const std::string& text, const std::string& what) {
                 stations = parse_count_range(text, what, 1, most_stations);
               })
@@ -54,20 +56,23 @@ struct PlanOptions {
                 config.heights_m = {heights[0], heights[1]};
               })
         ->group("Problem");
-    add_value(command, "--min-overlap", "W", "Want every station linked to the others by overlaps of at least W, 0 to 1",
+    add_value(command, "--min-overlap", "W",
+              "Want every station linked to the others by overlaps of at least W, 0 to 1",
               [this](const std::string& text, const std::string& what) {
                 config.min_link_overlap = parse_number(text, what, {.low = 0, .high = 1});
               })
         ->group("Problem");
     add_value(command, "--fitness", "L1,L2,L3",
-              "With coverage-min: one network by a fitness of coverage, number and visibility with these weights, as 0.4,0.4,0.2",
+              "With coverage-min: one network by a fitness of coverage, number and visibility with these weights, as "
+              "0.4,0.4,0.2",
               [this](const std::string& text, const std::string& what) {
                 const auto weights = parse_numbers(text, what, 3, 3, not_negative);
                 config.fitness = FitnessWeights{weights[0], weights[1], weights[2]};
               })
         ->group("Problem");
 
-    add_value(command, "--algorithm", "NAME", "Optimiser of several objectives: mo_cma_es, or a baseline: nsga2, random_search",
+    add_value(command, "--algorithm", "NAME",
+              "Optimiser of several objectives: mo_cma_es, or a baseline: nsga2, random_search",
               [this](const std::string& text, const std::string& what) {
                 try {
                   config.algorithm = mo_algorithm_from_string(text);
@@ -76,13 +81,16 @@ struct PlanOptions {
                 }
               })
         ->group("Search");
-    add_size(command, "--population", "M", "Networks per iteration; 10 for coverage-fix, 20 for a fitness, else 100", config.population, 2, 100'000);
-    add_size(command, "--iterations", "K", "Iterations of M networks each; 100 otherwise", config.iterations, 1, 100'000'000);
-    add_size(command, "--batch", "B", "Networks asked for at once by the steady state; by the engine otherwise", config.batch, 1,
-             100'000);
-    add_size(command, "--redraws", "N", "How often stations in holes or clashes are drawn again; 8 otherwise", config.redraws, 0, 10'000);
-    add_size(command, "--stagnation", "K", "Stop when nothing has improved for K iterations", config.stagnation_iterations, 1,
+    add_size(command, "--population", "M", "Networks per iteration; 10 for coverage-fix, 20 for a fitness, else 100",
+             config.population, 2, 100'000);
+    add_size(command, "--iterations", "K", "Iterations of M networks each; 100 otherwise", config.iterations, 1,
              100'000'000);
+    add_size(command, "--batch", "B", "Networks asked for at once by the steady state; by the engine otherwise",
+             config.batch, 1, 100'000);
+    add_size(command, "--redraws", "N", "How often stations in holes or clashes are drawn again; 8 otherwise",
+             config.redraws, 0, 10'000);
+    add_size(command, "--stagnation", "K", "Stop when nothing has improved for K iterations",
+             config.stagnation_iterations, 1, 100'000'000);
     add_value(command, "--sigma", "S", "First step, as a share of the search area; 0.2 otherwise",
               [this](const std::string& text, const std::string& what) {
                 config.sigma0 = parse_number(text, what, {.low = 0, .high = 10, .low_included = false});
@@ -91,7 +99,8 @@ struct PlanOptions {
     add_value(command, "--scheme", "SCHEME", "steady-state or generational",
               [this](const std::string& text, const std::string& what) {
                 if (text != "steady-state" && text != "generational")
-                  throw Error(Errc::invalid_argument, what + ": '" + text + "' is neither steady-state nor generational");
+                  throw Error(Errc::invalid_argument,
+                              what + ": '" + text + "' is neither steady-state nor generational");
                 config.scheme =
                     text == "generational" ? MoCmaEsConfig::Scheme::generational : MoCmaEsConfig::Scheme::steady_state;
               })
@@ -105,16 +114,19 @@ struct PlanOptions {
                 greedy = true;
               })
         ->group("Search");
-    add_value(command, "--max-time", "T", "Stop searching after so long: 90, 90s, 15min or 2h",
-              [this](const std::string& text, const std::string& what) { config.max_seconds = parse_duration(text, what); })
+    add_value(
+        command, "--max-time", "T", "Stop searching after so long: 90, 90s, 15min or 2h",
+        [this](const std::string& text, const std::string& what) { config.max_seconds = parse_duration(text, what); })
         ->group("Search");
     add_value(command, "--target-hypervolume", "V", "Stop when the front has this hypervolume, 0 to 1",
               [this](const std::string& text, const std::string& what) {
                 config.target_hypervolume = parse_number(text, what, {.low = 0, .high = 1});
               })
         ->group("Search");
-    auto* exact_flag = command.add_flag("--exact", exact, "Search with every ray instead of a sample of voxels")->group("Search");
-    add_value(command, "--sample", "N|P%", "Search with so many voxels; 20000 for coverage alone, 100000 with overlap otherwise",
+    auto* exact_flag =
+        command.add_flag("--exact", exact, "Search with every ray instead of a sample of voxels")->group("Search");
+    add_value(command, "--sample", "N|P%",
+              "Search with so many voxels; 20000 for coverage alone, 100000 with overlap otherwise",
               [this](const std::string& text, const std::string& what) { sample = parse_sample(text, what); })
         ->group("Search")
         ->excludes(exact_flag);
@@ -126,9 +138,9 @@ struct PlanOptions {
  private:
   static void add_size(CLI::App& command, const std::string& name, const std::string& unit, const std::string& help,
                        std::size_t& target, std::size_t low, std::size_t high) {
-    add_value(command, name, unit, help,
-              [&target, low, high](const std::string& text, const std::string& what) { target = parse_count(text, what, low, high); })
-        ->group("Search");
+    add_value(command, name, unit, help, [&target, low, high](const std::string& text, const std::string& what) {
+      target = parse_count(text, what, low, high);
+    })->group("Search");
   }
 };
 
@@ -148,19 +160,23 @@ std::uint64_t default_sample(const PlanConfig& config, std::uint64_t voxels) {
 
 // Problem and number of stations say much about each other; what is missing follows from what is there.
 void settle_problem(PlanOptions& options) {
-  if (!options.stations) throw Error(Errc::invalid_argument, "--stations: how many? Give N, or A..B to search the number too");
+  if (!options.stations)
+    throw Error(Errc::invalid_argument, "--stations: how many? Give N, or A..B to search the number too");
   const auto [low, high] = *options.stations;
   PlanConfig& config = options.config;
   config.problem =
       options.problem.value_or(low == high ? Problem::coverage_overlap_fix : Problem::coverage_overlap_min);
   if (minimises_stations(config.problem) && low == high)
-    throw Error(Errc::invalid_argument, fmt::format("--stations {}: {} searches the number of stations, so give a range A..B", low,
-                                                    to_string(config.problem)));
+    throw Error(Errc::invalid_argument,
+                fmt::format("--stations {}: {} searches the number of stations, so give a range A..B", low,
+                            to_string(config.problem)));
   if (!minimises_stations(config.problem) && low != high)
-    throw Error(Errc::invalid_argument, fmt::format("--stations {}..{}: {} takes one number", low, high, to_string(config.problem)));
+    throw Error(Errc::invalid_argument,
+                fmt::format("--stations {}..{}: {} takes one number", low, high, to_string(config.problem)));
   if (high + options.keep.size() > most_stations)
-    throw Error(Errc::invalid_argument, fmt::format("--stations {} and {} kept ones are more than the {} that can be simulated together",
-                                                    high, options.keep.size(), most_stations));
+    throw Error(Errc::invalid_argument,
+                fmt::format("--stations {} and {} kept ones are more than the {} that can be simulated together", high,
+                            options.keep.size(), most_stations));
   config.stations_min = low;
   config.stations_max = high;
 }
@@ -187,7 +203,8 @@ nlohmann::json as_options(const Site& site, const PlanConfig& config) {
   options["sigma"] = config.sigma0;
   options["scheme"] = config.scheme == MoCmaEsConfig::Scheme::generational ? "generational" : "steady-state";
   options["algorithm"] = to_string(config.algorithm);
-  if (config.fitness) options["fitness"] = {config.fitness->coverage, config.fitness->station_count, config.fitness->visibility};
+  if (config.fitness)
+    options["fitness"] = {config.fitness->coverage, config.fitness->station_count, config.fitness->visibility};
   if (config.batch > 0) options["batch"] = config.batch;
   options["redraws"] = config.redraws;
   if (config.sample_voxels > 0)
@@ -217,9 +234,12 @@ const char* value_name(const PlanConfig& config) {
 // Heads of a greedy choice for the largest network; empty where it was stopped.
 std::vector<Vec3> greedy_start(Site& site, Simulator& simulator, const PlanConfig& config, Program& program) {
   ProgressLine line(program.console, "greedy");
-  const GreedyResult greedy = greedy_network(simulator, site.area(), site.clash(),
-                                             {.stations = config.stations_max, .sample_voxels = std::min<std::uint64_t>(config.sample_voxels, sample_for_coverage), .fixed = config.fixed},
-                                             {.report = [&](double done) { line.update(done); }, .stop = program.stop});
+  const GreedyResult greedy =
+      greedy_network(simulator, site.area(), site.clash(),
+                     {.stations = config.stations_max,
+                      .sample_voxels = std::min<std::uint64_t>(config.sample_voxels, sample_for_coverage),
+                      .fixed = config.fixed},
+                     {.report = [&](double done) { line.update(done); }, .stop = program.stop});
   std::vector<Vec3> heads;
   if (greedy.cancelled) return heads;
   for (const auto& station : greedy.stations) heads.push_back(station.position);
@@ -240,7 +260,10 @@ std::string summary(const PlanResult& result, const PlanConfig& config, std::siz
     const PlanEntry& entry = result.front[k];
     text += fmt::format("  {:.4f}   {:.4f}  {:>4}{}{}\n", entry.confirmed ? entry.exact_coverage : entry.coverage,
                         entry.confirmed ? entry.exact_overlap : entry.overlap, entry.stations.size(),
-                        k == chosen ? "  <- compromise" : entry.dominated ? "  dominated" : "", parts_of(entry, config));
+                        k == chosen       ? "  <- compromise"
+                        : entry.dominated ? "  dominated"
+                                          : "",
+                        parts_of(entry, config));
   }
   text += fmt::format("{} evaluations, {} {:.4f}", result.evaluations, value_name(config), result.hypervolume);
   if (config.sample_voxels > 0 && !std::isnan(result.exact_hypervolume))
@@ -263,15 +286,18 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   config.resume = options.resume;
   config.checkpoint = folder / "checkpoint.bin";
   const SearchArea& area = site.area();
-  if (area.derived()) spdlog::info("no search area is marked: stations may stand on {} walkable triangles", area.mesh().triangles.size());
+  if (area.derived())
+    spdlog::info("no search area is marked: stations may stand on {} walkable triangles", area.mesh().triangles.size());
 
   Simulator simulator(site.scene, site.scanner, site.config);
   tell_engine(simulator);
   tell_grid(simulator);
   if (!options.exact)
-    config.sample_voxels = options.sample ? options.sample->of(simulator.voxel_count()) : default_sample(config, simulator.voxel_count());
+    config.sample_voxels =
+        options.sample ? options.sample->of(simulator.voxel_count()) : default_sample(config, simulator.voxel_count());
   if (options.greedy) {
-    if (!options.start.empty()) throw Error(Errc::invalid_argument, "--seed-with and --start both say where to start: give one");
+    if (!options.start.empty())
+      throw Error(Errc::invalid_argument, "--seed-with and --start both say where to start: give one");
     config.start = greedy_start(site, simulator, config, program);
   }
   write_text(folder / "config.json", as_options(site, config).dump(2) + "\n");
@@ -283,10 +309,11 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
         simulator, area, site.clash(), config,
         [&](const PlanProgress& now) {
           line.set_label(now.phase);
-          const double done = now.iterations > 0 ? static_cast<double>(now.iteration) / static_cast<double>(now.iterations) : 0;
-          line.update(done, fmt::format("{} {:.4f}, {} networks, {:.3g} a second",
-                                        value_name(config), now.hypervolume,
-                                        now.evaluations, now.evaluations_per_second),
+          const double done =
+              now.iterations > 0 ? static_cast<double>(now.iteration) / static_cast<double>(now.iterations) : 0;
+          line.update(done,
+                      fmt::format("{} {:.4f}, {} networks, {:.3g} a second", value_name(config), now.hypervolume,
+                                  now.evaluations, now.evaluations_per_second),
                       now.seconds_left);
         },
         program.stop, program.abort);

@@ -4,7 +4,6 @@
 
 #include <chrono>
 #include <filesystem>
-
 #include <nlohmann/json.hpp>
 
 #include "vantage/simulator.hpp"

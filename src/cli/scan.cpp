@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <map>
-
 #include <spdlog/spdlog.h>
+
+#include <map>
 
 #include "cli/command.hpp"
 #include "cli/options.hpp"
@@ -12,8 +12,10 @@
 namespace vantage::cli {
 namespace {
 
-const std::map<std::string, std::uint32_t> output_bits{{"range", scan_range}, {"normal", scan_normal},
-                                                       {"reflectivity", scan_reflectivity}, {"ids", scan_ids},
+const std::map<std::string, std::uint32_t> output_bits{{"range", scan_range},
+                                                       {"normal", scan_normal},
+                                                       {"reflectivity", scan_reflectivity},
+                                                       {"ids", scan_ids},
                                                        {"colour", scan_colour}};
 
 Panorama load_panorama(const std::string& text, const std::string& what) {
@@ -33,21 +35,25 @@ struct ScanOptions {
   void add(CLI::App& command) {
     site.add(command);
     stations.add(command);
-    add_text(command, "-o,--output", "FILE", "Where to write the points: .ply or .las; nothing is written otherwise", output);
-    add_value(command, "--outputs", "LIST", "What each point carries: any of range,normal,reflectivity,ids,colour; reflectivity,colour otherwise",
+    add_text(command, "-o,--output", "FILE", "Where to write the points: .ply or .las; nothing is written otherwise",
+             output);
+    add_value(command, "--outputs", "LIST",
+              "What each point carries: any of range,normal,reflectivity,ids,colour; reflectivity,colour otherwise",
               [this](const std::string& text, const std::string& what) {
                 outputs = scan_position;
                 for (const auto part : split(text, ',')) {
                   const auto bit = output_bits.find(std::string(part));
                   if (bit == output_bits.end())
-                    throw Error(Errc::invalid_argument,
-                                what + ": '" + std::string(part) + "' is none of range, normal, reflectivity, ids, colour");
+                    throw Error(Errc::invalid_argument, what + ": '" + std::string(part) +
+                                                            "' is none of range, normal, reflectivity, ids, colour");
                   outputs |= bit->second;
                 }
               });
-    add_values(command, "--panorama", "FILE[,DEG]",
-               "Panoramic photograph that colours a station's points, with the azimuth of its middle; the k-th is the k-th station's",
-               [this](const std::string& text, const std::string& what) { panoramas.push_back(load_panorama(text, what)); });
+    add_values(
+        command, "--panorama", "FILE[,DEG]",
+        "Panoramic photograph that colours a station's points, with the azimuth of its middle; the k-th is the k-th "
+        "station's",
+        [this](const std::string& text, const std::string& what) { panoramas.push_back(load_panorama(text, what)); });
     command.add_flag("--json", json, "Print one JSON object");
   }
 };
@@ -58,14 +64,15 @@ int scan(CLI::App& command, ScanOptions& options, Program& program) {
   const auto typed = options.stations.read(65535);  // what a LAS point source id can tell apart, station 0 included
   const auto stations = place(site, typed);
   if (options.panoramas.size() > stations.size())
-    throw Error(Errc::invalid_argument, fmt::format("--panorama: {} pictures for {} stations", options.panoramas.size(), stations.size()));
+    throw Error(Errc::invalid_argument,
+                fmt::format("--panorama: {} pictures for {} stations", options.panoramas.size(), stations.size()));
   for (const auto& station : stations)
     if (station.placed.status == StationStatus::hole)
       throw Error(Errc::invalid_argument, fmt::format("no ground under u,v = {:g},{:g}: a scan needs a place to stand",
                                                       station.placed.uv.u, station.placed.uv.v));
     else if (station.placed.status == StationStatus::clash)
-      spdlog::warn("something stands within the security volume of the station at {:.6g},{:.6g},{:.6g}", station.placed.position.x,
-                   station.placed.position.y, station.placed.position.z);
+      spdlog::warn("something stands within the security volume of the station at {:.6g},{:.6g},{:.6g}",
+                   station.placed.position.x, station.placed.position.y, station.placed.position.z);
 
   Simulator simulator(site.scene, site.scanner, site.config);
   tell_engine(simulator);
@@ -77,16 +84,16 @@ int scan(CLI::App& command, ScanOptions& options, Program& program) {
   nlohmann::json rows = nlohmann::json::array();
   ProgressLine line(program.console, "scan");
   for (std::size_t k = 0; k < stations.size(); ++k) {
-    const Progress progress{.report = [&](double done) {
-                              line.update((static_cast<double>(k) + done) / static_cast<double>(stations.size()));
-                            },
-                            .stop = program.stop};
-    const ScanSummary one = simulator.scan({.position = stations[k].placed.position}, static_cast<std::uint32_t>(k),
-                                           writer ? options.outputs : 0,
-                                           [&](const ScanChunk& chunk) {
-                                             if (writer) writer->write(chunk, static_cast<std::uint16_t>(k));
-                                           },
-                                           progress, k < options.panoramas.size() ? &options.panoramas[k] : nullptr);
+    const Progress progress{
+        .report =
+            [&](double done) { line.update((static_cast<double>(k) + done) / static_cast<double>(stations.size())); },
+        .stop = program.stop};
+    const ScanSummary one = simulator.scan(
+        {.position = stations[k].placed.position}, static_cast<std::uint32_t>(k), writer ? options.outputs : 0,
+        [&](const ScanChunk& chunk) {
+          if (writer) writer->write(chunk, static_cast<std::uint16_t>(k));
+        },
+        progress, k < options.panoramas.size() ? &options.panoramas[k] : nullptr);
     if (one.cancelled) {
       spdlog::error("stopped; no file was written");
       return exit_failed;
@@ -119,8 +126,9 @@ int scan(CLI::App& command, ScanOptions& options, Program& program) {
   } else {
     std::string text;
     for (const auto& row : rows)
-      text += fmt::format("station at {:.3f},{:.3f},{:.3f}: {} points, {} on surveyed meshes\n", row["position"][0].get<double>(),
-                          row["position"][1].get<double>(), row["position"][2].get<double>(), row["points"].get<std::uint64_t>(),
+      text += fmt::format("station at {:.3f},{:.3f},{:.3f}: {} points, {} on surveyed meshes\n",
+                          row["position"][0].get<double>(), row["position"][1].get<double>(),
+                          row["position"][2].get<double>(), row["points"].get<std::uint64_t>(),
                           row["points_on_surveyed"].get<std::uint64_t>());
     text += fmt::format("{} rays, {} points, {} on surveyed meshes\n", sum.rays, sum.points, sum.points_on_surveyed);
     if (options.output) text += "written to " + *options.output + "\n";

@@ -34,7 +34,8 @@ NoiseTable load_noise(const std::string& name) {
   if (!name.ends_with(".csv")) {
     const Scanner scanner = load_scanner(presets_file(), name);
     if (scanner.noise.empty())
-      throw Error(Errc::invalid_argument, "--noise: the maker of '" + name + "' states no noise table; give a CSV file or off");
+      throw Error(Errc::invalid_argument,
+                  "--noise: the maker of '" + name + "' states no noise table; give a CSV file or off");
     return scanner.noise;
   }
   std::ifstream stream(name);

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/site.hpp"
 
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <set>
-
-#include <spdlog/spdlog.h>
 
 #include "cli/options.hpp"
 #include "cli/parse.hpp"
@@ -18,8 +18,8 @@ namespace {
 // Options that a preset states, and so takes out of the scene's hands.
 const std::set<std::string> preset_keys{"step", "horizontal", "vertical", "zenith-start", "range", "noise"};
 // Options that a scene may carry defaults for: what is measured, never where files go.
-const std::set<std::string> scene_keys{"scanner", "step",  "heading", "horizontal", "vertical", "zenith-start",
-                                       "height",  "range", "noise",   "user-size",  "spacing",  "security",
+const std::set<std::string> scene_keys{"scanner", "step",     "heading",  "horizontal", "vertical", "zenith-start",
+                                       "height",  "range",    "noise",    "user-size",  "spacing",  "security",
                                        "slope",   "headroom", "min-area", "station"};
 
 template <std::size_t N>
@@ -92,13 +92,15 @@ void tell_scaled(const SiteOptions& options, const Site& site, double scale) {
   add(options.user_size.has_value(), fmt::format("user-size {:.3g}", site.config.user_size_m));
   add(options.spacing.has_value(), fmt::format("spacing {:.3g}", site.config.point_spacing_m));
   add(options.height.has_value(), fmt::format("height {:.3g}", site.scanner.height_m));
-  add(options.range || options.scanner, fmt::format("range {:.3g},{:.3g}", site.scanner.min_range_m, site.scanner.max_range_m));
-  add(options.security.has_value(),
-      fmt::format("security {:.3g},{:.3g},{:.3g}", site.security.lower_m, site.security.upper_m, site.security.radius_m));
+  add(options.range || options.scanner,
+      fmt::format("range {:.3g},{:.3g}", site.scanner.min_range_m, site.scanner.max_range_m));
+  add(options.security.has_value(), fmt::format("security {:.3g},{:.3g},{:.3g}", site.security.lower_m,
+                                                site.security.upper_m, site.security.radius_m));
   if (made_up.empty()) return;
   const Vec3 size = site.scene.bounds().size();
-  spdlog::info("the scene measures {:.3g} x {:.3g} x {:.3g} m, unlike a site: lengths taken as {:.2g} times the usual ({})", size.x,
-               size.y, size.z, scale, made_up);
+  spdlog::info(
+      "the scene measures {:.3g} x {:.3g} x {:.3g} m, unlike a site: lengths taken as {:.2g} times the usual ({})",
+      size.x, size.y, size.z, scale, made_up);
 }
 
 }  // namespace
@@ -106,9 +108,11 @@ void tell_scaled(const SiteOptions& options, const Site& site, double scale) {
 void SiteOptions::add(CLI::App& command) {
   command.add_option("scene", scene, "The site: a .glb or .gltf file")->type_name("SCENE");
 
-  add_texts(command, "--surveyed", "PATTERN", "Nodes to survey, by name; * and ? stand for any text and any letter", roles.surveyed)
+  add_texts(command, "--surveyed", "PATTERN", "Nodes to survey, by name; * and ? stand for any text and any letter",
+            roles.surveyed)
       ->group("Scene");
-  add_texts(command, "--blocking", "PATTERN", "Nodes that only block rays and stations", roles.blocking)->group("Scene");
+  add_texts(command, "--blocking", "PATTERN", "Nodes that only block rays and stations", roles.blocking)
+      ->group("Scene");
   add_texts(command, "--search", "PATTERN", "Nodes where stations may stand", roles.search)->group("Scene");
   add_texts(command, "--ignore", "PATTERN", "Nodes to leave out", roles.ignore)->group("Scene");
   add_values(command, "--weight", "PATTERN=W",
@@ -117,46 +121,57 @@ void SiteOptions::add(CLI::App& command) {
                const std::size_t equals = text.rfind('=');
                if (equals == std::string::npos || equals == 0)
                  throw Error(Errc::invalid_argument, what + ": \"" + text + "\" is not PATTERN=W, as \"facade*=5\"");
-               roles.weights.emplace_back(text.substr(0, equals),
-                                          static_cast<std::uint32_t>(parse_count(text.substr(equals + 1), what, 1, 255)));
+               roles.weights.emplace_back(text.substr(0, equals), static_cast<std::uint32_t>(parse_count(
+                                                                      text.substr(equals + 1), what, 1, 255)));
              })
       ->group("Scene");
-  add_text(command, "--scene-index", "N", "Which scene of the file; the file's own default otherwise", scene_index)->group("Scene");
+  add_text(command, "--scene-index", "N", "Which scene of the file; the file's own default otherwise", scene_index)
+      ->group("Scene");
   add_number(command, "--diffuse", "R", "Diffuse reflection coefficient where the file gives none, 0 to 1", diffuse,
              {.low = 0, .high = 1})
       ->group("Scene");
 
-  add_text(command, "--scanner", "PRESET", "A scanner that `vantage info` lists, as rtc360 or rtc360@6mm", scanner)->group("Scanner");
+  add_text(command, "--scanner", "PRESET", "A scanner that `vantage info` lists, as rtc360 or rtc360@6mm", scanner)
+      ->group("Scanner");
   add_value(command, "--step", "DEG[,DEG]", "Angle between rays: both, or azimuth and zenith",
             numbers_into(step, 1, positive))
       ->group("Scanner");
-  add_number(command, "--heading", "DEG", "Azimuth of the middle of the horizontal sweep, from +X towards +Y", heading, any_number)
+  add_number(command, "--heading", "DEG", "Azimuth of the middle of the horizontal sweep, from +X towards +Y", heading,
+             any_number)
       ->group("Scanner");
-  add_number(command, "--horizontal", "DEG", "Horizontal wide angle", horizontal, {.low = 0, .high = 360, .low_included = false})
-      ->group("Scanner");
-  add_number(command, "--vertical", "DEG", "Vertical wide angle, over both sides of the head: 300 is zenith 0 to 150", vertical,
+  add_number(command, "--horizontal", "DEG", "Horizontal wide angle", horizontal,
              {.low = 0, .high = 360, .low_included = false})
       ->group("Scanner");
-  add_number(command, "--zenith-start", "DEG", "Zenith of the first ray; above 0 for scanners that cannot look straight up",
-             zenith_start, {.low = 0, .high = 180, .high_included = false})
+  add_number(command, "--vertical", "DEG", "Vertical wide angle, over both sides of the head: 300 is zenith 0 to 150",
+             vertical, {.low = 0, .high = 360, .low_included = false})
       ->group("Scanner");
-  add_number(command, "--height", "M", "Height of the scanner's head above the ground", height, not_negative)->group("Scanner");
-  add_value(command, "--range", "MIN,MAX", "Nearest and farthest distance measured, in metres", numbers_into(range, 2, not_negative))
+  add_number(command, "--zenith-start", "DEG",
+             "Zenith of the first ray; above 0 for scanners that cannot look straight up", zenith_start,
+             {.low = 0, .high = 180, .high_included = false})
       ->group("Scanner");
-  add_text(command, "--noise", "TABLE", "Range noise: off, a scanner's name (rtc360), or a CSV file", noise)->group("Scanner");
+  add_number(command, "--height", "M", "Height of the scanner's head above the ground", height, not_negative)
+      ->group("Scanner");
+  add_value(command, "--range", "MIN,MAX", "Nearest and farthest distance measured, in metres",
+            numbers_into(range, 2, not_negative))
+      ->group("Scanner");
+  add_text(command, "--noise", "TABLE", "Range noise: off, a scanner's name (rtc360), or a CSV file", noise)
+      ->group("Scanner");
 
   add_number(command, "--user-size", "M", "Upper bound of the voxel size", user_size, positive)->group("Measure");
-  add_number(command, "--spacing", "M", "Wanted distance between points; sets the goal density", spacing, positive)->group("Measure");
+  add_number(command, "--spacing", "M", "Wanted distance between points; sets the goal density", spacing, positive)
+      ->group("Measure");
 
   add_value(command, "--security", "H1,H2,R",
             "Clear space a station needs: two spheres of radius R at heights H1 and H2 above the ground; R 0: none",
             numbers_into(security, 3, not_negative))
       ->group("Placement");
-  add_number(command, "--slope", "DEG", "Steepest ground that counts as walkable, where the scene marks no search area", slope,
-             {.low = 0, .high = 90, .high_included = false})
+  add_number(command, "--slope", "DEG", "Steepest ground that counts as walkable, where the scene marks no search area",
+             slope, {.low = 0, .high = 90, .high_included = false})
       ->group("Placement");
-  add_number(command, "--headroom", "M", "Clear height that walkable ground needs", headroom, not_negative)->group("Placement");
-  add_number(command, "--min-area", "M2", "Smallest connected piece of walkable ground", min_area, not_negative)->group("Placement");
+  add_number(command, "--headroom", "M", "Clear height that walkable ground needs", headroom, not_negative)
+      ->group("Placement");
+  add_number(command, "--min-area", "M2", "Smallest connected piece of walkable ground", min_area, not_negative)
+      ->group("Placement");
 
   add_value(command, "--engine", "ENGINE", "automatic, ray_query, compute_bvh or embree",
             [this](const std::string& text, const std::string& what) {
@@ -176,7 +191,8 @@ void SiteOptions::add(CLI::App& command) {
             [this](const std::string& text, const std::string& what) { seed = parse_count(text, what); })
       ->group("Run");
   command.add_flag("--validation", validation, "Check every Vulkan call with the validation layer")->group("Run");
-  add_text(command, "--config", "FILE", "JSON file of options, keyed by their long names; what is typed goes before it", config_file)
+  add_text(command, "--config", "FILE", "JSON file of options, keyed by their long names; what is typed goes before it",
+           config_file)
       ->group("Run");
 }
 
@@ -212,27 +228,29 @@ const ClashChecker& Site::clash() {
 
 nlohmann::json Site::as_options() const {
   nlohmann::json options = {{"step", {scanner.azimuth_step.in_degrees(), scanner.zenith_step.in_degrees()}},
-          {"heading", scanner.heading.in_degrees()},
-          {"horizontal", scanner.horizontal_angle.in_degrees()},
-          {"vertical", scanner.vertical_angle.in_degrees()},
-          {"zenith-start", scanner.zenith_start.in_degrees()},
-          {"height", scanner.height_m},
-          {"range", {scanner.min_range_m, scanner.max_range_m}},
-          {"user-size", config.user_size_m},
-          {"spacing", config.point_spacing_m},
-          {"security", {security.lower_m, security.upper_m, security.radius_m}},
-          {"slope", walkable.max_slope.in_degrees()},
-          {"headroom", walkable.headroom_m},
-          {"min-area", walkable.min_area_m2},
-          {"seed", config.seed}};
+                            {"heading", scanner.heading.in_degrees()},
+                            {"horizontal", scanner.horizontal_angle.in_degrees()},
+                            {"vertical", scanner.vertical_angle.in_degrees()},
+                            {"zenith-start", scanner.zenith_start.in_degrees()},
+                            {"height", scanner.height_m},
+                            {"range", {scanner.min_range_m, scanner.max_range_m}},
+                            {"user-size", config.user_size_m},
+                            {"spacing", config.point_spacing_m},
+                            {"security", {security.lower_m, security.upper_m, security.radius_m}},
+                            {"slope", walkable.max_slope.in_degrees()},
+                            {"headroom", walkable.headroom_m},
+                            {"min-area", walkable.min_area_m2},
+                            {"seed", config.seed}};
   options.update(given);
   return options;
 }
 
 Site open_site(CLI::App& command, SiteOptions& options) {
   if (options.config_file) apply_layer(command, read_json(*options.config_file), *options.config_file);
-  if (options.scene.empty()) throw Error(Errc::invalid_argument, command.get_name() + ": which scene? Give a .glb or .gltf file");
-  if (options.scene_index) options.roles.scene_index = parse_count(*options.scene_index, "--scene-index", 0, 0xFFFFFFFF);
+  if (options.scene.empty())
+    throw Error(Errc::invalid_argument, command.get_name() + ": which scene? Give a .glb or .gltf file");
+  if (options.scene_index)
+    options.roles.scene_index = parse_count(*options.scene_index, "--scene-index", 0, 0xFFFFFFFF);
   if (options.diffuse) options.roles.default_diffuse = *options.diffuse;
 
   Scene scene = Scene::load(options.scene, options.roles);
@@ -241,11 +259,17 @@ Site open_site(CLI::App& command, SiteOptions& options) {
   const CLI::Option* station_file = command.get_option_no_throw("--stations");
   const bool own_stations = station_file && station_file->count() > 0;
   apply_layer(command, nlohmann::json::parse(scene.defaults_json()), options.scene, [&](const std::string& key) {
-    return scene_keys.contains(key) && !(own_preset && preset_keys.contains(key)) && !(own_stations && key == "station");
+    return scene_keys.contains(key) && !(own_preset && preset_keys.contains(key)) &&
+           !(own_stations && key == "station");
   });
 
   const double scale = length_scale(scene.bounds());
-  Site site{.scene = std::move(scene), .scanner = resolve_scanner(options, scale), .config = {}, .security = {}, .walkable = {}, .given = {}};
+  Site site{.scene = std::move(scene),
+            .scanner = resolve_scanner(options, scale),
+            .config = {},
+            .security = {},
+            .walkable = {},
+            .given = {}};
   site.config.engine = options.engine;
   site.config.device_index = options.device;
   site.config.seed = options.seed;

@@ -2,20 +2,20 @@
 // What most commands share: a scene, a scanner, where it may stand and what to trace with.
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <array>
 #include <cstdint>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
-
-#include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
 
 #include "vantage/vantage.hpp"
 
 namespace vantage::cli {
 
-// The options as given; empty where nothing was said. add() registers them with a command; the object must outlive the parsing.
+// The options as given; empty where nothing was said. add() registers them with a command; the object must outlive the
+// parsing.
 struct SiteOptions {
   std::string scene;
   SceneOptions roles;
@@ -42,8 +42,8 @@ struct SiteOptions {
   void add(CLI::App& command);
 };
 
-// Everything resolved: explicit options, else the configuration file, else the scene's own defaults, else built-in figures.
-// A preset that the user names is as explicit as the figures it stands for.
+// Everything resolved: explicit options, else the configuration file, else the scene's own defaults, else built-in
+// figures. A preset that the user names is as explicit as the figures it stands for.
 struct Site {
   Scene scene;
   Scanner scanner;
@@ -67,8 +67,8 @@ struct Site {
 // Applies the layers below the command line to all options of `command`, loads the scene and checks every value.
 Site open_site(CLI::App& command, SiteOptions& options);
 
-// Lengths for a scene whose size is unlike a site's: the built-in figures times this. 1 from 2 m to 200 m; otherwise the largest
-// extent over 20 m, with two significant digits.
+// Lengths for a scene whose size is unlike a site's: the built-in figures times this. 1 from 2 m to 200 m; otherwise
+// the largest extent over 20 m, with two significant digits.
 double length_scale(const Box& bounds);
 
 }  // namespace vantage::cli

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/stations.hpp"
 
-#include <cmath>
-
 #include <spdlog/spdlog.h>
+
+#include <cmath>
 
 #include "cli/options.hpp"
 
@@ -29,9 +29,11 @@ std::vector<StationText> read_front(const std::string& file, std::uint64_t entry
                                               std::to_string(entries.size()) + " entries, counted from 0");
     std::vector<StationText> stations;
     for (const auto& station : entries[entry].at("stations")) {
-      StationText text{vec3_of(station.value("position", nlohmann::json())), uv_of(station.value("uv", nlohmann::json()))};
+      StationText text{vec3_of(station.value("position", nlohmann::json())),
+                       uv_of(station.value("uv", nlohmann::json()))};
       if (station.value("status", "ok") == "hole") text.position.reset();
-      if (!text.position && !text.uv) throw Error(Errc::malformed_file, file + ": a station has neither position nor uv");
+      if (!text.position && !text.uv)
+        throw Error(Errc::malformed_file, file + ": a station has neither position nor uv");
       stations.push_back(text);
     }
     return stations;
@@ -43,10 +45,12 @@ std::vector<StationText> read_front(const std::string& file, std::uint64_t entry
 }  // namespace
 
 void StationOptions::add(CLI::App& command) {
-  add_values(command, "--station", "X,Y,Z|U,V", "A station: the scanner's head, or a point of the search area; may be repeated",
+  add_values(command, "--station", "X,Y,Z|U,V",
+             "A station: the scanner's head, or a point of the search area; may be repeated",
              [this](const std::string& text, const std::string& what) { typed.push_back(parse_station(text, what)); })
       ->group("Stations");
-  add_text(command, "--stations", "FILE", "Stations from a CSV file with columns x,y,z or u,v, or from a plan's front.json", file)
+  add_text(command, "--stations", "FILE",
+           "Stations from a CSV file with columns x,y,z or u,v, or from a plan's front.json", file)
       ->group("Stations");
   add_value(command, "--entry", "K", "Which entry of front.json, counted from 0",
             [this](const std::string& text, const std::string& what) { entry = parse_count(text, what); })
@@ -65,20 +69,22 @@ std::vector<StationText> StationOptions::read(std::size_t most) const {
   if (stations.empty())
     throw Error(Errc::invalid_argument, "no station given: add --station X,Y,Z, --station u,v or --stations FILE");
   if (stations.size() > most)
-    throw Error(Errc::invalid_argument,
-                std::to_string(stations.size()) + " stations given, and at most " + std::to_string(most) + " can be simulated together");
+    throw Error(Errc::invalid_argument, std::to_string(stations.size()) + " stations given, and at most " +
+                                            std::to_string(most) + " can be simulated together");
   return stations;
 }
 
 namespace {
 
-// Where a given head's tripod stands: on the search area where its (u, v) is known and lies below, else the scanner's height lower.
+// Where a given head's tripod stands: on the search area where its (u, v) is known and lies below, else the scanner's
+// height lower.
 Vec3 ground_below(Site& site, const StationText& station) {
   constexpr double same_place_m = 1e-3;
   const Vec3 head = *station.position;
   if (station.uv && site.has_area()) {
     const auto ground = site.area().locate(*station.uv);
-    if (ground && std::hypot(ground->x - head.x, ground->y - head.y) < same_place_m && ground->z <= head.z) return *ground;
+    if (ground && std::hypot(ground->x - head.x, ground->y - head.y) < same_place_m && ground->z <= head.z)
+      return *ground;
   }
   return head - Vec3{0, 0, site.scanner.height_m};
 }

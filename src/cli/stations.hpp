@@ -2,13 +2,12 @@
 // Which stations a command works on: typed, read from a table, or taken from a plan's front.
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <cstdint>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
-
-#include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
 
 #include "cli/parse.hpp"
 #include "cli/site.hpp"
@@ -21,7 +20,8 @@ struct StationOptions {
   std::optional<std::uint64_t> entry;
 
   void add(CLI::App& command);
-  // From 1 to `most` stations, in the order given, typed ones first. Throws Error: io, malformed_file, invalid_argument.
+  // From 1 to `most` stations, in the order given, typed ones first. Throws Error: io, malformed_file,
+  // invalid_argument.
   std::vector<StationText> read(std::size_t most) const;
 };
 
@@ -30,7 +30,8 @@ struct SiteStation {
   bool has_uv = false;  // false: the head was given and no search area lies under it
 };
 
-// Heads stay where they are given; (u, v) go to the ground below and up by the scanner's height. Both are checked for clashes.
+// Heads stay where they are given; (u, v) go to the ground below and up by the scanner's height. Both are checked for
+// clashes.
 std::vector<SiteStation> place(Site& site, const std::vector<StationText>& stations);
 
 Network to_network(const std::vector<SiteStation>& stations);

@@ -34,7 +34,8 @@ AtomicFile::AtomicFile(std::filesystem::path file) : file_(std::move(file)) {
   const int descriptor = open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (descriptor >= 0) stream_ = fdopen(descriptor, "w+b");
   if (!stream_)
-    throw Error(Errc::io, "cannot write " + file_.string() + ": " + reason(errno) + " (does its folder exist, is it writable?)");
+    throw Error(Errc::io,
+                "cannot write " + file_.string() + ": " + reason(errno) + " (does its folder exist, is it writable?)");
   setvbuf(stream_, nullptr, _IOFBF, std::size_t{1} << 20);
 }
 

@@ -30,8 +30,10 @@ inline void check(RTCDevice device, const std::string& doing) {
   const RTCError error = rtcGetDeviceError(device);
   if (error == RTC_ERROR_NONE) return;
   if (error == RTC_ERROR_OUT_OF_MEMORY)
-    throw Error(Errc::out_of_memory, "Embree has not enough memory while " + doing + "; use a smaller scene or a machine with more");
-  throw Error(Errc::device_failure, "Embree failed while " + doing + " (error " + std::to_string(static_cast<int>(error)) + ")");
+    throw Error(Errc::out_of_memory,
+                "Embree has not enough memory while " + doing + "; use a smaller scene or a machine with more");
+  throw Error(Errc::device_failure,
+              "Embree failed while " + doing + " (error " + std::to_string(static_cast<int>(error)) + ")");
 }
 
 // Throws Error device_failure.

@@ -24,16 +24,12 @@ class Hash {
     mix(bytes);
   }
   template <class T>
-    requires std::has_unique_object_representations_v<T> || std::is_floating_point_v<T>
-  void add(const T& value) {
-    add_bytes(&value, sizeof value);
-  }
+  requires std::has_unique_object_representations_v<T> || std::is_floating_point_v<T>
+  void add(const T& value) { add_bytes(&value, sizeof value); }
   // REQUIRES: T without padding.
   template <class T>
-    requires std::is_trivially_copyable_v<T>
-  void add_all(std::span<const T> values) {
-    add_bytes(values.data(), values.size_bytes());
-  }
+  requires std::is_trivially_copyable_v<T>
+  void add_all(std::span<const T> values) { add_bytes(values.data(), values.size_bytes()); }
   template <class T>
   void add_all(const std::vector<T>& values) {
     add_all(std::span<const T>(values));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Counter-based random numbers: Philox4x32-10 (Salmon, Moraes, Dror, Shaw: Parallel Random Numbers: As Easy as 1, 2, 3, 2011).
-// The same (key, counter) gives the same numbers everywhere, in every order; shaders/lib/philox.glsl is the same function.
+// Counter-based random numbers: Philox4x32-10 (Salmon, Moraes, Dror, Shaw: Parallel Random Numbers: As Easy as 1, 2, 3,
+// 2011). The same (key, counter) gives the same numbers everywhere, in every order; shaders/lib/philox.glsl is the same
+// function.
 #pragma once
 
 #include <array>
@@ -20,14 +21,16 @@ constexpr std::array<std::uint32_t, 4> philox4x32(std::uint64_t key, std::array<
   return c;
 }
 
-// A stream of numbers from Philox blocks, for code that draws one after the other. Its state is two integers, so it checkpoints.
+// A stream of numbers from Philox blocks, for code that draws one after the other. Its state is two integers, so it
+// checkpoints.
 class RandomStream {
  public:
   explicit RandomStream(std::uint64_t seed, std::uint64_t stream = 0) : seed_(seed), stream_(stream) {}
 
   std::uint32_t bits() {
-    const auto block = philox4x32(seed_, {static_cast<std::uint32_t>(count_ >> 2), static_cast<std::uint32_t>(count_ >> 34),
-                                          static_cast<std::uint32_t>(stream_), static_cast<std::uint32_t>(stream_ >> 32)});
+    const auto block =
+        philox4x32(seed_, {static_cast<std::uint32_t>(count_ >> 2), static_cast<std::uint32_t>(count_ >> 34),
+                           static_cast<std::uint32_t>(stream_), static_cast<std::uint32_t>(stream_ >> 32)});
     return block[count_++ & 3];
   }
   double uniform() {  // [0, 1), 53 bits

@@ -124,8 +124,7 @@ VectorXd MoCmaEs::Impl::to_unit(std::span<const double> x) const {
   return t;
 }
 
-// ---- offspring
-// -------------------------------------------------------------------------------------------------------
+// Offspring.
 
 Front MoCmaEs::Impl::front() const {
   const std::size_t m = common.objectives;
@@ -292,8 +291,7 @@ void MoCmaEs::Impl::swap_block(const Member& parent, const Front& front, std::si
   express(k, std::move(genotype));
 }
 
-// ---- selection
-// -------------------------------------------------------------------------------------------------------
+// Selection.
 
 Member MoCmaEs::Impl::make_member(Solution solution, const Offspring& o, bool succeeded) {
   Member member;
@@ -365,8 +363,7 @@ void MoCmaEs::Impl::restart_if_stalled() {
   common.run_on();
 }
 
-// ---- interface
-// -------------------------------------------------------------------------------------------------------
+// Interface.
 
 MoCmaEs::MoCmaEs(std::size_t dimension, std::size_t objectives, const MoCmaEsConfig& config)
     : impl_(std::make_unique<Impl>(dimension, objectives, config)) {}

@@ -38,42 +38,27 @@ void check_reference(std::span<const double> points, std::size_t objectives, std
 
 std::string to_string(StopReason reason) {
   switch (reason) {
-    case StopReason::running:
-      return "running";
-    case StopReason::max_evaluations:
-      return "max_evaluations";
-    case StopReason::max_iterations:
-      return "max_iterations";
-    case StopReason::target_reached:
-      return "target_reached";
-    case StopReason::converged:
-      return "converged";
-    case StopReason::stagnated:
-      return "stagnated";
-    case StopReason::flat:
-      return "flat";
-    case StopReason::invalid_objective:
-      return "invalid_objective";
-    case StopReason::ill_conditioned:
-      return "ill_conditioned";
-    case StopReason::diverged:
-      return "diverged";
-    case StopReason::max_time:
-      return "max_time";
-    case StopReason::cancelled:
-      return "cancelled";
+    case StopReason::running: return "running";
+    case StopReason::max_evaluations: return "max_evaluations";
+    case StopReason::max_iterations: return "max_iterations";
+    case StopReason::target_reached: return "target_reached";
+    case StopReason::converged: return "converged";
+    case StopReason::stagnated: return "stagnated";
+    case StopReason::flat: return "flat";
+    case StopReason::invalid_objective: return "invalid_objective";
+    case StopReason::ill_conditioned: return "ill_conditioned";
+    case StopReason::diverged: return "diverged";
+    case StopReason::max_time: return "max_time";
+    case StopReason::cancelled: return "cancelled";
   }
   return "unknown";
 }
 
 std::string to_string(MoAlgorithm algorithm) {
   switch (algorithm) {
-    case MoAlgorithm::mo_cma_es:
-      return "mo_cma_es";
-    case MoAlgorithm::nsga2:
-      return "nsga2";
-    case MoAlgorithm::random_search:
-      return "random_search";
+    case MoAlgorithm::mo_cma_es: return "mo_cma_es";
+    case MoAlgorithm::nsga2: return "nsga2";
+    case MoAlgorithm::random_search: return "random_search";
   }
   return "unknown";
 }
@@ -87,12 +72,9 @@ MoAlgorithm mo_algorithm_from_string(const std::string& name) {
 std::unique_ptr<MultiObjectiveOptimiser> make_optimiser(MoAlgorithm algorithm, std::size_t dimension,
                                                         std::size_t objectives, const MoCmaEsConfig& config) {
   switch (algorithm) {
-    case MoAlgorithm::nsga2:
-      return std::make_unique<optimise::Nsga2>(dimension, objectives, config);
-    case MoAlgorithm::random_search:
-      return std::make_unique<optimise::RandomSearch>(dimension, objectives, config);
-    case MoAlgorithm::mo_cma_es:
-      break;
+    case MoAlgorithm::nsga2: return std::make_unique<optimise::Nsga2>(dimension, objectives, config);
+    case MoAlgorithm::random_search: return std::make_unique<optimise::RandomSearch>(dimension, objectives, config);
+    case MoAlgorithm::mo_cma_es: break;
   }
   return std::make_unique<MoCmaEs>(dimension, objectives, config);
 }

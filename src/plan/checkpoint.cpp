@@ -23,10 +23,8 @@ constexpr std::uint32_t kVersion = 1;
 struct Writer {
   std::string bytes;
   template <class T>
-    requires std::is_arithmetic_v<T>
-  void put(T value) {
-    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-  }
+  requires std::is_arithmetic_v<T>
+  void put(T value) { bytes.append(reinterpret_cast<const char*>(&value), sizeof value); }
   void put(std::string_view text) {
     put(std::uint64_t{text.size()});
     bytes.append(text);
@@ -82,7 +80,8 @@ void write_checkpoint(const std::filesystem::path& file, const Checkpoint& check
   w.put(snapshot.drawn), w.put(snapshot.redrawn);
   w.put(std::uint64_t{snapshot.history.size()});
   for (const PlanIteration& line : snapshot.history) {
-    w.put(std::uint64_t{line.iteration}), w.put(std::uint64_t{line.evaluations}), w.put(line.hypervolume), w.put(line.seconds);
+    w.put(std::uint64_t{line.iteration}), w.put(std::uint64_t{line.evaluations}), w.put(line.hypervolume),
+        w.put(line.seconds);
     w.put(std::uint64_t{line.front.size()});
     for (const auto& f : line.front) {
       w.put(std::uint64_t{f.size()});
@@ -111,11 +110,13 @@ std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& file) {
   Reader head(std::string_view(bytes).substr(kMagic.size()), file);
   const auto version = head.get<std::uint32_t>();
   if (version != kVersion)
-    throw Error(Errc::malformed_file, "checkpoint " + file.string() + " has format " + std::to_string(version) + ", this is " +
-                                          std::to_string(kVersion) + "; resume with the vantage that wrote it, or start again");
+    throw Error(Errc::malformed_file, "checkpoint " + file.string() + " has format " + std::to_string(version) +
+                                          ", this is " + std::to_string(kVersion) +
+                                          "; resume with the vantage that wrote it, or start again");
   const auto size = head.get<std::uint64_t>();
   const auto sum = head.get<std::uint64_t>();
-  const std::string_view body = std::string_view(bytes).substr(kMagic.size() + sizeof version + sizeof size + sizeof sum);
+  const std::string_view body =
+      std::string_view(bytes).substr(kMagic.size() + sizeof version + sizeof size + sizeof sum);
   if (body.size() != size || checksum(body) != sum) head.damaged();
 
   Reader r(body, file);
@@ -152,7 +153,8 @@ void require_same_run(const std::filesystem::path& file, const std::string& foun
     if (!more_before && !more_now) break;
     if (!more_before) before = "nothing";
     if (!more_now) now = "nothing";
-    if (before != now || more_before != more_now) differences.push_back("the checkpoint has " + before + ", this run " + now);
+    if (before != now || more_before != more_now)
+      differences.push_back("the checkpoint has " + before + ", this run " + now);
   }
   throw Error(Errc::invalid_argument,
               "checkpoint " + file.string() + " belongs to another run: " + differences.front() +

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a search needs to go on to the same bits: the state at its last snapshot and the values it has seen since. The optimiser
-// asks for the same points again, so those values are told to it in place of evaluations; a batch may be cut anywhere.
+// What a search needs to go on to the same bits: the state at its last snapshot and the values it has seen since. The
+// optimiser asks for the same points again, so those values are told to it in place of evaluations; a batch may be cut
+// anywhere.
 #pragma once
 
 #include <cstdint>

@@ -51,7 +51,8 @@ std::vector<PlanEntry> confirm_front(const SearchOutcome& found, const DecisionS
            .phase = "confirm"});
   };
 
-  // A search that samples did not keep its standard errors, nor the overlap where it is no objective. The same sample is drawn again.
+  // A search that samples did not keep its standard errors, nor the overlap where it is no objective. The same sample
+  // is drawn again.
   if (config.sample_voxels > 0 && !seeing.empty()) {
     const auto estimates = evaluator.estimate(seeing, {.report = {}, .stop = abort});
     std::size_t next = 0;
@@ -84,12 +85,15 @@ std::vector<PlanEntry> confirm_front(const SearchOutcome& found, const DecisionS
   if (config.sample_voxels == 0) {
     for (std::size_t k = 0; k < entries.size(); ++k) {
       PlanEntry& entry = entries[k];
-      if (entry.confirmed) entry.coverage = entry.exact_coverage, entry.overlap = entry.exact_overlap;
-      else take_objectives(entry, found.front[k]);
+      if (entry.confirmed)
+        entry.coverage = entry.exact_coverage, entry.overlap = entry.exact_overlap;
+      else
+        take_objectives(entry, found.front[k]);
     }
   }
   const auto rank = [](const PlanEntry& e) {
-    const auto falling = [](double value) { return value == value ? -value : 1.0; };  // NaN last, or it would be no order
+    // NaN last, or it would be no order
+    const auto falling = [](double value) { return value == value ? -value : 1.0; };
     return std::make_tuple(falling(e.coverage), falling(e.overlap), e.stations.size(), e.x);
   };
   std::sort(entries.begin(), entries.end(), [&](const PlanEntry& a, const PlanEntry& b) { return rank(a) < rank(b); });
@@ -105,8 +109,7 @@ double judge_by_every_ray(std::vector<PlanEntry>& entries, const DecisionSpace& 
     std::size_t parts = space.parts_of(to_network(entry.stations));
     if (config.min_link_overlap > 0) parts = connectivity(entry.exact_overlap_matrix, config.min_link_overlap).parts;
     values.resize(values.size() + objectives);
-    space.objectives_of(entry.x, entry.exact_coverage, entry.exact_overlap, parts,
-                        std::span(values).last(objectives));
+    space.objectives_of(entry.x, entry.exact_coverage, entry.exact_overlap, parts, std::span(values).last(objectives));
     judged.push_back(&entry);
   }
   const std::vector<std::size_t> ranks = non_dominated_ranks(values, objectives);

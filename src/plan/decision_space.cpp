@@ -26,21 +26,27 @@ void check(const PlanConfig& config) {
   if (config.stations_max + config.fixed.size() > kMaxStations)
     refuse("at most 64 stations in all, " + count(config.stations_max + config.fixed.size()) + " were asked for");
   if (config.iterations < 1) refuse("at least one iteration is needed");
-  if (config.problem != Problem::coverage_fix && config.population == 1) refuse("a population of 1 has no front; give 2 or more");
-  if (!(config.sigma0 > 0) || !std::isfinite(config.sigma0)) refuse("sigma0 must be above 0, not " + std::to_string(config.sigma0));
+  if (config.problem != Problem::coverage_fix && config.population == 1)
+    refuse("a population of 1 has no front; give 2 or more");
+  if (!(config.sigma0 > 0) || !std::isfinite(config.sigma0))
+    refuse("sigma0 must be above 0, not " + std::to_string(config.sigma0));
   if (!(config.max_seconds >= 0)) refuse("max_seconds must not be negative, not " + std::to_string(config.max_seconds));
   if (!(config.min_link_overlap >= 0 && config.min_link_overlap < 1))
     refuse("min_link_overlap must lie in [0, 1), not " + std::to_string(config.min_link_overlap));
   if (config.fitness) {
-    if (config.problem != Problem::coverage_min) refuse("a fitness needs coverage-min, not " + to_string(config.problem));
-    if (config.min_link_overlap > 0) refuse("a fitness has its own measure of connectedness; leave min_link_overlap at 0");
+    if (config.problem != Problem::coverage_min)
+      refuse("a fitness needs coverage-min, not " + to_string(config.problem));
+    if (config.min_link_overlap > 0)
+      refuse("a fitness has its own measure of connectedness; leave min_link_overlap at 0");
     for (const double weight : {config.fitness->coverage, config.fitness->station_count, config.fitness->visibility})
-      if (!(weight >= 0 && weight <= 1)) refuse("the weights of a fitness lie in [0, 1], not " + std::to_string(weight));
+      if (!(weight >= 0 && weight <= 1))
+        refuse("the weights of a fitness lie in [0, 1], not " + std::to_string(weight));
   }
   if (config.heights_m) {
     const auto [low, high] = *config.heights_m;
     if (!(low > 0 && low <= high && std::isfinite(high)))
-      refuse("heights_m must be two rising heights above 0, not " + std::to_string(low) + " and " + std::to_string(high));
+      refuse("heights_m must be two rising heights above 0, not " + std::to_string(low) + " and " +
+             std::to_string(high));
   }
 }
 
@@ -111,35 +117,40 @@ std::vector<std::vector<std::size_t>> DecisionSpace::blocks() const {
 
 std::vector<double> DecisionSpace::encode(std::span<const Vec3> heads) const {
   if (heads.empty() || heads.size() > max_)
-    refuse("an initial network needs 1 to " + std::to_string(max_) + " positions, " + std::to_string(heads.size()) + " were given");
+    refuse("an initial network needs 1 to " + std::to_string(max_) + " positions, " + std::to_string(heads.size()) +
+           " were given");
   std::vector<double> x(dimension());
   for (std::size_t i = 0; i < max_; ++i) {
     const Vec3 head = heads[i % heads.size()];
     const auto uv = site_.project(head - Vec3{0, 0, site_.height_m});
     if (!uv)
-      refuse("the initial position " + std::to_string(head.x) + ", " + std::to_string(head.y) + ", " + std::to_string(head.z) +
-             " is not above the search area");
+      refuse("the initial position " + std::to_string(head.x) + ", " + std::to_string(head.y) + ", " +
+             std::to_string(head.z) + " is not above the search area");
     x[2 * i] = uv->u, x[2 * i + 1] = uv->v;
     if (heights_) {
       const auto ground = site_.locate(*uv);
       x[2 * max_ + i] = std::clamp(ground ? head.z - ground->z : site_.height_m, height_bounds_[0], height_bounds_[1]);
     }
   }
-  if (minimises_) x.back() = max_ == min_ ? 0 : static_cast<double>(std::max(heads.size(), min_) - min_) / static_cast<double>(max_ - min_);
+  if (minimises_)
+    x.back() =
+        max_ == min_ ? 0 : static_cast<double>(std::max(heads.size(), min_) - min_) / static_cast<double>(max_ - min_);
   return x;
 }
 
 std::vector<std::vector<double>> DecisionSpace::encode_each(std::span<const Vec3> heads) const {
   std::vector<std::vector<double>> xs{encode(heads)};
   if (minimises_)
-    for (std::size_t n = std::min(heads.size(), max_) - 1; n >= min_ && n < heads.size(); --n) xs.push_back(encode(heads.first(n)));
+    for (std::size_t n = std::min(heads.size(), max_) - 1; n >= min_ && n < heads.size(); --n)
+      xs.push_back(encode(heads.first(n)));
   return xs;
 }
 
 void DecisionSpace::objectives_of(std::span<const double> x, double coverage, double overlap, std::size_t parts,
                                   std::span<double> f) const {
   if (fitness_) {
-    const double spared = max_ == min_ ? 1 : static_cast<double>(max_ - placed_count(x)) / static_cast<double>(max_ - min_);
+    const double spared =
+        max_ == min_ ? 1 : static_cast<double>(max_ - placed_count(x)) / static_cast<double>(max_ - min_);
     f[0] = 1 - (fitness_->coverage * coverage + fitness_->station_count * (std::exp2(spared) - 1) +
                 fitness_->visibility / static_cast<double>(parts));
     return;
@@ -148,7 +159,8 @@ void DecisionSpace::objectives_of(std::span<const double> x, double coverage, do
   f[k++] = 1 - coverage;
   if (overlap_) f[k++] = 1 - overlap;
   if (minimises_) f[k++] = x.back();
-  // Behind every connected network, whose objectives lie in [0, 1]; outside the reference point, so without hypervolume.
+  // Behind every connected network, whose objectives lie in [0, 1]; outside the reference point, so without
+  // hypervolume.
   if (parts > 1)
     for (double& value : f) value += static_cast<double>(parts - 1);
 }

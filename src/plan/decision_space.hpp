@@ -35,10 +35,13 @@ class DecisionSpace {
   std::vector<double> encode(std::span<const Vec3> heads) const;
   // An x for each number of stations that `heads` suffice for, the largest number first.
   std::vector<std::vector<double>> encode_each(std::span<const Vec3> heads) const;
-  // Connected parts that the objectives depend on and that need no simulation: of the visibility graph where there is a fitness, else 1.
+  // Connected parts that the objectives depend on and that need no simulation: of the visibility graph where there is a
+  // fitness, else 1.
   std::size_t parts_of(const Network& network) const { return fitness_ ? visibility_parts(site_, network) : 1; }
-  // Objective vector, all minimised (Table 2, or 1 - fitness). `parts`: connected parts of the network, 1 where nobody asks.
-  void objectives_of(std::span<const double> x, double coverage, double overlap, std::size_t parts, std::span<double> f) const;
+  // Objective vector, all minimised (Table 2, or 1 - fitness). `parts`: connected parts of the network, 1 where nobody
+  // asks.
+  void objectives_of(std::span<const double> x, double coverage, double overlap, std::size_t parts,
+                     std::span<double> f) const;
 
  private:
   double height(std::span<const double> x, std::size_t i) const;

@@ -11,8 +11,8 @@
 namespace vantage {
 namespace {
 
-// Evenly spread points of the unit square that any number of points may be taken of (Roberts: The Unreasonable Effectiveness of
-// Quasirandom Sequences, 2018): multiples of 1/g and 1/g², g the real root of g³ = g + 1, modulo 1.
+// Evenly spread points of the unit square that any number of points may be taken of (Roberts: The Unreasonable
+// Effectiveness of Quasirandom Sequences, 2018): multiples of 1/g and 1/g², g the real root of g³ = g + 1, modulo 1.
 Uv spread_point(const Site& site, std::size_t k) {
   constexpr double g = 1.32471795724474602596;
   const auto part = [k](double step) {
@@ -37,7 +37,8 @@ struct Candidate {
 
 }  // namespace
 
-GreedyResult choose_greedily(const Site& site, NetworkEvaluator& evaluator, const GreedyConfig& config, const Progress& progress) {
+GreedyResult choose_greedily(const Site& site, NetworkEvaluator& evaluator, const GreedyConfig& config,
+                             const Progress& progress) {
   if (config.stations < 1 || config.stations + config.fixed.size() > 64)
     throw Error(Errc::invalid_argument, "greedy: 1 to 64 stations can be chosen, kept ones included, not " +
                                             std::to_string(config.stations + config.fixed.size()));
@@ -65,7 +66,8 @@ GreedyResult choose_greedily(const Site& site, NetworkEvaluator& evaluator, cons
     covered = value->front().coverage;
   }
   std::vector<std::size_t> order(candidates.size());
-  for (std::size_t k = 0; k < order.size(); ++k) order[k] = k, candidates[k].gain = 2;  // above any gain: all are evaluated first
+  // above any gain: all are evaluated first
+  for (std::size_t k = 0; k < order.size(); ++k) order[k] = k, candidates[k].gain = 2;
   const auto better = [&](std::size_t a, std::size_t b) {
     return candidates[a].gain != candidates[b].gain ? candidates[a].gain > candidates[b].gain : a < b;
   };
@@ -80,8 +82,9 @@ GreedyResult choose_greedily(const Site& site, NetworkEvaluator& evaluator, cons
       result.coverage.push_back(covered);
       progress(static_cast<double>(chosen.size()) / static_cast<double>(config.stations));
       if (chosen.size() < config.stations && chosen.size() == candidates.size())
-        throw Error(Errc::invalid_argument, "greedy: " + std::to_string(config.stations) + " stations cannot be chosen from " +
-                                                std::to_string(candidates.size()) + " candidates; ask for more candidates");
+        throw Error(Errc::invalid_argument, "greedy: " + std::to_string(config.stations) +
+                                                " stations cannot be chosen from " + std::to_string(candidates.size()) +
+                                                " candidates; ask for more candidates");
       continue;
     }
     std::vector<std::size_t> stale;
@@ -116,10 +119,11 @@ GreedyResult choose_greedily(const Site& site, NetworkEvaluator& evaluator, cons
   return result;
 }
 
-GreedyResult greedy_network(Simulator& simulator, const SearchArea& area, const ClashChecker& clash, const GreedyConfig& config,
-                            const Progress& progress) {
+GreedyResult greedy_network(Simulator& simulator, const SearchArea& area, const ClashChecker& clash,
+                            const GreedyConfig& config, const Progress& progress) {
   const Site site = make_site(area, clash, simulator.scanner());
-  SimulatorEvaluator evaluator(simulator, {.sample_voxels = config.sample_voxels, .overlap = false, .min_link_overlap = 0});
+  SimulatorEvaluator evaluator(simulator,
+                               {.sample_voxels = config.sample_voxels, .overlap = false, .min_link_overlap = 0});
   return choose_greedily(site, evaluator, config, progress);
 }
 

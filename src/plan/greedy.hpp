@@ -7,6 +7,7 @@
 namespace vantage {
 
 // See greedy_network().
-GreedyResult choose_greedily(const Site& site, NetworkEvaluator& evaluator, const GreedyConfig& config, const Progress& progress);
+GreedyResult choose_greedily(const Site& site, NetworkEvaluator& evaluator, const GreedyConfig& config,
+                             const Progress& progress);
 
 }  // namespace vantage

@@ -13,10 +13,13 @@ namespace {
 
 class Lines {
  public:
-  void add(std::string_view name, std::string_view value) { text_.append(name).append(" = ").append(value).append("\n"); }
+  void add(std::string_view name, std::string_view value) {
+    text_.append(name).append(" = ").append(value).append("\n");
+  }
   void add(std::string_view name, double value) {
     char buffer[32];
-    add(name, std::string_view(buffer, static_cast<std::size_t>(std::to_chars(buffer, buffer + sizeof buffer, value).ptr - buffer)));
+    add(name, std::string_view(
+                  buffer, static_cast<std::size_t>(std::to_chars(buffer, buffer + sizeof buffer, value).ptr - buffer)));
   }
   void add(std::string_view name, std::uint64_t value) { add(name, std::string_view(std::to_string(value))); }
   void add_hash(std::string_view name, const Hash& hash) {
@@ -43,8 +46,8 @@ Hash hash_of(const Site& site) {
   for (int i = 0; i < kSide; ++i) {
     for (int j = 0; j < kSide; ++j) {
       const auto at = [](double low, double high, int k) { return low + (high - low) * k / (kSide - 1); };
-      const auto station =
-          place_station(site, {at(site.uv_min.u, site.uv_max.u, i), at(site.uv_min.v, site.uv_max.v, j)}, site.height_m);
+      const auto station = place_station(
+          site, {at(site.uv_min.u, site.uv_max.u, i), at(site.uv_min.v, site.uv_max.v, j)}, site.height_m);
       hash.add(static_cast<int>(station.status));
       hash.add(station.position.x), hash.add(station.position.y), hash.add(station.position.z);
     }

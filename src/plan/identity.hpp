@@ -7,7 +7,8 @@
 
 namespace vantage {
 
-// Lines "name = value" of everything that decides the bits of a search. Two runs with the same text may share a checkpoint.
+// Lines "name = value" of everything that decides the bits of a search. Two runs with the same text may share a
+// checkpoint.
 std::string identity(const Simulator& simulator, const Site& site, const SearchArea& area, const PlanConfig& config,
                      std::size_t batch);
 

@@ -37,9 +37,11 @@ class NetworkEvaluator {
   // How many networks evaluate() takes best at once; 0: as many as there are.
   virtual std::size_t chunk() const = 0;
   // Values in order; empty when stopped half way. REQUIRES: each network has an active station.
-  virtual std::optional<std::vector<NetworkValue>> evaluate(std::span<const Network> networks, const Progress& progress) = 0;
+  virtual std::optional<std::vector<NetworkValue>> evaluate(std::span<const Network> networks,
+                                                            const Progress& progress) = 0;
   // The same with overlap always and standard errors, for the few networks of a front.
-  virtual std::optional<std::vector<NetworkEstimate>> estimate(std::span<const Network> networks, const Progress& progress) = 0;
+  virtual std::optional<std::vector<NetworkEstimate>> estimate(std::span<const Network> networks,
+                                                               const Progress& progress) = 0;
   // With every ray; empty when stopped.
   virtual std::optional<ConfirmedNetwork> confirm(const Network& network, const Progress& progress) = 0;
   virtual double trace_seconds() const = 0;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plan/site.hpp"
-
 #include <string>
 
+#include "plan/site.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage {
@@ -28,7 +27,8 @@ std::vector<PlacedStation> place_stations(const SearchArea& area, const ClashChe
   const Site site = make_site(area, clash, scanner);
   std::vector<PlacedStation> stations;
   stations.reserve(uvs.size() / 2);
-  for (std::size_t i = 0; i < uvs.size(); i += 2) stations.push_back(place_station(site, {uvs[i], uvs[i + 1]}, height_m));
+  for (std::size_t i = 0; i < uvs.size(); i += 2)
+    stations.push_back(place_station(site, {uvs[i], uvs[i + 1]}, height_m));
   return stations;
 }
 

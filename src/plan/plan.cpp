@@ -14,8 +14,9 @@
 namespace vantage {
 namespace {
 
-// Offspring at once in the steady state. Every one more is a step further from the textbook's one at a time, so no more than the
-// engine needs to be kept busy: a whole network with every ray keeps any engine busy, a sampled one only a CPU.
+// Offspring at once in the steady state. Every one more is a step further from the textbook's one at a time, so no more
+// than the engine needs to be kept busy: a whole network with every ray keeps any engine busy, a sampled one only a
+// CPU.
 std::size_t batch_of(const Simulator& simulator, const PlanConfig& config) {
   if (config.batch > 0) return config.batch;
   if (config.sample_voxels == 0) return 1;
@@ -52,7 +53,8 @@ PlanResult plan(Simulator& simulator, const SearchArea& area, const ClashChecker
   result.evaluations = found.evaluations, result.resumed_evaluations = found.resumed_evaluations;
   result.drawn = found.drawn, result.redrawn = found.redrawn;
   result.stop_reason = found.stop_reason;
-  result.seconds = found.seconds + std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() - searched;
+  result.seconds =
+      found.seconds + std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() - searched;
   result.trace_seconds = found.trace_seconds + evaluator.trace_seconds() - searched_trace;
   return result;
 }

@@ -8,10 +8,11 @@
 namespace vantage {
 namespace {
 
-constexpr std::array<std::pair<Problem, const char*>, 4> kProblems{{{Problem::coverage_fix, "coverage-fix"},
-                                                                    {Problem::coverage_overlap_fix, "coverage-overlap-fix"},
-                                                                    {Problem::coverage_min, "coverage-min"},
-                                                                    {Problem::coverage_overlap_min, "coverage-overlap-min"}}};
+constexpr std::array<std::pair<Problem, const char*>, 4> kProblems{
+    {{Problem::coverage_fix, "coverage-fix"},
+     {Problem::coverage_overlap_fix, "coverage-overlap-fix"},
+     {Problem::coverage_min, "coverage-min"},
+     {Problem::coverage_overlap_min, "coverage-overlap-min"}}};
 
 }  // namespace
 

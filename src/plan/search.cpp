@@ -63,16 +63,19 @@ class Search {
     const auto x = [&](std::size_t k) { return std::span<const double>(xs).subspan(k * n, n); };
 
     std::vector<NetworkValue> values;
-    for (; values.size() < count && replay_next_ < replay_.size(); ++replay_next_) values.push_back(replay_[replay_next_]);
+    for (; values.size() < count && replay_next_ < replay_.size(); ++replay_next_)
+      values.push_back(replay_[replay_next_]);
     since_.insert(since_.end(), values.begin(), values.end());
     resumed_ += values.size();
     evaluated_ += values.size();
     while (values.size() < count) {
       if (const StopReason reason = interruption(); reason != StopReason::running) return reason;
-      const std::size_t left = count - values.size(), chunk = evaluator_.chunk() == 0 ? left : std::min(left, evaluator_.chunk());
+      const std::size_t left = count - values.size(),
+                        chunk = evaluator_.chunk() == 0 ? left : std::min(left, evaluator_.chunk());
       std::vector<Network> networks(networks_.begin() + static_cast<std::ptrdiff_t>(values.size()),
                                     networks_.begin() + static_cast<std::ptrdiff_t>(values.size() + chunk));
-      const Progress progress{.report = [&](double done) { watch(static_cast<double>(chunk) * done); }, .stop = setup_.stop};
+      const Progress progress{.report = [&](double done) { watch(static_cast<double>(chunk) * done); },
+                              .stop = setup_.stop};
       const auto found = evaluator_.evaluate(networks, progress);
       if (!found) return StopReason::cancelled;
       values.insert(values.end(), found->begin(), found->end());
@@ -153,12 +156,13 @@ class Search {
     return StopReason::running;
   }
 
-  // And what ends it between two batches. Values that a checkpoint brought are replayed first, so that a search that goes on stands
-  // where it was left.
+  // And what ends it between two batches. Values that a checkpoint brought are replayed first, so that a search that
+  // goes on stands where it was left.
   StopReason reason_to_stop() const {
     if (strategy_->stop_reason() != StopReason::running) return strategy_->stop_reason();
     if (strategy_->evaluations() >= budget_) return StopReason::max_iterations;
-    if (config_.target_hypervolume && strategy_->evaluations() > 0 && strategy_->hypervolume() >= *config_.target_hypervolume)
+    if (config_.target_hypervolume && strategy_->evaluations() > 0 &&
+        strategy_->hypervolume() >= *config_.target_hypervolume)
       return StopReason::target_reached;
     if (stagnated()) return StopReason::stagnated;
     return replay_next_ < replay_.size() ? StopReason::running : interruption();
@@ -169,7 +173,8 @@ class Search {
     const PlanIteration& now = history_.back();
     if (now.iteration <= config_.stagnation_iterations) return false;
     const std::size_t since = now.iteration - config_.stagnation_iterations;
-    const auto then = std::find_if(history_.rbegin(), history_.rend(), [&](const PlanIteration& p) { return p.iteration <= since; });
+    const auto then =
+        std::find_if(history_.rbegin(), history_.rend(), [&](const PlanIteration& p) { return p.iteration <= since; });
     return then != history_.rend() && now.hypervolume - then->hypervolume <= kStagnationTolerance * now.hypervolume;
   }
 
@@ -178,7 +183,8 @@ class Search {
     const double here = std::chrono::duration<double>(Clock::now() - start_).count();
     const double fresh = static_cast<double>(evaluated_ - resumed_) + under_way;
     const double rate = here > 0 ? fresh / here : 0;
-    double left = rate > 0 ? std::max(0.0, static_cast<double>(budget_) - static_cast<double>(evaluated_) - under_way) / rate : 0;
+    double left =
+        rate > 0 ? std::max(0.0, static_cast<double>(budget_) - static_cast<double>(evaluated_) - under_way) / rate : 0;
     if (config_.max_seconds > 0) left = std::min(left, std::max(0.0, config_.max_seconds - here));
     setup_.watch({.iteration = evaluated_ / population_,
                   .iterations = config_.iterations,

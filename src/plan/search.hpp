@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The search loop: asks, draws stations out of holes, evaluates, tells, keeps the history and the checkpoint, and knows when to stop.
+// The search loop: asks, draws stations out of holes, evaluates, tells, keeps the history and the checkpoint, and knows
+// when to stop.
 #pragma once
 
 #include <cstddef>

@@ -26,7 +26,8 @@ std::optional<std::vector<NetworkCounts>> SimulatorEvaluator::count(std::span<co
   return counts;
 }
 
-std::optional<std::vector<NetworkValue>> SimulatorEvaluator::evaluate(std::span<const Network> networks, const Progress& progress) {
+std::optional<std::vector<NetworkValue>> SimulatorEvaluator::evaluate(std::span<const Network> networks,
+                                                                      const Progress& progress) {
   const bool overlap = options_.overlap || options_.min_link_overlap > 0;
   const auto counts = count(networks, overlap, progress);
   if (!counts) return std::nullopt;
@@ -58,7 +59,8 @@ std::optional<ConfirmedNetwork> SimulatorEvaluator::confirm(const Network& netwo
   NetworkCounts counts = simulator_.evaluate(network, {.overlap = true}, progress);
   trace_seconds_ += counts.trace_seconds;
   if (counts.cancelled) return std::nullopt;
-  ConfirmedNetwork confirmed{.coverage = coverage(counts, simulator_.goal_density()), .overlaps = overlap_matrix(counts)};
+  ConfirmedNetwork confirmed{.coverage = coverage(counts, simulator_.goal_density()),
+                             .overlaps = overlap_matrix(counts)};
   confirmed.overlap = clustering_coefficient(confirmed.overlaps);
   confirmed.points_on_surveyed = std::move(counts.points_on_surveyed);
   return confirmed;

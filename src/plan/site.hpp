@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where stations may stand, as the search sees it: SearchArea and ClashChecker behind two functions, so that the search can be
-// tested on sites made of formulas. The functions must be safe to call from several threads.
+// Where stations may stand, as the search sees it: SearchArea and ClashChecker behind two functions, so that the search
+// can be tested on sites made of formulas. The functions must be safe to call from several threads.
 #pragma once
 
 #include <functional>
@@ -13,12 +13,12 @@ namespace vantage {
 
 struct Site {
   Uv uv_min, uv_max;
-  std::function<std::optional<Vec3>(Uv)> locate;            // ground under (u, v)
-  std::function<std::optional<Uv>(const Vec3&)> project;    // and back
-  std::function<bool(const Vec3&)> clashes;                 // by ground point
-  std::function<bool(const Vec3&, const Vec3&)> sees;       // one head the other, nothing between
-  double height_m = 0;                                      // of the scanner's head
-  double range_m = 0;                                       // how far a scanner sees
+  std::function<std::optional<Vec3>(Uv)> locate;          // ground under (u, v)
+  std::function<std::optional<Uv>(const Vec3&)> project;  // and back
+  std::function<bool(const Vec3&)> clashes;               // by ground point
+  std::function<bool(const Vec3&, const Vec3&)> sees;     // one head the other, nothing between
+  double height_m = 0;                                    // of the scanner's head
+  double range_m = 0;                                     // how far a scanner sees
 };
 
 // Borrows both.

@@ -51,7 +51,8 @@ class MultiObjective final : public Strategy {
 };
 
 constexpr std::size_t kRestarts = 1'000'000;  // enough to spend any budget
-// When to restart: less is to be gained than a sample's standard error, or stations move by less than 1/250 of the search area.
+// When to restart: less is to be gained than a sample's standard error, or stations move by less than 1/250 of the
+// search area.
 constexpr double kCoverageTolerance = 1e-3, kStepTolerance = 0.02;
 
 }  // namespace
@@ -66,15 +67,26 @@ std::unique_ptr<Strategy> make_strategy(const DecisionSpace& space, const PlanCo
   // The space outlives the strategy.
   const auto in_use = [&space](std::span<const double> x) { return space.placed_count(x); };
   if (has_one_objective(config)) {
-    CmaEsConfig cma{.population = population_of(config), .sigma0 = config.sigma0, .bounds = space.bounds(), .restarts = kRestarts,
-                    .f_tolerance = kCoverageTolerance, .x_tolerance = kStepTolerance, .seed = config.seed};
+    CmaEsConfig cma{.population = population_of(config),
+                    .sigma0 = config.sigma0,
+                    .bounds = space.bounds(),
+                    .restarts = kRestarts,
+                    .f_tolerance = kCoverageTolerance,
+                    .x_tolerance = kStepTolerance,
+                    .seed = config.seed};
     cma.blocks = space.blocks();
     if (space.minimises_stations()) cma.blocks_in_use = in_use;
     if (!config.start.empty()) cma.start = space.encode(config.start);
     return std::make_unique<SingleObjective>(space.dimension(), cma);
   }
-  MoCmaEsConfig mo{.scheme = config.scheme, .population = population_of(config), .batch = batch, .sigma0 = config.sigma0,
-                   .blocks = space.blocks(), .bounds = space.bounds(), .restarts = kRestarts, .seed = config.seed};
+  MoCmaEsConfig mo{.scheme = config.scheme,
+                   .population = population_of(config),
+                   .batch = batch,
+                   .sigma0 = config.sigma0,
+                   .blocks = space.blocks(),
+                   .bounds = space.bounds(),
+                   .restarts = kRestarts,
+                   .seed = config.seed};
   if (space.minimises_stations()) mo.blocks_in_use = in_use;
   if (!config.start.empty()) mo.start = space.encode_each(config.start);
   if (mo.start.size() > mo.population) mo.start.resize(mo.population);

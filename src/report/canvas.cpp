@@ -37,7 +37,8 @@ void require(cairo_status_t status, const std::filesystem::path& file) {
               "cannot draw " + file.string() + ": " + cairo_status_to_string(status));
 }
 
-// cairo numbers surfaces and images over the life of the process; numbered from 0 in each file, equal pictures are equal files.
+// cairo numbers surfaces and images over the life of the process; numbered from 0 in each file, equal pictures are
+// equal files.
 std::string with_own_numbers(const std::string& svg) {
   static const std::regex kName("([\"#(])(surface|image|mask|source|clip|pattern)([0-9]+)");
   std::map<std::string, std::size_t> numbers;
@@ -147,7 +148,9 @@ void Canvas::text(Point at, const std::string& text, const TextStyle& style) {
   impl_->font(style);
   cairo_text_extents_t extents;
   cairo_text_extents(c, text.c_str(), &extents);
-  const double dx = style.across == Align::start ? 0 : style.across == Align::middle ? -extents.x_advance / 2 : -extents.x_advance;
+  const double dx = style.across == Align::start    ? 0
+                    : style.across == Align::middle ? -extents.x_advance / 2
+                                                    : -extents.x_advance;
   // By the height of capitals, so that words with and without descenders stand on one line.
   const double capitals = 0.73 * style.size;
   const double dy = style.down == Align::start ? capitals : style.down == Align::middle ? capitals / 2 : 0;
@@ -173,7 +176,8 @@ void Canvas::image(const Rect& r, std::span<const std::uint32_t> pixels, std::si
   auto* target = reinterpret_cast<std::uint32_t*>(cairo_image_surface_get_data(surface.get()));
   for (int y = 0; target && y < height; ++y)
     for (int x = 0; x < width; ++x)
-      target[std::ptrdiff_t{y} * stride + x] = pixels[static_cast<std::size_t>(y) * columns + static_cast<std::size_t>(x)];
+      target[std::ptrdiff_t{y} * stride + x] =
+          pixels[static_cast<std::size_t>(y) * columns + static_cast<std::size_t>(x)];
   cairo_surface_mark_dirty(surface.get());
   cairo_save(c);
   cairo_translate(c, r.x, r.y);
@@ -216,7 +220,8 @@ void Canvas::save(const std::filesystem::path& file) const {
     require(cairo_surface_status(surface.get()), file);
     bytes = with_own_numbers(bytes);
   } else {
-    throw Error(Errc::invalid_argument, "cannot draw " + file.string() + ": \"" + extension + "\" is neither .png nor .svg");
+    throw Error(Errc::invalid_argument,
+                "cannot draw " + file.string() + ": \"" + extension + "\" is neither .png nor .svg");
   }
   write_atomically(file, bytes);
 }

@@ -26,7 +26,8 @@ std::vector<double> nice_ticks(double low, double high, int wanted) {
   if (!(high > low)) return {low};
   const double step = step_for(high - low, wanted);
   std::vector<double> ticks;
-  for (double k = std::ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; ++k) ticks.push_back(k == 0 ? 0.0 : k * step);
+  for (double k = std::ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; ++k)
+    ticks.push_back(k == 0 ? 0.0 : k * step);
   return ticks;
 }
 
@@ -106,7 +107,8 @@ Chart::Chart(Canvas& canvas, const Rect& area, Axis x, Axis y, const std::string
     widest = std::max(widest, canvas.text_width(y_labels[i], {.size = 12.5}));
   }
   canvas.rectangle(area_, {.colour = style::faint, .width = 1});
-  canvas.text({area_.x + area_.width / 2, area_.bottom() + 34}, x_.label, {.size = 13.5, .across = Align::middle, .down = Align::start});
+  canvas.text({area_.x + area_.width / 2, area_.bottom() + 34}, x_.label,
+              {.size = 13.5, .across = Align::middle, .down = Align::start});
   canvas.text({area_.x - widest - 26, area_.y + area_.height / 2}, y_.label,
               {.size = 13.5, .across = Align::middle, .turn = -std::numbers::pi / 2});
 }

@@ -20,8 +20,7 @@ std::size_t compromise(const PlanResult& result, const PlanConfig& config) {
     return product;
   };
   const auto rank = [&](const PlanEntry& entry) { return std::pair{overlap && linked(entry, config), gain(entry)}; };
-  return static_cast<std::size_t>(
-      std::ranges::max_element(result.front, {}, rank) - result.front.begin());
+  return static_cast<std::size_t>(std::ranges::max_element(result.front, {}, rank) - result.front.begin());
 }
 
 }  // namespace vantage

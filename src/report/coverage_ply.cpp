@@ -13,10 +13,10 @@ namespace vantage {
 void write_coverage_ply(const std::filesystem::path& file, const Simulator& simulator, const VoxelField& field) {
   const std::uint64_t voxels = simulator.voxel_count();
   if (field.count.size() != voxels || (!field.stations.empty() && field.stations.size() != voxels))
-    throw Error(Errc::invalid_argument, "the voxel field has " + std::to_string(field.count.size()) + " counts, the scene " +
-                                            std::to_string(voxels) + " surveyed voxels");
+    throw Error(Errc::invalid_argument, "the voxel field has " + std::to_string(field.count.size()) +
+                                            " counts, the scene " + std::to_string(voxels) + " surveyed voxels");
   const bool masks = !field.stations.empty();
-  std::vector<PlyProperty> properties{{"double", "x"},   {"double", "y"},    {"double", "z"},    {"uchar", "red"},
+  std::vector<PlyProperty> properties{{"double", "x"},    {"double", "y"},   {"double", "z"},    {"uchar", "red"},
                                       {"uchar", "green"}, {"uchar", "blue"}, {"float", "ratio"}, {"uint", "count"}};
   // PLY knows no 64-bit integer: stations 1 to 32, and the others.
   if (masks) properties.insert(properties.end(), {{"uint", "stations_low"}, {"uint", "stations_high"}});

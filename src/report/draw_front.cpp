@@ -34,8 +34,11 @@ std::unique_ptr<Canvas> front_picture(const PlanResult& result, const PlanConfig
   Canvas& canvas = *page;
   const Rect area = frame(view.coloured());
   std::string subtitle = problem_line(config);
-  if (view.single()) subtitle += std::string(", best ") + (config.fitness ? "fitness " : "coverage ") + fixed(result.hypervolume, 3);
-  else subtitle += ", hypervolume " + fixed(std::isnan(result.exact_hypervolume) ? result.hypervolume : result.exact_hypervolume, 3);
+  if (view.single())
+    subtitle += std::string(", best ") + (config.fitness ? "fitness " : "coverage ") + fixed(result.hypervolume, 3);
+  else
+    subtitle += ", hypervolume " +
+                fixed(std::isnan(result.exact_hypervolume) ? result.hypervolume : result.exact_hypervolume, 3);
   subtitle += " after " + grouped(result.evaluations) + " evaluations";
   const Chart chart(canvas, area, view.x_axis(dots), view.y_axis(dots),
                     view.single() ? "Best network found" : "Pareto front", subtitle);
@@ -69,8 +72,10 @@ std::unique_ptr<Canvas> front_picture(const PlanResult& result, const PlanConfig
   const Colour key = view.coloured() ? style::faint : style::blue;
   if (any_confirmed) legend.push_back({LegendItem::Mark::filled, key, "every ray"});
   if (any_dominated) legend.push_back({LegendItem::Mark::small, key, "dominated"});
-  if (sampled) legend.push_back({LegendItem::Mark::hollow, key, "search, " + grouped(config.sample_voxels) + " voxels"});
-  else if (!any_confirmed) legend.push_back({LegendItem::Mark::hollow, key, "as the search saw it"});
+  if (sampled)
+    legend.push_back({LegendItem::Mark::hollow, key, "search, " + grouped(config.sample_voxels) + " voxels"});
+  else if (!any_confirmed)
+    legend.push_back({LegendItem::Mark::hollow, key, "as the search saw it"});
   const PlanEntry* best = result.front.empty() ? nullptr : &result.front[compromise(result, config)];
   if (best && known(best->confirmed ? view.confirmed(*best) : view.searched(*best))) {
     const PlanEntry& chosen = *best;
@@ -79,7 +84,8 @@ std::unique_ptr<Canvas> front_picture(const PlanResult& result, const PlanConfig
     if (!view.single()) canvas.circle(p, 9, {.colour = style::orange, .width = 2.2});
     occupy(p, 11);
     std::string words = fixed(chosen.confirmed ? chosen.exact_coverage : chosen.coverage, 3) + " coverage";
-    if (!view.by_count()) words += ", " + fixed(chosen.confirmed ? chosen.exact_overlap : chosen.overlap, 3) + " overlap";
+    if (!view.by_count())
+      words += ", " + fixed(chosen.confirmed ? chosen.exact_overlap : chosen.overlap, 3) + " overlap";
     if (view.by_count() || view.coloured()) words += ", " + std::to_string(chosen.stations.size()) + " stations";
     const TextStyle text{.size = 12.5, .colour = style::orange, .across = Align::middle, .halo = 2};
     const Rect place = place_label(p, 13, canvas.text_width(words, text) + 6, 18,
@@ -87,7 +93,8 @@ std::unique_ptr<Canvas> front_picture(const PlanResult& result, const PlanConfig
     canvas.text({place.x + place.width / 2, place.y + place.height / 2}, words, text);
     if (!view.single())
       legend.push_back({LegendItem::Mark::ring, style::orange,
-                        !view.by_count() && linked(chosen, config) ? "compromise: largest linked product" : "compromise: largest product of gains"});
+                        !view.by_count() && linked(chosen, config) ? "compromise: largest linked product"
+                                                                   : "compromise: largest product of gains"});
   }
   draw_legend(canvas, {area.x, kHeight - 24}, legend);
   return page;

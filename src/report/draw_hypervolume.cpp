@@ -22,7 +22,8 @@ std::unique_ptr<Canvas> hypervolume_picture(const PlanResult& result, const Plan
     last = std::max(last, static_cast<double>(line.iteration));
   }
   if (result.history.empty()) low = 0, high = 1;
-  if (config.target_hypervolume) low = std::min(low, *config.target_hypervolume), high = std::max(high, *config.target_hypervolume);
+  if (config.target_hypervolume)
+    low = std::min(low, *config.target_hypervolume), high = std::max(high, *config.target_hypervolume);
   Axis x{.label = "Iteration", .low = 0, .high = last * 1.02};
   if (!result.history.empty()) {
     const PlanIteration& end = result.history.back();
@@ -30,28 +31,33 @@ std::unique_ptr<Canvas> hypervolume_picture(const PlanResult& result, const Plan
   }
   x.ticks = nice_ticks(0, x.high, 8);
   std::erase_if(x.ticks, [](double t) { return t != static_cast<double>(static_cast<long long>(t)); });
-  const Axis y = axis_over(single ? best + " so far" : "Hypervolume (reference point 1, largest value 1)", low, high, 0, 1);
+  const Axis y =
+      axis_over(single ? best + " so far" : "Hypervolume (reference point 1, largest value 1)", low, high, 0, 1);
   std::string reason = to_string(result.stop_reason);
   std::replace(reason.begin(), reason.end(), '_', ' ');
   const Chart chart(canvas, area, x, y, single ? best + " over the search" : "Hypervolume over the search",
                     problem_line(config) + ", stopped: " + reason);
   if (config.target_hypervolume) {
     const double target = *config.target_hypervolume;
-    canvas.line(chart.at(x.low, target), chart.at(x.high, target), {.colour = style::orange, .width = 1.2, .dashes = {6, 4}});
+    canvas.line(chart.at(x.low, target), chart.at(x.high, target),
+                {.colour = style::orange, .width = 1.2, .dashes = {6, 4}});
     const Point beside = chart.at(x.low + 0.01 * (x.high - x.low), target);
     canvas.text({beside.x, beside.y - 5}, "target " + number(target),
                 {.size = 12.5, .colour = style::orange, .down = Align::end, .halo = 2});
   }
   std::vector<Point> curve;
-  for (const PlanIteration& line : result.history) curve.push_back(chart.at(static_cast<double>(line.iteration), line.hypervolume));
+  for (const PlanIteration& line : result.history)
+    curve.push_back(chart.at(static_cast<double>(line.iteration), line.hypervolume));
   canvas.clip({area.x, area.y - 4, area.width + 4, area.height + 8});
   canvas.path(curve, {.colour = style::blue, .width = 2.2});
   canvas.unclip();
   if (!curve.empty()) {
     canvas.disc(curve.back(), 4.5, style::blue);
     // Below the end of a curve that rises, there is room.
-    canvas.text({std::min(curve.back().x + 4, area.right() - 6), curve.back().y + 12}, fixed(result.history.back().hypervolume, 4),
-                {.size = 13, .bold = true, .colour = style::blue, .across = Align::end, .down = Align::start, .halo = 2});
+    canvas.text(
+        {std::min(curve.back().x + 4, area.right() - 6), curve.back().y + 12},
+        fixed(result.history.back().hypervolume, 4),
+        {.size = 13, .bold = true, .colour = style::blue, .across = Align::end, .down = Align::start, .halo = 2});
   }
   return page;
 }

@@ -18,9 +18,9 @@ namespace vantage {
 namespace {
 
 constexpr double kLeast = default_link_overlap;  // overlaps below are not drawn, as in figure 12 of the method
-constexpr double kMostWidth = 9;         // of the strongest link
-constexpr double kStrong = 0.1;          // if none is stronger, a link of this overlap would be as wide
-constexpr double kDisc = 10.5;           // radius of a station's number
+constexpr double kMostWidth = 9;                 // of the strongest link
+constexpr double kStrong = 0.1;                  // if none is stronger, a link of this overlap would be as wide
+constexpr double kDisc = 10.5;                   // radius of a station's number
 constexpr std::size_t kPixelsPerUnit = 2, kSupersampling = 2;
 constexpr Colour kStation{0.10, 0.22, 0.45}, kLink{0.16, 0.34, 0.66}, kSkipped{0.72, 0.12, 0.12};
 
@@ -38,14 +38,17 @@ Box window_of(const SceneData& scene, const SearchMesh& mesh, std::span<const Pl
     for (const std::uint32_t v : t) box.extend(mesh.positions[v]);
   for (const PlacedStation& s : stations)
     if (s.status != StationStatus::hole) box.extend(s.position);
-  if (box.empty()) throw Error(Errc::invalid_argument, "draw_plan_view: there is neither a surveyed mesh nor a search area");
+  if (box.empty())
+    throw Error(Errc::invalid_argument, "draw_plan_view: there is neither a surveyed mesh nor a search area");
   const double margin = 0.03 * std::max({box.size().x, box.size().y, 0.1});
   box.min = box.min - Vec3{margin, margin, 0}, box.max = box.max + Vec3{margin, margin, 0};
   return box;
 }
 
-// Below a roof a map would show the roof. Where most of the search area is covered, the site is cut just above the scanners.
-double section_height(const SearchMesh& mesh, const HeightBuffer& heights, const SceneData& scene, std::span<const PlacedStation> stations) {
+// Below a roof a map would show the roof. Where most of the search area is covered, the site is cut just above the
+// scanners.
+double section_height(const SearchMesh& mesh, const HeightBuffer& heights, const SceneData& scene,
+                      std::span<const PlacedStation> stations) {
   const MapWindow& w = heights.window;
   double covered = 0, all = 0;
   std::vector<double> grounds;
@@ -54,7 +57,8 @@ double section_height(const SearchMesh& mesh, const HeightBuffer& heights, const
     const Vec3 centre = (a + b + c) * (1.0 / 3), n = cross(b - a, c - a);
     const double area = std::abs(n.z) / 2;
     const double column = (centre.x - w.x_min) / w.pixel_m, row = (w.y_max - centre.y) / w.pixel_m;
-    if (column < 0 || row < 0 || column >= static_cast<double>(w.columns) || row >= static_cast<double>(w.rows)) continue;
+    if (column < 0 || row < 0 || column >= static_cast<double>(w.columns) || row >= static_cast<double>(w.rows))
+      continue;
     const float top = heights.z[static_cast<std::size_t>(row) * w.columns + static_cast<std::size_t>(column)];
     all += area;
     if (double{top} + scene.origin.z > centre.z + 1.5) covered += area;
@@ -100,11 +104,12 @@ void draw_scale_bar(Canvas& canvas, Point at, double widest, double metre) {
 
 }  // namespace
 
-std::unique_ptr<Canvas> plan_view_picture(const Scene& scene, const SearchArea& area, std::span<const PlacedStation> stations,
-                                          const OverlapMatrix& overlap, const std::string& title) {
+std::unique_ptr<Canvas> plan_view_picture(const Scene& scene, const SearchArea& area,
+                                          std::span<const PlacedStation> stations, const OverlapMatrix& overlap,
+                                          const std::string& title) {
   if (overlap.size() != stations.size() && overlap.size() != 0)
-    throw Error(Errc::invalid_argument, "draw_plan_view: " + std::to_string(stations.size()) + " stations, but an overlap matrix of " +
-                                            std::to_string(overlap.size()));
+    throw Error(Errc::invalid_argument, "draw_plan_view: " + std::to_string(stations.size()) +
+                                            " stations, but an overlap matrix of " + std::to_string(overlap.size()));
   const SceneData& data = scene.data();
   const SearchMesh& mesh = area.mesh();
   const Box window = window_of(data, mesh, stations);
@@ -131,9 +136,10 @@ std::unique_ptr<Canvas> plan_view_picture(const Scene& scene, const SearchArea& 
   std::string subtitle = "Site from above";
   if (std::isfinite(cut)) subtitle += ", cut at z = " + fixed(cut, 1) + " m";
   if (mesh.triangles.size() > 0 && area.derived()) subtitle += "; search area derived from walkable surfaces";
-  const Chart chart(canvas, map,
-                    {.label = "x (m)", .low = window.min.x, .high = window.min.x + map.width / metre, .wanted_ticks = 7},
-                    {.label = "y (m)", .low = window.max.y - map.height / metre, .high = window.max.y, .wanted_ticks = 7}, title, subtitle);
+  const Chart chart(
+      canvas, map, {.label = "x (m)", .low = window.min.x, .high = window.min.x + map.width / metre, .wanted_ticks = 7},
+      {.label = "y (m)", .low = window.max.y - map.height / metre, .high = window.max.y, .wanted_ticks = 7}, title,
+      subtitle);
   std::vector<std::uint32_t> site = shade(data, heights);
   tint_search_area(site, heights, data.origin.z, mesh);
   canvas.image(map, halve(site, pixels.columns), pixels.columns / 2);
@@ -148,7 +154,8 @@ std::unique_ptr<Canvas> plan_view_picture(const Scene& scene, const SearchArea& 
     anchors.push_back(chart.at(stations[i].position.x, stations[i].position.y));
   }
   std::vector<Point> discs = spread(anchors, kDisc);
-  for (Point& p : discs) p = {std::clamp(p.x, map.x + kDisc, map.right() - kDisc), std::clamp(p.y, map.y + kDisc, map.bottom() - kDisc)};
+  for (Point& p : discs)
+    p = {std::clamp(p.x, map.x + kDisc, map.right() - kDisc), std::clamp(p.y, map.y + kDisc, map.bottom() - kDisc)};
 
   struct Link {
     std::size_t a, b;
@@ -176,7 +183,9 @@ std::unique_ptr<Canvas> plan_view_picture(const Scene& scene, const SearchArea& 
   for (const Link& link : links) {
     const double width = link_width(link.overlap, scale);
     canvas.line(discs[link.a], discs[link.b], {.colour = {1, 1, 1}, .width = width + 1.6, .opacity = 0.45});
-    canvas.line(discs[link.a], discs[link.b], {.colour = link.bridge ? style::orange : kLink, .width = width, .opacity = link_opacity(link.overlap, scale)});
+    canvas.line(
+        discs[link.a], discs[link.b],
+        {.colour = link.bridge ? style::orange : kLink, .width = width, .opacity = link_opacity(link.overlap, scale)});
   }
   for (std::size_t k = 0; k < shown.size(); ++k) {
     if (std::hypot(discs[k].x - anchors[k].x, discs[k].y - anchors[k].y) < 2) continue;
@@ -193,7 +202,8 @@ std::unique_ptr<Canvas> plan_view_picture(const Scene& scene, const SearchArea& 
     words(text);
     at.y += 24;
   };
-  const bool blocking = std::any_of(data.meshes.begin(), data.meshes.end(), [](const MeshInfo& m) { return m.role == Role::blocking; });
+  const bool blocking =
+      std::any_of(data.meshes.begin(), data.meshes.end(), [](const MeshInfo& m) { return m.role == Role::blocking; });
   swatch(kSurveyedTint, "surveyed");
   if (blocking) swatch(kBlockingTint, "not surveyed");
   canvas.fill({at.x, at.y - 7, 24, 14}, kBlockingTint);
@@ -210,7 +220,8 @@ std::unique_ptr<Canvas> plan_view_picture(const Scene& scene, const SearchArea& 
     at.y += 28;
   }
   if (holes > 0) {
-    canvas.text(at, std::to_string(holes) + (holes == 1 ? " station in a hole," : " stations in holes,"), {.size = 12.5});
+    canvas.text(at, std::to_string(holes) + (holes == 1 ? " station in a hole," : " stations in holes,"),
+                {.size = 12.5});
     canvas.text({at.x, at.y + 17}, "not shown", {.size = 12.5});
     at.y += 45;
   }
@@ -222,8 +233,9 @@ std::unique_ptr<Canvas> plan_view_picture(const Scene& scene, const SearchArea& 
     std::erase_if(samples, [](double v) { return v < kLeast; });
     const auto labels = tick_labels(samples);
     for (std::size_t k = 0; k < samples.size(); ++k) {
-      canvas.line({at.x, at.y}, {at.x + 24, at.y},
-                  {.colour = kLink, .width = link_width(samples[k], scale), .opacity = link_opacity(samples[k], scale)});
+      canvas.line(
+          {at.x, at.y}, {at.x + 24, at.y},
+          {.colour = kLink, .width = link_width(samples[k], scale), .opacity = link_opacity(samples[k], scale)});
       words(labels[k]);
       at.y += 22;
     }

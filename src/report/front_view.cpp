@@ -34,7 +34,8 @@ FrontDot FrontView::confirmed(const PlanEntry& entry) const {
 
 FrontDot FrontView::objectives(std::span<const double> f) const {
   const auto count = [&](double alpha) {
-    return static_cast<double>(config_.fixed.size() + station_count_from_alpha(alpha, config_.stations_min, config_.stations_max));
+    return static_cast<double>(config_.fixed.size() +
+                               station_count_from_alpha(alpha, config_.stations_min, config_.stations_max));
   };
   const double all = static_cast<double>(config_.fixed.size() + config_.stations_max);
   if (config_.fitness) return {1 - f[0], 0, all};
@@ -85,7 +86,9 @@ void draw_legend(Canvas& canvas, Point at, std::span<const LegendItem> items) {
       case LegendItem::Mark::small: canvas.disc(mark, 2.7, item.colour, 0.5); break;
       case LegendItem::Mark::hollow: canvas.circle(mark, 4, {.colour = item.colour, .width = 1.2}); break;
       case LegendItem::Mark::ring: canvas.circle(mark, 8, {.colour = item.colour, .width = 2}); break;
-      case LegendItem::Mark::line: canvas.line({at.x, at.y}, {at.x + 18, at.y}, {.colour = item.colour, .width = 2}); break;
+      case LegendItem::Mark::line:
+        canvas.line({at.x, at.y}, {at.x + 18, at.y}, {.colour = item.colour, .width = 2});
+        break;
     }
     canvas.text({at.x + 24, at.y}, item.text, {.size = 12.5});
     at.x += 24 + canvas.text_width(item.text, {.size = 12.5}) + 24;

@@ -22,9 +22,9 @@ class FrontView {
  public:
   explicit FrontView(const PlanConfig& config) : config_(config) {}
 
-  bool single() const { return has_one_objective(config_); }                            // one dot: on the whole range
-  bool by_count() const { return config_.problem == Problem::coverage_min; }            // stations on x, coverage on y
-  bool coloured() const { return config_.problem == Problem::coverage_overlap_min; }    // by the number of stations
+  bool single() const { return has_one_objective(config_); }                          // one dot: on the whole range
+  bool by_count() const { return config_.problem == Problem::coverage_min; }          // stations on x, coverage on y
+  bool coloured() const { return config_.problem == Problem::coverage_overlap_min; }  // by the number of stations
   FrontDot searched(const PlanEntry& entry) const;
   FrontDot confirmed(const PlanEntry& entry) const;
   FrontDot objectives(std::span<const double> f) const;  // of a line of the history

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// LAS 1.4, point data record format 7 (ASPRS: LAS Specification 1.4 R15, 2019): coordinates as multiples of 0.1 mm from an offset.
+// LAS 1.4, point data record format 7 (ASPRS: LAS Specification 1.4 R15, 2019): coordinates as multiples of 0.1 mm from
+// an offset.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -70,7 +71,8 @@ class LasSink final : public PointSink {
   std::int32_t steps(double value, double offset) const {
     const double steps = std::round((value - offset) / kScale);
     if (!(std::abs(steps) <= std::numeric_limits<std::int32_t>::max()))
-      throw Error(Errc::invalid_argument, "LAS cannot hold " + number(value) + " m: at 0.1 mm steps it reaches 214 km from the " +
+      throw Error(Errc::invalid_argument, "LAS cannot hold " + number(value) +
+                                              " m: at 0.1 mm steps it reaches 214 km from the " +
                                               "scene's origin; write .ply");
     return static_cast<std::int32_t>(steps);
   }
@@ -87,7 +89,8 @@ class LasSink final : public PointSink {
     append(h, std::uint8_t{1}), append(h, std::uint8_t{4});
     text("simulated terrestrial scan", 32);
     text("vantage " + std::string(version()), 32);
-    append(h, std::uint16_t{0}), append(h, std::uint16_t{0});  // creation day and year: unset, so equal runs give equal files
+    // creation day and year: unset, so equal runs give equal files
+    append(h, std::uint16_t{0}), append(h, std::uint16_t{0});
     append(h, static_cast<std::uint16_t>(kHeaderBytes));
     append(h, static_cast<std::uint32_t>(kHeaderBytes));  // offset to point data
     append(h, std::uint32_t{0});                          // variable length records
@@ -100,7 +103,7 @@ class LasSink final : public PointSink {
       append(h, points_ == 0 ? 0.0 : high_[axis] * kScale + offset_[axis]);
       append(h, points_ == 0 ? 0.0 : low_[axis] * kScale + offset_[axis]);
     }
-    append(h, std::uint64_t{0});  // waveforms
+    append(h, std::uint64_t{0});                               // waveforms
     append(h, std::uint64_t{0}), append(h, std::uint32_t{0});  // extended records
     append(h, points_), append(h, points_);                    // in all, and of first returns
     text("", 14 * 8);

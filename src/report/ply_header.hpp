@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The header of a binary PLY whose number of vertices is only known at the end: it has the same length whatever the number.
+// The header of a binary PLY whose number of vertices is only known at the end: it has the same length whatever the
+// number.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +26,8 @@ class PlyHeader {
     // The comment makes up for the digits that the number lacks; leading zeros would be octal to some readers.
     std::string text = "ply\nformat binary_little_endian 1.0\ncomment vantage " + std::string(version()) + " " +
                        std::string(20 - count.size(), '.') + "\nelement vertex " + count + "\n";
-    for (const auto& [type, name] : properties_) text.append("property ").append(type).append(" ").append(name).append("\n");
+    for (const auto& [type, name] : properties_)
+      text.append("property ").append(type).append(" ").append(name).append("\n");
     return text + "end_header\n";
   }
 

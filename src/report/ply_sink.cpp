@@ -31,7 +31,8 @@ class PlySink final : public PointSink {
     for (std::size_t k = 0; k < chunk.ray_count; ++k) {
       if (!hit(chunk, k)) continue;
       const auto& p = chunk.position[k];
-      append(bytes_, origin_.x + double{p[0]}), append(bytes_, origin_.y + double{p[1]}), append(bytes_, origin_.z + double{p[2]});
+      append(bytes_, origin_.x + double{p[0]}), append(bytes_, origin_.y + double{p[1]}),
+          append(bytes_, origin_.z + double{p[2]});
       if (outputs_ & scan_normal)
         for (const float c : chunk.normal[k]) append(bytes_, c);
       if (outputs_ & scan_colour)

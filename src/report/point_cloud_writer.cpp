@@ -18,11 +18,13 @@ PointCloudWriter::PointCloudWriter(const std::filesystem::path& file, const Vec3
   if (!(outputs & scan_position)) throw Error(Errc::invalid_argument, "a point cloud needs the output scan_position");
   impl_->outputs = outputs;
   const std::string extension = file.extension().string();
-  if (extension == ".ply") impl_->sink = make_ply_sink(file, origin, outputs);
-  else if (extension == ".las") impl_->sink = make_las_sink(file, origin, outputs);
+  if (extension == ".ply")
+    impl_->sink = make_ply_sink(file, origin, outputs);
+  else if (extension == ".las")
+    impl_->sink = make_las_sink(file, origin, outputs);
   else
-    throw Error(Errc::invalid_argument,
-                "cannot tell the format of " + file.string() + " from its extension \"" + extension + "\"; use .ply or .las");
+    throw Error(Errc::invalid_argument, "cannot tell the format of " + file.string() + " from its extension \"" +
+                                            extension + "\"; use .ply or .las");
 }
 
 PointCloudWriter::PointCloudWriter(PointCloudWriter&&) noexcept = default;
@@ -33,11 +35,14 @@ void PointCloudWriter::write(const ScanChunk& chunk, std::uint16_t station) {
   if (!impl_->open) throw Error(Errc::invalid_argument, "the point cloud is closed");
   const auto has = [&](std::uint32_t output, std::size_t size) {
     if ((impl_->outputs & output) && size != chunk.ray_count)
-      throw Error(Errc::invalid_argument, "a chunk of " + std::to_string(chunk.ray_count) + " rays lacks an output (bit " +
-                                              std::to_string(output) + ") that the point cloud was opened with");
+      throw Error(Errc::invalid_argument, "a chunk of " + std::to_string(chunk.ray_count) +
+                                              " rays lacks an output (bit " + std::to_string(output) +
+                                              ") that the point cloud was opened with");
   };
-  has(scan_position, chunk.position.size()), has(scan_range, chunk.range_m.size()), has(scan_normal, chunk.normal.size());
-  has(scan_reflectivity, chunk.reflectivity.size()), has(scan_ids, chunk.mesh.size()), has(scan_ids, chunk.primitive.size());
+  has(scan_position, chunk.position.size()), has(scan_range, chunk.range_m.size()),
+      has(scan_normal, chunk.normal.size());
+  has(scan_reflectivity, chunk.reflectivity.size()), has(scan_ids, chunk.mesh.size()),
+      has(scan_ids, chunk.primitive.size());
   has(scan_colour, chunk.colour.size()), has(scan_voxel, chunk.voxel.size());
   impl_->sink->write(chunk, station);
 }

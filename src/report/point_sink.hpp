@@ -31,7 +31,8 @@ void append(std::string& record, T value) {
   record.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-// Whether ray k of the chunk hit, by whatever the chunk carries: range, ids, else the position, which is finite for hits alone.
+// Whether ray k of the chunk hit, by whatever the chunk carries: range, ids, else the position, which is finite for
+// hits alone.
 inline bool hit(const ScanChunk& chunk, std::size_t k) {
   const auto finite = [](float value) { return value - value == 0; };
   if (!chunk.range_m.empty()) return finite(chunk.range_m[k]);

@@ -85,7 +85,8 @@ std::vector<float> box_mean(const HeightBuffer& heights, std::size_t r, float fl
     const std::size_t y0 = y > r ? y - r : 0, y1 = std::min(h, y + r + 1);
     for (std::size_t x = 0; x < w; ++x) {
       const std::size_t x0 = x > r ? x - r : 0, x1 = std::min(w, x + r + 1);
-      const double sum = sums[y1 * (w + 1) + x1] - sums[y0 * (w + 1) + x1] - sums[y1 * (w + 1) + x0] + sums[y0 * (w + 1) + x0];
+      const double sum =
+          sums[y1 * (w + 1) + x1] - sums[y0 * (w + 1) + x1] - sums[y1 * (w + 1) + x0] + sums[y0 * (w + 1) + x0];
       mean[y * w + x] = static_cast<float>(sum / static_cast<double>((y1 - y0) * (x1 - x0)));
     }
   });
@@ -126,7 +127,8 @@ std::vector<std::uint32_t> shade(const SceneData& scene, const HeightBuffer& hei
   const double extent = static_cast<double>(std::max(w, h));
   const auto near = box_mean(heights, static_cast<std::size_t>(extent * 0.004) + 1, low);
   const auto far = box_mean(heights, static_cast<std::size_t>(extent * 0.02) + 1, low);
-  const double near_scale = extent * 0.010 * heights.window.pixel_m, far_scale = extent * 0.045 * heights.window.pixel_m;
+  const double near_scale = extent * 0.010 * heights.window.pixel_m,
+               far_scale = extent * 0.045 * heights.window.pixel_m;
   constexpr double kLight[3] = {-0.5, 0.5, 0.7071067811865476};  // from the north-west, 45° high
 
   tbb::parallel_for(std::size_t{0}, h, [&](std::size_t y) {

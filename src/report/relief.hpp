@@ -41,8 +41,10 @@ template <class Put>
 void for_each_pixel(const MapWindow& window, const std::array<MapPoint, 3>& c, Put&& put) {
   const double area = (c[1].x - c[0].x) * (c[2].y - c[0].y) - (c[2].x - c[0].x) * (c[1].y - c[0].y);
   if (area == 0) return;
-  const auto [x0, x1] = pixels_between(std::min({c[0].x, c[1].x, c[2].x}), std::max({c[0].x, c[1].x, c[2].x}), window.columns);
-  const auto [y0, y1] = pixels_between(std::min({c[0].y, c[1].y, c[2].y}), std::max({c[0].y, c[1].y, c[2].y}), window.rows);
+  const auto [x0, x1] =
+      pixels_between(std::min({c[0].x, c[1].x, c[2].x}), std::max({c[0].x, c[1].x, c[2].x}), window.columns);
+  const auto [y0, y1] =
+      pixels_between(std::min({c[0].y, c[1].y, c[2].y}), std::max({c[0].y, c[1].y, c[2].y}), window.rows);
   for (std::size_t y = y0; y < y1; ++y) {
     for (std::size_t x = x0; x < x1; ++x) {
       const double px = static_cast<double>(x) + 0.5, py = static_cast<double>(y) + 0.5;
@@ -56,13 +58,14 @@ void for_each_pixel(const MapWindow& window, const std::array<MapPoint, 3>& c, P
 // The topmost surface below `z_cut` (survey frame) under each pixel's centre.
 struct HeightBuffer {
   MapWindow window;
-  std::vector<float> z;                  // local frame; −infinity where there is nothing
-  std::vector<std::uint32_t> triangle;   // of the scene; 2^32 − 1 where there is nothing
+  std::vector<float> z;                 // local frame; −infinity where there is nothing
+  std::vector<std::uint32_t> triangle;  // of the scene; 2^32 − 1 where there is nothing
 };
 
 HeightBuffer look_from_above(const SceneData& scene, const MapWindow& window, double z_cut);
 
-// Shaded relief, light from the north-west, surveyed meshes tinted. 0xAARRGGBB, premultiplied; transparent where there is nothing.
+// Shaded relief, light from the north-west, surveyed meshes tinted. 0xAARRGGBB, premultiplied; transparent where there
+// is nothing.
 std::vector<std::uint32_t> shade(const SceneData& scene, const HeightBuffer& heights);
 
 // Halves both sides by averaging two by two. REQUIRES: even numbers of columns and rows.

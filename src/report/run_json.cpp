@@ -83,9 +83,11 @@ ordered_json links_json(const OverlapMatrix& overlap, double min_overlap) {
   const Connectivity graph = connectivity(overlap, min_overlap);
   ordered_json bridges = ordered_json::array();
   for (const auto& [i, j] : graph.bridges) bridges.push_back({i + 1, j + 1});
-  ordered_json json = {{"min_overlap", min_overlap}, {"parts", graph.parts}, {"bridges", std::move(bridges)}, {"weakest", nullptr}};
+  ordered_json json = {
+      {"min_overlap", min_overlap}, {"parts", graph.parts}, {"bridges", std::move(bridges)}, {"weakest", nullptr}};
   if (graph.parts == 1 && overlap.size() > 1)
-    json["weakest"] = {{"stations", {graph.weakest_link.first + 1, graph.weakest_link.second + 1}}, {"overlap", graph.weakest_overlap}};
+    json["weakest"] = {{"stations", {graph.weakest_link.first + 1, graph.weakest_link.second + 1}},
+                       {"overlap", graph.weakest_overlap}};
   return json;
 }
 
@@ -95,7 +97,8 @@ ordered_json entry_json(const PlanEntry& entry, const PlanConfig& config) {
     const PlacedStation& s = entry.stations[i];
     ordered_json station = {{"position", nullptr}, {"uv", {s.uv.u, s.uv.v}}, {"status", to_string(s.status)}};
     if (s.status != StationStatus::hole) station["position"] = to_json(s.position);
-    if (entry.confirmed && i < entry.points_on_surveyed.size()) station["points_on_surveyed"] = entry.points_on_surveyed[i];
+    if (entry.confirmed && i < entry.points_on_surveyed.size())
+      station["points_on_surveyed"] = entry.points_on_surveyed[i];
     stations.push_back(std::move(station));
   }
   ordered_json json = {{"coverage", entry.coverage},
@@ -107,7 +110,8 @@ ordered_json entry_json(const PlanEntry& entry, const PlanConfig& config) {
                        {"stations", std::move(stations)},
                        {"x", entry.x}};
   if (entry.confirmed) {
-    json["exact"] = {{"coverage", entry.exact_coverage}, {"overlap", entry.exact_overlap}, {"dominated", entry.dominated}};
+    json["exact"] = {
+        {"coverage", entry.exact_coverage}, {"overlap", entry.exact_overlap}, {"dominated", entry.dominated}};
     json["links"] = links_json(entry.exact_overlap_matrix, link_overlap(config));
   }
   return json;
@@ -141,14 +145,10 @@ std::string run_parameters_json(const Simulator& simulator, const PlanConfig* pl
 std::string front_json(const PlanResult& result, const PlanConfig& config, const Simulator& simulator) {
   ordered_json front = ordered_json::array();
   for (const PlanEntry& entry : result.front) front.push_back(entry_json(entry, config));
-  ordered_json json = {{"problem", to_string(config.problem)},
-                       {"objectives", objective_names(config)},
-                       {"hypervolume", result.hypervolume},
-                       {"exact_hypervolume", result.exact_hypervolume},
-                       {"evaluations", result.evaluations},
-                       {"stations_drawn", result.drawn},
-                       {"stations_redrawn", result.redrawn},
-                       {"stop_reason", to_string(result.stop_reason)}};
+  ordered_json json = {{"problem", to_string(config.problem)}, {"objectives", objective_names(config)},
+                       {"hypervolume", result.hypervolume},    {"exact_hypervolume", result.exact_hypervolume},
+                       {"evaluations", result.evaluations},    {"stations_drawn", result.drawn},
+                       {"stations_redrawn", result.redrawn},   {"stop_reason", to_string(result.stop_reason)}};
   if (!result.front.empty()) json["compromise"] = compromise(result, config);
   json["front"] = std::move(front);
   json["seconds"] = {{"total", result.seconds}, {"trace", result.trace_seconds}};

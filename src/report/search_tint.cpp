@@ -32,8 +32,8 @@ std::vector<std::uint8_t> cover_of(const HeightBuffer& heights, double origin_z,
 
 // Sets in `near` what lies less than `r` pixels, along its line, from one that is `wanted` or from the line's end.
 template <class Wanted>
-void spread_along(std::size_t lines, std::size_t line_step, std::size_t length, std::size_t step, std::size_t r, Wanted&& wanted,
-                  std::vector<std::uint8_t>& near) {
+void spread_along(std::size_t lines, std::size_t line_step, std::size_t length, std::size_t step, std::size_t r,
+                  Wanted&& wanted, std::vector<std::uint8_t>& near) {
   for (std::size_t line = 0; line < lines; ++line) {
     for (const bool forth : {true, false}) {
       std::size_t since = 0;
@@ -46,12 +46,15 @@ void spread_along(std::size_t lines, std::size_t line_step, std::size_t length, 
   }
 }
 
-// Those of the set with another pixel that is not less than `r` columns and rows away, or with the map's border as near.
+// Those of the set with another pixel that is not less than `r` columns and rows away, or with the map's border as
+// near.
 std::vector<std::uint8_t> rim_of(const std::vector<std::uint8_t>& set, std::size_t columns, std::size_t r) {
   const std::size_t rows = set.size() / columns;
   std::vector<std::uint8_t> across(set.size(), 0), rim(set.size(), 0);
-  spread_along(rows, columns, columns, 1, r, [&](std::size_t k) { return !set[k]; }, across);
-  spread_along(columns, 1, rows, columns, r, [&](std::size_t k) { return across[k]; }, rim);
+  spread_along(
+      rows, columns, columns, 1, r, [&](std::size_t k) { return !set[k]; }, across);
+  spread_along(
+      columns, 1, rows, columns, r, [&](std::size_t k) { return across[k]; }, rim);
   for (std::size_t k = 0; k < set.size(); ++k) rim[k] = rim[k] && set[k];
   return rim;
 }
@@ -64,15 +67,18 @@ std::uint32_t over(std::uint32_t pixel, const Colour& colour, double opacity) {
   for (int k = 0; k < 3; ++k) {
     const int shift = 16 - 8 * k;
     const double below = (pixel >> shift & 255u) + paper;
-    mixed |= static_cast<std::uint32_t>(std::lround(below + opacity * (bytes[static_cast<std::size_t>(k)] - below))) << shift;
+    mixed |= static_cast<std::uint32_t>(std::lround(below + opacity * (bytes[static_cast<std::size_t>(k)] - below)))
+             << shift;
   }
   return mixed;
 }
 
 }  // namespace
 
-void tint_search_area(std::vector<std::uint32_t>& pixels, const HeightBuffer& heights, double origin_z, const SearchMesh& mesh) {
-  const std::vector<std::uint8_t> cover = cover_of(heights, origin_z, mesh), rim = rim_of(cover, heights.window.columns, kRim);
+void tint_search_area(std::vector<std::uint32_t>& pixels, const HeightBuffer& heights, double origin_z,
+                      const SearchMesh& mesh) {
+  const std::vector<std::uint8_t> cover = cover_of(heights, origin_z, mesh),
+                                  rim = rim_of(cover, heights.window.columns, kRim);
   for (std::size_t k = 0; k < pixels.size(); ++k) {
     if (rim[k])
       pixels[k] = over(pixels[k], kSearchTint, cover[k] == shown ? kSearchRim : kHiddenRim);

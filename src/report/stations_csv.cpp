@@ -39,8 +39,10 @@ void write_stations_csv(const std::filesystem::path& file, std::span<const Place
     const PlacedStation& s = stations[i];
     text += number(i + 1) + ",";  // numbered from 1, as in the pictures
     // A station in a hole has no position; empty cells keep a reader from taking it for the origin.
-    if (s.status == StationStatus::hole) text += ",,,";
-    else text += number(s.position.x) + "," + number(s.position.y) + "," + number(s.position.z) + ",";
+    if (s.status == StationStatus::hole)
+      text += ",,,";
+    else
+      text += number(s.position.x) + "," + number(s.position.y) + "," + number(s.position.z) + ",";
     text += number(s.uv.u) + "," + number(s.uv.v) + "," + to_string(s.status) + "\n";
   }
   write_atomically(file, text);
@@ -82,7 +84,8 @@ std::vector<StationRow> read_stations_csv(const std::filesystem::path& file) {
     const auto value = [&](const char* name) -> std::optional<double> {
       const auto found = column.find(name);
       if (found == column.end()) return std::nullopt;
-      if (found->second >= cells.size()) refuse("the line has " + std::to_string(cells.size()) + " cells, too few for " + name);
+      if (found->second >= cells.size())
+        refuse("the line has " + std::to_string(cells.size()) + " cells, too few for " + name);
       std::string_view cell = cells[found->second];
       if (cell.empty()) return std::nullopt;
       if (cell.front() == '+') cell.remove_prefix(1);
@@ -94,10 +97,14 @@ std::vector<StationRow> read_stations_csv(const std::filesystem::path& file) {
     };
     StationRow row;
     const auto x = value("x"), y = value("y"), z = value("z"), u = value("u"), v = value("v");
-    if (x && y && z) row.position = Vec3{*x, *y, *z};
-    else if (x || y || z) refuse("of x, y and z some are empty");
-    if (u && v) row.uv = Uv{*u, *v};
-    else if (u || v) refuse("one of u and v is empty");
+    if (x && y && z)
+      row.position = Vec3{*x, *y, *z};
+    else if (x || y || z)
+      refuse("of x, y and z some are empty");
+    if (u && v)
+      row.uv = Uv{*u, *v};
+    else if (u || v)
+      refuse("one of u and v is empty");
     if (!row.position && !row.uv) refuse("the line has neither a position nor (u, v)");
     rows.push_back(row);
   }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "report/tables.hpp"
+
 #include <algorithm>
 
 #include "core/atomic_file.hpp"
-#include "report/tables.hpp"
 #include "report/text.hpp"
 #include "vantage/export.hpp"
 
@@ -25,15 +26,16 @@ void write_overlap_csv(const std::filesystem::path& file, const OverlapMatrix& o
 void write_front_csv(const std::filesystem::path& file, const PlanResult& result, const PlanConfig& config) {
   std::size_t most = 0;
   for (const PlanEntry& entry : result.front) most = std::max(most, entry.stations.size());
-  std::string text = "entry,station_count,coverage,coverage_se,overlap,overlap_se,exact_coverage,exact_overlap,dominated";
+  std::string text =
+      "entry,station_count,coverage,coverage_se,overlap,overlap_se,exact_coverage,exact_overlap,dominated";
   if (objective_names(config.problem).back() == "alpha") text += ",alpha";
   for (std::size_t i = 0; i < most; ++i)
     for (const char* name : {"x", "y", "z", "u", "v", "status"}) text += "," + std::string(name) + number(i + 1);
   text += "\n";
   for (std::size_t k = 0; k < result.front.size(); ++k) {
     const PlanEntry& e = result.front[k];
-    text += number(k + 1) + "," + number(e.stations.size()) + "," + number(e.coverage) + "," + number(e.coverage_se) + "," +
-            number(e.overlap) + "," + number(e.overlap_se) + ",";
+    text += number(k + 1) + "," + number(e.stations.size()) + "," + number(e.coverage) + "," + number(e.coverage_se) +
+            "," + number(e.overlap) + "," + number(e.overlap_se) + ",";
     text += e.confirmed ? number(e.exact_coverage) + "," + number(e.exact_overlap) + "," + (e.dominated ? "1" : "0")
                         : std::string(",,");
     if (objective_names(config.problem).back() == "alpha") text += "," + number(e.x.back());
@@ -43,8 +45,10 @@ void write_front_csv(const std::filesystem::path& file, const PlanResult& result
         continue;
       }
       const PlacedStation& s = e.stations[i];
-      if (s.status == StationStatus::hole) text += ",,,";
-      else text += "," + number(s.position.x) + "," + number(s.position.y) + "," + number(s.position.z);
+      if (s.status == StationStatus::hole)
+        text += ",,,";
+      else
+        text += "," + number(s.position.x) + "," + number(s.position.y) + "," + number(s.position.z);
       text += "," + number(s.uv.u) + "," + number(s.uv.v) + "," + to_string(s.status);
     }
     text += "\n";

@@ -9,10 +9,11 @@
 
 namespace vantage {
 
-std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& result, const PlanConfig& config, Simulator& simulator,
-                       const SearchArea& area) {
+std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& result, const PlanConfig& config,
+                       Simulator& simulator, const SearchArea& area) {
   if (result.front.empty())
-    throw Error(Errc::invalid_argument, "there is nothing to write: the search ended before its first networks were evaluated");
+    throw Error(Errc::invalid_argument,
+                "there is nothing to write: the search ended before its first networks were evaluated");
   std::error_code failed;
   std::filesystem::create_directories(folder, failed);
   if (failed) throw Error(Errc::io, "cannot make the folder " + folder.string() + ": " + failed.message());
@@ -32,8 +33,9 @@ std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& re
   write_coverage_ply(folder / "coverage.ply", simulator, field);
 
   const double exact = coverage(counts, simulator.goal_density());
-  const std::string title = std::to_string(entry.stations.size()) + (entry.stations.size() == 1 ? " station" : " stations") +
-                            ": coverage " + fixed(exact, 3) + ", overlap " + fixed(clustering_coefficient(overlap), 3);
+  const std::string title = std::to_string(entry.stations.size()) +
+                            (entry.stations.size() == 1 ? " station" : " stations") + ": coverage " + fixed(exact, 3) +
+                            ", overlap " + fixed(clustering_coefficient(overlap), 3);
   const auto save = [&](const std::string& name, const std::unique_ptr<Canvas>& picture) {
     for (const char* extension : {".png", ".svg"}) picture->save(folder / (name + extension));
   };

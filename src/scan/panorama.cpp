@@ -51,16 +51,11 @@ std::uint32_t Panorama::colour(Angle zenith, Angle azimuth) const {
 
 std::string to_string(PanoramaView view) {
   switch (view) {
-    case PanoramaView::colour:
-      return "colour";
-    case PanoramaView::range:
-      return "range";
-    case PanoramaView::normal:
-      return "normal";
-    case PanoramaView::reflectivity:
-      return "reflectivity";
-    case PanoramaView::mesh:
-      return "mesh";
+    case PanoramaView::colour: return "colour";
+    case PanoramaView::range: return "range";
+    case PanoramaView::normal: return "normal";
+    case PanoramaView::reflectivity: return "reflectivity";
+    case PanoramaView::mesh: return "mesh";
   }
   return "unknown";
 }

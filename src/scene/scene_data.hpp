@@ -43,21 +43,21 @@ struct MeshRange {
 struct SceneData {
   Vec3 origin;  // survey frame; local = survey − origin, subtracted in double before rounding to float
   // Surveyed and blocking meshes. Triangle number = the scene's primitive id.
-  std::vector<Float3> positions;        // local frame
-  std::vector<Float3> normals;          // empty, or one per position; (0,0,0) where the file has none
-  std::vector<Float2> texcoords;        // empty, or one per position
-  std::vector<std::uint32_t> colours;   // empty, or one per position, 0xAABBGGRR, linear; white where the file has none
-  std::vector<Triangle> triangles;      // no degenerate, no non-finite triangle: dropped on load, counted in notes
-  std::vector<MeshRange> ranges;        // consecutive: ranges[m].first_triangle ascends
-  std::vector<MeshInfo> meshes;         // as long as ranges
-  std::vector<Material> materials;      // at least one
+  std::vector<Float3> positions;       // local frame
+  std::vector<Float3> normals;         // empty, or one per position; (0,0,0) where the file has none
+  std::vector<Float2> texcoords;       // empty, or one per position
+  std::vector<std::uint32_t> colours;  // empty, or one per position, 0xAABBGGRR, linear; white where the file has none
+  std::vector<Triangle> triangles;     // no degenerate, no non-finite triangle: dropped on load, counted in notes
+  std::vector<MeshRange> ranges;       // consecutive: ranges[m].first_triangle ascends
+  std::vector<MeshInfo> meshes;        // as long as ranges
+  std::vector<Material> materials;     // at least one
   std::vector<Image> images;
   // The marked search area, survey frame in double; uvs empty where the file has none.
   std::vector<Vec3> search_positions;
   std::vector<Uv> search_uvs;
   std::vector<Triangle> search_triangles;
 
-  Box local_bounds;                     // of positions used by triangles
+  Box local_bounds;  // of positions used by triangles
   std::vector<std::string> notes;
   std::string defaults_json = "{}";
 

@@ -12,9 +12,10 @@
 namespace vantage {
 namespace {
 
-// What `automatic` stands for: a hardware GPU by ray query where it has that, else by our own BVH; else the CPU. Of the engines on one
-// device, where that was named, the first usable one.
-std::size_t default_engine(const std::vector<EngineInfo>& engines, std::optional<std::uint32_t> device_index = std::nullopt) {
+// What `automatic` stands for: a hardware GPU by ray query where it has that, else by our own BVH; else the CPU. Of the
+// engines on one device, where that was named, the first usable one.
+std::size_t default_engine(const std::vector<EngineInfo>& engines,
+                           std::optional<std::uint32_t> device_index = std::nullopt) {
   if (device_index) {
     const auto on_device = std::find_if(engines.begin(), engines.end(), [&](const EngineInfo& e) {
       return e.engine != Engine::embree && e.usable && e.device_index == *device_index;
@@ -24,7 +25,8 @@ std::size_t default_engine(const std::vector<EngineInfo>& engines, std::optional
   for (const Engine wanted : {Engine::ray_query, Engine::compute_bvh})
     for (std::size_t k = 0; k < engines.size(); ++k)
       if (engines[k].engine == wanted && engines[k].usable && !engines[k].software) return k;
-  const auto embree = std::find_if(engines.begin(), engines.end(), [](const EngineInfo& e) { return e.engine == Engine::embree; });
+  const auto embree =
+      std::find_if(engines.begin(), engines.end(), [](const EngineInfo& e) { return e.engine == Engine::embree; });
   return static_cast<std::size_t>(embree - engines.begin());
 }
 
@@ -36,7 +38,9 @@ std::vector<EngineInfo> list_engines() {
   EngineInfo& chosen = engines[default_engine(engines)];
   chosen.chosen_by_default = true;
   if (chosen.engine == Engine::embree) {
-    const bool software = std::any_of(engines.begin(), engines.end(), [](const EngineInfo& e) { return e.software && e.usable && e.engine != Engine::embree; });
+    const bool software = std::any_of(engines.begin(), engines.end(), [](const EngineInfo& e) {
+      return e.software && e.usable && e.engine != Engine::embree;
+    });
     chosen.reason = software ? "Vulkan offers only a software device, which Embree outruns" : "no Vulkan GPU is usable";
   }
   return engines;
@@ -51,7 +55,8 @@ std::unique_ptr<Tracer> make_tracer(Engine engine, std::optional<std::uint32_t> 
   }
   if (engine == Engine::embree) {
     if (device_index.value_or(0) != 0)
-      throw Error(Errc::no_suitable_device, "there is no device " + std::to_string(*device_index) + " for embree, which has only device 0");
+      throw Error(Errc::no_suitable_device,
+                  "there is no device " + std::to_string(*device_index) + " for embree, which has only device 0");
     return make_embree_tracer(scene);
   }
   return make_vulkan_tracer(engine, device_index, scene);

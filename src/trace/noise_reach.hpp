@@ -19,7 +19,8 @@ inline NoiseReaches noise_reaches(const NoiseModel& model) {
   for (std::uint32_t c = 0; c < NoiseModel::side; ++c) {
     float most = c > 0 ? reaches[c - 1] : 0.0f;
     for (std::uint32_t r = 0; r < NoiseModel::side; ++r)
-      most = std::max(most, model.sigma[r * NoiseModel::side + c] * (static_cast<float>(normal_limit) * (1 + 0x1p-20f)));
+      most =
+          std::max(most, model.sigma[r * NoiseModel::side + c] * (static_cast<float>(normal_limit) * (1 + 0x1p-20f)));
     reaches[c] = most;
   }
   return reaches;

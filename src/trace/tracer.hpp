@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The engine seam: stations in; points, counts and station masks out. An engine knows rays, triangles and voxels, and no objective.
-// Adding an engine: one folder, one enumerator, one line in make_tracer.cpp; the conformance suite picks it up unedited.
+// The engine seam: stations in; points, counts and station masks out. An engine knows rays, triangles and voxels, and
+// no objective. Adding an engine: one folder, one enumerator, one line in make_tracer.cpp; the conformance suite picks
+// it up unedited.
 #pragma once
 
 #include <array>
@@ -18,26 +19,29 @@
 
 namespace vantage {
 
-// Directions of all rays, as products of table entries: d(i, j) = (sin_zenith[i]·cos_azimuth[j], sin_zenith[i]·sin_azimuth[j],
-// cos_zenith[i]). The tables are made in double and rounded once, so that no engine's sine matters.
+// Directions of all rays, as products of table entries: d(i, j) = (sin_zenith[i]·cos_azimuth[j],
+// sin_zenith[i]·sin_azimuth[j], cos_zenith[i]). The tables are made in double and rounded once, so that no engine's
+// sine matters.
 struct RayPattern {
   std::vector<float> sin_zenith, cos_zenith;    // rows
   std::vector<float> sin_azimuth, cos_azimuth;  // columns
-  float min_range = 0, max_range = 0;           // rays start at min_range and end at max_range, as the paper's do: what is nearer is passed
-  double zenith_step = 0, azimuth_step = 0;     // radians, for the inverse: which rays pass a cube
-  double first_zenith = 0, first_azimuth = 0;   // of ray (0, 0)
+  // rays start at min_range and end at max_range, as the paper's do: what is nearer is passed
+  float min_range = 0, max_range = 0;
+  double zenith_step = 0, azimuth_step = 0;    // radians, for the inverse: which rays pass a cube
+  double first_zenith = 0, first_azimuth = 0;  // of ray (0, 0)
   std::uint32_t rows() const { return static_cast<std::uint32_t>(sin_zenith.size()); }
   std::uint32_t columns() const { return static_cast<std::uint32_t>(sin_azimuth.size()); }
 };
 
-// Algorithm 1: σ by bilinear look-up over normalised distance (columns) and reflectivity (rows), both in [0, 1], step 0.01.
+// Algorithm 1: σ by bilinear look-up over normalised distance (columns) and reflectivity (rows), both in [0, 1], step
+// 0.01.
 struct NoiseModel {
   static constexpr std::uint32_t side = 101;
-  std::vector<float> sigma;       // side × side, row-major [reflectivity][distance]; empty: no noise
-  float min_range = 0;            // normalised distance = (t − min_range) · inverse_span
+  std::vector<float> sigma;  // side × side, row-major [reflectivity][distance]; empty: no noise
+  float min_range = 0;       // normalised distance = (t − min_range) · inverse_span
   float inverse_span = 0;
   std::uint64_t seed = 0;
-  float reach = 0;                // no point moves further: 5 · max σ
+  float reach = 0;  // no point moves further: 5 · max σ
   bool enabled() const { return !sigma.empty(); }
 };
 
@@ -49,7 +53,7 @@ struct TraceScene {
   std::shared_ptr<const NoiseModel> noise;
   std::uint64_t max_rays_per_dispatch = 0;  // 0: the engine's choice
   bool validation = false;
-  bool sort_triangles = true;               // for drivers that build on the order given; off only to measure what sorting gains
+  bool sort_triangles = true;  // for drivers that build on the order given; off only to measure what sorting gains
 };
 
 // A station as an engine sees it.
@@ -64,29 +68,38 @@ class Tracer {
   virtual ~Tracer() = default;
   virtual const EngineInfo& info() const = 0;
 
-  // Traces `ray_count` rays from `first_ray` (both multiples of the pattern's columns) and fills the arrays of `chunk` that `outputs`
-  // asks for, but for mesh and colour, which the host derives from `primitive` and `barycentric`.
+  // Traces `ray_count` rays from `first_ray` (both multiples of the pattern's columns) and fills the arrays of `chunk`
+  // that `outputs` asks for, but for mesh and colour, which the host derives from `primitive` and `barycentric`.
   struct RawChunk {
-    std::vector<float> range;                        // noisy; +infinity without a hit
-    std::vector<Float3> position, normal;            // local frame
+    std::vector<float> range;              // noisy; +infinity without a hit
+    std::vector<Float3> position, normal;  // local frame
     std::vector<float> reflectivity;
-    std::vector<std::uint32_t> primitive;            // scene triangle; 2^32 − 1 without a hit
-    std::vector<Float2> barycentric;                 // weights of the triangle's second and third vertex
-    std::vector<std::uint32_t> voxel;                // no_voxel where the point does not count
+    std::vector<std::uint32_t> primitive;  // scene triangle; 2^32 − 1 without a hit
+    std::vector<Float2> barycentric;       // weights of the triangle's second and third vertex
+    std::vector<std::uint32_t> voxel;      // no_voxel where the point does not count
   };
-  enum RawOutput : std::uint32_t { range = 1, position = 2, normal = 4, reflectivity = 8, primitive = 16, barycentric = 32, voxel = 64 };
-  virtual void scan(const TraceStation& station, std::uint64_t first_ray, std::uint64_t ray_count, std::uint32_t outputs,
-                    RawChunk& chunk) = 0;
+  enum RawOutput : std::uint32_t {
+    range = 1,
+    position = 2,
+    normal = 4,
+    reflectivity = 8,
+    primitive = 16,
+    barycentric = 32,
+    voxel = 64
+  };
+  virtual void scan(const TraceStation& station, std::uint64_t first_ray, std::uint64_t ray_count,
+                    std::uint32_t outputs, RawChunk& chunk) = 0;
   virtual std::uint64_t preferred_scan_rays() const = 0;  // a good chunk for scan(): whole rows
 
-  // Exact: counts all rays of all stations. Inactive stations are left out by the caller; `station_count` is N_stations with them.
+  // Exact: counts all rays of all stations. Inactive stations are left out by the caller; `station_count` is N_stations
+  // with them.
   struct CountOptions {
-    bool masks = true;          // keep station masks, fill seen and shared
-    bool skip = true;           // leave out what cannot change a count; then `points` is empty
+    bool masks = true;  // keep station masks, fill seen and shared
+    bool skip = true;   // leave out what cannot change a count; then `points` is empty
     VoxelField* field = nullptr;
   };
-  virtual NetworkCounts count(std::span<const TraceStation> stations, std::uint32_t station_count, const CountOptions& options,
-                              const Progress& progress) = 0;
+  virtual NetworkCounts count(std::span<const TraceStation> stations, std::uint32_t station_count,
+                              const CountOptions& options, const Progress& progress) = 0;
 
   // Sampled: the same counts over the voxels of `sample` (ascending ranks) only, for many networks in one submission.
   // networks[k] lists the active stations of network k; station_counts[k] is its N_stations.
@@ -106,7 +119,8 @@ class Tracer {
   double goal_density_ = 1;
 };
 
-// Builds the engine that `engine` names; `automatic` decides as DESIGN says. Throws Error no_suitable_device with every refusal.
+// Builds the engine that `engine` names; `automatic` decides as DESIGN says. Throws Error no_suitable_device with every
+// refusal.
 std::unique_ptr<Tracer> make_tracer(Engine engine, std::optional<std::uint32_t> device_index, const TraceScene& scene);
 
 }  // namespace vantage

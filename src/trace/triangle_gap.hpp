@@ -12,7 +12,8 @@
 namespace vantage {
 
 // How far a triangle's bounding box is from a voxel's cube, along the axis where that is most; rounded down.
-inline float triangle_gap(const Float3& a, const Float3& b, const Float3& c, const VoxelGrid& grid, const std::array<std::uint32_t, 3>& cell) {
+inline float triangle_gap(const Float3& a, const Float3& b, const Float3& c, const VoxelGrid& grid,
+                          const std::array<std::uint32_t, 3>& cell) {
   double most = 0;
   const auto along = [&](int axis, float p, float q, float r) {
     const double low = grid.min()[axis] + cell[axis] * grid.voxel_size(), high = low + grid.voxel_size();

@@ -33,7 +33,9 @@ VoxelGrid VoxelGrid::build(const SceneData& scene, double user_size_m) {
   grid.bricks_ = std::move(marked.bricks);
   grid.slots_ = std::move(marked.slots);
   grid.weights_ = voxel_weights(scene, grid);
-  grid.total_weight_ = grid.weights_.empty() ? grid.size_ : std::accumulate(grid.weights_.begin(), grid.weights_.end(), std::uint64_t{0});
+  grid.total_weight_ = grid.weights_.empty()
+                           ? grid.size_
+                           : std::accumulate(grid.weights_.begin(), grid.weights_.end(), std::uint64_t{0});
   return grid;
 }
 

@@ -22,9 +22,11 @@ embree::Scene tree_of(RTCDevice device, const SceneData& scene) {
   embree::Scene tree(rtcNewScene(device));
   rtcSetSceneFlags(tree.get(), RTC_SCENE_FLAG_ROBUST);  // as the engine's
   const embree::Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
-  std::memcpy(rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Float3), scene.positions.size()),
+  std::memcpy(rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Float3),
+                                      scene.positions.size()),
               scene.positions.data(), scene.positions.size() * sizeof(Float3));
-  std::memcpy(rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(Triangle), scene.triangles.size()),
+  std::memcpy(rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(Triangle),
+                                      scene.triangles.size()),
               scene.triangles.data(), scene.triangles.size() * sizeof(Triangle));
   rtcCommitGeometry(geometry.get());
   rtcAttachGeometry(tree.get(), geometry.get());
@@ -33,7 +35,8 @@ embree::Scene tree_of(RTCDevice device, const SceneData& scene) {
   return tree;
 }
 
-void set_ray(RTCRayHit8& rays, std::uint32_t lane, const RayPattern& pattern, std::uint32_t row, std::uint32_t column, const Float3& origin) {
+void set_ray(RTCRayHit8& rays, std::uint32_t lane, const RayPattern& pattern, std::uint32_t row, std::uint32_t column,
+             const Float3& origin) {
   rays.ray.org_x[lane] = origin.x;
   rays.ray.org_y[lane] = origin.y;
   rays.ray.org_z[lane] = origin.z;
@@ -51,7 +54,8 @@ void set_ray(RTCRayHit8& rays, std::uint32_t lane, const RayPattern& pattern, st
 
 // All rays of a station, packets of eight neighbours in a row; by streams of 32 packets where `stream` is set.
 void trace(RTCScene tree, const RayPattern& pattern, const Float3& origin, bool stream) {
-  const tbb::blocked_range2d<std::uint32_t> all(0, (pattern.rows() + side - 1) / side, 0, (pattern.columns() + side - 1) / side);
+  const tbb::blocked_range2d<std::uint32_t> all(0, (pattern.rows() + side - 1) / side, 0,
+                                                (pattern.columns() + side - 1) / side);
   tbb::parallel_for(all, [&](const tbb::blocked_range2d<std::uint32_t>& part) {
     constexpr std::uint32_t packets = side * side / 8;
     alignas(64) int valid[8];
@@ -87,7 +91,8 @@ void trace(RTCScene tree, const RayPattern& pattern, const Float3& origin, bool 
             ++used;
           }
 #if VANTAGE_EMBREE_MAJOR < 4
-        if (stream) rtcIntersectNM(tree, &context, reinterpret_cast<RTCRayHitN*>(rays->data()), 8, used, sizeof(RTCRayHit8));
+        if (stream)
+          rtcIntersectNM(tree, &context, reinterpret_cast<RTCRayHitN*>(rays->data()), 8, used, sizeof(RTCRayHit8));
 #endif
       }
   });
@@ -120,9 +125,11 @@ void run_bare_embree(const BareEmbreeOptions& options) {
     for (Way& way : ways) {
       const Stopwatch watch;
       if (&way == &ways.back()) {
-        engine->count(site.stations, static_cast<std::uint32_t>(site.stations.size()), {.masks = true, .skip = false}, {});
+        engine->count(site.stations, static_cast<std::uint32_t>(site.stations.size()), {.masks = true, .skip = false},
+                      {});
       } else {
-        for (const TraceStation& station : site.stations) trace(tree.get(), pattern, station.origin, &way != &ways.front());
+        for (const TraceStation& station : site.stations)
+          trace(tree.get(), pattern, station.origin, &way != &ways.front());
       }
       if (round > 0) way.best = std::min(way.best, watch.seconds());
     }
@@ -130,8 +137,9 @@ void run_bare_embree(const BareEmbreeOptions& options) {
   const double rays = static_cast<double>(rays_each * site.stations.size());
   double bare = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k + 1 < ways.size(); ++k) bare = std::min(bare, ways[k].best);
-  std::printf("# %zu triangles, %zu stations, %llu rays each, %llu voxels\n", scene.triangle_count(), site.stations.size(),
-              static_cast<unsigned long long>(rays_each), static_cast<unsigned long long>(site.scene.grid->size()));
+  std::printf("# %zu triangles, %zu stations, %llu rays each, %llu voxels\n", scene.triangle_count(),
+              site.stations.size(), static_cast<unsigned long long>(rays_each),
+              static_cast<unsigned long long>(site.scene.grid->size()));
   std::printf("way,million_rays_per_second,share_of_the_faster_bare_loop\n");
   for (const Way& way : ways) std::printf("%s,%.2f,%.3f\n", way.name, rays / way.best * 1e-6, bare / way.best);
 }

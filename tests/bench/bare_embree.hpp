@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the `embree` engine costs beyond Embree itself: its counting against a loop that traces the same rays and does nothing with them.
+// What the `embree` engine costs beyond Embree itself: its counting against a loop that traces the same rays and does
+// nothing with them.
 #pragma once
 
 #include "bench_site.hpp"

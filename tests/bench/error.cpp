@@ -53,18 +53,12 @@ double cpu_ms() { return static_cast<double>(std::clock()) * 1e3 / CLOCKS_PER_SE
 
 const char* name_of(Way way) {
   switch (way) {
-    case Way::every_ray:
-      return "exact-every-ray";
-    case Way::exact:
-      return "exact";
-    case Way::sampled:
-      return "sampled";
-    case Way::coarser_steps:
-      return "coarser-steps";
-    case Way::coarser_steps_and_voxels:
-      return "coarser-steps-and-voxels";
-    case Way::coarser_voxels:
-      return "coarser-voxels";
+    case Way::every_ray: return "exact-every-ray";
+    case Way::exact: return "exact";
+    case Way::sampled: return "sampled";
+    case Way::coarser_steps: return "coarser-steps";
+    case Way::coarser_steps_and_voxels: return "coarser-steps-and-voxels";
+    case Way::coarser_voxels: return "coarser-voxels";
   }
   return "";
 }

@@ -24,17 +24,12 @@ struct Look {
 
 Look look_of(Way way) {
   switch (way) {
-    case Way::sampled:
-      return {style::blue, "a sample of the voxels"};
-    case Way::coarser_steps:
-      return {style::orange, "coarser steps, goal scaled"};
-    case Way::coarser_steps_and_voxels:
-      return {kPurple, "coarser steps and voxels"};
-    case Way::coarser_voxels:
-      return {kGreen, "coarser voxels"};
+    case Way::sampled: return {style::blue, "a sample of the voxels"};
+    case Way::coarser_steps: return {style::orange, "coarser steps, goal scaled"};
+    case Way::coarser_steps_and_voxels: return {kPurple, "coarser steps and voxels"};
+    case Way::coarser_voxels: return {kGreen, "coarser voxels"};
     case Way::every_ray:
-    case Way::exact:
-      break;
+    case Way::exact: break;
   }
   return {style::ink, "exact"};
 }

@@ -10,7 +10,7 @@
 namespace vantage::bench {
 namespace {
 
-constexpr double normal_975 = 1.959964;  // 95 % of a normal distribution lie within so many standard deviations
+constexpr double normal_975 = 1.959964;       // 95 % of a normal distribution lie within so many standard deviations
 constexpr std::uint32_t fewest_stations = 3;  // fewer have no clustering coefficient
 
 // One objective at one size of the sample, over all networks.

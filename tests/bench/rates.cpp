@@ -87,8 +87,8 @@ void run_rates(const RatesOptions& options) {
     const Way& way = ways[k];
     std::printf("%s,%d,%.3f,%.3f,%.3f,%llu,%.2f,%.9f,%d\n", way.name.c_str(), way.skip, way.best * 1e3,
                 way.device * 1e3, way.cpu * 1e3, static_cast<unsigned long long>(way.counts.rays),
-                static_cast<double>(rays * site.stations.size()) / way.best * 1e-6, coverage(way.counts, site.goal_density),
-                same(way.counts, ways[k - (way.skip ? 1 : 0)].counts));
+                static_cast<double>(rays * site.stations.size()) / way.best * 1e-6,
+                coverage(way.counts, site.goal_density), same(way.counts, ways[k - (way.skip ? 1 : 0)].counts));
   }
 }
 

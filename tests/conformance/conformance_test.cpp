@@ -73,8 +73,7 @@ class Conformance : public testing::TestWithParam<EngineInfo> {
   }
 };
 
-// ---- scans
-// -----------------------------------------------------------------------------------------------------------
+// Scans.
 
 void compare_with_reference(const Site& site, const std::vector<ReferenceHit>& reference, const Tracer::RawChunk& chunk,
                             std::size_t& undecided) {
@@ -271,8 +270,7 @@ TEST_P(Conformance, ANewEngineCanBeAskedForAnyOutputFirst) {
   }
 }
 
-// ---- exact counts
-// ----------------------------------------------------------------------------------------------------
+// Exact counts.
 
 TEST_P(Conformance, CountsAreThePointsOfTheScans) {
   for (const Site& site : sites()) {
@@ -328,7 +326,8 @@ TEST_P(Conformance, TotalsMatchTheReference) {
     };
     EXPECT_NEAR(total(counts.points), points, 1e-4 * points);
     EXPECT_NEAR(total(counts.points_on_surveyed), on_surveyed, 1e-4 * on_surveyed);
-    const double reached = coverage(reference_counts(expected, stations_of(site), goal_density, site.grid->weights()), goal_density);
+    const double reached =
+        coverage(reference_counts(expected, stations_of(site), goal_density, site.grid->weights()), goal_density);
     EXPECT_NEAR(coverage(counts, goal_density), reached, 1e-4 * reached);
   }
 }
@@ -395,8 +394,7 @@ TEST_P(Conformance, ACancelledCountSaysSoAndLeavesTheEngineWell) {
   EXPECT_EQ(again.stations, expected.stations);
 }
 
-// ---- skipping
-// --------------------------------------------------------------------------------------------------------
+// Skipping.
 
 // Random heads inside and outside the site, some of them within a surveyed brick.
 std::vector<TraceStation> random_stations(const Site& site, std::uint32_t n, std::uint64_t seed) {
@@ -441,8 +439,7 @@ TEST_P(Conformance, SkippingChangesNoVoxel) {
   }
 }
 
-// ---- samples
-// ---------------------------------------------------------------------------------------------------------
+// Samples.
 
 // The counts of a sample by the book, from the voxel field of the exact evaluation.
 NetworkCounts sampled_slowly(const Site& site, const VoxelField& field, const Tracer::SampleJob& job,
@@ -572,8 +569,7 @@ TEST_P(Conformance, SamplesDoNotDependOnOrderOrDispatches) {
 INSTANTIATE_TEST_SUITE_P(Engines, Conformance, testing::ValuesIn(usable_engines()),
                          [](const auto& instance) { return name_of(instance.param); });
 
-// ---- the machine
-// -----------------------------------------------------------------------------------------------------
+// The machine.
 
 TEST(Engines, ThisMachineHasThemAll) {
   for (const Engine engine : {Engine::embree, Engine::ray_query, Engine::compute_bvh}) {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A program of somebody else's: one wall, one station, and a count that must not be zero.
-#include <vantage/vantage.hpp>
-
 #include <array>
 #include <cstdio>
+#include <vantage/vantage.hpp>
 #include <vector>
 
 int main() {

@@ -22,7 +22,9 @@ class FourWalls : public testing::Test {
     scene_ = Scene::load(folder_ / "scene.glb");
     scanner_.height_m = 1.5;
   }
-  Simulator simulator() const { return {scene_, scanner_, {.engine = Engine::embree, .user_size_m = 0.1, .point_spacing_m = 0.01}}; }
+  Simulator simulator() const {
+    return {scene_, scanner_, {.engine = Engine::embree, .user_size_m = 0.1, .point_spacing_m = 0.01}};
+  }
 
   test::TemporaryFolder folder_;
   Scene scene_{nullptr};
@@ -35,8 +37,8 @@ TEST_F(FourWalls, HaveThePapersRaysAndGoal) {
   EXPECT_NEAR(s.goal_density(), 61.3, 0.1);
 }
 
-// The walls are axis-aligned rectangles, so the voxels that they touch are plain intervals. Counted in double, on the grid that the
-// simulator itself reports by the centres of its voxels.
+// The walls are axis-aligned rectangles, so the voxels that they touch are plain intervals. Counted in double, on the
+// grid that the simulator itself reports by the centres of its voxels.
 TEST_F(FourWalls, TouchAsManyVoxelsAsCountedInDouble) {
   const Simulator s = simulator();
   const double size = s.voxel_size_m();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Table 3 of the method: one station before three walls, without and with noise. Prints the rows that docs/cases.md shows.
+// Table 3 of the method: one station before three walls, without and with noise. Prints the rows that docs/cases.md
+// shows.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -40,7 +41,8 @@ class ThreeWalls : public testing::Test {
   }
 
   Evaluation evaluate(bool noise) const {
-    Simulator simulator(scene_, scanner_, {.engine = Engine::embree, .user_size_m = 0.01, .point_spacing_m = 0.006, .noise = noise});
+    Simulator simulator(scene_, scanner_,
+                        {.engine = Engine::embree, .user_size_m = 0.01, .point_spacing_m = 0.006, .noise = noise});
     const Station station{{0, 0, 1.5}};
     Evaluation result;
     result.scan = simulator.scan(station, 0, scan_ids | scan_voxel, [&](const ScanChunk& chunk) {
@@ -64,11 +66,15 @@ class ThreeWalls : public testing::Test {
 TEST_F(ThreeWalls, HaveTheShapeOfTable3) {
   const Evaluation clean = evaluate(false), noisy = evaluate(true);
   std::printf("| | without noise | with noise |\n| --- | --- | --- |\n");
-  std::printf("| points | %llu | %llu |\n", static_cast<unsigned long long>(clean.scan.points), static_cast<unsigned long long>(noisy.scan.points));
-  std::printf("| points on surveyed surface | %llu | %llu |\n", static_cast<unsigned long long>(clean.scan.points_on_surveyed),
+  std::printf("| points | %llu | %llu |\n", static_cast<unsigned long long>(clean.scan.points),
+              static_cast<unsigned long long>(noisy.scan.points));
+  std::printf("| points on surveyed surface | %llu | %llu |\n",
+              static_cast<unsigned long long>(clean.scan.points_on_surveyed),
               static_cast<unsigned long long>(noisy.scan.points_on_surveyed));
   std::printf("| coverage | %.3f | %.3f |\n", clean.coverage, noisy.coverage);
-  for (const auto& [name, wall] : noisy.walls) std::printf("| lost on %s | %.2f %% | %.2f %% |\n", name.c_str(), 100 * clean.walls.at(name).lost(), 100 * wall.lost());
+  for (const auto& [name, wall] : noisy.walls)
+    std::printf("| lost on %s | %.2f %% | %.2f %% |\n", name.c_str(), 100 * clean.walls.at(name).lost(),
+                100 * wall.lost());
 
   // The paper's 383 659 points, to 0.1 %.
   EXPECT_NEAR(static_cast<double>(clean.scan.points), 383'659, 383.659);

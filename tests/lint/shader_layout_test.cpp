@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Host and shaders must place every shared member alike: offsetof against the Offset decorations of the compiled shaders.
+// Host and shaders must place every shared member alike: offsetof against the Offset decorations of the compiled
+// shaders.
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -84,7 +85,15 @@ TEST(ShaderLayout, EveryShaderPlacesSharedMembersAsTheHostDoes) {
   }
   // Loaded 16 bytes at a time: what shaders take these offsets to be.
   const std::map<std::string, Members> by_quarters{
-      {"BvhNode", {{"centre0", 0}, {"child0", 12}, {"half0", 16}, {"child1", 28}, {"centre1", 32}, {"unused0", 44}, {"half1", 48}, {"unused1", 60}}},
+      {"BvhNode",
+       {{"centre0", 0},
+        {"child0", 12},
+        {"half0", 16},
+        {"child1", 28},
+        {"centre1", 32},
+        {"unused0", 44},
+        {"half1", 48},
+        {"unused1", 60}}},
       {"BvhTriangle", {{"a", 0}, {"id", 12}, {"b", 16}, {"unused0", 28}, {"c", 32}, {"unused1", 44}}},
       {"VoxelBrick", {{"x", 0}, {"y", 4}, {"z", 8}, {"first", 12}, {"mask", 16}}}};
   for (const auto& [name, members] : by_quarters) {
@@ -92,7 +101,8 @@ TEST(ShaderLayout, EveryShaderPlacesSharedMembersAsTheHostDoes) {
     EXPECT_EQ(members, host.at(name)) << name;
     compared.insert(name);
   }
-  for (const auto& [name, members] : host) EXPECT_TRUE(compared.contains(name)) << name << " is shared, but no shader uses it";
+  for (const auto& [name, members] : host)
+    EXPECT_TRUE(compared.contains(name)) << name << " is shared, but no shader uses it";
 }
 
 }  // namespace

@@ -32,11 +32,12 @@ std::vector<ManyPoints> trace_many_points(const EngineInfo& engine, double step_
   std::vector<ManyPoints> all;
   for (const std::size_t stations : {16u, 64u}) {
     VoxelField field;
-    const NetworkCounts counts =
-        simulator.evaluate({network.begin(), network.begin() + static_cast<std::ptrdiff_t>(stations)}, {.field = &field});
-    all.push_back({stations, scanner.rays() * stations,
-                   std::accumulate(counts.points_on_surveyed.begin(), counts.points_on_surveyed.end(), std::uint64_t{0}),
-                   field.count.at(0), simulator.goal_density(), coverage(counts, simulator.goal_density())});
+    const NetworkCounts counts = simulator.evaluate(
+        {network.begin(), network.begin() + static_cast<std::ptrdiff_t>(stations)}, {.field = &field});
+    all.push_back(
+        {stations, scanner.rays() * stations,
+         std::accumulate(counts.points_on_surveyed.begin(), counts.points_on_surveyed.end(), std::uint64_t{0}),
+         field.count.at(0), simulator.goal_density(), coverage(counts, simulator.goal_density())});
   }
   return all;
 }

@@ -66,14 +66,10 @@ int add_indices(Buffer& buffer, const Mesh& mesh) {
 
 const char* role_name(Role role) {
   switch (role) {
-    case Role::surveyed:
-      return "surveyed";
-    case Role::blocking:
-      return "blocking";
-    case Role::search:
-      return "search";
-    case Role::ignore:
-      return "ignore";
+    case Role::surveyed: return "surveyed";
+    case Role::blocking: return "blocking";
+    case Role::search: return "search";
+    case Role::ignore: return "ignore";
   }
   return "ignore";
 }

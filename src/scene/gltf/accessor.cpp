@@ -12,22 +12,18 @@ constexpr std::size_t kLargestWithoutBuffer = std::size_t{1} << 26;  // nothing 
 std::size_t component_size(int type) {
   switch (type) {
     case TINYGLTF_COMPONENT_TYPE_BYTE:
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-      return 1;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return 1;
     case TINYGLTF_COMPONENT_TYPE_SHORT:
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-      return 2;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return 2;
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-    case TINYGLTF_COMPONENT_TYPE_FLOAT:
-      return 4;
-    default:
-      return 0;
+    case TINYGLTF_COMPONENT_TYPE_FLOAT: return 4;
+    default: return 0;
   }
 }
 
+// glTF aligns to the component, a broken file may not; its order is little endian, as ours.
 template <class T>
-T load(const std::uint8_t*
-           at) {  // glTF aligns to the component, a broken file may not; its order is little endian, as ours
+T load(const std::uint8_t* at) {
   T value;
   std::memcpy(&value, at, sizeof value);
   return value;
@@ -46,29 +42,23 @@ void convert(const std::uint8_t* at, std::size_t stride, std::size_t n, int comp
 void convert(int type, const std::uint8_t* at, std::size_t stride, std::size_t n, int components, bool normalized,
              double* out) {
   switch (type) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE:
-      return convert<std::int8_t>(at, stride, n, components, normalized, out);
+    case TINYGLTF_COMPONENT_TYPE_BYTE: return convert<std::int8_t>(at, stride, n, components, normalized, out);
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
       return convert<std::uint8_t>(at, stride, n, components, normalized, out);
-    case TINYGLTF_COMPONENT_TYPE_SHORT:
-      return convert<std::int16_t>(at, stride, n, components, normalized, out);
+    case TINYGLTF_COMPONENT_TYPE_SHORT: return convert<std::int16_t>(at, stride, n, components, normalized, out);
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
       return convert<std::uint16_t>(at, stride, n, components, normalized, out);
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
       return convert<std::uint32_t>(at, stride, n, components, normalized, out);
-    default:
-      return convert<float>(at, stride, n, components, false, out);
+    default: return convert<float>(at, stride, n, components, false, out);
   }
 }
 
 std::uint32_t load_index(int type, const std::uint8_t* at) {
   switch (type) {
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-      return *at;
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-      return load<std::uint16_t>(at);
-    default:
-      return load<std::uint32_t>(at);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return *at;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return load<std::uint16_t>(at);
+    default: return load<std::uint32_t>(at);
   }
 }
 

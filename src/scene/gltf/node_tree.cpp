@@ -203,7 +203,8 @@ Marks read_marks(const File& file, const char* array, int index, const std::stri
   }
   if (const auto weight = object.find("weight"); weight != object.end()) {
     if (!weight->is_number_unsigned() || weight->get<std::uint64_t>() < 1 || weight->get<std::uint64_t>() > kMostWeight)
-      throw file.malformed(where + ".weight is " + quoted(weight->dump()) + "; it must be a whole number from 1 to 255");
+      throw file.malformed(where + ".weight is " + quoted(weight->dump()) +
+                           "; it must be a whole number from 1 to 255");
     marks.weight = weight->get<std::uint32_t>();
   }
   return marks;
@@ -256,8 +257,9 @@ std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& opti
         throw file.malformed(where + " refers to mesh " + std::to_string(node.mesh) + "; there are " +
                              std::to_string(model.meshes.size()));
       if (node.skin >= 0) ++skinned;
-      PlacedMesh mesh{visit.node,         node.mesh,  name, instance_transforms(file, visit.node, where),
-                      visit.pattern_role, visit.pattern_weight, visit.marks};
+      PlacedMesh mesh{
+          visit.node,           node.mesh,  name, instance_transforms(file, visit.node, where), visit.pattern_role,
+          visit.pattern_weight, visit.marks};
       for (Affine& transform : mesh.world_from_mesh) {
         transform = world_from_node * transform;
         if (!transform.finite()) throw file.malformed(where + ": the transform of an instance is not finite");

@@ -104,8 +104,7 @@ NetworkCounts count_network(const StationRays& rays, std::span<const TraceStatio
     on_surveyed[station.place] = sums.points_on_surveyed;
   }
 
-  NetworkCounts result = reduce_field(field.count, field.stations, station_count, goal_density,
-                                      rays.grid().weights());
+  NetworkCounts result = reduce_field(field.count, field.stations, station_count, goal_density, rays.grid().weights());
   result.rays = traced;
   result.points = std::move(points);
   result.points_on_surveyed = std::move(on_surveyed);

@@ -25,9 +25,7 @@ class RangeNoise {
   bool enabled() const { return model_ && model_->enabled(); }
   float reach() const { return enabled() ? model_->reach : 0.0f; }
   // No point of a hit nearer than t is moved further than this.
-  float reach_within(float t) const {
-    return enabled() ? vantage::reach_within(*model_, reaches_, t) : 0.0f;
-  }
+  float reach_within(float t) const { return enabled() ? vantage::reach_within(*model_, reaches_, t) : 0.0f; }
 
   // Bilinear in normalised distance and reflectivity, both clamped to [0, 1].
   float sigma(float t, float reflectivity) const {

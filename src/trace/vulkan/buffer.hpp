@@ -31,7 +31,9 @@ class Buffer {
   VkDeviceAddress address() const { return address_; }
   explicit operator bool() const { return static_cast<bool>(buffer_); }
   template <class T>
-  T* mapped() const { return static_cast<T*>(mapped_); }
+  T* mapped() const {
+    return static_cast<T*>(mapped_);
+  }
 
  private:
   VkDeviceSize size_ = 0;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "trace/vulkan/vulkan_tracer.hpp"
-
 #include <algorithm>
 #include <array>
 #include <string>
+
+#include "trace/vulkan/vulkan_tracer.hpp"
 
 namespace vantage::vulkan {
 namespace {

@@ -26,7 +26,8 @@ bool loader_present() {
 
 // The features that the engines use, chained for query and creation alike.
 struct Features {
-  VkPhysicalDeviceRayQueryFeaturesKHR ray_query{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_QUERY_FEATURES_KHR, nullptr, VK_FALSE};
+  VkPhysicalDeviceRayQueryFeaturesKHR ray_query{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_QUERY_FEATURES_KHR, nullptr,
+                                                VK_FALSE};
   VkPhysicalDeviceAccelerationStructureFeaturesKHR acceleration{};
   VkPhysicalDeviceVulkan12Features v12{};
   VkPhysicalDeviceFeatures2 core{};
@@ -47,7 +48,8 @@ std::vector<std::string> extensions_of(VkPhysicalDevice device) {
   std::uint32_t count = 0;
   check(vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr), "vkEnumerateDeviceExtensionProperties");
   std::vector<VkExtensionProperties> properties(count);
-  check(vkEnumerateDeviceExtensionProperties(device, nullptr, &count, properties.data()), "vkEnumerateDeviceExtensionProperties");
+  check(vkEnumerateDeviceExtensionProperties(device, nullptr, &count, properties.data()),
+        "vkEnumerateDeviceExtensionProperties");
   std::vector<std::string> names;
   for (const auto& p : properties) names.emplace_back(p.extensionName);
   return names;
@@ -58,7 +60,8 @@ std::vector<std::string> extensions_of(VkPhysicalDevice device) {
 std::shared_ptr<Instance> Instance::get(bool validation) {
   static std::mutex mutex;
   static std::weak_ptr<Instance> watched;
-  // Kept for good: some drivers cannot be loaded and unloaded any number of times. Never destroyed, since at exit they may be gone first.
+  // Kept for good: some drivers cannot be loaded and unloaded any number of times. Never destroyed, since at exit they
+  // may be gone first.
   static auto& kept = *new std::shared_ptr<Instance>;
   const std::lock_guard lock(mutex);
   if (validation) {
@@ -74,12 +77,14 @@ std::shared_ptr<Instance> Instance::get(bool validation) {
 Instance::Instance(bool validation) {
   if (!loader_present())
     throw Error(Errc::no_suitable_device,
-                "no Vulkan loader (libvulkan.so.1) on this machine; install it (Debian: libvulkan1, mesa-vulkan-drivers >= 24.1) "
+                "no Vulkan loader (libvulkan.so.1) on this machine; install it (Debian: libvulkan1, "
+                "mesa-vulkan-drivers >= 24.1) "
                 "or use --engine embree");
   if (vkEnumerateInstanceVersion == nullptr || volkGetInstanceVersion() < VK_API_VERSION_1_2)
     throw Error(Errc::no_suitable_device, "the Vulkan loader is older than 1.2; update it or use --engine embree");
 
-  VkApplicationInfo application{VK_STRUCTURE_TYPE_APPLICATION_INFO, nullptr, "vantage", 0, version(), 0, VK_API_VERSION_1_2};
+  VkApplicationInfo application{
+      VK_STRUCTURE_TYPE_APPLICATION_INFO, nullptr, "vantage", 0, version(), 0, VK_API_VERSION_1_2};
   VkInstanceCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
   info.pApplicationInfo = &application;
@@ -102,21 +107,25 @@ Instance::Instance(bool validation) {
   const VkResult result = vkCreateInstance(&info, nullptr, &instance_);
   if (result == VK_ERROR_LAYER_NOT_PRESENT)
     throw Error(Errc::no_suitable_device,
-                "the Vulkan validation layer is not installed (Debian: vulkan-validationlayers); install it or go without --validation");
+                "the Vulkan validation layer is not installed (Debian: vulkan-validationlayers); install it or go "
+                "without --validation");
   if (result == VK_ERROR_INCOMPATIBLE_DRIVER)
-    throw Error(Errc::no_suitable_device,
-                "no Vulkan driver on this machine; install one (Debian: mesa-vulkan-drivers >= 24.1) or use --engine embree");
+    throw Error(
+        Errc::no_suitable_device,
+        "no Vulkan driver on this machine; install one (Debian: mesa-vulkan-drivers >= 24.1) or use --engine embree");
   check(result, "vkCreateInstance");
   volkLoadInstance(instance_);
   if (validation)
-    check(vkCreateDebugUtilsMessengerEXT(instance_, &messenger, nullptr, &messenger_), "vkCreateDebugUtilsMessengerEXT");
+    check(vkCreateDebugUtilsMessengerEXT(instance_, &messenger, nullptr, &messenger_),
+          "vkCreateDebugUtilsMessengerEXT");
 }
 
 Instance::~Instance() {
   if (messenger_) vkDestroyDebugUtilsMessengerEXT(instance_, messenger_, nullptr);
   if (instance_) vkDestroyInstance(instance_, nullptr);
   // Too late for an exception, and what was left undestroyed is reported here.
-  for (const std::string& message : messages_) std::fprintf(stderr, "vantage: the Vulkan validation layer reports: %s\n", message.c_str());
+  for (const std::string& message : messages_)
+    std::fprintf(stderr, "vantage: the Vulkan validation layer reports: %s\n", message.c_str());
 }
 
 VkBool32 Instance::on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
@@ -184,7 +193,9 @@ DeviceAbilities abilities_of(VkPhysicalDevice device) {
   a.queue_family = family.value_or(0);
 
   const auto extensions = extensions_of(device);
-  const auto has = [&](const char* name) { return std::find(extensions.begin(), extensions.end(), name) != extensions.end(); };
+  const auto has = [&](const char* name) {
+    return std::find(extensions.begin(), extensions.end(), name) != extensions.end();
+  };
   bool all_ray_query = true;
   for (const char* name : ray_query_extensions)
     if (!has(name)) {
@@ -199,8 +210,10 @@ DeviceAbilities abilities_of(VkPhysicalDevice device) {
   need(features.v12.bufferDeviceAddress, "bufferDeviceAddress", a.compute_lacks);
   need(features.v12.scalarBlockLayout, "scalarBlockLayout", a.compute_lacks);
   need(features.core.features.shaderInt64, "shaderInt64", a.compute_lacks);
-  const VkSubgroupFeatureFlags subgroup_needs = VK_SUBGROUP_FEATURE_BASIC_BIT | VK_SUBGROUP_FEATURE_ARITHMETIC_BIT | VK_SUBGROUP_FEATURE_BALLOT_BIT;
-  need((subgroup.supportedOperations & subgroup_needs) == subgroup_needs && (subgroup.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT),
+  const VkSubgroupFeatureFlags subgroup_needs =
+      VK_SUBGROUP_FEATURE_BASIC_BIT | VK_SUBGROUP_FEATURE_ARITHMETIC_BIT | VK_SUBGROUP_FEATURE_BALLOT_BIT;
+  need((subgroup.supportedOperations & subgroup_needs) == subgroup_needs &&
+           (subgroup.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT),
        "subgroup arithmetic and ballot in compute shaders", a.compute_lacks);
   if (all_ray_query) {
     need(features.acceleration.accelerationStructure, "accelerationStructure", a.ray_query_lacks);
@@ -209,7 +222,8 @@ DeviceAbilities abilities_of(VkPhysicalDevice device) {
   return a;
 }
 
-Device::Device(std::shared_ptr<Instance> instance, VkPhysicalDevice physical, const DeviceAbilities& abilities, bool ray_query)
+Device::Device(std::shared_ptr<Instance> instance, VkPhysicalDevice physical, const DeviceAbilities& abilities,
+               bool ray_query)
     : instance_(std::move(instance)), abilities_(abilities), ray_query_(ray_query) {
   vkGetPhysicalDeviceMemoryProperties(physical, &memory_);
   VkPhysicalDeviceAccelerationStructurePropertiesKHR acceleration{};
@@ -219,7 +233,8 @@ Device::Device(std::shared_ptr<Instance> instance, VkPhysicalDevice physical, co
   properties.pNext = ray_query ? &acceleration : nullptr;
   vkGetPhysicalDeviceProperties2(physical, &properties);
   timestamp_period_ns_ = static_cast<double>(properties.properties.limits.timestampPeriod);
-  if (ray_query) scratch_alignment_ = std::max<VkDeviceSize>(1, acceleration.minAccelerationStructureScratchOffsetAlignment);
+  if (ray_query)
+    scratch_alignment_ = std::max<VkDeviceSize>(1, acceleration.minAccelerationStructureScratchOffsetAlignment);
 
   Features features(ray_query);
   features.core.features.shaderInt64 = VK_TRUE;
@@ -261,7 +276,8 @@ bool Device::has_memory_type(VkMemoryPropertyFlags wanted) const {
 std::uint32_t Device::memory_type(std::uint32_t allowed, VkMemoryPropertyFlags wanted) const {
   for (std::uint32_t t = 0; t < memory_.memoryTypeCount; ++t)
     if ((allowed & (1u << t)) && (memory_.memoryTypes[t].propertyFlags & wanted) == wanted) return t;
-  throw Error(Errc::out_of_memory, "the Vulkan device " + abilities_.name + " has no memory of the kind that a buffer needs");
+  throw Error(Errc::out_of_memory,
+              "the Vulkan device " + abilities_.name + " has no memory of the kind that a buffer needs");
 }
 
 void Device::name(VkObjectType type, std::uint64_t handle, const char* name) const {

@@ -2,13 +2,13 @@
 // The Vulkan instance, which devices there are and what each can do, and the logical device that an engine works on.
 #pragma once
 
+#include <volk.h>
+
 #include <cstdint>
 #include <memory>
 #include <mutex>
 #include <string>
 #include <vector>
-
-#include <volk.h>
 
 #include "vantage/simulator.hpp"
 
@@ -30,7 +30,8 @@ class Instance {
 
  private:
   explicit Instance(bool validation);
-  static VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
+  static VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT,
+                                                   VkDebugUtilsMessageTypeFlagsEXT,
                                                    const VkDebugUtilsMessengerCallbackDataEXT*, void*);
   VkInstance instance_ = VK_NULL_HANDLE;
   VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
@@ -44,9 +45,9 @@ struct DeviceAbilities {
   VkPhysicalDeviceType type = VK_PHYSICAL_DEVICE_TYPE_OTHER;
   std::uint32_t queue_family = 0;
   std::uint32_t subgroup_size = 1;
-  std::uint64_t memory_bytes = 0;          // largest device-local heap
-  std::vector<std::string> compute_lacks;  // why no engine runs on it; empty: compute_bvh runs
-  std::vector<std::string> ray_query_lacks;// why ray_query does not, beyond compute_lacks
+  std::uint64_t memory_bytes = 0;            // largest device-local heap
+  std::vector<std::string> compute_lacks;    // why no engine runs on it; empty: compute_bvh runs
+  std::vector<std::string> ray_query_lacks;  // why ray_query does not, beyond compute_lacks
   bool software() const { return type == VK_PHYSICAL_DEVICE_TYPE_CPU; }
 };
 DeviceAbilities abilities_of(VkPhysicalDevice device);
@@ -55,7 +56,8 @@ DeviceAbilities abilities_of(VkPhysicalDevice device);
 class Device {
  public:
   // REQUIRES: nothing lacking for what is asked.
-  Device(std::shared_ptr<Instance> instance, VkPhysicalDevice physical, const DeviceAbilities& abilities, bool ray_query);
+  Device(std::shared_ptr<Instance> instance, VkPhysicalDevice physical, const DeviceAbilities& abilities,
+         bool ray_query);
   ~Device();
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;

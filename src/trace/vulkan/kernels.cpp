@@ -31,16 +31,12 @@ Shader shader_of(Kernel kernel, Engine engine) {
       return {"sample trace", query ? shaders::sample_trace_ray_query : shaders::sample_trace_compute_bvh,
               query ? shaders::sample_trace_ray_query_size : shaders::sample_trace_compute_bvh_size, sizeof(SamplePush),
               2};
-    case Kernel::tiles:
-      return {"tiles", shaders::tiles, shaders::tiles_size, sizeof(TilePush), 0};
-    case Kernel::tile_list:
-      return {"tile list", shaders::tile_list, shaders::tile_list_size, sizeof(TilePush), 0};
+    case Kernel::tiles: return {"tiles", shaders::tiles, shaders::tiles_size, sizeof(TilePush), 0};
+    case Kernel::tile_list: return {"tile list", shaders::tile_list, shaders::tile_list_size, sizeof(TilePush), 0};
     case Kernel::tile_starts:
       return {"tile starts", shaders::tile_starts, shaders::tile_starts_size, sizeof(TilePush), 0};
-    case Kernel::clamp:
-      return {"clamp", shaders::clamp, shaders::clamp_size, sizeof(ClampPush), 0};
-    case Kernel::reduce:
-      return {"reduce", shaders::reduce, shaders::reduce_size, sizeof(ReducePush), 0};
+    case Kernel::clamp: return {"clamp", shaders::clamp, shaders::clamp_size, sizeof(ClampPush), 0};
+    case Kernel::reduce: return {"reduce", shaders::reduce, shaders::reduce_size, sizeof(ReducePush), 0};
     case Kernel::sample_list:
       return {"sample list", shaders::sample_list, shaders::sample_list_size, sizeof(SamplePush), 0};
     case Kernel::sample_queue:

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "trace/vulkan/vulkan_tracer.hpp"
-
 #include <cmath>
 #include <utility>
+
+#include "trace/vulkan/vulkan_tracer.hpp"
 
 namespace vantage::vulkan {
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "trace/vulkan/vulkan_tracer.hpp"
-
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 #include <deque>
 
 #include "trace/triangle_gap.hpp"
+#include "trace/vulkan/vulkan_tracer.hpp"
 #include "voxel/voxel_triangles.hpp"
 
 namespace vantage::vulkan {
@@ -19,7 +18,8 @@ constexpr double seconds_per_sampled_submission = 1;
 
 }  // namespace
 
-// Part of a batch of networks whose rays one list probably holds: slots × sampled voxels, or some rows of a single pair.
+// Part of a batch of networks whose rays one list probably holds: slots × sampled voxels, or some rows of a single
+// pair.
 struct SampleChunk {
   std::uint32_t first_slot, end_slot, first_voxel, end_voxel, first_row, end_row;
 
@@ -37,7 +37,8 @@ struct SampleChunk {
   }
 };
 
-void VulkanTracer::upload_sample(std::span<const std::uint32_t> sample, std::span<const std::vector<TraceStation>> networks) {
+void VulkanTracer::upload_sample(std::span<const std::uint32_t> sample,
+                                 std::span<const std::vector<TraceStation>> networks) {
   const VoxelGrid& grid = *scene_.grid;
   const SceneData& scene = *scene_.scene;
   // Wider than the slack of cube_of in shaders/lib/sample.glsl for any station within range.
@@ -94,11 +95,13 @@ double VulkanTracer::sample_reach(std::span<const std::vector<TraceStation>> net
   }
   // In coarse steps, so that lists made for some networks mostly do for the next.
   farthest = std::exp2(std::ceil(4 * std::log2(farthest)) / 4);
-  return static_cast<double>(reach_within(*scene_.noise, reaches_, static_cast<float>(farthest) + parameters_.noise_reach));
+  return static_cast<double>(
+      reach_within(*scene_.noise, reaches_, static_cast<float>(farthest) + parameters_.noise_reach));
 }
 
 // Records the listing and tracing of one chunk, whose control words are number k of the submission.
-void VulkanTracer::record_chunk(VkCommandBuffer c, const SampleChunk& chunk, SamplePush push, std::size_t k, bool masks) {
+void VulkanTracer::record_chunk(VkCommandBuffer c, const SampleChunk& chunk, SamplePush push, std::size_t k,
+                                bool masks) {
   push.control = sample_control_.address() + k * control_words * sizeof(std::uint32_t);
   push.first_voxel = chunk.first_voxel;
   push.end_voxel = chunk.end_voxel;
@@ -190,8 +193,8 @@ std::vector<NetworkCounts> VulkanTracer::count_sampled(std::span<const std::vect
       if (mask_words) vkCmdFillBuffer(c, masks_.handle(), 0, VK_WHOLE_SIZE, 0);
     };
 
-    // All of a batch goes into one submission where the device is quick enough for it; what turns out too long for the list comes again in
-    // pieces, and the reduction with it.
+    // All of a batch goes into one submission where the device is quick enough for it; what turns out too long for the
+    // list comes again in pieces, and the reduction with it.
     std::deque<SampleChunk> todo;
     if (!slots.empty() && voxels > 0)
       todo.push_back({0, static_cast<std::uint32_t>(slots.size()), 0, voxels, 0, scene_.pattern->rows()});
@@ -221,7 +224,8 @@ std::vector<NetworkCounts> VulkanTracer::count_sampled(std::span<const std::vect
       }
       const bool last = todo.empty();
       std::vector<std::uint32_t> control(std::max<std::size_t>(chunks.size(), 1) * control_words);
-      ensure(sample_control_, control.size() * sizeof control[0], "sample control", VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
+      ensure(sample_control_, control.size() * sizeof control[0], "sample control",
+             VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
       std::vector<Commands::Download> wanted{{sample_control_, control.data(), control.size() * sizeof control[0]}};
       if (last && end == networks.size()) {
         wanted.push_back({totals_, totals.data(), totals.size() * sizeof totals[0]});

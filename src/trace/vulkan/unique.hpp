@@ -2,9 +2,9 @@
 // Sole owner of one Vulkan handle of a device.
 #pragma once
 
-#include <utility>
-
 #include <volk.h>
+
+#include <utility>
 
 namespace vantage::vulkan {
 

@@ -11,8 +11,8 @@
 
 namespace vantage {
 
-// ray_query and compute_bvh on every device of this machine, usable or not, each with the reason. Where there is no Vulkan at all, two
-// entries without a device say why. Never throws for want of a device.
+// ray_query and compute_bvh on every device of this machine, usable or not, each with the reason. Where there is no
+// Vulkan at all, two entries without a device say why. Never throws for want of a device.
 std::vector<EngineInfo> list_vulkan_engines();
 
 // `engine` is ray_query or compute_bvh; without `device` the best one that has it: hardware before software.

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// A Vulkan device that traces: scene, acceleration structure and whatever is kept from call to call. ray_query and compute_bvh
-// share all of it but the acceleration structure and the shaders' trace().
+// A Vulkan device that traces: scene, acceleration structure and whatever is kept from call to call. ray_query and
+// compute_bvh share all of it but the acceleration structure and the shaders' trace().
 //
 //   vulkan_tracer.cpp    what is uploaded once        count_network.cpp    every ray of a network
-//   scan_station.cpp     points of one station        sample_networks.cpp  the rays of sampled voxels, for many networks
-//   reduction.cpp        from counts and masks to what the objectives need
+//   scan_station.cpp     points of one station        sample_networks.cpp  the rays of sampled voxels, for many
+//   networks reduction.cpp        from counts and masks to what the objectives need
 #pragma once
 
 #include <algorithm>
@@ -104,7 +104,7 @@ class VulkanTracer final : public Tracer {
     std::uint64_t counts, masks;  // addresses
     std::uint32_t voxels, groups, mask_words;
     bool differences;
-    std::uint64_t weights = 0;              // address, where voxels have any
+    std::uint64_t weights = 0;               // address, where voxels have any
     std::vector<std::uint64_t> weight = {};  // of each group then
   };
   void record_reduction(VkCommandBuffer c, const Reduction& r, std::uint32_t first_network, std::uint32_t networks,

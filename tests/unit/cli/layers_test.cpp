@@ -9,7 +9,8 @@ class Layers : public ProgramTest {
  protected:
   // The options that a run resolves to.
   nlohmann::json options(const std::vector<std::string>& more) const {
-    std::vector<std::string> arguments{"evaluate", scene_, "--engine", "embree", "--station", "8,0,1.5", "--sample", "50"};
+    std::vector<std::string> arguments{"evaluate",  scene_,    "--engine", "embree",
+                                       "--station", "8,0,1.5", "--sample", "50"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return json_of(arguments)["options"];
   }
@@ -53,7 +54,8 @@ TEST_F(Layers, ANamedPresetGoesBeforeTheScene) {
 
 TEST_F(Layers, OptionsThatNobodyKnowsAreRefused) {
   write("config.json", R"({"hight": 1.7})");
-  expect_refused(run_program(coarse("evaluate", {"--station", "8,0,1.5", "--config", path("config.json")})), 2, "hight");
+  expect_refused(run_program(coarse("evaluate", {"--station", "8,0,1.5", "--config", path("config.json")})), 2,
+                 "hight");
   write("config.json", R"({"height": "tall"})");
   const Outcome outcome = run_program(coarse("evaluate", {"--station", "8,0,1.5", "--config", path("config.json")}));
   expect_refused(outcome, 2, "config.json");
@@ -69,7 +71,8 @@ TEST_F(Layers, StationsMayComeFromAConfiguration) {
 TEST_F(Layers, ResolvedOptionsReproduceTheRun) {
   auto first = json_of(coarse("evaluate", {"--station", "8,0,1.5", "--noise", "rtc360", "--seed", "7"}));
   write("again.json", first["options"].dump());
-  auto second = json_of({"evaluate", scene_, "--engine", "embree", "--station", "8,0,1.5", "--config", path("again.json")});
+  auto second =
+      json_of({"evaluate", scene_, "--engine", "embree", "--station", "8,0,1.5", "--config", path("again.json")});
   first.erase("seconds");
   second.erase("seconds");
   EXPECT_EQ(first, second);
@@ -85,8 +88,9 @@ TEST_F(Layers, UnusualSizesScaleTheLengths) {
     "bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": 6}],
     "buffers": [{"byteLength": 42, "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAAAAAAIA/AAABAAIA"}]})";
   write("large.gltf", box);
-  const std::vector<std::string> arguments{"evaluate", path("large.gltf"), "--engine", "embree", "--station", "500,-200,93",
-                                           "--step", "1", "--sample", "10", "--json"};
+  const std::vector<std::string> arguments{"evaluate",    path("large.gltf"), "--engine", "embree",   "--station",
+                                           "500,-200,93", "--step",           "1",        "--sample", "10",
+                                           "--json"};
   const Outcome outcome = run_program(arguments);
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const auto resolved = nlohmann::json::parse(outcome.out)["options"];

@@ -54,7 +54,8 @@ TEST(Parse, StationsAreHeadsOrUvs) {
   EXPECT_EQ(parse_station("0.25,0.5", "--station").uv, (Uv{0.25, 0.5}));
   for (const char* text : {"1", "1,2,3,4", "", "1;2;3"})
     EXPECT_NE(refusal([&] { parse_station(text, "--station"); }).find("is no station"), std::string::npos) << text;
-  EXPECT_NE(refusal([] { parse_station("1,nan,3", "--station"); }).find("'nan' is not a finite number"), std::string::npos);
+  EXPECT_NE(refusal([] { parse_station("1,nan,3", "--station"); }).find("'nan' is not a finite number"),
+            std::string::npos);
 }
 
 TEST(Parse, CountRanges) {

@@ -33,7 +33,8 @@ class Plan : public ProgramTest {
 
 TEST_F(Plan, WritesEverythingAndPrintsTheFront) {
   const auto front = json_of(plan("plan", {"--problem", "coverage-overlap-fix", "--stations", "4"}));
-  for (const char* key : {"problem", "objectives", "hypervolume", "evaluations", "stop_reason", "front", "seconds", "engine", "device", "seed"})
+  for (const char* key : {"problem", "objectives", "hypervolume", "evaluations", "stop_reason", "front", "seconds",
+                          "engine", "device", "seed"})
     EXPECT_TRUE(front.contains(key)) << key;
   EXPECT_EQ(front["problem"], "coverage-overlap-fix");
   EXPECT_GE(front["evaluations"], 18);
@@ -45,16 +46,17 @@ TEST_F(Plan, WritesEverythingAndPrintsTheFront) {
     EXPECT_TRUE(entry["exact"].contains("overlap"));
   }
   EXPECT_EQ(nlohmann::json::parse(read("plan/front.json")), front);
-  for (const char* name : {"front.csv", "front.json", "history.csv", "coverage.ply", "overlap.csv", "stations.csv", "front.png", "front.svg",
-                           "hypervolume.png", "hypervolume.svg", "plan.png", "plan.svg", "config.json"})
+  for (const char* name :
+       {"front.csv", "front.json", "history.csv", "coverage.ply", "overlap.csv", "stations.csv", "front.png",
+        "front.svg", "hypervolume.png", "hypervolume.svg", "plan.png", "plan.svg", "config.json"})
     EXPECT_GT(read(std::string("plan/") + name).size(), 0u) << name;
 }
 
 TEST_F(Plan, EvaluateGivesBackTheSameNumbers) {
   const auto front = json_of(plan("plan", {"--problem", "coverage-overlap-fix", "--stations", "4"}));
   for (std::size_t k = 0; k < front["front"].size(); ++k) {
-    const auto again = json_of({"evaluate", scene_, "--engine", "embree", "--config", path("plan/config.json"), "--stations",
-                                path("plan/front.json"), "--entry", std::to_string(k)});
+    const auto again = json_of({"evaluate", scene_, "--engine", "embree", "--config", path("plan/config.json"),
+                                "--stations", path("plan/front.json"), "--entry", std::to_string(k)});
     EXPECT_EQ(again["coverage"], front["front"][k]["exact"]["coverage"]) << k;
     EXPECT_EQ(again["overlap"], front["front"][k]["exact"]["overlap"]) << k;
   }
@@ -111,7 +113,8 @@ TEST_F(Plan, FirstInterruptEndsInGoodOrder) {
   EXPECT_TRUE(std::filesystem::exists(path("plan/front.json")));
 
   const auto done = front["evaluations"].get<std::size_t>();
-  const auto resumed = json_of(plan("plan", {"--stations", "3", "--resume", "--iterations", std::to_string(done / 6 + 2)}));
+  const auto resumed =
+      json_of(plan("plan", {"--stations", "3", "--resume", "--iterations", std::to_string(done / 6 + 2)}));
   EXPECT_GT(resumed["evaluations"], done);
 }
 

@@ -67,7 +67,8 @@ std::vector<std::string> ProgramTest::files() const {
 }
 
 std::vector<std::string> ProgramTest::coarse(const std::string& command, const std::vector<std::string>& more) const {
-  std::vector<std::string> all{command, scene_, "--engine", "embree", "--step", "1", "--user-size", "0.5", "--spacing", "0.2"};
+  std::vector<std::string> all{command, scene_,        "--engine", "embree",    "--step",
+                               "1",     "--user-size", "0.5",      "--spacing", "0.2"};
   all.insert(all.end(), more.begin(), more.end());
   return all;
 }

@@ -5,10 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
-
-#include <nlohmann/json.hpp>
 
 #include "support/temporary_folder.hpp"
 
@@ -19,7 +18,8 @@ struct Outcome {
   std::string out, err;
 };
 
-// Starts the program with these arguments and waits for it. `meanwhile` is called with its process id once it has started.
+// Starts the program with these arguments and waits for it. `meanwhile` is called with its process id once it has
+// started.
 Outcome run_program(const std::vector<std::string>& arguments, const std::function<void(int)>& meanwhile = {});
 
 // A folder with the four walls in it, and options that make them quick.

@@ -8,7 +8,8 @@
 namespace vantage::test {
 namespace {
 
-const std::vector<std::string> four_heads{"--station", "8,0,1.5", "--station", "-8,0,1.5", "--station", "0,8,1.5", "--station", "0,-8,1.5"};
+const std::vector<std::string> four_heads{"--station", "8,0,1.5", "--station", "-8,0,1.5",
+                                          "--station", "0,8,1.5", "--station", "0,-8,1.5"};
 
 class Results : public ProgramTest {
  protected:
@@ -43,8 +44,8 @@ TEST_F(Results, GenerateGivesTheSameBytes) {
 
 TEST_F(Results, EvaluateHasItsKeys) {
   const auto result = json_of(evaluate({}));
-  for (const char* key : {"coverage", "coverage_se", "overlap", "overlap_se", "overlap_matrix", "stations", "voxels", "voxel_size",
-                          "goal_density", "rays", "sample", "seconds", "engine", "device"})
+  for (const char* key : {"coverage", "coverage_se", "overlap", "overlap_se", "overlap_matrix", "stations", "voxels",
+                          "voxel_size", "goal_density", "rays", "sample", "seconds", "engine", "device"})
     EXPECT_TRUE(result.contains(key)) << key;
   EXPECT_GT(result["coverage"].get<double>(), 0.5);
   EXPECT_LE(result["coverage"].get<double>(), 1.0);
@@ -65,7 +66,8 @@ TEST_F(Results, EvaluateHasItsKeys) {
 }
 
 TEST_F(Results, SkippingAndFullSamplesChangeNoCoverage) {
-  const auto all = json_of(evaluate({"--exact"})), skipped = json_of(evaluate({"--skip"})), sampled = json_of(evaluate({"--sample", "100%"}));
+  const auto all = json_of(evaluate({"--exact"})), skipped = json_of(evaluate({"--skip"})),
+             sampled = json_of(evaluate({"--sample", "100%"}));
   EXPECT_EQ(skipped["coverage"], all["coverage"]);
   EXPECT_EQ(skipped["overlap"], all["overlap"]);
   EXPECT_TRUE(skipped["stations"][0]["points"].is_null());
@@ -77,8 +79,8 @@ TEST_F(Results, SkippingAndFullSamplesChangeNoCoverage) {
 }
 
 TEST_F(Results, AWantedErrorIsReached) {
-  const auto result = json_of({"evaluate", scene_, "--engine", "embree", "--station", "8,0,1.5", "--step", "0.5", "--spacing", "0.05",
-                               "--error", "0.01"});
+  const auto result = json_of({"evaluate", scene_, "--engine", "embree", "--station", "8,0,1.5", "--step", "0.5",
+                               "--spacing", "0.05", "--error", "0.01"});
   EXPECT_GT(result["coverage_se"].get<double>(), 0);
   EXPECT_LE(result["coverage_se"].get<double>(), 0.01);
   EXPECT_LT(result["sample"], result["voxels"]);
@@ -100,12 +102,14 @@ TEST_F(Results, PlacesOnTheSearchAreaAreFoundAgain) {
   const auto again = json_of(coarse("evaluate", uvs));
   for (std::size_t k = 0; k < 4; ++k)
     for (std::size_t axis = 0; axis < 3; ++axis)
-      EXPECT_NEAR(again["stations"][k]["position"][axis].get<double>(), heads["stations"][k]["position"][axis].get<double>(), 1e-6);
+      EXPECT_NEAR(again["stations"][k]["position"][axis].get<double>(),
+                  heads["stations"][k]["position"][axis].get<double>(), 1e-6);
   EXPECT_NEAR(again["coverage"].get<double>(), heads["coverage"].get<double>(), 1e-3);
 }
 
 TEST_F(Results, HolesAndClashesAreToldAndLeftOut) {
-  const Outcome outcome = run_program(coarse("evaluate", {"--station", "8,0,1.5", "--station", "99,99", "--station", "5.1,0,1.5", "--json"}));
+  const Outcome outcome = run_program(
+      coarse("evaluate", {"--station", "8,0,1.5", "--station", "99,99", "--station", "5.1,0,1.5", "--json"}));
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const auto result = nlohmann::json::parse(outcome.out);
   EXPECT_EQ(result["stations"][0]["status"], "ok");
@@ -148,14 +152,16 @@ TEST_F(Results, ScanWithoutAFileOnlyCounts) {
 }
 
 TEST_F(Results, PanoramasArePictures) {
-  const auto result = json_of(coarse("panorama", {"--station", "8,0,1.5", "--width", "64", "--views", "range,mesh", "-o", path("views")}));
+  const auto result = json_of(
+      coarse("panorama", {"--station", "8,0,1.5", "--width", "64", "--views", "range,mesh", "-o", path("views")}));
   EXPECT_EQ(files(), (std::vector<std::string>{"views/station_0_mesh.png", "views/station_0_range.png"}));
   EXPECT_EQ(read("views/station_0_range.png").substr(1, 3), "PNG");
   EXPECT_EQ(result["stations"][0]["pictures"].size(), 2u);
 }
 
 TEST_F(Results, EvaluateWritesItsTablesAndPictures) {
-  json_of(evaluate({"--cartography", path("coverage.ply"), "--overlap-csv", path("overlap.csv"), "--picture", path("plan.png")}));
+  json_of(evaluate(
+      {"--cartography", path("coverage.ply"), "--overlap-csv", path("overlap.csv"), "--picture", path("plan.png")}));
   EXPECT_EQ(files(), (std::vector<std::string>{"coverage.ply", "overlap.csv", "plan.png"}));
   EXPECT_EQ(read("coverage.ply").substr(0, 3), "ply");
   EXPECT_EQ(read("plan.png").substr(1, 3), "PNG");

@@ -8,9 +8,14 @@ namespace {
 class Usage : public ProgramTest {};
 
 TEST_F(Usage, HelpAndVersionSucceed) {
-  for (const std::vector<std::string>& arguments :
-       {std::vector<std::string>{"--help"}, {"info", "--help"}, {"generate", "--help"}, {"scan", "--help"}, {"panorama", "--help"},
-        {"evaluate", "--help"}, {"plan", "--help"}, {"--version"}}) {
+  for (const std::vector<std::string>& arguments : {std::vector<std::string>{"--help"},
+                                                    {"info", "--help"},
+                                                    {"generate", "--help"},
+                                                    {"scan", "--help"},
+                                                    {"panorama", "--help"},
+                                                    {"evaluate", "--help"},
+                                                    {"plan", "--help"},
+                                                    {"--version"}}) {
     const Outcome outcome = run_program(arguments);
     EXPECT_EQ(outcome.exit_code, 0) << arguments[0];
     EXPECT_NE(outcome.out, "") << arguments[0];
@@ -30,12 +35,13 @@ TEST_F(Usage, CommandsAndOptionsMustExist) {
 
 TEST_F(Usage, NumbersMustMakeSense) {
   const std::vector<std::pair<std::string, std::string>> cases{
-      {"--height", "nan"},     {"--height", "-1"},        {"--height", "tall"},   {"--step", "0"},       {"--step", "0.1,0.1,0.1"},
-      {"--range", "5"},        {"--range", "10,5"},       {"--user-size", "inf"}, {"--user-size", "0"},  {"--spacing", "-0.01"},
-      {"--security", "1,2"},   {"--security", "1,2,nan"}, {"--horizontal", "0"},  {"--vertical", "400"}, {"--seed", "-3"},
-      {"--seed", "1.5"},       {"--engine", "cuda"},      {"--diffuse", "2"},     {"--station", "1"},    {"--station", "1,2,x"},
-      {"--scanner", "nokia3310"}, {"--noise", "loud"},    {"--sample", "0"},      {"--error", "0"},      {"--device", "99"},
-      {"--weight", "wall"},    {"--weight", "*=0"},        {"--weight", "*=256"}};
+      {"--height", "nan"},        {"--height", "-1"},     {"--height", "tall"},  {"--step", "0"},
+      {"--step", "0.1,0.1,0.1"},  {"--range", "5"},       {"--range", "10,5"},   {"--user-size", "inf"},
+      {"--user-size", "0"},       {"--spacing", "-0.01"}, {"--security", "1,2"}, {"--security", "1,2,nan"},
+      {"--horizontal", "0"},      {"--vertical", "400"},  {"--seed", "-3"},      {"--seed", "1.5"},
+      {"--engine", "cuda"},       {"--diffuse", "2"},     {"--station", "1"},    {"--station", "1,2,x"},
+      {"--scanner", "nokia3310"}, {"--noise", "loud"},    {"--sample", "0"},     {"--error", "0"},
+      {"--device", "99"},         {"--weight", "wall"},   {"--weight", "*=0"},   {"--weight", "*=256"}};
   for (const auto& [option, value] : cases) {
     SCOPED_TRACE(option + " " + value);
     auto arguments = coarse("evaluate", {});
@@ -52,11 +58,13 @@ TEST_F(Usage, NumbersMustMakeSense) {
 }
 
 TEST_F(Usage, WeightsNameWhatTheFileHas) {
-  expect_refused(run_program({"evaluate", scene_, "--station", "8,0,1.5", "--weight", "roof=2"}), 2, "\"roof\" matches no node");
+  expect_refused(run_program({"evaluate", scene_, "--station", "8,0,1.5", "--weight", "roof=2"}), 2,
+                 "\"roof\" matches no node");
 }
 
 TEST_F(Usage, VoxelsSmallerThanTheSpacingNameTheSmallestSize) {
-  expect_refused(run_program({"evaluate", scene_, "--station", "8,0,1.5", "--user-size", "0.01", "--spacing", "0.05", "--engine", "embree"}),
+  expect_refused(run_program({"evaluate", scene_, "--station", "8,0,1.5", "--user-size", "0.01", "--spacing", "0.05",
+                              "--engine", "embree"}),
                  2, "user size");
 }
 
@@ -68,8 +76,10 @@ TEST_F(Usage, NumbersOfStations) {
   for (const char* stations : {"0", "65", "8..4", "0..4", "4..65", "four", "4..", "-4"})
     expect_refused(run_program(coarse("plan", {"--stations", stations, "-o", path("plan")})), 2, "--stations");
   expect_refused(run_program(coarse("plan", {"-o", path("plan")})), 2, "--stations");
-  expect_refused(run_program(coarse("plan", {"--problem", "coverage-min", "--stations", "4", "-o", path("plan")})), 2, "range");
-  expect_refused(run_program(coarse("plan", {"--problem", "coverage-fix", "--stations", "4..6", "-o", path("plan")})), 2, "one number");
+  expect_refused(run_program(coarse("plan", {"--problem", "coverage-min", "--stations", "4", "-o", path("plan")})), 2,
+                 "range");
+  expect_refused(run_program(coarse("plan", {"--problem", "coverage-fix", "--stations", "4..6", "-o", path("plan")})),
+                 2, "one number");
   expect_refused(run_program(coarse("plan", {"--problem", "best", "--stations", "4", "-o", path("plan")})), 2, "best");
   EXPECT_EQ(files(), std::vector<std::string>{});
 }
@@ -78,20 +88,24 @@ TEST_F(Usage, FilesMustBeReadable) {
   expect_refused(run_program({"evaluate", path("no_such.glb"), "--station", "8,0,1.5"}), 1, "no_such.glb");
   expect_refused(run_program(coarse("evaluate", {"--stations", path("no_such.csv")})), 1, "no_such.csv");
   expect_refused(run_program(coarse("evaluate", {"--stations", path("no_such.json")})), 1, "no_such.json");
-  expect_refused(run_program(coarse("evaluate", {"--station", "8,0,1.5", "--config", path("no_such.json")})), 1, "no_such.json");
+  expect_refused(run_program(coarse("evaluate", {"--station", "8,0,1.5", "--config", path("no_such.json")})), 1,
+                 "no_such.json");
   write("text.glb", "this is no model");
   expect_refused(run_program({"evaluate", path("text.glb"), "--station", "8,0,1.5"}), 1, "text.glb");
   write("list.json", "[1, 2]");
-  expect_refused(run_program(coarse("evaluate", {"--station", "8,0,1.5", "--config", path("list.json")})), 1, "list.json");
+  expect_refused(run_program(coarse("evaluate", {"--station", "8,0,1.5", "--config", path("list.json")})), 1,
+                 "list.json");
   write("broken.json", "{\"step\": ");
-  expect_refused(run_program(coarse("evaluate", {"--station", "8,0,1.5", "--config", path("broken.json")})), 1, "broken.json");
+  expect_refused(run_program(coarse("evaluate", {"--station", "8,0,1.5", "--config", path("broken.json")})), 1,
+                 "broken.json");
   write("heads.csv", "x,y,z\n1,2,here\n");
   expect_refused(run_program(coarse("evaluate", {"--stations", path("heads.csv")})), 1, "heads.csv");
 }
 
 TEST_F(Usage, ResultsMustBeWritable) {
   expect_refused(run_program({"generate", "four-walls", "-o", path("no/such/folder/x.glb")}), 1, "no/such/folder");
-  expect_refused(run_program(coarse("scan", {"--station", "8,0,1.5", "-o", path("no/such/folder/x.ply")})), 1, "no/such/folder");
+  expect_refused(run_program(coarse("scan", {"--station", "8,0,1.5", "-o", path("no/such/folder/x.ply")})), 1,
+                 "no/such/folder");
   expect_refused(run_program(coarse("scan", {"--station", "8,0,1.5", "-o", path("x.doc")})), 2, "x.doc");
   expect_refused(run_program(coarse("plan", {"--stations", "2", "-o", scene_ + "/plan"})), 1, "four_walls.glb/plan");
   EXPECT_EQ(files(), std::vector<std::string>{});

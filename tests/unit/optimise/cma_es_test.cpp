@@ -272,7 +272,8 @@ TEST(CmaEs, RefusesDamagedStatesAndStaysAsItWas) {
   EXPECT_EQ(optimiser.iterations(), 5u);
 }
 
-// Three stations before three targets, each seen from nearby alone: two stations before one target have no way to the third.
+// Three stations before three targets, each seen from nearby alone: two stations before one target have no way to the
+// third.
 double unseen(std::span<const double> x) {
   double sum = 0;
   for (const auto& [tx, ty] : {std::pair{0.1, 0.2}, std::pair{0.9, 0.1}, std::pair{0.5, 0.9}}) {

@@ -13,11 +13,13 @@ namespace vantage {
 namespace {
 
 Checkpoint sample() {
-  Checkpoint c{.identity = "scene = 1\nseed = 2\n", .snapshot = {}, .since = {}, .seconds = 12.5, .trace_seconds = 3.25};
+  Checkpoint c{
+      .identity = "scene = 1\nseed = 2\n", .snapshot = {}, .since = {}, .seconds = 12.5, .trace_seconds = 3.25};
   c.snapshot.optimiser = std::string("bits \0 and bytes", 16);
   c.snapshot.drawn = 100, c.snapshot.redrawn = 7;
-  c.snapshot.history = {{.iteration = 1, .evaluations = 20, .hypervolume = 0.1, .front = {{0.5, 0.25}, {0.25, 0.5}}, .seconds = 1},
-                        {.iteration = 2, .evaluations = 40, .hypervolume = 0.2, .front = {}, .seconds = 2}};
+  c.snapshot.history = {
+      {.iteration = 1, .evaluations = 20, .hypervolume = 0.1, .front = {{0.5, 0.25}, {0.25, 0.5}}, .seconds = 1},
+      {.iteration = 2, .evaluations = 40, .hypervolume = 0.2, .front = {}, .seconds = 2}};
   c.since = {{.coverage = 0.125, .overlap = 0.75, .parts = 2}, {.coverage = 1.0 / 3, .overlap = 0, .parts = 1}};
   return c;
 }

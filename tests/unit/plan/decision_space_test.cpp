@@ -32,7 +32,8 @@ TEST(DecisionSpace, KnowsWhichCoordinatesMakeAStation) {
   PlanConfig config = config_of(Problem::coverage_min, 2, 3);
   EXPECT_EQ(DecisionSpace(site, config).blocks(), (std::vector<std::vector<std::size_t>>{{0, 1}, {2, 3}, {4, 5}}));
   config.heights_m = {1.2, 2.4};
-  EXPECT_EQ(DecisionSpace(site, config).blocks(), (std::vector<std::vector<std::size_t>>{{0, 1, 6}, {2, 3, 7}, {4, 5, 8}}));
+  EXPECT_EQ(DecisionSpace(site, config).blocks(),
+            (std::vector<std::vector<std::size_t>>{{0, 1, 6}, {2, 3, 7}, {4, 5, 8}}));
 }
 
 TEST(DecisionSpace, DecodesByEquation7) {

@@ -75,7 +75,8 @@ TEST(Greedy, StopsWhenTold) {
   evaluator.before_each = [&](const Network&) {
     if (evaluator.evaluated == 60) stop.request_stop();
   };
-  const GreedyResult result = choose_greedily(site, evaluator, {.stations = 6, .candidates = 50}, {.report = {}, .stop = stop.get_token()});
+  const GreedyResult result =
+      choose_greedily(site, evaluator, {.stations = 6, .candidates = 50}, {.report = {}, .stop = stop.get_token()});
   EXPECT_TRUE(result.cancelled);
   EXPECT_GT(result.stations.size(), 0u);
   EXPECT_LT(result.stations.size(), 6u);

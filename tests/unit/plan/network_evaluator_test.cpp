@@ -28,7 +28,8 @@ TEST(CachingEvaluator, SimulatesEachNetworkOnce) {
 TEST(CachingEvaluator, TellsNetworksApartByTheirSkippedStations) {
   test::ToyEvaluator evaluator;
   CachingEvaluator caching(evaluator);
-  const Network two{{{1, 2, 3}, true}}, three{{{1, 2, 3}, true}, {{}, false}}, moved{{{1, 2, 3}, true}, {{9, 9, 9}, false}};
+  const Network two{{{1, 2, 3}, true}}, three{{{1, 2, 3}, true}, {{}, false}},
+      moved{{{1, 2, 3}, true}, {{9, 9, 9}, false}};
   const std::vector<Network> networks{two, three, moved};
   caching.evaluate(networks, {});
   EXPECT_EQ(evaluator.evaluated, 2u);  // where a skipped station would stand does not matter, that there is one does

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs a toy search slowly enough to be killed half way: search_runner PROBLEM CHECKPOINT OUTPUT. It goes on from the checkpoint
-// where there is one, and writes what it found to OUTPUT.
+// Runs a toy search slowly enough to be killed half way: search_runner PROBLEM CHECKPOINT OUTPUT. It goes on from the
+// checkpoint where there is one, and writes what it found to OUTPUT.
 #include <chrono>
 #include <cstdio>
 #include <thread>

@@ -301,7 +301,9 @@ TEST(Search, WantsNetworksThatHangTogether) {
       }
       return values;
     }
-    std::optional<std::vector<NetworkEstimate>> estimate(std::span<const Network>, const Progress&) override { return std::nullopt; }
+    std::optional<std::vector<NetworkEstimate>> estimate(std::span<const Network>, const Progress&) override {
+      return std::nullopt;
+    }
     std::optional<ConfirmedNetwork> confirm(const Network&, const Progress&) override { return std::nullopt; }
     double trace_seconds() const override { return 0; }
     bool count_parts = true;
@@ -327,7 +329,12 @@ TEST(Search, WantsNetworksThatHangTogether) {
 
 TEST(Search, FindsTheBestNetworkOfAKnownSite) {
   // Eight targets and eight stations: each can stand on its own target.
-  PlanConfig config{.problem = Problem::coverage_fix, .stations_min = 8, .stations_max = 8, .population = 20, .iterations = 400, .seed = 5};
+  PlanConfig config{.problem = Problem::coverage_fix,
+                    .stations_min = 8,
+                    .stations_max = 8,
+                    .population = 20,
+                    .iterations = 400,
+                    .seed = 5};
   ToyEvaluator evaluator;
   EXPECT_GT(toy_search(config, evaluator).hypervolume, 0.97);
 }

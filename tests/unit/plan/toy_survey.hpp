@@ -30,13 +30,14 @@ inline Site toy_site() {
             if (p.x < 0 || p.x > 10 || p.y < 0 || p.y > 10) return std::nullopt;
             return Uv{p.x / 10, p.y / 10};
           },
-          .clashes = [](const Vec3& ground) { return ground.x < 0.5; },  // a wall along one side
+          .clashes = [](const Vec3& ground) { return ground.x < 0.5; },                 // a wall along one side
           .sees = [](const Vec3& a, const Vec3& b) { return (a.y < 5) == (b.y < 5); },  // a wall in the middle
           .height_m = 1.5,
           .range_m = 6};
 }
 
-// Coverage: how near the closest station is to each of 8 targets on a circle. Overlap: how close the stations stand together.
+// Coverage: how near the closest station is to each of 8 targets on a circle. Overlap: how close the stations stand
+// together.
 class ToyEvaluator final : public NetworkEvaluator {
  public:
   std::function<void(const Network&)> before_each = {};
@@ -50,17 +51,20 @@ class ToyEvaluator final : public NetworkEvaluator {
       double nearest = 20;
       for (const Station& s : network)
         if (s.active)
-          nearest = std::min(nearest, std::hypot(s.position.x - 5 - 4 * std::cos(0.7854 * k), s.position.y - 5 - 4 * std::sin(0.7854 * k)));
+          nearest = std::min(nearest, std::hypot(s.position.x - 5 - 4 * std::cos(0.7854 * k),
+                                                 s.position.y - 5 - 4 * std::sin(0.7854 * k)));
       coverage += std::exp(-nearest * nearest / 4) / 8;
     }
     for (const Station& a : network)
       for (const Station& b : network)
-        if (a.active && b.active && &a != &b) spread += std::hypot(a.position.x - b.position.x, a.position.y - b.position.y), ++pairs;
+        if (a.active && b.active && &a != &b)
+          spread += std::hypot(a.position.x - b.position.x, a.position.y - b.position.y), ++pairs;
     return {.coverage = coverage, .overlap = pairs > 0 ? std::exp(-spread / pairs / 3) : 0, .parts = 1};
   }
 
   std::size_t chunk() const override { return at_once; }
-  std::optional<std::vector<NetworkValue>> evaluate(std::span<const Network> networks, const Progress& progress) override {
+  std::optional<std::vector<NetworkValue>> evaluate(std::span<const Network> networks,
+                                                    const Progress& progress) override {
     largest_batch = std::max(largest_batch, networks.size());
     std::vector<NetworkValue> values;
     for (const Network& network : networks) {
@@ -71,7 +75,8 @@ class ToyEvaluator final : public NetworkEvaluator {
     }
     return values;
   }
-  std::optional<std::vector<NetworkEstimate>> estimate(std::span<const Network> networks, const Progress& progress) override {
+  std::optional<std::vector<NetworkEstimate>> estimate(std::span<const Network> networks,
+                                                       const Progress& progress) override {
     if (progress.stopped()) return std::nullopt;
     std::vector<NetworkEstimate> estimates;
     for (const Network& network : networks) {
@@ -85,7 +90,9 @@ class ToyEvaluator final : public NetworkEvaluator {
     if (progress.stopped()) return std::nullopt;
     ++confirmed;
     const NetworkValue v = value_of(network);
-    return ConfirmedNetwork{.coverage = v.coverage - 0.001, .overlap = v.overlap - 0.001, .overlaps = OverlapMatrix(network.size()),
+    return ConfirmedNetwork{.coverage = v.coverage - 0.001,
+                            .overlap = v.overlap - 0.001,
+                            .overlaps = OverlapMatrix(network.size()),
                             .points_on_surveyed = std::vector<std::uint64_t>(network.size(), 7)};
   }
   double trace_seconds() const override { return 0.25; }
@@ -112,19 +119,20 @@ inline std::string bits_of(const SearchOutcome& outcome) {
     text += "\n";
   }
   put(outcome.hypervolume);
-  text += std::to_string(outcome.evaluations) + " " + std::to_string(outcome.drawn) + " " + std::to_string(outcome.redrawn) + " " +
-          to_string(outcome.stop_reason) + "\n";
+  text += std::to_string(outcome.evaluations) + " " + std::to_string(outcome.drawn) + " " +
+          std::to_string(outcome.redrawn) + " " + to_string(outcome.stop_reason) + "\n";
   return text;
 }
 
 inline PlanConfig toy_config(Problem problem) {
-  PlanConfig config{.problem = problem, .stations_min = 4, .stations_max = 4, .population = 20, .iterations = 30, .seed = 7};
+  PlanConfig config{
+      .problem = problem, .stations_min = 4, .stations_max = 4, .population = 20, .iterations = 30, .seed = 7};
   if (problem == Problem::coverage_min || problem == Problem::coverage_overlap_min) config.stations_max = 8;
   return config;
 }
 
-inline SearchOutcome toy_search(const PlanConfig& config, ToyEvaluator& evaluator, std::stop_token stop = {}, std::size_t batch = 4,
-                                std::function<void(const PlanProgress&)> watch = {}) {
+inline SearchOutcome toy_search(const PlanConfig& config, ToyEvaluator& evaluator, std::stop_token stop = {},
+                                std::size_t batch = 4, std::function<void(const PlanProgress&)> watch = {}) {
   const Site site = toy_site();
   const DecisionSpace space(site, config);
   return search({.space = space,

@@ -36,7 +36,8 @@ inline PlanResult sample_result(const PlanConfig& config, std::size_t entries) {
   for (std::size_t k = 0; k < entries; ++k) {
     const double t = entries > 1 ? static_cast<double>(k) / static_cast<double>(entries - 1) : 0;
     PlanEntry e;
-    const std::size_t n = counts ? station_count_from_alpha(1 - t, config.stations_min, config.stations_max) : config.stations_max;
+    const std::size_t n =
+        counts ? station_count_from_alpha(1 - t, config.stations_min, config.stations_max) : config.stations_max;
     for (std::size_t i = 0; i < n; ++i) {
       const double u = 0.1 + 0.8 * static_cast<double>(i) / 64;
       e.stations.push_back({.uv = {u, t}, .position = {1 / 3.0 + 10 * u, 10 * t, 1.85}, .status = StationStatus::ok});
@@ -52,12 +53,16 @@ inline PlanResult sample_result(const PlanConfig& config, std::size_t entries) {
     result.front.push_back(e);
   }
   for (std::size_t it = 1; it <= 20; ++it) {
-    PlanIteration line{.iteration = it, .evaluations = 10 * it, .hypervolume = 0.5 + 0.02 * static_cast<double>(it), .front = {},
+    PlanIteration line{.iteration = it,
+                       .evaluations = 10 * it,
+                       .hypervolume = 0.5 + 0.02 * static_cast<double>(it),
+                       .front = {},
                        .seconds = 0.5 * static_cast<double>(it)};
     for (const PlanEntry& e : result.front) {
       const double worse = 0.01 * static_cast<double>(20 - it);
       std::vector<double> f{1 - e.coverage + worse};
-      if (config.problem == Problem::coverage_overlap_fix || config.problem == Problem::coverage_overlap_min) f.push_back(1 - e.overlap + worse);
+      if (config.problem == Problem::coverage_overlap_fix || config.problem == Problem::coverage_overlap_min)
+        f.push_back(1 - e.overlap + worse);
       if (counts) f.push_back(e.x.back());
       line.front.push_back(f);
     }

@@ -18,7 +18,8 @@ namespace {
 TEST(Chart, TicksAreRoundAndInside) {
   EXPECT_EQ(nice_ticks(0, 1, 5), (std::vector<double>{0, 0.2, 0.4, 0.6000000000000001, 0.8, 1}));
   EXPECT_EQ(tick_labels(nice_ticks(0, 1, 5)), (std::vector<std::string>{"0.0", "0.2", "0.4", "0.6", "0.8", "1.0"}));
-  EXPECT_EQ(tick_labels(nice_ticks(-30, 30, 6)), (std::vector<std::string>{"-30", "-20", "-10", "0", "10", "20", "30"}));
+  EXPECT_EQ(tick_labels(nice_ticks(-30, 30, 6)),
+            (std::vector<std::string>{"-30", "-20", "-10", "0", "10", "20", "30"}));
   EXPECT_EQ(tick_labels(nice_ticks(4'500'000.2, 4'500'020.1, 4)).front(), "4500005");
   std::mt19937 random(2);
   for (int round = 0; round < 1000; ++round) {
@@ -36,7 +37,8 @@ TEST(Chart, LogarithmicTicksArePowersOfTenAndMoreWhereTheseAreFew) {
   const auto many = logarithmic_ticks(0.003, 2000), few = logarithmic_ticks(0.9, 60);
   EXPECT_EQ(logarithmic_labels(many), (std::vector<std::string>{"0.01", "0.1", "1", "10", "100", "1\u2009000"}));
   EXPECT_EQ(logarithmic_labels(few), (std::vector<std::string>{"1", "2", "5", "10", "20", "50"}));
-  EXPECT_EQ(logarithmic_labels(logarithmic_ticks(0.02, 0.5)), (std::vector<std::string>{"0.02", "0.05", "0.1", "0.2", "0.5"}));
+  EXPECT_EQ(logarithmic_labels(logarithmic_ticks(0.02, 0.5)),
+            (std::vector<std::string>{"0.02", "0.05", "0.1", "0.2", "0.5"}));
 }
 
 TEST(Chart, LogarithmicAxesGiveEveryFactorTheSameLength) {
@@ -85,7 +87,15 @@ TEST(Spread, PartsWhatOverlapsAndLeavesTheRest) {
 TEST(SearchTint, HasARimAtItsEdgeAndNoneAtSeams) {
   // Two squares side by side, the second with vertices of its own and cut otherwise, as a chart's seam makes them.
   SearchMesh mesh;
-  for (const auto& [x, y] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}, {1.0, 0.0}, {2.0, 0.0}, {2.0, 1.0}, {1.0, 1.0}, {1.0, 0.4}})
+  for (const auto& [x, y] : {std::pair{0.0, 0.0},
+                             {1.0, 0.0},
+                             {1.0, 1.0},
+                             {0.0, 1.0},
+                             {1.0, 0.0},
+                             {2.0, 0.0},
+                             {2.0, 1.0},
+                             {1.0, 1.0},
+                             {1.0, 0.4}})
     mesh.positions.push_back({x, y, 0});
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {4, 5, 8}, {8, 5, 6}, {8, 6, 7}};
   const MapWindow window{.x_min = -1, .y_max = 2, .pixel_m = 0.02, .columns = 200, .rows = 150};
@@ -95,7 +105,8 @@ TEST(SearchTint, HasARimAtItsEdgeAndNoneAtSeams) {
   };
   std::vector<std::uint32_t> pixels(window.columns * window.rows, 0xFFFFFFFFu);
   pixels[60 * window.columns + 60] = 0;  // nothing there: paper
-  HeightBuffer heights{window, std::vector<float>(pixels.size(), 5), {}};  // at z = 0 with the local frame's origin 5 lower
+  // at z = 0 with the local frame's origin 5 lower
+  HeightBuffer heights{window, std::vector<float>(pixels.size(), 5), {}};
   heights.z[pixel_of(1.5, 0.4)] = 5.2f;
   for (const double y : {0.03, 0.6}) heights.z[pixel_of(1.5, y)] = 5.4f;
   tint_search_area(pixels, heights, -5, mesh);
@@ -116,7 +127,8 @@ TEST(SearchTint, HasARimAtItsEdgeAndNoneAtSeams) {
   EXPECT_NEAR(green_at(1.5, 0.03), kHiddenRim * full, 1) << "at the edge, and under something";
 }
 
-// A floor of 4 x 4 m at z = 0, a table of 2 x 2 m at z = 1 in its middle, a wall without thickness at x = -1.5, in local coordinates.
+// A floor of 4 x 4 m at z = 0, a table of 2 x 2 m at z = 1 in its middle, a wall without thickness at x = -1.5, in
+// local coordinates.
 Scene room() {
   std::vector<Vec3> p;
   std::vector<std::array<std::uint32_t, 3>> t;
@@ -136,7 +148,8 @@ TEST(Relief, ShowsTheTopmostSurface) {
   const SceneData& data = scene.data();
   const MapWindow window{.x_min = -4, .y_max = 4, .pixel_m = 0.04, .columns = 200, .rows = 200};
   const auto z_at = [&](const HeightBuffer& h, double x, double y) {
-    return h.z[static_cast<std::size_t>((4 - y) / 0.04) * 200 + static_cast<std::size_t>((x + 4) / 0.04)] + data.origin.z;
+    return h.z[static_cast<std::size_t>((4 - y) / 0.04) * 200 + static_cast<std::size_t>((x + 4) / 0.04)] +
+           data.origin.z;
   };
   const HeightBuffer open = look_from_above(data, window, 1e9);
   EXPECT_NEAR(z_at(open, 0.3, 0.2), 1, 1e-6);
@@ -165,14 +178,16 @@ TEST(Pictures, EveryFrontIsDrawnAsPngAndSvg) {
         const std::string bytes = test::content(folder / name);
         if (std::string(name) == "a.png") {
           EXPECT_EQ(bytes.substr(0, 8), "\x89PNG\r\n\x1A\n");
-          EXPECT_EQ(static_cast<unsigned char>(bytes[18]) * 256 + static_cast<unsigned char>(bytes[19]), 1560);  // width
+          // width
+          EXPECT_EQ(static_cast<unsigned char>(bytes[18]) * 256 + static_cast<unsigned char>(bytes[19]), 1560);
         } else {
           EXPECT_EQ(bytes.substr(0, 5), "<?xml");
           EXPECT_NE(bytes.find("</svg>"), std::string::npos);
         }
         if (problem != Problem::coverage_overlap_min) return;
         draw(folder / (std::string("again") + name).c_str(), result, config);
-        EXPECT_TRUE(test::content(folder / (std::string("again") + name).c_str()) == bytes) << to_string(problem) << " " << name;
+        EXPECT_TRUE(test::content(folder / (std::string("again") + name).c_str()) == bytes)
+            << to_string(problem) << " " << name;
       };
       drawn(draw_front);
       drawn(draw_hypervolume);
@@ -215,10 +230,11 @@ TEST(Pictures, PlanViewDrawsEveryKindOfStation) {
   mesh.uvs = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
   const SearchArea area = SearchArea::from_mesh(mesh);
-  const std::vector<PlacedStation> stations{{.uv = {0.2, 0.2}, .position = {-1, -1, 1.8}, .status = StationStatus::ok},
-                                            {.uv = {0.2, 0.2}, .position = {-1, -1, 1.8}, .status = StationStatus::ok},
-                                            {.uv = {0.9, 0.9}, .position = {1.6, 1.6, 1.8}, .status = StationStatus::clash},
-                                            {.uv = {5, 5}, .position = {}, .status = StationStatus::hole}};
+  const std::vector<PlacedStation> stations{
+      {.uv = {0.2, 0.2}, .position = {-1, -1, 1.8}, .status = StationStatus::ok},
+      {.uv = {0.2, 0.2}, .position = {-1, -1, 1.8}, .status = StationStatus::ok},
+      {.uv = {0.9, 0.9}, .position = {1.6, 1.6, 1.8}, .status = StationStatus::clash},
+      {.uv = {5, 5}, .position = {}, .status = StationStatus::hole}};
   OverlapMatrix overlap(4);
   overlap.set(0, 1, 0.7);
   draw_plan_view(folder / "plan.png", room(), area, stations, overlap, "A room");

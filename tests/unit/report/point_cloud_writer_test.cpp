@@ -21,7 +21,8 @@ ScanChunk chunk_of(std::uint32_t outputs) {
   constexpr float nowhere = std::numeric_limits<float>::infinity();
   ScanChunk c;
   c.first_ray = 10, c.ray_count = 3;
-  if (outputs & scan_position) c.position = {{1.5f, -2.25f, 0.125f}, {nowhere, nowhere, nowhere}, {-40.0f, 30.0f, 2.0f}};
+  if (outputs & scan_position)
+    c.position = {{1.5f, -2.25f, 0.125f}, {nowhere, nowhere, nowhere}, {-40.0f, 30.0f, 2.0f}};
   if (outputs & scan_range) c.range_m = {2.5f, nowhere, 50.0f};
   if (outputs & scan_normal) c.normal = {{0, 0, 1}, {0, 0, 0}, {-1, 0, 0}};
   if (outputs & scan_reflectivity) c.reflectivity = {0.25f, 0, 1};
@@ -36,7 +37,8 @@ constexpr std::uint32_t kAll =
 
 TEST(PointCloudWriter, PlyHoldsJustWhatWasAskedFor) {
   const test::TemporaryFolder folder;
-  for (const auto& [outputs, record] : {std::pair<std::uint32_t, std::size_t>{scan_position, 26}, {kAll, 26 + 12 + 3 + 4 + 4 + 8 + 4}}) {
+  for (const auto& [outputs, record] :
+       {std::pair<std::uint32_t, std::size_t>{scan_position, 26}, {kAll, 26 + 12 + 3 + 4 + 4 + 8 + 4}}) {
     PointCloudWriter writer(folder / "a.ply", kOrigin, outputs);
     writer.write(chunk_of(outputs), 2);
     writer.write(chunk_of(outputs), 7);
@@ -63,7 +65,8 @@ TEST(PointCloudWriter, PlyReadsBack) {
   for (std::size_t at = bytes.find("property "); at < end; at = bytes.find("property ", at + 1))
     names += bytes.substr(at + 9, bytes.find('\n', at) - at - 9) + ",";
   EXPECT_EQ(names,
-            "double x,double y,double z,float nx,float ny,float nz,uchar red,uchar green,uchar blue,float reflectivity,float range,"
+            "double x,double y,double z,float nx,float ny,float nz,uchar red,uchar green,uchar blue,float "
+            "reflectivity,float range,"
             "int mesh,uint primitive,uint voxel,ushort station,");
   std::size_t at = end + 11;
   EXPECT_EQ(take<double>(bytes, at), 500'124.75);  // exact: a float would be off by 16 mm
@@ -92,21 +95,21 @@ TEST(PointCloudWriter, LasIsFormat7Of14) {
   ASSERT_EQ(bytes.size(), 375u + 2 * 36);
   EXPECT_EQ(bytes.substr(0, 4), "LASF");
   const auto get = [&](auto value, std::size_t at) { return take<decltype(value)>(bytes, at); };
-  EXPECT_EQ(get(std::uint16_t{}, 6), 16);      // WKT bit
+  EXPECT_EQ(get(std::uint16_t{}, 6), 16);  // WKT bit
   EXPECT_EQ(get(std::uint8_t{}, 24), 1);
   EXPECT_EQ(get(std::uint8_t{}, 25), 4);
-  EXPECT_EQ(get(std::uint16_t{}, 94), 375);    // header size
-  EXPECT_EQ(get(std::uint32_t{}, 96), 375u);   // offset to points
+  EXPECT_EQ(get(std::uint16_t{}, 94), 375);   // header size
+  EXPECT_EQ(get(std::uint32_t{}, 96), 375u);  // offset to points
   EXPECT_EQ(get(std::uint8_t{}, 104), 7);
   EXPECT_EQ(get(std::uint16_t{}, 105), 36);
-  EXPECT_EQ(get(std::uint32_t{}, 107), 0u);    // legacy count
+  EXPECT_EQ(get(std::uint32_t{}, 107), 0u);  // legacy count
   EXPECT_EQ(get(double{}, 131), 1e-4);
   const double offset_x = get(double{}, 155), offset_y = get(double{}, 163), offset_z = get(double{}, 171);
   EXPECT_EQ(offset_x, 500'123.0);
   EXPECT_NEAR(get(double{}, 179), 500'124.75, 1e-9);  // max x
   EXPECT_NEAR(get(double{}, 187), 500'083.25, 1e-9);  // min x
   EXPECT_NEAR(get(double{}, 195), 4'500'351.5, 1e-9);
-  EXPECT_NEAR(get(double{}, 219), 101.875, 1e-9);     // min z
+  EXPECT_NEAR(get(double{}, 219), 101.875, 1e-9);  // min z
   EXPECT_EQ(get(std::uint64_t{}, 247), 2u);
   EXPECT_EQ(get(std::uint64_t{}, 255), 2u);
   EXPECT_NEAR(get(std::int32_t{}, 375) * 1e-4 + offset_x, 500'124.75, 5.1e-5);
@@ -149,7 +152,8 @@ TEST(PointCloudWriter, LeavesNothingUnlessClosed) {
 
 TEST(PointCloudWriter, TellsHitsByWhatThereIs) {
   const test::TemporaryFolder folder;
-  for (const std::uint32_t outputs : {std::uint32_t{scan_position}, scan_position | scan_range, scan_position | scan_ids}) {
+  for (const std::uint32_t outputs :
+       {std::uint32_t{scan_position}, scan_position | scan_range, scan_position | scan_ids}) {
     PointCloudWriter writer(folder / "a.ply", {}, outputs);
     ScanChunk chunk = chunk_of(outputs);
     if (outputs != scan_position) chunk.position[1] = {0, 0, 0};  // a miss need not say so in its position

@@ -46,7 +46,8 @@ TEST(StationsCsv, ReadsWhatOthersWrite) {
   ASSERT_EQ(plain.size(), 2u);
   EXPECT_EQ(plain[1].position, (Vec3{-45, 6, 7}));
   EXPECT_FALSE(plain[1].uv);
-  // A spreadsheet's: byte order mark, carriage returns, capitals, spaces, quotes, another order, other columns, no last newline.
+  // A spreadsheet's: byte order mark, carriage returns, capitals, spaces, quotes, another order, other columns, no last
+  // newline.
   const auto sheet = read("\xEF\xBB\xBF\"Name\", V ,U\r\n# first\r\n\r\nA, 0.25, \"0.5\"\r\nB,1,0");
   ASSERT_EQ(sheet.size(), 2u);
   EXPECT_EQ(sheet[0].uv, (Uv{0.5, 0.25}));

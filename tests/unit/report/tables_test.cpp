@@ -16,7 +16,8 @@ TEST(Tables, OverlapIsASquareWithAHeader) {
   OverlapMatrix overlap(3);
   overlap.set(0, 2, 0.1 + 0.2);
   write_overlap_csv(folder / "o.csv", overlap);
-  EXPECT_EQ(test::content(folder / "o.csv"), "station,1,2,3\n1,0,0,0.30000000000000004\n2,0,0,0\n3,0.30000000000000004,0,0\n");
+  EXPECT_EQ(test::content(folder / "o.csv"),
+            "station,1,2,3\n1,0,0,0.30000000000000004\n2,0,0,0\n3,0.30000000000000004,0,0\n");
 }
 
 TEST(Tables, EveryLineHasAsManyCellsAsTheHeader) {

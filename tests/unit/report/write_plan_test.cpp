@@ -62,7 +62,8 @@ json without_seconds(json value) {
 
 class WritePlan : public testing::TestWithParam<Problem> {};
 INSTANTIATE_TEST_SUITE_P(Report, WritePlan,
-                         testing::Values(Problem::coverage_fix, Problem::coverage_overlap_fix, Problem::coverage_overlap_min),
+                         testing::Values(Problem::coverage_fix, Problem::coverage_overlap_fix,
+                                         Problem::coverage_overlap_min),
                          [](const auto& problem) {
                            std::string name = to_string(problem.param);
                            std::replace(name.begin(), name.end(), '-', '_');
@@ -72,7 +73,12 @@ INSTANTIATE_TEST_SUITE_P(Report, WritePlan,
 TEST_P(WritePlan, WhatIsWrittenEvaluatesToTheSameNumbers) {
   const test::TemporaryFolder folder;
   Survey survey;
-  PlanConfig config{.problem = GetParam(), .stations_min = 3, .stations_max = 3, .population = 8, .iterations = 6, .sample_voxels = 200,
+  PlanConfig config{.problem = GetParam(),
+                    .stations_min = 3,
+                    .stations_max = 3,
+                    .population = 8,
+                    .iterations = 6,
+                    .sample_voxels = 200,
                     .seed = 3};
   if (config.problem == Problem::coverage_overlap_min) config.stations_min = 2, config.stations_max = 5;
   const PlanResult result = plan(survey.simulator, survey.area, survey.clash, config);
@@ -81,8 +87,9 @@ TEST_P(WritePlan, WhatIsWrittenEvaluatesToTheSameNumbers) {
   const std::size_t chosen = write_plan(folder / "out", result, config, survey.simulator, survey.area);
   const PlanEntry& entry = result.front[chosen];
 
-  for (const char* name : {"front.csv", "front.json", "history.csv", "fronts.csv", "coverage.ply", "overlap.csv", "stations.csv",
-                           "front.png", "front.svg", "hypervolume.png", "hypervolume.svg", "plan.png", "plan.svg"})
+  for (const char* name :
+       {"front.csv", "front.json", "history.csv", "fronts.csv", "coverage.ply", "overlap.csv", "stations.csv",
+        "front.png", "front.svg", "hypervolume.png", "hypervolume.svg", "plan.png", "plan.svg"})
     EXPECT_TRUE(std::filesystem::exists(folder / "out" / name)) << name;
 
   // stations.csv
@@ -98,8 +105,8 @@ TEST_P(WritePlan, WhatIsWrittenEvaluatesToTheSameNumbers) {
 
   // front.json
   const json written = json::parse(test::content(folder / "out" / "front.json"));
-  for (const char* key : {"problem", "objectives", "hypervolume", "evaluations", "stop_reason", "front", "seconds", "engine", "device",
-                          "seed", "parameters", "version"})
+  for (const char* key : {"problem", "objectives", "hypervolume", "evaluations", "stop_reason", "front", "seconds",
+                          "engine", "device", "seed", "parameters", "version"})
     EXPECT_TRUE(written.contains(key)) << key;
   EXPECT_EQ(written["front"].size(), result.front.size());
   const json& first = written["front"][chosen];
@@ -135,7 +142,8 @@ TEST_P(WritePlan, WhatIsWrittenEvaluatesToTheSameNumbers) {
 }
 
 TEST_P(WritePlan, TheSameSeedGivesTheSameFrontButForSeconds) {
-  PlanConfig config{.problem = GetParam(), .stations_min = 3, .stations_max = 3, .population = 6, .iterations = 4, .seed = 9};
+  PlanConfig config{
+      .problem = GetParam(), .stations_min = 3, .stations_max = 3, .population = 6, .iterations = 4, .seed = 9};
   if (config.problem == Problem::coverage_overlap_min) config.stations_max = 4;
   std::string texts[2];
   for (std::string& text : texts) {
@@ -153,7 +161,8 @@ TEST_P(WritePlan, TheSameSeedGivesTheSameFrontButForSeconds) {
 
 TEST(Plan, SampledOfEveryVoxelIsExact) {
   Survey survey;
-  PlanConfig config{.problem = Problem::coverage_overlap_fix, .stations_min = 3, .stations_max = 3, .population = 6, .iterations = 3};
+  PlanConfig config{
+      .problem = Problem::coverage_overlap_fix, .stations_min = 3, .stations_max = 3, .population = 6, .iterations = 3};
   const PlanResult exact = plan(survey.simulator, survey.area, survey.clash, config);
   config.batch = 1;  // as the exact search has it
   config.sample_voxels = survey.simulator.voxel_count();
@@ -169,7 +178,11 @@ TEST(Plan, SampledOfEveryVoxelIsExact) {
 
 TEST(Plan, ResumesOnARealSiteAndRefusesAnother) {
   const test::TemporaryFolder folder;
-  PlanConfig config{.problem = Problem::coverage_overlap_fix, .stations_min = 3, .stations_max = 3, .population = 6, .iterations = 5,
+  PlanConfig config{.problem = Problem::coverage_overlap_fix,
+                    .stations_min = 3,
+                    .stations_max = 3,
+                    .population = 6,
+                    .iterations = 5,
                     .sample_voxels = 100};
   Survey whole;
   const PlanResult wanted = plan(whole.simulator, whole.area, whole.clash, config);
@@ -177,8 +190,12 @@ TEST(Plan, ResumesOnARealSiteAndRefusesAnother) {
   config.resume = true;
   std::stop_source stop;
   Survey first;
-  const PlanResult cut = plan(first.simulator, first.area, first.clash, config,
-                              [&](const PlanProgress& p) { if (p.evaluations >= 14) stop.request_stop(); }, stop.get_token());
+  const PlanResult cut = plan(
+      first.simulator, first.area, first.clash, config,
+      [&](const PlanProgress& p) {
+        if (p.evaluations >= 14) stop.request_stop();
+      },
+      stop.get_token());
   EXPECT_EQ(cut.stop_reason, StopReason::cancelled);
   for (const PlanEntry& e : cut.front) EXPECT_TRUE(e.confirmed);  // what was found so far is still confirmed
   Survey second;

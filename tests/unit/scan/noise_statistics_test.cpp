@@ -87,15 +87,16 @@ TEST(NoiseStatistics, TwelvePointsOfTheTable) {
   }
 }
 
-// Whatever the seed: the squared means of 200 samples, in standard errors, add up to χ² of 200 degrees of freedom, whose 5·10⁻⁵ quantiles
-// are 131 and 288.
+// Whatever the seed: the squared means of 200 samples, in standard errors, add up to χ² of 200 degrees of freedom,
+// whose 5·10⁻⁵ quantiles are 131 and 288.
 TEST(NoiseStatistics, MeansScatterAsChanceDoes) {
   constexpr std::uint32_t samples = 200, size = 100'000;
   const auto table = normal_table();
   std::vector<double> squares(samples);
   tbb::parallel_for(std::uint32_t{0}, samples, [&](std::uint32_t seed) {
     double sum = 0;
-    for (std::uint32_t k = 0; k < size; ++k) sum += static_cast<double>(normal_from_bits(philox4x32(seed, {k, 0, 0, noise_stream})[0], table));
+    for (std::uint32_t k = 0; k < size; ++k)
+      sum += static_cast<double>(normal_from_bits(philox4x32(seed, {k, 0, 0, noise_stream})[0], table));
     squares[seed] = sum * sum / size;
   });
   double total = 0;

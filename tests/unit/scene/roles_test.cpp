@@ -203,7 +203,8 @@ TEST(Weights, FollowTheRulesOfRoles) {
   EXPECT_NE(message(builder, options, Errc::invalid_argument).find("256"), std::string::npos);
   options.weights = {{"window", 2}};
   EXPECT_NE(message(builder, options, Errc::invalid_argument).find("window"), std::string::npos);
-  for (const json& mark : {json{{"weight", 0}}, json{{"weight", 256}}, json{{"weight", 1.5}}, json{{"weight", "high"}}}) {
+  for (const json& mark :
+       {json{{"weight", 0}}, json{{"weight", 256}}, json{{"weight", 1.5}}, json{{"weight", "high"}}}) {
     GlbBuilder wrong;
     wrong.triangle("tank", mark);
     EXPECT_NE(message(wrong, {}, Errc::malformed_file).find("\"tank\""), std::string::npos) << mark;

@@ -16,7 +16,8 @@ namespace {
 
 constexpr std::uint32_t max_leaf = 2;
 constexpr int bins = 32;
-// From here on halves are cut by count, so the depth stays below 40 + log2(2^28 / 2) < bvh_stack_size − 1 entries on the stack.
+// From here on halves are cut by count, so the depth stays below 40 + log2(2^28 / 2) < bvh_stack_size − 1 entries on
+// the stack.
 constexpr std::uint32_t max_sah_depth = 34;
 constexpr std::size_t parallel_grain = 8192;
 
@@ -75,7 +76,8 @@ class Builder {
   std::uint32_t build(std::size_t begin, std::size_t end, std::uint32_t slot, std::uint32_t depth) {
     const std::size_t count = end - begin;
     if (count <= max_leaf)
-      return bvh_leaf_bit | static_cast<std::uint32_t>(count - 1) << bvh_leaf_count_shift | static_cast<std::uint32_t>(begin);
+      return bvh_leaf_bit | static_cast<std::uint32_t>(count - 1) << bvh_leaf_count_shift |
+             static_cast<std::uint32_t>(begin);
     const std::size_t middle = split(begin, end, depth);
     Bounds3 left, right;
     std::uint32_t left_word = 0, right_word = 0;
@@ -105,7 +107,8 @@ class Builder {
  private:
   std::size_t split(std::size_t begin, std::size_t end, std::uint32_t depth) {
     Bounds3 centres;
-    for (std::size_t i = begin; i < end; ++i) centres.extend(Float3{items_[i].centre(0), items_[i].centre(1), items_[i].centre(2)});
+    for (std::size_t i = begin; i < end; ++i)
+      centres.extend(Float3{items_[i].centre(0), items_[i].centre(1), items_[i].centre(2)});
     std::size_t best_axis = 0;
     int best_bin = -1;
     if (depth < max_sah_depth) {
@@ -144,7 +147,8 @@ class Builder {
         }
       }
     }
-    const auto first = items_.begin() + static_cast<std::ptrdiff_t>(begin), last = items_.begin() + static_cast<std::ptrdiff_t>(end);
+    const auto first = items_.begin() + static_cast<std::ptrdiff_t>(begin),
+               last = items_.begin() + static_cast<std::ptrdiff_t>(end);
     if (best_bin >= 0) {
       const float low = centres.min[best_axis], scale = static_cast<float>(bins) / (centres.max[best_axis] - low);
       const auto middle = std::stable_partition(
@@ -156,10 +160,11 @@ class Builder {
     for (std::size_t k = 1; k < 3; ++k)
       if (centres.max[k] - centres.min[k] > centres.max[axis] - centres.min[axis]) axis = k;
     const std::size_t middle = begin + (end - begin) / 2;
-    std::nth_element(first, items_.begin() + static_cast<std::ptrdiff_t>(middle), last, [&](const Item& a, const Item& b) {
-      const float x = a.centre(axis), y = b.centre(axis);
-      return x != y ? x < y : a.triangle < b.triangle;
-    });
+    std::nth_element(first, items_.begin() + static_cast<std::ptrdiff_t>(middle), last,
+                     [&](const Item& a, const Item& b) {
+                       const float x = a.centre(axis), y = b.centre(axis);
+                       return x != y ? x < y : a.triangle < b.triangle;
+                     });
     return middle;
   }
 
@@ -193,7 +198,8 @@ std::vector<BvhNode> compact(const std::vector<BvhNode>& sparse, std::uint32_t r
 
 }  // namespace
 
-Bvh build_bvh(std::span<const Float3> positions, std::span<const Triangle> triangles, std::span<const std::uint32_t> ids) {
+Bvh build_bvh(std::span<const Float3> positions, std::span<const Triangle> triangles,
+              std::span<const std::uint32_t> ids) {
   assert(triangles.size() == ids.size() && triangles.size() < bvh_leaf_first_mask);
   std::vector<Item> items(triangles.size());
   tbb::parallel_for(std::size_t{0}, items.size(), [&](std::size_t k) {

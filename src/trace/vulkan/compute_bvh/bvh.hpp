@@ -16,8 +16,9 @@ struct Bvh {
   std::vector<BvhTriangle> triangles;  // in leaf order
 };
 
-// Binned surface-area heuristic (Wald: On fast Construction of SAH-based Bounding Volume Hierarchies, 2007). Parallel; the same tree
-// whatever the number of threads. `ids[k]` is stored with triangle k. Depth is below bvh_stack_size.
-Bvh build_bvh(std::span<const Float3> positions, std::span<const Triangle> triangles, std::span<const std::uint32_t> ids);
+// Binned surface-area heuristic (Wald: On fast Construction of SAH-based Bounding Volume Hierarchies, 2007). Parallel;
+// the same tree whatever the number of threads. `ids[k]` is stored with triangle k. Depth is below bvh_stack_size.
+Bvh build_bvh(std::span<const Float3> positions, std::span<const Triangle> triangles,
+              std::span<const std::uint32_t> ids);
 
 }  // namespace vantage

@@ -34,10 +34,11 @@ void sort_items(std::span<Item> items) {
   if (items.size() <= 2) return;
   const std::size_t half = (items.size() + 1) / 2;
   const auto halve = [&](std::size_t axis) {
-    std::nth_element(items.begin(), items.begin() + static_cast<std::ptrdiff_t>(half), items.end(), [axis](const Item& a, const Item& b) {
-      const float x = a.min[axis] + a.max[axis], y = b.min[axis] + b.max[axis];
-      return x != y ? x < y : a.triangle < b.triangle;
-    });
+    std::nth_element(items.begin(), items.begin() + static_cast<std::ptrdiff_t>(half), items.end(),
+                     [axis](const Item& a, const Item& b) {
+                       const float x = a.min[axis] + a.max[axis], y = b.min[axis] + b.max[axis];
+                       return x != y ? x < y : a.triangle < b.triangle;
+                     });
   };
   std::size_t best = 0;
   float best_cost = std::numeric_limits<float>::infinity();

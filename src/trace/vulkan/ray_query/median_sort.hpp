@@ -10,8 +10,9 @@
 
 namespace vantage {
 
-// lavapipe (Mesa 25.0) builds its tree by halving triangles in input order, so the order is the tree. Returns a permutation: recursive
-// median splits by centroid, left child the first ⌈n/2⌉, along the axis with the least surface area cost. Parallel and deterministic.
+// lavapipe (Mesa 25.0) builds its tree by halving triangles in input order, so the order is the tree. Returns a
+// permutation: recursive median splits by centroid, left child the first ⌈n/2⌉, along the axis with the least surface
+// area cost. Parallel and deterministic.
 std::vector<std::uint32_t> median_sort(std::span<const Float3> positions, std::span<const Triangle> triangles);
 
 }  // namespace vantage
