@@ -7,33 +7,10 @@
 #include <span>
 #include <vector>
 
+#include "vantage/simulator.hpp"
+#include "vantage/trace.hpp"
+
 namespace vantage {
-
-/// What a simulated network left in the surveyed voxels, reduced to integers. Exact, so independent of engine, order
-/// and chunking.
-struct NetworkCounts {
-  std::uint64_t voxels = 0;  ///< N_v, or the size of the sample.
-  /// Sum of the voxels' weights (`MeshInfo::weight`): `voxels` where all surveyed meshes weigh the same.
-  std::uint64_t weight = 0;
-  std::uint64_t saturated = 0;        ///< Weight of the voxels that reached the goal density.
-  std::uint64_t partial_points = 0;   ///< Points in all other voxels together, each times its voxel's weight.
-  std::uint64_t rays = 0;             ///< Rays that were traced.
-  std::uint32_t stations = 0;         ///< N_stations, skipped ones included.
-  std::vector<std::uint64_t> points;  ///< Per station, all meshes; empty where not counted (rays were skipped).
-  std::vector<std::uint64_t> points_on_surveyed;  ///< Per station, those that count.
-  std::vector<std::uint64_t> seen;                ///< Per station: voxels with a point of it. Empty without overlap.
-  /// Voxels seen by both i and j, i < j, in the order (0,1), (0,2), …, (1,2), …; empty without overlap.
-  std::vector<std::uint64_t> shared;
-  /// The same counts for each of G interleaved groups of a sample, for standard errors; empty when exact.
-  std::vector<NetworkCounts> groups;
-  /// Sum over successive sampled voxels of the squared difference of min(count/goal, 1); for the standard error of
-  /// coverage.
-  double successive_difference_sum = 0;
-  double trace_seconds = 0;
-  bool cancelled = false;
-
-  std::uint64_t shared_by(std::size_t i, std::size_t j) const;  ///< REQUIRES: i != j, both < stations.
-};
 
 /// Symmetric matrix of Overlap_ij (equation 11), zero on the diagonal.
 class OverlapMatrix {
@@ -72,6 +49,12 @@ Estimate coverage_estimate(const NetworkCounts& counts, double goal_density, std
 Estimate overlap_estimate(const NetworkCounts& counts, std::uint64_t population);
 /// Standard errors of `overlap_matrix`, likewise by the jackknife.
 OverlapMatrix overlap_standard_errors(const NetworkCounts& counts, std::uint64_t population);
+
+/// How many voxels `evaluate_sampled` needs so that no standard error, of coverage and, with `overlap`, of overlap,
+/// exceeds `wanted` on any of `networks`. Found on pilot samples that grow until one holds; at most
+/// `simulator.voxel_count()`, then the error is 0. Throws Error invalid_argument unless wanted > 0.
+std::uint64_t voxels_for_standard_error(Simulator& simulator, std::span<const Network> networks, double wanted,
+                                        bool overlap = true, const Progress& progress = {});
 
 /// Equation 7: rounded(N_min + α (N_max − N_min)), half up, α clamped to [0, 1].
 std::size_t station_count_from_alpha(double alpha, std::size_t n_min, std::size_t n_max);

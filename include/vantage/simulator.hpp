@@ -12,38 +12,13 @@
 #include <string>
 #include <vector>
 
-#include "vantage/objective.hpp"
 #include "vantage/panorama.hpp"
 #include "vantage/progress.hpp"
 #include "vantage/scanner.hpp"
 #include "vantage/scene.hpp"
+#include "vantage/trace.hpp"
 
 namespace vantage {
-
-/// How rays are traced. Counts do not depend on the choice but for ray-triangle rounding at edges.
-enum class Engine {
-  automatic,    ///< The best hardware GPU; else `embree`.
-  ray_query,    ///< Vulkan compute shaders with VK_KHR_ray_query.
-  compute_bvh,  ///< Vulkan compute shaders with a BVH of our own.
-  embree,       ///< CPU.
-};
-std::string to_string(Engine);
-/// Throws Error invalid_argument and lists the engines.
-Engine engine_from_string(const std::string&);
-
-/// An engine on a device as `list_engines` finds it.
-struct EngineInfo {
-  Engine engine = Engine::embree;
-  std::string device;  ///< "llvmpipe (LLVM 15.0.6, 256 bits)"
-  std::string driver;  ///< Driver or library with version.
-  std::uint32_t device_index = 0;
-  bool usable = false;
-  bool software = false;  ///< A CPU behind a GPU interface.
-  bool chosen_by_default = false;
-  std::string reason;  ///< Why it was taken or refused.
-};
-/// All engines on all devices of this machine, usable or not. Never throws for want of a device.
-std::vector<EngineInfo> list_engines();
 
 struct SimulatorConfig {
   Engine engine = Engine::automatic;
@@ -100,12 +75,6 @@ struct ScanSummary {
   bool cancelled = false;
 };
 
-/// A voxel field: the cartography of coverage. Element k belongs to the k-th surveyed voxel in Morton order.
-struct VoxelField {
-  std::vector<std::uint32_t> count;     ///< Points, saturating.
-  std::vector<std::uint64_t> stations;  ///< Bit i: station i has a point in the voxel.
-};
-
 /// How `Simulator::evaluate` works.
 struct EvaluateOptions {
   bool overlap = true;  ///< Keep station masks and count pairs.
@@ -148,18 +117,12 @@ class Simulator {
                    const std::function<void(const ScanChunk&)>& sink, const Progress& progress = {},
                    const Panorama* panorama = nullptr);
 
-  /// Every ray of every station. REQUIRES: 1 to 64 stations. A cancelled evaluation says so in `cancelled`.
+  /// Every ray of every station. REQUIRES: 1 to `max_stations` stations. A cancelled evaluation says so in `cancelled`.
   NetworkCounts evaluate(const Network& network, const EvaluateOptions& options = {}, const Progress& progress = {});
 
   /// Networks on a sample of the voxels; one submission for all.
   std::vector<NetworkCounts> evaluate_sampled(std::span<const Network> networks, const SampleOptions& options = {},
                                               const Progress& progress = {});
-
-  /// How many voxels `evaluate_sampled` needs so that no standard error, of coverage and, with `overlap`, of overlap,
-  /// exceeds `wanted` on any of `networks`. Found on pilot samples that grow until one holds; at most `voxel_count()`,
-  /// then the error is 0. Throws Error invalid_argument unless wanted > 0.
-  std::uint64_t voxels_for_standard_error(std::span<const Network> networks, double wanted, bool overlap = true,
-                                          const Progress& progress = {});
 
  private:
   struct Impl;

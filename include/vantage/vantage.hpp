@@ -13,5 +13,6 @@
 #include "vantage/scanner.hpp"
 #include "vantage/scene.hpp"
 #include "vantage/simulator.hpp"
+#include "vantage/trace.hpp"
 #include "vantage/types.hpp"
 #include "vantage/version.hpp"

@@ -10,8 +10,6 @@
 namespace vantage::cli {
 namespace {
 
-constexpr std::size_t most_stations = 64;  // a bit each in a voxel's mask
-
 struct EvaluateCommandOptions {
   SiteOptions site;
   StationOptions stations;
@@ -55,7 +53,7 @@ NetworkCounts evaluate_sample(Simulator& simulator, const Network& network, cons
                               const Progress& progress) {
   const bool overlap = !options.no_overlap;
   const std::uint64_t voxels =
-      options.error ? simulator.voxels_for_standard_error({&network, 1}, *options.error, overlap, progress)
+      options.error ? voxels_for_standard_error(simulator, {&network, 1}, *options.error, overlap, progress)
                     : options.sample->of(simulator.voxel_count());
   return simulator.evaluate_sampled({&network, 1}, {.voxels = voxels, .overlap = overlap}, progress).front();
 }
@@ -69,7 +67,7 @@ nlohmann::json matrix_json(const OverlapMatrix& overlap) {
 int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& program) {
   const Stopwatch watch;
   Site site = open_site(command, options.site);
-  const auto stations = place(site, options.stations.read(most_stations));
+  const auto stations = place(site, options.stations.read(max_stations));
   warn_of_unusable(stations);
   const bool sampled = options.sample || options.error;
   const bool overlap = !options.no_overlap;

@@ -14,7 +14,6 @@
 namespace vantage::cli {
 namespace {
 
-constexpr std::size_t most_stations = 64;
 // What a sampled search needs for errors of .002 in coverage, and of .007 in overlap, on large sites
 // (docs/benchmarks.md).
 constexpr std::uint64_t sample_for_coverage = 20'000, sample_for_overlap = 100'000;
@@ -44,7 +43,7 @@ struct PlanOptions {
     add_value(command, "--stations", "N|A..B",
               "How many stations: N for the fix problems, A to B for the min problems, up to 64",
               [this](const std::string& text, const std::string& what) {
-                stations = parse_count_range(text, what, 1, most_stations);
+                stations = parse_count_range(text, what, 1, max_stations);
               })
         ->group("Problem");
     add_values(command, "--keep", "X,Y,Z|U,V", "A station that is there already, on top of --stations; may be repeated",
@@ -173,10 +172,10 @@ void settle_problem(PlanOptions& options) {
   if (!minimises_stations(config.problem) && low != high)
     throw Error(Errc::invalid_argument,
                 fmt::format("--stations {}..{}: {} takes one number", low, high, to_string(config.problem)));
-  if (high + options.keep.size() > most_stations)
+  if (high + options.keep.size() > max_stations)
     throw Error(Errc::invalid_argument,
                 fmt::format("--stations {} and {} kept ones are more than the {} that can be simulated together", high,
-                            options.keep.size(), most_stations));
+                            options.keep.size(), max_stations));
   config.stations_min = low;
   config.stations_max = high;
 }

@@ -4,18 +4,10 @@
 #include "vantage/objective.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <utility>
 
 namespace vantage {
-
-std::uint64_t NetworkCounts::shared_by(std::size_t i, std::size_t j) const {
-  assert(i != j && i < stations && j < stations);
-  if (i > j) std::swap(i, j);
-  const std::size_t before = i * (2 * std::size_t{stations} - i - 1) / 2;  // pairs whose first station is below i
-  return shared[before + (j - i - 1)];
-}
 
 double coverage(const NetworkCounts& counts, double goal_density) {
   if (counts.weight == 0) return 0;

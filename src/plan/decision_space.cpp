@@ -10,8 +10,6 @@
 namespace vantage {
 namespace {
 
-constexpr std::size_t kMaxStations = 64;  // bits of a voxel's station mask
-
 [[noreturn]] void refuse(const std::string& what) { throw Error(Errc::invalid_argument, "plan: " + what); }
 
 void check(const PlanConfig& config) {
@@ -23,8 +21,9 @@ void check(const PlanConfig& config) {
   if (fix && config.stations_min != config.stations_max)
     refuse(to_string(config.problem) + " needs one number of stations, not " + count(config.stations_min) + " to " +
            count(config.stations_max) + "; use a -min problem to search for the number");
-  if (config.stations_max + config.fixed.size() > kMaxStations)
-    refuse("at most 64 stations in all, " + count(config.stations_max + config.fixed.size()) + " were asked for");
+  if (config.stations_max + config.fixed.size() > max_stations)
+    refuse("at most " + count(max_stations) + " stations in all, " + count(config.stations_max + config.fixed.size()) +
+           " were asked for");
   if (config.iterations < 1) refuse("at least one iteration is needed");
   if (config.problem != Problem::coverage_fix && config.population == 1)
     refuse("a population of 1 has no front; give 2 or more");

@@ -39,8 +39,9 @@ struct Candidate {
 
 GreedyResult choose_greedily(const Site& site, NetworkEvaluator& evaluator, const GreedyConfig& config,
                              const Progress& progress) {
-  if (config.stations < 1 || config.stations + config.fixed.size() > 64)
-    throw Error(Errc::invalid_argument, "greedy: 1 to 64 stations can be chosen, kept ones included, not " +
+  if (config.stations < 1 || config.stations + config.fixed.size() > max_stations)
+    throw Error(Errc::invalid_argument, "greedy: 1 to " + std::to_string(max_stations) +
+                                            " stations can be chosen, kept ones included, not " +
                                             std::to_string(config.stations + config.fixed.size()));
   if (config.candidates < 1) throw Error(Errc::invalid_argument, "greedy: at least one candidate is needed");
   std::vector<Candidate> candidates;

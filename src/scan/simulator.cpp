@@ -18,7 +18,6 @@
 namespace vantage {
 namespace {
 
-constexpr std::size_t max_stations = 64;  // bits of a station mask
 constexpr std::uint32_t sample_groups = 20;
 constexpr std::uint32_t known_outputs =
     scan_range | scan_position | scan_normal | scan_reflectivity | scan_ids | scan_colour | scan_voxel;
@@ -249,30 +248,6 @@ std::vector<NetworkCounts> Simulator::evaluate_sampled(std::span<const Network> 
                                    progress);
   for (std::size_t k = 0; k < counts.size(); ++k) all[places[k]] = std::move(counts[k]);
   return all;
-}
-
-std::uint64_t Simulator::voxels_for_standard_error(std::span<const Network> networks, double wanted, bool overlap,
-                                                   const Progress& progress) {
-  if (!(wanted > 0))
-    throw Error(Errc::invalid_argument,
-                "the wanted standard error is " + std::to_string(wanted) + ", but must be above 0");
-  constexpr std::uint64_t first_pilot = 5000;  // below it pair overlaps, and errors themselves, are not to be trusted
-  constexpr double reserve = 1.1;              // the pilot's error is an estimate too
-  const std::uint64_t population = voxel_count();
-  for (std::uint64_t size = std::min(first_pilot, population);;) {
-    if (size >= population) return population;
-    double error = 0;
-    for (const NetworkCounts& counts : evaluate_sampled(networks, {.voxels = size, .overlap = overlap}, progress)) {
-      error = std::max(error, coverage_estimate(counts, goal_density(), population).standard_error);
-      if (overlap) error = std::max(error, overlap_estimate(counts, population).standard_error);
-    }
-    if (error <= wanted || progress.stopped()) return size;
-    // error² = s²·(1/n − 1/N) gives s², and that the n for the wanted error.
-    const double n = static_cast<double>(size), all = static_cast<double>(population);
-    const double variance = error * error / (1 / n - 1 / all);
-    const double needed = reserve / (wanted * wanted / variance + 1 / all);
-    size = needed >= all ? population : std::max(static_cast<std::uint64_t>(needed), size + size / 8);
-  }
 }
 
 }  // namespace vantage

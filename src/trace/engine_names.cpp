@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "vantage/error.hpp"
-#include "vantage/simulator.hpp"
+#include "vantage/trace.hpp"
 
 namespace vantage {
 namespace {

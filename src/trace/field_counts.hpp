@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "vantage/objective.hpp"
+#include "vantage/trace.hpp"
 
 namespace vantage {
 

@@ -12,9 +12,8 @@
 #include <vector>
 
 #include "scene/scene_data.hpp"
-#include "vantage/objective.hpp"
 #include "vantage/progress.hpp"
-#include "vantage/simulator.hpp"
+#include "vantage/trace.hpp"
 #include "voxel/voxel_grid.hpp"
 
 namespace vantage {

@@ -9,7 +9,7 @@
 #include <limits>
 #include <vector>
 
-#include "vantage/simulator.hpp"
+#include "vantage/trace.hpp"
 
 namespace vantage {
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "vantage/simulator.hpp"
+#include "vantage/trace.hpp"
 
 namespace vantage::vulkan {
 

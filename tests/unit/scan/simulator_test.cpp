@@ -12,6 +12,7 @@
 
 #include "scan_scenes.hpp"
 #include "vantage/error.hpp"
+#include "vantage/objective.hpp"
 
 namespace vantage {
 namespace {
@@ -349,28 +350,6 @@ TEST(EvaluateSampled, AllVoxelsAreExact) {
               simulator.evaluate_sampled({&network, 1}, {.voxels = 0});
             }).find("at least one"),
             std::string::npos);
-}
-
-TEST(EvaluateSampled, SizeForAWantedError) {
-  Simulator simulator(wall_and_floor().scene(), coarse_scanner(0.5), config(0.03, 0.02));
-  const std::vector<Network> networks{{{{0, 0, 0}}}, {{{1, -2, 0.5}}, {{3, 1, -0.4}}, {{2, 2, 0}}}};
-  ASSERT_GT(simulator.voxel_count(), 20'000u);
-  for (const bool overlap : {false, true}) {
-    std::uint64_t before = 0;
-    for (const double wanted : {0.02, 0.003, 0.002}) {
-      const std::uint64_t size = simulator.voxels_for_standard_error(networks, wanted, overlap);
-      EXPECT_GE(size, before);
-      EXPECT_LE(size, simulator.voxel_count());
-      before = size;
-      for (const NetworkCounts& counts : simulator.evaluate_sampled(networks, {.voxels = size, .overlap = overlap})) {
-        EXPECT_LE(coverage_estimate(counts, simulator.goal_density(), simulator.voxel_count()).standard_error, wanted);
-        EXPECT_LE(overlap ? overlap_estimate(counts, simulator.voxel_count()).standard_error : 0.0, wanted);
-      }
-    }
-    EXPECT_GT(before, 5000u);
-  }
-  EXPECT_EQ(simulator.voxels_for_standard_error(networks, 1e-9), simulator.voxel_count());
-  EXPECT_NE(message_of([&] { simulator.voxels_for_standard_error(networks, 0); }).find("above 0"), std::string::npos);
 }
 
 TEST(Simulator, TwoCoexistAndCanBeMoved) {

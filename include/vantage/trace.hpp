@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What tracing works with and what it returns: engines and their devices, counts of a network, counts of each voxel.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace vantage {
+
+/// How rays are traced. Counts do not depend on the choice but for ray-triangle rounding at edges.
+enum class Engine {
+  automatic,    ///< The best hardware GPU; else `embree`.
+  ray_query,    ///< Vulkan compute shaders with VK_KHR_ray_query.
+  compute_bvh,  ///< Vulkan compute shaders with a BVH of our own.
+  embree,       ///< CPU.
+};
+std::string to_string(Engine);
+/// Throws Error invalid_argument and lists the engines.
+Engine engine_from_string(const std::string&);
+
+/// An engine on a device as `list_engines` finds it.
+struct EngineInfo {
+  Engine engine = Engine::embree;
+  std::string device;  ///< "llvmpipe (LLVM 15.0.6, 256 bits)"
+  std::string driver;  ///< Driver or library with version.
+  std::uint32_t device_index = 0;
+  bool usable = false;
+  bool software = false;  ///< A CPU behind a GPU interface.
+  bool chosen_by_default = false;
+  std::string reason;  ///< Why it was taken or refused.
+};
+/// All engines on all devices of this machine, usable or not. Never throws for want of a device.
+std::vector<EngineInfo> list_engines();
+
+/// Most stations of a network: each has a bit in the station mask of a voxel.
+inline constexpr std::size_t max_stations = 64;
+
+/// What a simulated network left in the surveyed voxels, reduced to integers. Exact, so independent of engine, order
+/// and chunking.
+struct NetworkCounts {
+  std::uint64_t voxels = 0;  ///< N_v, or the size of the sample.
+  /// Sum of the voxels' weights (`MeshInfo::weight`): `voxels` where all surveyed meshes weigh the same.
+  std::uint64_t weight = 0;
+  std::uint64_t saturated = 0;        ///< Weight of the voxels that reached the goal density.
+  std::uint64_t partial_points = 0;   ///< Points in all other voxels together, each times its voxel's weight.
+  std::uint64_t rays = 0;             ///< Rays that were traced.
+  std::uint32_t stations = 0;         ///< N_stations, skipped ones included.
+  std::vector<std::uint64_t> points;  ///< Per station, all meshes; empty where not counted (rays were skipped).
+  std::vector<std::uint64_t> points_on_surveyed;  ///< Per station, those that count.
+  std::vector<std::uint64_t> seen;                ///< Per station: voxels with a point of it. Empty without overlap.
+  /// Voxels seen by both i and j, i < j, in the order (0,1), (0,2), …, (1,2), …; empty without overlap.
+  std::vector<std::uint64_t> shared;
+  /// The same counts for each of G interleaved groups of a sample, for standard errors; empty when exact.
+  std::vector<NetworkCounts> groups;
+  /// Sum over successive sampled voxels of the squared difference of min(count/goal, 1); for the standard error of
+  /// coverage.
+  double successive_difference_sum = 0;
+  double trace_seconds = 0;
+  bool cancelled = false;
+
+  std::uint64_t shared_by(std::size_t i, std::size_t j) const;  ///< REQUIRES: i != j, both < stations.
+};
+
+/// A voxel field: the cartography of coverage. Element k belongs to the k-th surveyed voxel in Morton order.
+struct VoxelField {
+  std::vector<std::uint32_t> count;     ///< Points, saturating.
+  std::vector<std::uint64_t> stations;  ///< Bit i: station i has a point in the voxel.
+};
+
+}  // namespace vantage
