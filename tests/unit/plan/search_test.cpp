@@ -130,7 +130,9 @@ TEST_P(EveryProblem, ResumesToTheSameBitsAfterKill9) {
   std::string runner = VANTAGE_SEARCH_RUNNER;
   char* const arguments[] = {runner.data(), const_cast<char*>(problem.c_str()), const_cast<char*>(checkpoint.c_str()),
                              const_cast<char*>(output.c_str()), nullptr};
-  std::mt19937 random(std::random_device{}());
+  const auto seed = std::random_device{}();
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  std::mt19937 random(seed);
   constexpr int wanted_kills = 25;  // a hundred over the four problems
   int kills = 0;
   while (kills < wanted_kills) {
