@@ -106,7 +106,7 @@ struct PlanEntry {
 /// One line of the history, an iteration each.
 struct PlanIteration {
   std::size_t iteration = 0, evaluations = 0;
-  double hypervolume = 0;                  ///< With one objective: the best coverage or fitness.
+  double hypervolume = 0;                  ///< Of the front, against (1, …, 1).
   std::vector<std::vector<double>> front;  ///< Objective vectors.
   double seconds = 0;                      ///< Since the start. Never part of what must be reproducible.
 };
@@ -114,7 +114,8 @@ struct PlanIteration {
 struct PlanResult {
   std::vector<PlanEntry> front;  ///< By falling coverage. One entry where there is one objective.
   std::vector<PlanIteration> history;
-  /// Final, as the search saw it; reference point (1, …, 1). With one objective: coverage or fitness.
+  /// Final, as the search saw it; reference point (1, …, 1). Of the one objective 1 − v it is v: the coverage or the
+  /// fitness of the best network.
   double hypervolume = 0;
   double exact_hypervolume = 0;  ///< The same by every ray; NaN where an abort left entries unconfirmed.
   std::uint64_t evaluations = 0;

@@ -225,11 +225,6 @@ nlohmann::json as_options(const Site& site, const PlanConfig& config) {
   return all;
 }
 
-// What the search calls its progress by.
-const char* value_name(const PlanConfig& config) {
-  return !has_one_objective(config) ? "hypervolume" : config.fitness ? "fitness" : "coverage";
-}
-
 // Heads of a greedy choice for the largest network; empty where it was stopped.
 std::vector<Vec3> greedy_start(Site& site, Simulator& simulator, const PlanConfig& config, Program& program) {
   ProgressLine line(program.console, "greedy");
@@ -264,7 +259,7 @@ std::string summary(const PlanResult& result, const PlanConfig& config, std::siz
                                           : "",
                         parts_of(entry, config));
   }
-  text += fmt::format("{} evaluations, {} {:.4f}", result.evaluations, value_name(config), result.hypervolume);
+  text += fmt::format("{} evaluations, hypervolume {:.4f}", result.evaluations, result.hypervolume);
   if (config.sample_voxels > 0 && !std::isnan(result.exact_hypervolume))
     text += fmt::format(" ({:.4f} by every ray)", result.exact_hypervolume);
   text += fmt::format(", stopped: {}\n", to_string(result.stop_reason));
@@ -311,8 +306,8 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
           const double done =
               now.iterations > 0 ? static_cast<double>(now.iteration) / static_cast<double>(now.iterations) : 0;
           line.update(done,
-                      fmt::format("{} {:.4f}, {} networks, {:.3g} a second", value_name(config), now.hypervolume,
-                                  now.evaluations, now.evaluations_per_second),
+                      fmt::format("hypervolume {:.4f}, {} networks, {:.3g} a second", now.hypervolume, now.evaluations,
+                                  now.evaluations_per_second),
                       now.seconds_left);
         },
         program.stop, program.abort);

@@ -34,11 +34,8 @@ std::unique_ptr<Canvas> front_picture(const PlanResult& result, const PlanConfig
   Canvas& canvas = *page;
   const Rect area = frame(view.coloured());
   std::string subtitle = problem_line(config);
-  if (view.single())
-    subtitle += std::string(", best ") + (config.fitness ? "fitness " : "coverage ") + fixed(result.hypervolume, 3);
-  else
-    subtitle += ", hypervolume " +
-                fixed(std::isnan(result.exact_hypervolume) ? result.hypervolume : result.exact_hypervolume, 3);
+  subtitle +=
+      ", hypervolume " + fixed(std::isnan(result.exact_hypervolume) ? result.hypervolume : result.exact_hypervolume, 3);
   subtitle += " after " + grouped(result.evaluations) + " evaluations";
   const Chart chart(canvas, area, view.x_axis(dots), view.y_axis(dots),
                     view.single() ? "Best network found" : "Pareto front", subtitle);

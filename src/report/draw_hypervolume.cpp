@@ -9,8 +9,6 @@
 namespace vantage {
 
 std::unique_ptr<Canvas> hypervolume_picture(const PlanResult& result, const PlanConfig& config) {
-  const bool single = has_one_objective(config);
-  const std::string best = config.fitness ? "Best fitness" : "Best coverage";
   constexpr double kWidth = 780, kHeight = 500;
   auto page = std::make_unique<Canvas>(kWidth, kHeight);
   Canvas& canvas = *page;
@@ -31,12 +29,10 @@ std::unique_ptr<Canvas> hypervolume_picture(const PlanResult& result, const Plan
   }
   x.ticks = nice_ticks(0, x.high, 8);
   std::erase_if(x.ticks, [](double t) { return t != static_cast<double>(static_cast<long long>(t)); });
-  const Axis y =
-      axis_over(single ? best + " so far" : "Hypervolume (reference point 1, largest value 1)", low, high, 0, 1);
+  const Axis y = axis_over("Hypervolume (reference point 1, largest value 1)", low, high, 0, 1);
   std::string reason = to_string(result.stop_reason);
   std::replace(reason.begin(), reason.end(), '_', ' ');
-  const Chart chart(canvas, area, x, y, single ? best + " over the search" : "Hypervolume over the search",
-                    problem_line(config) + ", stopped: " + reason);
+  const Chart chart(canvas, area, x, y, "Hypervolume over the search", problem_line(config) + ", stopped: " + reason);
   if (config.target_hypervolume) {
     const double target = *config.target_hypervolume;
     canvas.line(chart.at(x.low, target), chart.at(x.high, target),

@@ -56,9 +56,8 @@ void write_front_csv(const std::filesystem::path& file, const PlanResult& result
   write_atomically(file, text);
 }
 
-void write_history_csv(const std::filesystem::path& file, const PlanResult& result, const PlanConfig& config) {
-  const char* measure = config.fitness ? "best_fitness" : has_one_objective(config) ? "best_coverage" : "hypervolume";
-  std::string text = std::string("iteration,evaluations,") + measure + ",front_size,seconds\n";
+void write_history_csv(const std::filesystem::path& file, const PlanResult& result) {
+  std::string text = "iteration,evaluations,hypervolume,front_size,seconds\n";
   for (const PlanIteration& line : result.history)
     text += number(line.iteration) + "," + number(line.evaluations) + "," + number(line.hypervolume) + "," +
             number(line.front.size()) + "," + number(line.seconds) + "\n";

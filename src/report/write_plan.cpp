@@ -22,7 +22,7 @@ std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& re
 
   write_front_csv(folder / "front.csv", result, config);
   write_text(folder / "front.json", front_json(result, config, simulator));
-  write_history_csv(folder / "history.csv", result, config);
+  write_history_csv(folder / "history.csv", result);
   write_fronts_csv(folder / "fronts.csv", result, config);
   write_stations_csv(folder / "stations.csv", entry.stations);
 

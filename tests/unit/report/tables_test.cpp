@@ -29,7 +29,7 @@ TEST(Tables, EveryLineHasAsManyCellsAsTheHeader) {
     result.front[2].stations[1].status = StationStatus::hole;
     result.front[3].confirmed = false;
     write_front_csv(folder / "front.csv", result, config);
-    write_history_csv(folder / "history.csv", result, config);
+    write_history_csv(folder / "history.csv", result);
     write_fronts_csv(folder / "fronts.csv", result, config);
     for (const auto& [name, lines] : {std::pair{"front.csv", 8}, {"history.csv", 21}, {"fronts.csv", 141}}) {
       const std::string text = test::content(folder / name);
