@@ -22,7 +22,7 @@ enum class StopReason {
   max_evaluations,
   max_iterations,
   target_reached,
-  converged,          ///< Steps or differences fell below what numbers can tell apart.
+  converged,          ///< Steps or differences fell below their tolerance.
   stagnated,          ///< No improvement for long.
   flat,               ///< The objective does not change over a whole population.
   invalid_objective,  ///< Every value of an iteration was NaN.
@@ -44,160 +44,164 @@ struct ParetoPoint {
   std::vector<double> x, f;
 };
 
-// Single objective.
-
-struct CmaEsConfig {
-  std::size_t population = 0;      ///< λ; 0: 4 + floor(3 ln n).
-  double sigma0 = 0.2;             ///< Initial step; a share of the range where there are bounds, else absolute.
-  std::vector<double> start = {};  ///< Initial mean; empty: random inside the bounds, else 0.
-  std::optional<Bounds> bounds = std::nullopt;
-  bool active = true;  ///< Negative weights for the worst half (active CMA).
-  /// As in MoCmaEsConfig. Where there are any, a tenth of an iteration's points (a quarter with blocks_in_use) are the
-  /// mean with one block from anywhere. The one that beats all others hands its block to the mean. Blocks that none of
-  /// an iteration uses take no part in it. Needs bounds.
-  std::vector<std::vector<std::size_t>> blocks = {};
-  std::function<std::size_t(std::span<const double> x)> blocks_in_use = {};
-  /// After a stall: with doubled population (IPOP); where there are blocks, at the best, most of them anywhere.
-  std::size_t restarts = 0;
-  std::size_t max_iterations = 0;               ///< 0: no limit.
-  std::size_t max_evaluations = 0;              ///< 0: no limit.
-  std::optional<double> target = std::nullopt;  ///< Stop at f <= target.
-  double f_tolerance = 1e-12;  ///< Stop when the best values of recent iterations differ by less. 0: never.
-  double x_tolerance = 1e-12;  ///< Stop when all steps are below this share of sigma0. 0: never.
-  std::uint64_t seed = 1;
-};
-
-/// CMA-ES (Hansen: The CMA Evolution Strategy, A Tutorial, 2016) with IPOP restarts (Auger, Hansen 2005). ask() gives λ
-/// points, tell() takes their values in order. Bounds are kept by a smooth transform of the coordinates. Not
-/// thread-safe; two can coexist.
-class CmaEs {
- public:
-  /// Throws Error invalid_argument.
-  CmaEs(std::size_t dimension, const CmaEsConfig& config = {});
-  CmaEs(CmaEs&&) noexcept;
-  CmaEs& operator=(CmaEs&&) noexcept;
-  ~CmaEs();
-  /// population() points, row-major, inside the bounds. Valid until the next tell() or load(). Asked again before
-  /// tell(), it gives the same points.
-  std::span<const double> ask();
-  /// Between ask() and tell(): puts x in the place of point `index`, as if it had been drawn. Throws Error
-  /// invalid_argument outside the bounds.
-  void replace(std::size_t index, std::span<const double> x);
-  /// Between ask() and tell(): draws `coordinates` of point `index` again, given its others, and returns the point.
-  std::span<const double> resample(std::size_t index, std::span<const std::size_t> coordinates);
-  /// REQUIRES: one value per asked point. A value that is not finite counts as worst.
-  void tell(std::span<const double> values);
-  StopReason stop_reason() const noexcept;
-  /// Of all restarts. Its f is +infinity until a finite value was told.
-  const ParetoPoint& best() const noexcept;
-  std::size_t population() const noexcept;  ///< Points of an iteration now: without blocks they double at a restart.
-  std::size_t evaluations() const noexcept;
-  std::size_t iterations() const noexcept;
-  std::size_t restarts() const noexcept;
-  double sigma() const noexcept;
-  /// Complete state, binary, versioned. Only between tell() and ask(). Throws Error io.
-  void save(std::ostream&) const;
-  /// Goes on from a saved state to the same bits. The object must have been made with the same dimension and settings,
-  /// but for the limits (max_*, target, tolerances), which are its own. Throws Error malformed_file and is unchanged
-  /// then.
-  void load(std::istream&);
-
- private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
-};
-
-// Several objectives.
-
 /// Which optimiser make_optimiser() makes.
 enum class MoAlgorithm {
+  cma_es,         ///< CmaEs, for one objective.
   mo_cma_es,      ///< MoCmaEs, as MoCmaEsConfig::scheme says.
-  nsga2,          ///< NSGA-II (Deb, Pratap, Agarwal, Meyarivan 2002): baseline.
-  random_search,  ///< Uniform points, the best μ kept: baseline.
+  nsga2,          ///< NSGA-II (Deb, Pratap, Agarwal, Meyarivan 2002): baseline. Needs bounds.
+  random_search,  ///< Uniform points, the best μ kept: baseline. Needs bounds.
 };
 std::string to_string(MoAlgorithm);
 MoAlgorithm mo_algorithm_from_string(const std::string&);  ///< Throws Error invalid_argument and lists the algorithms.
 
-/// Settings of every multi-objective optimiser; the baselines pass over what they have no use for.
+/// What only CMA-ES can be told.
+struct CmaEsConfig {
+  bool active = true;  ///< Negative weights for the worst half (active CMA).
+  /// Stop at f <= target. Says the same as OptimiserConfig::target_hypervolume, but to any number of digits.
+  std::optional<double> target = std::nullopt;
+  double f_tolerance = 1e-12;  ///< At rest when the best values of recent iterations differ by less. 0: never.
+};
+
+/// What only MO-CMA-ES can be told.
 struct MoCmaEsConfig {
   /// generational: μ parents, μ offspring each iteration. steady_state: one at a time, or `batch` at a time.
   enum class Scheme { generational, steady_state };
   Scheme scheme = Scheme::steady_state;
-  std::size_t population = 100;  ///< μ.
-  std::size_t batch = 1;         ///< Offspring asked for at once in the steady state, so that a GPU is kept full.
-  double sigma0 = 0.2;           ///< Share of the range where there are bounds, else absolute.
+  std::size_t batch = 1;  ///< Offspring asked for at once in the steady state, so that a GPU is kept full.
   /// The next four are for the steady state; all 0 gives it as published. With them it needs a fraction of the
   /// evaluations on planning problems and leaves local fronts (docs/optimisers.md has both measured).
   double guided = 0.5;   ///< Share of parents drawn by their hypervolume contribution, not uniformly from the front.
   double spread = 0.25;  ///< Share of steps that also follow the differences to the parent's neighbours on the front.
   double recombined = 0.15;  ///< Share of offspring by crossover and mutation, as in NSGA-II. Needs bounds.
   double swapped = 0.4;  ///< Share of offspring that have one of the parent's `blocks` from elsewhere. Needs bounds.
+};
+
+/// Settings of every optimiser; each passes over what it has no use for.
+struct OptimiserConfig {
+  std::size_t population = 0;  ///< λ of CMA-ES, 0: 4 + floor(3 ln n); μ of the others, 0: 100.
+  double sigma0 = 0.2;         ///< Initial step; a share of the range where there are bounds, else absolute.
+  std::optional<Bounds> bounds = std::nullopt;
+  /// First points of the initial population; the rest is uniform in the bounds, or without bounds normal around the
+  /// first (or 0). CMA-ES takes the first as its initial mean; without one it is random inside the bounds, else 0.
+  std::vector<std::vector<double>> start = {};
+  std::vector<double> reference = {};  ///< Reference point of the hypervolume; empty: (1, …, 1).
   /// Groups of coordinates that mean the same in any order, as the stations of a network do. All of one length, no
-  /// coordinate twice, and the k-th coordinates of all have the same bounds. Empty: there are none.
+  /// coordinate twice, and the k-th coordinates of all have the same bounds. Empty: there are none. CMA-ES and
+  /// MO-CMA-ES make some of their points by giving one block of a known point another place (docs/method.md). Blocks
+  /// that none of an iteration's points uses take no part in the search of CMA-ES.
   std::vector<std::vector<std::size_t>> blocks = {};
   /// How many of them, the first ones, count in x. Empty: all. Must give the same for the same x.
   std::function<std::size_t(std::span<const double> x)> blocks_in_use = {};
-  std::optional<Bounds> bounds = std::nullopt;
-  std::vector<double> reference = {};  ///< Reference point of the hypervolume; empty: (1, …, 1).
-  /// First points of the initial population; the rest is uniform in the bounds, or without bounds normal around the
-  /// first (or 0).
-  std::vector<std::vector<double>> start = {};
-  std::size_t max_iterations = 0;   ///< Of μ evaluations each. 0: no limit.
-  std::size_t max_evaluations = 0;  ///< 0: no limit.
-  std::optional<double> target_hypervolume = std::nullopt;
-  std::size_t stagnation_iterations = 0;  ///< Stop when the hypervolume has not grown for so many. 0: never.
+  /// How often a search that has come to rest begins anew, instead of stopping. CMA-ES without blocks begins at a new
+  /// random mean with twice the population (IPOP). With blocks it keeps its population and begins at its best point,
+  /// of which it has moved three quarters of the blocks to random places. MO-CMA-ES keeps the points of its
+  /// population; all their steps begin anew at sigma0.
+  std::size_t restarts = 0;
+  double x_tolerance = 1e-12;  ///< At rest when all steps are below this share of sigma0. 0: never.
+
+  // The rules that end a search whatever its restarts. They are looked at after every tell().
+  std::size_t max_iterations = 0;                           ///< 0: no limit.
+  std::size_t max_evaluations = 0;                          ///< 0: no limit.
+  std::optional<double> target_hypervolume = std::nullopt;  ///< Stop at hypervolume() >= target_hypervolume.
+  /// Stop as `stagnated` when the hypervolume has not grown for so many iterations. 0: never.
+  std::size_t stagnation_iterations = 0;
   /// Growth over those iterations, as a share of the hypervolume, that counts as none.
   double stagnation_tolerance = 1e-6;
-  /// Stop when all steps of all members are below this share of the range (absolute without bounds).
-  double x_tolerance = 1e-12;
-  /// Of MO-CMA-ES, where it would stop converged or stagnated: the population stays, all steps begin anew at sigma0.
-  std::size_t restarts = 0;
+
   std::uint64_t seed = 1;
+  CmaEsConfig cma = {};
+  MoCmaEsConfig mo = {};
 };
 
-/// What all multi-objective optimisers have in common: ask() for points, evaluate them, tell() their objectives. All
-/// objectives are minimised. Not thread-safe; two can coexist. The same seed and values give the same bits.
-class MultiObjectiveOptimiser {
+/// What all optimisers have in common: ask() for points, evaluate them, tell() their objectives. All objectives are
+/// minimised. Not thread-safe; two can coexist. The same seed and values give the same bits.
+class Optimiser {
  public:
-  virtual ~MultiObjectiveOptimiser() = default;
-  /// Points to evaluate, row-major, inside the bounds: the initial population first, then offspring. Valid until the
-  /// next tell() or load(). Asked again before tell(), it gives the same points.
+  virtual ~Optimiser() = default;
+  virtual std::size_t dimension() const noexcept = 0;
+  virtual std::size_t objectives() const noexcept = 0;
+  /// Points to evaluate, row-major, inside the bounds. Valid until the next tell() or load(). Asked again before
+  /// tell(), it gives the same points.
   virtual std::span<const double> ask() = 0;
   /// Between ask() and tell(): puts x in the place of point `index`, as if it had been drawn. Throws Error
   /// invalid_argument outside the bounds.
   virtual void replace(std::size_t index, std::span<const double> x) = 0;
   /// Between ask() and tell(): draws `coordinates` of point `index` again, given its others, and returns the point.
   virtual std::span<const double> resample(std::size_t index, std::span<const std::size_t> coordinates) = 0;
-  /// REQUIRES: objectives values per asked point, row-major, in order. A point with a value that is not finite counts
+  /// REQUIRES: objectives() values per asked point, row-major, in order. A point with a value that is not finite counts
   /// as dominated by all that have none.
   virtual void tell(std::span<const double> values) = 0;
+  /// Where several hold: what the search itself says, then the limits, the target, stagnation.
   virtual StopReason stop_reason() const noexcept = 0;
-  virtual std::vector<ParetoPoint> front() const = 0;  ///< Non-dominated members of the population, sorted by f[0].
+  /// Non-dominated points of the population, sorted by f[0].
+  virtual std::vector<ParetoPoint> front() const = 0;
+  /// The points that are kept from iteration to iteration.
   virtual std::vector<ParetoPoint> population() const = 0;
-  virtual double hypervolume() const = 0;  ///< Of the population against the reference point.
+  /// Of the population against the reference point. With one objective: what the best value is below the reference, or
+  /// 0.
+  virtual double hypervolume() const = 0;
   virtual std::size_t evaluations() const noexcept = 0;
-  virtual std::size_t iterations() const noexcept = 0;  ///< evaluations / μ.
+  /// Whole ones: evaluations / μ; of CMA-ES the calls of tell().
+  virtual std::size_t iterations() const noexcept = 0;
   /// Complete state, binary, versioned. Only between tell() and ask(). Throws Error io.
   virtual void save(std::ostream&) const = 0;
   /// Goes on from a saved state to the same bits. The object must have been made with the same dimension, objectives
-  /// and settings, but for the limits (max_*, target, stagnation, tolerance, restarts), which are its own. Throws Error
-  /// malformed_file and is unchanged then.
+  /// and settings, but for what says when to stop (max_*, targets, stagnation, tolerances, restarts), which is its own.
+  /// Throws Error malformed_file and is unchanged then.
   virtual void load(std::istream&) = 0;
 };
 
-/// Throws Error invalid_argument.
-std::unique_ptr<MultiObjectiveOptimiser> make_optimiser(MoAlgorithm algorithm, std::size_t dimension,
-                                                        std::size_t objectives, const MoCmaEsConfig& config = {});
+/// Throws Error invalid_argument: settings that the algorithm cannot search with, cma_es with several objectives.
+std::unique_ptr<Optimiser> make_optimiser(MoAlgorithm algorithm, std::size_t dimension, std::size_t objectives,
+                                          const OptimiserConfig& config = {});
 
-/// MO-CMA-ES (Igel, Hansen, Roth: Covariance Matrix Adaptation for Multi-objective Optimization, 2007; Voß, Hansen,
-/// Igel: Improved Step Size Adaptation for the MO-CMA-ES, 2010) with hypervolume indicator selection.
-class MoCmaEs final : public MultiObjectiveOptimiser {
+/// CMA-ES (Hansen: The CMA Evolution Strategy, A Tutorial, 2016) with IPOP restarts (Auger, Hansen 2005), of one
+/// objective. ask() gives λ points. Bounds are kept by a smooth transform of the coordinates. What it keeps from
+/// iteration to iteration is a distribution; of points only the best, which is its population and its front.
+class CmaEs final : public Optimiser {
  public:
   /// Throws Error invalid_argument.
-  MoCmaEs(std::size_t dimension, std::size_t objectives, const MoCmaEsConfig& config = {});
+  explicit CmaEs(std::size_t dimension, const OptimiserConfig& config = {});
+  CmaEs(CmaEs&&) noexcept;
+  CmaEs& operator=(CmaEs&&) noexcept;
+  ~CmaEs() override;
+  std::size_t dimension() const noexcept override;
+  std::size_t objectives() const noexcept override { return 1; }
+  std::span<const double> ask() override;
+  void replace(std::size_t index, std::span<const double> x) override;
+  std::span<const double> resample(std::size_t index, std::span<const std::size_t> coordinates) override;
+  void tell(std::span<const double> values) override;
+  StopReason stop_reason() const noexcept override;
+  /// Of all restarts. Its f is +infinity until a finite value was told.
+  const ParetoPoint& best() const noexcept;
+  std::vector<ParetoPoint> front() const override;  ///< best(), or none until a finite value was told.
+  std::vector<ParetoPoint> population() const override { return front(); }
+  double hypervolume() const override;
+  std::size_t lambda() const noexcept;  ///< Points of an iteration now: without blocks they double at a restart.
+  std::size_t evaluations() const noexcept override;
+  std::size_t iterations() const noexcept override;
+  std::size_t restarts() const noexcept;  ///< So far.
+  double sigma() const noexcept;
+  void save(std::ostream&) const override;
+  void load(std::istream&) override;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// MO-CMA-ES (Igel, Hansen, Roth: Covariance Matrix Adaptation for Multi-objective Optimization, 2007; Voß, Hansen,
+/// Igel: Improved Step Size Adaptation for the MO-CMA-ES, 2010) with hypervolume indicator selection. ask() gives the
+/// initial population first, then offspring.
+class MoCmaEs final : public Optimiser {
+ public:
+  /// Throws Error invalid_argument.
+  MoCmaEs(std::size_t dimension, std::size_t objectives, const OptimiserConfig& config = {});
   MoCmaEs(MoCmaEs&&) noexcept;
   MoCmaEs& operator=(MoCmaEs&&) noexcept;
   ~MoCmaEs() override;
+  std::size_t dimension() const noexcept override;
+  std::size_t objectives() const noexcept override;
   std::span<const double> ask() override;
   void replace(std::size_t index, std::span<const double> x) override;
   std::span<const double> resample(std::size_t index, std::span<const std::size_t> coordinates) override;

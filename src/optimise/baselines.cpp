@@ -35,7 +35,7 @@ std::vector<double> crowding_distances(std::span<const double> fitness, std::siz
   return distance;
 }
 
-Baseline::Baseline(std::string name, std::size_t dimension, std::size_t objectives, const MoCmaEsConfig& config)
+Baseline::Baseline(std::string name, std::size_t dimension, std::size_t objectives, const OptimiserConfig& config)
     : common_(std::move(name), dimension, objectives, config) {
   if (!common_.box.bounded())
     throw Error(Errc::invalid_argument, common_.name + " needs bounds; give them, or take MO-CMA-ES");
@@ -52,15 +52,13 @@ std::span<const double> Baseline::ask() {
 }
 
 void Baseline::replace(std::size_t index, std::span<const double> x) {
-  common_.require_asked("replace");
-  common_.require_index(index);
+  common_.require_point("replace", index);
   common_.box.require_inside(x);
   std::ranges::copy(x, common_.point(index).begin());
 }
 
 std::span<const double> Baseline::resample(std::size_t index, std::span<const std::size_t> coordinates) {
-  common_.require_asked("resample");
-  common_.require_index(index);
+  common_.require_point("resample", index);
   common_.require_coordinates(coordinates);
   if (coordinates.empty()) return common_.point(index);
   const auto x = members_.empty() ? common_.random_point() : make_point();
@@ -77,6 +75,7 @@ void Baseline::tell(std::span<const double> values) {
     std::erase_if(members_, [&](const Solution&) { return !keep[i++]; });
   }
   common_.watch(members_, [] { return false; });
+  common_.settle(members_);
 }
 
 std::vector<ParetoPoint> Baseline::population() const {
@@ -96,12 +95,14 @@ void Baseline::save(std::ostream& out) const {
 
 void Baseline::load(std::istream& in) {
   StateReader r(in, common_.name);
-  MoCommon::Progress progress = common_.read(r);
+  MoCommon common = common_;
+  common.load(r);
   std::vector<Solution> members(r.size(common_.config.population + 1));
-  for (Solution& s : members) s = common_.load_solution(r);
+  for (Solution& s : members) s = common.load_solution(r);
   r.end();
-  common_.restore(std::move(progress));
+  common_ = std::move(common);
   members_ = std::move(members);
+  common_.settle(members_);
 }
 
 void Nsga2::before_offspring() {

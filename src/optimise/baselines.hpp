@@ -6,10 +6,12 @@
 
 namespace vantage::optimise {
 
-class Baseline : public MultiObjectiveOptimiser {
+class Baseline : public Optimiser {
  public:
-  Baseline(std::string name, std::size_t dimension, std::size_t objectives, const MoCmaEsConfig& config);
+  Baseline(std::string name, std::size_t dimension, std::size_t objectives, const OptimiserConfig& config);
 
+  std::size_t dimension() const noexcept final { return common_.dimension; }
+  std::size_t objectives() const noexcept final { return common_.objectives; }
   std::span<const double> ask() final;
   void replace(std::size_t index, std::span<const double> x) final;
   std::span<const double> resample(std::size_t index, std::span<const std::size_t> coordinates) final;
@@ -19,7 +21,7 @@ class Baseline : public MultiObjectiveOptimiser {
   std::vector<ParetoPoint> population() const final;
   double hypervolume() const final { return common_.hypervolume(members_); }
   std::size_t evaluations() const noexcept final { return common_.evaluations; }
-  std::size_t iterations() const noexcept final { return common_.evaluations / common_.config.population; }
+  std::size_t iterations() const noexcept final { return common_.iterations(); }
   void save(std::ostream& out) const final;
   void load(std::istream& in) final;
 
@@ -37,7 +39,7 @@ class Baseline : public MultiObjectiveOptimiser {
 // Deb, Pratap, Agarwal, Meyarivan: A Fast and Elitist Multiobjective Genetic Algorithm: NSGA-II, 2002.
 class Nsga2 final : public Baseline {
  public:
-  Nsga2(std::size_t dimension, std::size_t objectives, const MoCmaEsConfig& config)
+  Nsga2(std::size_t dimension, std::size_t objectives, const OptimiserConfig& config)
       : Baseline("NSGA-II", dimension, objectives, config) {}
 
  private:
@@ -53,7 +55,7 @@ class Nsga2 final : public Baseline {
 // Uniform points; those that NSGA-II's baseline and MO-CMA-ES would keep by rank and hypervolume are kept.
 class RandomSearch final : public Baseline {
  public:
-  RandomSearch(std::size_t dimension, std::size_t objectives, const MoCmaEsConfig& config)
+  RandomSearch(std::size_t dimension, std::size_t objectives, const OptimiserConfig& config)
       : Baseline("random search", dimension, objectives, config) {}
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Groups of coordinates that mean the same in any order, as the stations of a network do (MoCmaEsConfig::blocks).
+// Groups of coordinates that mean the same in any order, as the stations of a network do (OptimiserConfig::blocks).
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@ namespace vantage::optimise {
 
 using Blocks = std::vector<std::vector<std::size_t>>;
 
-// Throws Error invalid_argument where they are not what MoCmaEsConfig says.
+// Throws Error invalid_argument where they are not what OptimiserConfig says.
 void require_blocks(const Blocks& blocks, const Box& box, std::size_t dimension);
 
 // For each block of `first` one of `second`, each once: the nearest pair first, then the nearest of those left. Unit

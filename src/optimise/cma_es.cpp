@@ -11,10 +11,9 @@
 #include <string>
 
 #include "optimise/blocks.hpp"
-#include "optimise/box.hpp"
+#include "optimise/common.hpp"
 #include "optimise/conditional.hpp"
-#include "optimise/normal_stream.hpp"
-#include "optimise/state_file.hpp"
+#include "optimise/hypervolume.hpp"
 #include "vantage/error.hpp"
 #include "vantage/optimiser.hpp"
 
@@ -23,8 +22,8 @@ namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using optimise::Box;
-using optimise::NormalStream;
+using optimise::Common;
+using optimise::kMaxPopulation;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kMaxCondition = 1e14;
@@ -34,7 +33,6 @@ constexpr double kMaxGrowth = 1e4;  // of the step along the longest axis, times
 constexpr double kReturned = 0.5;
 constexpr std::size_t kFlatIterations = 20;  // the step grows a thousandfold meanwhile
 constexpr std::size_t kMaxHistory = 20000;
-constexpr std::size_t kMaxPopulation = std::size_t{1} << 20;
 // Share of an iteration's points that have a swapped block, at least one; none where too few would be left to rank.
 // More where the number of blocks is searched too, and local optima are many.
 constexpr double kSwapped = 0.1, kSwappedOfMany = 0.25;
@@ -91,6 +89,10 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
+std::size_t default_population(std::size_t dimension) {
+  return 4 + static_cast<std::size_t>(3 * std::log(static_cast<double>(std::max<std::size_t>(dimension, 1))));
+}
+
 bool is_stall(StopReason reason) {
   return reason == StopReason::converged || reason == StopReason::stagnated || reason == StopReason::flat ||
          reason == StopReason::ill_conditioned || reason == StopReason::diverged;
@@ -98,8 +100,8 @@ bool is_stall(StopReason reason) {
 
 }  // namespace
 
-struct CmaEs::Impl {
-  Impl(std::size_t dimension, const CmaEsConfig& c);
+struct CmaEs::Impl : Common {
+  Impl(std::size_t dimension, const OptimiserConfig& c);
 
   void begin_run();  // a fresh distribution with the present λ
   void draw();
@@ -111,6 +113,7 @@ struct CmaEs::Impl {
   }
   // Puts the genotype mean + sigma · steps.col(k) into the points.
   void express(std::size_t k);
+  std::vector<double> first_mean() const { return config.start.empty() ? std::vector<double>() : config.start.front(); }
   bool swaps() const { return box.bounded() && !config.blocks.empty(); }
   std::size_t swaps_of(std::size_t count) const {
     if (!swaps() || count < kSwapsFrom) return 0;
@@ -136,14 +139,12 @@ struct CmaEs::Impl {
   void update(const std::vector<std::size_t>& order);
   void decompose(bool now);
   StopReason stall(const std::vector<double>& sorted) const;
-  StopReason limit() const;
-  void require_asked(const char* what) const;
-  void require_index(std::size_t index) const;
+  void restart_if_at_rest();
+  double hypervolume() const { return optimise::volume({best.f, 1}, reference); }
+  // After every tell() and load(): the target for f, then the run's own reason, then the common rules.
+  void settle();
 
-  const std::size_t n;
-  CmaEsConfig config;
-  Box box;
-  NormalStream random;
+  const std::size_t n;       // dimension
   std::size_t asked_points;  // λ and those with swapped blocks
   std::size_t lambda = 0;
   std::size_t used_blocks = 0;  // of the iteration's points, the most
@@ -154,31 +155,22 @@ struct CmaEs::Impl {
   MatrixXd covariance, axes;
   double sigma = 0;
   std::size_t decomposed_at = 0;  // evaluations of the run
-  std::size_t evaluations = 0, iterations = 0, restarts = 0, run_iterations = 0, run_evaluations = 0,
-              flat_iterations = 0;
+  std::size_t iterations = 0, restarts = 0, run_iterations = 0, run_evaluations = 0, flat_iterations = 0;
   std::vector<double> best_history, median_history;  // of the run
   double run_best = kInfinity;
   ParetoPoint best;
-  StopReason reason = StopReason::running;
+  StopReason own = StopReason::running;  // why the run stopped of itself
 
-  bool asked = false;
-  MatrixXd steps;  // one column for each of λ points, (genotype − mean) / sigma
-  std::vector<double> points;
+  MatrixXd steps;                    // one column for each of λ points, (genotype − mean) / sigma
   std::vector<std::size_t> swapped;  // the block of each point after those
 };
 
-CmaEs::Impl::Impl(std::size_t dimension, const CmaEsConfig& c)
-    : n(dimension), config(c), box(dimension, c.bounds), random(c.seed) {
-  const auto fail = [](const std::string& what) { throw Error(Errc::invalid_argument, "CMA-ES: " + what); };
-  if (!(config.sigma0 > 0) || !std::isfinite(config.sigma0))
-    fail("sigma0 is " + std::to_string(config.sigma0) + ", it must be positive");
-  if (config.population == 1 || config.population > kMaxPopulation)
-    fail("a population of " + std::to_string(config.population) + " cannot be ranked; give 0 or at least 2");
-  if (!config.start.empty()) box.require_inside(config.start);
+CmaEs::Impl::Impl(std::size_t d, const OptimiserConfig& c)
+    : Common(std::string(kKind), d, 1, c, default_population(d)), n(d), asked_points(config.population) {
+  if (config.population < 2)
+    throw Error(Errc::invalid_argument, name + ": a population of " + std::to_string(config.population) +
+                                            " cannot be ranked; give 0 or at least 2");
   optimise::require_blocks(config.blocks, box, n);
-  if (!(config.f_tolerance >= 0) || !(config.x_tolerance >= 0)) fail("tolerances must not be negative");
-  asked_points = config.population != 0 ? config.population
-                                        : 4 + static_cast<std::size_t>(3 * std::log(static_cast<double>(dimension)));
   best.f = {kInfinity};
   begin_run();
 }
@@ -193,11 +185,11 @@ void CmaEs::Impl::begin_run() {
   for (std::size_t i = 0; i < n; ++i) {
     double& m = mean[static_cast<Eigen::Index>(i)];
     if (first && !config.start.empty()) {
-      m = genotype(config.start[i], i);
+      m = genotype(config.start.front()[i], i);
     } else if (box.bounded()) {
       m = random.uniform();
     } else {
-      m = (config.start.empty() ? 0.0 : config.start[i]) + (first ? 0.0 : sigma * random.normal());
+      m = (config.start.empty() ? 0.0 : config.start.front()[i]) + (first ? 0.0 : sigma * random.normal());
     }
   }
   if (!first && swaps() && !best.x.empty()) begin_beside_best();
@@ -225,7 +217,7 @@ void CmaEs::Impl::use_blocks(std::size_t count) {
   used_blocks = count;
   used = n;
   for (std::size_t b = count; b < config.blocks.size(); ++b) used -= config.blocks[b].size();
-  strategy = Strategy(static_cast<double>(used), lambda, config.active);
+  strategy = Strategy(static_cast<double>(used), lambda, config.cma.active);
 }
 
 void CmaEs::Impl::forget(Eigen::Index axis, double variance) {
@@ -238,7 +230,7 @@ void CmaEs::Impl::forget(Eigen::Index axis, double variance) {
 void CmaEs::Impl::leave_unused() {
   if (!swaps() || !config.blocks_in_use) return;
   std::size_t most = 1;
-  for (std::size_t k = 0; k < lambda; ++k) most = std::max(most, blocks_in_use(std::span(points).subspan(k * n, n)));
+  for (std::size_t k = 0; k < lambda; ++k) most = std::max(most, blocks_in_use(point(k)));
   const bool changes = most != used_blocks;
   if (changes) use_blocks(most);
   const auto unused = std::span(config.blocks).subspan(most);
@@ -258,15 +250,16 @@ void CmaEs::Impl::leave_unused() {
 
 void CmaEs::Impl::express(std::size_t k) {
   const auto column = steps.col(static_cast<Eigen::Index>(k));
+  const auto x = point(k);
   for (std::size_t i = 0; i < n; ++i) {
     const auto axis = static_cast<Eigen::Index>(i);
-    points[k * n + i] = phenotype(mean[axis] + sigma * column[axis], i);
+    x[i] = phenotype(mean[axis] + sigma * column[axis], i);
   }
 }
 
 void CmaEs::Impl::draw() {
   steps.resize(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(lambda));
-  points.resize(n * asked_points);
+  begin_ask(asked_points);
   VectorXd normals(static_cast<Eigen::Index>(n));
   for (std::size_t k = 0; k < lambda; ++k) {
     random.fill_normal(as_span(normals));
@@ -278,7 +271,7 @@ void CmaEs::Impl::draw() {
 }
 
 void CmaEs::Impl::swap_block(std::size_t s) {
-  const auto x = std::span(points).subspan((lambda + s) * n, n);
+  const auto x = point(lambda + s);
   for (std::size_t i = 0; i < n; ++i) x[i] = phenotype(mean[static_cast<Eigen::Index>(i)], i);
   swapped[s] = random.index(blocks_in_use(x));
   for (const std::size_t i : config.blocks[swapped[s]]) x[i] = box.from_unit(random.uniform(), i);
@@ -288,25 +281,15 @@ void CmaEs::Impl::adopt_swap(std::size_t s) {
   const double variance = covariance.diagonal().mean();
   for (const std::size_t i : config.blocks[swapped[s]]) {
     const auto axis = static_cast<Eigen::Index>(i);
-    mean[axis] = genotype(points[(lambda + s) * n + i], i);
+    mean[axis] = genotype(point(lambda + s)[i], i);
     forget(axis, variance);
   }
-}
-
-void CmaEs::Impl::require_asked(const char* what) const {
-  if (!asked) throw Error(Errc::invalid_argument, std::string("CMA-ES: ") + what + "() needs points from ask() first");
-}
-
-void CmaEs::Impl::require_index(std::size_t index) const {
-  if (index >= asked_points)
-    throw Error(Errc::invalid_argument,
-                "CMA-ES: point " + std::to_string(index) + " of " + std::to_string(asked_points) + " does not exist");
 }
 
 void CmaEs::Impl::update(const std::vector<std::size_t>& order) {
   leave_unused();
   const Strategy& s = strategy;
-  const double dimension = static_cast<double>(used);
+  const double searched = static_cast<double>(used);
   VectorXd step = VectorXd::Zero(mean.size());
   for (std::size_t i = 0; i < s.mu; ++i)
     step += s.weights[static_cast<Eigen::Index>(i)] * steps.col(static_cast<Eigen::Index>(order[i]));
@@ -319,7 +302,7 @@ void CmaEs::Impl::update(const std::vector<std::size_t>& order) {
   path_sigma += std::sqrt(s.c_sigma * (2 - s.c_sigma) * s.mu_eff) * (axes * whitened(step));
   const double norm = path_sigma.norm();
   const double settled = std::sqrt(1 - std::pow(1 - s.c_sigma, 2.0 * static_cast<double>(run_iterations + 1)));
-  const bool moving = norm / settled >= (1.4 + 2 / (dimension + 1)) * s.expected_norm;  // then hold path_c back
+  const bool moving = norm / settled >= (1.4 + 2 / (searched + 1)) * s.expected_norm;  // then hold path_c back
   path_c *= 1 - s.c_c;
   if (!moving) path_c += std::sqrt(s.c_c * (2 - s.c_c) * s.mu_eff) * step;
 
@@ -331,8 +314,7 @@ void CmaEs::Impl::update(const std::vector<std::size_t>& order) {
     const auto column = static_cast<Eigen::Index>(i);
     scaled.col(column) = steps.col(static_cast<Eigen::Index>(order[i]));
     // A long bad step must not take more than its length in the present metric, or C would lose its definiteness.
-    if (weights[column] < 0)
-      weights[column] *= dimension / std::max(whitened(scaled.col(column)).squaredNorm(), 1e-300);
+    if (weights[column] < 0) weights[column] *= searched / std::max(whitened(scaled.col(column)).squaredNorm(), 1e-300);
   }
   covariance.noalias() += s.c_1 * path_c * path_c.transpose();
   covariance.noalias() += s.c_mu * scaled * weights.asDiagonal() * scaled.transpose();
@@ -361,13 +343,13 @@ StopReason CmaEs::Impl::stall(const std::vector<double>& sorted) const {
 
   const double length = std::max(path_c.cwiseAbs().maxCoeff(), std::sqrt(covariance.diagonal().maxCoeff()));
   if (sigma * length < config.x_tolerance * config.sigma0) return StopReason::converged;
-  if (swaps() && run_best > best.f[0] + config.f_tolerance && sigma * length < kLateStep * config.sigma0)
+  if (swaps() && run_best > best.f[0] + config.cma.f_tolerance && sigma * length < kLateStep * config.sigma0)
     return StopReason::stagnated;
   const std::size_t recent = 10 + (30 * used + lambda - 1) / lambda;
-  if (config.f_tolerance > 0 && flat_iterations == 0 && best_history.size() > recent) {
+  if (config.cma.f_tolerance > 0 && flat_iterations == 0 && best_history.size() > recent) {
     const auto [low, high] =
         std::minmax_element(best_history.end() - static_cast<std::ptrdiff_t>(recent), best_history.end());
-    if (std::max(*high, sorted.back()) - std::min(*low, sorted.front()) < config.f_tolerance)
+    if (std::max(*high, sorted.back()) - std::min(*low, sorted.front()) < config.cma.f_tolerance)
       return StopReason::converged;
   }
   // Steps too small to change the mean, along an axis (one an iteration, in turn) or a coordinate.
@@ -377,7 +359,7 @@ StopReason CmaEs::Impl::stall(const std::vector<double>& sorted) const {
     if (mean[i] == mean[i] + 0.2 * sigma * std::sqrt(covariance(i, i))) return StopReason::converged;
 
   const std::size_t window = std::clamp<std::size_t>(run_iterations / 5, 120 + 30 * used / lambda, kMaxHistory);
-  if (best_history.size() >= window && config.f_tolerance > 0) {
+  if (best_history.size() >= window && config.cma.f_tolerance > 0) {
     const auto no_better = [&](const std::vector<double>& history) {
       const auto third = static_cast<std::ptrdiff_t>(3 * window / 10);
       const auto begin = history.end() - static_cast<std::ptrdiff_t>(window);
@@ -388,49 +370,54 @@ StopReason CmaEs::Impl::stall(const std::vector<double>& sorted) const {
   return StopReason::running;
 }
 
-StopReason CmaEs::Impl::limit() const {
-  if (config.target && best.f[0] <= *config.target) return StopReason::target_reached;
-  if (config.max_evaluations != 0 && evaluations >= config.max_evaluations) return StopReason::max_evaluations;
-  if (config.max_iterations != 0 && iterations >= config.max_iterations) return StopReason::max_iterations;
-  return StopReason::running;
+void CmaEs::Impl::restart_if_at_rest() {
+  if (!is_stall(own) || restarts >= config.restarts || asked_points > kMaxPopulation / 2) return;
+  ++restarts;
+  if (!swaps()) asked_points *= 2;
+  begin_run();
+  own = StopReason::running;
 }
 
-CmaEs::CmaEs(std::size_t dimension, const CmaEsConfig& config) : impl_(std::make_unique<Impl>(dimension, config)) {}
+void CmaEs::Impl::settle() {
+  const bool reached = config.cma.target && best.f[0] <= *config.cma.target;
+  judge(reached ? StopReason::target_reached : own, iterations, [this] { return hypervolume(); });
+}
+
+CmaEs::CmaEs(std::size_t dimension, const OptimiserConfig& config) : impl_(std::make_unique<Impl>(dimension, config)) {}
 CmaEs::CmaEs(CmaEs&&) noexcept = default;
 CmaEs& CmaEs::operator=(CmaEs&&) noexcept = default;
 CmaEs::~CmaEs() = default;
 
+std::size_t CmaEs::dimension() const noexcept { return impl_->dimension; }
+
 std::span<const double> CmaEs::ask() {
-  if (!impl_->asked) impl_->draw();
-  impl_->asked = true;
-  return impl_->points;
+  if (impl_->asked() == 0) impl_->draw();
+  return impl_->points();
 }
 
 void CmaEs::replace(std::size_t index, std::span<const double> x) {
-  impl_->require_asked("replace");
-  impl_->require_index(index);
-  impl_->box.require_inside(x);
-  if (index >= impl_->lambda) {
-    std::ranges::copy(x, impl_->points.begin() + static_cast<std::ptrdiff_t>(index * impl_->n));
+  Impl& s = *impl_;
+  s.require_point("replace", index);
+  s.box.require_inside(x);
+  const auto whole = s.point(index);
+  if (index >= s.lambda) {
+    std::ranges::copy(x, whole.begin());
     return;
   }
-  auto column = impl_->steps.col(static_cast<Eigen::Index>(index));
-  for (std::size_t i = 0; i < impl_->n; ++i) {
+  auto column = s.steps.col(static_cast<Eigen::Index>(index));
+  for (std::size_t i = 0; i < s.n; ++i) {
     const auto axis = static_cast<Eigen::Index>(i);
-    double& old = impl_->points[index * impl_->n + i];
-    if (old == x[i]) continue;  // its genotype may lie beyond a bound: it stays as drawn
-    old = x[i];
-    column[axis] = (impl_->genotype(x[i], i) - impl_->mean[axis]) / impl_->sigma;
+    if (whole[i] == x[i]) continue;  // its genotype may lie beyond a bound: it stays as drawn
+    whole[i] = x[i];
+    column[axis] = (s.genotype(x[i], i) - s.mean[axis]) / s.sigma;
   }
 }
 
 std::span<const double> CmaEs::resample(std::size_t index, std::span<const std::size_t> coordinates) {
   Impl& s = *impl_;
-  s.require_asked("resample");
-  s.require_index(index);
-  for (const std::size_t i : coordinates)
-    if (i >= s.n) throw Error(Errc::invalid_argument, "CMA-ES: coordinate " + std::to_string(i) + " does not exist");
-  const auto whole = std::span(s.points).subspan(index * s.n, s.n);
+  s.require_point("resample", index);
+  s.require_coordinates(coordinates);
+  const auto whole = s.point(index);
   if (index >= s.lambda) {
     for (const std::size_t i : coordinates) whole[i] = s.box.from_unit(s.random.uniform(), i);
     return whole;
@@ -456,10 +443,7 @@ std::span<const double> CmaEs::resample(std::size_t index, std::span<const std::
 
 void CmaEs::tell(std::span<const double> values) {
   Impl& s = *impl_;
-  s.require_asked("tell");
-  if (values.size() != s.asked_points)
-    throw Error(Errc::invalid_argument, "CMA-ES: " + std::to_string(values.size()) + " values for " +
-                                            std::to_string(s.asked_points) + " points; give one for each");
+  s.take(values);
   const auto split = values.begin() + static_cast<std::ptrdiff_t>(s.lambda);
   std::vector<double> f(values.begin(), split);
   std::size_t best_swap = 0;
@@ -475,19 +459,18 @@ void CmaEs::tell(std::span<const double> values) {
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return f[a] < f[b]; });
   std::sort(f.begin(), f.end());
-  s.asked = false;
-  s.evaluations += values.size();
   s.run_evaluations += s.lambda;
   ++s.iterations;
   if (f.front() == kInfinity) {
-    s.reason = StopReason::invalid_objective;
+    s.own = StopReason::invalid_objective;
+    s.settle();
     return;
   }
   const bool adopts = best_swapped < f.front();
   if (std::min(f.front(), best_swapped) < s.best.f[0]) {
     const std::size_t best = adopts ? s.lambda + best_swap : order[0];
-    const auto first = s.points.begin() + static_cast<std::ptrdiff_t>(best * s.n);
-    s.best = {{first, first + static_cast<std::ptrdiff_t>(s.n)}, {std::min(f.front(), best_swapped)}};
+    const auto x = s.point(best);
+    s.best = {{x.begin(), x.end()}, {std::min(f.front(), best_swapped)}};
   }
   s.run_best = std::min({s.run_best, f.front(), best_swapped});
   s.best_history.push_back(f.front());
@@ -508,22 +491,20 @@ void CmaEs::tell(std::span<const double> values) {
   if (adopts) s.adopt_swap(best_swap);
   ++s.run_iterations;
   if (s.covariance.allFinite()) s.decompose(adopts);
-  s.reason = s.limit();
-  if (s.reason != StopReason::running) return;
-  s.reason = s.stall(f);
-  if (is_stall(s.reason) && s.restarts < s.config.restarts && s.asked_points <= kMaxPopulation / 2) {
-    ++s.restarts;
-    if (!s.swaps()) s.asked_points *= 2;
-    s.begin_run();
-    s.reason = StopReason::running;
-  } else if (s.reason == StopReason::diverged) {
-    s.begin_run();  // what is asked for after all is finite again
-  }
+  s.own = s.stall(f);
+  s.restart_if_at_rest();
+  if (s.own == StopReason::diverged) s.begin_run();  // what is asked for after all is finite again
+  s.settle();
 }
 
-StopReason CmaEs::stop_reason() const noexcept { return impl_->reason; }
+StopReason CmaEs::stop_reason() const noexcept { return impl_->stop_reason(); }
 const ParetoPoint& CmaEs::best() const noexcept { return impl_->best; }
-std::size_t CmaEs::population() const noexcept { return impl_->asked_points; }
+std::vector<ParetoPoint> CmaEs::front() const {
+  if (impl_->best.x.empty()) return {};
+  return {impl_->best};
+}
+double CmaEs::hypervolume() const { return impl_->hypervolume(); }
+std::size_t CmaEs::lambda() const noexcept { return impl_->asked_points; }
 std::size_t CmaEs::evaluations() const noexcept { return impl_->evaluations; }
 std::size_t CmaEs::iterations() const noexcept { return impl_->iterations; }
 std::size_t CmaEs::restarts() const noexcept { return impl_->restarts; }
@@ -531,19 +512,14 @@ double CmaEs::sigma() const noexcept { return impl_->sigma; }
 
 void CmaEs::save(std::ostream& out) const {
   const Impl& s = *impl_;
-  if (s.asked) throw Error(Errc::invalid_argument, "CMA-ES: save() between ask() and tell(); tell first");
+  s.require_not_asked("save");
   optimise::StateWriter w;
-  w.put(std::uint64_t{s.n});
-  w.put(std::uint64_t{s.config.population});
-  w.put(s.config.sigma0);
-  w.put(s.config.active);
-  w.put(s.config.start);
+  s.Common::save(w);
+  w.put(s.config.cma.active);
+  w.put(s.first_mean());
   optimise::save_blocks(w, s.config.blocks);
-  w.put(s.box.lower());
-  w.put(s.box.upper());
-  for (const std::size_t v :
-       {s.random.seed(), s.random.block(), s.asked_points, s.decomposed_at, s.evaluations, s.iterations, s.restarts,
-        s.run_iterations, s.run_evaluations, s.flat_iterations, s.used_blocks, static_cast<std::size_t>(s.reason)})
+  for (const std::size_t v : {s.asked_points, s.decomposed_at, s.iterations, s.restarts, s.run_iterations,
+                              s.run_evaluations, s.flat_iterations, s.used_blocks, static_cast<std::size_t>(s.own)})
     w.put(std::uint64_t{v});
   w.put(s.sigma);
   w.put(s.run_best);
@@ -560,24 +536,18 @@ void CmaEs::load(std::istream& in) {
   optimise::StateReader r(in, kKind);
   auto next = std::make_unique<Impl>(impl_->n, impl_->config);
   Impl& s = *next;
-  r.expect(std::uint64_t{s.n}, "dimension");
-  r.expect(std::uint64_t{s.config.population}, "population");
-  r.expect(s.config.sigma0, "sigma0");
-  r.expect(std::uint64_t{s.config.active}, "active flag");
-  r.expect(s.config.start, "start");
+  s.Common::load(r);
+  r.expect(std::uint64_t{s.config.cma.active}, "active flag");
+  r.expect(s.first_mean(), "start");
   optimise::expect_blocks(r, s.config.blocks);
-  r.expect(s.box.lower(), "lower bounds");
-  r.expect(s.box.upper(), "upper bounds");
-  const std::uint64_t seed = r.integer();
-  s.random.seek(seed, r.integer());
   s.asked_points = std::max<std::size_t>(2, r.size(kMaxPopulation + 1));
   s.lambda = s.asked_points - s.swaps_of(s.asked_points);
   constexpr std::size_t kMany = std::size_t{1} << 62;
-  for (std::size_t* v : {&s.decomposed_at, &s.evaluations, &s.iterations, &s.restarts, &s.run_iterations,
-                         &s.run_evaluations, &s.flat_iterations})
+  for (std::size_t* v :
+       {&s.decomposed_at, &s.iterations, &s.restarts, &s.run_iterations, &s.run_evaluations, &s.flat_iterations})
     *v = r.size(kMany);
   s.use_blocks(r.size(s.config.blocks.size() + 1));
-  s.reason = static_cast<StopReason>(r.size(static_cast<std::size_t>(StopReason::cancelled) + 1));
+  s.own = r.stop_reason();
   s.sigma = r.positive();
   s.run_best = r.real();
   const auto fill = [&](double* out, std::size_t count) {
@@ -590,10 +560,8 @@ void CmaEs::load(std::istream& in) {
   s.best.x = r.reals();
   s.best.f[0] = r.real();
   r.end();
-  const StopReason limit = s.limit();  // the limits may have been raised meanwhile
-  if (limit != StopReason::running || s.reason == StopReason::max_evaluations ||
-      s.reason == StopReason::max_iterations || s.reason == StopReason::target_reached)
-    s.reason = limit;
+  s.restart_if_at_rest();  // more may be allowed than when it was saved
+  s.settle();
   impl_ = std::move(next);
 }
 

@@ -71,7 +71,7 @@ struct Front {
 }  // namespace
 
 struct MoCmaEs::Impl {
-  Impl(std::size_t dimension, std::size_t objectives, const MoCmaEsConfig& config);
+  Impl(std::size_t dimension, std::size_t objectives, const OptimiserConfig& config);
 
   VectorXd to_unit(std::span<const double> x) const;
   bool within(double t) const { return !common.box.bounded() || (t >= 0 && t <= 1); }
@@ -97,7 +97,7 @@ struct MoCmaEs::Impl {
   void tell_one(Solution solution, const Offspring& offspring);
   Member make_member(Solution solution, const Offspring& offspring, bool succeeded);
   bool converged() const;
-  void restart_if_stalled();
+  void restart_if_at_rest();
 
   MoCommon common;
   std::shared_ptr<const Shape> initial_shape;
@@ -108,11 +108,11 @@ struct MoCmaEs::Impl {
   std::vector<Offspring> pending;
 };
 
-MoCmaEs::Impl::Impl(std::size_t dimension, std::size_t objectives, const MoCmaEsConfig& config)
+MoCmaEs::Impl::Impl(std::size_t dimension, std::size_t objectives, const OptimiserConfig& config)
     : common("MO-CMA-ES", dimension, objectives, config),
       initial_shape(Shape::identity(dimension)),
       population(objectives, common.reference) {
-  for (const double share : {config.guided, config.spread, config.recombined, config.swapped})
+  for (const double share : {config.mo.guided, config.mo.spread, config.mo.recombined, config.mo.swapped})
     if (!(share >= 0 && share <= 1))
       throw Error(Errc::invalid_argument, "MO-CMA-ES: a share of " + std::to_string(share) + " is not in 0 to 1");
   optimise::require_blocks(config.blocks, common.box, dimension);
@@ -140,7 +140,7 @@ Front MoCmaEs::Impl::front() const {
     front.low.push_back(population.fitness(*low)[j]);
     front.high.push_back(population.fitness(*high)[j]);
   }
-  if (common.config.guided == 0) return front;
+  if (common.config.mo.guided == 0) return front;
   front.weight_sums.reserve(front.members.size());
   double sum = 0;
   for (const std::size_t i : front.members) {
@@ -152,7 +152,7 @@ Front MoCmaEs::Impl::front() const {
 
 std::size_t MoCmaEs::Impl::choose_parent(const Front& front) {
   optimise::NormalStream& random = common.random;
-  if (common.config.guided > 0 && random.uniform() < common.config.guided) {
+  if (common.config.mo.guided > 0 && random.uniform() < common.config.mo.guided) {
     if (random.uniform() < kExtremes) return front.extremes[random.index(common.objectives)];
     const double sum = front.weight_sums.back();
     if (sum > 0) {
@@ -191,7 +191,7 @@ void MoCmaEs::Impl::draw_step(const Member& parent, const Front* front, std::siz
   const MatrixXd& factor = parent.strategy.shape->factor;
   VectorXd centre = parent.genotype, genotype, normals(n);
   double scale = parent.strategy.sigma;
-  if (front != nullptr && common.config.spread > 0 && common.random.uniform() < common.config.spread) {
+  if (front != nullptr && common.config.mo.spread > 0 && common.random.uniform() < common.config.mo.spread) {
     centre += std::sqrt(kNeighbourShare) * neighbour_step(parent, *front);
     scale *= std::sqrt(1 - kNeighbourShare);
     pending[k].mixed = true;
@@ -349,14 +349,13 @@ void MoCmaEs::Impl::tell_one(Solution solution, const Offspring& offspring) {
 }
 
 bool MoCmaEs::Impl::converged() const {
+  const double least = common.config.x_tolerance * common.config.sigma0;
   return std::all_of(members.begin(), members.end(),
-                     [&](const Member& member) { return member.strategy.reach() < common.config.x_tolerance; });
+                     [&](const Member& member) { return member.strategy.reach() < least; });
 }
 
-void MoCmaEs::Impl::restart_if_stalled() {
-  const StopReason reason = common.stop_reason();
-  if ((reason != StopReason::converged && reason != StopReason::stagnated) || restarts >= common.config.restarts)
-    return;
+void MoCmaEs::Impl::restart_if_at_rest() {
+  if (!common.at_rest() || restarts >= common.config.restarts) return;
   for (Member& member : members)
     member.strategy = {.sigma = common.config.sigma0, .success = StepStrategy::kTargetSuccess, .shape = initial_shape};
   ++restarts;
@@ -365,26 +364,29 @@ void MoCmaEs::Impl::restart_if_stalled() {
 
 // Interface.
 
-MoCmaEs::MoCmaEs(std::size_t dimension, std::size_t objectives, const MoCmaEsConfig& config)
+MoCmaEs::MoCmaEs(std::size_t dimension, std::size_t objectives, const OptimiserConfig& config)
     : impl_(std::make_unique<Impl>(dimension, objectives, config)) {}
 MoCmaEs::MoCmaEs(MoCmaEs&&) noexcept = default;
 MoCmaEs& MoCmaEs::operator=(MoCmaEs&&) noexcept = default;
 MoCmaEs::~MoCmaEs() = default;
 
+std::size_t MoCmaEs::dimension() const noexcept { return impl_->common.dimension; }
+std::size_t MoCmaEs::objectives() const noexcept { return impl_->common.objectives; }
+
 std::span<const double> MoCmaEs::ask() {
   Impl& s = *impl_;
   MoCommon& c = s.common;
   if (c.asked() != 0) return c.points();
-  const bool steady = c.config.scheme == Scheme::steady_state && !s.members.empty();
-  const std::size_t count = steady ? c.config.batch : c.config.population;
+  const bool steady = c.config.mo.scheme == Scheme::steady_state && !s.members.empty();
+  const std::size_t count = steady ? c.config.mo.batch : c.config.population;
   c.begin_ask(count);
   s.pending.assign(count, {});
   if (s.members.empty()) {
     for (std::size_t k = 0; k < count; ++k) std::ranges::copy(c.initial_point(k), c.point(k).begin());
   } else if (steady) {
     const Front front = s.front();
-    const double recombined = c.box.bounded() ? c.config.recombined : 0.0;
-    const double swapped = c.box.bounded() && !c.config.blocks.empty() ? c.config.swapped : 0.0;
+    const double recombined = c.box.bounded() ? c.config.mo.recombined : 0.0;
+    const double swapped = c.box.bounded() && !c.config.blocks.empty() ? c.config.mo.swapped : 0.0;
     for (std::size_t k = 0; k < count; ++k) {
       const Member& parent = s.members[s.choose_parent(front)];
       if (swapped > 0 && c.random.uniform() < swapped) {
@@ -403,8 +405,7 @@ std::span<const double> MoCmaEs::ask() {
 
 void MoCmaEs::replace(std::size_t index, std::span<const double> x) {
   Impl& s = *impl_;
-  s.common.require_asked("replace");
-  s.common.require_index(index);
+  s.common.require_point("replace", index);
   s.common.box.require_inside(x);
   std::ranges::copy(x, s.common.point(index).begin());
   Offspring& o = s.pending[index];
@@ -415,8 +416,7 @@ void MoCmaEs::replace(std::size_t index, std::span<const double> x) {
 std::span<const double> MoCmaEs::resample(std::size_t index, std::span<const std::size_t> coordinates) {
   Impl& s = *impl_;
   MoCommon& c = s.common;
-  c.require_asked("resample");
-  c.require_index(index);
+  c.require_point("resample", index);
   c.require_coordinates(coordinates);
   if (coordinates.empty()) return c.point(index);
   if (s.members.empty()) {
@@ -467,7 +467,7 @@ void MoCmaEs::tell(std::span<const double> values) {
   if (s.members.empty()) {
     s.tell_initial(std::move(solutions));
     s.population.assign(optimise::fitness_of(s.members));
-  } else if (s.common.config.scheme == Scheme::generational) {
+  } else if (s.common.config.mo.scheme == Scheme::generational) {
     s.tell_generation(std::move(solutions));
   } else {
     const std::size_t iteration = (s.common.evaluations - solutions.size()) / s.common.config.population;
@@ -476,7 +476,8 @@ void MoCmaEs::tell(std::span<const double> values) {
   }
   s.pending.clear();
   s.common.watch(s.members, [&] { return s.converged(); });
-  s.restart_if_stalled();
+  s.restart_if_at_rest();
+  s.common.settle(s.members);
 }
 
 StopReason MoCmaEs::stop_reason() const noexcept { return impl_->common.stop_reason(); }
@@ -489,7 +490,7 @@ std::vector<ParetoPoint> MoCmaEs::population() const {
 double MoCmaEs::hypervolume() const { return impl_->common.hypervolume(impl_->members); }
 std::size_t MoCmaEs::evaluations() const noexcept { return impl_->common.evaluations; }
 std::size_t MoCmaEs::restarts() const noexcept { return impl_->restarts; }
-std::size_t MoCmaEs::iterations() const noexcept { return evaluations() / impl_->common.config.population; }
+std::size_t MoCmaEs::iterations() const noexcept { return impl_->common.iterations(); }
 
 void MoCmaEs::save(std::ostream& out) const {
   const Impl& s = *impl_;
@@ -519,7 +520,7 @@ void MoCmaEs::load(std::istream& in) {
   const MoCommon& mine = impl_->common;
   const std::size_t n = mine.dimension;
   auto next = std::make_unique<Impl>(n, mine.objectives, mine.config);
-  next->common.restore(mine.read(r));
+  next->common.load(r);
   next->next_id = r.integer();
   next->restarts = r.size(std::size_t{1} << 62);
   const std::size_t count = r.size(mine.config.population + 1);
@@ -543,7 +544,8 @@ void MoCmaEs::load(std::istream& in) {
   const std::vector<double> contributions = r.finite_reals(count);
   if (count != 0) next->population.assign(optimise::fitness_of(next->members), contributions);
   r.end();
-  next->restart_if_stalled();  // more may be allowed than when it was saved
+  next->restart_if_at_rest();  // more may be allowed than when it was saved
+  next->common.settle(next->members);
   impl_ = std::move(next);
 }
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What MO-CMA-ES and its baselines share: settings, the initial population, the points asked for, selection, and when
-// to stop.
+// What MO-CMA-ES and its baselines share: the initial population, solutions, selection, and when a population is done.
 #pragma once
 
 #include <cstddef>
@@ -9,10 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "optimise/box.hpp"
-#include "optimise/normal_stream.hpp"
-#include "optimise/state_file.hpp"
-#include "vantage/optimiser.hpp"
+#include "optimise/common.hpp"
 
 namespace vantage::optimise {
 
@@ -21,41 +17,35 @@ struct Solution {
   std::vector<double> x, f, fitness;
 };
 
-class MoCommon {
+class MoCommon : public Common {
  public:
   // Throws Error invalid_argument. `name` begins the messages.
-  MoCommon(std::string name, std::size_t dimension, std::size_t objectives, const MoCmaEsConfig& config);
+  MoCommon(std::string name, std::size_t dimension, std::size_t objectives, const OptimiserConfig& config);
 
   // Point k of the initial population: as given, then random.
   std::vector<double> initial_point(std::size_t k);
   std::vector<double> random_point();
 
-  void begin_ask(std::size_t count);  // makes room for the points
-  std::span<double> point(std::size_t k) { return std::span(points_).subspan(k * dimension, dimension); }
-  std::span<const double> points() const { return points_; }
-  std::size_t asked() const { return asked_; }
-  void require_asked(const char* what) const;
-  void require_not_asked(const char* what) const;
-  void require_index(std::size_t index) const;
-  void require_coordinates(std::span<const std::size_t> coordinates) const;
   // Checks the values told, counts them, and gives one solution per asked point; those with a value that is not finite
   // get +infinity.
   std::vector<Solution> take(std::span<const double> values, std::span<const double> penalties = {});
 
-  // Stop rules, after every tell(). `members` is the population, `converged` tells whether its steps have become too
-  // small.
+  // After every tell(), first: judges the population once an iteration. `converged` tells whether its steps have become
+  // too small.
   template <typename Members, typename Converged>
   void watch(const Members& members, const Converged& converged) {
-    if (!due()) return;
+    if (iterations() == judged_iterations_) return;
+    judged_iterations_ = iterations();
     std::vector<double> values;
     for (const auto& member : members) values.insert(values.end(), member.f.begin(), member.f.end());
-    judge(values, converged());
+    own_ = judge_population(values, converged());
   }
-  StopReason stop_reason() const { return progress_.reason; }
-  // Takes back that the search has converged or stagnated.
-  void run_on() {
-    progress_.reason = StopReason::running;
-    progress_.hypervolumes.clear();
+  bool at_rest() const { return own_ == StopReason::converged; }
+  void run_on() { own_ = StopReason::running; }
+  // After every tell() and load(), last.
+  template <typename Members>
+  void settle(const Members& members) {
+    judge(own_, iterations(), [&] { return hypervolume(members); });
   }
 
   template <typename Members>
@@ -64,41 +54,22 @@ class MoCommon {
     for (const auto& member : members) values.insert(values.end(), member.f.begin(), member.f.end());
     return vantage::hypervolume(values, objectives, reference);
   }
+  std::size_t iterations() const { return evaluations / config.population; }
 
-  // All that changes from tell() to tell(), as one value, so that a state is read whole before any of it counts.
-  struct Progress {
-    std::uint64_t seed = 0, block = 0;
-    std::size_t evaluations = 0;
-    StopReason reason = StopReason::running;
-    std::size_t judged_iterations = 0;  // iterations for which judge() has run
-    std::size_t failed = 0;             // evaluations in a row that were not finite
-    std::size_t flat_iterations = 0;
-    bool varied = false;  // two different values were told since the last judge()
-    std::vector<double> last_value;
-    std::vector<double> hypervolumes;  // of the last iterations, where stagnation is watched
-  };
   void save(StateWriter& w) const;
-  Progress read(StateReader& r) const;
-  void restore(Progress progress);
+  void load(StateReader& r);
   static void save(StateWriter& w, const Solution& solution);
   Solution load_solution(StateReader& r) const;
 
-  const std::string name;
-  const std::size_t dimension, objectives;
-  const MoCmaEsConfig config;
-  const Box box;
-  const std::vector<double> reference;
-  NormalStream random;
-  std::size_t evaluations = 0;
-
  private:
-  bool due();
-  void judge(std::span<const double> values, bool converged);
-  StopReason limit() const;
+  StopReason judge_population(std::span<const double> values, bool converged);
 
-  std::vector<double> points_;
-  std::size_t asked_ = 0;
-  Progress progress_;
+  StopReason own_ = StopReason::running;
+  std::size_t judged_iterations_ = 0;
+  std::size_t failed_ = 0;  // evaluations in a row that were not finite
+  std::size_t flat_iterations_ = 0;
+  bool varied_ = false;  // two different values were told since the population was judged
+  std::vector<double> last_value_;
 };
 
 // Non-dominated members sorted by their objectives, and all members.

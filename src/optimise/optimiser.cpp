@@ -56,6 +56,7 @@ std::string to_string(StopReason reason) {
 
 std::string to_string(MoAlgorithm algorithm) {
   switch (algorithm) {
+    case MoAlgorithm::cma_es: return "cma_es";
     case MoAlgorithm::mo_cma_es: return "mo_cma_es";
     case MoAlgorithm::nsga2: return "nsga2";
     case MoAlgorithm::random_search: return "random_search";
@@ -64,14 +65,21 @@ std::string to_string(MoAlgorithm algorithm) {
 }
 
 MoAlgorithm mo_algorithm_from_string(const std::string& name) {
-  for (const auto algorithm : {MoAlgorithm::mo_cma_es, MoAlgorithm::nsga2, MoAlgorithm::random_search})
+  for (const auto algorithm :
+       {MoAlgorithm::cma_es, MoAlgorithm::mo_cma_es, MoAlgorithm::nsga2, MoAlgorithm::random_search})
     if (name == to_string(algorithm)) return algorithm;
-  throw Error(Errc::invalid_argument, "there is no optimiser \"" + name + "\"; take mo_cma_es, nsga2 or random_search");
+  throw Error(Errc::invalid_argument,
+              "there is no optimiser \"" + name + "\"; take cma_es, mo_cma_es, nsga2 or random_search");
 }
 
-std::unique_ptr<MultiObjectiveOptimiser> make_optimiser(MoAlgorithm algorithm, std::size_t dimension,
-                                                        std::size_t objectives, const MoCmaEsConfig& config) {
+std::unique_ptr<Optimiser> make_optimiser(MoAlgorithm algorithm, std::size_t dimension, std::size_t objectives,
+                                          const OptimiserConfig& config) {
   switch (algorithm) {
+    case MoAlgorithm::cma_es:
+      if (objectives != 1)
+        throw Error(Errc::invalid_argument,
+                    "CMA-ES: " + std::to_string(objectives) + " objectives; it takes one, mo_cma_es takes several");
+      return std::make_unique<CmaEs>(dimension, config);
     case MoAlgorithm::nsga2: return std::make_unique<optimise::Nsga2>(dimension, objectives, config);
     case MoAlgorithm::random_search: return std::make_unique<optimise::RandomSearch>(dimension, objectives, config);
     case MoAlgorithm::mo_cma_es: break;

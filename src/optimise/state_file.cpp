@@ -11,7 +11,7 @@ namespace vantage::optimise {
 namespace {
 
 constexpr std::string_view kMagic = "vantage optimiser\n";
-constexpr std::uint64_t kVersion = 4;
+constexpr std::uint64_t kVersion = 5;
 constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 32;
 
 void append(std::string& bytes, std::uint64_t value) {
@@ -94,7 +94,7 @@ StateReader::StateReader(std::istream& in, std::string_view kind) {
 }
 
 std::uint64_t StateReader::integer() {
-  if (bytes_.size() - position_ < 8) malformed("it holds too little");
+  if (left() < 8) malformed("it holds too little");
   const std::uint64_t value = parse(std::string_view(bytes_).substr(position_, 8));
   position_ += 8;
   return value;
@@ -121,7 +121,7 @@ double StateReader::positive() {
 }
 
 std::vector<double> StateReader::reals() {
-  const std::size_t count = size((bytes_.size() - position_) / 8 + 1);
+  const std::size_t count = size(left() / 8 + 1);
   std::vector<double> values(count);
   for (double& v : values) v = real();
   return values;

@@ -11,6 +11,8 @@
 #include <string_view>
 #include <vector>
 
+#include "vantage/optimiser.hpp"
+
 namespace vantage::optimise {
 
 class StateWriter {
@@ -37,6 +39,9 @@ class StateReader {
   double finite();
   double positive();
   bool flag() { return size(2) == 1; }
+  StopReason stop_reason() {
+    return static_cast<StopReason>(size(static_cast<std::size_t>(StopReason::cancelled) + 1));
+  }
   std::vector<double> reals();
   std::vector<double> reals(std::size_t count);  // exactly so many
   std::vector<double> finite_reals(std::size_t count);
@@ -44,7 +49,8 @@ class StateReader {
   void expect(std::uint64_t value, std::string_view what);
   void expect(double value, std::string_view what);
   void expect(std::span<const double> values, std::string_view what);
-  void end() const;  // all read
+  std::size_t left() const { return bytes_.size() - position_; }  // bytes
+  void end() const;                                               // all read
 
  private:
   std::string bytes_;

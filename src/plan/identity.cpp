@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "core/hash.hpp"
-#include "plan/strategy.hpp"
+#include "plan/choose_optimiser.hpp"
 #include "vantage/version.hpp"
 
 namespace vantage {

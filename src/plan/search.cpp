@@ -12,14 +12,11 @@
 
 #include "core/atomic_file.hpp"
 #include "plan/checkpoint.hpp"
-#include "plan/strategy.hpp"
+#include "plan/choose_optimiser.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage {
 namespace {
-
-// Growth of the hypervolume, as a share of it, that counts as none.
-constexpr double kStagnationTolerance = 1e-6;
 
 class Search {
  public:
@@ -29,7 +26,7 @@ class Search {
         space_(setup.space),
         population_(population_of(config_)),
         budget_(static_cast<std::uint64_t>(config_.iterations) * population_),
-        strategy_(make_strategy(space_, config_, setup.batch)),
+        optimiser_(choose_optimiser(space_, config_, setup.batch)),
         evaluator_(setup.evaluator) {}
 
   SearchOutcome run() {
@@ -91,7 +88,7 @@ class Search {
       const std::size_t parts = std::max(values[k].parts, space_.parts_of(networks_[k]));
       space_.objectives_of(x(k), values[k].coverage, values[k].overlap, parts, std::span(f).subspan(k * m, m));
     });
-    strategy_->tell(f);
+    optimiser_->tell(f);
     record();
     if (checkpoint_due()) {
       take_snapshot();
@@ -102,7 +99,7 @@ class Search {
 
   // Asks for a batch and draws again what stands in holes and clashes. Fills networks_.
   std::vector<double> draw() {
-    const std::span<const double> asked = strategy_->ask();
+    const std::span<const double> asked = optimiser_->ask();
     std::vector<double> xs(asked.begin(), asked.end());
     const std::size_t n = space_.dimension(), count = xs.size() / n;
     std::vector<std::vector<PlacedStation>> placed(count);
@@ -125,7 +122,7 @@ class Search {
           ++drawn_, ++redrawn_;
         }
         if (coordinates.empty()) continue;
-        const std::span<const double> x = strategy_->resample(k, coordinates);
+        const std::span<const double> x = optimiser_->resample(k, coordinates);
         std::copy(x.begin(), x.end(), xs.begin() + static_cast<std::ptrdiff_t>(k * n));
         again.push_back(k);
       }
@@ -138,13 +135,13 @@ class Search {
   }
 
   void record() {
-    const std::uint64_t iteration = strategy_->evaluations() / population_;
+    const std::uint64_t iteration = optimiser_->iterations();
     const std::uint64_t last = history_.empty() ? 0 : history_.back().iteration;
     if (iteration == last) return;
     PlanIteration& line = history_.emplace_back();
-    line.iteration = iteration, line.evaluations = strategy_->evaluations();
-    line.hypervolume = strategy_->hypervolume();
-    for (ParetoPoint& point : strategy_->front()) line.front.push_back(std::move(point.f));
+    line.iteration = iteration, line.evaluations = optimiser_->evaluations();
+    line.hypervolume = optimiser_->hypervolume();
+    for (ParetoPoint& point : optimiser_->front()) line.front.push_back(std::move(point.f));
     line.seconds = seconds();
   }
 
@@ -159,23 +156,8 @@ class Search {
   // And what ends it between two batches. Values that a checkpoint brought are replayed first, so that a search that
   // goes on stands where it was left.
   StopReason reason_to_stop() const {
-    if (strategy_->stop_reason() != StopReason::running) return strategy_->stop_reason();
-    if (strategy_->evaluations() >= budget_) return StopReason::max_iterations;
-    if (config_.target_hypervolume && strategy_->evaluations() > 0 &&
-        strategy_->hypervolume() >= *config_.target_hypervolume)
-      return StopReason::target_reached;
-    if (stagnated()) return StopReason::stagnated;
+    if (optimiser_->stop_reason() != StopReason::running) return optimiser_->stop_reason();
     return replay_next_ < replay_.size() ? StopReason::running : interruption();
-  }
-
-  bool stagnated() const {
-    if (config_.stagnation_iterations == 0 || history_.empty()) return false;
-    const PlanIteration& now = history_.back();
-    if (now.iteration <= config_.stagnation_iterations) return false;
-    const std::size_t since = now.iteration - config_.stagnation_iterations;
-    const auto then =
-        std::find_if(history_.rbegin(), history_.rend(), [&](const PlanIteration& p) { return p.iteration <= since; });
-    return then != history_.rend() && now.hypervolume - then->hypervolume <= kStagnationTolerance * now.hypervolume;
   }
 
   void watch(double under_way) const {
@@ -205,7 +187,7 @@ class Search {
   // REQUIRES: no batch is open.
   void take_snapshot() {
     std::ostringstream state;
-    strategy_->save(state);
+    optimiser_->save(state);
     snapshot_ = {.optimiser = std::move(state).str(), .history = history_, .drawn = drawn_, .redrawn = redrawn_};
     since_.clear();
   }
@@ -228,20 +210,20 @@ class Search {
     if (!checkpoint) return;
     require_same_run(config_.checkpoint, checkpoint->identity, setup_.identity);
     std::istringstream state(checkpoint->snapshot.optimiser);
-    strategy_->load(state);
+    optimiser_->load(state);
     snapshot_ = std::move(checkpoint->snapshot);
     history_ = snapshot_.history;
     drawn_ = snapshot_.drawn, redrawn_ = snapshot_.redrawn;
     replay_ = std::move(checkpoint->since);
-    resumed_ = evaluated_ = strategy_->evaluations();
+    resumed_ = evaluated_ = optimiser_->evaluations();
     earlier_seconds_ = checkpoint->seconds, earlier_trace_seconds_ = checkpoint->trace_seconds;
   }
 
   SearchOutcome outcome(StopReason reason) const {
-    return {.front = strategy_->front(),
+    return {.front = optimiser_->front(),
             .history = history_,
-            .hypervolume = strategy_->hypervolume(),
-            .evaluations = strategy_->evaluations(),
+            .hypervolume = optimiser_->hypervolume(),
+            .evaluations = optimiser_->evaluations(),
             .resumed_evaluations = resumed_,
             .drawn = drawn_,
             .redrawn = redrawn_,
@@ -255,7 +237,7 @@ class Search {
   const DecisionSpace& space_;
   std::size_t population_;
   std::uint64_t budget_;
-  std::unique_ptr<Strategy> strategy_;
+  std::unique_ptr<Optimiser> optimiser_;
   CachingEvaluator evaluator_;
   std::vector<Network> networks_;  // of the open batch
 

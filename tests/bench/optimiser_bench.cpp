@@ -58,7 +58,7 @@ struct Options {
   std::string scheme, algorithm = "mo_cma_es", references = VANTAGE_OPTIMISER_REFERENCES;
   std::size_t survey_population = 20;
   bool blocks = true;
-  MoCmaEsConfig search;
+  OptimiserConfig search{.population = 100};
 
   bool wants(const std::string& part, const std::string& problem) const {
     const auto has = [](const auto& list, const std::string& name) {
@@ -94,7 +94,6 @@ Summary over_seeds(const Options& options, const Run& run) {
 }
 
 // Draws stations in holes again, as the planner does.
-template <typename Optimiser>
 void place(const MoProblem& problem, Optimiser& optimiser, std::span<const double> points) {
   const std::size_t n = problem.dimension;
   for (std::size_t k = 0; k < points.size() / n && problem.misplaced; ++k) {
@@ -106,31 +105,37 @@ void place(const MoProblem& problem, Optimiser& optimiser, std::span<const doubl
   }
 }
 
+// One iteration, or a batch of it.
+void step(const MoProblem& problem, Optimiser& optimiser, std::vector<double>& values) {
+  const auto points = optimiser.ask();
+  const std::size_t n = problem.dimension, m = problem.objectives;
+  values.resize(points.size() / n * m);
+  place(problem, optimiser, points);
+  for (std::size_t k = 0; k < points.size() / n; ++k)
+    problem.evaluate(points.subspan(k * n, n), std::span(values).subspan(k * m, m));
+  optimiser.tell(values);
+}
+
+// The hypervolume that an algorithm ends with.
+double run(const MoProblem& problem, const Options& options, MoAlgorithm algorithm, OptimiserConfig config) {
+  config.bounds = problem.bounds;
+  if (options.blocks) config.blocks = problem.blocks, config.blocks_in_use = problem.blocks_in_use;
+  const auto optimiser = make_optimiser(algorithm, problem.dimension, problem.objectives, config);
+  std::vector<double> values;
+  while (optimiser->stop_reason() == StopReason::running) step(problem, *optimiser, values);
+  return optimiser->hypervolume();
+}
+
 // Hypervolume of the population against (reference, …) after so many evaluations.
 double run_front(const MoProblem& problem, const Options& options, Scheme scheme, double reference,
                  std::size_t evaluations, std::uint64_t seed) {
-  MoCmaEsConfig config = options.search;
-  config.scheme = scheme;
-  config.batch = options.batch;
-  config.bounds = problem.bounds;
-  if (options.blocks) config.blocks = problem.blocks, config.blocks_in_use = problem.blocks_in_use;
+  OptimiserConfig config = options.search;
+  config.mo.scheme = scheme;
+  config.mo.batch = options.batch;
   config.reference.assign(problem.objectives, reference);
   config.max_evaluations = evaluations;
   config.seed = seed;
-  const auto optimiser =
-      make_optimiser(mo_algorithm_from_string(options.algorithm), problem.dimension, problem.objectives, config);
-  std::vector<double> values;
-  while (optimiser->stop_reason() == StopReason::running) {
-    const auto points = optimiser->ask();
-    const std::size_t count = points.size() / problem.dimension;
-    values.resize(count * problem.objectives);
-    place(problem, *optimiser, points);
-    for (std::size_t k = 0; k < count; ++k)
-      problem.evaluate(points.subspan(k * problem.dimension, problem.dimension),
-                       std::span(values).subspan(k * problem.objectives, problem.objectives));
-    optimiser->tell(values);
-  }
-  return optimiser->hypervolume();
+  return run(problem, options, mo_algorithm_from_string(options.algorithm), config);
 }
 
 Summary front_over_seeds(const std::string& name, std::size_t dimension, const Options& options, Scheme scheme,
@@ -203,7 +208,8 @@ double run_single(const std::string& name, std::size_t n, double target, std::ui
   optimise::NormalStream random(seed);
   std::vector<double> start(n), values;
   for (double& v : start) v = 10 * random.uniform() - 5;
-  CmaEs optimiser(n, {.sigma0 = 2, .start = start, .max_evaluations = 10000 * n, .target = target, .seed = seed});
+  CmaEs optimiser(
+      n, {.sigma0 = 2, .start = {start}, .max_evaluations = 10000 * n, .seed = seed, .cma = {.target = target}});
   while (optimiser.stop_reason() == StopReason::running) {
     const auto points = optimiser.ask();
     values.clear();
@@ -236,25 +242,13 @@ void print_station(const Options& options) {
 
 // One objective, CMA-ES set as the planner sets it.
 double run_survey(const MoProblem& problem, const Options& options, std::uint64_t seed) {
-  CmaEsConfig config{.population = options.survey_population,
-                     .bounds = problem.bounds,
-                     .restarts = 1000,
-                     .max_evaluations = options.evaluations,
-                     .f_tolerance = 1e-3,
-                     .x_tolerance = 0.02,
-                     .seed = seed};
-  if (options.blocks) config.blocks = problem.blocks, config.blocks_in_use = problem.blocks_in_use;
-  CmaEs optimiser(problem.dimension, config);
-  std::vector<double> values;
-  while (optimiser.stop_reason() == StopReason::running) {
-    const auto points = optimiser.ask();
-    place(problem, optimiser, points);
-    values.resize(points.size() / problem.dimension);
-    for (std::size_t k = 0; k < values.size(); ++k)
-      problem.evaluate(points.subspan(k * problem.dimension, problem.dimension), std::span(values).subspan(k, 1));
-    optimiser.tell(values);
-  }
-  return 1 - optimiser.best().f[0];
+  return run(problem, options, MoAlgorithm::cma_es,
+             {.population = options.survey_population,
+              .restarts = 1000,
+              .x_tolerance = 0.02,
+              .max_evaluations = options.evaluations,
+              .seed = seed,
+              .cma = {.f_tolerance = 1e-3}});
 }
 
 void print_survey(const Options& options) {
@@ -305,9 +299,9 @@ void print_overhead(const Options& options) {
         std::tuple{"steady state, batch 250", Scheme::steady_state, mu},
         std::tuple{"steady state, batch 25", Scheme::steady_state, mu / 10},
         std::tuple{"steady state, batch 1", Scheme::steady_state, std::size_t{1}}}) {
-    MoCmaEsConfig config = options.search;
-    config.scheme = scheme;
-    config.batch = batch;
+    OptimiserConfig config = options.search;
+    config.mo.scheme = scheme;
+    config.mo.batch = batch;
     config.population = mu;
     config.bounds = problem.bounds;
     config.reference.assign(3, 11.0);
@@ -356,10 +350,10 @@ int main(int argc, char** argv) {
   app.add_option("--survey-population", options.survey_population, "Of CMA-ES on planning with one objective");
   app.add_option("--batch", options.batch, "Of the steady state");
   app.add_option("--sigma0", options.search.sigma0, "Share of the range");
-  app.add_option("--guided", options.search.guided);
-  app.add_option("--spread", options.search.spread);
-  app.add_option("--recombined", options.search.recombined);
-  app.add_option("--swapped", options.search.swapped);
+  app.add_option("--guided", options.search.mo.guided);
+  app.add_option("--spread", options.search.mo.spread);
+  app.add_option("--recombined", options.search.mo.recombined);
+  app.add_option("--swapped", options.search.mo.swapped);
   app.add_flag("!--no-blocks", options.blocks, "Do not tell which coordinates belong together");
   app.add_option("--references", options.references, "Figures of the other libraries");
   CLI11_PARSE(app, argc, argv);

@@ -49,7 +49,7 @@ StopReason run(CmaEs& optimiser, std::size_t n, const Objective& f, std::size_t 
 
 TEST(CmaEs, FindsMinimaWithoutBounds) {
   for (const auto& f : {Objective(sphere), Objective(ellipsoid)}) {
-    CmaEs optimiser(6, {.sigma0 = 1, .start = std::vector<double>(6, 3.0), .target = 1e-10});
+    CmaEs optimiser(6, {.sigma0 = 1, .start = {std::vector<double>(6, 3.0)}, .cma = {.target = 1e-10}});
     EXPECT_EQ(run(optimiser, 6, f, 2000), StopReason::target_reached);
     EXPECT_LE(optimiser.best().f[0], 1e-10);
     for (const double v : optimiser.best().x) EXPECT_NEAR(v, 0, 1e-4);
@@ -60,8 +60,10 @@ TEST(CmaEs, ActiveUpdateNeedsFewerEvaluationsOnTheEllipsoid) {
   const auto evaluations = [](bool active) {
     std::size_t sum = 0;
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-      CmaEs optimiser(
-          8, {.sigma0 = 2, .start = std::vector<double>(8, 3.0), .active = active, .target = 1e-8, .seed = seed});
+      CmaEs optimiser(8, {.sigma0 = 2,
+                          .start = {std::vector<double>(8, 3.0)},
+                          .seed = seed,
+                          .cma = {.active = active, .target = 1e-8}});
       EXPECT_EQ(run(optimiser, 8, ellipsoid), StopReason::target_reached);
       sum += optimiser.evaluations();
     }
@@ -72,26 +74,26 @@ TEST(CmaEs, ActiveUpdateNeedsFewerEvaluationsOnTheEllipsoid) {
 
 TEST(CmaEs, FindsAnOptimumOnTheBounds) {
   const std::size_t n = 5;
-  CmaEs optimiser(n, {.bounds = Bounds::uniform(n, 2, 7), .target = 4 * n + 1e-6});
+  CmaEs optimiser(n, {.bounds = Bounds::uniform(n, 2, 7), .cma = {.target = 4 * n + 1e-6}});
   EXPECT_EQ(run(optimiser, n, sphere, 2000), StopReason::target_reached);
   for (const double v : optimiser.best().x) EXPECT_NEAR(v, 2, 1e-6);
 }
 
 TEST(CmaEs, RestartsWithDoubledPopulationLeaveLocalMinima) {
-  CmaEs optimiser(4, {.start = std::vector<double>(4, 3.0),
-                      .bounds = Bounds::uniform(4, -5, 5),
+  CmaEs optimiser(4, {.bounds = Bounds::uniform(4, -5, 5),
+                      .start = {std::vector<double>(4, 3.0)},
                       .restarts = 8,
-                      .target = 1e-8,
-                      .seed = 3});
-  const std::size_t first = optimiser.population();
+                      .seed = 3,
+                      .cma = {.target = 1e-8}});
+  const std::size_t first = optimiser.lambda();
   EXPECT_EQ(run(optimiser, 4, rastrigin), StopReason::target_reached);
   EXPECT_GT(optimiser.restarts(), 0u);
-  EXPECT_EQ(optimiser.population(), first << optimiser.restarts());
+  EXPECT_EQ(optimiser.lambda(), first << optimiser.restarts());
 }
 
 RC_GTEST_PROP(CmaEs, AsksInsideTheBounds, ()) {
   const auto n = *rc::gen::inRange<std::size_t>(1, 6);
-  CmaEsConfig config;
+  OptimiserConfig config;
   config.seed = *rc::gen::arbitrary<std::uint64_t>();
   config.sigma0 = *rc::gen::element(1e-3, 0.2, 5.0);
   Bounds bounds;
@@ -153,11 +155,11 @@ TEST(CmaEs, ResamplesOnlyWhatItIsTold) {
 
 TEST(CmaEs, SameSeedSameBitsAndResumeToThem) {
   const std::size_t n = 7;
-  const CmaEsConfig config{.start = std::vector<double>(n, 2.5),
-                           .bounds = Bounds::uniform(n, -5, 5),
-                           .restarts = 4,
-                           .max_evaluations = 6000,
-                           .seed = 11};
+  const OptimiserConfig config{.bounds = Bounds::uniform(n, -5, 5),
+                               .start = {std::vector<double>(n, 2.5)},
+                               .restarts = 4,
+                               .max_evaluations = 6000,
+                               .seed = 11};
   CmaEs whole(n, config), parted(n, config);
   std::string state;
   while (whole.stop_reason() == StopReason::running) {
@@ -180,7 +182,7 @@ TEST(CmaEs, SameSeedSameBitsAndResumeToThem) {
 
 TEST(CmaEs, StopsWithAReason) {
   const std::size_t n = 4;
-  const auto reason = [&](CmaEsConfig config, const Objective& f) {
+  const auto reason = [&](OptimiserConfig config, const Objective& f) {
     CmaEs optimiser(n, config);
     const StopReason result = run(optimiser, n, f, 20000);
     for (const double v : optimiser.ask()) EXPECT_TRUE(std::isfinite(v));
@@ -203,35 +205,37 @@ TEST(CmaEs, StopsWithAReason) {
   EXPECT_EQ(reason({.bounds = Bounds::uniform(n, 0, 1)}, flat), StopReason::flat);
   EXPECT_EQ(reason({.restarts = 2}, flat), StopReason::flat);
   EXPECT_EQ(reason({}, linear), StopReason::diverged);
-  EXPECT_EQ(reason({.start = std::vector<double>(n, 1.0)}, sphere), StopReason::converged);
-  EXPECT_EQ(reason({.start = std::vector<double>(n, 1.0), .f_tolerance = 0, .x_tolerance = 0}, needle),
+  EXPECT_EQ(reason({.start = {std::vector<double>(n, 1.0)}}, sphere), StopReason::converged);
+  EXPECT_EQ(reason({.start = {std::vector<double>(n, 1.0)}, .x_tolerance = 0, .cma = {.f_tolerance = 0}}, needle),
             StopReason::ill_conditioned);
   EXPECT_EQ(reason({.max_iterations = 3}, sphere), StopReason::max_iterations);
   EXPECT_EQ(reason({.max_evaluations = 30}, sphere), StopReason::max_evaluations);
-  EXPECT_EQ(reason({.target = 1e-3}, sphere), StopReason::target_reached);
+  EXPECT_EQ(reason({.cma = {.target = 1e-3}}, sphere), StopReason::target_reached);
   const auto noisy = reason({.bounds = Bounds::uniform(n, 0, 1)}, noise);
   EXPECT_TRUE(noisy == StopReason::stagnated || noisy == StopReason::converged || noisy == StopReason::ill_conditioned)
       << to_string(noisy);
   // With neither tolerance, the sphere ends where steps no longer change the mean, or at the smallest number.
-  EXPECT_NE(reason({.start = std::vector<double>(n, 1.0), .f_tolerance = 0, .x_tolerance = 0}, sphere),
+  EXPECT_NE(reason({.start = {std::vector<double>(n, 1.0)}, .x_tolerance = 0, .cma = {.f_tolerance = 0}}, sphere),
             StopReason::running);
 }
 
 TEST(CmaEs, TakesNaNAsWorst) {
   const std::size_t n = 4;
-  CmaEs optimiser(n, {.start = std::vector<double>(n, 1.0), .target = 1e-6});
+  CmaEs optimiser(n, {.start = {std::vector<double>(n, 1.0)}, .cma = {.target = 1e-6}});
   const auto half = [](std::span<const double> x) { return x[0] < 0 ? std::nan("") : sphere(x); };
   EXPECT_EQ(run(optimiser, n, half, 5000), StopReason::target_reached);
 }
 
 TEST(CmaEs, RefusesWhatItCannotDo) {
   EXPECT_THROW(CmaEs(0), Error);
+  EXPECT_THROW(CmaEs(2, {.reference = {1, 1}}), Error);
+  EXPECT_THROW(CmaEs(2, {.cma = {.f_tolerance = -1}}), Error);
   EXPECT_THROW(CmaEs(2, {.population = 1}), Error);
   EXPECT_THROW(CmaEs(2, {.sigma0 = 0}), Error);
   EXPECT_THROW(CmaEs(2, {.sigma0 = std::nan("")}), Error);
   EXPECT_THROW(CmaEs(2, {.bounds = Bounds{{0, 1}, {1, 1}}}), Error);
   EXPECT_THROW(CmaEs(2, {.bounds = Bounds::uniform(3, 0, 1)}), Error);
-  EXPECT_THROW(CmaEs(2, {.start = {0.5, 2}, .bounds = Bounds::uniform(2, 0, 1)}), Error);
+  EXPECT_THROW(CmaEs(2, {.bounds = Bounds::uniform(2, 0, 1), .start = {{0.5, 2}}}), Error);
   CmaEs optimiser(2);
   EXPECT_THROW(optimiser.tell(std::vector<double>(6)), Error);
   optimiser.ask();
@@ -272,6 +276,66 @@ TEST(CmaEs, RefusesDamagedStatesAndStaysAsItWas) {
   EXPECT_EQ(optimiser.iterations(), 5u);
 }
 
+TEST(CmaEs, HypervolumeIsWhatTheBestPointDominates) {
+  const std::size_t n = 3;
+  CmaEs optimiser(n, {.sigma0 = 1, .start = {std::vector<double>(n, 2.0)}, .reference = {5}});
+  EXPECT_TRUE(optimiser.front().empty());
+  EXPECT_EQ(optimiser.hypervolume(), 0);
+  bool outside = false;
+  for (int i = 0; i < 60; ++i) {
+    step(optimiser, n, sphere);
+    const auto front = optimiser.front();
+    ASSERT_EQ(front.size(), 1u);
+    EXPECT_EQ(front[0].x, optimiser.best().x);
+    EXPECT_EQ(optimiser.hypervolume(), hypervolume(front[0].f, 1, std::vector{5.0}));
+    EXPECT_EQ(optimiser.hypervolume(), std::max(0.0, 5 - front[0].f[0]));
+    outside |= optimiser.hypervolume() == 0;
+  }
+  EXPECT_TRUE(outside);
+  EXPECT_GT(optimiser.hypervolume(), 4.99);
+}
+
+TEST(CmaEs, RestartsAreNoWayRoundTheLimits) {
+  // At rest every few iterations, and at the end of the limit too: what was restarted there is gone on with.
+  const std::size_t n = 4;
+  OptimiserConfig c{.bounds = Bounds::uniform(n, -5, 5), .restarts = 1000, .x_tolerance = 0.8, .max_iterations = 100};
+  CmaEs whole(n, c);
+  EXPECT_EQ(run(whole, n, rastrigin), StopReason::max_iterations);
+  EXPECT_EQ(whole.iterations(), 100u);
+  EXPECT_GT(whole.restarts(), 2u);
+  CmaEs parted(n, c);
+  for (c.max_iterations = 1; c.max_iterations <= 100; ++c.max_iterations) {
+    std::stringstream file;
+    parted.save(file);
+    parted = CmaEs(n, c);
+    parted.load(file);
+    EXPECT_EQ(run(parted, n, rastrigin), StopReason::max_iterations);
+  }
+  EXPECT_EQ(parted.restarts(), whole.restarts());
+  EXPECT_EQ(parted.best().x, whole.best().x);
+  EXPECT_TRUE(std::ranges::equal(parted.ask(), whole.ask()));
+}
+
+TEST(CmaEs, GoesOnFromRestWhereMoreRestartsAreAllowed) {
+  const std::size_t n = 4;
+  OptimiserConfig c{.bounds = Bounds::uniform(n, -5, 5), .restarts = 2, .seed = 5};
+  CmaEs whole(n, c);
+  const StopReason reason = run(whole, n, rastrigin);
+  EXPECT_EQ(whole.restarts(), 2u);
+  std::stringstream file;
+  c.restarts = 0;
+  CmaEs first(n, c);
+  run(first, n, rastrigin);
+  EXPECT_EQ(first.restarts(), 0u);
+  first.save(file);
+  c.restarts = 2;
+  CmaEs resumed(n, c);
+  resumed.load(file);
+  EXPECT_EQ(run(resumed, n, rastrigin), reason);
+  EXPECT_EQ(resumed.evaluations(), whole.evaluations());
+  EXPECT_EQ(resumed.best().x, whole.best().x);
+}
+
 // Three stations before three targets, each seen from nearby alone: two stations before one target have no way to the
 // third.
 double unseen(std::span<const double> x) {
@@ -284,7 +348,7 @@ double unseen(std::span<const double> x) {
   return sum;
 }
 
-CmaEsConfig block_config() {
+OptimiserConfig block_config() {
   return {.population = 10,
           .bounds = Bounds::uniform(8, 0, 1),
           .blocks = {{0, 1}, {2, 3}, {4, 5}, {6, 7}},
@@ -295,7 +359,7 @@ TEST(CmaEs, SwappedBlocksLeaveLocalOptima) {
   std::size_t plain = 0, swapped = 0;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     for (const bool blocks : {false, true}) {
-      CmaEsConfig c = block_config();
+      OptimiserConfig c = block_config();
       if (!blocks) c.blocks.clear();
       c.seed = seed;
       c.max_evaluations = 3000;
@@ -314,8 +378,8 @@ TEST(CmaEs, SwappedBlocksLeaveLocalOptima) {
 }
 
 TEST(CmaEs, AsksForPointsThatDifferFromTheMeanByABlock) {
-  CmaEsConfig c = block_config();
-  c.start.assign(8, 0.5);
+  OptimiserConfig c = block_config();
+  c.start.assign(1, std::vector<double>(8, 0.5));
   CmaEs optimiser(8, c);
   ASSERT_EQ(optimiser.ask().size(), 10u * 8);
   const auto x = optimiser.ask().subspan(72, 8);
@@ -352,7 +416,7 @@ TEST(CmaEs, ResumesSwapsToTheSameBits) {
   for (int i = 0; i < 30; ++i) step(whole), step(parted);
   EXPECT_EQ(whole.best().x, parted.best().x);
   EXPECT_TRUE(std::ranges::equal(whole.ask(), parted.ask()));
-  CmaEsConfig other = block_config();
+  OptimiserConfig other = block_config();
   other.blocks.pop_back();
   file.clear();
   file.seekg(0);

@@ -38,7 +38,7 @@ std::vector<double> three_spheres(std::span<const double> x) {
   return f;
 }
 
-void step(MultiObjectiveOptimiser& optimiser, std::size_t n, const Objectives& f) {
+void step(Optimiser& optimiser, std::size_t n, const Objectives& f) {
   const auto points = optimiser.ask();
   std::vector<double> values;
   for (std::size_t k = 0; k < points.size(); k += n) {
@@ -48,8 +48,7 @@ void step(MultiObjectiveOptimiser& optimiser, std::size_t n, const Objectives& f
   optimiser.tell(values);
 }
 
-StopReason run(MultiObjectiveOptimiser& optimiser, std::size_t n, const Objectives& f,
-               std::size_t max_evaluations = 200000) {
+StopReason run(Optimiser& optimiser, std::size_t n, const Objectives& f, std::size_t max_evaluations = 200000) {
   while (optimiser.stop_reason() == StopReason::running && optimiser.evaluations() < max_evaluations)
     step(optimiser, n, f);
   return optimiser.stop_reason();
@@ -65,20 +64,20 @@ struct Variant {
 
 class EveryOptimiser : public testing::TestWithParam<Variant> {
  protected:
-  MoCmaEsConfig config(std::size_t n) const {
-    MoCmaEsConfig c;
-    c.scheme = GetParam().scheme;
-    c.batch = GetParam().batch;
+  OptimiserConfig config(std::size_t n) const {
+    OptimiserConfig c;
+    c.mo.scheme = GetParam().scheme;
+    c.mo.batch = GetParam().batch;
     c.population = 20;
     c.bounds = Bounds::uniform(n, -1, 2);
-    if (GetParam().published) c.guided = c.spread = c.recombined = 0;
+    if (GetParam().published) c.mo.guided = c.mo.spread = c.mo.recombined = 0;
     if (GetParam().blocks) {
       for (std::size_t i = 0; i + 1 < n; i += 2) c.blocks.push_back({i, i + 1});
       c.blocks_in_use = [n](std::span<const double>) { return n / 2 - 1; };  // none of two: then one
     }
     return c;
   }
-  std::unique_ptr<MultiObjectiveOptimiser> make(std::size_t n, std::size_t m, const MoCmaEsConfig& c) const {
+  std::unique_ptr<Optimiser> make(std::size_t n, std::size_t m, const OptimiserConfig& c) const {
     return make_optimiser(GetParam().algorithm, n, m, c);
   }
 };
@@ -188,7 +187,7 @@ TEST_P(EveryOptimiser, ResumesUnderRaisedLimits) {
 
 TEST_P(EveryOptimiser, StopsWithAReason) {
   const std::size_t n = 3;
-  const auto reason = [&](MoCmaEsConfig c, const Objectives& f) {
+  const auto reason = [&](OptimiserConfig c, const Objectives& f) {
     auto optimiser = make(n, 2, c);
     const StopReason result = run(*optimiser, n, f);
     for (const double v : optimiser->ask()) EXPECT_TRUE(std::isfinite(v));
@@ -306,7 +305,7 @@ TEST_P(EveryOptimiser, RefusesWhatItCannotDo) {
   EXPECT_THROW(make(2, 7, c), Error);
   EXPECT_THROW(make(3, 2, c), Error);
   auto bad = c;
-  bad.population = 0;
+  bad.population = std::size_t{1} << 21;
   EXPECT_THROW(make(2, 2, bad), Error);
   bad = c;
   bad.reference = {1, 1, 1};
@@ -319,7 +318,7 @@ TEST_P(EveryOptimiser, RefusesWhatItCannotDo) {
       for (double MoCmaEsConfig::*of :
            {&MoCmaEsConfig::guided, &MoCmaEsConfig::spread, &MoCmaEsConfig::recombined, &MoCmaEsConfig::swapped}) {
         bad = c;
-        bad.*of = share;
+        bad.mo.*of = share;
         EXPECT_THROW(make(2, 2, bad), Error);
       }
     }
@@ -334,10 +333,10 @@ TEST_P(EveryOptimiser, RefusesWhatItCannotDo) {
 
 TEST(MoCmaEs, ConvergesToOnePoint) {
   // Both objectives agree, so that the population shrinks onto their minimum.
-  MoCmaEsConfig c;
+  OptimiserConfig c;
   c.population = 4;
   c.bounds = Bounds::uniform(2, 0, 1);
-  c.scheme = Scheme::generational;
+  c.mo.scheme = Scheme::generational;
   MoCmaEs optimiser(2, 2, c);
   const auto reason = run(optimiser, 2, [](std::span<const double> x) {
     const double f = (x[0] - 0.3) * (x[0] - 0.3) + (x[1] - 0.6) * (x[1] - 0.6);
@@ -347,52 +346,45 @@ TEST(MoCmaEs, ConvergesToOnePoint) {
   EXPECT_NEAR(optimiser.front().front().x[0], 0.3, 1e-6);
 }
 
-// Two objectives with a front between (0.2, 0.5) and (0.8, 0.5), found with steps no smaller than x_tolerance.
+// Two objectives with a front between (0.2, 0.5) and (0.8, 0.5).
+std::vector<double> two_wells(std::span<const double> x) {
+  const double y = (x[1] - 0.5) * (x[1] - 0.5);
+  return {(x[0] - 0.2) * (x[0] - 0.2) + y, (x[0] - 0.8) * (x[0] - 0.8) + y};
+}
+
+// Searched with steps no smaller than x_tolerance.
 TEST(MoCmaEs, RestartsItsStepsWhereItWouldStop) {
-  const auto objectives = [](std::span<const double> x) {
-    const double y = (x[1] - 0.5) * (x[1] - 0.5);
-    return std::vector{(x[0] - 0.2) * (x[0] - 0.2) + y, (x[0] - 0.8) * (x[0] - 0.8) + y};
-  };
   for (const Scheme scheme : {Scheme::generational, Scheme::steady_state}) {
-    for (const bool by_steps : {true, false}) {
-      MoCmaEsConfig c;
-      c.population = 10;
-      c.bounds = Bounds::uniform(2, 0, 1);
-      c.scheme = scheme;
-      if (by_steps) {
-        c.x_tolerance = 0.02;
-      } else {
-        c.stagnation_iterations = 10;
-        c.stagnation_tolerance = 1e-3;
-      }
-      const StopReason expected = by_steps ? StopReason::converged : StopReason::stagnated;
-      MoCmaEs plain(2, 2, c);
-      ASSERT_EQ(run(plain, 2, objectives), expected);
-      EXPECT_EQ(plain.restarts(), 0u);
+    OptimiserConfig c;
+    c.population = 10;
+    c.bounds = Bounds::uniform(2, 0, 1);
+    c.mo.scheme = scheme;
+    c.x_tolerance = 0.1;
+    MoCmaEs plain(2, 2, c);
+    ASSERT_EQ(run(plain, 2, two_wells), StopReason::converged);
+    EXPECT_EQ(plain.restarts(), 0u);
 
-      c.restarts = 2;
-      MoCmaEs optimiser(2, 2, c);
-      ASSERT_EQ(run(optimiser, 2, objectives), expected);
-      EXPECT_EQ(optimiser.restarts(), 2u);
-      EXPECT_GT(optimiser.evaluations(), plain.evaluations());
-      EXPECT_GT(optimiser.hypervolume(), plain.hypervolume() - 1e-3);  // it may fall by what a truncation costs
+    c.restarts = 2;
+    MoCmaEs optimiser(2, 2, c);
+    ASSERT_EQ(run(optimiser, 2, two_wells), StopReason::converged);
+    EXPECT_EQ(optimiser.restarts(), 2u);
+    EXPECT_GT(optimiser.evaluations(), plain.evaluations());
+    EXPECT_GT(optimiser.hypervolume(), plain.hypervolume() - 1e-3);  // it may fall by what a truncation costs
 
-      // One that had stopped goes on when more are allowed; stagnation is judged anew, an iteration later.
-      std::stringstream file;
-      plain.save(file);
-      MoCmaEs resumed(2, 2, c);
-      resumed.load(file);
-      ASSERT_EQ(run(resumed, 2, objectives), expected);
-      EXPECT_EQ(resumed.restarts(), 2u);
-      if (!by_steps) continue;
-      EXPECT_EQ(resumed.evaluations(), optimiser.evaluations());
-      EXPECT_EQ(resumed.hypervolume(), optimiser.hypervolume());
-    }
+    // One that had stopped goes on when more are allowed.
+    std::stringstream file;
+    plain.save(file);
+    MoCmaEs resumed(2, 2, c);
+    resumed.load(file);
+    ASSERT_EQ(run(resumed, 2, two_wells), StopReason::converged);
+    EXPECT_EQ(resumed.restarts(), 2u);
+    EXPECT_EQ(resumed.evaluations(), optimiser.evaluations());
+    EXPECT_EQ(resumed.hypervolume(), optimiser.hypervolume());
   }
 }
 
 TEST(MoCmaEs, WorksWithoutBounds) {
-  MoCmaEsConfig c;
+  OptimiserConfig c;
   c.population = 20;
   c.sigma0 = 1;
   c.start = {{5, 5, 5}};
@@ -413,13 +405,13 @@ std::vector<double> rippled(std::span<const double> x) {
 TEST(MoCmaEs, RecombinationLeavesLocalFronts) {
   const std::size_t n = 6;
   const auto reached = [&](double recombined) {
-    MoCmaEsConfig c;
+    OptimiserConfig c;
     c.population = 20;
     c.bounds = Bounds::uniform(n, -2, 2);
     c.bounds->lower[0] = 0;
     c.bounds->upper[0] = 1;
     c.reference = {2, 5};
-    c.recombined = recombined;
+    c.mo.recombined = recombined;
     c.max_evaluations = 6000;
     double sum = 0;
     for (c.seed = 1; c.seed <= 3; ++c.seed) {
@@ -451,11 +443,11 @@ std::vector<double> targets(std::span<const double> x) {
 TEST(MoCmaEs, SwappedBlocksLeaveLocalFronts) {
   const std::size_t n = 8;
   const auto reached = [&](double swapped) {
-    MoCmaEsConfig c;
+    OptimiserConfig c;
     c.population = 20;
     c.bounds = Bounds::uniform(n, 0, 1);
     c.blocks = {{0, 1}, {2, 3}, {4, 5}, {6, 7}};
-    c.swapped = swapped;
+    c.mo.swapped = swapped;
     c.max_evaluations = 2000;
     double sum = 0;
     for (c.seed = 1; c.seed <= 5; ++c.seed) {
@@ -469,11 +461,11 @@ TEST(MoCmaEs, SwappedBlocksLeaveLocalFronts) {
 }
 
 TEST(MoCmaEs, DrawsABlockFromAnywhereAgainFromAnywhere) {
-  MoCmaEsConfig c;
+  OptimiserConfig c;
   c.population = 4;
-  c.batch = 64;
+  c.mo.batch = 64;
   c.sigma0 = 1e-6;
-  c.swapped = 1;
+  c.mo.swapped = 1;
   c.bounds = Bounds::uniform(4, 0, 1);
   c.blocks = {{0, 1}, {2, 3}};
   MoCmaEs optimiser(4, 2, c);
@@ -503,7 +495,7 @@ TEST(MoCmaEs, DrawsABlockFromAnywhereAgainFromAnywhere) {
 }
 
 TEST(MoCmaEs, RefusesBlocksThatDoNotChangePlaces) {
-  MoCmaEsConfig c;
+  OptimiserConfig c;
   c.bounds = Bounds{{0, 0, 0, 0}, {1, 1, 1, 2}};
   for (const std::vector<std::vector<std::size_t>>& blocks :
        {std::vector<std::vector<std::size_t>>{{0}, {1, 2}}, {{0, 1}, {1, 2}}, {{0, 4}}, {{0}, {3}}, {{}}}) {
@@ -517,7 +509,7 @@ TEST(MoCmaEs, RefusesBlocksThatDoNotChangePlaces) {
 }
 
 TEST(MoAlgorithm, NamesRoundTrip) {
-  for (const auto a : {MoAlgorithm::mo_cma_es, MoAlgorithm::nsga2, MoAlgorithm::random_search})
+  for (const auto a : {MoAlgorithm::cma_es, MoAlgorithm::mo_cma_es, MoAlgorithm::nsga2, MoAlgorithm::random_search})
     EXPECT_EQ(mo_algorithm_from_string(to_string(a)), a);
   EXPECT_THROW(mo_algorithm_from_string("spea2"), Error);
 }

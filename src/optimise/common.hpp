@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// What every optimiser has: settings that were checked, the points asked for, and when to stop.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "optimise/box.hpp"
+#include "optimise/normal_stream.hpp"
+#include "optimise/state_file.hpp"
+#include "optimise/stop_rules.hpp"
+#include "vantage/optimiser.hpp"
+
+namespace vantage::optimise {
+
+inline constexpr std::size_t kMaxPopulation = std::size_t{1} << 20;
+
+class Common {
+ public:
+  // Throws Error invalid_argument. `name` begins the messages; `population` is what 0 stands for.
+  Common(std::string name, std::size_t dimension, std::size_t objectives, const OptimiserConfig& config,
+         std::size_t population);
+
+  void begin_ask(std::size_t count);  // makes room for the points
+  std::span<double> point(std::size_t k) { return std::span(points_).subspan(k * dimension, dimension); }
+  std::span<const double> points() const { return points_; }
+  std::size_t asked() const { return asked_; }
+  void require_not_asked(const char* what) const;
+  // Of replace() and resample().
+  void require_point(const char* what, std::size_t index) const;
+  void require_coordinates(std::span<const std::size_t> coordinates) const;
+  // Checks the number of values told and counts them; nothing is asked for then.
+  void take(std::span<const double> values);
+
+  // Why the algorithm itself stops, or else which of the rules says so.
+  StopReason stop_reason() const { return reason_; }
+  // After every tell() and load(). `own`: what the algorithm says.
+  void judge(StopReason own, std::size_t iterations, const std::function<double()>& hypervolume);
+
+  // Settings and progress, as part of a saved state. load() throws Error malformed_file where the settings differ.
+  void save(StateWriter& w) const;
+  void load(StateReader& r);
+
+  std::string name;
+  std::size_t dimension, objectives;
+  OptimiserConfig config;  // with its population
+  Box box;
+  std::vector<double> reference;
+  NormalStream random;
+  std::size_t evaluations = 0;
+
+ private:
+  std::vector<double> points_;
+  std::size_t asked_ = 0;
+  StopRules rules_;
+  StopReason reason_ = StopReason::running;
+};
+
+}  // namespace vantage::optimise

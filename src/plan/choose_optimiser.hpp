@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// The optimiser that suits a problem.
+#pragma once
+
+#include <memory>
+
+#include "plan/decision_space.hpp"
+#include "vantage/optimiser.hpp"
+
+namespace vantage {
+
+// Never 0.
+std::size_t population_of(const PlanConfig& config);
+
+// With the limits of `config`, but for those of time. Borrows the space. `batch`: see PlanConfig.
+std::unique_ptr<Optimiser> choose_optimiser(const DecisionSpace& space, const PlanConfig& config, std::size_t batch);
+
+}  // namespace vantage
