@@ -17,21 +17,16 @@ int main(int argc, char** argv) try {
   const ClashChecker clash(scene);
 
   const auto stations = static_cast<std::size_t>(std::atoi(argv[2]));
-  const PlanConfig config{.problem = Problem::coverage_overlap_fix,
-                          .stations_min = stations,
-                          .stations_max = stations,
-                          .population = 20,
-                          .iterations = 10,
-                          .sample_voxels = 5'000,
-                          .seed = 42};
-  const PlanResult result = plan(simulator, area, clash, config, [](const PlanProgress& now) {
-    std::fprintf(stderr, "\r%zu of %zu, hypervolume %.3f", now.iteration, now.iterations, now.hypervolume);
-  });
+  const PlanConfig config{.population = 20, .iterations = 10, .sample_voxels = 5'000, .seed = 42};
+  const PlanResult result =
+      plan(simulator, area, clash, coverage_overlap_fix(stations), config, {.report = [](const PlanProgress& now) {
+             std::fprintf(stderr, "\r%zu of %zu, hypervolume %.3f", now.iteration, now.iterations, now.hypervolume);
+           }});
   std::fprintf(stderr, "\n");
 
   for (const PlanEntry& entry : result.front)
-    std::printf("coverage %.3f, overlap %.3f\n", entry.exact_coverage, entry.exact_overlap);
-  write_plan(argv[3], result, config, simulator, area);
+    std::printf("coverage %.3f, overlap %.3f\n", entry.value("coverage"), entry.value("overlap"));
+  write_plan(argv[3], result, simulator, area);
   return 0;
 } catch (const Error& error) {
   std::fprintf(stderr, "error: %s\n", error.what());

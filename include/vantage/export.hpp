@@ -59,35 +59,36 @@ struct StationRow {
 std::vector<StationRow> read_stations_csv(const std::filesystem::path& file);
 
 /// Everything about a run that its results must name: version, engine, device, seed, scene, every parameter. JSON text.
-std::string run_parameters_json(const Simulator& simulator, const PlanConfig* plan = nullptr);
+std::string run_parameters_json(const Simulator& simulator, const PlanResult* result = nullptr);
 
 /// `front.json`: keys problem, objectives, hypervolume, evaluations, stop_reason, front, seconds, engine, device, seed,
-/// parameters, version.
-std::string front_json(const PlanResult& result, const PlanConfig& config, const Simulator& simulator);
-void write_front_csv(const std::filesystem::path& file, const PlanResult& result, const PlanConfig& config);
+/// parameters, version. Every network of the front carries its values by their objectives' names.
+std::string front_json(const PlanResult& result, const Simulator& simulator);
+void write_front_csv(const std::filesystem::path& file, const PlanResult& result);
 
 /// Pictures, drawn as .png or .svg by extension.
-void draw_front(const std::filesystem::path& file, const PlanResult& result, const PlanConfig& config);
-void draw_hypervolume(const std::filesystem::path& file, const PlanResult& result, const PlanConfig& config);
+void draw_front(const std::filesystem::path& file, const PlanResult& result);
+void draw_hypervolume(const std::filesystem::path& file, const PlanResult& result);
 /// The front at five moments of the search, as the search saw it (figure 9 of the method).
-void draw_history_fronts(const std::filesystem::path& file, const PlanResult& result, const PlanConfig& config);
+void draw_history_fronts(const std::filesystem::path& file, const PlanResult& result);
 /// The site from above in shaded relief, the search area, the stations and the links between them, as wide as their
-/// overlap is large.
+/// overlap is large; those below `link_overlap` are not drawn.
 void draw_plan_view(const std::filesystem::path& file, const Scene& scene, const SearchArea& area,
-                    std::span<const PlacedStation> stations, const OverlapMatrix& overlap, const std::string& title);
+                    std::span<const PlacedStation> stations, const OverlapMatrix& overlap, const std::string& title,
+                    double link_overlap = default_link_overlap);
 
 /// Writes a whole result folder: front.csv, front.json, history.csv, fronts.csv (every iteration's front), and for the
-/// chosen compromise coverage.ply, overlap.csv, stations.csv, and the pictures front.png, hypervolume.png, history.png
-/// (with several objectives), plan.png (each also as .svg). Makes the folder where there is none. Returns the index of
-/// the chosen entry.
-std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& result, const PlanConfig& config,
-                       Simulator& simulator, const SearchArea& area);
+/// chosen compromise stations.csv, overlap.csv (where it is confirmed), coverage.ply (where `field`, its voxel field,
+/// is given), and the pictures front.png, hypervolume.png, history.png (with several objectives), plan.png (each also
+/// as .svg). Makes the folder where there is none. Returns the index of the chosen entry.
+std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& result, const Simulator& simulator,
+                       const SearchArea& area, const VoxelField* field = nullptr);
 
-/// The compromise shown where one must be chosen: the entry of the front with the largest product of its objectives'
-/// gains. Where overlap is an objective, of those whose stations all hang together by link_overlap(config), as far as
-/// there are any confirmed: parts of a network cannot be registered with each other, however well each overlaps in
-/// itself.
-std::size_t compromise(const PlanResult& result, const PlanConfig& config);
+/// The compromise shown where one must be chosen: of the entries that miss the requirements least the one with the
+/// largest product of its objectives' gains (1 less the scaled value). Where an objective looks at pairs, of those
+/// whose stations all hang together by the problem's `link_overlap`, as far as there are any confirmed: parts of a
+/// network cannot be registered with each other, however well each overlaps in itself.
+std::size_t compromise(const PlanResult& result);
 
 /// Writes text to a file atomically. Throws Error io.
 void write_text(const std::filesystem::path& file, const std::string& text);

@@ -1,62 +1,105 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The objectives of section 4.5: coverage (equation 8), overlap (equations 11 and 13), number of stations.
+/// What a network is searched for and judged by: objectives and requirements, as lists that anybody can add to.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
-#include "vantage/simulator.hpp"
-#include "vantage/trace.hpp"
+#include "vantage/measure.hpp"
+#include "vantage/placement.hpp"
 
 namespace vantage {
 
-/// Symmetric matrix of Overlap_ij (equation 11), zero on the diagonal.
-class OverlapMatrix {
- public:
-  OverlapMatrix() = default;
-  explicit OverlapMatrix(std::size_t n) : n_(n), values_(n * n, 0.0) {}
-  std::size_t size() const noexcept { return n_; }
-  double operator()(std::size_t i, std::size_t j) const { return values_[i * n_ + j]; }
-  void set(std::size_t i, std::size_t j, double value) { values_[i * n_ + j] = values_[j * n_ + i] = value; }
-  std::span<const double> row(std::size_t i) const { return {values_.data() + i * n_, n_}; }
-
- private:
-  std::size_t n_ = 0;
-  std::vector<double> values_;
+/// What was measured of one network: all that an objective looks at. Refers to counts and stations; lives for the call.
+struct MeasuredNetwork {
+  const NetworkCounts& counts;              ///< Of every ray, or of a sample of the voxels.
+  std::span<const PlacedStation> stations;  ///< N_stations of them, kept ones first, skipped ones included.
+  std::size_t kept = 0;                     ///< How many of them were there before.
+  double goal_density = 1;                  ///< Points wanted in a voxel.
+  std::uint64_t voxels = 0;                 ///< N_v of the site; `counts.voxels` of them were counted.
+  OverlapMatrix overlap = {};               ///< Equation 11, by `overlap_matrix()`; empty where none needs pairs.
+  /// Connected parts of the graph of stations that see each other within range; 0 where no objective needs visibility.
+  std::size_t visible_parts = 0;
 };
 
-/// Equation 8, in [0, 1]; where meshes have weights, the mean over voxels is weighted by them. 0 for a scene without
-/// surveyed voxels. REQUIRES: goal_density > 0.
-double coverage(const NetworkCounts& counts, double goal_density);
-/// Equation 11 for every pair; 0/0 is 0.
-OverlapMatrix overlap_matrix(const NetworkCounts& counts);
-/// Equation 13: average weighted clustering coefficient, in [0, 1]; the maximum is over all pairs. 0/0 is 0, so
-/// networks of one or two stations, or without a shared voxel, have 0.
-double clustering_coefficient(const OverlapMatrix& overlap);
-
-/// An estimate and its standard error. The error is 0 when all of the population was counted, and 0.5, the largest that
-/// a value in [0, 1] can have, where the sample is too small to tell (one voxel).
-struct Estimate {
-  double value = 0, standard_error = 0;
+/// What an objective looks at besides the stations. What nobody needs is not computed.
+struct Needs {
+  bool counts = true;       ///< `MeasuredNetwork::counts`. False: of places alone, so no ray is traced for it.
+  bool pairs = false;       ///< `NetworkCounts::seen` and `shared`, and `MeasuredNetwork::overlap`.
+  bool visibility = false;  ///< `MeasuredNetwork::visible_parts`.
 };
-/// Equation 8 from a sample of `population` voxels. Error by successive differences along the Morton order, which a
-/// systematic sample needs: s/√n would be too wide. With weights a ratio is estimated, with the jackknife's error over
-/// the interleaved groups.
-Estimate coverage_estimate(const NetworkCounts& counts, double goal_density, std::uint64_t population);
-/// Equation 13 from a sample. Error by the jackknife over the interleaved groups.
-Estimate overlap_estimate(const NetworkCounts& counts, std::uint64_t population);
-/// Standard errors of `overlap_matrix`, likewise by the jackknife.
-OverlapMatrix overlap_standard_errors(const NetworkCounts& counts, std::uint64_t population);
+constexpr Needs operator|(const Needs& a, const Needs& b) {
+  return {a.counts || b.counts, a.pairs || b.pairs, a.visibility || b.visibility};
+}
 
-/// How many voxels `evaluate_sampled` needs so that no standard error, of coverage and, with `overlap`, of overlap,
-/// exceeds `wanted` on any of `networks`. Found on pilot samples that grow until one holds; at most
-/// `simulator.voxel_count()`, then the error is 0. Throws Error invalid_argument unless wanted > 0.
-std::uint64_t voxels_for_standard_error(Simulator& simulator, std::span<const Network> networks, double wanted,
-                                        bool overlap = true, const Progress& progress = {});
+/// One measure of a network, to be searched for, required or reported. A program's own needs no change of the library:
+/// give it a name and a value (examples/own_objective.cpp).
+struct Objective {
+  /// "coverage": its key in tables, JSON and options. Lower-case letters, digits, `_`; unique.
+  std::string name = {};
+  std::string label = {};  ///< For axes: "Overlap (average clustering coefficient)".
+  std::string unit = {};   ///< "mm"; empty: a plain number.
+  /// The scale: the search minimises `scaled()`, and the hypervolume is measured against the value `worst`, its
+  /// reference point. `best` above `worst`: more is better. Values beyond either end are allowed.
+  double best = 1, worst = 0;
+  Needs needs = {};
+  /// Of what was measured. Called from several threads at once. Must give the same for the same.
+  std::function<double(const MeasuredNetwork&)> value = {};
+  /// Standard error of `value` where a sample was counted; empty: by the jackknife over the sample's groups.
+  std::function<double(const MeasuredNetwork&)> standard_error = {};
+  /// For the number of stations alone: where it is searched, the search minimises the decision variable α of equation 7
+  /// in its place, which has no steps.
+  bool by_alpha = false;
+  /// What it was made with, as text: a run is resumed only under the same, and results tell it.
+  std::string parameters = {};
+
+  /// 0 at `best`, 1 at `worst`; 0 where they are one.
+  double scaled(double measured) const { return best == worst ? 0 : (best - measured) / (best - worst); }
+  /// The value of a scaled one.
+  double unscaled(double f) const;
+  bool maximised() const { return best > worst; }
+};
+
+/// Value and standard error of an objective; the error is 0 where all voxels were counted, or none matter.
+Estimate estimate(const Objective& objective, const MeasuredNetwork& measured);
+
+/// A bound that a wanted network keeps: `coverage >= 0.9`. In a search, networks that break one rank behind all that do
+/// not, by how much.
+struct Requirement {
+  enum class Bound { at_least, at_most };
+  Objective objective;
+  Bound bound = Bound::at_least;
+  double limit = 0;
+  /// By how much a value misses the limit, as a share of the objective's scale; 0 where it is met, infinity for NaN.
+  double missed_by(double measured) const;
+};
+std::string to_string(const Requirement&);  ///< "coverage >= 0.9"
 
 /// Equation 7: rounded(N_min + α (N_max − N_min)), half up, α clamped to [0, 1].
 std::size_t station_count_from_alpha(double alpha, std::size_t n_min, std::size_t n_max);
+
+/// λ1 coverage + λ2 Φ + λ3 Δ (equation 1, with section 5.1.2's Φ): Φ = 2^((N_max − N)/(N_max − N_min)) − 1, and Δ = 1 /
+/// connected parts of the graph of stations that see each other within range. A baseline.
+struct FitnessWeights {
+  double coverage = 0.4, station_count = 0.4, visibility = 0.2;
+};
+
+/// What the built-in objectives have to be told.
+struct ObjectiveSettings {
+  std::size_t stations_min = 1, stations_max = max_stations;  ///< N_min and N_max, without kept stations.
+  double link_overlap = default_link_overlap;                 ///< `parts`: pairs of less overlap are not linked.
+  FitnessWeights fitness = {};
+};
+/// Names of the built-in objectives, as "coverage", "overlap", "stations".
+std::span<const std::string> objective_names();
+/// A built-in objective by its name. Throws Error invalid_argument and lists the names.
+Objective make_objective(std::string_view name, const ObjectiveSettings& settings = {});
+/// "coverage>=0.9" or "stations <= 8". Throws Error invalid_argument.
+Requirement make_requirement(std::string_view text, const ObjectiveSettings& settings = {});
 
 }  // namespace vantage

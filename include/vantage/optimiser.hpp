@@ -45,14 +45,14 @@ struct ParetoPoint {
 };
 
 /// Which optimiser make_optimiser() makes.
-enum class MoAlgorithm {
+enum class Algorithm {
   cma_es,         ///< CmaEs, for one objective.
   mo_cma_es,      ///< MoCmaEs, as MoCmaEsConfig::scheme says.
   nsga2,          ///< NSGA-II (Deb, Pratap, Agarwal, Meyarivan 2002): baseline. Needs bounds.
   random_search,  ///< Uniform points, the best μ kept: baseline. Needs bounds.
 };
-std::string to_string(MoAlgorithm);
-MoAlgorithm mo_algorithm_from_string(const std::string&);  ///< Throws Error invalid_argument and lists the algorithms.
+std::string to_string(Algorithm);
+Algorithm algorithm_from_string(const std::string&);  ///< Throws Error invalid_argument and lists the algorithms.
 
 /// What only CMA-ES can be told.
 struct CmaEsConfig {
@@ -152,7 +152,7 @@ class Optimiser {
 };
 
 /// Throws Error invalid_argument: settings that the algorithm cannot search with, cma_es with several objectives.
-std::unique_ptr<Optimiser> make_optimiser(MoAlgorithm algorithm, std::size_t dimension, std::size_t objectives,
+std::unique_ptr<Optimiser> make_optimiser(Algorithm algorithm, std::size_t dimension, std::size_t objectives,
                                           const OptimiserConfig& config = {});
 
 /// CMA-ES (Hansen: The CMA Evolution Strategy, A Tutorial, 2016) with IPOP restarts (Auger, Hansen 2005), of one

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "vantage/scene.hpp"
+#include "vantage/settings.hpp"
 #include "vantage/types.hpp"
 
 namespace vantage {
@@ -22,6 +23,8 @@ struct WalkableOptions {
   double headroom_m = 2.0;               ///< Clear height needed above the surface.
   double min_area_m2 = 0.25;  ///< Connected parts smaller than this, or far narrower than its side, are left out.
 };
+
+Settings settings(const WalkableOptions& options);
 
 /// A triangle mesh with (u, v) per vertex, survey frame. What `SearchArea` is built from and can hand out for drawing.
 struct SearchMesh {
@@ -47,6 +50,7 @@ class SearchArea {
   bool derived() const noexcept;  ///< True: made from walkable surfaces, or a plane laid under the model.
   const std::string& description() const noexcept;  ///< Where the search area comes from, for logs and reports.
   const SearchMesh& mesh() const noexcept;
+  const WalkableOptions& options() const noexcept;  ///< What it was built with.
   /// Ground point under (u, v), survey frame; empty in a hole. Points on an edge or a vertex are always found, and so
   /// is what lies outside by no more than 1e-9 of the (u, v) extent. Where charts overlap, the first triangle of the
   /// mesh wins.
@@ -59,12 +63,24 @@ class SearchArea {
   std::shared_ptr<const Impl> impl_;
 };
 
+/// What became of one station of a decision vector.
+enum class StationStatus { ok, hole, clash };
+std::string to_string(StationStatus);
+
+struct PlacedStation {
+  Uv uv;
+  Vec3 position;  ///< The scanner's head, survey frame; the ground plus the height. (0, 0, 0) in a hole.
+  StationStatus status = StationStatus::ok;
+};
+
 /// The security volume of section 4.3: two spheres above the ground.
 struct SecurityVolume {
   double lower_m = 0.6;   ///< h1: height of the lower sphere's centre above the ground.
   double upper_m = 1.35;  ///< h2.
   double radius_m = 0.5;  ///< r; 0 switches the check off.
 };
+
+Settings settings(const SecurityVolume& volume);
 
 /// Distance queries against all surveyed and blocking meshes. Safe to use from any thread.
 class ClashChecker {
@@ -78,6 +94,7 @@ class ClashChecker {
   bool sees(const Vec3& a, const Vec3& b) const;
   /// Distance from a point to the nearest mesh, at most `limit_m`.
   double distance(const Vec3& point, double limit_m) const;
+  const SecurityVolume& volume() const noexcept;
 
  private:
   struct Impl;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Searches for networks of stations: the four problems of Table 2. The one header where optimiser and simulator meet.
+/// Searches for networks of stations. The one header where optimiser and simulator meet.
 #pragma once
 
 #include <array>
@@ -7,10 +7,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <optional>
 #include <span>
+#include <stop_token>
 #include <string>
-#include <utility>
+#include <string_view>
 #include <vector>
 
 #include "vantage/objective.hpp"
@@ -21,57 +23,53 @@
 
 namespace vantage {
 
-/// Table 2 of the method.
-enum class Problem {
-  coverage_fix,          ///< 1 − coverage; CMA-ES.
-  coverage_overlap_fix,  ///< 1 − coverage, 1 − overlap.
-  coverage_min,          ///< 1 − coverage, α.
-  coverage_overlap_min,  ///< 1 − coverage, 1 − overlap, α.
-};
-std::string to_string(Problem);                   ///< "coverage-fix", …
-Problem problem_from_string(const std::string&);  ///< Throws Error invalid_argument and lists the problems.
-std::vector<std::string> objective_names(Problem);
+/// What is asked: how many stations, where they may be, what a network is searched for and what it has to keep.
+struct SurveyProblem {
+  std::string name = "custom";  ///< For tables and pictures; "coverage-fix" and such for the method's own.
+  /// How many stations to place. Where the two differ, the number is searched too, by the decision variable α of
+  /// equation 7.
+  std::size_t stations_min = 4, stations_max = 4;
+  std::vector<Vec3> kept = {};  ///< Heads of stations that are there already: the first of every network, on top.
+  /// Lowest and highest height of the head above the search area, searched per station; empty: the scanner's height.
+  std::optional<std::array<double, 2>> heights_m = std::nullopt;
+  std::vector<Objective> objectives = {};      ///< At least one. One: the best network is searched; several: a front.
+  std::vector<Requirement> requirements = {};  ///< Networks that break one rank behind all that do not, by how much.
+  /// Pairs of less overlap count as not linked in reports and pictures.
+  double link_overlap = default_link_overlap;
 
-/// Weights of the scalarised fitness (equation 1, with section 5.1.2's Φ): λ1 coverage + λ2 Φ + λ3 Δ, where Φ =
-/// 2^((N_max − N)/(N_max − N_min)) − 1 and Δ = 1 / connected parts of the graph of stations that see each other within
-/// range. A baseline.
-struct FitnessWeights {
-  double coverage = 0.4, station_count = 0.4, visibility = 0.2;
-};
-
-/// What became of one station of a decision vector.
-enum class StationStatus { ok, hole, clash };
-std::string to_string(StationStatus);
-
-struct PlacedStation {
-  Uv uv;
-  Vec3 position;  ///< The scanner's head, survey frame; the ground plus the height. (0, 0, 0) in a hole.
-  StationStatus status = StationStatus::ok;
+  /// What the built-in objectives have to be told of this problem.
+  ObjectiveSettings settings() const;
 };
 
+Settings settings(const SurveyProblem& problem);
+
+/// The problems of Table 2 of the method, by objectives: coverage; coverage and overlap; coverage and number of
+/// stations; all three. And the scalarised fitness of equation 1, a baseline.
+SurveyProblem coverage_fix(std::size_t stations);
+SurveyProblem coverage_overlap_fix(std::size_t stations);
+SurveyProblem coverage_min(std::size_t stations_min, std::size_t stations_max);
+SurveyProblem coverage_overlap_min(std::size_t stations_min, std::size_t stations_max);
+SurveyProblem fitness_min(std::size_t stations_min, std::size_t stations_max, const FitnessWeights& weights = {});
+/// One of `problem_names()`: "coverage-fix", "coverage-overlap-fix", "coverage-min", "coverage-overlap-min",
+/// "fitness-min". Throws Error invalid_argument and lists the names, or where a -fix problem is given a range.
+SurveyProblem survey_problem(std::string_view name, std::size_t stations_min, std::size_t stations_max);
+std::span<const std::string> problem_names();
+/// A problem of built-in objectives.
+SurveyProblem survey_problem(std::span<const std::string> objectives, std::size_t stations_min,
+                             std::size_t stations_max, double link_overlap = default_link_overlap);
+
+/// How to search.
 struct PlanConfig {
-  Problem problem = Problem::coverage_overlap_fix;
-  std::size_t stations_min = 4, stations_max = 4;  ///< Equal for the FIX problems.
-  std::size_t population = 0;                      ///< 0: 10 for coverage_fix, 20 for a fitness, else 100.
-  std::size_t iterations = 100;                    ///< Of `population` evaluations each.
+  std::size_t population = 0;    ///< 0: with one objective 10, or 20 where the number is searched; else 100.
+  std::size_t iterations = 100;  ///< Of `population` evaluations each.
   double sigma0 = 0.2;
-  MoAlgorithm algorithm = MoAlgorithm::mo_cma_es;  ///< Of the problems with several objectives.
+  Algorithm algorithm = Algorithm::mo_cma_es;  ///< Of problems with several objectives.
   MoCmaEsConfig::Scheme scheme = MoCmaEsConfig::Scheme::steady_state;
   std::size_t batch = 0;            ///< Offspring at once in the steady state; 0: chosen by the engine.
   std::uint64_t sample_voxels = 0;  ///< 0: exact search; else sampled with so many voxels.
   /// Head positions of an initial network: the first mean of CMA-ES, a first member of MO-CMA-ES; empty: random. Where
   /// the number of stations is searched, the first N of them are a first member for each N that they suffice for.
   std::vector<Vec3> start = {};
-  /// Stations to keep (already scanned): the first of every network, added to stations_min..max.
-  std::vector<Vec3> fixed = {};
-  /// Lowest and highest height of the head above the search area, searched per station; empty: the scanner's height for
-  /// all.
-  std::optional<std::array<double, 2>> heights_m = std::nullopt;
-  /// Above 0: a network is only wanted if links of at least this Overlap_ij connect all its stations. Others are ranked
-  /// behind every connected one, by how many parts they fall into.
-  double min_link_overlap = 0;
-  /// Only with coverage_min: instead of a front, CMA-ES looks for the one network with the largest fitness.
-  std::optional<FitnessWeights> fitness = std::nullopt;
   std::size_t redraws = 8;  ///< How often a candidate's stations in holes or clashes are drawn again.
   double max_seconds = 0;   ///< Of this call's search; looked at between evaluations. 0: no limit.
   std::optional<double> target_hypervolume = std::nullopt;
@@ -84,38 +82,55 @@ struct PlanConfig {
   bool resume = false;
 };
 
-/// "1 - coverage", … in the order of the objective vectors; "1 - fitness" where there is a fitness.
-std::vector<std::string> objective_names(const PlanConfig& config);
-/// Whether the search ends with one network, by CMA-ES: coverage_fix, or a fitness.
-bool has_one_objective(const PlanConfig& config);
+/// All but where the checkpoint is and how it is used, which no result depends on.
+Settings settings(const PlanConfig& config);
+
+/// What became known of one measure of a network.
+struct MeasuredValue {
+  double searched = 0;        ///< As the search saw it; NaN where it kept none and nothing was confirmed.
+  double standard_error = 0;  ///< Of `searched`; 0 when exact.
+  double exact = 0;           ///< Evaluated again with every ray; NaN unless the entry is confirmed.
+  /// The exact value where there is one.
+  double best_known() const { return exact == exact ? exact : searched; }
+};
 
 /// One network of the front.
 struct PlanEntry {
   std::vector<double> x;  ///< Decision vector: u1, v1, …, uN, vN [, h1, …, hN] [, α].
   std::vector<PlacedStation> stations;
-  double coverage = 0, overlap = 0;  ///< As the search saw them; NaN where it kept none and nothing was confirmed.
-  double coverage_se = 0, overlap_se = 0;        ///< Standard errors; 0 when exact.
-  bool confirmed = false;                        ///< Whether the exact values below were computed.
-  double exact_coverage = 0, exact_overlap = 0;  ///< Evaluated again with every ray.
+  std::map<std::string, MeasuredValue> values;  ///< By objective's name, of `PlanResult::measures`.
+  bool confirmed = false;                       ///< Whether the exact values were computed.
+  bool dominated =
+      false;  ///< Judged by every ray, another confirmed entry is as good in all objectives, better in one.
+  /// By how much the requirements are missed in all, as shares of their objectives' scales; 0: it keeps them.
+  double missed = 0;
   OverlapMatrix exact_overlap_matrix;
-  /// Judged by every ray, another confirmed entry is as good in all objectives and better in one.
-  bool dominated = false;
   std::vector<std::uint64_t> points_on_surveyed;  ///< Per station, exact.
+  /// `values.at(name).best_known()`. Throws std::out_of_range.
+  double value(const std::string& name) const { return values.at(name).best_known(); }
 };
 
 /// One line of the history, an iteration each.
 struct PlanIteration {
   std::size_t iteration = 0, evaluations = 0;
-  double hypervolume = 0;                  ///< Of the front, against (1, …, 1).
-  std::vector<std::vector<double>> front;  ///< Objective vectors.
-  double seconds = 0;                      ///< Since the start. Never part of what must be reproducible.
+  double hypervolume = 0;
+  /// What the optimiser minimised: `scaled_objectives()` of each network of the front.
+  std::vector<std::vector<double>> front;
+  double seconds = 0;  ///< Since the start. Never part of what must be reproducible.
 };
 
 struct PlanResult {
-  std::vector<PlanEntry> front;  ///< By falling coverage. One entry where there is one objective.
+  SurveyProblem problem;  ///< What was asked, and how it was searched.
+  PlanConfig config;
+  std::size_t population = 0, batch = 0;  ///< As chosen where the configuration left it open.
+  WalkableOptions walkable;               ///< What the search area was built with.
+  SecurityVolume security;                ///< What the clash checker was built with.
+  /// All that is told of a network: the objectives, then what requirements bound, then coverage and overlap.
+  std::vector<Objective> measures;
+  std::vector<PlanEntry> front;  ///< By the objectives in order, best first. One entry where there is one objective.
   std::vector<PlanIteration> history;
-  /// Final, as the search saw it; reference point (1, …, 1). Of the one objective 1 − v it is v: the coverage or the
-  /// fitness of the best network.
+  /// Final, as the search saw it; reference point (1, …, 1) of scaled objectives. With one objective that is 1 less its
+  /// scaled value.
   double hypervolume = 0;
   double exact_hypervolume = 0;  ///< The same by every ray; NaN where an abort left entries unconfirmed.
   std::uint64_t evaluations = 0;
@@ -134,14 +149,24 @@ struct PlanProgress {
   std::string phase;        ///< "search" or "confirm"
 };
 
-/// Runs the search. Borrows the simulator for the call. Same inputs, same seed: same result but for seconds.
-/// `stop` ends the search; what was found so far is still confirmed. `abort` ends the confirmation too: entries that it
-/// did not reach have `confirmed` false. Throws Error: invalid_argument (more than 64 stations, min above max, a
-/// checkpoint of another run, …), malformed_file (a damaged checkpoint) and what the simulator throws; the checkpoint
-/// is written before an exception leaves.
-PlanResult plan(Simulator& simulator, const SearchArea& area, const ClashChecker& clash, const PlanConfig& config,
-                const std::function<void(const PlanProgress&)>& watch = {}, std::stop_token stop = {},
-                std::stop_token abort = {});
+/// As `Progress`, for a search.
+struct PlanWatch {
+  std::function<void(const PlanProgress&)> report = {};  ///< Called between evaluations, on the calling thread.
+  std::stop_token stop = {};                             ///< Ends the search; what was found so far is still confirmed.
+  std::stop_token abort = {};  ///< Ends the confirmation too: entries that it did not reach have `confirmed` false.
+};
+
+/// Runs the search. Borrows simulator, area and clash for the call. Same inputs, same seed: same result but for
+/// seconds. Throws Error: invalid_argument (no objective, more than `max_stations` stations, min above max, a
+/// checkpoint of another run, …), malformed_file (a damaged checkpoint) and what the simulator and the objectives
+/// throw; the checkpoint is written before an exception leaves.
+PlanResult plan(Simulator& simulator, const SearchArea& area, const ClashChecker& clash, const SurveyProblem& problem,
+                const PlanConfig& config = {}, const PlanWatch& watch = {});
+
+/// What the search minimises of a network, in the order of `problem.objectives`: their scaled values; α for the number
+/// of stations where that is searched. `x`: its decision vector; `values`: of the objectives.
+std::vector<double> scaled_objectives(const SurveyProblem& problem, std::span<const double> x,
+                                      std::span<const double> values);
 
 struct GreedyConfig {
   std::size_t stations = 4;              ///< How many to choose.
@@ -170,21 +195,9 @@ std::vector<PlacedStation> place_stations(const SearchArea& area, const ClashChe
                                           std::span<const double> uvs);
 Network to_network(std::span<const PlacedStation> stations);
 
-/// The overlap graph as registration sees it: which stations hang together, and by what.
-struct Connectivity {
-  std::size_t parts = 0;                                     ///< Connected parts.
-  std::vector<std::size_t> part;                             ///< Per station, the part it is in, from 0.
-  std::vector<std::pair<std::size_t, std::size_t>> bridges;  ///< Links without which a part falls in two, i < j.
-  /// Where there is one part: the weakest link of the strongest spanning tree, and its overlap. What the registration
-  /// hangs by.
-  std::pair<std::size_t, std::size_t> weakest_link{0, 0};
-  double weakest_overlap = 0;
-};
-/// Links are the pairs whose overlap is above 0 and at least `min_overlap`.
-Connectivity connectivity(const OverlapMatrix& overlap, double min_overlap);
-/// Two stations of less overlap count as not linked in reports and pictures, unless a plan asks for another bound.
-inline constexpr double default_link_overlap = 0.01;
-/// The bound for a plan's reports: its `min_link_overlap` where it has one, else `default_link_overlap`.
-double link_overlap(const PlanConfig& config);
+/// Decision vector to stations: locate, raise by `height_m`, check for clashes.
+std::vector<PlacedStation> place_stations(const SearchArea& area, const ClashChecker& clash, double height_m,
+                                          std::span<const double> uvs);
+Network to_network(std::span<const PlacedStation> stations);
 
 }  // namespace vantage

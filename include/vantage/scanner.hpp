@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "vantage/settings.hpp"
 #include "vantage/types.hpp"
 
 namespace vantage {
@@ -51,6 +52,8 @@ struct Scanner {
   /// Throws Error invalid_argument with the member and its value.
   void check() const;
 };
+
+Settings settings(const Scanner& scanner);
 
 /// Table 1 of the method: Leica RTC360, single measurement.
 NoiseTable rtc360_noise();

@@ -31,6 +31,8 @@ struct SimulatorConfig {
   std::uint64_t max_rays_per_dispatch = 0;  ///< 0: chosen so that a dispatch stays well below a watchdog's limit.
 };
 
+Settings settings(const SimulatorConfig& config);
+
 /// A station is the position of the scanner's head in the survey frame; upright always.
 struct Station {
   Vec3 position;

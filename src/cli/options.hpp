@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cli/parse.hpp"
+#include "vantage/settings.hpp"
 
 namespace vantage::cli {
 
@@ -35,6 +36,9 @@ CLI::Option* add_texts(CLI::App& app, const std::string& names, const std::strin
 // filters keys; one that it lets through and no command of the program knows is an error. `source` opens messages.
 void apply_layer(CLI::App& command, const nlohmann::json& values, const std::string& source,
                  const std::function<bool(const std::string& key)>& accepts = {});
+
+// Settings as options, so that they can be given to --config again.
+nlohmann::json options_of(const Settings& settings);
 
 // Reads a JSON object from a file. Throws Error: io, malformed_file.
 nlohmann::json read_json(const std::string& file);

@@ -7,6 +7,7 @@
 
 #include "cli/command.hpp"
 #include "cli/options.hpp"
+#include "cli/problem.hpp"
 #include "cli/run_report.hpp"
 #include "cli/site.hpp"
 #include "cli/stations.hpp"
@@ -20,61 +21,21 @@ constexpr std::uint64_t sample_for_coverage = 20'000, sample_for_overlap = 100'0
 
 struct PlanOptions {
   SiteOptions site;
-  std::optional<Problem> problem;
-  std::optional<CountRange> stations;
+  ProblemOptions problem;
   PlanConfig config;
   bool exact = false, greedy = false, resume = false, json = false;
   std::optional<SampleSize> sample;
-  std::vector<StationText> start, keep;
+  std::vector<StationText> start;
   std::optional<std::string> output;
 
   void add(CLI::App& command) {
     site.add(command);
-    add_value(command, "--problem", "PROBLEM",
-              "coverage-fix, coverage-overlap-fix, coverage-min or coverage-overlap-min; by --stations otherwise",
-              [this](const std::string& text, const std::string& what) {
-                try {
-                  problem = problem_from_string(text);
-                } catch (const Error& error) {
-                  throw Error(error.code(), what + ": " + error.what());
-                }
-              })
-        ->group("Problem");
-    add_value(command, "--stations", "N|A..B",
-              "How many stations: N for the fix problems, A to B for the min problems, up to 64",
-              [this](const std::string& text, const std::string& what) {
-                stations = parse_count_range(text, what, 1, max_stations);
-              })
-        ->group("Problem");
-    add_values(command, "--keep", "X,Y,Z|U,V", "A station that is there already, on top of --stations; may be repeated",
-               [this](const std::string& text, const std::string& what) { keep.push_back(parse_station(text, what)); })
-        ->group("Problem");
-    add_value(command, "--heights", "LOW,HIGH", "Search each station's height between these, in metres",
-              [this](const std::string& text, const std::string& what) {
-                const auto heights = parse_numbers(text, what, 2, 2, not_negative);
-                config.heights_m = {heights[0], heights[1]};
-              })
-        ->group("Problem");
-    add_value(command, "--min-overlap", "W",
-              "Want every station linked to the others by overlaps of at least W, 0 to 1",
-              [this](const std::string& text, const std::string& what) {
-                config.min_link_overlap = parse_number(text, what, {.low = 0, .high = 1});
-              })
-        ->group("Problem");
-    add_value(command, "--fitness", "L1,L2,L3",
-              "With coverage-min: one network by a fitness of coverage, number and visibility with these weights, as "
-              "0.4,0.4,0.2",
-              [this](const std::string& text, const std::string& what) {
-                const auto weights = parse_numbers(text, what, 3, 3, not_negative);
-                config.fitness = FitnessWeights{weights[0], weights[1], weights[2]};
-              })
-        ->group("Problem");
-
+    problem.add(command);
     add_value(command, "--algorithm", "NAME",
               "Optimiser of several objectives: mo_cma_es, or a baseline: nsga2, random_search",
               [this](const std::string& text, const std::string& what) {
                 try {
-                  config.algorithm = mo_algorithm_from_string(text);
+                  config.algorithm = algorithm_from_string(text);
                 } catch (const Error& error) {
                   throw Error(error.code(), what + ": " + error.what());
                 }
@@ -143,41 +104,13 @@ struct PlanOptions {
   }
 };
 
-bool minimises_stations(Problem problem) {
-  return problem == Problem::coverage_min || problem == Problem::coverage_overlap_min;
-}
-bool wants_overlap(Problem problem) {
-  return problem == Problem::coverage_overlap_fix || problem == Problem::coverage_overlap_min;
-}
-
 // On small sites a quarter of the voxels does; but some thousands it should be.
-std::uint64_t default_sample(const PlanConfig& config, std::uint64_t voxels) {
-  const bool overlap = wants_overlap(config.problem) || config.min_link_overlap > 0;
+std::uint64_t default_sample(const SurveyProblem& problem, std::uint64_t voxels) {
+  const auto pairs = [](const Objective& objective) { return objective.needs.pairs; };
+  const bool overlap = std::ranges::any_of(problem.objectives, pairs) ||
+                       std::ranges::any_of(problem.requirements, pairs, &Requirement::objective);
   const std::uint64_t enough = std::max<std::uint64_t>(voxels / 4, 5'000);
   return std::min({overlap ? sample_for_overlap : sample_for_coverage, enough, voxels});
-}
-
-// Problem and number of stations say much about each other; what is missing follows from what is there.
-void settle_problem(PlanOptions& options) {
-  if (!options.stations)
-    throw Error(Errc::invalid_argument, "--stations: how many? Give N, or A..B to search the number too");
-  const auto [low, high] = *options.stations;
-  PlanConfig& config = options.config;
-  config.problem =
-      options.problem.value_or(low == high ? Problem::coverage_overlap_fix : Problem::coverage_overlap_min);
-  if (minimises_stations(config.problem) && low == high)
-    throw Error(Errc::invalid_argument,
-                fmt::format("--stations {}: {} searches the number of stations, so give a range A..B", low,
-                            to_string(config.problem)));
-  if (!minimises_stations(config.problem) && low != high)
-    throw Error(Errc::invalid_argument,
-                fmt::format("--stations {}..{}: {} takes one number", low, high, to_string(config.problem)));
-  if (high + options.keep.size() > max_stations)
-    throw Error(Errc::invalid_argument,
-                fmt::format("--stations {} and {} kept ones are more than the {} that can be simulated together", high,
-                            options.keep.size(), max_stations));
-  config.stations_min = low;
-  config.stations_max = high;
 }
 
 std::vector<Vec3> heads_of(Site& site, const std::vector<StationText>& stations, const std::string& what) {
@@ -191,48 +124,29 @@ std::vector<Vec3> heads_of(Site& site, const std::vector<StationText>& stations,
   return heads;
 }
 
-nlohmann::json as_options(const Site& site, const PlanConfig& config) {
-  nlohmann::json options;
-  options["problem"] = to_string(config.problem);
-  options["stations"] = config.stations_min == config.stations_max
-                            ? std::to_string(config.stations_min)
-                            : fmt::format("{}..{}", config.stations_min, config.stations_max);
-  if (config.population > 0) options["population"] = config.population;
-  options["iterations"] = config.iterations;
-  options["sigma"] = config.sigma0;
-  options["scheme"] = config.scheme == MoCmaEsConfig::Scheme::generational ? "generational" : "steady-state";
-  options["algorithm"] = to_string(config.algorithm);
-  if (config.fitness)
-    options["fitness"] = {config.fitness->coverage, config.fitness->station_count, config.fitness->visibility};
-  if (config.batch > 0) options["batch"] = config.batch;
-  options["redraws"] = config.redraws;
-  if (config.sample_voxels > 0)
-    options["sample"] = config.sample_voxels;
-  else
-    options["exact"] = true;
-  if (config.heights_m) options["heights"] = *config.heights_m;
-  if (config.min_link_overlap > 0) options["min-overlap"] = config.min_link_overlap;
-  if (config.max_seconds > 0) options["max-time"] = config.max_seconds;
-  if (config.target_hypervolume) options["target-hypervolume"] = *config.target_hypervolume;
-  if (config.stagnation_iterations > 0) options["stagnation"] = config.stagnation_iterations;
-  const auto add_heads = [&](const char* key, const std::vector<Vec3>& heads) {
-    for (const auto& head : heads) options[key].push_back({head.x, head.y, head.z});
-  };
-  add_heads("start", config.start);
-  add_heads("keep", config.fixed);
+nlohmann::json as_options(const Site& site, const PlanOptions& given, const SurveyProblem& problem,
+                          const PlanConfig& config) {
+  nlohmann::json options = options_of(settings(problem));
+  options.update(options_of(settings(config)));
+  if (config.sample_voxels == 0) options["exact"] = true;
+  if (given.problem.fitness) {
+    const FitnessWeights& weights = *given.problem.fitness;
+    options["fitness"] = {weights.coverage, weights.station_count, weights.visibility};
+  }
   nlohmann::json all = site.as_options();
   all["plan"] = std::move(options);
   return all;
 }
 
 // Heads of a greedy choice for the largest network; empty where it was stopped.
-std::vector<Vec3> greedy_start(Site& site, Simulator& simulator, const PlanConfig& config, Program& program) {
+std::vector<Vec3> greedy_start(Site& site, Simulator& simulator, const SurveyProblem& problem, const PlanConfig& config,
+                               Program& program) {
   ProgressLine line(program.console, "greedy");
   const GreedyResult greedy =
       greedy_network(simulator, site.area(), site.clash(),
-                     {.stations = config.stations_max,
+                     {.stations = problem.stations_max,
                       .sample_voxels = std::min<std::uint64_t>(config.sample_voxels, sample_for_coverage),
-                      .fixed = config.fixed},
+                      .fixed = problem.kept},
                      {.report = [&](double done) { line.update(done); }, .stop = program.stop});
   std::vector<Vec3> heads;
   if (greedy.cancelled) return heads;
@@ -241,41 +155,66 @@ std::vector<Vec3> greedy_start(Site& site, Simulator& simulator, const PlanConfi
   return heads;
 }
 
-// Says where a network does not hang together.
-std::string parts_of(const PlanEntry& entry, const PlanConfig& config) {
-  if (!entry.confirmed || !wants_overlap(config.problem)) return "";
-  const std::size_t parts = connectivity(entry.exact_overlap_matrix, link_overlap(config)).parts;
-  return parts > 1 ? fmt::format("  in {} parts", parts) : "";
+// What it misses, and where it does not hang together.
+std::string remarks(const PlanEntry& entry, const PlanResult& result) {
+  std::string text;
+  const auto pairs = [](const Objective& objective) { return objective.needs.pairs; };
+  if (entry.confirmed && std::ranges::any_of(result.problem.objectives, pairs)) {
+    const std::size_t parts = connectivity(entry.exact_overlap_matrix, result.problem.link_overlap).parts;
+    if (parts > 1) text += fmt::format("  in {} parts", parts);
+  }
+  for (const Requirement& requirement : result.problem.requirements) {
+    const double value = entry.value(requirement.objective.name);
+    if (requirement.missed_by(value) > 0) text += fmt::format("  misses {} ({:.4g})", to_string(requirement), value);
+  }
+  return text;
 }
 
-std::string summary(const PlanResult& result, const PlanConfig& config, std::size_t chosen, const std::string& folder) {
-  std::string text = "coverage  overlap  stations\n";
+std::string summary(const PlanResult& result, std::size_t chosen, const std::string& folder) {
+  std::string text;
+  std::vector<const Objective*> told;
+  for (const Objective& measure : result.measures)
+    if (!measure.by_alpha) told.push_back(&measure);
+  for (const Objective* measure : told)
+    text += fmt::format("{:>9}", measure->unit.empty() ? measure->name : measure->name + " " + measure->unit) + " ";
+  text += "stations\n";
   for (std::size_t k = 0; k < result.front.size(); ++k) {
     const PlanEntry& entry = result.front[k];
-    text += fmt::format("  {:.4f}   {:.4f}  {:>4}{}{}\n", entry.confirmed ? entry.exact_coverage : entry.coverage,
-                        entry.confirmed ? entry.exact_overlap : entry.overlap, entry.stations.size(),
+    for (const Objective* measure : told) text += fmt::format("{:9.4f} ", entry.value(measure->name));
+    text += fmt::format("{:>8}{}{}\n", entry.stations.size(),
                         k == chosen       ? "  <- compromise"
                         : entry.dominated ? "  dominated"
                                           : "",
-                        parts_of(entry, config));
+                        remarks(entry, result));
   }
   text += fmt::format("{} evaluations, hypervolume {:.4f}", result.evaluations, result.hypervolume);
-  if (config.sample_voxels > 0 && !std::isnan(result.exact_hypervolume))
+  if (result.config.sample_voxels > 0 && !std::isnan(result.exact_hypervolume))
     text += fmt::format(" ({:.4f} by every ray)", result.exact_hypervolume);
   text += fmt::format(", stopped: {}\n", to_string(result.stop_reason));
   return text + "results in " + folder + "\n";
 }
 
+// Every voxel's count under the network that is shown; empty where it was stopped.
+std::optional<VoxelField> cartography(Simulator& simulator, const PlanEntry& entry, Program& program) {
+  ProgressLine line(program.console, "cartography");
+  VoxelField field;
+  const NetworkCounts counts =
+      simulator.evaluate(to_network(entry.stations), {.overlap = true, .field = &field},
+                         {.report = [&](double done) { line.update(done); }, .stop = program.abort});
+  if (counts.cancelled) return std::nullopt;
+  return field;
+}
+
 int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   Site site = open_site(command, options.site);
-  settle_problem(options);
+  SurveyProblem problem = options.problem.settle();
   if (!options.output) throw Error(Errc::invalid_argument, "plan: say where the results go with -o DIR");
   const std::filesystem::path folder = *options.output;
   make_folder(folder);  // an hour's search must not end at a folder that cannot be written
 
   PlanConfig& config = options.config;
   config.start = heads_of(site, options.start, "--start");
-  config.fixed = heads_of(site, options.keep, "--keep");
+  problem.kept = heads_of(site, options.problem.keep, "--keep");
   config.seed = site.config.seed;
   config.resume = options.resume;
   config.checkpoint = folder / "checkpoint.bin";
@@ -288,36 +227,40 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   tell_grid(simulator);
   if (!options.exact)
     config.sample_voxels =
-        options.sample ? options.sample->of(simulator.voxel_count()) : default_sample(config, simulator.voxel_count());
+        options.sample ? options.sample->of(simulator.voxel_count()) : default_sample(problem, simulator.voxel_count());
   if (options.greedy) {
     if (!options.start.empty())
       throw Error(Errc::invalid_argument, "--seed-with and --start both say where to start: give one");
-    config.start = greedy_start(site, simulator, config, program);
+    config.start = greedy_start(site, simulator, problem, config, program);
   }
-  write_text(folder / "config.json", as_options(site, config).dump(2) + "\n");
+  write_text(folder / "config.json", as_options(site, options, problem, config).dump(2) + "\n");
 
   PlanResult result;
   {
     ProgressLine line(program.console, "search");
-    result = plan(
-        simulator, area, site.clash(), config,
-        [&](const PlanProgress& now) {
-          line.set_label(now.phase);
-          const double done =
-              now.iterations > 0 ? static_cast<double>(now.iteration) / static_cast<double>(now.iterations) : 0;
-          line.update(done,
-                      fmt::format("hypervolume {:.4f}, {} networks, {:.3g} a second", now.hypervolume, now.evaluations,
-                                  now.evaluations_per_second),
-                      now.seconds_left);
-        },
-        program.stop, program.abort);
+    const auto report = [&](const PlanProgress& now) {
+      line.set_label(now.phase);
+      const double done =
+          now.iterations > 0 ? static_cast<double>(now.iteration) / static_cast<double>(now.iterations) : 0;
+      line.update(done,
+                  fmt::format("hypervolume {:.4f}, {} networks, {:.3g} a second", now.hypervolume, now.evaluations,
+                              now.evaluations_per_second),
+                  now.seconds_left);
+    };
+    result = plan(simulator, area, site.clash(), problem, config,
+                  {.report = report, .stop = program.stop, .abort = program.abort});
   }
+  if (result.front.empty())
+    throw Error(Errc::invalid_argument,
+                "there is nothing to write: the search ended before its first networks were evaluated");
+  const auto field = cartography(simulator, result.front[compromise(result)], program);
+  if (!field) spdlog::warn("stopped: {} is not written", (folder / "coverage.ply").string());
   spdlog::info("writing {}", folder.string());
-  const std::size_t chosen = write_plan(folder, result, config, simulator, area);
+  const std::size_t chosen = write_plan(folder, result, simulator, area, field ? &*field : nullptr);
   if (options.json)
-    program.console.print(front_json(result, config, simulator) + "\n");
+    program.console.print(front_json(result, simulator) + "\n");
   else
-    program.console.print(summary(result, config, chosen, folder.string()));
+    program.console.print(summary(result, chosen, folder.string()));
   return exit_ok;
 }
 

@@ -227,20 +227,9 @@ const ClashChecker& Site::clash() {
 }
 
 nlohmann::json Site::as_options() const {
-  nlohmann::json options = {{"step", {scanner.azimuth_step.in_degrees(), scanner.zenith_step.in_degrees()}},
-                            {"heading", scanner.heading.in_degrees()},
-                            {"horizontal", scanner.horizontal_angle.in_degrees()},
-                            {"vertical", scanner.vertical_angle.in_degrees()},
-                            {"zenith-start", scanner.zenith_start.in_degrees()},
-                            {"height", scanner.height_m},
-                            {"range", {scanner.min_range_m, scanner.max_range_m}},
-                            {"user-size", config.user_size_m},
-                            {"spacing", config.point_spacing_m},
-                            {"security", {security.lower_m, security.upper_m, security.radius_m}},
-                            {"slope", walkable.max_slope.in_degrees()},
-                            {"headroom", walkable.headroom_m},
-                            {"min-area", walkable.min_area_m2},
-                            {"seed", config.seed}};
+  nlohmann::json options = options_of(settings(scanner));
+  for (const Settings& list : {settings(config), settings(security), settings(walkable)})
+    options.update(options_of(list));
   options.update(given);
   return options;
 }

@@ -1,66 +1,93 @@
 // SPDX-License-Identifier: Apache-2.0
-// The objectives of section 4.5 from exact integer counts. Clustering of weighted graphs as in equation 13: Zhang,
-// Horvath, A General Framework for Weighted Gene Co-Expression Network Analysis, 2005.
 #include "vantage/objective.hpp"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
-#include <utility>
+#include <limits>
+
+#include "core/text.hpp"
+#include "objective/built_in/built_in.hpp"
+#include "vantage/error.hpp"
 
 namespace vantage {
+namespace {
 
-double coverage(const NetworkCounts& counts, double goal_density) {
-  if (counts.weight == 0) return 0;
-  const double filled =
-      static_cast<double>(counts.saturated) + static_cast<double>(counts.partial_points) / goal_density;
-  return std::min(filled / static_cast<double>(counts.weight), 1.0);  // rounding may pass 1 in the last place
+struct BuiltIn {
+  std::string name;
+  Objective (*make)(const ObjectiveSettings&);
+};
+
+const auto& built_in_objectives() {
+  static const std::array all{
+#define VANTAGE_OBJECTIVE(name) BuiltIn{#name, built_in::name},
+#include "built_in_objectives.inc"
+#undef VANTAGE_OBJECTIVE
+  };
+  return all;
 }
 
-OverlapMatrix overlap_matrix(const NetworkCounts& counts) {
-  OverlapMatrix overlap(counts.stations);
-  if (counts.seen.empty()) return overlap;
-  for (std::size_t i = 0; i < counts.stations; ++i) {
-    for (std::size_t j = i + 1; j < counts.stations; ++j) {
-      const std::uint64_t both = counts.shared_by(i, j);
-      const std::uint64_t either = counts.seen[i] + counts.seen[j] - both;
-      if (both > 0) overlap.set(i, j, static_cast<double>(both) / static_cast<double>(either));
-    }
-  }
-  return overlap;
+std::string_view trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
-double clustering_coefficient(const OverlapMatrix& overlap) {
-  const std::size_t n = overlap.size();
-  double largest = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    for (const double value : overlap.row(i)) largest = std::max(largest, value);
-  }
-  if (largest == 0) return 0;
+[[noreturn]] void refuse_requirement(std::string_view text, const std::string& why) {
+  throw Error(Errc::invalid_argument, "\"" + std::string(text) + "\" is no requirement: " + why);
+}
 
-  // With weights w = Overlap / max the factor 1/max of equation 13 is already in the quotient, and no sum can leave the
-  // range of doubles.
-  std::vector<double> w(n * n);
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t j = 0; j < n; ++j) w[i * n + j] = overlap(i, j) / largest;
+}  // namespace
+
+double Objective::unscaled(double f) const {
+  if (by_alpha)
+    return static_cast<double>(
+        station_count_from_alpha(f, static_cast<std::size_t>(best), static_cast<std::size_t>(worst)));
+  return best - f * (best - worst);
+}
+
+double Requirement::missed_by(double measured) const {
+  if (std::isnan(measured)) return std::numeric_limits<double>::infinity();
+  const double short_of = bound == Bound::at_least ? limit - measured : measured - limit;
+  const double scale = std::abs(objective.best - objective.worst);
+  return short_of > 0 ? short_of / (scale > 0 ? scale : 1) : 0;
+}
+
+std::string to_string(const Requirement& requirement) {
+  return requirement.objective.name + (requirement.bound == Requirement::Bound::at_least ? " >= " : " <= ") +
+         number(requirement.limit);
+}
+
+std::span<const std::string> objective_names() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all;
+    for (const BuiltIn& one : built_in_objectives()) all.push_back(one.name);
+    return all;
+  }();
+  return names;
+}
+
+Objective make_objective(std::string_view name, const ObjectiveSettings& settings) {
+  std::string known;
+  for (const BuiltIn& one : built_in_objectives()) {
+    if (one.name == name) return one.make(settings);
+    known += (known.empty() ? "" : ", ") + one.name;
   }
-  double sum = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    const double* wi = w.data() + i * n;
-    double triangles = 0, pairs = 0;  // over j < k: both sums of equation 13 hold each pair twice
-    for (std::size_t j = 0; j < n; ++j) {
-      if (wi[j] == 0) continue;
-      const double* wj = w.data() + j * n;
-      double linked = 0, any = 0;
-      for (std::size_t k = j + 1; k < n; ++k) {
-        any += wi[k];
-        linked += wi[k] * wj[k];
-      }
-      pairs += wi[j] * any;
-      triangles += wi[j] * linked;
-    }
-    if (pairs > 0) sum += triangles / pairs;
-  }
-  return sum / static_cast<double>(n);
+  throw Error(Errc::invalid_argument, "unknown objective \"" + std::string(name) + "\"; known: " + known);
+}
+
+Requirement make_requirement(std::string_view text, const ObjectiveSettings& settings) {
+  const std::size_t at = text.find_first_of("<>");
+  if (at == std::string_view::npos || at + 1 >= text.size() || text[at + 1] != '=')
+    refuse_requirement(text, "write OBJECTIVE>=LIMIT or OBJECTIVE<=LIMIT, as coverage>=0.9");
+  const std::string_view digits = trimmed(text.substr(at + 2));
+  Requirement requirement{.objective = make_objective(trimmed(text.substr(0, at)), settings),
+                          .bound = text[at] == '>' ? Requirement::Bound::at_least : Requirement::Bound::at_most};
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), requirement.limit);
+  if (error != std::errc{} || end != digits.data() + digits.size() || !std::isfinite(requirement.limit))
+    refuse_requirement(text, "\"" + std::string(digits) + "\" is not a number");
+  return requirement;
 }
 
 std::size_t station_count_from_alpha(double alpha, std::size_t n_min, std::size_t n_max) {

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "vantage/error.hpp"
-#include "vantage/objective.hpp"
+#include "vantage/measure.hpp"
 #include "vantage/simulator.hpp"
 
 namespace vantage {

@@ -11,7 +11,7 @@
 namespace vantage {
 namespace {
 
-constexpr double largest_error = 0.5;  // standard deviation of a value in {0, 1}
+constexpr double largest_error = 0.5;  // of the scale: the standard deviation of a value in {0, 1}
 
 double unsampled_share(const NetworkCounts& counts, std::uint64_t population) {
   if (counts.voxels >= population) return 0;
@@ -44,13 +44,13 @@ std::vector<Value> replicates(const NetworkCounts& counts, const std::function<V
   return found;
 }
 
-double jackknife_error(const std::vector<double>& values, double unsampled) {
-  if (values.empty()) return largest_error;
+double jackknife_error(const std::vector<double>& values, double unsampled, double scale = 1) {
+  if (values.empty()) return largest_error * scale;
   const double groups = static_cast<double>(values.size());
   double mean = 0, squares = 0;
   for (const double value : values) mean += value / groups;
   for (const double value : values) squares += (value - mean) * (value - mean);
-  return std::min(std::sqrt(unsampled * (groups - 1) / groups * squares), largest_error);
+  return std::min(std::sqrt(unsampled * (groups - 1) / groups * squares), largest_error * scale);
 }
 
 }  // namespace
@@ -70,6 +70,29 @@ Estimate coverage_estimate(const NetworkCounts& counts, double goal_density, std
   }
   const double n = static_cast<double>(counts.voxels);
   estimate.standard_error = std::sqrt(unsampled * counts.successive_difference_sum / (2 * n * (n - 1)));
+  return estimate;
+}
+
+Estimate estimate(const Objective& objective, const MeasuredNetwork& measured) {
+  Estimate estimate{objective.value(measured), 0};
+  const NetworkCounts& counts = measured.counts;
+  const double unsampled = unsampled_share(counts, measured.voxels);
+  if (!objective.needs.counts || unsampled == 0) return estimate;
+  if (objective.standard_error) {
+    estimate.standard_error = objective.standard_error(measured);
+    return estimate;
+  }
+  const auto of = [&](const NetworkCounts& rest) {
+    return objective.value({.counts = rest,
+                            .stations = measured.stations,
+                            .kept = measured.kept,
+                            .goal_density = measured.goal_density,
+                            .voxels = measured.voxels,
+                            .overlap = objective.needs.pairs ? overlap_matrix(rest) : OverlapMatrix{},
+                            .visible_parts = measured.visible_parts});
+  };
+  estimate.standard_error =
+      jackknife_error(replicates<double>(counts, of), unsampled, std::abs(objective.best - objective.worst));
   return estimate;
 }
 

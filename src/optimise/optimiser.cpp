@@ -54,35 +54,34 @@ std::string to_string(StopReason reason) {
   return "unknown";
 }
 
-std::string to_string(MoAlgorithm algorithm) {
+std::string to_string(Algorithm algorithm) {
   switch (algorithm) {
-    case MoAlgorithm::cma_es: return "cma_es";
-    case MoAlgorithm::mo_cma_es: return "mo_cma_es";
-    case MoAlgorithm::nsga2: return "nsga2";
-    case MoAlgorithm::random_search: return "random_search";
+    case Algorithm::cma_es: return "cma_es";
+    case Algorithm::mo_cma_es: return "mo_cma_es";
+    case Algorithm::nsga2: return "nsga2";
+    case Algorithm::random_search: return "random_search";
   }
   return "unknown";
 }
 
-MoAlgorithm mo_algorithm_from_string(const std::string& name) {
-  for (const auto algorithm :
-       {MoAlgorithm::cma_es, MoAlgorithm::mo_cma_es, MoAlgorithm::nsga2, MoAlgorithm::random_search})
+Algorithm algorithm_from_string(const std::string& name) {
+  for (const auto algorithm : {Algorithm::cma_es, Algorithm::mo_cma_es, Algorithm::nsga2, Algorithm::random_search})
     if (name == to_string(algorithm)) return algorithm;
   throw Error(Errc::invalid_argument,
               "there is no optimiser \"" + name + "\"; take cma_es, mo_cma_es, nsga2 or random_search");
 }
 
-std::unique_ptr<Optimiser> make_optimiser(MoAlgorithm algorithm, std::size_t dimension, std::size_t objectives,
+std::unique_ptr<Optimiser> make_optimiser(Algorithm algorithm, std::size_t dimension, std::size_t objectives,
                                           const OptimiserConfig& config) {
   switch (algorithm) {
-    case MoAlgorithm::cma_es:
+    case Algorithm::cma_es:
       if (objectives != 1)
         throw Error(Errc::invalid_argument,
                     "CMA-ES: " + std::to_string(objectives) + " objectives; it takes one, mo_cma_es takes several");
       return std::make_unique<CmaEs>(dimension, config);
-    case MoAlgorithm::nsga2: return std::make_unique<optimise::Nsga2>(dimension, objectives, config);
-    case MoAlgorithm::random_search: return std::make_unique<optimise::RandomSearch>(dimension, objectives, config);
-    case MoAlgorithm::mo_cma_es: break;
+    case Algorithm::nsga2: return std::make_unique<optimise::Nsga2>(dimension, objectives, config);
+    case Algorithm::random_search: return std::make_unique<optimise::RandomSearch>(dimension, objectives, config);
+    case Algorithm::mo_cma_es: break;
   }
   return std::make_unique<MoCmaEs>(dimension, objectives, config);
 }

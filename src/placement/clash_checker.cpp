@@ -45,6 +45,8 @@ bool ClashChecker::sees(const Vec3& a, const Vec3& b) const {
   return !impl_->tree.between(a - impl_->origin, b - impl_->origin);
 }
 
+const SecurityVolume& ClashChecker::volume() const noexcept { return impl_->volume; }
+
 double ClashChecker::distance(const Vec3& point, double limit_m) const {
   return impl_->tree.distance(point - impl_->origin, limit_m);
 }

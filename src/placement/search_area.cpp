@@ -17,14 +17,15 @@ struct SearchArea::Impl {
   SearchMesh mesh;
   bool derived = false;
   std::string description;
+  WalkableOptions options = {};
   std::optional<PlaneQuadtree> in_uv;
   // Over the mesh seen from above. Only stations given by X, Y, Z need it, so it is built when the first one asks.
   mutable std::once_flag plan_once;
   mutable std::vector<Uv> plan_points;
   mutable std::optional<PlaneQuadtree> in_plan;
 
-  Impl(SearchMesh given, bool was_derived, std::string how)
-      : mesh(std::move(given)), derived(was_derived), description(std::move(how)) {
+  Impl(SearchMesh given, bool was_derived, std::string how, const WalkableOptions& with = {})
+      : mesh(std::move(given)), derived(was_derived), description(std::move(how)), options(with) {
     if (mesh.uvs.size() != mesh.positions.size())
       throw Error(Errc::invalid_argument, "a search area needs one (u, v) per position; it has " +
                                               std::to_string(mesh.uvs.size()) + " for " +
@@ -71,12 +72,13 @@ SearchArea SearchArea::build(const Scene& scene, const WalkableOptions& options)
   if (!data.search_uvs.empty() && PlaneQuadtree::any_candidate(data.search_uvs, data.search_triangles)) {
     SearchArea area;
     area.impl_ = std::make_shared<const Impl>(SearchMesh{data.search_positions, data.search_uvs, data.search_triangles},
-                                              false, "as the scene marks it, with its own (u, v)");
+                                              false, "as the scene marks it, with its own (u, v)", options);
     return area;
   }
   WalkableSurface surface = find_walkable_surface(data, options);
   SearchArea area;
-  area.impl_ = std::make_shared<const Impl>(std::move(surface.mesh), surface.derived, std::move(surface.description));
+  area.impl_ =
+      std::make_shared<const Impl>(std::move(surface.mesh), surface.derived, std::move(surface.description), options);
   return area;
 }
 
@@ -91,6 +93,7 @@ Uv SearchArea::uv_max() const noexcept { return impl_->in_uv->max(); }
 bool SearchArea::derived() const noexcept { return impl_->derived; }
 const std::string& SearchArea::description() const noexcept { return impl_->description; }
 const SearchMesh& SearchArea::mesh() const noexcept { return impl_->mesh; }
+const WalkableOptions& SearchArea::options() const noexcept { return impl_->options; }
 
 std::optional<Vec3> SearchArea::locate(Uv uv) const {
   const auto at = impl_->in_uv->find(uv);

@@ -18,7 +18,7 @@ namespace vantage {
 namespace {
 
 constexpr std::string_view kMagic = "vantage checkpoint\n";
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 
 struct Writer {
   std::string bytes;
@@ -89,8 +89,10 @@ void write_checkpoint(const std::filesystem::path& file, const Checkpoint& check
     }
   }
   w.put(std::uint64_t{checkpoint.since.size()});
-  for (const NetworkValue& value : checkpoint.since)
-    w.put(value.coverage), w.put(value.overlap), w.put(std::uint64_t{value.parts});
+  for (const auto& values : checkpoint.since) {
+    w.put(std::uint64_t{values.size()});
+    for (const double value : values) w.put(value);
+  }
 
   Writer head;
   head.put(kVersion), head.put(std::uint64_t{w.bytes.size()}), head.put(checksum(w.bytes));
@@ -136,9 +138,11 @@ std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& file) {
       for (double& value : f) value = r.get<double>();
     }
   }
-  checkpoint.since.resize(r.length(24));
-  for (NetworkValue& value : checkpoint.since)
-    value.coverage = r.get<double>(), value.overlap = r.get<double>(), value.parts = r.get<std::uint64_t>();
+  checkpoint.since.resize(r.length(8));
+  for (auto& values : checkpoint.since) {
+    values.resize(r.length(8));
+    for (double& value : values) value = r.get<double>();
+  }
   if (!r.at_end()) r.damaged();
   return checkpoint;
 }

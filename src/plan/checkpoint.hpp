@@ -24,7 +24,7 @@ struct SearchSnapshot {
 struct Checkpoint {
   std::string identity;  // lines "name = value" of everything that must match
   SearchSnapshot snapshot;
-  std::vector<NetworkValue> since;  // in the order of asking
+  std::vector<std::vector<double>> since;  // measures of each network, in the order of asking
   double seconds = 0, trace_seconds = 0;
 };
 

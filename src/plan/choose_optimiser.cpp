@@ -1,8 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plan/choose_optimiser.hpp"
 
+#include <cmath>
+#include <string>
+
+#include "vantage/error.hpp"
+
 namespace vantage {
 namespace {
+
+void check(const SurveyProblem& problem, const PlanConfig& config) {
+  const auto refuse = [](const std::string& what) { throw Error(Errc::invalid_argument, "plan: " + what); };
+  if (config.iterations < 1) refuse("at least one iteration is needed");
+  if (problem.objectives.size() > 1 && config.population == 1) refuse("a population of 1 has no front; give 2 or more");
+  if (!(config.sigma0 > 0) || !std::isfinite(config.sigma0))
+    refuse("sigma0 must be above 0, not " + std::to_string(config.sigma0));
+  if (!(config.max_seconds >= 0)) refuse("max_seconds must not be negative, not " + std::to_string(config.max_seconds));
+}
 
 constexpr std::size_t kRestarts = 1'000'000;  // enough to spend any budget
 // When one objective is at rest: less is to be gained than a sample's standard error, or stations move by less than
@@ -11,14 +25,16 @@ constexpr double kCoverageTolerance = 1e-3, kStepTolerance = 0.02;
 
 }  // namespace
 
-std::size_t population_of(const PlanConfig& config) {
+std::size_t population_of(const SurveyProblem& problem, const PlanConfig& config) {
   if (config.population > 0) return config.population;
-  if (config.fitness) return 20;
-  return has_one_objective(config) ? 10 : 100;
+  if (problem.objectives.size() > 1) return 100;
+  return problem.stations_min < problem.stations_max ? 20 : 10;
 }
 
-std::unique_ptr<Optimiser> choose_optimiser(const DecisionSpace& space, const PlanConfig& config, std::size_t batch) {
-  OptimiserConfig chosen{.population = population_of(config),
+std::unique_ptr<Optimiser> choose_optimiser(const DecisionSpace& space, const SurveyProblem& problem,
+                                            const PlanConfig& config, std::size_t batch) {
+  check(problem, config);
+  OptimiserConfig chosen{.population = population_of(problem, config),
                          .sigma0 = config.sigma0,
                          .bounds = space.bounds(),
                          .blocks = space.blocks(),
@@ -28,17 +44,17 @@ std::unique_ptr<Optimiser> choose_optimiser(const DecisionSpace& space, const Pl
                          .stagnation_iterations = config.stagnation_iterations,
                          .seed = config.seed,
                          .mo = {.scheme = config.scheme, .batch = batch}};
-  if (space.minimises_stations())
+  if (space.searches_number())
     chosen.blocks_in_use = [&space](std::span<const double> x) { return space.placed_count(x); };
-  if (has_one_objective(config)) {
+  if (problem.objectives.size() == 1) {
     chosen.x_tolerance = kStepTolerance;
     chosen.cma.f_tolerance = kCoverageTolerance;
     if (!config.start.empty()) chosen.start = {space.encode(config.start)};
-    return make_optimiser(MoAlgorithm::cma_es, space.dimension(), 1, chosen);
+    return make_optimiser(Algorithm::cma_es, space.dimension(), 1, chosen);
   }
   if (!config.start.empty()) chosen.start = space.encode_each(config.start);
   if (chosen.start.size() > chosen.population) chosen.start.resize(chosen.population);
-  return make_optimiser(config.algorithm, space.dimension(), space.objectives(), chosen);
+  return make_optimiser(config.algorithm, space.dimension(), problem.objectives.size(), chosen);
 }
 
 }  // namespace vantage

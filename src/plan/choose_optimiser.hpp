@@ -10,9 +10,10 @@
 namespace vantage {
 
 // Never 0.
-std::size_t population_of(const PlanConfig& config);
+std::size_t population_of(const SurveyProblem& problem, const PlanConfig& config);
 
 // With the limits of `config`, but for those of time. Borrows the space. `batch`: see PlanConfig.
-std::unique_ptr<Optimiser> choose_optimiser(const DecisionSpace& space, const PlanConfig& config, std::size_t batch);
+std::unique_ptr<Optimiser> choose_optimiser(const DecisionSpace& space, const SurveyProblem& problem,
+                                            const PlanConfig& config, std::size_t batch);
 
 }  // namespace vantage

@@ -5,117 +5,123 @@
 #include <chrono>
 #include <limits>
 #include <optional>
-#include <tuple>
 #include <utility>
+
+#include "plan/scaled_objectives.hpp"
 
 namespace vantage {
 namespace {
 
-bool blind(const Network& network) {
-  return std::none_of(network.begin(), network.end(), [](const Station& s) { return s.active; });
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+// What the optimiser kept of a network: its objectives, and nothing where it breaks a requirement.
+void take_objectives(PlanEntry& entry, const ParetoPoint& point, const SurveyProblem& problem) {
+  for (std::size_t k = 0; k < problem.objectives.size(); ++k) {
+    const Objective& objective = problem.objectives[k];
+    if (point.f[k] <= 1) entry.values.at(objective.name).searched = objective.unscaled(point.f[k]);
+    if (objective.by_alpha) entry.values.at(objective.name).searched = static_cast<double>(entry.stations.size());
+  }
+}
+
+std::vector<double> best_known(const PlanEntry& entry, const Measures& measures) {
+  std::vector<double> values;
+  for (const Objective& measure : measures.all) values.push_back(entry.value(measure.name));
+  return values;
+}
+
+// Falling by the objectives in their order, then by x. What is not known comes last, or it would be no order.
+bool comes_before(const PlanEntry& a, const PlanEntry& b, const Measures& measures) {
+  for (const Objective& measure : measures.all) {
+    const auto cost = [&](const PlanEntry& entry) {
+      const double value = entry.values.at(measure.name).searched;
+      return value == value ? (measure.maximised() ? -value : value) : std::numeric_limits<double>::infinity();
+    };
+    if (cost(a) != cost(b)) return cost(a) < cost(b);
+  }
+  return a.x < b.x;
 }
 
 }  // namespace
 
-std::vector<PlanEntry> confirm_front(const SearchOutcome& found, const DecisionSpace& space, const PlanConfig& config,
-                                     NetworkEvaluator& evaluator, const std::function<void(const PlanProgress&)>& watch,
-                                     std::stop_token abort) {
+std::vector<PlanEntry> confirm_front(const SearchOutcome& found, const DecisionSpace& space,
+                                     const SurveyProblem& problem, const Measures& measures, bool sampled,
+                                     NetworkEvaluator& evaluator, const PlanWatch& watch) {
   using Clock = std::chrono::steady_clock;
   const auto start = Clock::now();
   std::vector<PlanEntry> entries;
-  std::vector<Network> networks, seeing;
+  std::vector<PlacedNetwork> networks;
   for (const ParetoPoint& point : found.front) {
     PlanEntry& entry = entries.emplace_back();
     entry.x = point.x;
     entry.stations = space.decode(point.x);
     entry.exact_overlap_matrix = OverlapMatrix(entry.stations.size());
     entry.points_on_surveyed.assign(entry.stations.size(), 0);
-    networks.push_back(to_network(entry.stations));
-    if (!blind(networks.back())) seeing.push_back(networks.back());
+    for (const Objective& measure : measures.all)
+      entry.values[measure.name] = {.searched = kUnknown, .standard_error = 0, .exact = kUnknown};
+    take_objectives(entry, point, problem);
+    networks.push_back(entry.stations);
   }
-  const auto take_objectives = [&](PlanEntry& entry, const ParetoPoint& point) {
-    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-    entry.coverage = config.fitness ? unknown : 1 - point.f[0];
-    entry.overlap = space.needs_overlap() ? 1 - point.f[1] : unknown;
-  };
   const auto report = [&](std::size_t done, double part) {
-    if (!watch) return;
+    if (!watch.report) return;
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
     const double rate = seconds > 0 ? (static_cast<double>(done) + part) / seconds : 0;
-    watch({.iteration = done,
-           .iterations = entries.size(),
-           .evaluations = found.evaluations,
-           .hypervolume = found.hypervolume,
-           .evaluations_per_second = rate,
-           .seconds_left = rate > 0 ? (static_cast<double>(entries.size() - done) - part) / rate : -1,
-           .phase = "confirm"});
+    watch.report({.iteration = done,
+                  .iterations = entries.size(),
+                  .evaluations = found.evaluations,
+                  .hypervolume = found.hypervolume,
+                  .evaluations_per_second = rate,
+                  .seconds_left = rate > 0 ? (static_cast<double>(entries.size() - done) - part) / rate : -1,
+                  .phase = "confirm"});
   };
 
-  // A search that samples did not keep its standard errors, nor the overlap where it is no objective. The same sample
-  // is drawn again.
-  if (config.sample_voxels > 0 && !seeing.empty()) {
-    const auto estimates = evaluator.estimate(seeing, {.report = {}, .stop = abort});
-    std::size_t next = 0;
-    for (std::size_t k = 0; k < entries.size(); ++k) {
-      if (blind(networks[k])) continue;
-      PlanEntry& entry = entries[k];
-      if (estimates) {
-        const NetworkEstimate& e = (*estimates)[next++];
-        entry.coverage = e.coverage.value, entry.coverage_se = e.coverage.standard_error;
-        entry.overlap = e.overlap.value, entry.overlap_se = e.overlap.standard_error;
-      } else {
-        take_objectives(entry, found.front[k]);
+  // A search that samples did not keep its standard errors, nor what is no objective. The same sample is drawn again.
+  if (sampled && !networks.empty()) {
+    if (const auto estimates = evaluator.estimate(networks, {.report = {}, .stop = watch.abort})) {
+      for (std::size_t k = 0; k < entries.size(); ++k) {
+        for (std::size_t m = 0; m < measures.all.size(); ++m) {
+          MeasuredValue& value = entries[k].values.at(measures.all[m].name);
+          value.searched = (*estimates)[k][m].value, value.standard_error = (*estimates)[k][m].standard_error;
+        }
       }
     }
   }
-  for (std::size_t k = 0; k < entries.size() && !abort.stop_requested(); ++k) {
+  for (std::size_t k = 0; k < entries.size() && !watch.abort.stop_requested(); ++k) {
     report(k, 0);
     PlanEntry& entry = entries[k];
-    std::optional<ConfirmedNetwork> exact = ConfirmedNetwork{};
-    if (!blind(networks[k])) {
-      exact = evaluator.confirm(networks[k], {.report = [&](double done) { report(k, done); }, .stop = abort});
-      if (!exact) break;
-      entry.exact_overlap_matrix = std::move(exact->overlaps);
-      entry.points_on_surveyed = std::move(exact->points_on_surveyed);
-    }
+    std::optional<ConfirmedNetwork> exact =
+        evaluator.confirm(networks[k], {.report = [&](double done) { report(k, done); }, .stop = watch.abort});
+    if (!exact) break;
+    entry.exact_overlap_matrix = std::move(exact->overlaps);
+    entry.points_on_surveyed = std::move(exact->points_on_surveyed);
     entry.confirmed = true;
-    entry.exact_coverage = exact->coverage, entry.exact_overlap = exact->overlap;
+    for (std::size_t m = 0; m < measures.all.size(); ++m) {
+      MeasuredValue& value = entry.values.at(measures.all[m].name);
+      value.exact = exact->values[m];
+      if (!sampled) value.searched = value.exact;
+    }
   }
   report(entries.size(), 0);
-  if (config.sample_voxels == 0) {
-    for (std::size_t k = 0; k < entries.size(); ++k) {
-      PlanEntry& entry = entries[k];
-      if (entry.confirmed)
-        entry.coverage = entry.exact_coverage, entry.overlap = entry.exact_overlap;
-      else
-        take_objectives(entry, found.front[k]);
-    }
-  }
-  const auto rank = [](const PlanEntry& e) {
-    // NaN last, or it would be no order
-    const auto falling = [](double value) { return value == value ? -value : 1.0; };
-    return std::make_tuple(falling(e.coverage), falling(e.overlap), e.stations.size(), e.x);
-  };
-  std::sort(entries.begin(), entries.end(), [&](const PlanEntry& a, const PlanEntry& b) { return rank(a) < rank(b); });
+  std::sort(entries.begin(), entries.end(),
+            [&](const PlanEntry& a, const PlanEntry& b) { return comes_before(a, b, measures); });
   return entries;
 }
 
-double judge_by_every_ray(std::vector<PlanEntry>& entries, const DecisionSpace& space, const PlanConfig& config) {
-  const std::size_t objectives = space.objectives();
-  std::vector<double> values;
+double judge_by_every_ray(std::vector<PlanEntry>& entries, const SurveyProblem& problem, const Measures& measures) {
+  const std::size_t objectives = problem.objectives.size();
+  std::vector<double> scaled;
   std::vector<PlanEntry*> judged;
   for (PlanEntry& entry : entries) {
+    const std::vector<double> values = best_known(entry, measures);
+    entry.missed = missed_by(problem, measures, values);
     if (!entry.confirmed) continue;
-    std::size_t parts = space.parts_of(to_network(entry.stations));
-    if (config.min_link_overlap > 0) parts = connectivity(entry.exact_overlap_matrix, config.min_link_overlap).parts;
-    values.resize(values.size() + objectives);
-    space.objectives_of(entry.x, entry.exact_coverage, entry.exact_overlap, parts, std::span(values).last(objectives));
+    scaled.resize(scaled.size() + objectives);
+    scale_objectives(problem, entry.x, values, entry.missed, std::span(scaled).last(objectives));
     judged.push_back(&entry);
   }
-  const std::vector<std::size_t> ranks = non_dominated_ranks(values, objectives);
+  const std::vector<std::size_t> ranks = non_dominated_ranks(scaled, objectives);
   for (std::size_t k = 0; k < judged.size(); ++k) judged[k]->dominated = ranks[k] > 0;
-  if (judged.empty() || judged.size() < entries.size()) return std::numeric_limits<double>::quiet_NaN();
-  return hypervolume(values, objectives, std::vector<double>(objectives, 1.0));
+  if (judged.empty() || judged.size() < entries.size()) return kUnknown;
+  return hypervolume(scaled, objectives, std::vector<double>(objectives, 1.0));
 }
 
 }  // namespace vantage

@@ -14,12 +14,10 @@ namespace vantage {
 class DecisionSpace {
  public:
   // Throws Error invalid_argument.
-  DecisionSpace(const Site& site, const PlanConfig& config);
+  DecisionSpace(const Site& site, const SurveyProblem& problem);
 
   std::size_t dimension() const;
-  std::size_t objectives() const { return objectives_; }
-  bool minimises_stations() const { return minimises_; }
-  bool needs_overlap() const { return overlap_; }
+  bool searches_number() const { return min_ < max_; }
   Bounds bounds() const;
 
   // Equation 7; how many stations of x are searched for. The kept ones come on top.
@@ -35,20 +33,12 @@ class DecisionSpace {
   std::vector<double> encode(std::span<const Vec3> heads) const;
   // An x for each number of stations that `heads` suffice for, the largest number first.
   std::vector<std::vector<double>> encode_each(std::span<const Vec3> heads) const;
-  // Connected parts that the objectives depend on and that need no simulation: of the visibility graph where there is a
-  // fitness, else 1.
-  std::size_t parts_of(const Network& network) const { return fitness_ ? visibility_parts(site_, network) : 1; }
-  // Objective vector, all minimised (Table 2, or 1 - fitness). `parts`: connected parts of the network, 1 where nobody
-  // asks.
-  void objectives_of(std::span<const double> x, double coverage, double overlap, std::size_t parts,
-                     std::span<double> f) const;
 
  private:
   double height(std::span<const double> x, std::size_t i) const;
   const Site& site_;
-  std::size_t min_, max_, objectives_;
-  bool minimises_, overlap_, heights_;
-  std::optional<FitnessWeights> fitness_;
+  std::size_t min_, max_;
+  bool heights_;
   std::array<double, 2> height_bounds_{};
   std::vector<PlacedStation> kept_;
 };

@@ -55,16 +55,16 @@ GreedyResult choose_greedily(const Site& site, NetworkEvaluator& evaluator, cons
 
   GreedyResult result;
   std::vector<PlacedStation>& chosen = result.stations;
-  Network kept;
-  for (const Vec3& head : config.fixed) kept.push_back({.position = head, .active = true});
+  PlacedNetwork kept;
+  for (const Vec3& head : config.fixed) kept.push_back({.uv = {}, .position = head, .status = StationStatus::ok});
   double covered = 0;
   if (!kept.empty()) {
-    const std::vector<Network> one{kept};
+    const std::vector<PlacedNetwork> one{kept};
     const auto value = evaluator.evaluate(one, {.report = {}, .stop = progress.stop});
     ++result.evaluations;
     result.cancelled = !value;
     if (!value) return result;
-    covered = value->front().coverage;
+    covered = value->front().front();
   }
   std::vector<std::size_t> order(candidates.size());
   // above any gain: all are evaluated first
@@ -95,11 +95,11 @@ GreedyResult choose_greedily(const Site& site, NetworkEvaluator& evaluator, cons
       if (fresh || (candidates[k].gain <= 1 && stale.size() == kLazyBatch)) break;
       stale.push_back(k);
     }
-    std::vector<Network> networks;
+    std::vector<PlacedNetwork> networks;
     for (const std::size_t k : stale) {
-      Network& network = networks.emplace_back(kept);
-      for (const PlacedStation& station : chosen) network.push_back({.position = station.position, .active = true});
-      network.push_back({.position = candidates[k].station.position, .active = true});
+      PlacedNetwork& network = networks.emplace_back(kept);
+      network.insert(network.end(), chosen.begin(), chosen.end());
+      network.push_back(candidates[k].station);
     }
     const std::size_t chunk = evaluator.chunk() == 0 ? networks.size() : evaluator.chunk();
     for (std::size_t at = 0; at < networks.size(); at += chunk) {
@@ -111,7 +111,7 @@ GreedyResult choose_greedily(const Site& site, NetworkEvaluator& evaluator, cons
       }
       for (std::size_t i = 0; i < n; ++i) {
         Candidate& candidate = candidates[stale[at + i]];
-        candidate.gain = std::clamp((*values)[i].coverage - covered, 0.0, 1.0);
+        candidate.gain = std::clamp((*values)[i].front() - covered, 0.0, 1.0);
         candidate.seen_at = chosen.size();
       }
       result.evaluations += n;
@@ -123,8 +123,8 @@ GreedyResult choose_greedily(const Site& site, NetworkEvaluator& evaluator, cons
 GreedyResult greedy_network(Simulator& simulator, const SearchArea& area, const ClashChecker& clash,
                             const GreedyConfig& config, const Progress& progress) {
   const Site site = make_site(area, clash, simulator.scanner());
-  SimulatorEvaluator evaluator(simulator,
-                               {.sample_voxels = config.sample_voxels, .overlap = false, .min_link_overlap = 0});
+  SimulatorEvaluator evaluator(simulator, measures_of(coverage_fix(config.stations)),
+                               {.sample_voxels = config.sample_voxels, .kept = config.fixed.size()});
   return choose_greedily(site, evaluator, config, progress);
 }
 

@@ -6,7 +6,7 @@
 
 namespace vantage {
 
-// See greedy_network().
+// See greedy_network(). The evaluator's first measure is coverage.
 GreedyResult choose_greedily(const Site& site, NetworkEvaluator& evaluator, const GreedyConfig& config,
                              const Progress& progress);
 

@@ -5,7 +5,6 @@
 #include <string_view>
 
 #include "core/hash.hpp"
-#include "plan/choose_optimiser.hpp"
 #include "vantage/version.hpp"
 
 namespace vantage {
@@ -22,6 +21,10 @@ class Lines {
                   buffer, static_cast<std::size_t>(std::to_chars(buffer, buffer + sizeof buffer, value).ptr - buffer)));
   }
   void add(std::string_view name, std::uint64_t value) { add(name, std::string_view(std::to_string(value))); }
+  void add(const std::string& group, const Settings& settings) {
+    for (const Setting& setting : settings)
+      if (setting.decides) add(group + " " + setting.name, setting.json);
+  }
   void add_hash(std::string_view name, const Hash& hash) {
     char buffer[17] = {};
     std::to_chars(buffer, buffer + 16, hash.value(), 16);
@@ -55,15 +58,10 @@ Hash hash_of(const Site& site) {
   return hash;
 }
 
-Hash hash_of(const NoiseTable& noise) {
-  Hash hash;
-  hash.add_all(noise.distances_m), hash.add_all(noise.reflectivities), hash.add_all(noise.sigma_m);
-  return hash;
-}
-
 }  // namespace
 
-std::string identity(const Simulator& simulator, const Site& site, const SearchArea& area, const PlanConfig& config,
+std::string identity(const Simulator& simulator, const Site& site, const SearchArea& area, const ClashChecker& clash,
+                     const SurveyProblem& problem, const PlanConfig& config, std::size_t population,
                      std::size_t batch) {
   Lines lines;
   lines.add("version", version());
@@ -77,44 +75,15 @@ std::string identity(const Simulator& simulator, const Site& site, const SearchA
   lines.add_hash("search area", search);
   lines.add_hash("holes and clashes", hash_of(site));
 
-  const Scanner& scanner = simulator.scanner();
-  lines.add("scanner heading", scanner.heading.in_degrees());
-  lines.add("scanner horizontal angle", scanner.horizontal_angle.in_degrees());
-  lines.add("scanner vertical angle", scanner.vertical_angle.in_degrees());
-  lines.add("scanner azimuth step", scanner.azimuth_step.in_degrees());
-  lines.add("scanner zenith step", scanner.zenith_step.in_degrees());
-  lines.add("scanner height", scanner.height_m);
-  lines.add("scanner minimum range", scanner.min_range_m);
-  lines.add("scanner maximum range", scanner.max_range_m);
-  const SimulatorConfig& simulation = simulator.config();
-  lines.add("noise", simulation.noise && !scanner.noise.empty() ? "on" : "off");
-  if (simulation.noise) lines.add_hash("noise table", hash_of(scanner.noise));
   lines.add("engine", to_string(simulator.engine().engine));
-  lines.add("user size", simulation.user_size_m);
-  lines.add("point spacing", simulation.point_spacing_m);
-  lines.add("simulation seed", simulation.seed);
-
-  lines.add("problem", to_string(config.problem));
-  lines.add("stations minimum", std::uint64_t{config.stations_min});
-  lines.add("stations maximum", std::uint64_t{config.stations_max});
-  lines.add("algorithm", to_string(config.algorithm));
-  lines.add("scheme", config.scheme == MoCmaEsConfig::Scheme::generational ? "generational" : "steady state");
-  lines.add("population", std::uint64_t{population_of(config)});
+  lines.add("population", std::uint64_t{population});
   lines.add("batch", std::uint64_t{batch});
-  lines.add("sigma0", config.sigma0);
-  lines.add("sample voxels", config.sample_voxels);
-  lines.add("redraws", std::uint64_t{config.redraws});
-  lines.add("minimum link overlap", config.min_link_overlap);
-  if (config.fitness) {
-    lines.add("fitness weight of coverage", config.fitness->coverage);
-    lines.add("fitness weight of station count", config.fitness->station_count);
-    lines.add("fitness weight of visibility", config.fitness->visibility);
-  }
-  lines.add("lowest height", config.heights_m ? (*config.heights_m)[0] : scanner.height_m);
-  lines.add("highest height", config.heights_m ? (*config.heights_m)[1] : scanner.height_m);
-  lines.add_hash("initial network", hash_of(config.start));
-  lines.add_hash("kept stations", hash_of(config.fixed));
-  lines.add("seed", config.seed);
+  lines.add("scanner", settings(simulator.scanner()));
+  lines.add("simulation", settings(simulator.config()));
+  lines.add("walkable", settings(area.options()));
+  lines.add("security", settings(clash.volume()));
+  lines.add("problem", settings(problem));
+  lines.add("plan", settings(config));
   return std::move(lines).text();
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The seam between search and simulation.
+// The seam between search and simulation: networks in, values of measures out.
 #pragma once
 
 #include <cstddef>
@@ -11,22 +11,14 @@
 
 #include "vantage/objective.hpp"
 #include "vantage/progress.hpp"
-#include "vantage/simulator.hpp"
 
 namespace vantage {
 
-// What the search needs to know of a network.
-struct NetworkValue {
-  double coverage = 0, overlap = 0;
-  std::size_t parts = 1;  // connected parts of its links
-};
+using PlacedNetwork = std::vector<PlacedStation>;
 
-struct NetworkEstimate {
-  Estimate coverage, overlap;
-};
-
+// With every ray.
 struct ConfirmedNetwork {
-  double coverage = 0, overlap = 0;
+  std::vector<double> values;  // of all measures
   OverlapMatrix overlaps = {};
   std::vector<std::uint64_t> points_on_surveyed = {};
 };
@@ -36,28 +28,29 @@ class NetworkEvaluator {
   virtual ~NetworkEvaluator() = default;
   // How many networks evaluate() takes best at once; 0: as many as there are.
   virtual std::size_t chunk() const = 0;
-  // Values in order; empty when stopped half way. REQUIRES: each network has an active station.
-  virtual std::optional<std::vector<NetworkValue>> evaluate(std::span<const Network> networks,
-                                                            const Progress& progress) = 0;
-  // The same with overlap always and standard errors, for the few networks of a front.
-  virtual std::optional<std::vector<NetworkEstimate>> estimate(std::span<const Network> networks,
-                                                               const Progress& progress) = 0;
+  // Values of the searched measures of each network, in order; empty when stopped half way.
+  virtual std::optional<std::vector<std::vector<double>>> evaluate(std::span<const PlacedNetwork> networks,
+                                                                   const Progress& progress) = 0;
+  // All measures with standard errors, for the few networks of a front.
+  virtual std::optional<std::vector<std::vector<Estimate>>> estimate(std::span<const PlacedNetwork> networks,
+                                                                     const Progress& progress) = 0;
   // With every ray; empty when stopped.
-  virtual std::optional<ConfirmedNetwork> confirm(const Network& network, const Progress& progress) = 0;
+  virtual std::optional<ConfirmedNetwork> confirm(const PlacedNetwork& network, const Progress& progress) = 0;
   virtual double trace_seconds() const = 0;
 };
 
-// Spares the evaluator what needs no simulation: networks without an active station, and networks met before.
+// Spares the evaluator networks met before.
 class CachingEvaluator {
  public:
   explicit CachingEvaluator(NetworkEvaluator& evaluator) : evaluator_(evaluator) {}
   std::size_t chunk() const { return evaluator_.chunk(); }
-  std::optional<std::vector<NetworkValue>> evaluate(std::span<const Network> networks, const Progress& progress);
+  std::optional<std::vector<std::vector<double>>> evaluate(std::span<const PlacedNetwork> networks,
+                                                           const Progress& progress);
   std::uint64_t simulated() const { return simulated_; }
 
  private:
   NetworkEvaluator& evaluator_;
-  std::unordered_map<std::string, NetworkValue> known_;
+  std::unordered_map<std::string, std::vector<double>> known_;
   std::uint64_t simulated_ = 0;
 };
 

@@ -3,9 +3,11 @@
 #include <chrono>
 #include <utility>
 
+#include "plan/choose_optimiser.hpp"
 #include "plan/confirm.hpp"
 #include "plan/decision_space.hpp"
 #include "plan/identity.hpp"
+#include "plan/measures.hpp"
 #include "plan/search.hpp"
 #include "plan/simulator_evaluator.hpp"
 #include "plan/site.hpp"
@@ -24,30 +26,51 @@ std::size_t batch_of(const Simulator& simulator, const PlanConfig& config) {
   return cpu ? 4 : 32;
 }
 
+// What a problem says, with the scale of the number of stations as it is.
+SurveyProblem settled(SurveyProblem problem) {
+  for (Objective& objective : problem.objectives) {
+    if (!objective.by_alpha) continue;
+    objective.best = static_cast<double>(problem.kept.size() + problem.stations_min);
+    objective.worst = static_cast<double>(problem.kept.size() + problem.stations_max);
+  }
+  return problem;
+}
+
 }  // namespace
 
-PlanResult plan(Simulator& simulator, const SearchArea& area, const ClashChecker& clash, const PlanConfig& config,
-                const std::function<void(const PlanProgress&)>& watch, std::stop_token stop, std::stop_token abort) {
+PlanResult plan(Simulator& simulator, const SearchArea& area, const ClashChecker& clash, const SurveyProblem& asked,
+                const PlanConfig& config, const PlanWatch& watch) {
   const auto start = std::chrono::steady_clock::now();
+  const SurveyProblem problem = settled(asked);
+  const Measures measures = measures_of(problem);
   const Site site = make_site(area, clash, simulator.scanner());
-  const DecisionSpace space(site, config);
-  SimulatorEvaluator evaluator(simulator, {.sample_voxels = config.sample_voxels,
-                                           .overlap = space.needs_overlap(),
-                                           .min_link_overlap = config.min_link_overlap});
+  const DecisionSpace space(site, problem);
+  SimulatorEvaluator evaluator(
+      simulator, measures,
+      {.sample_voxels = config.sample_voxels,
+       .kept = problem.kept.size(),
+       .visible_parts = [&](const Network& network) { return visibility_parts(site, network); }});
   const std::size_t batch = batch_of(simulator, config);
-  SearchOutcome found = search({.space = space,
-                                .config = config,
-                                .evaluator = evaluator,
-                                .batch = batch,
-                                .identity = identity(simulator, site, area, config, batch),
-                                .watch = watch,
-                                .stop = stop});
+  SearchOutcome found = search(
+      {.space = space,
+       .problem = problem,
+       .measures = measures,
+       .config = config,
+       .evaluator = evaluator,
+       .batch = batch,
+       .identity = identity(simulator, site, area, clash, problem, config, population_of(problem, config), batch),
+       .watch = watch.report,
+       .stop = watch.stop});
   const double searched = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const double searched_trace = evaluator.trace_seconds();
 
   PlanResult result;
-  result.front = confirm_front(found, space, config, evaluator, watch, abort);
-  result.exact_hypervolume = judge_by_every_ray(result.front, space, config);
+  result.problem = problem, result.config = config;
+  result.population = population_of(problem, config), result.batch = batch;
+  result.walkable = area.options(), result.security = clash.volume();
+  result.measures = measures.all;
+  result.front = confirm_front(found, space, problem, measures, config.sample_voxels > 0, evaluator, watch);
+  result.exact_hypervolume = judge_by_every_ray(result.front, problem, measures);
   result.history = std::move(found.history);
   result.hypervolume = found.hypervolume;
   result.evaluations = found.evaluations, result.resumed_evaluations = found.resumed_evaluations;

@@ -13,6 +13,7 @@
 #include "core/atomic_file.hpp"
 #include "plan/checkpoint.hpp"
 #include "plan/choose_optimiser.hpp"
+#include "plan/scaled_objectives.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage {
@@ -24,9 +25,9 @@ class Search {
       : setup_(setup),
         config_(setup.config),
         space_(setup.space),
-        population_(population_of(config_)),
+        population_(population_of(setup.problem, config_)),
         budget_(static_cast<std::uint64_t>(config_.iterations) * population_),
-        optimiser_(choose_optimiser(space_, config_, setup.batch)),
+        optimiser_(choose_optimiser(space_, setup.problem, config_, setup.batch)),
         evaluator_(setup.evaluator) {}
 
   SearchOutcome run() {
@@ -59,7 +60,7 @@ class Search {
     const std::size_t n = space_.dimension(), count = xs.size() / n;
     const auto x = [&](std::size_t k) { return std::span<const double>(xs).subspan(k * n, n); };
 
-    std::vector<NetworkValue> values;
+    std::vector<std::vector<double>> values;
     for (; values.size() < count && replay_next_ < replay_.size(); ++replay_next_)
       values.push_back(replay_[replay_next_]);
     since_.insert(since_.end(), values.begin(), values.end());
@@ -69,8 +70,8 @@ class Search {
       if (const StopReason reason = interruption(); reason != StopReason::running) return reason;
       const std::size_t left = count - values.size(),
                         chunk = evaluator_.chunk() == 0 ? left : std::min(left, evaluator_.chunk());
-      std::vector<Network> networks(networks_.begin() + static_cast<std::ptrdiff_t>(values.size()),
-                                    networks_.begin() + static_cast<std::ptrdiff_t>(values.size() + chunk));
+      std::vector<PlacedNetwork> networks(networks_.begin() + static_cast<std::ptrdiff_t>(values.size()),
+                                          networks_.begin() + static_cast<std::ptrdiff_t>(values.size() + chunk));
       const Progress progress{.report = [&](double done) { watch(static_cast<double>(chunk) * done); },
                               .stop = setup_.stop};
       const auto found = evaluator_.evaluate(networks, progress);
@@ -82,12 +83,11 @@ class Search {
       if (values.size() < count && checkpoint_due()) save();
     }
 
-    const std::size_t m = space_.objectives();
+    const std::size_t m = setup_.problem.objectives.size();
     std::vector<double> f(count * m);
-    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t k) {
-      const std::size_t parts = std::max(values[k].parts, space_.parts_of(networks_[k]));
-      space_.objectives_of(x(k), values[k].coverage, values[k].overlap, parts, std::span(f).subspan(k * m, m));
-    });
+    for (std::size_t k = 0; k < count; ++k)
+      scale_objectives(setup_.problem, x(k), values[k], missed_by(setup_.problem, setup_.measures, values[k]),
+                       std::span(f).subspan(k * m, m));
     optimiser_->tell(f);
     record();
     if (checkpoint_due()) {
@@ -102,7 +102,7 @@ class Search {
     const std::span<const double> asked = optimiser_->ask();
     std::vector<double> xs(asked.begin(), asked.end());
     const std::size_t n = space_.dimension(), count = xs.size() / n;
-    std::vector<std::vector<PlacedStation>> placed(count);
+    std::vector<PlacedNetwork> placed(count);
     std::vector<std::size_t> open(count);
     for (std::size_t k = 0; k < count; ++k) open[k] = k;
     for (std::size_t round = 0;; ++round) {
@@ -129,8 +129,7 @@ class Search {
       if (again.empty()) break;
       open = std::move(again);
     }
-    networks_.clear();
-    for (const auto& stations : placed) networks_.push_back(to_network(stations));
+    networks_ = std::move(placed);
     return xs;
   }
 
@@ -195,7 +194,7 @@ class Search {
   void save() {
     if (config_.checkpoint.empty()) return;
     // A run that stops while it still replays must not forget what it has not come to.
-    std::vector<NetworkValue> since = since_;
+    std::vector<std::vector<double>> since = since_;
     since.insert(since.end(), replay_.begin() + static_cast<std::ptrdiff_t>(replay_next_), replay_.end());
     write_checkpoint(config_.checkpoint, {.identity = setup_.identity,
                                           .snapshot = snapshot_,
@@ -239,12 +238,12 @@ class Search {
   std::uint64_t budget_;
   std::unique_ptr<Optimiser> optimiser_;
   CachingEvaluator evaluator_;
-  std::vector<Network> networks_;  // of the open batch
+  std::vector<PlacedNetwork> networks_;  // of the open batch
 
   std::vector<PlanIteration> history_;
   std::uint64_t drawn_ = 0, redrawn_ = 0, evaluated_ = 0, resumed_ = 0;
   SearchSnapshot snapshot_;
-  std::vector<NetworkValue> since_, replay_;
+  std::vector<std::vector<double>> since_, replay_;
   std::size_t replay_next_ = 0;
   double earlier_seconds_ = 0, earlier_trace_seconds_ = 0;
   Clock::time_point start_ = Clock::now(), saved_ = start_;

@@ -10,12 +10,15 @@
 #include <vector>
 
 #include "plan/decision_space.hpp"
+#include "plan/measures.hpp"
 #include "plan/network_evaluator.hpp"
 
 namespace vantage {
 
 struct SearchSetup {
   const DecisionSpace& space;
+  const SurveyProblem& problem;
+  const Measures& measures;
   const PlanConfig& config;
   NetworkEvaluator& evaluator;
   std::size_t batch = 1;  // offspring at once in the steady state

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
+
+#include "plan/measures.hpp"
 #include "plan/network_evaluator.hpp"
+#include "vantage/simulator.hpp"
 
 namespace vantage {
 
@@ -9,24 +13,30 @@ class SimulatorEvaluator final : public NetworkEvaluator {
  public:
   struct Options {
     std::uint64_t sample_voxels = 0;  // 0: every ray
-    bool overlap = true;
-    double min_link_overlap = 0;  // 0: parts are not counted
+    std::size_t kept = 0;             // stations at the head of every network that were there before
+    // Connected parts of the visibility graph; needed where a measure needs it.
+    std::function<std::size_t(const Network&)> visible_parts = {};
   };
   // Borrows the simulator.
-  SimulatorEvaluator(Simulator& simulator, const Options& options) : simulator_(simulator), options_(options) {}
+  SimulatorEvaluator(Simulator& simulator, Measures measures, Options options)
+      : simulator_(simulator), measures_(std::move(measures)), options_(std::move(options)) {}
 
   std::size_t chunk() const override { return options_.sample_voxels == 0 ? 1 : 0; }
-  std::optional<std::vector<NetworkValue>> evaluate(std::span<const Network> networks,
-                                                    const Progress& progress) override;
-  std::optional<std::vector<NetworkEstimate>> estimate(std::span<const Network> networks,
-                                                       const Progress& progress) override;
-  std::optional<ConfirmedNetwork> confirm(const Network& network, const Progress& progress) override;
+  std::optional<std::vector<std::vector<double>>> evaluate(std::span<const PlacedNetwork> networks,
+                                                           const Progress& progress) override;
+  std::optional<std::vector<std::vector<Estimate>>> estimate(std::span<const PlacedNetwork> networks,
+                                                             const Progress& progress) override;
+  std::optional<ConfirmedNetwork> confirm(const PlacedNetwork& network, const Progress& progress) override;
   double trace_seconds() const override { return trace_seconds_; }
 
  private:
-  std::optional<std::vector<NetworkCounts>> count(std::span<const Network> networks, bool overlap,
+  std::optional<std::vector<NetworkCounts>> count(std::span<const Network> networks, const Needs& needs,
                                                   const Progress& progress);
+  MeasuredNetwork measured(const NetworkCounts& counts, const PlacedNetwork& stations, const Network& network,
+                           const Needs& needs) const;
+
   Simulator& simulator_;
+  Measures measures_;
   Options options_;
   double trace_seconds_ = 0;
 };

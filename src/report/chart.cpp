@@ -7,7 +7,7 @@
 #include <numbers>
 #include <utility>
 
-#include "report/text.hpp"
+#include "core/text.hpp"
 
 namespace vantage {
 namespace {

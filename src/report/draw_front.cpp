@@ -3,10 +3,10 @@
 #include <cmath>
 #include <string>
 
+#include "core/text.hpp"
 #include "report/front_view.hpp"
 #include "report/linked.hpp"
 #include "report/pictures.hpp"
-#include "report/text.hpp"
 #include "vantage/export.hpp"
 
 namespace vantage {
@@ -21,9 +21,9 @@ Rect frame(bool bar) { return {86, 72, kWidth - 86 - (bar ? 110 : 30), kHeight -
 
 }  // namespace
 
-std::unique_ptr<Canvas> front_picture(const PlanResult& result, const PlanConfig& config) {
-  const FrontView view(config);
-  const bool sampled = config.sample_voxels > 0;
+std::unique_ptr<Canvas> front_picture(const PlanResult& result) {
+  const FrontView view(result);
+  const bool sampled = result.config.sample_voxels > 0;
   std::vector<FrontDot> dots;
   bool any_confirmed = false;
   for (const PlanEntry& entry : result.front) {
@@ -32,14 +32,14 @@ std::unique_ptr<Canvas> front_picture(const PlanResult& result, const PlanConfig
   }
   auto page = std::make_unique<Canvas>(kWidth, kHeight);
   Canvas& canvas = *page;
-  const Rect area = frame(view.coloured());
-  std::string subtitle = problem_line(config);
-  subtitle +=
-      ", hypervolume " + fixed(std::isnan(result.exact_hypervolume) ? result.hypervolume : result.exact_hypervolume, 3);
+  const Rect area = frame(view.third() != nullptr);
+  std::string subtitle = problem_line(result.problem);
+  const double value = std::isnan(result.exact_hypervolume) ? result.hypervolume : result.exact_hypervolume;
+  subtitle += ", hypervolume " + fixed(value, 3);
   subtitle += " after " + grouped(result.evaluations) + " evaluations";
   const Chart chart(canvas, area, view.x_axis(dots), view.y_axis(dots),
                     view.single() ? "Best network found" : "Pareto front", subtitle);
-  if (view.coloured()) draw_station_bar(canvas, area, config);
+  if (view.third()) draw_colour_bar(canvas, area, view);
 
   std::vector<Rect> taken;
   const auto occupy = [&](Point p, double r) { taken.push_back({p.x - r, p.y - r, 2 * r, 2 * r}); };
@@ -49,7 +49,7 @@ std::unique_ptr<Canvas> front_picture(const PlanResult& result, const PlanConfig
     const Point a = chart.at(seen.x, seen.y), b = chart.at(exact.x, exact.y);
     if (!sampled && entry.confirmed) continue;
     if (entry.confirmed) canvas.line(a, b, {.colour = style::pale, .width = 1});
-    canvas.circle(a, 4, {.colour = view.coloured() ? view.colour(seen) : style::blue, .width = 1.1, .opacity = 0.75});
+    canvas.circle(a, 4, {.colour = view.third() ? view.colour(seen) : style::blue, .width = 1.1, .opacity = 0.75});
     occupy(a, 5);
   }
   bool any_dominated = false;
@@ -66,39 +66,36 @@ std::unique_ptr<Canvas> front_picture(const PlanResult& result, const PlanConfig
   }
 
   std::vector<LegendItem> legend;
-  const Colour key = view.coloured() ? style::faint : style::blue;
+  const Colour key = view.third() ? style::faint : style::blue;
   if (any_confirmed) legend.push_back({LegendItem::Mark::filled, key, "every ray"});
   if (any_dominated) legend.push_back({LegendItem::Mark::small, key, "dominated"});
   if (sampled)
-    legend.push_back({LegendItem::Mark::hollow, key, "search, " + grouped(config.sample_voxels) + " voxels"});
+    legend.push_back({LegendItem::Mark::hollow, key, "search, " + grouped(result.config.sample_voxels) + " voxels"});
   else if (!any_confirmed)
     legend.push_back({LegendItem::Mark::hollow, key, "as the search saw it"});
-  const PlanEntry* best = result.front.empty() ? nullptr : &result.front[compromise(result, config)];
+  const PlanEntry* best = result.front.empty() ? nullptr : &result.front[compromise(result)];
   if (best && known(best->confirmed ? view.confirmed(*best) : view.searched(*best))) {
     const PlanEntry& chosen = *best;
     const FrontDot dot = chosen.confirmed ? view.confirmed(chosen) : view.searched(chosen);
     const Point p = chart.at(dot.x, dot.y);
     if (!view.single()) canvas.circle(p, 9, {.colour = style::orange, .width = 2.2});
     occupy(p, 11);
-    std::string words = fixed(chosen.confirmed ? chosen.exact_coverage : chosen.coverage, 3) + " coverage";
-    if (!view.by_count())
-      words += ", " + fixed(chosen.confirmed ? chosen.exact_overlap : chosen.overlap, 3) + " overlap";
-    if (view.by_count() || view.coloured()) words += ", " + std::to_string(chosen.stations.size()) + " stations";
+    const std::string words = view.words(chosen);
     const TextStyle text{.size = 12.5, .colour = style::orange, .across = Align::middle, .halo = 2};
     const Rect place = place_label(p, 13, canvas.text_width(words, text) + 6, 18,
                                    {area.x + 4, area.y + 4, area.width - 8, area.height - 8}, taken);
     canvas.text({place.x + place.width / 2, place.y + place.height / 2}, words, text);
     if (!view.single())
       legend.push_back({LegendItem::Mark::ring, style::orange,
-                        !view.by_count() && linked(chosen, config) ? "compromise: largest linked product"
-                                                                   : "compromise: largest product of gains"});
+                        links_matter(result) && linked(chosen, result) ? "compromise: largest linked product"
+                                                                       : "compromise: largest product of gains"});
   }
   draw_legend(canvas, {area.x, kHeight - 24}, legend);
   return page;
 }
 
-std::unique_ptr<Canvas> history_picture(const PlanResult& result, const PlanConfig& config) {
-  const FrontView view(config);
+std::unique_ptr<Canvas> history_picture(const PlanResult& result) {
+  const FrontView view(result);
   // Five moments, closer together at the start, where the front still moves.
   std::vector<const PlanIteration*> moments;
   if (!result.history.empty()) {
@@ -110,19 +107,19 @@ std::unique_ptr<Canvas> history_picture(const PlanResult& result, const PlanConf
   }
   std::vector<FrontDot> dots;
   for (const PlanIteration* line : moments)
-    for (const auto& f : line->front) dots.push_back(view.objectives(f));
+    for (const auto& f : line->front)
+      if (const auto dot = view.objectives(f)) dots.push_back(*dot);
   auto page = std::make_unique<Canvas>(kWidth, kHeight);
   Canvas& canvas = *page;
   const Rect area = frame(false);
   const Chart chart(canvas, area, view.x_axis(dots), view.y_axis(dots), "Convergence of the front",
-                    problem_line(config) + ", as the search saw it");
+                    problem_line(result.problem) + ", as the search saw it");
   std::vector<LegendItem> legend;
   for (std::size_t k = 0; k < moments.size(); ++k) {
     const double t = moments.size() == 1 ? 1 : static_cast<double>(k) / static_cast<double>(moments.size() - 1);
     const Colour colour = ramp(std::array<Colour, 3>{{{0.96, 0.72, 0.42}, {0.80, 0.36, 0.42}, style::blue}}, t);
     for (const auto& f : moments[k]->front) {
-      const FrontDot dot = view.objectives(f);
-      canvas.disc(chart.at(dot.x, dot.y), 3.6, colour, 0.85);
+      if (const auto dot = view.objectives(f)) canvas.disc(chart.at(dot->x, dot->y), 3.6, colour, 0.85);
     }
     legend.push_back({LegendItem::Mark::filled, colour, "iteration " + std::to_string(moments[k]->iteration)});
   }
@@ -130,12 +127,10 @@ std::unique_ptr<Canvas> history_picture(const PlanResult& result, const PlanConf
   return page;
 }
 
-void draw_front(const std::filesystem::path& file, const PlanResult& result, const PlanConfig& config) {
-  front_picture(result, config)->save(file);
-}
+void draw_front(const std::filesystem::path& file, const PlanResult& result) { front_picture(result)->save(file); }
 
-void draw_history_fronts(const std::filesystem::path& file, const PlanResult& result, const PlanConfig& config) {
-  history_picture(result, config)->save(file);
+void draw_history_fronts(const std::filesystem::path& file, const PlanResult& result) {
+  history_picture(result)->save(file);
 }
 
 }  // namespace vantage

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
+#include "core/text.hpp"
 #include "report/front_view.hpp"
 #include "report/pictures.hpp"
-#include "report/text.hpp"
 #include "vantage/export.hpp"
 
 namespace vantage {
 
-std::unique_ptr<Canvas> hypervolume_picture(const PlanResult& result, const PlanConfig& config) {
+std::unique_ptr<Canvas> hypervolume_picture(const PlanResult& result) {
   constexpr double kWidth = 780, kHeight = 500;
   auto page = std::make_unique<Canvas>(kWidth, kHeight);
   Canvas& canvas = *page;
@@ -20,8 +20,8 @@ std::unique_ptr<Canvas> hypervolume_picture(const PlanResult& result, const Plan
     last = std::max(last, static_cast<double>(line.iteration));
   }
   if (result.history.empty()) low = 0, high = 1;
-  if (config.target_hypervolume)
-    low = std::min(low, *config.target_hypervolume), high = std::max(high, *config.target_hypervolume);
+  if (result.config.target_hypervolume)
+    low = std::min(low, *result.config.target_hypervolume), high = std::max(high, *result.config.target_hypervolume);
   Axis x{.label = "Iteration", .low = 0, .high = last * 1.02};
   if (!result.history.empty()) {
     const PlanIteration& end = result.history.back();
@@ -32,9 +32,10 @@ std::unique_ptr<Canvas> hypervolume_picture(const PlanResult& result, const Plan
   const Axis y = axis_over("Hypervolume (reference point 1, largest value 1)", low, high, 0, 1);
   std::string reason = to_string(result.stop_reason);
   std::replace(reason.begin(), reason.end(), '_', ' ');
-  const Chart chart(canvas, area, x, y, "Hypervolume over the search", problem_line(config) + ", stopped: " + reason);
-  if (config.target_hypervolume) {
-    const double target = *config.target_hypervolume;
+  const Chart chart(canvas, area, x, y, "Hypervolume over the search",
+                    problem_line(result.problem) + ", stopped: " + reason);
+  if (result.config.target_hypervolume) {
+    const double target = *result.config.target_hypervolume;
     canvas.line(chart.at(x.low, target), chart.at(x.high, target),
                 {.colour = style::orange, .width = 1.2, .dashes = {6, 4}});
     const Point beside = chart.at(x.low + 0.01 * (x.high - x.low), target);
@@ -58,8 +59,8 @@ std::unique_ptr<Canvas> hypervolume_picture(const PlanResult& result, const Plan
   return page;
 }
 
-void draw_hypervolume(const std::filesystem::path& file, const PlanResult& result, const PlanConfig& config) {
-  hypervolume_picture(result, config)->save(file);
+void draw_hypervolume(const std::filesystem::path& file, const PlanResult& result) {
+  hypervolume_picture(result)->save(file);
 }
 
 }  // namespace vantage

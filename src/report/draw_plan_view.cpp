@@ -5,22 +5,21 @@
 #include <numbers>
 #include <string>
 
+#include "core/text.hpp"
 #include "report/chart.hpp"
 #include "report/pictures.hpp"
 #include "report/relief.hpp"
 #include "report/search_tint.hpp"
 #include "report/spread.hpp"
-#include "report/text.hpp"
 #include "vantage/error.hpp"
 #include "vantage/export.hpp"
 
 namespace vantage {
 namespace {
 
-constexpr double kLeast = default_link_overlap;  // overlaps below are not drawn, as in figure 12 of the method
-constexpr double kMostWidth = 9;                 // of the strongest link
-constexpr double kStrong = 0.1;                  // if none is stronger, a link of this overlap would be as wide
-constexpr double kDisc = 10.5;                   // radius of a station's number
+constexpr double kMostWidth = 9;  // of the strongest link
+constexpr double kStrong = 0.1;   // if none is stronger, a link of this overlap would be as wide
+constexpr double kDisc = 10.5;    // radius of a station's number
 constexpr std::size_t kPixelsPerUnit = 2, kSupersampling = 2;
 constexpr Colour kStation{0.10, 0.22, 0.45}, kLink{0.16, 0.34, 0.66}, kSkipped{0.72, 0.12, 0.12};
 
@@ -106,7 +105,7 @@ void draw_scale_bar(Canvas& canvas, Point at, double widest, double metre) {
 
 std::unique_ptr<Canvas> plan_view_picture(const Scene& scene, const SearchArea& area,
                                           std::span<const PlacedStation> stations, const OverlapMatrix& overlap,
-                                          const std::string& title) {
+                                          double link_overlap, const std::string& title) {
   if (overlap.size() != stations.size() && overlap.size() != 0)
     throw Error(Errc::invalid_argument, "draw_plan_view: " + std::to_string(stations.size()) +
                                             " stations, but an overlap matrix of " + std::to_string(overlap.size()));
@@ -166,11 +165,11 @@ std::unique_ptr<Canvas> plan_view_picture(const Scene& scene, const SearchArea& 
   double most = 0;
   bool any_bridge = false;
   if (overlap.size() == stations.size()) {
-    const auto bridges = connectivity(overlap, kLeast).bridges;
+    const auto bridges = connectivity(overlap, link_overlap).bridges;
     for (std::size_t a = 0; a < shown.size(); ++a) {
       for (std::size_t b = a + 1; b < shown.size(); ++b) {
         const double value = overlap(shown[a], shown[b]);
-        if (value < kLeast) continue;
+        if (value < link_overlap || value <= 0) continue;
         const bool bridge = std::binary_search(bridges.begin(), bridges.end(), std::pair{shown[a], shown[b]});
         links.push_back({a, b, value, bridge});
         any_bridge = any_bridge || bridge;
@@ -230,7 +229,7 @@ std::unique_ptr<Canvas> plan_view_picture(const Scene& scene, const SearchArea& 
     canvas.text(at, "Overlap of two stations", {.size = 12.5, .bold = true});
     at.y += 22;
     std::vector<double> samples = nice_ticks(0, scale, 3);
-    std::erase_if(samples, [](double v) { return v < kLeast; });
+    std::erase_if(samples, [&](double v) { return v < link_overlap; });
     const auto labels = tick_labels(samples);
     for (std::size_t k = 0; k < samples.size(); ++k) {
       canvas.line(
@@ -245,17 +244,19 @@ std::unique_ptr<Canvas> plan_view_picture(const Scene& scene, const SearchArea& 
       at.y += 22;
     }
     canvas.text(at, "largest " + fixed(most, 3), {.size = 12.5, .colour = style::faint});
-    canvas.text({at.x, at.y + 17}, "below " + number(kLeast) + " not drawn", {.size = 12.5, .colour = style::faint});
+    canvas.text({at.x, at.y + 17}, "below " + number(link_overlap) + " not drawn",
+                {.size = 12.5, .colour = style::faint});
   } else if (stations.size() > 1 && overlap.size() == stations.size()) {
-    canvas.text({at.x, at.y + 6}, "no overlap above " + number(kLeast), {.size = 12.5, .colour = style::faint});
+    canvas.text({at.x, at.y + 6}, "no overlap above " + number(link_overlap), {.size = 12.5, .colour = style::faint});
   }
   draw_scale_bar(canvas, {left + 1, std::max(map.bottom() - 6, at.y + 60)}, kPanel - 40, metre);
   return page;
 }
 
 void draw_plan_view(const std::filesystem::path& file, const Scene& scene, const SearchArea& area,
-                    std::span<const PlacedStation> stations, const OverlapMatrix& overlap, const std::string& title) {
-  plan_view_picture(scene, area, stations, overlap, title)->save(file);
+                    std::span<const PlacedStation> stations, const OverlapMatrix& overlap, const std::string& title,
+                    double link_overlap) {
+  plan_view_picture(scene, area, stations, overlap, link_overlap, title)->save(file);
 }
 
 }  // namespace vantage

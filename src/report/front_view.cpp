@@ -2,79 +2,114 @@
 #include "report/front_view.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+
+#include "core/text.hpp"
 
 namespace vantage {
 namespace {
 
-const char* const kCoverage = "Coverage (1: every surveyed voxel at its goal density)";
-const char* const kOverlap = "Overlap (average clustering coefficient)";
+std::string axis_label(const Objective& measure) {
+  return measure.unit.empty() ? measure.label : measure.label + " (" + measure.unit + ")";
+}
 
-template <class Get>
-Axis share_axis(const std::string& label, const std::vector<FrontDot>& dots, bool whole, Get get) {
-  if (whole) return axis_over(label, 0, 1, 0, 1);
-  double low = 1, high = 0;
-  for (const FrontDot& dot : dots) low = std::min(low, get(dot)), high = std::max(high, get(dot));
-  if (dots.empty()) low = 0, high = 1;
-  return axis_over(label, low, high, 0, 1);
+Axis count_axis(const Objective& measure) {
+  Axis axis{.label = measure.label, .low = measure.best - 0.5, .high = measure.worst + 0.5};
+  const double step = std::max(1.0, std::ceil((measure.worst - measure.best) / 12));
+  for (double n = measure.best; n <= measure.worst; n += step) axis.ticks.push_back(n);
+  return axis;
+}
+
+Axis axis_of(const Objective& measure, const std::vector<FrontDot>& dots, bool whole, double FrontDot::*coordinate) {
+  if (measure.by_alpha) return count_axis(measure);
+  const double bottom = std::min(measure.best, measure.worst), top = std::max(measure.best, measure.worst);
+  double low = top, high = bottom;
+  for (const FrontDot& dot : dots) {
+    if (!std::isfinite(dot.*coordinate)) continue;
+    low = std::min(low, dot.*coordinate), high = std::max(high, dot.*coordinate);
+  }
+  if (whole || low > high) low = std::min(low, bottom), high = std::max(high, top);
+  if (low > high) std::swap(low, high);
+  return axis_over(axis_label(measure), low, high, std::min(low, bottom), std::max(high, top));
 }
 
 }  // namespace
 
+FrontView::FrontView(const PlanResult& result) : result_(result), measures_(result.measures) {
+  // A search that ended before it began has axes all the same.
+  for (const char* name : {"coverage", "overlap"})
+    if (measures_.size() < 2) measures_.push_back(make_objective(name));
+  const std::size_t objectives = result.problem.objectives.size();
+  std::vector<const Objective*> order;
+  const Objective* count = nullptr;
+  for (std::size_t k = 0; k < std::max<std::size_t>(objectives, 2) && k < measures_.size(); ++k) {
+    const Objective& measure = measures_[k];
+    if (measure.by_alpha && objectives > 1 && !count)
+      count = &measure;
+    else
+      order.push_back(&measure);
+  }
+  if (count) order.insert(objectives == 2 ? order.begin() : order.begin() + 2, count);
+  x_ = order[0], y_ = order[1];
+  third_ = objectives > 2 ? order[2] : nullptr;
+}
+
 FrontDot FrontView::searched(const PlanEntry& entry) const {
-  const double n = static_cast<double>(entry.stations.size());
-  return by_count() ? FrontDot{n, entry.coverage, n} : FrontDot{entry.coverage, entry.overlap, n};
+  const auto value = [&](const Objective& measure) { return entry.values.at(measure.name).searched; };
+  return {value(*x_), value(*y_), third_ ? value(*third_) : 0};
 }
 
 FrontDot FrontView::confirmed(const PlanEntry& entry) const {
-  const double n = static_cast<double>(entry.stations.size());
-  return by_count() ? FrontDot{n, entry.exact_coverage, n} : FrontDot{entry.exact_coverage, entry.exact_overlap, n};
+  const auto value = [&](const Objective& measure) { return entry.values.at(measure.name).exact; };
+  return {value(*x_), value(*y_), third_ ? value(*third_) : 0};
 }
 
-FrontDot FrontView::objectives(std::span<const double> f) const {
-  const auto count = [&](double alpha) {
-    return static_cast<double>(config_.fixed.size() +
-                               station_count_from_alpha(alpha, config_.stations_min, config_.stations_max));
+std::optional<FrontDot> FrontView::objectives(std::span<const double> f) const {
+  if (std::any_of(f.begin(), f.end(), [](double value) { return !(value <= 1); })) return std::nullopt;
+  const auto value = [&](const Objective* measure) {
+    for (std::size_t k = 0; k < f.size(); ++k)
+      if (measure && measure->name == result_.problem.objectives[k].name) return measure->unscaled(f[k]);
+    return 0.0;
   };
-  const double all = static_cast<double>(config_.fixed.size() + config_.stations_max);
-  if (config_.fitness) return {1 - f[0], 0, all};
-  switch (config_.problem) {
-    case Problem::coverage_fix: return {1 - f[0], 0, all};
-    case Problem::coverage_overlap_fix: return {1 - f[0], 1 - f[1], all};
-    case Problem::coverage_min: return {count(f[1]), 1 - f[0], count(f[1])};
-    case Problem::coverage_overlap_min: return {1 - f[0], 1 - f[1], count(f[2])};
-  }
-  return {};
+  return FrontDot{value(x_), value(y_), value(third_)};
 }
 
-Axis FrontView::x_axis(const std::vector<FrontDot>& dots) const {
-  if (!by_count()) return share_axis(kCoverage, dots, single(), [](const FrontDot& d) { return d.x; });
-  const double low = static_cast<double>(config_.fixed.size() + config_.stations_min);
-  const double high = static_cast<double>(config_.fixed.size() + config_.stations_max);
-  Axis axis{.label = "Number of stations", .low = low - 0.5, .high = high + 0.5};
-  const double step = std::max(1.0, std::ceil((high - low) / 12));
-  for (double n = low; n <= high; n += step) axis.ticks.push_back(n);
-  return axis;
-}
-
-Axis FrontView::y_axis(const std::vector<FrontDot>& dots) const {
-  return share_axis(by_count() ? kCoverage : kOverlap, dots, single(), [](const FrontDot& d) { return d.y; });
-}
+Axis FrontView::x_axis(const std::vector<FrontDot>& dots) const { return axis_of(*x_, dots, single(), &FrontDot::x); }
+Axis FrontView::y_axis(const std::vector<FrontDot>& dots) const { return axis_of(*y_, dots, single(), &FrontDot::y); }
 
 Colour FrontView::colour(const FrontDot& dot) const {
-  if (!coloured()) return style::blue;
-  const double low = static_cast<double>(config_.fixed.size() + config_.stations_min);
-  const double range = std::max<double>(1, static_cast<double>(config_.stations_max - config_.stations_min));
-  return ramp(kRisingRamp, 0.95 * (dot.stations - low) / range);  // the last yellow is too pale on white
+  if (!third_) return style::blue;
+  const double low = std::min(third_->best, third_->worst), range = std::abs(third_->best - third_->worst);
+  const double share = (dot.colour - low) / (range > 0 ? range : 1);
+  return ramp(kRisingRamp, 0.95 * std::clamp(share, 0.0, 1.0));  // the last yellow is too pale on white
 }
 
-std::string problem_line(const PlanConfig& config) {
-  const std::size_t low = config.fixed.size() + config.stations_min, high = config.fixed.size() + config.stations_max;
-  std::string line = to_string(config.problem) + ", " + std::to_string(low);
+std::string FrontView::words(const PlanEntry& entry) const {
+  std::string text;
+  for (const Objective* measure : {x_, y_, third_}) {
+    if (!measure) continue;
+    const double value = entry.value(measure->name);
+    text += text.empty() ? "" : ", ";
+    text += measure->by_alpha ? std::to_string(entry.stations.size()) : fixed(value, 3);
+    text += (measure->unit.empty() ? "" : " " + measure->unit) + " " + measure->name;
+  }
+  return text;
+}
+
+std::string problem_line(const SurveyProblem& problem) {
+  const std::size_t low = problem.kept.size() + problem.stations_min, high = problem.kept.size() + problem.stations_max;
+  std::string line = problem.name;
+  if (line == "custom") {
+    line.clear();
+    for (const Objective& objective : problem.objectives) line += (line.empty() ? "" : ", ") + objective.name;
+  }
+  line += ", " + std::to_string(low);
   if (high != low) line += " to " + std::to_string(high);
   line += high == 1 ? " station" : " stations";
-  if (!config.fixed.empty()) line += " (" + std::to_string(config.fixed.size()) + " kept)";
+  if (!problem.kept.empty()) line += " (" + std::to_string(problem.kept.size()) + " kept)";
+  for (const Requirement& requirement : problem.requirements) line += ", " + to_string(requirement);
   return line;
 }
 
@@ -95,18 +130,23 @@ void draw_legend(Canvas& canvas, Point at, std::span<const LegendItem> items) {
   }
 }
 
-void draw_station_bar(Canvas& canvas, const Rect& area, const PlanConfig& config) {
-  const FrontView view(config);
-  const std::size_t low = config.fixed.size() + config.stations_min, high = config.fixed.size() + config.stations_max;
-  const double cell = area.height / static_cast<double>(high - low + 1);
-  const std::size_t step = static_cast<std::size_t>(std::ceil(16 / cell));
-  for (std::size_t n = low; n <= high; ++n) {
-    const double y = area.bottom() - cell * static_cast<double>(n - low + 1);
-    canvas.fill({area.right() + 18, y, 16, cell + 0.5}, view.colour({.stations = static_cast<double>(n)}));
-    if ((n - low) % step == 0) canvas.text({area.right() + 40, y + cell / 2}, std::to_string(n), {.size = 12.5});
+void draw_colour_bar(Canvas& canvas, const Rect& area, const FrontView& view) {
+  const Objective& measure = *view.third();
+  const double low = std::min(measure.best, measure.worst), high = std::max(measure.best, measure.worst);
+  const std::size_t cells = measure.by_alpha ? static_cast<std::size_t>(high - low) + 1 : 24;
+  const double cell = area.height / static_cast<double>(cells);
+  const auto step = static_cast<std::size_t>(std::ceil((measure.by_alpha ? 16 : 48) / cell));
+  for (std::size_t k = 0; k < cells; ++k) {
+    const double y = area.bottom() - cell * static_cast<double>(k + 1);
+    const double share = cells == 1 ? 0 : static_cast<double>(k) / static_cast<double>(cells - 1);
+    const double value = low + share * (high - low);
+    canvas.fill({area.right() + 18, y, 16, cell + 0.5}, view.colour({.colour = value}));
+    if (k % step == 0)
+      canvas.text({area.right() + 40, y + cell / 2}, measure.by_alpha ? fixed(value, 0) : fixed(value, 2),
+                  {.size = 12.5});
   }
   canvas.rectangle({area.right() + 18, area.y, 16, area.height}, {.colour = style::faint, .width = 1});
-  canvas.text({area.right() + 72, area.y + area.height / 2}, "Number of stations",
+  canvas.text({area.right() + 72, area.y + area.height / 2}, axis_label(measure),
               {.size = 13.5, .across = Align::middle, .turn = -std::numbers::pi / 2});
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a problem's front is laid out on paper: which quantity stands on which axis, which one is colour.
+// How a problem's front is laid out on paper: which measure stands on which axis, which one is colour.
 #pragma once
 
 #include <optional>
@@ -15,29 +15,38 @@ namespace vantage {
 
 struct FrontDot {
   double x = 0, y = 0;
-  double stations = 0;
+  double colour = 0;  // of the third objective, where there is one
 };
 
+// With one objective: that one to the right, the next measure up. With several: the first two, the third by colour; but
+// the number of stations to the right where there are two, and as colour where there are three.
 class FrontView {
  public:
-  explicit FrontView(const PlanConfig& config) : config_(config) {}
+  explicit FrontView(const PlanResult& result);
+  FrontView(const FrontView&) = delete;  // points into itself
 
-  bool single() const { return has_one_objective(config_); }                          // one dot: on the whole range
-  bool by_count() const { return config_.problem == Problem::coverage_min; }          // stations on x, coverage on y
-  bool coloured() const { return config_.problem == Problem::coverage_overlap_min; }  // by the number of stations
+  bool single() const { return result_.problem.objectives.size() == 1; }  // one dot: on the whole range
+  const Objective& x() const { return *x_; }
+  const Objective& y() const { return *y_; }
+  const Objective* third() const { return third_; }  // null: no colour
   FrontDot searched(const PlanEntry& entry) const;
   FrontDot confirmed(const PlanEntry& entry) const;
-  FrontDot objectives(std::span<const double> f) const;  // of a line of the history
+  // Of a line of the history; empty where the network breaks a requirement.
+  std::optional<FrontDot> objectives(std::span<const double> f) const;
   Axis x_axis(const std::vector<FrontDot>& dots) const;
   Axis y_axis(const std::vector<FrontDot>& dots) const;
   Colour colour(const FrontDot& dot) const;
+  // "0.983 coverage, 0.204 overlap"
+  std::string words(const PlanEntry& entry) const;
 
  private:
-  const PlanConfig& config_;
+  const PlanResult& result_;
+  std::vector<Objective> measures_;  // at least two
+  const Objective *x_ = nullptr, *y_ = nullptr, *third_ = nullptr;
 };
 
 // "coverage-overlap-fix, 8 stations"
-std::string problem_line(const PlanConfig& config);
+std::string problem_line(const SurveyProblem& problem);
 
 // One row of symbols with words, from `at` to the right.
 struct LegendItem {
@@ -46,7 +55,7 @@ struct LegendItem {
   std::string text = {};
 };
 void draw_legend(Canvas& canvas, Point at, std::span<const LegendItem> items);
-// A vertical bar of the stations' colours with its numbers, right of `area`.
-void draw_station_bar(Canvas& canvas, const Rect& area, const PlanConfig& config);
+// A vertical bar of the third objective's colours with its numbers, right of `area`.
+void draw_colour_bar(Canvas& canvas, const Rect& area, const FrontView& view);
 
 }  // namespace vantage

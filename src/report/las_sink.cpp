@@ -9,8 +9,8 @@
 #include <string_view>
 
 #include "core/atomic_file.hpp"
+#include "core/text.hpp"
 #include "report/point_sink.hpp"
-#include "report/text.hpp"
 #include "vantage/error.hpp"
 #include "vantage/version.hpp"
 

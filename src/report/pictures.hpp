@@ -13,11 +13,11 @@
 
 namespace vantage {
 
-std::unique_ptr<Canvas> front_picture(const PlanResult& result, const PlanConfig& config);
-std::unique_ptr<Canvas> hypervolume_picture(const PlanResult& result, const PlanConfig& config);
-std::unique_ptr<Canvas> history_picture(const PlanResult& result, const PlanConfig& config);
+std::unique_ptr<Canvas> front_picture(const PlanResult& result);
+std::unique_ptr<Canvas> hypervolume_picture(const PlanResult& result);
+std::unique_ptr<Canvas> history_picture(const PlanResult& result);
 std::unique_ptr<Canvas> plan_view_picture(const Scene& scene, const SearchArea& area,
                                           std::span<const PlacedStation> stations, const OverlapMatrix& overlap,
-                                          const std::string& title);
+                                          double link_overlap, const std::string& title);
 
 }  // namespace vantage

@@ -9,6 +9,6 @@
 namespace vantage {
 
 // See run_parameters_json(). Equal runs give equal objects: nothing here depends on time or on file names.
-nlohmann::ordered_json run_parameters(const Simulator& simulator, const PlanConfig* plan);
+nlohmann::ordered_json run_parameters(const Simulator& simulator, const PlanResult* result);
 
 }  // namespace vantage

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "core/atomic_file.hpp"
-#include "report/text.hpp"
+#include "core/text.hpp"
 #include "vantage/error.hpp"
 #include "vantage/export.hpp"
 

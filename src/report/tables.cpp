@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "core/atomic_file.hpp"
-#include "report/text.hpp"
+#include "core/text.hpp"
 #include "vantage/export.hpp"
 
 namespace vantage {
@@ -23,22 +23,29 @@ void write_overlap_csv(const std::filesystem::path& file, const OverlapMatrix& o
   write_atomically(file, text);
 }
 
-void write_front_csv(const std::filesystem::path& file, const PlanResult& result, const PlanConfig& config) {
+void write_front_csv(const std::filesystem::path& file, const PlanResult& result) {
+  const bool alpha = result.problem.stations_min < result.problem.stations_max;
   std::size_t most = 0;
   for (const PlanEntry& entry : result.front) most = std::max(most, entry.stations.size());
-  std::string text =
-      "entry,station_count,coverage,coverage_se,overlap,overlap_se,exact_coverage,exact_overlap,dominated";
-  if (objective_names(config.problem).back() == "alpha") text += ",alpha";
+  std::string text = "entry,station_count";
+  for (const Objective& measure : result.measures) text += "," + measure.name + "," + measure.name + "_se";
+  for (const Objective& measure : result.measures) text += ",exact_" + measure.name;
+  text += ",dominated,missed";
+  if (alpha) text += ",alpha";
   for (std::size_t i = 0; i < most; ++i)
     for (const char* name : {"x", "y", "z", "u", "v", "status"}) text += "," + std::string(name) + number(i + 1);
   text += "\n";
   for (std::size_t k = 0; k < result.front.size(); ++k) {
     const PlanEntry& e = result.front[k];
-    text += number(k + 1) + "," + number(e.stations.size()) + "," + number(e.coverage) + "," + number(e.coverage_se) +
-            "," + number(e.overlap) + "," + number(e.overlap_se) + ",";
-    text += e.confirmed ? number(e.exact_coverage) + "," + number(e.exact_overlap) + "," + (e.dominated ? "1" : "0")
-                        : std::string(",,");
-    if (objective_names(config.problem).back() == "alpha") text += "," + number(e.x.back());
+    text += number(k + 1) + "," + number(e.stations.size());
+    for (const Objective& measure : result.measures) {
+      const MeasuredValue& value = e.values.at(measure.name);
+      text += "," + number(value.searched) + "," + number(value.standard_error);
+    }
+    for (const Objective& measure : result.measures)
+      text += "," + (e.confirmed ? number(e.values.at(measure.name).exact) : std::string());
+    text += std::string(",") + (!e.confirmed ? "" : e.dominated ? "1" : "0") + "," + number(e.missed);
+    if (alpha) text += "," + number(e.x.back());
     for (std::size_t i = 0; i < most; ++i) {
       if (i >= e.stations.size()) {
         text += ",,,,,,";
@@ -64,14 +71,17 @@ void write_history_csv(const std::filesystem::path& file, const PlanResult& resu
   write_atomically(file, text);
 }
 
-void write_fronts_csv(const std::filesystem::path& file, const PlanResult& result, const PlanConfig& config) {
+void write_fronts_csv(const std::filesystem::path& file, const PlanResult& result) {
+  const std::vector<Objective>& objectives = result.problem.objectives;
   std::string text = "iteration";
-  for (const std::string& name : objective_names(config)) text += "," + name;
+  for (const Objective& objective : objectives) text += "," + objective.name;
   text += "\n";
   for (const PlanIteration& line : result.history) {
     for (const auto& f : line.front) {
+      // Above 1 it breaks a requirement, and what it is worth was not kept.
+      if (std::any_of(f.begin(), f.end(), [](double value) { return !(value <= 1); })) continue;
       text += number(line.iteration);
-      for (const double value : f) text += "," + number(value);
+      for (std::size_t k = 0; k < objectives.size(); ++k) text += "," + number(objectives[k].unscaled(f[k]));
       text += "\n";
     }
   }

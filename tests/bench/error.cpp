@@ -11,9 +11,9 @@
 #include <numeric>
 #include <optional>
 
+#include "core/text.hpp"
 #include "error_picture.hpp"
 #include "networks.hpp"
-#include "report/text.hpp"
 #include "vantage/error.hpp"
 #include "vantage/export.hpp"
 

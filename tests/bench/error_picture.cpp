@@ -7,9 +7,9 @@
 #include <numbers>
 #include <optional>
 
+#include "core/text.hpp"
 #include "report/chart.hpp"
 #include "report/front_view.hpp"
-#include "report/text.hpp"
 
 namespace vantage::bench {
 namespace {

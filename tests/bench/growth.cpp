@@ -13,8 +13,8 @@
 #include <limits>
 #include <sstream>
 
+#include "core/text.hpp"
 #include "networks.hpp"
-#include "report/text.hpp"
 #include "support/temporary_folder.hpp"
 #include "trace/vulkan/device.hpp"
 #include "vantage/error.hpp"

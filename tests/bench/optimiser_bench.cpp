@@ -117,7 +117,7 @@ void step(const MoProblem& problem, Optimiser& optimiser, std::vector<double>& v
 }
 
 // The hypervolume that an algorithm ends with.
-double run(const MoProblem& problem, const Options& options, MoAlgorithm algorithm, OptimiserConfig config) {
+double run(const MoProblem& problem, const Options& options, Algorithm algorithm, OptimiserConfig config) {
   config.bounds = problem.bounds;
   if (options.blocks) config.blocks = problem.blocks, config.blocks_in_use = problem.blocks_in_use;
   const auto optimiser = make_optimiser(algorithm, problem.dimension, problem.objectives, config);
@@ -135,7 +135,7 @@ double run_front(const MoProblem& problem, const Options& options, Scheme scheme
   config.reference.assign(problem.objectives, reference);
   config.max_evaluations = evaluations;
   config.seed = seed;
-  return run(problem, options, mo_algorithm_from_string(options.algorithm), config);
+  return run(problem, options, algorithm_from_string(options.algorithm), config);
 }
 
 Summary front_over_seeds(const std::string& name, std::size_t dimension, const Options& options, Scheme scheme,
@@ -242,7 +242,7 @@ void print_station(const Options& options) {
 
 // One objective, CMA-ES set as the planner sets it.
 double run_survey(const MoProblem& problem, const Options& options, std::uint64_t seed) {
-  return run(problem, options, MoAlgorithm::cma_es,
+  return run(problem, options, Algorithm::cma_es,
              {.population = options.survey_population,
               .restarts = 1000,
               .x_tolerance = 0.02,

@@ -6,208 +6,127 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
-#include <vector>
 
-#include "core/philox.hpp"
+#include "vantage/error.hpp"
 
 namespace vantage {
 namespace {
 
-OverlapMatrix complete(std::size_t n, double weight) {
-  OverlapMatrix a(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t j = i + 1; j < n; ++j) a.set(i, j, weight);
-  }
-  return a;
-}
-
-// Equation 13 word by word.
-double clustering_by_definition(const OverlapMatrix& a) {
-  const std::size_t n = a.size();
-  double largest = 0, sum = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t j = 0; j < n; ++j) largest = std::max(largest, a(i, j));
-  }
-  for (std::size_t i = 0; i < n; ++i) {
-    double triangles = 0, pairs = 0;
-    for (std::size_t j = 0; j < n; ++j) {
-      for (std::size_t k = 0; k < n; ++k) {
-        triangles += a(i, j) * a(i, k) * a(j, k);
-        if (j != k) pairs += a(i, j) * a(i, k);
-      }
-    }
-    if (pairs > 0 && largest > 0) sum += triangles / pairs / largest;
-  }
-  return n == 0 ? 0 : sum / static_cast<double>(n);
-}
-
-TEST(Coverage, IsEquation8) {
+// Three stations, the first two of which share half of what they see.
+struct Survey {
   NetworkCounts counts;
-  EXPECT_EQ(coverage(counts, 2.5), 0.0);  // no surveyed voxel at all
-  counts.voxels = counts.weight = 10;
-  counts.saturated = 4;
-  counts.partial_points = 5;
-  EXPECT_DOUBLE_EQ(coverage(counts, 2.5), (4 + 5 / 2.5) / 10);
-  counts.saturated = 10;
-  counts.partial_points = 0;
-  EXPECT_EQ(coverage(counts, 2.5), 1.0);
+  std::vector<PlacedStation> stations = std::vector<PlacedStation>(3);
+  Survey() {
+    counts.stations = 3, counts.voxels = counts.weight = 100, counts.saturated = 50, counts.partial_points = 100;
+    counts.seen = {40, 40, 10};
+    counts.shared = {20, 0, 0};
+  }
+  MeasuredNetwork measured() const {
+    return {.counts = counts,
+            .stations = stations,
+            .kept = 1,
+            .goal_density = 4,
+            .voxels = 100,
+            .overlap = overlap_matrix(counts),
+            .visible_parts = 2};
+  }
+};
+
+double value_of(const std::string& name, const ObjectiveSettings& settings = {}) {
+  const Survey survey;
+  return make_objective(name, settings).value(survey.measured());
 }
 
-TEST(Coverage, IsTheWeightedMean) {
-  NetworkCounts counts;  // three voxels of weight 1 and one of weight 5: full, half, none; full
-  counts.voxels = 4;
-  counts.weight = 8;
-  counts.saturated = 1 + 5;
-  counts.partial_points = 2;
-  EXPECT_DOUBLE_EQ(coverage(counts, 4), (1 + 0.5 + 5) / 8);
+TEST(Objective, BuiltInOnesAreTheFormulasTheyName) {
+  const Survey survey;
+  EXPECT_EQ(value_of("coverage"), coverage(survey.counts, 4));
+  EXPECT_EQ(value_of("coverage"), 0.75);
+  EXPECT_EQ(value_of("overlap"), clustering_coefficient(overlap_matrix(survey.counts)));
+  EXPECT_EQ(value_of("stations"), 3);
+  EXPECT_EQ(value_of("parts"), 2);
+  EXPECT_EQ(value_of("parts", {.link_overlap = 0.5}), 3);  // the one link has 20 / 60
 }
 
-TEST(Coverage, IsExactForCountsBeyond32Bits) {
-  NetworkCounts counts;
-  counts.voxels = counts.weight = 1ull << 40;
-  counts.saturated = 1ull << 39;
-  counts.partial_points = 1ull << 41;
-  EXPECT_EQ(coverage(counts, 8), 0.75);
-}
-
-TEST(SharedBy, FindsEveryPair) {
-  for (const std::uint32_t n : {2u, 3u, 15u, 64u}) {
+TEST(Objective, FitnessIsEquation1) {
+  const auto fitness = [](std::size_t stations, double covered, std::size_t parts) {
     NetworkCounts counts;
-    counts.stations = n;
-    for (std::uint64_t k = 0; k < n * (n - 1) / 2; ++k) counts.shared.push_back(k);
-    std::uint64_t expected = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      for (std::size_t j = i + 1; j < n; ++j, ++expected) {
-        EXPECT_EQ(counts.shared_by(i, j), expected);
-        EXPECT_EQ(counts.shared_by(j, i), expected);
-      }
-    }
+    counts.weight = 1'000'000, counts.saturated = static_cast<std::uint64_t>(1e6 * covered);
+    const std::vector<PlacedStation> placed(stations);
+    return make_objective("fitness", {.stations_min = 4, .stations_max = 12})
+        .value({.counts = counts, .stations = placed, .visible_parts = parts});
+  };
+  EXPECT_NEAR(fitness(4, 0.83, 1), 0.4 * 0.83 + 0.4 + 0.2, 1e-12);  // the paper's best: 0.93
+  EXPECT_NEAR(fitness(4, 0.83, 1), 0.93, 0.005);
+  EXPECT_NEAR(fitness(12, 1, 4), 0.4 + 0.2 / 4, 1e-12);
+  EXPECT_NEAR(fitness(8, 0, 2), 0.4 * (std::sqrt(2.0) - 1) + 0.1, 1e-12);
+  EXPECT_THROW(make_objective("fitness", {.fitness = {.coverage = 2}}), Error);
+}
+
+TEST(Objective, ScalesBetweenBestAndWorst) {
+  const Objective error{.name = "error", .label = "Error", .unit = "mm", .best = 0, .worst = 10};
+  EXPECT_FALSE(error.maximised());
+  EXPECT_EQ(error.scaled(0), 0);
+  EXPECT_EQ(error.scaled(2.5), 0.25);
+  EXPECT_EQ(error.scaled(20), 2);
+  EXPECT_EQ(error.unscaled(0.25), 2.5);
+  const Objective stations = make_objective("stations", {.stations_min = 4, .stations_max = 12});
+  EXPECT_EQ(stations.unscaled(1.0 / 16), 5);  // by equation 7
+  EXPECT_EQ((Objective{.best = 3, .worst = 3}).scaled(7), 0);
+}
+
+TEST(Objective, StandardErrorsComeByTheJackknifeWhereNoneIsGiven) {
+  Survey survey;
+  NetworkCounts half = survey.counts;
+  half.voxels = half.weight = 50, half.seen = {30, 10, 5}, half.shared = {8, 0, 0};
+  half.saturated = 30, half.partial_points = 50;
+  NetworkCounts rest = survey.counts;
+  rest.voxels = rest.weight = 50, rest.seen = {10, 30, 5}, rest.shared = {12, 0, 0};
+  rest.saturated = 20, rest.partial_points = 50;
+  survey.counts.groups = {half, rest};
+  MeasuredNetwork measured = survey.measured();
+  measured.voxels = 1000;
+  const Estimate overlap = estimate(make_objective("overlap"), measured);
+  const Estimate by_formula = overlap_estimate(survey.counts, 1000);
+  EXPECT_EQ(overlap.value, by_formula.value);
+  EXPECT_EQ(overlap.standard_error, by_formula.standard_error);
+
+  const Objective own{.name = "own",
+                      .label = "Share of voxels that the first station sees",
+                      .needs = {.pairs = true},
+                      .value = [](const MeasuredNetwork& m) {
+                        return static_cast<double>(m.counts.seen[0]) / static_cast<double>(m.counts.voxels);
+                      }};
+  // Replicates 0.2 and 0.6 about 0.4: variance (1/2)·(0.04 + 0.04), less the share of the site that was sampled.
+  EXPECT_NEAR(estimate(own, measured).standard_error, std::sqrt(0.9 * 0.04), 1e-12);
+  EXPECT_EQ(estimate(make_objective("stations"), measured).standard_error, 0);
+  measured.voxels = 100;  // all of them were counted
+  EXPECT_EQ(estimate(own, measured).standard_error, 0);
+}
+
+TEST(Requirement, ReadsWhatIsAsked) {
+  const Requirement covered = make_requirement(" coverage >= 0.9 ");
+  EXPECT_EQ(to_string(covered), "coverage >= 0.9");
+  EXPECT_EQ(covered.missed_by(0.95), 0);
+  EXPECT_EQ(covered.missed_by(0.9), 0);
+  EXPECT_NEAR(covered.missed_by(0.7), 0.2, 1e-15);
+  EXPECT_EQ(covered.missed_by(std::nan("")), std::numeric_limits<double>::infinity());
+  const Requirement few = make_requirement("stations<=8", {.stations_min = 4, .stations_max = 12});
+  EXPECT_EQ(few.missed_by(10), 0.25);
+  EXPECT_EQ(few.missed_by(8), 0);
+  for (const char* wrong : {"coverage", "coverage>0.9", "coverage=0.9", "coverage>=", "coverage>=x", "coverage>=nan",
+                            "cover>=0.9", ">=0.9", "coverage>=0.9 0.8", "coverage>"})
+    EXPECT_THROW(make_requirement(wrong), Error) << wrong;
+}
+
+TEST(Objective, NamesAreListedWhereOneIsUnknown) {
+  for (const std::string& name : objective_names()) EXPECT_EQ(make_objective(name).name, name);
+  try {
+    make_objective("registration_error");
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), Errc::invalid_argument);
+    EXPECT_NE(std::string(e.what()).find("coverage, overlap, stations"), std::string::npos) << e.what();
   }
-}
-
-// Station masks drawn at random, counted once through NetworkCounts and once by equations 10 and 11.
-TEST(OverlapMatrix, MatchesVoxelMasks) {
-  for (const std::uint32_t n : {1u, 2u, 5u, 64u}) {
-    RandomStream random(n);
-    std::vector<std::uint64_t> masks(300);
-    for (auto& mask : masks) {
-      for (std::uint32_t s = 0; s < n; ++s) mask |= std::uint64_t{random.uniform() < 0.2} << s;
-    }
-    NetworkCounts counts;
-    counts.voxels = masks.size();
-    counts.stations = n;
-    counts.seen.assign(n, 0);
-    for (std::uint32_t i = 0; i < n; ++i) {
-      for (const auto mask : masks) counts.seen[i] += mask >> i & 1;
-      for (std::uint32_t j = i + 1; j < n; ++j) {
-        counts.shared.push_back(0);
-        for (const auto mask : masks) counts.shared.back() += (mask >> i & 1) & (mask >> j & 1);
-      }
-    }
-    const OverlapMatrix overlap = overlap_matrix(counts);
-    ASSERT_EQ(overlap.size(), n);
-    for (std::uint32_t i = 0; i < n; ++i) {
-      EXPECT_EQ(overlap(i, i), 0.0);
-      for (std::uint32_t j = 0; j < n; ++j) {
-        if (i == j) continue;
-        double both = 0, either = 0;
-        for (const auto mask : masks) {
-          both += static_cast<double>((mask >> i & 1) & (mask >> j & 1));
-          either += static_cast<double>((mask >> i & 1) | (mask >> j & 1));
-        }
-        EXPECT_EQ(overlap(i, j), both / either);
-      }
-    }
-  }
-}
-
-TEST(OverlapMatrix, IsZeroWhereNothingWasSeenOrMasksWereOff) {
-  NetworkCounts counts;
-  counts.stations = 3;
-  EXPECT_EQ(overlap_matrix(counts).size(), 3u);
-  EXPECT_EQ(overlap_matrix(counts)(0, 2), 0.0);
-  counts.seen = {0, 0, 5};
-  counts.shared = {0, 0, 0};
-  const OverlapMatrix overlap = overlap_matrix(counts);
-  EXPECT_EQ(overlap(0, 1), 0.0);  // 0/0
-  EXPECT_EQ(overlap(1, 2), 0.0);
-  EXPECT_EQ(clustering_coefficient(overlap), 0.0);
-}
-
-TEST(Clustering, KnownGraphs) {
-  EXPECT_EQ(clustering_coefficient(OverlapMatrix{}), 0.0);
-  EXPECT_EQ(clustering_coefficient(complete(1, 0)), 0.0);
-  EXPECT_EQ(clustering_coefficient(complete(2, 0.7)), 0.0);
-  // A complete graph of equal weights is fully clustered, whatever the weight, down to denormals.
-  for (const double weight : {1.0, 0.25, 1e-12, 1e-300}) {
-    EXPECT_DOUBLE_EQ(clustering_coefficient(complete(3, weight)), 1.0) << weight;
-    EXPECT_DOUBLE_EQ(clustering_coefficient(complete(64, weight)), 1.0) << weight;
-  }
-  // A star has no triangle; a path neither.
-  OverlapMatrix star(5);
-  for (std::size_t j = 1; j < 5; ++j) star.set(0, j, 0.5);
-  EXPECT_EQ(clustering_coefficient(star), 0.0);
-}
-
-TEST(Clustering, TriangleOfThreeWeights) {
-  // Node 0 has the links 1 and ½, the opposite link is ¼: C_0 = ¼, C_1 = ½, C_2 = 1 (maximum weight 1).
-  OverlapMatrix a(3);
-  a.set(0, 1, 1.0);
-  a.set(0, 2, 0.5);
-  a.set(1, 2, 0.25);
-  EXPECT_DOUBLE_EQ(clustering_coefficient(a), (0.25 + 0.5 + 1.0) / 3);
-  // The maximum is over all pairs: a stronger link elsewhere lowers every station's share, and its own two ends add
-  // nothing.
-  OverlapMatrix b(5);
-  b.set(0, 1, 0.5);
-  b.set(0, 2, 0.25);
-  b.set(1, 2, 0.125);
-  b.set(3, 4, 1.0);
-  EXPECT_DOUBLE_EQ(clustering_coefficient(b), (0.125 + 0.25 + 0.5) / 5);
-}
-
-TEST(Clustering, UnweightedGraphIsEquation12) {
-  // A triangle 0-1-2 with a tail 2-3: C = (1 + 1 + 1/3 + 0) / 4.
-  OverlapMatrix a(4);
-  for (const auto& [i, j] : {std::pair{0, 1}, {0, 2}, {1, 2}, {2, 3}}) a.set(i, j, 1.0);
-  EXPECT_DOUBLE_EQ(clustering_coefficient(a), (1 + 1 + 1.0 / 3) / 4);
-}
-
-TEST(Clustering, SkippedStationsStillCount) {
-  // Three stations of equal overlap among six.
-  OverlapMatrix a(6);
-  for (const auto& [i, j] : {std::pair{0, 1}, {0, 2}, {1, 2}}) a.set(i, j, 0.3);
-  EXPECT_DOUBLE_EQ(clustering_coefficient(a), 0.5);
-}
-
-TEST(Clustering, MatchesItsDefinitionOnRandomGraphs) {
-  RandomStream random(11);
-  for (int round = 0; round < 200; ++round) {
-    const std::size_t n = 1 + random.bits() % 64;
-    const double density = random.uniform();
-    OverlapMatrix a(n);
-    for (std::size_t i = 0; i < n; ++i) {
-      for (std::size_t j = i + 1; j < n; ++j) a.set(i, j, random.uniform() < density ? random.uniform() : 0.0);
-    }
-    const double c = clustering_coefficient(a);
-    EXPECT_NEAR(c, clustering_by_definition(a), 1e-13) << "round " << round;
-    EXPECT_GE(c, 0.0);
-    EXPECT_LE(c, 1.0);
-  }
-}
-
-TEST(StationCount, IsEquation7) {
-  EXPECT_EQ(station_count_from_alpha(0, 4, 12), 4u);
-  EXPECT_EQ(station_count_from_alpha(1, 4, 12), 12u);
-  EXPECT_EQ(station_count_from_alpha(0.5, 4, 12), 8u);
-  EXPECT_EQ(station_count_from_alpha(1.0 / 16, 4, 12), 5u);  // 4.5 goes up
-  EXPECT_EQ(station_count_from_alpha(std::nextafter(1.0 / 16, 0.0), 4, 12), 4u);
-  EXPECT_EQ(station_count_from_alpha(std::nextafter(0.5, 0.0), 4, 5), 4u);  // adding ½ first would round this up
-  EXPECT_EQ(station_count_from_alpha(-3, 4, 12), 4u);
-  EXPECT_EQ(station_count_from_alpha(7, 4, 12), 12u);
-  EXPECT_EQ(station_count_from_alpha(std::numeric_limits<double>::quiet_NaN(), 4, 12), 4u);
-  EXPECT_EQ(station_count_from_alpha(0.7, 6, 6), 6u);
 }
 
 }  // namespace

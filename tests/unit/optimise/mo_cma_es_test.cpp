@@ -12,7 +12,7 @@
 
 namespace vantage {
 
-void PrintTo(MoAlgorithm algorithm, std::ostream* out) { *out << to_string(algorithm); }
+void PrintTo(Algorithm algorithm, std::ostream* out) { *out << to_string(algorithm); }
 
 namespace {
 
@@ -55,7 +55,7 @@ StopReason run(Optimiser& optimiser, std::size_t n, const Objectives& f, std::si
 }
 
 struct Variant {
-  MoAlgorithm algorithm;
+  Algorithm algorithm;
   Scheme scheme;
   std::size_t batch;
   bool published = false;  // neither guided parents nor spread steps nor recombination
@@ -82,13 +82,13 @@ class EveryOptimiser : public testing::TestWithParam<Variant> {
   }
 };
 INSTANTIATE_TEST_SUITE_P(, EveryOptimiser,
-                         testing::Values(Variant{MoAlgorithm::mo_cma_es, Scheme::generational, 1},
-                                         Variant{MoAlgorithm::mo_cma_es, Scheme::steady_state, 1},
-                                         Variant{MoAlgorithm::mo_cma_es, Scheme::steady_state, 1, true},
-                                         Variant{MoAlgorithm::mo_cma_es, Scheme::steady_state, 7},
-                                         Variant{MoAlgorithm::mo_cma_es, Scheme::steady_state, 3, false, true},
-                                         Variant{MoAlgorithm::nsga2, Scheme::generational, 1},
-                                         Variant{MoAlgorithm::random_search, Scheme::generational, 1}),
+                         testing::Values(Variant{Algorithm::mo_cma_es, Scheme::generational, 1},
+                                         Variant{Algorithm::mo_cma_es, Scheme::steady_state, 1},
+                                         Variant{Algorithm::mo_cma_es, Scheme::steady_state, 1, true},
+                                         Variant{Algorithm::mo_cma_es, Scheme::steady_state, 7},
+                                         Variant{Algorithm::mo_cma_es, Scheme::steady_state, 3, false, true},
+                                         Variant{Algorithm::nsga2, Scheme::generational, 1},
+                                         Variant{Algorithm::random_search, Scheme::generational, 1}),
                          [](const auto& test) {
                            return to_string(test.param.algorithm) +
                                   (test.param.scheme == Scheme::generational
@@ -103,7 +103,7 @@ TEST_P(EveryOptimiser, NearsAKnownFront) {
   c.max_evaluations = 4000;
   auto optimiser = make(n, 2, c);
   EXPECT_EQ(run(*optimiser, n, two_spheres), StopReason::max_evaluations);
-  EXPECT_GT(optimiser->hypervolume(), GetParam().algorithm == MoAlgorithm::random_search ? 0.55 : 0.78);
+  EXPECT_GT(optimiser->hypervolume(), GetParam().algorithm == Algorithm::random_search ? 0.55 : 0.78);
   EXPECT_LT(optimiser->hypervolume(), 5.0 / 6);
   const auto front = optimiser->front();
   for (std::size_t i = 0; i < front.size(); ++i) {
@@ -313,7 +313,7 @@ TEST_P(EveryOptimiser, RefusesWhatItCannotDo) {
   bad = c;
   bad.start = {{0, 5}};
   EXPECT_THROW(make(2, 2, bad), Error);
-  if (GetParam().algorithm == MoAlgorithm::mo_cma_es) {
+  if (GetParam().algorithm == Algorithm::mo_cma_es) {
     for (const double share : {-0.1, 1.1, std::nan("")}) {
       for (double MoCmaEsConfig::*of :
            {&MoCmaEsConfig::guided, &MoCmaEsConfig::spread, &MoCmaEsConfig::recombined, &MoCmaEsConfig::swapped}) {
@@ -508,10 +508,10 @@ TEST(MoCmaEs, RefusesBlocksThatDoNotChangePlaces) {
   EXPECT_NO_THROW(MoCmaEs(4, 2, c));
 }
 
-TEST(MoAlgorithm, NamesRoundTrip) {
-  for (const auto a : {MoAlgorithm::cma_es, MoAlgorithm::mo_cma_es, MoAlgorithm::nsga2, MoAlgorithm::random_search})
-    EXPECT_EQ(mo_algorithm_from_string(to_string(a)), a);
-  EXPECT_THROW(mo_algorithm_from_string("spea2"), Error);
+TEST(Algorithm, NamesRoundTrip) {
+  for (const auto a : {Algorithm::cma_es, Algorithm::mo_cma_es, Algorithm::nsga2, Algorithm::random_search})
+    EXPECT_EQ(algorithm_from_string(to_string(a)), a);
+  EXPECT_THROW(algorithm_from_string("spea2"), Error);
 }
 
 }  // namespace

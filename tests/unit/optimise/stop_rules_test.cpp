@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kDimension = 3;
 
 struct Made {
-  MoAlgorithm algorithm;
+  Algorithm algorithm;
   std::size_t objectives;
   std::size_t batch = 1;
 };
@@ -62,10 +62,10 @@ class AnyOptimiser : public testing::TestWithParam<Made> {
   }
 };
 INSTANTIATE_TEST_SUITE_P(, AnyOptimiser,
-                         testing::Values(Made{MoAlgorithm::cma_es, 1}, Made{MoAlgorithm::mo_cma_es, 1},
-                                         Made{MoAlgorithm::mo_cma_es, 2}, Made{MoAlgorithm::mo_cma_es, 2, 4},
-                                         Made{MoAlgorithm::mo_cma_es, 2, 35}, Made{MoAlgorithm::nsga2, 2},
-                                         Made{MoAlgorithm::random_search, 2}),
+                         testing::Values(Made{Algorithm::cma_es, 1}, Made{Algorithm::mo_cma_es, 1},
+                                         Made{Algorithm::mo_cma_es, 2}, Made{Algorithm::mo_cma_es, 2, 4},
+                                         Made{Algorithm::mo_cma_es, 2, 35}, Made{Algorithm::nsga2, 2},
+                                         Made{Algorithm::random_search, 2}),
                          [](const auto& test) {
                            return to_string(test.param.algorithm) + "_of_" + std::to_string(test.param.objectives) +
                                   (test.param.batch > 1 ? "_batch_" + std::to_string(test.param.batch) : "");
@@ -160,9 +160,9 @@ TEST_P(AnyOptimiser, IsJudgedByTheRulesThatItGoesOnWith) {
 }
 
 TEST(MakeOptimiser, GivesCmaEsOneObjectiveAlone) {
-  EXPECT_THROW(make_optimiser(MoAlgorithm::cma_es, 2, 2), Error);
-  EXPECT_THROW(make_optimiser(MoAlgorithm::cma_es, 2, 0), Error);
-  EXPECT_NO_THROW(make_optimiser(MoAlgorithm::cma_es, 2, 1));
+  EXPECT_THROW(make_optimiser(Algorithm::cma_es, 2, 2), Error);
+  EXPECT_THROW(make_optimiser(Algorithm::cma_es, 2, 0), Error);
+  EXPECT_NO_THROW(make_optimiser(Algorithm::cma_es, 2, 1));
 }
 
 }  // namespace

@@ -15,104 +15,126 @@ struct Confirmed {
   std::vector<PlanEntry> entries;
 };
 
-Confirmed confirmed(const PlanConfig& config, test::ToyEvaluator& evaluator, std::stop_token abort = {},
-                    const std::function<void(const PlanProgress&)>& watch = {}) {
+Confirmed confirmed(const SurveyProblem& problem, bool sampled, test::ToyEvaluator& evaluator,
+                    const PlanWatch& watch = {}) {
   const Site site = test::toy_site();
-  const DecisionSpace space(site, config);
-  Confirmed result{.found = test::toy_search(config, evaluator), .entries = {}};
-  result.entries = confirm_front(result.found, space, config, evaluator, watch, abort);
+  const DecisionSpace space(site, problem);
+  Confirmed result{.found = test::toy_search(problem, test::toy_config(), evaluator), .entries = {}};
+  result.entries = confirm_front(result.found, space, problem, evaluator.measures, sampled, evaluator, watch);
   return result;
 }
 
 TEST(ConfirmFront, ReportsExactBesideSampled) {
-  PlanConfig config = test::toy_config(Problem::coverage_overlap_fix);
-  config.sample_voxels = 1000;
   test::ToyEvaluator evaluator;
-  const auto [found, entries] = confirmed(config, evaluator);
+  const auto [found, entries] = confirmed(test::toy_problem("coverage-overlap-fix"), true, evaluator);
   ASSERT_EQ(entries.size(), found.front.size());
   EXPECT_EQ(evaluator.confirmed, entries.size());
   EXPECT_EQ(evaluator.estimated, entries.size());
   for (const PlanEntry& e : entries) {
     EXPECT_TRUE(e.confirmed);
-    EXPECT_EQ(e.coverage_se, 0.01);
-    EXPECT_EQ(e.overlap_se, 0.02);
-    EXPECT_NEAR(e.exact_coverage, e.coverage - 0.001, 1e-12);
+    EXPECT_EQ(e.values.at("coverage").standard_error, 0.01);
+    EXPECT_EQ(e.values.at("overlap").standard_error, 0.02);
+    EXPECT_NEAR(e.value("coverage"), e.values.at("coverage").searched - 0.001, 1e-12);
     EXPECT_EQ(e.points_on_surveyed, std::vector<std::uint64_t>(4, 7));
     EXPECT_EQ(e.exact_overlap_matrix.size(), 4u);
   }
-  for (std::size_t k = 1; k < entries.size(); ++k) EXPECT_LE(entries[k].coverage, entries[k - 1].coverage);
+  for (std::size_t k = 1; k < entries.size(); ++k)
+    EXPECT_LE(entries[k].values.at("coverage").searched, entries[k - 1].values.at("coverage").searched);
 }
 
 TEST(ConfirmFront, AnExactSearchHasOneValue) {
   test::ToyEvaluator evaluator;
-  const auto [found, entries] = confirmed(test::toy_config(Problem::coverage_min), evaluator);
+  const auto [found, entries] = confirmed(test::toy_problem("coverage-min"), false, evaluator);
   EXPECT_EQ(evaluator.estimated, 0u);
+  ASSERT_FALSE(entries.empty());
   for (const PlanEntry& e : entries) {
-    EXPECT_EQ(e.coverage, e.exact_coverage);
-    EXPECT_EQ(e.overlap, e.exact_overlap);
-    EXPECT_EQ(e.coverage_se, 0);
+    EXPECT_EQ(e.values.size(), 3u);  // overlap is told though nobody asked for it
+    for (const auto& [name, value] : e.values) {
+      EXPECT_EQ(value.searched, value.exact) << name;
+      EXPECT_EQ(value.standard_error, 0) << name;
+    }
+    EXPECT_EQ(e.value("stations"), static_cast<double>(e.stations.size()));
   }
 }
 
 TEST(ConfirmFront, AbortLeavesWhatTheSearchSaw) {
-  for (const std::uint64_t voxels : {0, 1000}) {
-    PlanConfig config = test::toy_config(Problem::coverage_overlap_min);
-    config.sample_voxels = voxels;
+  for (const bool sampled : {false, true}) {
     test::ToyEvaluator evaluator;
     std::stop_source abort;
-    const auto [found, entries] = confirmed(config, evaluator, abort.get_token(), [&](const PlanProgress& p) {
-      EXPECT_EQ(p.phase, "confirm");
-      if (p.iteration == 2) abort.request_stop();
-    });
+    PlanWatch watch{.report =
+                        [&](const PlanProgress& p) {
+                          EXPECT_EQ(p.phase, "confirm");
+                          if (p.iteration == 2) abort.request_stop();
+                        },
+                    .abort = abort.get_token()};
+    const auto [found, entries] = confirmed(test::toy_problem("coverage-overlap-min"), sampled, evaluator, watch);
     ASSERT_GT(entries.size(), 3u);
     const auto done = std::count_if(entries.begin(), entries.end(), [](const PlanEntry& e) { return e.confirmed; });
     EXPECT_EQ(done, 2);
     for (const PlanEntry& e : entries) {
-      EXPECT_GT(e.coverage, 0);
+      EXPECT_GT(e.value("coverage"), 0);
+      EXPECT_EQ(e.value("stations"), static_cast<double>(e.stations.size()));
       if (!e.confirmed) {
-        EXPECT_EQ(e.exact_coverage, 0);
-        EXPECT_DOUBLE_EQ(e.coverage, test::ToyEvaluator::value_of(to_network(e.stations)).coverage);
+        EXPECT_TRUE(std::isnan(e.values.at("coverage").exact));
+        EXPECT_DOUBLE_EQ(e.value("coverage"), test::ToyEvaluator::coverage_of(e.stations));
       }
     }
   }
 }
 
-TEST(JudgeByEveryRay, MarksWhatIsDominatedAndMeasuresTheRest) {
+TEST(ConfirmFront, NetworksInHolesAreConfirmedToo) {
   const Site site = test::toy_site();
-  const PlanConfig config = test::toy_config(Problem::coverage_overlap_fix);
-  const DecisionSpace space(site, config);
-  const auto entry = [&](double coverage, double overlap) {
-    PlanEntry e;
-    e.x.assign(space.dimension(), 0.5);
+  const SurveyProblem problem = test::toy_problem("coverage-fix");
+  const DecisionSpace space(site, problem);
+  SearchOutcome found;
+  found.front = {{.x = std::vector<double>(8, 0.5), .f = {1}}};
+  test::ToyEvaluator evaluator;
+  const auto entries = confirm_front(found, space, problem, evaluator.measures, false, evaluator, {});
+  ASSERT_EQ(entries.size(), 1u);
+  EXPECT_TRUE(entries[0].confirmed);
+  EXPECT_EQ(entries[0].stations[0].status, StationStatus::hole);
+}
+
+// Entries of made-up exact values; what the search saw is the opposite and must not count.
+std::vector<PlanEntry> made_up(const Measures& measures, std::initializer_list<std::array<double, 2>> values) {
+  std::vector<PlanEntry> entries;
+  for (const auto& [coverage, overlap] : values) {
+    PlanEntry& e = entries.emplace_back();
+    e.x.assign(8, 0.5);
     e.confirmed = true;
-    e.exact_coverage = coverage, e.exact_overlap = overlap;
-    e.coverage = 1 - coverage;  // what the search saw does not count
-    return e;
-  };
-  std::vector<PlanEntry> entries{entry(0.9, 0.2), entry(0.5, 0.6), entry(0.4, 0.6), entry(0.5, 0.5)};
-  EXPECT_DOUBLE_EQ(judge_by_every_ray(entries, space, config), 0.9 * 0.2 + 0.5 * 0.4);
+    for (const Objective& measure : measures.all) e.values[measure.name] = {.searched = 0.5, .exact = 0.5};
+    e.values["coverage"] = {.searched = 1 - coverage, .exact = coverage};
+    e.values["overlap"] = {.searched = 1 - overlap, .exact = overlap};
+  }
+  return entries;
+}
+
+TEST(JudgeByEveryRay, MarksWhatIsDominatedAndMeasuresTheRest) {
+  const SurveyProblem problem = test::toy_problem("coverage-overlap-fix");
+  const Measures measures = measures_of(problem);
+  auto entries = made_up(measures, {{0.9, 0.2}, {0.5, 0.6}, {0.4, 0.6}, {0.5, 0.5}});
+  EXPECT_DOUBLE_EQ(judge_by_every_ray(entries, problem, measures), 0.9 * 0.2 + 0.5 * 0.4);
   EXPECT_FALSE(entries[0].dominated);
   EXPECT_FALSE(entries[1].dominated);
   EXPECT_TRUE(entries[2].dominated);
   EXPECT_TRUE(entries[3].dominated);
   entries[1].confirmed = false;
-  EXPECT_TRUE(std::isnan(judge_by_every_ray(entries, space, config)));
+  EXPECT_TRUE(std::isnan(judge_by_every_ray(entries, problem, measures)));
   EXPECT_FALSE(entries[2].dominated) << "only confirmed entries are compared";
 }
 
-TEST(ConfirmFront, NetworksInHolesNeedNoSimulation) {
-  const Site site = test::toy_site();
-  const PlanConfig config = test::toy_config(Problem::coverage_fix);
-  const DecisionSpace space(site, config);
-  SearchOutcome found;
-  found.front = {{.x = std::vector<double>(8, 0.5), .f = {1}}};
-  test::ToyEvaluator evaluator;
-  const auto entries = confirm_front(found, space, config, evaluator, {}, {});
-  ASSERT_EQ(entries.size(), 1u);
-  EXPECT_EQ(evaluator.confirmed, 0u);
-  EXPECT_TRUE(entries[0].confirmed);
-  EXPECT_EQ(entries[0].exact_coverage, 0);
-  EXPECT_EQ(entries[0].stations[0].status, StationStatus::hole);
+TEST(JudgeByEveryRay, RanksWhatBreaksARequirementBehindAllElse) {
+  SurveyProblem problem = test::toy_problem("coverage-overlap-fix");
+  problem.requirements = {make_requirement("coverage>=0.5"), make_requirement("overlap >= 0.3")};
+  const Measures measures = measures_of(problem);
+  auto entries = made_up(measures, {{0.9, 0.2}, {0.5, 0.3}, {0.4, 0.9}, {0.3, 0.2}});
+  EXPECT_DOUBLE_EQ(judge_by_every_ray(entries, problem, measures), 0.5 * 0.3);
+  EXPECT_EQ(entries[1].missed, 0);
+  EXPECT_NEAR(entries[0].missed, 0.1, 1e-12);
+  EXPECT_NEAR(entries[2].missed, 0.1, 1e-12);
+  EXPECT_NEAR(entries[3].missed, 0.3, 1e-12);
+  EXPECT_FALSE(entries[1].dominated);
+  for (const std::size_t k : {0, 2, 3}) EXPECT_TRUE(entries[k].dominated) << k;
 }
 
 }  // namespace

@@ -21,18 +21,18 @@ TEST(Greedy, ChoosesAsTheEagerAlgorithmDoes) {
 
   // All candidates, tried again at every step. Choosing one station of each is how to get at them.
   test::ToyEvaluator recorder;
-  std::vector<Station> candidates;
-  recorder.before_each = [&](const Network& n) { candidates.push_back(n[0]); };
+  std::vector<PlacedStation> candidates;
+  recorder.before_each = [&](const PlacedNetwork& n) { candidates.push_back(n[0]); };
   choose_greedily(site, recorder, {.stations = 1, .candidates = 150}, {});
   ASSERT_EQ(candidates.size(), 150u);
-  Network chosen;
+  PlacedNetwork chosen;
   for (std::size_t step = 0; step < 6; ++step) {
     double best = -1;
-    Station taken;
-    for (const Station& c : candidates) {
-      Network with = chosen;
+    PlacedStation taken;
+    for (const PlacedStation& c : candidates) {
+      PlacedNetwork with = chosen;
       with.push_back(c);
-      const double value = test::ToyEvaluator::value_of(with).coverage;
+      const double value = test::ToyEvaluator::coverage_of(with);
       if (value > best) best = value, taken = c;
     }
     chosen.push_back(taken);
@@ -72,7 +72,7 @@ TEST(Greedy, StopsWhenTold) {
   const Site site = test::toy_site();
   test::ToyEvaluator evaluator;
   std::stop_source stop;
-  evaluator.before_each = [&](const Network&) {
+  evaluator.before_each = [&](const PlacedNetwork&) {
     if (evaluator.evaluated == 60) stop.request_stop();
   };
   const GreedyResult result =
@@ -86,12 +86,13 @@ TEST(Greedy, SeedsTheSearch) {
   const Site site = test::toy_site();
   test::ToyEvaluator evaluator;
   const GreedyResult greedy = choose_greedily(site, evaluator, {.stations = 8, .candidates = 200}, {});
-  PlanConfig config = test::toy_config(Problem::coverage_min);
+  const SurveyProblem problem = test::toy_problem("coverage-min");
+  PlanConfig config = test::toy_config();
   config.iterations = 1;
   for (const PlacedStation& s : greedy.stations) config.start.push_back(s.position);
-  const SearchOutcome seeded = test::toy_search(config, evaluator);
+  const SearchOutcome seeded = test::toy_search(problem, config, evaluator);
   config.start.clear();
-  const SearchOutcome random = test::toy_search(config, evaluator);
+  const SearchOutcome random = test::toy_search(problem, config, evaluator);
   EXPECT_GT(seeded.hypervolume, random.hypervolume);
 }
 

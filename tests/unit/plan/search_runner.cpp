@@ -10,13 +10,16 @@
 
 int main(int argc, char** argv) try {
   if (argc != 4) return 2;
-  vantage::PlanConfig config = vantage::test::toy_config(vantage::problem_from_string(argv[1]));
+  const vantage::SurveyProblem problem = vantage::test::toy_problem(argv[1]);
+  vantage::PlanConfig config = vantage::test::toy_config();
   config.checkpoint = argv[2];
   config.checkpoint_seconds = 0.002;
   config.resume = true;
   vantage::test::ToyEvaluator evaluator;
-  evaluator.before_each = [](const vantage::Network&) { std::this_thread::sleep_for(std::chrono::microseconds(300)); };
-  vantage::write_atomically(argv[3], vantage::test::bits_of(vantage::test::toy_search(config, evaluator)));
+  evaluator.before_each = [](const vantage::PlacedNetwork&) {
+    std::this_thread::sleep_for(std::chrono::microseconds(300));
+  };
+  vantage::write_atomically(argv[3], vantage::test::bits_of(vantage::test::toy_search(problem, config, evaluator)));
   return 0;
 } catch (const std::exception& e) {
   std::fprintf(stderr, "%s\n", e.what());

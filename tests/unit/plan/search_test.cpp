@@ -27,21 +27,21 @@ using test::toy_config;
 using test::toy_search;
 using test::ToyEvaluator;
 
-constexpr Problem kProblems[] = {Problem::coverage_fix, Problem::coverage_overlap_fix, Problem::coverage_min,
-                                 Problem::coverage_overlap_min};
-
-class EveryProblem : public testing::TestWithParam<Problem> {};
-INSTANTIATE_TEST_SUITE_P(Search, EveryProblem, testing::ValuesIn(kProblems), [](const auto& problem) {
-  std::string name = to_string(problem.param);
+class EveryProblem : public testing::TestWithParam<const char*> {
+ protected:
+  const SurveyProblem problem_ = test::toy_problem(GetParam());
+};
+INSTANTIATE_TEST_SUITE_P(Search, EveryProblem, testing::ValuesIn(test::kProblems), [](const auto& problem) {
+  std::string name = problem.param;
   std::replace(name.begin(), name.end(), '-', '_');
   return name;
 });
 
 TEST_P(EveryProblem, SameSeedSameBitsWhateverTheChunk) {
-  const PlanConfig config = toy_config(GetParam());
+  const PlanConfig config = toy_config();
   ToyEvaluator one, many;
   many.at_once = 0;
-  const SearchOutcome a = toy_search(config, one), b = toy_search(config, many);
+  const SearchOutcome a = toy_search(problem_, config, one), b = toy_search(problem_, config, many);
   EXPECT_EQ(bits_of(a), bits_of(b));
   EXPECT_EQ(a.evaluations, 600u);
   EXPECT_EQ(a.stop_reason, StopReason::max_iterations);
@@ -51,31 +51,31 @@ TEST_P(EveryProblem, SameSeedSameBitsWhateverTheChunk) {
   PlanConfig other = config;
   other.seed = 8;
   ToyEvaluator again;
-  EXPECT_NE(bits_of(toy_search(other, again)), bits_of(a));
+  EXPECT_NE(bits_of(toy_search(problem_, other, again)), bits_of(a));
 }
 
 TEST_P(EveryProblem, StaysOutOfHolesAndClashes) {
-  PlanConfig config = toy_config(GetParam());
+  PlanConfig config = toy_config();
   ToyEvaluator evaluator;
   std::uint64_t idle = 0;
-  evaluator.before_each = [&](const Network& network) {
-    for (const Station& s : network) idle += s.active ? 0 : 1;
+  evaluator.before_each = [&](const PlacedNetwork& network) {
+    for (const PlacedStation& s : network) idle += s.status == StationStatus::ok ? 0 : 1;
   };
-  const SearchOutcome drawn_again = toy_search(config, evaluator);
+  const SearchOutcome drawn_again = toy_search(problem_, config, evaluator);
   const std::uint64_t idle_with = idle;
   EXPECT_GT(drawn_again.redrawn, 0u);
   EXPECT_GT(drawn_again.drawn, drawn_again.redrawn);
   config.redraws = 0, idle = 0;
   ToyEvaluator plain;
   plain.before_each = evaluator.before_each;
-  const SearchOutcome as_drawn = toy_search(config, plain);
+  const SearchOutcome as_drawn = toy_search(problem_, config, plain);
   EXPECT_EQ(as_drawn.redrawn, 0u);
   EXPECT_LT(10 * idle_with, idle);
 }
 
 TEST_P(EveryProblem, FrontIsNonDominatedAndHistoryGrows) {
   ToyEvaluator evaluator;
-  const SearchOutcome outcome = toy_search(toy_config(GetParam()), evaluator);
+  const SearchOutcome outcome = toy_search(problem_, toy_config(), evaluator);
   ASSERT_FALSE(outcome.front.empty());
   std::vector<double> f;
   for (const ParetoPoint& point : outcome.front) f.insert(f.end(), point.f.begin(), point.f.end());
@@ -92,9 +92,9 @@ TEST_P(EveryProblem, FrontIsNonDominatedAndHistoryGrows) {
 // Cut after every so many evaluations, also in the middle of a batch, and gone on with.
 TEST_P(EveryProblem, ResumesToTheSameBits) {
   const test::TemporaryFolder folder;
-  PlanConfig config = toy_config(GetParam());
+  PlanConfig config = toy_config();
   ToyEvaluator whole;
-  const std::string wanted = bits_of(toy_search(config, whole));
+  const std::string wanted = bits_of(toy_search(problem_, config, whole));
 
   config.checkpoint = folder / "run.checkpoint";
   config.resume = true;
@@ -105,10 +105,10 @@ TEST_P(EveryProblem, ResumesToTheSameBits) {
     std::stop_source stop;
     ToyEvaluator evaluator;
     std::uint64_t left = 1 + random() % 60;
-    evaluator.before_each = [&](const Network&) {
+    evaluator.before_each = [&](const PlacedNetwork&) {
       if (--left == 0) stop.request_stop();
     };
-    const SearchOutcome outcome = toy_search(config, evaluator, stop.get_token());
+    const SearchOutcome outcome = toy_search(problem_, config, evaluator, stop.get_token());
     calls += evaluator.evaluated;
     if (outcome.stop_reason != StopReason::max_iterations) {
       EXPECT_EQ(outcome.stop_reason, StopReason::cancelled);
@@ -123,9 +123,9 @@ TEST_P(EveryProblem, ResumesToTheSameBits) {
 
 TEST_P(EveryProblem, ResumesToTheSameBitsAfterKill9) {
   const test::TemporaryFolder folder;
-  const std::string problem = to_string(GetParam());
+  const std::string problem = std::string(GetParam());
   ToyEvaluator evaluator;
-  const std::string wanted = bits_of(toy_search(toy_config(GetParam()), evaluator));
+  const std::string wanted = bits_of(toy_search(problem_, toy_config(), evaluator));
   const std::string checkpoint = folder / "run.checkpoint", output = folder / "out.txt";
   std::string runner = VANTAGE_SEARCH_RUNNER;
   char* const arguments[] = {runner.data(), const_cast<char*>(problem.c_str()), const_cast<char*>(checkpoint.c_str()),
@@ -160,15 +160,16 @@ TEST_P(EveryProblem, ResumesToTheSameBitsAfterKill9) {
 
 TEST(Search, GoesOnWithMoreIterationsAsIfTheyHadBeenAskedForAtOnce) {
   const test::TemporaryFolder folder;
-  PlanConfig config = toy_config(Problem::coverage_overlap_fix);
+  const SurveyProblem problem = test::toy_problem("coverage-overlap-fix");
+  PlanConfig config = toy_config();
   ToyEvaluator whole;
-  const std::string wanted = bits_of(toy_search(config, whole));
+  const std::string wanted = bits_of(toy_search(problem, config, whole));
   config.checkpoint = folder / "run.checkpoint";
   config.iterations = 10;
   ToyEvaluator first, second;
-  EXPECT_EQ(toy_search(config, first).resumed_evaluations, 0u);
+  EXPECT_EQ(toy_search(problem, config, first).resumed_evaluations, 0u);
   config.iterations = 30, config.resume = true;
-  const SearchOutcome outcome = toy_search(config, second);
+  const SearchOutcome outcome = toy_search(problem, config, second);
   EXPECT_EQ(bits_of(outcome), wanted);
   EXPECT_EQ(outcome.resumed_evaluations, 200u);
   EXPECT_LE(second.evaluated, 400u);
@@ -177,14 +178,15 @@ TEST(Search, GoesOnWithMoreIterationsAsIfTheyHadBeenAskedForAtOnce) {
 
 TEST(Search, RefusesTheCheckpointOfAnotherRun) {
   const test::TemporaryFolder folder;
-  PlanConfig config = toy_config(Problem::coverage_fix);
+  const SurveyProblem problem = test::toy_problem("coverage-fix");
+  PlanConfig config = toy_config();
   config.checkpoint = folder / "run.checkpoint";
   config.iterations = 2;
   ToyEvaluator evaluator;
-  toy_search(config, evaluator);
+  toy_search(problem, config, evaluator);
   config.seed = 99, config.resume = true;
   try {
-    toy_search(config, evaluator);
+    toy_search(problem, config, evaluator);
     FAIL();
   } catch (const Error& e) {
     EXPECT_EQ(e.code(), Errc::invalid_argument);
@@ -195,34 +197,36 @@ TEST(Search, RefusesTheCheckpointOfAnotherRun) {
 
 TEST(Search, KeepsTheCheckpointWhenAnEvaluationFails) {
   const test::TemporaryFolder folder;
-  PlanConfig config = toy_config(Problem::coverage_overlap_min);
+  const SurveyProblem problem = test::toy_problem("coverage-overlap-min");
+  PlanConfig config = toy_config();
   ToyEvaluator whole;
-  const std::string wanted = bits_of(toy_search(config, whole));
+  const std::string wanted = bits_of(toy_search(problem, config, whole));
   config.checkpoint = folder / "run.checkpoint", config.resume = true;
   ToyEvaluator failing;
-  failing.before_each = [&](const Network&) {
+  failing.before_each = [&](const PlacedNetwork&) {
     if (failing.evaluated == 333) throw Error(Errc::device_failure, "the device is gone");
   };
-  EXPECT_THROW(toy_search(config, failing), Error);
+  EXPECT_THROW(toy_search(problem, config, failing), Error);
   ToyEvaluator rest;
-  EXPECT_EQ(bits_of(toy_search(config, rest)), wanted);
+  EXPECT_EQ(bits_of(toy_search(problem, config, rest)), wanted);
   // A network that came up twice, once before the failure and once after, is evaluated twice.
   EXPECT_GE(rest.evaluated, whole.evaluated - 333);
   EXPECT_LE(rest.evaluated, 600u - 333);
 }
 
 TEST(Search, StopsAtItsLimits) {
-  PlanConfig config = toy_config(Problem::coverage_overlap_fix);
+  const SurveyProblem problem = test::toy_problem("coverage-overlap-fix");
+  PlanConfig config = toy_config();
   ToyEvaluator evaluator;
   config.target_hypervolume = 0.2;
-  const SearchOutcome reached = toy_search(config, evaluator);
+  const SearchOutcome reached = toy_search(problem, config, evaluator);
   EXPECT_EQ(reached.stop_reason, StopReason::target_reached);
   EXPECT_GE(reached.hypervolume, 0.2);
   EXPECT_LT(reached.evaluations, 600u);
 
   config.target_hypervolume.reset();
   config.max_seconds = 1e-6;
-  const SearchOutcome timed = toy_search(config, evaluator);
+  const SearchOutcome timed = toy_search(problem, config, evaluator);
   EXPECT_EQ(timed.stop_reason, StopReason::max_time);
   EXPECT_LT(timed.evaluations, 600u);
 
@@ -230,16 +234,17 @@ TEST(Search, StopsAtItsLimits) {
   config.stagnation_iterations = 3;
   config.iterations = 5000;
   ToyEvaluator slow;
-  const SearchOutcome stale = toy_search(config, slow);
+  const SearchOutcome stale = toy_search(problem, config, slow);
   EXPECT_EQ(stale.stop_reason, StopReason::stagnated);
   EXPECT_LT(stale.evaluations, 100'000u);
 }
 
 TEST(Search, TellsHowFarItIs) {
-  PlanConfig config = toy_config(Problem::coverage_min);
+  const SurveyProblem problem = test::toy_problem("coverage-min");
+  PlanConfig config = toy_config();
   ToyEvaluator evaluator;
   std::uint64_t last = 0, calls = 0;
-  const SearchOutcome outcome = toy_search(config, evaluator, {}, 4, [&](const PlanProgress& p) {
+  const SearchOutcome outcome = toy_search(problem, config, evaluator, {}, 4, [&](const PlanProgress& p) {
     EXPECT_GE(p.evaluations, last);
     EXPECT_EQ(p.iterations, 30u);
     EXPECT_EQ(p.phase, "search");
@@ -252,13 +257,14 @@ TEST(Search, TellsHowFarItIs) {
 }
 
 TEST(Search, StartsWhereItIsTold) {
-  PlanConfig config = toy_config(Problem::coverage_fix);
+  const SurveyProblem problem = test::toy_problem("coverage-fix");
+  PlanConfig config = toy_config();
   config.start = {{1, 1, 4.5}, {9, 1, 4.5}, {9, 9, 4.5}, {1, 9, 4.5}};
   config.sigma0 = 1e-3;
   config.iterations = 1;
   ToyEvaluator evaluator;
   std::size_t swapped = 0;  // networks with one station from anywhere
-  evaluator.before_each = [&](const Network& network) {
+  evaluator.before_each = [&](const PlacedNetwork& network) {
     ASSERT_EQ(network.size(), 4u);
     std::size_t elsewhere = 0;
     for (std::size_t i = 0; i < 4; ++i) {
@@ -269,76 +275,63 @@ TEST(Search, StartsWhereItIsTold) {
     EXPECT_LE(elsewhere, 1u);
     swapped += elsewhere;
   };
-  toy_search(config, evaluator);
+  toy_search(problem, config, evaluator);
   EXPECT_LE(swapped, config.population / 10);
 }
 
 TEST(Search, MaximisesTheFitness) {
-  PlanConfig config = toy_config(Problem::coverage_min);
-  config.stations_min = 1;
-  config.fitness = FitnessWeights{};
+  PlanConfig config = toy_config();
   config.iterations = 100;
   ToyEvaluator evaluator;
-  const SearchOutcome outcome = toy_search(config, evaluator);
+  const SearchOutcome outcome = toy_search(fitness_min(1, 8), config, evaluator);
   ASSERT_EQ(outcome.front.size(), 1u);
   EXPECT_GT(outcome.hypervolume, 0.6);  // one station alone: .4 for its number, .2 for seeing itself, and its coverage
   EXPECT_LE(outcome.hypervolume, 1);
   EXPECT_NEAR(outcome.hypervolume, 1 - outcome.front[0].f[0], 1e-15);
 }
 
-TEST(Search, WantsNetworksThatHangTogether) {
+TEST(Search, WantsNetworksThatKeepTheRequirements) {
   // Stations are linked within 4 m; the targets, 8 m apart, pull them away from each other.
-  class Linked final : public NetworkEvaluator {
-   public:
-    std::size_t chunk() const override { return 0; }
-    std::optional<std::vector<NetworkValue>> evaluate(std::span<const Network> networks, const Progress&) override {
-      std::vector<NetworkValue> values;
-      for (const Network& n : networks) {
-        values.push_back(ToyEvaluator::value_of(n));
-        OverlapMatrix near(n.size());
-        for (std::size_t i = 0; i < n.size(); ++i)
-          for (std::size_t j = i + 1; j < n.size(); ++j)
-            if (std::hypot(n[i].position.x - n[j].position.x, n[i].position.y - n[j].position.y) < 4) near.set(i, j, 1);
-        if (count_parts) values.back().parts = connectivity(near, 1).parts;
-      }
-      return values;
-    }
-    std::optional<std::vector<NetworkEstimate>> estimate(std::span<const Network>, const Progress&) override {
-      return std::nullopt;
-    }
-    std::optional<ConfirmedNetwork> confirm(const Network&, const Progress&) override { return std::nullopt; }
-    double trace_seconds() const override { return 0; }
-    bool count_parts = true;
-  };
-  PlanConfig config = toy_config(Problem::coverage_overlap_fix);
+  SurveyProblem problem = test::toy_problem("coverage-overlap-fix");
+  PlanConfig config = toy_config();
   config.iterations = 60;
   const Site site = test::toy_site();
-  const DecisionSpace space(site, config);
-  const auto parted = [&](bool count_parts) {
-    Linked evaluator, judge;
-    evaluator.count_parts = count_parts;
-    const SearchOutcome outcome = search({.space = space, .config = config, .evaluator = evaluator});
+  const auto parted = [&] {
+    ToyEvaluator evaluator;
+    const SearchOutcome outcome = toy_search(problem, config, evaluator);
+    const DecisionSpace space(site, problem);
     std::size_t n = 0;
-    for (const ParetoPoint& point : outcome.front) {
-      const std::vector<Network> network{to_network(space.decode(point.x))};
-      n += (*judge.evaluate(network, {}))[0].parts > 1 ? 1 : 0;
-    }
+    for (const ParetoPoint& point : outcome.front)
+      n += connectivity(ToyEvaluator::near(space.decode(point.x)), 1).parts > 1 ? 1 : 0;
     return n;
   };
-  EXPECT_GT(parted(false), 0u);
-  EXPECT_EQ(parted(true), 0u);
+  EXPECT_GT(parted(), 0u);
+  problem.requirements = {make_requirement("parts<=1", problem.settings())};
+  EXPECT_EQ(parted(), 0u);
+}
+
+TEST(Search, FindsTheFewestStationsThatKeepARequirement) {
+  // 0.4 of the toy's coverage takes some stations; the search for few must not end with networks that fall short.
+  SurveyProblem problem = survey_problem(std::vector<std::string>{"stations", "overlap"}, 1, 8);
+  problem.requirements = {make_requirement("coverage >= 0.4")};
+  PlanConfig config = toy_config();
+  config.iterations = 100;
+  ToyEvaluator evaluator;
+  const SearchOutcome outcome = toy_search(problem, config, evaluator);
+  const Site site = test::toy_site();
+  const DecisionSpace space(site, problem);
+  ASSERT_FALSE(outcome.front.empty());
+  for (const ParetoPoint& point : outcome.front) {
+    EXPECT_GE(ToyEvaluator::coverage_of(space.decode(point.x)), 0.4);
+    EXPECT_LT(point.f[0], 1);
+  }
 }
 
 TEST(Search, FindsTheBestNetworkOfAKnownSite) {
   // Eight targets and eight stations: each can stand on its own target.
-  PlanConfig config{.problem = Problem::coverage_fix,
-                    .stations_min = 8,
-                    .stations_max = 8,
-                    .population = 20,
-                    .iterations = 400,
-                    .seed = 5};
+  const PlanConfig config{.population = 20, .iterations = 400, .seed = 5};
   ToyEvaluator evaluator;
-  EXPECT_GT(toy_search(config, evaluator).hypervolume, 0.97);
+  EXPECT_GT(toy_search(coverage_fix(8), config, evaluator).hypervolume, 0.97);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "plan/measures.hpp"
 #include "plan/network_evaluator.hpp"
 #include "plan/search.hpp"
 #include "plan/site.hpp"
@@ -37,63 +38,95 @@ inline Site toy_site() {
 }
 
 // Coverage: how near the closest station is to each of 8 targets on a circle. Overlap: how close the stations stand
-// together.
+// together. Other measures are asked themselves, of counts that say the same.
 class ToyEvaluator final : public NetworkEvaluator {
  public:
-  std::function<void(const Network&)> before_each = {};
+  Measures measures = measures_of(coverage_overlap_fix(4));
+  std::function<void(const PlacedNetwork&)> before_each = {};
   std::size_t at_once = 1;
   std::uint64_t evaluated = 0, confirmed = 0, estimated = 0;
   std::size_t largest_batch = 0;
 
-  static NetworkValue value_of(const Network& network) {
-    double coverage = 0, spread = 0, pairs = 0;
+  static double coverage_of(const PlacedNetwork& network) {
+    double coverage = 0;
     for (int k = 0; k < 8; ++k) {
       double nearest = 20;
-      for (const Station& s : network)
-        if (s.active)
+      for (const PlacedStation& s : network)
+        if (s.status == StationStatus::ok)
           nearest = std::min(nearest, std::hypot(s.position.x - 5 - 4 * std::cos(0.7854 * k),
                                                  s.position.y - 5 - 4 * std::sin(0.7854 * k)));
       coverage += std::exp(-nearest * nearest / 4) / 8;
     }
-    for (const Station& a : network)
-      for (const Station& b : network)
-        if (a.active && b.active && &a != &b)
+    return coverage;
+  }
+  static double overlap_of(const PlacedNetwork& network) {
+    double spread = 0, pairs = 0;
+    for (const PlacedStation& a : network)
+      for (const PlacedStation& b : network)
+        if (a.status == StationStatus::ok && b.status == StationStatus::ok && &a != &b)
           spread += std::hypot(a.position.x - b.position.x, a.position.y - b.position.y), ++pairs;
-    return {.coverage = coverage, .overlap = pairs > 0 ? std::exp(-spread / pairs / 3) : 0, .parts = 1};
+    return pairs > 0 ? std::exp(-spread / pairs / 3) : 0;
+  }
+  // Stations are linked within 4 m.
+  static OverlapMatrix near(const PlacedNetwork& network) {
+    OverlapMatrix near(network.size());
+    for (std::size_t i = 0; i < network.size(); ++i)
+      for (std::size_t j = i + 1; j < network.size(); ++j)
+        if (std::hypot(network[i].position.x - network[j].position.x, network[i].position.y - network[j].position.y) <
+            4)
+          near.set(i, j, 1);
+    return near;
+  }
+  double value_of(const Objective& measure, const PlacedNetwork& network) const {
+    if (measure.name == "coverage") return coverage_of(network);
+    if (measure.name == "overlap") return overlap_of(network);
+    constexpr double whole = 1ull << 40;
+    NetworkCounts counts;
+    counts.weight = 1, counts.partial_points = static_cast<std::uint64_t>(whole * coverage_of(network));
+    return measure.value({.counts = counts,
+                          .stations = network,
+                          .kept = 0,
+                          .goal_density = whole,
+                          .voxels = 1,
+                          .overlap = near(network),
+                          .visible_parts = visibility_parts(toy_site(), to_network(network))});
   }
 
   std::size_t chunk() const override { return at_once; }
-  std::optional<std::vector<NetworkValue>> evaluate(std::span<const Network> networks,
-                                                    const Progress& progress) override {
+  std::optional<std::vector<std::vector<double>>> evaluate(std::span<const PlacedNetwork> networks,
+                                                           const Progress& progress) override {
     largest_batch = std::max(largest_batch, networks.size());
-    std::vector<NetworkValue> values;
-    for (const Network& network : networks) {
+    std::vector<std::vector<double>> values;
+    for (const PlacedNetwork& network : networks) {
       if (before_each) before_each(network);
       if (progress.stopped()) return std::nullopt;
-      values.push_back(value_of(network));
+      auto& all = values.emplace_back();
+      for (std::size_t m = 0; m < measures.searched; ++m) all.push_back(value_of(measures.all[m], network));
       ++evaluated;
     }
     return values;
   }
-  std::optional<std::vector<NetworkEstimate>> estimate(std::span<const Network> networks,
-                                                       const Progress& progress) override {
+  std::optional<std::vector<std::vector<Estimate>>> estimate(std::span<const PlacedNetwork> networks,
+                                                             const Progress& progress) override {
     if (progress.stopped()) return std::nullopt;
-    std::vector<NetworkEstimate> estimates;
-    for (const Network& network : networks) {
-      const NetworkValue v = value_of(network);
-      estimates.push_back({.coverage = {v.coverage, 0.01}, .overlap = {v.overlap, 0.02}});
+    std::vector<std::vector<Estimate>> estimates;
+    for (const PlacedNetwork& network : networks) {
+      auto& all = estimates.emplace_back();
+      for (const Objective& measure : measures.all)
+        all.push_back({value_of(measure, network), measure.name == "overlap" ? 0.02 : 0.01});
       ++estimated;
     }
     return estimates;
   }
-  std::optional<ConfirmedNetwork> confirm(const Network& network, const Progress& progress) override {
+  std::optional<ConfirmedNetwork> confirm(const PlacedNetwork& network, const Progress& progress) override {
     if (progress.stopped()) return std::nullopt;
     ++confirmed;
-    const NetworkValue v = value_of(network);
-    return ConfirmedNetwork{.coverage = v.coverage - 0.001,
-                            .overlap = v.overlap - 0.001,
+    ConfirmedNetwork result{.values = {},
                             .overlaps = OverlapMatrix(network.size()),
                             .points_on_surveyed = std::vector<std::uint64_t>(network.size(), 7)};
+    for (const Objective& measure : measures.all)
+      result.values.push_back(value_of(measure, network) - (measure.by_alpha ? 0 : 0.001));
+    return result;
   }
   double trace_seconds() const override { return 0.25; }
 };
@@ -124,22 +157,29 @@ inline std::string bits_of(const SearchOutcome& outcome) {
   return text;
 }
 
-inline PlanConfig toy_config(Problem problem) {
-  PlanConfig config{
-      .problem = problem, .stations_min = 4, .stations_max = 4, .population = 20, .iterations = 30, .seed = 7};
-  if (problem == Problem::coverage_min || problem == Problem::coverage_overlap_min) config.stations_max = 8;
-  return config;
+inline constexpr const char* kProblems[] = {"coverage-fix", "coverage-overlap-fix", "coverage-min",
+                                            "coverage-overlap-min"};
+
+// Of 4 stations, or 4 to 8 where the number is searched.
+inline SurveyProblem toy_problem(const std::string& name) {
+  return survey_problem(name, 4, name.ends_with("-min") ? 8 : 4);
 }
 
-inline SearchOutcome toy_search(const PlanConfig& config, ToyEvaluator& evaluator, std::stop_token stop = {},
-                                std::size_t batch = 4, std::function<void(const PlanProgress&)> watch = {}) {
+inline PlanConfig toy_config() { return {.population = 20, .iterations = 30, .seed = 7}; }
+
+inline SearchOutcome toy_search(const SurveyProblem& problem, const PlanConfig& config, ToyEvaluator& evaluator,
+                                std::stop_token stop = {}, std::size_t batch = 4,
+                                std::function<void(const PlanProgress&)> watch = {}) {
   const Site site = toy_site();
-  const DecisionSpace space(site, config);
+  const DecisionSpace space(site, problem);
+  evaluator.measures = measures_of(problem);
   return search({.space = space,
+                 .problem = problem,
+                 .measures = evaluator.measures,
                  .config = config,
                  .evaluator = evaluator,
                  .batch = batch,
-                 .identity = "toy = " + to_string(config.problem) + "\nseed = " + std::to_string(config.seed) + "\n",
+                 .identity = "toy = " + problem.name + "\nseed = " + std::to_string(config.seed) + "\n",
                  .watch = std::move(watch),
                  .stop = stop});
 }

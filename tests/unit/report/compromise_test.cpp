@@ -14,54 +14,68 @@ OverlapMatrix chain(double first, double second) {  // of three stations
   return matrix;
 }
 
-PlanConfig config_of(Problem problem, double min_link_overlap = 0) {
-  PlanConfig config;
-  config.problem = problem;
-  config.min_link_overlap = min_link_overlap;
-  return config;
-}
-
-PlanResult front_of(std::initializer_list<std::array<double, 3>> values) {
+PlanResult front_of(SurveyProblem problem, std::initializer_list<std::array<double, 3>> values) {
   PlanResult result;
+  result.problem = std::move(problem);
+  result.measures = measures_of(result.problem).all;
   for (const auto& [coverage, overlap, alpha] : values) {
     PlanEntry e;
     e.x = {0.5, 0.5, alpha};
     e.confirmed = true;
-    e.exact_coverage = coverage, e.exact_overlap = overlap;
+    for (const Objective& measure : result.measures) e.values[measure.name] = {0.5, 0, 0.5};
+    e.values["coverage"].exact = coverage, e.values["overlap"].exact = overlap;
     result.front.push_back(e);
   }
   return result;
 }
 
 TEST(Compromise, HasTheLargestProductOfGains) {
-  const PlanResult result = front_of({{0.99, 0.16, 0.9}, {0.98, 0.75, 0.8}, {0.50, 1.00, 0.1}});
-  EXPECT_EQ(compromise(result, config_of(Problem::coverage_fix)), 0u);
-  EXPECT_EQ(compromise(result, config_of(Problem::coverage_overlap_fix)), 1u);
-  EXPECT_EQ(compromise(result, config_of(Problem::coverage_min)), 2u);
-  EXPECT_EQ(compromise(result, config_of(Problem::coverage_overlap_min)), 2u);
+  const auto best_of = [](const SurveyProblem& problem) {
+    return compromise(front_of(problem, {{0.99, 0.16, 0.9}, {0.98, 0.75, 0.8}, {0.50, 1.00, 0.1}}));
+  };
+  EXPECT_EQ(best_of(coverage_fix(1)), 0u);
+  EXPECT_EQ(best_of(coverage_overlap_fix(1)), 1u);
+  EXPECT_EQ(best_of(coverage_min(1, 2)), 2u);
+  EXPECT_EQ(best_of(coverage_overlap_min(1, 2)), 2u);
 }
 
 TEST(Compromise, TakesWhatTheSearchSawWhereNothingWasConfirmed) {
-  PlanResult result = front_of({{0, 0, 0}, {0, 0, 0}});
-  for (PlanEntry& e : result.front) e.confirmed = false;
-  result.front[0].coverage = 0.4, result.front[0].overlap = 0.4;
-  result.front[1].coverage = 0.5, result.front[1].overlap = 0.5;
-  EXPECT_EQ(compromise(result, config_of(Problem::coverage_overlap_fix)), 1u);
+  PlanResult result = front_of(coverage_overlap_fix(1), {{0, 0, 0}, {0, 0, 0}});
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t k = 0; k < 2; ++k) {
+    result.front[k].confirmed = false;
+    const double seen = 0.4 + 0.1 * static_cast<double>(k);
+    result.front[k].values["coverage"] = result.front[k].values["overlap"] = {seen, 0, unknown};
+  }
+  EXPECT_EQ(compromise(result), 1u);
 }
 
 TEST(Compromise, HangsTogetherWhereAnyEntryDoes) {
-  PlanResult result = front_of({{0.9, 0.5, 0}, {0.8, 0.5, 0}, {0.7, 0.5, 0}});
+  PlanResult result = front_of(coverage_overlap_fix(3), {{0.9, 0.5, 0}, {0.8, 0.5, 0}, {0.7, 0.5, 0}});
   result.front[0].exact_overlap_matrix = chain(0.9, 0.005);
   result.front[1].exact_overlap_matrix = chain(0.02, 0.02);
   result.front[2].exact_overlap_matrix = chain(0.1, 0.1);
-  EXPECT_EQ(compromise(result, config_of(Problem::coverage_overlap_fix)), 1u);
-  EXPECT_EQ(compromise(result, config_of(Problem::coverage_overlap_fix, 0.001)), 0u);
-  EXPECT_EQ(compromise(result, config_of(Problem::coverage_overlap_fix, 0.05)), 2u);
-  EXPECT_EQ(compromise(result, config_of(Problem::coverage_overlap_fix, 0.5)), 0u) << "none does";
-  EXPECT_EQ(compromise(result, config_of(Problem::coverage_fix)), 0u) << "overlap does not matter";
+  const auto with_links_from = [&](double least) {
+    result.problem.link_overlap = least;
+    return compromise(result);
+  };
+  EXPECT_EQ(with_links_from(default_link_overlap), 1u);
+  EXPECT_EQ(with_links_from(0.001), 0u);
+  EXPECT_EQ(with_links_from(0.05), 2u);
+  EXPECT_EQ(with_links_from(0.5), 0u) << "none does";
+  result.problem = coverage_fix(3);
+  EXPECT_EQ(compromise(result), 0u) << "overlap does not matter";
 }
 
-TEST(Compromise, RefusesAnEmptyFront) { EXPECT_THROW(compromise({}, config_of(Problem::coverage_fix)), Error); }
+TEST(Compromise, KeepsTheRequirementsWhereAnyEntryDoes) {
+  PlanResult result = front_of(coverage_overlap_fix(1), {{0.99, 0.9, 0}, {0.5, 0.5, 0}, {0.6, 0.3, 0}});
+  result.front[0].missed = 0.01;
+  EXPECT_EQ(compromise(result), 1u);
+  result.front[1].missed = 0.2, result.front[2].missed = 0.1;
+  EXPECT_EQ(compromise(result), 0u) << "none does: the one that misses least";
+}
+
+TEST(Compromise, RefusesAnEmptyFront) { EXPECT_THROW(compromise({}), Error); }
 
 }  // namespace
 }  // namespace vantage

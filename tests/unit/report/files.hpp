@@ -7,6 +7,7 @@
 #include <iterator>
 #include <string>
 
+#include "plan/measures.hpp"
 #include "vantage/export.hpp"
 
 namespace vantage::test {
@@ -29,25 +30,32 @@ T take(const std::string& bytes, std::size_t& at) {
   return value;
 }
 
-// A made-up result with a front of `entries` networks.
-inline PlanResult sample_result(const PlanConfig& config, std::size_t entries) {
+// A made-up result of a problem by name with a front of `entries` networks, coverage falling from 0.95.
+inline PlanResult sample_result(const std::string& name, std::size_t stations_min, std::size_t stations_max,
+                                std::size_t entries, std::uint64_t sample_voxels = 0) {
   PlanResult result;
-  const bool counts = config.problem == Problem::coverage_min || config.problem == Problem::coverage_overlap_min;
+  result.problem = survey_problem(name, name.ends_with("-fix") ? stations_max : stations_min, stations_max);
+  result.config.sample_voxels = sample_voxels;
+  const SurveyProblem& problem = result.problem;
+  result.measures = measures_of(problem).all;
+  const bool counts = problem.stations_min < problem.stations_max;
   for (std::size_t k = 0; k < entries; ++k) {
     const double t = entries > 1 ? static_cast<double>(k) / static_cast<double>(entries - 1) : 0;
     PlanEntry e;
-    const std::size_t n =
-        counts ? station_count_from_alpha(1 - t, config.stations_min, config.stations_max) : config.stations_max;
+    const std::size_t n = station_count_from_alpha(1 - t, problem.stations_min, problem.stations_max);
     for (std::size_t i = 0; i < n; ++i) {
       const double u = 0.1 + 0.8 * static_cast<double>(i) / 64;
       e.stations.push_back({.uv = {u, t}, .position = {1 / 3.0 + 10 * u, 10 * t, 1.85}, .status = StationStatus::ok});
       e.x.insert(e.x.end(), {u, t});
     }
-    e.x.resize(2 * config.stations_max);
+    e.x.resize(2 * problem.stations_max);
     if (counts) e.x.push_back(1 - t);
-    e.coverage = 0.95 - 0.5 * t * t, e.overlap = 0.1 + 0.8 * t;
-    e.coverage_se = 0.001, e.overlap_se = 0.01;
-    e.exact_coverage = e.coverage - 0.002, e.exact_overlap = e.overlap + 0.004, e.confirmed = true;
+    const double coverage = 0.95 - 0.5 * t * t, overlap = 0.1 + 0.8 * t;
+    for (const Objective& measure : result.measures)
+      e.values[measure.name] = {static_cast<double>(n), 0, static_cast<double>(n)};
+    e.values["coverage"] = {coverage, 0.001, coverage - 0.002};
+    e.values["overlap"] = {overlap, 0.01, overlap + 0.004};
+    e.confirmed = true;
     e.exact_overlap_matrix = OverlapMatrix(n);
     e.points_on_surveyed.assign(n, 1000 + k);
     result.front.push_back(e);
@@ -59,12 +67,11 @@ inline PlanResult sample_result(const PlanConfig& config, std::size_t entries) {
                        .front = {},
                        .seconds = 0.5 * static_cast<double>(it)};
     for (const PlanEntry& e : result.front) {
-      const double worse = 0.01 * static_cast<double>(20 - it);
-      std::vector<double> f{1 - e.coverage + worse};
-      if (config.problem == Problem::coverage_overlap_fix || config.problem == Problem::coverage_overlap_min)
-        f.push_back(1 - e.overlap + worse);
-      if (counts) f.push_back(e.x.back());
-      line.front.push_back(f);
+      std::vector<double> values;
+      for (const Objective& objective : problem.objectives) values.push_back(e.values.at(objective.name).searched);
+      line.front.push_back(scaled_objectives(problem, e.x, values));
+      for (std::size_t k = 0; k < line.front.back().size(); ++k)
+        if (!problem.objectives[k].by_alpha) line.front.back()[k] += 0.01 * static_cast<double>(20 - it) * 0.4;
     }
     result.history.push_back(line);
   }

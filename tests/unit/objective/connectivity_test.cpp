@@ -3,7 +3,7 @@
 
 #include <random>
 
-#include "vantage/planner.hpp"
+#include "vantage/measure.hpp"
 
 namespace vantage {
 namespace {

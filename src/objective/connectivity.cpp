@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "vantage/planner.hpp"
+#include "vantage/measure.hpp"
 
 namespace vantage {
 
@@ -59,10 +59,6 @@ Connectivity connectivity(const OverlapMatrix& overlap, double min_overlap) {
     result.weakest_overlap = weakest;
   }
   return result;
-}
-
-double link_overlap(const PlanConfig& config) {
-  return config.min_link_overlap > 0 ? config.min_link_overlap : default_link_overlap;
 }
 
 }  // namespace vantage

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// Searches for an objective that the library does not know, under a requirement: own_objective SCENE N FOLDER
+//
+// A chain of scans is as strong as its weakest link. For every station take the neighbour that shares most with it, as
+// a share of the smaller scan; the least of these is to be as large as can be, and the coverage at least 0.5.
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <vantage/vantage.hpp>
+
+using namespace vantage;
+
+double weakest_link(const MeasuredNetwork& network) {
+  const NetworkCounts& counts = network.counts;
+  double weakest = 1;
+  for (std::size_t i = 0; i < counts.stations; ++i) {
+    double strongest = 0;
+    for (std::size_t j = 0; j < counts.stations; ++j) {
+      if (i == j || counts.seen[i] == 0 || counts.seen[j] == 0) continue;
+      const auto smaller = static_cast<double>(std::min(counts.seen[i], counts.seen[j]));
+      strongest = std::max(strongest, static_cast<double>(counts.shared_by(i, j)) / smaller);
+    }
+    weakest = std::min(weakest, strongest);
+  }
+  return weakest;
+}
+
+int main(int argc, char** argv) try {
+  if (argc != 4) return std::fprintf(stderr, "usage: own_objective SCENE N FOLDER\n"), 2;
+
+  const Scene scene = Scene::load(argv[1]);
+  const Scanner scanner{.azimuth_step = Angle::degrees(0.2), .zenith_step = Angle::degrees(0.2), .height_m = 1.5};
+  Simulator simulator(scene, scanner, {.user_size_m = 0.2, .point_spacing_m = 0.05});
+  const SearchArea area = SearchArea::build(scene);
+  const ClashChecker clash(scene);
+
+  const auto stations = static_cast<std::size_t>(std::atoi(argv[2]));
+  SurveyProblem problem = coverage_fix(stations);
+  problem.name = "custom";
+  problem.objectives.push_back({.name = "weakest_link",
+                                .label = "Weakest link (share of the smaller scan)",
+                                .needs = {.pairs = true},
+                                .value = weakest_link});
+  problem.requirements = {make_requirement("coverage >= 0.5")};
+  const PlanConfig config{.population = 20, .iterations = 10, .sample_voxels = 5'000, .seed = 42};
+  const PlanResult result = plan(simulator, area, clash, problem, config);
+
+  for (const PlanEntry& entry : result.front)
+    std::printf("coverage %.3f, weakest link %.3f%s\n", entry.value("coverage"), entry.value("weakest_link"),
+                entry.missed > 0 ? "  (misses what is required)" : "");
+  write_plan(argv[3], result, simulator, area);
+  return 0;
+} catch (const Error& error) {
+  std::fprintf(stderr, "error: %s\n", error.what());
+  for (const auto& line : error.details()) std::fprintf(stderr, "  - %s\n", line.c_str());
+  return 1;
+}

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Measures of a network from its counts: coverage (equation 8), overlap (equations 11 and 13), their standard errors,
+/// and how stations hang together.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "vantage/simulator.hpp"
+#include "vantage/trace.hpp"
+
+namespace vantage {
+
+/// Symmetric matrix of Overlap_ij (equation 11), zero on the diagonal.
+class OverlapMatrix {
+ public:
+  OverlapMatrix() = default;
+  explicit OverlapMatrix(std::size_t n) : n_(n), values_(n * n, 0.0) {}
+  std::size_t size() const noexcept { return n_; }
+  double operator()(std::size_t i, std::size_t j) const { return values_[i * n_ + j]; }
+  void set(std::size_t i, std::size_t j, double value) { values_[i * n_ + j] = values_[j * n_ + i] = value; }
+  std::span<const double> row(std::size_t i) const { return {values_.data() + i * n_, n_}; }
+
+ private:
+  std::size_t n_ = 0;
+  std::vector<double> values_;
+};
+
+/// Equation 8, in [0, 1]; where meshes have weights, the mean over voxels is weighted by them. 0 for a scene without
+/// surveyed voxels. REQUIRES: goal_density > 0.
+double coverage(const NetworkCounts& counts, double goal_density);
+/// Equation 11 for every pair; 0/0 is 0.
+OverlapMatrix overlap_matrix(const NetworkCounts& counts);
+/// Equation 13: average weighted clustering coefficient, in [0, 1]; the maximum is over all pairs. 0/0 is 0, so
+/// networks of one or two stations, or without a shared voxel, have 0.
+double clustering_coefficient(const OverlapMatrix& overlap);
+
+/// An estimate and its standard error. The error is 0 when all of the population was counted, and 0.5, the largest that
+/// a value in [0, 1] can have, where the sample is too small to tell (one voxel).
+struct Estimate {
+  double value = 0, standard_error = 0;
+};
+/// Equation 8 from a sample of `population` voxels. Error by successive differences along the Morton order, which a
+/// systematic sample needs: s/√n would be too wide. With weights a ratio is estimated, with the jackknife's error over
+/// the interleaved groups.
+Estimate coverage_estimate(const NetworkCounts& counts, double goal_density, std::uint64_t population);
+/// Equation 13 from a sample. Error by the jackknife over the interleaved groups.
+Estimate overlap_estimate(const NetworkCounts& counts, std::uint64_t population);
+/// Standard errors of `overlap_matrix`, likewise by the jackknife.
+OverlapMatrix overlap_standard_errors(const NetworkCounts& counts, std::uint64_t population);
+
+/// How many voxels `evaluate_sampled` needs so that no standard error, of coverage and, with `overlap`, of overlap,
+/// exceeds `wanted` on any of `networks`. Found on pilot samples that grow until one holds; at most
+/// `simulator.voxel_count()`, then the error is 0. Throws Error invalid_argument unless wanted > 0.
+std::uint64_t voxels_for_standard_error(Simulator& simulator, std::span<const Network> networks, double wanted,
+                                        bool overlap = true, const Progress& progress = {});
+
+/// The overlap graph as registration sees it: which stations hang together, and by what.
+struct Connectivity {
+  std::size_t parts = 0;                                     ///< Connected parts.
+  std::vector<std::size_t> part;                             ///< Per station, the part it is in, from 0.
+  std::vector<std::pair<std::size_t, std::size_t>> bridges;  ///< Links without which a part falls in two, i < j.
+  /// Where there is one part: the weakest link of the strongest spanning tree, and its overlap. What the registration
+  /// hangs by.
+  std::pair<std::size_t, std::size_t> weakest_link{0, 0};
+  double weakest_overlap = 0;
+};
+/// Links are the pairs whose overlap is above 0 and at least `min_overlap`.
+Connectivity connectivity(const OverlapMatrix& overlap, double min_overlap);
+/// Stations of less overlap count as not linked, unless asked otherwise: figure 12 of the method draws links from 0.01
+/// on; its figure 16 those above 0.05.
+inline constexpr double default_link_overlap = 0.01;
+
+}  // namespace vantage

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+// The objectives that have a name of their own: a file each in this folder, a line each in the module's list file.
+#pragma once
+
+#include "vantage/objective.hpp"
+
+namespace vantage::built_in {
+
+#define VANTAGE_OBJECTIVE(name) Objective name(const ObjectiveSettings& settings);
+#include "built_in_objectives.inc"
+#undef VANTAGE_OBJECTIVE
+
+}  // namespace vantage::built_in

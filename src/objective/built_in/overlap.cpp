@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "objective/built_in/built_in.hpp"
+
+namespace vantage::built_in {
+
+// Equation 13.
+Objective overlap(const ObjectiveSettings&) {
+  return {.name = "overlap",
+          .label = "Overlap (average clustering coefficient)",
+          .needs = {.pairs = true},
+          .value = [](const MeasuredNetwork& m) { return clustering_coefficient(m.overlap); }};
+}
+
+}  // namespace vantage::built_in

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/text.hpp"
+#include "objective/built_in/built_in.hpp"
+
+namespace vantage::built_in {
+
+// Into how many parts a network falls that cannot be registered with each other.
+Objective parts(const ObjectiveSettings& settings) {
+  return {.name = "parts",
+          .label = "Parts that no link connects",
+          .best = 1,
+          .worst = 2,
+          .needs = {.pairs = true},
+          .value = [least = settings.link_overlap](
+                       const MeasuredNetwork& m) { return static_cast<double>(connectivity(m.overlap, least).parts); },
+          .parameters = "links from " + number(settings.link_overlap) + " on"};
+}
+
+}  // namespace vantage::built_in

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "objective/built_in/built_in.hpp"
+
+namespace vantage::built_in {
+
+Objective stations(const ObjectiveSettings& settings) {
+  return {.name = "stations",
+          .label = "Number of stations",
+          .best = static_cast<double>(settings.stations_min),
+          .worst = static_cast<double>(settings.stations_max),
+          .needs = {.counts = false},
+          .value = [](const MeasuredNetwork& m) { return static_cast<double>(m.stations.size()); },
+          .by_alpha = true};
+}
+
+}  // namespace vantage::built_in

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// Coverage and overlap of section 4.5 from exact integer counts. Clustering of weighted graphs as in equation 13:
+// Zhang, Horvath, A General Framework for Weighted Gene Co-Expression Network Analysis, 2005.
+#include "vantage/measure.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace vantage {
+
+double coverage(const NetworkCounts& counts, double goal_density) {
+  if (counts.weight == 0) return 0;
+  const double filled =
+      static_cast<double>(counts.saturated) + static_cast<double>(counts.partial_points) / goal_density;
+  return std::min(filled / static_cast<double>(counts.weight), 1.0);  // rounding may pass 1 in the last place
+}
+
+OverlapMatrix overlap_matrix(const NetworkCounts& counts) {
+  OverlapMatrix overlap(counts.stations);
+  if (counts.seen.empty()) return overlap;
+  for (std::size_t i = 0; i < counts.stations; ++i) {
+    for (std::size_t j = i + 1; j < counts.stations; ++j) {
+      const std::uint64_t both = counts.shared_by(i, j);
+      const std::uint64_t either = counts.seen[i] + counts.seen[j] - both;
+      if (both > 0) overlap.set(i, j, static_cast<double>(both) / static_cast<double>(either));
+    }
+  }
+  return overlap;
+}
+
+double clustering_coefficient(const OverlapMatrix& overlap) {
+  const std::size_t n = overlap.size();
+  double largest = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    for (const double value : overlap.row(i)) largest = std::max(largest, value);
+  }
+  if (largest == 0) return 0;
+
+  // With weights w = Overlap / max the factor 1/max of equation 13 is already in the quotient, and no sum can leave the
+  // range of doubles.
+  std::vector<double> w(n * n);
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = 0; j < n; ++j) w[i * n + j] = overlap(i, j) / largest;
+  }
+  double sum = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double* wi = w.data() + i * n;
+    double triangles = 0, pairs = 0;  // over j < k: both sums of equation 13 hold each pair twice
+    for (std::size_t j = 0; j < n; ++j) {
+      if (wi[j] == 0) continue;
+      const double* wj = w.data() + j * n;
+      double linked = 0, any = 0;
+      for (std::size_t k = j + 1; k < n; ++k) {
+        any += wi[k];
+        linked += wi[k] * wj[k];
+      }
+      pairs += wi[j] * any;
+      triangles += wi[j] * linked;
+    }
+    if (pairs > 0) sum += triangles / pairs;
+  }
+  return sum / static_cast<double>(n);
+}
+
+}  // namespace vantage

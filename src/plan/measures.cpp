@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plan/measures.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "vantage/error.hpp"
+
+namespace vantage {
+namespace {
+
+[[noreturn]] void refuse(const std::string& what) { throw Error(Errc::invalid_argument, "plan: " + what); }
+
+void check(const Objective& objective) {
+  const auto plain = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; };
+  if (objective.name.empty() || !std::all_of(objective.name.begin(), objective.name.end(), plain))
+    refuse("an objective is named by lower-case letters, digits and _, not \"" + objective.name + "\"");
+  if (!objective.value) refuse("the objective " + objective.name + " has no value");
+}
+
+// Where it stands; added where it is new.
+std::size_t place_of(std::vector<Objective>& all, const Objective& objective) {
+  check(objective);
+  const auto found = std::find_if(all.begin(), all.end(), [&](const Objective& o) { return o.name == objective.name; });
+  if (found != all.end()) return static_cast<std::size_t>(found - all.begin());
+  all.push_back(objective);
+  return all.size() - 1;
+}
+
+Needs needs_of(std::span<const Objective> objectives) {
+  Needs needs{.counts = false};
+  for (const Objective& objective : objectives) needs = needs | objective.needs;
+  return needs;
+}
+
+}  // namespace
+
+Needs Measures::searched_needs() const { return needs_of(std::span(all).first(searched)); }
+Needs Measures::all_needs() const { return needs_of(all); }
+
+Measures measures_of(const SurveyProblem& problem) {
+  if (problem.objectives.empty()) refuse("at least one objective is needed");
+  Measures measures;
+  for (std::size_t k = 0; k < problem.objectives.size(); ++k) {
+    const std::string& name = problem.objectives[k].name;
+    if (place_of(measures.all, problem.objectives[k]) != k) refuse("two objectives are named " + name);
+  }
+  for (const Requirement& requirement : problem.requirements)
+    measures.required.push_back(place_of(measures.all, requirement.objective));
+  measures.searched = measures.all.size();
+  for (const char* told : {"coverage", "overlap"}) place_of(measures.all, make_objective(told, problem.settings()));
+  return measures;
+}
+
+double missed_by(const SurveyProblem& problem, const Measures& measures, std::span<const double> values) {
+  double missed = 0;
+  for (std::size_t k = 0; k < problem.requirements.size(); ++k)
+    missed += problem.requirements[k].missed_by(values[measures.required[k]]);
+  return missed;
+}
+
+}  // namespace vantage

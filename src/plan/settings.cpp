@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "core/setting_list.hpp"
+#include "vantage/planner.hpp"
+
+namespace vantage {
+namespace {
+
+nlohmann::ordered_json to_json(const Objective& objective) {
+  return {{"name", objective.name},
+          {"label", objective.label},
+          {"unit", objective.unit},
+          {"best", objective.best},
+          {"worst", objective.worst},
+          {"by_alpha", objective.by_alpha},
+          {"parameters", objective.parameters}};
+}
+
+}  // namespace
+
+Settings settings(const SurveyProblem& problem) {
+  nlohmann::ordered_json objectives = nlohmann::ordered_json::array(), requirements = objectives;
+  std::string names;
+  for (const Objective& objective : problem.objectives) {
+    objectives.push_back(to_json(objective));
+    names += (names.empty() ? "" : ",") + objective.name;
+  }
+  for (const Requirement& requirement : problem.requirements) requirements.push_back(to_string(requirement));
+  const bool named = std::ranges::count(problem_names(), problem.name) > 0;
+  const std::string low = std::to_string(problem.stations_min), high = std::to_string(problem.stations_max);
+  return SettingList()
+      .add("problem", problem.name, {.option = named ? "problem" : "", .decides = false})
+      .add("stations", low == high ? low : low + ".." + high, {"stations"})
+      .add("kept", problem.kept, {"keep"})
+      .add("heights_m", problem.heights_m, {"heights"})
+      .add("objective_names", names, {.option = named ? "" : "objectives"})
+      .add("objectives", objectives)
+      .add("requirements", requirements, {"require"})
+      .add("link_overlap", problem.link_overlap, {"link-overlap"})
+      .take();
+}
+
+Settings settings(const PlanConfig& config) {
+  const auto unless = [](bool open, const char* option) { return std::string(open ? "" : option); };
+  const bool generational = config.scheme == MoCmaEsConfig::Scheme::generational;
+  return SettingList()
+      .add("population", config.population, {unless(config.population == 0, "population")})
+      .add("iterations", config.iterations, {"iterations", false})
+      .add("sigma0", config.sigma0, {"sigma"})
+      .add("algorithm", to_string(config.algorithm), {"algorithm"})
+      .add("scheme", generational ? "generational" : "steady-state", {"scheme"})
+      .add("batch", config.batch, {unless(config.batch == 0, "batch")})
+      .add("sample_voxels", config.sample_voxels, {unless(config.sample_voxels == 0, "sample")})
+      .add("start", config.start, {"start"})
+      .add("redraws", config.redraws, {"redraws"})
+      .add("max_seconds", config.max_seconds, {unless(config.max_seconds == 0, "max-time"), false})
+      .add("target_hypervolume", config.target_hypervolume, {"target-hypervolume", false})
+      .add("stagnation_iterations", config.stagnation_iterations,
+           {unless(config.stagnation_iterations == 0, "stagnation"), false})
+      .add("seed", config.seed, {"seed"})
+      .take();
+}
+
+}  // namespace vantage

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+
+#include "vantage/error.hpp"
+#include "vantage/planner.hpp"
+
+namespace vantage {
+namespace {
+
+using Names = std::vector<std::string>;
+
+// Table 2, and the scalarised fitness.
+struct Named {
+  std::string name;
+  Names objectives;
+};
+const std::array<Named, 5>& named_problems() {
+  static const std::array<Named, 5> all{{{"coverage-fix", {"coverage"}},
+                                         {"coverage-overlap-fix", {"coverage", "overlap"}},
+                                         {"coverage-min", {"coverage", "stations"}},
+                                         {"coverage-overlap-min", {"coverage", "overlap", "stations"}},
+                                         {"fitness-min", {"fitness"}}}};
+  return all;
+}
+
+}  // namespace
+
+ObjectiveSettings SurveyProblem::settings() const {
+  return {.stations_min = stations_min, .stations_max = stations_max, .link_overlap = link_overlap};
+}
+
+SurveyProblem survey_problem(std::span<const std::string> objectives, std::size_t stations_min,
+                             std::size_t stations_max, double link_overlap) {
+  SurveyProblem problem{.stations_min = stations_min, .stations_max = stations_max, .link_overlap = link_overlap};
+  for (const std::string& name : objectives) problem.objectives.push_back(make_objective(name, problem.settings()));
+  return problem;
+}
+
+SurveyProblem survey_problem(std::string_view name, std::size_t stations_min, std::size_t stations_max) {
+  std::string known;
+  for (const Named& one : named_problems()) {
+    known += (known.empty() ? "" : ", ") + one.name;
+    if (one.name != name) continue;
+    if (name.ends_with("-fix") && stations_min != stations_max)
+      throw Error(Errc::invalid_argument, one.name + " takes one number of stations, not " +
+                                              std::to_string(stations_min) + " to " + std::to_string(stations_max) +
+                                              "; a -min problem searches the number");
+    SurveyProblem problem = survey_problem(one.objectives, stations_min, stations_max);
+    problem.name = one.name;
+    return problem;
+  }
+  throw Error(Errc::invalid_argument, "unknown problem \"" + std::string(name) + "\"; known: " + known);
+}
+
+std::span<const std::string> problem_names() {
+  static const Names names = [] {
+    Names all;
+    for (const Named& one : named_problems()) all.push_back(one.name);
+    return all;
+  }();
+  return names;
+}
+
+SurveyProblem coverage_fix(std::size_t stations) { return survey_problem("coverage-fix", stations, stations); }
+SurveyProblem coverage_overlap_fix(std::size_t stations) {
+  return survey_problem("coverage-overlap-fix", stations, stations);
+}
+SurveyProblem coverage_min(std::size_t stations_min, std::size_t stations_max) {
+  return survey_problem("coverage-min", stations_min, stations_max);
+}
+SurveyProblem coverage_overlap_min(std::size_t stations_min, std::size_t stations_max) {
+  return survey_problem("coverage-overlap-min", stations_min, stations_max);
+}
+SurveyProblem fitness_min(std::size_t stations_min, std::size_t stations_max, const FitnessWeights& weights) {
+  SurveyProblem problem = survey_problem("fitness-min", stations_min, stations_max);
+  ObjectiveSettings settings = problem.settings();
+  settings.fitness = weights;
+  problem.objectives = {make_objective("fitness", settings)};
+  return problem;
+}
+
+}  // namespace vantage

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/setting_list.hpp"
+#include "vantage/simulator.hpp"
+
+namespace vantage {
+
+Settings settings(const Scanner& scanner) {
+  return SettingList()
+      .add("name", scanner.name, {.decides = false})
+      .add("heading_deg", scanner.heading, {"heading"})
+      .add("horizontal_angle_deg", scanner.horizontal_angle, {"horizontal"})
+      .add("vertical_angle_deg", scanner.vertical_angle, {"vertical"})
+      .add("zenith_start_deg", scanner.zenith_start, {"zenith-start"})
+      .add("azimuth_step_deg", scanner.azimuth_step, {"step"})
+      .add("zenith_step_deg", scanner.zenith_step, {"step"})
+      .add("height_m", scanner.height_m, {"height"})
+      .add("min_range_m", scanner.min_range_m, {"range"})
+      .add("max_range_m", scanner.max_range_m, {"range"})
+      .add("noise", nlohmann::ordered_json{{"distances_m", scanner.noise.distances_m},
+                                           {"reflectivities", scanner.noise.reflectivities},
+                                           {"sigma_m", scanner.noise.sigma_m}})
+      .take();
+}
+
+Settings settings(const SimulatorConfig& config) {
+  return SettingList()
+      .add("engine", to_string(config.engine), {.decides = false})
+      .add("device_index", config.device_index, {.decides = false})
+      .add("user_size_m", config.user_size_m, {"user-size"})
+      .add("point_spacing_m", config.point_spacing_m, {"spacing"})
+      .add("noise", config.noise)
+      .add("seed", config.seed, {"seed"})
+      .add("validation", config.validation, {.decides = false})
+      .add("max_rays_per_dispatch", config.max_rays_per_dispatch, {.decides = false})
+      .take();
+}
+
+}  // namespace vantage

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+// Problems by name and by list, and what becomes of values in a search.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "plan/choose_optimiser.hpp"
+#include "plan/measures.hpp"
+#include "plan/scaled_objectives.hpp"
+#include "unit/plan/toy_survey.hpp"
+#include "vantage/error.hpp"
+
+namespace vantage {
+namespace {
+
+template <class Call>
+std::string refusal(Call&& call) {
+  try {
+    call();
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "accepted";
+}
+
+std::vector<std::string> names(const SurveyProblem& problem) {
+  std::vector<std::string> all;
+  for (const Objective& objective : problem.objectives) all.push_back(objective.name);
+  return all;
+}
+
+TEST(SurveyProblem, AreThoseOfTable2) {
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(names(coverage_fix(4)), (Names{"coverage"}));
+  EXPECT_EQ(names(coverage_overlap_fix(4)), (Names{"coverage", "overlap"}));
+  EXPECT_EQ(names(coverage_min(4, 8)), (Names{"coverage", "stations"}));
+  EXPECT_EQ(names(coverage_overlap_min(4, 8)), (Names{"coverage", "overlap", "stations"}));
+  EXPECT_EQ(names(fitness_min(4, 8)), (Names{"fitness"}));
+  for (const std::string& name : problem_names())
+    EXPECT_EQ(survey_problem(name, 4, name.ends_with("-min") ? 8 : 4).name, name);
+  EXPECT_NE(refusal([] { survey_problem("coverage", 1, 1); }).find("coverage-overlap-min"), std::string::npos);
+  EXPECT_NE(refusal([] { survey_problem("coverage-fix", 4, 5); }).find("4 to 5"), std::string::npos);
+}
+
+TEST(ScaledObjectives, OfTable2) {
+  const std::vector<double> x{0.1, 0.1, 0.9, 0.9, 0.25}, values{0.75, 0.5, 2};
+  EXPECT_EQ(scaled_objectives(coverage_fix(1), x, values), (std::vector<double>{0.25}));
+  EXPECT_EQ(scaled_objectives(coverage_overlap_fix(1), x, values), (std::vector<double>{0.25, 0.5}));
+  EXPECT_EQ(scaled_objectives(coverage_overlap_min(1, 2), x, values), (std::vector<double>{0.25, 0.5, 0.25}));
+  const std::vector<double> two{0.75, 2};
+  EXPECT_EQ(scaled_objectives(coverage_min(1, 2), x, two), (std::vector<double>{0.25, 0.25}));
+}
+
+TEST(ScaledObjectives, OfWhatBreaksARequirementLieBehind) {
+  const SurveyProblem problem = coverage_overlap_fix(2);
+  const std::array<double, 4> x{};
+  const auto f = [&](double coverage, double overlap, double missed) {
+    std::vector<double> scaled(2);
+    scale_objectives(problem, x, std::array{coverage, overlap}, missed, scaled);
+    return scaled;
+  };
+  const auto worst = f(0, 0, 0), near = f(0, 0, 0.01), far = f(1, 1, 0.02), equal = f(0.5, 0.5, 0.02);
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_LT(worst[k], near[k]);  // any that keeps them goes before any that does not
+    EXPECT_LT(near[k], far[k]);    // then who misses less, whatever else it is worth
+    EXPECT_LT(far[k], equal[k]);   // and of equals the better one
+  }
+}
+
+TEST(Measures, AreToldOnceByName) {
+  SurveyProblem problem = coverage_fix(4);
+  problem.requirements = {make_requirement("overlap>=0.1"), make_requirement("coverage>=0.2")};
+  const Measures measures = measures_of(problem);
+  ASSERT_EQ(measures.all.size(), 2u);
+  EXPECT_EQ(measures.searched, 2u);
+  EXPECT_EQ(measures.required, (std::vector<std::size_t>{1, 0}));
+  EXPECT_TRUE(measures.searched_needs().pairs);
+  EXPECT_FALSE(measures_of(coverage_fix(4)).searched_needs().pairs);
+  EXPECT_TRUE(measures_of(coverage_fix(4)).all_needs().pairs);
+
+  EXPECT_NE(refusal([] { measures_of(SurveyProblem{}); }).find("at least one objective"), std::string::npos);
+  problem.objectives.push_back(problem.objectives[0]);
+  EXPECT_NE(refusal([&] { measures_of(problem); }).find("two objectives are named coverage"), std::string::npos);
+  problem.objectives.back().name = "My own";
+  EXPECT_NE(refusal([&] { measures_of(problem); }).find("not \"My own\""), std::string::npos);
+  problem.objectives.back().name = "own", problem.objectives.back().value = nullptr;
+  EXPECT_NE(refusal([&] { measures_of(problem); }).find("own has no value"), std::string::npos);
+}
+
+TEST(ChooseOptimiser, RefusesWhatCannotBe) {
+  const Site site = test::toy_site();
+  const auto refused = [&](const SurveyProblem& problem, const PlanConfig& config) {
+    const DecisionSpace space(site, problem);
+    return refusal([&] { choose_optimiser(space, problem, config, 1); });
+  };
+  EXPECT_NE(refused(coverage_fix(4), {.sigma0 = 0}).find("sigma0"), std::string::npos);
+  EXPECT_NE(refused(coverage_fix(4), {.iterations = 0}).find("iteration"), std::string::npos);
+  EXPECT_NE(refused(coverage_fix(4), {.max_seconds = -1}).find("max_seconds"), std::string::npos);
+  EXPECT_NE(refused(coverage_overlap_fix(4), {.population = 1}).find("population of 1"), std::string::npos);
+  EXPECT_EQ(refused(coverage_overlap_fix(4), {}), "accepted");
+  EXPECT_EQ(population_of(coverage_fix(4), {}), 10u);
+  EXPECT_EQ(population_of(fitness_min(4, 8), {}), 20u);
+  EXPECT_EQ(population_of(coverage_min(4, 8), {}), 100u);
+}
+
+}  // namespace
+}  // namespace vantage
