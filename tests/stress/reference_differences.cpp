@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vantage/objective.hpp"
+
 namespace vantage::test {
 
 ReferenceDifferences compare_with_reference(const EngineInfo& engine, const Site& site) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scan/false_colours.hpp"
+#include "panorama/false_colours.hpp"
 
 #include <algorithm>
 #include <array>

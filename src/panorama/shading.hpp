@@ -8,7 +8,7 @@
 #include <deque>
 #include <vector>
 
-#include "scan/srgb.hpp"
+#include "image/srgb.hpp"
 
 namespace vantage {
 

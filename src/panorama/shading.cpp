@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scan/panorama_shading.hpp"
+#include "panorama/shading.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scan/srgb.hpp"
+#include "image/srgb.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -7,8 +7,8 @@
 #include <numbers>
 #include <utility>
 
-#include "scan/false_colours.hpp"
-#include "scan/panorama_shading.hpp"
+#include "panorama/false_colours.hpp"
+#include "panorama/shading.hpp"
 #include "vantage/error.hpp"
 #include "vantage/panorama.hpp"
 #include "vantage/simulator.hpp"
@@ -172,7 +172,7 @@ struct PanoramaRenderer::Impl {
     });
   }
 
-  static void set(RgbaImage& image, std::uint32_t x, std::uint32_t y, const LinearColour& colour) {
+  static void set(Image& image, std::uint32_t x, std::uint32_t y, const LinearColour& colour) {
     const std::uint32_t packed = pack_srgb(colour);
     for (std::size_t c = 0; c < 4; ++c)
       image.rgba[(std::size_t{y} * image.width + x) * 4 + c] = static_cast<std::uint8_t>(packed >> (8 * c));
@@ -227,7 +227,7 @@ struct PanoramaRenderer::Impl {
         draw_what_can_be(window.end());
       }
     };
-    if (simulator.scan({position, true}, 0, outputs, sink, progress).cancelled) return {};
+    if (simulator.scan({.position = position}, {.outputs = outputs}, sink, progress).cancelled) return {};
     for (PanoramaImage& image : images) {
       if (image.view == PanoramaView::range) draw_ranges(image, record);
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scan/surface_colour.hpp"
+#include "scene/surface_colour.hpp"
 
 #include <algorithm>
 #include <cmath>
