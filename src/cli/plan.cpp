@@ -180,7 +180,7 @@ void settle_problem(PlanOptions& options) {
   config.stations_max = high;
 }
 
-std::vector<Vec3> heads_of(Site& site, const std::vector<StationText>& stations, const std::string& what) {
+std::vector<Vec3> heads_of(LoadedSite& site, const std::vector<StationText>& stations, const std::string& what) {
   std::vector<Vec3> heads;
   for (const auto& station : place(site, stations)) {
     if (station.placed.status == StationStatus::hole)
@@ -191,7 +191,7 @@ std::vector<Vec3> heads_of(Site& site, const std::vector<StationText>& stations,
   return heads;
 }
 
-nlohmann::json as_options(const Site& site, const PlanConfig& config) {
+nlohmann::json as_options(const LoadedSite& site, const PlanConfig& config) {
   nlohmann::json options;
   options["problem"] = to_string(config.problem);
   options["stations"] = config.stations_min == config.stations_max
@@ -231,7 +231,7 @@ const char* value_name(const PlanConfig& config) {
 }
 
 // Heads of a greedy choice for the largest network; empty where it was stopped.
-std::vector<Vec3> greedy_start(Site& site, Simulator& simulator, const PlanConfig& config, Program& program) {
+std::vector<Vec3> greedy_start(LoadedSite& site, Simulator& simulator, const PlanConfig& config, Program& program) {
   ProgressLine line(program.console, "greedy");
   const GreedyResult greedy =
       greedy_network(simulator, site.area(), site.clash(),
@@ -272,7 +272,7 @@ std::string summary(const PlanResult& result, const PlanConfig& config, std::siz
 }
 
 int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
-  Site site = open_site(command, options.site);
+  LoadedSite site = open_site(command, options.site);
   settle_problem(options);
   if (!options.output) throw Error(Errc::invalid_argument, "plan: say where the results go with -o DIR");
   const std::filesystem::path folder = *options.output;

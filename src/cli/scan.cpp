@@ -60,7 +60,7 @@ struct ScanCommandOptions {
 
 int scan(CLI::App& command, ScanCommandOptions& options, Program& program) {
   const Stopwatch watch;
-  Site site = open_site(command, options.site);
+  LoadedSite site = open_site(command, options.site);
   const auto typed = options.stations.read(65535);  // what a LAS point source id can tell apart, station 0 included
   const auto stations = place(site, typed);
   if (options.panoramas.size() > stations.size())

@@ -11,7 +11,7 @@
 #include <string>
 
 #include "optimise/blocks.hpp"
-#include "optimise/box.hpp"
+#include "optimise/box_constraints.hpp"
 #include "optimise/conditional.hpp"
 #include "optimise/normal_stream.hpp"
 #include "optimise/state_file.hpp"
@@ -23,7 +23,7 @@ namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using optimise::Box;
+using optimise::BoxConstraints;
 using optimise::NormalStream;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -142,7 +142,7 @@ struct CmaEs::Impl {
 
   const std::size_t n;
   CmaEsConfig config;
-  Box box;
+  BoxConstraints box;
   NormalStream random;
   std::size_t asked_points;  // λ and those with swapped blocks
   std::size_t lambda = 0;

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "optimise/box.hpp"
+#include "optimise/box_constraints.hpp"
 #include "optimise/normal_stream.hpp"
 #include "optimise/state_file.hpp"
 #include "vantage/optimiser.hpp"
@@ -86,7 +86,7 @@ class MoCommon {
   const std::string name;
   const std::size_t dimension, objectives;
   const MoCmaEsConfig config;
-  const Box box;
+  const BoxConstraints box;
   const std::vector<double> reference;
   NormalStream random;
   std::size_t evaluations = 0;
