@@ -28,7 +28,7 @@ class Builder {
     raw_.ranges.push_back(
         {static_cast<std::uint32_t>(raw_.triangles.size()), static_cast<std::uint32_t>(triangles.size()), 0});
     raw_.meshes.push_back({name, role, diffuse, static_cast<std::uint32_t>(triangles.size()), weight});
-    raw_.positions.insert(raw_.positions.end(), positions.begin(), positions.end());
+    for (const Vec3& p : positions) raw_.positions.push_back(to_glm(p));
     raw_.normals.insert(raw_.normals.end(), normals.begin(), normals.end());
     for (const Triangle& t : triangles) raw_.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
   }
