@@ -2,6 +2,7 @@
 #include "image/srgb.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace vantage {

@@ -101,16 +101,11 @@ struct PanoramaRenderer::Impl {
   // One pixel of one view: the mean over its rays, in linear light.
   LinearColour pixel(PanoramaView view, const RowWindow& window, std::uint32_t x, std::uint32_t y) const {
     const std::uint32_t side = options.supersample, columns = simulator.scanner().columns();
-    LinearColour sum{};
-    for (std::uint32_t i = 0; i < side; ++i) {
-      for (std::uint32_t j = 0; j < side; ++j) {
-        // Columns count against the image: azimuth grows to the left.
-        const LinearColour ray = ray_colour(view, window, y * side + i, columns - 1 - (x * side + j));
-        for (int c = 0; c < 4; ++c) sum[c] += ray[c];
-      }
-    }
-    for (float& c : sum) c /= static_cast<float>(side * side);
-    return sum;
+    LinearColour sum(0);
+    for (std::uint32_t i = 0; i < side; ++i)
+      for (std::uint32_t j = 0; j < side; ++j)  // columns count against the image: azimuth grows to the left
+        sum += ray_colour(view, window, y * side + i, columns - 1 - (x * side + j));
+    return sum / static_cast<float>(side * side);
   }
 
   LinearColour ray_colour(PanoramaView view, const RowWindow& window, std::uint32_t row, std::uint32_t column) const {
@@ -130,8 +125,7 @@ struct PanoramaRenderer::Impl {
     const float light = shading.light(window, row, column);
     if (view == PanoramaView::mesh) {
       colour = mesh_colour(static_cast<std::uint32_t>(rays.mesh[column]));
-      for (int i = 0; i < 3; ++i) colour[i] *= light;
-      return colour;
+      return {glm::vec3(colour) * light, 1};
     }
     const float clear = shading.clearness(range);
     const LinearColour haze = shading.haze();
@@ -160,12 +154,12 @@ struct PanoramaRenderer::Impl {
     const std::uint32_t side = options.supersample;
     tbb::parallel_for(std::uint32_t{0}, image.image.height, [&](std::uint32_t y) {
       for (std::uint32_t x = 0; x < image.image.width; ++x) {
-        LinearColour sum{};
+        LinearColour sum(0);
         for (std::uint32_t k = 0; k < side * side; ++k) {
           const std::uint32_t column = record.columns - 1 - (x * side + k % side);
           const std::uint16_t code = record.codes[std::size_t{y * side + k / side} * record.columns + column];
           const LinearColour& ray = code == 0 ? backdrop : scale[code / 16];
-          for (int c = 0; c < 4; ++c) sum[c] += ray[c] / static_cast<float>(side * side);
+          sum += ray / static_cast<float>(side * side);
         }
         set(image.image, x, y, sum);
       }
