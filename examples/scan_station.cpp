@@ -31,7 +31,7 @@ int main(int argc, char** argv) try {
   Simulator simulator(scene, scanner);
   constexpr std::uint32_t outputs = scan_position | scan_normal | scan_colour;
   PointCloudWriter points(argv[2], simulator.origin(), outputs);
-  const ScanSummary scan = simulator.scan({.position = *head}, 0, outputs,
+  const ScanSummary scan = simulator.scan({.position = *head}, {.outputs = outputs},
                                           [&](const ScanChunk& chunk) { points.write(chunk, /*station=*/0); });
   points.close();
   std::printf("%llu rays, %llu points from (%.3f, %.3f, %.3f)\n", static_cast<unsigned long long>(scan.rays),

@@ -24,8 +24,9 @@ namespace vantage {
 /// .las (1.4). The file takes its name at close(); destroyed before that, nothing is left.
 class PointCloudWriter {
  public:
-  /// `outputs` are the ScanOutput bits that chunks will carry; position is required.
-  /// Throws Error: io, invalid_argument (unknown extension).
+  /// `outputs` are the ScanOutput bits that chunks will carry; position is required. `origin` is the simulator's:
+  /// chunks are in the local frame, the file is in the survey frame. Throws Error: io, invalid_argument (unknown
+  /// extension).
   PointCloudWriter(const std::filesystem::path& file, const Vec3& origin, std::uint32_t outputs);
   PointCloudWriter(PointCloudWriter&&) noexcept;
   PointCloudWriter& operator=(PointCloudWriter&&) noexcept;

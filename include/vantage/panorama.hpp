@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "vantage/image.hpp"
 #include "vantage/progress.hpp"
 #include "vantage/types.hpp"
 
@@ -20,31 +21,20 @@ namespace vantage {
 class Scene;
 struct SimulatorConfig;
 
-/// An image in sRGB with 8 bits a channel, row by row from the top.
-struct RgbaImage {
-  std::uint32_t width = 0, height = 0;
-  std::vector<std::uint8_t> rgba;
-};
-
-/// Reads a PNG or JPEG. Throws Error: io, malformed_file.
-RgbaImage read_image(const std::filesystem::path& file);
-/// Writes a PNG, whole or not at all. Throws Error: io, invalid_argument (pixels missing).
-void write_png(const std::filesystem::path& file, const RgbaImage& image);
-
 /// A panoramic photograph that gives a scan its colours (section 3.2). Immutable; safe to read from any thread.
 class Panorama {
  public:
   /// `heading` is the azimuth of the image's middle. Throws Error invalid_argument for an empty image.
-  explicit Panorama(RgbaImage image, Angle heading = {});
+  explicit Panorama(Image image, Angle heading = {});
   /// Throws Error: io, malformed_file.
   static Panorama load(const std::filesystem::path& file, Angle heading = {});
   /// Colour in a direction, 0xAABBGGRR: bilinear in the stored values, around the seam and up to the poles.
   std::uint32_t colour(Angle zenith, Angle azimuth) const;
-  const RgbaImage& image() const noexcept { return image_; }
+  const Image& image() const noexcept { return image_; }
   Angle heading() const noexcept { return heading_; }
 
  private:
-  RgbaImage image_;
+  Image image_;
   Angle heading_;
 };
 
@@ -73,7 +63,7 @@ struct PanoramaOptions {
 /// A rendered view and the scale of its colours.
 struct PanoramaImage {
   PanoramaView view = PanoramaView::colour;
-  RgbaImage image;
+  Image image;
   double scale_low = 0, scale_high = 0;  ///< range: metres at the scale's ends; reflectivity: 0 and the largest.
 };
 

@@ -12,7 +12,6 @@
 #include <string>
 #include <vector>
 
-#include "vantage/panorama.hpp"
 #include "vantage/progress.hpp"
 #include "vantage/scanner.hpp"
 #include "vantage/scene.hpp"
@@ -43,12 +42,21 @@ using Network = std::vector<Station>;
 /// Which arrays of a `ScanChunk` are computed, allocated and transferred. Or them together.
 enum ScanOutput : std::uint32_t {
   scan_range = 1,         ///< metres from the head, noise included; +infinity where nothing was hit in range
-  scan_position = 2,      ///< survey frame
+  scan_position = 2,      ///< local frame: survey position = `Simulator::origin()` + this
   scan_normal = 4,        ///< unit, turned towards the scanner
   scan_reflectivity = 8,  ///< R·(I·(−N)) in [0, 1]
   scan_ids = 16,          ///< mesh and primitive
-  scan_colour = 32,       ///< RGBA of the panorama where one is given, else of the material
+  scan_colour = 32,       ///< RGBA of `ScanOptions::colour` where one is given, else of the material
   scan_voxel = 64,        ///< surveyed voxel the point counts in
+};
+
+/// How `Simulator::scan` works.
+struct ScanOptions {
+  std::uint32_t outputs = scan_position;  ///< `ScanOutput` bits.
+  std::uint32_t place = 0;                ///< The station's place in its network: it keys the noise.
+  /// Colour of a point, 0xAABBGGRR, by the direction of its ray, as in the paper: `Panorama::colour`, say. It is called
+  /// from several threads at once. Empty: the colour of the material.
+  std::function<std::uint32_t(Angle zenith, Angle azimuth)> colour = {};
 };
 
 /// Results of consecutive rays, dense: element k belongs to ray first_ray + k. Arrays that were not asked for are
@@ -57,7 +65,7 @@ struct ScanChunk {
   std::uint64_t first_ray = 0;
   std::uint64_t ray_count = 0;
   std::vector<float> range_m;
-  /// Local frame: survey position = `Simulator::origin()` + this. NaN without a hit.
+  /// Local frame, in which floats are fine enough: survey position = `Simulator::origin()` + this. NaN without a hit.
   std::vector<std::array<float, 3>> position;
   std::vector<std::array<float, 3>> normal;
   std::vector<float> reflectivity;
@@ -112,12 +120,10 @@ class Simulator {
   double goal_density() const noexcept;         ///< Points wanted in a voxel.
   Vec3 voxel_centre(std::uint64_t rank) const;  ///< Survey frame. REQUIRES: rank < voxel_count().
 
-  /// Scans one station in chunks of rows; `sink` sees them in ray order. `place` is the station's place in its network:
-  /// it keys the noise. With a panorama, colours are looked up in it by direction, as in the paper. An inactive station
-  /// has no chunks.
-  ScanSummary scan(const Station& station, std::uint32_t place, std::uint32_t outputs,
-                   const std::function<void(const ScanChunk&)>& sink, const Progress& progress = {},
-                   const Panorama* panorama = nullptr);
+  /// Scans one station in chunks of rows; `sink` sees them in ray order. An inactive station has no chunks. A cancelled
+  /// scan says so in `cancelled`. Throws Error invalid_argument (a position that is not finite, unknown outputs).
+  ScanSummary scan(const Station& station, const ScanOptions& options,
+                   const std::function<void(const ScanChunk&)>& sink, const Progress& progress = {});
 
   /// Every ray of every station. REQUIRES: 1 to `max_stations` stations. A cancelled evaluation says so in `cancelled`.
   NetworkCounts evaluate(const Network& network, const EvaluateOptions& options = {}, const Progress& progress = {});

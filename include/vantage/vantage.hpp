@@ -4,6 +4,7 @@
 
 #include "vantage/error.hpp"
 #include "vantage/export.hpp"
+#include "vantage/image.hpp"
 #include "vantage/measure.hpp"
 #include "vantage/objective.hpp"
 #include "vantage/optimiser.hpp"

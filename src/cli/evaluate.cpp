@@ -66,7 +66,7 @@ nlohmann::json matrix_json(const OverlapMatrix& overlap) {
 
 int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& program) {
   const Stopwatch watch;
-  Site site = open_site(command, options.site);
+  LoadedSite site = open_site(command, options.site);
   const auto stations = place(site, options.stations.read(max_stations));
   warn_of_unusable(stations);
   const bool sampled = options.sample || options.error;

@@ -42,7 +42,7 @@ struct PanoramaCommandOptions {
 
 int panorama(CLI::App& command, PanoramaCommandOptions& options, Program& program) {
   const Stopwatch watch;
-  Site site = open_site(command, options.site);
+  LoadedSite site = open_site(command, options.site);
   const auto stations = place(site, options.stations.read(max_stations));
   if (!options.output) throw Error(Errc::invalid_argument, "panorama: say where the pictures go with -o DIR");
   if (options.views.empty()) options.views.assign(panorama_views().begin(), panorama_views().end());

@@ -113,7 +113,7 @@ std::uint64_t default_sample(const SurveyProblem& problem, std::uint64_t voxels)
   return std::min({overlap ? sample_for_overlap : sample_for_coverage, enough, voxels});
 }
 
-std::vector<Vec3> heads_of(Site& site, const std::vector<StationText>& stations, const std::string& what) {
+std::vector<Vec3> heads_of(LoadedSite& site, const std::vector<StationText>& stations, const std::string& what) {
   std::vector<Vec3> heads;
   for (const auto& station : place(site, stations)) {
     if (station.placed.status == StationStatus::hole)
@@ -124,7 +124,7 @@ std::vector<Vec3> heads_of(Site& site, const std::vector<StationText>& stations,
   return heads;
 }
 
-nlohmann::json as_options(const Site& site, const PlanOptions& given, const SurveyProblem& problem,
+nlohmann::json as_options(const LoadedSite& site, const PlanOptions& given, const SurveyProblem& problem,
                           const PlanConfig& config) {
   nlohmann::json options = options_of(settings(problem));
   options.update(options_of(settings(config)));
@@ -139,8 +139,8 @@ nlohmann::json as_options(const Site& site, const PlanOptions& given, const Surv
 }
 
 // Heads of a greedy choice for the largest network; empty where it was stopped.
-std::vector<Vec3> greedy_start(Site& site, Simulator& simulator, const SurveyProblem& problem, const PlanConfig& config,
-                               Program& program) {
+std::vector<Vec3> greedy_start(LoadedSite& site, Simulator& simulator, const SurveyProblem& problem,
+                               const PlanConfig& config, Program& program) {
   ProgressLine line(program.console, "greedy");
   const GreedyResult greedy =
       greedy_network(simulator, site.area(), site.clash(),
@@ -206,7 +206,7 @@ std::optional<VoxelField> cartography(Simulator& simulator, const PlanEntry& ent
 }
 
 int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
-  Site site = open_site(command, options.site);
+  LoadedSite site = open_site(command, options.site);
   SurveyProblem problem = options.problem.settle();
   if (!options.output) throw Error(Errc::invalid_argument, "plan: say where the results go with -o DIR");
   const std::filesystem::path folder = *options.output;

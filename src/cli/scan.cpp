@@ -24,7 +24,7 @@ Panorama load_panorama(const std::string& text, const std::string& what) {
   return Panorama::load(text.substr(0, comma), Angle::degrees(parse_number(text.substr(comma + 1), what)));
 }
 
-struct ScanOptions {
+struct ScanCommandOptions {
   SiteOptions site;
   StationOptions stations;
   std::optional<std::string> output;
@@ -58,9 +58,9 @@ struct ScanOptions {
   }
 };
 
-int scan(CLI::App& command, ScanOptions& options, Program& program) {
+int scan(CLI::App& command, ScanCommandOptions& options, Program& program) {
   const Stopwatch watch;
-  Site site = open_site(command, options.site);
+  LoadedSite site = open_site(command, options.site);
   const auto typed = options.stations.read(65535);  // what a LAS point source id can tell apart, station 0 included
   const auto stations = place(site, typed);
   if (options.panoramas.size() > stations.size())
@@ -88,12 +88,17 @@ int scan(CLI::App& command, ScanOptions& options, Program& program) {
         .report =
             [&](double done) { line.update((static_cast<double>(k) + done) / static_cast<double>(stations.size())); },
         .stop = program.stop};
+    ScanOptions what{.outputs = writer ? options.outputs : 0, .place = static_cast<std::uint32_t>(k)};
+    if (k < options.panoramas.size())
+      what.colour = [&panorama = options.panoramas[k]](Angle zenith, Angle azimuth) {
+        return panorama.colour(zenith, azimuth);
+      };
     const ScanSummary one = simulator.scan(
-        {.position = stations[k].placed.position}, static_cast<std::uint32_t>(k), writer ? options.outputs : 0,
+        {.position = stations[k].placed.position}, what,
         [&](const ScanChunk& chunk) {
           if (writer) writer->write(chunk, static_cast<std::uint16_t>(k));
         },
-        progress, k < options.panoramas.size() ? &options.panoramas[k] : nullptr);
+        progress);
     if (one.cancelled) {
       spdlog::error("stopped; no file was written");
       return exit_failed;
@@ -140,7 +145,7 @@ int scan(CLI::App& command, ScanOptions& options, Program& program) {
 }  // namespace
 
 void add_scan(CLI::App& app, Program& program) {
-  add_command<ScanOptions>(app, program, "scan", "Simulate stations and write their points", scan);
+  add_command<ScanCommandOptions>(app, program, "scan", "Simulate stations and write their points", scan);
 }
 
 }  // namespace vantage::cli

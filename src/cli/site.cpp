@@ -84,7 +84,7 @@ nlohmann::json given_options(const SiteOptions& options, const Scanner& scanner)
 }
 
 // One line on what was made up for a scene of unusual size.
-void tell_scaled(const SiteOptions& options, const Site& site, double scale) {
+void tell_scaled(const SiteOptions& options, const LoadedSite& site, double scale) {
   std::string made_up;
   const auto add = [&](bool given, const std::string& text) {
     if (!given) made_up += (made_up.empty() ? "" : ", ") + text;
@@ -205,12 +205,12 @@ double length_scale(const Box& bounds) {
   return std::round(scale / unit) * unit;
 }
 
-const SearchArea& Site::area() {
+const SearchArea& LoadedSite::area() {
   if (!area_) area_ = SearchArea::build(scene, walkable);
   return *area_;
 }
 
-bool Site::has_area() {
+bool LoadedSite::has_area() {
   if (scene.has_search_area() || area_) return true;
   try {
     area();
@@ -221,12 +221,12 @@ bool Site::has_area() {
   }
 }
 
-const ClashChecker& Site::clash() {
+const ClashChecker& LoadedSite::clash() {
   if (!clash_) clash_.emplace(scene, security);
   return *clash_;
 }
 
-nlohmann::json Site::as_options() const {
+nlohmann::json LoadedSite::as_options() const {
   nlohmann::json options = options_of(settings(scanner));
   for (const Settings& list : {settings(config), settings(security), settings(walkable)})
     options.update(options_of(list));
@@ -234,7 +234,7 @@ nlohmann::json Site::as_options() const {
   return options;
 }
 
-Site open_site(CLI::App& command, SiteOptions& options) {
+LoadedSite open_site(CLI::App& command, SiteOptions& options) {
   if (options.config_file) apply_layer(command, read_json(*options.config_file), *options.config_file);
   if (options.scene.empty())
     throw Error(Errc::invalid_argument, command.get_name() + ": which scene? Give a .glb or .gltf file");
@@ -253,12 +253,12 @@ Site open_site(CLI::App& command, SiteOptions& options) {
   });
 
   const double scale = length_scale(scene.bounds());
-  Site site{.scene = std::move(scene),
-            .scanner = resolve_scanner(options, scale),
-            .config = {},
-            .security = {},
-            .walkable = {},
-            .given = {}};
+  LoadedSite site{.scene = std::move(scene),
+                  .scanner = resolve_scanner(options, scale),
+                  .config = {},
+                  .security = {},
+                  .walkable = {},
+                  .given = {}};
   site.config.engine = options.engine;
   site.config.device_index = options.device;
   site.config.seed = options.seed;

@@ -44,7 +44,7 @@ struct SiteOptions {
 
 // Everything resolved: explicit options, else the configuration file, else the scene's own defaults, else built-in
 // figures. A preset that the user names is as explicit as the figures it stands for.
-struct Site {
+struct LoadedSite {
   Scene scene;
   Scanner scanner;
   SimulatorConfig config;
@@ -65,7 +65,7 @@ struct Site {
 };
 
 // Applies the layers below the command line to all options of `command`, loads the scene and checks every value.
-Site open_site(CLI::App& command, SiteOptions& options);
+LoadedSite open_site(CLI::App& command, SiteOptions& options);
 
 // Lengths for a scene whose size is unlike a site's: the built-in figures times this. 1 from 2 m to 200 m; otherwise
 // the largest extent over 20 m, with two significant digits.

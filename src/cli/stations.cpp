@@ -78,7 +78,7 @@ namespace {
 
 // Where a given head's tripod stands: on the search area where its (u, v) is known and lies below, else the scanner's
 // height lower.
-Vec3 ground_below(Site& site, const StationText& station) {
+Vec3 ground_below(LoadedSite& site, const StationText& station) {
   constexpr double same_place_m = 1e-3;
   const Vec3 head = *station.position;
   if (station.uv && site.has_area()) {
@@ -91,7 +91,7 @@ Vec3 ground_below(Site& site, const StationText& station) {
 
 }  // namespace
 
-std::vector<SiteStation> place(Site& site, const std::vector<StationText>& stations) {
+std::vector<SiteStation> place(LoadedSite& site, const std::vector<StationText>& stations) {
   const double height = site.scanner.height_m;
   std::vector<SiteStation> placed;
   for (const auto& station : stations) {

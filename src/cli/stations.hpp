@@ -32,7 +32,7 @@ struct SiteStation {
 
 // Heads stay where they are given; (u, v) go to the ground below and up by the scanner's height. Both are checked for
 // clashes.
-std::vector<SiteStation> place(Site& site, const std::vector<StationText>& stations);
+std::vector<SiteStation> place(LoadedSite& site, const std::vector<StationText>& stations);
 
 Network to_network(const std::vector<SiteStation>& stations);
 // {position, uv, status}; null where there is none.

@@ -9,7 +9,7 @@
 
 namespace vantage::optimise {
 
-void require_blocks(const Blocks& blocks, const Box& box, std::size_t dimension) {
+void require_blocks(const Blocks& blocks, const BoxConstraints& box, std::size_t dimension) {
   const auto fail = [](const std::string& what) { throw Error(Errc::invalid_argument, "optimiser: " + what); };
   std::vector<char> met(dimension, 0);
   for (const auto& block : blocks) {

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "optimise/box.hpp"
+#include "optimise/box_constraints.hpp"
 #include "optimise/state_file.hpp"
 
 namespace vantage::optimise {
@@ -14,7 +14,7 @@ namespace vantage::optimise {
 using Blocks = std::vector<std::vector<std::size_t>>;
 
 // Throws Error invalid_argument where they are not what OptimiserConfig says.
-void require_blocks(const Blocks& blocks, const Box& box, std::size_t dimension);
+void require_blocks(const Blocks& blocks, const BoxConstraints& box, std::size_t dimension);
 
 // For each block of `first` one of `second`, each once: the nearest pair first, then the nearest of those left. Unit
 // coordinates.

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "optimise/box.hpp"
+#include "optimise/box_constraints.hpp"
 #include "optimise/normal_stream.hpp"
 #include "optimise/state_file.hpp"
 #include "optimise/stop_rules.hpp"
@@ -47,7 +47,7 @@ class Common {
   std::string name;
   std::size_t dimension, objectives;
   OptimiserConfig config;  // with its population
-  Box box;
+  BoxConstraints box;
   std::vector<double> reference;
   NormalStream random;
   std::size_t evaluations = 0;

@@ -42,7 +42,7 @@ class DisjointSets {
 
 // Joins points that share a cell of a grid, and again of the grid moved by half a cell, so that near ones meet in one
 // of them.
-void weld(const std::vector<Vec3>& points, const std::vector<char>& used, double weld_m, DisjointSets& sets) {
+void weld(const std::vector<glm::dvec3>& points, const std::vector<char>& used, double weld_m, DisjointSets& sets) {
   struct Entry {
     std::array<std::int64_t, 3> cell;
     std::uint32_t point;
@@ -109,7 +109,7 @@ Graph find_overlaps(const SurfacePieces& pieces, const std::vector<Triangle>& ke
                     const std::vector<std::uint32_t>& part) {
   std::vector<Uv> plan;
   plan.reserve(pieces.points.size());
-  for (const Vec3& p : pieces.points) plan.push_back({p.x, p.y});
+  for (const glm::dvec3& p : pieces.points) plan.push_back({p.x, p.y});
   const PlaneQuadtree tree(plan, kept);
   const auto leaves = tree.leaves();
   const auto corners = [&](std::uint32_t t) {
@@ -329,8 +329,8 @@ SearchMesh unfold(const SurfacePieces& pieces, const std::vector<Chart>& charts,
         // A point may have been given a number by an earlier chart, which holds another copy of it.
         if (number[v] == nobody || number[v] < first) {
           number[v] = static_cast<std::uint32_t>(mesh.positions.size());
-          const Vec3& p = pieces.points[v];
-          mesh.positions.push_back(p + origin);
+          const glm::dvec3& p = pieces.points[v];
+          mesh.positions.push_back(to_vec3(p) + origin);
           const Uv q = f.rectangle.along({p.x, p.y});
           mesh.uvs.push_back({(packing.corner[c].u + f.scale * (q.u - f.rectangle.min.u)) / packing.size.v,
                               (packing.corner[c].v + f.scale * (q.v - f.rectangle.min.v)) / packing.size.v});
@@ -343,10 +343,10 @@ SearchMesh unfold(const SurfacePieces& pieces, const std::vector<Chart>& charts,
   return mesh;
 }
 
-double plan_hull_area(const std::vector<Vec3>& points) {
+double plan_hull_area(const std::vector<glm::dvec3>& points) {
   std::vector<Uv> plan;
   plan.reserve(points.size());
-  for (const Vec3& p : points) plan.push_back({p.x, p.y});
+  for (const glm::dvec3& p : points) plan.push_back({p.x, p.y});
   return hull_area(convex_hull(std::move(plan)));
 }
 

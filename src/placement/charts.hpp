@@ -32,6 +32,6 @@ bool holds_disc(const SurfacePieces& pieces, const Chart& chart, double radius_m
 SearchMesh unfold(const SurfacePieces& pieces, const std::vector<Chart>& charts, const Vec3& origin);
 
 // Area of the convex hull of the points seen from above.
-double plan_hull_area(const std::vector<Vec3>& points);
+double plan_hull_area(const std::vector<glm::dvec3>& points);
 
 }  // namespace vantage

@@ -36,19 +36,19 @@ ClashChecker::ClashChecker(const Scene& scene, const SecurityVolume& volume) {
 bool ClashChecker::clashes(const Vec3& ground) const {
   const SecurityVolume& v = impl_->volume;
   if (v.radius_m == 0) return false;
-  const Vec3 local = ground - impl_->origin;
-  return impl_->tree.within(local + Vec3{0, 0, v.lower_m}, v.radius_m) ||
-         impl_->tree.within(local + Vec3{0, 0, v.upper_m}, v.radius_m);
+  const glm::dvec3 local = to_glm(ground - impl_->origin);
+  return impl_->tree.within(local + glm::dvec3{0, 0, v.lower_m}, v.radius_m) ||
+         impl_->tree.within(local + glm::dvec3{0, 0, v.upper_m}, v.radius_m);
 }
 
 bool ClashChecker::sees(const Vec3& a, const Vec3& b) const {
-  return !impl_->tree.between(a - impl_->origin, b - impl_->origin);
+  return !impl_->tree.between(to_glm(a - impl_->origin), to_glm(b - impl_->origin));
 }
 
 const SecurityVolume& ClashChecker::volume() const noexcept { return impl_->volume; }
 
 double ClashChecker::distance(const Vec3& point, double limit_m) const {
-  return impl_->tree.distance(point - impl_->origin, limit_m);
+  return impl_->tree.distance(to_glm(point - impl_->origin), limit_m);
 }
 
 }  // namespace vantage

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "core/embree.hpp"
+#include "scene/positions.hpp"
 
 namespace vantage {
 namespace {
@@ -20,12 +21,10 @@ struct Buffers {
 
 struct Query {
   Buffers buffers;
-  Vec3 point;
+  glm::dvec3 point;
   double best;         // nearest so far
   double good_enough;  // no nearer one need be found
 };
-
-Vec3 wide(const Float3& p) { return {p.x, p.y, p.z}; }
 
 // A radius for Embree's boxes that loses nothing to the rounding of the point and of the radius to float.
 float query_radius(const Query& query) {
@@ -37,15 +36,15 @@ bool visit(RTCPointQueryFunctionArguments* arguments) {
   Query& query = *static_cast<Query*>(arguments->userPtr);
   const Triangle& t = query.buffers.triangles[arguments->primID];
   const double distance =
-      distance_to_triangle(query.point, wide(query.buffers.positions[t[0]]), wide(query.buffers.positions[t[1]]),
-                           wide(query.buffers.positions[t[2]]));
+      distance_to_triangle(query.point, to_glm(query.buffers.positions[t[0]]), to_glm(query.buffers.positions[t[1]]),
+                           to_glm(query.buffers.positions[t[2]]));
   if (!(distance < query.best)) return false;
   query.best = distance;
   arguments->query->radius = distance < query.good_enough ? 0 : query_radius(query);
   return true;
 }
 
-RTCRay ray_of(const Vec3& point, const Vec3& way, double from, double to) {
+RTCRay ray_of(const glm::dvec3& point, const glm::dvec3& way, double from, double to) {
   RTCRay ray{};
   ray.org_x = static_cast<float>(point.x);
   ray.org_y = static_cast<float>(point.y);
@@ -59,10 +58,10 @@ RTCRay ray_of(const Vec3& point, const Vec3& way, double from, double to) {
   return ray;
 }
 
-double squared(const Vec3& v) { return dot(v, v); }
+double squared(const glm::dvec3& v) { return dot(v, v); }
 
-double squared_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
-  const Vec3 edge = b - a;
+double squared_to_segment(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b) {
+  const glm::dvec3 edge = b - a;
   const double length = squared(edge);
   const double x = length > 0 ? std::clamp(dot(p - a, edge) / length, 0.0, 1.0) : 0.0;
   return squared(p - (a + edge * x));
@@ -70,8 +69,8 @@ double squared_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
 
 }  // namespace
 
-double distance_to_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3 normal = cross(b - a, c - a);
+double distance_to_triangle(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+  const glm::dvec3 normal = cross(b - a, c - a);
   const double area = squared(normal);
   // Above the inside the plane is nearest, anywhere else the outline.
   if (area > 0 && dot(cross(b - a, p - a), normal) >= 0 && dot(cross(c - b, p - b), normal) >= 0 &&
@@ -105,10 +104,10 @@ struct MeshTree::Impl {
                   "building the tree for distances over " + std::to_string(scene.triangles.size()) + " triangles");
   }
 
-  std::optional<std::uint32_t> first_hit(const Vec3& point, const Vec3& way) const;
+  std::optional<std::uint32_t> first_hit(const glm::dvec3& point, const glm::dvec3& way) const;
   bool occluded(RTCRay ray) const;
 
-  double nearest(const Vec3& point, double limit, double good_enough) const {
+  double nearest(const glm::dvec3& point, double limit, double good_enough) const {
     Query query{buffers, point, limit, good_enough};
     RTCPointQuery ball{};
     ball.x = static_cast<float>(point.x);
@@ -122,7 +121,7 @@ struct MeshTree::Impl {
   }
 };
 
-std::optional<std::uint32_t> MeshTree::Impl::first_hit(const Vec3& point, const Vec3& way) const {
+std::optional<std::uint32_t> MeshTree::Impl::first_hit(const glm::dvec3& point, const glm::dvec3& way) const {
   RTCRayHit hit{};
   hit.ray = ray_of(point, way, 0, std::numeric_limits<double>::infinity());
   hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
@@ -142,9 +141,11 @@ MeshTree::~MeshTree() = default;
 MeshTree::MeshTree(MeshTree&&) noexcept = default;
 MeshTree& MeshTree::operator=(MeshTree&&) noexcept = default;
 
-double MeshTree::distance(const Vec3& point, double limit) const { return impl_->nearest(point, limit, 0); }
+double MeshTree::distance(const glm::dvec3& point, double limit) const { return impl_->nearest(point, limit, 0); }
 
-bool MeshTree::within(const Vec3& point, double radius) const { return impl_->nearest(point, radius, radius) < radius; }
+bool MeshTree::within(const glm::dvec3& point, double radius) const {
+  return impl_->nearest(point, radius, radius) < radius;
+}
 
 bool MeshTree::Impl::occluded(RTCRay ray) const {
 #if VANTAGE_EMBREE_MAJOR >= 4
@@ -157,20 +158,24 @@ bool MeshTree::Impl::occluded(RTCRay ray) const {
   return ray.tfar < 0;
 }
 
-bool MeshTree::covered(const Vec3& point, double from, double to) const {
+bool MeshTree::covered(const glm::dvec3& point, double from, double to) const {
   return impl_->occluded(ray_of(point, {0, 0, 1}, from, to));
 }
 
-bool MeshTree::between(const Vec3& a, const Vec3& b) const { return impl_->occluded(ray_of(a, b - a, 0, 1)); }
+bool MeshTree::between(const glm::dvec3& a, const glm::dvec3& b) const {
+  return impl_->occluded(ray_of(a, b - a, 0, 1));
+}
 
-bool MeshTree::inside_solid(const Vec3& point) const {
+bool MeshTree::inside_solid(const glm::dvec3& point) const {
   int fronts = 0;
-  for (const Vec3& way : {Vec3{0, 0, 1}, Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, -1, 0}}) {
+  for (const glm::dvec3& way :
+       {glm::dvec3{0, 0, 1}, glm::dvec3{1, 0, 0}, glm::dvec3{-1, 0, 0}, glm::dvec3{0, 1, 0}, glm::dvec3{0, -1, 0}}) {
     const auto hit = impl_->first_hit(point, way);
     if (!hit) return false;
     const Triangle& t = impl_->buffers.triangles[*hit];
-    const Vec3 a = wide(impl_->buffers.positions[t[0]]);
-    const Vec3 normal = cross(wide(impl_->buffers.positions[t[1]]) - a, wide(impl_->buffers.positions[t[2]]) - a);
+    const glm::dvec3 a = to_glm(impl_->buffers.positions[t[0]]);
+    const glm::dvec3 normal =
+        cross(to_glm(impl_->buffers.positions[t[1]]) - a, to_glm(impl_->buffers.positions[t[2]]) - a);
     if (dot(normal, way) <= 0 && ++fronts > 1) return false;
   }
   return true;

@@ -5,8 +5,8 @@
 #include <array>
 #include <memory>
 
+#include "core/glm.hpp"
 #include "scene/scene_data.hpp"
-#include "vantage/types.hpp"
 
 namespace vantage {
 
@@ -20,18 +20,18 @@ class MeshTree {
   MeshTree& operator=(MeshTree&&) noexcept;
 
   // Distance from `point` to the nearest triangle, at most `limit`, in double on the float vertices.
-  double distance(const Vec3& point, double limit) const;
+  double distance(const glm::dvec3& point, double limit) const;
   // Whether a triangle comes nearer to `point` than `radius`. Cheaper than the distance: the first such triangle
   // settles it.
-  bool within(const Vec3& point, double radius) const;
+  bool within(const glm::dvec3& point, double radius) const;
   // Whether a triangle lies on the segment from `point` + `from` to `point` + `to` straight up.
-  bool covered(const Vec3& point, double from, double to) const;
+  bool covered(const glm::dvec3& point, double from, double to) const;
   // Whether a triangle lies on the segment from a to b.
-  bool between(const Vec3& a, const Vec3& b) const;
+  bool between(const glm::dvec3& a, const glm::dvec3& b) const;
   // Whether there are surfaces straight above and level to all four sides, and the nearest of them show their backs:
   // `point` lies within a closed solid, such as a tank, and not within a room, nor under a roof that is a mere sheet.
   // One of the five may show its front, as where another solid stands on this one.
-  bool inside_solid(const Vec3& point) const;
+  bool inside_solid(const glm::dvec3& point) const;
 
  private:
   struct Impl;
@@ -39,6 +39,6 @@ class MeshTree {
 };
 
 // Distance from p to the closed triangle (a, b, c), which may be degenerate.
-double distance_to_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
+double distance_to_triangle(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c);
 
 }  // namespace vantage

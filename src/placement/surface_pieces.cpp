@@ -13,7 +13,7 @@
 namespace vantage {
 namespace {
 
-using Corners = std::array<Vec3, 3>;
+using Corners = std::array<glm::dvec3, 3>;
 
 enum class Share : std::uint8_t { none, some, all };
 
@@ -24,20 +24,20 @@ struct Part {
 
 class Splitter {
  public:
-  Splitter(double spacing_m, const std::function<bool(const Vec3&)>& clear)
+  Splitter(double spacing_m, const std::function<bool(const glm::dvec3&)>& clear)
       : longest_(spacing_m * spacing_m), clear_(clear) {}
 
   // Appends the largest clear parts, unless all of the triangle is clear.
   Share split(const Corners& p, std::uint32_t source, std::vector<Part>& parts, int depth = 0) const {
     std::array<double, 3> length;
     for (int e = 0; e < 3; ++e) {
-      const Vec3 edge = p[(e + 1) % 3] - p[e];
+      const glm::dvec3 edge = p[(e + 1) % 3] - p[e];
       length[e] = dot(edge, edge);
     }
     const int e = static_cast<int>(std::max_element(length.begin(), length.end()) - length.begin());
     if (length[e] <= longest_ || depth == max_depth)
       return clear_((p[0] + p[1] + p[2]) * (1.0 / 3)) ? Share::all : Share::none;
-    const Vec3 a = p[e], b = p[(e + 1) % 3], c = p[(e + 2) % 3], middle = (a + b) * 0.5;
+    const glm::dvec3 a = p[e], b = p[(e + 1) % 3], c = p[(e + 2) % 3], middle = (a + b) * 0.5;
     const Corners first{a, middle, c}, second{middle, b, c};
     const Share left = split(first, source, parts, depth + 1), right = split(second, source, parts, depth + 1);
     if (left == right && left != Share::some) return left;
@@ -49,7 +49,7 @@ class Splitter {
  private:
   static constexpr int max_depth = 40;  // halving the area 40 times is enough for any spacing that callers choose
   double longest_;
-  const std::function<bool(const Vec3&)>& clear_;
+  const std::function<bool(const glm::dvec3&)>& clear_;
 };
 
 Corners corners_of(const SurfacePieces& pieces, std::uint32_t piece) {
@@ -59,8 +59,8 @@ Corners corners_of(const SurfacePieces& pieces, std::uint32_t piece) {
 
 }  // namespace
 
-SurfacePieces clear_pieces(std::vector<Vec3> points, std::span<const Triangle> triangles, double spacing_m,
-                           const std::function<bool(const Vec3&)>& clear) {
+SurfacePieces clear_pieces(std::vector<glm::dvec3> points, std::span<const Triangle> triangles, double spacing_m,
+                           const std::function<bool(const glm::dvec3&)>& clear) {
   const Splitter splitter(spacing_m, clear);
   std::vector<Share> share(triangles.size());
   tbb::enumerable_thread_specific<std::vector<Part>> collected;
@@ -96,8 +96,7 @@ SurfacePieces clear_pieces(std::vector<Vec3> points, std::span<const Triangle> t
 
 double piece_area(const SurfacePieces& pieces, std::uint32_t piece) {
   const Corners p = corners_of(pieces, piece);
-  const Vec3 n = cross(p[1] - p[0], p[2] - p[0]);
-  return 0.5 * std::sqrt(dot(n, n));
+  return 0.5 * length(cross(p[1] - p[0], p[2] - p[0]));
 }
 
 double piece_plan_area(const SurfacePieces& pieces, std::uint32_t piece) {

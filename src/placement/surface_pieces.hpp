@@ -7,14 +7,14 @@
 #include <span>
 #include <vector>
 
+#include "core/glm.hpp"
 #include "scene/scene_data.hpp"
-#include "vantage/types.hpp"
 
 namespace vantage {
 
 // A triangle soup in the local frame, in double. A piece is a whole source triangle or a part of one.
 struct SurfacePieces {
-  std::vector<Vec3> points;
+  std::vector<glm::dvec3> points;
   std::vector<Triangle> triangles;
   std::vector<std::uint32_t> source;  // of each piece; pieces of one source are consecutive
 };
@@ -22,8 +22,8 @@ struct SurfacePieces {
 // The clear parts of the triangles. Each is halved across its longest edge until no edge exceeds `spacing_m`; what is
 // left is clear where `clear` holds for its centroid; halves that are both clear are put together again. Parallel;
 // `clear` is called from several threads.
-SurfacePieces clear_pieces(std::vector<Vec3> points, std::span<const Triangle> triangles, double spacing_m,
-                           const std::function<bool(const Vec3&)>& clear);
+SurfacePieces clear_pieces(std::vector<glm::dvec3> points, std::span<const Triangle> triangles, double spacing_m,
+                           const std::function<bool(const glm::dvec3&)>& clear);
 
 double piece_area(const SurfacePieces& pieces, std::uint32_t piece);       // true area
 double piece_plan_area(const SurfacePieces& pieces, std::uint32_t piece);  // seen from above

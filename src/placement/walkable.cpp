@@ -13,6 +13,7 @@
 #include "placement/charts.hpp"
 #include "placement/mesh_tree.hpp"
 #include "placement/surface_pieces.hpp"
+#include "scene/positions.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage {
@@ -31,10 +32,9 @@ constexpr double lower_half = 0.5;
 constexpr double disc_share = 0.25;
 constexpr double surely_wide = 100;
 
-Vec3 unit_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3 n = cross(b - a, c - a);
-  const double length = std::sqrt(dot(n, n));
-  return length > 0 ? n * (1 / length) : Vec3{};
+glm::dvec3 unit_normal(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+  const glm::dvec3 n = cross(b - a, c - a);
+  return length(n) > 0 ? normalize(n) : glm::dvec3(0);
 }
 
 std::string square_metres(double area) {
@@ -61,7 +61,7 @@ double extent_of(const Box& bounds) {
 
 // The marked triangles, in the first of these classes that has any: gentle and upward; gentle, either side up; not
 // vertical.
-std::vector<Triangle> standing_triangles(const std::vector<Vec3>& points, std::span<const Triangle> triangles,
+std::vector<Triangle> standing_triangles(const std::vector<glm::dvec3>& points, std::span<const Triangle> triangles,
                                          double least_up) {
   std::array<std::vector<Triangle>, 3> classes;
   for (const Triangle& t : triangles) {
@@ -78,11 +78,11 @@ std::vector<Triangle> standing_triangles(const std::vector<Vec3>& points, std::s
 WalkableSurface unfold_marked(const SceneData& scene, const WalkableOptions& options) {
   WalkableSurface surface;
   surface.derived = false;
-  std::vector<Vec3> points;
+  std::vector<glm::dvec3> points;
   Box bounds;
   for (const Vec3& p : scene.search_positions) {
-    points.push_back(p - scene.origin);
-    if (std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)) bounds.extend(points.back());
+    points.push_back(to_glm(p - scene.origin));
+    if (std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)) bounds.extend(p - scene.origin);
   }
   // NaN compares false, so a triangle with such a position has no class.
   auto triangles = standing_triangles(points, scene.search_triangles, std::cos(options.max_slope.in_radians()));
@@ -115,7 +115,7 @@ bool is_ground(const std::vector<Chart>& charts, const Box& bounds, double outli
   return most > 0 && most >= ground_share * outline_area;
 }
 
-WalkableSurface derive_walkable(const SceneData& scene, const MeshTree& tree, const std::vector<Vec3>& points,
+WalkableSurface derive_walkable(const SceneData& scene, const MeshTree& tree, const std::vector<glm::dvec3>& points,
                                 const WalkableOptions& options) {
   WalkableSurface surface;
   const double extent = extent_of(scene.local_bounds), least_up = std::cos(options.max_slope.in_radians());
@@ -126,9 +126,9 @@ WalkableSurface derive_walkable(const SceneData& scene, const MeshTree& tree, co
 
   const double from = first_height(scene.local_bounds, options.headroom_m), to = std::max(options.headroom_m, 2 * from);
   const double spacing = std::max(options.headroom_m / 5, extent / 512);
-  const SurfacePieces pieces = clear_pieces(points, upward, spacing, [&](const Vec3& p) {
+  const SurfacePieces pieces = clear_pieces(points, upward, spacing, [&](const glm::dvec3& p) {
     return !tree.covered(p, from, to) &&
-           !tree.inside_solid(p + Vec3{0, 0, (from + to) / 2});  // above bumps of the ground
+           !tree.inside_solid(p + glm::dvec3{0, 0, (from + to) / 2});  // above bumps of the ground
   });
   std::vector<Chart> charts = make_charts(pieces, weld_share * extent);
   std::vector<char> fit(charts.size());
@@ -153,13 +153,13 @@ WalkableSurface lay_plane(const SceneData& scene, const MeshTree& tree) {
   const Box& b = scene.local_bounds;
   double reach = extent_of(b);
   if (!(reach > 0)) reach = 1;
-  const Vec3 low{b.min.x - reach, b.min.y - reach, b.min.z}, high{b.max.x + reach, b.max.y + reach, b.min.z};
-  std::vector<Vec3> points{low, {high.x, low.y, low.z}, high, {low.x, high.y, low.z}};
+  const glm::dvec3 low{b.min.x - reach, b.min.y - reach, b.min.z}, high{b.max.x + reach, b.max.y + reach, b.min.z};
+  std::vector<glm::dvec3> points{low, {high.x, low.y, low.z}, high, {low.x, high.y, low.z}};
   const std::vector<Triangle> triangles{{0, 1, 2}, {0, 2, 3}};
   // Under the model itself there is no place to stand.
   const double from = 1e-4 * reach, to = b.size().z + reach, spacing = std::max(high.x - low.x, high.y - low.y) / 256;
-  const SurfacePieces pieces =
-      clear_pieces(std::move(points), triangles, spacing, [&](const Vec3& p) { return !tree.covered(p, from, to); });
+  const SurfacePieces pieces = clear_pieces(std::move(points), triangles, spacing,
+                                            [&](const glm::dvec3& p) { return !tree.covered(p, from, to); });
   const auto charts = make_charts(pieces, weld_share * reach);
   WalkableSurface surface;
   surface.mesh = unfold(pieces, charts, scene.origin);
@@ -198,9 +198,9 @@ WalkableSurface find_walkable_surface(const SceneData& scene, const WalkableOpti
                 "the scene has neither a mesh nor a usable search area to stand on; mark one with the role \"search\" "
                 "or add a ground");
   const MeshTree tree(scene);
-  std::vector<Vec3> points;
+  std::vector<glm::dvec3> points;
   points.reserve(scene.positions.size());
-  for (const Float3& p : scene.positions) points.push_back({p.x, p.y, p.z});
+  for (const Float3& p : scene.positions) points.push_back(to_glm(p));
   WalkableSurface walkable = derive_walkable(scene, tree, points, options);
   return walkable.mesh.triangles.empty() ? lay_plane(scene, tree) : walkable;
 }

@@ -8,7 +8,7 @@
 #include <functional>
 #include <limits>
 
-#include "scan/surface_colour.hpp"
+#include "scene/surface_colour.hpp"
 
 namespace vantage {
 namespace {
@@ -69,18 +69,20 @@ std::array<float, 3> array_of(const Float3& v) { return {v.x, v.y, v.z}; }
 
 }  // namespace
 
-std::uint32_t raw_outputs(std::uint32_t outputs, bool with_panorama) {
+std::uint32_t raw_outputs(const ScanOptions& options) {
+  const std::uint32_t outputs = options.outputs;
   std::uint32_t raw = Tracer::primitive | Tracer::voxel;
   if (outputs & scan_range) raw |= Tracer::range;
   if (outputs & scan_position) raw |= Tracer::position;
   if (outputs & scan_normal) raw |= Tracer::normal;
   if (outputs & scan_reflectivity) raw |= Tracer::reflectivity;
-  if ((outputs & scan_colour) && !with_panorama) raw |= Tracer::barycentric;
+  if ((outputs & scan_colour) && !options.colour) raw |= Tracer::barycentric;
   return raw;
 }
 
-void fill_chunk(ScanChunk& chunk, Tracer::RawChunk& raw, std::uint32_t outputs, const SceneData& scene,
-                const Scanner& scanner, const Panorama* panorama, ScanSummary& summary) {
+void fill_chunk(ScanChunk& chunk, Tracer::RawChunk& raw, const ScanOptions& options, const SceneData& scene,
+                const Scanner& scanner, ScanSummary& summary) {
+  const std::uint32_t outputs = options.outputs;
   const auto count = static_cast<std::size_t>(chunk.ray_count);
   const Sums sums = sum_rays(raw, count, scene);
   summary.rays += chunk.ray_count;
@@ -111,9 +113,9 @@ void fill_chunk(ScanChunk& chunk, Tracer::RawChunk& raw, std::uint32_t outputs, 
       for (; k != end; ++k) {
         if (raw.primitive[k] == no_primitive) {
           chunk.colour[k] = 0;
-        } else if (panorama) {
+        } else if (options.colour) {
           const RayAngles angles = scanner.angles(chunk.first_ray + k);
-          chunk.colour[k] = panorama->colour(angles.zenith, angles.azimuth);
+          chunk.colour[k] = options.colour(angles.zenith, angles.azimuth);
         } else {
           chunk.colour[k] = surface_colour(scene, mesh_of(raw.primitive[k]), raw.primitive[k], raw.barycentric[k]);
         }

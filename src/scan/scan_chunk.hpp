@@ -5,18 +5,17 @@
 
 #include "scene/scene_data.hpp"
 #include "trace/tracer.hpp"
-#include "vantage/panorama.hpp"
 #include "vantage/scanner.hpp"
 #include "vantage/simulator.hpp"
 
 namespace vantage {
 
-// What an engine must fill for `outputs` (ScanOutput bits), and for the sums of a scan, which are always taken.
-std::uint32_t raw_outputs(std::uint32_t outputs, bool with_panorama);
+// What an engine must fill for the outputs asked for, and for the sums of a scan, which are always taken.
+std::uint32_t raw_outputs(const ScanOptions& options);
 
 // Turns an engine's rays into what the user asked for; mesh and colour are derived here. Adds to `summary`.
 // `chunk.first_ray` and `chunk.ray_count` are set already; its other arrays are overwritten.
-void fill_chunk(ScanChunk& chunk, Tracer::RawChunk& raw, std::uint32_t outputs, const SceneData& scene,
-                const Scanner& scanner, const Panorama* panorama, ScanSummary& summary);
+void fill_chunk(ScanChunk& chunk, Tracer::RawChunk& raw, const ScanOptions& options, const SceneData& scene,
+                const Scanner& scanner, ScanSummary& summary);
 
 }  // namespace vantage

@@ -169,14 +169,14 @@ Vec3 Simulator::voxel_centre(std::uint64_t rank) const {
                          static_cast<double>(min[2]) + (z + 0.5) * size};
 }
 
-ScanSummary Simulator::scan(const Station& station, std::uint32_t place, std::uint32_t outputs,
-                            const std::function<void(const ScanChunk&)>& sink, const Progress& progress,
-                            const Panorama* panorama) {
-  if (outputs & ~known_outputs)
-    throw Error(Errc::invalid_argument, "scan: unknown output bits " + std::to_string(outputs & ~known_outputs));
+ScanSummary Simulator::scan(const Station& station, const ScanOptions& options,
+                            const std::function<void(const ScanChunk&)>& sink, const Progress& progress) {
+  if (options.outputs & ~known_outputs)
+    throw Error(Errc::invalid_argument,
+                "scan: unknown output bits " + std::to_string(options.outputs & ~known_outputs));
   ScanSummary summary;
   if (!station.active) return summary;
-  const TraceStation from = impl_->trace_station(station, place);
+  const TraceStation from = impl_->trace_station(station, options.place);
   const std::uint64_t columns = impl_->pattern->columns(), rays = columns * impl_->pattern->rows();
   const std::uint64_t rows_at_once = std::max<std::uint64_t>(1, impl_->tracer->preferred_scan_rays() / columns);
   Tracer::RawChunk raw;
@@ -189,9 +189,9 @@ ScanSummary Simulator::scan(const Station& station, std::uint32_t place, std::ui
     chunk.first_ray = first;
     chunk.ray_count = std::min(rows_at_once * columns, rays - first);
     const auto start = std::chrono::steady_clock::now();
-    impl_->tracer->scan(from, first, chunk.ray_count, raw_outputs(outputs, panorama != nullptr), raw);
+    impl_->tracer->scan(from, first, chunk.ray_count, raw_outputs(options), raw);
     summary.trace_seconds += seconds_since(start);
-    fill_chunk(chunk, raw, outputs, impl_->data(), impl_->scanner, panorama, summary);
+    fill_chunk(chunk, raw, options, impl_->data(), impl_->scanner, summary);
     if (sink) sink(chunk);
     progress(static_cast<double>(first + chunk.ray_count) / static_cast<double>(rays));
   }

@@ -10,11 +10,12 @@
 #include <vector>
 
 #include "core/embree.hpp"
+#include "scene/positions.hpp"
 
 namespace vantage {
 namespace {
 
-using Corners = std::array<Vec3, 3>;
+using Corners = std::array<glm::dvec3, 3>;
 
 struct Soup {
   std::span<const Float3> positions;
@@ -24,15 +25,12 @@ struct Soup {
 
   Corners corners(std::size_t k) const {
     Corners corners;
-    for (std::size_t c = 0; c < 3; ++c) {
-      const Float3& p = positions[triangles[chosen[k]][c]];
-      corners[c] = {p.x, p.y, p.z};
-    }
+    for (std::size_t c = 0; c < 3; ++c) corners[c] = to_glm(positions[triangles[chosen[k]][c]]);
     return corners;
   }
   Box box(std::size_t k) const {
     Box box;
-    for (const Vec3& p : corners(k)) box.extend(p);
+    for (const glm::dvec3& p : corners(k)) box.extend(to_vec3(p));
     return box;
   }
 };
@@ -61,28 +59,25 @@ embree::Scene tree_over(RTCDevice device, Soup& soup) {
   return tree;
 }
 
-Vec3 unit_normal(const Corners& t) {
-  const Vec3 n = cross(t[1] - t[0], t[2] - t[0]);
-  return n * (1 / std::sqrt(dot(n, n)));
-}
+glm::dvec3 unit_normal(const Corners& t) { return normalize(cross(t[1] - t[0], t[2] - t[0])); }
 
-bool lies_in_plane(const Corners& t, const Corners& other, const Vec3& normal, double slack) {
-  return std::ranges::all_of(t, [&](const Vec3& p) { return std::abs(dot(normal, p - other[0])) <= slack; });
+bool lies_in_plane(const Corners& t, const Corners& other, const glm::dvec3& normal, double slack) {
+  return std::ranges::all_of(t, [&](const glm::dvec3& p) { return std::abs(dot(normal, p - other[0])) <= slack; });
 }
 
 // Whether an edge of `a`, seen along `normal`, has all of `b` beyond it, or nearer to it than `slack`.
-bool edge_parts(const Corners& a, const Corners& b, const Vec3& normal, double slack) {
+bool edge_parts(const Corners& a, const Corners& b, const glm::dvec3& normal, double slack) {
   for (std::size_t k = 0; k < 3; ++k) {
-    const Vec3 edge = a[(k + 1) % 3] - a[k];
-    const Vec3 out = cross(edge, normal) * (1 / std::sqrt(dot(edge, edge)));
+    const glm::dvec3 edge = a[(k + 1) % 3] - a[k];
+    const glm::dvec3 out = cross(edge, normal) * (1 / length(edge));
     const double side = dot(out, a[(k + 2) % 3] - a[k]) > 0 ? -1 : 1;
-    if (std::ranges::all_of(b, [&](const Vec3& p) { return side * dot(out, p - a[k]) >= -slack; })) return true;
+    if (std::ranges::all_of(b, [&](const glm::dvec3& p) { return side * dot(out, p - a[k]) >= -slack; })) return true;
   }
   return false;
 }
 
 bool overlap_in_plane(const Corners& a, const Corners& b, double slack) {
-  const Vec3 na = unit_normal(a), nb = unit_normal(b);
+  const glm::dvec3 na = unit_normal(a), nb = unit_normal(b);
   if (std::abs(dot(na, nb)) < 0.99) return false;
   if (!lies_in_plane(a, b, nb, slack) && !lies_in_plane(b, a, na, slack)) return false;
   return !edge_parts(a, b, na, 4 * slack) && !edge_parts(b, a, na, 4 * slack);

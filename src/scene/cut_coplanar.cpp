@@ -13,6 +13,7 @@
 
 #include "scene/coplanar.hpp"
 #include "scene/cut_polygon.hpp"
+#include "scene/positions.hpp"
 
 namespace vantage {
 namespace {
@@ -29,23 +30,16 @@ struct Covered {
 class Frame {
  public:
   Frame(const std::vector<Float3>& positions, const Triangle& triangle) {
-    const auto at = [&](std::size_t k) {
-      const Float3& p = positions[triangle[k]];
-      return Vec3{p.x, p.y, p.z};
-    };
+    const auto at = [&](std::size_t k) { return to_glm(positions[triangle[k]]); };
     origin_ = at(0);
-    const Vec3 edge = at(1) - origin_, normal = cross(edge, at(2) - origin_);
-    x_ = edge * (1 / std::sqrt(dot(edge, edge)));
-    const Vec3 up = cross(normal, x_);
-    y_ = up * (1 / std::sqrt(dot(up, up)));
+    const glm::dvec3 edge = at(1) - origin_, normal = cross(edge, at(2) - origin_);
+    x_ = normalize(edge);
+    y_ = normalize(cross(normal, x_));
     for (std::size_t k = 0; k < 3; ++k) corners_.push_back(flat(at(k)));
   }
 
-  PlanePoint flat(const Vec3& p) const { return {dot(p - origin_, x_), dot(p - origin_, y_)}; }
-  Float3 lifted(const PlanePoint& p) const {
-    const Vec3 at = origin_ + x_ * p.x + y_ * p.y;
-    return {static_cast<float>(at.x) + 0.0F, static_cast<float>(at.y) + 0.0F, static_cast<float>(at.z) + 0.0F};
-  }
+  PlanePoint flat(const glm::dvec3& p) const { return {dot(p - origin_, x_), dot(p - origin_, y_)}; }
+  Float3 lifted(const PlanePoint& p) const { return without_minus_zero(to_float3(origin_ + x_ * p.x + y_ * p.y)); }
   const ConvexPolygon& triangle() const { return corners_; }
   Weights weights(const PlanePoint& p) const {
     const PlanePoint &b = corners_[1], &c = corners_[2];
@@ -54,7 +48,7 @@ class Frame {
   }
 
  private:
-  Vec3 origin_, x_, y_;
+  glm::dvec3 origin_, x_, y_;
   ConvexPolygon corners_;
 };
 
@@ -74,11 +68,10 @@ std::uint32_t mixed_colour(const std::vector<std::uint32_t>& colours, const Tria
 }
 
 Float3 mixed_normal(const std::vector<Float3>& normals, const Triangle& t, const Weights& w) {
-  Vec3 n;
-  for (std::size_t k = 0; k < 3; ++k) n = n + Vec3{normals[t[k]].x, normals[t[k]].y, normals[t[k]].z} * w[k];
-  const double length = std::sqrt(dot(n, n));
-  if (!(length > 0)) return {};
-  return {static_cast<float>(n.x / length), static_cast<float>(n.y / length), static_cast<float>(n.z / length)};
+  glm::dvec3 n(0);
+  for (std::size_t k = 0; k < 3; ++k) n += to_glm(normals[t[k]]) * w[k];
+  const double size = length(n);
+  return size > 0 ? to_float3(n / size) : Float3{};
 }
 
 // Appends a vertex of triangle `t` at `p`, and returns its number.
@@ -128,8 +121,7 @@ CoplanarCut cut_coplanar(RawScene& raw, std::vector<Float3>& positions) {
     std::vector<ConvexPolygon> holes;
     for (const CoplanarPair& pair : covered[k].by) {
       ConvexPolygon hole;
-      for (const std::uint32_t v : raw.triangles[pair.surveyed])
-        hole.push_back(frame.flat({positions[v].x, positions[v].y, positions[v].z}));
+      for (const std::uint32_t v : raw.triangles[pair.surveyed]) hole.push_back(frame.flat(to_glm(positions[v])));
       holes.push_back(counter_clockwise(std::move(hole)));
     }
     left[k] = cut_away(frame.triangle(), holes, coplanar.slack_m);

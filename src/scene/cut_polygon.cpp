@@ -20,8 +20,8 @@ struct Line {
     const double dx = b.x - a.x, dy = b.y - a.y, length = std::hypot(dx, dy);
     return {a, {-dy / length, dx / length}};
   }
-  double left(const PlanePoint& p) const { return (p.x - at.x) * normal.x + (p.y - at.y) * normal.y; }
-  Line turned() const { return {at, {-normal.x, -normal.y}}; }
+  double left(const PlanePoint& p) const { return dot(p - at, normal); }
+  Line turned() const { return {at, -normal}; }
 };
 
 // What of a convex polygon lies left of the line, or right of it by at most `reach`.
@@ -33,7 +33,7 @@ ConvexPolygon clip(const ConvexPolygon& polygon, const Line& line, double reach)
     if (a >= 0) kept.push_back(p);
     if ((a < 0) != (b < 0) && a != 0 && b != 0) {
       const double s = a / (a - b);
-      kept.push_back({p.x + (q.x - p.x) * s, p.y + (q.y - p.y) * s});
+      kept.push_back(p + (q - p) * s);
     }
   }
   return kept;
@@ -45,7 +45,7 @@ double width(const ConvexPolygon& polygon) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < polygon.size(); ++k) {
     const PlanePoint &a = polygon[k], &b = polygon[(k + 1) % polygon.size()];
-    if (a.x == b.x && a.y == b.y) continue;
+    if (a == b) continue;
     const Line edge = Line::through(a, b);
     double farthest = 0;
     for (const PlanePoint& p : polygon) farthest = std::max(farthest, edge.left(p));
@@ -59,8 +59,8 @@ struct Bounds {
 
   explicit Bounds(const ConvexPolygon& polygon) : min(polygon.front()), max(polygon.front()) {
     for (const PlanePoint& p : polygon) {
-      min = {std::min(min.x, p.x), std::min(min.y, p.y)};
-      max = {std::max(max.x, p.x), std::max(max.y, p.y)};
+      min = glm::min(min, p);
+      max = glm::max(max, p);
     }
   }
   bool overlaps(const Bounds& o) const {

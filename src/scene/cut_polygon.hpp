@@ -4,11 +4,11 @@
 
 #include <vector>
 
+#include "core/glm.hpp"
+
 namespace vantage {
 
-struct PlanePoint {
-  double x = 0, y = 0;
-};
+using PlanePoint = glm::dvec2;
 using ConvexPolygon = std::vector<PlanePoint>;  // counter-clockwise
 
 // What of `polygon` none of `holes` covers, as convex parts. Parts reach `slack` / 4 into the holes and into each

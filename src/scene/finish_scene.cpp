@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "scene/cut_coplanar.hpp"
+#include "scene/positions.hpp"
 #include "scene/raw_scene.hpp"
 #include "vantage/error.hpp"
 
@@ -17,16 +18,14 @@ namespace {
 
 constexpr double kFarthest_m = 1e9;  // float32 is 64 m coarse there: no site reaches so far, but a broken vertex does
 
-bool sound(const Vec3& p) {
+bool sound(const glm::dvec3& p) {
   return std::abs(p.x) <= kFarthest_m && std::abs(p.y) <= kFarthest_m && std::abs(p.z) <= kFarthest_m;
 }
 
-Vec3 widened(const Float3& p) { return {p.x, p.y, p.z}; }
-
 // A triangle has area when its normal can be formed in float. Differences of floats and their products are exact in
 // double, or nearly so, hence collinear corners give exactly 0.
-bool has_area(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3 n = cross(b - a, c - a);
+bool has_area(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+  const glm::dvec3 n = cross(b - a, c - a);
   return dot(n, n) >= static_cast<double>(std::numeric_limits<float>::min());
 }
 
@@ -210,20 +209,18 @@ std::shared_ptr<const SceneData> finish_scene(RawScene&& raw, const std::string&
   });
   Box bounds;
   for (const Triangle& t : raw.triangles)
-    for (const std::uint32_t v : t) bounds.extend(raw.positions[v]);
+    for (const std::uint32_t v : t) bounds.extend(to_vec3(raw.positions[v]));
 
   auto data = std::make_shared<SceneData>();
   data->origin = local_origin(bounds);
   data->positions.resize(raw.positions.size());
   tbb::parallel_for(std::size_t{0}, raw.positions.size(), [&](std::size_t v) {
     if (!sound(raw.positions[v])) return;  // unused by now
-    const Vec3 p = raw.positions[v] - data->origin;
-    data->positions[v] = {static_cast<float>(p.x) + 0.0F, static_cast<float>(p.y) + 0.0F,
-                          static_cast<float>(p.z) + 0.0F};  // no −0
+    data->positions[v] = without_minus_zero(to_float3(raw.positions[v] - to_glm(data->origin)));
   });
   raw.positions = {};
   const auto has_area_in_float = [&](const Triangle& t) {
-    return has_area(widened(data->positions[t[0]]), widened(data->positions[t[1]]), widened(data->positions[t[2]]));
+    return has_area(to_glm(data->positions[t[0]]), to_glm(data->positions[t[1]]), to_glm(data->positions[t[2]]));
   };
   const std::size_t flat = drop_unless(raw, has_area_in_float);
   const std::size_t duplicates = drop_duplicates(raw, data->positions);
@@ -258,7 +255,7 @@ std::shared_ptr<const SceneData> finish_scene(RawScene&& raw, const std::string&
     compact(raw.texcoords, kept);
     compact(raw.colours, kept);
   }
-  for (const Float3& p : data->positions) data->local_bounds.extend(widened(p));
+  for (const Float3& p : data->positions) data->local_bounds.extend(to_vec3(to_glm(p)));
   note_lost_precision(raw, data->local_bounds);
   clean_search_area(raw);
 
@@ -271,7 +268,8 @@ std::shared_ptr<const SceneData> finish_scene(RawScene&& raw, const std::string&
   data->materials = std::move(raw.materials);
   if (data->materials.empty()) data->materials.emplace_back();
   data->images = std::move(raw.images);
-  data->search_positions = std::move(raw.search_positions);
+  data->search_positions.reserve(raw.search_positions.size());
+  for (const glm::dvec3& p : raw.search_positions) data->search_positions.push_back(to_vec3(p));
   data->search_uvs = std::move(raw.search_uvs);
   data->search_triangles = std::move(raw.search_triangles);
   data->notes = std::move(raw.notes);

@@ -7,12 +7,13 @@
 #include <string>
 #include <vector>
 
+#include "core/glm.hpp"
 #include "scene/scene_data.hpp"
 
 namespace vantage {
 
 struct RawScene {
-  std::vector<Vec3> positions;
+  std::vector<glm::dvec3> positions;
   std::vector<Float3> normals;         // empty, or one per position
   std::vector<Float2> texcoords;       // empty, or one per position
   std::vector<std::uint32_t> colours;  // empty, or one per position
@@ -21,7 +22,7 @@ struct RawScene {
   std::vector<MeshInfo> meshes;
   std::vector<Material> materials;
   std::vector<Image> images;
-  std::vector<Vec3> search_positions;
+  std::vector<glm::dvec3> search_positions;
   std::vector<Uv> search_uvs;
   std::vector<Triangle> search_triangles;
   // Coarsest spacing, in metres, of the float32 values from which positions were read, at those positions; 0 where they

@@ -21,7 +21,8 @@ Scene Scene::from_triangles(std::span<const Vec3> positions, std::span<const std
         throw Error(Errc::invalid_argument, "triangle " + std::to_string(t) + " refers to position " +
                                                 std::to_string(v) + "; there are " + std::to_string(positions.size()));
   RawScene raw;
-  raw.positions.assign(positions.begin(), positions.end());
+  raw.positions.reserve(positions.size());
+  for (const Vec3& p : positions) raw.positions.push_back(to_glm(p));
   raw.triangles.assign(triangles.begin(), triangles.end());
   const auto count = static_cast<std::uint32_t>(triangles.size());
   raw.ranges = {{0, count, 0}};

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "vantage/image.hpp"
 #include "vantage/scene.hpp"
 
 namespace vantage {
@@ -20,12 +21,6 @@ struct Float3 {
   friend bool operator==(const Float3&, const Float3&) = default;
 };
 using Triangle = std::array<std::uint32_t, 3>;  // indices into SceneData::positions
-
-// An image decoded to RGBA8, row by row from the top.
-struct Image {
-  std::uint32_t width = 0, height = 0;
-  std::vector<std::uint8_t> rgba;
-};
 
 // Base colour only: what a point's colour needs.
 struct Material {

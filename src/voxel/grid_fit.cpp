@@ -13,6 +13,7 @@
 #include <tuple>
 #include <vector>
 
+#include "scene/positions.hpp"
 #include "vantage/error.hpp"
 #include "voxel/voxel_grid.hpp"
 
@@ -29,12 +30,10 @@ struct Slab {
   std::uint64_t weight;  // area, as an integer so that sums do not depend on their order
 };
 
-using Points = std::array<std::array<double, 3>, 3>;
+using Points = std::array<glm::dvec3, 3>;
 
 Points points_of(std::span<const Float3> positions, const Triangle& t) {
-  Points p;
-  for (int c = 0; c < 3; ++c) p[c] = {positions[t[c]].x, positions[t[c]].y, positions[t[c]].z};
-  return p;
+  return {to_glm(positions[t[0]]), to_glm(positions[t[1]]), to_glm(positions[t[2]])};
 }
 
 std::vector<Slab> slabs_of(std::span<const Float3> positions, std::span<const std::span<const Triangle>> surveyed,
@@ -49,9 +48,8 @@ std::vector<Slab> slabs_of(std::span<const Float3> positions, std::span<const st
         const double low = std::min({p[0][axis], p[1][axis], p[2][axis]}),
                      high = std::max({p[0][axis], p[1][axis], p[2][axis]});
         if (high - low > thickest) continue;
-        const Vec3 a{p[0][0], p[0][1], p[0][2]}, b{p[1][0], p[1][1], p[1][2]}, c{p[2][0], p[2][1], p[2][2]};
-        const Vec3 n = cross(b - a, c - a);
-        const double along = axis == 0 ? n.x : axis == 1 ? n.y : n.z, squared = dot(n, n);
+        const glm::dvec3 n = cross(p[1] - p[0], p[2] - p[0]);
+        const double along = n[axis], squared = dot(n, n);
         if (along * along < squared * (1 - max_tilt * max_tilt)) continue;
         slabs.push_back({low - min, high - min, static_cast<std::uint64_t>(0.5 * std::sqrt(squared) / area_unit) + 1});
       }

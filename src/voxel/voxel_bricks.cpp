@@ -12,6 +12,7 @@
 #include <cmath>
 #include <string>
 
+#include "core/glm.hpp"
 #include "vantage/error.hpp"
 #include "voxel/triangle_cells.hpp"
 #include "voxel/voxel_grid.hpp"
@@ -35,9 +36,8 @@ void check_area(std::span<const Float3> positions, std::span<const std::span<con
   for (const auto& mesh : triangles)
     for (const Triangle& triangle : mesh) {
       const auto c = grid.corners(positions, triangle);
-      const Vec3 a{c[0][0], c[0][1], c[0][2]}, b{c[1][0], c[1][1], c[1][2]}, d{c[2][0], c[2][1], c[2][2]};
-      const Vec3 n = cross(b - a, d - a);
-      area += 0.5 * std::sqrt(dot(n, n));
+      const glm::dvec3 a = glm::make_vec3(c[0].data());
+      area += 0.5 * length(cross(glm::make_vec3(c[1].data()) - a, glm::make_vec3(c[2].data()) - a));
     }
   if (!(area < 0x1p36))
     throw Error(Errc::invalid_argument,

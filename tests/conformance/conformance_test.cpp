@@ -38,7 +38,7 @@ float bits_apart(float a, float b) {
 
 class Conformance : public testing::TestWithParam<EngineInfo> {
  protected:
-  static std::unique_ptr<Tracer> make(const Site& site, bool noisy, std::uint64_t max_rays = 0) {
+  static std::unique_ptr<Tracer> make(const TestSite& site, bool noisy, std::uint64_t max_rays = 0) {
     TraceScene scene = site.trace_scene(noisy);
     scene.max_rays_per_dispatch = max_rays;
     auto tracer = make_tracer(GetParam().engine, GetParam().device_index, scene);
@@ -54,29 +54,30 @@ class Conformance : public testing::TestWithParam<EngineInfo> {
   static void TearDownTestSuite() { tracers().clear(); }  // before drivers and layers tear themselves down
 
   // Kept from test to test: building an engine costs more than most tests.
-  static Tracer& tracer(const Site& site, bool noisy) {
+  static Tracer& tracer(const TestSite& site, bool noisy) {
     auto& kept = tracers()[{GetParam().engine, GetParam().device_index, site.name, noisy}];
     if (!kept) kept = make(site, noisy);
     return *kept;
   }
 
-  static Tracer::RawChunk scan(const Site& site, bool noisy, std::size_t station, std::uint32_t outputs = all_outputs) {
+  static Tracer::RawChunk scan(const TestSite& site, bool noisy, std::size_t station,
+                               std::uint32_t outputs = all_outputs) {
     Tracer::RawChunk chunk;
     tracer(site, noisy).scan(site.stations[station], 0, site.rays(), outputs, chunk);
     return chunk;
   }
 
-  static std::uint32_t stations_of(const Site& site) { return static_cast<std::uint32_t>(site.stations.size()); }
+  static std::uint32_t stations_of(const TestSite& site) { return static_cast<std::uint32_t>(site.stations.size()); }
 
-  static NetworkCounts count(const Site& site, bool noisy, const Tracer::CountOptions& options) {
+  static NetworkCounts count(const TestSite& site, bool noisy, const Tracer::CountOptions& options) {
     return tracer(site, noisy).count(site.stations, stations_of(site), options, {});
   }
 };
 
 // Scans.
 
-void compare_with_reference(const Site& site, const std::vector<ReferenceHit>& reference, const Tracer::RawChunk& chunk,
-                            std::size_t& undecided) {
+void compare_with_reference(const TestSite& site, const std::vector<ReferenceHit>& reference,
+                            const Tracer::RawChunk& chunk, std::size_t& undecided) {
   const SceneData& scene = *site.scene;
   for (std::size_t k = 0; k < reference.size(); ++k) {
     const ReferenceHit& expected = reference[k];
@@ -109,7 +110,7 @@ void compare_with_reference(const Site& site, const std::vector<ReferenceHit>& r
 }
 
 TEST_P(Conformance, ScansMatchADoublePrecisionReference) {
-  for (const Site& site : sites()) {
+  for (const TestSite& site : sites()) {
     for (const bool noisy : {false, true}) {
       std::size_t undecided = 0, rays = 0;
       for (std::size_t s = 0; s < site.stations.size(); ++s) {
@@ -126,7 +127,7 @@ TEST_P(Conformance, ScansMatchADoublePrecisionReference) {
 }
 
 TEST_P(Conformance, BarycentricWeightsGiveThePoint) {
-  const Site& site = sites()[2];
+  const TestSite& site = sites()[2];
   const Tracer::RawChunk chunk = scan(site, false, 0);
   std::size_t hits = 0;
   for (std::size_t k = 0; k < chunk.primitive.size(); ++k) {
@@ -147,7 +148,7 @@ TEST_P(Conformance, BarycentricWeightsGiveThePoint) {
 
 // Points are made of range, origin and direction without contraction: equal bits on every device.
 TEST_P(Conformance, PositionsAreRangeTimesDirectionToTheBit) {
-  const Site& site = sites()[2];
+  const TestSite& site = sites()[2];
   const RayPattern& pattern = *site.pattern;
   for (const bool noisy : {false, true}) {
     const Tracer::RawChunk chunk = scan(site, noisy, 1);
@@ -170,7 +171,7 @@ TEST_P(Conformance, PositionsAreRangeTimesDirectionToTheBit) {
 }
 
 TEST_P(Conformance, NoiseIsKeyedByRayAndPlace) {
-  const Site& site = sites()[2];
+  const TestSite& site = sites()[2];
   const Tracer::RawChunk clean = scan(site, false, 0), noisy = scan(site, true, 0);
   std::size_t moved = 0;
   for (std::size_t k = 0; k < clean.range.size(); ++k) {
@@ -231,7 +232,7 @@ void expect_only(std::uint32_t output, const Tracer::RawChunk& one, const Tracer
 }
 
 TEST_P(Conformance, ChunksOfAnySizeGiveTheSameScan) {
-  const Site& site = sites()[2];
+  const TestSite& site = sites()[2];
   const Tracer::RawChunk whole = scan(site, true, 2);
   const std::uint64_t columns = site.pattern->columns(), rows = site.pattern->rows();
   Tracer::RawChunk part;
@@ -250,7 +251,7 @@ TEST_P(Conformance, ChunksOfAnySizeGiveTheSameScan) {
 }
 
 TEST_P(Conformance, OnlyTheOutputsAskedForAreMade) {
-  const Site& site = sites()[2];
+  const TestSite& site = sites()[2];
   for (const bool noisy : {false, true}) {
     const Tracer::RawChunk whole = scan(site, noisy, 0);
     for (std::uint32_t output = 1; output < all_outputs; output <<= 1)
@@ -259,7 +260,7 @@ TEST_P(Conformance, OnlyTheOutputsAskedForAreMade) {
 }
 
 TEST_P(Conformance, ANewEngineCanBeAskedForAnyOutputFirst) {
-  const Site& site = sites()[2];
+  const TestSite& site = sites()[2];
   const std::uint64_t rays = 40 * site.pattern->columns(), first = 80 * site.pattern->columns();
   Tracer::RawChunk all;
   tracer(site, false).scan(site.stations[0], first, rays, all_outputs, all);
@@ -273,7 +274,7 @@ TEST_P(Conformance, ANewEngineCanBeAskedForAnyOutputFirst) {
 // Exact counts.
 
 TEST_P(Conformance, CountsAreThePointsOfTheScans) {
-  for (const Site& site : sites()) {
+  for (const TestSite& site : sites()) {
     for (const bool noisy : {false, true}) {
       SCOPED_TRACE(site.name + (noisy ? ", noise" : ""));
       VoxelField expected;
@@ -308,7 +309,7 @@ TEST_P(Conformance, CountsAreThePointsOfTheScans) {
 }
 
 TEST_P(Conformance, TotalsMatchTheReference) {
-  for (const Site& site : sites()) {
+  for (const TestSite& site : sites()) {
     SCOPED_TRACE(site.name);
     VoxelField expected;
     expected.count.resize(site.grid->size());
@@ -333,7 +334,7 @@ TEST_P(Conformance, TotalsMatchTheReference) {
 }
 
 TEST_P(Conformance, StationsKeepTheirPlaceInTheNetwork) {
-  const Site& site = sites()[1];
+  const TestSite& site = sites()[1];
   std::vector<TraceStation> stations{site.stations[0], site.stations[1]};
   stations[0].place = 63;
   stations[1].place = 2;
@@ -354,7 +355,7 @@ TEST_P(Conformance, StationsKeepTheirPlaceInTheNetwork) {
 }
 
 TEST_P(Conformance, DispatchesOfAnySizeGiveTheSameCounts) {
-  const Site& site = sites()[2];
+  const TestSite& site = sites()[2];
   VoxelField whole, part;
   const NetworkCounts expected = count(site, true, {true, false, &whole});
   for (const std::uint64_t max_rays : {std::uint64_t{1}, std::uint64_t{7777}, site.rays() * 2}) {
@@ -368,7 +369,7 @@ TEST_P(Conformance, DispatchesOfAnySizeGiveTheSameCounts) {
 }
 
 TEST_P(Conformance, ACancelledCountSaysSoAndLeavesTheEngineWell) {
-  const Site& site = sites()[2];
+  const TestSite& site = sites()[2];
   const auto small = make(site, false, 20'000);
   std::vector<TraceStation> many;
   for (std::uint32_t i = 0; i < 40; ++i) many.push_back({site.stations[i % 3].origin, i});
@@ -397,7 +398,7 @@ TEST_P(Conformance, ACancelledCountSaysSoAndLeavesTheEngineWell) {
 // Skipping.
 
 // Random heads inside and outside the site, some of them within a surveyed brick.
-std::vector<TraceStation> random_stations(const Site& site, std::uint32_t n, std::uint64_t seed) {
+std::vector<TraceStation> random_stations(const TestSite& site, std::uint32_t n, std::uint64_t seed) {
   RandomStream random(seed);
   const Box& box = site.scene->local_bounds;
   const Vec3 size = box.size();
@@ -419,7 +420,7 @@ std::vector<TraceStation> random_stations(const Site& site, std::uint32_t n, std
 }
 
 TEST_P(Conformance, SkippingChangesNoVoxel) {
-  for (const Site& site : sites()) {
+  for (const TestSite& site : sites()) {
     std::vector<TraceStation> stations = random_stations(site, 12, 99);
     for (const TraceStation& station : site.stations)
       stations.push_back({station.origin, static_cast<std::uint32_t>(stations.size())});
@@ -442,7 +443,7 @@ TEST_P(Conformance, SkippingChangesNoVoxel) {
 // Samples.
 
 // The counts of a sample by the book, from the voxel field of the exact evaluation.
-NetworkCounts sampled_slowly(const Site& site, const VoxelField& field, const Tracer::SampleJob& job,
+NetworkCounts sampled_slowly(const TestSite& site, const VoxelField& field, const Tracer::SampleJob& job,
                              std::uint32_t stations) {
   VoxelField sample;
   const auto pick = [&](std::size_t first, std::size_t step) {
@@ -484,7 +485,7 @@ Tracer::SampleJob voxel_by_voxel(std::span<const std::uint32_t> sample, bool mas
 }
 
 TEST_P(Conformance, ASampleOfAllVoxelsIsTheExactEvaluation) {
-  for (const Site& site : sites()) {
+  for (const TestSite& site : sites()) {
     std::vector<std::uint32_t> everything(site.grid->size());
     std::iota(everything.begin(), everything.end(), 0u);
     std::vector<std::vector<TraceStation>> networks{site.stations, random_stations(site, 8, 7)};
@@ -505,7 +506,7 @@ TEST_P(Conformance, ASampleOfAllVoxelsIsTheExactEvaluation) {
 }
 
 TEST_P(Conformance, EverySampledVoxelIsCountedAsTheExactEvaluationDoes) {
-  for (const Site& site : sites()) {
+  for (const TestSite& site : sites()) {
     std::vector<std::uint32_t> sample;
     for (std::uint32_t rank = 5; rank < site.grid->size(); rank += 29) sample.push_back(rank);
     const std::vector<std::vector<TraceStation>> networks{site.stations, random_stations(site, 6, 12)};
@@ -524,7 +525,7 @@ TEST_P(Conformance, EverySampledVoxelIsCountedAsTheExactEvaluationDoes) {
 }
 
 TEST_P(Conformance, SamplesStopAtTheGoalOnlyWhereAsked) {
-  const Site& site = sites()[2];
+  const TestSite& site = sites()[2];
   std::vector<std::uint32_t> sample;
   for (std::uint32_t rank = 0; rank < site.grid->size(); rank += 7) sample.push_back(rank);
   const std::vector<std::vector<TraceStation>> networks{site.stations};
@@ -538,7 +539,7 @@ TEST_P(Conformance, SamplesStopAtTheGoalOnlyWhereAsked) {
 }
 
 TEST_P(Conformance, SamplesDoNotDependOnOrderOrDispatches) {
-  const Site& site = sites()[2];
+  const TestSite& site = sites()[2];
   std::vector<std::uint32_t> sample;
   for (std::uint32_t rank = 3; rank < site.grid->size(); rank += 31) sample.push_back(rank);
   std::vector<std::vector<TraceStation>> networks;

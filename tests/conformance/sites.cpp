@@ -28,7 +28,7 @@ class Builder {
     raw_.ranges.push_back(
         {static_cast<std::uint32_t>(raw_.triangles.size()), static_cast<std::uint32_t>(triangles.size()), 0});
     raw_.meshes.push_back({name, role, diffuse, static_cast<std::uint32_t>(triangles.size()), weight});
-    raw_.positions.insert(raw_.positions.end(), positions.begin(), positions.end());
+    for (const Vec3& p : positions) raw_.positions.push_back(to_glm(p));
     raw_.normals.insert(raw_.normals.end(), normals.begin(), normals.end());
     for (const Triangle& t : triangles) raw_.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
   }
@@ -112,9 +112,9 @@ std::shared_ptr<const SceneData> built_in(const std::string& name) {
   return std::make_shared<const SceneData>(Scene::load(file).data());
 }
 
-Site make_site(const std::string& name, std::shared_ptr<const SceneData> scene, double user_size_m, double step_degrees,
-               const std::vector<Vec3>& heads) {
-  Site site;
+TestSite make_site(const std::string& name, std::shared_ptr<const SceneData> scene, double user_size_m,
+                   double step_degrees, const std::vector<Vec3>& heads) {
+  TestSite site;
   site.name = name;
   site.scene = std::move(scene);
   site.grid = std::make_shared<const VoxelGrid>(VoxelGrid::build(*site.scene, user_size_m));
@@ -138,16 +138,16 @@ Site make_site(const std::string& name, std::shared_ptr<const SceneData> scene, 
 
 }  // namespace
 
-const std::vector<ReferenceHit>& Site::reference(std::size_t station, bool noisy) const {
+const std::vector<ReferenceHit>& TestSite::reference(std::size_t station, bool noisy) const {
   static std::map<std::tuple<std::string, std::size_t, bool>, std::vector<ReferenceHit>> made;
   std::vector<ReferenceHit>& hits = made[{name, station, noisy}];
   if (hits.empty()) hits = ReferenceTracer(trace_scene(noisy)).scan(stations[station]);
   return hits;
 }
 
-const std::vector<Site>& sites() {
-  static const std::vector<Site> made = [] {
-    std::vector<Site> all;
+const std::vector<TestSite>& sites() {
+  static const std::vector<TestSite> made = [] {
+    std::vector<TestSite> all;
     all.push_back(make_site("three-walls", built_in("three-walls"), 0.1, 0.5,
                             {{0, 0, 1.5}, {1.3, -2.1, 1.7}, {4.1, 12.3, 2.2}, {-3.7, 6.2, 0.9}}));
     all.push_back(make_site("four-walls", built_in("four-walls"), 0.1, 0.5,

@@ -11,7 +11,7 @@
 
 namespace vantage::test {
 
-struct Site {
+struct TestSite {
   std::string name;
   std::shared_ptr<const SceneData> scene;
   std::shared_ptr<const VoxelGrid> grid;
@@ -26,6 +26,6 @@ struct Site {
 };
 
 // three-walls, four-walls, boiler-house. Made once.
-const std::vector<Site>& sites();
+const std::vector<TestSite>& sites();
 
 }  // namespace vantage::test

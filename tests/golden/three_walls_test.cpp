@@ -45,7 +45,7 @@ class ThreeWalls : public testing::Test {
                         {.engine = Engine::embree, .user_size_m = 0.01, .point_spacing_m = 0.006, .noise = noise});
     const Station station{{0, 0, 1.5}};
     Evaluation result;
-    result.scan = simulator.scan(station, 0, scan_ids | scan_voxel, [&](const ScanChunk& chunk) {
+    result.scan = simulator.scan(station, {.outputs = scan_ids | scan_voxel}, [&](const ScanChunk& chunk) {
       for (std::size_t k = 0; k < chunk.mesh.size(); ++k) {
         if (chunk.mesh[k] < 0) continue;
         Wall& wall = result.walls[scene_.meshes()[static_cast<std::size_t>(chunk.mesh[k])].name];

@@ -1,4 +1,4 @@
-# Every source opens with its licence; nothing is left to do, and no test steps aside.
+# Every source opens with its licence; nothing is left to do, and no test steps aside; GLM has one set of settings.
 cmake_minimum_required(VERSION 3.25)
 set(wrong "")
 set(seen 0)
@@ -14,6 +14,10 @@ foreach(folder include src shaders tests examples)
     file(STRINGS ${ROOT}/${source} unfinished REGEX "TO[D]O|FIX[M]E|GTEST_[S]KIP|[^A-Z]DISABLE[D]_")
     if(unfinished)
       string(APPEND wrong "\n  ${source}: ${unfinished}")
+    endif()
+    file(STRINGS ${ROOT}/${source} glm REGEX "^[ \t]*#[ \t]*include[ \t]+<glm/")
+    if(glm AND NOT source STREQUAL "src/core/glm.hpp")
+      string(APPEND wrong "\n  ${source}: ${glm}: include core/glm.hpp instead")
     endif()
   endforeach()
 endforeach()

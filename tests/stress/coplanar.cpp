@@ -25,7 +25,7 @@ void add(RawScene& raw, const char* name, Role role, const std::vector<Vec3>& po
              count = static_cast<std::uint32_t>(triangles.size());
   raw.ranges.push_back({static_cast<std::uint32_t>(raw.triangles.size()), count, 0});
   raw.meshes.push_back({name, role, 0.5, count});
-  raw.positions.insert(raw.positions.end(), positions.begin(), positions.end());
+  for (const Vec3& p : positions) raw.positions.push_back(to_glm(p));
   for (const Triangle& t : triangles) raw.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
 }
 

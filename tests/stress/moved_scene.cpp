@@ -9,6 +9,7 @@
 
 #include "support/glb_builder.hpp"
 #include "support/temporary_folder.hpp"
+#include "vantage/objective.hpp"
 #include "voxel/voxel_grid.hpp"
 
 namespace vantage::test {
@@ -78,11 +79,12 @@ struct Survey {
       auto& p = points.emplace_back();
       auto& t = primitives.emplace_back();
       auto& v = voxels.emplace_back();
-      simulator.scan(network[s], s, scan_position | scan_ids | scan_voxel, [&](const ScanChunk& chunk) {
-        p.insert(p.end(), chunk.position.begin(), chunk.position.end());
-        t.insert(t.end(), chunk.primitive.begin(), chunk.primitive.end());
-        v.insert(v.end(), chunk.voxel.begin(), chunk.voxel.end());
-      });
+      simulator.scan(network[s], {.outputs = scan_position | scan_ids | scan_voxel, .place = s},
+                     [&](const ScanChunk& chunk) {
+                       p.insert(p.end(), chunk.position.begin(), chunk.position.end());
+                       t.insert(t.end(), chunk.primitive.begin(), chunk.primitive.end());
+                       v.insert(v.end(), chunk.voxel.begin(), chunk.voxel.end());
+                     });
     }
     const NetworkCounts counts = simulator.evaluate(network, {.field = &field});
     coverage = vantage::coverage(counts, simulator.goal_density());

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vantage/objective.hpp"
+
 namespace vantage::test {
 
-ReferenceDifferences compare_with_reference(const EngineInfo& engine, const Site& site) {
+ReferenceDifferences compare_with_reference(const EngineInfo& engine, const TestSite& site) {
   constexpr double goal_density = 12.5;
   const TraceScene clean_scene = site.trace_scene(false), noisy_scene = site.trace_scene(true);
   const auto clean = make_tracer(engine, clean_scene), noisy = make_tracer(engine, noisy_scene);

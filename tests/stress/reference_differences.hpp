@@ -11,6 +11,6 @@ struct ReferenceDifferences {
   Comparison rays;                                   // of all stations; sigma_m filled
   double coverage = 0, overlap = 0, clustering = 0;  // largest absolute differences, noise on
 };
-ReferenceDifferences compare_with_reference(const EngineInfo& engine, const Site& site);
+ReferenceDifferences compare_with_reference(const EngineInfo& engine, const TestSite& site);
 
 }  // namespace vantage::test

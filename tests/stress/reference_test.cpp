@@ -8,7 +8,7 @@ namespace {
 using Reference = EngineSuite;
 
 TEST_P(Reference, HitsNoiseAndObjectivesMatchDoublePrecision) {
-  for (const Site& site : sites()) {
+  for (const TestSite& site : sites()) {
     SCOPED_TRACE(site.name);
     const ReferenceDifferences d = compare_with_reference(GetParam(), site);
     EXPECT_LE(static_cast<double>(d.rays.differing), 1e-5 * static_cast<double>(d.rays.rays) + 1);

@@ -138,7 +138,7 @@ void edges(const std::vector<EngineInfo>&, double size) {
 void reference(const std::vector<EngineInfo>& engines, double) {
   head({"site", "engine", "rays", "rays that differ", "range (m)", "σ (m)", "coverage", "pair overlap",
         "clustering coefficient"});
-  for (const Site& site : sites()) {
+  for (const TestSite& site : sites()) {
     for (const EngineInfo& engine : engines) {
       const ReferenceDifferences d = compare_with_reference(engine, site);
       row({site.name, to_string(engine.engine), count(d.rays.rays), count(d.rays.differing), number(d.rays.range_m),

@@ -26,7 +26,7 @@ double height(int i, int j) {
   return kEmbankment * rise + bumps;
 }
 
-Vec3 ground_point(double x, double y) {  // bilinear within coarse cells
+dvec3 ground_point(double x, double y) {  // bilinear within coarse cells
   const double fx = std::clamp((x + kSide / 2) / kCell, 0.0, static_cast<double>(kCells)),
                fy = std::clamp((y + kSide / 2) / kCell, 0.0, static_cast<double>(kCells));
   const int i = std::min(static_cast<int>(fx), kCells - 1), j = std::min(static_cast<int>(fy), kCells - 1);
@@ -51,12 +51,12 @@ std::vector<double> grid_lines(int cells) {
 Mesh height_field(const std::vector<double>& xs, const std::vector<double>& ys) {
   Mesh mesh;
   const auto width = static_cast<std::uint32_t>(xs.size());
-  std::vector<Vec3> points, normals(xs.size() * ys.size());
+  std::vector<dvec3> points, normals(xs.size() * ys.size());
   for (const double y : ys)
     for (const double x : xs) points.push_back(ground_point(x, y));
   const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     mesh.indices.insert(mesh.indices.end(), {a, b, c});
-    const Vec3 normal = cross(points[b] - points[a], points[c] - points[a]);
+    const dvec3 normal = cross(points[b] - points[a], points[c] - points[a]);
     for (const std::uint32_t v : {a, b, c}) normals[v] = normals[v] + normal;
   };
   for (std::uint32_t j = 0; j + 1 < ys.size(); ++j)
@@ -66,20 +66,18 @@ Mesh height_field(const std::vector<double>& xs, const std::vector<double>& ys) 
       add(a, d, c);
     }
   for (std::size_t v = 0; v < points.size(); ++v) {
-    mesh.positions.push_back(to_float(points[v]));
-    mesh.normals.push_back(to_float(unit(normals[v])));
+    mesh.positions.push_back(to_float3(points[v]));
+    mesh.normals.push_back(to_float3(normalize(normals[v])));
   }
   return mesh;
 }
 
 double area(const Mesh& mesh) {
   double sum = 0;
-  const auto point = [&](std::uint32_t v) {
-    return Vec3{mesh.positions[v].x, mesh.positions[v].y, mesh.positions[v].z};
-  };
+  const auto point = [&](std::uint32_t v) { return to_glm(mesh.positions[v]); };
   for (std::size_t t = 0; t < mesh.indices.size(); t += 3) {
-    const Vec3 a = point(mesh.indices[t]), n = cross(point(mesh.indices[t + 1]) - a, point(mesh.indices[t + 2]) - a);
-    sum += 0.5 * std::sqrt(dot(n, n));
+    const dvec3 a = point(mesh.indices[t]), n = cross(point(mesh.indices[t + 1]) - a, point(mesh.indices[t + 2]) - a);
+    sum += 0.5 * glm::length(n);
   }
   return sum;
 }

@@ -90,8 +90,8 @@ class Plant {
   void vapour_piping();
   void platforms();
   void electrical();
-  void support(Shaper& shaper, const Vec3& under, double pipe_radius);
-  void shoe(Shaper& shaper, const Vec3& pipe, double radius, double beam_top);
+  void support(Shaper& shaper, const dvec3& under, double pipe_radius);
+  void shoe(Shaper& shaper, const dvec3& pipe, double radius, double beam_top);
 
   Detail detail_;
   bool counting_, grating_;
@@ -130,7 +130,7 @@ void Plant::exchangers() {
   for (int i = 0; i < 2; ++i) {
     const std::string name = "exchanger-" + std::to_string(i + 1);
     Shaper& shell = part(name, kSteam);
-    const Vec3 centre{4.5, -3.0, i == 0 ? 0.85 : 1.85};
+    const dvec3 centre{4.5, -3.0, i == 0 ? 0.85 : 1.85};
     add_exchanger(shell, part(name + "-saddles", i == 0 ? kConcrete : kSteel), centre, 3.8, 0.33,
                   i == 0 ? 0 : 1.18 + 0.001);
   }
@@ -168,13 +168,13 @@ double hidden_in(double pipe_radius, double half_width) {
 }
 
 // A block between beam and pipe.
-void Plant::shoe(Shaper& shaper, const Vec3& pipe, double radius, double beam_top) {
+void Plant::shoe(Shaper& shaper, const dvec3& pipe, double radius, double beam_top) {
   shaper.box({pipe.x - 0.05, pipe.y - 0.025, beam_top + 0.001},
              {pipe.x + 0.05, pipe.y + 0.025, pipe.z - hidden_in(radius, 0.025)}, kBottom | kTop);
 }
 
 // A post from the ground to the underside of a pipe.
-void Plant::support(Shaper& shaper, const Vec3& under, double pipe_radius) {
+void Plant::support(Shaper& shaper, const dvec3& under, double pipe_radius) {
   const double top = under.z - hidden_in(pipe_radius, 0.035);
   shaper.box({under.x - 0.1, under.y - 0.1, 0}, {under.x + 0.1, under.y + 0.1, 0.02}, kBottom);
   shaper.box({under.x - 0.035, under.y - 0.035, 0.02}, {under.x + 0.035, under.y + 0.035, top}, kBottom | kTop);
@@ -190,7 +190,7 @@ void Plant::rack_piping() {
     const char* name;
     Colour colour;
     double y, radius, level;
-    std::vector<Vec3> west, east;  // what leads on beyond the rack's ends; the level run lies between
+    std::vector<dvec3> west, east;  // what leads on beyond the rack's ends; the level run lies between
     PipeOptions options;
   };
   const double end_west = -1.95, end_east = 7.15;
@@ -243,7 +243,7 @@ void Plant::rack_piping() {
       {"pipe-steam", kSteam, -0.35, 0.09, kUpper, {}, {}, {.blind_start = true, .blind_end = true}},
   };
   for (const Line& line : lines) {
-    std::vector<Vec3> route = line.west;
+    std::vector<dvec3> route = line.west;
     const double z = on(line.level, line.radius);
     if (line.west.empty()) route.push_back({end_west, line.y, z});
     if (line.east.empty()) route.push_back({end_east, line.y, z});

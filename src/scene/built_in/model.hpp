@@ -9,10 +9,13 @@
 #include <string>
 #include <vector>
 
+#include "scene/positions.hpp"
 #include "scene/scene_data.hpp"
 #include "vantage/scene.hpp"
 
 namespace vantage::built_in {
+
+using glm::dvec3;
 
 struct Mesh {
   std::vector<Float3> positions;

@@ -10,8 +10,6 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-double length_of(const Vec3& v) { return std::sqrt(dot(v, v)); }
-
 // What interrupts a straight run, at a distance from its start.
 struct Fitting {
   double at = 0, half_length = 0;
@@ -21,20 +19,20 @@ struct Fitting {
 // The bend at a corner of a route.
 struct Bend {
   double cut = 0, angle = 0;  // how much of each neighbouring run it takes
-  Vec3 axis;
+  dvec3 axis{};
 };
 
-std::vector<Bend> bends_of(const std::vector<Vec3>& route, double radius) {
+std::vector<Bend> bends_of(const std::vector<dvec3>& route, double radius) {
   std::vector<Bend> bends(route.size());
   for (std::size_t i = 1; i + 1 < route.size(); ++i) {
-    const Vec3 in = route[i] - route[i - 1], out = route[i + 1] - route[i];
-    const Vec3 axis = cross(unit(in), unit(out));
-    const double sine = length_of(axis);
-    bends[i].angle = std::atan2(sine, dot(unit(in), unit(out)));
+    const dvec3 in = route[i] - route[i - 1], out = route[i + 1] - route[i];
+    const dvec3 axis = cross(normalize(in), normalize(out));
+    const double sine = glm::length(axis);
+    bends[i].angle = std::atan2(sine, dot(normalize(in), normalize(out)));
     bends[i].axis = axis * (1 / sine);
     // two bends share a run; one alone may take nearly all of it
-    const double before = (i == 1 ? 0.92 : 0.46) * length_of(in),
-                 after = (i + 2 == route.size() ? 0.92 : 0.46) * length_of(out);
+    const double before = (i == 1 ? 0.92 : 0.46) * glm::length(in),
+                 after = (i + 2 == route.size() ? 0.92 : 0.46) * glm::length(out);
     bends[i].cut = std::min({3 * radius * std::tan(bends[i].angle / 2), before, after});
   }
   return bends;
@@ -43,7 +41,7 @@ std::vector<Bend> bends_of(const std::vector<Vec3>& route, double radius) {
 // Bonnet, stem and handwheel of a valve whose body's centre is at `frame`. The stem points up, on upright pipes to the
 // north.
 void add_valve_top(Shaper& shaper, const Frame& frame, double radius) {
-  const Frame stem = frame_along(frame.origin, std::abs(frame.z.z) < 0.5 ? Vec3{0, 0, 1} : Vec3{0, 1, 0});
+  const Frame stem = frame_along(frame.origin, std::abs(frame.z.z) < 0.5 ? dvec3{0, 0, 1} : dvec3{0, 1, 0});
   const double top = 2.4 * radius + 0.06, joint = 1.7 * radius;
   const double wheel = 1.3 * radius + 0.04, tube = 0.1 * wheel;
   if (shaper.detail().rough()) {
@@ -62,7 +60,7 @@ void add_valve_top(Shaper& shaper, const Frame& frame, double radius) {
   shaper.hoop(stem.ahead(top), wheel, tube, 2 * kPi);
   for (int spoke = 0; spoke < 3; ++spoke) {
     const double angle = 2 * kPi * spoke / 3;
-    const Vec3 out = stem.x * std::cos(angle) + stem.y * std::sin(angle), centre = stem.ahead(top).origin;
+    const dvec3 out = stem.x * std::cos(angle) + stem.y * std::sin(angle), centre = stem.ahead(top).origin;
     shaper.rod(centre + out * 0.013, centre + out * (wheel - 0.8 * tube), 0.5 * tube, false);
   }
 }
@@ -101,7 +99,7 @@ void add_fitting(Shaper& shaper, const Frame& centre, const Fitting& fitting, do
     else
       shaper.turn(centre, disc, sides);
   }
-  const Frame back{centre.origin, centre.x, centre.y * -1, centre.z * -1};
+  const Frame back{centre.origin, centre.x, -centre.y, -centre.z};
   add_bolts(shaper, centre.ahead(half), flange.bolt_circle, flange.bolt_radius, flange.bolts);
   add_bolts(shaper, back.ahead(half), flange.bolt_circle, flange.bolt_radius, flange.bolts);
 }
@@ -156,7 +154,7 @@ void add_bolts(Shaper& shaper, const Frame& frame, double circle_radius, double 
   }
 }
 
-void add_pipe(Shaper& shaper, const std::vector<Vec3>& route, double radius, const PipeOptions& options) {
+void add_pipe(Shaper& shaper, const std::vector<dvec3>& route, double radius, const PipeOptions& options) {
   const int sides = shaper.detail().around(radius);
   const std::vector<Bend> bends = bends_of(route, radius);
   Frame frame = frame_along(route[0], route[1] - route[0]);
@@ -165,7 +163,7 @@ void add_pipe(Shaper& shaper, const std::vector<Vec3>& route, double radius, con
     shaper.turn(at, end, sides);
   };
   for (std::size_t run = 0; run + 1 < route.size(); ++run) {
-    const double length = length_of(route[run + 1] - route[run]) - bends[run].cut - bends[run + 1].cut;
+    const double length = glm::length(route[run + 1] - route[run]) - bends[run].cut - bends[run + 1].cut;
     const bool first = run == 0, last = run + 2 == route.size();
     if (first && options.blind_start) disc(frame, false);
     double from = 0;
@@ -186,7 +184,7 @@ void add_pipe(Shaper& shaper, const std::vector<Vec3>& route, double radius, con
     }
     const Bend& bend = bends[run + 1];
     const double bend_radius = bend.cut / std::tan(bend.angle / 2);
-    const Vec3 centre = frame.origin + cross(bend.axis, frame.z) * bend_radius;
+    const dvec3 centre = frame.origin + cross(bend.axis, frame.z) * bend_radius;
     const int steps =
         std::max({2, shaper.detail().along(bend.angle * bend_radius),
                   static_cast<int>(std::ceil(shaper.detail().around(bend_radius) * bend.angle / (2 * kPi)))});

@@ -34,7 +34,7 @@ struct PipeOptions {
 
 // A pipe through the points of a route, with bends of three pipe radii, or as much as fits. Pipe and flanges are one
 // closed surface: nothing lies inside.
-void add_pipe(Shaper& shaper, const std::vector<Vec3>& route, double radius, const PipeOptions& options = {});
+void add_pipe(Shaper& shaper, const std::vector<dvec3>& route, double radius, const PipeOptions& options = {});
 
 // A short branch with a flange and a blind disc on a vessel: `frame` lies in the vessel's surface, its z points
 // outward. `bury` is how far the branch reaches back, so that no gap shows on a curved surface.

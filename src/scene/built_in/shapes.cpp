@@ -11,23 +11,20 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr int kMostSides = 4096;
 
-Vec3 rotated(const Vec3& v, const Vec3& axis, double angle) {  // Rodrigues' formula; axis of unit length
+dvec3 rotated(const dvec3& v, const dvec3& axis, double angle) {  // Rodrigues' formula; axis of unit length
   const double c = std::cos(angle), s = std::sin(angle);
   return v * c + cross(axis, v) * s + axis * (dot(axis, v) * (1 - c));
 }
 
 }  // namespace
 
-Vec3 unit(const Vec3& v) { return v * (1 / std::sqrt(dot(v, v))); }
-Float3 to_float(const Vec3& v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
-
-void add_rectangle(Mesh& mesh, const Vec3& corner, const Vec3& across, const Vec3& up, int columns, int rows) {
+void add_rectangle(Mesh& mesh, const dvec3& corner, const dvec3& across, const dvec3& up, int columns, int rows) {
   const auto first = static_cast<std::uint32_t>(mesh.positions.size());
-  const Float3 normal = to_float(unit(cross(across, up)));
+  const Float3 normal = to_float3(normalize(cross(across, up)));
   for (int j = 0; j <= rows; ++j)
     for (int i = 0; i <= columns; ++i) {
       mesh.positions.push_back(
-          to_float(corner + across * (static_cast<double>(i) / columns) + up * (static_cast<double>(j) / rows)));
+          to_float3(corner + across * (static_cast<double>(i) / columns) + up * (static_cast<double>(j) / rows)));
       mesh.normals.push_back(normal);
     }
   const auto width = static_cast<std::uint32_t>(columns) + 1;
@@ -50,14 +47,14 @@ int Detail::across(double length) const {
   return std::clamp(static_cast<int>(std::lround(length / (1800 * sagitta_m))), 1, 100'000);
 }
 
-Frame frame_along(const Vec3& origin, const Vec3& direction) {
-  const Vec3 z = unit(direction);
-  const Vec3 y = std::abs(z.z) > 0.999 ? Vec3{0, 1, 0} : unit(cross({0, 0, 1}, z));
-  const Vec3 x = unit(cross(y, z));
+Frame frame_along(const dvec3& origin, const dvec3& direction) {
+  const dvec3 z = normalize(direction);
+  const dvec3 y = std::abs(z.z) > 0.999 ? dvec3{0, 1, 0} : normalize(cross({0, 0, 1}, z));
+  const dvec3 x = normalize(cross(y, z));
   return {origin, x, cross(z, x), z};
 }
 
-Frame turned(const Frame& frame, const Vec3& centre, const Vec3& axis, double angle) {
+Frame turned(const Frame& frame, const dvec3& centre, const dvec3& axis, double angle) {
   return {centre + rotated(frame.origin - centre, axis, angle), rotated(frame.x, axis, angle),
           rotated(frame.y, axis, angle), rotated(frame.z, axis, angle)};
 }
@@ -70,9 +67,9 @@ void Shaper::skin(std::span<const Ring> rings, int sides) {
   for (const Ring& ring : rings)
     for (std::uint32_t i = 0; i < n; ++i) {
       const double angle = 2 * kPi * i / n;
-      const Vec3 out = ring.frame.x * std::cos(angle) + ring.frame.y * std::sin(angle);
-      mesh_.positions.push_back(to_float(ring.frame.origin + out * ring.radius));
-      mesh_.normals.push_back(to_float(unit(out * ring.normal_out + ring.frame.z * ring.normal_ahead)));
+      const dvec3 out = ring.frame.x * std::cos(angle) + ring.frame.y * std::sin(angle);
+      mesh_.positions.push_back(to_float3(ring.frame.origin + out * ring.radius));
+      mesh_.normals.push_back(to_float3(normalize(out * ring.normal_out + ring.frame.z * ring.normal_ahead)));
     }
   for (std::uint32_t j = 0; j + 1 < rings.size(); ++j)
     for (std::uint32_t i = 0; i < n; ++i) {
@@ -105,8 +102,8 @@ void Shaper::cylinder(const Frame& frame, double radius, double length, bool clo
   turn(frame, profile, detail_.around(radius));
 }
 
-void Shaper::rod(const Vec3& from, const Vec3& to, double radius, bool close) {
-  cylinder(frame_along(from, to - from), radius, std::sqrt(dot(to - from, to - from)), close, close);
+void Shaper::rod(const dvec3& from, const dvec3& to, double radius, bool close) {
+  cylinder(frame_along(from, to - from), radius, glm::length(to - from), close, close);
 }
 
 void Shaper::head(const Frame& frame, double radius, double height, int sides) {
@@ -122,7 +119,7 @@ void Shaper::head(const Frame& frame, double radius, double height, int sides) {
 
 void Shaper::hoop(const Frame& frame, double radius, double tube_radius, double angle) {
   const int steps = std::max(3, static_cast<int>(std::ceil(detail_.around(radius) * std::abs(angle) / (2 * kPi))));
-  const Frame start{frame.origin + frame.x * radius, frame.x, frame.z * -1, frame.y};
+  const Frame start{frame.origin + frame.x * radius, frame.x, -frame.z, frame.y};
   std::vector<Ring> rings;
   for (int k = 0; k <= steps; ++k)
     rings.push_back({turned(start, frame.origin, frame.z, angle * k / steps), tube_radius});
@@ -133,64 +130,64 @@ void Shaper::prism(const Frame& frame, double radius, double height, int sides) 
   const auto corner = [&](int i) {
     return frame.point(radius * std::cos(2 * kPi * i / sides), radius * std::sin(2 * kPi * i / sides), 0);
   };
-  const Vec3 up = frame.z * height;
+  const dvec3 up = frame.z * height;
   for (int i = 0; i < sides; ++i) strip(corner(i), corner(i + 1), up, cross(corner(i + 1) - corner(i), up));
   triangles_ += static_cast<std::size_t>(sides) - 2;
   if (counting_) return;
   const auto first = static_cast<std::uint32_t>(mesh_.positions.size());
   for (int i = 0; i < sides; ++i) {
-    mesh_.positions.push_back(to_float(corner(i) + up));
-    mesh_.normals.push_back(to_float(frame.z));
+    mesh_.positions.push_back(to_float3(corner(i) + up));
+    mesh_.normals.push_back(to_float3(frame.z));
   }
   for (std::uint32_t i = 1; i + 1 < static_cast<std::uint32_t>(sides); ++i)
     mesh_.indices.insert(mesh_.indices.end(), {first, first + i, first + i + 1});
 }
 
 // One quadrilateral from the edge a–b over `ahead`, not cut further.
-void Shaper::strip(const Vec3& a, const Vec3& b, const Vec3& ahead, const Vec3& normal) {
+void Shaper::strip(const dvec3& a, const dvec3& b, const dvec3& ahead, const dvec3& normal) {
   triangles_ += 2;
   if (counting_) return;
   const auto first = static_cast<std::uint32_t>(mesh_.positions.size());
-  for (const Vec3& p : {a, b, b + ahead, a + ahead}) {
-    mesh_.positions.push_back(to_float(p));
-    mesh_.normals.push_back(to_float(unit(normal)));
+  for (const dvec3& p : {a, b, b + ahead, a + ahead}) {
+    mesh_.positions.push_back(to_float3(p));
+    mesh_.normals.push_back(to_float3(normalize(normal)));
   }
   mesh_.indices.insert(mesh_.indices.end(), {first, first + 1, first + 2, first, first + 2, first + 3});
 }
 
-void Shaper::triangle(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3 normal = cross(b - a, c - a);
+void Shaper::triangle(const dvec3& a, const dvec3& b, const dvec3& c) {
+  const dvec3 normal = cross(b - a, c - a);
   if (dot(normal, normal) < 1e-16) return;
   ++triangles_;
   if (counting_) return;
   const auto first = static_cast<std::uint32_t>(mesh_.positions.size());
-  for (const Vec3& p : {a, b, c}) {
-    mesh_.positions.push_back(to_float(p));
-    mesh_.normals.push_back(to_float(unit(normal)));
+  for (const dvec3& p : {a, b, c}) {
+    mesh_.positions.push_back(to_float3(p));
+    mesh_.normals.push_back(to_float3(normalize(normal)));
   }
   mesh_.indices.insert(mesh_.indices.end(), {first, first + 1, first + 2});
 }
 
-void Shaper::face(const Vec3& corner, const Vec3& across, const Vec3& up) {
-  const int columns = detail_.across(std::sqrt(dot(across, across))), rows = detail_.across(std::sqrt(dot(up, up)));
+void Shaper::face(const dvec3& corner, const dvec3& across, const dvec3& up) {
+  const int columns = detail_.across(glm::length(across)), rows = detail_.across(glm::length(up));
   triangles_ += static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows) * 2;
   if (!counting_) add_rectangle(mesh_, corner, across, up, columns, rows);
 }
 
-void Shaper::box(const Frame& f, const Vec3& low, const Vec3& high, unsigned omitted) {
-  const Vec3 x = f.x * (high.x - low.x), y = f.y * (high.y - low.y), z = f.z * (high.z - low.z);
-  const Vec3 base = f.point(low.x, low.y, low.z), tip = f.point(high.x, high.y, high.z);
+void Shaper::box(const Frame& f, const dvec3& low, const dvec3& high, unsigned omitted) {
+  const dvec3 x = f.x * (high.x - low.x), y = f.y * (high.y - low.y), z = f.z * (high.z - low.z);
+  const dvec3 base = f.point(low.x, low.y, low.z), tip = f.point(high.x, high.y, high.z);
   if (!(omitted & kLeft)) face(base, z, y);
   if (!(omitted & kFront)) face(base, x, z);
   if (!(omitted & kBottom)) face(base, y, x);
-  if (!(omitted & kRight)) face(tip, y * -1, z * -1);
-  if (!(omitted & kBack)) face(tip, z * -1, x * -1);
-  if (!(omitted & kTop)) face(tip, x * -1, y * -1);
+  if (!(omitted & kRight)) face(tip, -y, -z);
+  if (!(omitted & kBack)) face(tip, -z, -x);
+  if (!(omitted & kTop)) face(tip, -x, -y);
 }
 
-void Shaper::bar(const Vec3& from, const Vec3& to, double width, double height) {
+void Shaper::bar(const dvec3& from, const dvec3& to, double width, double height) {
   const Frame f = frame_along(from, to - from);  // y horizontal, x upright (downward)
-  const double length = std::sqrt(dot(to - from, to - from));
+  const double length = glm::length(to - from);
   box(f, {-height / 2, -width / 2, 0}, {height / 2, width / 2, length});
 }
 
@@ -204,13 +201,13 @@ void Shaper::wide_flange(const Frame& f, double width, double depth, double leng
       {-w, -d}, {w, -d}, {w, -d + flange}, {web, -d + flange}, {web, d - flange},   {w, d - flange},
       {w, d},   {-w, d}, {-w, d - flange}, {-web, d - flange}, {-web, -d + flange}, {-w, -d + flange}};
   for (int i = 0; i < 12; ++i) {
-    const Vec3 a = f.point(outline[i][0], outline[i][1], 0),
-               b = f.point(outline[(i + 1) % 12][0], outline[(i + 1) % 12][1], 0);
+    const dvec3 a = f.point(outline[i][0], outline[i][1], 0),
+                b = f.point(outline[(i + 1) % 12][0], outline[(i + 1) % 12][1], 0);
     face(a, b - a, f.z * length);
   }
   const double plates[3][4] = {{-w, -d, w, -d + flange}, {-web, -d + flange, web, d - flange}, {-w, d - flange, w, d}};
   for (const auto& p : plates) {
-    const Vec3 x = f.x * (p[2] - p[0]), y = f.y * (p[3] - p[1]);
+    const dvec3 x = f.x * (p[2] - p[0]), y = f.y * (p[3] - p[1]);
     if (close_start) face(f.point(p[0], p[1], 0), y, x);
     if (close_end) face(f.point(p[0], p[1], length), x, y);
   }

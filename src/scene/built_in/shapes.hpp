@@ -11,12 +11,9 @@
 
 namespace vantage::built_in {
 
-Vec3 unit(const Vec3& v);
-Float3 to_float(const Vec3& v);
-
 // A rectangle from `corner` over the edges `across` and `up`, in columns × rows cells of two triangles; its normal is
 // across × up.
-void add_rectangle(Mesh& mesh, const Vec3& corner, const Vec3& across, const Vec3& up, int columns, int rows);
+void add_rectangle(Mesh& mesh, const dvec3& corner, const dvec3& across, const dvec3& up, int columns, int rows);
 
 // How finely shapes are cut: the largest distance between a round surface and its triangles.
 struct Detail {
@@ -29,15 +26,15 @@ struct Detail {
 
 // Right-handed axes at a point.
 struct Frame {
-  Vec3 origin, x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
-  Frame at(const Vec3& point) const { return {point, x, y, z}; }
+  dvec3 origin{}, x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
+  Frame at(const dvec3& point) const { return {point, x, y, z}; }
   Frame ahead(double distance) const { return at(origin + z * distance); }
-  Vec3 point(double px, double py, double pz) const { return origin + x * px + y * py + z * pz; }
+  dvec3 point(double px, double py, double pz) const { return origin + x * px + y * py + z * pz; }
 };
 // Axes with z along `direction`; y is horizontal where that is possible.
-Frame frame_along(const Vec3& origin, const Vec3& direction);
+Frame frame_along(const dvec3& origin, const dvec3& direction);
 // `frame` turned about an axis through `centre`.
-Frame turned(const Frame& frame, const Vec3& centre, const Vec3& axis, double angle);
+Frame turned(const Frame& frame, const dvec3& centre, const dvec3& axis, double angle);
 
 // A circle in the xy plane of a frame, with its normal's parts along the radius and along z.
 struct Ring {
@@ -68,7 +65,7 @@ class Shaper {
   void turn(const Frame& frame, std::span<const ProfilePoint> profile, int sides);
   // A cylinder from `frame` over `length`, each end closed or not.
   void cylinder(const Frame& frame, double radius, double length, bool close_start, bool close_end);
-  void rod(const Vec3& from, const Vec3& to, double radius, bool close = true);
+  void rod(const dvec3& from, const dvec3& to, double radius, bool close = true);
   // A dished head: half an ellipsoid of the given height over a circle, bulging along +z.
   void head(const Frame& frame, double radius, double height, int sides);
   // A part of a torus around the frame's z axis, from angle 0 at x.
@@ -76,19 +73,19 @@ class Shaper {
   // An upright regular prism with its top but no bottom: bolts, nuts, plates that lie on something.
   void prism(const Frame& frame, double radius, double height, int sides);
   // Counter-clockwise seen from outside; left out where it has no area.
-  void triangle(const Vec3& a, const Vec3& b, const Vec3& c);
-  void face(const Vec3& corner, const Vec3& across, const Vec3& up);
+  void triangle(const dvec3& a, const dvec3& b, const dvec3& c);
+  void face(const dvec3& corner, const dvec3& across, const dvec3& up);
   // A box between two corners of the frame, without the faces in `omitted`.
-  void box(const Frame& frame, const Vec3& low, const Vec3& high, unsigned omitted = 0);
-  void box(const Vec3& low, const Vec3& high, unsigned omitted = 0) { box(Frame{}, low, high, omitted); }
+  void box(const Frame& frame, const dvec3& low, const dvec3& high, unsigned omitted = 0);
+  void box(const dvec3& low, const dvec3& high, unsigned omitted = 0) { box(Frame{}, low, high, omitted); }
   // A bar of rectangular section between two points; `width` lies across, horizontally, `height` upright.
-  void bar(const Vec3& from, const Vec3& to, double width, double height);
+  void bar(const dvec3& from, const dvec3& to, double width, double height);
   // A wide-flange section from `frame` over `length`: web along y, flanges along x. The start is open, the end closed
   // on request.
   void wide_flange(const Frame& frame, double width, double depth, double length, bool close_start, bool close_end);
 
  private:
-  void strip(const Vec3& a, const Vec3& b, const Vec3& ahead, const Vec3& normal);
+  void strip(const dvec3& a, const dvec3& b, const dvec3& ahead, const dvec3& normal);
 
   Detail detail_;
   bool counting_;

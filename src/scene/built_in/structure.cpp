@@ -11,26 +11,24 @@ namespace vantage::built_in {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr Vec3 kUp{0, 0, 1};
-
-double length_of(const Vec3& v) { return std::sqrt(dot(v, v)); }
+constexpr dvec3 kUp{0, 0, 1};
 
 }  // namespace
 
-void add_column(Shaper& shaper, const Vec3& foot, double height, double width) {
+void add_column(Shaper& shaper, const dvec3& foot, double height, double width) {
   constexpr double kPlate = 0.025;
   const double half = 0.5 * width + 0.06;
-  shaper.box(foot + Vec3{-half, -half, 0}, foot + Vec3{half, half, kPlate}, kBottom);
+  shaper.box(foot + dvec3{-half, -half, 0}, foot + dvec3{half, half, kPlate}, kBottom);
   for (const double x : {-1.0, 1.0})
     for (const double y : {-1.0, 1.0})
-      add_bolts(shaper, Frame{foot + Vec3{x * (half - 0.03), y * (half - 0.03), kPlate}}, 0, 0.014, 1);
-  shaper.wide_flange(Frame{foot + Vec3{0, 0, kPlate}}, width, width, height - kPlate, false, true);
+      add_bolts(shaper, Frame{foot + dvec3{x * (half - 0.03), y * (half - 0.03), kPlate}}, 0, 0.014, 1);
+  shaper.wide_flange(Frame{foot + dvec3{0, 0, kPlate}}, width, width, height - kPlate, false, true);
 }
 
-void add_beam(Shaper& shaper, const Vec3& from, const Vec3& to, double width, double depth) {
+void add_beam(Shaper& shaper, const dvec3& from, const dvec3& to, double width, double depth) {
   Frame f = frame_along(from, to - from);
-  f = Frame{from - kUp * (depth / 2), f.y, f.x * -1, f.z};  // web upright
-  shaper.wide_flange(f, width, depth, length_of(to - from), true, true);
+  f = Frame{from - kUp * (depth / 2), f.y, -f.x, f.z};  // web upright
+  shaper.wide_flange(f, width, depth, glm::length(to - from), true, true);
 }
 
 void add_deck(Shaper& shaper, const Deck& d) {
@@ -70,53 +68,53 @@ void add_deck(Shaper& shaper, const Deck& d) {
   }
 }
 
-void add_railing(Shaper& shaper, const std::vector<Vec3>& path, bool hanging) {
+void add_railing(Shaper& shaper, const std::vector<dvec3>& path, bool hanging) {
   constexpr double kHeight = 1.1, kRail = 0.021, kPost = 0.021, kPitch = 1.2, kToeHeight = 0.1, kToeGap = 0.01,
                    kToeWidth = 0.006;
   for (std::size_t i = 0; i + 1 < path.size(); ++i) {
-    const Vec3 along = path[i + 1] - path[i];
+    const dvec3 along = path[i + 1] - path[i];
     const bool level = std::abs(along.z) < 1e-9;
-    const int gaps = std::max(1, static_cast<int>(std::ceil(length_of(along) / kPitch)));
+    const int gaps = std::max(1, static_cast<int>(std::ceil(glm::length(along) / kPitch)));
     for (int k = i == 0 ? 0 : 1; k <= gaps; ++k) {
-      const Vec3 foot = path[i] + along * (static_cast<double>(k) / gaps);
+      const dvec3 foot = path[i] + along * (static_cast<double>(k) / gaps);
       shaper.cylinder(Frame{foot}, kPost, kHeight - kRail, hanging, false);
     }
     shaper.rod(path[i] + kUp * kHeight, path[i + 1] + kUp * kHeight, kRail);
     shaper.rod(path[i] + kUp * (0.5 * kHeight), path[i + 1] + kUp * (0.5 * kHeight), 0.7 * kRail, false);
     if (level) {
-      const Vec3 centre = kUp * (kToeGap + 0.5 * kToeHeight);
+      const dvec3 centre = kUp * (kToeGap + 0.5 * kToeHeight);
       shaper.bar(path[i] + centre, path[i + 1] + centre, kToeWidth, kToeHeight);
     }
   }
 }
 
-void add_stairs(Shaper& shaper, Shaper& railing, const Vec3& foot, const Vec3& top, double width) {
+void add_stairs(Shaper& shaper, Shaper& railing, const dvec3& foot, const dvec3& top, double width) {
   constexpr double kRise = 0.19, kTreadDepth = 0.26, kTreadHeight = 0.035, kStringer = 0.22, kStringerWidth = 0.012;
-  const Vec3 run = top - foot;
-  const Vec3 level = unit({run.x, run.y, 0}), side = cross(kUp, level);
+  const dvec3 run = top - foot;
+  const dvec3 level = normalize(dvec3{run.x, run.y, 0}), side = cross(kUp, level);
   const int steps = static_cast<int>(std::ceil(run.z / kRise));
   constexpr double kDrop = 0.06;  // of the stringers' middle below the line through the treads
-  const double slope = run.z / length_of(run), clear = 0.5 * kStringer / std::sqrt(1 - slope * slope);
+  const double slope = run.z / glm::length(run), clear = 0.5 * kStringer / std::sqrt(1 - slope * slope);
   const double first = (clear + kDrop) / run.z;
   for (const double s : {-1.0, 1.0}) {
-    const Vec3 stringer = side * (s * 0.5 * (width - kStringerWidth)) - kUp * kDrop;
+    const dvec3 stringer = side * (s * 0.5 * (width - kStringerWidth)) - kUp * kDrop;
     shaper.bar(foot + run * first + stringer, top - level * 0.08 + stringer, kStringerWidth, kStringer);
-    const Vec3 rail = side * (s * (0.5 * width + 0.024)) - kUp * 0.1;
+    const dvec3 rail = side * (s * (0.5 * width + 0.024)) - kUp * 0.1;
     add_railing(railing, {foot + run * (first + 0.02) + rail, top - run * 0.03 + rail}, true);
   }
   for (int i = 1; i < steps; ++i) {
-    const Vec3 nose = foot + run * (static_cast<double>(i) / steps) - level * (0.5 * kTreadDepth);
+    const dvec3 nose = foot + run * (static_cast<double>(i) / steps) - level * (0.5 * kTreadDepth);
     const double half = 0.5 * width - kStringerWidth - 0.002;
     shaper.box(Frame{nose, level, side, kUp}, {0, -half, -kTreadHeight}, {kTreadDepth, half, 0});
   }
 }
 
-void add_ladder(Shaper& shaper, const Vec3& foot, const Vec3& out, double height) {
+void add_ladder(Shaper& shaper, const dvec3& foot, const dvec3& out, double height) {
   constexpr double kWidth = 0.45, kPitch = 0.28, kRung = 0.0125, kReach = 0.36, kCageFrom = 2.2;
   const double cage = std::hypot(kReach, 0.5 * kWidth);
-  const Vec3 side = cross(kUp, out);
+  const dvec3 side = cross(kUp, out);
   for (const double s : {-0.5, 0.5}) {
-    const Vec3 stile = foot + side * (s * kWidth);
+    const dvec3 stile = foot + side * (s * kWidth);
     const Frame f{stile, out, side, kUp};
     shaper.box(f, {-0.03, -0.006, 0}, {0.03, 0.006, height}, kBottom);
   }
@@ -125,28 +123,28 @@ void add_ladder(Shaper& shaper, const Vec3& foot, const Vec3& out, double height
                false);
   if (height < kCageFrom + 1) return;
   // Hoops from stile to stile around the climber, tied by straps inside them.
-  const Vec3 centre = foot + out * kReach;
+  const dvec3 centre = foot + out * kReach;
   const double from = std::atan2(-kReach, 0.5 * kWidth);
   const double sweep = kPi - 2 * from;
   const auto around = [&](double angle) { return side * std::cos(angle) + out * std::sin(angle); };
   for (double z = kCageFrom; z <= height + 1e-9; z += (height - kCageFrom) / std::ceil((height - kCageFrom) / 0.75)) {
-    const Vec3 start = around(from);
-    const Vec3 z_axis = cross(side, out);
+    const dvec3 start = around(from);
+    const dvec3 z_axis = cross(side, out);
     shaper.hoop(Frame{centre + kUp * z, start, cross(z_axis, start), z_axis}, cage, 0.012, sweep);
   }
   for (int i = 1; i <= 5; ++i) {
-    const Vec3 outward = around(from + sweep * i / 6);
+    const dvec3 outward = around(from + sweep * i / 6);
     const Frame f{centre + outward * (cage - 0.016) + kUp * kCageFrom, outward, cross(kUp, outward), kUp};
     shaper.box(f, {-0.004, -0.02, 0}, {0.004, 0.02, height - kCageFrom});
   }
 }
 
-void add_cable_tray(Shaper& tray, Shaper& cables, const Vec3& from, const Vec3& to, double width) {
+void add_cable_tray(Shaper& tray, Shaper& cables, const dvec3& from, const dvec3& to, double width) {
   constexpr double kSide = 0.08, kThickness = 0.004, kRungPitch = 0.3;
-  const double length = length_of(to - from);
+  const double length = glm::length(to - from);
   const Frame a = frame_along(from, to - from);
   // y lies across; the open side is −x of the frame, which is up for level trays.
-  const Frame f{from, a.x * -1, a.y * -1, a.z};
+  const Frame f{from, -a.x, -a.y, a.z};
   for (const double s : {-1.0, 1.0}) {
     const double y = s * 0.5 * width;
     tray.box(f, {0, std::min(y, y - s * kThickness), 0}, {kSide, std::max(y, y - s * kThickness), length});
@@ -159,7 +157,7 @@ void add_cable_tray(Shaper& tray, Shaper& cables, const Vec3& from, const Vec3& 
   }
   constexpr double kCables[4][2] = {{-0.3, 0.016}, {-0.1, 0.012}, {0.08, 0.018}, {0.3, 0.01}};
   for (const auto& cable : kCables) {
-    const Vec3 offset = f.y * (cable[0] * width) + f.x * (0.023 + cable[1]);
+    const dvec3 offset = f.y * (cable[0] * width) + f.x * (0.023 + cable[1]);
     cables.rod(from + offset, to + offset, cable[1]);
   }
 }

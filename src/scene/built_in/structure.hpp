@@ -9,9 +9,9 @@
 namespace vantage::built_in {
 
 // A column of wide-flange section with its foot plate and bolts.
-void add_column(Shaper& shaper, const Vec3& foot, double height, double width);
+void add_column(Shaper& shaper, const dvec3& foot, double height, double width);
 // A horizontal beam of wide-flange section whose top is at the height of `from` and `to`.
-void add_beam(Shaper& shaper, const Vec3& from, const Vec3& to, double width, double depth);
+void add_beam(Shaper& shaper, const dvec3& from, const dvec3& to, double width, double depth);
 
 // A deck over a rectangle at height z: plate with edge beams, or bearing bars and cross rods where `grating` is set.
 struct Deck {
@@ -22,16 +22,16 @@ void add_deck(Shaper& shaper, const Deck& deck);
 
 // A railing along a polyline: posts and two rails; a toe plate where it is level. On a deck the posts' lower ends are
 // hidden; `hanging` posts, beside a stringer, are closed there.
-void add_railing(Shaper& shaper, const std::vector<Vec3>& path, bool hanging = false);
+void add_railing(Shaper& shaper, const std::vector<dvec3>& path, bool hanging = false);
 
 // Stairs from `foot` on the ground up to `top`: stringers, treads and railings on both sides.
-void add_stairs(Shaper& shaper, Shaper& railing, const Vec3& foot, const Vec3& top, double width);
+void add_stairs(Shaper& shaper, Shaper& railing, const dvec3& foot, const dvec3& top, double width);
 
 // A ladder at `foot`, climbing to `height`, which leans against something in the direction −out; with a safety cage
 // above 2.2 m.
-void add_ladder(Shaper& shaper, const Vec3& foot, const Vec3& out, double height);
+void add_ladder(Shaper& shaper, const dvec3& foot, const dvec3& out, double height);
 
 // A ladder-type cable tray with cables between two points on one axis.
-void add_cable_tray(Shaper& tray, Shaper& cables, const Vec3& from, const Vec3& to, double width);
+void add_cable_tray(Shaper& tray, Shaper& cables, const dvec3& from, const dvec3& to, double width);
 
 }  // namespace vantage::built_in

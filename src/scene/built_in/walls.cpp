@@ -11,7 +11,7 @@ namespace {
 constexpr double kWallDiffuse = 0.1;
 constexpr std::array<float, 3> kWallColour{0.55F, 0.5F, 0.45F}, kFloorColour{0.3F, 0.32F, 0.3F};
 
-Part wall(const std::string& name, const Vec3& corner, const Vec3& across, double height, int columns, int rows) {
+Part wall(const std::string& name, const dvec3& corner, const dvec3& across, double height, int columns, int rows) {
   Part part{name, Role::surveyed, kWallDiffuse, kWallColour, {}};
   add_rectangle(part.mesh, corner, across, {0, 0, height}, columns, rows);
   return part;
@@ -56,7 +56,7 @@ Model three_walls() {
   constexpr double kWidth = 5, kHeight = 2.5, kNear = 10, kFar = 30, kAside = 20 * 0.017453292519943295;
   // A wall across the line of sight at `azimuth`, facing the origin.
   const auto facing = [&](const std::string& name, double distance, double azimuth) {
-    const Vec3 towards{std::cos(azimuth), std::sin(azimuth), 0}, left{-towards.y, towards.x, 0};
+    const dvec3 towards{std::cos(azimuth), std::sin(azimuth), 0}, left{-towards.y, towards.x, 0};
     return wall(name, towards * distance + left * (kWidth / 2), left * -kWidth, kHeight, 1, 1);
   };
   Model model;

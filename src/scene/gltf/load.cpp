@@ -14,6 +14,7 @@
 #include "scene/gltf/material.hpp"
 #include "scene/gltf/node_tree.hpp"
 #include "scene/gltf/primitive.hpp"
+#include "scene/positions.hpp"
 #include "scene/raw_scene.hpp"
 #include "vantage/scene.hpp"
 
@@ -33,6 +34,16 @@ struct Job {
   std::uint32_t weight = 1;
   const MaterialInfo* material = nullptr;
 };
+
+// Whether the transform turns right-handed axes into left-handed ones.
+bool mirrors(const glm::dmat3& m) { return dot(m[0], cross(m[1], m[2])) < 0; }
+
+// Maps normals as the inverse transpose does, up to a positive length: the cofactors, signed by the determinant, which
+// stay defined where the matrix flattens space.
+glm::dmat3 normal_map(const glm::dmat3& m) {
+  const double sign = mirrors(m) ? -1.0 : 1.0;
+  return {cross(m[1], m[2]) * sign, cross(m[2], m[0]) * sign, cross(m[0], m[1]) * sign};
+}
 
 template <class Body>
 void in_blocks(std::size_t count, Body&& body) {
@@ -121,42 +132,41 @@ class Loader {
       throw file_.malformed("node " + quoted(job.placed->name) +
                             ": more than 2^31 triangles or 2^32 vertices; split the scene");
     if (job.role == Role::search) {
-      for (const Affine& world_from_mesh : job.placed->world_from_mesh) append_search(*primitive, world_from_mesh);
+      for (const glm::dmat4& world_from_mesh : job.placed->world_from_mesh) append_search(*primitive, world_from_mesh);
       return;
     }
     raw_.ranges.push_back({static_cast<std::uint32_t>(raw_.triangles.size()),
                            static_cast<std::uint32_t>(primitive->triangles.size() * instances), job.material->index});
     raw_.meshes.push_back({job.placed->name, *job.role, job.diffuse, raw_.ranges.back().triangle_count, job.weight});
-    for (const Affine& world_from_mesh : job.placed->world_from_mesh)
+    for (const glm::dmat4& world_from_mesh : job.placed->world_from_mesh)
       append(*primitive, *job.material, world_from_mesh);
   }
 
-  void append_triangles(const Primitive& primitive, const Affine& world_from_mesh, std::size_t first_vertex,
+  void append_triangles(const Primitive& primitive, const glm::dmat4& world_from_mesh, std::size_t first_vertex,
                         std::vector<Triangle>& out) {
     const auto offset = static_cast<std::uint32_t>(first_vertex);
-    const bool mirrored = world_from_mesh.determinant() < 0;
+    const bool mirrored = mirrors(glm::dmat3(world_from_mesh));
     mirrored_meshes_ += mirrored ? 1 : 0;
     for (const Triangle& t : primitive.triangles)
       out.push_back(mirrored ? Triangle{t[0] + offset, t[2] + offset, t[1] + offset}
                              : Triangle{t[0] + offset, t[1] + offset, t[2] + offset});
   }
 
-  void append_positions(const Primitive& primitive, const Affine& world_from_mesh, std::vector<Vec3>& out) {
+  void append_positions(const Primitive& primitive, const glm::dmat4& world_from_mesh, std::vector<glm::dvec3>& out) {
     const std::size_t first = out.size();
     out.resize(first + primitive.position->count());
     in_blocks(primitive.position->count(), [&](std::size_t begin, std::size_t n, double* values) {
       primitive.position->read(begin, n, values);
       for (std::size_t i = 0; i < n; ++i)
-        out[first + begin + i] = world_from_mesh.point({values[3 * i], values[3 * i + 1], values[3 * i + 2]});
+        out[first + begin + i] = transformed(world_from_mesh, glm::make_vec3(values + 3 * i));
     });
     if (primitive.position->is_float()) measure_spacing(*primitive.position, world_from_mesh);
   }
 
   // How far apart neighbouring float32 values lie at this primitive's coordinates, once the node has scaled them.
-  void measure_spacing(const Accessor& position, const Affine& world_from_mesh) {
+  void measure_spacing(const Accessor& position, const glm::dmat4& world_from_mesh) {
     double scale = 0;
-    for (int c = 0; c < 3; ++c)
-      scale = std::max(scale, std::sqrt(dot(world_from_mesh.column(c), world_from_mesh.column(c))));
+    for (int c = 0; c < 3; ++c) scale = std::max(scale, length(glm::dvec3(world_from_mesh[c])));
     double farthest = 0;
     std::mutex mutex;
     in_blocks(position.count(), [&](std::size_t begin, std::size_t n, double* values) {
@@ -172,22 +182,20 @@ class Loader {
     raw_.coarsest_input_spacing_m = std::max(raw_.coarsest_input_spacing_m, spacing);
   }
 
-  void append(const Primitive& primitive, const MaterialInfo& material, const Affine& world_from_mesh) {
+  void append(const Primitive& primitive, const MaterialInfo& material, const glm::dmat4& world_from_mesh) {
     const std::size_t first = raw_.positions.size(), count = primitive.position->count();
     append_triangles(primitive, world_from_mesh, first, raw_.triangles);
     append_positions(primitive, world_from_mesh, raw_.positions);
     extend(raw_.normals, primitive.normal != nullptr, first + count, Float3{});
     if (primitive.normal) {
-      const Affine map = world_from_mesh.normal_map();
+      const glm::dmat3 map = normal_map(glm::dmat3(world_from_mesh));
       in_blocks(count, [&](std::size_t begin, std::size_t n, double* values) {
         primitive.normal->read(begin, n, values);
         for (std::size_t i = 0; i < n; ++i) {
-          const Vec3 normal = map.vector({values[3 * i], values[3 * i + 1], values[3 * i + 2]});
-          const double length = std::sqrt(dot(normal, normal));
-          if (!(length > 0) || !std::isfinite(length)) continue;  // stays (0, 0, 0): none
-          const Vec3 unit = normal * (1 / length);
-          raw_.normals[first + begin + i] = {static_cast<float>(unit.x), static_cast<float>(unit.y),
-                                             static_cast<float>(unit.z)};
+          const glm::dvec3 normal = map * glm::make_vec3(values + 3 * i);
+          const double size = length(normal);
+          if (!(size > 0) || !std::isfinite(size)) continue;  // stays (0, 0, 0): none
+          raw_.normals[first + begin + i] = to_float3(normal * (1 / size));
         }
       });
     }
@@ -215,7 +223,7 @@ class Loader {
     }
   }
 
-  void append_search(const Primitive& primitive, const Affine& world_from_mesh) {
+  void append_search(const Primitive& primitive, const glm::dmat4& world_from_mesh) {
     const std::size_t first = raw_.search_positions.size(), count = primitive.position->count();
     append_triangles(primitive, world_from_mesh, first, raw_.search_triangles);
     append_positions(primitive, world_from_mesh, raw_.search_positions);

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/image.hpp"
+#include "image/decode.hpp"
 
 namespace vantage::gltf {
 namespace {

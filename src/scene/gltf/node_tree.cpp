@@ -89,36 +89,48 @@ std::string node_name(const tinygltf::Model& model, int index) {
   return "node " + std::to_string(index);
 }
 
-Vec3 vec3(std::span<const double> values, double fallback) {
-  return values.size() == 3 ? Vec3{values[0], values[1], values[2]} : Vec3{fallback, fallback, fallback};
+// (x, y, z) ↦ (x, −z, y): glTF's Y up becomes the survey frame's Z up.
+constexpr glm::dmat4 survey_from_gltf{1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1};
+
+bool finite(const glm::dmat4& transform) {
+  const double* values = glm::value_ptr(transform);
+  return std::all_of(values, values + 16, [](double value) { return std::isfinite(value); });
 }
 
-void normalise(double (&q)[4], const File& file, const std::string& where) {
+glm::dvec3 vec3(std::span<const double> values, double fallback) {
+  return values.size() == 3 ? glm::dvec3{values[0], values[1], values[2]} : glm::dvec3(fallback);
+}
+
+// From x, y, z, w as a file has them. Divides by the length: GLM's normalize rounds otherwise.
+glm::dquat unit_quaternion(const double* q, const File& file, const std::string& where) {
   const double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
   if (!(length > 1e-6) || !std::isfinite(length)) throw file.malformed(where + ": its rotation is no unit quaternion");
-  for (double& value : q) value /= length;
+  return {q[3] / length, q[0] / length, q[1] / length, q[2] / length};
 }
 
-Affine local_transform(const File& file, const tinygltf::Node& node, const std::string& where) {
+// Translation · rotation · scale.
+glm::dmat4 from_trs(const glm::dvec3& t, const glm::dquat& r, const glm::dvec3& s) {
+  const glm::dmat3 axes = glm::mat3_cast(r);
+  return {{axes[0] * s.x, 0}, {axes[1] * s.y, 0}, {axes[2] * s.z, 0}, {t, 1}};
+}
+
+glm::dmat4 local_transform(const File& file, const tinygltf::Node& node, const std::string& where) {
   if (node.matrix.size() == 16) {
     const std::vector<double>& m = node.matrix;  // column-major
     const double last[4] = {m[3], m[7], m[11], m[15] - 1};
     for (const double value : last)
       if (!(std::abs(value) <= 1e-6))
         throw file.malformed(where + ": its matrix is not affine, the last row must be 0 0 0 1");
-    return {{{m[0], m[4], m[8], m[12]}, {m[1], m[5], m[9], m[13]}, {m[2], m[6], m[10], m[14]}}};
+    return {m[0], m[1], m[2], 0, m[4], m[5], m[6], 0, m[8], m[9], m[10], 0, m[12], m[13], m[14], 1};
   }
-  double q[4] = {0, 0, 0, 1};
-  if (node.rotation.size() == 4) {
-    std::copy_n(node.rotation.begin(), 4, q);
-    normalise(q, file, where);
-  }
-  return Affine::from_trs(vec3(node.translation, 0), q, vec3(node.scale, 1));
+  const glm::dquat rotation =
+      node.rotation.size() == 4 ? unit_quaternion(node.rotation.data(), file, where) : glm::dquat(1, 0, 0, 0);
+  return from_trs(vec3(node.translation, 0), rotation, vec3(node.scale, 1));
 }
 
 // Transforms of EXT_mesh_gpu_instancing, relative to the node.
-std::vector<Affine> instance_transforms(const File& file, int node, const std::string& where) {
-  if (file.find("nodes", node, {"extensions", kInstancing}).is_null()) return {Affine{}};
+std::vector<glm::dmat4> instance_transforms(const File& file, int node, const std::string& where) {
+  if (file.find("nodes", node, {"extensions", kInstancing}).is_null()) return {glm::dmat4(1)};
   std::unique_ptr<Accessor> parts[3];
   const char* const names[3] = {"TRANSLATION", "ROTATION", "SCALE"};
   std::size_t count = 0;
@@ -135,16 +147,13 @@ std::vector<Affine> instance_transforms(const File& file, int node, const std::s
     count = parts[i]->count();
   }
   if (count == 0) throw file.malformed(where + ": " + kInstancing + " lists no instances");
-  std::vector<Affine> out(count);
+  std::vector<glm::dmat4> out(count);
   for (std::size_t i = 0; i < count; ++i) {
     double t[3] = {0, 0, 0}, q[4] = {0, 0, 0, 1}, s[3] = {1, 1, 1};
     if (parts[0]) parts[0]->read(i, 1, t);
-    if (parts[1]) {
-      parts[1]->read(i, 1, q);
-      normalise(q, file, where + " instance " + std::to_string(i));
-    }
+    if (parts[1]) parts[1]->read(i, 1, q);
     if (parts[2]) parts[2]->read(i, 1, s);
-    out[i] = Affine::from_trs({t[0], t[1], t[2]}, q, {s[0], s[1], s[2]});
+    out[i] = from_trs(vec3(t, 0), unit_quaternion(q, file, where + " instance " + std::to_string(i)), vec3(s, 1));
   }
   return out;
 }
@@ -215,15 +224,14 @@ std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& opti
   struct Visit {
     int node;
     int parent;
-    Affine world_from_parent;
+    glm::dmat4 world_from_parent;
     std::optional<Role> pattern_role;
     std::optional<std::uint32_t> pattern_weight;
     Marks marks;
   };
   std::vector<Visit> stack;  // an own stack: node trees may be deeper than the thread's
   const std::vector<int> roots = root_nodes(file, options);
-  for (auto it = roots.rbegin(); it != roots.rend(); ++it)
-    stack.push_back({*it, -1, Affine::survey_from_gltf(), {}, {}, {}});
+  for (auto it = roots.rbegin(); it != roots.rend(); ++it) stack.push_back({*it, -1, survey_from_gltf, {}, {}, {}});
   Patterns<Role> roles = role_patterns(options);
   Patterns<std::uint32_t> weights = weight_patterns(options);
   std::vector<PlacedMesh> placed;
@@ -250,8 +258,8 @@ std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& opti
     if (own.role) visit.marks.role = own.role;
     if (own.diffuse) visit.marks.diffuse = own.diffuse;
     if (own.weight) visit.marks.weight = own.weight;
-    const Affine world_from_node = visit.world_from_parent * local_transform(file, node, where);
-    if (!world_from_node.finite()) throw file.malformed(where + ": its transform is not finite");
+    const glm::dmat4 world_from_node = visit.world_from_parent * local_transform(file, node, where);
+    if (!finite(world_from_node)) throw file.malformed(where + ": its transform is not finite");
     if (node.mesh >= 0) {
       if (static_cast<std::size_t>(node.mesh) >= model.meshes.size())
         throw file.malformed(where + " refers to mesh " + std::to_string(node.mesh) + "; there are " +
@@ -260,9 +268,9 @@ std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& opti
       PlacedMesh mesh{
           visit.node,           node.mesh,  name, instance_transforms(file, visit.node, where), visit.pattern_role,
           visit.pattern_weight, visit.marks};
-      for (Affine& transform : mesh.world_from_mesh) {
+      for (glm::dmat4& transform : mesh.world_from_mesh) {
         transform = world_from_node * transform;
-        if (!transform.finite()) throw file.malformed(where + ": the transform of an instance is not finite");
+        if (!finite(transform)) throw file.malformed(where + ": the transform of an instance is not finite");
       }
       placed.push_back(std::move(mesh));
     }

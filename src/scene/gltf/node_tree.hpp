@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/affine.hpp"
+#include "core/glm.hpp"
 #include "scene/gltf/file.hpp"
 #include "vantage/scene.hpp"
 
@@ -25,9 +25,9 @@ Marks read_marks(const File& file, const char* array, int index, const std::stri
 // A node that carries a mesh.
 struct PlacedMesh {
   int node = 0, mesh = 0;
-  std::string name;                     // the node's, else the mesh's, else "node N"
-  std::vector<Affine> world_from_mesh;  // survey frame; several with EXT_mesh_gpu_instancing
-  std::optional<Role> pattern_role;     // by the nearest node whose name matches a pattern
+  std::string name;                         // the node's, else the mesh's, else "node N"
+  std::vector<glm::dmat4> world_from_mesh;  // affine, to the survey frame; several with EXT_mesh_gpu_instancing
+  std::optional<Role> pattern_role;         // by the nearest node whose name matches a pattern
   std::optional<std::uint32_t> pattern_weight;
   Marks marks;  // by the nearest node that has them
 };

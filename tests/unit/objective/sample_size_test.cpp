@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "unit/scan/scan_scenes.hpp"
+#include "support/quad_scene.hpp"
 #include "vantage/error.hpp"
 #include "vantage/objective.hpp"
 #include "vantage/simulator.hpp"

@@ -11,7 +11,7 @@
 namespace vantage {
 namespace {
 
-SurfacePieces whole(std::vector<Vec3> points, std::vector<Triangle> triangles) {
+SurfacePieces whole(std::vector<glm::dvec3> points, std::vector<Triangle> triangles) {
   SurfacePieces pieces{std::move(points), std::move(triangles), {}};
   for (std::uint32_t i = 0; i < pieces.triangles.size(); ++i) pieces.source.push_back(i);
   return pieces;
@@ -19,7 +19,7 @@ SurfacePieces whole(std::vector<Vec3> points, std::vector<Triangle> triangles) {
 
 // A spiral ramp that passes over itself `turns` times.
 SurfacePieces spiral(int turns, int steps) {
-  std::vector<Vec3> points;
+  std::vector<glm::dvec3> points;
   std::vector<Triangle> triangles;
   for (std::uint32_t i = 0; i <= static_cast<std::uint32_t>(turns * steps); ++i) {
     const double angle = 2 * M_PI * i / steps, z = 3.0 * i / steps;
@@ -66,7 +66,7 @@ TEST(Charts, ASpiralIsCutWhereItPassesOverItself) {
 }
 
 TEST(Charts, AFlatMeshIsOneChartInTrueProportion) {
-  std::vector<Vec3> points;
+  std::vector<glm::dvec3> points;
   std::vector<Triangle> triangles;
   for (std::uint32_t j = 0; j <= 10; ++j)
     for (std::uint32_t i = 0; i <= 20; ++i) points.push_back({0.5 * i, 0.5 * j, 1});

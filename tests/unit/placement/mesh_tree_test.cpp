@@ -13,9 +13,9 @@ namespace vantage {
 namespace {
 
 // The least distance over a triangle by nested golden-section search over its barycentric coordinates, which is convex.
-double searched_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+double searched_distance(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
   const auto at = [&](double s, double t) {
-    const Vec3 d = a + (b - a) * s + (c - a) * t - p;
+    const glm::dvec3 d = a + (b - a) * s + (c - a) * t - p;
     return dot(d, d);
   };
   const auto minimise = [](double low, double high, auto&& f) {
@@ -36,10 +36,10 @@ double searched_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3
 TEST(DistanceToTriangle, EqualsASearchForTheMinimum) {
   std::mt19937 rng(12);
   std::normal_distribution<double> normal;
-  const auto any = [&] { return Vec3{normal(rng), normal(rng), normal(rng)}; };
+  const auto any = [&] { return glm::dvec3{normal(rng), normal(rng), normal(rng)}; };
   for (int i = 0; i < 200; ++i) {
-    const Vec3 p = any(), a = any(), b = any();
-    const Vec3 c = i % 4 == 0 ? (a + b) * 0.5 + any() * 1e-6 : any();
+    const glm::dvec3 p = any(), a = any(), b = any();
+    const glm::dvec3 c = i % 4 == 0 ? (a + b) * 0.5 + any() * 1e-6 : any();
     EXPECT_NEAR(distance_to_triangle(p, a, b, c), searched_distance(p, a, b, c), 1e-6);
   }
 }
@@ -66,10 +66,10 @@ TEST(MeshTree, DistancesEqualBruteForceInDouble) {
   const MeshTree tree(scene);
   std::uniform_real_distribution<double> unit(-22, 22);
   const auto wide = [&](std::uint32_t v) {
-    return Vec3{scene.positions[v].x, scene.positions[v].y, scene.positions[v].z};
+    return glm::dvec3{scene.positions[v].x, scene.positions[v].y, scene.positions[v].z};
   };
   for (int i = 0; i < 500; ++i) {
-    const Vec3 p{unit(rng), unit(rng), unit(rng)};
+    const glm::dvec3 p{unit(rng), unit(rng), unit(rng)};
     double expected = std::numeric_limits<double>::infinity();
     for (const Triangle& t : scene.triangles)
       expected = std::min(expected, distance_to_triangle(p, wide(t[0]), wide(t[1]), wide(t[2])));

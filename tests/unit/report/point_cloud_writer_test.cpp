@@ -18,12 +18,12 @@ const Vec3 kOrigin{500'123.25, 4'500'321.5, 101.75};
 
 // Three rays: a hit, a miss, a hit.
 ScanChunk chunk_of(std::uint32_t outputs) {
-  constexpr float nowhere = std::numeric_limits<float>::infinity();
+  constexpr float nowhere = std::numeric_limits<float>::quiet_NaN(), far = std::numeric_limits<float>::infinity();
   ScanChunk c;
   c.first_ray = 10, c.ray_count = 3;
   if (outputs & scan_position)
     c.position = {{1.5f, -2.25f, 0.125f}, {nowhere, nowhere, nowhere}, {-40.0f, 30.0f, 2.0f}};
-  if (outputs & scan_range) c.range_m = {2.5f, nowhere, 50.0f};
+  if (outputs & scan_range) c.range_m = {2.5f, far, 50.0f};
   if (outputs & scan_normal) c.normal = {{0, 0, 1}, {0, 0, 0}, {-1, 0, 0}};
   if (outputs & scan_reflectivity) c.reflectivity = {0.25f, 0, 1};
   if (outputs & scan_ids) c.mesh = {3, -1, 5}, c.primitive = {77, 0xFFFFFFFFu, 88};

@@ -10,7 +10,7 @@
 #include <stop_token>
 #include <string>
 
-#include "scan_scenes.hpp"
+#include "support/quad_scene.hpp"
 #include "vantage/error.hpp"
 #include "vantage/objective.hpp"
 
@@ -45,24 +45,21 @@ std::string message_of(const std::function<void()>& call) {
 
 // All chunks of a scan as one.
 ScanChunk whole_scan(Simulator& simulator, const Station& station, std::uint32_t place, std::uint32_t outputs,
-                     ScanSummary* summary = nullptr, const Panorama* panorama = nullptr) {
+                     ScanSummary* summary = nullptr) {
   ScanChunk all;
   const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
-  const ScanSummary sums = simulator.scan(
-      station, place, outputs,
-      [&](const ScanChunk& chunk) {
-        EXPECT_EQ(chunk.first_ray, all.ray_count);  // in order, without a gap
-        all.ray_count += chunk.ray_count;
-        append(all.range_m, chunk.range_m);
-        append(all.position, chunk.position);
-        append(all.normal, chunk.normal);
-        append(all.reflectivity, chunk.reflectivity);
-        append(all.mesh, chunk.mesh);
-        append(all.primitive, chunk.primitive);
-        append(all.colour, chunk.colour);
-        append(all.voxel, chunk.voxel);
-      },
-      {}, panorama);
+  const ScanSummary sums = simulator.scan(station, {.outputs = outputs, .place = place}, [&](const ScanChunk& chunk) {
+    EXPECT_EQ(chunk.first_ray, all.ray_count);  // in order, without a gap
+    all.ray_count += chunk.ray_count;
+    append(all.range_m, chunk.range_m);
+    append(all.position, chunk.position);
+    append(all.normal, chunk.normal);
+    append(all.reflectivity, chunk.reflectivity);
+    append(all.mesh, chunk.mesh);
+    append(all.primitive, chunk.primitive);
+    append(all.colour, chunk.colour);
+    append(all.voxel, chunk.voxel);
+  });
   if (summary) *summary = sums;
   return all;
 }
@@ -189,7 +186,7 @@ TEST(Scan, GivesOnlyWhatWasAskedFor) {
   check(0);
   check(scan_range | scan_colour);
   EXPECT_NE(message_of([&] {
-              simulator.scan({{0, 0, 0}}, 0, 1u << 20, {});
+              simulator.scan({{0, 0, 0}}, {.outputs = 1u << 20}, {});
             }).find("unknown output"),
             std::string::npos);
 }
@@ -221,6 +218,23 @@ TEST(Scan, NoiseIsKeyedBySeedPlaceAndRay) {
   EXPECT_NEAR(std::sqrt(squares / hits), 0.01, 4 * 0.01 / std::sqrt(2 * hits));
 }
 
+TEST(Scan, ColoursByDirectionWhereASourceIsGiven) {
+  Simulator simulator(wall_and_floor().scene(), coarse_scanner(3), config());
+  const auto degrees = [](Angle zenith, Angle azimuth) {
+    return static_cast<std::uint32_t>(std::lround(zenith.in_degrees() * 10) << 16 |
+                                      std::lround(azimuth.in_degrees() * 10 + 3600));
+  };
+  std::uint64_t points = 0;
+  simulator.scan({{0, 0, 0}}, {.outputs = scan_colour | scan_ids, .colour = degrees}, [&](const ScanChunk& chunk) {
+    for (std::size_t k = 0; k < chunk.ray_count; ++k) {
+      const RayAngles angles = simulator.scanner().angles(chunk.first_ray + k);
+      EXPECT_EQ(chunk.colour[k], chunk.mesh[k] < 0 ? 0u : degrees(angles.zenith, angles.azimuth));
+      points += chunk.mesh[k] >= 0;
+    }
+  });
+  EXPECT_GT(points, 100u);
+}
+
 TEST(Scan, StopsWhenTold) {
   Simulator simulator(wall_and_floor().scene(), coarse_scanner(0.1), config());
   std::stop_source stop;
@@ -228,7 +242,7 @@ TEST(Scan, StopsWhenTold) {
   double done = 0;
   const Progress progress{[&](double share) { done = share; }, stop.get_token()};
   const ScanSummary summary = simulator.scan(
-      {{0, 0, 0}}, 0, scan_range,
+      {{0, 0, 0}}, {.outputs = scan_range},
       [&](const ScanChunk&) {
         if (++chunks == 2) stop.request_stop();
       },
@@ -242,10 +256,10 @@ TEST(Scan, StopsWhenTold) {
 TEST(Scan, InactiveAndImpossibleStations) {
   Simulator simulator(wall_and_floor().scene(), coarse_scanner(), config());
   const ScanSummary summary =
-      simulator.scan({{0, 0, 0}, false}, 0, scan_range, [](const ScanChunk&) { ADD_FAILURE() << "a chunk"; });
+      simulator.scan({{0, 0, 0}, false}, {.outputs = scan_range}, [](const ScanChunk&) { ADD_FAILURE() << "a chunk"; });
   EXPECT_EQ(summary.rays, 0u);
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_NE(message_of([&] { simulator.scan({{0, nan, 0}}, 3, scan_range, {}); }).find("station 4"), std::string::npos);
+  EXPECT_NE(message_of([&] { simulator.scan({{0, nan, 0}}, {.place = 3}, {}); }).find("station 4"), std::string::npos);
 }
 
 TEST(Evaluate, AgreesWithScans) {

@@ -29,7 +29,7 @@ void add(RawScene& raw, const char* name, Role role, const std::vector<Vec3>& co
              count = static_cast<std::uint32_t>(corners.size() / 3);
   raw.ranges.push_back({static_cast<std::uint32_t>(raw.triangles.size()), count, 0});
   raw.meshes.push_back({name, role, 0.5, count});
-  raw.positions.insert(raw.positions.end(), corners.begin(), corners.end());
+  for (const Vec3& p : corners) raw.positions.push_back(to_glm(p));
   for (std::uint32_t t = 0; t < count; ++t) raw.triangles.push_back({base + 3 * t, base + 3 * t + 1, base + 3 * t + 2});
 }
 
@@ -75,7 +75,7 @@ TEST(CutCoplanar, NewVerticesGetTheirShareOfTheCornersAttributes) {
   add(raw, "wall", Role::blocking, {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}});
   add(raw, "sheet", Role::surveyed, {{1, 1, 0}, {2, 1, 0}, {1, 2, 0}});
   // Linear over the plane, hence still so at every vertex left.
-  for (const Vec3& p : raw.positions) {
+  for (const glm::dvec3& p : raw.positions) {
     raw.texcoords.push_back({static_cast<float>(p.x / 4), static_cast<float>(p.y / 4)});
     const auto channel = [](double v) { return static_cast<std::uint32_t>(std::lround(v)); };
     raw.colours.push_back(channel(p.x * 60) | channel(p.y * 60) << 8 | 200u << 16 | 255u << 24);

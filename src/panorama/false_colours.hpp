@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "scan/srgb.hpp"
+#include "image/srgb.hpp"
 
 namespace vantage {
 

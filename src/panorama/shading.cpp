@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scan/panorama_shading.hpp"
+#include "panorama/shading.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,10 +15,6 @@ constexpr float flat_cosine =
 constexpr float obscurance_strength = 1.5f;
 constexpr LinearColour zenith_sky{0.24f, 0.41f, 0.72f, 1}, horizon_sky{0.76f, 0.84f, 0.92f, 1},
     below{0.42f, 0.44f, 0.46f, 1};
-
-float dot(const std::array<float, 3>& a, const std::array<float, 3>& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 }  // namespace
 
@@ -52,8 +48,8 @@ PanoramaShading::PanoramaShading(std::uint32_t rows, std::uint32_t columns, std:
 float PanoramaShading::light(const RowWindow& window, std::uint32_t row, std::uint32_t column) const {
   const PanoramaRow& here = window[row];
   const float range = here.range[column];
-  const std::array<float, 3>& normal = here.normal[column];
-  const std::array<float, 3> view = direction(row, column);
+  const glm::vec3 normal = glm::make_vec3(here.normal[column].data());
+  const glm::vec3 view = direction(row, column);
   // Near the poles a ray step across is narrower than one down.
   const float stretch = std::min(1 / sin_zenith_[row], static_cast<float>(columns_) / 64);
 
@@ -67,10 +63,8 @@ float PanoramaShading::light(const RowWindow& window, std::uint32_t row, std::ui
     const auto there = static_cast<std::uint32_t>(other_row);
     const float other_range = window[there].range[other_column];
     if (!std::isfinite(other_range)) continue;
-    const std::array<float, 3> other = direction(there, other_column);
-    std::array<float, 3> between;
-    for (int i = 0; i < 3; ++i) between[i] = other[i] * other_range - view[i] * range;
-    const float length = std::sqrt(dot(between, between));
+    const glm::vec3 between = direction(there, other_column) * other_range - view * range;
+    const float length = glm::length(between);
     if (!(length > 0)) continue;
     const float rise = dot(between, normal) / length - flat_cosine;
     if (rise <= 0) continue;
@@ -80,7 +74,7 @@ float PanoramaShading::light(const RowWindow& window, std::uint32_t row, std::ui
   }
   const float open = 1 / (1 + obscurance_strength * 4 * covered / static_cast<float>(taps_.size()));
   const float facing = std::clamp(-dot(view, normal), 0.0f, 1.0f);
-  const float up = 0.5f + 0.5f * normal[2];
+  const float up = 0.5f + 0.5f * normal.z;
   return open * (0.22f + 0.24f * up + 0.62f * facing);
 }
 
@@ -92,9 +86,7 @@ LinearColour PanoramaShading::sky(std::uint32_t row) const {
   const float height = cos_zenith_[row];
   const LinearColour& end = height >= 0 ? zenith_sky : below;
   const float share = height >= 0 ? std::pow(height, 0.6f) : std::min(1.0f, -6 * height);
-  LinearColour colour{0, 0, 0, 1};
-  for (int i = 0; i < 3; ++i) colour[i] = horizon_sky[i] + (end[i] - horizon_sky[i]) * share;
-  return colour;
+  return horizon_sky + (end - horizon_sky) * share;
 }
 
 }  // namespace vantage

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Small scenes with closed forms for the tests of the scan module.
+// Small scenes of quadrilaterals with closed forms.
 #pragma once
 
 #include <array>

@@ -8,7 +8,7 @@
 #include <deque>
 #include <vector>
 
-#include "scan/srgb.hpp"
+#include "image/srgb.hpp"
 
 namespace vantage {
 
@@ -58,7 +58,7 @@ class PanoramaShading {
     float across;  // columns at the equator
     float radius;  // in rays
   };
-  std::array<float, 3> direction(std::uint32_t row, std::uint32_t column) const {
+  glm::vec3 direction(std::uint32_t row, std::uint32_t column) const {
     return {sin_zenith_[row] * cos_azimuth_[column], sin_zenith_[row] * sin_azimuth_[column], cos_zenith_[row]};
   }
   std::uint32_t rows_, columns_, reach_ = 0;

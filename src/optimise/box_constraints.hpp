@@ -12,10 +12,10 @@
 
 namespace vantage::optimise {
 
-class Box {
+class BoxConstraints {
  public:
   // Throws Error invalid_argument for a pair that is missing, not finite or not in order.
-  Box(std::size_t dimension, const std::optional<Bounds>& bounds);
+  BoxConstraints(std::size_t dimension, const std::optional<Bounds>& bounds);
 
   bool bounded() const { return !lower_.empty(); }
   std::span<const double> lower() const { return lower_; }

@@ -3,9 +3,9 @@
 #include <iterator>
 
 #include "core/atomic_file.hpp"
-#include "scene/image.hpp"
+#include "image/decode.hpp"
 #include "vantage/error.hpp"
-#include "vantage/panorama.hpp"
+#include "vantage/image.hpp"
 
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #define STB_IMAGE_WRITE_STATIC
@@ -18,7 +18,7 @@
 
 namespace vantage {
 
-RgbaImage read_image(const std::filesystem::path& file) {
+Image read_image(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   if (!in) throw Error(Errc::io, "cannot read the image " + file.string());
   const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
@@ -27,10 +27,10 @@ RgbaImage read_image(const std::filesystem::path& file) {
   Image image = decode_image(bytes, problem);
   if (image.rgba.empty())
     throw Error(Errc::malformed_file, file.string() + " is no PNG or JPEG that can be read: " + problem);
-  return {image.width, image.height, std::move(image.rgba)};
+  return image;
 }
 
-void write_png(const std::filesystem::path& file, const RgbaImage& image) {
+void write_png(const std::filesystem::path& file, const Image& image) {
   const std::size_t size = std::size_t{4} * image.width * image.height;
   if (size == 0 || image.rgba.size() != size) {
     throw Error(Errc::invalid_argument,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "optimise/box.hpp"
+#include "optimise/box_constraints.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +14,7 @@ constexpr double kMargin = 0.05;  // width of the quadratic part, as a share of 
 
 }  // namespace
 
-Box::Box(std::size_t dimension, const std::optional<Bounds>& bounds) : dimension_(dimension) {
+BoxConstraints::BoxConstraints(std::size_t dimension, const std::optional<Bounds>& bounds) : dimension_(dimension) {
   if (dimension == 0)
     throw Error(Errc::invalid_argument, "optimiser: the dimension is 0; give at least one coordinate");
   if (!bounds) return;
@@ -33,24 +33,24 @@ Box::Box(std::size_t dimension, const std::optional<Bounds>& bounds) : dimension
   upper_ = bounds->upper;
 }
 
-double Box::from_unit(double t, std::size_t axis) const {
+double BoxConstraints::from_unit(double t, std::size_t axis) const {
   if (!bounded()) return t;
   return std::clamp(lower_[axis] + t * (upper_[axis] - lower_[axis]), lower_[axis], upper_[axis]);
 }
 
-double Box::to_unit(double x, std::size_t axis) const {
+double BoxConstraints::to_unit(double x, std::size_t axis) const {
   if (!bounded()) return x;
   return std::clamp((x - lower_[axis]) / (upper_[axis] - lower_[axis]), 0.0, 1.0);
 }
 
-bool Box::contains(std::span<const double> x) const {
+bool BoxConstraints::contains(std::span<const double> x) const {
   if (x.size() != dimension_) return false;
   for (std::size_t i = 0; i < x.size(); ++i)
     if (!(bounded() ? lower_[i] <= x[i] && x[i] <= upper_[i] : std::isfinite(x[i]))) return false;
   return true;
 }
 
-void Box::require_inside(std::span<const double> x) const {
+void BoxConstraints::require_inside(std::span<const double> x) const {
   if (x.size() != dimension_)
     throw Error(Errc::invalid_argument, "optimiser: a point has " + std::to_string(x.size()) +
                                             " coordinates instead of " + std::to_string(dimension_));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scan/surface_colour.hpp"
+#include "scene/surface_colour.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -33,11 +33,8 @@ LinearColour texel(const Image& image, std::uint32_t x, std::uint32_t y) {
   return {linear_from_srgb8(p[0]), linear_from_srgb8(p[1]), linear_from_srgb8(p[2]), static_cast<float>(p[3]) / 255.0f};
 }
 
-LinearColour mix(const LinearColour& a, const LinearColour& b, float share) {
-  LinearColour c;
-  for (int i = 0; i < 4; ++i) c[i] = a[i] + (b[i] - a[i]) * share;
-  return c;
-}
+// GLM's mix weighs both ends, and so need not give back what they share.
+LinearColour between(const LinearColour& a, const LinearColour& b, float share) { return a + (b - a) * share; }
 
 LinearColour vertex_colour(std::uint32_t packed) {
   LinearColour c;
@@ -48,17 +45,16 @@ LinearColour vertex_colour(std::uint32_t packed) {
 }  // namespace
 
 LinearColour material_colour(const SceneData& scene, const Material& material, const Float2& texcoord) {
-  LinearColour colour = material.base_colour;
+  const LinearColour colour = glm::make_vec4(material.base_colour.data());
   if (material.image < 0) return colour;
   const Image& image = scene.images[static_cast<std::size_t>(material.image)];
   if (image.width == 0 || image.height == 0) return colour;
   const Texels u = texels_at(texcoord.x, image.width, material.repeat_u),
                v = texels_at(texcoord.y, image.height, material.repeat_v);
   const LinearColour texture =
-      mix(mix(texel(image, u.first, v.first), texel(image, u.second, v.first), u.share),
-          mix(texel(image, u.first, v.second), texel(image, u.second, v.second), u.share), v.share);
-  for (int i = 0; i < 4; ++i) colour[i] *= texture[i];
-  return colour;
+      between(between(texel(image, u.first, v.first), texel(image, u.second, v.first), u.share),
+              between(texel(image, u.first, v.second), texel(image, u.second, v.second), u.share), v.share);
+  return colour * texture;
 }
 
 std::uint32_t surface_colour(const SceneData& scene, std::uint32_t mesh, std::uint32_t triangle,
@@ -74,12 +70,9 @@ std::uint32_t surface_colour(const SceneData& scene, std::uint32_t mesh, std::ui
   }
   LinearColour colour = material_colour(scene, scene.materials[scene.ranges[mesh].material], texcoord);
   if (!scene.colours.empty()) {
-    LinearColour vertex{};
-    for (int c = 0; c < 3; ++c) {
-      const LinearColour corner = vertex_colour(scene.colours[corners[c]]);
-      for (int i = 0; i < 4; ++i) vertex[i] += weights[c] * corner[i];
-    }
-    for (int i = 0; i < 4; ++i) colour[i] *= vertex[i];
+    LinearColour vertex(0);
+    for (int c = 0; c < 3; ++c) vertex += weights[c] * vertex_colour(scene.colours[corners[c]]);
+    colour *= vertex;
   }
   return pack_srgb(colour);
 }

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "scene/scene_data.hpp"
+#include "vantage/image.hpp"
 
 namespace vantage {
 

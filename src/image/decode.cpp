@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/image.hpp"
+#include "image/decode.hpp"
 
 #include <limits>
 #include <memory>

@@ -2,12 +2,13 @@
 // sRGB codes and linear light (IEC 61966-2-1).
 #pragma once
 
-#include <array>
 #include <cstdint>
+
+#include "core/glm.hpp"
 
 namespace vantage {
 
-using LinearColour = std::array<float, 4>;  // red, green, blue, alpha; linear
+using LinearColour = glm::vec4;  // red, green, blue, alpha; linear
 
 float linear_from_srgb8(std::uint8_t code);
 // The nearest of the 256 codes, exactly; clamps to [0, 1], NaN gives 0.

@@ -16,7 +16,7 @@ constexpr std::array<PanoramaView, 5> views{PanoramaView::colour, PanoramaView::
 
 }  // namespace
 
-Panorama::Panorama(RgbaImage image, Angle heading) : image_(std::move(image)), heading_(heading) {
+Panorama::Panorama(Image image, Angle heading) : image_(std::move(image)), heading_(heading) {
   if (image_.width == 0 || image_.height == 0 || image_.rgba.size() != std::size_t{4} * image_.width * image_.height)
     throw Error(Errc::invalid_argument, "a panorama needs an image with pixels");
 }

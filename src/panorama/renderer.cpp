@@ -7,8 +7,8 @@
 #include <numbers>
 #include <utility>
 
-#include "scan/false_colours.hpp"
-#include "scan/panorama_shading.hpp"
+#include "panorama/false_colours.hpp"
+#include "panorama/shading.hpp"
 #include "vantage/error.hpp"
 #include "vantage/panorama.hpp"
 #include "vantage/simulator.hpp"
@@ -101,16 +101,11 @@ struct PanoramaRenderer::Impl {
   // One pixel of one view: the mean over its rays, in linear light.
   LinearColour pixel(PanoramaView view, const RowWindow& window, std::uint32_t x, std::uint32_t y) const {
     const std::uint32_t side = options.supersample, columns = simulator.scanner().columns();
-    LinearColour sum{};
-    for (std::uint32_t i = 0; i < side; ++i) {
-      for (std::uint32_t j = 0; j < side; ++j) {
-        // Columns count against the image: azimuth grows to the left.
-        const LinearColour ray = ray_colour(view, window, y * side + i, columns - 1 - (x * side + j));
-        for (int c = 0; c < 4; ++c) sum[c] += ray[c];
-      }
-    }
-    for (float& c : sum) c /= static_cast<float>(side * side);
-    return sum;
+    LinearColour sum(0);
+    for (std::uint32_t i = 0; i < side; ++i)
+      for (std::uint32_t j = 0; j < side; ++j)  // columns count against the image: azimuth grows to the left
+        sum += ray_colour(view, window, y * side + i, columns - 1 - (x * side + j));
+    return sum / static_cast<float>(side * side);
   }
 
   LinearColour ray_colour(PanoramaView view, const RowWindow& window, std::uint32_t row, std::uint32_t column) const {
@@ -130,8 +125,7 @@ struct PanoramaRenderer::Impl {
     const float light = shading.light(window, row, column);
     if (view == PanoramaView::mesh) {
       colour = mesh_colour(static_cast<std::uint32_t>(rays.mesh[column]));
-      for (int i = 0; i < 3; ++i) colour[i] *= light;
-      return colour;
+      return {glm::vec3(colour) * light, 1};
     }
     const float clear = shading.clearness(range);
     const LinearColour haze = shading.haze();
@@ -160,19 +154,19 @@ struct PanoramaRenderer::Impl {
     const std::uint32_t side = options.supersample;
     tbb::parallel_for(std::uint32_t{0}, image.image.height, [&](std::uint32_t y) {
       for (std::uint32_t x = 0; x < image.image.width; ++x) {
-        LinearColour sum{};
+        LinearColour sum(0);
         for (std::uint32_t k = 0; k < side * side; ++k) {
           const std::uint32_t column = record.columns - 1 - (x * side + k % side);
           const std::uint16_t code = record.codes[std::size_t{y * side + k / side} * record.columns + column];
           const LinearColour& ray = code == 0 ? backdrop : scale[code / 16];
-          for (int c = 0; c < 4; ++c) sum[c] += ray[c] / static_cast<float>(side * side);
+          sum += ray / static_cast<float>(side * side);
         }
         set(image.image, x, y, sum);
       }
     });
   }
 
-  static void set(RgbaImage& image, std::uint32_t x, std::uint32_t y, const LinearColour& colour) {
+  static void set(Image& image, std::uint32_t x, std::uint32_t y, const LinearColour& colour) {
     const std::uint32_t packed = pack_srgb(colour);
     for (std::size_t c = 0; c < 4; ++c)
       image.rgba[(std::size_t{y} * image.width + x) * 4 + c] = static_cast<std::uint8_t>(packed >> (8 * c));
@@ -227,7 +221,7 @@ struct PanoramaRenderer::Impl {
         draw_what_can_be(window.end());
       }
     };
-    if (simulator.scan({position, true}, 0, outputs, sink, progress).cancelled) return {};
+    if (simulator.scan({.position = position}, {.outputs = outputs}, sink, progress).cancelled) return {};
     for (PanoramaImage& image : images) {
       if (image.view == PanoramaView::range) draw_ranges(image, record);
     }

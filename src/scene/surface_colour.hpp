@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "scan/srgb.hpp"
+#include "image/srgb.hpp"
 #include "scene/scene_data.hpp"
 
 namespace vantage {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scan/false_colours.hpp"
+#include "panorama/false_colours.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,7 @@
 namespace vantage {
 namespace {
 
-using Code = std::array<double, 3>;  // sRGB, 0 to 255
+using Code = glm::dvec3;  // sRGB, 0 to 255
 
 LinearColour from_code(const Code& code) {
   LinearColour colour{0, 0, 0, 1};
@@ -22,9 +22,7 @@ LinearColour from_code(const Code& code) {
 LinearColour along(std::span<const Code> stops, double share) {
   const double x = std::clamp(share, 0.0, 1.0) * static_cast<double>(stops.size() - 1);
   const auto k = std::min(static_cast<std::size_t>(x), stops.size() - 2);
-  Code code;
-  for (int i = 0; i < 3; ++i) code[i] = stops[k][i] + (stops[k + 1][i] - stops[k][i]) * (x - static_cast<double>(k));
-  return from_code(code);
+  return from_code(stops[k] + (stops[k + 1] - stops[k]) * (x - static_cast<double>(k)));
 }
 
 constexpr std::array<Code, 7> range_stops{Code{250, 240, 160}, Code{246, 184, 84}, Code{226, 108, 76},

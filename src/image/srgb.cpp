@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scan/srgb.hpp"
+#include "image/srgb.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace vantage {
