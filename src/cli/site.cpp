@@ -173,7 +173,7 @@ void SiteOptions::add(CLI::App& command) {
   add_number(command, "--min-area", "M2", "Smallest connected piece of walkable ground", min_area, not_negative)
       ->group("Placement");
 
-  add_value(command, "--engine", "ENGINE", "automatic, ray_query, compute_bvh or embree",
+  add_value(command, "--engine", "ENGINE", "auto, ray_query, compute_bvh or embree",
             [this](const std::string& text, const std::string& what) {
               try {
                 engine = engine_from_string(text);
