@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
 #include "report/chart.hpp"
+#include "report/front_view.hpp"
 #include "report/relief.hpp"
 #include "report/search_tint.hpp"
 #include "report/spread.hpp"
 #include "support/temporary_folder.hpp"
+#include "unit/report/drawn.hpp"
 #include "unit/report/files.hpp"
 #include "vantage/error.hpp"
 
@@ -166,23 +169,33 @@ TEST(Relief, ShowsTheTopmostSurface) {
   EXPECT_EQ(half[50 * 100 + 52], pixels[100 * 200 + 105]);  // amid an even surface
 }
 
+constexpr std::size_t kDot = 100;  // pixels; a disc of the front has 250, a letter in its colour fewer
+
+// Shapes of an SVG: every stroke and fill is a path of its own.
+std::size_t shapes(const std::string& svg) {
+  std::size_t count = 0;
+  for (std::size_t at = svg.find("<path"); at != std::string::npos; at = svg.find("<path", at + 1)) ++count;
+  return count;
+}
+
 TEST(Pictures, EveryFrontIsDrawnAsPngAndSvg) {
   const test::TemporaryFolder folder;
   for (const Problem problem :
        {Problem::coverage_fix, Problem::coverage_overlap_fix, Problem::coverage_min, Problem::coverage_overlap_min}) {
     PlanConfig config{.problem = problem, .stations_min = 2, .stations_max = 9, .sample_voxels = 1000};
-    const PlanResult result = test::sample_result(config, problem == Problem::coverage_fix ? 1 : 12);
+    const std::size_t networks = problem == Problem::coverage_fix ? 1 : 12;
+    const PlanResult result = test::sample_result(config, networks);
     for (const char* name : {"a.png", "a.svg"}) {
       const auto drawn = [&](auto draw) {
         draw(folder / name, result, config);
         const std::string bytes = test::content(folder / name);
         if (std::string(name) == "a.png") {
           EXPECT_EQ(bytes.substr(0, 8), "\x89PNG\r\n\x1A\n");
-          // width
-          EXPECT_EQ(static_cast<unsigned char>(bytes[18]) * 256 + static_cast<unsigned char>(bytes[19]), 1560);
+          EXPECT_EQ(test::Drawn(folder / name).width(), 1560u);
         } else {
           EXPECT_EQ(bytes.substr(0, 5), "<?xml");
           EXPECT_NE(bytes.find("</svg>"), std::string::npos);
+          EXPECT_GT(shapes(bytes), 15u);  // frame, grid and ticks alone
         }
         if (problem != Problem::coverage_overlap_min) return;
         draw(folder / (std::string("again") + name).c_str(), result, config);
@@ -196,23 +209,77 @@ TEST(Pictures, EveryFrontIsDrawnAsPngAndSvg) {
   }
 }
 
+// One disc a network, in the colour of its number of stations where that is an objective, and one in the legend or the
+// bar.
+TEST(Pictures, TheFrontHasADotForEveryNetwork) {
+  const test::TemporaryFolder folder;
+  for (const Problem problem :
+       {Problem::coverage_fix, Problem::coverage_overlap_fix, Problem::coverage_min, Problem::coverage_overlap_min}) {
+    PlanConfig config{.problem = problem, .stations_min = 2, .stations_max = 9, .sample_voxels = 1000};
+    const std::size_t networks = problem == Problem::coverage_fix ? 1 : 12;
+    const PlanResult result = test::sample_result(config, networks);
+    draw_front(folder / "front.png", result, config);
+    const test::Drawn front(folder / "front.png");
+    EXPECT_EQ(front.patches(style::orange, 2 * kDot).size(), problem == Problem::coverage_fix ? 0u : 2u)
+        << to_string(problem) << ": a ring around the compromise, and the legend's";
+    if (problem != Problem::coverage_overlap_min) {
+      EXPECT_EQ(front.patches(style::blue, kDot).size(), networks + 1) << to_string(problem);
+      continue;
+    }
+    for (std::size_t n = config.stations_min; n <= config.stations_max; ++n) {
+      const auto of_size = std::count_if(result.front.begin(), result.front.end(),
+                                         [&](const PlanEntry& entry) { return entry.stations.size() == n; });
+      const Colour colour = FrontView(config).colour({.stations = static_cast<double>(n)});
+      EXPECT_EQ(front.patches(colour, kDot).size(), static_cast<std::size_t>(of_size) + 1) << n << " stations";
+    }
+  }
+}
+
+TEST(Pictures, TheHypervolumeIsACurveOverAllIterations) {
+  const test::TemporaryFolder folder;
+  PlanConfig config{.problem = Problem::coverage_overlap_fix, .stations_min = 4, .stations_max = 4};
+  const PlanResult result = test::sample_result(config, 12);
+  draw_hypervolume(folder / "curve.png", result, config);
+  const auto patches = test::Drawn(folder / "curve.png").patches(style::blue, kDot);
+  ASSERT_FALSE(patches.empty());
+  const auto longest = std::max_element(patches.begin(), patches.end(),
+                                        [](const auto& a, const auto& b) { return a.columns < b.columns; });
+  EXPECT_GT(longest->columns, 1100u);  // 19 of 20.4 iterations on 1328 pixels, its label over the end
+  EXPECT_LT(longest->columns, 1328u);
+}
+
+TEST(Pictures, TheHistoryEndsWithTheLastFront) {
+  const test::TemporaryFolder folder;
+  PlanConfig config{.problem = Problem::coverage_overlap_fix, .stations_min = 4, .stations_max = 4};
+  const PlanResult result = test::sample_result(config, 12);
+  draw_history_fronts(folder / "history.png", result, config);
+  const test::Drawn history(folder / "history.png");
+  EXPECT_EQ(history.patches(mix({1, 1, 1}, style::blue, 0.85), 60, 6).size(), 12u);
+  EXPECT_EQ(history.patches(style::blue, 60).size(), 1u) << "the legend";
+}
+
 TEST(Pictures, DrawResultsThatHoldLittle) {
   const test::TemporaryFolder folder;
   for (const Problem problem :
        {Problem::coverage_fix, Problem::coverage_overlap_fix, Problem::coverage_min, Problem::coverage_overlap_min}) {
     PlanConfig config{.problem = problem, .stations_min = 1, .stations_max = 1};
     if (problem == Problem::coverage_min || problem == Problem::coverage_overlap_min) config.stations_max = 64;
-    draw_front(folder / "empty.png", {}, config);
-    draw_hypervolume(folder / "empty.png", {}, config);
-    draw_history_fronts(folder / "empty.png", {}, config);
     PlanResult one = test::sample_result(config, 1);
     one.front[0].confirmed = false;
     one.front[0].coverage = 0, one.front[0].overlap = 0;
     one.history.resize(1);
     one.history[0].hypervolume = 0;
-    draw_front(folder / "one.png", one, config);
-    draw_hypervolume(folder / "one.png", one, config);
-    draw_history_fronts(folder / "one.png", one, config);
+    const auto drawn = [&](auto draw) {
+      draw(folder / "empty.png", PlanResult{}, config);
+      draw(folder / "one.png", one, config);
+      for (const char* name : {"empty.png", "one.png"})
+        EXPECT_GT(test::Drawn(folder / name).ink(), 50'000u)
+            << to_string(problem) << ", " << name << ": title, frame, grid and labels";
+      EXPECT_FALSE(test::content(folder / "empty.png") == test::content(folder / "one.png")) << to_string(problem);
+    };
+    drawn(draw_front);
+    drawn(draw_hypervolume);
+    drawn(draw_history_fronts);
   }
   EXPECT_EQ(test::entries(folder.path()), 2u);
 }
@@ -233,14 +300,27 @@ TEST(Pictures, PlanViewDrawsEveryKindOfStation) {
   const std::vector<PlacedStation> stations{
       {.uv = {0.2, 0.2}, .position = {-1, -1, 1.8}, .status = StationStatus::ok},
       {.uv = {0.2, 0.2}, .position = {-1, -1, 1.8}, .status = StationStatus::ok},
+      {.uv = {0.9, 0.2}, .position = {1.6, -1, 1.8}, .status = StationStatus::ok},
       {.uv = {0.9, 0.9}, .position = {1.6, 1.6, 1.8}, .status = StationStatus::clash},
       {.uv = {5, 5}, .position = {}, .status = StationStatus::hole}};
-  OverlapMatrix overlap(4);
-  overlap.set(0, 1, 0.7);
+  OverlapMatrix overlap(5);
+  overlap.set(0, 2, 0.7);
   draw_plan_view(folder / "plan.png", room(), area, stations, overlap, "A room");
   draw_plan_view(folder / "plan.svg", room(), area, stations, overlap, "A room");
+  draw_plan_view(folder / "unlinked.png", room(), area, stations, OverlapMatrix(5), "A room");
   draw_plan_view(folder / "none.png", room(), area, {}, {}, "No station");
-  EXPECT_EQ(test::entries(folder.path()), 3u);
+  EXPECT_EQ(test::entries(folder.path()), 4u);
+  const test::Drawn plan(folder / "plan.png"), unlinked(folder / "unlinked.png"), none(folder / "none.png");
+  constexpr Colour number{0.10, 0.22, 0.45}, skipped{0.93, 0.93, 0.94};
+  constexpr std::size_t disc = 700;  // pixels; one with its number has 900 and more
+  EXPECT_EQ(plan.patches(number, disc).size(), 4u) << "three stations, two moved apart, and the legend's";
+  EXPECT_EQ(plan.patches(skipped, disc).size(), 2u) << "the one that clashes, and the legend's";
+  EXPECT_EQ(none.patches(number, disc).size(), 1u);
+  EXPECT_EQ(none.patches(skipped, disc).size(), 0u);
+  EXPECT_GT(plan.near(style::orange, 40), unlinked.near(style::orange, 40) + 200) << "the link, the only one";
+  // The map is room and search area: 640 units high at two pixels each, nearly as wide.
+  EXPECT_GT(none.ink(), 1'000'000u);
+  EXPECT_GT(shapes(test::content(folder / "plan.svg")), 40u);
   EXPECT_THROW(draw_plan_view(folder / "bad.png", room(), area, stations, OverlapMatrix(3), "Wrong"), Error);
 }
 
