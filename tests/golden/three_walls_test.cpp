@@ -8,7 +8,6 @@
 #include <cstdio>
 #include <map>
 #include <string>
-#include <vector>
 
 #include "golden/walls_in_double.hpp"
 #include "scan/noise_model.hpp"
