@@ -50,12 +50,15 @@ struct SceneOptions {
   std::vector<std::pair<std::string, std::uint32_t>> weights = {};
   std::optional<std::size_t> scene_index = std::nullopt;  ///< Which glTF scene; empty: the file's default.
   double default_diffuse = 0.5;  ///< R where neither extras nor a plain base colour (its luminance) give one.
+  bool allow_outside = false;    ///< Let the file name buffers and images outside its own folder.
 };
 
 /// Immutable triangle scene. Copies share storage; safe to read from any thread.
 class Scene {
  public:
   /// Loads a .glb or .gltf file. Y up becomes Z up: (x, y, z) ↦ (x, −z, y).
+  /// Buffers and images are read from the file itself and from regular files below its folder, links followed; from
+  /// elsewhere only if `allow_outside`.
   /// Throws Error: io, malformed_file (bad reference, unknown required extension, nothing to survey), invalid_argument
   /// (a pattern that matches nothing, a scene index, weight or coefficient out of range), out_of_memory.
   static Scene load(const std::filesystem::path& file, const SceneOptions& options = {});

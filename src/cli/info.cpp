@@ -16,11 +16,12 @@ namespace {
 
 struct InfoOptions {
   std::optional<std::string> scene;
-  bool json = false;
+  bool allow_outside = false, json = false;
 
   void add(CLI::App& command) {
     add_text(command, "--measure", "SCENE", "Trace a little of this scene with every usable engine and rank them",
              scene);
+    command.add_flag("--allow-outside", allow_outside, "Let it name buffers and images outside its own folder");
     command.add_flag("--json", json, "Print one JSON object");
   }
 };
@@ -87,7 +88,7 @@ std::string to_text(const EngineRow& row) {
 
 int info(CLI::App&, InfoOptions& options, Program& program) {
   std::optional<Scene> scene;
-  if (options.scene) scene = Scene::load(*options.scene);
+  if (options.scene) scene = Scene::load(*options.scene, {.allow_outside = options.allow_outside});
   std::vector<EngineRow> rows;
   for (auto& found : list_engines()) rows.push_back({.info = std::move(found)});
   if (scene) {

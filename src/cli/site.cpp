@@ -77,6 +77,7 @@ nlohmann::json given_options(const SiteOptions& options, const Scanner& scanner)
     given["weight"].push_back(pattern + "=" + std::to_string(weight));
   if (options.scene_index) given["scene-index"] = *options.scene_index;
   if (options.diffuse) given["diffuse"] = *options.diffuse;
+  if (options.roles.allow_outside) given["allow-outside"] = true;
   std::string noise = scanner.noise.empty() ? "off" : options.noise ? *options.noise : options.scanner.value_or("off");
   if (noise.ends_with(".csv")) noise = std::filesystem::absolute(noise).string();
   given["noise"] = noise;
@@ -130,6 +131,9 @@ void SiteOptions::add(CLI::App& command) {
   add_number(command, "--diffuse", "R", "Diffuse reflection coefficient where the file gives none, 0 to 1", diffuse,
              {.low = 0, .high = 1})
       ->group("Scene");
+  command
+      .add_flag("--allow-outside", roles.allow_outside, "Let the scene name buffers and images outside its own folder")
+      ->group("Scene");
 
   add_text(command, "--scanner", "PRESET", "A scanner that `vantage info` lists, as rtc360 or rtc360@6mm", scanner)
       ->group("Scanner");
@@ -173,7 +177,7 @@ void SiteOptions::add(CLI::App& command) {
   add_number(command, "--min-area", "M2", "Smallest connected piece of walkable ground", min_area, not_negative)
       ->group("Placement");
 
-  add_value(command, "--engine", "ENGINE", "automatic, ray_query, compute_bvh or embree",
+  add_value(command, "--engine", "ENGINE", "auto, ray_query, compute_bvh or embree",
             [this](const std::string& text, const std::string& what) {
               try {
                 engine = engine_from_string(text);
@@ -244,13 +248,17 @@ LoadedSite open_site(CLI::App& command, SiteOptions& options) {
 
   Scene scene = Scene::load(options.scene, options.roles);
   for (const auto& note : scene.notes()) spdlog::info("{}: {}", options.scene, note);
-  const bool own_preset = options.scanner.has_value();
+  const bool own_preset = options.scanner.has_value(), own_noise = options.noise.has_value();
   const CLI::Option* station_file = command.get_option_no_throw("--stations");
   const bool own_stations = station_file && station_file->count() > 0;
   apply_layer(command, nlohmann::json::parse(scene.defaults_json()), options.scene, [&](const std::string& key) {
     return scene_keys.contains(key) && !(own_preset && preset_keys.contains(key)) &&
            !(own_stations && key == "station");
   });
+
+  if (!own_noise && options.noise && options.noise->ends_with(".csv"))
+    throw Error(Errc::malformed_file, options.scene + ": its defaults name the file \"" + *options.noise +
+                                          "\" for noise, and a scene may name scanners only; give it with --noise");
 
   const double scale = length_scale(scene.bounds());
   LoadedSite site{.scene = std::move(scene),

@@ -23,6 +23,7 @@ std::string to_string(Engine engine) {
 }
 
 Engine engine_from_string(const std::string& text) {
+  if (text == "automatic") return Engine::automatic;  // as the enumerator is called
   std::string known;
   for (const auto& [engine, name] : names) {
     if (text == name) return engine;

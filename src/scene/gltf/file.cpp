@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <fstream>
 #include <limits>
 #include <string_view>
-#include <system_error>
+
+#include "scene/gltf/scene_files.hpp"
 
 namespace vantage::gltf {
 namespace {
@@ -47,22 +47,6 @@ constexpr std::string_view kWithoutEffect[] = {"KHR_materials_anisotropy",
                                                "EXT_structural_metadata",
                                                "EXT_mesh_features",
                                                "EXT_instance_features"};
-
-std::vector<std::uint8_t> read_file(const std::filesystem::path& path, const std::string& what) {
-  std::error_code failure;
-  const auto status = std::filesystem::status(path, failure);
-  if (!std::filesystem::exists(status)) throw Error(Errc::io, what + ": there is no file " + path.string());
-  if (!std::filesystem::is_regular_file(status)) throw Error(Errc::io, what + ": " + path.string() + " is not a file");
-  const auto size = std::filesystem::file_size(path, failure);
-  std::ifstream stream(path, std::ios::binary);
-  if (failure || !stream) throw Error(Errc::io, what + ": " + path.string() + " cannot be opened for reading");
-  std::vector<std::uint8_t> bytes(size);
-  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
-  if (static_cast<std::uintmax_t>(stream.gcount()) != size)
-    throw Error(Errc::io, what + ": " + path.string() + " could be read only up to byte " +
-                              std::to_string(stream.gcount()) + " of " + std::to_string(size));
-  return bytes;
-}
 
 std::uint32_t little_endian(Bytes bytes, std::size_t offset) {
   return static_cast<std::uint32_t>(bytes[offset]) | static_cast<std::uint32_t>(bytes[offset + 1]) << 8 |
@@ -127,7 +111,8 @@ std::string quoted(const std::string& text) {
   return text.size() <= kLongest ? "\"" + text + "\"" : "\"" + text.substr(0, kLongest) + "…\"";
 }
 
-File::File(const std::filesystem::path& path) : path_(path), bytes_(read_file(path, "the scene cannot be read")) {
+File::File(const std::filesystem::path& path, bool allow_outside)
+    : path_(path), allow_outside_(allow_outside), bytes_(read_file(path, "the scene cannot be read")) {
   const Bytes glb_chunk = open_container();
   check_version();
   check_extensions();
@@ -292,10 +277,13 @@ std::vector<std::uint8_t> File::read_uri(const std::string& uri, const std::stri
       throw malformed(what + " has a data URI that is not base64 of a known kind: " + quoted(uri));
     return bytes;
   }
+  if (uri.starts_with("file:"))
+    throw malformed(what + " lies at " + quoted(uri) + "; name the file relative to the scene's folder instead");
   if (uri.find("://") != std::string::npos)
     throw malformed(what + " lies at " + quoted(uri) + "; only files are read: download it first");
-  return read_file(path_.parent_path() / std::filesystem::path(percent_decoded(uri)),
-                   path_.string() + ": " + what + " is missing");
+  const std::string name = percent_decoded(uri), user = path_.string() + ": " + what;
+  if (name.find('\0') != std::string::npos) throw malformed(what + ": " + quoted(uri) + " is no file name");
+  return read_file(locate(path_.parent_path(), name, allow_outside_, user), user + " is missing");
 }
 
 void File::load_buffers(Bytes glb_chunk) {

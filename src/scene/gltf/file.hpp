@@ -28,8 +28,9 @@ using Bytes = std::span<const std::uint8_t>;
 // checked where they are used.
 class File {
  public:
-  // Throws Error: io, malformed_file.
-  explicit File(const std::filesystem::path& path);
+  // Its buffers and images may lie below its own folder, or anywhere if `allow_outside`. Throws Error: io,
+  // malformed_file.
+  File(const std::filesystem::path& path, bool allow_outside);
 
   const tinygltf::Model& model() const { return model_; }
   const nlohmann::json& document() const { return json_; }
@@ -54,6 +55,7 @@ class File {
   std::vector<std::uint8_t> read_uri(const std::string& uri, const std::string& what) const;
 
   std::filesystem::path path_;
+  bool allow_outside_;
   std::vector<std::uint8_t> bytes_;                     // the whole file; a GLB's buffer 0 stays in here
   std::vector<std::vector<std::uint8_t>> own_buffers_;  // the others
   std::vector<Bytes> buffers_;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where a value comes from: typed, configuration file, scene, preset, built in; in this order.
+#include <fstream>
+
 #include "program.hpp"
 
 namespace vantage::test {
@@ -76,6 +78,39 @@ TEST_F(Layers, ResolvedOptionsReproduceTheRun) {
   first.erase("seconds");
   second.erase("seconds");
   EXPECT_EQ(first, second);
+}
+
+// A scene comes from anyone; files of the user's are none of its business.
+TEST_F(Layers, ASceneReachesForNoFileUnlessTheUserSaysSo) {
+  const TemporaryFolder elsewhere;
+  const std::string buffer = elsewhere / "triangle.bin";
+  const std::vector<float> corners{0, 0, 0, 10, 0, 0, 0, 10, 0};
+  std::ofstream(buffer, std::ios::binary).write(reinterpret_cast<const char*>(corners.data()), 36);
+  nlohmann::json scene = nlohmann::json::parse(R"({
+    "asset": {"version": "2.0", "extras": {"vantage": {"allow-outside": true}}},
+    "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+    "bufferViews": [{"buffer": 0, "byteLength": 36}]})");
+  scene["buffers"] = {{{"byteLength", 36}, {"uri", buffer}}};
+  write("scene.gltf", scene.dump());
+  const std::vector<std::string> evaluate{"evaluate",  path("scene.gltf"), "--engine", "embree",
+                                          "--station", "5,-5,1.5",         "--step",   "1"};
+  expect_refused(run_program(evaluate), 1, "--allow-outside");
+  auto allowed = evaluate;
+  allowed.push_back("--allow-outside");
+  EXPECT_EQ(run_program(allowed).exit_code, 0);
+  write("config.json", R"({"allow-outside": true})");
+  auto configured = evaluate;
+  configured.insert(configured.end(), {"--config", path("config.json")});
+  EXPECT_EQ(json_of(configured)["options"]["allow-outside"], true);
+
+  write("noise.csv", "reflectivity,10,20\n0.5,0.001,0.002\n");
+  scene["asset"]["extras"]["vantage"] = {{"scanner", {{"noise", path("noise.csv")}}}};
+  write("scene.gltf", scene.dump());
+  expect_refused(run_program(allowed), 1, "noise.csv");
+  allowed.insert(allowed.end(), {"--noise", path("noise.csv")});
+  EXPECT_EQ(run_program(allowed).exit_code, 0);
 }
 
 // A scene without marks, larger than any site: lengths follow its size, and it says so.

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <utility>
 #include <vector>
 
 #include "report/colour.hpp"
@@ -16,10 +17,14 @@ namespace vantage::test {
 
 class Drawn {
  public:
-  explicit Drawn(const std::filesystem::path& png) : image_(read_image(png)) {}
+  explicit Drawn(const std::filesystem::path& png) {
+    auto image = read_image(png);
+    width_ = image.width;
+    rgba_ = std::move(image.rgba);
+  }
 
-  std::size_t width() const { return image_.width; }
-  std::size_t pixels() const { return std::size_t{image_.width} * image_.height; }
+  std::size_t width() const { return width_; }
+  std::size_t pixels() const { return rgba_.size() / 4; }
 
   // Pixels that are not paper.
   std::size_t ink() const { return pixels() - near({1, 1, 1}, 0); }
@@ -40,7 +45,7 @@ class Drawn {
     std::vector<Patch> found;
     std::vector<bool> seen(pixels());
     std::vector<std::size_t> open;
-    const std::size_t columns = image_.width;
+    const std::size_t columns = width_;
     for (std::size_t start = 0; start < pixels(); ++start) {
       if (seen[start] || !is(start, colour, tolerance)) continue;
       Patch patch;
@@ -70,11 +75,12 @@ class Drawn {
   bool is(std::size_t pixel, const Colour& colour, int tolerance) const {
     const auto wanted = to_bytes(colour);
     for (std::size_t c = 0; c < 3; ++c)
-      if (std::abs(int{image_.rgba[4 * pixel + c]} - int{wanted[c]}) > tolerance) return false;
+      if (std::abs(int{rgba_[4 * pixel + c]} - int{wanted[c]}) > tolerance) return false;
     return true;
   }
 
-  RgbaImage image_;
+  std::size_t width_ = 0;
+  std::vector<std::uint8_t> rgba_;
 };
 
 }  // namespace vantage::test

@@ -80,23 +80,24 @@ TEST(ThreeWalls, FaceTheScannerAtTheirDistances) {
   const Scene scene = built_in("three-walls");
   const SceneData& data = scene.data();
   ASSERT_EQ(scene.meshes().size(), 3u);
-  const double distances[3] = {10, 30, 30}, azimuths[3] = {0, 20, -20};
+  const double distances[3] = {10, 30, 30}, aside[3] = {0, 17.875, -17.875};
   for (std::uint32_t m = 0; m < 3; ++m) {
     EXPECT_EQ(scene.meshes()[m].role, Role::surveyed);
     EXPECT_DOUBLE_EQ(scene.meshes()[m].diffuse, 0.1);
     ASSERT_EQ(data.ranges[m].triangle_count, 2u);
-    const Vec3 towards{std::cos(azimuths[m] * M_PI / 180), std::sin(azimuths[m] * M_PI / 180), 0};
     double area = 0;
     for (std::uint32_t t = data.ranges[m].first_triangle; t < data.ranges[m].first_triangle + 2; ++t) {
       const Vec3 a = corner(data, t, 0), n = cross(corner(data, t, 1) - a, corner(data, t, 2) - a);
       area += std::sqrt(dot(n, n)) / 2;
       for (int c = 0; c < 3; ++c) {
-        EXPECT_NEAR(dot(corner(data, t, c), towards), distances[m], 1e-5);
-        EXPECT_TRUE(corner(data, t, c).z == 0 || corner(data, t, c).z == 2.5);
+        const Vec3 p = corner(data, t, c) + data.origin;
+        EXPECT_EQ(p.x, distances[m]);
+        EXPECT_EQ(std::abs(p.y - aside[m]), 2.5);
+        EXPECT_TRUE(p.z == 0 || p.z == 2.5);
       }
-      EXPECT_LT(dot(n, towards), 0) << "the front faces the scanner";
+      EXPECT_LT(n.x, 0) << "the front faces the scanner";
     }
-    EXPECT_NEAR(area, 12.5, 1e-5);
+    EXPECT_DOUBLE_EQ(area, 12.5);
   }
   EXPECT_TRUE(scene.has_search_area());
 }
@@ -109,7 +110,7 @@ TEST(BuiltInScenes, CarryTheMethodsParameters) {
   EXPECT_EQ(four["spacing"], 0.01);
   EXPECT_EQ(four["user-size"], 0.1);
   const auto three = nlohmann::json::parse(built_in("three-walls").defaults_json());
-  EXPECT_EQ(three["scanner"]["step"], 0.0356);
+  EXPECT_NEAR(three["scanner"]["step"].get<double>(), 0.034377, 1e-6);  // 6 mm at 10 m
   EXPECT_EQ(three["spacing"], 0.006);
   EXPECT_EQ(three["user-size"], 0.01);
   EXPECT_EQ(three["station"], nlohmann::json({0, 0, 1.5}));

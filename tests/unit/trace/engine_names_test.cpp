@@ -11,6 +11,7 @@ TEST(EngineNames, GoThereAndBack) {
   for (const Engine engine : {Engine::automatic, Engine::ray_query, Engine::compute_bvh, Engine::embree})
     EXPECT_EQ(engine_from_string(to_string(engine)), engine);
   EXPECT_EQ(to_string(Engine::automatic), "auto");
+  EXPECT_EQ(engine_from_string("automatic"), Engine::automatic);
 }
 
 TEST(EngineNames, AnUnknownOneIsRefusedWithTheList) {
