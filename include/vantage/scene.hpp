@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "vantage/settings.hpp"
 #include "vantage/types.hpp"
 
 namespace vantage {
@@ -53,6 +54,9 @@ struct SceneOptions {
   bool allow_outside = false;    ///< Let the file name buffers and images outside its own folder.
 };
 
+/// None decides by itself what a run finds: the scene's fingerprint does.
+Settings settings(const SceneOptions& options);
+
 /// Immutable triangle scene. Copies share storage; safe to read from any thread.
 class Scene {
  public:
@@ -79,6 +83,7 @@ class Scene {
   /// The `vantage` object of the file's `asset.extras` as JSON text ("{}" where absent): default parameters of built-in
   /// scenes.
   const std::string& defaults_json() const noexcept;
+  const SceneOptions& options() const noexcept;  ///< How the file was read.
   /// Hash of everything that can change a result: geometry, roles, weights, materials, search area. Names do not count.
   std::uint64_t fingerprint() const noexcept;
 

@@ -64,24 +64,10 @@ Scanner resolve_scanner(const SiteOptions& options, double scale) {
   return scanner;
 }
 
-nlohmann::json given_options(const SiteOptions& options, const Scanner& scanner) {
-  nlohmann::json given = nlohmann::json::object();
-  const auto add_patterns = [&](const char* key, const std::vector<std::string>& patterns) {
-    if (!patterns.empty()) given[key] = patterns;
-  };
-  add_patterns("surveyed", options.roles.surveyed);
-  add_patterns("blocking", options.roles.blocking);
-  add_patterns("search", options.roles.search);
-  add_patterns("ignore", options.roles.ignore);
-  for (const auto& [pattern, weight] : options.roles.weights)
-    given["weight"].push_back(pattern + "=" + std::to_string(weight));
-  if (options.scene_index) given["scene-index"] = *options.scene_index;
-  if (options.diffuse) given["diffuse"] = *options.diffuse;
-  if (options.roles.allow_outside) given["allow-outside"] = true;
+// Where the noise came from; its table says only what it holds.
+std::string noise_source(const SiteOptions& options, const Scanner& scanner) {
   std::string noise = scanner.noise.empty() ? "off" : options.noise ? *options.noise : options.scanner.value_or("off");
-  if (noise.ends_with(".csv")) noise = std::filesystem::absolute(noise).string();
-  given["noise"] = noise;
-  return given;
+  return noise.ends_with(".csv") ? std::filesystem::absolute(noise).string() : noise;
 }
 
 // One line on what was made up for a scene of unusual size.
@@ -232,9 +218,9 @@ const ClashChecker& LoadedSite::clash() {
 
 nlohmann::json LoadedSite::as_options() const {
   nlohmann::json options = options_of(settings(scanner));
-  for (const Settings& list : {settings(config), settings(security), settings(walkable)})
+  for (const Settings& list : {settings(scene.options()), settings(config), settings(security), settings(walkable)})
     options.update(options_of(list));
-  options.update(given);
+  options["noise"] = noise;
   return options;
 }
 
@@ -266,7 +252,7 @@ LoadedSite open_site(CLI::App& command, SiteOptions& options) {
                   .config = {},
                   .security = {},
                   .walkable = {},
-                  .given = {}};
+                  .noise = {}};
   site.config.engine = options.engine;
   site.config.device_index = options.device;
   site.config.seed = options.seed;
@@ -284,7 +270,7 @@ LoadedSite open_site(CLI::App& command, SiteOptions& options) {
   if (options.slope) site.walkable.max_slope = Angle::degrees(*options.slope);
   site.walkable.headroom_m = options.headroom.value_or(site.walkable.headroom_m * scale);
   site.walkable.min_area_m2 = options.min_area.value_or(site.walkable.min_area_m2 * scale * scale);
-  site.given = given_options(options, site.scanner);
+  site.noise = noise_source(options, site.scanner);
   if (scale != 1) tell_scaled(options, site, scale);
   return site;
 }

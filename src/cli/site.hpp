@@ -50,7 +50,7 @@ struct LoadedSite {
   SimulatorConfig config;
   SecurityVolume security;
   WalkableOptions walkable;
-  nlohmann::json given;  // options that the values above do not show: roles and where the noise came from
+  std::string noise;  // where its table came from: off, a scanner's name, or a file
 
   // The search area, made on first use. Throws Error invalid_argument where nothing is walkable.
   const SearchArea& area();

@@ -13,6 +13,12 @@ using nlohmann::ordered_json;
 
 ordered_json to_json(const Vec3& v) { return {v.x, v.y, v.z}; }
 
+ordered_json to_json(const Settings& settings) {
+  ordered_json json = ordered_json::object();
+  for (const Setting& setting : settings) json[setting.name] = ordered_json::parse(setting.json);
+  return json;
+}
+
 ordered_json scene_json(const Scene& scene) {
   char fingerprint[17];
   std::snprintf(fingerprint, sizeof fingerprint, "%016llx", static_cast<unsigned long long>(scene.fingerprint()));
@@ -23,13 +29,8 @@ ordered_json scene_json(const Scene& scene) {
           {"triangles", scene.triangle_count()},
           {"meshes", scene.meshes().size()},
           {"surveyed_meshes", surveyed},
-          {"bounds", {to_json(box.min), to_json(box.max)}}};
-}
-
-ordered_json to_json(const Settings& settings) {
-  ordered_json json = ordered_json::object();
-  for (const Setting& setting : settings) json[setting.name] = ordered_json::parse(setting.json);
-  return json;
+          {"bounds", {to_json(box.min), to_json(box.max)}},
+          {"options", to_json(settings(scene.options()))}};
 }
 
 ordered_json scanner_json(const Scanner& scanner) {

@@ -274,6 +274,7 @@ std::shared_ptr<const SceneData> finish_scene(RawScene&& raw, const std::string&
   data->search_triangles = std::move(raw.search_triangles);
   data->notes = std::move(raw.notes);
   data->defaults_json = std::move(raw.defaults_json);
+  data->options = std::move(raw.options);
   return data;
 }
 

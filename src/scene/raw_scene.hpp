@@ -30,6 +30,7 @@ struct RawScene {
   double coarsest_input_spacing_m = 0;
   std::vector<std::string> notes;
   std::string defaults_json = "{}";
+  SceneOptions options = {};
 };
 
 // Drops triangles that no ray can meet soundly (not finite, absurdly far, without area, exact duplicates), takes off

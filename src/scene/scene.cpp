@@ -43,6 +43,7 @@ std::size_t Scene::triangle_count() const noexcept { return data_->triangles.siz
 bool Scene::has_search_area() const noexcept { return !data_->search_triangles.empty(); }
 std::span<const std::string> Scene::notes() const noexcept { return data_->notes; }
 const std::string& Scene::defaults_json() const noexcept { return data_->defaults_json; }
+const SceneOptions& Scene::options() const noexcept { return data_->options; }
 
 std::uint32_t SceneData::mesh_of(std::uint32_t triangle) const {
   const auto after = std::ranges::upper_bound(ranges, triangle, {}, &MeshRange::first_triangle);

@@ -55,6 +55,7 @@ struct SceneData {
   Box local_bounds;  // of positions used by triangles
   std::vector<std::string> notes;
   std::string defaults_json = "{}";
+  SceneOptions options = {};  // how the file was read
 
   std::uint32_t mesh_of(std::uint32_t triangle) const;  // by binary search over ranges
 };

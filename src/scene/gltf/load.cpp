@@ -75,7 +75,9 @@ std::uint32_t packed_colour(const double* rgba, int components) {
 class Loader {
  public:
   Loader(const std::filesystem::path& path, const SceneOptions& options)
-      : file_(path, options.allow_outside), options_(options), materials_(file_, raw_.notes) {}
+      : file_(path, options.allow_outside), options_(options), materials_(file_, raw_.notes) {
+    raw_.options = options;
+  }
 
   RawScene load() {
     const auto placed = flatten_scene(file_, options_, raw_.notes);

@@ -64,6 +64,22 @@ const std::vector<Change<Scanner>> kScanner{
     {"noise", [](Scanner& s) { s.noise = rtc360_noise(); }}};
 static_assert(member_count<Scanner>() == 11);
 
+// Of the file that is read; a scene's own fingerprint tells runs apart.
+const std::vector<Change<SceneOptions>> kScene{
+    {"surveyed", [](SceneOptions& o) { o.surveyed = {"wall*"}; }, false},
+    {"blocking", [](SceneOptions& o) { o.blocking = {"nothing"}; }, false},
+    {"search", [](SceneOptions& o) { o.search = {"floor"}; }, false},
+    {"ignore", [](SceneOptions& o) { o.ignore = {"nothing"}; }, false},
+    {"weights",
+     [](SceneOptions& o) {
+       o.weights = {{"wall*", 3}};
+     },
+     false},
+    {"scene_index", [](SceneOptions& o) { o.scene_index = 0; }, false},
+    {"default_diffuse", [](SceneOptions& o) { o.default_diffuse = 0.25; }, false},
+    {"allow_outside", [](SceneOptions& o) { o.allow_outside = true; }, false}};
+static_assert(member_count<SceneOptions>() == 8);
+
 const std::vector<Change<SimulatorConfig>> kSimulation{
     {"engine", [](SimulatorConfig& c) { c.engine = Engine::automatic; }, false},
     {"device_index", [](SimulatorConfig& c) { c.device_index = 0; }, false},
@@ -175,6 +191,22 @@ TEST(Settings, OfASearchAreaAllCount) { expect_all_count(kWalkable, &PlanRun::wa
 TEST(Settings, OfASecurityVolumeAllCount) { expect_all_count(kSecurity, &PlanRun::security); }
 TEST(Settings, OfAProblemAllCount) { expect_all_count(kProblem, &PlanRun::problem); }
 TEST(Settings, OfASearchAllCount) { expect_all_count(kPlan, &PlanRun::config); }
+
+TEST(Settings, OfASceneAllCount) {
+  ASSERT_EQ(kScene.size(), member_count<SceneOptions>());
+  const auto json_of = [](const SceneOptions& options) {
+    std::string text;
+    for (const Setting& setting : settings(options)) text += setting.name + setting.json;
+    return text;
+  };
+  for (const auto& change : kScene) {
+    SceneOptions options;
+    change.make(options);
+    EXPECT_NE(json_of(options), json_of({})) << change.member;
+  }
+  const Scene scene = Scene::load(VANTAGE_DATA_FOLDER "/four_walls.glb", {.default_diffuse = 0.25});
+  EXPECT_EQ(scene.options().default_diffuse, 0.25);
+}
 
 TEST(Settings, OfObjectivesAreTheirParameters) {
   PlanRun few, heavy;
