@@ -15,7 +15,7 @@ struct EvaluateCommandOptions {
   StationOptions stations;
   bool exact = false, skip = false, no_overlap = false;
   std::optional<SampleSize> sample;
-  std::optional<double> error;
+  std::optional<double> error, link_overlap;
   std::optional<std::string> cartography, matrix, picture;
   bool json = false;
 
@@ -44,6 +44,11 @@ struct EvaluateCommandOptions {
         ->group("Results");
     add_text(command, "--overlap-csv", "FILE", "Write the overlap matrix: .csv", matrix)->group("Results");
     add_text(command, "--picture", "FILE", "Draw the stations and their overlaps from above: .png or .svg", picture)
+        ->group("Results");
+    add_number(
+        command, "--link-overlap", "W",
+        fmt::format("Overlap from which on the picture links two stations, 0 to 1; {} otherwise", default_link_overlap),
+        link_overlap, {.low = 0, .high = 1})
         ->group("Results");
     command.add_flag("--json", json, "Print one JSON object");
   }
@@ -105,7 +110,8 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
     for (const auto& station : stations) placed.push_back(station.placed);
     draw_plan_view(*options.picture, site.scene, site.area(), placed, matrix,
                    fmt::format("{} station{}: coverage {:.3f}, overlap {:.3f}", placed.size(),
-                               placed.size() == 1 ? "" : "s", covered.value, overlapped.value));
+                               placed.size() == 1 ? "" : "s", covered.value, overlapped.value),
+                   options.link_overlap.value_or(default_link_overlap));
   }
 
   nlohmann::json rows = nlohmann::json::array();
