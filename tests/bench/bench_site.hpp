@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "trace/tracer.hpp"
+#include "vantage/objective.hpp"
 #include "vantage/scene.hpp"
 #include "vantage/simulator.hpp"
 

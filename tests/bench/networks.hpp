@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "vantage/objective.hpp"
 #include "vantage/placement.hpp"
 #include "vantage/scene.hpp"
 #include "vantage/simulator.hpp"
