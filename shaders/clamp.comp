@@ -4,11 +4,10 @@
 #extension GL_GOOGLE_include_directive : require
 #include "lib/references.glsl"
 
-layout(local_size_x = 128) in;
+layout(local_size_x = group_size) in;
 layout(push_constant, scalar) uniform Push { ClampPush push; };
 
 void main() {
-  // A row of groups is at most 32768 long; the rest lies in y.
-  const uint i = (gl_WorkGroupID.y * 32768u + gl_WorkGroupID.x) * 128u + gl_LocalInvocationIndex;
+  const uint i = thread_of_rows();
   if (i < push.voxel_count && push.counts.at[i] > count_limit) push.counts.at[i] = count_limit;
 }

@@ -4,12 +4,12 @@
 #extension GL_GOOGLE_include_directive : require
 #include "lib/parameters.glsl"
 #include "lib/pattern.glsl"
-#include "lib/shade.glsl"
+#include "lib/tiles.glsl"
 #include "lib/voxel.glsl"
-#include "trace/engine.glsl"
+#include "trace.glsl"
+#include "lib/point.glsl"
 
-layout(local_size_x = 128) in;  // block_columns × block_rows
-layout(constant_id = 0) const bool with_noise = false;
+layout(local_size_x = group_size) in;  // block_columns × block_rows
 layout(constant_id = 1) const bool with_masks = true;
 layout(constant_id = 2) const bool with_tiles = false;
 layout(push_constant, scalar) uniform Push { CountPush push; };
@@ -24,12 +24,11 @@ void main() {
     const uint k = gl_WorkGroupID.z * tile_groups_y + gl_WorkGroupID.y;
     alive = k < push.tile_list.at[0];
     const uint tile = alive ? push.tile_list.at[1u + k] : 0u;
-    const uint tiles_in_row = (parameters.columns + tile_side - 1u) / tile_side;
     const uint blocks_in_row = tile_side / block_columns;
-    row = (tile / tiles_in_row) * tile_side + (gl_WorkGroupID.x / blocks_in_row) * block_rows + in_block.y;
-    column = (tile % tiles_in_row) * tile_side + (gl_WorkGroupID.x % blocks_in_row) * block_columns + in_block.x;
+    row = first_row_of(tile) + (gl_WorkGroupID.x / blocks_in_row) * block_rows + in_block.y;
+    column = first_column_of(tile) + (gl_WorkGroupID.x % blocks_in_row) * block_columns + in_block.x;
     far = min(far, push.tile_far.at[tile]);
-    starts = Starts(uint64_t(push.starts), k * tile_starts);
+    starts = Starts(push.starts, k);
   } else {
     row = push.first_row + gl_WorkGroupID.y * block_rows + in_block.y;
     column = gl_WorkGroupID.x * block_columns + in_block.x;
@@ -42,14 +41,7 @@ void main() {
     const Hit hit = trace(push.origin, direction, parameters.min_range, far, want_nearest, starts);
     is_point = hit.id != no_primitive;
     if (is_point && (hit.id & surveyed_bit) != 0u) {
-      float t = hit.t;
-      if (with_noise) {
-        const uint triangle = hit.id & ~surveyed_bit;
-        const vec3 normal = oriented_normal(triangle, hit.barycentric, direction);
-        t = noisy_range(t, reflectivity_of(triangle, normal, direction),
-                        uint64_t(row) * parameters.columns + column, push.place);
-      }
-      const uint rank = rank_of(point_on_ray(push.origin, direction, t));
+      const uint rank = rank_of(point_of(hit, push.origin, direction, ray_number(row, column), push.place));
       if (rank != no_rank) {
         counted = true;
         atomicAdd(push.counts.at[rank], 1u);

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reduces counts and masks of all voxels to the sums that coverage (equation 8) and overlap (equation 11) are made of. Integers only, so
-// the order does not matter.
+// Reduces counts and masks of all voxels to the sums that coverage (equation 8) and overlap (equation 11) are made of.
+// Integers only, so the order does not matter.
 //
-// Masks of 256 voxels are turned into one bit string a station; pairs are then counted 32 voxels at a time.
+// Masks of reduce_voxels voxels are turned into one bit string a station; pairs are then counted 32 voxels at a time.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #include "lib/references.glsl"
 
-layout(local_size_x = 256) in;
+layout(local_size_x = reduce_voxels) in;
 layout(push_constant, scalar) uniform Push { ReducePush push; };
 
 const uint words = reduce_voxels / 32u;
@@ -57,12 +57,12 @@ void main() {
   const bool weighted = uint64_t(push.weights) != 0ul;
   uint saturated = 0u, edges = 0u;
   uint64_t partial = 0ul, squares = 0ul, edge_points = 0ul;
-  // Of pair thread + 256 k; 64 stations have 2016 pairs.
+  // Of pair thread + reduce_voxels · k; 64 stations have 2016 pairs.
   uint shared_counts[8];
   uint pair_stations[8];
   for (uint k = 0u; k < 8u; ++k) {
     shared_counts[k] = 0u;
-    const uint p = thread + 256u * k;
+    const uint p = thread + reduce_voxels * k;
     const uvec2 pair = p < pairs ? pair_of(p, n) : uvec2(0);
     pair_stations[k] = pair.x | pair.y << 8;
   }
@@ -85,7 +85,8 @@ void main() {
   uint some_of_all = 0u;
   for (uint g = 0u; g < gl_NumSubgroups; ++g) some_of_all |= any_seen[g];
 
-  [[dont_unroll]] for (uint round = 0u; round < reduce_rounds; ++round) {  // the same for all threads, so the barriers are met by all
+  // The same rounds for all threads, so the barriers are met by all.
+  [[dont_unroll]] for (uint round = 0u; round < reduce_rounds; ++round) {
     const uint voxel = group + push.groups * ((gl_WorkGroupID.x * reduce_rounds + round) * reduce_voxels + thread);
     const bool inside = voxel < push.voxel_count;
     const uint count = counts_of[round];
@@ -113,9 +114,10 @@ void main() {
     if (push.mask_words > 0u && (some_of_all >> round & 1u) != 0u) {
       barrier();
       low[thread + thread / 32u] = count > 0u ? push.masks.at[masks + voxel] : 0u;
-      high[thread + thread / 32u] = count > 0u && push.mask_words > 1u ? push.masks.at[masks + push.voxel_count + voxel] : 0u;
+      high[thread + thread / 32u] =
+          count > 0u && push.mask_words > 1u ? push.masks.at[masks + push.voxel_count + voxel] : 0u;
       barrier();
-      for (uint k = thread; k < n * words; k += 256u) {
+      for (uint k = thread; k < n * words; k += reduce_voxels) {
         const uint station = k / words, word = k % words;
         uint bits = 0u;
         for (uint v = 0u; v < 32u; ++v) {
@@ -128,7 +130,7 @@ void main() {
       if (thread < n)
         for (uint w = 0u; w < words; ++w) seen_count += bitCount(seen[thread * words + w]);
       uint k = 0u;
-      for (uint p = thread; p < pairs; p += 256u, ++k) {
+      for (uint p = thread; p < pairs; p += reduce_voxels, ++k) {
         const uvec2 pair = uvec2(pair_stations[k] & 0xFFu, pair_stations[k] >> 8);
         uint both = 0u;
         for (uint w = 0u; w < words; ++w) both += bitCount(seen[pair.x * words + w] & seen[pair.y * words + w]);
@@ -154,7 +156,7 @@ void main() {
   if (push.mask_words > 0u) {
     if (thread < n && seen_count > 0u) atomicAdd(push.totals.at[totals + totals_seen + thread], seen_count);
     uint k = 0u;
-    for (uint p = thread; p < pairs; p += 256u, ++k)
+    for (uint p = thread; p < pairs; p += reduce_voxels, ++k)
       if (shared_counts[k] > 0u) atomicAdd(push.totals.at[totals + totals_seen + n + p], shared_counts[k]);
   }
 }

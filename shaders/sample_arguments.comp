@@ -11,9 +11,10 @@ layout(constant_id = 0) const bool for_rays = false;
 void main() {
   const uint wanted = push.control.at[for_rays ? control_rays : control_items];
   // What does not fit is not begun: the host cuts the chunk and comes back.
-  const bool fits = push.control.at[control_rays] <= push.ray_capacity && push.control.at[control_items] <= push.item_capacity;
-  const uint groups = fits ? (wanted + 127u) / 128u : 0u;
-  push.control.at[control_dispatch] = min(groups, sample_groups_x);
-  push.control.at[control_dispatch + 1u] = (groups + sample_groups_x - 1u) / sample_groups_x;
+  const bool fits = push.control.at[control_rays] <= push.ray_capacity &&
+                    push.control.at[control_items] <= push.item_capacity;
+  const uint groups = fits ? (wanted + (group_size - 1u)) / group_size : 0u;
+  push.control.at[control_dispatch] = min(groups, groups_in_row);
+  push.control.at[control_dispatch + 1u] = (groups + groups_in_row - 1u) / groups_in_row;
   push.control.at[control_dispatch + 2u] = 1u;
 }

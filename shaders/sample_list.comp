@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lists the rays of the real pattern that may put a point into a sampled voxel. A thread a pair of slot and voxel; pairs with many rays are
-// queued in parts, and the same code with QUEUE defined works through the queue, a thread a part.
+// Lists the rays of the real pattern that may put a point into a sampled voxel. A thread a pair of slot and voxel;
+// pairs with many rays are queued in parts, and the same code with QUEUE defined works through the queue, a thread a
+// part.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/parameters.glsl"
 #include "lib/sample.glsl"
 #include "lib/sheared_triangle.glsl"
 
-layout(local_size_x = 128) in;
+layout(local_size_x = group_size) in;
 layout(push_constant, scalar) uniform Push { SamplePush push; };
 
-// Whether the ray passes near enough to the triangle that any engine might report a hit. The tolerance is 2^-16 of the largest coordinate,
-// tens of times the rounding of the engines' own tests.
+// Whether the ray passes near enough to the triangle that any engine might report a hit. The tolerance is 2^-16 of the
+// largest coordinate, tens of times the rounding of the engines' own tests.
 bool may_hit(Shear shear, vec3 origin, SampleTriangle triangle) {
   const ShearedTriangle t = sheared(shear, origin, triangle.a, triangle.b, triangle.c);
   const vec3 edges = edge_functions(t);
@@ -29,7 +30,8 @@ float reach_within(float t) {
   return parameters.noise_reaches.at[reach_column(t, parameters.noise_min_range, parameters.noise_inverse_span)];
 }
 
-// One past the triangles that a point in the cube may come from: noise is small near the station, and the lists are made for any distance.
+// One past the triangles that a point in the cube may come from: noise is small near the station, and the lists are
+// made for any distance.
 uint end_of_triangles(Cube cube, uint first_triangle, uint end_triangle) {
   const float farthest = length(max(abs(cube.low), abs(cube.high)));
   const float limit = reach_within(farthest + parameters.noise_reach) + 4.0 * cube.slack;
@@ -52,20 +54,22 @@ bool is_candidate(Cube cube, vec3 origin, uint row, uint column, uint first_tria
 
 void main() {
 #ifdef QUEUE
-  const uint k = (gl_WorkGroupID.y * sample_groups_x + gl_WorkGroupID.x) * 128u + gl_LocalInvocationIndex;
+  const uint k = thread_of_rows();
   const uint queued = push.control.at[control_items];
   const bool alive = queued <= push.item_capacity && k < queued;
   SampleItem item = SampleItem(push.first_voxel, push.first_slot, 0u);
   if (alive) item = push.items.at[k];
 #else
-  SampleItem item = SampleItem(push.first_voxel + gl_WorkGroupID.x * 128u + gl_LocalInvocationIndex, push.first_slot + gl_WorkGroupID.y, 0u);
+  SampleItem item = SampleItem(push.first_voxel + gl_WorkGroupID.x * group_size + gl_LocalInvocationIndex,
+                               push.first_slot + gl_WorkGroupID.y, 0u);
   const bool alive = item.voxel < push.end_voxel;
   if (!alive) item.voxel = push.first_voxel;
 #endif
   const SampleVoxel voxel = push.voxels.at[item.voxel];
   const vec3 origin = push.stations.at[item.slot].origin;
   const Cube cube = cube_of(voxel, origin);
-  const uint end_triangle = end_of_triangles(cube, voxel.first_triangle, push.voxels.at[item.voxel + 1u].first_triangle);
+  const uint end_triangle =
+      end_of_triangles(cube, voxel.first_triangle, push.voxels.at[item.voxel + 1u].first_triangle);
 
   uvec2 found = uvec2(0);  // a bit a ray
   RayWindow window;
@@ -85,7 +89,8 @@ void main() {
     if (count > int(sample_part)) {
       const uint parts = (uint(count) + sample_part - 1u) / sample_part;
       const uint at = atomicAdd(push.control.at[control_items], parts);
-      for (uint p = 0; p < parts && at + p < push.item_capacity; ++p) push.items.at[at + p] = SampleItem(item.voxel, item.slot, p);
+      for (uint p = 0; p < parts && at + p < push.item_capacity; ++p)
+        push.items.at[at + p] = SampleItem(item.voxel, item.slot, p);
       end = 0;
     }
 #endif

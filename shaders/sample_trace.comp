@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// Traces the listed rays up to the far side of their voxel's cube and counts the points that land in it: a thread a ray.
+// Traces the listed rays up to the far side of their voxel's cube and counts the points that land in it: a thread a
+// ray.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/parameters.glsl"
 #include "lib/sample.glsl"
-#include "lib/shade.glsl"
 #include "lib/voxel.glsl"
-#include "trace/engine.glsl"
+#include "trace.glsl"
+#include "lib/point.glsl"
 
-layout(local_size_x = 128) in;
-layout(constant_id = 0) const bool with_noise = false;
+layout(local_size_x = group_size) in;
 layout(constant_id = 1) const bool with_masks = true;
 layout(push_constant, scalar) uniform Push { SamplePush push; };
 
 void main() {
-  const uint k = (gl_WorkGroupID.y * sample_groups_x + gl_WorkGroupID.x) * 128u + gl_LocalInvocationIndex;
+  const uint k = thread_of_rows();
   const uint listed = push.control.at[control_rays];
   uint network = 0u;
   bool traced = false;
@@ -34,15 +34,9 @@ void main() {
       const Hit hit = trace(station.origin, direction, parameters.min_range,
                             min(parameters.max_range, range.y + reach), range.x - reach, from_the_root);
       if (hit.id != no_primitive && (hit.id & surveyed_bit) != 0u) {
-        float t = hit.t;
-        if (with_noise) {
-          const uint triangle = hit.id & ~surveyed_bit;
-          const vec3 normal = oriented_normal(triangle, hit.barycentric, direction);
-          t = noisy_range(t, reflectivity_of(triangle, normal, direction), uint64_t(job.ray),
-                          station.place);
-        }
+        const vec3 point = point_of(hit, station.origin, direction, uint64_t(job.ray), station.place);
         uvec3 cell;
-        if (cell_of(point_on_ray(station.origin, direction, t), cell) && cell == uvec3(voxel.x, voxel.y, voxel.z)) {
+        if (cell_of(point, cell) && cell == uvec3(voxel.x, voxel.y, voxel.z)) {
           atomicAdd(push.counts.at[entry], 1u);
           if (with_masks) {
             const uint word = (network * push.mask_words + (station.place >> 5)) * push.voxel_count + job.voxel;

@@ -4,12 +4,11 @@
 #extension GL_GOOGLE_include_directive : require
 #include "lib/parameters.glsl"
 #include "lib/pattern.glsl"
-#include "lib/shade.glsl"
 #include "lib/voxel.glsl"
-#include "trace/engine.glsl"
+#include "trace.glsl"
+#include "lib/point.glsl"
 
-layout(local_size_x = 128) in;  // block_columns × block_rows
-layout(constant_id = 0) const bool with_noise = false;
+layout(local_size_x = group_size) in;  // block_columns × block_rows
 layout(push_constant, scalar) uniform Push { ScanPush push; };
 
 void main() {
@@ -23,28 +22,21 @@ void main() {
   const Hit hit = trace(push.origin, direction, parameters.min_range,
                         parameters.max_range, want_nearest, from_the_root);
   const bool is_point = hit.id != no_primitive;
-  const uint triangle = hit.id & ~surveyed_bit;
   float t = uintBitsToFloat(0x7F800000u);
-  vec3 normal = vec3(0);
-  float reflectivity = 0.0;
+  Look look = Look(vec3(0), 0.0);
   uint rank = no_rank;
   vec3 position = vec3(uintBitsToFloat(0x7FC00000u));
   if (is_point) {
-    t = hit.t;
-    if (with_noise || GIVEN(push.normal) || GIVEN(push.reflectivity)) {
-      normal = oriented_normal(triangle, hit.barycentric, direction);
-      reflectivity = reflectivity_of(triangle, normal, direction);
-    }
-    if (with_noise)
-      t = noisy_range(t, reflectivity, uint64_t(row) * parameters.columns + column, push.place);
+    if (with_noise || GIVEN(push.normal) || GIVEN(push.reflectivity)) look = look_of(hit, direction);
+    t = range_of(hit, look, ray_number(row, column), push.place);
     position = point_on_ray(push.origin, direction, t);
     if (GIVEN(push.voxel) && (hit.id & surveyed_bit) != 0u) rank = rank_of(position);
   }
   if (GIVEN(push.range)) push.range.at[k] = t;
   if (GIVEN(push.position)) push.position.at[k] = position;
-  if (GIVEN(push.normal)) push.normal.at[k] = normal;
-  if (GIVEN(push.reflectivity)) push.reflectivity.at[k] = reflectivity;
-  if (GIVEN(push.primitive)) push.primitive.at[k] = is_point ? triangle : no_primitive;
+  if (GIVEN(push.normal)) push.normal.at[k] = look.normal;
+  if (GIVEN(push.reflectivity)) push.reflectivity.at[k] = look.reflectivity;
+  if (GIVEN(push.primitive)) push.primitive.at[k] = is_point ? hit.id & ~surveyed_bit : no_primitive;
   if (GIVEN(push.barycentric)) push.barycentric.at[k] = is_point ? hit.barycentric : vec2(0);
   if (GIVEN(push.voxel)) push.voxel.at[k] = rank;
 }

@@ -2,20 +2,18 @@
 // Lists the tiles of some rows that see a surveyed brick, and sizes the dispatch over them: a thread a tile.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "lib/parameters.glsl"
+#include "lib/tiles.glsl"
 
-layout(local_size_x = 128) in;
+layout(local_size_x = group_size) in;
 layout(push_constant, scalar) uniform Push { TilePush push; };
 
 void main() {
-  const uint tiles_in_row = (parameters.columns + tile_side - 1u) / tile_side;
-  const uint first = push.first_row / tile_side * tiles_in_row;
-  const uint count = (push.row_count + tile_side - 1u) / tile_side * tiles_in_row;
+  const uint first = push.first_row / tile_side * tiles_in_row();
+  const uint count = (push.row_count + tile_side - 1u) / tile_side * tiles_in_row();
   const uint i = gl_GlobalInvocationID.x;
   if (i >= count || push.tile_far.at[first + i] == 0u) return;
-  const uint row = (first + i) / tiles_in_row * tile_side, column = (first + i) % tiles_in_row * tile_side;
-  const uint rows = min(tile_side, push.first_row + push.row_count - row);
-  const uint columns = min(tile_side, parameters.columns - column);
+  const uint rows = min(tile_side, push.first_row + push.row_count - first_row_of(first + i));
+  const uint columns = min(tile_side, parameters.columns - first_column_of(first + i));
   add64(push.rays, 0u, rows * columns);
   const uint k = atomicAdd(push.tile_list.at[0], 1u);
   push.tile_list.at[1u + k] = first + i;

@@ -6,7 +6,8 @@
 const float pi = 3.14159265358979;
 const float angle_slack = 1e-5;  // bounds the error of angle_of, and of turning angles into rays, with room to spare
 
-// atan2 within 1e-6: atan(x) / x on [0, 1] as a polynomial of degree 9 in x², by interpolation at Chebyshev nodes (error below 1e-7).
+// atan2 within 1e-6: atan(x) / x on [0, 1] as a polynomial of degree 9 in x², by interpolation at Chebyshev nodes
+// (error below 1e-7).
 float angle_of(float y, float x) {
   const float ax = abs(x), ay = abs(y);
   const float larger = max(ax, ay);

@@ -11,13 +11,17 @@ vec3 ray_direction(uint row, uint column) {
   return d;
 }
 
+// A ray's number within its station's pattern.
+uint64_t ray_number(uint row, uint column) { return uint64_t(row) * parameters.columns + column; }
+
 vec3 point_on_ray(vec3 origin, vec3 direction, float t) {
   precise vec3 step = t * direction;
   precise vec3 p = origin + step;
   return p;
 }
 
-// Places the rays of a workgroup in a block of 16 × 8 so that 8 in sequence form 4 × 2, 32 form 8 × 4: a subgroup's rays stay together.
+// Places the rays of a workgroup in a block of 16 × 8 so that 8 in sequence form 4 × 2, 32 form 8 × 4: a subgroup's
+// rays stay together.
 uvec2 place_in_block(uint i) {
   const uint column = (i & 3u) | ((i >> 3) & 1u) << 2 | ((i >> 5) & 1u) << 3;
   const uint row = ((i >> 2) & 1u) | ((i >> 4) & 1u) << 1 | ((i >> 6) & 1u) << 2;

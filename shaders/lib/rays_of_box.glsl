@@ -5,7 +5,8 @@
 #include "lib/angles.glsl"
 #include "lib/parameters.glsl"
 
-// Rows [row0, row1] and up to two runs of columns: the second holds what lies beyond a full turn. Empty runs have end < begin.
+// Rows [row0, row1] and up to two runs of columns: the second holds what lies beyond a full turn. Empty runs have
+// end < begin.
 struct RayWindow {
   int row0, row1;
   int column0, column1;

@@ -17,9 +17,6 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Vec3s { vec3
 layout(buffer_reference, scalar, buffer_reference_align = 16) buffer Vec4s { vec4 at[]; };
 layout(buffer_reference) buffer BrickQuarters;
 layout(buffer_reference) buffer Slots;
-layout(buffer_reference) buffer NodeQuarters;
-layout(buffer_reference) buffer TriangleCorners;
-layout(buffer_reference) buffer TileStarts;
 layout(buffer_reference) buffer SampleVoxels;
 layout(buffer_reference) buffer SampleTriangles;
 layout(buffer_reference) buffer SampleStations;
@@ -30,9 +27,6 @@ layout(buffer_reference) buffer SampleItems;
 
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer BrickQuarters { uvec4 at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer Slots { BrickSlot at[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer NodeQuarters { uvec4 at[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer TriangleCorners { uvec4 at[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 8) buffer TileStarts { TileStart at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer SampleVoxels { SampleVoxel at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer SampleTriangles { SampleTriangle at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer SampleStations { SampleStation at[]; };
@@ -43,6 +37,11 @@ const uint brick_quarters = 5u;  // 16 bytes each, of a VoxelBrick
 
 // Whether an array is there at all; a macro, since glslang cannot overload on reference types.
 #define GIVEN(array) (uint64_t(array) != 0ul)
+
+// The number of this thread in a dispatch whose groups lie in rows of groups_in_row.
+uint thread_of_rows() {
+  return (gl_WorkGroupID.y * groups_in_row + gl_WorkGroupID.x) * group_size + gl_LocalInvocationIndex;
+}
 
 // Adds to a 64-bit sum kept as two words, low first. Commutes, so the sum does not depend on the order of the adders.
 void add64(Uints sums, uint low, uint value) {

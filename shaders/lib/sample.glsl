@@ -5,8 +5,8 @@
 #include "lib/pattern.glsl"
 #include "lib/rays_of_box.glsl"
 
-// The cube relative to the origin, widened by more than the rounding on the way from a hit to its cell, so that no ray that has a point in
-// the cell is missed.
+// The cube relative to the origin, widened by more than the rounding on the way from a hit to its cell, so that no ray
+// that has a point in the cell is missed.
 struct Cube {
   vec3 low, high;
   float slack;

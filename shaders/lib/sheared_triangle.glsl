@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a ray meets a triangle's plane, in coordinates sheared so that the ray is the z axis (Woop, Benthin, Wald: Watertight Ray/Triangle
-// Intersection, 2013). Only +, − and × are used, uncontracted, so all devices round alike.
+// Where a ray meets a triangle's plane, in coordinates sheared so that the ray is the z axis (Woop, Benthin, Wald:
+// Watertight Ray/Triangle Intersection, 2013). Only +, − and × are used, uncontracted, so all devices round alike.
 #ifndef VANTAGE_LIB_SHEARED_TRIANGLE
 #define VANTAGE_LIB_SHEARED_TRIANGLE
 #include "lib/exact.glsl"

@@ -9,6 +9,7 @@
 namespace vantage {
 // clang-format off
 using uint = std::uint32_t;
+using uint64_t = std::uint64_t;
 struct vec3 { float x, y, z; };
 struct uvec2 { uint x, y; };
 // clang-format on

@@ -19,6 +19,9 @@ VANTAGE_CONST uint surveyed_bit = 0x80000000u;  // of a scene triangle's number:
 VANTAGE_CONST uint no_primitive = 0xFFFFFFFFu;
 VANTAGE_CONST uint no_rank = 0xFFFFFFFFu;
 
+VANTAGE_CONST uint group_size = 128;       // threads of a workgroup, but where a kernel says otherwise
+VANTAGE_CONST uint groups_in_row = 32768;  // of a dispatch with many groups; the rest goes to y
+
 // A workgroup traces a block of neighbouring rays, a tile is a square of blocks.
 VANTAGE_CONST uint block_columns = 16;
 VANTAGE_CONST uint block_rows = 8;
@@ -26,40 +29,7 @@ VANTAGE_CONST uint tile_side = 32;
 VANTAGE_CONST uint blocks_per_tile = (tile_side / block_columns) * (tile_side / block_rows);
 VANTAGE_CONST uint tile_groups_y = 32768;  // tiles along y of an indirect dispatch; the rest goes to z
 
-// A binary BVH node: the boxes of both children, by centre and half size, which takes a ray fewer minima and maxima
-// than two corners do. A child is a node's index, or a leaf: bit 31, triangle count − 1 in bits 28–30, first triangle
-// in the rest.
-VANTAGE_CONST uint bvh_leaf_bit = 0x80000000u;
-VANTAGE_CONST uint bvh_leaf_count_shift = 28;
-VANTAGE_CONST uint bvh_leaf_first_mask = 0x0FFFFFFFu;
-VANTAGE_CONST uint bvh_stack_size = 64;
-struct BvhNode {
-  vec3 centre0;
-  uint child0;
-  vec3 half0;
-  uint child1;
-  vec3 centre1;
-  uint unused0;
-  vec3 half1;
-  uint unused1;
-};
-
-// A triangle in leaf order; id is the scene's number with the surveyed bit.
-struct BvhTriangle {
-  vec3 a;
-  uint id;
-  vec3 b;
-  uint unused0;
-  vec3 c;
-  uint unused1;
-};
-
-// A node at which the rays of a tile may start, and how near its box is: infinity where there is none.
-struct TileStart {
-  uint node;
-  float near;
-};
-VANTAGE_CONST uint tile_starts = 24;  // of every tile, nearest first
+VANTAGE_CONST uint traversal_arrays = 3;
 
 struct TraceParameters {
   VANTAGE_ADDRESS(Floats) sin_zenith;
@@ -68,10 +38,7 @@ struct TraceParameters {
   VANTAGE_ADDRESS(Floats) cos_azimuth;
   VANTAGE_ADDRESS(BrickQuarters) bricks;  // VoxelBrick, 16 bytes at a time
   VANTAGE_ADDRESS(Slots) slots;
-  // ray_query: triangle of the acceleration structure → scene's number with the surveyed bit.
-  VANTAGE_ADDRESS(Uints) primitive_ids;
-  VANTAGE_ADDRESS(NodeQuarters) nodes;  // compute_bvh: BvhNode and BvhTriangle, 16 bytes at a time
-  VANTAGE_ADDRESS(TriangleCorners) bvh_triangles;
+  uint64_t traversal[traversal_arrays];  // addresses of what the engine's own trace() reads; it knows what they are
   // For normals, reflectivity and noise only; 0 where the run needs none.
   VANTAGE_ADDRESS(Vec3s) positions;
   VANTAGE_ADDRESS(Vec3s) normals;    // 0: geometric normals
@@ -110,8 +77,8 @@ struct CountPush {
   VANTAGE_ADDRESS(Uints) masks;  // the 32-bit word that holds the station's bit, of every voxel
   VANTAGE_ADDRESS(Uints) station_counters;
   VANTAGE_ADDRESS(Floats) tile_far;
-  VANTAGE_ADDRESS(Uints) tile_list;    // number of tiles, then the tiles
-  VANTAGE_ADDRESS(TileStarts) starts;  // compute_bvh: tile_starts for each listed tile
+  VANTAGE_ADDRESS(Uints) tile_list;  // number of tiles, then the tiles
+  uint64_t starts;                   // what the engine's pass left for each listed tile; 0: it has none
   vec3 origin;
   uint place;
   uint first_row;
@@ -124,7 +91,7 @@ struct TilePush {
   VANTAGE_ADDRESS(Uints) tile_list;
   VANTAGE_ADDRESS(Uints) dispatch;  // three words: an indirect dispatch
   VANTAGE_ADDRESS(Uints) rays;      // rays of the listed tiles are added here, 64 bits
-  VANTAGE_ADDRESS(TileStarts) starts;
+  uint64_t starts;                  // room for what the engine's own pass leaves for each listed tile
   vec3 origin;
   uint first_row;
   uint row_count;
@@ -209,7 +176,6 @@ struct SampleItem {
   uint part;
 };
 VANTAGE_CONST uint sample_part = 64;
-VANTAGE_CONST uint sample_groups_x = 32768;  // of an indirect dispatch; the rest goes to y
 // Control words of one chunk.
 VANTAGE_CONST uint control_rays = 0;  // rays listed, or wanted: more than the capacity means that the chunk must be cut
 VANTAGE_CONST uint control_items = 1;

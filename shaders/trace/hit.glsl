@@ -4,15 +4,16 @@
 #define VANTAGE_TRACE_HIT
 #include "lib/parameters.glsl"
 
-// Hit trace(origin, direction, t_min, t_max, enough, starts): the nearest hit in [t_min, t_max]. An engine may return any hit nearer than
-// `enough` where the caller only wants to know that there is one.
+// Hit trace(origin, direction, t_min, t_max, enough, starts): the nearest hit in [t_min, t_max], to be defined by the
+// engine's own trace.glsl. An engine may return any hit nearer than `enough` where the caller only wants to know that
+// there is one.
 const float want_nearest = -1.0;
 
-// Where the traversal may start: nodes that hold all that the ray can hit, `first` on of the TileStarts at this address. Engines that know
-// no nodes pass them over.
+// What the engine's pass over tiles left at the address `list`, an entry a tile, and the ray's tile among them. Engines
+// that have no such pass look at neither.
 struct Starts {
   uint64_t list;
-  uint first;
+  uint tile;
 };
 const Starts from_the_root = Starts(0ul, 0u);
 

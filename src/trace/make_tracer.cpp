@@ -1,19 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 // The only file that names every engine.
 #include <algorithm>
+#include <iterator>
 #include <string>
 #include <utility>
 
 #include "trace/embree/embree_tracer.hpp"
 #include "trace/tracer.hpp"
+#include "trace/vulkan/compute_bvh/compute_bvh.hpp"
+#include "trace/vulkan/ray_query/ray_query.hpp"
 #include "trace/vulkan/vulkan_engines.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage {
 namespace {
 
-// What `automatic` stands for: a hardware GPU by ray query where it has that, else by our own BVH; else the CPU. Of the
-// engines on one device, where that was named, the first usable one.
+// The engines that run on Vulkan; where a device has several, `automatic` takes the first.
+constexpr const vulkan::VulkanEngine* vulkan_engines[] = {
+    &vulkan::ray_query_engine,
+    &vulkan::compute_bvh_engine,
+};
+
+// What `automatic` stands for: the first Vulkan engine that a hardware GPU has, which is ray queries where it has
+// those, else our own BVH; else the CPU. Of the engines on one device, where that was named, the first usable one.
 std::size_t default_engine(const std::vector<EngineInfo>& engines,
                            std::optional<std::uint32_t> device_index = std::nullopt) {
   if (device_index) {
@@ -22,9 +31,9 @@ std::size_t default_engine(const std::vector<EngineInfo>& engines,
     });
     if (on_device != engines.end()) return static_cast<std::size_t>(on_device - engines.begin());
   }
-  for (const Engine wanted : {Engine::ray_query, Engine::compute_bvh})
+  for (const vulkan::VulkanEngine* wanted : vulkan_engines)
     for (std::size_t k = 0; k < engines.size(); ++k)
-      if (engines[k].engine == wanted && engines[k].usable && !engines[k].software) return k;
+      if (engines[k].engine == wanted->engine && engines[k].usable && !engines[k].software) return k;
   const auto embree =
       std::find_if(engines.begin(), engines.end(), [](const EngineInfo& e) { return e.engine == Engine::embree; });
   return static_cast<std::size_t>(embree - engines.begin());
@@ -33,7 +42,7 @@ std::size_t default_engine(const std::vector<EngineInfo>& engines,
 }  // namespace
 
 std::vector<EngineInfo> list_engines() {
-  std::vector<EngineInfo> engines = list_vulkan_engines();
+  std::vector<EngineInfo> engines = list_vulkan_engines(vulkan_engines);
   engines.push_back(embree_engine_info());
   EngineInfo& chosen = engines[default_engine(engines)];
   chosen.chosen_by_default = true;
@@ -59,7 +68,11 @@ std::unique_ptr<Tracer> make_tracer(Engine engine, std::optional<std::uint32_t> 
                   "there is no device " + std::to_string(*device_index) + " for embree, which has only device 0");
     return make_embree_tracer(scene);
   }
-  return make_vulkan_tracer(engine, device_index, scene);
+  const auto chosen = std::find_if(std::begin(vulkan_engines), std::end(vulkan_engines),
+                                   [&](const vulkan::VulkanEngine* each) { return each->engine == engine; });
+  if (chosen == std::end(vulkan_engines))
+    throw Error(Errc::invalid_argument, "there is no engine number " + std::to_string(static_cast<int>(engine)));
+  return make_vulkan_tracer(**chosen, device_index, scene);
 }
 
 }  // namespace vantage

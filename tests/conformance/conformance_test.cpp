@@ -13,11 +13,11 @@
 #include <stop_token>
 #include <tuple>
 
+#include "conformance/engines_under_test.hpp"
 #include "conformance/sites.hpp"
 #include "core/normal_table.hpp"
 #include "core/philox.hpp"
 #include "scan/noise_model.hpp"
-#include "support/engines.hpp"
 #include "support/expect_counts.hpp"
 #include "support/reference_counts.hpp"
 
@@ -36,17 +36,17 @@ float bits_apart(float a, float b) {
   return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b) ? 0.0f : 1.0f;
 }
 
-class Conformance : public testing::TestWithParam<EngineInfo> {
+class Conformance : public testing::TestWithParam<EngineUnderTest> {
  protected:
   static std::unique_ptr<Tracer> make(const TestSite& site, bool noisy, std::uint64_t max_rays = 0) {
     TraceScene scene = site.trace_scene(noisy);
     scene.max_rays_per_dispatch = max_rays;
-    auto tracer = make_tracer(GetParam().engine, GetParam().device_index, scene);
+    auto tracer = GetParam().make(scene);
     tracer->set_goal_density(goal_density);
     return tracer;
   }
 
-  using Tracers = std::map<std::tuple<Engine, std::uint32_t, std::string, bool>, std::unique_ptr<Tracer>>;
+  using Tracers = std::map<std::tuple<std::string, std::string, bool>, std::unique_ptr<Tracer>>;
   static Tracers& tracers() {
     static Tracers made;
     return made;
@@ -55,7 +55,7 @@ class Conformance : public testing::TestWithParam<EngineInfo> {
 
   // Kept from test to test: building an engine costs more than most tests.
   static Tracer& tracer(const TestSite& site, bool noisy) {
-    auto& kept = tracers()[{GetParam().engine, GetParam().device_index, site.name, noisy}];
+    auto& kept = tracers()[{GetParam().name, site.name, noisy}];
     if (!kept) kept = make(site, noisy);
     return *kept;
   }
@@ -524,18 +524,31 @@ TEST_P(Conformance, EverySampledVoxelIsCountedAsTheExactEvaluationDoes) {
   }
 }
 
+// Many scanners in one place: what the first saturate, the rest need not look at.
 TEST_P(Conformance, SamplesStopAtTheGoalOnlyWhereAsked) {
   const TestSite& site = sites()[2];
   std::vector<std::uint32_t> sample;
   for (std::uint32_t rank = 0; rank < site.grid->size(); rank += 7) sample.push_back(rank);
-  const std::vector<std::vector<TraceStation>> networks{site.stations};
-  const std::vector<std::uint32_t> sizes{4};
-  const Tracer::SampleJob whole{sample, 20, false, 0}, stopping{sample, 20, false, 13};
-  const NetworkCounts a = tracer(site, true).count_sampled(networks, sizes, whole, {})[0];
-  const NetworkCounts b = tracer(site, true).count_sampled(networks, sizes, stopping, {})[0];
-  expect_equal_samples(b, a);
-  EXPECT_TRUE(a.seen.empty());
-  EXPECT_GT(a.saturated, 0u);
+  std::vector<std::vector<TraceStation>> networks(1);
+  for (std::uint32_t place = 0; place < 32; ++place) networks[0].push_back({site.stations[0].origin, place});
+  const std::vector<std::uint32_t> sizes{32};
+  // Dispatches so short that the scanners come one after the other on any device.
+  const auto tracer = make(site, true, 5000);
+  const auto count = [&](bool masks, std::uint32_t stop_at) {
+    const Tracer::SampleJob job{sample, 20, masks, stop_at};
+    return tracer->count_sampled(networks, sizes, job, {})[0];
+  };
+  const auto goal = static_cast<std::uint32_t>(std::ceil(goal_density));
+  const NetworkCounts whole = count(false, 0), stopping = count(false, goal);
+  expect_equal_samples(stopping, whole);
+  EXPECT_TRUE(whole.seen.empty());
+  EXPECT_GT(whole.saturated, 0u);
+  EXPECT_LT(static_cast<double>(stopping.rays), 0.8 * static_cast<double>(whole.rays))
+      << "rays were traced for voxels that need no more";
+  // Who sees a voxel is not known before every station was asked.
+  const NetworkCounts masks = count(true, goal);
+  EXPECT_EQ(masks.rays, whole.rays);
+  EXPECT_EQ(masks.seen, count(true, 0).seen);
 }
 
 TEST_P(Conformance, SamplesDoNotDependOnOrderOrDispatches) {
@@ -557,18 +570,48 @@ TEST_P(Conformance, SamplesDoNotDependOnOrderOrDispatches) {
 
   std::vector<std::vector<TraceStation>> reversed(networks.rbegin(), networks.rend());
   std::vector<std::uint32_t> reversed_sizes(sizes.rbegin(), sizes.rend());
-  const auto small = make(site, true, 5000);
-  const auto backwards = small->count_sampled(reversed, reversed_sizes, job, {});
+  for (const std::uint64_t max_rays : {1, 5000}) {
+    const auto backwards = make(site, true, max_rays)->count_sampled(reversed, reversed_sizes, job, {});
+    for (std::size_t n = 0; n < networks.size(); ++n) {
+      SCOPED_TRACE("network " + std::to_string(n) + ", " + std::to_string(max_rays) + " rays");
+      expect_equal_samples(backwards[networks.size() - 1 - n], all[n]);
+      EXPECT_EQ(backwards[networks.size() - 1 - n].rays, all[n].rays);
+    }
+  }
   for (std::size_t n = 0; n < networks.size(); ++n) {
-    SCOPED_TRACE("network " + std::to_string(n));
-    expect_equal_samples(backwards[networks.size() - 1 - n], all[n]);
+    SCOPED_TRACE("network " + std::to_string(n) + " alone");
     const auto alone = tracer(site, true).count_sampled({&networks[n], 1}, {&sizes[n], 1}, job, {});
     expect_equal_samples(alone[0], all[n]);
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Engines, Conformance, testing::ValuesIn(usable_engines()),
-                         [](const auto& instance) { return name_of(instance.param); });
+// Seen by the reports: a device tells of every submission, and the first has one dispatch of rays where these are
+// limited.
+TEST_P(Conformance, SamplesKeepToTheLimitOfADispatch) {
+  const TestSite& site = sites()[2];
+  std::vector<std::uint32_t> sample;
+  for (std::uint32_t rank = 3; rank < site.grid->size(); rank += 31) sample.push_back(rank);
+  const std::vector<std::vector<TraceStation>> networks{site.stations};
+  const std::vector<std::uint32_t> sizes{4};
+  const auto first_report = [&](std::uint64_t max_rays) {
+    double first = 0;
+    const Progress progress{[&](double done) {
+                              if (first == 0) first = done;
+                            },
+                            {}};
+    make(site, false, max_rays)->count_sampled(networks, sizes, {sample, 20, true, 0}, progress);
+    return first;
+  };
+  const double limited = first_report(2000), unlimited = first_report(0);
+  EXPECT_GT(unlimited, 0);
+  EXPECT_LE(limited, unlimited);
+  if (tracer(site, false).info().engine != Engine::embree) {  // which has no dispatches
+    EXPECT_LT(limited, 0.5 * unlimited);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Engines, Conformance, testing::ValuesIn(engines_under_test()),
+                         [](const auto& instance) { return instance.param.name; });
 
 // The machine.
 

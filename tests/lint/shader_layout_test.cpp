@@ -36,7 +36,7 @@ struct Shader {
 
 std::vector<Shader> all_shaders() {
   return {
-#define SHADER(symbol) {#symbol, {shaders::symbol, shaders::symbol##_size / 4}},
+#define SHADER(symbol) {#symbol, shaders::symbol},
 #include "shader_symbols.inc"
 #undef SHADER
   };

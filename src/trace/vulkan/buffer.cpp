@@ -15,12 +15,12 @@ Buffer::Buffer(const Device& device, VkDeviceSize size, Where where, const char*
   info.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT |
                VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT | extra;
   VkBuffer buffer = VK_NULL_HANDLE;
-  check(vkCreateBuffer(device.handle(), &info, nullptr, &buffer), name);
-  buffer_ = UniqueBuffer(device.handle(), buffer);
+  check(device.vk().vkCreateBuffer(device.handle(), &info, nullptr, &buffer), name);
+  buffer_ = UniqueBuffer(device, buffer);
   device.name(VK_OBJECT_TYPE_BUFFER, reinterpret_cast<std::uint64_t>(buffer), name);
 
   VkMemoryRequirements requirements{};
-  vkGetBufferMemoryRequirements(device.handle(), buffer, &requirements);
+  device.vk().vkGetBufferMemoryRequirements(device.handle(), buffer, &requirements);
   constexpr VkMemoryPropertyFlags visible = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
   VkMemoryPropertyFlags wanted = visible;
   if (where == Where::device) wanted = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
@@ -36,13 +36,14 @@ Buffer::Buffer(const Device& device, VkDeviceSize size, Where where, const char*
   allocate.allocationSize = requirements.size;
   allocate.memoryTypeIndex = device.memory_type(requirements.memoryTypeBits, wanted);
   VkDeviceMemory memory = VK_NULL_HANDLE;
-  check(vkAllocateMemory(device.handle(), &allocate, nullptr, &memory), name);
-  memory_ = UniqueMemory(device.handle(), memory);
-  check(vkBindBufferMemory(device.handle(), buffer, memory, 0), name);
-  if (where != Where::device) check(vkMapMemory(device.handle(), memory, 0, VK_WHOLE_SIZE, 0, &mapped_), name);
+  check(device.vk().vkAllocateMemory(device.handle(), &allocate, nullptr, &memory), name);
+  memory_ = UniqueMemory(device, memory);
+  check(device.vk().vkBindBufferMemory(device.handle(), buffer, memory, 0), name);
+  if (where != Where::device)
+    check(device.vk().vkMapMemory(device.handle(), memory, 0, VK_WHOLE_SIZE, 0, &mapped_), name);
 
   VkBufferDeviceAddressInfo address{VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO, nullptr, buffer};
-  address_ = vkGetBufferDeviceAddress(device.handle(), &address);
+  address_ = device.vk().vkGetBufferDeviceAddress(device.handle(), &address);
 }
 
 }  // namespace vantage::vulkan

@@ -11,92 +11,66 @@ namespace {
 
 constexpr VkDeviceSize staging_bytes = VkDeviceSize{32} << 20;
 
-void barrier(VkCommandBuffer commands, VkPipelineStageFlags from_stage, VkAccessFlags from,
-             VkPipelineStageFlags to_stage, VkAccessFlags to) {
-  VkMemoryBarrier memory{VK_STRUCTURE_TYPE_MEMORY_BARRIER, nullptr, from, to};
-  vkCmdPipelineBarrier(commands, from_stage, to_stage, 0, 1, &memory, 0, nullptr, 0, nullptr);
-}
-
 }  // namespace
 
-void record_update(VkCommandBuffer commands, const Buffer& to, const void* data, VkDeviceSize bytes) {
-  constexpr VkDeviceSize most = 65536;  // of one command
-  for (VkDeviceSize done = 0; done < bytes; done += most)
-    vkCmdUpdateBuffer(commands, to.handle(), done, std::min(most, bytes - done),
-                      static_cast<const std::byte*>(data) + done);
-}
-
-void shader_after_transfer(VkCommandBuffer commands) {
-  barrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
-          VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT,
-          VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_INDIRECT_COMMAND_READ_BIT);
-}
-
-void shader_after_shader(VkCommandBuffer commands) {
-  barrier(commands, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
-          VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT,
-          VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_INDIRECT_COMMAND_READ_BIT |
-              VK_ACCESS_TRANSFER_READ_BIT | VK_ACCESS_TRANSFER_WRITE_BIT);
-}
-
 Commands::Commands(Device& device) : device_(device) {
+  const VolkDeviceTable& vk = device.vk();
   VkCommandPoolCreateInfo pool_info{};
   pool_info.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
   pool_info.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
   pool_info.queueFamilyIndex = device.abilities().queue_family;
   VkCommandPool pool = VK_NULL_HANDLE;
-  check(vkCreateCommandPool(device.handle(), &pool_info, nullptr, &pool), "vkCreateCommandPool");
-  pool_ = UniqueCommandPool(device.handle(), pool);
+  check(vk.vkCreateCommandPool(device.handle(), &pool_info, nullptr, &pool), "vkCreateCommandPool");
+  pool_ = UniqueCommandPool(device, pool);
   VkCommandBufferAllocateInfo allocate{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO, nullptr, pool,
                                        VK_COMMAND_BUFFER_LEVEL_PRIMARY, 1};
-  check(vkAllocateCommandBuffers(device.handle(), &allocate, &commands_), "vkAllocateCommandBuffers");
+  check(vk.vkAllocateCommandBuffers(device.handle(), &allocate, &commands_), "vkAllocateCommandBuffers");
   VkFenceCreateInfo fence_info{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO, nullptr, 0};
   VkFence fence = VK_NULL_HANDLE;
-  check(vkCreateFence(device.handle(), &fence_info, nullptr, &fence), "vkCreateFence");
-  fence_ = UniqueFence(device.handle(), fence);
+  check(vk.vkCreateFence(device.handle(), &fence_info, nullptr, &fence), "vkCreateFence");
+  fence_ = UniqueFence(device, fence);
   VkQueryPoolCreateInfo queries{};
   queries.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
   queries.queryType = VK_QUERY_TYPE_TIMESTAMP;
   queries.queryCount = 2;
   VkQueryPool query_pool = VK_NULL_HANDLE;
-  check(vkCreateQueryPool(device.handle(), &queries, nullptr, &query_pool), "vkCreateQueryPool");
-  timestamps_ = UniqueQueryPool(device.handle(), query_pool);
+  check(vk.vkCreateQueryPool(device.handle(), &queries, nullptr, &query_pool), "vkCreateQueryPool");
+  timestamps_ = UniqueQueryPool(device, query_pool);
 }
 
-double Commands::run(const std::function<void(VkCommandBuffer)>& record) {
+double Commands::run(const Record& record) {
+  const VolkDeviceTable& vk = device_.vk();
   VkCommandBufferBeginInfo begin{};
   begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
   begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
-  check(vkBeginCommandBuffer(commands_, &begin), "vkBeginCommandBuffer");
-  vkCmdResetQueryPool(commands_, timestamps_.get(), 0, 2);
-  vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, timestamps_.get(), 0);
-  record(commands_);
+  check(vk.vkBeginCommandBuffer(commands_, &begin), "vkBeginCommandBuffer");
+  vk.vkCmdResetQueryPool(commands_, timestamps_.get(), 0, 2);
+  vk.vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, timestamps_.get(), 0);
+  const Recorder recorder(vk, commands_);
+  record(recorder);
   // What was written must be visible to a host that reads mapped memory, and to the next submission.
-  barrier(commands_, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_WRITE_BIT,
-          VK_PIPELINE_STAGE_HOST_BIT | VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
-          VK_ACCESS_HOST_READ_BIT | VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT);
-  vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, timestamps_.get(), 1);
-  check(vkEndCommandBuffer(commands_), "vkEndCommandBuffer");
+  recorder.anyone_after_anyone();
+  vk.vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, timestamps_.get(), 1);
+  check(vk.vkEndCommandBuffer(commands_), "vkEndCommandBuffer");
 
   VkSubmitInfo submit{};
   submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
   submit.commandBufferCount = 1;
   submit.pCommandBuffers = &commands_;
-  check(vkQueueSubmit(device_.queue(), 1, &submit, fence_.get()), "vkQueueSubmit");
+  check(vk.vkQueueSubmit(device_.queue(), 1, &submit, fence_.get()), "vkQueueSubmit");
   const VkFence fence = fence_.get();
-  check(vkWaitForFences(device_.handle(), 1, &fence, VK_TRUE, UINT64_MAX), "vkWaitForFences");
-  check(vkResetFences(device_.handle(), 1, &fence), "vkResetFences");
+  check(vk.vkWaitForFences(device_.handle(), 1, &fence, VK_TRUE, UINT64_MAX), "vkWaitForFences");
+  check(vk.vkResetFences(device_.handle(), 1, &fence), "vkResetFences");
   device_.instance().check_validation();
 
   std::array<std::uint64_t, 2> ticks{};
-  check(vkGetQueryPoolResults(device_.handle(), timestamps_.get(), 0, 2, sizeof ticks, ticks.data(), sizeof ticks[0],
-                              VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
+  check(vk.vkGetQueryPoolResults(device_.handle(), timestamps_.get(), 0, 2, sizeof ticks, ticks.data(), sizeof ticks[0],
+                                 VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
         "vkGetQueryPoolResults");
   return static_cast<double>(ticks[1] - ticks[0]) * device_.timestamp_period_ns() * 1e-9;
 }
 
-double Commands::run_and_download(const std::function<void(VkCommandBuffer)>& record,
-                                  std::span<const Download> wanted) {
+double Commands::run_and_download(const Record& record, std::span<const Download> wanted) {
   VkDeviceSize bytes = 0;
   for (const Download& d : wanted) bytes += d.bytes;
   if (bytes > staging_bytes) {
@@ -106,13 +80,12 @@ double Commands::run_and_download(const std::function<void(VkCommandBuffer)>& re
   }
   if (!staging_down_ || staging_down_.size() < bytes)
     staging_down_ = Buffer(device_, bytes, Buffer::Where::download, "staging down");
-  const double seconds = run([&](VkCommandBuffer c) {
-    record(c);
-    shader_after_shader(c);
+  const double seconds = run([&](const Recorder& r) {
+    record(r);
+    r.shader_after_shader();
     VkDeviceSize at = 0;
     for (const Download& d : wanted) {
-      const VkBufferCopy region{0, at, d.bytes};
-      vkCmdCopyBuffer(c, d.from.handle(), staging_down_.handle(), 1, &region);
+      r.copy(d.from, staging_down_, {0, at, d.bytes});
       at += d.bytes;
     }
   });
@@ -132,10 +105,7 @@ void Commands::upload(const Buffer& to, const void* data, VkDeviceSize bytes) {
   for (VkDeviceSize done = 0; done < bytes; done += staging_up_.size()) {
     const VkDeviceSize part = std::min(staging_up_.size(), bytes - done);
     std::memcpy(staging_up_.mapped<void>(), static_cast<const std::byte*>(data) + done, part);
-    run([&](VkCommandBuffer c) {
-      const VkBufferCopy region{0, done, part};
-      vkCmdCopyBuffer(c, staging_up_.handle(), to.handle(), 1, &region);
-    });
+    run([&](const Recorder& r) { r.copy(staging_up_, to, {0, done, part}); });
   }
 }
 
@@ -146,10 +116,7 @@ void Commands::download(const Buffer& from, void* data, VkDeviceSize bytes, VkDe
     staging_down_ = Buffer(device_, wanted, Buffer::Where::download, "staging down");
   for (VkDeviceSize done = 0; done < bytes; done += staging_down_.size()) {
     const VkDeviceSize part = std::min(staging_down_.size(), bytes - done);
-    run([&](VkCommandBuffer c) {
-      const VkBufferCopy region{offset + done, 0, part};
-      vkCmdCopyBuffer(c, from.handle(), staging_down_.handle(), 1, &region);
-    });
+    run([&](const Recorder& r) { r.copy(from, staging_down_, {offset + done, 0, part}); });
     std::memcpy(static_cast<std::byte*>(data) + done, staging_down_.mapped<void>(), part);
   }
 }

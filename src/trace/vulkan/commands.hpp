@@ -9,6 +9,7 @@
 
 #include "trace/vulkan/buffer.hpp"
 #include "trace/vulkan/device.hpp"
+#include "trace/vulkan/recorder.hpp"
 #include "trace/vulkan/unique.hpp"
 
 namespace vantage::vulkan {
@@ -17,9 +18,10 @@ class Commands {
  public:
   explicit Commands(Device& device);
 
-  // Records what `record` does to the command buffer, submits it and waits. Returns the seconds that the device spent
+  // Records what `record` does, submits it and waits. Returns the seconds that the device spent
   // on it. Throws Error device_failure, also for what the validation layer found.
-  double run(const std::function<void(VkCommandBuffer)>& record);
+  using Record = std::function<void(const Recorder&)>;
+  double run(const Record& record);
 
   // The same, with buffers read back in the same submission, as `record` left them.
   struct Download {
@@ -27,7 +29,7 @@ class Commands {
     void* to;
     VkDeviceSize bytes;
   };
-  double run_and_download(const std::function<void(VkCommandBuffer)>& record, std::span<const Download> wanted);
+  double run_and_download(const Record& record, std::span<const Download> wanted);
 
   // Copies host memory into a device buffer, and back, through mapped buffers of bounded size.
   void upload(const Buffer& to, const void* data, VkDeviceSize bytes);
@@ -41,13 +43,6 @@ class Commands {
   VkCommandBuffer commands_ = VK_NULL_HANDLE;
   Buffer staging_up_, staging_down_;
 };
-
-// Records that `data` is written to the front of the buffer; for small arrays, whose bytes travel with the commands.
-void record_update(VkCommandBuffer, const Buffer& to, const void* data, VkDeviceSize bytes);
-
-// The two barriers that our work needs.
-void shader_after_transfer(VkCommandBuffer);  // shaders (and indirect dispatches) see earlier fills and copies
-void shader_after_shader(VkCommandBuffer);    // shaders, indirect dispatches and copies see what earlier shaders wrote
 
 // A device buffer holding `values`.
 template <class T>

@@ -1,203 +1,227 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
-#include <string>
 
+#include "trace/vulkan/count_plan.hpp"
 #include "trace/vulkan/vulkan_tracer.hpp"
 
 namespace vantage::vulkan {
 namespace {
 
-constexpr double seconds_per_submission = 0.25;
-constexpr std::uint32_t stations_per_submission = 16, parts_per_submission = 256;
-constexpr std::uint32_t dispatch_words = 3;  // of an indirect dispatch
+constexpr std::uint32_t most_stations = 64;
+constexpr VkDeviceSize word = sizeof(std::uint32_t), dispatch_bytes = 3 * word;  // of an indirect dispatch
 
 }  // namespace
 
-NetworkCounts VulkanTracer::count(std::span<const TraceStation> stations, std::uint32_t station_count,
-                                  const CountOptions& options, const Progress& progress) {
-  const auto voxels = static_cast<std::uint32_t>(scene_.grid->size());
-  const std::uint32_t columns = scene_.pattern->columns(), rows = scene_.pattern->rows();
-  const std::uint32_t mask_words = options.masks ? (station_count > 32 ? 2 : 1) : 0;
-  ensure(counts_, voxels * sizeof(std::uint32_t), "counts");
-  if (mask_words) ensure(masks_, std::uint64_t{voxels} * mask_words * sizeof(std::uint32_t), "station masks");
-  ensure(station_counters_, 64 * 4 * sizeof(std::uint32_t), "station counters");
-  const std::uint32_t tiles_in_row = groups_of(columns, tile_side), tiles = tiles_in_row * groups_of(rows, tile_side);
-  const std::uint64_t list_words = std::uint64_t{tiles} * stations_per_submission + parts_per_submission;
-  const bool with_starts = info_.engine == Engine::compute_bvh;
-  if (options.skip) {
-    ensure(tile_far_, std::uint64_t{tiles} * stations_per_submission * sizeof(std::uint32_t), "tile far");
-    ensure(tile_list_, list_words * sizeof(std::uint32_t), "tile list");
-    ensure(tile_dispatch_, parts_per_submission * dispatch_words * sizeof(std::uint32_t), "tile dispatch",
-           VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
-    ensure(tile_rays_, 2 * sizeof(std::uint32_t), "tile rays");
-    if (with_starts) ensure(tile_starts_, list_words * tile_starts * sizeof(TileStart), "tile starts");
-  }
-  const std::array<std::uint32_t, 1> station_counts{station_count};
-  const std::uint32_t stride = totals_seen + station_count + station_count * (station_count - 1) / 2;
-  ensure_totals(1, 1, stride);
-  Reduction reduction{counts_.address(), mask_words ? masks_.address() : 0, voxels, 1, mask_words, false};
-  if (weights_) {
-    reduction.weights = weights_.address();
-    reduction.weight = {scene_.grid->total_weight()};
+// With skipping, each submission first finds which tiles of directions see a surveyed brick (tiles), lists them for
+// each part (tile_list), lets the engine prepare for them (its tile pass), and then counts over the lists alone.
+class VulkanTracer::ExactCount {
+ public:
+  ExactCount(VulkanTracer& tracer, std::span<const TraceStation> stations, std::uint32_t station_count,
+             const CountOptions& options)
+      : t_(tracer),
+        stations_(stations),
+        station_counts_{station_count},
+        options_(options),
+        voxels_(static_cast<std::uint32_t>(tracer.scene_.grid->size())),
+        mask_words_(options.masks ? (station_count > 32 ? 2 : 1) : 0),
+        stride_(totals_seen + station_count + station_count * (station_count - 1) / 2),
+        plan_(static_cast<std::uint32_t>(stations.size()), tracer.scene_.pattern->rows(),
+              tracer.scene_.pattern->columns(), tracer.rows_per_dispatch()),
+        tile_pass_(options.skip ? tracer.traversal_->tile_pass() : std::nullopt),
+        totals_(stride_) {}
+
+  NetworkCounts run(const Progress& progress) {
+    ensure_buffers();
+    NetworkCounts result;
+    double done_rays = 0;
+    for (bool first = true, last = false; !last; first = false) {
+      result.cancelled = progress.stopped();
+      const std::vector<CountPart> parts =
+          result.cancelled ? std::vector<CountPart>() : plan_.next(t_.exact_pace_.rays());
+      last = result.cancelled || plan_.finished();
+      const auto rays = static_cast<double>(plan_.rays_of(parts));
+      const double seconds = submit(parts, first, last);
+      t_.exact_pace_.saw(rays, seconds);
+      result.trace_seconds += seconds;
+      done_rays += rays;
+      if (!result.cancelled) progress(done_rays / static_cast<double>(plan_.all_rays()));
+    }
+    t_.read_totals({&result, 1}, station_counts_, totals_, reduction(), stride_);
+    read_counters(result);
+    if (options_.field) read_field(*options_.field);
+    return result;
   }
 
-  struct Part {  // rows of a station
-    std::uint32_t station, first_row, row_count, slot;
-    std::uint64_t list;  // its list of tiles within tile_list_, in words
-  };
-  const auto tile_push = [&](const Part& part, std::size_t k) {
+ private:
+  void ensure_buffers() {
+    t_.ensure(t_.counts_, voxels_ * word, "counts");
+    if (mask_words_) t_.ensure(t_.masks_, masks_bytes(), "station masks");
+    t_.ensure(t_.station_counters_, sizeof counters_, "station counters");
+    t_.ensure_totals(1, 1, stride_);
+    if (!options_.skip) return;
+    t_.ensure(t_.tile_far_, std::uint64_t{plan_.tiles()} * CountPlan::stations_per_submission * word, "tile far");
+    t_.ensure(t_.tile_list_, plan_.list_words() * word, "tile list");
+    t_.ensure(t_.tile_dispatch_, CountPlan::parts_per_submission * dispatch_bytes, "tile dispatch",
+              VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
+    t_.ensure(t_.tile_rays_, sizeof tile_rays_, "tile rays");
+    if (tile_pass_) t_.ensure(t_.tile_starts_, plan_.list_words() * tile_pass_->bytes_per_tile, "tile starts");
+  }
+
+  // Submits the parts and waits; the first submission clears the sums, the last brings them back.
+  double submit(std::span<const CountPart> parts, bool first, bool last) {
+    const auto record = [&](const Recorder& r) {
+      if (first) record_start(r);
+      if (options_.skip) record_tile_start(r);
+      r.shader_after_transfer();
+      if (options_.skip) record_tiles(r, parts);
+      for (std::size_t k = 0; k < parts.size(); ++k) record_part(r, parts[k], k);
+      if (!last) return;
+      r.shader_after_shader();
+      t_.record_reduction(r, reduction(), 0, 1, stride_);
+    };
+    std::vector<Commands::Download> wanted;
+    if (last) {
+      wanted.push_back({t_.totals_, totals_.data(), totals_.size() * word});
+      wanted.push_back({t_.station_counters_, counters_.data(), sizeof counters_});
+      if (options_.skip) wanted.push_back({t_.tile_rays_, &tile_rays_, sizeof tile_rays_});
+    }
+    return t_.commands_.run_and_download(record, wanted);
+  }
+
+  void record_start(const Recorder& r) {
+    r.zero(t_.counts_, 0, voxels_ * word);
+    if (mask_words_) r.zero(t_.masks_, 0, masks_bytes());
+    r.zero(t_.station_counters_);
+    if (options_.skip) r.zero(t_.tile_rays_);
+    t_.record_totals_start(r, station_counts_);
+  }
+
+  void record_tile_start(const Recorder& r) {
+    r.zero(t_.tile_far_);
+    r.zero(t_.tile_list_);
+    r.zero(t_.tile_dispatch_);
+  }
+
+  void record_tiles(const Recorder& r, std::span<const CountPart> parts) {
+    const ComputePipeline& tiles = t_.kernels_.get(Kernel::tiles);
+    for (std::size_t k = 0; k < parts.size(); ++k)
+      if (k == 0 || parts[k].slot != parts[k - 1].slot)  // once a station
+        r.dispatch(tiles, tile_push(parts[k], k), groups_of(t_.scene_.grid->bricks().size()));
+    r.shader_after_shader();
+    const auto for_each_list = [&](const ComputePipeline& pipeline) {
+      for (std::size_t k = 0; k < parts.size(); ++k)
+        r.dispatch(pipeline, tile_push(parts[k], k), groups_of(plan_.tiles_of(parts[k])));
+      r.shader_after_shader();
+    };
+    for_each_list(t_.kernels_.get(Kernel::tile_list));
+    if (tile_pass_) for_each_list(t_.kernels_.get(Kernel::tile_pass));
+  }
+
+  // Counts are sums, so the parts of a submission need not wait for each other.
+  void record_part(const Recorder& r, const CountPart& part, std::size_t k) {
+    if (headroom_.clamp_before(plan_.rays_of({&part, 1}))) record_clamp(r);
+    const ComputePipeline& pipeline = t_.kernels_.get(Kernel::count, {t_.noise(), options_.masks, options_.skip});
+    const CountPush push = count_push(part, k);
+    if (options_.skip) {
+      r.dispatch_indirect(pipeline, push, t_.tile_dispatch_, k * dispatch_bytes);
+    } else {
+      r.dispatch(pipeline, push, groups_of(t_.scene_.pattern->columns(), block_columns),
+                 groups_of(part.row_count, block_rows));
+    }
+  }
+
+  void record_clamp(const Recorder& r) {
+    const std::uint32_t groups = groups_of(voxels_);
+    r.shader_after_shader();
+    r.dispatch(t_.kernels_.get(Kernel::clamp), ClampPush{t_.counts_.address(), voxels_, 0},
+               std::min(groups, groups_in_row), groups_of(groups, groups_in_row));
+    r.shader_after_shader();
+  }
+
+  // `k`: the part's number in its submission.
+  TilePush tile_push(const CountPart& part, std::size_t k) const {
     TilePush push{};
-    push.tile_far = tile_far_.address() + std::uint64_t{part.slot} * tiles * sizeof(std::uint32_t);
-    push.tile_list = tile_list_.address() + part.list * sizeof(std::uint32_t);
-    push.dispatch = tile_dispatch_.address() + k * dispatch_words * sizeof(std::uint32_t);
-    push.rays = tile_rays_.address();
-    if (with_starts) push.starts = tile_starts_.address() + part.list * tile_starts * sizeof(TileStart);
-    const Float3& origin = stations[part.station].origin;
+    push.tile_far = t_.tile_far_.address() + std::uint64_t{part.slot} * plan_.tiles() * word;
+    push.tile_list = t_.tile_list_.address() + part.list * word;
+    push.dispatch = t_.tile_dispatch_.address() + k * dispatch_bytes;
+    push.rays = t_.tile_rays_.address();
+    if (tile_pass_) push.starts = t_.tile_starts_.address() + part.list * tile_pass_->bytes_per_tile;
+    const Float3& origin = stations_[part.station].origin;
     push.origin = {origin.x, origin.y, origin.z};
     push.first_row = part.first_row;
     push.row_count = part.row_count;
     return push;
-  };
-  std::uint64_t since_clamp = 0;
-  const auto record_parts = [&](VkCommandBuffer c, std::span<const Part> parts) {
-    if (options.skip) {
-      vkCmdFillBuffer(c, tile_far_.handle(), 0, VK_WHOLE_SIZE, 0);
-      vkCmdFillBuffer(c, tile_list_.handle(), 0, VK_WHOLE_SIZE, 0);
-      vkCmdFillBuffer(c, tile_dispatch_.handle(), 0, VK_WHOLE_SIZE, 0);
-    }
-    shader_after_transfer(c);
-    if (options.skip) {
-      for (std::size_t k = 0; k < parts.size(); ++k)
-        if (k == 0 || parts[k].slot != parts[k - 1].slot)
-          kernels_.get(Kernel::tiles).dispatch(c, tile_push(parts[k], k), groups_of(scene_.grid->bricks().size()));
-      shader_after_shader(c);
-      for (std::size_t k = 0; k < parts.size(); ++k)
-        kernels_.get(Kernel::tile_list)
-            .dispatch(c, tile_push(parts[k], k),
-                      groups_of(std::uint64_t{groups_of(parts[k].row_count, tile_side)} * tiles_in_row));
-      shader_after_shader(c);
-      for (std::size_t k = 0; with_starts && k < parts.size(); ++k)
-        kernels_.get(Kernel::tile_starts)
-            .dispatch(c, tile_push(parts[k], k),
-                      groups_of(std::uint64_t{groups_of(parts[k].row_count, tile_side)} * tiles_in_row));
-      if (with_starts) shader_after_shader(c);
-    }
-    // Counts are sums, so the parts need not wait for each other.
-    const ComputePipeline& pipeline = kernels_.get(Kernel::count, {noise(), options.masks, options.skip});
-    for (std::size_t k = 0; k < parts.size(); ++k) {
-      const Part& part = parts[k];
-      const TraceStation& station = stations[part.station];
-      const std::uint64_t rays = std::uint64_t{part.row_count} * columns;
-      if (since_clamp + rays > count_limit - 1) {
-        shader_after_shader(c);
-        const std::uint32_t groups = groups_of(voxels);
-        kernels_.get(Kernel::clamp)
-            .dispatch(c, ClampPush{counts_.address(), voxels, 0}, std::min(groups, 32768u), groups_of(groups, 32768u));
-        shader_after_shader(c);
-        since_clamp = 0;
-      }
-      since_clamp += rays;
-      CountPush push{};
-      push.counts = counts_.address();
-      push.masks =
-          mask_words ? masks_.address() + std::uint64_t{station.place / 32} * voxels * sizeof(std::uint32_t) : 0;
-      push.station_counters = station_counters_.address();
-      push.origin = {station.origin.x, station.origin.y, station.origin.z};
-      push.place = station.place;
-      push.first_row = part.first_row;
-      push.row_count = part.row_count;
-      if (!options.skip) {
-        pipeline.dispatch(c, push, groups_of(columns, block_columns), groups_of(push.row_count, block_rows));
-        continue;
-      }
+  }
+
+  CountPush count_push(const CountPart& part, std::size_t k) const {
+    const TraceStation& station = stations_[part.station];
+    CountPush push{};
+    push.counts = t_.counts_.address();
+    push.masks = mask_words_ ? t_.masks_.address() + std::uint64_t{station.place / 32} * voxels_ * word : 0;
+    push.station_counters = t_.station_counters_.address();
+    push.origin = {station.origin.x, station.origin.y, station.origin.z};
+    push.place = station.place;
+    push.first_row = part.first_row;
+    push.row_count = part.row_count;
+    if (options_.skip) {
       const TilePush tile = tile_push(part, k);
       push.tile_far = tile.tile_far;
       push.tile_list = tile.tile_list;
       push.starts = tile.starts;
-      pipeline.bind(c, &push);
-      vkCmdDispatchIndirect(c, tile_dispatch_.handle(), k * dispatch_words * sizeof(std::uint32_t));
     }
-  };
+    return push;
+  }
 
-  NetworkCounts result;
-  std::array<std::uint64_t, 64 * 2> counters{};
-  std::uint64_t tile_rays = 0;
-  std::vector<std::uint32_t> totals(stride);
-  std::vector<Commands::Download> wanted{{totals_, totals.data(), stride * sizeof(std::uint32_t)},
-                                         {station_counters_, counters.data(), sizeof counters}};
-  if (options.skip) wanted.push_back({tile_rays_, &tile_rays, sizeof tile_rays});
-
-  // As much work a submission as reports and stops in time.
-  const std::uint64_t all_rays = std::uint64_t{rows} * columns * stations.size();
-  std::uint64_t done_rays = 0;
-  std::uint32_t station = 0, row = 0;
-  for (bool first = true, last = false; !last; first = false) {
-    std::vector<Part> parts;
-    std::uint64_t rays = 0, list = 0;
-    std::uint32_t slots = 0;
-    result.cancelled = progress.stopped();
-    while (!result.cancelled && station < stations.size() && rays < rays_per_submission_ &&
-           parts.size() < parts_per_submission) {
-      const bool same_station = !parts.empty() && parts.back().station == station;
-      if (!same_station && slots == stations_per_submission) break;
-      if (!same_station) ++slots;
-      const std::uint32_t row_count = std::min(rows_per_dispatch(), rows - row);
-      parts.push_back({station, row, row_count, slots - 1, list});
-      list += 1 + std::uint64_t{groups_of(row_count, tile_side)} * tiles_in_row;
-      rays += std::uint64_t{row_count} * columns;
-      row += row_count;
-      if (row == rows) {
-        row = 0;
-        ++station;
-      }
+  Reduction reduction() const {
+    Reduction reduction{t_.counts_.address(), mask_words_ ? t_.masks_.address() : 0, voxels_, 1, mask_words_, false};
+    if (t_.weights_) {
+      reduction.weights = t_.weights_.address();
+      reduction.weight = {t_.scene_.grid->total_weight()};
     }
-    last = result.cancelled || station == stations.size();
-    const auto record = [&](VkCommandBuffer c) {
-      if (first) {
-        vkCmdFillBuffer(c, counts_.handle(), 0, voxels * sizeof(std::uint32_t), 0);
-        if (mask_words)
-          vkCmdFillBuffer(c, masks_.handle(), 0, std::uint64_t{voxels} * mask_words * sizeof(std::uint32_t), 0);
-        vkCmdFillBuffer(c, station_counters_.handle(), 0, VK_WHOLE_SIZE, 0);
-        if (options.skip) vkCmdFillBuffer(c, tile_rays_.handle(), 0, VK_WHOLE_SIZE, 0);
-        record_totals_start(c, station_counts);
-      }
-      record_parts(c, parts);
-      if (!last) return;
-      shader_after_shader(c);
-      record_reduction(c, reduction, 0, 1, stride);
-    };
-    const double seconds = commands_.run_and_download(
-        record, last ? std::span<const Commands::Download>(wanted) : std::span<const Commands::Download>());
-    result.trace_seconds += seconds;
-    done_rays += rays;
-    if (rays >= rays_per_dispatch() && seconds > 0)
-      rays_per_submission_ =
-          static_cast<std::uint64_t>(std::clamp(static_cast<double>(rays) / seconds * seconds_per_submission,
-                                                static_cast<double>(rays_per_dispatch()), 1e12));
-    if (!result.cancelled) progress(static_cast<double>(done_rays) / static_cast<double>(all_rays));
+    return reduction;
   }
-  read_totals({&result, 1}, station_counts, totals, reduction, stride);
 
-  result.points_on_surveyed.assign(station_count, 0);
-  if (!options.skip) result.points.assign(station_count, 0);
-  for (const TraceStation& each : stations) {
-    if (!options.skip) result.points[each.place] = counters[2 * each.place];
-    result.points_on_surveyed[each.place] = counters[2 * each.place + 1];
+  void read_counters(NetworkCounts& result) const {
+    result.points_on_surveyed.assign(station_counts_[0], 0);
+    if (!options_.skip) result.points.assign(station_counts_[0], 0);
+    for (const TraceStation& each : stations_) {
+      if (!options_.skip) result.points[each.place] = counters_[2 * each.place];
+      result.points_on_surveyed[each.place] = counters_[2 * each.place + 1];
+    }
+    result.rays = options_.skip ? tile_rays_ : plan_.all_rays();
   }
-  result.rays = options.skip ? tile_rays : all_rays;
-  if (options.field) {
-    options.field->count.resize(voxels);
-    commands_.download(counts_, options.field->count.data(), voxels * sizeof(std::uint32_t));
-    options.field->stations.assign(options.masks ? voxels : 0, 0);
-    std::vector<std::uint32_t> word(voxels);
-    for (std::uint32_t w = 0; w < mask_words; ++w) {
-      commands_.download(masks_, word.data(), voxels * sizeof(std::uint32_t),
-                         std::uint64_t{w} * voxels * sizeof(std::uint32_t));
-      for (std::uint32_t v = 0; v < voxels; ++v) options.field->stations[v] |= std::uint64_t{word[v]} << (32 * w);
+
+  void read_field(VoxelField& field) {
+    field.count.resize(voxels_);
+    t_.commands_.download(t_.counts_, field.count.data(), voxels_ * word);
+    field.stations.assign(options_.masks ? voxels_ : 0, 0);
+    std::vector<std::uint32_t> bits(voxels_);
+    for (std::uint32_t w = 0; w < mask_words_; ++w) {
+      t_.commands_.download(t_.masks_, bits.data(), voxels_ * word, std::uint64_t{w} * voxels_ * word);
+      for (std::uint32_t v = 0; v < voxels_; ++v) field.stations[v] |= std::uint64_t{bits[v]} << (32 * w);
     }
   }
-  return result;
+
+  VkDeviceSize masks_bytes() const { return std::uint64_t{voxels_} * mask_words_ * word; }
+
+  VulkanTracer& t_;
+  std::span<const TraceStation> stations_;
+  std::array<std::uint32_t, 1> station_counts_;
+  CountOptions options_;
+  std::uint32_t voxels_, mask_words_, stride_;
+  CountPlan plan_;
+  CountHeadroom headroom_;
+  std::optional<Traversal::TilePass> tile_pass_;
+  // As they come back from the device.
+  std::vector<std::uint32_t> totals_;
+  std::array<std::uint64_t, 2 * most_stations> counters_{};  // points, and points that count, of every place
+  std::uint64_t tile_rays_ = 0;
+};
+
+NetworkCounts VulkanTracer::count(std::span<const TraceStation> stations, std::uint32_t station_count,
+                                  const CountOptions& options, const Progress& progress) {
+  return ExactCount(*this, stations, station_count, options).run(progress);
 }
 
 }  // namespace vantage::vulkan

@@ -10,39 +10,26 @@
 namespace vantage::vulkan {
 namespace {
 
-struct Shader {
+struct Source {
   const char* name;
-  const std::uint32_t* words;
-  std::size_t bytes;
+  Shader shader;
   std::uint32_t push_bytes;
   std::uint32_t constants;  // how many specialization constants it has
 };
 
-Shader shader_of(Kernel kernel, Engine engine) {
-  const bool query = engine == Engine::ray_query;
+Source source_of(Kernel kernel, const Traversal& traversal) {
   switch (kernel) {
-    case Kernel::count:
-      return {"count", query ? shaders::count_ray_query : shaders::count_compute_bvh,
-              query ? shaders::count_ray_query_size : shaders::count_compute_bvh_size, sizeof(CountPush), 3};
-    case Kernel::scan:
-      return {"scan", query ? shaders::scan_ray_query : shaders::scan_compute_bvh,
-              query ? shaders::scan_ray_query_size : shaders::scan_compute_bvh_size, sizeof(ScanPush), 1};
-    case Kernel::sample_trace:
-      return {"sample trace", query ? shaders::sample_trace_ray_query : shaders::sample_trace_compute_bvh,
-              query ? shaders::sample_trace_ray_query_size : shaders::sample_trace_compute_bvh_size, sizeof(SamplePush),
-              2};
-    case Kernel::tiles: return {"tiles", shaders::tiles, shaders::tiles_size, sizeof(TilePush), 0};
-    case Kernel::tile_list: return {"tile list", shaders::tile_list, shaders::tile_list_size, sizeof(TilePush), 0};
-    case Kernel::tile_starts:
-      return {"tile starts", shaders::tile_starts, shaders::tile_starts_size, sizeof(TilePush), 0};
-    case Kernel::clamp: return {"clamp", shaders::clamp, shaders::clamp_size, sizeof(ClampPush), 0};
-    case Kernel::reduce: return {"reduce", shaders::reduce, shaders::reduce_size, sizeof(ReducePush), 0};
-    case Kernel::sample_list:
-      return {"sample list", shaders::sample_list, shaders::sample_list_size, sizeof(SamplePush), 0};
-    case Kernel::sample_queue:
-      return {"sample queue", shaders::sample_queue, shaders::sample_queue_size, sizeof(SamplePush), 0};
-    case Kernel::sample_arguments:
-      return {"sample arguments", shaders::sample_arguments, shaders::sample_arguments_size, sizeof(SamplePush), 1};
+    case Kernel::count: return {"count", traversal.shaders().count, sizeof(CountPush), 3};
+    case Kernel::scan: return {"scan", traversal.shaders().scan, sizeof(ScanPush), 1};
+    case Kernel::sample_trace: return {"sample trace", traversal.shaders().sample_trace, sizeof(SamplePush), 2};
+    case Kernel::tile_pass: return {"tile pass", traversal.tile_pass().value().shader, sizeof(TilePush), 0};
+    case Kernel::tiles: return {"tiles", shaders::tiles, sizeof(TilePush), 0};
+    case Kernel::tile_list: return {"tile list", shaders::tile_list, sizeof(TilePush), 0};
+    case Kernel::clamp: return {"clamp", shaders::clamp, sizeof(ClampPush), 0};
+    case Kernel::reduce: return {"reduce", shaders::reduce, sizeof(ReducePush), 0};
+    case Kernel::sample_list: return {"sample list", shaders::sample_list, sizeof(SamplePush), 0};
+    case Kernel::sample_queue: return {"sample queue", shaders::sample_queue, sizeof(SamplePush), 0};
+    case Kernel::sample_arguments: return {"sample arguments", shaders::sample_arguments, sizeof(SamplePush), 1};
   }
   assert(false);
   return {};
@@ -53,10 +40,10 @@ Shader shader_of(Kernel kernel, Engine engine) {
 const ComputePipeline& Kernels::get(Kernel kernel, std::array<bool, 3> constants) {
   ComputePipeline& pipeline = pipelines_[{kernel, constants}];
   if (!pipeline) {
-    const Shader shader = shader_of(kernel, engine_);
+    const Source source = source_of(kernel, traversal_);
     std::vector<ComputePipeline::Constant> values;
-    for (std::uint32_t k = 0; k < shader.constants; ++k) values.push_back({k, constants[k]});
-    pipeline = ComputePipeline(device_, shader.words, shader.bytes, shader.push_bytes, values, set_, shader.name);
+    for (std::uint32_t k = 0; k < source.constants; ++k) values.push_back({k, constants[k]});
+    pipeline = ComputePipeline(device_, source.shader, source.push_bytes, values, set_, source.name);
   }
   return pipeline;
 }

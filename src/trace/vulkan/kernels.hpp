@@ -5,10 +5,11 @@
 
 #include <array>
 #include <map>
-#include <optional>
+#include <utility>
 
 #include "trace/vulkan/device.hpp"
 #include "trace/vulkan/pipeline.hpp"
+#include "trace/vulkan/traversal.hpp"
 
 namespace vantage::vulkan {
 
@@ -17,7 +18,7 @@ enum class Kernel {
   scan,
   tiles,
   tile_list,
-  tile_starts,
+  tile_pass,
   clamp,
   reduce,
   sample_list,
@@ -28,14 +29,17 @@ enum class Kernel {
 
 class Kernels {
  public:
-  Kernels(const Device& device, Engine engine, const TraceSet& set) : device_(device), engine_(engine), set_(set) {}
+  // All arguments must outlive it.
+  Kernels(const Device& device, const Traversal& traversal, const TraceSet& set)
+      : device_(device), traversal_(traversal), set_(set) {}
 
-  // `constants` are the kernel's specialization constants, in the order of their constant_id.
+  // `constants` are the kernel's specialization constants, in the order of their constant_id. REQUIRES: for tile_pass,
+  // an engine that has one.
   const ComputePipeline& get(Kernel kernel, std::array<bool, 3> constants = {});
 
  private:
   const Device& device_;
-  Engine engine_;
+  const Traversal& traversal_;
   const TraceSet& set_;
   std::map<std::pair<Kernel, std::array<bool, 3>>, ComputePipeline> pipelines_;
 };

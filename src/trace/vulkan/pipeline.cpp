@@ -8,17 +8,17 @@
 
 namespace vantage::vulkan {
 
-ComputePipeline::ComputePipeline(const Device& device, const std::uint32_t* words, std::size_t size_in_bytes,
-                                 std::uint32_t push_bytes, std::span<const Constant> constants, const TraceSet& set,
-                                 const char* name)
+ComputePipeline::ComputePipeline(const Device& device, Shader shader, std::uint32_t push_bytes,
+                                 std::span<const Constant> constants, const TraceSet& set, const char* name)
     : push_bytes_(push_bytes), set_(set.handle()) {
   VkShaderModuleCreateInfo module_info{};
   module_info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
-  module_info.codeSize = size_in_bytes;
-  module_info.pCode = words;
+  module_info.codeSize = shader.size_bytes();
+  module_info.pCode = shader.data();
+  const VolkDeviceTable& vk = device.vk();
   VkShaderModule module = VK_NULL_HANDLE;
-  check(vkCreateShaderModule(device.handle(), &module_info, nullptr, &module), name);
-  const UniqueShaderModule owned(device.handle(), module);
+  check(vk.vkCreateShaderModule(device.handle(), &module_info, nullptr, &module), name);
+  const UniqueShaderModule owned(device, module);
 
   const VkPushConstantRange range{VK_SHADER_STAGE_COMPUTE_BIT, 0, push_bytes};
   VkPipelineLayoutCreateInfo layout_info{};
@@ -29,8 +29,8 @@ ComputePipeline::ComputePipeline(const Device& device, const std::uint32_t* word
   layout_info.pushConstantRangeCount = 1;
   layout_info.pPushConstantRanges = &range;
   VkPipelineLayout layout = VK_NULL_HANDLE;
-  check(vkCreatePipelineLayout(device.handle(), &layout_info, nullptr, &layout), name);
-  layout_ = UniquePipelineLayout(device.handle(), layout);
+  check(vk.vkCreatePipelineLayout(device.handle(), &layout_info, nullptr, &layout), name);
+  layout_ = UniquePipelineLayout(device, layout);
 
   std::vector<VkSpecializationMapEntry> entries;
   for (std::uint32_t k = 0; k < constants.size(); ++k)
@@ -47,15 +47,15 @@ ComputePipeline::ComputePipeline(const Device& device, const std::uint32_t* word
   info.stage.pSpecializationInfo = &specialization;
   info.layout = layout;
   VkPipeline pipeline = VK_NULL_HANDLE;
-  check(vkCreateComputePipelines(device.handle(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline), name);
-  pipeline_ = UniquePipeline(device.handle(), pipeline);
+  check(vk.vkCreateComputePipelines(device.handle(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline), name);
+  pipeline_ = UniquePipeline(device, pipeline);
   device.name(VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<std::uint64_t>(pipeline), name);
 }
 
-void ComputePipeline::bind(VkCommandBuffer commands, const void* push) const {
-  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline_.get());
-  vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout_.get(), 0, 1, &set_, 0, nullptr);
-  vkCmdPushConstants(commands, layout_.get(), VK_SHADER_STAGE_COMPUTE_BIT, 0, push_bytes_, push);
+void ComputePipeline::bind(const VolkDeviceTable& vk, VkCommandBuffer commands, const void* push) const {
+  vk.vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline_.get());
+  vk.vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout_.get(), 0, 1, &set_, 0, nullptr);
+  vk.vkCmdPushConstants(commands, layout_.get(), VK_SHADER_STAGE_COMPUTE_BIT, 0, push_bytes_, push);
 }
 
 }  // namespace vantage::vulkan

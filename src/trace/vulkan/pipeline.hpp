@@ -12,23 +12,18 @@
 
 namespace vantage::vulkan {
 
+using Shader = std::span<const std::uint32_t>;  // SPIR-V
+
 class ComputePipeline {
  public:
   ComputePipeline() = default;
   struct Constant {
     std::uint32_t id, value;
   };
-  ComputePipeline(const Device& device, const std::uint32_t* words, std::size_t size_in_bytes, std::uint32_t push_bytes,
-                  std::span<const Constant> constants, const TraceSet& set, const char* name);
+  ComputePipeline(const Device& device, Shader shader, std::uint32_t push_bytes, std::span<const Constant> constants,
+                  const TraceSet& set, const char* name);
 
-  void bind(VkCommandBuffer commands, const void* push) const;
-  template <class Push>
-  void dispatch(VkCommandBuffer commands, const Push& push, std::uint32_t x, std::uint32_t y = 1,
-                std::uint32_t z = 1) const {
-    static_assert(std::is_trivially_copyable_v<Push> && sizeof(Push) <= 128);  // 128 bytes is what every device has
-    bind(commands, &push);
-    vkCmdDispatch(commands, x, y, z);
-  }
+  void bind(const VolkDeviceTable& vk, VkCommandBuffer commands, const void* push) const;
   explicit operator bool() const { return static_cast<bool>(pipeline_); }
 
  private:

@@ -11,56 +11,57 @@ void VulkanTracer::ensure_totals(std::size_t networks, std::uint32_t groups, std
   ensure(station_counts_, networks * sizeof(std::uint32_t), "station counts");
 }
 
-void VulkanTracer::record_totals_start(VkCommandBuffer c, std::span<const std::uint32_t> station_counts) {
-  record_update(c, station_counts_, station_counts.data(), station_counts.size_bytes());
-  vkCmdFillBuffer(c, totals_.handle(), 0, VK_WHOLE_SIZE, 0);
+void VulkanTracer::record_totals_start(const Recorder& r, std::span<const std::uint32_t> station_counts) {
+  r.update(station_counts_, station_counts.data(), station_counts.size_bytes());
+  r.zero(totals_);
 }
 
-void VulkanTracer::record_reduction(VkCommandBuffer c, const Reduction& r, std::uint32_t first_network,
+void VulkanTracer::record_reduction(const Recorder& r, const Reduction& reduction, std::uint32_t first_network,
                                     std::uint32_t networks, std::uint32_t stride) {
   ReducePush push{};
-  push.counts = r.counts;
-  push.masks = r.masks;
+  push.counts = reduction.counts;
+  push.masks = reduction.masks;
   push.totals = totals_.address();
   push.station_counts = station_counts_.address();
-  push.weights = r.weights;
-  push.voxel_count = r.voxels;
+  push.weights = reduction.weights;
+  push.voxel_count = reduction.voxels;
   push.goal = goal_points();
-  push.difference_shift = difference_shift(r.voxels);
-  push.mask_words = r.mask_words;
-  push.groups = r.groups;
+  push.difference_shift = difference_shift(reduction.voxels);
+  push.mask_words = reduction.mask_words;
+  push.groups = reduction.groups;
   push.totals_stride = stride;
   push.first_network = first_network;
-  push.with_differences = r.differences ? 1 : 0;
-  const std::uint32_t in_group = groups_of(r.voxels, r.groups);
-  kernels_.get(Kernel::reduce)
-      .dispatch(c, push, groups_of(in_group, reduce_voxels * reduce_rounds), r.groups, networks);
+  push.with_differences = reduction.differences ? 1 : 0;
+  const std::uint32_t in_group = groups_of(reduction.voxels, reduction.groups);
+  r.dispatch(kernels_.get(Kernel::reduce), push, groups_of(in_group, reduce_voxels * reduce_rounds), reduction.groups,
+             networks);
 }
 
 void VulkanTracer::read_totals(std::span<NetworkCounts> counts, std::span<const std::uint32_t> station_counts,
-                               std::span<const std::uint32_t> totals, const Reduction& r, std::uint32_t stride) const {
+                               std::span<const std::uint32_t> totals, const Reduction& reduction,
+                               std::uint32_t stride) const {
   for (std::size_t n = 0; n < counts.size(); ++n) {
     NetworkCounts& sum = counts[n];
     const std::uint32_t stations = station_counts[n], pairs = stations * (stations - 1) / 2;
-    sum.voxels = r.voxels;
+    sum.voxels = reduction.voxels;
     sum.stations = stations;
-    if (r.mask_words) {
+    if (reduction.mask_words) {
       sum.seen.assign(stations, 0);
       sum.shared.assign(pairs, 0);
     }
     std::uint64_t squares = 0, edge_points = 0, edges = 0;
-    for (std::uint32_t g = 0; g < r.groups; ++g) {
-      const std::uint32_t* t = totals.data() + (n * r.groups + g) * stride;
+    for (std::uint32_t g = 0; g < reduction.groups; ++g) {
+      const std::uint32_t* t = totals.data() + (n * reduction.groups + g) * stride;
       NetworkCounts group;
-      group.voxels = (r.voxels + r.groups - 1 - g) / r.groups;
+      group.voxels = (reduction.voxels + reduction.groups - 1 - g) / reduction.groups;
       group.stations = stations;
-      group.weight = r.weights ? r.weight[g] : group.voxels;
+      group.weight = reduction.weights ? reduction.weight[g] : group.voxels;
       group.saturated = t[totals_saturated] | std::uint64_t{t[totals_saturated + 1]} << 32;
       group.partial_points = t[totals_partial] | std::uint64_t{t[totals_partial + 1]} << 32;
       squares += t[totals_squares] | std::uint64_t{t[totals_squares + 1]} << 32;
       edge_points += t[totals_edge_points] | std::uint64_t{t[totals_edge_points + 1]} << 32;
       edges += t[totals_edges];
-      if (r.mask_words) {
+      if (reduction.mask_words) {
         group.seen.assign(t + totals_seen, t + totals_seen + stations);
         group.shared.assign(t + totals_seen + stations, t + totals_seen + stations + pairs);
         for (std::uint32_t k = 0; k < stations; ++k) sum.seen[k] += group.seen[k];
@@ -69,10 +70,10 @@ void VulkanTracer::read_totals(std::span<NetworkCounts> counts, std::span<const 
       sum.weight += group.weight;
       sum.saturated += group.saturated;
       sum.partial_points += group.partial_points;
-      if (r.groups > 1) sum.groups.push_back(std::move(group));
+      if (reduction.groups > 1) sum.groups.push_back(std::move(group));
     }
     // Where one voxel is saturated, (1 − c / goal)² = 1 − 2 c / goal + c² / goal².
-    const double unit = std::ldexp(1.0, static_cast<int>(difference_shift(r.voxels))) / goal_density_;
+    const double unit = std::ldexp(1.0, static_cast<int>(difference_shift(reduction.voxels))) / goal_density_;
     sum.successive_difference_sum = static_cast<double>(squares) * unit * unit -
                                     2 * static_cast<double>(edge_points) * unit + static_cast<double>(edges);
   }

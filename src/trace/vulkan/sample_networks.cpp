@@ -4,38 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <deque>
 
 #include "trace/triangle_gap.hpp"
+#include "trace/vulkan/sample_plan.hpp"
 #include "trace/vulkan/vulkan_tracer.hpp"
 #include "voxel/voxel_triangles.hpp"
 
 namespace vantage::vulkan {
-namespace {
-
-// A population of samples is one submission where it takes no longer than this, half of the shortest usual limit.
-constexpr double seconds_per_sampled_submission = 1;
-
-}  // namespace
-
-// Part of a batch of networks whose rays one list probably holds: slots × sampled voxels, or some rows of a single
-// pair.
-struct SampleChunk {
-  std::uint32_t first_slot, end_slot, first_voxel, end_voxel, first_row, end_row;
-
-  std::uint64_t pairs() const { return std::uint64_t{end_slot - first_slot} * (end_voxel - first_voxel); }
-  std::array<SampleChunk, 2> halves() const {
-    SampleChunk a = *this, b = *this;
-    if (end_slot - first_slot > 1) {
-      a.end_slot = b.first_slot = first_slot + (end_slot - first_slot) / 2;
-    } else if (end_voxel - first_voxel > 1) {
-      a.end_voxel = b.first_voxel = first_voxel + (end_voxel - first_voxel) / 2;
-    } else {
-      a.end_row = b.first_row = first_row + (end_row - first_row) / 2;
-    }
-    return {a, b};
-  }
-};
 
 void VulkanTracer::upload_sample(std::span<const std::uint32_t> sample,
                                  std::span<const std::vector<TraceStation>> networks) {
@@ -99,185 +74,214 @@ double VulkanTracer::sample_reach(std::span<const std::vector<TraceStation>> net
       reach_within(*scene_.noise, reaches_, static_cast<float>(farthest) + parameters_.noise_reach));
 }
 
-// Records the listing and tracing of one chunk, whose control words are number k of the submission.
-void VulkanTracer::record_chunk(VkCommandBuffer c, const SampleChunk& chunk, SamplePush push, std::size_t k,
-                                bool masks) {
-  push.control = sample_control_.address() + k * control_words * sizeof(std::uint32_t);
-  push.first_voxel = chunk.first_voxel;
-  push.end_voxel = chunk.end_voxel;
-  push.first_slot = chunk.first_slot;
-  push.first_row = chunk.first_row;
-  push.end_row = chunk.end_row;
-  const VkDeviceSize dispatch = (k * control_words + control_dispatch) * sizeof(std::uint32_t);
-  shader_after_shader(c);  // the chunk before still reads the list
-  kernels_.get(Kernel::sample_list)
-      .dispatch(c, push, groups_of(chunk.end_voxel - chunk.first_voxel), chunk.end_slot - chunk.first_slot);
-  shader_after_shader(c);
-  kernels_.get(Kernel::sample_arguments, {false}).dispatch(c, push, 1);
-  shader_after_shader(c);
-  kernels_.get(Kernel::sample_queue).bind(c, &push);
-  vkCmdDispatchIndirect(c, sample_control_.handle(), dispatch);
-  shader_after_shader(c);
-  kernels_.get(Kernel::sample_arguments, {true}).dispatch(c, push, 1);
-  shader_after_shader(c);
-  kernels_.get(Kernel::sample_trace, {noise(), masks}).bind(c, &push);
-  vkCmdDispatchIndirect(c, sample_control_.handle(), dispatch);
-}
+// The networks go in batches that share counts and masks; a batch goes in chunks whose rays one list can hold, as many
+// a submission as are quick enough together (sample_plan.hpp). With the last chunk of a batch goes its reduction; where
+// some of it must come again, the reduction comes again too.
+class VulkanTracer::SampledCount {
+ public:
+  SampledCount(VulkanTracer& tracer, std::span<const std::vector<TraceStation>> networks,
+               std::span<const std::uint32_t> station_counts, const SampleJob& job)
+      : t_(tracer),
+        networks_(networks),
+        station_counts_(station_counts),
+        job_(job),
+        voxels_(static_cast<std::uint32_t>(job.sample.size())),
+        most_stations_(*std::max_element(station_counts.begin(), station_counts.end())),
+        mask_words_(job.masks ? (most_stations_ > 32 ? 2 : 1) : 0),
+        stride_(totals_seen + most_stations_ + most_stations_ * (most_stations_ - 1) / 2),
+        room_(
+            sample_room(tracer.scene_.pattern->columns(), tracer.info_.software, tracer.scene_.max_rays_per_dispatch)),
+        batch_size_(static_cast<std::size_t>(
+            std::clamp<std::uint64_t>(entries_per_batch / std::max(voxels_, 1u), 1, networks.size()))),
+        totals_(networks.size() * job.groups * stride_),
+        rays_(networks.size()) {}
+
+  std::vector<NetworkCounts> run(const Progress& progress) {
+    t_.upload_sample(job_.sample, networks_);
+    ensure_buffers();
+    reduction_ = reduction();
+    bool cancelled = false;
+    for (std::size_t first = 0; first < networks_.size() && !cancelled; first += batch_size_)
+      cancelled = !count_batch({first, std::min(first + batch_size_, networks_.size())}, progress);
+    std::vector<NetworkCounts> results(networks_.size());
+    t_.read_totals(results, station_counts_, totals_, reduction_, stride_);
+    for (std::size_t n = 0; n < results.size(); ++n) {
+      results[n].rays = rays_[n];
+      results[n].cancelled = cancelled;
+      results[n].trace_seconds = seconds_ / static_cast<double>(results.size());
+    }
+    return results;
+  }
+
+ private:
+  static constexpr std::uint64_t entries_per_batch = std::uint64_t{1} << 25;  // of counts, and of masks
+  static constexpr VkDeviceSize word = sizeof(std::uint32_t);
+
+  struct Batch {
+    std::size_t first, end;
+    std::vector<SampleStation> slots = {};
+    std::size_t size() const { return end - first; }
+  };
+
+  // What one submission does of a batch.
+  struct Submission {
+    std::vector<SampleChunk> chunks;
+    bool first, last;  // of the batch
+  };
+
+  void ensure_buffers() {
+    const std::uint64_t entries = std::uint64_t{voxels_} * batch_size_;
+    t_.ensure(t_.sample_rays_, std::uint64_t{room_.rays} * sizeof(SampleRay), "sample rays");
+    t_.ensure(t_.sample_items_, std::uint64_t{room_.items} * sizeof(SampleItem), "sample items");
+    t_.ensure(t_.counts_, entries * word, "counts");
+    if (mask_words_) t_.ensure(t_.masks_, entries * mask_words_ * word, "station masks");
+    t_.ensure(t_.network_rays_, networks_.size() * sizeof(std::uint64_t), "network rays");
+    t_.ensure_totals(networks_.size(), job_.groups, stride_);
+  }
+
+  // Returns whether it came to its end; where not, the caller wants to stop.
+  bool count_batch(Batch batch, const Progress& progress) {
+    for (std::size_t n = batch.first; n < batch.end; ++n)
+      for (const TraceStation& s : networks_[n])
+        batch.slots.push_back(
+            {{s.origin.x, s.origin.y, s.origin.z}, s.place, static_cast<std::uint32_t>(n - batch.first)});
+    t_.ensure(t_.sample_stations_, batch.slots.size() * sizeof(SampleStation), "sample stations");
+    SamplePlan plan(static_cast<std::uint32_t>(batch.slots.size()), voxels_, t_.scene_.pattern->rows(), room_);
+    for (bool first = true; first || !plan.finished(); first = false) {
+      if (progress.stopped()) return false;
+      Submission submission{plan.next(t_.sampled_pace_.rays(), t_.rays_per_pair_), first, false};
+      submission.last = plan.finished();
+      const auto [wanted, taken] = submit(batch, submission);
+      seconds_ += taken;
+      t_.sampled_pace_.saw(plan.settle(submission.chunks, wanted), taken);
+      learn_rays_per_pair(submission.chunks, wanted);
+      progress((static_cast<double>(batch.first) + static_cast<double>(batch.size()) * plan.done()) /
+               static_cast<double>(networks_.size()));
+    }
+    return true;
+  }
+
+  // Returns what each chunk wanted to list, and the seconds that the device took.
+  std::pair<std::vector<SampleList>, double> submit(const Batch& batch, const Submission& submission) {
+    const std::vector<SampleChunk>& chunks = submission.chunks;
+    std::vector<std::uint32_t> control(std::max<std::size_t>(chunks.size(), 1) * control_words);
+    t_.ensure(t_.sample_control_, control.size() * word, "sample control", VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
+    std::vector<Commands::Download> wanted{{t_.sample_control_, control.data(), control.size() * word}};
+    if (submission.last && batch.end == networks_.size()) {
+      wanted.push_back({t_.totals_, totals_.data(), totals_.size() * word});
+      wanted.push_back({t_.network_rays_, rays_.data(), rays_.size() * sizeof rays_[0]});
+    }
+    const auto record = [&](const Recorder& r) {
+      if (submission.first) record_start(r, batch);
+      r.zero(t_.sample_control_);
+      if (submission.last) {
+        const VkDeviceSize of_network = std::uint64_t{job_.groups} * stride_ * word;
+        r.zero(t_.totals_, batch.first * of_network, batch.size() * of_network);
+      }
+      r.shader_after_transfer();
+      for (std::size_t k = 0; k < chunks.size(); ++k) record_chunk(r, push_of(batch, chunks[k], k), chunks[k], k);
+      if (!submission.last) return;
+      r.shader_after_shader();
+      t_.record_reduction(r, reduction_, static_cast<std::uint32_t>(batch.first),
+                          static_cast<std::uint32_t>(batch.size()), stride_);
+    };
+    const double taken = t_.commands_.run_and_download(record, wanted);
+    std::vector<SampleList> lists;
+    for (std::size_t k = 0; k < chunks.size(); ++k)
+      lists.push_back({control[k * control_words + control_rays], control[k * control_words + control_items]});
+    return {std::move(lists), taken};
+  }
+
+  void record_start(const Recorder& r, const Batch& batch) {
+    if (batch.first == 0) {
+      r.update(t_.station_counts_, station_counts_.data(), station_counts_.size_bytes());
+      r.zero(t_.network_rays_);
+    }
+    r.update(t_.sample_stations_, batch.slots.data(), batch.slots.size() * sizeof(SampleStation));
+    r.zero(t_.counts_);
+    if (mask_words_) r.zero(t_.masks_);
+  }
+
+  // Lists and traces one chunk, whose control words are number k of the submission.
+  void record_chunk(const Recorder& r, const SamplePush& push, const SampleChunk& chunk, std::size_t k) {
+    Kernels& kernels = t_.kernels_;
+    const VkDeviceSize dispatch = (k * control_words + control_dispatch) * word;
+    r.shader_after_shader();  // the chunk before still reads the list
+    r.dispatch(kernels.get(Kernel::sample_list), push, groups_of(chunk.end_voxel - chunk.first_voxel),
+               chunk.end_slot - chunk.first_slot);
+    r.shader_after_shader();
+    r.dispatch(kernels.get(Kernel::sample_arguments, {false}), push, 1);
+    r.shader_after_shader();
+    r.dispatch_indirect(kernels.get(Kernel::sample_queue), push, t_.sample_control_, dispatch);
+    r.shader_after_shader();
+    r.dispatch(kernels.get(Kernel::sample_arguments, {true}), push, 1);
+    r.shader_after_shader();
+    r.dispatch_indirect(kernels.get(Kernel::sample_trace, {t_.noise(), job_.masks}), push, t_.sample_control_,
+                        dispatch);
+  }
+
+  SamplePush push_of(const Batch& batch, const SampleChunk& chunk, std::size_t k) const {
+    SamplePush push{};
+    push.voxels = t_.sample_voxels_.address();
+    push.triangles = t_.sample_triangles_.address();
+    push.stations = t_.sample_stations_.address();
+    push.rays = t_.sample_rays_.address();
+    push.items = t_.sample_items_.address();
+    push.control = t_.sample_control_.address() + k * control_words * word;
+    push.counts = t_.counts_.address();
+    push.masks = mask_words_ ? t_.masks_.address() : 0;
+    push.network_rays = t_.network_rays_.address() + batch.first * sizeof(std::uint64_t);
+    push.voxel_count = voxels_;
+    push.first_voxel = chunk.first_voxel;
+    push.end_voxel = chunk.end_voxel;
+    push.first_slot = chunk.first_slot;
+    push.first_row = chunk.first_row;
+    push.end_row = chunk.end_row;
+    push.ray_capacity = room_.rays;
+    push.item_capacity = room_.items;
+    push.mask_words = mask_words_;
+    push.stop_at = job_.masks ? 0 : job_.stop_at;
+    return push;
+  }
+
+  Reduction reduction() const {
+    Reduction reduction{
+        t_.counts_.address(), mask_words_ ? t_.masks_.address() : 0, voxels_, job_.groups, mask_words_, true};
+    if (t_.weights_) {
+      reduction.weights = t_.sample_weights_.address();
+      reduction.weight.resize(job_.groups);
+      for (std::size_t k = 0; k < job_.sample.size(); ++k)
+        reduction.weight[k % job_.groups] += t_.scene_.grid->weight(job_.sample[k]);
+    }
+    return reduction;
+  }
+
+  void learn_rays_per_pair(std::span<const SampleChunk> chunks, std::span<const SampleList> wanted) {
+    constexpr std::uint64_t telling = 1000;  // fewer pairs say little about the rest
+    for (std::size_t k = chunks.size(); k-- > 0;)
+      if (chunks[k].pairs() > telling)
+        t_.rays_per_pair_ = 0.5 * (t_.rays_per_pair_ + wanted[k].rays / static_cast<double>(chunks[k].pairs()));
+  }
+
+  VulkanTracer& t_;
+  std::span<const std::vector<TraceStation>> networks_;
+  std::span<const std::uint32_t> station_counts_;
+  SampleJob job_;
+  std::uint32_t voxels_, most_stations_, mask_words_, stride_;
+  SampleList room_;
+  std::size_t batch_size_;
+  Reduction reduction_{};
+  double seconds_ = 0;
+  // As they come back from the device.
+  std::vector<std::uint32_t> totals_;
+  std::vector<std::uint64_t> rays_;
+};
 
 std::vector<NetworkCounts> VulkanTracer::count_sampled(std::span<const std::vector<TraceStation>> networks,
                                                        std::span<const std::uint32_t> station_counts,
                                                        const SampleJob& job, const Progress& progress) {
-  std::vector<NetworkCounts> results(networks.size());
-  if (networks.empty()) return results;
-  upload_sample(job.sample, networks);
-  const auto voxels = static_cast<std::uint32_t>(job.sample.size());
-  const std::uint32_t most = *std::max_element(station_counts.begin(), station_counts.end());
-  const std::uint32_t mask_words = job.masks ? (most > 32 ? 2 : 1) : 0;
-  const std::uint32_t stride = totals_seen + most + most * (most - 1) / 2;
-  ensure_totals(networks.size(), job.groups, stride);
-
-  // A batch of networks shares counts and masks; a chunk of a batch is what one list of rays can hold.
-  const std::uint64_t entries = std::uint64_t{1} << 25;
-  const std::size_t batch_size =
-      static_cast<std::size_t>(std::clamp<std::uint64_t>(entries / std::max(voxels, 1u), 1, networks.size()));
-  const std::uint32_t ray_capacity =
-      std::max<std::uint32_t>(info_.software ? 1u << 20 : 1u << 24, 2 * scene_.pattern->columns());
-  const std::uint32_t item_capacity = std::max(1u << 16, 2 * scene_.pattern->columns() / sample_part);
-  ensure(sample_rays_, std::uint64_t{ray_capacity} * sizeof(SampleRay), "sample rays");
-  ensure(sample_items_, std::uint64_t{item_capacity} * sizeof(SampleItem), "sample items");
-  ensure(counts_, std::uint64_t{voxels} * batch_size * sizeof(std::uint32_t), "counts");
-  if (mask_words)
-    ensure(masks_, std::uint64_t{voxels} * batch_size * mask_words * sizeof(std::uint32_t), "station masks");
-  ensure(network_rays_, networks.size() * sizeof(std::uint64_t), "network rays");
-
-  SamplePush base{};
-  base.voxels = sample_voxels_.address();
-  base.triangles = sample_triangles_.address();
-  base.rays = sample_rays_.address();
-  base.items = sample_items_.address();
-  base.counts = counts_.address();
-  base.masks = mask_words ? masks_.address() : 0;
-  base.voxel_count = voxels;
-  base.ray_capacity = ray_capacity;
-  base.item_capacity = item_capacity;
-  base.mask_words = mask_words;
-  base.stop_at = job.masks ? 0 : job.stop_at;
-
-  bool cancelled = false;
-  double seconds = 0;
-  std::vector<std::uint32_t> totals(networks.size() * job.groups * stride);
-  std::vector<std::uint64_t> rays(networks.size());
-  Reduction reduction{counts_.address(), base.masks, voxels, job.groups, mask_words, true};
-  if (weights_) {
-    reduction.weights = sample_weights_.address();
-    reduction.weight.resize(job.groups);
-    for (std::size_t k = 0; k < job.sample.size(); ++k)
-      reduction.weight[k % job.groups] += scene_.grid->weight(job.sample[k]);
-  }
-  for (std::size_t first = 0; first < networks.size() && !cancelled; first += batch_size) {
-    const std::size_t end = std::min(first + batch_size, networks.size());
-    std::vector<SampleStation> slots;
-    for (std::size_t n = first; n < end; ++n)
-      for (const TraceStation& s : networks[n])
-        slots.push_back({{s.origin.x, s.origin.y, s.origin.z}, s.place, static_cast<std::uint32_t>(n - first)});
-    ensure(sample_stations_, slots.size() * sizeof(SampleStation), "sample stations");
-    base.stations = sample_stations_.address();
-    base.network_rays = network_rays_.address() + first * sizeof(std::uint64_t);
-    const auto record_start = [&](VkCommandBuffer c) {
-      if (first == 0) {
-        record_update(c, station_counts_, station_counts.data(), station_counts.size_bytes());
-        vkCmdFillBuffer(c, network_rays_.handle(), 0, VK_WHOLE_SIZE, 0);
-      }
-      record_update(c, sample_stations_, slots.data(), slots.size() * sizeof(SampleStation));
-      vkCmdFillBuffer(c, counts_.handle(), 0, VK_WHOLE_SIZE, 0);
-      if (mask_words) vkCmdFillBuffer(c, masks_.handle(), 0, VK_WHOLE_SIZE, 0);
-    };
-
-    // All of a batch goes into one submission where the device is quick enough for it; what turns out too long for the
-    // list comes again in pieces, and the reduction with it.
-    std::deque<SampleChunk> todo;
-    if (!slots.empty() && voxels > 0)
-      todo.push_back({0, static_cast<std::uint32_t>(slots.size()), 0, voxels, 0, scene_.pattern->rows()});
-    const double all_pairs = static_cast<double>(slots.size()) * voxels;
-    double done_pairs = 0;
-    bool started = false;
-    do {
-      if (progress.stopped()) {
-        cancelled = true;
-        break;
-      }
-      // Chunks from the front of what is left, as large as the list will probably hold.
-      std::vector<SampleChunk> chunks;
-      for (double expected = 0; !todo.empty() && (chunks.empty() || expected < sampled_rays_per_submission_);) {
-        SampleChunk chunk = todo.front();
-        todo.pop_front();
-        // 65 535 groups a dimension is what every device offers.
-        while (chunk.end_slot - chunk.first_slot > 0xFFFFu ||
-               groups_of(chunk.end_voxel - chunk.first_voxel) > 0xFFFFu ||
-               (chunk.pairs() > 1 && static_cast<double>(chunk.pairs()) * rays_per_pair_ * 1.5 > ray_capacity)) {
-          const auto [a, b] = chunk.halves();
-          todo.push_front(b);
-          chunk = a;
-        }
-        expected += static_cast<double>(chunk.pairs()) * rays_per_pair_;
-        chunks.push_back(chunk);
-      }
-      const bool last = todo.empty();
-      std::vector<std::uint32_t> control(std::max<std::size_t>(chunks.size(), 1) * control_words);
-      ensure(sample_control_, control.size() * sizeof control[0], "sample control",
-             VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
-      std::vector<Commands::Download> wanted{{sample_control_, control.data(), control.size() * sizeof control[0]}};
-      if (last && end == networks.size()) {
-        wanted.push_back({totals_, totals.data(), totals.size() * sizeof totals[0]});
-        wanted.push_back({network_rays_, rays.data(), rays.size() * sizeof rays[0]});
-      }
-      const auto record = [&](VkCommandBuffer c) {
-        if (!started) record_start(c);
-        vkCmdFillBuffer(c, sample_control_.handle(), 0, VK_WHOLE_SIZE, 0);
-        if (last) {
-          const VkDeviceSize of_network = std::uint64_t{job.groups} * stride * sizeof totals[0];
-          vkCmdFillBuffer(c, totals_.handle(), first * of_network, (end - first) * of_network, 0);
-        }
-        shader_after_transfer(c);
-        for (std::size_t k = 0; k < chunks.size(); ++k) record_chunk(c, chunks[k], base, k, job.masks);
-        if (!last) return;
-        shader_after_shader(c);
-        record_reduction(c, reduction, static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(end - first),
-                         stride);
-      };
-      const double taken = commands_.run_and_download(record, wanted);
-      started = true;
-      seconds += taken;
-      double listed_rays = 0;
-      for (std::size_t k = chunks.size(); k-- > 0;) {
-        const std::uint32_t listed = control[k * control_words + control_rays],
-                            queued = control[k * control_words + control_items];
-        if (listed > ray_capacity || queued > item_capacity) {
-          const auto [a, b] = chunks[k].halves();
-          todo.push_front(b);
-          todo.push_front(a);
-        } else {
-          done_pairs += static_cast<double>(chunks[k].pairs()) * (chunks[k].end_row - chunks[k].first_row) /
-                        scene_.pattern->rows();
-          listed_rays += listed;
-        }
-        if (chunks[k].pairs() > 1000)
-          rays_per_pair_ =
-              0.5 * (rays_per_pair_ + static_cast<double>(listed) / static_cast<double>(chunks[k].pairs()));
-      }
-      if (listed_rays > 0.5 * ray_capacity)
-        sampled_rays_per_submission_ = listed_rays / std::max(taken, 1e-6) * seconds_per_sampled_submission;
-      progress((static_cast<double>(first) + static_cast<double>(end - first) * done_pairs / std::max(all_pairs, 1.0)) /
-               static_cast<double>(networks.size()));
-    } while (!todo.empty());
-  }
-  read_totals(results, station_counts, totals, reduction, stride);
-  for (std::size_t n = 0; n < results.size(); ++n) {
-    results[n].rays = rays[n];
-    results[n].cancelled = cancelled;
-    results[n].trace_seconds = seconds / static_cast<double>(results.size());
-  }
-  return results;
+  if (networks.empty()) return {};
+  return SampledCount(*this, networks, station_counts, job).run(progress);
 }
 
 }  // namespace vantage::vulkan

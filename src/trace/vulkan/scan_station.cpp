@@ -57,8 +57,8 @@ void VulkanTracer::scan(const TraceStation& station, std::uint64_t first_ray, st
                                  {&part.barycentric, sizeof(Float2)},
                                  {&part.voxel, sizeof(std::uint32_t)}})
       if (*address) *address += skip * size;
-    commands_.run([&](VkCommandBuffer c) {
-      pipeline.dispatch(c, part, groups_of(columns, block_columns), groups_of(part.row_count, block_rows));
+    commands_.run([&](const Recorder& r) {
+      r.dispatch(pipeline, part, groups_of(columns, block_columns), groups_of(part.row_count, block_rows));
     });
   }
   for (const Copy& copy : copies) commands_.download(*copy.from, copy.to, copy.bytes);

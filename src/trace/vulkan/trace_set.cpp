@@ -17,8 +17,9 @@ TraceSet::TraceSet(const Device& device, const Buffer& parameters, VkAcceleratio
   layout_info.bindingCount = count;
   layout_info.pBindings = bindings.data();
   VkDescriptorSetLayout layout = VK_NULL_HANDLE;
-  check(vkCreateDescriptorSetLayout(device.handle(), &layout_info, nullptr, &layout), "vkCreateDescriptorSetLayout");
-  layout_ = UniqueSetLayout(device.handle(), layout);
+  check(device.vk().vkCreateDescriptorSetLayout(device.handle(), &layout_info, nullptr, &layout),
+        "vkCreateDescriptorSetLayout");
+  layout_ = UniqueSetLayout(device, layout);
   const std::array<VkDescriptorPoolSize, 2> sizes{
       {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1}, {VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, 1}}};
   VkDescriptorPoolCreateInfo pool_info{};
@@ -27,14 +28,14 @@ TraceSet::TraceSet(const Device& device, const Buffer& parameters, VkAcceleratio
   pool_info.poolSizeCount = count;
   pool_info.pPoolSizes = sizes.data();
   VkDescriptorPool pool = VK_NULL_HANDLE;
-  check(vkCreateDescriptorPool(device.handle(), &pool_info, nullptr, &pool), "vkCreateDescriptorPool");
-  pool_ = UniqueDescriptorPool(device.handle(), pool);
+  check(device.vk().vkCreateDescriptorPool(device.handle(), &pool_info, nullptr, &pool), "vkCreateDescriptorPool");
+  pool_ = UniqueDescriptorPool(device, pool);
   VkDescriptorSetAllocateInfo allocate{};
   allocate.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
   allocate.descriptorPool = pool;
   allocate.descriptorSetCount = 1;
   allocate.pSetLayouts = &layout;
-  check(vkAllocateDescriptorSets(device.handle(), &allocate, &set_), "vkAllocateDescriptorSets");
+  check(device.vk().vkAllocateDescriptorSets(device.handle(), &allocate, &set_), "vkAllocateDescriptorSets");
 
   const VkDescriptorBufferInfo buffer{parameters.handle(), 0, VK_WHOLE_SIZE};
   VkWriteDescriptorSetAccelerationStructureKHR structures{};
@@ -51,7 +52,7 @@ TraceSet::TraceSet(const Device& device, const Buffer& parameters, VkAcceleratio
   }
   writes[0].pBufferInfo = &buffer;
   writes[1].pNext = &structures;
-  vkUpdateDescriptorSets(device.handle(), count, writes.data(), 0, nullptr);
+  device.vk().vkUpdateDescriptorSets(device.handle(), count, writes.data(), 0, nullptr);
 }
 
 }  // namespace vantage::vulkan

@@ -2,18 +2,18 @@
 // Sole owner of one Vulkan handle of a device.
 #pragma once
 
-#include <volk.h>
-
 #include <utility>
+
+#include "trace/vulkan/device.hpp"
 
 namespace vantage::vulkan {
 
-// `destroy` points at the variable that volk fills with the function, since it is not known at compile time.
+// `destroy` names the function in the device's table.
 template <class Handle, auto destroy>
 class Unique {
  public:
   Unique() = default;
-  Unique(VkDevice device, Handle handle) : device_(device), handle_(handle) {}
+  Unique(const Device& device, Handle handle) : device_(&device), handle_(handle) {}
   Unique(Unique&& other) noexcept : device_(other.device_), handle_(std::exchange(other.handle_, Handle{})) {}
   Unique& operator=(Unique&& other) noexcept {
     std::swap(device_, other.device_);
@@ -21,26 +21,27 @@ class Unique {
     return *this;
   }
   ~Unique() {
-    if (handle_) (*destroy)(device_, handle_, nullptr);
+    if (handle_) (device_->vk().*destroy)(device_->handle(), handle_, nullptr);
   }
   Handle get() const { return handle_; }
   explicit operator bool() const { return handle_ != Handle{}; }
 
  private:
-  VkDevice device_ = VK_NULL_HANDLE;
+  const Device* device_ = nullptr;
   Handle handle_ = Handle{};
 };
 
-using UniquePipeline = Unique<VkPipeline, &vkDestroyPipeline>;
-using UniquePipelineLayout = Unique<VkPipelineLayout, &vkDestroyPipelineLayout>;
-using UniqueSetLayout = Unique<VkDescriptorSetLayout, &vkDestroyDescriptorSetLayout>;
-using UniqueDescriptorPool = Unique<VkDescriptorPool, &vkDestroyDescriptorPool>;
-using UniqueShaderModule = Unique<VkShaderModule, &vkDestroyShaderModule>;
-using UniqueBuffer = Unique<VkBuffer, &vkDestroyBuffer>;
-using UniqueMemory = Unique<VkDeviceMemory, &vkFreeMemory>;
-using UniqueCommandPool = Unique<VkCommandPool, &vkDestroyCommandPool>;
-using UniqueFence = Unique<VkFence, &vkDestroyFence>;
-using UniqueQueryPool = Unique<VkQueryPool, &vkDestroyQueryPool>;
-using UniqueAccelerationStructure = Unique<VkAccelerationStructureKHR, &vkDestroyAccelerationStructureKHR>;
+using UniquePipeline = Unique<VkPipeline, &VolkDeviceTable::vkDestroyPipeline>;
+using UniquePipelineLayout = Unique<VkPipelineLayout, &VolkDeviceTable::vkDestroyPipelineLayout>;
+using UniqueSetLayout = Unique<VkDescriptorSetLayout, &VolkDeviceTable::vkDestroyDescriptorSetLayout>;
+using UniqueDescriptorPool = Unique<VkDescriptorPool, &VolkDeviceTable::vkDestroyDescriptorPool>;
+using UniqueShaderModule = Unique<VkShaderModule, &VolkDeviceTable::vkDestroyShaderModule>;
+using UniqueBuffer = Unique<VkBuffer, &VolkDeviceTable::vkDestroyBuffer>;
+using UniqueMemory = Unique<VkDeviceMemory, &VolkDeviceTable::vkFreeMemory>;
+using UniqueCommandPool = Unique<VkCommandPool, &VolkDeviceTable::vkDestroyCommandPool>;
+using UniqueFence = Unique<VkFence, &VolkDeviceTable::vkDestroyFence>;
+using UniqueQueryPool = Unique<VkQueryPool, &VolkDeviceTable::vkDestroyQueryPool>;
+using UniqueAccelerationStructure =
+    Unique<VkAccelerationStructureKHR, &VolkDeviceTable::vkDestroyAccelerationStructureKHR>;
 
 }  // namespace vantage::vulkan

@@ -1,22 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
-// The two Vulkan engines. They share every shader line but trace().
+// From engines and devices to tracers.
 #pragma once
 
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "trace/tracer.hpp"
+#include "trace/vulkan/traversal.hpp"
 
 namespace vantage {
 
-// ray_query and compute_bvh on every device of this machine, usable or not, each with the reason. Where there is no
-// Vulkan at all, two entries without a device say why. Never throws for want of a device.
-std::vector<EngineInfo> list_vulkan_engines();
+using VulkanEngines = std::span<const vulkan::VulkanEngine* const>;
 
-// `engine` is ray_query or compute_bvh; without `device` the best one that has it: hardware before software.
+// Each engine on every device of this machine, usable or not, with the reason. Where there is no Vulkan at all, one
+// entry an engine without a device says why. Never throws for want of a device.
+std::vector<EngineInfo> list_vulkan_engines(VulkanEngines engines);
+
+// Without `device` the best one that has what the engine needs: hardware before software.
 // Throws Error no_suitable_device with why each device was refused.
-std::unique_ptr<Tracer> make_vulkan_tracer(Engine engine, std::optional<std::uint32_t> device, const TraceScene& scene);
+std::unique_ptr<Tracer> make_vulkan_tracer(const vulkan::VulkanEngine& engine, std::optional<std::uint32_t> device,
+                                           const TraceScene& scene);
 
 }  // namespace vantage

@@ -7,36 +7,50 @@
 #include <utility>
 
 #include "core/normal_table.hpp"
-#include "trace/vulkan/compute_bvh/bvh.hpp"
+#include "trace/vulkan/sample_plan.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage::vulkan {
 
-constexpr double first_sampled_rays_per_submission = 1e9;
+namespace {
+
+constexpr double seconds_per_exact_submission = 0.25;  // often enough for reports, and to stop in time
+// A population of samples is one submission where it takes no longer than this, half of the shortest usual limit.
+constexpr double seconds_per_sampled_submission = 1;
+constexpr double first_sampled_rays_on_hardware = 1e9;
+
+}  // namespace
 
 static_assert(std::is_trivially_copyable_v<TraceParameters> && sizeof(Float3) == sizeof(vec3));
+static_assert(group_size == block_columns * block_rows && tile_side % block_columns == 0 &&
+              tile_side % block_rows == 0);
 
-VulkanTracer::VulkanTracer(const EngineInfo& info, std::shared_ptr<Instance> instance, VkPhysicalDevice physical,
-                           const DeviceAbilities& abilities, const TraceScene& scene)
+VulkanTracer::VulkanTracer(const VulkanEngine& engine, const EngineInfo& info, std::shared_ptr<Instance> instance,
+                           VkPhysicalDevice physical, const DeviceAbilities& abilities, const TraceScene& scene)
     : info_(info),
       scene_(scene),
-      device_(std::move(instance), physical, abilities, info.engine == Engine::ray_query),
+      device_(std::move(instance), physical, abilities, engine.needs),
       commands_(device_),
-      set_(build_traversal()),
-      kernels_(device_, info.engine, set_) {
-  if (scene.pattern->rows() > 0xFFFFu * block_rows ||
+      traversal_(build_traversal(engine)),
+      parameters_buffer_(device_, sizeof parameters_, Buffer::Where::device, "trace parameters",
+                         VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT),
+      set_(device_, parameters_buffer_, traversal_->binding().structure),
+      kernels_(device_, *traversal_, set_),
+      exact_pace_(seconds_per_exact_submission, static_cast<double>(rays_per_dispatch()),
+                  static_cast<double>(rays_per_dispatch()), static_cast<double>(rays_per_dispatch())),
+      sampled_pace_(seconds_per_sampled_submission,
+                    info.software || scene.max_rays_per_dispatch > 0 ? 0 : first_sampled_rays_on_hardware, 0,
+                    0.5 * sample_room(scene.pattern->columns(), info.software, scene.max_rays_per_dispatch).rays) {
+  if (scene.pattern->rows() > most_groups * block_rows ||
       std::uint64_t{scene.pattern->rows()} * scene.pattern->columns() >= std::uint64_t{1} << 31)
     throw Error(Errc::invalid_argument, "the scan pattern has " + std::to_string(scene.pattern->rows()) + " x " +
                                             std::to_string(scene.pattern->columns()) +
                                             " rays; this engine takes fewer than 2^31 a station: use larger steps");
-  rays_per_submission_ = rays_per_dispatch();
-  if (!info_.software) sampled_rays_per_submission_ = first_sampled_rays_per_submission;
+  std::ranges::copy(traversal_->binding().arrays, parameters_.traversal);
   upload_scene();
 }
 
-TraceSet VulkanTracer::build_traversal() {
-  parameters_buffer_ = Buffer(device_, sizeof parameters_, Buffer::Where::device, "trace parameters",
-                              VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
+std::unique_ptr<Traversal> VulkanTracer::build_traversal(const VulkanEngine& engine) {
   const SceneData& scene = *scene_.scene;
   std::vector<std::uint32_t> ids(scene.triangles.size());
   for (std::size_t m = 0; m < scene.ranges.size(); ++m) {
@@ -44,18 +58,7 @@ TraceSet VulkanTracer::build_traversal() {
     for (std::uint32_t t = 0; t < scene.ranges[m].triangle_count; ++t)
       ids[scene.ranges[m].first_triangle + t] = (scene.ranges[m].first_triangle + t) | bit;
   }
-  if (info_.engine == Engine::ray_query) {
-    structure_ = std::make_unique<AccelerationStructure>(device_, commands_, scene.positions, scene.triangles, ids,
-                                                         scene_.sort_triangles);
-    parameters_.primitive_ids = structure_->primitive_ids();
-    return TraceSet(device_, parameters_buffer_, structure_->handle());
-  }
-  const Bvh bvh = build_bvh(scene.positions, scene.triangles, ids);
-  nodes_ = to_device<BvhNode>(bvh.nodes, "BVH nodes");
-  bvh_triangles_ = to_device<BvhTriangle>(bvh.triangles, "BVH triangles");
-  parameters_.nodes = nodes_.address();
-  parameters_.bvh_triangles = bvh_triangles_.address();
-  return TraceSet(device_, parameters_buffer_, VK_NULL_HANDLE);
+  return engine.build(device_, commands_, {scene.positions, scene.triangles, ids, scene_.sort_triangles});
 }
 
 void VulkanTracer::upload_scene() {
@@ -94,24 +97,28 @@ void VulkanTracer::upload_scene() {
   p.first_azimuth = static_cast<float>(pattern.first_azimuth);
   p.has_normals = scene_.scene->normals.empty() ? 0 : 1;
   if (noise()) {
-    const NoiseModel& model = *scene_.noise;
-    sigma_ = to_device<float>(model.sigma, "sigma table");
-    normal_table_ = to_device<float>(normal_table(), "normal table");
-    p.sigma = sigma_.address();
-    reaches_ = noise_reaches(model);
-    noise_reaches_ = to_device<float>(reaches_, "noise reaches");
-    p.noise_reaches = noise_reaches_.address();
-    p.normal_table = normal_table_.address();
-    p.noise_reach = model.reach;
-    p.noise_min_range = model.min_range;
-    p.noise_inverse_span = model.inverse_span;
-    p.seed_low = static_cast<std::uint32_t>(model.seed);
-    p.seed_high = static_cast<std::uint32_t>(model.seed >> 32);
-  }
-  if (noise())
+    upload_noise();
     upload_shading();
-  else
+  } else {
     write_parameters();
+  }
+}
+
+void VulkanTracer::upload_noise() {
+  const NoiseModel& model = *scene_.noise;
+  sigma_ = to_device<float>(model.sigma, "sigma table");
+  normal_table_ = to_device<float>(normal_table(), "normal table");
+  reaches_ = noise_reaches(model);
+  noise_reaches_ = to_device<float>(reaches_, "noise reaches");
+  TraceParameters& p = parameters_;
+  p.sigma = sigma_.address();
+  p.noise_reaches = noise_reaches_.address();
+  p.normal_table = normal_table_.address();
+  p.noise_reach = model.reach;
+  p.noise_min_range = model.min_range;
+  p.noise_inverse_span = model.inverse_span;
+  p.seed_low = static_cast<std::uint32_t>(model.seed);
+  p.seed_high = static_cast<std::uint32_t>(model.seed >> 32);
 }
 
 void VulkanTracer::upload_shading() {

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// A Vulkan device that traces: scene, acceleration structure and whatever is kept from call to call. ray_query and
-// compute_bvh share all of it but the acceleration structure and the shaders' trace().
+// A Vulkan device that traces: scene, the engine's Traversal and whatever is kept from call to call. All engines share
+// all of it but the Traversal.
 //
-//   vulkan_tracer.cpp    what is uploaded once        count_network.cpp    every ray of a network
-//   scan_station.cpp     points of one station        sample_networks.cpp  the rays of sampled voxels, for many
-//   networks reduction.cpp        from counts and masks to what the objectives need
+//   vulkan_tracer.cpp    what is uploaded once
+//   scan_station.cpp     points of one station
+//   count_network.cpp    every ray of a network
+//   sample_networks.cpp  the rays of sampled voxels, for many networks
+//   reduction.cpp        from counts and masks to what the objectives need
 #pragma once
 
 #include <algorithm>
@@ -19,27 +21,22 @@
 #include "trace/noise_reach.hpp"
 #include "trace/tracer.hpp"
 #include "trace/vulkan/commands.hpp"
+#include "trace/vulkan/groups.hpp"
 #include "trace/vulkan/kernels.hpp"
-#include "trace/vulkan/ray_query/acceleration_structure.hpp"
+#include "trace/vulkan/pace.hpp"
+#include "trace/vulkan/traversal.hpp"
 
 namespace vantage::vulkan {
 
-inline constexpr std::uint32_t group_size = 128;
 // A dispatch of so many rays takes a fraction of a watchdog's limit even on a slow device of its kind.
 inline constexpr std::uint64_t hardware_rays_per_dispatch = std::uint64_t{1} << 26,
                                software_rays_per_dispatch = std::uint64_t{1} << 19;
 
-inline std::uint32_t groups_of(std::uint64_t threads, std::uint32_t size = group_size) {
-  return static_cast<std::uint32_t>((threads + size - 1) / size);
-}
-
-struct SampleChunk;
-
 class VulkanTracer final : public Tracer {
  public:
   // Throws Error invalid_argument where the pattern has 2^31 rays or more.
-  VulkanTracer(const EngineInfo& info, std::shared_ptr<Instance> instance, VkPhysicalDevice physical,
-               const DeviceAbilities& abilities, const TraceScene& scene);
+  VulkanTracer(const VulkanEngine& engine, const EngineInfo& info, std::shared_ptr<Instance> instance,
+               VkPhysicalDevice physical, const DeviceAbilities& abilities, const TraceScene& scene);
 
   const EngineInfo& info() const override { return info_; }
   std::uint64_t preferred_scan_rays() const override {
@@ -56,10 +53,14 @@ class VulkanTracer final : public Tracer {
                                            const Progress& progress) override;
 
  private:
-  TraceSet build_traversal();
+  // One call of count() and of count_sampled().
+  class ExactCount;
+  class SampledCount;
+
+  std::unique_ptr<Traversal> build_traversal(const VulkanEngine& engine);
   void upload_scene();
+  void upload_noise();
   void upload_shading();
-  void record_chunk(VkCommandBuffer c, const SampleChunk& chunk, SamplePush push, std::size_t k, bool masks);
   void upload_sample(std::span<const std::uint32_t> sample, std::span<const std::vector<TraceStation>> networks);
   double sample_reach(std::span<const std::vector<TraceStation>> networks) const;
   void write_parameters() { commands_.upload(parameters_buffer_, &parameters_, sizeof parameters_); }
@@ -78,7 +79,8 @@ class VulkanTracer final : public Tracer {
   }
   std::uint32_t rows_per_dispatch() const {
     const std::uint64_t rows = rays_per_dispatch() / scene_.pattern->columns() / tile_side * tile_side;
-    return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(rows, tile_side, 0xFFFFu * std::uint64_t{block_rows}));
+    return static_cast<std::uint32_t>(
+        std::clamp<std::uint64_t>(rows, tile_side, std::uint64_t{most_groups} * block_rows));
   }
 
   // Grows a buffer that is kept from call to call.
@@ -107,20 +109,19 @@ class VulkanTracer final : public Tracer {
     std::uint64_t weights = 0;               // address, where voxels have any
     std::vector<std::uint64_t> weight = {};  // of each group then
   };
-  void record_reduction(VkCommandBuffer c, const Reduction& r, std::uint32_t first_network, std::uint32_t networks,
-                        std::uint32_t stride);
+  void record_reduction(const Recorder& r, const Reduction& reduction, std::uint32_t first_network,
+                        std::uint32_t networks, std::uint32_t stride);
   void read_totals(std::span<NetworkCounts> counts, std::span<const std::uint32_t> station_counts,
-                   std::span<const std::uint32_t> totals, const Reduction& r, std::uint32_t stride) const;
+                   std::span<const std::uint32_t> totals, const Reduction& reduction, std::uint32_t stride) const;
   void ensure_totals(std::size_t networks, std::uint32_t groups, std::uint32_t stride);
-  void record_totals_start(VkCommandBuffer c, std::span<const std::uint32_t> station_counts);
+  void record_totals_start(const Recorder& r, std::span<const std::uint32_t> station_counts);
 
   EngineInfo info_;
   TraceScene scene_;
   Device device_;
   Commands commands_;
-  std::unique_ptr<AccelerationStructure> structure_;  // ray_query
-  Buffer nodes_, bvh_triangles_;                      // compute_bvh
-  TraceParameters parameters_{};                      // before set_, whose making fills a part of it
+  std::unique_ptr<Traversal> traversal_;
+  TraceParameters parameters_{};
   Buffer parameters_buffer_;
   TraceSet set_;
   Kernels kernels_;
@@ -129,16 +130,14 @@ class VulkanTracer final : public Tracer {
   Buffer weights_;  // of voxels, where they have any
   Buffer counts_, masks_, station_counters_, totals_, station_counts_;
   Buffer tile_far_, tile_list_, tile_dispatch_, tile_rays_, tile_starts_;
-  std::uint64_t rays_per_submission_ = 0;  // follows the speed seen; sizes the submissions, not the results
+  Pace exact_pace_, sampled_pace_;
 
   std::vector<std::uint32_t> sample_;  // what the sample buffers hold
   double sample_margin_ = 0;           // how far from its voxel a triangle is listed there
   NoiseReaches reaches_{};             // where there is noise
   Buffer sample_voxels_, sample_triangles_, sample_stations_, sample_rays_, sample_items_, sample_control_,
       network_rays_, sample_weights_;
-  // As seen so far; they size chunks and submissions, not the results.
-  double rays_per_pair_ = 8;
-  double sampled_rays_per_submission_ = 0;
+  double rays_per_pair_ = 8;  // as seen so far; it sizes chunks, not the results
 };
 
 }  // namespace vantage::vulkan

@@ -6,19 +6,24 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <numeric>
+#include <optional>
 
 namespace vantage {
 namespace {
 
 constexpr std::uint32_t max_leaf = 2;
 constexpr int bins = 32;
-// From here on halves are cut by count, so the depth stays below 40 + log2(2^28 / 2) < bvh_stack_size − 1 entries on
-// the stack.
+// From this depth on, items are halved by count.
 constexpr std::uint32_t max_sah_depth = 34;
+// Halving n items takes bit_width(n − 1) − 1 steps until each part is a leaf of two, and fewer than bvh_leaf_first_mask
+// items are ever taken. So an inner node has less than max_sah_depth + most_halvings above it. A traversal leaves one
+// child on its stack for each of these at most, and one of the node's own.
+constexpr std::uint32_t most_halvings = std::bit_width(bvh_leaf_first_mask) - 1;
+static_assert(max_leaf == 2 && max_sah_depth + most_halvings <= bvh_stack_size);
 constexpr std::size_t parallel_grain = 8192;
 
 struct Bounds3 {
@@ -105,72 +110,89 @@ class Builder {
   const std::vector<BvhNode>& nodes() const { return nodes_; }
 
  private:
+  // A plane between two bins of an axis.
+  struct Cut {
+    float cost;
+    std::size_t axis;
+    int bin;  // the last on the left
+    float low, scale;
+    int bin_of(const Item& item) const {
+      return std::clamp(static_cast<int>((item.centre(axis) - low) * scale), 0, bins - 1);
+    }
+  };
+  struct Bin {
+    Bounds3 box;
+    std::size_t count = 0;
+    void add(const Bin& other) {
+      box.extend(other.box);
+      count += other.count;
+    }
+    float cost() const { return count ? box.half_area() * static_cast<float>(count) : 0; }
+  };
+
+  // Where items [begin, end) are cut in two, both of them not empty; puts them in order.
   std::size_t split(std::size_t begin, std::size_t end, std::uint32_t depth) {
     Bounds3 centres;
     for (std::size_t i = begin; i < end; ++i)
       centres.extend(Float3{items_[i].centre(0), items_[i].centre(1), items_[i].centre(2)});
-    std::size_t best_axis = 0;
-    int best_bin = -1;
-    if (depth < max_sah_depth) {
-      float best_cost = std::numeric_limits<float>::infinity();
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const float low = centres.min[axis], extent = centres.max[axis] - low;
-        if (!(extent > 0)) continue;
-        const float scale = static_cast<float>(bins) / extent;
-        std::array<Bounds3, bins> boxes;
-        std::array<std::size_t, bins> counts{};
-        for (std::size_t i = begin; i < end; ++i) {
-          const int bin = bin_of(items_[i].centre(axis), low, scale);
-          boxes[static_cast<std::size_t>(bin)].extend(items_[i].box);
-          ++counts[static_cast<std::size_t>(bin)];
-        }
-        std::array<float, bins> right_cost{};
-        Bounds3 box;
-        std::size_t n = 0;
-        for (int b = bins - 1; b > 0; --b) {
-          box.extend(boxes[static_cast<std::size_t>(b)]);
-          n += counts[static_cast<std::size_t>(b)];
-          right_cost[static_cast<std::size_t>(b)] = n ? box.half_area() * static_cast<float>(n) : 0;
-        }
-        box = Bounds3();
-        n = 0;
-        for (int b = 0; b + 1 < bins; ++b) {
-          box.extend(boxes[static_cast<std::size_t>(b)]);
-          n += counts[static_cast<std::size_t>(b)];
-          if (n == 0 || n == end - begin) continue;
-          const float cost = box.half_area() * static_cast<float>(n) + right_cost[static_cast<std::size_t>(b) + 1];
-          if (cost < best_cost) {
-            best_cost = cost;
-            best_axis = axis;
-            best_bin = b;
-          }
-        }
+    std::optional<Cut> best;
+    for (std::size_t axis = 0; axis < 3 && depth < max_sah_depth; ++axis) {
+      const std::optional<Cut> cut = cheapest_cut(begin, end, axis, centres);
+      if (cut && (!best || cut->cost < best->cost)) best = cut;
+    }
+    return best ? partition(begin, end, *best) : halve(begin, end, centres);
+  }
+
+  // None where all centres fall into one bin.
+  std::optional<Cut> cheapest_cut(std::size_t begin, std::size_t end, std::size_t axis, const Bounds3& centres) const {
+    const float extent = centres.max[axis] - centres.min[axis];
+    if (!(extent > 0)) return std::nullopt;
+    Cut cut{std::numeric_limits<float>::infinity(), axis, -1, centres.min[axis], static_cast<float>(bins) / extent};
+    std::array<Bin, bins> filled;
+    for (std::size_t i = begin; i < end; ++i) {
+      Bin& bin = filled[static_cast<std::size_t>(cut.bin_of(items_[i]))];
+      bin.box.extend(items_[i].box);
+      ++bin.count;
+    }
+    std::array<float, bins> right_cost{};  // of this bin and all to the right
+    Bin side;
+    for (std::size_t b = bins - 1; b > 0; --b) {
+      side.add(filled[b]);
+      right_cost[b] = side.cost();
+    }
+    side = Bin();
+    for (std::size_t b = 0; b + 1 < bins; ++b) {
+      side.add(filled[b]);
+      if (side.count == 0 || side.count == end - begin) continue;
+      const float cost = side.cost() + right_cost[b + 1];
+      if (cost < cut.cost) {
+        cut.cost = cost;
+        cut.bin = static_cast<int>(b);
       }
     }
-    const auto first = items_.begin() + static_cast<std::ptrdiff_t>(begin),
-               last = items_.begin() + static_cast<std::ptrdiff_t>(end);
-    if (best_bin >= 0) {
-      const float low = centres.min[best_axis], scale = static_cast<float>(bins) / (centres.max[best_axis] - low);
-      const auto middle = std::stable_partition(
-          first, last, [&](const Item& item) { return bin_of(item.centre(best_axis), low, scale) <= best_bin; });
-      return static_cast<std::size_t>(middle - items_.begin());
-    }
-    // All centres coincide, or the tree is deep already: halves along the longest axis.
+    return cut.bin >= 0 ? std::optional(cut) : std::nullopt;
+  }
+
+  std::size_t partition(std::size_t begin, std::size_t end, const Cut& cut) {
+    const auto middle =
+        std::stable_partition(at(begin), at(end), [&](const Item& item) { return cut.bin_of(item) <= cut.bin; });
+    return static_cast<std::size_t>(middle - items_.begin());
+  }
+
+  // By count, along the longest axis: where all centres coincide, or the tree is deep already.
+  std::size_t halve(std::size_t begin, std::size_t end, const Bounds3& centres) {
     std::size_t axis = 0;
     for (std::size_t k = 1; k < 3; ++k)
       if (centres.max[k] - centres.min[k] > centres.max[axis] - centres.min[axis]) axis = k;
     const std::size_t middle = begin + (end - begin) / 2;
-    std::nth_element(first, items_.begin() + static_cast<std::ptrdiff_t>(middle), last,
-                     [&](const Item& a, const Item& b) {
-                       const float x = a.centre(axis), y = b.centre(axis);
-                       return x != y ? x < y : a.triangle < b.triangle;
-                     });
+    std::nth_element(at(begin), at(middle), at(end), [&](const Item& a, const Item& b) {
+      const float x = a.centre(axis), y = b.centre(axis);
+      return x != y ? x < y : a.triangle < b.triangle;
+    });
     return middle;
   }
 
-  static int bin_of(float centre, float low, float scale) {
-    return std::clamp(static_cast<int>((centre - low) * scale), 0, bins - 1);
-  }
+  std::vector<Item>::iterator at(std::size_t i) { return items_.begin() + static_cast<std::ptrdiff_t>(i); }
 
   std::vector<Item>& items_;
   std::vector<BvhNode> nodes_;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "scene/scene_data.hpp"
+#include "shared/bvh_types.h"
 #include "shared/trace_types.h"
 
 namespace vantage {
@@ -17,7 +18,8 @@ struct Bvh {
 };
 
 // Binned surface-area heuristic (Wald: On fast Construction of SAH-based Bounding Volume Hierarchies, 2007). Parallel;
-// the same tree whatever the number of threads. `ids[k]` is stored with triangle k. Depth is below bvh_stack_size.
+// the same tree whatever the number of threads. `ids[k]` is stored with triangle k. A traversal never has more
+// than bvh_stack_size nodes on its stack. REQUIRES: fewer than bvh_leaf_first_mask triangles, and at least one.
 Bvh build_bvh(std::span<const Float3> positions, std::span<const Triangle> triangles,
               std::span<const std::uint32_t> ids);
 

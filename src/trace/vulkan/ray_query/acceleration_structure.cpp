@@ -4,18 +4,17 @@
 #include <algorithm>
 #include <numeric>
 
+#include "shared/ray_query_types.h"
 #include "trace/vulkan/check.hpp"
 #include "trace/vulkan/ray_query/median_sort.hpp"
 
 namespace vantage::vulkan {
 namespace {
 
-constexpr std::uint32_t blas_triangles = 1u << 23;  // as in shaders/trace/ray_query.glsl
-
 VkDeviceAddress address_of(const Device& device, VkAccelerationStructureKHR structure) {
   VkAccelerationStructureDeviceAddressInfoKHR info{VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_DEVICE_ADDRESS_INFO_KHR,
                                                    nullptr, structure};
-  return vkGetAccelerationStructureDeviceAddressKHR(device.handle(), &info);
+  return device.vk().vkGetAccelerationStructureDeviceAddressKHR(device.handle(), &info);
 }
 
 }  // namespace
@@ -32,8 +31,8 @@ AccelerationStructure::Level AccelerationStructure::build(VkAccelerationStructur
   info.pGeometries = &geometry;
   VkAccelerationStructureBuildSizesInfoKHR sizes{};
   sizes.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_BUILD_SIZES_INFO_KHR;
-  vkGetAccelerationStructureBuildSizesKHR(device_.handle(), VK_ACCELERATION_STRUCTURE_BUILD_TYPE_DEVICE_KHR, &info,
-                                          &count, &sizes);
+  device_.vk().vkGetAccelerationStructureBuildSizesKHR(
+      device_.handle(), VK_ACCELERATION_STRUCTURE_BUILD_TYPE_DEVICE_KHR, &info, &count, &sizes);
 
   Level level;
   level.storage = Buffer(device_, sizes.accelerationStructureSize, Buffer::Where::device, name,
@@ -44,8 +43,8 @@ AccelerationStructure::Level AccelerationStructure::build(VkAccelerationStructur
   create.size = sizes.accelerationStructureSize;
   create.type = type;
   VkAccelerationStructureKHR structure = VK_NULL_HANDLE;
-  check(vkCreateAccelerationStructureKHR(device_.handle(), &create, nullptr, &structure), name);
-  level.handle = UniqueAccelerationStructure(device_.handle(), structure);
+  check(device_.vk().vkCreateAccelerationStructureKHR(device_.handle(), &create, nullptr, &structure), name);
+  level.handle = UniqueAccelerationStructure(device_, structure);
 
   const VkDeviceSize alignment = device_.scratch_alignment();
   const Buffer scratch(device_, sizes.buildScratchSize + alignment, Buffer::Where::device,
@@ -53,9 +52,8 @@ AccelerationStructure::Level AccelerationStructure::build(VkAccelerationStructur
   info.dstAccelerationStructure = structure;
   info.scratchData.deviceAddress = (scratch.address() + alignment - 1) / alignment * alignment;
   const VkAccelerationStructureBuildRangeInfoKHR range{count, 0, 0, 0};
-  const VkAccelerationStructureBuildRangeInfoKHR* ranges = &range;
   // A submission of its own, which waits: what follows sees the finished structure, and the scratch may go.
-  commands_.run([&](VkCommandBuffer c) { vkCmdBuildAccelerationStructuresKHR(c, 1, &info, &ranges); });
+  commands_.run([&](const Recorder& r) { r.build(info, range); });
   return level;
 }
 

@@ -2,20 +2,19 @@
 // trace() by VK_KHR_ray_query.
 #extension GL_EXT_ray_query : require
 #include "lib/sheared_triangle.glsl"
+#include "shared/ray_query_types.h"
 #include "trace/hit.glsl"
 
 layout(set = 0, binding = 1) uniform accelerationStructureEXT acceleration_structure;
 
-// Triangles of one bottom-level structure; the instance's custom index says which. Small enough for every device's limits.
-const uint blas_triangles = 1u << 23;
-
-// Weights of a triangle's second and third vertex where a ray that hits it does. The driver's own are good to 1e-5 at best, which normals
-// and reflectivities would show.
+// Weights of a triangle's second and third vertex where a ray that hits it does. The driver's own are good to 1e-5 at
+// best, which normals and reflectivities would show.
 vec2 barycentric_of(uint triangle, vec3 origin, vec3 direction, vec2 otherwise) {
   const uint first = 3u * triangle;
-  const vec3 edges = edge_functions(sheared(shear_along(direction), origin, parameters.positions.at[parameters.triangles.at[first]],
-                                            parameters.positions.at[parameters.triangles.at[first + 1u]],
-                                            parameters.positions.at[parameters.triangles.at[first + 2u]]));
+  const vec3 edges = edge_functions(
+      sheared(shear_along(direction), origin, parameters.positions.at[parameters.triangles.at[first]],
+              parameters.positions.at[parameters.triangles.at[first + 1u]],
+              parameters.positions.at[parameters.triangles.at[first + 2u]]));
   precise float area = edges.x + edges.y + edges.z;
   if (area == 0.0) return otherwise;  // seen edge on
   precise vec2 weights = edges.yz * exact_reciprocal(area);
@@ -31,11 +30,13 @@ Hit trace(vec3 origin, vec3 direction, float t_min, float t_max, float enough, S
   // Hit attributes must not be read after a miss.
   if (rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionTriangleEXT) {
     hit.t = rayQueryGetIntersectionTEXT(query, true);
-    hit.id = parameters.primitive_ids.at[rayQueryGetIntersectionInstanceCustomIndexEXT(query, true) * blas_triangles +
-                                            rayQueryGetIntersectionPrimitiveIndexEXT(query, true)];
+    hit.id = Uints(parameters.traversal[primitive_ids_array])
+                 .at[rayQueryGetIntersectionInstanceCustomIndexEXT(query, true) * blas_triangles +
+                     rayQueryGetIntersectionPrimitiveIndexEXT(query, true)];
     // The scene's own arrays are there whenever anything that depends on weights is wanted.
     if (GIVEN(parameters.positions))
-      hit.barycentric = barycentric_of(hit.id & ~surveyed_bit, origin, direction, rayQueryGetIntersectionBarycentricsEXT(query, true));
+      hit.barycentric = barycentric_of(hit.id & ~surveyed_bit, origin, direction,
+                                       rayQueryGetIntersectionBarycentricsEXT(query, true));
   }
   return hit;
 }

@@ -1,25 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds for every listed tile the nodes of the BVH at which its rays may start: a thread a tile. The rays of a tile leave one point in almost
-// one direction, so far down the tree they all decide alike; the tile decides once for its 1024 rays.
+// Finds for every listed tile the nodes of the BVH at which its rays may start: a thread a tile. The rays of a tile
+// leave one point in almost one direction, so far down the tree they all decide alike; the tile decides once for its
+// 1024 rays.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "lib/parameters.glsl"
+#include "lib/tiles.glsl"
 #include "lib/widening.glsl"
+#include "trace/compute_bvh/nodes.glsl"
 
-layout(local_size_x = 128) in;
+layout(local_size_x = group_size) in;
 layout(push_constant, scalar) uniform Push { TilePush push; };
 
-// What lies on the inner side of four planes through the origin, and not beyond far. The planes hold all rays of a tile: two upright ones
-// through its first and last column, and two that touch the cones of its first and last row.
+// What lies on the inner side of four planes through the origin, and not beyond far. The planes hold all rays of a
+// tile: two upright ones through its first and last column, and two that touch the cones of its first and last row.
 struct Beam {
   vec3 planes[4];
   float far;
 };
 
 Beam beam_of(uint tile, float far) {
-  const uint tiles_in_row = (parameters.columns + tile_side - 1u) / tile_side;
-  const uint row0 = tile / tiles_in_row * tile_side, column0 = tile % tiles_in_row * tile_side;
-  const uint row1 = min(row0 + tile_side, parameters.rows) - 1u, column1 = min(column0 + tile_side, parameters.columns) - 1u;
+  const uint row0 = first_row_of(tile), column0 = first_column_of(tile);
+  const uint row1 = min(row0 + tile_side, parameters.rows) - 1u,
+             column1 = min(column0 + tile_side, parameters.columns) - 1u;
   const vec2 first = vec2(parameters.cos_azimuth.at[column0], parameters.sin_azimuth.at[column0]),
              last = vec2(parameters.cos_azimuth.at[column1], parameters.sin_azimuth.at[column1]);
   Beam beam = Beam(vec3[4](vec3(0), vec3(0), vec3(0), vec3(0)), far);
@@ -29,8 +31,8 @@ Beam beam_of(uint tile, float far) {
   const vec2 middle = (first + last) / (2.0 * spread);
   beam.planes[0] = vec3(-first.y, first.x, 0);
   beam.planes[1] = vec3(last.y, -last.x, 0);
-  // A ray at zenith θ and horizontal distance ρ has ρ·cos θ0 ≥ z·sin θ0 from row 0 on, and ρ·cos θ1 ≤ z·sin θ1 up to row 1. Along the
-  // middle it goes u with u ≤ ρ ≤ u / spread.
+  // A ray at zenith θ and horizontal distance ρ has ρ·cos θ0 ≥ z·sin θ0 from row 0 on, and ρ·cos θ1 ≤ z·sin θ1 up to
+  // row 1. Along the middle it goes u with u ≤ ρ ≤ u / spread.
   const float cos0 = parameters.cos_zenith.at[row0], cos1 = parameters.cos_zenith.at[row1];
   const float wide = 1.00001 / spread;
   beam.planes[2] = vec3(middle * (cos0 > 0.0 ? cos0 * wide : cos0), -parameters.sin_zenith.at[row0]);
@@ -54,7 +56,8 @@ void main() {
   // Twice as wide as the rays' own boxes of nodes, so that what a ray would enter is in the beam.
   const float widening = 4.0 * widening_of(push.origin);
 
-  // Nodes that may still be opened, first in first out, and those at which rays start, nearest first: together at most tile_starts.
+  // Nodes that may still be opened, first in first out, and those at which rays start, nearest first: together at most
+  // tile_starts.
   uint waiting[tile_starts];
   TileStart starts[tile_starts];
   uint head = 0u, waiting_count = 1u, start_count = 0u;
@@ -66,11 +69,12 @@ void main() {
     --waiting_count;
     const uint node = waiting[at];
     const float near = waiting_near[at];
-    const uvec4 word0 = parameters.nodes.at[4u * node], word1 = parameters.nodes.at[4u * node + 1u],
-                word2 = parameters.nodes.at[4u * node + 2u], word3 = parameters.nodes.at[4u * node + 3u];
+    const uvec4 word0 = bvh_nodes.at[4u * node], word1 = bvh_nodes.at[4u * node + 1u],
+                word2 = bvh_nodes.at[4u * node + 2u], word3 = bvh_nodes.at[4u * node + 3u];
     const uint children[2] = uint[2](word0.w, word1.w);
-    const float nears[2] = float[2](distance_in(beam, uintBitsToFloat(word0.xyz) - push.origin, uintBitsToFloat(word1.xyz) + widening),
-                                    distance_in(beam, uintBitsToFloat(word2.xyz) - push.origin, uintBitsToFloat(word3.xyz) + widening));
+    const float nears[2] = float[2](
+        distance_in(beam, uintBitsToFloat(word0.xyz) - push.origin, uintBitsToFloat(word1.xyz) + widening),
+        distance_in(beam, uintBitsToFloat(word2.xyz) - push.origin, uintBitsToFloat(word3.xyz) + widening));
     uint inside = 0u, leaves = 0u;
     for (uint c = 0u; c < 2u; ++c)
       if (nears[c] >= 0.0) {
@@ -92,5 +96,6 @@ void main() {
     }
   }
   for (uint s = 0u; s < tile_starts; ++s)
-    push.starts.at[k * tile_starts + s] = s < start_count ? starts[s] : TileStart(0u, uintBitsToFloat(0x7F800000u));
+    TileStarts(push.starts).at[k * tile_starts + s] =
+        s < start_count ? starts[s] : TileStart(0u, uintBitsToFloat(0x7F800000u));
 }

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// From a hit to the point that the scanner reports for it.
+#ifndef VANTAGE_LIB_POINT
+#define VANTAGE_LIB_POINT
+#include "lib/pattern.glsl"
+#include "lib/shade.glsl"
+#include "trace/hit.glsl"
+
+layout(constant_id = 0) const bool with_noise = false;
+
+// What a hit looks like from where the ray comes from.
+struct Look {
+  vec3 normal;
+  float reflectivity;
+};
+
+Look look_of(Hit hit, vec3 direction) {
+  const uint triangle = hit.id & ~surveyed_bit;
+  const vec3 normal = oriented_normal(triangle, hit.barycentric, direction);
+  return Look(normal, reflectivity_of(triangle, normal, direction));
+}
+
+// The range that is measured. `look` is read where there is noise.
+float range_of(Hit hit, Look look, uint64_t ray, uint place) {
+  return with_noise ? noisy_range(hit.t, look.reflectivity, ray, place) : hit.t;
+}
+
+vec3 point_of(Hit hit, vec3 origin, vec3 direction, uint64_t ray, uint place) {
+  Look look = Look(vec3(0), 0.0);
+  if (with_noise) look = look_of(hit, direction);
+  return point_on_ray(origin, direction, range_of(hit, look, ray, place));
+}
+
+#endif

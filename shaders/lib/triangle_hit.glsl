@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whether a ray hits a triangle, and where, for engines that decide it themselves.
+//
+// Hits depend on nothing but ray and triangles, to the bit, on every device and in every order of traversal:
+// - A triangle is hit when the ray passes inside or on its projection, in sheared coordinates
+//   (lib/sheared_triangle.glsl). Each vertex is sheared by itself, so neighbours agree about it; an edge test compares
+//   two rounded products, whose order is the exact one unless they are equal, and equal counts as inside for both. So
+//   no ray passes between two triangles that share an edge or a vertex.
+// - Only +, − and × are used, uncontracted, so all devices round alike.
+// - The hit's t is clamped to what the triangle's own box, widened by more than all rounding, allows. Every box above
+//   holds that box and is widened more, so no box is culled that may hold the nearest hit; of equal hits the lower
+//   triangle number wins.
+#ifndef VANTAGE_LIB_TRIANGLE_HIT
+#define VANTAGE_LIB_TRIANGLE_HIT
+#include "lib/sheared_triangle.glsl"
+#include "lib/widening.glsl"
+#include "trace/hit.glsl"
+
+// 1 / direction, with a small number for no component at all.
+vec3 inverse_of(vec3 direction) {
+  const vec3 size = abs(direction);
+  precise vec3 safe = vec3(size.x < 1e-12 ? 1e-12 : direction.x, size.y < 1e-12 ? 1e-12 : direction.y,
+                           size.z < 1e-12 ? 1e-12 : direction.z);
+  return vec3(exact_reciprocal(safe.x), exact_reciprocal(safe.y), exact_reciprocal(safe.z));
+}
+
+struct SlabRay {
+  vec3 inverse;
+  vec3 low;   // (origin + widening) · inverse, subtracted from planes at a box's lower corner
+  vec3 high;  // (origin − widening) · inverse
+};
+
+SlabRay slab_ray(vec3 origin, vec3 inverse, float widening) {
+  precise vec3 a = origin + widening;
+  precise vec3 b = origin - widening;
+  precise vec3 low = a * inverse;
+  precise vec3 high = b * inverse;
+  return SlabRay(inverse, low, high);
+}
+
+// The ray's way through the box [low, high]: from x to y.
+vec2 passage_of(SlabRay ray, vec3 low, vec3 high) {
+  precise vec3 a = low * ray.inverse - ray.low;
+  precise vec3 b = high * ray.inverse - ray.high;
+  const vec3 near = min(a, b), far = max(a, b);
+  return vec2(max(max(near.x, near.y), near.z), min(min(far.x, far.y), far.z));
+}
+
+// Makes the triangle's hit the best one if it is. `inverse` of the direction that the shear is along; `widening` of the
+// origin.
+void meet_triangle(inout Hit best, float t_min, Shear shear, vec3 origin, vec3 inverse, float widening, vec3 a, vec3 b,
+                   vec3 c, uint id) {
+  const ShearedTriangle corners = sheared(shear, origin, a, b, c);
+  const vec3 edges = edge_functions(corners);
+  precise float area = edges.x + edges.y + edges.z;
+  const float least = min(min(edges.x, edges.y), edges.z), most = max(max(edges.x, edges.y), edges.z);
+  if ((least >= 0.0 || most <= 0.0) && area != 0.0) {
+    precise vec3 weights = edges * exact_reciprocal(area);
+    precise float z = weights.x * corners.a.z + weights.y * corners.b.z + weights.z * corners.c.z;
+    precise float t = z * shear.z;
+    const vec2 way = passage_of(slab_ray(origin, inverse, widening), min(min(a, b), c), max(max(a, b), c));
+    t = min(max(t, way.x), way.y);
+    // Of equal hits the lower triangle number wins; the surveyed bit is no part of the number.
+    if (t >= t_min && (t < best.t || (t == best.t && (id & ~surveyed_bit) < (best.id & ~surveyed_bit))))
+      best = Hit(t, id, weights.yz);
+  }
+}
+
+#endif

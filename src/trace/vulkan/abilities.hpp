@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a physical device offers of what engines need.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "trace/vulkan/instance.hpp"
+
+namespace vantage::vulkan {
+
+// What an engine asks of a device.
+enum class Needs {
+  compute,    // Vulkan 1.2 with addresses, 64-bit integers and subgroups
+  ray_query,  // VK_KHR_ray_query too
+};
+// Which devices have it, for messages.
+const char* who_has(Needs needs);
+
+struct DeviceAbilities {
+  std::string name, driver;
+  VkPhysicalDeviceType type = VK_PHYSICAL_DEVICE_TYPE_OTHER;
+  std::uint32_t queue_family = 0;
+  std::uint32_t subgroup_size = 1;
+  std::uint64_t memory_bytes = 0;            // largest device-local heap
+  std::vector<std::string> compute_lacks;    // why no engine runs on it
+  std::vector<std::string> ray_query_lacks;  // why none with ray queries does, beyond compute_lacks
+  bool software() const { return type == VK_PHYSICAL_DEVICE_TYPE_CPU; }
+  // Why an engine with these needs does not run on it, and what helps; empty where it does.
+  std::string refusal(Needs needs) const;
+  // Hardware before software, discrete before integrated, then the most memory.
+  bool better_than(const DeviceAbilities& other) const;
+};
+DeviceAbilities abilities_of(const Instance& instance, VkPhysicalDevice device);
+
+}  // namespace vantage::vulkan

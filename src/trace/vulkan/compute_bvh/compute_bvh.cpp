@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trace/vulkan/compute_bvh/compute_bvh.hpp"
+
+#include "embedded_shaders.hpp"
+#include "trace/vulkan/compute_bvh/bvh.hpp"
+
+namespace vantage::vulkan {
+namespace {
+
+class ComputeBvh final : public Traversal {
+ public:
+  ComputeBvh(Device& device, Commands& commands, const TraversalScene& scene) {
+    const Bvh bvh = build_bvh(scene.positions, scene.triangles, scene.ids);
+    nodes_ = make_device_buffer<BvhNode>(device, commands, bvh.nodes, "BVH nodes");
+    triangles_ = make_device_buffer<BvhTriangle>(device, commands, bvh.triangles, "BVH triangles");
+  }
+
+  TraceShaders shaders() const override {
+    return {shaders::count_compute_bvh, shaders::scan_compute_bvh, shaders::sample_trace_compute_bvh};
+  }
+  Binding binding() const override {
+    Binding binding;
+    binding.arrays[bvh_nodes_array] = nodes_.address();
+    binding.arrays[bvh_triangles_array] = triangles_.address();
+    return binding;
+  }
+  // What a tile of rays decides alike on its way down the tree is decided once for all of them.
+  std::optional<TilePass> tile_pass() const override {
+    return TilePass{shaders::tile_starts, tile_starts * sizeof(TileStart)};
+  }
+
+ private:
+  Buffer nodes_, triangles_;
+};
+
+}  // namespace
+
+const VulkanEngine compute_bvh_engine{
+    Engine::compute_bvh, Needs::compute,
+    [](Device& device, Commands& commands, const TraversalScene& scene) -> std::unique_ptr<Traversal> {
+      return std::make_unique<ComputeBvh>(device, commands, scene);
+    }};
+
+}  // namespace vantage::vulkan

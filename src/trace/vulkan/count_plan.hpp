@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which rows of which stations an exact evaluation traces together, and when its counts must be clamped.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace vantage::vulkan {
+
+// Rows of one station: what one dispatch traces.
+struct CountPart {
+  std::uint32_t station, first_row, row_count;
+  std::uint32_t slot;  // of its station among those of the submission
+  std::uint64_t list;  // where its list of tiles begins among those of the submission, in words
+};
+
+// Cuts all rows of all stations into parts, and parts into submissions, in order.
+class CountPlan {
+ public:
+  static constexpr std::uint32_t stations_per_submission = 16, parts_per_submission = 256;
+
+  // REQUIRES: rows_per_part is a multiple of tile_side, so that no tile belongs to two parts.
+  CountPlan(std::uint32_t stations, std::uint32_t rows, std::uint32_t columns, std::uint32_t rows_per_part);
+
+  // The parts of the next submission: as many as begin below so many rays; one at least, unless finished.
+  std::vector<CountPart> next(double rays);
+  bool finished() const { return station_ == stations_; }
+
+  std::uint64_t rays_of(std::span<const CountPart> parts) const;
+  std::uint64_t all_rays() const { return std::uint64_t{rows_} * columns_ * stations_; }
+  std::uint32_t tiles_in_row() const;
+  std::uint32_t tiles() const;                          // of a station
+  std::uint32_t tiles_of(const CountPart& part) const;  // its list: their number, then they
+  std::uint64_t list_words() const;                     // enough for the lists of any submission
+
+ private:
+  std::uint32_t stations_, rows_, columns_, rows_per_part_;
+  std::uint32_t station_ = 0, row_ = 0;
+};
+
+// Counts are 32 bits wide. Keeps book of what dispatches may have added to one since all were clamped to count_limit.
+class CountHeadroom {
+ public:
+  // Whether counts must be clamped before a dispatch of so many rays, which is then the first after it.
+  // REQUIRES: rays < count_limit.
+  bool clamp_before(std::uint64_t rays);
+
+ private:
+  std::uint64_t added_ = 0;
+};
+
+}  // namespace vantage::vulkan

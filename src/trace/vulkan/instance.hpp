@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// A Vulkan instance with functions of its own, and what its validation layer says.
+#pragma once
+
+#include <volk.h>
+
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace vantage::vulkan {
+
+// clang-format off
+// The last three are there with validation only.
+#define VANTAGE_INSTANCE_FUNCTIONS(use) \
+  use(vkDestroyInstance) \
+  use(vkEnumeratePhysicalDevices) \
+  use(vkEnumerateDeviceExtensionProperties) \
+  use(vkGetPhysicalDeviceProperties) \
+  use(vkGetPhysicalDeviceProperties2) \
+  use(vkGetPhysicalDeviceFeatures2) \
+  use(vkGetPhysicalDeviceMemoryProperties) \
+  use(vkGetPhysicalDeviceQueueFamilyProperties) \
+  use(vkCreateDevice) \
+  use(vkGetDeviceProcAddr) \
+  use(vkCreateDebugUtilsMessengerEXT) \
+  use(vkDestroyDebugUtilsMessengerEXT) \
+  use(vkSetDebugUtilsObjectNameEXT)
+// clang-format on
+
+// An instance's functions. volk's global table holds those of the instance that was loaded last, and what that one
+// lacks is null there: so nobody here loads it, and each instance and each device keeps a table.
+struct InstanceFunctions {
+#define VANTAGE_FUNCTION(name) PFN_##name name = nullptr;
+  VANTAGE_INSTANCE_FUNCTIONS(VANTAGE_FUNCTION)
+#undef VANTAGE_FUNCTION
+};
+
+class Instance {
+ public:
+  // The process's instance, with the validation layer or without, shared by all who hold one. Throws as the
+  // constructor.
+  static std::shared_ptr<Instance> get(bool validation);
+
+  // Throws Error no_suitable_device where there is no Vulkan loader, or no validation layer though one is asked for.
+  explicit Instance(bool validation);
+  ~Instance();
+  Instance(const Instance&) = delete;
+  Instance& operator=(const Instance&) = delete;
+
+  const InstanceFunctions& vk() const { return vk_; }
+  std::vector<VkPhysicalDevice> physical_devices() const;
+  // The functions of one of its devices.
+  VolkDeviceTable functions_of(VkDevice device) const;
+  // Throws Error device_failure with what the validation layer reported since the last call.
+  void check_validation();
+
+ private:
+  static VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT,
+                                                   VkDebugUtilsMessageTypeFlagsEXT,
+                                                   const VkDebugUtilsMessengerCallbackDataEXT*, void*);
+  VkInstance instance_ = VK_NULL_HANDLE;
+  InstanceFunctions vk_;
+  VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
+  std::mutex mutex_;
+  std::vector<std::string> messages_;
+};
+
+}  // namespace vantage::vulkan

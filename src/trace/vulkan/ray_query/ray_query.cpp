@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trace/vulkan/ray_query/ray_query.hpp"
+
+#include "embedded_shaders.hpp"
+#include "shared/ray_query_types.h"
+#include "trace/vulkan/ray_query/acceleration_structure.hpp"
+
+namespace vantage::vulkan {
+namespace {
+
+class RayQuery final : public Traversal {
+ public:
+  RayQuery(Device& device, Commands& commands, const TraversalScene& scene)
+      : structure_(device, commands, scene.positions, scene.triangles, scene.ids, scene.sort) {}
+
+  TraceShaders shaders() const override {
+    return {shaders::count_ray_query, shaders::scan_ray_query, shaders::sample_trace_ray_query};
+  }
+  Binding binding() const override {
+    Binding binding;
+    binding.arrays[primitive_ids_array] = structure_.primitive_ids();
+    binding.structure = structure_.handle();
+    return binding;
+  }
+
+ private:
+  AccelerationStructure structure_;
+};
+
+}  // namespace
+
+const VulkanEngine ray_query_engine{
+    Engine::ray_query, Needs::ray_query,
+    [](Device& device, Commands& commands, const TraversalScene& scene) -> std::unique_ptr<Traversal> {
+      return std::make_unique<RayQuery>(device, commands, scene);
+    }};
+
+}  // namespace vantage::vulkan

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// What our work puts into a command buffer.
+#pragma once
+
+#include <type_traits>
+
+#include "trace/vulkan/buffer.hpp"
+#include "trace/vulkan/pipeline.hpp"
+
+namespace vantage::vulkan {
+
+class Recorder {
+ public:
+  Recorder(const VolkDeviceTable& vk, VkCommandBuffer commands) : vk_(vk), commands_(commands) {}
+
+  void zero(const Buffer& buffer, VkDeviceSize offset = 0, VkDeviceSize bytes = VK_WHOLE_SIZE) const;
+  // Writes `data` to the front of the buffer; for small arrays, whose bytes travel with the commands.
+  void update(const Buffer& buffer, const void* data, VkDeviceSize bytes) const;
+  void copy(const Buffer& from, const Buffer& to, const VkBufferCopy& region) const;
+  void build(const VkAccelerationStructureBuildGeometryInfoKHR& info,
+             const VkAccelerationStructureBuildRangeInfoKHR& range) const;
+
+  // Workgroups of a kernel: so many, or what three words at `offset` of `groups` say when it is their turn.
+  template <class Push>
+  void dispatch(const ComputePipeline& pipeline, const Push& push, std::uint32_t x, std::uint32_t y = 1,
+                std::uint32_t z = 1) const {
+    bind(pipeline, push);
+    vk_.vkCmdDispatch(commands_, x, y, z);
+  }
+  template <class Push>
+  void dispatch_indirect(const ComputePipeline& pipeline, const Push& push, const Buffer& groups,
+                         VkDeviceSize offset) const {
+    bind(pipeline, push);
+    vk_.vkCmdDispatchIndirect(commands_, groups.handle(), offset);
+  }
+
+  // The barriers that our work needs.
+  void shader_after_transfer() const;  // shaders (and indirect dispatches) see earlier fills and copies
+  void shader_after_shader() const;    // shaders, indirect dispatches and copies see what earlier shaders wrote
+  void anyone_after_anyone() const;    // the host, and the next submission, see all that was written
+
+ private:
+  template <class Push>
+  void bind(const ComputePipeline& pipeline, const Push& push) const {
+    static_assert(std::is_trivially_copyable_v<Push> && sizeof(Push) <= 128);  // 128 bytes is what every device has
+    pipeline.bind(vk_, commands_, &push);
+  }
+  void barrier(VkPipelineStageFlags from_stage, VkAccessFlags from, VkPipelineStageFlags to_stage,
+               VkAccessFlags to) const;
+
+  const VolkDeviceTable& vk_;
+  VkCommandBuffer commands_;
+};
+
+}  // namespace vantage::vulkan

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trace/vulkan/compute_bvh/bvh.hpp"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+
+#include "core/philox.hpp"
+
+namespace vantage {
+namespace {
+
+struct Soup {
+  std::vector<Float3> positions;
+  std::vector<Triangle> triangles;
+  std::vector<std::uint32_t> ids;
+
+  void add(const Float3& at, float size) {
+    const auto first = static_cast<std::uint32_t>(positions.size());
+    positions.insert(positions.end(), {at, {at.x + size, at.y, at.z}, {at.x, at.y + size, at.z + size}});
+    triangles.push_back({first, first + 1, first + 2});
+    ids.push_back(static_cast<std::uint32_t>(ids.size()) | (ids.size() % 3 == 0 ? surveyed_bit : 0));
+  }
+  Bvh bvh() const { return build_bvh(positions, triangles, ids); }
+};
+
+Soup random_soup(std::size_t n) {
+  RandomStream random(17);
+  Soup soup;
+  const auto uniform = [&] { return static_cast<float>(random.uniform()); };
+  for (std::size_t k = 0; k < n; ++k) soup.add({10 * uniform(), 7 * uniform(), uniform()}, 0.3f * uniform());
+  return soup;
+}
+
+// Each item lies so far beyond the rest that a cut by area splits off that one alone: as deep as trees get.
+Soup nested_soup() {
+  Soup soup;
+  for (int axis = 0; axis < 3; ++axis)
+    for (int k = -12; k <= 12; ++k) {
+      const float far = std::pow(40.0f, static_cast<float>(k));
+      for (int copy = 0; copy < 40; ++copy)
+        soup.add({axis == 0 ? far : 0, axis == 1 ? far : 0, axis == 2 ? far : 0}, far * 1e-3f);
+    }
+  return soup;
+}
+
+// Walks the tree, checks that boxes hold what is below them, and tells how many nodes a traversal may have on its
+// stack: it leaves one child there at each inner node on its way.
+class Walk {
+ public:
+  explicit Walk(const Bvh& bvh) : bvh_(bvh), seen_(bvh.triangles.size()) { node(0, 1); }
+  std::uint32_t stack() const { return stack_; }
+  bool sees_each_triangle_once() const {
+    return std::all_of(seen_.begin(), seen_.end(), [](int times) { return times == 1; });
+  }
+
+ private:
+  void node(std::uint32_t at, std::uint32_t on_stack) {
+    stack_ = std::max(stack_, on_stack);
+    const BvhNode& n = bvh_.nodes.at(at);
+    child(n.child0, n.centre0, n.half0, on_stack);
+    child(n.child1, n.centre1, n.half1, on_stack);
+  }
+  void child(std::uint32_t word, const vec3& centre, const vec3& half, std::uint32_t on_stack) {
+    if (half.x < 0) return;  // an empty box, which no ray enters
+    const std::size_t before = boxes_.size();
+    boxes_.push_back({centre, half});
+    if (word & bvh_leaf_bit) {
+      const std::uint32_t first = word & bvh_leaf_first_mask, more = (word >> bvh_leaf_count_shift) & 7u;
+      for (std::uint32_t k = first; k <= first + more; ++k) triangle(k);
+    } else {
+      node(word, on_stack + 1);
+    }
+    boxes_.resize(before);
+  }
+  void triangle(std::uint32_t k) {
+    ++seen_.at(k);
+    const BvhTriangle& t = bvh_.triangles[k];
+    for (const auto& [centre, half] : boxes_)
+      for (const vec3& p : {t.a, t.b, t.c}) {
+        EXPECT_LE(std::abs(double{p.x} - double{centre.x}), half.x);
+        EXPECT_LE(std::abs(double{p.y} - double{centre.y}), half.y);
+        EXPECT_LE(std::abs(double{p.z} - double{centre.z}), half.z);
+      }
+  }
+
+  const Bvh& bvh_;
+  std::vector<int> seen_;
+  std::vector<std::array<vec3, 2>> boxes_;  // from the root down
+  std::uint32_t stack_ = 0;
+};
+
+void expect_sound(const Soup& soup) {
+  const Bvh bvh = soup.bvh();
+  ASSERT_EQ(bvh.triangles.size(), soup.triangles.size());
+  const Walk walk(bvh);
+  EXPECT_TRUE(walk.sees_each_triangle_once());
+  EXPECT_LE(walk.stack(), bvh_stack_size);
+  std::vector<std::uint32_t> ids;
+  for (const BvhTriangle& t : bvh.triangles) {
+    ids.push_back(t.id);
+    EXPECT_EQ(t.a.x, soup.positions[soup.triangles[t.id & ~surveyed_bit][0]].x);
+  }
+  std::vector<std::uint32_t> expected = soup.ids;
+  std::sort(ids.begin(), ids.end());
+  std::sort(expected.begin(), expected.end());
+  EXPECT_EQ(ids, expected);
+}
+
+TEST(Bvh, HoldsEveryTriangleOnceInBoxesThatHoldIt) {
+  for (const std::size_t n : {1u, 2u, 3u, 4u, 5u, 100u, 20'000u}) {
+    SCOPED_TRACE(n);
+    expect_sound(random_soup(n));
+  }
+}
+
+TEST(Bvh, OneSpotIsHalvedByCount) {
+  Soup soup;
+  for (int k = 0; k < 5000; ++k) soup.add({1, 2, 3}, 0.5f);
+  expect_sound(soup);
+  EXPECT_LE(Walk(soup.bvh()).stack(), 13u) << "2^13 > 5000 / 2";
+}
+
+TEST(Bvh, StaysShallowEnoughForTheStackWhereAreasAlwaysCutOffOne) {
+  const Soup soup = nested_soup();
+  expect_sound(soup);
+  EXPECT_GT(Walk(soup.bvh()).stack(), 34u) << "no tree to try the bound with";
+}
+
+TEST(Bvh, IsTheSameTreeWhateverTheThreads) {
+  const Soup soup = random_soup(50'000);
+  const Bvh many = soup.bvh();
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const Bvh alone = soup.bvh();
+  ASSERT_EQ(many.nodes.size(), alone.nodes.size());
+  EXPECT_EQ(std::memcmp(many.nodes.data(), alone.nodes.data(), many.nodes.size() * sizeof(BvhNode)), 0);
+  EXPECT_EQ(std::memcmp(many.triangles.data(), alone.triangles.data(), many.triangles.size() * sizeof(BvhTriangle)), 0);
+}
+
+}  // namespace
+}  // namespace vantage
