@@ -16,6 +16,7 @@
 #include "report/text.hpp"
 #include "vantage/error.hpp"
 #include "vantage/export.hpp"
+#include "vantage/objective.hpp"
 
 namespace vantage::bench {
 namespace {

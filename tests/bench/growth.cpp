@@ -19,6 +19,7 @@
 #include "trace/vulkan/device.hpp"
 #include "vantage/error.hpp"
 #include "vantage/export.hpp"
+#include "vantage/objective.hpp"
 
 namespace vantage::bench {
 namespace {

@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "networks.hpp"
+#include "vantage/objective.hpp"
 
 namespace vantage::bench {
 namespace {

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/philox.hpp"
+#include "vantage/objective.hpp"
 #include "vantage/placement.hpp"
 
 namespace vantage::bench {

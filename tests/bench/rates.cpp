@@ -7,6 +7,8 @@
 #include <limits>
 #include <memory>
 
+#include "vantage/objective.hpp"
+
 namespace vantage::bench {
 namespace {
 
