@@ -4,18 +4,15 @@
 #include <string>
 #include <utility>
 
+#include "trace/choose_engine.hpp"
 #include "trace/embree/embree_tracer.hpp"
 #include "trace/tracer.hpp"
 #include "trace/vulkan/vulkan_engines.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage {
-namespace {
 
-// What `automatic` stands for: a hardware GPU by ray query where it has that, else by our own BVH; else the CPU. Of the
-// engines on one device, where that was named, the first usable one.
-std::size_t default_engine(const std::vector<EngineInfo>& engines,
-                           std::optional<std::uint32_t> device_index = std::nullopt) {
+std::size_t default_engine(const std::vector<EngineInfo>& engines, std::optional<std::uint32_t> device_index) {
   if (device_index) {
     const auto on_device = std::find_if(engines.begin(), engines.end(), [&](const EngineInfo& e) {
       return e.engine != Engine::embree && e.usable && e.device_index == *device_index;
@@ -30,8 +27,6 @@ std::size_t default_engine(const std::vector<EngineInfo>& engines,
   return static_cast<std::size_t>(embree - engines.begin());
 }
 
-}  // namespace
-
 std::vector<EngineInfo> list_engines() {
   std::vector<EngineInfo> engines = list_vulkan_engines();
   engines.push_back(embree_engine_info());
@@ -41,7 +36,9 @@ std::vector<EngineInfo> list_engines() {
     const bool software = std::any_of(engines.begin(), engines.end(), [](const EngineInfo& e) {
       return e.software && e.usable && e.engine != Engine::embree;
     });
-    chosen.reason = software ? "Vulkan offers only a software device, which Embree outruns" : "no Vulkan GPU is usable";
+    chosen.reason =
+        (software ? "Vulkan offers only a software device, which Embree outruns; " : "no Vulkan GPU is usable; ") +
+        chosen.reason;
   }
   return engines;
 }

@@ -9,6 +9,7 @@
 
 #include "support/reference_tracer.hpp"
 #include "trace/tracer.hpp"
+#include "vantage/objective.hpp"
 
 namespace vantage::test {
 

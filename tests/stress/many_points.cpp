@@ -7,6 +7,7 @@
 
 #include "stress/leaks.hpp"
 #include "vantage/error.hpp"
+#include "vantage/objective.hpp"
 
 namespace vantage::test {
 

@@ -9,6 +9,7 @@
 
 #include "support/glb_builder.hpp"
 #include "support/temporary_folder.hpp"
+#include "vantage/objective.hpp"
 #include "voxel/voxel_grid.hpp"
 
 namespace vantage::test {

@@ -11,6 +11,7 @@
 #include "stress/moved_scene.hpp"
 #include "trace/field_counts.hpp"
 #include "vantage/error.hpp"
+#include "vantage/objective.hpp"
 
 namespace vantage::test {
 namespace {
