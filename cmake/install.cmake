@@ -12,6 +12,7 @@ install(
 if(TARGET vantage-cli)
   install(TARGETS vantage-cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()
+# The presets are part of the library; the file is an example of their form.
 install(FILES ${PROJECT_SOURCE_DIR}/data/scanners.json DESTINATION ${CMAKE_INSTALL_DATADIR}/vantage)
 
 set(VANTAGE_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/vantage)

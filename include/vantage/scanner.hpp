@@ -58,18 +58,20 @@ Settings settings(const Scanner& scanner);
 /// Table 1 of the method: Leica RTC360, single measurement.
 NoiseTable rtc360_noise();
 
-/// One entry of a presets file.
+/// One scanner of the presets.
 struct ScannerPreset {
   std::string key;      ///< "rtc360"
   std::string summary;  ///< One line for `vantage info`.
 };
 
-/// A scanner from a presets file (data/scanners.json) by "key" or "key@setting", e.g. "rtc360@6mm"; upper or lower
-/// case. Throws Error: io, malformed_file, invalid_argument (lists what exists).
-Scanner load_scanner(const std::filesystem::path& presets, const std::string& name);
-std::vector<ScannerPreset> list_scanners(const std::filesystem::path& presets);
+/// A scanner by "key" or "key@setting", e.g. "rtc360@6mm"; upper or lower case. The presets (data/scanners.json) are
+/// part of the library; a file `more` of that form adds to them, and goes before them where a key is in both. Throws
+/// Error: io, malformed_file, invalid_argument (lists what exists).
+Scanner load_scanner(const std::string& name, const std::filesystem::path& more = {});
+/// All of them, those of `more` first. Throws Error: io, malformed_file.
+std::vector<ScannerPreset> list_scanners(const std::filesystem::path& more = {});
 
-/// Where the installed or built-in presets file is. Environment variable VANTAGE_DATA overrides the folder.
-std::filesystem::path default_presets_file();
+/// scanners.json in the folder that the environment variable VANTAGE_DATA names; empty where it names none.
+std::filesystem::path own_presets_file();
 
 }  // namespace vantage

@@ -105,7 +105,7 @@ int info(CLI::App&, InfoOptions& options, Program& program) {
       return a.rays_per_second.value_or(-1) > b.rays_per_second.value_or(-1);
     });
   }
-  const auto presets = presets_file();
+  const auto presets = own_presets_file();
   const auto scanners = list_scanners(presets);
 
   if (options.json) {
@@ -120,7 +120,7 @@ int info(CLI::App&, InfoOptions& options, Program& program) {
   } else {
     std::string text = fmt::format("vantage {}\n\nengines (* taken by default, - refused):\n", version());
     for (const auto& row : rows) text += to_text(row);
-    text += fmt::format("\nscanners, from {}:\n", presets.string());
+    text += presets.empty() ? "\nscanners:\n" : fmt::format("\nscanners, built in and from {}:\n", presets.string());
     for (const auto& scanner : scanners) text += fmt::format("  {:<14} {}\n", scanner.key, scanner.summary);
     program.console.print(text);
   }

@@ -12,7 +12,8 @@ namespace vantage::cli {
 
 void tell_engine(const Simulator& simulator) {
   const EngineInfo& info = simulator.engine();
-  std::string reason;
+  // Of Embree also where it was asked for: whether this processor gives what all others do.
+  std::string reason = info.engine == Engine::embree ? ": " + info.reason : "";
   if (simulator.config().engine == Engine::automatic && !simulator.config().device_index)
     for (const auto& engine : list_engines())
       if (engine.chosen_by_default) reason = ": " + engine.reason;

@@ -2,7 +2,6 @@
 #include "cli/scanners.hpp"
 
 #include <algorithm>
-#include <cstdlib>
 #include <fstream>
 #include <functional>
 #include <vector>
@@ -20,19 +19,11 @@ std::string trimmed(std::string line) {
 
 }  // namespace
 
-std::filesystem::path presets_file() {
-  std::error_code error;
-  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
-  const auto beside = program.parent_path().parent_path() / "share" / "vantage" / "scanners.json";
-  if (std::getenv("VANTAGE_DATA") || error || !std::filesystem::exists(beside, error)) return default_presets_file();
-  return beside;
-}
-
 NoiseTable load_noise(const std::string& name) {
   if (name == "off" || name == "none" || name == "false") return {};
   if (name == "rtc360") return rtc360_noise();
   if (!name.ends_with(".csv")) {
-    const Scanner scanner = load_scanner(presets_file(), name);
+    const Scanner scanner = load_scanner(name, own_presets_file());
     if (scanner.noise.empty())
       throw Error(Errc::invalid_argument,
                   "--noise: the maker of '" + name + "' states no noise table; give a CSV file or off");

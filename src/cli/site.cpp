@@ -39,7 +39,7 @@ Scanner resolve_scanner(const SiteOptions& options, double scale) {
   scanner.max_range_m *= scale;
   if (options.scanner) {
     const double height = scanner.height_m;
-    scanner = load_scanner(presets_file(), *options.scanner);
+    scanner = load_scanner(*options.scanner, own_presets_file());
     scanner.height_m = height;
   }
   if (options.step) {

@@ -8,6 +8,7 @@
 #include <embree3/rtcore.h>
 #endif
 
+#include <cstdlib>
 #include <memory>
 #include <string>
 #include <type_traits>
@@ -15,6 +16,12 @@
 #include "vantage/error.hpp"
 
 namespace vantage::embree {
+
+#if VANTAGE_EMBREE_MAJOR >= 4
+using Context = RTCRayQueryContext;
+#else
+using Context = RTCIntersectContext;
+#endif
 
 struct Release {
   void operator()(RTCDevice device) const noexcept { rtcReleaseDevice(device); }
@@ -36,11 +43,32 @@ inline void check(RTCDevice device, const std::string& doing) {
               "Embree failed while " + doing + " (error " + std::to_string(static_cast<int>(error)) + ")");
 }
 
+// The instruction set that Embree is held to, and why: so that every x86-64 processor with AVX2 runs the same code of
+// Embree, whatever else it has. One without takes the best that it has. The environment variable VANTAGE_EMBREE_ISA
+// (sse2, sse4.2, avx, avx2, avx512) forces another, for tests and measurements.
+inline std::string device_config() {
+  const char* const forced = std::getenv("VANTAGE_EMBREE_ISA");
+  return forced && *forced ? "isa=" + std::string(forced) : "max_isa=avx2";
+}
+
+// What of that concerns whoever compares results, in a line.
+inline std::string told() {
+  if (const char* const forced = std::getenv("VANTAGE_EMBREE_ISA"); forced && *forced)
+    return "runs on every CPU; held to " + std::string(forced) + " by VANTAGE_EMBREE_ISA";
+#if defined(__x86_64__)
+  if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma"))
+    return "runs on every CPU; this one lacks AVX2, so that a ray at an edge may hit otherwise than on those that have "
+           "it";
+#endif
+  return "runs on every CPU";
+}
+
 // Throws Error device_failure.
-inline Device new_device(const char* config = nullptr) {
-  Device device(rtcNewDevice(config));
+inline Device new_device() {
+  const std::string config = device_config();
+  Device device(rtcNewDevice(config.c_str()));
   if (!device) {
-    check(nullptr, "creating its device");
+    check(nullptr, "creating its device with " + config);
     throw Error(Errc::device_failure, "Embree made no device and gave no reason");
   }
   return device;

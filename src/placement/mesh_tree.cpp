@@ -44,6 +44,35 @@ bool visit(RTCPointQueryFunctionArguments* arguments) {
   return true;
 }
 
+// The nearest triangle of a ray. Embree proposes; its own distance hangs on the maker of the processor, and its choice
+// between triangles that are equally far on the order in which it visits them.
+struct Nearest {
+  embree::Context rtc;  // first: Embree hands its address to the filter
+  Buffers buffers;
+  glm::dvec3 point, way;
+  double distance = std::numeric_limits<double>::infinity();
+  std::optional<std::uint32_t> triangle = std::nullopt;
+};
+
+void keep_nearest(const RTCFilterFunctionNArguments* arguments) {
+  constexpr float beyond = 1 + 0x1p-8f;  // how far past it Embree goes on searching
+  Nearest& nearest = *reinterpret_cast<Nearest*>(arguments->context);
+  const std::uint32_t proposed = RTCHitN_primID(arguments->hit, arguments->N, 0);
+  const Triangle& t = nearest.buffers.triangles[proposed];
+  const glm::dvec3 a = to_glm(nearest.buffers.positions[t[0]]);
+  const glm::dvec3 normal =
+      cross(to_glm(nearest.buffers.positions[t[1]]) - a, to_glm(nearest.buffers.positions[t[2]]) - a);
+  const double distance = dot(normal, a - nearest.point) / dot(normal, nearest.way);
+  if (distance < nearest.distance ||
+      (nearest.triangle && distance == nearest.distance && proposed < *nearest.triangle)) {
+    nearest.distance = distance;
+    nearest.triangle = proposed;
+    RTCRayN_tfar(arguments->ray, arguments->N, 0) = static_cast<float>(distance) * beyond;
+  } else {
+    arguments->valid[0] = 0;
+  }
+}
+
 RTCRay ray_of(const glm::dvec3& point, const glm::dvec3& way, double from, double to) {
   RTCRay ray{};
   ray.org_x = static_cast<float>(point.x);
@@ -96,6 +125,7 @@ struct MeshTree::Impl {
       std::copy(scene.positions.begin(), scene.positions.end(), positions);
       std::copy(scene.triangles.begin(), scene.triangles.end(), triangles);
       buffers = {positions, triangles};
+      rtcSetGeometryIntersectFilterFunction(geometry.get(), keep_nearest);
       rtcCommitGeometry(geometry.get());
       rtcAttachGeometry(tree.get(), geometry.get());
     }
@@ -125,15 +155,18 @@ std::optional<std::uint32_t> MeshTree::Impl::first_hit(const glm::dvec3& point, 
   RTCRayHit hit{};
   hit.ray = ray_of(point, way, 0, std::numeric_limits<double>::infinity());
   hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  Nearest nearest{.rtc = {}, .buffers = buffers, .point = point, .way = way};
 #if VANTAGE_EMBREE_MAJOR >= 4
-  rtcIntersect1(tree.get(), &hit);
+  rtcInitRayQueryContext(&nearest.rtc);
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  arguments.context = &nearest.rtc;
+  rtcIntersect1(tree.get(), &hit, &arguments);
 #else
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcIntersect1(tree.get(), &context, &hit);
+  rtcInitIntersectContext(&nearest.rtc);
+  rtcIntersect1(tree.get(), &nearest.rtc, &hit);
 #endif
-  if (hit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
-  return hit.hit.primID;
+  return nearest.triangle;
 }
 
 MeshTree::MeshTree(const SceneData& scene) : impl_(std::make_unique<Impl>(scene)) {}

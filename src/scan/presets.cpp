@@ -1,24 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads data/scanners.json (docs/scanners.md describes it). Strict: a figure without a known source, or a name that is
-// not known, is an error, so that a typing mistake cannot pass as a scanner.
+// Reads data/scanners.json, which the build embeds, and files of that form (docs/scanners.md describes it). Strict: a
+// figure without a known source, or a name that is not known, is an error, so that a typing mistake cannot pass as a
+// scanner.
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <initializer_list>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <optional>
 #include <set>
 #include <string>
-#include <system_error>
+#include <utility>
 #include <vector>
 
 #include "vantage/error.hpp"
 #include "vantage/scanner.hpp"
 
 namespace vantage {
+
+extern const char* const built_in_presets;  // data/scanners.json, from the build
+
 namespace {
 
 using Json = nlohmann::json;
@@ -117,13 +122,11 @@ struct Document {
   Json json;
   std::string file;
 
-  explicit Document(const std::filesystem::path& path) : file(path.string()) {
-    std::ifstream in(path);
-    if (!in)
-      throw Error(Errc::io, "cannot read the scanner presets " + file +
-                                " (set VANTAGE_DATA to the folder that holds scanners.json)");
+  Document() : Document(built_in_presets, "the built-in presets") {}
+  explicit Document(const std::filesystem::path& path) : Document(text_of(path), path.string()) {}
+  Document(const std::string& text, std::string name) : file(std::move(name)) {
     try {
-      json = Json::parse(in);
+      json = Json::parse(text);
     } catch (const Json::exception& e) {
       throw Error(Errc::malformed_file, file + ": not valid JSON: " + e.what());
     }
@@ -133,7 +136,22 @@ struct Document {
       throw Error(Errc::malformed_file, file + ": \"scanners\" must be an object with at least one scanner");
   }
   const Json& scanners() const { return json["scanners"]; }
+
+ private:
+  static std::string text_of(const std::filesystem::path& path) {
+    std::ifstream in(path);
+    if (!in) throw Error(Errc::io, "cannot read the scanner presets " + path.string());
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
 };
+
+// What is built in, and before it what a file adds.
+std::vector<Document> documents(const std::filesystem::path& more) {
+  std::vector<Document> all;
+  if (!more.empty()) all.emplace_back(more);
+  all.emplace_back();
+  return all;
+}
 
 template <class Object>
 std::string names_of(const Object& object) {
@@ -194,24 +212,24 @@ Scanner read_scanner(const Document& document, const std::string& key, std::stri
 
 }  // namespace
 
-Scanner load_scanner(const std::filesystem::path& presets, const std::string& name) {
-  const Document document(presets);
+Scanner load_scanner(const std::string& name, const std::filesystem::path& more) {
   const std::size_t at = name.find('@');
   const std::string key = lower_case(name.substr(0, at));
   const std::string setting = at == std::string::npos ? "" : lower_case(name.substr(at + 1));
   if (at != std::string::npos && setting.empty())
     throw Error(Errc::invalid_argument, "scanner \"" + name + "\": a setting must follow the @, as in rtc360@6mm");
-  if (!document.scanners().contains(key)) {
-    throw Error(Errc::invalid_argument, "there is no scanner \"" + key + "\" in " + document.file + "; it has " +
-                                            names_of(document.scanners()));
+  std::string known;
+  for (const Document& document : documents(more)) {
+    if (document.scanners().contains(key)) return read_scanner(document, key, setting);
+    known += (known.empty() ? "" : "; ") + document.file + ": " + names_of(document.scanners());
   }
-  return read_scanner(document, key, setting);
+  throw Error(Errc::invalid_argument, "there is no scanner \"" + key + "\": " + known);
 }
 
-std::vector<ScannerPreset> list_scanners(const std::filesystem::path& presets) {
-  const Document document(presets);
+std::vector<ScannerPreset> list_scanners(const std::filesystem::path& more) {
   std::vector<ScannerPreset> list;
-  for (const auto& [key, entry] : document.scanners().items()) {
+  const auto add = [&](const Document& document, const std::string& key, const Json& entry) {
+    if (std::any_of(list.begin(), list.end(), [&](const ScannerPreset& known) { return known.key == key; })) return;
     const Scanner scanner = read_scanner(document, key, "");
     char figures[160];
     std::snprintf(figures, sizeof figures, ": %.4g° around, zenith %.4g° to %.4g°, %.3g to %.4g m, %s; ",
@@ -220,17 +238,16 @@ std::vector<ScannerPreset> list_scanners(const std::filesystem::path& presets) {
                   scanner.max_range_m, scanner.noise.empty() ? "no noise table" : "noise table");
     list.push_back({key, entry["name"].get<std::string>() + figures + "settings " + names_of(entry["settings"]) +
                              " (default " + entry["default_setting"].get<std::string>() + ")"});
+  };
+  for (const Document& document : documents(more)) {
+    for (const auto& [key, entry] : document.scanners().items()) add(document, key, entry);
   }
   return list;
 }
 
-std::filesystem::path default_presets_file() {
-  if (const char* folder = std::getenv("VANTAGE_DATA"); folder && *folder)
-    return std::filesystem::path(folder) / "scanners.json";
-  std::error_code ignored;
-  const std::filesystem::path installed = std::filesystem::path(VANTAGE_INSTALLED_DATA_DIR) / "scanners.json";
-  if (std::filesystem::exists(installed, ignored)) return installed;
-  return std::filesystem::path(VANTAGE_SOURCE_DATA_DIR) / "scanners.json";
+std::filesystem::path own_presets_file() {
+  const char* const folder = std::getenv("VANTAGE_DATA");
+  return folder && *folder ? std::filesystem::path(folder) / "scanners.json" : std::filesystem::path();
 }
 
 }  // namespace vantage

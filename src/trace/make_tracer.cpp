@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "trace/choose_engine.hpp"
 #include "trace/embree/embree_tracer.hpp"
 #include "trace/tracer.hpp"
 #include "trace/vulkan/compute_bvh/compute_bvh.hpp"
@@ -13,6 +14,7 @@
 #include "vantage/error.hpp"
 
 namespace vantage {
+
 namespace {
 
 // The engines that run on Vulkan; where a device has several, `automatic` takes the first.
@@ -21,10 +23,9 @@ constexpr const vulkan::VulkanEngine* vulkan_engines[] = {
     &vulkan::compute_bvh_engine,
 };
 
-// What `automatic` stands for: the first Vulkan engine that a hardware GPU has, which is ray queries where it has
-// those, else our own BVH; else the CPU. Of the engines on one device, where that was named, the first usable one.
-std::size_t default_engine(const std::vector<EngineInfo>& engines,
-                           std::optional<std::uint32_t> device_index = std::nullopt) {
+}  // namespace
+
+std::size_t default_engine(const std::vector<EngineInfo>& engines, std::optional<std::uint32_t> device_index) {
   if (device_index) {
     const auto on_device = std::find_if(engines.begin(), engines.end(), [&](const EngineInfo& e) {
       return e.engine != Engine::embree && e.usable && e.device_index == *device_index;
@@ -39,8 +40,6 @@ std::size_t default_engine(const std::vector<EngineInfo>& engines,
   return static_cast<std::size_t>(embree - engines.begin());
 }
 
-}  // namespace
-
 std::vector<EngineInfo> list_engines() {
   std::vector<EngineInfo> engines = list_vulkan_engines(vulkan_engines);
   engines.push_back(embree_engine_info());
@@ -50,7 +49,9 @@ std::vector<EngineInfo> list_engines() {
     const bool software = std::any_of(engines.begin(), engines.end(), [](const EngineInfo& e) {
       return e.software && e.usable && e.engine != Engine::embree;
     });
-    chosen.reason = software ? "Vulkan offers only a software device, which Embree outruns" : "no Vulkan GPU is usable";
+    chosen.reason =
+        (software ? "Vulkan offers only a software device, which Embree outruns; " : "no Vulkan GPU is usable; ") +
+        chosen.reason;
   }
   return engines;
 }

@@ -2,7 +2,6 @@
 #include "support/engines.hpp"
 
 #include <ostream>
-#include <utility>
 
 namespace vantage {
 
@@ -10,13 +9,12 @@ void PrintTo(const EngineInfo& info, std::ostream* out) { *out << to_string(info
 
 namespace test {
 
-std::vector<EngineInfo> usable_engines() {
-  std::vector<EngineInfo> usable;
-  for (EngineInfo& info : list_engines()) {
-    if (info.usable) usable.push_back(std::move(info));
-  }
-  return usable;
+std::vector<EngineInfo> usable_of(std::vector<EngineInfo> listed) {
+  std::erase_if(listed, [](const EngineInfo& info) { return !info.usable; });
+  return listed;
 }
+
+std::vector<EngineInfo> usable_engines() { return usable_of(list_engines()); }
 
 std::string name_of(const EngineInfo& info) { return to_string(info.engine) + "_" + std::to_string(info.device_index); }
 

@@ -14,7 +14,11 @@ void PrintTo(const EngineInfo& info, std::ostream* out);
 
 namespace test {
 
+// All pairs of engine and device that can run: what needs ray queries finds the software device, where the GPU has
+// none.
 std::vector<EngineInfo> usable_engines();
+// The same of a list that was not asked of the machine.
+std::vector<EngineInfo> usable_of(std::vector<EngineInfo> listed);
 std::string name_of(const EngineInfo& info);  // letters, digits and _ only
 
 }  // namespace test

@@ -31,11 +31,7 @@ TileSums count_tile(const StationRays& station_rays, const TraceStation& station
   station_rays.gather(station, tile, planned.end, rays);
   station_rays.caster().cast(rays);
 
-  // In two passes, so that memory answers while Embree's results are still looked at.
   const Surface& surface = station_rays.surface();
-  for (std::uint32_t slot = 0; slot < rays.size; ++slot) {
-    if (rays.primitive[slot] != RayBundle::no_hit) surface.prefetch(rays.primitive[slot]);
-  }
   TileSums sums;
   sums.rays = rays.size;
   voxels.clear();

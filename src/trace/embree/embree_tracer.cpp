@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "core/embree.hpp"
 #include "trace/embree/count_network.hpp"
 #include "trace/embree/sample_networks.hpp"
 #include "trace/embree/scan_station.hpp"
@@ -68,7 +69,7 @@ EngineInfo embree_engine_info() {
   info.device = processor_name() + " (" + std::to_string(tbb::this_task_arena::max_concurrency()) + " threads)";
   info.driver = "Embree " RTC_VERSION_STRING;
   info.usable = true;
-  info.reason = "runs on every CPU";
+  info.reason = embree::told();
   return info;
 }
 

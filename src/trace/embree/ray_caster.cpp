@@ -9,64 +9,90 @@
 #include <string>
 #include <utility>
 
+#include "trace/target_clones.hpp"
+
 namespace vantage {
 namespace {
 
 constexpr std::uint32_t packet = 8;
 constexpr std::uint32_t packets = RayBundle::capacity / packet;
 
-// How far past the nearest hit Embree goes on searching, relative to its distance. Far more than its box tests round
-// by, so that no box with a coincident triangle is passed over.
-constexpr float slack = 1 + 0x1p-18f;
-
 // Embree takes a direction's component below 1e-18 for +1e-18, but its sign as it was: such a ray, and its neighbours
 // in a packet, then miss every box. At 1 km a component below this moves a point by less than 1e-13 m.
 constexpr float least_component = 1e-16f;
 float safe(float component) { return std::abs(component) < least_component ? 0.0f : component; }
 
-#if VANTAGE_EMBREE_MAJOR >= 4
-using RtcContext = RTCRayQueryContext;
-#else
-using RtcContext = RTCIntersectContext;
-#endif
+constexpr float before = 1 - RayCaster::doubt, beyond = 1 + RayCaster::doubt;
 
 struct Context {
-  RtcContext rtc;  // first: Embree hands its address to the filter
-  float* t;        // by the ray's id
+  embree::Context rtc;  // first: Embree hands its address to the filters
+  const Planes& planes;
+  Float3 origin;
+  float start;
+  float* t;  // by the ray's id; at first where the ray ends
   std::uint32_t* primitive;
 };
 
-// Called for every triangle that a ray meets nearer than its present end.
-void keep_least(const RTCFilterFunctionNArguments* args) {
-  const Context& context = *reinterpret_cast<const Context*>(args->context);
-  const unsigned n = args->N;
-  for (unsigned i = 0; i < n; ++i) {
+// Calls take(ray, primitive, distance) for rays `first` to first + n to which Embree proposes a triangle; where that
+// returns false the ray goes on.
+template <unsigned n, class Take>
+[[gnu::always_inline]] inline void judge(const RTCFilterFunctionNArguments* args, unsigned first,
+                                         const Context& context, const Take& take) {
+  const unsigned all = args->N;
+  unsigned primitive = RayBundle::no_hit;
+  alignas(32) float t[n]{};
+  for (unsigned k = 0; k < n; ++k) {
+    const unsigned i = first + k;
     if (args->valid[i] == 0) continue;
-    float& end = RTCRayN_tfar(args->ray, n, i);  // the candidate's distance
-    const unsigned ray = RTCRayN_id(args->ray, n, i);
-    const unsigned primitive = RTCHitN_primID(args->hit, n, i);
-    if (end < context.t[ray] || (end == context.t[ray] && primitive < context.primitive[ray])) {
-      context.t[ray] = end;
-      context.primitive[ray] = primitive;
-      end *= slack;
+    if (RTCHitN_primID(args->hit, all, i) != primitive) {  // mostly all rays of a packet meet the same
+      primitive = RTCHitN_primID(args->hit, all, i);
+      context.planes.distances<n>(context.planes.seen(primitive, context.origin), primitive, context.origin,
+                                  &RTCRayN_dir_x(args->ray, all, first), &RTCRayN_dir_y(args->ray, all, first),
+                                  &RTCRayN_dir_z(args->ray, all, first), t);
+    }
+    if (take(RTCRayN_id(args->ray, all, i), primitive, t[k])) {
+      RTCRayN_tfar(args->ray, all, i) = t[k] * beyond;
     } else {
       args->valid[i] = 0;
     }
   }
 }
 
-// Called for the first triangle that a ray of any_hits() meets.
+template <class Take>
+[[gnu::always_inline]] inline void judge(const RTCFilterFunctionNArguments* args, const Take& take) {
+  const Context& context = *reinterpret_cast<const Context*>(args->context);
+  unsigned first = 0;
+  for (; first + packet <= args->N; first += packet) judge<packet>(args, first, context, take);
+  for (; first < args->N; ++first) judge<1>(args, first, context, take);
+}
+
+VANTAGE_TARGET_CLONES
+void keep_least(const RTCFilterFunctionNArguments* args) {
+  const Context& context = *reinterpret_cast<const Context*>(args->context);
+  judge(args, [&](unsigned ray, unsigned primitive, float t) {
+    float& best = context.t[ray];
+    if (t <= context.start || t > best || (t == best && primitive >= context.primitive[ray])) return false;
+    best = t;
+    context.primitive[ray] = primitive;
+    return true;
+  });
+}
+
+// Until one counts.
+VANTAGE_TARGET_CLONES
 void note(const RTCFilterFunctionNArguments* args) {
   const Context& context = *reinterpret_cast<const Context*>(args->context);
-  for (unsigned i = 0; i < args->N; ++i) {
-    if (args->valid[i] != 0)
-      context.primitive[RTCRayN_id(args->ray, args->N, i)] = RTCHitN_primID(args->hit, args->N, i);
-  }
+  judge(args, [&](unsigned ray, unsigned primitive, float t) {
+    if (t <= context.start || t > context.t[ray]) return false;
+    context.primitive[ray] = primitive;
+    return true;
+  });
 }
 
 }  // namespace
 
-RayCaster::RayCaster(std::shared_ptr<const SceneData> scene) : scene_(std::move(scene)), device_(embree::new_device()) {
+RayCaster::RayCaster(std::shared_ptr<const SceneData> scene, std::shared_ptr<const Planes> planes)
+    : scene_(std::move(scene)), planes_(std::move(planes)), device_(embree::new_device()) {
   RTCDevice device = device_.get();
   tree_.reset(rtcNewScene(device));
   rtcSetSceneFlags(tree_.get(), RTC_SCENE_FLAG_ROBUST);
@@ -92,16 +118,19 @@ RayCaster::RayCaster(std::shared_ptr<const SceneData> scene) : scene_(std::move(
 void RayCaster::any_hits(const Float3& origin, float start, std::span<Probe> probes) const {
   constexpr std::size_t stream = 64;
   std::array<std::uint32_t, stream> hit;
+  std::array<float, stream> end;
   alignas(64) std::array<RTCRay, stream> rays;
   for (std::size_t first = 0; first < probes.size(); first += stream) {
     const std::size_t n = std::min(stream, probes.size() - first);
     for (std::size_t i = 0; i < n; ++i) {
       const Probe& probe = probes[first + i];
-      rays[i] = {origin.x,        origin.y, origin.z,  start,       safe(probe.d.x),          safe(probe.d.y),
-                 safe(probe.d.z), 0,        probe.end, 0xFFFFFFFFu, static_cast<unsigned>(i), 0};
+      end[i] = probe.end;
+      rays[i] = {
+          origin.x,        origin.y, origin.z,           start * before, safe(probe.d.x),          safe(probe.d.y),
+          safe(probe.d.z), 0,        probe.end * beyond, 0xFFFFFFFFu,    static_cast<unsigned>(i), 0};
     }
     hit.fill(RayBundle::no_hit);
-    Context context{{}, nullptr, hit.data()};
+    Context context{{}, *planes_, origin, start, end.data(), hit.data()};
 #if VANTAGE_EMBREE_MAJOR >= 4
     rtcInitRayQueryContext(&context.rtc);
     RTCOccludedArguments arguments;
@@ -131,12 +160,12 @@ void RayCaster::cast(RayBundle& rays) const {
       ray.org_x[lane] = rays.origin.x;
       ray.org_y[lane] = rays.origin.y;
       ray.org_z[lane] = rays.origin.z;
-      ray.tnear[lane] = rays.start;
+      ray.tnear[lane] = rays.start * before;
       ray.dir_x[lane] = safe(rays.x[i]);
       ray.dir_y[lane] = safe(rays.y[i]);
       ray.dir_z[lane] = safe(rays.z[i]);
       ray.time[lane] = 0;
-      ray.tfar[lane] = rays.end[i];
+      ray.tfar[lane] = rays.end[i] * beyond;
       ray.mask[lane] = 0xFFFFFFFFu;
       ray.id[lane] = i;
       ray.flags[lane] = 0;
@@ -144,10 +173,10 @@ void RayCaster::cast(RayBundle& rays) const {
       hits[p].hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
     }
   }
-  std::fill_n(rays.t, used * packet, std::numeric_limits<float>::infinity());
+  std::copy_n(rays.end, used * packet, rays.t);
   std::fill_n(rays.primitive, used * packet, RayBundle::no_hit);
 
-  Context context{{}, rays.t, rays.primitive};
+  Context context{{}, *planes_, rays.origin, rays.start, rays.t, rays.primitive};
 #if VANTAGE_EMBREE_MAJOR >= 4
   rtcInitRayQueryContext(&context.rtc);
   RTCIntersectArguments arguments;
@@ -164,6 +193,9 @@ void RayCaster::cast(RayBundle& rays) const {
   context.rtc.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   rtcIntersectNM(tree_.get(), &context.rtc, reinterpret_cast<RTCRayHitN*>(hits), packet, used, sizeof(RTCRayHit8));
 #endif
+  for (std::uint32_t i = 0; i < rays.size; ++i) {
+    if (rays.primitive[i] == RayBundle::no_hit) rays.t[i] = std::numeric_limits<float>::infinity();
+  }
 }
 
 }  // namespace vantage

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Nearest hits of bundles of rays that leave one point, by Embree.
+// Nearest hits of bundles of rays that leave one point. Embree proposes them, and this file decides.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +8,7 @@
 
 #include "core/embree.hpp"
 #include "scene/scene_data.hpp"
+#include "trace/embree/planes.hpp"
 
 namespace vantage {
 
@@ -22,7 +23,7 @@ struct RayBundle {
   alignas(64) float x[capacity], y[capacity], z[capacity];  // directions
   alignas(64) float end[capacity];
 
-  alignas(64) float t[capacity];                  // out: Embree's distance of the hit
+  alignas(64) float t[capacity];                  // out: distance of the hit, as Planes has it
   alignas(64) std::uint32_t primitive[capacity];  // out: scene triangle, or no_hit
 };
 
@@ -36,12 +37,14 @@ struct Probe {
 // The triangles of a scene in Embree's tree. Safe to use from any thread.
 class RayCaster {
  public:
-  // Keeps a share of `scene`. Throws Error: out_of_memory, device_failure.
-  explicit RayCaster(std::shared_ptr<const SceneData> scene);
+  // Keeps shares of `scene` and of its planes. Throws Error: out_of_memory, device_failure.
+  RayCaster(std::shared_ptr<const SceneData> scene, std::shared_ptr<const Planes> planes);
 
-  // Fills t and primitive. The hit is the least (t, primitive) over all triangles, whatever the rays beside it and
-  // however far beyond the hit the ray's end lies: Embree's own choice between coincident triangles depends on the
-  // order in which it visits them, so its tree is searched a little past the nearest hit, and the choice is ours.
+  // Fills t and primitive. The hit is the least (t, primitive) over all triangles with start < t <= end that Embree
+  // finds the ray to pass through, whatever the rays beside it. Embree's own distance hangs on the maker of the
+  // processor, and its choice between coincident triangles on the order in which it visits them: neither is used. Its
+  // tree is searched by `doubt` past the nearest hit and past both ends.
+  static constexpr float doubt = 0x1p-8f;
   void cast(RayBundle& rays) const;
 
   // Fills `hit` of rays from one point, in any order. Faster.
@@ -49,6 +52,7 @@ class RayCaster {
 
  private:
   std::shared_ptr<const SceneData> scene_;
+  std::shared_ptr<const Planes> planes_;
   embree::Device device_;
   embree::Scene tree_;
 };

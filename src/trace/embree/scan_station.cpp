@@ -33,7 +33,7 @@ void scan_tile(const StationRays& station_rays, const TraceStation& station, con
     std::array<double, 2> weights{};
     if (hit) {
       const Float3 d{rays.x[slot], rays.y[slot], rays.z[slot]};
-      range = surface.distance(triangle, rays.origin, d, rays.t[slot]);
+      range = rays.t[slot];
       if (need_weights) weights = surface.barycentric(triangle, rays.origin, d, range);
       if (need_normal) {
         const std::array<double, 3> unit = surface.normal(triangle, d, weights);

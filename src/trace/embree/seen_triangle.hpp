@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A triangle as seen from a head, in double precision: tests that are certain of what Embree's own will say.
+// A triangle as seen from a head, in double precision: tests that are certain of what RayCaster will say.
 #pragma once
 
 #include <algorithm>

@@ -30,8 +30,9 @@ class StationRays {
         grid_(scene.grid),
         pattern_(scene.pattern),
         noise_(scene.noise),
-        caster_(scene.scene),
-        surface_(scene.scene),
+        planes_(std::make_shared<Planes>(scene.scene)),
+        caster_(scene.scene, planes_),
+        surface_(scene.scene, planes_),
         prefixes_(*scene.grid) {}
 
   const SceneData& scene() const { return *scene_; }
@@ -73,10 +74,10 @@ class StationRays {
 
   // Distance of the point, noise included. REQUIRES: rays.primitive[slot] is a hit; `ray` and `place` key the noise.
   float range(const RayBundle& rays, std::uint32_t slot, std::uint64_t ray, std::uint32_t place) const {
+    const float t = rays.t[slot];
+    if (!noise_.enabled()) return t;
     const std::uint32_t triangle = rays.primitive[slot];
     const Float3 d{rays.x[slot], rays.y[slot], rays.z[slot]};
-    const float t = surface_.distance(triangle, rays.origin, d, rays.t[slot]);
-    if (!noise_.enabled()) return t;
     return noise_.displaced(t, surface_.reflectivity(triangle, rays.origin, d, t), ray, place);
   }
 
@@ -90,6 +91,7 @@ class StationRays {
   std::shared_ptr<const VoxelGrid> grid_;
   std::shared_ptr<const RayPattern> pattern_;
   RangeNoise noise_;
+  std::shared_ptr<const Planes> planes_;
   RayCaster caster_;
   Surface surface_;
   BrickPrefixes prefixes_;

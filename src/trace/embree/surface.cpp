@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trace/embree/surface.hpp"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "vantage/types.hpp"
@@ -16,21 +14,11 @@ Vec3 widen(const Float3& p) { return {p.x, p.y, p.z}; }
 
 }  // namespace
 
-Surface::Surface(std::shared_ptr<const SceneData> scene) : scene_(std::move(scene)) {
+Surface::Surface(std::shared_ptr<const SceneData> scene, std::shared_ptr<const Planes> planes)
+    : scene_(std::move(scene)), planes_(std::move(planes)) {
   const SceneData& s = *scene_;
-  planes_.resize(s.triangles.size());
   mesh_.resize(s.triangles.size());
   surveyed_.resize((s.triangles.size() + 63) / 64);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, s.triangles.size(), 4096), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i < range.end(); ++i) {
-      const Triangle& t = s.triangles[i];
-      const Vec3 a = widen(s.positions[t[0]]);
-      Vec3 n = cross(widen(s.positions[t[1]]) - a, widen(s.positions[t[2]]) - a);
-      const double length = std::sqrt(dot(n, n));
-      if (length > 0) n = n * (1 / length);
-      planes_[i] = {n.x, n.y, n.z, dot(n, a)};
-    }
-  });
   for (std::size_t m = 0; m < s.ranges.size(); ++m) {
     const MeshRange& range = s.ranges[m];
     diffuse_.push_back(s.meshes[m].diffuse);
@@ -67,7 +55,7 @@ std::array<double, 3> Surface::normal(std::uint32_t triangle, const Float3& d,
   if (length > 0) {
     n = n * (1 / length);
   } else {
-    n = {planes_[triangle].x, planes_[triangle].y, planes_[triangle].z};
+    n = planes_->normal(triangle);
   }
   if (dot(n, widen(d)) > 0) n = n * -1;
   return {n.x, n.y, n.z};

@@ -54,9 +54,7 @@ std::vector<PlannedTile> tiles_with_bricks(const StationRays& rays, const TraceS
   // Of what is rounded on the way to a voxel nothing is larger than this.
   const double magnitude = std::sqrt(dot(head, head)) + std::sqrt(dot(min, min)) + 2 * cube;
   const double pad = rounding_pad(magnitude);
-  // Embree's distance of a hit, by which it ends a ray, is off from the point's by no more than Surface::distance
-  // allows; twice that.
-  const double stretch = 1 + std::ldexp(2.0, -Surface::plane_trust);
+  const double stretch = 1 + 0x1p-20;  // far more than a distance is rounded by
 
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, grid.bricks().size(), 1024), [&](const auto& range) {
     for (std::size_t k = range.begin(); k < range.end(); ++k) {

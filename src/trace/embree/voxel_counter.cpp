@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+// How it works. For each station in turn, look_from() bounds the rows and columns of rays that can cross each cube of
+// the block, all side by side. list_rays() walks that window of a voxel: rays are gathered in the Fan, and when it is
+// full fill_nearest() meets them with the voxel's surveyed planes and triangles, in float, wide by all doubt: a ray
+// gets the least distance at which a hit of it can count, or infinity, and then list_fan() drops it. What is listed of
+// a voxel is a Sight: some rays, and how far away the last hit that counts may be. When many rays are listed settle()
+// asks first what hides each Sight: one ray of it is probed up to its nearest hit that counts. A triangle in the way
+// hides that ray, and drop_hidden() takes along all others of the Sight that it stops for certain. After `rounds` of
+// that, cast() traces every ray that is left to its nearest hit, in bundles, and finish() counts those whose point,
+// noise included, lies in the voxel. Hiding is only asked where the answer is certain, so the counts are those of all
+// rays cast.
 #include "trace/embree/voxel_counter.hpp"
 
 #include <algorithm>
@@ -16,10 +26,10 @@ constexpr std::size_t rays_at_once = 2048;
 // A voxel's first ray is asked alone for what hides it, and so is the first that this does not hide. Then all are
 // traced.
 constexpr int rounds = 2;
-// Embree's distance and the point's differ by at most one part in 2^plane_trust; twice that.
-const double trust = std::ldexp(2.0, -Surface::plane_trust);
-// Below this cosine, over slenderness, the plane may not be what decides the point's distance.
-constexpr float grazing = 0x1p-11f;
+// No distance that is computed in float here is off by more than this part, on however grazing a plane that is asked.
+constexpr double trust = 0x1p-7;
+// Below this cosine, over slenderness, the plane may not be what decides the point's distance (Planes).
+constexpr float grazing = 0x1p-10f;
 // Where a head is higher above a plane than this part of the distance, over slenderness, a more grazing ray meets the
 // plane well beyond the voxel, whatever is rounded on the way.
 constexpr float sure_height = 1.5f * grazing;
@@ -318,9 +328,6 @@ void SampledVoxelCounter::cast() {
 void SampledVoxelCounter::finish() {
   const Surface& surface = rays_.surface();
   rays_.caster().cast(bundle_);
-  for (std::uint32_t slot = 0; slot < bundle_.size; ++slot) {
-    if (bundle_.primitive[slot] != RayBundle::no_hit) surface.prefetch(bundle_.primitive[slot]);
-  }
   const std::uint64_t bit = std::uint64_t{1} << station_->place;
   for (std::uint32_t slot = 0; slot < bundle_.size; ++slot) {
     const std::uint32_t triangle = bundle_.primitive[slot], i = cast_voxel_[slot];

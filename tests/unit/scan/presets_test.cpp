@@ -27,13 +27,13 @@ TEST(Presets, HoldTheScannersOfTheTrade) {
                 "40mdeg-1200khz "
                 "(default 40mdeg)");
     }
-    EXPECT_NO_THROW(load_scanner(presets, preset.key).check());
+    EXPECT_NO_THROW(load_scanner(preset.key, presets).check());
   }
   EXPECT_EQ(keys, (std::vector<std::string>{"focus-x330", "rtc360", "vz-400i", "x7", "zf5016"}));
 }
 
 TEST(Presets, Rtc360) {
-  const Scanner scanner = load_scanner(presets, "rtc360@6mm");
+  const Scanner scanner = load_scanner("rtc360@6mm", presets);
   EXPECT_EQ(scanner.name, "Leica RTC360 @6mm");
   EXPECT_DOUBLE_EQ(scanner.azimuth_step.in_radians(), 0.0006);
   EXPECT_EQ(scanner.azimuth_step, scanner.zenith_step);
@@ -46,29 +46,29 @@ TEST(Presets, Rtc360) {
   EXPECT_EQ(scanner.noise.reflectivities, paper.reflectivities);
   ASSERT_EQ(scanner.noise.sigma_m.size(), paper.sigma_m.size());
   for (std::size_t k = 0; k < paper.sigma_m.size(); ++k) EXPECT_DOUBLE_EQ(scanner.noise.sigma_m[k], paper.sigma_m[k]);
-  EXPECT_EQ(load_scanner(presets, "RTC360").name, scanner.name);
-  EXPECT_DOUBLE_EQ(load_scanner(presets, "Rtc360@3MM").zenith_step.in_radians(), 0.0003);
+  EXPECT_EQ(load_scanner("RTC360", presets).name, scanner.name);
+  EXPECT_DOUBLE_EQ(load_scanner("Rtc360@3MM", presets).zenith_step.in_radians(), 0.0003);
 }
 
 TEST(Presets, ScannersThatDoNotLookUp) {
-  const Scanner scanner = load_scanner(presets, "vz-400i");
+  const Scanner scanner = load_scanner("vz-400i", presets);
   EXPECT_DOUBLE_EQ(scanner.zenith_start.in_degrees(), 30.0);
   EXPECT_EQ(scanner.rows(), 2500u);
   EXPECT_EQ(scanner.columns(), 9000u);
   EXPECT_EQ(scanner.max_range_m, 800.0);
-  EXPECT_EQ(load_scanner(presets, "vz-400i@40mdeg-1200khz").max_range_m, 250.0);  // a setting's own range
-  EXPECT_EQ(load_scanner(presets, "vz-400i@40mdeg-1200khz").min_range_m, 0.5);
+  EXPECT_EQ(load_scanner("vz-400i@40mdeg-1200khz", presets).max_range_m, 250.0);  // a setting's own range
+  EXPECT_EQ(load_scanner("vz-400i@40mdeg-1200khz", presets).min_range_m, 0.5);
 }
 
 TEST(Presets, PixelsPerTurn) {
-  EXPECT_EQ(load_scanner(presets, "focus-x330@1/1").columns(), 40960u);
-  EXPECT_EQ(load_scanner(presets, "zf5016@high").columns(), 10000u);
+  EXPECT_EQ(load_scanner("focus-x330@1/1", presets).columns(), 40960u);
+  EXPECT_EQ(load_scanner("zf5016@high", presets).columns(), 10000u);
 }
 
 TEST(Presets, NamesThatAreNotThereListWhatIs) {
   const auto message = [](const std::string& name) {
     try {
-      load_scanner(presets, name);
+      load_scanner(name, presets);
     } catch (const Error& e) {
       EXPECT_EQ(e.code(), Errc::invalid_argument);
       return std::string(e.what());
@@ -123,7 +123,7 @@ TEST(Presets, BrokenFilesSayWhere) {
     c.spoil(document);
     std::ofstream(file) << document;
     try {
-      load_scanner(file, "rtc360@6mm");
+      load_scanner("rtc360@6mm", file);
       ADD_FAILURE() << "passed, but should say: " << c.says;
     } catch (const Error& e) {
       EXPECT_EQ(e.code(), Errc::malformed_file) << e.what();
@@ -135,12 +135,30 @@ TEST(Presets, BrokenFilesSayWhere) {
   EXPECT_THROW(list_scanners(folder / "none.json"), Error);
 }
 
-TEST(Presets, DefaultFileFollowsTheEnvironment) {
+// What is built in is the file in data/, and a file of one's own adds to it.
+TEST(Presets, AFileAddsToWhatIsBuiltIn) {
+  std::ifstream in(presets);
+  auto document = nlohmann::json::parse(in);
+  const test::TemporaryFolder folder;
+  const std::size_t built_in = list_scanners().size();
+  EXPECT_EQ(built_in, document["scanners"].size());
+  document["scanners"] = {{"mine", document["scanners"]["rtc360"]}, {"x7", document["scanners"]["x7"]}};
+  document["scanners"]["mine"]["max_range_m"]["value"] = 42;
+  document["scanners"]["x7"]["max_range_m"]["value"] = 43;
+  std::ofstream(folder / "scanners.json") << document;
+  const auto file = folder / "scanners.json";
+  EXPECT_EQ(load_scanner("mine", file).max_range_m, 42);
+  EXPECT_EQ(load_scanner("x7", file).max_range_m, 43);  // goes before the built-in one
+  EXPECT_EQ(load_scanner("rtc360", file).max_range_m, load_scanner("rtc360").max_range_m);
+  EXPECT_NE(load_scanner("x7").max_range_m, 43);
+  EXPECT_EQ(list_scanners(file).size(), built_in + 1);
+}
+
+TEST(Presets, OwnFileFollowsTheEnvironment) {
   setenv("VANTAGE_DATA", "/some/where", 1);
-  EXPECT_EQ(default_presets_file(), "/some/where/scanners.json");
+  EXPECT_EQ(own_presets_file(), "/some/where/scanners.json");
   unsetenv("VANTAGE_DATA");
-  EXPECT_TRUE(std::filesystem::exists(default_presets_file()));
-  EXPECT_NO_THROW(list_scanners(default_presets_file()));
+  EXPECT_TRUE(own_presets_file().empty());
 }
 
 }  // namespace

@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// What one ray alone meets.
+// A caster over a scene, and what one ray alone meets.
 #pragma once
+
+#include <memory>
 
 #include "trace/embree/ray_caster.hpp"
 
 namespace vantage::test {
+
+inline RayCaster caster_over(const std::shared_ptr<const SceneData>& scene) {
+  return {scene, std::make_shared<Planes>(scene)};
+}
 
 // The triangle hit, or no_hit, and its distance.
 inline std::uint32_t nearest_hit(const RayCaster& caster, const Float3& origin, const Float3& d, float start, float end,

@@ -47,7 +47,7 @@ std::shared_ptr<const SceneData> ties() {
 }
 
 TEST(RayCaster, HitsDoNotDependOnTheBundle) {
-  const RayCaster caster(ties());
+  const RayCaster caster = test::caster_over(ties());
   RandomStream random(11);
   std::size_t hits = 0;
   for (int k = 0; k < 200; ++k) {
@@ -86,7 +86,7 @@ TEST(RayCaster, OfCoincidentTrianglesTheFirstIsHit) {
     const auto wall = test::quad({-1, 2, -1}, {2, 0, 0}, {0, 0, 2});
     corners.insert(corners.end(), wall.begin(), wall.end());
   }
-  const RayCaster caster(test::SceneBuilder().mesh(Role::surveyed, corners).finish());
+  const RayCaster caster = test::caster_over(test::SceneBuilder().mesh(Role::surveyed, corners).finish());
   RandomStream random(5);
   for (int k = 0; k < 200; ++k) {
     const Float3 d{test::between(random, -0.4, 0.4), 1, test::between(random, -0.4, 0.4)};
@@ -97,10 +97,10 @@ TEST(RayCaster, OfCoincidentTrianglesTheFirstIsHit) {
 }
 
 TEST(RayCaster, RaysStartAndEndWhereToldTo) {
-  const RayCaster caster(test::SceneBuilder()
-                             .mesh(Role::surveyed, test::quad({-1, 2, -1}, {2, 0, 0}, {0, 0, 2}))
-                             .mesh(Role::blocking, test::quad({-1, 5, -1}, {2, 0, 0}, {0, 0, 2}))
-                             .finish());
+  const RayCaster caster = test::caster_over(test::SceneBuilder()
+                                                 .mesh(Role::surveyed, test::quad({-1, 2, -1}, {2, 0, 0}, {0, 0, 2}))
+                                                 .mesh(Role::blocking, test::quad({-1, 5, -1}, {2, 0, 0}, {0, 0, 2}))
+                                                 .finish());
   RayBundle rays;
   rays.size = 3;
   for (std::uint32_t i = 0; i < 3; ++i) {
@@ -129,7 +129,7 @@ TEST(RayCaster, TinyComponentsLoseNoRay) {
                             Float3{x + 0.3f, y + 0.3f, 2}, Float3{x, y + 0.3f, 2}})
       ceiling.push_back(p);
   }
-  const RayCaster caster(test::SceneBuilder().mesh(Role::surveyed, ceiling).finish());
+  const RayCaster caster = test::caster_over(test::SceneBuilder().mesh(Role::surveyed, ceiling).finish());
   for (const float tiny : {-0.0f, -1e-44f, -1e-30f, -1.8e-23f, -0.9e-18f, -1.1e-18f, -1e-17f, -1e-12f, 1e-23f}) {
     RayBundle rays;
     rays.size = 16;
@@ -151,7 +151,7 @@ TEST(RayCaster, TinyComponentsLoseNoRay) {
 }
 
 TEST(RayCaster, AnEmptySceneIsNeverHit) {
-  const RayCaster caster(std::make_shared<const SceneData>());
+  const RayCaster caster = test::caster_over(std::make_shared<const SceneData>());
   RandomStream random(1);
   const auto rays = cone(random, 1, 100, 50);
   caster.cast(*rays);

@@ -24,7 +24,7 @@ TEST(SeenTriangle, MustHitIsNeverWrong) {
     if (k % 4 == 0)
       corners[2] = {(corners[0].x + corners[1].x) / 2 + 1e-4f, (corners[0].y + corners[1].y) / 2,
                     (corners[0].z + corners[1].z) / 2};  // a sliver
-    const RayCaster caster(test::SceneBuilder().mesh(Role::surveyed, corners).finish());
+    const RayCaster caster = test::caster_over(test::SceneBuilder().mesh(Role::surveyed, corners).finish());
     const SeenTriangle seen(widen(corners[0]), widen(corners[1]), widen(corners[2]));
     for (int r = 0; r < 200; ++r) {
       // Near an edge more often than not.

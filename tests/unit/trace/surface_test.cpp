@@ -8,39 +8,31 @@
 namespace vantage {
 namespace {
 
-TEST(Surface, DistanceIsThePlanesToTheLastBit) {
-  const Surface surface(
-      test::SceneBuilder().mesh(Role::surveyed, test::quad({-50, 3, -50}, {100, 0, 0}, {0, 0, 100})).finish());
-  EXPECT_EQ(surface.distance(0, {0, 0, 0}, {0.1f, 0.5f, 0.2f}, 6.0f), 6.0f);
-  EXPECT_EQ(surface.distance(0, {0, 0, 0}, {0.1f, 0.5f, 0.2f}, 6.00001f), 6.0f);
-  // The plane is not what was hit: the rough distance stands.
-  EXPECT_EQ(surface.distance(0, {0, 0, 0}, {1, 0, 0}, 7.0f), 7.0f);
-  EXPECT_EQ(surface.distance(0, {0, 3, 0}, {1, 0, 0}, 7.0f), 7.0f);
-}
+Surface surface_over(const std::shared_ptr<const SceneData>& scene) { return {scene, std::make_shared<Planes>(scene)}; }
 
 TEST(Surface, NormalsFaceTheScannerAndFallBackToThePlane) {
   SceneData scene =
       *test::SceneBuilder().mesh(Role::surveyed, test::quad({-1, 3, -1}, {2, 0, 0}, {0, 0, 2}), 0.8).finish();
   const Float3 d{0, 1, 0};
   {
-    const Surface surface(std::make_shared<const SceneData>(scene));
+    const Surface surface = surface_over(std::make_shared<const SceneData>(scene));
     const auto n = surface.normal(0, d, {0.3, 0.3});
     EXPECT_EQ(n[1], -1);
     EXPECT_NEAR(surface.reflectivity(0, {0, 0, 0}, d, 3), 0.8, 1e-7);
   }
   scene.normals.assign(scene.positions.size(), Float3{});
-  EXPECT_EQ(Surface(std::make_shared<const SceneData>(scene)).normal(0, d, {0.3, 0.3})[1], -1);
+  EXPECT_EQ(surface_over(std::make_shared<const SceneData>(scene)).normal(0, d, {0.3, 0.3})[1], -1);
   scene.normals.assign(scene.positions.size(), Float3{0.6f, 0.8f, 0});
-  const auto n = Surface(std::make_shared<const SceneData>(scene)).normal(0, d, {0.3, 0.3});
+  const auto n = surface_over(std::make_shared<const SceneData>(scene)).normal(0, d, {0.3, 0.3});
   EXPECT_NEAR(n[0], -0.6, 1e-7);
   EXPECT_NEAR(n[1], -0.8, 1e-7);
 }
 
 TEST(Surface, KnowsWhatIsSurveyed) {
-  const Surface surface(test::SceneBuilder()
-                            .mesh(Role::blocking, test::quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}))
-                            .mesh(Role::surveyed, test::quad({0, 0, 1}, {1, 0, 0}, {0, 1, 0}))
-                            .finish());
+  const Surface surface = surface_over(test::SceneBuilder()
+                                           .mesh(Role::blocking, test::quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}))
+                                           .mesh(Role::surveyed, test::quad({0, 0, 1}, {1, 0, 0}, {0, 1, 0}))
+                                           .finish());
   for (std::uint32_t t = 0; t < 4; ++t) EXPECT_EQ(surface.surveyed(t), t >= 2);
 }
 

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trace/embree/planes.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace vantage {
+namespace {
+
+Vec3 widen(const Float3& p) { return {p.x, p.y, p.z}; }
+
+}  // namespace
+
+Planes::Planes(std::shared_ptr<const SceneData> scene) : scene_(std::move(scene)) {
+  const SceneData& s = *scene_;
+  planes_.resize(s.triangles.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, s.triangles.size(), 4096), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i) {
+      const Triangle& t = s.triangles[i];
+      const Vec3 a = widen(s.positions[t[0]]);
+      Vec3 n = cross(widen(s.positions[t[1]]) - a, widen(s.positions[t[2]]) - a);
+      const double length = std::sqrt(dot(n, n));
+      if (length > 0) n = n * (1 / length);
+      planes_[i] = {n.x, n.y, n.z, dot(n, a)};
+    }
+  });
+}
+
+double Planes::within(std::uint32_t triangle, const Float3& o, const Float3& d, double t) const {
+  const Triangle& indices = scene_->triangles[triangle];
+  const Vec3 way = widen(d) * (1 / dot(widen(d), widen(d)));
+  const double a = dot(widen(scene_->positions[indices[0]]) - widen(o), way),
+               b = dot(widen(scene_->positions[indices[1]]) - widen(o), way),
+               c = dot(widen(scene_->positions[indices[2]]) - widen(o), way);
+  const double nearest = std::min({a, b, c}), farthest = std::max({a, b, c});
+  return t > nearest ? std::min(t, farthest) : nearest;  // of no number, the nearest
+}
+
+}  // namespace vantage

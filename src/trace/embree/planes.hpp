@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where a ray meets the plane of a triangle: the distance of every hit of the CPU engine.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "scene/scene_data.hpp"
+#include "vantage/types.hpp"
+
+namespace vantage {
+
+// The planes of a scene's triangles. Immutable; safe to use from any thread.
+class Planes {
+ public:
+  explicit Planes(std::shared_ptr<const SceneData> scene);
+
+  // A plane as a head sees it.
+  struct Seen {
+    double x, y, z, height;  // unit normal, and the plane's offset from the head along it
+  };
+  Seen seen(std::uint32_t triangle, const Float3& o) const {
+    const Plane& p = planes_[triangle];
+    return {p.x, p.y, p.z, p.offset - (p.x * o.x + p.y * o.y + p.z * o.z)};
+  }
+
+  // Distances along n directions, in double and rounded once, by additions, multiplications and a division alone: the
+  // same bits on every processor. A ray that all but lies in the plane learns nothing from it, and is held within the
+  // triangle's extent along the ray. REQUIRES: plane == seen(triangle, o). Inlined, to be compiled for the caller's
+  // target.
+  template <unsigned n>
+  [[gnu::always_inline]] void distances(const Seen& plane, std::uint32_t triangle, const Float3& o, const float* x,
+                                        const float* y, const float* z, float* t) const {
+    double slope[n], least = 1;
+    for (unsigned i = 0; i < n; ++i) slope[i] = plane.x * x[i] + plane.y * y[i] + plane.z * z[i];
+    for (unsigned i = 0; i < n; ++i) t[i] = static_cast<float>(plane.height / slope[i]);
+    for (unsigned i = 0; i < n; ++i) least = std::min(least, std::abs(slope[i]));
+    if (least >= grazing) [[likely]]
+      return;
+    for (unsigned i = 0; i < n; ++i) {
+      if (!(std::abs(slope[i]) >= grazing))
+        t[i] = static_cast<float>(within(triangle, o, {x[i], y[i], z[i]}, plane.height / slope[i]));
+    }
+  }
+
+  Vec3 normal(std::uint32_t triangle) const {  // unit
+    const Plane& p = planes_[triangle];
+    return {p.x, p.y, p.z};
+  }
+
+ private:
+  static constexpr double grazing = 0x1p-10;  // cosine
+
+  double within(std::uint32_t triangle, const Float3& o, const Float3& d, double t) const;
+
+  struct Plane {
+    double x, y, z, offset;  // unit normal n and n·p of its points
+  };
+  std::shared_ptr<const SceneData> scene_;
+  std::vector<Plane> planes_;
+};
+
+}  // namespace vantage
