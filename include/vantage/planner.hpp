@@ -51,7 +51,8 @@ SurveyProblem coverage_min(std::size_t stations_min, std::size_t stations_max);
 SurveyProblem coverage_overlap_min(std::size_t stations_min, std::size_t stations_max);
 SurveyProblem fitness_min(std::size_t stations_min, std::size_t stations_max, const FitnessWeights& weights = {});
 /// One of `problem_names()`: "coverage-fix", "coverage-overlap-fix", "coverage-min", "coverage-overlap-min",
-/// "fitness-min". Throws Error invalid_argument and lists the names, or where a -fix problem is given a range.
+/// "fitness-min". Throws Error invalid_argument and lists the names, or where a -fix problem is given a range or a -min
+/// problem none.
 SurveyProblem survey_problem(std::string_view name, std::size_t stations_min, std::size_t stations_max);
 std::span<const std::string> problem_names();
 /// A problem of built-in objectives.

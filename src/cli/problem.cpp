@@ -97,10 +97,7 @@ SurveyProblem ProblemOptions::settle() const {
                                                       : "coverage-overlap-min");
     if (fitness && name != "fitness-min" && name != "coverage-min")
       throw Error(Errc::invalid_argument, "--fitness: goes with coverage-min, not with " + name);
-    asked = named("--problem", [&, low = low, high = high] { return survey_problem(name, low, high); });
-    if (asked.name.ends_with("-min") && low == high)
-      throw Error(Errc::invalid_argument,
-                  fmt::format("--stations {}: {} searches the number of stations, so give a range A..B", low, name));
+    asked = named("--stations", [&, low = low, high = high] { return survey_problem(name, low, high); });
     if (fitness) asked = named("--fitness", [&, low = low, high = high] { return fitness_min(low, high, *fitness); });
   }
   asked.heights_m = heights;

@@ -14,13 +14,14 @@ using Names = std::vector<std::string>;
 struct Named {
   std::string name;
   Names objectives;
+  bool searches_number;
 };
 const std::array<Named, 5>& named_problems() {
-  static const std::array<Named, 5> all{{{"coverage-fix", {"coverage"}},
-                                         {"coverage-overlap-fix", {"coverage", "overlap"}},
-                                         {"coverage-min", {"coverage", "stations"}},
-                                         {"coverage-overlap-min", {"coverage", "overlap", "stations"}},
-                                         {"fitness-min", {"fitness"}}}};
+  static const std::array<Named, 5> all{{{"coverage-fix", {"coverage"}, false},
+                                         {"coverage-overlap-fix", {"coverage", "overlap"}, false},
+                                         {"coverage-min", {"coverage", "stations"}, true},
+                                         {"coverage-overlap-min", {"coverage", "overlap", "stations"}, true},
+                                         {"fitness-min", {"fitness"}, true}}};
   return all;
 }
 
@@ -42,10 +43,13 @@ SurveyProblem survey_problem(std::string_view name, std::size_t stations_min, st
   for (const Named& one : named_problems()) {
     known += (known.empty() ? "" : ", ") + one.name;
     if (one.name != name) continue;
-    if (name.ends_with("-fix") && stations_min != stations_max)
+    if (!one.searches_number && stations_min != stations_max)
       throw Error(Errc::invalid_argument, one.name + " takes one number of stations, not " +
                                               std::to_string(stations_min) + " to " + std::to_string(stations_max) +
                                               "; a -min problem searches the number");
+    if (one.searches_number && stations_min == stations_max)
+      throw Error(Errc::invalid_argument, one.name + " searches the number of stations, so it takes a range, not " +
+                                              std::to_string(stations_min) + " alone");
     SurveyProblem problem = survey_problem(one.objectives, stations_min, stations_max);
     problem.name = one.name;
     return problem;

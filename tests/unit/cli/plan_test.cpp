@@ -93,6 +93,37 @@ TEST_F(Plan, RayQueriesGiveTheSameFrontAgain) {
   EXPECT_EQ(first, by_ray_query("second"));
 }
 
+// config.json holds all that was set, by a name that --config reads.
+TEST_F(Plan, ItsConfigurationGivesTheSameFrontAgain) {
+  const std::vector<std::string> asked{"--objectives",   "coverage,overlap",
+                                       "--stations",     "2..3",
+                                       "--require",      "coverage>=0.2",
+                                       "--heights",      "1.2,2",
+                                       "--keep",         "8,0,1.5",
+                                       "--link-overlap", "0.05",
+                                       "--scheme",       "generational",
+                                       "--sigma",        "0.3",
+                                       "--redraws",      "3",
+                                       "--seed",         "4",
+                                       "--zenith-start", "10"};
+  auto first = json_of(plan("first", asked));
+  auto again =
+      json_of({"plan", scene_, "--engine", "embree", "--config", path("first/config.json"), "-o", path("again")});
+  drop_times(first);
+  drop_times(again);
+  EXPECT_EQ(first["parameters"], again["parameters"]);
+  EXPECT_EQ(first, again);
+}
+
+TEST_F(Plan, SaysWhatANetworkMisses) {
+  const Outcome outcome = run_program(plan("plan", {"--stations", "2", "--require", "coverage >= 0.99"}));
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("misses coverage >= 0.99"), std::string::npos) << outcome.out;
+  const Outcome wrong = run_program(plan("plan", {"--stations", "2", "--require", "speed>=3"}));
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_NE(wrong.err.find("--require: unknown objective \"speed\"; known: coverage"), std::string::npos) << wrong.err;
+}
+
 TEST_F(Plan, TheProblemFollowsFromTheStations) {
   EXPECT_EQ(json_of(plan("a", {"--stations", "3"}))["problem"], "coverage-overlap-fix");
   EXPECT_EQ(json_of(plan("b", {"--stations", "2..3"}))["problem"], "coverage-overlap-min");

@@ -41,6 +41,7 @@ TEST(SurveyProblem, AreThoseOfTable2) {
     EXPECT_EQ(survey_problem(name, 4, name.ends_with("-min") ? 8 : 4).name, name);
   EXPECT_NE(refusal([] { survey_problem("coverage", 1, 1); }).find("coverage-overlap-min"), std::string::npos);
   EXPECT_NE(refusal([] { survey_problem("coverage-fix", 4, 5); }).find("4 to 5"), std::string::npos);
+  EXPECT_NE(refusal([] { survey_problem("coverage-min", 4, 4); }).find("takes a range"), std::string::npos);
 }
 
 TEST(ScaledObjectives, OfTable2) {
