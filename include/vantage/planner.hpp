@@ -101,8 +101,8 @@ struct PlanEntry {
   std::vector<PlacedStation> stations;
   std::map<std::string, MeasuredValue> values;  ///< By objective's name, of `PlanResult::measures`.
   bool confirmed = false;                       ///< Whether the exact values were computed.
-  bool dominated =
-      false;  ///< Judged by every ray, another confirmed entry is as good in all objectives, better in one.
+  /// Judged by every ray, another confirmed entry is as good in all objectives and better in one.
+  bool dominated = false;
   /// By how much the requirements are missed in all, as shares of their objectives' scales; 0: it keeps them.
   double missed = 0;
   OverlapMatrix exact_overlap_matrix;

@@ -72,15 +72,21 @@ ordered_json entry_json(const PlanEntry& entry, const PlanResult& result) {
       station["points_on_surveyed"] = entry.points_on_surveyed[i];
     stations.push_back(std::move(station));
   }
-  ordered_json json, exact;
+  ordered_json json, exact, values;
   for (const Objective& measure : result.measures) {
     const MeasuredValue& value = entry.values.at(measure.name);
-    json[measure.name] = known(value.searched);
-    json[measure.name + "_se"] = value.standard_error;
-    exact[measure.name] = known(value.exact);
+    values[measure.name] = {
+        {"searched", known(value.searched)}, {"standard_error", value.standard_error}, {"exact", known(value.exact)}};
+  }
+  for (const char* always : {"coverage", "overlap"}) {
+    const MeasuredValue& value = entry.values.at(always);
+    json[always] = known(value.searched);
+    json[std::string(always) + "_se"] = value.standard_error;
+    exact[always] = known(value.exact);
   }
   exact["dominated"] = entry.dominated;
   json["station_count"] = entry.stations.size();
+  json["values"] = std::move(values);
   json["missed"] = known(entry.missed);
   json["exact"] = entry.confirmed ? std::move(exact) : ordered_json();
   json["stations"] = std::move(stations);

@@ -241,7 +241,7 @@ TEST(Plan, SearchesForAnObjectiveOfTheCallersOwn) {
   }
   const json written = json::parse(front_json(result, survey.simulator));
   EXPECT_EQ(written["objectives"], (json{"coverage", "walk"}));
-  EXPECT_EQ(written["front"][0]["exact"]["walk"].get<double>(), result.front[0].value("walk"));
+  EXPECT_EQ(written["front"][0]["values"]["walk"]["exact"].get<double>(), result.front[0].value("walk"));
   const test::TemporaryFolder folder;
   write_plan(folder / "out", result, survey.simulator, survey.area);
   EXPECT_NE(test::content(folder / "out/front.csv").find(",exact_walk,"), std::string::npos);
