@@ -47,6 +47,25 @@ TEST(Objective, BuiltInOnesAreTheFormulasTheyName) {
   EXPECT_EQ(value_of("parts", {.link_overlap = 0.5}), 3);  // the one link has 20 / 60
 }
 
+TEST(Objective, TheWeakestLinkIsThatOfTheStrongestTree) {
+  NetworkCounts counts;
+  counts.stations = 4, counts.seen = {100, 50, 40, 10};
+  //                0-1 0-2 0-3 1-2 1-3 2-3
+  counts.shared = {25, 4, 0, 20, 1, 4};
+  const auto weakest = [&](std::size_t stations) {
+    const std::vector<PlacedStation> placed(stations);
+    return make_objective("weakest_link")
+        .value({.counts = counts, .stations = placed, .overlap = overlap_matrix(counts)});
+  };
+  EXPECT_EQ(weakest(4), 0.4);  // 25/50, 20/40 and 4/10 span it
+  counts.shared[5] = 0;
+  EXPECT_EQ(weakest(4), 0.1);  // 1/10 is all that is left of the fourth
+  counts.shared[4] = 0;
+  EXPECT_EQ(weakest(4), 0);  // it stands alone
+  counts.stations = 1, counts.seen = {5}, counts.shared = {};
+  EXPECT_EQ(weakest(1), 1);  // nothing to link
+}
+
 TEST(Objective, FitnessIsEquation1) {
   const auto fitness = [](std::size_t stations, double covered, std::size_t parts) {
     NetworkCounts counts;
