@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Searches for an objective that the library does not know, under a requirement: own_objective SCENE N FOLDER
 //
-// A chain of scans is as strong as its weakest link. For every station take the neighbour that shares most with it, as
-// a share of the smaller scan; the least of these is to be as large as can be, and the coverage at least 0.5.
+// No scan should stand alone. For every station take the neighbour that shares most with it, as a share of the smaller
+// scan; the least of these is to be as large as can be, and the coverage at least 0.5.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -10,9 +10,9 @@
 
 using namespace vantage;
 
-double weakest_link(const MeasuredNetwork& network) {
+double loneliest(const MeasuredNetwork& network) {
   const NetworkCounts& counts = network.counts;
-  double weakest = 1;
+  double least = 1;
   for (std::size_t i = 0; i < counts.stations; ++i) {
     double strongest = 0;
     for (std::size_t j = 0; j < counts.stations; ++j) {
@@ -20,9 +20,9 @@ double weakest_link(const MeasuredNetwork& network) {
       const auto smaller = static_cast<double>(std::min(counts.seen[i], counts.seen[j]));
       strongest = std::max(strongest, static_cast<double>(counts.shared_by(i, j)) / smaller);
     }
-    weakest = std::min(weakest, strongest);
+    least = std::min(least, strongest);
   }
-  return weakest;
+  return least;
 }
 
 int main(int argc, char** argv) try {
@@ -37,16 +37,16 @@ int main(int argc, char** argv) try {
   const auto stations = static_cast<std::size_t>(std::atoi(argv[2]));
   SurveyProblem problem = coverage_fix(stations);
   problem.name = "custom";
-  problem.objectives.push_back({.name = "weakest_link",
-                                .label = "Weakest link (share of the smaller scan)",
+  problem.objectives.push_back({.name = "neighbour",
+                                .label = "What the loneliest scan shares with its neighbour",
                                 .needs = {.pairs = true},
-                                .value = weakest_link});
+                                .value = loneliest});
   problem.requirements = {make_requirement("coverage >= 0.5")};
   const PlanConfig config{.population = 20, .iterations = 10, .sample_voxels = 5'000, .seed = 42};
   const PlanResult result = plan(simulator, area, clash, problem, config);
 
   for (const PlanEntry& entry : result.front)
-    std::printf("coverage %.3f, weakest link %.3f%s\n", entry.value("coverage"), entry.value("weakest_link"),
+    std::printf("coverage %.3f, neighbour %.3f%s\n", entry.value("coverage"), entry.value("neighbour"),
                 entry.missed > 0 ? "  (misses what is required)" : "");
   write_plan(argv[3], result, simulator, area);
   return 0;
