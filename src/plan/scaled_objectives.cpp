@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Feasibility first (Deb: An Efficient Constraint Handling Method for Genetic Algorithms, 2000): among networks that
-// break requirements the violation decides, and only where it is equal what is searched for.
+// Feasibility first (Deb: An Efficient Constraint Handling Method for Genetic Algorithms, 2000). But what breaks a
+// requirement keeps its objectives beside the violation: told by the violation alone, a population on its way to the
+// first network that keeps them all loses the variety that a front is made of.
 #include "plan/scaled_objectives.hpp"
 
 namespace vantage {
 namespace {
 
-// What is left of an objective in a network that breaks a requirement: enough to order equal violations. A power of 2,
-// so that it rounds nothing.
-constexpr double kLeft = 1.0 / 1024;
+// A tenth of a scale that is missed outweighs all that an objective can gain: with 1 a search for few stations prefers
+// fewer to keeping a coverage that it has to, with much more it finds worse fronts.
+constexpr double kWeight = 10;
 
 }  // namespace
 
@@ -19,7 +20,7 @@ void scale_objectives(const SurveyProblem& problem, std::span<const double> x, s
     const Objective& objective = problem.objectives[k];
     f[k] = objective.by_alpha && by_alpha ? x.back() : objective.scaled(values[k]);
     // Above 1: outside the reference point, so without hypervolume.
-    if (missed > 0) f[k] = 1 + missed + kLeft * f[k];
+    if (missed > 0) f[k] += 1 + kWeight * missed;
   }
 }
 

@@ -61,10 +61,10 @@ TEST(ScaledObjectives, OfWhatBreaksARequirementLieBehind) {
     scale_objectives(problem, x, std::array{coverage, overlap}, missed, scaled);
     return scaled;
   };
-  const auto worst = f(0, 0, 0), near = f(0, 0, 0.01), far = f(1, 1, 0.02), equal = f(0.5, 0.5, 0.02);
+  const auto worst = f(0, 0, 0), near = f(0, 0, 0.01), far = f(1, 1, 0.2), equal = f(0.5, 0.5, 0.2);
   for (std::size_t k = 0; k < 2; ++k) {
     EXPECT_LT(worst[k], near[k]);  // any that keeps them goes before any that does not
-    EXPECT_LT(near[k], far[k]);    // then who misses less, whatever else it is worth
+    EXPECT_LT(near[k], far[k]);    // then who misses a tenth less, whatever else it is worth
     EXPECT_LT(far[k], equal[k]);   // and of equals the better one
   }
 }
