@@ -11,6 +11,12 @@
 namespace vantage {
 namespace {
 
+// "weakest_link" as it is said.
+std::string spoken(std::string name) {
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
 std::string axis_label(const Objective& measure) {
   return measure.unit.empty() ? measure.label : measure.label + " (" + measure.unit + ")";
 }
@@ -93,7 +99,7 @@ std::string FrontView::words(const PlanEntry& entry) const {
     const double value = entry.value(measure->name);
     text += text.empty() ? "" : ", ";
     text += measure->by_alpha ? std::to_string(entry.stations.size()) : fixed(value, 3);
-    text += (measure->unit.empty() ? "" : " " + measure->unit) + " " + measure->name;
+    text += (measure->unit.empty() ? "" : " " + measure->unit) + " " + spoken(measure->name);
   }
   return text;
 }
@@ -103,13 +109,13 @@ std::string problem_line(const SurveyProblem& problem) {
   std::string line = problem.name;
   if (line == "custom") {
     line.clear();
-    for (const Objective& objective : problem.objectives) line += (line.empty() ? "" : ", ") + objective.name;
+    for (const Objective& objective : problem.objectives) line += (line.empty() ? "" : ", ") + spoken(objective.name);
   }
   line += ", " + std::to_string(low);
   if (high != low) line += " to " + std::to_string(high);
   line += high == 1 ? " station" : " stations";
   if (!problem.kept.empty()) line += " (" + std::to_string(problem.kept.size()) + " kept)";
-  for (const Requirement& requirement : problem.requirements) line += ", " + to_string(requirement);
+  for (const Requirement& requirement : problem.requirements) line += ", " + spoken(to_string(requirement));
   return line;
 }
 
