@@ -63,15 +63,30 @@ class SearchArea {
   std::shared_ptr<const Impl> impl_;
 };
 
-/// What became of one station of a decision vector.
-enum class StationStatus { ok, hole, clash };
+/// What became of one station: of a decision vector, typed, or there already.
+enum class StationStatus {
+  ok,
+  hole,        ///< No ground under its (u, v).
+  clash,       ///< Something stands within its security volume, or touches its mast or its head.
+  inside,      ///< Its head is within something solid.
+  off_ground,  ///< A given head with nothing to stand on at about the scanner's height below it.
+  outside,     ///< A given head whose tripod stands on something, but not on the search area.
+};
 std::string to_string(StationStatus);
+/// What is wrong, as the end of a sentence that begins with the station's name; empty for `ok`.
+std::string explain(StationStatus);
 
 struct PlacedStation {
   Uv uv;
-  Vec3 position;  ///< The scanner's head, survey frame; the ground plus the height. (0, 0, 0) in a hole.
+  Vec3 position;     ///< The scanner's head, survey frame; the ground plus the height. (0, 0, 0) in a hole.
+  Vec3 ground = {};  ///< Under the head, where the tripod stands, survey frame. (0, 0, 0) in a hole.
   StationStatus status = StationStatus::ok;
+  bool kept = false;  ///< Was there before the plan.
 };
+/// Whether it adds to what its network measures: it is in no hole, in nothing solid and in no clash. A kept station was
+/// scanned, so that a clash says something of the scene only. Heads off the ground and outside of the search area
+/// count.
+bool active(const PlacedStation& station);
 
 /// The security volume of section 4.3: two spheres above the ground.
 struct SecurityVolume {
@@ -82,7 +97,9 @@ struct SecurityVolume {
 
 Settings settings(const SecurityVolume& volume);
 
-/// Distance queries against all surveyed and blocking meshes. Safe to use from any thread.
+/// Distance queries against all surveyed and blocking meshes. Safe to use from any thread. Unless the check is off, a
+/// station's head keeps a fifth of the security volume's radius from everything (0.1 m by default) and the mast below
+/// it a tenth of it.
 class ClashChecker {
  public:
   /// Throws Error invalid_argument where radius_m >= lower_m (the ground itself would clash), unless the check is off,
@@ -90,6 +107,13 @@ class ClashChecker {
   ClashChecker(const Scene& scene, const SecurityVolume& volume = {});
   /// Whether one of the spheres above `ground` (survey frame) comes closer to a mesh than its radius.
   bool clashes(const Vec3& ground) const;
+  /// The same, or whether something comes too near to the head, `height_m` above `ground`, or to the mast, from the
+  /// lower sphere's bottom to the head.
+  bool clashes(const Vec3& ground, double height_m) const;
+  /// Whether a point (survey frame) lies within a closed solid whose triangles face outward.
+  bool inside(const Vec3& point) const;
+  /// The first surface straight below a point, at most `limit_m` lower.
+  std::optional<Vec3> ground_below(const Vec3& point, double limit_m) const;
   /// Whether nothing stands between two points (survey frame), as two scanners' heads.
   bool sees(const Vec3& a, const Vec3& b) const;
   /// Distance from a point to the nearest mesh, at most `limit_m`.
@@ -100,5 +124,16 @@ class ClashChecker {
   struct Impl;
   std::shared_ptr<const Impl> impl_;
 };
+
+/// A station given by its head (survey frame), checked as those of a search are. Its ground is the search area's at
+/// `uv`, where that is given and lies below the head; or else the search area, or what mesh there is, where that lies
+/// under the head by `height_m` to half of it more or less; without any, the point `height_m` lower. `area` may be
+/// null.
+struct PlacedHead {
+  PlacedStation station;  ///< (u, v) as given, or of the search area above or below the ground.
+  bool has_uv = false;    ///< Whether there are such.
+};
+PlacedHead place_head(const SearchArea* area, const ClashChecker& clash, double height_m, const Vec3& head,
+                      std::optional<Uv> uv = {});
 
 }  // namespace vantage

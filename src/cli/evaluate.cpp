@@ -152,7 +152,7 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
     std::string text;
     for (std::size_t k = 0; k < stations.size(); ++k) {
       const Vec3& head = stations[k].placed.position;
-      text += fmt::format("station {:>2}  {:<5}  {:.3f},{:.3f},{:.3f}", k, to_string(stations[k].placed.status), head.x,
+      text += fmt::format("station {:>2}  {:<10}  {:.3f},{:.3f},{:.3f}", k, to_string(stations[k].placed.status), head.x,
                           head.y, head.z);
       if (rows[k]["points_on_surveyed"].is_number())
         text += fmt::format("  {} points on surveyed meshes", rows[k]["points_on_surveyed"].get<std::uint64_t>());

@@ -119,6 +119,9 @@ std::vector<Vec3> heads_of(LoadedSite& site, const std::vector<StationText>& sta
     if (station.placed.status == StationStatus::hole)
       throw Error(Errc::invalid_argument,
                   fmt::format("{}: no ground under u,v = {:g},{:g}", what, station.placed.uv.u, station.placed.uv.v));
+    if (station.placed.status != StationStatus::ok)
+      spdlog::warn("{}: the station at {:.6g},{:.6g},{:.6g} {}", what, station.placed.position.x,
+                   station.placed.position.y, station.placed.position.z, explain(station.placed.status));
     heads.push_back(station.placed.position);
   }
   return heads;

@@ -70,9 +70,9 @@ int scan(CLI::App& command, ScanCommandOptions& options, Program& program) {
     if (station.placed.status == StationStatus::hole)
       throw Error(Errc::invalid_argument, fmt::format("no ground under u,v = {:g},{:g}: a scan needs a place to stand",
                                                       station.placed.uv.u, station.placed.uv.v));
-    else if (station.placed.status == StationStatus::clash)
-      spdlog::warn("something stands within the security volume of the station at {:.6g},{:.6g},{:.6g}",
-                   station.placed.position.x, station.placed.position.y, station.placed.position.z);
+    else if (station.placed.status != StationStatus::ok)
+      spdlog::warn("the station at {:.6g},{:.6g},{:.6g} {}", station.placed.position.x, station.placed.position.y,
+                   station.placed.position.z, explain(station.placed.status));
 
   Simulator simulator(site.scene, site.scanner, site.config);
   tell_engine(simulator);

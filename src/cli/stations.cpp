@@ -74,23 +74,6 @@ std::vector<StationText> StationOptions::read(std::size_t most) const {
   return stations;
 }
 
-namespace {
-
-// Where a given head's tripod stands: on the search area where its (u, v) is known and lies below, else the scanner's
-// height lower.
-Vec3 ground_below(LoadedSite& site, const StationText& station) {
-  constexpr double same_place_m = 1e-3;
-  const Vec3 head = *station.position;
-  if (station.uv && site.has_area()) {
-    const auto ground = site.area().locate(*station.uv);
-    if (ground && std::hypot(ground->x - head.x, ground->y - head.y) < same_place_m && ground->z <= head.z)
-      return *ground;
-  }
-  return head - Vec3{0, 0, site.scanner.height_m};
-}
-
-}  // namespace
-
 std::vector<SiteStation> place(LoadedSite& site, const std::vector<StationText>& stations) {
   const double height = site.scanner.height_m;
   std::vector<SiteStation> placed;
@@ -100,46 +83,37 @@ std::vector<SiteStation> place(LoadedSite& site, const std::vector<StationText>&
       placed.push_back({place_stations(site.area(), site.clash(), height, uv).front(), true});
       continue;
     }
-    SiteStation result{{.uv = {}, .position = *station.position}, false};
-    const Vec3 ground = ground_below(site, station);
-    if (site.clash().clashes(ground)) result.placed.status = StationStatus::clash;
-    if (station.uv) {
-      result.placed.uv = *station.uv;
-      result.has_uv = true;
-    } else if (site.has_area()) {
-      if (const auto uv = site.area().project(ground)) {
-        result.placed.uv = *uv;
-        result.has_uv = true;
-      }
-    }
-    placed.push_back(result);
+    const PlacedHead head =
+        place_head(site.has_area() ? &site.area() : nullptr, site.clash(), height, *station.position, station.uv);
+    placed.push_back({head.station, head.has_uv});
   }
   return placed;
 }
 
 Network to_network(const std::vector<SiteStation>& stations) {
   Network network;
-  for (const auto& station : stations)
-    network.push_back({station.placed.position, station.placed.status == StationStatus::ok});
+  for (const auto& station : stations) network.push_back({station.placed.position, active(station.placed)});
   return network;
 }
 
 nlohmann::json to_json(const SiteStation& station) {
-  const auto& [uv, position, status] = station.placed;
-  nlohmann::json json{{"position", nullptr}, {"uv", nullptr}, {"status", to_string(status)}};
-  if (status != StationStatus::hole) json["position"] = {position.x, position.y, position.z};
-  if (station.has_uv) json["uv"] = {uv.u, uv.v};
+  const PlacedStation& placed = station.placed;
+  nlohmann::json json{{"position", nullptr}, {"uv", nullptr}, {"status", to_string(placed.status)}};
+  if (placed.status != StationStatus::hole)
+    json["position"] = {placed.position.x, placed.position.y, placed.position.z};
+  if (station.has_uv) json["uv"] = {placed.uv.u, placed.uv.v};
   return json;
 }
 
 void warn_of_unusable(const std::vector<SiteStation>& stations) {
   for (std::size_t k = 0; k < stations.size(); ++k) {
     const auto& placed = stations[k].placed;
-    if (placed.status == StationStatus::hole)
-      spdlog::warn("station {}: no ground under u,v = {:g},{:g}; it is left out", k, placed.uv.u, placed.uv.v);
-    else if (placed.status == StationStatus::clash)
-      spdlog::warn("station {}: something stands within its security volume at {:.6g},{:.6g},{:.6g}; it is left out", k,
-                   placed.position.x, placed.position.y, placed.position.z);
+    if (placed.status == StationStatus::ok) continue;
+    const std::string where =
+        placed.status == StationStatus::hole
+            ? fmt::format("u,v = {:g},{:g}", placed.uv.u, placed.uv.v)
+            : fmt::format("{:.6g},{:.6g},{:.6g}", placed.position.x, placed.position.y, placed.position.z);
+    spdlog::warn("station {} at {} {}{}", k, where, explain(placed.status), active(placed) ? "" : "; it is left out");
   }
 }
 

@@ -31,13 +31,13 @@ struct SiteStation {
 };
 
 // Heads stay where they are given; (u, v) go to the ground below and up by the scanner's height. Both are checked for
-// clashes.
+// clashes, heads also for what they stand on.
 std::vector<SiteStation> place(LoadedSite& site, const std::vector<StationText>& stations);
 
 Network to_network(const std::vector<SiteStation>& stations);
 // {position, uv, status}; null where there is none.
 nlohmann::json to_json(const SiteStation& station);
-// One warning a station that cannot be used.
+// One warning a station that is not where a scanner could be.
 void warn_of_unusable(const std::vector<SiteStation>& stations);
 
 }  // namespace vantage::cli

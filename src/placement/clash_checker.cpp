@@ -9,6 +9,13 @@
 
 namespace vantage {
 
+namespace {
+
+// What head and mast keep clear around them, as shares of the security volume's radius.
+constexpr double head_share = 0.2, mast_share = 0.1;
+
+}  // namespace
+
 struct ClashChecker::Impl {
   Vec3 origin;
   SecurityVolume volume;
@@ -39,6 +46,33 @@ bool ClashChecker::clashes(const Vec3& ground) const {
   const glm::dvec3 local = to_glm(ground - impl_->origin);
   return impl_->tree.within(local + glm::dvec3{0, 0, v.lower_m}, v.radius_m) ||
          impl_->tree.within(local + glm::dvec3{0, 0, v.upper_m}, v.radius_m);
+}
+
+bool ClashChecker::clashes(const Vec3& ground, double height_m) const {
+  const SecurityVolume& v = impl_->volume;
+  if (v.radius_m == 0) return false;
+  if (clashes(ground)) return true;
+  const double head_radius = head_share * v.radius_m, mast_radius = mast_share * v.radius_m;
+  const glm::dvec3 local = to_glm(ground - impl_->origin);
+  const auto up = [&](double height) { return local + glm::dvec3{0, 0, height}; };
+  if (impl_->tree.within(up(height_m), head_radius)) return true;
+  // Where the mast is well within a sphere nothing is left to ask.
+  const double within = std::sqrt(v.radius_m * v.radius_m - mast_radius * mast_radius);
+  double from = v.lower_m - v.radius_m + mast_radius;
+  for (const double sphere : {std::min(v.lower_m, v.upper_m), std::max(v.lower_m, v.upper_m)}) {
+    const double to = std::min(sphere - within, height_m);
+    if (to > from && impl_->tree.within_of_segment(up(from), up(to), mast_radius)) return true;
+    from = std::max(from, sphere + within);
+  }
+  return height_m > from && impl_->tree.within_of_segment(up(from), up(height_m), mast_radius);
+}
+
+bool ClashChecker::inside(const Vec3& point) const { return impl_->tree.inside_solid(to_glm(point - impl_->origin)); }
+
+std::optional<Vec3> ClashChecker::ground_below(const Vec3& point, double limit_m) const {
+  const auto drop = impl_->tree.drop(to_glm(point - impl_->origin));
+  if (!drop || *drop > limit_m) return std::nullopt;
+  return point - Vec3{0, 0, *drop};
 }
 
 bool ClashChecker::sees(const Vec3& a, const Vec3& b) const {

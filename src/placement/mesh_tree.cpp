@@ -27,9 +27,18 @@ struct Query {
 };
 
 // A radius for Embree's boxes that loses nothing to the rounding of the point and of the radius to float.
-float query_radius(const Query& query) {
-  const double reach = std::max({std::abs(query.point.x), std::abs(query.point.y), std::abs(query.point.z)});
-  return static_cast<float>((query.best + 4 * reach * 0x1p-23) * (1 + 0x1p-20));
+float query_radius(const glm::dvec3& point, double radius) {
+  const double reach = std::max({std::abs(point.x), std::abs(point.y), std::abs(point.z)});
+  return static_cast<float>((radius + 4 * reach * 0x1p-23) * (1 + 0x1p-20));
+}
+
+RTCPointQuery ball_of(const glm::dvec3& point, double radius) {
+  RTCPointQuery ball{};
+  ball.x = static_cast<float>(point.x);
+  ball.y = static_cast<float>(point.y);
+  ball.z = static_cast<float>(point.z);
+  ball.radius = query_radius(point, radius);
+  return ball;
 }
 
 bool visit(RTCPointQueryFunctionArguments* arguments) {
@@ -40,7 +49,26 @@ bool visit(RTCPointQueryFunctionArguments* arguments) {
                            to_glm(query.buffers.positions[t[2]]));
   if (!(distance < query.best)) return false;
   query.best = distance;
-  arguments->query->radius = distance < query.good_enough ? 0 : query_radius(query);
+  arguments->query->radius = distance < query.good_enough ? 0 : query_radius(query.point, query.best);
+  return true;
+}
+
+struct SegmentQuery {
+  Buffers buffers;
+  glm::dvec3 a, b;
+  double radius;
+  bool found = false;
+};
+
+bool visit_segment(RTCPointQueryFunctionArguments* arguments) {
+  SegmentQuery& query = *static_cast<SegmentQuery*>(arguments->userPtr);
+  const Triangle& t = query.buffers.triangles[arguments->primID];
+  if (query.found || !(distance_to_triangle(query.a, query.b, to_glm(query.buffers.positions[t[0]]),
+                                            to_glm(query.buffers.positions[t[1]]),
+                                            to_glm(query.buffers.positions[t[2]])) < query.radius))
+    return false;
+  query.found = true;
+  arguments->query->radius = 0;
   return true;
 }
 
@@ -89,6 +117,20 @@ RTCRay ray_of(const glm::dvec3& point, const glm::dvec3& way, double from, doubl
 
 double squared(const glm::dvec3& v) { return dot(v, v); }
 
+// Of two closed segments (Ericson, Real-Time Collision Detection, 2005, section 5.1.9).
+double squared_between_segments(const glm::dvec3& p, const glm::dvec3& q, const glm::dvec3& a, const glm::dvec3& b) {
+  const glm::dvec3 u = q - p, v = b - a, w = p - a;
+  const double uu = squared(u), vv = squared(v), uv = dot(u, v), uw = dot(u, w), vw = dot(v, w);
+  const double denominator = uu * vv - uv * uv;
+  double s = denominator > 0 ? std::clamp((uv * vw - uw * vv) / denominator, 0.0, 1.0) : 0.0;
+  double t = vv > 0 ? (uv * s + vw) / vv : 0.0;
+  if (t < 0 || t > 1 || !(vv > 0)) {
+    t = std::clamp(t, 0.0, 1.0);
+    s = uu > 0 ? std::clamp((uv * t - uw) / uu, 0.0, 1.0) : 0.0;
+  }
+  return squared(w + u * s - v * t);
+}
+
 double squared_to_segment(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b) {
   const glm::dvec3 edge = b - a;
   const double length = squared(edge);
@@ -106,6 +148,21 @@ double distance_to_triangle(const glm::dvec3& p, const glm::dvec3& a, const glm:
       dot(cross(a - c, p - c), normal) >= 0)
     return std::abs(dot(p - a, normal)) / std::sqrt(area);
   return std::sqrt(std::min({squared_to_segment(p, a, b), squared_to_segment(p, b, c), squared_to_segment(p, c, a)}));
+}
+
+double distance_to_triangle(const glm::dvec3& p, const glm::dvec3& q, const glm::dvec3& a, const glm::dvec3& b,
+                            const glm::dvec3& c) {
+  const glm::dvec3 normal = cross(b - a, c - a);
+  const double from = dot(p - a, normal), to = dot(q - a, normal);
+  if ((from <= 0) != (to <= 0)) {  // the segment crosses the plane: within the triangle?
+    const glm::dvec3 x = p + (q - p) * (from / (from - to));
+    if (dot(cross(b - a, x - a), normal) >= 0 && dot(cross(c - b, x - b), normal) >= 0 &&
+        dot(cross(a - c, x - c), normal) >= 0)
+      return 0;
+  }
+  const double outline = std::sqrt(std::min({squared_between_segments(p, q, a, b), squared_between_segments(p, q, b, c),
+                                             squared_between_segments(p, q, c, a)}));
+  return std::min({outline, distance_to_triangle(p, a, b, c), distance_to_triangle(q, a, b, c)});
 }
 
 struct MeshTree::Impl {
@@ -134,16 +191,12 @@ struct MeshTree::Impl {
                   "building the tree for distances over " + std::to_string(scene.triangles.size()) + " triangles");
   }
 
-  std::optional<std::uint32_t> first_hit(const glm::dvec3& point, const glm::dvec3& way) const;
+  Nearest first_hit(const glm::dvec3& point, const glm::dvec3& way) const;
   bool occluded(RTCRay ray) const;
 
   double nearest(const glm::dvec3& point, double limit, double good_enough) const {
     Query query{buffers, point, limit, good_enough};
-    RTCPointQuery ball{};
-    ball.x = static_cast<float>(point.x);
-    ball.y = static_cast<float>(point.y);
-    ball.z = static_cast<float>(point.z);
-    ball.radius = query_radius(query);
+    RTCPointQuery ball = ball_of(point, limit);
     RTCPointQueryContext context;
     rtcInitPointQueryContext(&context);
     rtcPointQuery(tree.get(), &ball, &context, visit, &query);
@@ -151,7 +204,7 @@ struct MeshTree::Impl {
   }
 };
 
-std::optional<std::uint32_t> MeshTree::Impl::first_hit(const glm::dvec3& point, const glm::dvec3& way) const {
+Nearest MeshTree::Impl::first_hit(const glm::dvec3& point, const glm::dvec3& way) const {
   RTCRayHit hit{};
   hit.ray = ray_of(point, way, 0, std::numeric_limits<double>::infinity());
   hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
@@ -166,7 +219,7 @@ std::optional<std::uint32_t> MeshTree::Impl::first_hit(const glm::dvec3& point, 
   rtcInitIntersectContext(&nearest.rtc);
   rtcIntersect1(tree.get(), &nearest.rtc, &hit);
 #endif
-  return nearest.triangle;
+  return nearest;
 }
 
 MeshTree::MeshTree(const SceneData& scene) : impl_(std::make_unique<Impl>(scene)) {}
@@ -178,6 +231,21 @@ double MeshTree::distance(const glm::dvec3& point, double limit) const { return 
 
 bool MeshTree::within(const glm::dvec3& point, double radius) const {
   return impl_->nearest(point, radius, radius) < radius;
+}
+
+bool MeshTree::within_of_segment(const glm::dvec3& a, const glm::dvec3& b, double radius) const {
+  SegmentQuery query{impl_->buffers, a, b, radius};
+  RTCPointQuery ball = ball_of((a + b) * 0.5, radius + 0.5 * length(b - a));
+  RTCPointQueryContext context;
+  rtcInitPointQueryContext(&context);
+  rtcPointQuery(impl_->tree.get(), &ball, &context, visit_segment, &query);
+  return query.found;
+}
+
+std::optional<double> MeshTree::drop(const glm::dvec3& point) const {
+  const Nearest nearest = impl_->first_hit(point, {0, 0, -1});
+  if (!nearest.triangle) return std::nullopt;
+  return nearest.distance;
 }
 
 bool MeshTree::Impl::occluded(RTCRay ray) const {
@@ -203,7 +271,7 @@ bool MeshTree::inside_solid(const glm::dvec3& point) const {
   int fronts = 0;
   for (const glm::dvec3& way :
        {glm::dvec3{0, 0, 1}, glm::dvec3{1, 0, 0}, glm::dvec3{-1, 0, 0}, glm::dvec3{0, 1, 0}, glm::dvec3{0, -1, 0}}) {
-    const auto hit = impl_->first_hit(point, way);
+    const auto hit = impl_->first_hit(point, way).triangle;
     if (!hit) return false;
     const Triangle& t = impl_->buffers.triangles[*hit];
     const glm::dvec3 a = to_glm(impl_->buffers.positions[t[0]]);

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 
 #include "core/glm.hpp"
 #include "scene/scene_data.hpp"
@@ -24,6 +25,10 @@ class MeshTree {
   // Whether a triangle comes nearer to `point` than `radius`. Cheaper than the distance: the first such triangle
   // settles it.
   bool within(const glm::dvec3& point, double radius) const;
+  // Whether a triangle comes nearer to the segment from a to b than `radius`.
+  bool within_of_segment(const glm::dvec3& a, const glm::dvec3& b, double radius) const;
+  // How far the first triangle straight below `point` is.
+  std::optional<double> drop(const glm::dvec3& point) const;
   // Whether a triangle lies on the segment from `point` + `from` to `point` + `to` straight up.
   bool covered(const glm::dvec3& point, double from, double to) const;
   // Whether a triangle lies on the segment from a to b.
@@ -40,5 +45,9 @@ class MeshTree {
 
 // Distance from p to the closed triangle (a, b, c), which may be degenerate.
 double distance_to_triangle(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c);
+
+// Distance between the segment from p to q and the closed triangle (a, b, c); either may be degenerate.
+double distance_to_triangle(const glm::dvec3& p, const glm::dvec3& q, const glm::dvec3& a, const glm::dvec3& b,
+                            const glm::dvec3& c);
 
 }  // namespace vantage

@@ -8,8 +8,37 @@ std::string to_string(StationStatus status) {
     case StationStatus::ok: return "ok";
     case StationStatus::hole: return "hole";
     case StationStatus::clash: return "clash";
+    case StationStatus::inside: return "inside";
+    case StationStatus::off_ground: return "off_ground";
+    case StationStatus::outside: return "outside";
   }
   return "unknown";
+}
+
+std::string explain(StationStatus status) {
+  switch (status) {
+    case StationStatus::ok: return "";
+    case StationStatus::hole: return "has no ground under its (u, v)";
+    case StationStatus::clash:
+      return "clashes: something stands within its security volume, or touches its mast or head";
+    case StationStatus::inside: return "is inside something solid";
+    case StationStatus::off_ground:
+      return "is off the ground: nothing to stand on at the scanner's height below its head";
+    case StationStatus::outside: return "is outside of the search area";
+  }
+  return "";
+}
+
+bool active(const PlacedStation& station) {
+  switch (station.status) {
+    case StationStatus::ok:
+    case StationStatus::off_ground:
+    case StationStatus::outside: return true;
+    case StationStatus::clash: return station.kept;
+    case StationStatus::hole:
+    case StationStatus::inside: return false;
+  }
+  return false;
 }
 
 }  // namespace vantage

@@ -36,8 +36,8 @@ DecisionSpace::DecisionSpace(const Site& site, const SurveyProblem& problem)
   if (heights_) height_bounds_ = *problem.heights_m;
   for (const Vec3& head : problem.kept) {
     // A kept station was scanned from where it stands, whatever the search area says; its (u, v) is for the reader.
-    const auto uv = site.project(head - Vec3{0, 0, site.height_m});
-    kept_.push_back({.uv = uv.value_or(Uv{}), .position = head, .status = StationStatus::ok});
+    kept_.push_back(site.check_head(head));
+    kept_.back().kept = true;
   }
 }
 
@@ -74,7 +74,9 @@ std::vector<PlacedStation> DecisionSpace::decode(std::span<const double> x) cons
 
 std::vector<std::size_t> DecisionSpace::coordinates(std::size_t i) const {
   const std::size_t k = i - kept_.size();
-  return {2 * k, 2 * k + 1};  // the height cannot leave a hole or a clash
+  std::vector<std::size_t> own{2 * k, 2 * k + 1};
+  if (heights_) own.push_back(2 * max_ + k);
+  return own;
 }
 
 std::vector<std::vector<std::size_t>> DecisionSpace::blocks() const {

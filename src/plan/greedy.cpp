@@ -56,7 +56,10 @@ GreedyResult choose_greedily(const Site& site, NetworkEvaluator& evaluator, cons
   GreedyResult result;
   std::vector<PlacedStation>& chosen = result.stations;
   PlacedNetwork kept;
-  for (const Vec3& head : config.fixed) kept.push_back({.uv = {}, .position = head, .status = StationStatus::ok});
+  for (const Vec3& head : config.fixed) {
+    kept.push_back(site.check_head(head));
+    kept.back().kept = true;
+  }
   double covered = 0;
   if (!kept.empty()) {
     const std::vector<PlacedNetwork> one{kept};

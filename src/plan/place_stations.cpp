@@ -11,7 +11,9 @@ Site make_site(const SearchArea& area, const ClashChecker& clash, const Scanner&
           .uv_max = area.uv_max(),
           .locate = [&area](Uv uv) { return area.locate(uv); },
           .project = [&area](const Vec3& ground) { return area.project(ground); },
-          .clashes = [&clash](const Vec3& ground) { return clash.clashes(ground); },
+          .clashes = [&clash](const Vec3& ground, double height_m) { return clash.clashes(ground, height_m); },
+          .check_head = [&area, &clash, height_m = scanner.height_m](
+                            const Vec3& head) { return place_head(&area, clash, height_m, head).station; },
           .sees = [&clash](const Vec3& a, const Vec3& b) { return clash.sees(a, b); },
           .height_m = scanner.height_m,
           .range_m = scanner.max_range_m};

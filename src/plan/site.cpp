@@ -8,7 +8,8 @@ PlacedStation place_station(const Site& site, Uv uv, double height_m) {
   const std::optional<Vec3> ground = site.locate(uv);
   if (!ground) return station;
   station.position = *ground + Vec3{0, 0, height_m};
-  station.status = site.clashes(*ground) ? StationStatus::clash : StationStatus::ok;
+  station.ground = *ground;
+  station.status = site.clashes(*ground, height_m) ? StationStatus::clash : StationStatus::ok;
   return station;
 }
 
@@ -28,7 +29,7 @@ Network to_network(std::span<const PlacedStation> stations) {
   Network network;
   network.reserve(stations.size());
   for (const PlacedStation& station : stations)
-    network.push_back({.position = station.position, .active = station.status == StationStatus::ok});
+    network.push_back({.position = station.position, .active = active(station)});
   return network;
 }
 

@@ -15,7 +15,8 @@ struct Site {
   Uv uv_min, uv_max;
   std::function<std::optional<Vec3>(Uv)> locate;          // ground under (u, v)
   std::function<std::optional<Uv>(const Vec3&)> project;  // and back
-  std::function<bool(const Vec3&)> clashes;               // by ground point
+  std::function<bool(const Vec3&, double)> clashes;       // by ground point and the head's height above it
+  std::function<PlacedStation(const Vec3&)> check_head;   // a station given by its head
   std::function<bool(const Vec3&, const Vec3&)> sees;     // one head the other, nothing between
   double height_m = 0;                                    // of the scanner's head
   double range_m = 0;                                     // how far a scanner sees

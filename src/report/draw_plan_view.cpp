@@ -117,9 +117,11 @@ std::unique_ptr<Canvas> plan_view_picture(const Scene& scene, const SearchArea& 
   const auto count = [&](StationStatus status) {
     return std::count_if(stations.begin(), stations.end(), [&](const PlacedStation& s) { return s.status == status; });
   };
-  const auto clashes = count(StationStatus::clash), holes = count(StationStatus::hole);
+  const auto holes = count(StationStatus::hole);
+  const auto skipped =
+      std::count_if(stations.begin(), stations.end(), [](const PlacedStation& s) { return !active(s); }) - holes;
   constexpr double kPanel = 224;
-  const double panel_height = 352 + (clashes > 0 ? 28 : 0) + (holes > 0 ? 45 : 0);  // what the legend may need
+  const double panel_height = 352 + (skipped > 0 ? 28 : 0) + (holes > 0 ? 45 : 0);  // what the legend may need
   auto page = std::make_unique<Canvas>(map.right() + 26 + kPanel, std::max(map.bottom() + 64, map.y + panel_height));
   Canvas& canvas = *page;
 
@@ -192,7 +194,7 @@ std::unique_ptr<Canvas> plan_view_picture(const Scene& scene, const SearchArea& 
     canvas.disc(anchors[k], 3, kStation);
   }
   for (std::size_t k = 0; k < shown.size(); ++k)
-    draw_station(canvas, discs[k], shown[k] + 1, stations[shown[k]].status != StationStatus::ok);
+    draw_station(canvas, discs[k], shown[k] + 1, !active(stations[shown[k]]));
   const double left = map.right() + 24;
   Point at{left, map.y + 8};
   const auto words = [&](const std::string& text) { canvas.text({at.x + 34, at.y}, text, {.size = 12.5}); };
@@ -213,7 +215,7 @@ std::unique_ptr<Canvas> plan_view_picture(const Scene& scene, const SearchArea& 
   draw_station(canvas, {at.x + 12, at.y}, 1, false);
   words("station");
   at.y += 28;
-  if (clashes > 0) {
+  if (skipped > 0) {
     draw_station(canvas, {at.x + 12, at.y}, 2, true);
     words("skipped: clash");
     at.y += 28;

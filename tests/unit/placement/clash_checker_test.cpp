@@ -36,6 +36,41 @@ TEST(ClashChecker, EitherSphereCounts) {
   EXPECT_TRUE(ClashChecker(kerb, volume).clashes(origin + Vec3{0.05, 0, 0.0099}));
 }
 
+// A head of searched height stands above the spheres: what it meets there counts too, and so does the mast.
+TEST(ClashChecker, HeadAndMastKeepClear) {
+  const ClashChecker shelf(test::Builder().floor(-5, -5, 5, 5, 0).box({0, -1, 2.5}, {3, 1, 2.6}).scene());
+  const double out = -0.06;  // of the shelf: beyond the mast's 0.05 m, within the head's 0.1 m
+  const auto at = [&](double x, double height) { return shelf.clashes(origin + Vec3{x, 0, 0}, height); };
+  EXPECT_FALSE(shelf.clashes(origin + Vec3{1, 0, 0}));
+  EXPECT_FALSE(at(1, 2.3999));
+  EXPECT_TRUE(at(1, 2.4001));
+  EXPECT_TRUE(at(1, 2.55)) << "the head is in it";
+  EXPECT_TRUE(at(1, 3)) << "the mast goes through it";
+  EXPECT_TRUE(at(-0.0499, 3));
+  EXPECT_FALSE(at(-0.0501, 3));
+  EXPECT_TRUE(at(out, 2.55));
+  EXPECT_FALSE(at(out, 3));
+  EXPECT_FALSE(at(out - 0.05, 2.55));
+  EXPECT_FALSE(at(-3, 1.85)) << "the ground itself is no obstacle to the mast";
+}
+
+TEST(ClashChecker, TheMastCountsBetweenSpheresThatLieApart) {
+  const SecurityVolume volume{.lower_m = 0.6, .upper_m = 3, .radius_m = 0.4};
+  const ClashChecker plate(test::Builder().box({0, -1, 1.5}, {1, 1, 1.6}).scene(), volume);
+  EXPECT_FALSE(plate.clashes(origin + Vec3{0.5, 0, 0}));
+  EXPECT_TRUE(plate.clashes(origin + Vec3{0.5, 0, 0}, 3.4));
+  EXPECT_TRUE(plate.clashes(origin + Vec3{-0.039, 0, 0}, 3.4)) << "a tenth of the radius";
+  EXPECT_FALSE(plate.clashes(origin + Vec3{-0.041, 0, 0}, 3.4));
+  EXPECT_FALSE(plate.clashes(origin + Vec3{0.5, 0, 0}, 1.4)) << "the head is below it";
+}
+
+TEST(ClashChecker, FindsTheGroundBelow) {
+  const ClashChecker checker(wall_and_ground());
+  EXPECT_NEAR(checker.ground_below(origin + Vec3{1, 1, 1.8}, 2).value().z, 30, 1e-9);
+  EXPECT_FALSE(checker.ground_below(origin + Vec3{1, 1, 2.2}, 2));
+  EXPECT_FALSE(checker.ground_below(origin + Vec3{1, 1, -1}, 100));
+}
+
 TEST(ClashChecker, BlockingMeshesClashToo) {
   SceneData data = test::Builder().box({0, -1, 0}, {0.1, 1, 3}).data();
   data.meshes[0].role = Role::blocking;

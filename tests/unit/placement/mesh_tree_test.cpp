@@ -49,6 +49,33 @@ TEST(DistanceToTriangle, HandlesSegmentsAndPoints) {
   EXPECT_NEAR(distance_to_triangle({0, 3, 4}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}), 5, 1e-12);
 }
 
+// The distance to a triangle is convex along a segment.
+double searched_along(const glm::dvec3& p, const glm::dvec3& q, const glm::dvec3& a, const glm::dvec3& b,
+                      const glm::dvec3& c) {
+  double low = 0, high = 1;
+  const auto at = [&](double s) { return distance_to_triangle(p + (q - p) * s, a, b, c); };
+  for (int i = 0; i < 100; ++i) {
+    const double third = (high - low) / 3;
+    (at(low + third) < at(high - third) ? high : low) += at(low + third) < at(high - third) ? -third : third;
+  }
+  return std::min({at(low), at(high), at(0), at(1)});
+}
+
+TEST(DistanceToTriangle, OfASegmentEqualsASearchAlongIt) {
+  std::mt19937 rng(13);
+  std::normal_distribution<double> normal;
+  const auto any = [&] { return glm::dvec3{normal(rng), normal(rng), normal(rng)}; };
+  int crossing = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const glm::dvec3 p = any(), q = i % 10 == 0 ? p : any(), a = any(), b = any();
+    const glm::dvec3 c = i % 7 == 0 ? (a + b) * 0.5 : any();
+    const double distance = distance_to_triangle(p, q, a, b, c);
+    EXPECT_NEAR(distance, searched_along(p, q, a, b, c), 1e-6);
+    crossing += distance == 0;
+  }
+  EXPECT_GT(crossing, 50);
+}
+
 SceneData random_scene(std::mt19937& rng, int triangles) {
   std::uniform_real_distribution<float> unit(-20, 20), near(-1, 1);
   SceneData scene;
@@ -79,6 +106,32 @@ TEST(MeshTree, DistancesEqualBruteForceInDouble) {
     EXPECT_TRUE(tree.within(p, expected * (1 + 1e-12)));
     EXPECT_FALSE(tree.within(p, expected));
   }
+}
+
+TEST(MeshTree, FindsWhatComesNearASegment) {
+  std::mt19937 rng(22);
+  const SceneData scene = random_scene(rng, 1000);
+  const MeshTree tree(scene);
+  std::uniform_real_distribution<double> unit(-22, 22), up(0, 3);
+  const auto wide = [&](std::uint32_t v) {
+    return glm::dvec3{scene.positions[v].x, scene.positions[v].y, scene.positions[v].z};
+  };
+  for (int i = 0; i < 500; ++i) {
+    const glm::dvec3 p{unit(rng), unit(rng), unit(rng)}, q = p + glm::dvec3{0, 0, up(rng)};
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Triangle& t : scene.triangles)
+      nearest = std::min(nearest, distance_to_triangle(p, q, wide(t[0]), wide(t[1]), wide(t[2])));
+    EXPECT_FALSE(tree.within_of_segment(p, q, nearest));
+    EXPECT_TRUE(tree.within_of_segment(p, q, nearest * (1 + 1e-9) + 1e-12));
+  }
+}
+
+TEST(MeshTree, MeasuresTheDropToWhatIsBelow) {
+  const MeshTree tree(test::Builder().floor(-1, -1, 1, 1, 3).floor(-1, -1, 1, 1, 1).data());
+  EXPECT_NEAR(tree.drop({0.2, 0.1, 5}).value(), 2, 1e-12);
+  EXPECT_NEAR(tree.drop({0.2, 0.1, 2.5}).value(), 1.5, 1e-12);
+  EXPECT_FALSE(tree.drop({0.2, 0.1, 0.5}));
+  EXPECT_FALSE(tree.drop({2, 0, 5}));
 }
 
 TEST(MeshTree, SeesWhatIsStraightAbove) {

@@ -67,7 +67,8 @@ TEST(DecisionSpace, KeepsStationsAndVariesHeights) {
   EXPECT_EQ(placed[0].status, StationStatus::ok);
   EXPECT_EQ(placed[1].position.z, 4.25);
   EXPECT_EQ(placed[2].position.z, 4.75);
-  EXPECT_EQ(space.coordinates(2), (std::vector<std::size_t>{2, 3}));
+  EXPECT_EQ(space.coordinates(2), (std::vector<std::size_t>{2, 3, 5}));
+  EXPECT_TRUE(placed[0].kept && !placed[1].kept);
 }
 
 TEST(VisibilityParts, CountsWhoSeesWhomWithinRange) {

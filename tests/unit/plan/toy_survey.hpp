@@ -31,7 +31,14 @@ inline Site toy_site() {
             if (p.x < 0 || p.x > 10 || p.y < 0 || p.y > 10) return std::nullopt;
             return Uv{p.x / 10, p.y / 10};
           },
-          .clashes = [](const Vec3& ground) { return ground.x < 0.5; },                 // a wall along one side
+          .clashes = [](const Vec3& ground, double) { return ground.x < 0.5; },  // a wall along one side
+          .check_head = [](const Vec3& head) -> PlacedStation {
+            const bool above = head.x >= 0 && head.x <= 10 && head.y >= 0 && head.y <= 10;
+            return {.uv = above ? Uv{head.x / 10, head.y / 10} : Uv{},
+                    .position = head,
+                    .ground = head - Vec3{0, 0, 1.5},
+                    .status = above ? StationStatus::ok : StationStatus::off_ground};
+          },
           .sees = [](const Vec3& a, const Vec3& b) { return (a.y < 5) == (b.y < 5); },  // a wall in the middle
           .height_m = 1.5,
           .range_m = 6};

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
+#include "vantage/placement.hpp"
+
+namespace vantage {
+namespace {
+
+// Tripods are set higher and lower than planned, by up to this share of the planned height.
+constexpr double height_tolerance = 0.5;
+// A head is above the ground of its (u, v) when it is so to this distance in plan.
+constexpr double same_place_m = 1e-3;
+
+bool straight_below(const Vec3& ground, const Vec3& head) {
+  return std::hypot(ground.x - head.x, ground.y - head.y) < same_place_m && ground.z <= head.z;
+}
+
+}  // namespace
+
+PlacedHead place_head(const SearchArea* area, const ClashChecker& clash, double height_m, const Vec3& head,
+                      std::optional<Uv> uv) {
+  const Vec3 foot = head - Vec3{0, 0, height_m};
+  const double tolerance = height_tolerance * height_m;
+  const auto within_reach = [&](const Vec3& ground) { return std::abs(ground.z - foot.z) <= tolerance; };
+  std::optional<Vec3> ground;
+  StationStatus footing = StationStatus::off_ground;
+  if (area && uv) ground = area->locate(*uv);
+  if (ground && !straight_below(*ground, head)) ground.reset();
+  if (area && !ground) {
+    const auto below = area->project(foot);
+    if (!uv) uv = below;
+    if (below) ground = area->locate(*below);
+    if (ground && !within_reach(*ground)) ground.reset();
+  }
+  if (ground) {
+    footing = StationStatus::ok;
+  } else {
+    ground = clash.ground_below(head, height_m + tolerance);
+    if (ground && !within_reach(*ground)) ground.reset();
+    if (ground) footing = area ? StationStatus::outside : StationStatus::ok;
+  }
+
+  PlacedHead placed{.station = {.uv = uv.value_or(Uv{}), .position = head, .ground = foot, .status = footing},
+                    .has_uv = uv.has_value()};
+  if (ground) placed.station.ground = {head.x, head.y, ground->z};
+  const Vec3& stands = placed.station.ground;
+  if (clash.inside(head))
+    placed.station.status = StationStatus::inside;
+  else if (clash.clashes(stands, head.z - stands.z))
+    placed.station.status = StationStatus::clash;
+  return placed;
+}
+
+}  // namespace vantage
