@@ -2,6 +2,7 @@
 /// All of vantage.
 #pragma once
 
+#include "vantage/candidates.hpp"
 #include "vantage/error.hpp"
 #include "vantage/export.hpp"
 #include "vantage/image.hpp"
