@@ -6,7 +6,10 @@
 
 namespace vantage {
 
-RowCover::RowCover(const CaptureRows& rows) : rows_(rows), points_(rows.voxels().size()) {}
+RowCover::RowCover(const CaptureRows& rows, std::span<const std::size_t> taken)
+    : rows_(rows), points_(rows.voxels().size()) {
+  for (const std::size_t row : taken) add(row);
+}
 
 double RowCover::filled(std::uint64_t points) const {
   const double share = static_cast<double>(points) / rows_.goal_density();
@@ -50,9 +53,8 @@ double RowCover::value() const {
 
 std::vector<std::size_t> choose_greedily(const CaptureRows& rows, std::size_t count, std::span<const std::size_t> fixed,
                                          double enough, const MayTake& may_take) {
-  RowCover cover(rows);
   std::vector<std::size_t> taken(fixed.begin(), fixed.end());
-  for (const std::size_t row : taken) cover.add(row);
+  RowCover cover(rows, taken);
 
   struct Bound {
     double gain;
@@ -86,12 +88,9 @@ std::vector<std::size_t> choose_greedily(const CaptureRows& rows, std::size_t co
 
 std::vector<std::size_t> improve_by_swaps(const CaptureRows& rows, std::vector<std::size_t> chosen, std::size_t fixed,
                                           double least, const MayTake& may_take, const Progress& progress) {
-  RowCover cover(rows);
+  RowCover cover(rows, chosen);
   std::vector<char> in(rows.size(), 0);
-  for (const std::size_t row : chosen) {
-    cover.add(row);
-    in[row] = 1;
-  }
+  for (const std::size_t row : chosen) in[row] = 1;
   // Upper bounds of what each row adds to the set of now, for skipping: F(S − o + r) − F(S − o) is at most
   // F(S + r) − F(S − o), the gain of r and the loss of o; and what a row adds shrinks when another is added.
   std::vector<double> bound(rows.size()), known(rows.size());

@@ -17,7 +17,8 @@ namespace vantage {
 // What a growing and shrinking set of rows captures; rows may be taken more than once.
 class RowCover {
  public:
-  explicit RowCover(const CaptureRows& rows);
+  // Keeps a reference to `rows`.
+  explicit RowCover(const CaptureRows& rows, std::span<const std::size_t> taken = {});
   void add(std::size_t row);
   void remove(std::size_t row);          // REQUIRES: added before
   double gain(std::size_t row) const;    // F(S + row) − F(S)
