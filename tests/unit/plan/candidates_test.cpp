@@ -72,7 +72,7 @@ TEST(CaptureRows, AreTheVoxelFieldsOfSingleStations) {
 }
 
 TEST(CaptureRows, SumToNetworks) {
-  Simulator simulator(wall_and_floor().scene(), coarse_scanner(), config());
+  Simulator simulator(wall_and_floor().scene(), coarse_scanner(4), config());
   const std::vector<PlacedStation> stations{at({0, 0, 0}), at({3, 2, 0}), at({2, -2, 0.5})};
   constexpr std::uint64_t sample = 90;
   const CaptureRows rows = capture_rows(simulator, stations, sample);
