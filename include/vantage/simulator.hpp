@@ -97,6 +97,10 @@ struct SampleOptions {
   std::uint64_t voxels = 20'000;  ///< Number of surveyed voxels; as many as there are: all of them.
   bool overlap = true;
   bool stop_at_goal = false;  ///< Stop counting a voxel at the goal density; only without overlap.
+  /// Where wanted: told the points of every network in each voxel of the sample (`Simulator::sampled_voxels`, in that
+  /// order), once for each network that was counted to its end, in any order, on the calling thread. A voxel at the
+  /// goal may have fewer than it got where `stop_at_goal`.
+  std::function<void(std::size_t network, std::span<const std::uint32_t> points)> points = {};
 };
 
 /// Owns device, acceleration structure and voxel grid; keeps a share of the scene.
@@ -119,6 +123,11 @@ class Simulator {
   double voxel_size_m() const noexcept;
   double goal_density() const noexcept;         ///< Points wanted in a voxel.
   Vec3 voxel_centre(std::uint64_t rank) const;  ///< Survey frame. REQUIRES: rank < voxel_count().
+  /// What a voxel counts in coverage (`MeshInfo::weight`). REQUIRES: rank < voxel_count().
+  std::uint32_t voxel_weight(std::uint64_t rank) const;
+  /// Ranks of the voxels that `evaluate_sampled` draws for `SampleOptions::voxels`, ascending. Fixed by the seed.
+  /// Throws Error invalid_argument for none.
+  std::vector<std::uint32_t> sampled_voxels(std::uint64_t voxels) const;
 
   /// Scans one station in chunks of rows; `sink` sees them in ray order. An inactive station has no chunks. A cancelled
   /// scan says so in `cancelled`. Throws Error invalid_argument (a position that is not finite, unknown outputs).

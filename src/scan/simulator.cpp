@@ -130,6 +130,7 @@ struct Simulator::Impl {
 
   // Of the size asked for last; the optimiser asks for one size all the time.
   const std::vector<std::uint32_t>& sample(std::uint64_t size) {
+    if (size == 0) throw Error(Errc::invalid_argument, "a sample must have at least one voxel");
     size = std::min(size, grid->size());
     if (sampled.size() != size) sampled = voxel_sample(grid->size(), size, config.seed);
     return sampled;
@@ -168,6 +169,10 @@ Vec3 Simulator::voxel_centre(std::uint64_t rank) const {
   return origin() + Vec3{static_cast<double>(min[0]) + (x + 0.5) * size, static_cast<double>(min[1]) + (y + 0.5) * size,
                          static_cast<double>(min[2]) + (z + 0.5) * size};
 }
+
+std::uint32_t Simulator::voxel_weight(std::uint64_t rank) const { return impl_->grid->weight(rank); }
+
+std::vector<std::uint32_t> Simulator::sampled_voxels(std::uint64_t voxels) const { return impl_->sample(voxels); }
 
 ScanSummary Simulator::scan(const Station& station, const ScanOptions& options,
                             const std::function<void(const ScanChunk&)>& sink, const Progress& progress) {
@@ -216,7 +221,6 @@ NetworkCounts Simulator::evaluate(const Network& network, const EvaluateOptions&
 
 std::vector<NetworkCounts> Simulator::evaluate_sampled(std::span<const Network> networks, const SampleOptions& options,
                                                        const Progress& progress) {
-  if (options.voxels == 0) throw Error(Errc::invalid_argument, "a sample must have at least one voxel");
   const std::vector<std::uint32_t>& sample = impl_->sample(options.voxels);
   std::vector<NetworkCounts> all(networks.size());
   // Networks without an active station are not the engine's concern.
@@ -231,6 +235,7 @@ std::vector<NetworkCounts> Simulator::evaluate_sampled(std::span<const Network> 
         all[k].groups.push_back(nothing_seen((sample.size() + sample_groups - 1 - g) / sample_groups,
                                              impl_->weight_of(sample, g, sample_groups), networks[k].size(),
                                              options.overlap));
+      if (options.points) options.points(k, std::vector<std::uint32_t>(sample.size()));
       continue;
     }
     traced.push_back(std::move(active));
@@ -239,12 +244,16 @@ std::vector<NetworkCounts> Simulator::evaluate_sampled(std::span<const Network> 
   }
   if (traced.empty()) return all;
   const bool stop_at_goal = options.stop_at_goal && !options.overlap;
+  const auto points = [&](std::size_t k, std::span<const std::uint32_t> counted) {
+    options.points(places[k], counted);
+  };
   std::vector<NetworkCounts> counts =
       impl_->tracer->count_sampled(traced, sizes,
                                    {.sample = sample,
                                     .groups = sample_groups,
                                     .masks = options.overlap,
-                                    .stop_at = stop_at_goal ? static_cast<std::uint32_t>(std::ceil(impl_->goal)) : 0},
+                                    .stop_at = stop_at_goal ? static_cast<std::uint32_t>(std::ceil(impl_->goal)) : 0,
+                                    .points = options.points ? decltype(options.points)(points) : nullptr},
                                    progress);
   for (std::size_t k = 0; k < counts.size(); ++k) all[places[k]] = std::move(counts[k]);
   return all;

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -107,6 +108,9 @@ class Tracer {
     std::uint32_t groups = 20;  // interleaved: voxel number i of the sample is in group i % groups
     bool masks = true;
     std::uint32_t stop_at = 0;  // goal rounded up, or 0; only without masks
+    // Where wanted: told the points in each voxel of the sample, once for every network that was counted to its end, in
+    // any order, on the calling thread.
+    std::function<void(std::size_t network, std::span<const std::uint32_t> points)> points = {};
   };
   virtual std::vector<NetworkCounts> count_sampled(std::span<const std::vector<TraceStation>> networks,
                                                    std::span<const std::uint32_t> station_counts, const SampleJob& job,

@@ -524,6 +524,35 @@ TEST_P(Conformance, EverySampledVoxelIsCountedAsTheExactEvaluationDoes) {
   }
 }
 
+// What capture rows are made of: the points themselves, as many batches as it takes, and none of a cut count.
+TEST_P(Conformance, PointsOfASampleAreThoseOfTheVoxelField) {
+  for (const TestSite& site : sites()) {
+    std::vector<std::uint32_t> everything(site.grid->size());
+    std::iota(everything.begin(), everything.end(), 0u);
+    std::vector<std::vector<TraceStation>> networks{site.stations, random_stations(site, 8, 7)};
+    for (const TraceStation& station : site.stations) networks.push_back({{station.origin, 0}});
+    const std::vector<std::uint32_t> sizes{4, 8, 1, 1, 1, 1};
+    networks.resize(sizes.size());
+    for (const bool noisy : {false, true}) {
+      for (const bool masks : {false, true}) {
+        SCOPED_TRACE(site.name + (noisy ? ", noise" : "") + (masks ? ", masks" : ""));
+        std::vector<std::vector<std::uint32_t>> points(networks.size());
+        Tracer::SampleJob job{everything, 20, masks, 0};
+        job.points = [&](std::size_t n, std::span<const std::uint32_t> of) {
+          EXPECT_TRUE(points[n].empty()) << "network " << n << " was told of twice";
+          points[n].assign(of.begin(), of.end());
+        };
+        tracer(site, noisy).count_sampled(networks, sizes, job, {});
+        for (std::size_t n = 0; n < networks.size(); ++n) {
+          VoxelField field;
+          tracer(site, noisy).count(networks[n], sizes[n], {false, true, &field}, {});
+          EXPECT_EQ(points[n], field.count) << "network " << n;
+        }
+      }
+    }
+  }
+}
+
 // Many scanners in one place: what the first saturate, the rest need not look at.
 TEST_P(Conformance, SamplesStopAtTheGoalOnlyWhereAsked) {
   const TestSite& site = sites()[2];

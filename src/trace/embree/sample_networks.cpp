@@ -93,6 +93,7 @@ std::vector<NetworkCounts> sample_networks(const StationRays& rays, std::span<co
       results[first + k] =
           reduce_sample(own_counts, own_masks, job.groups, station_counts[first + k], goal_density, weights);
       results[first + k].rays = traced[k];
+      if (job.points && !cancelled) job.points(first + k, own_counts);
     }
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
     for (std::size_t k = 0; k < here; ++k) results[first + k].trace_seconds = seconds / static_cast<double>(here);

@@ -158,7 +158,15 @@ class VulkanTracer::SampledCount {
       progress((static_cast<double>(batch.first) + static_cast<double>(batch.size()) * plan.done()) /
                static_cast<double>(networks_.size()));
     }
+    if (job_.points) hand_out_points(batch);
     return true;
+  }
+
+  void hand_out_points(const Batch& batch) {
+    std::vector<std::uint32_t> points(std::size_t{voxels_} * batch.size());
+    t_.commands_.download(t_.counts_, points.data(), points.size() * word);
+    for (std::size_t n = 0; n < batch.size(); ++n)
+      job_.points(batch.first + n, std::span(points).subspan(n * voxels_, voxels_));
   }
 
   // Returns what each chunk wanted to list, and the seconds that the device took.

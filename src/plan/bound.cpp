@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vantage/bound.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <string>
+
+#include "core/setting_list.hpp"
+#include "plan/capture_master.hpp"
+#include "plan/choose_on_rows.hpp"
+#include "vantage/error.hpp"
+
+namespace vantage {
+namespace {
+
+using Rows = std::vector<std::size_t>;
+
+// Of a bound that is rounded up: far below a station, far above rounding.
+constexpr double whole = 1e-6;
+
+void check(const CaptureRows& rows, std::span<const std::size_t> fixed) {
+  for (const std::size_t k : fixed)
+    if (k >= rows.size())
+      throw Error(Errc::invalid_argument, "bound: there is no row " + std::to_string(k) + " of " +
+                                              std::to_string(rows.size()) + " to be fixed");
+  if (rows.size() == 0) throw Error(Errc::invalid_argument, "bound: there are no candidates");
+}
+
+std::vector<double> as_shares(const Rows& chosen, std::size_t candidates) {
+  std::vector<double> y(candidates);
+  for (const std::size_t k : chosen)
+    if (k < candidates) y[k] = 1;
+  return y;
+}
+
+// A choice that comes as near to its bound is the best: branch and bound has tolerances.
+constexpr double closed = 1e-5;
+
+// Branch and bound over the cuts, which are added where its choices turn out to hold less than the cuts say, until the
+// choice holds what the bound allows.
+void branch(CaptureMaster& master, const CaptureRows& rows, std::span<const std::size_t> fixed, double seconds,
+            CaptureBound& result, const Progress& progress) {
+  using Clock = std::chrono::steady_clock;
+  const auto begun = Clock::now();
+  double reached = RowCover(rows, result.chosen).value();
+  while (!progress.stopped() && result.bound - reached > closed) {
+    const double left = seconds - std::chrono::duration<double>(Clock::now() - begun).count();
+    if (left <= 0) break;
+    const CaptureMaster::Choice choice = master.choose(result.stations, left);
+    result.bound = std::min(result.bound, choice.bound);
+    if (choice.rows.empty()) break;
+    Rows chosen(fixed.begin(), fixed.end());
+    chosen.insert(chosen.end(), choice.rows.begin(), choice.rows.end());
+    master.cut_at(as_shares(choice.rows, rows.size()));
+    chosen = improve_by_swaps(rows, std::move(chosen), fixed.size(), 1e-9, {}, progress);
+    master.cut_at(as_shares({chosen.begin() + static_cast<std::ptrdiff_t>(fixed.size()), chosen.end()}, rows.size()));
+    if (const double value = RowCover(rows, chosen).value(); value > reached) {
+      reached = value;
+      result.chosen = std::move(chosen);
+    }
+  }
+}
+
+}  // namespace
+
+Settings settings(const BoundConfig& config) {
+  return SettingList()
+      .add("bound_tolerance", config.tolerance)
+      .add("bound_max_seconds", config.max_seconds)
+      .add("bound_exact_seconds", config.exact_seconds)
+      .take();
+}
+
+Rows choose_rows(const CaptureRows& rows, std::size_t stations, std::span<const std::size_t> fixed,
+                 const Progress& progress) {
+  check(rows, fixed);
+  return improve_by_swaps(rows, choose_greedily(rows, stations, fixed), fixed.size(), 1e-9, {}, progress);
+}
+
+CaptureBound bound_capture(const CaptureRows& rows, std::size_t stations, std::span<const std::size_t> fixed,
+                           const BoundConfig& config, const Progress& progress) {
+  check(rows, fixed);
+  if (stations < 1) throw Error(Errc::invalid_argument, "bound: of how many stations? At least 1");
+  CaptureBound result;
+  result.stations = stations;
+  result.chosen = choose_rows(rows, stations, fixed, {{}, progress.stop});
+  const Rows free(result.chosen.begin() + static_cast<std::ptrdiff_t>(fixed.size()), result.chosen.end());
+  const auto solve = [&](CaptureMaster& master, std::size_t candidates, double from) {
+    master.cut_at(as_shares(free, candidates));
+    const auto share = [&](double done) { progress(from + 0.5 * done); };
+    return master.most(static_cast<double>(stations), config.tolerance, config.max_seconds, {share, progress.stop});
+  };
+  // The first half of the candidates, as evenly spread as all of them.
+  const std::size_t half = std::max<std::size_t>(rows.size() / 2, 1);
+  CaptureMaster coarse(rows, half, fixed), master(rows, rows.size(), fixed);
+  const Relaxed before = solve(coarse, half, 0), after = solve(master, rows.size(), 0.5);
+  result.bound = after.bound;
+  result.relaxation = after.reached;
+  result.complete = before.complete && after.complete;
+  result.half_bound = before.bound;
+  result.spacing_term = std::max(after.bound - before.bound, 0.0);
+  if (config.exact_seconds > 0) branch(master, rows, fixed, config.exact_seconds, result, progress);
+  result.reached = rows.coverage(result.chosen);
+  progress(1);
+  return result;
+}
+
+StationsBound bound_stations(const CaptureRows& rows, double capture, std::span<const std::size_t> fixed,
+                             const BoundConfig& config, const Progress& progress) {
+  check(rows, fixed);
+  if (!(capture > 0 && capture <= 1))
+    throw Error(Errc::invalid_argument,
+                "bound: the wanted coverage is " + std::to_string(capture) + ", but must be above 0 and at most 1");
+  StationsBound result;
+  CaptureMaster master(rows, rows.size(), fixed);
+  const Rows greedy = choose_greedily(rows, rows.size(), fixed, capture);
+  if (RowCover(rows, greedy).value() >= capture) {
+    // With one station fewer, swaps may still find it.
+    result.chosen = greedy;
+    while (result.chosen.size() > fixed.size() && !progress.stopped()) {
+      Rows fewer(result.chosen.begin(), result.chosen.end() - 1);
+      fewer = improve_by_swaps(rows, std::move(fewer), fixed.size(), 1e-9, {}, progress);
+      if (RowCover(rows, fewer).value() < capture) break;
+      result.chosen = std::move(fewer);
+    }
+    master.cut_at(as_shares({result.chosen.begin() + static_cast<std::ptrdiff_t>(fixed.size()), result.chosen.end()},
+                            rows.size()));
+  }
+  const Relaxed relaxed = master.fewest(capture, config.tolerance, config.max_seconds, progress);
+  result.possible = std::isfinite(relaxed.bound);
+  result.complete = relaxed.complete;
+  result.relaxation = relaxed.bound;
+  if (result.possible) result.at_least = static_cast<std::size_t>(std::max(std::ceil(relaxed.bound - whole), 0.0));
+  progress(1);
+  return result;
+}
+
+}  // namespace vantage

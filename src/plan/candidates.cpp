@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vantage/candidates.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <string>
+
+#include "core/setting_list.hpp"
+#include "plan/site.hpp"
+#include "plan/spread_positions.hpp"
+#include "vantage/error.hpp"
+
+namespace vantage {
+namespace {
+
+// Candidates between two looks at the clock.
+constexpr std::size_t chunk = 64;
+
+void check(const CandidateConfig& config) {
+  if (config.first < 1 || config.most < config.first)
+    throw Error(Errc::invalid_argument, "candidates: from " + std::to_string(config.first) + " to " +
+                                            std::to_string(config.most) + " are asked for; at least 1 is needed");
+  if (!(config.change >= 0 && std::isfinite(config.change)))
+    throw Error(Errc::invalid_argument, "candidates: the change must not be negative");
+}
+
+}  // namespace
+
+Settings settings(const CandidateConfig& config) {
+  return SettingList()
+      .add("candidates_first", config.first)
+      .add("candidates_most", config.most)
+      .add("candidates_change", config.change)
+      .add("candidates_sample_voxels", config.sample_voxels)
+      .add("candidates_max_seconds", config.max_seconds)
+      .take();
+}
+
+Candidates find_candidates(Simulator& simulator, const SearchArea& area, const ClashChecker& clash,
+                           const CandidateConfig& config, const Progress& progress) {
+  check(config);
+  const auto begun = std::chrono::steady_clock::now();
+  const auto out_of_time = [&] {
+    return config.max_seconds > 0 &&
+           std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count() >= config.max_seconds;
+  };
+  const Site site = make_site(area, clash, simulator.scanner());
+  const SpreadPositions spread = spread_positions(site, area.mesh(), site.height_m, config.most);
+  if (spread.stations.empty())
+    throw Error(Errc::invalid_argument,
+                "no position of the search area is allowed: everywhere the scanner would stand too near to something "
+                "or not on the ground; see --security, --height and what the search area is made of");
+
+  const std::uint64_t sample = config.sample_voxels == 0 ? simulator.voxel_count() : config.sample_voxels;
+  Candidates found;
+  found.rows_ = CaptureRows(simulator, std::max<std::uint64_t>(sample, 1));
+  std::size_t goal = std::min(config.first, spread.stations.size());
+  double before = -1;
+  while (found.ended_.empty()) {
+    while (found.rows_.size() < goal && found.ended_.empty()) {
+      const std::size_t first = found.rows_.size(), here = std::min(chunk, goal - first);
+      const auto share = [&](double done) {
+        progress((static_cast<double>(first) + done * static_cast<double>(here)) /
+                 static_cast<double>(spread.stations.size()));
+      };
+      found.rows_.append(capture_rows(simulator, std::span(spread.stations).subspan(first, here),
+                                      found.rows_.sample_voxels(), {share, progress.stop}));
+      if (found.rows_.cancelled())
+        found.ended_ = "cancelled";
+      else if (found.rows_.size() < goal && out_of_time())
+        found.ended_ = "time";
+    }
+    found.visible_ = found.rows_.coverage();
+    if (!found.ended_.empty()) break;
+    const double now = found.visible_.value;
+    if (before >= 0) found.change_ = now > 0 ? (now - before) / now : 0;
+    if (before >= 0 && found.change_ < config.change)
+      found.ended_ = "enough";
+    else if (goal == config.most)
+      found.ended_ = "most";
+    else if (goal == spread.stations.size())
+      found.ended_ = "all";
+    else if (out_of_time())
+      found.ended_ = "time";
+    before = now;
+    goal = std::min(2 * goal, spread.stations.size());
+  }
+  const std::size_t taken = found.rows_.size();
+  found.stations_.assign(spread.stations.begin(), spread.stations.begin() + static_cast<std::ptrdiff_t>(taken));
+  found.spacing_m_ = taken > 0 ? spread.spacing_m[taken - 1] : 0;
+  progress(1);
+  return found;
+}
+
+}  // namespace vantage

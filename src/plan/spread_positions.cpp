@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// The pool: evenly spread points of the unit square (Roberts: The Unreasonable Effectiveness of Quasirandom Sequences,
+// 2018), mapped to the triangles by area. The order: farthest point first (Gonzalez: Clustering to Minimize the Maximum
+// Intercluster Distance, 1985), which for every n comes within a factor of two of the densest cover by n points.
+#include "plan/spread_positions.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace vantage {
+namespace {
+
+constexpr std::size_t pool_per_position = 4;
+constexpr std::size_t tries_per_position = 48;  // where most of the ground is too near to something
+constexpr std::size_t tries_at_once = 4096;
+
+double fraction(double x) { return x - std::floor(x); }
+
+class GroundByArea {
+ public:
+  explicit GroundByArea(const SearchMesh& mesh) : mesh_(mesh) {
+    double sum = 0;
+    for (const auto& t : mesh.triangles) {
+      const Vec3& a = mesh.positions[t[0]];
+      const Vec3 normal = cross(mesh.positions[t[1]] - a, mesh.positions[t[2]] - a);
+      below_.push_back(sum);
+      sum += 0.5 * std::sqrt(dot(normal, normal));
+    }
+    below_.push_back(sum);
+  }
+  double area() const { return below_.back(); }
+
+  // (u, v) of a point of the unit square: the triangles lie side by side along s, as wide as their areas.
+  Uv at(double s, double t) const {
+    const double along = s * area();
+    const auto next = std::upper_bound(below_.begin() + 1, below_.end() - 1, along);
+    const auto k = static_cast<std::size_t>(next - below_.begin()) - 1;
+    const double root = std::sqrt(std::clamp((along - below_[k]) / (below_[k + 1] - below_[k]), 0.0, 1.0));
+    const double a = 1 - root, b = root * (1 - t), c = root * t;
+    const auto& corner = mesh_.triangles[k];
+    const Uv &p = mesh_.uvs[corner[0]], &q = mesh_.uvs[corner[1]], &r = mesh_.uvs[corner[2]];
+    return {a * p.u + b * q.u + c * r.u, a * p.v + b * q.v + c * r.v};
+  }
+
+ private:
+  const SearchMesh& mesh_;
+  std::vector<double> below_;  // area of all triangles before each, and of all
+};
+
+std::vector<PlacedStation> allowed_positions(const Site& site, const SearchMesh& mesh, double height_m,
+                                             std::size_t wanted, std::size_t tries) {
+  const GroundByArea ground(mesh);
+  std::vector<PlacedStation> allowed;
+  if (!(ground.area() > 0)) return allowed;
+  constexpr double g = 1.32471795724474602596;  // g³ = g + 1
+  for (std::size_t first = 0; first < tries && allowed.size() < wanted; first += tries_at_once) {
+    const std::size_t here = std::min(tries_at_once, tries - first);
+    std::vector<PlacedStation> tried(here);
+    tbb::parallel_for(std::size_t{0}, here, [&](std::size_t k) {
+      const double n = static_cast<double>(first + k + 1);
+      tried[k] = place_station(site, ground.at(fraction(0.5 + n / g), fraction(0.5 + n / (g * g))), height_m);
+    });
+    for (const PlacedStation& station : tried)
+      if (station.status == StationStatus::ok && allowed.size() < wanted) allowed.push_back(station);
+  }
+  return allowed;
+}
+
+}  // namespace
+
+SpreadPositions spread_positions(const Site& site, const SearchMesh& mesh, double height_m, std::size_t most) {
+  const std::vector<PlacedStation> pool =
+      allowed_positions(site, mesh, height_m, pool_per_position * most, tries_per_position * most);
+  SpreadPositions spread;
+  std::vector<double> square(pool.size(), std::numeric_limits<double>::infinity());  // to the nearest taken
+  std::size_t next = 0;
+  while (spread.stations.size() < std::min(most, pool.size())) {
+    spread.stations.push_back(pool[next]);
+    const Vec3 taken = pool[next].position;
+    for (std::size_t k = 0; k < pool.size(); ++k) {
+      const Vec3 apart = pool[k].position - taken;
+      square[k] = std::min(square[k], dot(apart, apart));
+    }
+    next = static_cast<std::size_t>(std::max_element(square.begin(), square.end()) - square.begin());
+    spread.spacing_m.push_back(std::sqrt(square[next]));
+    if (square[next] == 0) break;  // all that is left lies on one that is taken
+  }
+  return spread;
+}
+
+}  // namespace vantage

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vantage/candidates.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stop_token>
+
+#include "plan/spread_positions.hpp"
+#include "support/quad_scene.hpp"
+#include "unit/plan/random_rows.hpp"
+#include "vantage/error.hpp"
+#include "vantage/planner.hpp"
+
+namespace vantage {
+namespace {
+
+using test::coarse_scanner;
+using test::QuadScene;
+using test::wall_and_floor;
+
+SimulatorConfig config() {
+  SimulatorConfig c;
+  c.engine = Engine::embree;
+  c.user_size_m = 0.5;
+  c.point_spacing_m = 0.2;
+  return c;
+}
+
+// A rectangle of ground as two triangles; (u, v) is where it is told to be.
+void add_ground(SearchMesh& mesh, const Vec3& corner, double x, double y, const Uv& low, const Uv& high) {
+  const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+  for (const auto& [a, b] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 1}}) {
+    mesh.positions.push_back(corner + Vec3{a * x, b * y, 0});
+    mesh.uvs.push_back({a ? high.u : low.u, b ? high.v : low.v});
+  }
+  mesh.triangles.push_back({first, first + 1, first + 2});
+  mesh.triangles.push_back({first, first + 2, first + 3});
+}
+
+SearchArea ground(const Vec3& corner, double x, double y) {
+  SearchMesh mesh;
+  add_ground(mesh, corner, x, y, {0, 0}, {1, 1});
+  return SearchArea::from_mesh(mesh);
+}
+
+PlacedStation at(const Vec3& head) {
+  PlacedStation station;
+  station.position = head;
+  return station;
+}
+
+TEST(CaptureRows, AreTheVoxelFieldsOfSingleStations) {
+  Scanner scanner = coarse_scanner();
+  scanner.noise = rtc360_noise();
+  Simulator simulator(wall_and_floor().scene(), scanner, config());
+  std::vector<PlacedStation> stations{at({0, 0, 0}), at({3, 2, 0}), at({0, 0, 0}), at({9, 0, 0})};
+  stations[2].status = StationStatus::clash;
+  const CaptureRows rows = capture_rows(simulator, stations, simulator.voxel_count());
+  ASSERT_EQ(rows.size(), 4u);
+  EXPECT_EQ(rows.row(2).size(), 0u);
+  EXPECT_EQ(rows.voxels().size(), simulator.voxel_count());
+  for (const std::size_t k : {0u, 1u, 3u}) {
+    VoxelField field;
+    simulator.evaluate({{stations[k].position}}, {.overlap = false, .field = &field});
+    std::vector<std::uint32_t> dense(field.count.size());
+    for (const CapturedVoxel& seen : rows.row(k)) dense[seen.voxel] = seen.points;
+    EXPECT_EQ(dense, field.count) << k;
+    EXPECT_GT(rows.row(k).size(), 0u);
+  }
+}
+
+TEST(CaptureRows, SumToNetworks) {
+  Simulator simulator(wall_and_floor().scene(), coarse_scanner(4), config());
+  const std::vector<PlacedStation> stations{at({0, 0, 0}), at({3, 2, 0}), at({2, -2, 0.5})};
+  constexpr std::uint64_t sample = 90;
+  const CaptureRows rows = capture_rows(simulator, stations, sample);
+  EXPECT_EQ(rows.voxels(), simulator.sampled_voxels(sample));
+  const std::vector<Network> networks{to_network(stations)};
+  const NetworkCounts counts = simulator.evaluate_sampled(networks, {.voxels = sample}).front();
+  const Estimate expected = coverage_estimate(counts, simulator.goal_density(), simulator.voxel_count());
+  const std::vector<std::size_t> all{0, 1, 2};
+  EXPECT_DOUBLE_EQ(rows.coverage(all).value, expected.value);
+  EXPECT_DOUBLE_EQ(rows.coverage(all).standard_error, expected.standard_error);
+  EXPECT_EQ(rows.coverage().value, rows.coverage(all).value);
+  EXPECT_GT(expected.standard_error, 0);
+}
+
+TEST(CaptureRows, StopWhereTold) {
+  Simulator simulator(wall_and_floor().scene(), coarse_scanner(), config());
+  const std::vector<PlacedStation> stations(200, at({0, 0, 0}));
+  std::stop_source stop;
+  const CaptureRows rows = capture_rows(simulator, stations, 50,
+                                        {.report =
+                                             [&](double done) {
+                                               if (done > 0.5) stop.request_stop();
+                                             },
+                                         .stop = stop.get_token()});
+  EXPECT_TRUE(rows.cancelled());
+  EXPECT_GT(rows.size(), 0u);
+  EXPECT_LT(rows.size(), stations.size());
+}
+
+TEST(CaptureRows, JoinOnlyWithinOneSample) {
+  CaptureRows some = test::random_rows(3, 20, 1), more(some.weights(), some.goal_density());
+  more.append(some);
+  more.append(some);
+  ASSERT_EQ(more.size(), 6u);
+  for (std::size_t k = 0; k < 6; ++k)
+    EXPECT_TRUE(std::ranges::equal(more.row(k), some.row(k % 3), [](const CapturedVoxel& a, const CapturedVoxel& b) {
+      return a.voxel == b.voxel && a.points == b.points;
+    }));
+  EXPECT_THROW(more.append(test::random_rows(3, 21, 1)), Error);
+}
+
+// Square metres decide, not (u, v): the small field has most of the chart.
+TEST(SpreadPositions, FollowTheGroundInSquareMetres) {
+  SearchMesh mesh;
+  add_ground(mesh, {0, 0, 0}, 30, 20, {0, 0}, {0.2, 1});
+  add_ground(mesh, {40, 0, 5}, 10, 20, {0.3, 0}, {1, 1});
+  const SearchArea area = SearchArea::from_mesh(mesh);
+  const Scene scene = QuadScene().quad({0, 0, -50}, {1, 0, 0}, {0, 1, 0}).scene();
+  const ClashChecker clash(scene);
+  const Site site = make_site(area, clash, coarse_scanner());
+  const SpreadPositions spread = spread_positions(site, area.mesh(), 1.5, 512);
+  ASSERT_EQ(spread.stations.size(), 512u);
+  for (const std::size_t n : {64u, 128u, 512u}) {
+    const auto in_large = std::count_if(spread.stations.begin(), spread.stations.begin() + static_cast<int>(n),
+                                        [](const PlacedStation& s) { return s.position.x <= 30; });
+    // 600 of 800 m²; borders of the fields draw a little more than the middle
+    EXPECT_NEAR(static_cast<double>(in_large) / static_cast<double>(n), 0.75, 0.06) << n;
+    double nearest = 1e300;
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = 0; j < i; ++j) {
+        const Vec3 apart = spread.stations[i].position - spread.stations[j].position;
+        nearest = std::min(nearest, std::sqrt(dot(apart, apart)));
+      }
+    // Farthest point first: what is taken is no nearer to the rest than what is left over.
+    EXPECT_GE(nearest, spread.spacing_m[n - 1] - 1e-12) << n;
+    // And covers: no disc of that radius around n points is smaller than their share of the ground.
+    EXPECT_LT(spread.spacing_m[n - 1], 1.6 * std::sqrt(800.0 / static_cast<double>(n))) << n;
+  }
+  EXPECT_NEAR(spread.stations.front().position.z, spread.stations.front().position.x <= 30 ? 1.5 : 6.5, 1e-9);
+}
+
+// Two equal walls, one behind the other and out of sight from all of the ground.
+TEST(Candidates, TellWhatCanBeSeen) {
+  QuadScene site;
+  site.quad({5, -3, -1.5f}, {0, 6, 0}, {0, 0, 4});
+  site.quad({6, -2, -1.4f}, {0, 4, 0}, {0, 0, 3.4f});
+  Simulator simulator(site.scene(), coarse_scanner(0.5), config());
+  const SearchArea area = ground({0, -1, -1.5}, 2, 2);
+  const ClashChecker clash(simulator.scene());
+  const Candidates found = find_candidates(simulator, area, clash, {.first = 8, .most = 64, .sample_voxels = 0});
+  double front = 0;
+  for (std::uint64_t rank = 0; rank < simulator.voxel_count(); ++rank) front += simulator.voxel_centre(rank).x < 5.5;
+  const double share = front / static_cast<double>(simulator.voxel_count());
+  EXPECT_GT(share, 0.5);
+  EXPECT_LT(share, 0.8);
+  // Voxels at the wall's rim hold less of it than the goal asks of a whole one, but many scans fill them too.
+  EXPECT_NEAR(found.visible().value, share, 0.01);
+  EXPECT_EQ(found.visible().standard_error, 0);
+  EXPECT_EQ(found.ended(), "enough");
+  EXPECT_LT(found.change(), 0.005);
+  EXPECT_EQ(found.rows().size(), found.stations().size());
+  EXPECT_NEAR(found.rows().coverage().value, found.visible().value, 1e-12);
+  for (const PlacedStation& station : found.stations()) {
+    EXPECT_EQ(station.status, StationStatus::ok);
+    EXPECT_NEAR(station.position.z, -1.5 + simulator.scanner().height_m, 1e-9);
+  }
+}
+
+TEST(Candidates, GrowAsFarAsTheyMay) {
+  Simulator simulator(wall_and_floor().scene(), coarse_scanner(3), config());
+  const SearchArea area = ground({-8, -8, -1.5}, 12, 16);
+  const ClashChecker clash(simulator.scene());
+  const Candidates few = find_candidates(simulator, area, clash, {.first = 4, .most = 12, .change = 0});
+  EXPECT_EQ(few.ended(), "most");
+  EXPECT_EQ(few.stations().size(), 12u);
+  const Candidates more = find_candidates(simulator, area, clash, {.first = 4, .most = 48, .change = 0});
+  EXPECT_LE(few.visible().value, more.visible().value);
+  EXPECT_GT(few.spacing_m(), more.spacing_m());
+  const Candidates again = find_candidates(simulator, area, clash, {.first = 4, .most = 48, .change = 0});
+  EXPECT_EQ(again.visible().value, more.visible().value);
+  const Candidates timed =
+      find_candidates(simulator, area, clash, {.first = 100, .most = 1000, .change = 0, .max_seconds = 1e-6});
+  EXPECT_EQ(timed.ended(), "time");
+  EXPECT_GT(timed.stations().size(), 0u);
+  EXPECT_LT(timed.stations().size(), 1000u);
+}
+
+TEST(Candidates, RefuseGroundWithoutAPlaceToStand) {
+  Simulator simulator(wall_and_floor().scene(), coarse_scanner(3), config());
+  const SearchArea area = ground({4.9, -1, -1.5}, 0.2, 2);  // in the wall
+  const ClashChecker clash(simulator.scene());
+  EXPECT_THROW(find_candidates(simulator, area, clash), Error);
+}
+
+}  // namespace
+}  // namespace vantage
