@@ -37,7 +37,12 @@ if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
 fi
 
 wanted=("${packages[@]}")
-[ "$mode" = program ] || wanted+=("${test_packages[@]}")
+if [ "$mode" != program ]; then
+  wanted+=("${test_packages[@]}")
+  # Whoever has them from elsewhere keeps those.
+  command -v node >/dev/null || wanted+=(nodejs)
+  command -v npm >/dev/null || wanted+=(npm)
+fi
 missing=()
 for package in "${wanted[@]}"; do installed "$package" || missing+=("$package"); done
 
@@ -98,5 +103,9 @@ case "$mode" in
   tests)
     cmake --preset release -DVANTAGE_BUILD_TESTS=ON -DVANTAGE_BUILD_EXAMPLES=ON >/dev/null
     cmake --build --preset release
+    if ! [ tests/clients/node_modules/.package-lock.json -nt tests/clients/package-lock.json ]; then
+      say "installing the programs that read back what vantage writes (npm ci in tests/clients)"
+      (cd tests/clients && npm ci --silent)
+    fi
     ;;
 esac
