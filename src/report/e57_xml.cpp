@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "core/text.hpp"
+#include "report/xml_text.hpp"
 #include "vantage/version.hpp"
 
 namespace vantage {
@@ -33,19 +34,7 @@ void leaf(std::string& xml, const char* name, const char* type, const std::strin
   xml.append(value).append("</").append(name).append(">\n");
 }
 
-void text(std::string& xml, const char* name, const std::string& value) {
-  std::string escaped;
-  for (const char c : value)
-    if (c == '&')
-      escaped += "&amp;";
-    else if (c == '<')
-      escaped += "&lt;";
-    else if (c == '>')
-      escaped += "&gt;";
-    else if (static_cast<unsigned char>(c) >= 0x20)  // XML 1.0 has no place for the others
-      escaped += c;
-  leaf(xml, name, "String", escaped);
-}
+void text(std::string& xml, const char* name, const std::string& value) { leaf(xml, name, "String", xml_text(value)); }
 
 void integer(std::string& xml, const char* name, std::uint64_t value) { leaf(xml, name, "Integer", number(value)); }
 void real(std::string& xml, const char* name, double value) { leaf(xml, name, "Float", number(value)); }
