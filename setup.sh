@@ -13,9 +13,9 @@ readonly packages=(
   g++ cmake ninja-build pkgconf git ca-certificates
   libvulkan-dev libvulkan-volk-dev libvulkan1 glslang-tools spirv-tools spirv-headers
   libembree-dev libtbb-dev libeigen3-dev libglm-dev libtinygltf-dev nlohmann-json3-dev
-  libstb-dev libcli11-dev libspdlog-dev libcairo2-dev coinor-libclp-dev coinor-libcbc-dev
+  libstb-dev libcli11-dev libspdlog-dev libcairo2-dev coinor-libclp-dev coinor-libcbc-dev libproj-dev
 )
-readonly test_packages=(libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev vulkan-validationlayers clang-format)
+readonly test_packages=(libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev vulkan-validationlayers clang-format proj-bin)
 
 mode=program
 case "${1-}" in
@@ -37,7 +37,12 @@ if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
 fi
 
 wanted=("${packages[@]}")
-[ "$mode" = program ] || wanted+=("${test_packages[@]}")
+if [ "$mode" != program ]; then
+  wanted+=("${test_packages[@]}")
+  # Whoever has them from elsewhere keeps those.
+  command -v node >/dev/null || wanted+=(nodejs)
+  command -v npm >/dev/null || wanted+=(npm)
+fi
 missing=()
 for package in "${wanted[@]}"; do installed "$package" || missing+=("$package"); done
 
@@ -98,5 +103,9 @@ case "$mode" in
   tests)
     cmake --preset release -DVANTAGE_BUILD_TESTS=ON -DVANTAGE_BUILD_EXAMPLES=ON >/dev/null
     cmake --build --preset release
+    if ! [ tests/clients/node_modules/.package-lock.json -nt tests/clients/package-lock.json ]; then
+      say "installing the programs that read back what vantage writes (npm ci in tests/clients)"
+      (cd tests/clients && npm ci --silent)
+    fi
     ;;
 esac

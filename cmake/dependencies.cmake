@@ -18,3 +18,10 @@ find_program(VANTAGE_GLSLANG NAMES glslangValidator glslang REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(cairo REQUIRED IMPORTED_TARGET cairo)
 pkg_check_modules(cbc REQUIRED IMPORTED_TARGET cbc clp) # linear programs, and their integer solutions
+# Longitude and latitude of stations; without it those formats are refused.
+option(VANTAGE_WITH_PROJ "Use PROJ where it is installed" ON)
+set(VANTAGE_HAVE_PROJ FALSE)
+if(VANTAGE_WITH_PROJ)
+  pkg_check_modules(proj QUIET IMPORTED_TARGET "proj>=7")
+  set(VANTAGE_HAVE_PROJ ${proj_FOUND})
+endif()

@@ -21,8 +21,16 @@
 
 namespace vantage {
 
-/// Streams a point cloud to a file in constant memory. The format follows the extension: .ply (binary little endian) or
-/// .las (1.4). The file takes its name at close(); destroyed before that, nothing is left.
+/// What a file that keeps stations apart (E57) says of one.
+struct StationScan {
+  std::string name;  ///< As people call it: "S1".
+  Vec3 head;         ///< The scanner's head, survey frame, metres; upright, as always.
+  Scanner scanner;   ///< Its model, and how its rays are numbered and headed.
+};
+
+/// Streams a point cloud to a file in constant memory. The format follows the extension: .ply (binary little endian),
+/// .las (1.4) or .e57 (ASTM E2807: a scan a station, with its pose, points in the scanner's own frame). The file takes
+/// its name at close(); destroyed before that, nothing is left.
 class PointCloudWriter {
  public:
   /// `outputs` are the ScanOutput bits that chunks will carry; position is required. `origin` is the simulator's:
@@ -32,6 +40,9 @@ class PointCloudWriter {
   PointCloudWriter(PointCloudWriter&&) noexcept;
   PointCloudWriter& operator=(PointCloudWriter&&) noexcept;
   ~PointCloudWriter();
+  /// The chunks that follow, until the next call, are this station's, whose first ray is ray 0. E57 wants it before the
+  /// first chunk; the other formats do without.
+  void begin_station(const StationScan& station);
   void write(const ScanChunk& chunk, std::uint16_t station);  ///< Only rays that hit become points.
   void close();
   std::uint64_t points() const noexcept;

@@ -19,6 +19,7 @@
 #include "vantage/scanner.hpp"
 #include "vantage/scene.hpp"
 #include "vantage/simulator.hpp"
+#include "vantage/station_files.hpp"
 #include "vantage/trace.hpp"
 #include "vantage/types.hpp"
 #include "vantage/version.hpp"

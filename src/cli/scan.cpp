@@ -35,8 +35,8 @@ struct ScanCommandOptions {
   void add(CLI::App& command) {
     site.add(command);
     stations.add(command);
-    add_text(command, "-o,--output", "FILE", "Where to write the points: .ply or .las; nothing is written otherwise",
-             output);
+    add_text(command, "-o,--output", "FILE",
+             "Where to write the points: .ply, .las or .e57; nothing is written otherwise", output);
     add_value(command, "--outputs", "LIST",
               "What each point carries: any of range,normal,reflectivity,ids,colour; reflectivity,colour otherwise",
               [this](const std::string& text, const std::string& what) {
@@ -93,6 +93,9 @@ int scan(CLI::App& command, ScanCommandOptions& options, Program& program) {
       what.colour = [&panorama = options.panoramas[k]](Angle zenith, Angle azimuth) {
         return panorama.colour(zenith, azimuth);
       };
+    if (writer)
+      writer->begin_station(
+          {.name = "S" + std::to_string(k + 1), .head = stations[k].placed.position, .scanner = simulator.scanner()});
     const ScanSummary one = simulator.scan(
         {.position = stations[k].placed.position}, what,
         [&](const ScanChunk& chunk) {

@@ -22,14 +22,21 @@ PointCloudWriter::PointCloudWriter(const std::filesystem::path& file, const Vec3
     impl_->sink = make_ply_sink(file, origin, outputs);
   else if (extension == ".las")
     impl_->sink = make_las_sink(file, origin, outputs);
+  else if (extension == ".e57")
+    impl_->sink = make_e57_sink(file, origin, outputs, {});
   else
     throw Error(Errc::invalid_argument, "cannot tell the format of " + file.string() + " from its extension \"" +
-                                            extension + "\"; use .ply or .las");
+                                            extension + "\"; use .ply, .las or .e57");
 }
 
 PointCloudWriter::PointCloudWriter(PointCloudWriter&&) noexcept = default;
 PointCloudWriter& PointCloudWriter::operator=(PointCloudWriter&&) noexcept = default;
 PointCloudWriter::~PointCloudWriter() = default;
+
+void PointCloudWriter::begin_station(const StationScan& station) {
+  if (!impl_->open) throw Error(Errc::invalid_argument, "the point cloud is closed");
+  impl_->sink->begin_station(station);
+}
 
 void PointCloudWriter::write(const ScanChunk& chunk, std::uint16_t station) {
   if (!impl_->open) throw Error(Errc::invalid_argument, "the point cloud is closed");

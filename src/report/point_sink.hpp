@@ -12,11 +12,14 @@
 
 namespace vantage {
 
+struct StationScan;  // vantage/export.hpp
+
 static_assert(std::endian::native == std::endian::little, "the point cloud writers copy little-endian values");
 
 class PointSink {
  public:
   virtual ~PointSink() = default;
+  virtual void begin_station(const StationScan&) {}  // matters to formats that keep stations apart
   virtual void write(const ScanChunk& chunk, std::uint16_t station) = 0;
   virtual void close() = 0;
   virtual std::uint64_t points() const = 0;
@@ -24,6 +27,9 @@ class PointSink {
 
 std::unique_ptr<PointSink> make_ply_sink(const std::filesystem::path& file, const Vec3& origin, std::uint32_t outputs);
 std::unique_ptr<PointSink> make_las_sink(const std::filesystem::path& file, const Vec3& origin, std::uint32_t outputs);
+// Throws Error invalid_argument for outputs that E57 cannot hold. `crs`: well-known text in one line, or nothing.
+std::unique_ptr<PointSink> make_e57_sink(const std::filesystem::path& file, const Vec3& origin, std::uint32_t outputs,
+                                         const std::string& crs);
 
 // Appends the bytes of a value to a record.
 template <class T>

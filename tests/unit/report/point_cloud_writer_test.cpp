@@ -143,8 +143,9 @@ TEST(PointCloudWriter, LasRefusesWhatItCannotHold) {
 
 TEST(PointCloudWriter, LeavesNothingUnlessClosed) {
   const test::TemporaryFolder folder;
-  for (const char* name : {"a.ply", "a.las"}) {
+  for (const char* name : {"a.ply", "a.las", "a.e57"}) {
     PointCloudWriter writer(folder / name, kOrigin, scan_position);
+    writer.begin_station({"S1", kOrigin, Scanner{}});
     writer.write(chunk_of(scan_position), 0);
   }
   EXPECT_EQ(test::entries(folder.path()), 0u);

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Stations as files that a crew takes to the site: for maps (GeoJSON, KML) and for drawings (DXF). Every file appears
+/// whole or not at all.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "vantage/measure.hpp"
+#include "vantage/objective.hpp"
+#include "vantage/placement.hpp"
+
+namespace vantage {
+
+/// Stations with their names, one each. Survey frame.
+struct NamedStations {
+  std::span<const PlacedStation> stations;
+  std::span<const std::string> names;  ///< As `station_names()` gives them.
+};
+
+/// Whether this build can turn the survey frame into longitude and latitude: it was made with PROJ.
+bool has_projections() noexcept;
+
+/// A point of the survey frame on WGS 84, in degrees, and its height: z as it is.
+struct GeodeticPoint {
+  double longitude_deg = 0, latitude_deg = 0, height_m = 0;
+};
+/// `points` of the frame whose well-known text or "EPSG:N" is `crs` on WGS 84 (EPSG:4326), by PROJ's best operation
+/// that needs no network. Throws Error invalid_argument: no PROJ in this build, a `crs` that is empty or unknown to
+/// PROJ, a point that it has no place for.
+std::vector<GeodeticPoint> to_wgs84(const std::string& crs, std::span<const Vec3> points);
+
+/// GeoJSON (RFC 7946): a FeatureCollection with a Point a station where its tripod stands, [longitude, latitude, z]
+/// with ten and four digits. Properties: name, status, kept (was there before), head_height_m, and in the survey frame
+/// x, y, z of the head and ground_z. A station without ground has no geometry. Throws Error: io, as `to_wgs84`.
+void write_stations_geojson(const std::filesystem::path& file, const NamedStations& stations, const std::string& crs);
+
+/// KML 2.2 (OGC 07-147r2): a Placemark a station that has ground, with the same position and figures; stations that
+/// were there before, and those left out, have icons of another colour. Throws Error: io, as `to_wgs84`.
+void write_stations_kml(const std::filesystem::path& file, const NamedStations& stations, const std::string& crs);
+
+/// DXF (release 12, ASCII), metres, survey frame: layers STATIONS, STATIONS_KEPT and STATIONS_LEFT_OUT (a point and a
+/// circle where the tripod stands), STATION_NAMES (text), LINKS (lines between the grounds of stations whose overlap is
+/// at least `link_overlap`), SEARCH_AREA (closed polylines around it; its outline and its holes).
+/// `overlap`: of these stations, or empty. Throws Error: io, invalid_argument (sizes that do not fit together).
+void write_stations_dxf(const std::filesystem::path& file, const NamedStations& stations, const OverlapMatrix& overlap,
+                        double link_overlap, const SearchArea& area);
+
+/// By the file's extension: .geojson, .kml or .dxf. Throws Error as above, and invalid_argument for any other.
+void write_stations(const std::filesystem::path& file, const NamedStations& stations, const OverlapMatrix& overlap,
+                    double link_overlap, const SearchArea& area, const std::string& crs);
+
+/// stations.dxf, and where `crs` is given and this build has PROJ, stations.geojson and stations.kml.
+void write_station_files(const std::filesystem::path& folder, const NamedStations& stations,
+                         const OverlapMatrix& overlap, double link_overlap, const SearchArea& area,
+                         const std::string& crs);
+
+}  // namespace vantage
