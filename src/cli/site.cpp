@@ -211,6 +211,13 @@ bool LoadedSite::has_area() {
   }
 }
 
+void weigh_ground(LoadedSite& site) {
+  if (!site.has_area() || !ground_is_unmarked(site.scene, site.area())) return;
+  const GroundWeights found = ground_weights(site.scene, site.area());
+  if (!found.told.empty()) spdlog::info("{}", found.told);
+  if (found.changes) site.scene = with_weights(site.scene, found.weights);
+}
+
 const ClashChecker& LoadedSite::clash() {
   if (!clash_) clash_.emplace(scene, security);
   return *clash_;
