@@ -3,6 +3,7 @@
 #include <fstream>
 
 #include "program.hpp"
+#include "vantage/scanner.hpp"
 
 namespace vantage::test {
 namespace {
