@@ -18,6 +18,7 @@
 #include "scene/raw_scene.hpp"
 #include "scene/recognise_units.hpp"
 #include "vantage/scene.hpp"
+#include "vantage/scene_builder.hpp"
 
 namespace vantage {
 namespace gltf {
@@ -75,8 +76,8 @@ std::uint32_t packed_colour(const double* rgba, int components) {
 
 class Loader {
  public:
-  Loader(const std::filesystem::path& path, const SceneOptions& options)
-      : file_(path, options.allow_outside), options_(options), materials_(file_, raw_.notes) {
+  Loader(File file, const SceneOptions& options)
+      : file_(std::move(file)), options_(options), materials_(file_, raw_.notes) {
     raw_.options = options;
   }
 
@@ -302,17 +303,31 @@ class Loader {
 }  // namespace
 }  // namespace gltf
 
-Scene Scene::load(const std::filesystem::path& file, const SceneOptions& options) {
+namespace {
+
+// `open` gives the glTF file.
+template <class Open>
+Scene load_scene(Open&& open, const std::string& name, const SceneOptions& options) {
   if (!(options.default_diffuse >= 0 && options.default_diffuse <= 1))
     throw Error(Errc::invalid_argument,
                 "default_diffuse must be in [0, 1]; " + std::to_string(options.default_diffuse) + " was given");
   try {
-    return Scene(finish_scene(gltf::Loader(file, options).load(), file.string()));
+    return Scene(finish_scene(gltf::Loader(open(), options).load(), name));
   } catch (const std::bad_alloc&) {
-    throw Error(Errc::out_of_memory, file.string() + ": the scene does not fit into memory");
+    throw Error(Errc::out_of_memory, name + ": the scene does not fit into memory");
   } catch (const std::length_error&) {
-    throw Error(Errc::out_of_memory, file.string() + ": the scene does not fit into memory");
+    throw Error(Errc::out_of_memory, name + ": the scene does not fit into memory");
   }
+}
+
+}  // namespace
+
+Scene Scene::load(const std::filesystem::path& file, const SceneOptions& options) {
+  return load_scene([&] { return gltf::File(file, options.allow_outside); }, file.string(), options);
+}
+
+Scene load_gltf(std::span<const std::uint8_t> bytes, const SceneOptions& options, const std::string& name) {
+  return load_scene([&] { return gltf::File({bytes.begin(), bytes.end()}, name); }, name, options);
 }
 
 }  // namespace vantage
