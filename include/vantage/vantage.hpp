@@ -18,6 +18,7 @@
 #include "vantage/progress.hpp"
 #include "vantage/scanner.hpp"
 #include "vantage/scene.hpp"
+#include "vantage/scene_builder.hpp"
 #include "vantage/simulator.hpp"
 #include "vantage/station_files.hpp"
 #include "vantage/trace.hpp"

@@ -71,8 +71,8 @@ LoadedSite open_site(CLI::App& command, SiteOptions& options);
 // most, and says so. For commands that measure coverage.
 void weigh_ground(LoadedSite& site);
 
-// Lengths for a scene whose size is unlike a site's: the built-in figures times this. 1 from 2 m to 200 m; otherwise
-// the largest extent over 20 m, with two significant digits.
+// For a scene whose size is unlike a site's: the built-in lengths times this; of a large one only voxel size and
+// spacing. 1 from 2 m to 200 m; otherwise the largest extent over 20 m, with two significant digits.
 double length_scale(const Box& bounds);
 
 }  // namespace vantage::cli
