@@ -18,6 +18,7 @@
 #include "vantage/scene.hpp"
 #include "vantage/simulator.hpp"
 #include "vantage/station_files.hpp"
+#include "vantage/summary.hpp"
 #include "vantage/trace.hpp"
 #include "vantage/types.hpp"
 #include "vantage/version.hpp"
