@@ -21,6 +21,7 @@
 #include "vantage/scene_builder.hpp"
 #include "vantage/simulator.hpp"
 #include "vantage/station_files.hpp"
+#include "vantage/summary.hpp"
 #include "vantage/trace.hpp"
 #include "vantage/types.hpp"
 #include "vantage/version.hpp"

@@ -50,7 +50,7 @@ struct EvaluateCommandOptions {
         ->group("Results");
     add_number(
         command, "--link-overlap", "W",
-        fmt::format("Overlap from which on the picture links two stations, 0 to 1; {} otherwise", default_link_overlap),
+        fmt::format("Overlap from which on two stations count as linked, 0 to 1; {} otherwise", default_link_overlap),
         link_overlap, {.low = 0, .high = 1})
         ->group("Results");
     command.add_flag("--json", json, "Print one JSON object");
@@ -72,14 +72,31 @@ nlohmann::json matrix_json(const OverlapMatrix& overlap) {
   return rows;
 }
 
+nlohmann::json lines_json(const SurveySummary& summary) {
+  nlohmann::json lines = nlohmann::json::array();
+  for (const auto& [heading, text] : summary_lines(summary)) lines.push_back({{"heading", heading}, {"text", text}});
+  return lines;
+}
+
 int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& program) {
   const Stopwatch watch;
   LoadedSite site = open_site(command, options.site);
   weigh_ground(site);
   const auto stations = place(site, options.stations.read(max_stations));
   warn_of_unusable(stations);
+  const auto placed = placed_of(stations);
+  const auto names = names_of(stations);
+  const double link_overlap = options.link_overlap.value_or(default_link_overlap);
   const bool sampled = options.sample || options.error;
   const bool overlap = !options.no_overlap;
+  const auto must_end = [](const std::optional<std::string>& file, const char* what, auto... endings) {
+    if (file && (!file->ends_with(endings) && ...))
+      throw Error(Errc::invalid_argument, std::string(what) + ": '" + *file + "' must end with" +
+                                              (std::string() + ... + (std::string(" ") + endings)));
+  };
+  must_end(options.cartography, "--cartography", ".ply");
+  must_end(options.picture, "--picture", ".png", ".svg");
+  must_end(options.matrix, "--overlap-csv", ".csv");
   if (options.cartography && sampled)
     throw Error(Errc::invalid_argument, "--cartography: shows every voxel, and so needs --exact");
   options.missed.check();
@@ -120,25 +137,31 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
   }
   if (options.matrix) write_overlap_csv(*options.matrix, matrix);
   if (options.picture) {
-    std::vector<PlacedStation> placed;
-    for (const auto& station : stations) placed.push_back(station.placed);
     draw_plan_view(*options.picture, site.scene, site.area(), placed, matrix,
                    fmt::format("{} station{}: coverage {:.3f}, overlap {:.3f}", placed.size(),
                                placed.size() == 1 ? "" : "s", covered.value, overlapped.value),
-                   options.link_overlap.value_or(default_link_overlap));
+                   link_overlap, names);
   }
 
   nlohmann::json rows = nlohmann::json::array();
   for (std::size_t k = 0; k < stations.size(); ++k) {
-    auto row = to_json(stations[k]);
+    auto row = to_json(stations[k], names[k]);
     row["points"] = nullptr;
     row["points_on_surveyed"] = nullptr;
     if (!sampled && !counts.points.empty()) row["points"] = counts.points[k];
     if (!sampled && !counts.points_on_surveyed.empty()) row["points_on_surveyed"] = counts.points_on_surveyed[k];
     rows.push_back(std::move(row));
   }
+  SurveySummary summary{.names = names, .captured = covered.value, .captured_error = covered.standard_error};
+  if (overlap) {
+    std::vector<bool> used;
+    for (const PlacedStation& station : placed) used.push_back(active(station));
+    summary.links = summary_links(matrix, link_overlap, used);
+  }
+  summary.faults = station_faults(placed, names);
   if (options.json) {
-    nlohmann::json json{{"coverage", covered.value},
+    nlohmann::json json{{"summary", lines_json(summary)},
+                        {"coverage", covered.value},
                         {"coverage_se", covered.standard_error},
                         {"overlap", nullptr},
                         {"overlap_se", nullptr},
@@ -163,21 +186,15 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
     if (sampled) json["sample"] = counts.voxels;
     program.console.print(json);
   } else {
-    std::string text;
-    for (std::size_t k = 0; k < stations.size(); ++k) {
-      const Vec3& head = stations[k].placed.position;
-      text += fmt::format("station {:>2}  {:<10}  {:.3f},{:.3f},{:.3f}", k, to_string(stations[k].placed.status), head.x,
-                          head.y, head.z);
-      if (rows[k]["points_on_surveyed"].is_number())
-        text += fmt::format("  {} points on surveyed meshes", rows[k]["points_on_surveyed"].get<std::uint64_t>());
-      text += "\n";
-    }
+    std::string text =
+        station_table(placed, names, sampled ? std::span<const std::uint64_t>() : std::span(counts.points_on_surveyed));
     const auto with_error = [&](const Estimate& estimate) {
       return sampled ? fmt::format("{:.4f} ± {:.4f}", estimate.value, estimate.standard_error)
                      : fmt::format("{:.4f}", estimate.value);
     };
     text += "coverage " + with_error(covered) + "\n";
     if (overlap) text += "overlap  " + with_error(overlapped) + "\n";
+    text += "\n" + summary_text(summary);
     program.console.print(text);
   }
   return exit_ok;

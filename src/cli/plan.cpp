@@ -175,7 +175,7 @@ std::string remarks(const PlanEntry& entry, const PlanResult& result) {
 }
 
 std::string summary(const PlanResult& result, std::size_t chosen, const std::string& folder) {
-  std::string text;
+  std::string text = unmet_text(result);
   std::vector<const Objective*> told;
   for (const Objective& measure : result.measures)
     if (!measure.by_alpha) told.push_back(&measure);
@@ -195,7 +195,9 @@ std::string summary(const PlanResult& result, std::size_t chosen, const std::str
   if (result.config.sample_voxels > 0 && !std::isnan(result.exact_hypervolume))
     text += fmt::format(" ({:.4f} by every ray)", result.exact_hypervolume);
   text += fmt::format(", stopped: {}\n", to_string(result.stop_reason));
-  return text + "results in " + folder + "\n";
+  const PlanEntry& entry = result.front[chosen];
+  text += "\n" + station_table(entry.stations, station_names(entry.stations), entry.points_on_surveyed) + "\n";
+  return text + summary_text(summary_of(entry, result)) + "results in " + folder + "\n";
 }
 
 // Every voxel's count under the network that is shown; empty where it was stopped.

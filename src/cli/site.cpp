@@ -20,7 +20,7 @@ const std::set<std::string> preset_keys{"step", "horizontal", "vertical", "zenit
 // Options that a scene may carry defaults for: what is measured, never where files go.
 const std::set<std::string> scene_keys{"scanner", "step",     "heading",  "horizontal", "vertical", "zenith-start",
                                        "height",  "range",    "noise",    "user-size",  "spacing",  "security",
-                                       "slope",   "headroom", "min-area", "station"};
+                                       "slope",   "headroom", "min-area", "station",    "crs"};
 
 template <std::size_t N>
 Setter numbers_into(std::optional<std::array<double, N>>& target, std::size_t fewest, const Interval& interval) {
@@ -202,6 +202,10 @@ void SiteOptions::add(CLI::App& command) {
             [this](const std::string& text, const std::string& what) { seed = parse_count(text, what); })
       ->group("Run");
   command.add_flag("--validation", validation, "Check every Vulkan call with the validation layer")->group("Run");
+  add_text(command, "--crs", "EPSG:N|FILE",
+           "Coordinate system of the scene: EPSG:25832 and the like, or a .prj or .wkt file; point clouds carry it",
+           crs)
+      ->group("Run");
   add_text(command, "--config", "FILE", "JSON file of options, keyed by their long names; what is typed goes before it",
            config_file)
       ->group("Run");
@@ -249,6 +253,7 @@ nlohmann::json LoadedSite::as_options() const {
   for (const Settings& list : {settings(scene.options()), settings(config), settings(security), settings(walkable)})
     options.update(options_of(list));
   options["noise"] = noise;
+  if (!crs.empty()) options["crs"] = crs;
   return options;
 }
 
@@ -262,7 +267,8 @@ LoadedSite open_site(CLI::App& command, SiteOptions& options) {
 
   Scene scene = Scene::load(options.scene, options.roles);
   for (const auto& note : scene.notes()) spdlog::info("{}: {}", options.scene, note);
-  const bool own_preset = options.scanner.has_value(), own_noise = options.noise.has_value();
+  const bool own_preset = options.scanner.has_value(), own_noise = options.noise.has_value(),
+             own_crs = options.crs.has_value();
   const CLI::Option* station_file = command.get_option_no_throw("--stations");
   const bool own_stations = station_file && station_file->count() > 0;
   apply_layer(command, nlohmann::json::parse(scene.defaults_json()), options.scene, [&](const std::string& key) {
@@ -273,6 +279,10 @@ LoadedSite open_site(CLI::App& command, SiteOptions& options) {
   if (!own_noise && options.noise && options.noise->ends_with(".csv"))
     throw Error(Errc::malformed_file, options.scene + ": its defaults name the file \"" + *options.noise +
                                           "\" for noise, and a scene may name scanners only; give it with --noise");
+
+  if (!own_crs && options.crs && options.crs->find('[') == std::string::npos && !options.crs->starts_with("EPSG:"))
+    throw Error(Errc::malformed_file, options.scene + ": its defaults name the coordinate system \"" + *options.crs +
+                                          "\", and a scene may give EPSG:N or well-known text only");
 
   const double scale = length_scale(scene.bounds());
   const double small = std::min(scale, 1.0);  // people and tripods do not grow with a site
@@ -300,6 +310,8 @@ LoadedSite open_site(CLI::App& command, SiteOptions& options) {
   site.walkable.headroom_m = options.headroom.value_or(site.walkable.headroom_m * small);
   site.walkable.min_area_m2 = options.min_area.value_or(site.walkable.min_area_m2 * small * small);
   site.noise = noise_source(options, site.scanner);
+  site.crs = options.crs.value_or("");
+  static_cast<void>(site.crs_text());  // an error now, not behind an hour's work
   if (scale != 1) tell_scaled(options, site, scale);
   return site;
 }

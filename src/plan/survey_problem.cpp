@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 
+#include "core/closest_name.hpp"
 #include "vantage/error.hpp"
 #include "vantage/planner.hpp"
 
@@ -54,7 +55,8 @@ SurveyProblem survey_problem(std::string_view name, std::size_t stations_min, st
     problem.name = one.name;
     return problem;
   }
-  throw Error(Errc::invalid_argument, "unknown problem \"" + std::string(name) + "\"; known: " + known);
+  throw Error(Errc::invalid_argument,
+              "unknown problem \"" + std::string(name) + "\"; known: " + known + did_you_mean(name, problem_names()));
 }
 
 std::span<const std::string> problem_names() {
