@@ -135,8 +135,8 @@ TEST_F(Results, HolesAndClashesAreToldAndLeftOut) {
   EXPECT_TRUE(result["stations"][1]["position"].is_null());
   EXPECT_EQ(result["stations"][2]["status"], "clash");
   EXPECT_EQ(result["coverage"], json_of(coarse("evaluate", {"--station", "8,0,1.5"}))["coverage"]);
-  EXPECT_NE(outcome.err.find("warning: station 2"), std::string::npos) << outcome.err;
-  EXPECT_NE(outcome.err.find("warning: station 3"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("warning: S2 at"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("warning: S3 at"), std::string::npos) << outcome.err;
 }
 
 TEST_F(Results, ScanCountsWhatItWrites) {
