@@ -77,6 +77,12 @@ class CaptureRows {
 CaptureRows capture_rows(Simulator& simulator, std::span<const PlacedStation> stations, std::uint64_t sample_voxels,
                          const Progress& progress = {});
 
+/// Allowed positions (`StationStatus::ok`) at the scanner's height, `most` of them at most, spread evenly over the
+/// ground in square metres; so are the first n of them, for every n. Where most of it is forbidden there may be fewer.
+/// No random numbers. Throws Error invalid_argument where no position is allowed.
+std::vector<PlacedStation> candidate_positions(const SearchArea& area, const ClashChecker& clash,
+                                               const Scanner& scanner, std::size_t most);
+
 /// How candidates are found.
 struct CandidateConfig {
   std::size_t first = 128;  ///< How many to begin with; then twice as many, and so on.

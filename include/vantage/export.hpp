@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "vantage/missed.hpp"
 #include "vantage/objective.hpp"
 #include "vantage/placement.hpp"
 #include "vantage/planner.hpp"
@@ -127,6 +128,18 @@ std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& re
 /// whose stations all hang together by the problem's `link_overlap`, as far as there are any confirmed: parts of a
 /// network cannot be registered with each other, however well each overlaps in itself.
 std::size_t compromise(const PlanResult& result);
+
+/// CSV: `node,voxels,captured,hidden,out_of_range,too_flat,too_sparse,not_chosen`, shares of the node's voxels.
+void write_missed_csv(const std::filesystem::path& file, std::span<const MissedShare> shares);
+/// Every voxel of `ranks` as a point in the colour of its reason, with the reason as a number (`WhyMissed`) and its
+/// count. Binary PLY, survey frame.
+void write_missed_ply(const std::filesystem::path& file, const Simulator& simulator,
+                      std::span<const std::uint32_t> ranks, std::span<const WhyMissed> why,
+                      std::span<const std::uint32_t> points);
+/// The same from above, .png or .svg: where voxels lie over each other the one that is missed for want of a station
+/// shows before those that nothing helps, and these before what is captured.
+void draw_missed(const std::filesystem::path& file, const Simulator& simulator, std::span<const std::uint32_t> ranks,
+                 std::span<const WhyMissed> why, std::span<const PlacedStation> stations, const std::string& title);
 
 /// Writes text to a file atomically. Throws Error io.
 void write_text(const std::filesystem::path& file, const std::string& text);

@@ -103,6 +103,14 @@ struct SampleOptions {
   std::function<void(std::size_t network, std::span<const std::uint32_t> points)> points = {};
 };
 
+/// The surface in a voxel, as the plane that most of it lies in.
+struct VoxelPatch {
+  Vec3 point;              ///< The middle of that plane's surface in the voxel, survey frame.
+  Vec3 normal;             ///< Unit, either way round.
+  double area_m2 = 0;      ///< Of all surface in the voxel, at most that of a face; 0 where triangles only touch it.
+  std::uint32_t mesh = 0;  ///< Index into `Scene::meshes()` of the mesh that has most surface in it.
+};
+
 /// Owns device, acceleration structure and voxel grid; keeps a share of the scene.
 /// Not thread-safe: one Simulator per thread. Same inputs, seed and engine: same result, bit for bit.
 class Simulator {
@@ -125,6 +133,8 @@ class Simulator {
   Vec3 voxel_centre(std::uint64_t rank) const;  ///< Survey frame. REQUIRES: rank < voxel_count().
   /// What a voxel counts in coverage (`MeshInfo::weight`). REQUIRES: rank < voxel_count().
   std::uint32_t voxel_weight(std::uint64_t rank) const;
+  /// Their surfaces. REQUIRES: ranks ascending, without duplicates, all below voxel_count().
+  std::vector<VoxelPatch> voxel_patches(std::span<const std::uint32_t> ranks) const;
   /// Ranks of the voxels that `evaluate_sampled` draws for `SampleOptions::voxels`, ascending. Fixed by the seed.
   /// Throws Error invalid_argument for none.
   std::vector<std::uint32_t> sampled_voxels(std::uint64_t voxels) const;

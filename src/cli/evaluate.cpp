@@ -2,6 +2,7 @@
 #include <spdlog/spdlog.h>
 
 #include "cli/command.hpp"
+#include "cli/missed.hpp"
 #include "cli/options.hpp"
 #include "cli/run_report.hpp"
 #include "cli/site.hpp"
@@ -18,6 +19,7 @@ struct EvaluateCommandOptions {
   std::optional<double> error, link_overlap;
   std::optional<std::string> cartography, matrix, picture;
   std::vector<std::string> station_files;
+  MissedFiles missed;
   bool json = false;
 
   void add(CLI::App& command) {
@@ -43,6 +45,7 @@ struct EvaluateCommandOptions {
     add_text(command, "--cartography", "FILE", "Write every surveyed voxel with its count, in false colours: .ply",
              cartography)
         ->group("Results");
+    missed.add(command);
     add_text(command, "--overlap-csv", "FILE", "Write the overlap matrix: .csv", matrix)->group("Results");
     add_text(command, "--picture", "FILE", "Draw the stations and their overlaps from above: .png or .svg", picture)
         ->group("Results");
@@ -83,6 +86,7 @@ nlohmann::json lines_json(const SurveySummary& summary) {
 int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& program) {
   const Stopwatch watch;
   LoadedSite site = open_site(command, options.site);
+  weigh_ground(site);
   const auto stations = place(site, options.stations.read(max_stations));
   warn_of_unusable(stations);
   const auto placed = placed_of(stations);
@@ -104,6 +108,9 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
   }
   if (options.cartography && sampled)
     throw Error(Errc::invalid_argument, "--cartography: shows every voxel, and so needs --exact");
+  options.missed.check();
+  if (!options.missed.files.empty() && sampled)
+    throw Error(Errc::invalid_argument, "--missed: looks at every voxel, and so needs --exact");
   if ((options.matrix || options.picture) && !overlap)
     throw Error(Errc::invalid_argument, "--overlap-csv and --picture show overlaps, which --no-overlap leaves out");
 
@@ -115,11 +122,12 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
   const Progress progress{.report = [&](double done) { line.update(done); }, .stop = program.stop};
   VoxelField field;
   const NetworkCounts counts =
-      sampled
-          ? evaluate_sample(simulator, network, options, progress)
-          : simulator.evaluate(
-                network, {.overlap = overlap, .skip = options.skip, .field = options.cartography ? &field : nullptr},
-                progress);
+      sampled ? evaluate_sample(simulator, network, options, progress)
+              : simulator.evaluate(network,
+                                   {.overlap = overlap,
+                                    .skip = options.skip,
+                                    .field = options.cartography || !options.missed.files.empty() ? &field : nullptr},
+                                   progress);
   if (counts.cancelled) {
     spdlog::error("stopped before the end; nothing was written");
     return exit_failed;
@@ -130,6 +138,13 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
   const OverlapMatrix matrix = overlap ? overlap_matrix(counts) : OverlapMatrix{};
 
   if (options.cartography) write_coverage_ply(*options.cartography, simulator, field);
+  if (!options.missed.files.empty()) {
+    std::vector<PlacedStation> placed;
+    for (const auto& station : stations) placed.push_back(station.placed);
+    if (!write_missed(std::vector<std::filesystem::path>(options.missed.files.begin(), options.missed.files.end()),
+                      site, simulator, field, placed, program))
+      return exit_failed;
+  }
   if (options.matrix) write_overlap_csv(*options.matrix, matrix);
   if (options.picture) {
     draw_plan_view(*options.picture, site.scene, site.area(), placed, matrix,

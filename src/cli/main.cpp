@@ -27,6 +27,7 @@ int run(int argc, char** argv) {
   add_panorama(app, program);
   add_evaluate(app, program);
   add_plan(app, program);
+  add_bound(app, program);
   try {
     app.parse(argc, argv);
     if (!program.selected) throw Error(Errc::invalid_argument, "which command? See vantage --help");

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "cli/command.hpp"
+#include "cli/missed.hpp"
 #include "cli/options.hpp"
 #include "cli/problem.hpp"
 #include "cli/run_report.hpp"
@@ -226,6 +227,7 @@ std::optional<VoxelField> cartography(Simulator& simulator, const PlanEntry& ent
 
 int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   LoadedSite site = open_site(command, options.site);
+  weigh_ground(site);
   SurveyProblem problem = options.problem.settle();
   if (!options.output) throw Error(Errc::invalid_argument, "plan: say where the results go with -o DIR");
   const std::filesystem::path folder = *options.output;
@@ -277,6 +279,10 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   if (!field) spdlog::warn("stopped: {} is not written", (folder / "coverage.ply").string());
   spdlog::info("writing {}", folder.string());
   const std::size_t chosen = write_plan(folder, result, simulator, area, field ? &*field : nullptr, crs);
+  if (field)
+    write_missed(
+        std::vector<std::filesystem::path>{folder / "missed.csv", folder / "missed.ply", folder / "missed.png"}, site,
+        simulator, *field, result.front[chosen].stations, program);
   if (options.json)
     program.console.print(front_json(result, simulator) + "\n");
   else

@@ -72,22 +72,25 @@ std::string noise_source(const SiteOptions& options, const Scanner& scanner) {
 
 // One line on what was made up for a scene of unusual size.
 void tell_scaled(const SiteOptions& options, const LoadedSite& site, double scale) {
+  const bool small = scale < 1;
   std::string made_up;
   const auto add = [&](bool given, const std::string& text) {
     if (!given) made_up += (made_up.empty() ? "" : ", ") + text;
   };
   add(options.user_size.has_value(), fmt::format("user-size {:.3g}", site.config.user_size_m));
   add(options.spacing.has_value(), fmt::format("spacing {:.3g}", site.config.point_spacing_m));
-  add(options.height.has_value(), fmt::format("height {:.3g}", site.scanner.height_m));
-  add(options.range || options.scanner,
-      fmt::format("range {:.3g},{:.3g}", site.scanner.min_range_m, site.scanner.max_range_m));
-  add(options.security.has_value(), fmt::format("security {:.3g},{:.3g},{:.3g}", site.security.lower_m,
-                                                site.security.upper_m, site.security.radius_m));
+  if (small) {
+    add(options.height.has_value(), fmt::format("height {:.3g}", site.scanner.height_m));
+    add(options.range || options.scanner,
+        fmt::format("range {:.3g},{:.3g}", site.scanner.min_range_m, site.scanner.max_range_m));
+    add(options.security.has_value(), fmt::format("security {:.3g},{:.3g},{:.3g}", site.security.lower_m,
+                                                  site.security.upper_m, site.security.radius_m));
+  }
   if (made_up.empty()) return;
   const Vec3 size = site.scene.bounds().size();
-  spdlog::info(
-      "the scene measures {:.3g} x {:.3g} x {:.3g} m, unlike a site: lengths taken as {:.2g} times the usual ({})",
-      size.x, size.y, size.z, scale, made_up);
+  spdlog::info("the scene measures {:.3g} x {:.3g} x {:.3g} m, {} than a site: {} taken as {:.2g} times the usual ({})",
+               size.x, size.y, size.z, small ? "smaller" : "larger", small ? "lengths" : "what is measured by is",
+               scale, made_up);
 }
 
 }  // namespace
@@ -111,6 +114,24 @@ void SiteOptions::add(CLI::App& command) {
                roles.weights.emplace_back(text.substr(0, equals), static_cast<std::uint32_t>(parse_count(
                                                                       text.substr(equals + 1), what, 1, 255)));
              })
+      ->group("Scene");
+  add_value(command, "--unit", "UNIT", "What lengths in the file are: m, cm, mm, in or ft; recognised otherwise",
+            [this](const std::string& text, const std::string& what) {
+              try {
+                roles.unit = unit_from_string(text);
+              } catch (const Error& error) {
+                throw Error(error.code(), what + ": " + error.what());
+              }
+            })
+      ->group("Scene");
+  add_value(command, "--up", "AXIS", "Which axis of the file points up: y or z; recognised otherwise",
+            [this](const std::string& text, const std::string& what) {
+              try {
+                roles.up = up_axis_from_string(text);
+              } catch (const Error& error) {
+                throw Error(error.code(), what + ": " + error.what());
+              }
+            })
       ->group("Scene");
   add_text(command, "--scene-index", "N", "Which scene of the file; the file's own default otherwise", scene_index)
       ->group("Scene");
@@ -215,6 +236,13 @@ bool LoadedSite::has_area() {
   }
 }
 
+void weigh_ground(LoadedSite& site) {
+  if (!site.has_area() || !ground_is_unmarked(site.scene, site.area())) return;
+  const GroundWeights found = ground_weights(site.scene, site.area());
+  if (!found.told.empty()) spdlog::info("{}", found.told);
+  if (found.changes) site.scene = with_weights(site.scene, found.weights);
+}
+
 const ClashChecker& LoadedSite::clash() {
   if (!clash_) clash_.emplace(scene, security);
   return *clash_;
@@ -257,8 +285,9 @@ LoadedSite open_site(CLI::App& command, SiteOptions& options) {
                                           "\", and a scene may give EPSG:N or well-known text only");
 
   const double scale = length_scale(scene.bounds());
+  const double small = std::min(scale, 1.0);  // people and tripods do not grow with a site
   LoadedSite site{.scene = std::move(scene),
-                  .scanner = resolve_scanner(options, scale),
+                  .scanner = resolve_scanner(options, small),
                   .config = {},
                   .security = {},
                   .walkable = {},
@@ -273,13 +302,13 @@ LoadedSite open_site(CLI::App& command, SiteOptions& options) {
   if (options.security) {
     site.security = {(*options.security)[0], (*options.security)[1], (*options.security)[2]};
   } else {
-    site.security.lower_m *= scale;
-    site.security.upper_m *= scale;
-    site.security.radius_m *= scale;
+    site.security.lower_m *= small;
+    site.security.upper_m *= small;
+    site.security.radius_m *= small;
   }
   if (options.slope) site.walkable.max_slope = Angle::degrees(*options.slope);
-  site.walkable.headroom_m = options.headroom.value_or(site.walkable.headroom_m * scale);
-  site.walkable.min_area_m2 = options.min_area.value_or(site.walkable.min_area_m2 * scale * scale);
+  site.walkable.headroom_m = options.headroom.value_or(site.walkable.headroom_m * small);
+  site.walkable.min_area_m2 = options.min_area.value_or(site.walkable.min_area_m2 * small * small);
   site.noise = noise_source(options, site.scanner);
   site.crs = options.crs.value_or("");
   static_cast<void>(site.crs_text());  // an error now, not behind an hour's work

@@ -70,8 +70,12 @@ struct LoadedSite {
 // Applies the layers below the command line to all options of `command`, loads the scene and checks every value.
 LoadedSite open_site(CLI::App& command, SiteOptions& options);
 
-// Lengths for a scene whose size is unlike a site's: the built-in figures times this. 1 from 2 m to 200 m; otherwise
-// the largest extent over 20 m, with two significant digits.
+// Where nothing says what is surveyed: gives all but the ground so much weight that ground has a third of coverage at
+// most, and says so. For commands that measure coverage.
+void weigh_ground(LoadedSite& site);
+
+// For a scene whose size is unlike a site's: the built-in lengths times this; of a large one only voxel size and
+// spacing. 1 from 2 m to 200 m; otherwise the largest extent over 20 m, with two significant digits.
 double length_scale(const Box& bounds);
 
 }  // namespace vantage::cli

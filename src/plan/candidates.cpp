@@ -17,6 +17,17 @@ namespace {
 // Candidates between two looks at the clock.
 constexpr std::size_t chunk = 64;
 
+SpreadPositions spread_or_refuse(const SearchArea& area, const ClashChecker& clash, const Scanner& scanner,
+                                 std::size_t most) {
+  const Site site = make_site(area, clash, scanner);
+  SpreadPositions spread = spread_positions(site, area.mesh(), site.height_m, most);
+  if (spread.stations.empty())
+    throw Error(Errc::invalid_argument,
+                "no position of the search area is allowed: everywhere the scanner would stand too near to something "
+                "or not on the ground; see --security, --height and what the search area is made of");
+  return spread;
+}
+
 void check(const CandidateConfig& config) {
   if (config.first < 1 || config.most < config.first)
     throw Error(Errc::invalid_argument, "candidates: from " + std::to_string(config.first) + " to " +
@@ -37,6 +48,11 @@ Settings settings(const CandidateConfig& config) {
       .take();
 }
 
+std::vector<PlacedStation> candidate_positions(const SearchArea& area, const ClashChecker& clash,
+                                               const Scanner& scanner, std::size_t most) {
+  return spread_or_refuse(area, clash, scanner, most).stations;
+}
+
 Candidates find_candidates(Simulator& simulator, const SearchArea& area, const ClashChecker& clash,
                            const CandidateConfig& config, const Progress& progress) {
   check(config);
@@ -45,12 +61,7 @@ Candidates find_candidates(Simulator& simulator, const SearchArea& area, const C
     return config.max_seconds > 0 &&
            std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count() >= config.max_seconds;
   };
-  const Site site = make_site(area, clash, simulator.scanner());
-  const SpreadPositions spread = spread_positions(site, area.mesh(), site.height_m, config.most);
-  if (spread.stations.empty())
-    throw Error(Errc::invalid_argument,
-                "no position of the search area is allowed: everywhere the scanner would stand too near to something "
-                "or not on the ground; see --security, --height and what the search area is made of");
+  const SpreadPositions spread = spread_or_refuse(area, clash, simulator.scanner(), config.most);
 
   const std::uint64_t sample = config.sample_voxels == 0 ? simulator.voxel_count() : config.sample_voxels;
   Candidates found;

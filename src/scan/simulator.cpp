@@ -14,6 +14,7 @@
 #include "trace/tracer.hpp"
 #include "vantage/error.hpp"
 #include "voxel/voxel_grid.hpp"
+#include "voxel/voxel_surfaces.hpp"
 
 namespace vantage {
 namespace {
@@ -171,6 +172,19 @@ Vec3 Simulator::voxel_centre(std::uint64_t rank) const {
 }
 
 std::uint32_t Simulator::voxel_weight(std::uint64_t rank) const { return impl_->grid->weight(rank); }
+
+std::vector<VoxelPatch> Simulator::voxel_patches(std::span<const std::uint32_t> ranks) const {
+  std::vector<VoxelPatch> patches;
+  patches.reserve(ranks.size());
+  for (const VoxelSurface& surface : voxel_surfaces(impl_->data(), *impl_->grid, ranks)) {
+    const auto [x, y, z] = surface.point;
+    patches.push_back({.point = origin() + Vec3{x, y, z},
+                       .normal = {surface.normal.x, surface.normal.y, surface.normal.z},
+                       .area_m2 = surface.extent,
+                       .mesh = surface.mesh});
+  }
+  return patches;
+}
 
 std::vector<std::uint32_t> Simulator::sampled_voxels(std::uint64_t voxels) const { return impl_->sample(voxels); }
 

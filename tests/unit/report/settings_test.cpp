@@ -77,8 +77,10 @@ const std::vector<Change<SceneOptions>> kScene{
      false},
     {"scene_index", [](SceneOptions& o) { o.scene_index = 0; }, false},
     {"default_diffuse", [](SceneOptions& o) { o.default_diffuse = 0.25; }, false},
-    {"allow_outside", [](SceneOptions& o) { o.allow_outside = true; }, false}};
-static_assert(member_count<SceneOptions>() == 8);
+    {"allow_outside", [](SceneOptions& o) { o.allow_outside = true; }, false},
+    {"unit", [](SceneOptions& o) { o.unit = Unit::foot; }, false},
+    {"up", [](SceneOptions& o) { o.up = UpAxis::z; }, false}};
+static_assert(member_count<SceneOptions>() == 10);
 
 const std::vector<Change<SimulatorConfig>> kSimulation{
     {"engine", [](SimulatorConfig& c) { c.engine = Engine::automatic; }, false},

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vantage/bound.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "cli/command.hpp"
+#include "cli/options.hpp"
+#include "cli/run_report.hpp"
+#include "cli/site.hpp"
+
+namespace vantage::cli {
+namespace {
+
+struct BoundOptions {
+  SiteOptions site;
+  std::vector<std::size_t> stations;
+  std::vector<double> captures;
+  CandidateConfig candidates{.most = 1024};
+  std::optional<SampleSize> sample;
+  BoundConfig bound;
+  bool json = false;
+
+  void add(CLI::App& command) {
+    site.add(command);
+    add_values(command, "--stations", "N[,N]", "So many stations: what do they capture at most? May be repeated",
+               [this](const std::string& text, const std::string& what) {
+                 for (const std::string_view one : split(text, ','))
+                   stations.push_back(parse_count(one, what, 1, 1'000'000));
+               })
+        ->group("Bound");
+    add_values(
+        command, "--capture", "C[,C]",
+        "Such a share of what can be seen: how many stations does it take at least? May be repeated",
+        [this](const std::string& text, const std::string& what) {
+          for (const double one : parse_numbers(text, what, 1, 1000, {.low = 0, .high = 1, .low_included = false}))
+            captures.push_back(one);
+        })
+        ->group("Bound");
+    add_value(command, "--candidates", "N",
+              "Positions at most, spread evenly over the ground; 1024 otherwise, fewer where they show all there is",
+              [this](const std::string& text, const std::string& what) {
+                candidates.most = parse_count(text, what, 1, 1'000'000);
+                candidates.first = candidates.most;
+              })
+        ->group("Bound");
+    add_value(command, "--sample", "N|P%", "Surveyed voxels looked at, or that share of them; 20000 otherwise",
+              [this](const std::string& text, const std::string& what) { sample = parse_sample(text, what); })
+        ->group("Bound");
+    add_value(
+        command, "--max-time", "T", "For each linear program: 90, 90s, 2min; 2min otherwise",
+        [this](const std::string& text, const std::string& what) { bound.max_seconds = parse_duration(text, what); })
+        ->group("Bound");
+    add_value(
+        command, "--branch", "T", "Time for branch and bound towards the best choice itself; none otherwise",
+        [this](const std::string& text, const std::string& what) { bound.exact_seconds = parse_duration(text, what); })
+        ->group("Bound");
+    command.add_flag("--json", json, "Print one JSON object");
+  }
+};
+
+nlohmann::json heads_json(const Candidates& candidates, const std::vector<std::size_t>& rows) {
+  nlohmann::json heads = nlohmann::json::array();
+  for (const std::size_t k : rows) {
+    const Vec3& head = candidates.stations()[k].position;
+    heads.push_back({head.x, head.y, head.z});
+  }
+  return heads;
+}
+
+std::string percent(double share) { return fmt::format("{:.1f} %", 100 * share); }
+
+std::string text_of(const CaptureBound& bound, double visible) {
+  std::string text = fmt::format(
+      "{:>3} stations  capture at most {:.4f} of what can be seen (coverage {:.4f}); found {:.4f} (coverage {:.4f} ± "
+      "{:.4f}), within {} of the best that any {} candidates can do\n",
+      bound.stations, std::min(bound.bound / visible, 1.0), bound.bound, bound.reached.value / visible,
+      bound.reached.value, bound.reached.standard_error, percent(bound.gap()), bound.stations);
+  text += fmt::format("              twice as many candidates raised the bound by {:.4f}{}\n", bound.spacing_term,
+                      bound.complete ? "" : "; the linear program was cut short");
+  return text;
+}
+
+std::string text_of(const StationsBound& bound, double capture) {
+  if (!bound.possible) return fmt::format("{:.4g} of what can be seen cannot be captured\n", capture);
+  return fmt::format("{:.4g} of what can be seen takes at least {} stations among the candidates ({:.2f}){}\n", capture,
+                     bound.at_least, bound.relaxation,
+                     bound.chosen.empty() ? "" : fmt::format("; {} are enough", bound.chosen.size()));
+}
+
+int bound(CLI::App& command, BoundOptions& options, Program& program) {
+  const Stopwatch watch;
+  LoadedSite site = open_site(command, options.site);
+  weigh_ground(site);
+  if (options.stations.empty() && options.captures.empty())
+    throw Error(Errc::invalid_argument, "bound: of what? Give --stations N, --capture C or both");
+  Simulator simulator(site.scene, site.scanner, site.config);
+  tell_engine(simulator);
+  tell_grid(simulator);
+  if (options.sample) options.candidates.sample_voxels = options.sample->of(simulator.voxel_count());
+  ProgressLine line(program.console, "candidates");
+  const Progress progress{.report = [&](double done) { line.update(done); }, .stop = program.stop};
+  const Candidates candidates = find_candidates(simulator, site.area(), site.clash(), options.candidates, progress);
+  const double visible = candidates.visible().value;
+  if (program.stop.stop_requested() || !(visible > 0)) {
+    spdlog::error(visible > 0 ? "stopped before the end" : "nothing that is surveyed can be seen from any candidate");
+    return exit_failed;
+  }
+  std::string text = fmt::format(
+      "visible {:.4f} ± {:.4f} of what is surveyed, from {} candidates, no allowed position farther than "
+      "{:.2f} m from one\n",
+      visible, candidates.visible().standard_error, candidates.stations().size(), candidates.spacing_m());
+  nlohmann::json by_number = nlohmann::json::array(), by_capture = by_number;
+  line.set_label("bound");
+  for (const std::size_t stations : options.stations) {
+    const CaptureBound found = bound_capture(candidates.rows(), stations, {}, options.bound, progress);
+    text += text_of(found, visible);
+    by_number.push_back({{"stations", stations},
+                         {"bound", found.bound},
+                         {"relaxation", found.relaxation},
+                         {"complete", found.complete},
+                         {"half_bound", found.half_bound},
+                         {"spacing_term", found.spacing_term},
+                         {"reached", found.reached.value},
+                         {"reached_se", found.reached.standard_error},
+                         {"gap", found.gap()},
+                         {"chosen", heads_json(candidates, found.chosen)}});
+    if (program.stop.stop_requested()) break;
+  }
+  for (const double capture : options.captures) {
+    if (program.stop.stop_requested()) break;
+    const StationsBound found = bound_stations(candidates.rows(), capture * visible, {}, options.bound, progress);
+    text += text_of(found, capture);
+    by_capture.push_back({{"capture", capture},
+                          {"possible", found.possible},
+                          {"at_least", found.at_least},
+                          {"relaxation", found.possible ? nlohmann::json(found.relaxation) : nullptr},
+                          {"complete", found.complete},
+                          {"enough", heads_json(candidates, found.chosen)}});
+  }
+  if (!options.json) {
+    program.console.print(text);
+    return exit_ok;
+  }
+  program.console.print(nlohmann::json{{"visible", visible},
+                                       {"visible_se", candidates.visible().standard_error},
+                                       {"candidates", candidates.stations().size()},
+                                       {"candidates_ended", candidates.ended()},
+                                       {"spacing", candidates.spacing_m()},
+                                       {"stations", std::move(by_number)},
+                                       {"captures", std::move(by_capture)},
+                                       {"sample", candidates.rows().voxels().size()},
+                                       {"voxels", simulator.voxel_count()},
+                                       {"seconds", seconds_json(watch, 0)},
+                                       {"engine", to_string(simulator.engine().engine)},
+                                       {"device", simulator.engine().device},
+                                       {"seed", site.config.seed},
+                                       {"options", site.as_options()},
+                                       {"version", version()}});
+  return exit_ok;
+}
+
+}  // namespace
+
+void add_bound(CLI::App& app, Program& program) {
+  add_command<BoundOptions>(app, program, "bound", "How much stations capture at most, and how many it takes", bound);
+}
+
+}  // namespace vantage::cli

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+
+#include "core/text.hpp"
+#include "scene/scene_data.hpp"
+#include "vantage/error.hpp"
+#include "vantage/ground.hpp"
+
+namespace vantage {
+namespace {
+
+constexpr double upward = 0.7071067811865476;  // cosine of 45°
+constexpr double quarter = 0.25;
+constexpr std::uint32_t heaviest = 255;
+// A search area lies on the surfaces it was made of, but for thin covers such as a carpet or a kerb.
+constexpr double same_surface_m = 0.15;
+// Points looked at over all upward surfaces.
+constexpr double samples = 20'000;
+constexpr int most_samples = 4096;  // of one triangle
+
+struct Area {
+  double all = 0, up = 0, stood_on = 0;
+};
+
+}  // namespace
+
+bool ground_is_unmarked(const Scene& scene, const SearchArea& area) {
+  if (!area.derived() || !scene.options().surveyed.empty() || !scene.options().weights.empty()) return false;
+  // Once a mesh is marked surveyed in the file, those without a mark block.
+  const bool patterns_block = !scene.options().blocking.empty();
+  return std::ranges::all_of(scene.meshes(), [&](const MeshInfo& mesh) {
+    return mesh.weight == 1 && (mesh.role == Role::surveyed || patterns_block);
+  });
+}
+
+GroundWeights ground_weights(const Scene& scene, const SearchArea& area) {
+  const SceneData& data = scene.data();
+  std::vector<Area> areas(data.meshes.size());
+  const auto corner = [&](std::uint32_t v) {
+    return Vec3{data.positions[v].x, data.positions[v].y, data.positions[v].z};
+  };
+  const auto for_each_surveyed = [&](auto&& with) {
+    for (std::size_t m = 0; m < data.meshes.size(); ++m) {
+      if (data.meshes[m].role != Role::surveyed) continue;
+      const MeshRange& range = data.ranges[m];
+      for (std::uint32_t t = range.first_triangle; t < range.first_triangle + range.triangle_count; ++t) {
+        const Triangle& of = data.triangles[t];
+        const Vec3 a = corner(of[0]), b = corner(of[1]), c = corner(of[2]), normal = cross(b - a, c - a);
+        const double twice = std::sqrt(dot(normal, normal));
+        // Models are wound either way, so a ceiling may count as upward too: no one stands on it.
+        if (twice > 0) with(areas[m], a, b, c, twice / 2, std::abs(normal.z) >= upward * twice);
+      }
+    }
+  };
+  double all = 0, up = 0;
+  for_each_surveyed([&](Area& of, const Vec3&, const Vec3&, const Vec3&, double size, bool is_up) {
+    of.all += size;
+    all += size;
+    if (is_up) up += size;
+  });
+  GroundWeights found;
+  found.weights.assign(data.meshes.size(), 1);
+  if (!(all > 0 && up > 0)) return found;
+  // Points of each triangle by a low-discrepancy walk, so many as its share of the upward surface.
+  for_each_surveyed([&](Area& of, const Vec3& a, const Vec3& b, const Vec3& c, double size, bool is_up) {
+    if (!is_up) return;
+    const int n = std::clamp(static_cast<int>(std::ceil(samples * size / up)), 1, most_samples);
+    int on = 0;
+    for (int k = 0; k < n; ++k) {
+      constexpr double g = 1.32471795724474602596;  // g³ = g + 1
+      const double s = 0.5 + (k + 1) / g, t = 0.5 + (k + 1) / (g * g);
+      const double root = std::sqrt(s - std::floor(s)), along = t - std::floor(t);
+      const Vec3 p = data.origin + a * (1 - root) + b * (root * (1 - along)) + c * (root * along);
+      const auto uv = area.project(p);
+      const auto ground = uv ? area.locate(*uv) : std::nullopt;
+      if (ground && std::abs(ground->z - p.z) <= same_surface_m) ++on;
+    }
+    of.up += size;
+    of.stood_on += size * on / n;
+  });
+  double ground = 0;
+  for (std::size_t m = 0; m < areas.size(); ++m) {
+    if (!(areas[m].up > 0 && areas[m].stood_on >= quarter * areas[m].up)) continue;
+    found.ground.push_back(m);
+    ground += areas[m].all;
+  }
+  const double others = all - ground;
+  found.share = found.weighted_share = ground / all;
+  if (found.share <= most_ground_share) return found;
+  std::string names;
+  for (std::size_t k = 0; k < std::min<std::size_t>(found.ground.size(), 3); ++k)
+    names += (k > 0 ? ", " : "") + data.meshes[found.ground[k]].name;
+  if (found.ground.size() > 3) names += ", …";
+  const std::string percent = fixed(100 * found.share, 0) + " %";
+  if (!(others > 0)) {
+    found.told = "all that is surveyed is ground, or one mesh with it (" + names +
+                 "): what stands on it cannot be weighed apart; mark it with --surveyed, or give it a mesh of its own";
+    return found;
+  }
+  // ground / (ground + w · others) <= 1/3
+  const double wanted = ground * (1 - most_ground_share) / (most_ground_share * others);
+  const auto weight = static_cast<std::uint32_t>(std::clamp(std::ceil(wanted - 1e-9), 1.0, double{heaviest}));
+  for (std::size_t m = 0; m < found.weights.size(); ++m)
+    if (!std::ranges::binary_search(found.ground, m)) found.weights[m] = weight;
+  found.changes = weight > 1;
+  found.weighted_share = ground / (ground + weight * others);
+  found.told = "nothing is marked surveyed, and " + percent + " of the surface is ground that one stands on (" + names +
+               "): all else weighs " + std::to_string(weight) + " in coverage, so that ground has " +
+               fixed(100 * found.weighted_share, 0) + " % of it; --weight or --surveyed settles it otherwise";
+  return found;
+}
+
+Scene with_weights(const Scene& scene, const std::vector<std::uint32_t>& weights) {
+  auto data = std::make_shared<SceneData>(scene.data());
+  if (weights.size() != data->meshes.size() ||
+      std::ranges::any_of(weights, [](std::uint32_t w) { return w < 1 || w > heaviest; }))
+    throw Error(Errc::invalid_argument,
+                "weights: one of 1 to 255 is wanted for each of " + std::to_string(data->meshes.size()) + " meshes");
+  for (std::size_t m = 0; m < weights.size(); ++m) data->meshes[m].weight = weights[m];
+  return Scene(std::move(data));
+}
+
+}  // namespace vantage

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vantage/missed.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "core/setting_list.hpp"
+#include "vantage/error.hpp"
+
+namespace vantage {
+namespace {
+
+// Voxels between two looks at whether to stop.
+constexpr std::size_t voxels_at_once = 4096;
+
+double length(const Vec3& v) { return std::sqrt(dot(v, v)); }
+
+// The part of the way from `from` to `to` that is left where it enters the cube of half the side `half` around
+// `centre`; 0 where `from` lies inside.
+double entry(const Vec3& from, const Vec3& to, const Vec3& centre, double half) {
+  double in = 0;
+  const auto clip = [&](double a, double b, double middle) {
+    const double way = b - a;
+    if (way == 0) return;
+    in = std::max(in, std::min((middle - half - a) / way, (middle + half - a) / way));
+  };
+  clip(from.x, to.x, centre.x);
+  clip(from.y, to.y, centre.y);
+  clip(from.z, to.z, centre.z);
+  return std::clamp(in, 0.0, 1.0);
+}
+
+// Whether the pattern has rays in that direction.
+bool in_field_of_view(const Scanner& scanner, const Vec3& way, double range) {
+  const double zenith = std::acos(std::clamp(way.z / range, -1.0, 1.0));
+  const double first = scanner.zenith_start.in_radians();
+  if (zenith < first || zenith > first + scanner.vertical_angle.in_radians() / 2) return false;
+  const double sweep = scanner.horizontal_angle.in_radians();
+  if (sweep >= 2 * std::numbers::pi - 1e-9) return true;
+  const double turn = std::atan2(way.y, way.x) - scanner.heading.in_radians();
+  return std::abs(std::remainder(turn, 2 * std::numbers::pi)) <= sweep / 2;
+}
+
+class Judge {
+ public:
+  Judge(const Simulator& simulator, const ClashChecker& clash, std::span<const PlacedStation> candidates,
+        const MissedOptions& options)
+      : simulator_(simulator),
+        clash_(clash),
+        candidates_(candidates),
+        steepest_(std::cos(options.flat.in_radians())),
+        per_steradian_(
+            1 / (simulator.scanner().azimuth_step.in_radians() * simulator.scanner().zenith_step.in_radians())) {}
+
+  WhyMissed why(std::uint32_t rank, const VoxelPatch& patch) const {
+    const Scanner& scanner = simulator_.scanner();
+    const Vec3 centre = simulator_.voxel_centre(rank);
+    const double half = simulator_.voxel_size_m() / 2;
+    // The nearest first: most voxels are settled by few lines.
+    std::vector<std::pair<double, std::size_t>> order(candidates_.size());
+    for (std::size_t k = 0; k < order.size(); ++k) order[k] = {length(patch.point - candidates_[k].position), k};
+    std::sort(order.begin(), order.end());
+    bool free_line = false, in_range = false, steep = false;
+    double expected = 0;
+    for (const auto& [range, k] : order) {
+      const Vec3 head = candidates_[k].position, way = patch.point - head;
+      const bool reached = range >= scanner.min_range_m && range <= scanner.max_range_m;
+      // What cannot change the answer any more needs no line.
+      if (free_line && !reached) continue;
+      if (!clash_.sees(head, head + way * entry(head, patch.point, centre, half))) continue;
+      free_line = true;
+      if (!reached) continue;
+      in_range = true;
+      const double incidence = range > 0 ? std::abs(dot(way, patch.normal)) / range : 1;
+      if (incidence < steepest_) continue;
+      steep = true;
+      if (!in_field_of_view(scanner, way, range)) continue;
+      const double across = std::sqrt(std::max(way.x * way.x + way.y * way.y, 1e-12)) / range;  // sin zenith
+      expected += patch.area_m2 * incidence / (range * range) * per_steradian_ / across;
+      if (expected >= simulator_.goal_density()) return WhyMissed::not_chosen;
+    }
+    return !free_line ? WhyMissed::hidden : !in_range ? WhyMissed::far : !steep ? WhyMissed::flat : WhyMissed::sparse;
+  }
+
+ private:
+  const Simulator& simulator_;
+  const ClashChecker& clash_;
+  std::span<const PlacedStation> candidates_;
+  double steepest_, per_steradian_;
+};
+
+}  // namespace
+
+std::string to_string(WhyMissed why) {
+  switch (why) {
+    case WhyMissed::captured: return "captured";
+    case WhyMissed::hidden: return "hidden";
+    case WhyMissed::far: return "out_of_range";
+    case WhyMissed::flat: return "too_flat";
+    case WhyMissed::sparse: return "too_sparse";
+    case WhyMissed::not_chosen: return "not_chosen";
+  }
+  return "";
+}
+
+Settings settings(const MissedOptions& options) {
+  return SettingList()
+      .add("missed_candidates", options.candidates)
+      .add("missed_flat_deg", options.flat.in_degrees())
+      .take();
+}
+
+std::vector<WhyMissed> why_missed(const Simulator& simulator, const ClashChecker& clash,
+                                  std::span<const PlacedStation> candidates, std::span<const std::uint32_t> ranks,
+                                  std::span<const std::uint32_t> points, const MissedOptions& options,
+                                  const Progress& progress) {
+  if (ranks.size() != points.size())
+    throw Error(Errc::invalid_argument, "why_missed: " + std::to_string(ranks.size()) + " voxels, but counts of " +
+                                            std::to_string(points.size()));
+  if (candidates.empty() || options.candidates == 0)
+    throw Error(Errc::invalid_argument, "why_missed: there are no candidates to look from");
+  for (const std::uint32_t rank : ranks)
+    if (rank >= simulator.voxel_count())
+      throw Error(Errc::invalid_argument, "why_missed: there is no voxel " + std::to_string(rank) + " of " +
+                                              std::to_string(simulator.voxel_count()));
+  const Judge judge(simulator, clash, candidates.first(std::min(candidates.size(), options.candidates)), options);
+  std::vector<WhyMissed> why(ranks.size(), WhyMissed::captured);
+  std::vector<std::size_t> missed;
+  for (std::size_t i = 0; i < ranks.size(); ++i)
+    if (points[i] < simulator.goal_density()) missed.push_back(i);
+  for (std::size_t first = 0; first < missed.size(); first += voxels_at_once) {
+    if (progress.stopped()) return {};
+    const std::span<const std::size_t> here =
+        std::span(missed).subspan(first, std::min(voxels_at_once, missed.size() - first));
+    std::vector<std::uint32_t> of;
+    for (const std::size_t i : here) of.push_back(ranks[i]);
+    const std::vector<VoxelPatch> patches = simulator.voxel_patches(of);
+    tbb::parallel_for(std::size_t{0}, here.size(), [&](std::size_t k) { why[here[k]] = judge.why(of[k], patches[k]); });
+    progress(static_cast<double>(first + here.size()) / static_cast<double>(missed.size()));
+  }
+  return why;
+}
+
+std::vector<MissedShare> missed_by_node(const Simulator& simulator, std::span<const std::uint32_t> ranks,
+                                        std::span<const WhyMissed> why) {
+  if (ranks.size() != why.size())
+    throw Error(Errc::invalid_argument, "missed_by_node: " + std::to_string(ranks.size()) + " voxels, but reasons of " +
+                                            std::to_string(why.size()));
+  const auto meshes = simulator.scene().meshes();
+  std::vector<MissedShare> shares(1);
+  std::map<std::string, std::size_t> place;
+  std::vector<std::size_t> of_mesh(meshes.size());
+  for (std::size_t m = 0; m < meshes.size(); ++m) {
+    const auto [at, added] = place.try_emplace(meshes[m].name, shares.size());
+    if (added) shares.push_back({.node = meshes[m].name});
+    of_mesh[m] = at->second;
+  }
+  const std::vector<VoxelPatch> patches = simulator.voxel_patches(ranks);
+  for (std::size_t i = 0; i < ranks.size(); ++i) {
+    for (MissedShare* share : {&shares.front(), &shares[of_mesh[patches[i].mesh]]}) {
+      ++share->voxels;
+      ++share->count[static_cast<std::size_t>(why[i])];
+    }
+  }
+  std::erase_if(shares, [&](const MissedShare& share) { return share.voxels == 0 && &share != &shares.front(); });
+  return shares;
+}
+
+}  // namespace vantage

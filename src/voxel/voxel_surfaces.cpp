@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "voxel/voxel_surfaces.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "core/glm.hpp"
+#include "voxel/voxel_bricks.hpp"
+#include "voxel/voxel_triangles.hpp"
+
+namespace vantage {
+namespace {
+
+using Point = glm::dvec3;
+
+// Normals closer than this, some 26°, are one plane: as far as scans of a curved surface still match each other.
+constexpr double one_plane = 0.9;
+// Sheets of a plane further apart than this share of a voxel are two, else one that is wound both ways.
+constexpr double one_sheet = 0.01;
+
+// A convex polygon in grid units. Each of a cube's six half-spaces adds a corner at most.
+class Polygon {
+ public:
+  void add(const Point& p) { corners_[size_++] = p; }
+  bool empty() const { return size_ < 3; }
+
+  // Keeps what lies where side · p[axis] <= side · bound.
+  void clip(int axis, double bound, double side) {
+    Polygon kept;
+    for (std::size_t i = 0; i < size_; ++i) {
+      const Point &a = corners_[i], &b = corners_[i + 1 == size_ ? 0 : i + 1];
+      const double da = side * (a[axis] - bound), db = side * (b[axis] - bound);
+      if (da <= 0) kept.add(a);
+      if ((da < 0 && db > 0) || (da > 0 && db < 0)) kept.add(a + (b - a) * (da / (da - db)));
+    }
+    *this = kept;
+  }
+
+  void clip_to_unit_cube() {
+    for (int axis = 0; axis < 3 && !empty(); ++axis) {
+      clip(axis, 0, -1);
+      clip(axis, 1, 1);
+    }
+  }
+
+  // Area along the normal that the winding gives.
+  Point area() const {
+    Point sum(0);
+    for (std::size_t i = 1; i + 1 < size_; ++i) sum += cross(corners_[i] - corners_[0], corners_[i + 1] - corners_[0]);
+    return 0.5 * sum;
+  }
+
+  Point centroid() const {
+    Point sum(0);
+    double weight = 0;
+    for (std::size_t i = 1; i + 1 < size_; ++i) {
+      const double part = length(cross(corners_[i] - corners_[0], corners_[i + 1] - corners_[0]));
+      sum += part * (corners_[0] + corners_[i] + corners_[i + 1]) / 3.0;
+      weight += part;
+    }
+    return weight > 0 ? sum / weight : corners_[0];
+  }
+
+ private:
+  std::array<Point, 10> corners_{};
+  std::size_t size_ = 0;
+};
+
+// m² over (voxel size)² that the unit cube cuts from a plane.
+double section(const Point& point, const Point& normal) {
+  const Point other = std::abs(normal.x) < 0.6 ? Point(1, 0, 0) : Point(0, 1, 0);
+  const Point u = normalize(cross(normal, other)) * 4.0, v = cross(normal, u);  // beyond every corner of the cube
+  Polygon square;
+  for (const auto& [s, t] : {std::array{-1.0, -1.0}, {1.0, -1.0}, {1.0, 1.0}, {-1.0, 1.0}})
+    square.add(point + u * s + v * t);
+  square.clip_to_unit_cube();
+  return square.empty() ? 0 : length(square.area());
+}
+
+// What of one triangle lies in a voxel.
+struct Part {
+  Point along;  // unit normal by the winding
+  Point centroid;
+  double area, diffuse;
+  std::uint32_t mesh;
+};
+
+// Parts whose normals are one plane's, those wound as the first of them and the others.
+struct Plane {
+  Point axis{0, 0, 0};  // Σ area · normal, turned as the first part's
+  std::array<double, 2> area{};
+  std::array<Point, 2> centre{Point(0), Point(0)};  // Σ area · centroid
+  double diffuse = 0;
+
+  double all() const { return area[0] + area[1]; }
+  bool takes(const Part& part) const { return std::abs(dot(axis, part.along)) > one_plane * length(axis); }
+  void add(const Part& part) {
+    const bool back = dot(axis, part.along) < 0;
+    axis += part.along * (back ? -part.area : part.area);
+    area[back] += part.area;
+    centre[back] += part.centroid * part.area;
+    diffuse += part.diffuse * part.area;
+  }
+};
+
+// In grid units, relative to the voxel's low corner.
+std::vector<Part> parts_of(const SceneData& scene, const GridTransform& transform, const Point& low,
+                           std::span<const std::uint32_t> triangles) {
+  std::vector<Part> parts;
+  for (const std::uint32_t t : triangles) {
+    Polygon polygon;
+    for (const auto& corner : transform.corners(scene.positions, scene.triangles[t]))
+      polygon.add(Point(corner[0], corner[1], corner[2]) - low);
+    polygon.clip_to_unit_cube();
+    if (polygon.empty()) continue;
+    const Point along = polygon.area();
+    const double area = length(along);
+    if (!(area > 0)) continue;
+    const std::uint32_t mesh = scene.mesh_of(t);
+    parts.push_back({along / area, polygon.centroid(), area, scene.meshes[mesh].diffuse, mesh});
+  }
+  // The largest first, so that small ones at an edge do not say what the planes are.
+  std::stable_sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.area > b.area; });
+  return parts;
+}
+
+// The mesh with most area; the lower one of equals. REQUIRES: at least one part.
+std::uint32_t largest_mesh(std::span<const Part> parts) {
+  std::vector<std::pair<std::uint32_t, double>> meshes;  // a few at most
+  for (const Part& part : parts) {
+    auto mesh = std::find_if(meshes.begin(), meshes.end(), [&](const auto& m) { return m.first == part.mesh; });
+    if (mesh == meshes.end()) mesh = meshes.insert(meshes.end(), {part.mesh, 0.0});
+    mesh->second += part.area;
+  }
+  return std::max_element(meshes.begin(), meshes.end(),
+                          [](const auto& a, const auto& b) {
+                            return a.second != b.second ? a.second < b.second : a.first > b.first;
+                          })
+      ->first;
+}
+
+VoxelSurface surface_of(std::span<const Part> parts, const GridTransform& transform, const Point& low) {
+  const double size = 1 / transform.inverse_size;
+  const auto local = [&](const Point& p) {
+    const Point q = (low + p) * size;
+    return Float3{static_cast<float>(transform.min[0] + q.x), static_cast<float>(transform.min[1] + q.y),
+                  static_cast<float>(transform.min[2] + q.z)};
+  };
+  VoxelSurface surface{.point = local(Point(0.5)), .normal = {0, 0, 1}};
+  std::vector<Plane> planes;
+  double total = 0;
+  for (const Part& part : parts) {
+    total += part.area;
+    auto plane = std::find_if(planes.begin(), planes.end(), [&](const Plane& p) { return p.takes(part); });
+    if (plane == planes.end()) {
+      planes.emplace_back();
+      plane = planes.end() - 1;
+    }
+    plane->add(part);
+  }
+  if (!(total > 0)) return surface;
+  const Plane& plane =
+      *std::max_element(planes.begin(), planes.end(), [](const Plane& a, const Plane& b) { return a.all() < b.all(); });
+  const Point normal = normalize(plane.axis);
+  double area = plane.all();
+  Point centre = (plane.centre[0] + plane.centre[1]) / area;
+  if (plane.area[0] > 0 && plane.area[1] > 0) {
+    const Point front = plane.centre[0] / plane.area[0], back = plane.centre[1] / plane.area[1];
+    if (std::abs(dot(normal, front - back)) > one_sheet) {
+      area = std::max(plane.area[0], plane.area[1]);
+      centre = plane.area[0] >= plane.area[1] ? front : back;
+    }
+  }
+  surface.point = local(centre);
+  surface.normal = {static_cast<float>(normal.x), static_cast<float>(normal.y), static_cast<float>(normal.z)};
+  surface.area = static_cast<float>(std::min(area, section(centre, normal)) * size * size);
+  surface.share = static_cast<float>(plane.all() / total);
+  surface.extent = static_cast<float>(std::min(total, 1.0) * size * size);
+  surface.mesh = largest_mesh(parts);
+  surface.diffuse = static_cast<float>(plane.diffuse / plane.all());
+  return surface;
+}
+
+}  // namespace
+
+std::vector<VoxelSurface> voxel_surfaces(const SceneData& scene, const VoxelGrid& grid,
+                                         std::span<const std::uint32_t> ranks) {
+  const VoxelTriangles touching = triangles_touching(scene, grid, ranks, 0);
+  const GridTransform transform{{grid.min()[0], grid.min()[1], grid.min()[2]}, grid.inverse_size()};
+  std::vector<VoxelSurface> surfaces(ranks.size());
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, ranks.size()), [&](const tbb::blocked_range<std::size_t>& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+          const auto [x, y, z] = morton_decode(grid.key(ranks[i]));
+          const Point low(x, y, z);
+          const auto triangles =
+              std::span(touching.triangle).subspan(touching.offset[i], touching.offset[i + 1] - touching.offset[i]);
+          surfaces[i] = surface_of(parts_of(scene, transform, low, triangles), transform, low);
+          if (surfaces[i].extent == 0 && !triangles.empty()) surfaces[i].mesh = scene.mesh_of(triangles.front());
+        }
+      });
+  return surfaces;
+}
+
+}  // namespace vantage
