@@ -18,6 +18,7 @@ struct EvaluateCommandOptions {
   std::optional<SampleSize> sample;
   std::optional<double> error, link_overlap;
   std::optional<std::string> cartography, matrix, picture;
+  std::vector<std::string> station_files;
   MissedFiles missed;
   bool json = false;
 
@@ -47,6 +48,10 @@ struct EvaluateCommandOptions {
     missed.add(command);
     add_text(command, "--overlap-csv", "FILE", "Write the overlap matrix: .csv", matrix)->group("Results");
     add_text(command, "--picture", "FILE", "Draw the stations and their overlaps from above: .png or .svg", picture)
+        ->group("Results");
+    add_texts(command, "--write-stations", "FILE",
+              "Write the stations for the crew: .dxf, and where --crs is given .geojson or .kml; may be repeated",
+              station_files)
         ->group("Results");
     add_number(
         command, "--link-overlap", "W",
@@ -97,6 +102,10 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
   must_end(options.cartography, "--cartography", ".ply");
   must_end(options.picture, "--picture", ".png", ".svg");
   must_end(options.matrix, "--overlap-csv", ".csv");
+  for (const std::string& file : options.station_files) {
+    must_end(file, "--write-stations", ".dxf", ".geojson", ".kml");
+    if (!file.ends_with(".dxf")) to_wgs84(site.crs_text(), {});  // an error now, not behind the rays
+  }
   if (options.cartography && sampled)
     throw Error(Errc::invalid_argument, "--cartography: shows every voxel, and so needs --exact");
   options.missed.check();
@@ -113,11 +122,12 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
   const Progress progress{.report = [&](double done) { line.update(done); }, .stop = program.stop};
   VoxelField field;
   const NetworkCounts counts =
-      sampled
-          ? evaluate_sample(simulator, network, options, progress)
-          : simulator.evaluate(
-                network, {.overlap = overlap, .skip = options.skip, .field = options.cartography || !options.missed.files.empty() ? &field : nullptr},
-                progress);
+      sampled ? evaluate_sample(simulator, network, options, progress)
+              : simulator.evaluate(network,
+                                   {.overlap = overlap,
+                                    .skip = options.skip,
+                                    .field = options.cartography || !options.missed.files.empty() ? &field : nullptr},
+                                   progress);
   if (counts.cancelled) {
     spdlog::error("stopped before the end; nothing was written");
     return exit_failed;
@@ -142,6 +152,9 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
                                placed.size() == 1 ? "" : "s", covered.value, overlapped.value),
                    link_overlap, names);
   }
+
+  for (const std::string& file : options.station_files)
+    write_stations(file, {placed, names}, matrix, link_overlap, site.area(), site.crs_text());
 
   nlohmann::json rows = nlohmann::json::array();
   for (std::size_t k = 0; k < stations.size(); ++k) {
