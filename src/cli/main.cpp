@@ -37,7 +37,8 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     const auto named = app.get_subcommands();
     const bool leftover = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
-    spdlog::error("{}; see vantage {}--help", leftover ? explain_leftover(app) : error.what(),
+    const std::string message = leftover ? explain_leftover(app) : error.what();
+    spdlog::error("{} vantage {}--help", message + (message.ends_with('?') ? " See" : "; see"),
                   named.empty() ? "" : named.front()->get_name() + " ");
     return exit_usage;
   } catch (const Error& error) {

@@ -119,11 +119,10 @@ StationText parse_named_station(std::string_view text, const std::string& what) 
 
 StationText parse_station(std::string_view text, const std::string& what) {
   if (text.find('=') != std::string_view::npos) return parse_named_station(text, what);
+  if (text.find(';') != std::string_view::npos)
+    refuse(what, text, "is no station: numbers have commas between them and decimal points, as 5.2,3.6,1.85");
   if (const auto parts = split(text, ',').size(); parts != 2 && parts != 3)
-    refuse(what, text,
-           text.find(';') != std::string_view::npos
-               ? "is no station: numbers have commas between them and decimal points, as 5.2,3.6,1.85"
-               : "is no station: give X,Y,Z of the scanner's head or u,v on the search area");
+    refuse(what, text, "is no station: give X,Y,Z of the scanner's head or u,v on the search area");
   const auto values = parse_numbers(text, what, 2, 3);
   if (values.size() == 2) return {.pair = std::array{values[0], values[1]}};
   return {.position = Vec3{values[0], values[1], values[2]}};

@@ -44,6 +44,13 @@ const std::map<std::string, Column, std::less<>>& known_columns() {
                                                                 {"head_height", Column::head},
                                                                 {"u", Column::u},
                                                                 {"v", Column::v},
+                                                                {"elev", Column::head},
+                                                                {"alt", Column::head},
+                                                                {"altitude", Column::head},
+                                                                {"rechtswert", Column::east},
+                                                                {"hochwert", Column::north},
+                                                                {"höhe", Column::head},
+                                                                {"hoehe", Column::head},
                                                                 {"name", Column::name},
                                                                 {"point", Column::name}};
   return names;
@@ -134,6 +141,8 @@ class Table {
   }
 
   void read_header(std::string_view text) {
+    const auto strange = [](char c) { return static_cast<unsigned char>(c) < 32 && c != '\t' && c != '\r'; };
+    if (std::any_of(text.begin(), text.end(), strange)) refuse("this is no table of stations, nor text at all");
     separator_ = separator_of(trimmed(text));
     header_ = trimmed(text);
     const auto cells = cells_of(separator_ == '\t' ? text : std::string_view(header_), separator_);
@@ -157,14 +166,16 @@ class Table {
     const bool east = at_.contains(Column::east), north = at_.contains(Column::north);
     const bool height = at_.contains(Column::head) || at_.contains(Column::ground);
     const bool u = at_.contains(Column::u), v = at_.contains(Column::v);
-    if (east == north && u == v && (east || u) && (east || !height)) return;
+    // a column that is nearly a known one is no other column: it would be passed over without a word
     std::vector<std::string> known;
     for (const auto& [name, column] : known_columns()) known.push_back(name);
     std::string hint;
     for (const std::string& cell : cells)
       if (const std::string name = column_name(cell).name; hint.empty() && !known_columns().contains(name))
         if (const std::string near = name.size() > 2 ? closest_name(name, known) : ""; !near.empty())
-          hint = "; is \"" + cell + "\" " + near + "?";
+          if (!at_.contains(known_columns().at(near))) hint = "; is \"" + cell + "\" " + near + "?";
+    const bool enough = east == north && u == v && (east || u) && (east || !height);
+    if (enough && (height || u || hint.empty())) return;
     refuse("the header is \"" + header_ + "\"; " + kWanted + hint);
   }
 

@@ -59,7 +59,7 @@ TEST(Parse, StationsAreHeadsOrUvs) {
   for (const char* text :
        {"x=5", "x=5,z=1", "u=1", "u=1,v=2,x=3", "x=1,y=2,z=3,ground=1", "x=1,2", "a=1,b=2", "x=1,x=2"})
     EXPECT_NE(refusal([&] { parse_station(text, "--station"); }), "accepted") << text;
-  for (const char* text : {"1", "1,2,3,4", "", "1;2;3"})
+  for (const char* text : {"1", "1,2,3,4", "", "1;2;3", "5;3,6;1,85"})
     EXPECT_NE(refusal([&] { parse_station(text, "--station"); }).find("is no station"), std::string::npos) << text;
   EXPECT_NE(refusal([] { parse_station("1,nan,3", "--station"); }).find("'nan' is not a finite number"),
             std::string::npos);

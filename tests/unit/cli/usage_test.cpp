@@ -34,7 +34,8 @@ TEST_F(Usage, CommandsAndOptionsMustExist) {
 }
 
 TEST_F(Usage, MistypedNamesGetASuggestion) {
-  expect_refused(run_program({"paln", scene_, "--stations", "4"}), 2, "there is no command paln; did you mean plan?");
+  expect_refused(run_program({"paln", scene_, "--stations", "4"}), 2,
+                 "there is no command paln; did you mean plan? See vantage --help");
   expect_refused(run_program(coarse("plan", {"--statoins", "4", "-o", path("plan")})), 2,
                  "there is no option --statoins; did you mean --stations?");
   expect_refused(run_program(coarse("plan", {"--min_overlp=0.3"})), 2, "did you mean --min-overlap?");

@@ -105,6 +105,10 @@ TEST(StationsCsv, RefusesWhatCanBeReadInTwoWays) {
   EXPECT_NE(refusal("Easting [mm],Northing [mm],Height\n").find("is in mm"), std::string::npos);
   EXPECT_NE(refusal("lat,lon,z\n").find("\"lat\" is an angle"), std::string::npos);
   EXPECT_NE(refusal("1,2,3\n4,5,6\n").find("the first line holds numbers"), std::string::npos);
+  EXPECT_NE(refusal("E,N,Heigth\n1,2,3\n").find("is \"Heigth\" height?"), std::string::npos)
+      << "else it would be passed over";
+  EXPECT_NE(refusal(std::string("glTF\2\0\0\0x,y,z\n", 14)).find("no table"), std::string::npos);
+  EXPECT_EQ(read("Punkt;Rechtswert;Hochwert;H\xC3\xB6he\nP1;5,0;3,6;1,85\n")[0].position, (Vec3{5, 3.6, 1.85}));
   EXPECT_NE(refusal("Eastng,Northing,Height\n").find("is \"Eastng\" easting?"), std::string::npos);
   EXPECT_NE(refusal(std::string("\xFF\xFEx\0,\0", 7)).find("UTF-16"), std::string::npos);
 }
