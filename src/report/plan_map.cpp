@@ -166,7 +166,8 @@ class Stations {
     }
     for (std::size_t k = 0; k < shown_.size(); ++k) {
       if (!on_level(k)) continue;
-      const std::string text = (name(k).size() > 3 ? name(k) + ", " : "") + "z " + fixed(station(k).ground.z, 2);
+      const std::string text = (name(k).size() > 3 ? name(k) + ", " : "") + "z " +
+                               fixed(std::round(100 * station(k).ground.z) / 100 + 0.0, 2);
       const Rect place = place_label(discs_[k], kDisc + 3, canvas_.text_width(text, style) + 4, 13,
                                      {map_.x + 2, map_.y + 2, map_.width - 4, map_.height - 4}, taken);
       canvas_.text({place.x + place.width / 2, place.y + place.height / 2}, text, style);

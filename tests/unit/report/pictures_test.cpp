@@ -150,6 +150,7 @@ TEST(Relief, ShowsTheTopmostSurface) {
   EXPECT_FALSE(std::isfinite(z_at(open, 3, 0)));
   const HeightBuffer cut = look_from_above(data, window, 0.5);
   EXPECT_NEAR(z_at(cut, 0.3, 0.2), 0, 1e-6);
+  EXPECT_NEAR(z_at(cut, -1.5, 0.5), 0, 1e-6);  // the wall is cut through
   const auto pixels = shade(data, open);
   EXPECT_EQ(pixels[100 * 200 + 190], 0u);
   EXPECT_EQ(pixels[100 * 200 + 105] >> 24, 255u);
