@@ -21,6 +21,12 @@
 
 namespace vantage {
 
+/// Well-known text (version 1, OGC 01-009, which LAS 1.4 asks for) of the coordinate system that a scene's survey frame
+/// stands in. `text`: "EPSG:25832" and the like (UTM zones on WGS 84, ETRS89, NAD83, GDA94 and GDA2020; with PROJ any),
+/// the name of a .prj or .wkt file, or such a text. Throws Error: io, invalid_argument (a code that is not known,
+/// angles, a unit other than metres, version 2).
+std::string coordinate_system(const std::string& text);
+
 /// What a file that keeps stations apart (E57) says of one.
 struct StationScan {
   std::string name;  ///< As people call it: "S1".
@@ -34,16 +40,19 @@ struct StationScan {
 class PointCloudWriter {
  public:
   /// `outputs` are the ScanOutput bits that chunks will carry; position is required. `origin` is the simulator's:
-  /// chunks are in the local frame, the file is in the survey frame. Throws Error: io, invalid_argument (unknown
-  /// extension).
-  PointCloudWriter(const std::filesystem::path& file, const Vec3& origin, std::uint32_t outputs);
+  /// chunks are in the local frame, the file is in the survey frame. `crs`: the `coordinate_system()` of that; empty:
+  /// none is said. Throws Error: io, invalid_argument (unknown extension, outputs that the format cannot hold: LAS has
+  /// intensity, for reflectivity, and colour).
+  PointCloudWriter(const std::filesystem::path& file, const Vec3& origin, std::uint32_t outputs,
+                   const std::string& crs = {});
   PointCloudWriter(PointCloudWriter&&) noexcept;
   PointCloudWriter& operator=(PointCloudWriter&&) noexcept;
   ~PointCloudWriter();
   /// The chunks that follow, until the next call, are this station's, whose first ray is ray 0. E57 wants it before the
   /// first chunk; the other formats do without.
   void begin_station(const StationScan& station);
-  void write(const ScanChunk& chunk, std::uint16_t station);  ///< Only rays that hit become points.
+  /// Only rays that hit become points. `station`: its number, from 1; LAS's point source id, where 0 stands for none.
+  void write(const ScanChunk& chunk, std::uint16_t station);
   void close();
   std::uint64_t points() const noexcept;
 
@@ -59,23 +68,32 @@ void write_coverage_ply(const std::filesystem::path& file, const Simulator& simu
 /// Square matrix with a header line; row and column i are station i.
 void write_overlap_csv(const std::filesystem::path& file, const OverlapMatrix& overlap);
 
-/// Stations of one network as CSV: `station,x,y,z,u,v,status`. Survey frame, head positions.
+/// Stations of one network as CSV: `station,name,x,y,z,ground_z,u,v,status,kept`. Survey frame; x, y, z of the head,
+/// ground_z of the ground. Numbers read back to the same bits.
 void write_stations_csv(const std::filesystem::path& file, std::span<const PlacedStation> stations);
 
-/// What `read_stations_csv` found on one line: x,y,z or u,v or both.
+/// What `read_stations_csv` found on one line. Survey frame, metres.
 struct StationRow {
-  std::optional<Vec3> position;
-  std::optional<Uv> uv;
+  std::optional<Vec3> position;             ///< The scanner's head.
+  std::optional<Vec3> ground;               ///< The point of the ground below it.
+  std::optional<std::array<double, 2>> xy;  ///< East and north alone, where no height is given.
+  std::optional<Uv> uv;                     ///< On the search area.
+  std::string name;                         ///< As its owner calls it; empty where the file has no names.
 };
-/// Reads a CSV with a header naming x,y,z and/or u,v (any order, other columns ignored). Throws Error: io,
-/// malformed_file with the line.
+/// Reads a table with a header. Columns in any order, others are ignored: x, y, z (the head's), or E, N, Z, or Easting,
+/// Northing, Height; ground_z for the ground's height; u, v; name. A unit may follow in brackets, and must be m. Cells
+/// are parted by commas, semicolons, tabs or blanks, as the header has them; but for commas, numbers may have decimal
+/// commas. Quotes, byte order marks, carriage returns, empty lines and those that begin with # do no harm.
+/// Throws Error: io, malformed_file with the line (two columns for one quantity, a unit that is not m, a line with more
+/// cells than the header, …).
 std::vector<StationRow> read_stations_csv(const std::filesystem::path& file);
 
 /// Everything about a run that its results must name: version, engine, device, seed, scene, every parameter. JSON text.
 std::string run_parameters_json(const Simulator& simulator, const PlanResult* result = nullptr);
 
 /// `front.json`: keys problem, objectives, hypervolume, evaluations, stop_reason, front, seconds, engine, device, seed,
-/// parameters, version. Every network of the front carries its values by their objectives' names.
+/// parameters, version. Every network of the front carries its values by their objectives' names. Whatever is numbered
+/// (`entry`, `compromise`, stations of links) counts from 1.
 std::string front_json(const PlanResult& result, const Simulator& simulator);
 void write_front_csv(const std::filesystem::path& file, const PlanResult& result);
 
@@ -84,18 +102,26 @@ void draw_front(const std::filesystem::path& file, const PlanResult& result);
 void draw_hypervolume(const std::filesystem::path& file, const PlanResult& result);
 /// The front at five moments of the search, as the search saw it (figure 9 of the method).
 void draw_history_fronts(const std::filesystem::path& file, const PlanResult& result);
-/// The site from above in shaded relief, the search area, the stations and the links between them, as wide as their
-/// overlap is large; those below `link_overlap` are not drawn.
-void draw_plan_view(const std::filesystem::path& file, const Scene& scene, const SearchArea& area,
-                    std::span<const PlacedStation> stations, const OverlapMatrix& overlap, const std::string& title,
-                    double link_overlap = default_link_overlap);
+/// The site from above in shaded relief, the search area, the stations with the height of their ground, and the links
+/// between them, as wide as their overlap is large, by one scale on all pictures; those below `link_overlap` are not
+/// drawn. Where most of the ground lies under something, and where a building has several floors, it is cut 1.2 m above
+/// the floor and what is cut through is filled. Several floors stand side by side, and each again on a page of its own,
+/// PLAN-level-1.png and so on, from the lowest. `names`: of the stations, where they have names; "S1", "S2", … and for
+/// kept ones "K1", … otherwise. Returns the files that it wrote.
+std::vector<std::filesystem::path> draw_plan_view(const std::filesystem::path& file, const Scene& scene,
+                                                  const SearchArea& area, std::span<const PlacedStation> stations,
+                                                  const OverlapMatrix& overlap, const std::string& title,
+                                                  double link_overlap = default_link_overlap,
+                                                  std::span<const std::string> names = {});
 
 /// Writes a whole result folder: front.csv, front.json, history.csv, fronts.csv (every iteration's front), and for the
 /// chosen compromise stations.csv, overlap.csv (where it is confirmed), coverage.ply (where `field`, its voxel field,
 /// is given), and the pictures front.png, hypervolume.png, history.png (with several objectives), plan.png (each also
-/// as .svg). Makes the folder where there is none. Returns the index of the chosen entry.
+/// as .svg), of several floors also plan-level-1.png and so on; and for the crew stations.dxf, and where `crs`, the
+/// `coordinate_system()` of the survey frame, is given and this build has PROJ stations.geojson and stations.kml. Makes
+/// the folder where there is none. Returns the index of the chosen entry.
 std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& result, const Simulator& simulator,
-                       const SearchArea& area, const VoxelField* field = nullptr);
+                       const SearchArea& area, const VoxelField* field = nullptr, const std::string& crs = {});
 
 /// The compromise shown where one must be chosen: of the entries that miss the requirements least the one with the
 /// largest product of its objectives' gains (1 less the scaled value). Where an objective looks at pairs, of those

@@ -38,6 +38,20 @@ struct MeshInfo {
   std::uint32_t weight = 1;
 };
 
+/// What a length of 1 in a file stands for.
+enum class Unit { metre, centimetre, millimetre, inch, foot };
+double metres_in(Unit unit) noexcept;
+/// "m", "cm", "mm", "in", "ft".
+const char* to_string(Unit unit) noexcept;
+/// Throws Error invalid_argument for any other text.
+Unit unit_from_string(const std::string& text);
+
+/// Which of a file's axes points up.
+enum class UpAxis { y, z };
+const char* to_string(UpAxis up) noexcept;
+/// Throws Error invalid_argument where the text is neither "y" nor "z".
+UpAxis up_axis_from_string(const std::string& text);
+
 /// How `Scene::load` reads a file. Patterns are shell globs (`*`, `?`) on node names (a node without one goes by its
 /// mesh's); a node hands its role down to its children. Precedence: pattern, then extras on node, mesh, material; where
 /// several patterns match one node, the one with most letters other than `*` and `?`, and of equals the last in the
@@ -52,6 +66,10 @@ struct SceneOptions {
   std::optional<std::size_t> scene_index = std::nullopt;  ///< Which glTF scene; empty: the file's default.
   double default_diffuse = 0.5;  ///< R where neither extras nor a plain base colour (its luminance) give one.
   bool allow_outside = false;    ///< Let the file name buffers and images outside its own folder.
+  /// What the file's lengths are. Empty: metres, as glTF says, unless its size, the sizes of things by their names,
+  /// stairs and storeys say otherwise, which a note then tells. A file with any `vantage` extras is never asked.
+  std::optional<Unit> unit = std::nullopt;
+  std::optional<UpAxis> up = std::nullopt;  ///< Which axis points up. Empty: Y, as glTF says, or as with `unit`.
 };
 
 /// None decides by itself what a run finds: the scene's fingerprint does.
@@ -60,7 +78,7 @@ Settings settings(const SceneOptions& options);
 /// Immutable triangle scene. Copies share storage; safe to read from any thread.
 class Scene {
  public:
-  /// Loads a .glb or .gltf file. Y up becomes Z up: (x, y, z) ↦ (x, −z, y).
+  /// Loads a .glb or .gltf file. Y up becomes Z up: (x, y, z) ↦ (x, −z, y); other units become metres.
   /// Buffers and images are read from the file itself and from regular files below its folder, links followed; from
   /// elsewhere only if `allow_outside`.
   /// Throws Error: io, malformed_file (bad reference, unknown required extension, nothing to survey), invalid_argument

@@ -4,6 +4,7 @@
 #include "cli/command.hpp"
 #include "cli/missed.hpp"
 #include "cli/options.hpp"
+#include "cli/registration.hpp"
 #include "cli/run_report.hpp"
 #include "cli/site.hpp"
 #include "cli/stations.hpp"
@@ -14,10 +15,12 @@ namespace {
 struct EvaluateCommandOptions {
   SiteOptions site;
   StationOptions stations;
-  bool exact = false, skip = false, no_overlap = false;
+  RegistrationCliOptions registration;
+  bool exact = false, skip = false, no_overlap = false, with_registration = false;
   std::optional<SampleSize> sample;
   std::optional<double> error, link_overlap;
   std::optional<std::string> cartography, matrix, picture;
+  std::vector<std::string> station_files;
   MissedFiles missed;
   bool json = false;
 
@@ -41,6 +44,9 @@ struct EvaluateCommandOptions {
     sample_option->excludes(exact_flag)->excludes(skip_flag);
     error_option->excludes(exact_flag)->excludes(skip_flag)->excludes(sample_option);
     command.add_flag("--no-overlap", no_overlap, "Coverage only")->group("Evaluation");
+    command.add_flag("--registration", with_registration, "Predict the error of the registered scans")
+        ->group("Registration");
+    registration.add(command);
     add_text(command, "--cartography", "FILE", "Write every surveyed voxel with its count, in false colours: .ply",
              cartography)
         ->group("Results");
@@ -48,22 +54,47 @@ struct EvaluateCommandOptions {
     add_text(command, "--overlap-csv", "FILE", "Write the overlap matrix: .csv", matrix)->group("Results");
     add_text(command, "--picture", "FILE", "Draw the stations and their overlaps from above: .png or .svg", picture)
         ->group("Results");
+    add_texts(command, "--write-stations", "FILE",
+              "Write the stations for the crew: .dxf, and where --crs is given .geojson or .kml; may be repeated",
+              station_files)
+        ->group("Results");
     add_number(
         command, "--link-overlap", "W",
-        fmt::format("Overlap from which on the picture links two stations, 0 to 1; {} otherwise", default_link_overlap),
+        fmt::format("Overlap from which on two stations count as linked, 0 to 1; {} otherwise", default_link_overlap),
         link_overlap, {.low = 0, .high = 1})
         ->group("Results");
     command.add_flag("--json", json, "Print one JSON object");
+  }
+
+  std::optional<RegistrationModel> model() const {
+    return with_registration ? std::optional(registration.settle().model) : std::nullopt;
   }
 };
 
 NetworkCounts evaluate_sample(Simulator& simulator, const Network& network, const EvaluateCommandOptions& options,
                               const Progress& progress) {
   const bool overlap = !options.no_overlap;
+  const std::optional<RegistrationModel> model = options.model();
   const std::uint64_t voxels =
       options.error ? voxels_for_standard_error(simulator, {&network, 1}, *options.error, overlap, progress)
                     : options.sample->of(simulator.voxel_count());
-  return simulator.evaluate_sampled({&network, 1}, {.voxels = voxels, .overlap = overlap}, progress).front();
+  return simulator
+      .evaluate_sampled({&network, 1}, {.voxels = voxels, .overlap = overlap, .registration = model}, progress)
+      .front();
+}
+
+// Millimetres; axes of the standard ellipsoid of each head, longest first, in the survey frame.
+nlohmann::json to_json(const RegistrationError& error, const Estimate& whole) {
+  const auto mm = [](const Vec3& v) { return nlohmann::json{1e3 * v.x, 1e3 * v.y, 1e3 * v.z}; };
+  nlohmann::json stations = nlohmann::json::array();
+  for (const StationError& station : error.stations)
+    stations.push_back({{"error_mm", 1e3 * station.rms_m},
+                        {"head_axes_mm", {mm(station.axes[0]), mm(station.axes[1]), mm(station.axes[2])}}});
+  return {{"error_mm", 1e3 * whole.value},
+          {"standard_error_mm", 1e3 * whole.standard_error},
+          {"worst_mm", 1e3 * error.worst_m},
+          {"worst_station", error.worst_station},
+          {"stations", std::move(stations)}};
 }
 
 nlohmann::json matrix_json(const OverlapMatrix& overlap) {
@@ -72,14 +103,35 @@ nlohmann::json matrix_json(const OverlapMatrix& overlap) {
   return rows;
 }
 
+nlohmann::json lines_json(const SurveySummary& summary) {
+  nlohmann::json lines = nlohmann::json::array();
+  for (const auto& [heading, text] : summary_lines(summary)) lines.push_back({{"heading", heading}, {"text", text}});
+  return lines;
+}
+
 int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& program) {
   const Stopwatch watch;
   LoadedSite site = open_site(command, options.site);
   weigh_ground(site);
   const auto stations = place(site, options.stations.read(max_stations));
   warn_of_unusable(stations);
+  const auto placed = placed_of(stations);
+  const auto names = names_of(stations);
+  const double link_overlap = options.link_overlap.value_or(default_link_overlap);
   const bool sampled = options.sample || options.error;
   const bool overlap = !options.no_overlap;
+  const auto must_end = [](const std::optional<std::string>& file, const char* what, auto... endings) {
+    if (file && (!file->ends_with(endings) && ...))
+      throw Error(Errc::invalid_argument, std::string(what) + ": '" + *file + "' must end with" +
+                                              (std::string() + ... + (std::string(" ") + endings)));
+  };
+  must_end(options.cartography, "--cartography", ".ply");
+  must_end(options.picture, "--picture", ".png", ".svg");
+  must_end(options.matrix, "--overlap-csv", ".csv");
+  for (const std::string& file : options.station_files) {
+    must_end(file, "--write-stations", ".dxf", ".geojson", ".kml");
+    if (!file.ends_with(".dxf")) to_wgs84(site.crs_text(), {});  // an error now, not behind the rays
+  }
   if (options.cartography && sampled)
     throw Error(Errc::invalid_argument, "--cartography: shows every voxel, and so needs --exact");
   options.missed.check();
@@ -87,6 +139,9 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
     throw Error(Errc::invalid_argument, "--missed: looks at every voxel, and so needs --exact");
   if ((options.matrix || options.picture) && !overlap)
     throw Error(Errc::invalid_argument, "--overlap-csv and --picture show overlaps, which --no-overlap leaves out");
+
+  if (options.with_registration && !overlap)
+    throw Error(Errc::invalid_argument, "--registration: looks at what scans share, which --no-overlap leaves out");
 
   Simulator simulator(site.scene, site.scanner, site.config);
   tell_engine(simulator);
@@ -96,11 +151,13 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
   const Progress progress{.report = [&](double done) { line.update(done); }, .stop = program.stop};
   VoxelField field;
   const NetworkCounts counts =
-      sampled
-          ? evaluate_sample(simulator, network, options, progress)
-          : simulator.evaluate(
-                network, {.overlap = overlap, .skip = options.skip, .field = options.cartography || !options.missed.files.empty() ? &field : nullptr},
-                progress);
+      sampled ? evaluate_sample(simulator, network, options, progress)
+              : simulator.evaluate(network,
+                                   {.overlap = overlap,
+                                    .skip = options.skip,
+                                    .field = options.cartography || !options.missed.files.empty() ? &field : nullptr,
+                                    .registration = options.model()},
+                                   progress);
   if (counts.cancelled) {
     spdlog::error("stopped before the end; nothing was written");
     return exit_failed;
@@ -120,25 +177,41 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
   }
   if (options.matrix) write_overlap_csv(*options.matrix, matrix);
   if (options.picture) {
-    std::vector<PlacedStation> placed;
-    for (const auto& station : stations) placed.push_back(station.placed);
     draw_plan_view(*options.picture, site.scene, site.area(), placed, matrix,
                    fmt::format("{} station{}: coverage {:.3f}, overlap {:.3f}", placed.size(),
                                placed.size() == 1 ? "" : "s", covered.value, overlapped.value),
-                   options.link_overlap.value_or(default_link_overlap));
+                   link_overlap, names);
+  }
+
+  for (const std::string& file : options.station_files)
+    write_stations(file, {placed, names}, matrix, link_overlap, site.area(), site.crs_text());
+  const RegistrationOptions registration = options.registration.settle();
+  Estimate registered;
+  RegistrationError error;
+  if (options.with_registration) {
+    registered = registration_estimate(counts, voxels, registration);
+    error = registration_error(counts, voxels, registration);
   }
 
   nlohmann::json rows = nlohmann::json::array();
   for (std::size_t k = 0; k < stations.size(); ++k) {
-    auto row = to_json(stations[k]);
+    auto row = to_json(stations[k], names[k]);
     row["points"] = nullptr;
     row["points_on_surveyed"] = nullptr;
     if (!sampled && !counts.points.empty()) row["points"] = counts.points[k];
     if (!sampled && !counts.points_on_surveyed.empty()) row["points_on_surveyed"] = counts.points_on_surveyed[k];
     rows.push_back(std::move(row));
   }
+  SurveySummary summary{.names = names, .captured = covered.value, .captured_error = covered.standard_error};
+  if (overlap) {
+    std::vector<bool> used;
+    for (const PlacedStation& station : placed) used.push_back(active(station));
+    summary.links = summary_links(matrix, link_overlap, used);
+  }
+  summary.faults = station_faults(placed, names);
   if (options.json) {
-    nlohmann::json json{{"coverage", covered.value},
+    nlohmann::json json{{"summary", lines_json(summary)},
+                        {"coverage", covered.value},
                         {"coverage_se", covered.standard_error},
                         {"overlap", nullptr},
                         {"overlap_se", nullptr},
@@ -160,24 +233,24 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
       json["overlap_se"] = overlapped.standard_error;
       json["overlap_matrix"] = matrix_json(matrix);
     }
+    if (options.with_registration) json["registration"] = to_json(error, registered);
     if (sampled) json["sample"] = counts.voxels;
     program.console.print(json);
   } else {
-    std::string text;
-    for (std::size_t k = 0; k < stations.size(); ++k) {
-      const Vec3& head = stations[k].placed.position;
-      text += fmt::format("station {:>2}  {:<10}  {:.3f},{:.3f},{:.3f}", k, to_string(stations[k].placed.status), head.x,
-                          head.y, head.z);
-      if (rows[k]["points_on_surveyed"].is_number())
-        text += fmt::format("  {} points on surveyed meshes", rows[k]["points_on_surveyed"].get<std::uint64_t>());
-      text += "\n";
-    }
+    std::string text =
+        station_table(placed, names, sampled ? std::span<const std::uint64_t>() : std::span(counts.points_on_surveyed));
     const auto with_error = [&](const Estimate& estimate) {
       return sampled ? fmt::format("{:.4f} ± {:.4f}", estimate.value, estimate.standard_error)
                      : fmt::format("{:.4f}", estimate.value);
     };
     text += "coverage " + with_error(covered) + "\n";
     if (overlap) text += "overlap  " + with_error(overlapped) + "\n";
+    if (options.with_registration) {
+      text += fmt::format("registration {:.2f}{} mm, worst station {}: {:.2f} mm\n", 1e3 * registered.value,
+                          sampled ? fmt::format(" ± {:.2f}", 1e3 * registered.standard_error) : "",
+                          names[error.worst_station], 1e3 * error.worst_m);
+    }
+    text += "\n" + summary_text(summary);
     program.console.print(text);
   }
   return exit_ok;

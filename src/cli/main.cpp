@@ -8,6 +8,7 @@
 #include "cli/command.hpp"
 #include "cli/console.hpp"
 #include "cli/interrupts.hpp"
+#include "cli/mistyped.hpp"
 #include "vantage/vantage.hpp"
 
 namespace vantage::cli {
@@ -35,7 +36,10 @@ int run(int argc, char** argv) {
     return app.exit(help_or_version);
   } catch (const CLI::ParseError& error) {
     const auto named = app.get_subcommands();
-    spdlog::error("{}; see vantage {}--help", error.what(), named.empty() ? "" : named.front()->get_name() + " ");
+    const bool leftover = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
+    const std::string message = leftover ? explain_leftover(app) : error.what();
+    spdlog::error("{} vantage {}--help", message + (message.ends_with('?') ? " See" : "; see"),
+                  named.empty() ? "" : named.front()->get_name() + " ");
     return exit_usage;
   } catch (const Error& error) {
     std::string message = error.what();

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <fstream>
 
+#include "cli/mistyped.hpp"
+#include "core/closest_name.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage::cli {
@@ -102,7 +104,8 @@ void apply_layer(CLI::App& command, const nlohmann::json& values, const std::str
     if (accepts && !accepts(key)) continue;
     CLI::Option* option = find_option(command, key);
     if (key == "config" || key == "help" || (!option && !known_to_any_command(command, key)))
-      throw Error(Errc::invalid_argument, source + ": there is no option '" + written_key + "'");
+      throw Error(Errc::invalid_argument, source + ": there is no option '" + written_key + "'" +
+                                              did_you_mean("--" + key, option_names(command)));
     if (!option || option->count() > 0 || excluded(*option) || value.is_null()) continue;
 
     const bool one_point = value.is_array() && !value.empty() && value[0].is_number();

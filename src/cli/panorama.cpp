@@ -44,6 +44,7 @@ int panorama(CLI::App& command, PanoramaCommandOptions& options, Program& progra
   const Stopwatch watch;
   LoadedSite site = open_site(command, options.site);
   const auto stations = place(site, options.stations.read(max_stations));
+  const auto names = names_of(stations);
   if (!options.output) throw Error(Errc::invalid_argument, "panorama: say where the pictures go with -o DIR");
   if (options.views.empty()) options.views.assign(panorama_views().begin(), panorama_views().end());
   options.picture.heading = site.scanner.heading;
@@ -68,12 +69,12 @@ int panorama(CLI::App& command, PanoramaCommandOptions& options, Program& progra
         .stop = program.stop};
     const auto images = renderer.render(stations[k].placed.position, options.views, progress);
     if (images.empty()) {
-      spdlog::error("stopped at station {}; the pictures of those before it are in {}", k, folder.string());
+      spdlog::error("stopped at station {}; the pictures of those before it are in {}", k + 1, folder.string());
       return exit_failed;
     }
-    auto row = to_json(stations[k]);
+    auto row = to_json(stations[k], names[k]);
     for (const auto& image : images) {
-      const std::string name = fmt::format("station_{}_{}.png", k, to_string(image.view));
+      const std::string name = fmt::format("station_{}_{}.png", k + 1, to_string(image.view));
       write_png(folder / name, image.image);
       row["pictures"].push_back({{"view", to_string(image.view)},
                                  {"file", (folder / name).string()},

@@ -92,12 +92,40 @@ std::vector<double> parse_numbers(std::string_view text, const std::string& what
   return values;
 }
 
+namespace {
+
+StationText parse_named_station(std::string_view text, const std::string& what) {
+  std::optional<double> x, y, z, ground, u, v;
+  const std::initializer_list<std::pair<const char*, std::optional<double>*>> names{
+      {"x", &x}, {"y", &y}, {"z", &z}, {"ground", &ground}, {"u", &u}, {"v", &v}};
+  for (const auto part : split(text, ',')) {
+    const std::size_t equals = part.find('=');
+    const std::string_view name = trim(part.substr(0, equals));
+    const auto known = std::find_if(names.begin(), names.end(), [&](const auto& one) { return one.first == name; });
+    if (equals == std::string_view::npos || known == names.end())
+      refuse(what, text, "is no station: '" + std::string(part) + "' is none of x=, y=, z=, ground=, u=, v=");
+    if (*known->second) refuse(what, text, "says " + std::string(name) + " twice");
+    *known->second = parse_number(part.substr(equals + 1), what);
+  }
+  if (u && v && !x && !y && !z && !ground) return {.uv = Uv{*u, *v}};
+  if (!x || !y || u || v || (z && ground))
+    refuse(what, text, "is no station: give x=,y=; x=,y=,z= of the scanner's head; x=,y=,ground=; or u=,v=");
+  if (z) return {.position = Vec3{*x, *y, *z}};
+  if (ground) return {.ground = Vec3{*x, *y, *ground}};
+  return {.xy = std::array{*x, *y}};
+}
+
+}  // namespace
+
 StationText parse_station(std::string_view text, const std::string& what) {
+  if (text.find('=') != std::string_view::npos) return parse_named_station(text, what);
+  if (text.find(';') != std::string_view::npos)
+    refuse(what, text, "is no station: numbers have commas between them and decimal points, as 5.2,3.6,1.85");
   if (const auto parts = split(text, ',').size(); parts != 2 && parts != 3)
     refuse(what, text, "is no station: give X,Y,Z of the scanner's head or u,v on the search area");
   const auto values = parse_numbers(text, what, 2, 3);
-  if (values.size() == 2) return {.position = std::nullopt, .uv = Uv{values[0], values[1]}};
-  return {.position = Vec3{values[0], values[1], values[2]}, .uv = std::nullopt};
+  if (values.size() == 2) return {.pair = std::array{values[0], values[1]}};
+  return {.position = Vec3{values[0], values[1], values[2]}};
 }
 
 CountRange parse_count_range(std::string_view text, const std::string& what, std::size_t low, std::size_t high) {

@@ -34,10 +34,15 @@ std::vector<std::string_view> split(std::string_view text, char separator);
 std::vector<double> parse_numbers(std::string_view text, const std::string& what, std::size_t fewest, std::size_t most,
                                   const Interval& interval = any_number);
 
-// A station as it is typed: X,Y,Z of the scanner's head or u,v on the search area.
+// A station as it is typed: X,Y,Z of the scanner's head, u,v on the search area, or with its quantities named:
+// x=5,y=3.6 (the ground there is looked for), x=5,y=3.6,z=1.85, x=5,y=3.6,ground=0, u=0.25,v=0.5.
 struct StationText {
-  std::optional<Vec3> position;
-  std::optional<Uv> uv;
+  std::optional<Vec3> position = {};  // the head
+  std::optional<Uv> uv = {};
+  std::optional<Vec3> ground = {};  // below the head
+  std::optional<std::array<double, 2>> xy = {};
+  std::optional<std::array<double, 2>> pair = {};  // two numbers without names: u,v, unless they cannot be
+  std::string name = {};
 };
 StationText parse_station(std::string_view text, const std::string& what);
 

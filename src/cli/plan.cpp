@@ -179,7 +179,7 @@ std::string remarks(const PlanEntry& entry, const PlanResult& result) {
 }
 
 std::string summary(const PlanResult& result, std::size_t chosen, const std::string& folder) {
-  std::string text;
+  std::string text = unmet_text(result);
   std::vector<const Objective*> told;
   for (const Objective& measure : result.measures)
     if (!measure.by_alpha) told.push_back(&measure);
@@ -199,7 +199,23 @@ std::string summary(const PlanResult& result, std::size_t chosen, const std::str
   if (result.config.sample_voxels > 0 && !std::isnan(result.exact_hypervolume))
     text += fmt::format(" ({:.4f} by every ray)", result.exact_hypervolume);
   text += fmt::format(", stopped: {}\n", to_string(result.stop_reason));
-  return text + "results in " + folder + "\n";
+  const PlanEntry& entry = result.front[chosen];
+  text += "\n" + station_table(entry.stations, station_names(entry.stations), entry.points_on_surveyed) + "\n";
+  return text + summary_text(summary_of(entry, result)) + "results in " + folder + "\n";
+}
+
+// The site's coordinate system, where stations can be put on a map by it; else nothing, and a line that says why.
+std::string map_system(const LoadedSite& site) {
+  const std::string crs = site.crs_text();
+  if (crs.empty()) return crs;
+  try {
+    const Box box = site.scene.bounds();
+    to_wgs84(crs, std::vector<Vec3>{box.min, box.max, {box.min.x, box.max.y, 0}, {box.max.x, box.min.y, 0}});
+    return crs;
+  } catch (const Error& error) {
+    spdlog::warn("no stations.geojson and stations.kml: {}", error.what());
+    return "";
+  }
 }
 
 // Every voxel's count under the network that is shown; empty where it was stopped.
@@ -244,6 +260,7 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   }
   write_text(folder / "config.json", as_options(site, options, problem, config).dump(2) + "\n");
 
+  const std::string crs = map_system(site);
   PlanResult result;
   {
     ProgressLine line(program.console, "search");
@@ -265,7 +282,7 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   const auto field = cartography(simulator, result.front[compromise(result)], program);
   if (!field) spdlog::warn("stopped: {} is not written", (folder / "coverage.ply").string());
   spdlog::info("writing {}", folder.string());
-  const std::size_t chosen = write_plan(folder, result, simulator, area, field ? &*field : nullptr);
+  const std::size_t chosen = write_plan(folder, result, simulator, area, field ? &*field : nullptr, crs);
   if (field)
     write_missed(
         std::vector<std::filesystem::path>{folder / "missed.csv", folder / "missed.ply", folder / "missed.png"}, site,

@@ -61,8 +61,9 @@ struct ScanCommandOptions {
 int scan(CLI::App& command, ScanCommandOptions& options, Program& program) {
   const Stopwatch watch;
   LoadedSite site = open_site(command, options.site);
-  const auto typed = options.stations.read(65535);  // what a LAS point source id can tell apart, station 0 included
+  const auto typed = options.stations.read(65535);  // what a LAS point source id can tell apart, from 1
   const auto stations = place(site, typed);
+  const auto names = names_of(stations);
   if (options.panoramas.size() > stations.size())
     throw Error(Errc::invalid_argument,
                 fmt::format("--panorama: {} pictures for {} stations", options.panoramas.size(), stations.size()));
@@ -79,7 +80,7 @@ int scan(CLI::App& command, ScanCommandOptions& options, Program& program) {
   tell_grid(simulator);
 
   std::optional<PointCloudWriter> writer;
-  if (options.output) writer.emplace(*options.output, simulator.origin(), options.outputs);
+  if (options.output) writer.emplace(*options.output, simulator.origin(), options.outputs, site.crs_text());
   ScanSummary sum;
   nlohmann::json rows = nlohmann::json::array();
   ProgressLine line(program.console, "scan");
@@ -94,12 +95,11 @@ int scan(CLI::App& command, ScanCommandOptions& options, Program& program) {
         return panorama.colour(zenith, azimuth);
       };
     if (writer)
-      writer->begin_station(
-          {.name = "S" + std::to_string(k + 1), .head = stations[k].placed.position, .scanner = simulator.scanner()});
+      writer->begin_station({.name = names[k], .head = stations[k].placed.position, .scanner = simulator.scanner()});
     const ScanSummary one = simulator.scan(
         {.position = stations[k].placed.position}, what,
         [&](const ScanChunk& chunk) {
-          if (writer) writer->write(chunk, static_cast<std::uint16_t>(k));
+          if (writer) writer->write(chunk, static_cast<std::uint16_t>(k + 1));
         },
         progress);
     if (one.cancelled) {
@@ -110,7 +110,7 @@ int scan(CLI::App& command, ScanCommandOptions& options, Program& program) {
     sum.points += one.points;
     sum.points_on_surveyed += one.points_on_surveyed;
     sum.trace_seconds += one.trace_seconds;
-    auto row = to_json(stations[k]);
+    auto row = to_json(stations[k], names[k]);
     row["points"] = one.points;
     row["points_on_surveyed"] = one.points_on_surveyed;
     row["hits_on_surveyed"] = one.hits_on_surveyed;
@@ -133,11 +133,13 @@ int scan(CLI::App& command, ScanCommandOptions& options, Program& program) {
     program.console.print(json);
   } else {
     std::string text;
-    for (const auto& row : rows)
-      text += fmt::format("station at {:.3f},{:.3f},{:.3f}: {} points, {} on surveyed meshes\n",
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      const auto& row = rows[k];
+      text += fmt::format("{} at {:.3f},{:.3f},{:.3f}: {} points, {} on surveyed meshes\n", names[k],
                           row["position"][0].get<double>(), row["position"][1].get<double>(),
                           row["position"][2].get<double>(), row["points"].get<std::uint64_t>(),
                           row["points_on_surveyed"].get<std::uint64_t>());
+    }
     text += fmt::format("{} rays, {} points, {} on surveyed meshes\n", sum.rays, sum.points, sum.points_on_surveyed);
     if (options.output) text += "written to " + *options.output + "\n";
     program.console.print(text);

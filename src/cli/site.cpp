@@ -20,7 +20,7 @@ const std::set<std::string> preset_keys{"step", "horizontal", "vertical", "zenit
 // Options that a scene may carry defaults for: what is measured, never where files go.
 const std::set<std::string> scene_keys{"scanner", "step",     "heading",  "horizontal", "vertical", "zenith-start",
                                        "height",  "range",    "noise",    "user-size",  "spacing",  "security",
-                                       "slope",   "headroom", "min-area", "station"};
+                                       "slope",   "headroom", "min-area", "station",    "crs"};
 
 template <std::size_t N>
 Setter numbers_into(std::optional<std::array<double, N>>& target, std::size_t fewest, const Interval& interval) {
@@ -72,22 +72,25 @@ std::string noise_source(const SiteOptions& options, const Scanner& scanner) {
 
 // One line on what was made up for a scene of unusual size.
 void tell_scaled(const SiteOptions& options, const LoadedSite& site, double scale) {
+  const bool small = scale < 1;
   std::string made_up;
   const auto add = [&](bool given, const std::string& text) {
     if (!given) made_up += (made_up.empty() ? "" : ", ") + text;
   };
   add(options.user_size.has_value(), fmt::format("user-size {:.3g}", site.config.user_size_m));
   add(options.spacing.has_value(), fmt::format("spacing {:.3g}", site.config.point_spacing_m));
-  add(options.height.has_value(), fmt::format("height {:.3g}", site.scanner.height_m));
-  add(options.range || options.scanner,
-      fmt::format("range {:.3g},{:.3g}", site.scanner.min_range_m, site.scanner.max_range_m));
-  add(options.security.has_value(), fmt::format("security {:.3g},{:.3g},{:.3g}", site.security.lower_m,
-                                                site.security.upper_m, site.security.radius_m));
+  if (small) {
+    add(options.height.has_value(), fmt::format("height {:.3g}", site.scanner.height_m));
+    add(options.range || options.scanner,
+        fmt::format("range {:.3g},{:.3g}", site.scanner.min_range_m, site.scanner.max_range_m));
+    add(options.security.has_value(), fmt::format("security {:.3g},{:.3g},{:.3g}", site.security.lower_m,
+                                                  site.security.upper_m, site.security.radius_m));
+  }
   if (made_up.empty()) return;
   const Vec3 size = site.scene.bounds().size();
-  spdlog::info(
-      "the scene measures {:.3g} x {:.3g} x {:.3g} m, unlike a site: lengths taken as {:.2g} times the usual ({})",
-      size.x, size.y, size.z, scale, made_up);
+  spdlog::info("the scene measures {:.3g} x {:.3g} x {:.3g} m, {} than a site: {} taken as {:.2g} times the usual ({})",
+               size.x, size.y, size.z, small ? "smaller" : "larger", small ? "lengths" : "what is measured by is",
+               scale, made_up);
 }
 
 }  // namespace
@@ -111,6 +114,24 @@ void SiteOptions::add(CLI::App& command) {
                roles.weights.emplace_back(text.substr(0, equals), static_cast<std::uint32_t>(parse_count(
                                                                       text.substr(equals + 1), what, 1, 255)));
              })
+      ->group("Scene");
+  add_value(command, "--unit", "UNIT", "What lengths in the file are: m, cm, mm, in or ft; recognised otherwise",
+            [this](const std::string& text, const std::string& what) {
+              try {
+                roles.unit = unit_from_string(text);
+              } catch (const Error& error) {
+                throw Error(error.code(), what + ": " + error.what());
+              }
+            })
+      ->group("Scene");
+  add_value(command, "--up", "AXIS", "Which axis of the file points up: y or z; recognised otherwise",
+            [this](const std::string& text, const std::string& what) {
+              try {
+                roles.up = up_axis_from_string(text);
+              } catch (const Error& error) {
+                throw Error(error.code(), what + ": " + error.what());
+              }
+            })
       ->group("Scene");
   add_text(command, "--scene-index", "N", "Which scene of the file; the file's own default otherwise", scene_index)
       ->group("Scene");
@@ -181,6 +202,10 @@ void SiteOptions::add(CLI::App& command) {
             [this](const std::string& text, const std::string& what) { seed = parse_count(text, what); })
       ->group("Run");
   command.add_flag("--validation", validation, "Check every Vulkan call with the validation layer")->group("Run");
+  add_text(command, "--crs", "EPSG:N|FILE",
+           "Coordinate system of the scene: EPSG:25832 and the like, or a .prj or .wkt file; point clouds carry it",
+           crs)
+      ->group("Run");
   add_text(command, "--config", "FILE", "JSON file of options, keyed by their long names; what is typed goes before it",
            config_file)
       ->group("Run");
@@ -228,6 +253,7 @@ nlohmann::json LoadedSite::as_options() const {
   for (const Settings& list : {settings(scene.options()), settings(config), settings(security), settings(walkable)})
     options.update(options_of(list));
   options["noise"] = noise;
+  if (!crs.empty()) options["crs"] = crs;
   return options;
 }
 
@@ -241,7 +267,8 @@ LoadedSite open_site(CLI::App& command, SiteOptions& options) {
 
   Scene scene = Scene::load(options.scene, options.roles);
   for (const auto& note : scene.notes()) spdlog::info("{}: {}", options.scene, note);
-  const bool own_preset = options.scanner.has_value(), own_noise = options.noise.has_value();
+  const bool own_preset = options.scanner.has_value(), own_noise = options.noise.has_value(),
+             own_crs = options.crs.has_value();
   const CLI::Option* station_file = command.get_option_no_throw("--stations");
   const bool own_stations = station_file && station_file->count() > 0;
   apply_layer(command, nlohmann::json::parse(scene.defaults_json()), options.scene, [&](const std::string& key) {
@@ -253,9 +280,14 @@ LoadedSite open_site(CLI::App& command, SiteOptions& options) {
     throw Error(Errc::malformed_file, options.scene + ": its defaults name the file \"" + *options.noise +
                                           "\" for noise, and a scene may name scanners only; give it with --noise");
 
+  if (!own_crs && options.crs && options.crs->find('[') == std::string::npos && !options.crs->starts_with("EPSG:"))
+    throw Error(Errc::malformed_file, options.scene + ": its defaults name the coordinate system \"" + *options.crs +
+                                          "\", and a scene may give EPSG:N or well-known text only");
+
   const double scale = length_scale(scene.bounds());
+  const double small = std::min(scale, 1.0);  // people and tripods do not grow with a site
   LoadedSite site{.scene = std::move(scene),
-                  .scanner = resolve_scanner(options, scale),
+                  .scanner = resolve_scanner(options, small),
                   .config = {},
                   .security = {},
                   .walkable = {},
@@ -270,14 +302,16 @@ LoadedSite open_site(CLI::App& command, SiteOptions& options) {
   if (options.security) {
     site.security = {(*options.security)[0], (*options.security)[1], (*options.security)[2]};
   } else {
-    site.security.lower_m *= scale;
-    site.security.upper_m *= scale;
-    site.security.radius_m *= scale;
+    site.security.lower_m *= small;
+    site.security.upper_m *= small;
+    site.security.radius_m *= small;
   }
   if (options.slope) site.walkable.max_slope = Angle::degrees(*options.slope);
-  site.walkable.headroom_m = options.headroom.value_or(site.walkable.headroom_m * scale);
-  site.walkable.min_area_m2 = options.min_area.value_or(site.walkable.min_area_m2 * scale * scale);
+  site.walkable.headroom_m = options.headroom.value_or(site.walkable.headroom_m * small);
+  site.walkable.min_area_m2 = options.min_area.value_or(site.walkable.min_area_m2 * small * small);
   site.noise = noise_source(options, site.scanner);
+  site.crs = options.crs.value_or("");
+  static_cast<void>(site.crs_text());  // an error now, not behind an hour's work
   if (scale != 1) tell_scaled(options, site, scale);
   return site;
 }

@@ -37,7 +37,7 @@ struct SiteOptions {
   std::uint64_t seed = 1;
   bool validation = false;
 
-  std::optional<std::string> config_file;
+  std::optional<std::string> crs, config_file;
 
   void add(CLI::App& command);
 };
@@ -50,13 +50,16 @@ struct LoadedSite {
   SimulatorConfig config;
   SecurityVolume security;
   WalkableOptions walkable;
-  std::string noise;  // where its table came from: off, a scanner's name, or a file
+  std::string noise;     // where its table came from: off, a scanner's name, or a file
+  std::string crs = {};  // the survey frame's coordinate system, as given; empty: not known
 
   // The search area, made on first use. Throws Error invalid_argument where nothing is walkable.
   const SearchArea& area();
   // Whether there is one to be had.
   bool has_area();
   const ClashChecker& clash();
+  // Its well-known text; empty where it is not known.
+  std::string crs_text() const { return crs.empty() ? "" : coordinate_system(crs); }
   // Every value as an option, so that it can be given to --config again.
   nlohmann::json as_options() const;
 
@@ -71,8 +74,8 @@ LoadedSite open_site(CLI::App& command, SiteOptions& options);
 // most, and says so. For commands that measure coverage.
 void weigh_ground(LoadedSite& site);
 
-// Lengths for a scene whose size is unlike a site's: the built-in figures times this. 1 from 2 m to 200 m; otherwise
-// the largest extent over 20 m, with two significant digits.
+// For a scene whose size is unlike a site's: the built-in lengths times this; of a large one only voxel size and
+// spacing. 1 from 2 m to 200 m; otherwise the largest extent over 20 m, with two significant digits.
 double length_scale(const Box& bounds);
 
 }  // namespace vantage::cli

@@ -24,13 +24,14 @@ std::vector<StationText> read_front(const std::string& file, std::uint64_t entry
   const auto front = read_json(file);
   try {
     const auto& entries = front.at("front");
-    if (entry >= entries.size())
+    if (entry > entries.size())
       throw Error(Errc::invalid_argument, "--entry: " + std::to_string(entry) + " is not in " + file + ", which has " +
-                                              std::to_string(entries.size()) + " entries, counted from 0");
+                                              std::to_string(entries.size()) + " entries, counted from 1");
     std::vector<StationText> stations;
-    for (const auto& station : entries[entry].at("stations")) {
-      StationText text{vec3_of(station.value("position", nlohmann::json())),
-                       uv_of(station.value("uv", nlohmann::json()))};
+    for (const auto& station : entries[entry - 1].at("stations")) {
+      StationText text{.position = vec3_of(station.value("position", nlohmann::json())),
+                       .uv = uv_of(station.value("uv", nlohmann::json())),
+                       .name = station.value("name", "")};
       if (station.value("status", "ok") == "hole") text.position.reset();
       if (!text.position && !text.uv)
         throw Error(Errc::malformed_file, file + ": a station has neither position nor uv");
@@ -46,25 +47,31 @@ std::vector<StationText> read_front(const std::string& file, std::uint64_t entry
 
 void StationOptions::add(CLI::App& command) {
   add_values(command, "--station", "X,Y,Z|U,V",
-             "A station: the scanner's head, or a point of the search area; may be repeated",
+             "A station: the scanner's head, or a point of the search area; x=,y= finds the ground; may be repeated",
              [this](const std::string& text, const std::string& what) { typed.push_back(parse_station(text, what)); })
       ->group("Stations");
   add_text(command, "--stations", "FILE",
-           "Stations from a CSV file with columns x,y,z or u,v, or from a plan's front.json", file)
+           "Stations from a table with columns x,y,z or Easting,Northing,Height or u,v, or from a plan's front.json",
+           file)
       ->group("Stations");
-  add_value(command, "--entry", "K", "Which entry of front.json, counted from 0",
-            [this](const std::string& text, const std::string& what) { entry = parse_count(text, what); })
+  add_value(command, "--entry", "K", "Which entry of front.json, counted from 1; 1 otherwise",
+            [this](const std::string& text, const std::string& what) {
+              if (text == "0") throw Error(Errc::invalid_argument, what + ": entries are counted from 1");
+              entry = parse_count(text, what, 1);
+            })
       ->group("Stations");
 }
 
 std::vector<StationText> StationOptions::read(std::size_t most) const {
   std::vector<StationText> stations = typed;
   if (file && file->ends_with(".json")) {
-    for (const auto& station : read_front(*file, entry.value_or(0))) stations.push_back(station);
+    for (const auto& station : read_front(*file, entry.value_or(1))) stations.push_back(station);
   } else if (entry) {
     throw Error(Errc::invalid_argument, "--entry goes with --stations front.json");
   } else if (file) {
-    for (const auto& row : read_stations_csv(*file)) stations.push_back({row.position, row.uv});
+    for (const auto& row : read_stations_csv(*file))
+      stations.push_back(
+          {.position = row.position, .uv = row.uv, .ground = row.ground, .xy = row.xy, .name = row.name});
   }
   if (stations.empty())
     throw Error(Errc::invalid_argument, "no station given: add --station X,Y,Z, --station u,v or --stations FILE");
@@ -74,18 +81,66 @@ std::vector<StationText> StationOptions::read(std::size_t most) const {
   return stations;
 }
 
+namespace {
+
+// The ground at x, y. Throws Error invalid_argument where there is none, or where floors lie above each other.
+Vec3 ground_at(LoadedSite& site, const std::array<double, 2>& xy) {
+  constexpr double same_floor_m = 0.5, far = 1e6;  // beyond any site
+  const auto at = fmt::format("x,y = {},{}", xy[0], xy[1]);
+  const auto ground = [&](double z) -> std::optional<Vec3> {
+    const auto uv = site.area().project({xy[0], xy[1], z});
+    return uv ? site.area().locate(*uv) : std::nullopt;
+  };
+  const auto low = ground(-far), high = ground(far);
+  if (!low || !high)
+    throw Error(Errc::invalid_argument, "--station: there is no ground to stand on at " + at +
+                                            "; with a height, as x=…,y=…,z=…, the head goes anywhere");
+  if (high->z - low->z > same_floor_m)
+    throw Error(Errc::invalid_argument,
+                fmt::format("--station: at {0} there are floors at {1:.2f} and {2:.2f}; say which, as "
+                            "x={3},y={4},ground={1:.2f}",
+                            at, low->z, high->z, xy[0], xy[1]));
+  return {xy[0], xy[1], low->z};
+}
+
+// Two numbers without names are (u, v) where nothing else can be meant.
+Uv uv_of_pair(LoadedSite& site, const std::array<double, 2>& pair) {
+  const SearchArea& area = site.area();
+  const Uv low = area.uv_min(), high = area.uv_max();
+  const auto within = [](double value, double from, double to) { return value >= from && value <= to; };
+  const bool is_uv = within(pair[0], low.u, high.u) && within(pair[1], low.v, high.v);
+  const bool small = within(pair[0], 0, 1) && within(pair[1], 0, 1);
+  if (is_uv && (small || !area.project({pair[0], pair[1], 0}))) return {pair[0], pair[1]};
+  throw Error(Errc::invalid_argument,
+              fmt::format("--station: '{0},{1}' may be x,y or u,v: for metres in the scene's frame, with the head "
+                          "{2:g} m above the ground there, give x={0},y={1}; for a point of the search area, whose u "
+                          "runs from {3:.4g} to {4:.4g} and v from {5:.4g} to {6:.4g}, give u={0},v={1}",
+                          pair[0], pair[1], site.scanner.height_m, low.u, high.u, low.v, high.v));
+}
+
+// The same with a head or (u, v).
+StationText settled(LoadedSite& site, StationText station) {
+  if (station.pair) station.uv = uv_of_pair(site, *station.pair);
+  if (!station.position && !station.ground && station.xy) station.ground = ground_at(site, *station.xy);
+  if (!station.position && station.ground) station.position = *station.ground + Vec3{0, 0, site.scanner.height_m};
+  return station;
+}
+
+}  // namespace
+
 std::vector<SiteStation> place(LoadedSite& site, const std::vector<StationText>& stations) {
   const double height = site.scanner.height_m;
   std::vector<SiteStation> placed;
-  for (const auto& station : stations) {
+  for (const auto& typed : stations) {
+    const StationText station = settled(site, typed);
     if (!station.position) {
       const std::array<double, 2> uv{station.uv->u, station.uv->v};
-      placed.push_back({place_stations(site.area(), site.clash(), height, uv).front(), true});
+      placed.push_back({place_stations(site.area(), site.clash(), height, uv).front(), true, station.name});
       continue;
     }
     const PlacedHead head =
         place_head(site.has_area() ? &site.area() : nullptr, site.clash(), height, *station.position, station.uv);
-    placed.push_back({head.station, head.has_uv});
+    placed.push_back({head.station, head.has_uv, station.name});
   }
   return placed;
 }
@@ -96,24 +151,42 @@ Network to_network(const std::vector<SiteStation>& stations) {
   return network;
 }
 
-nlohmann::json to_json(const SiteStation& station) {
+nlohmann::json to_json(const SiteStation& station, const std::string& name) {
   const PlacedStation& placed = station.placed;
-  nlohmann::json json{{"position", nullptr}, {"uv", nullptr}, {"status", to_string(placed.status)}};
+  nlohmann::json json{{"name", name},
+                      {"position", nullptr},
+                      {"ground", nullptr},
+                      {"uv", nullptr},
+                      {"status", to_string(placed.status)}};
+  const auto list = [](const Vec3& p) { return nlohmann::json{p.x, p.y, p.z}; };
   if (placed.status != StationStatus::hole)
-    json["position"] = {placed.position.x, placed.position.y, placed.position.z};
+    json["position"] = list(placed.position), json["ground"] = list(placed.ground);
   if (station.has_uv) json["uv"] = {placed.uv.u, placed.uv.v};
   return json;
 }
 
+std::vector<PlacedStation> placed_of(const std::vector<SiteStation>& stations) {
+  std::vector<PlacedStation> placed;
+  for (const auto& station : stations) placed.push_back(station.placed);
+  return placed;
+}
+
+std::vector<std::string> names_of(const std::vector<SiteStation>& stations) {
+  std::vector<std::string> given;
+  for (const auto& station : stations) given.push_back(station.name);
+  return station_names(placed_of(stations), given);
+}
+
 void warn_of_unusable(const std::vector<SiteStation>& stations) {
+  const auto names = names_of(stations);
   for (std::size_t k = 0; k < stations.size(); ++k) {
     const auto& placed = stations[k].placed;
     if (placed.status == StationStatus::ok) continue;
     const std::string where =
         placed.status == StationStatus::hole
             ? fmt::format("u,v = {:g},{:g}", placed.uv.u, placed.uv.v)
-            : fmt::format("{:.6g},{:.6g},{:.6g}", placed.position.x, placed.position.y, placed.position.z);
-    spdlog::warn("station {} at {} {}{}", k, where, explain(placed.status), active(placed) ? "" : "; it is left out");
+            : fmt::format("{:.3f},{:.3f},{:.3f}", placed.position.x, placed.position.y, placed.position.z);
+    spdlog::warn("{} at {} {}{}", names[k], where, explain(placed.status), active(placed) ? "" : "; it is left out");
   }
 }
 

@@ -27,7 +27,8 @@ struct StationOptions {
 
 struct SiteStation {
   PlacedStation placed;
-  bool has_uv = false;  // false: the head was given and no search area lies under it
+  bool has_uv = false;    // false: the head was given and no search area lies under it
+  std::string name = {};  // as its owner calls it; empty where nothing is said
 };
 
 // Heads stay where they are given; (u, v) go to the ground below and up by the scanner's height. Both are checked for
@@ -35,8 +36,11 @@ struct SiteStation {
 std::vector<SiteStation> place(LoadedSite& site, const std::vector<StationText>& stations);
 
 Network to_network(const std::vector<SiteStation>& stations);
-// {position, uv, status}; null where there is none.
-nlohmann::json to_json(const SiteStation& station);
+std::vector<PlacedStation> placed_of(const std::vector<SiteStation>& stations);
+// As in all tables and pictures.
+std::vector<std::string> names_of(const std::vector<SiteStation>& stations);
+// {name, position, ground, uv, status}; null where there is none.
+nlohmann::json to_json(const SiteStation& station, const std::string& name);
 // One warning a station that is not where a scanner could be.
 void warn_of_unusable(const std::vector<SiteStation>& stations);
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/closest_name.hpp"
 #include "core/text.hpp"
 #include "objective/built_in/built_in.hpp"
 #include "vantage/error.hpp"
@@ -74,7 +75,8 @@ Objective make_objective(std::string_view name, const ObjectiveSettings& setting
     if (one.name == name) return one.make(settings);
     known += (known.empty() ? "" : ", ") + one.name;
   }
-  throw Error(Errc::invalid_argument, "unknown objective \"" + std::string(name) + "\"; known: " + known);
+  throw Error(Errc::invalid_argument, "unknown objective \"" + std::string(name) + "\"; known: " + known +
+                                          did_you_mean(name, objective_names()));
 }
 
 Requirement make_requirement(std::string_view text, const ObjectiveSettings& settings) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/closest_name.hpp"
 #include "optimise/baselines.hpp"
 #include "optimise/hypervolume.hpp"
 #include "vantage/error.hpp"
@@ -65,10 +66,14 @@ std::string to_string(Algorithm algorithm) {
 }
 
 Algorithm algorithm_from_string(const std::string& name) {
-  for (const auto algorithm : {Algorithm::cma_es, Algorithm::mo_cma_es, Algorithm::nsga2, Algorithm::random_search})
-    if (name == to_string(algorithm)) return algorithm;
-  throw Error(Errc::invalid_argument,
-              "there is no optimiser \"" + name + "\"; take cma_es, mo_cma_es, nsga2 or random_search");
+  std::vector<std::string> known;
+  for (const auto algorithm : {Algorithm::cma_es, Algorithm::mo_cma_es, Algorithm::nsga2, Algorithm::random_search}) {
+    known.push_back(to_string(algorithm));
+    if (name == known.back()) return algorithm;
+  }
+  throw Error(Errc::invalid_argument, "there is no optimiser \"" + name +
+                                          "\"; take cma_es, mo_cma_es, nsga2 or random_search" +
+                                          did_you_mean(name, known));
 }
 
 std::unique_ptr<Optimiser> make_optimiser(Algorithm algorithm, std::size_t dimension, std::size_t objectives,

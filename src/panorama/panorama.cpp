@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/closest_name.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage {
@@ -62,11 +63,14 @@ std::string to_string(PanoramaView view) {
 
 PanoramaView panorama_view_from_string(const std::string& name) {
   std::string names;
+  std::vector<std::string> all;
   for (const PanoramaView view : views) {
-    if (to_string(view) == name) return view;
-    names += (names.empty() ? "" : ", ") + to_string(view);
+    all.push_back(to_string(view));
+    if (all.back() == name) return view;
+    names += (names.empty() ? "" : ", ") + all.back();
   }
-  throw Error(Errc::invalid_argument, "there is no panorama view \"" + name + "\"; choose one of " + names);
+  throw Error(Errc::invalid_argument,
+              "there is no panorama view \"" + name + "\"; choose one of " + names + did_you_mean(name, all));
 }
 
 std::span<const PanoramaView> panorama_views() noexcept { return views; }

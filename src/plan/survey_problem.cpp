@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 
+#include "core/closest_name.hpp"
 #include "vantage/error.hpp"
 #include "vantage/planner.hpp"
 
@@ -28,7 +29,10 @@ const std::array<Named, 5>& named_problems() {
 }  // namespace
 
 ObjectiveSettings SurveyProblem::settings() const {
-  return {.stations_min = stations_min, .stations_max = stations_max, .link_overlap = link_overlap};
+  return {.stations_min = stations_min,
+          .stations_max = stations_max,
+          .link_overlap = link_overlap,
+          .registration = registration};
 }
 
 SurveyProblem survey_problem(std::span<const std::string> objectives, std::size_t stations_min,
@@ -54,7 +58,8 @@ SurveyProblem survey_problem(std::string_view name, std::size_t stations_min, st
     problem.name = one.name;
     return problem;
   }
-  throw Error(Errc::invalid_argument, "unknown problem \"" + std::string(name) + "\"; known: " + known);
+  throw Error(Errc::invalid_argument,
+              "unknown problem \"" + std::string(name) + "\"; known: " + known + did_you_mean(name, problem_names()));
 }
 
 std::span<const std::string> problem_names() {

@@ -50,6 +50,8 @@ class Canvas {
   Canvas& operator=(const Canvas&) = delete;
   double width() const { return width_; }
   double height() const { return height_; }
+  // What lies below goes. REQUIRES: height <= height().
+  void cut_to(double height) { height_ = height; }
 
   void line(Point a, Point b, const Pen& pen);
   void path(std::span<const Point> points, const Pen& pen);

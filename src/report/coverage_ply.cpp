@@ -11,6 +11,9 @@
 namespace vantage {
 
 void write_coverage_ply(const std::filesystem::path& file, const Simulator& simulator, const VoxelField& field) {
+  if (file.extension() != ".ply")
+    throw Error(Errc::invalid_argument,
+                "the cartography's counts and stations of each voxel need a .ply file, not " + file.string());
   const std::uint64_t voxels = simulator.voxel_count();
   if (field.count.size() != voxels || (!field.stations.empty() && field.stations.size() != voxels))
     throw Error(Errc::invalid_argument, "the voxel field has " + std::to_string(field.count.size()) +
@@ -18,7 +21,7 @@ void write_coverage_ply(const std::filesystem::path& file, const Simulator& simu
   const bool masks = !field.stations.empty();
   std::vector<PlyProperty> properties{{"double", "x"},    {"double", "y"},   {"double", "z"},    {"uchar", "red"},
                                       {"uchar", "green"}, {"uchar", "blue"}, {"float", "ratio"}, {"uint", "count"}};
-  // PLY knows no 64-bit integer: stations 1 to 32, and the others.
+  // PLY knows no 64-bit integer: a bit a station, 1 to 32, and 33 to 64.
   if (masks) properties.insert(properties.end(), {{"uint", "stations_low"}, {"uint", "stations_high"}});
 
   AtomicFile out(file);

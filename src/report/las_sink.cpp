@@ -18,12 +18,24 @@ namespace vantage {
 namespace {
 
 constexpr double kScale = 1e-4;
-constexpr std::size_t kHeaderBytes = 375, kRecordBytes = 36;
+constexpr std::size_t kHeaderBytes = 375, kVariableHeaderBytes = 54, kRecordBytes = 36;
+constexpr std::uint16_t kWktBit = 1 << 4, kWktRecord = 2112;
+
+// What a record of format 7 has a place for.
+constexpr std::uint32_t kHeld = scan_position | scan_reflectivity | scan_colour;
+
+std::string names_of(std::uint32_t outputs) {
+  std::string names;
+  for (const auto& [output, name] :
+       {std::pair{scan_range, "range"}, {scan_normal, "normal"}, {scan_ids, "ids"}, {scan_voxel, "voxel"}})
+    if (outputs & output) names += (names.empty() ? "" : ", ") + std::string(name);
+  return names;
+}
 
 class LasSink final : public PointSink {
  public:
-  LasSink(const std::filesystem::path& file, const Vec3& origin, std::uint32_t outputs)
-      : file_(file), origin_(origin), outputs_(outputs) {
+  LasSink(const std::filesystem::path& file, const Vec3& origin, std::uint32_t outputs, const std::string& crs)
+      : file_(file), origin_(origin), outputs_(outputs), crs_(crs) {
     offset_ = {std::floor(origin.x), std::floor(origin.y), std::floor(origin.z)};
     low_.fill(std::numeric_limits<std::int32_t>::max());
     high_.fill(std::numeric_limits<std::int32_t>::min());
@@ -83,17 +95,18 @@ class LasSink final : public PointSink {
       h.append(value.substr(0, width)).append(width - std::min(width, value.size()), '\0');
     };
     h += "LASF";
-    append(h, std::uint16_t{0});       // file source id
-    append(h, std::uint16_t{1 << 4});  // coordinate systems, if any, are WKT: demanded by formats 6 and up
-    text("", 16);                      // project id
+    append(h, std::uint16_t{0});                                        // file source id
+    append(h, static_cast<std::uint16_t>(crs_.empty() ? 0 : kWktBit));  // a coordinate system, as text
+    text("", 16);                                                       // project id
     append(h, std::uint8_t{1}), append(h, std::uint8_t{4});
     text("simulated terrestrial scan", 32);
     text("vantage " + std::string(version()), 32);
     // creation day and year: unset, so equal runs give equal files
     append(h, std::uint16_t{0}), append(h, std::uint16_t{0});
     append(h, static_cast<std::uint16_t>(kHeaderBytes));
-    append(h, static_cast<std::uint32_t>(kHeaderBytes));  // offset to point data
-    append(h, std::uint32_t{0});                          // variable length records
+    const std::size_t record = crs_.empty() ? 0 : kVariableHeaderBytes + crs_.size() + 1;
+    append(h, static_cast<std::uint32_t>(kHeaderBytes + record));  // offset to point data
+    append(h, std::uint32_t{crs_.empty() ? 0u : 1u});              // variable length records
     append(h, std::uint8_t{7}), append(h, static_cast<std::uint16_t>(kRecordBytes));
     append(h, std::uint32_t{0});  // legacy counts are 0 for formats 6 and up
     text("", 5 * 4);
@@ -107,6 +120,12 @@ class LasSink final : public PointSink {
     append(h, std::uint64_t{0}), append(h, std::uint32_t{0});  // extended records
     append(h, points_), append(h, points_);                    // in all, and of first returns
     text("", 14 * 8);
+    if (crs_.empty()) return h;
+    append(h, std::uint16_t{0});
+    text("LASF_Projection", 16);
+    append(h, kWktRecord), append(h, static_cast<std::uint16_t>(crs_.size() + 1));
+    text("OGC WKT coordinate system", 32);
+    text(crs_, crs_.size() + 1);
     return h;
   }
 
@@ -114,6 +133,7 @@ class LasSink final : public PointSink {
   Vec3 origin_;
   std::array<double, 3> offset_{};
   std::uint32_t outputs_;
+  std::string crs_;
   std::array<std::int32_t, 3> low_{}, high_{};
   std::uint64_t points_ = 0;
   std::string bytes_;
@@ -121,8 +141,13 @@ class LasSink final : public PointSink {
 
 }  // namespace
 
-std::unique_ptr<PointSink> make_las_sink(const std::filesystem::path& file, const Vec3& origin, std::uint32_t outputs) {
-  return std::make_unique<LasSink>(file, origin, outputs);
+std::unique_ptr<PointSink> make_las_sink(const std::filesystem::path& file, const Vec3& origin, std::uint32_t outputs,
+                                         const std::string& crs) {
+  if (outputs & ~kHeld)
+    throw Error(Errc::invalid_argument, "LAS holds positions, reflectivity (as intensity) and colour, but no " +
+                                            names_of(outputs & ~kHeld) + ", as " + file.string() +
+                                            " should; write .ply, or leave these outputs out");
+  return std::make_unique<LasSink>(file, origin, outputs, crs);
 }
 
 }  // namespace vantage

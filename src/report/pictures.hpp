@@ -3,10 +3,11 @@
 #pragma once
 
 #include <memory>
-#include <span>
 #include <string>
+#include <vector>
 
 #include "report/canvas.hpp"
+#include "report/plan_map.hpp"
 #include "vantage/placement.hpp"
 #include "vantage/planner.hpp"
 #include "vantage/scene.hpp"
@@ -16,8 +17,13 @@ namespace vantage {
 std::unique_ptr<Canvas> front_picture(const PlanResult& result);
 std::unique_ptr<Canvas> hypervolume_picture(const PlanResult& result);
 std::unique_ptr<Canvas> history_picture(const PlanResult& result);
-std::unique_ptr<Canvas> plan_view_picture(const Scene& scene, const SearchArea& area,
-                                          std::span<const PlacedStation> stations, const OverlapMatrix& overlap,
-                                          double link_overlap, const std::string& title);
+
+// A page of a plan view: all floors, and where there are several one more for each.
+struct PlanPage {
+  std::string suffix;  // of the file's name: "" or "-level-2"
+  std::unique_ptr<Canvas> canvas;
+};
+// Throws Error invalid_argument where there is nothing to show, or the matrix is not the stations'.
+std::vector<PlanPage> plan_view_pictures(const PlanView& view);
 
 }  // namespace vantage

@@ -19,13 +19,16 @@ struct PlyProperty {
 
 class PlyHeader {
  public:
-  explicit PlyHeader(std::vector<PlyProperty> properties) : properties_(std::move(properties)) {}
+  // `crs`: well-known text in one line, which stands in a comment, or nothing.
+  explicit PlyHeader(std::vector<PlyProperty> properties, std::string crs = {})
+      : properties_(std::move(properties)), crs_(std::move(crs)) {}
 
   std::string text(std::uint64_t vertices) const {
     const std::string count = std::to_string(vertices);
     // The comment makes up for the digits that the number lacks; leading zeros would be octal to some readers.
     std::string text = "ply\nformat binary_little_endian 1.0\ncomment vantage " + std::string(version()) + " " +
-                       std::string(20 - count.size(), '.') + "\nelement vertex " + count + "\n";
+                       std::string(20 - count.size(), '.') + "\n" + (crs_.empty() ? "" : "comment crs " + crs_ + "\n") +
+                       "element vertex " + count + "\n";
     for (const auto& [type, name] : properties_)
       text.append("property ").append(type).append(" ").append(name).append("\n");
     return text + "end_header\n";
@@ -33,6 +36,7 @@ class PlyHeader {
 
  private:
   std::vector<PlyProperty> properties_;
+  std::string crs_;
 };
 
 }  // namespace vantage

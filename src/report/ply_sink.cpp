@@ -21,8 +21,8 @@ std::vector<PlyProperty> properties(std::uint32_t outputs) {
 
 class PlySink final : public PointSink {
  public:
-  PlySink(const std::filesystem::path& file, const Vec3& origin, std::uint32_t outputs)
-      : file_(file), header_(properties(outputs)), origin_(origin), outputs_(outputs) {
+  PlySink(const std::filesystem::path& file, const Vec3& origin, std::uint32_t outputs, const std::string& crs)
+      : file_(file), header_(properties(outputs), crs), origin_(origin), outputs_(outputs) {
     file_.write(header_.text(0));
   }
 
@@ -66,8 +66,9 @@ class PlySink final : public PointSink {
 
 }  // namespace
 
-std::unique_ptr<PointSink> make_ply_sink(const std::filesystem::path& file, const Vec3& origin, std::uint32_t outputs) {
-  return std::make_unique<PlySink>(file, origin, outputs);
+std::unique_ptr<PointSink> make_ply_sink(const std::filesystem::path& file, const Vec3& origin, std::uint32_t outputs,
+                                         const std::string& crs) {
+  return std::make_unique<PlySink>(file, origin, outputs, crs);
 }
 
 }  // namespace vantage

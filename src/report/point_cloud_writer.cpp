@@ -13,17 +13,18 @@ struct PointCloudWriter::Impl {
   bool open = true;
 };
 
-PointCloudWriter::PointCloudWriter(const std::filesystem::path& file, const Vec3& origin, std::uint32_t outputs)
+PointCloudWriter::PointCloudWriter(const std::filesystem::path& file, const Vec3& origin, std::uint32_t outputs,
+                                   const std::string& crs)
     : impl_(std::make_unique<Impl>()) {
   if (!(outputs & scan_position)) throw Error(Errc::invalid_argument, "a point cloud needs the output scan_position");
   impl_->outputs = outputs;
   const std::string extension = file.extension().string();
   if (extension == ".ply")
-    impl_->sink = make_ply_sink(file, origin, outputs);
+    impl_->sink = make_ply_sink(file, origin, outputs, crs);
   else if (extension == ".las")
-    impl_->sink = make_las_sink(file, origin, outputs);
+    impl_->sink = make_las_sink(file, origin, outputs, crs);
   else if (extension == ".e57")
-    impl_->sink = make_e57_sink(file, origin, outputs, {});
+    impl_->sink = make_e57_sink(file, origin, outputs, crs);
   else
     throw Error(Errc::invalid_argument, "cannot tell the format of " + file.string() + " from its extension \"" +
                                             extension + "\"; use .ply, .las or .e57");

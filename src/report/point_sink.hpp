@@ -25,9 +25,13 @@ class PointSink {
   virtual std::uint64_t points() const = 0;
 };
 
-std::unique_ptr<PointSink> make_ply_sink(const std::filesystem::path& file, const Vec3& origin, std::uint32_t outputs);
-std::unique_ptr<PointSink> make_las_sink(const std::filesystem::path& file, const Vec3& origin, std::uint32_t outputs);
-// Throws Error invalid_argument for outputs that E57 cannot hold. `crs`: well-known text in one line, or nothing.
+// `crs`: well-known text in one line, or nothing.
+std::unique_ptr<PointSink> make_ply_sink(const std::filesystem::path& file, const Vec3& origin, std::uint32_t outputs,
+                                         const std::string& crs);
+// Throws Error invalid_argument for outputs that LAS cannot hold.
+std::unique_ptr<PointSink> make_las_sink(const std::filesystem::path& file, const Vec3& origin, std::uint32_t outputs,
+                                         const std::string& crs);
+// Throws Error invalid_argument for outputs that E57 cannot hold.
 std::unique_ptr<PointSink> make_e57_sink(const std::filesystem::path& file, const Vec3& origin, std::uint32_t outputs,
                                          const std::string& crs);
 

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "vantage/export.hpp"
+#include "vantage/summary.hpp"
 #include "vantage/version.hpp"
 
 namespace vantage {
@@ -62,17 +63,29 @@ ordered_json links_json(const OverlapMatrix& overlap, double min_overlap) {
 // NaN has no JSON; what is not known is null.
 ordered_json known(double value) { return value == value ? ordered_json(value) : ordered_json(); }
 
-ordered_json entry_json(const PlanEntry& entry, const PlanResult& result) {
+ordered_json to_json(const std::vector<SummaryLine>& lines) {
+  ordered_json json = ordered_json::array();
+  for (const auto& [heading, text] : lines) json.push_back({{"heading", heading}, {"text", text}});
+  return json;
+}
+
+// `number`: of the entry, from 1.
+ordered_json entry_json(const PlanEntry& entry, std::size_t number, const PlanResult& result) {
   ordered_json stations = ordered_json::array();
+  const auto names = station_names(entry.stations);
   for (std::size_t i = 0; i < entry.stations.size(); ++i) {
     const PlacedStation& s = entry.stations[i];
-    ordered_json station = {{"position", nullptr}, {"uv", {s.uv.u, s.uv.v}}, {"status", to_string(s.status)}};
-    if (s.status != StationStatus::hole) station["position"] = to_json(s.position);
+    ordered_json station = {{"name", names[i]},       {"position", nullptr},           {"ground", nullptr},
+                            {"uv", {s.uv.u, s.uv.v}}, {"status", to_string(s.status)}, {"kept", s.kept}};
+    if (s.status != StationStatus::hole) {
+      station["position"] = to_json(s.position);
+      station["ground"] = to_json(s.ground);
+    }
     if (entry.confirmed && i < entry.points_on_surveyed.size())
       station["points_on_surveyed"] = entry.points_on_surveyed[i];
     stations.push_back(std::move(station));
   }
-  ordered_json json, exact, values;
+  ordered_json json{{"entry", number}}, exact, values;
   for (const Objective& measure : result.measures) {
     const MeasuredValue& value = entry.values.at(measure.name);
     values[measure.name] = {
@@ -121,13 +134,17 @@ std::string run_parameters_json(const Simulator& simulator, const PlanResult* re
 
 std::string front_json(const PlanResult& result, const Simulator& simulator) {
   ordered_json front = ordered_json::array(), objectives = front;
-  for (const PlanEntry& entry : result.front) front.push_back(entry_json(entry, result));
+  for (const PlanEntry& entry : result.front) front.push_back(entry_json(entry, front.size() + 1, result));
   for (const Objective& objective : result.problem.objectives) objectives.push_back(objective.name);
   ordered_json json = {{"problem", result.problem.name},     {"objectives", std::move(objectives)},
                        {"hypervolume", result.hypervolume},  {"exact_hypervolume", known(result.exact_hypervolume)},
                        {"evaluations", result.evaluations},  {"stations_drawn", result.drawn},
                        {"stations_redrawn", result.redrawn}, {"stop_reason", to_string(result.stop_reason)}};
-  if (!result.front.empty()) json["compromise"] = compromise(result);
+  if (!result.front.empty()) {
+    const std::size_t chosen = compromise(result);
+    json["compromise"] = chosen + 1;
+    json["summary"] = to_json(summary_lines(summary_of(result.front[chosen], result)));
+  }
   json["front"] = std::move(front);
   json["seconds"] = {{"total", result.seconds}, {"trace", result.trace_seconds}};
   json["engine"] = to_string(simulator.engine().engine);

@@ -5,7 +5,9 @@
 
 #include "core/atomic_file.hpp"
 #include "core/text.hpp"
+#include "report/station_cells.hpp"
 #include "vantage/export.hpp"
+#include "vantage/summary.hpp"
 
 namespace vantage {
 
@@ -33,7 +35,7 @@ void write_front_csv(const std::filesystem::path& file, const PlanResult& result
   text += ",dominated,missed";
   if (alpha) text += ",alpha";
   for (std::size_t i = 0; i < most; ++i)
-    for (const char* name : {"x", "y", "z", "u", "v", "status"}) text += "," + std::string(name) + number(i + 1);
+    for (const char* name : kStationColumns) text += "," + std::string(name) + number(i + 1);
   text += "\n";
   for (std::size_t k = 0; k < result.front.size(); ++k) {
     const PlanEntry& e = result.front[k];
@@ -46,17 +48,12 @@ void write_front_csv(const std::filesystem::path& file, const PlanResult& result
       text += "," + (e.confirmed ? number(e.values.at(measure.name).exact) : std::string());
     text += std::string(",") + (!e.confirmed ? "" : e.dominated ? "1" : "0") + "," + number(e.missed);
     if (alpha) text += "," + number(e.x.back());
+    const auto names = station_names(e.stations);
     for (std::size_t i = 0; i < most; ++i) {
-      if (i >= e.stations.size()) {
-        text += ",,,,,,";
-        continue;
-      }
-      const PlacedStation& s = e.stations[i];
-      if (s.status == StationStatus::hole)
-        text += ",,,";
+      if (i < e.stations.size())
+        text += "," + station_cells(e.stations[i], names[i]);
       else
-        text += "," + number(s.position.x) + "," + number(s.position.y) + "," + number(s.position.z);
-      text += "," + number(s.uv.u) + "," + number(s.uv.v) + "," + to_string(s.status);
+        text.append(std::size(kStationColumns), ',');
     }
     text += "\n";
   }

@@ -6,11 +6,13 @@
 #include "report/tables.hpp"
 #include "vantage/error.hpp"
 #include "vantage/export.hpp"
+#include "vantage/station_files.hpp"
+#include "vantage/summary.hpp"
 
 namespace vantage {
 
 std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& result, const Simulator& simulator,
-                       const SearchArea& area, const VoxelField* field) {
+                       const SearchArea& area, const VoxelField* field, const std::string& crs) {
   if (result.front.empty())
     throw Error(Errc::invalid_argument,
                 "there is nothing to write: the search ended before its first networks were evaluated");
@@ -30,14 +32,23 @@ std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& re
 
   std::string title = std::to_string(entry.stations.size()) + (entry.stations.size() == 1 ? " station" : " stations");
   title += ": coverage " + fixed(entry.value("coverage"), 3) + ", overlap " + fixed(entry.value("overlap"), 3);
-  const auto save = [&](const std::string& name, const std::unique_ptr<Canvas>& picture) {
-    for (const char* extension : {".png", ".svg"}) picture->save(folder / (name + extension));
+  const auto save = [&](const std::string& name, const Canvas& picture) {
+    for (const char* extension : {".png", ".svg"}) picture.save(folder / (name + extension));
   };
-  save("front", front_picture(result));
-  save("hypervolume", hypervolume_picture(result));
-  if (result.problem.objectives.size() > 1) save("history", history_picture(result));
-  save("plan", plan_view_picture(simulator.scene(), area, entry.stations, entry.exact_overlap_matrix,
-                                 result.problem.link_overlap, title));
+  save("front", *front_picture(result));
+  save("hypervolume", *hypervolume_picture(result));
+  if (result.problem.objectives.size() > 1) save("history", *history_picture(result));
+  for (const PlanPage& page : plan_view_pictures({.scene = simulator.scene(),
+                              .area = area,
+                              .stations = entry.stations,
+                              .names = station_names(entry.stations),
+                              .overlap = entry.exact_overlap_matrix,
+                              .link_overlap = result.problem.link_overlap,
+                              .title = title}))
+    save("plan" + page.suffix, *page.canvas);
+  const auto names = station_names(entry.stations);
+  write_station_files(folder, {entry.stations, names}, entry.exact_overlap_matrix, result.problem.link_overlap, area,
+                      crs);
   return chosen;
 }
 

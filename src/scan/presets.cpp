@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/closest_name.hpp"
 #include "vantage/error.hpp"
 #include "vantage/scanner.hpp"
 
@@ -219,11 +220,13 @@ Scanner load_scanner(const std::string& name, const std::filesystem::path& more)
   if (at != std::string::npos && setting.empty())
     throw Error(Errc::invalid_argument, "scanner \"" + name + "\": a setting must follow the @, as in rtc360@6mm");
   std::string known;
+  std::vector<std::string> keys;
   for (const Document& document : documents(more)) {
     if (document.scanners().contains(key)) return read_scanner(document, key, setting);
+    for (const auto& scanner : document.scanners().items()) keys.push_back(scanner.key());
     known += (known.empty() ? "" : "; ") + document.file + ": " + names_of(document.scanners());
   }
-  throw Error(Errc::invalid_argument, "there is no scanner \"" + key + "\": " + known);
+  throw Error(Errc::invalid_argument, "there is no scanner \"" + key + "\": " + known + did_you_mean(key, keys));
 }
 
 std::vector<ScannerPreset> list_scanners(const std::filesystem::path& more) {

@@ -9,25 +9,12 @@
 #include <limits>
 
 #include "scene/cut_coplanar.hpp"
-#include "scene/positions.hpp"
 #include "scene/raw_scene.hpp"
+#include "scene/sound_triangle.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage {
 namespace {
-
-constexpr double kFarthest_m = 1e9;  // float32 is 64 m coarse there: no site reaches so far, but a broken vertex does
-
-bool sound(const glm::dvec3& p) {
-  return std::abs(p.x) <= kFarthest_m && std::abs(p.y) <= kFarthest_m && std::abs(p.z) <= kFarthest_m;
-}
-
-// A triangle has area when its normal can be formed in float. Differences of floats and their products are exact in
-// double, or nearly so, hence collinear corners give exactly 0.
-bool has_area(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
-  const glm::dvec3 n = cross(b - a, c - a);
-  return dot(n, n) >= static_cast<double>(std::numeric_limits<float>::min());
-}
 
 // Keeps the triangles whose `keep` is not 0 and moves the ranges along.
 void keep_triangles(RawScene& raw, const std::vector<std::uint8_t>& keep) {
@@ -51,19 +38,6 @@ std::size_t drop_unless(RawScene& raw, Keep&& sound_triangle) {
   const auto dropped = static_cast<std::size_t>(std::ranges::count(keep, 0));
   if (dropped > 0) keep_triangles(raw, keep);
   return dropped;
-}
-
-// Corners in ascending order, so that triangles over the same three points compare equal whatever their first corner
-// and winding.
-std::array<Float3, 3> sorted_corners(const std::vector<Float3>& positions, const Triangle& t) {
-  const auto less = [](const Float3& a, const Float3& b) {
-    return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
-  };
-  std::array<Float3, 3> c{positions[t[0]], positions[t[1]], positions[t[2]]};
-  if (less(c[1], c[0])) std::swap(c[0], c[1]);
-  if (less(c[2], c[1])) std::swap(c[1], c[2]);
-  if (less(c[1], c[0])) std::swap(c[0], c[1]);
-  return c;
 }
 
 std::uint64_t hash(const std::array<Float3, 3>& corners) {

@@ -15,6 +15,8 @@ Settings settings(const SceneOptions& options) {
       .add("weights", weights, {"weight", false})
       .add("scene_index", options.scene_index, {"scene-index", false})
       .add("default_diffuse", options.default_diffuse, {"diffuse", false})
+      .add("unit", options.unit ? std::optional<std::string>(to_string(*options.unit)) : std::nullopt, {"unit", false})
+      .add("up", options.up ? std::optional<std::string>(to_string(*options.up)) : std::nullopt, {"up", false})
       .add("allow_outside", options.allow_outside, {options.allow_outside ? "allow-outside" : "", false})
       .take();
 }

@@ -2,6 +2,7 @@
 #include <array>
 #include <utility>
 
+#include "core/closest_name.hpp"
 #include "vantage/error.hpp"
 #include "vantage/trace.hpp"
 
@@ -25,11 +26,14 @@ std::string to_string(Engine engine) {
 Engine engine_from_string(const std::string& text) {
   if (text == "automatic") return Engine::automatic;  // as the enumerator is called
   std::string known;
+  std::vector<std::string> all;
   for (const auto& [engine, name] : names) {
     if (text == name) return engine;
     known += (known.empty() ? "" : ", ") + std::string(name);
+    all.emplace_back(name);
   }
-  throw Error(Errc::invalid_argument, "unknown engine '" + text + "'; choose one of " + known);
+  throw Error(Errc::invalid_argument,
+              "unknown engine '" + text + "'; choose one of " + known + did_you_mean(text, all));
 }
 
 }  // namespace vantage

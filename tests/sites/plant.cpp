@@ -56,7 +56,7 @@ Site plant() {
     rails.push_back(block(kX2 - wide, kX2, kHead, kY1, low, high));
     rails.push_back(block(kX1 - wide, kX1, kY0, kHead, low, high));
   }
-  for (double x = kX0; x < kX1; x += 1.39)
+  for (double x = kX0; x < kX1 - 1; x += 1.4)
     for (const double y : {kY0, kY1 - 0.05}) rails.push_back(block(x, x + 0.05, y, y + 0.05, kDeck, kDeck + 1.05));
   carve(add_part(site, "platform_railing", kSteel, Surface::wall_top), rails);
   add_block(site, "control_cabinet", block(10.3, 11.1, 17.6, 18.3, kDeck, kDeck + 1.8), Surface::equipment);

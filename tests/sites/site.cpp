@@ -111,11 +111,12 @@ Site make_site(const std::string& name, const Variant& variant) {
 }
 
 void write_site(const Site& site, const Variant& variant, const std::filesystem::path& file) {
-  const double unit = variant.millimetres ? 1000 : 1;
+  const double unit = variant.millimetres ? 1000 : variant.per_metre;
   const auto file_from_survey = [&](const Vec3& p) { return variant.z_up ? p * unit : Vec3{p.x, p.z, -p.y} * unit; };
   GlbBuilder glb;
   const Vec3 root = file_from_survey(site.offset);
-  nlohmann::json top{{"name", site.name}};
+  nlohmann::json top = nlohmann::json::object();
+  if (!variant.nameless) top["name"] = site.name;
   if (variant.utm) top["translation"] = {root.x, root.y, root.z};
   const int parent = glb.node(top);
   for (const Part& part : site.parts) {
@@ -136,7 +137,9 @@ void write_site(const Site& site, const Variant& variant, const std::filesystem:
     glb.json["materials"].push_back(
         {{"pbrMetallicRoughness", {{"baseColorFactor", {part.colour[0], part.colour[1], part.colour[2], 1}}}}});
     const int mesh = glb.mesh({{"attributes", {{"POSITION", points}}}, {"indices", corners}, {"material", material}});
-    glb.child(parent, {{"name", part.name}, {"mesh", mesh}});
+    nlohmann::json node{{"mesh", mesh}};
+    if (!variant.nameless) node["name"] = part.name;
+    glb.child(parent, node);
   }
   glb.write_glb(file);
 }

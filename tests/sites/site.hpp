@@ -62,6 +62,8 @@ struct Variant {
   bool millimetres = false;  // every length 1000 times as large
   bool z_up = false;         // coordinates as modelled, not turned to glTF's Y up
   bool utm = false;          // 500 km east, 5400 km north, 400 m up, in the translation of the root node
+  double per_metre = 1;      // another unit's, where `millimetres` is not set
+  bool nameless = false;     // without any names
 };
 
 struct Site {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 
+#include "core/closest_name.hpp"
 #include "scene/built_in/glb_writer.hpp"
 #include "scene/built_in/model.hpp"
 #include "vantage/error.hpp"
@@ -17,8 +18,9 @@ void write_built_in_scene(const std::string& name, std::size_t triangles, const 
   if (name == "four-walls") return built_in::write_glb(built_in::four_walls(), file);
 
   if (name == "industrial") return built_in::write_glb(built_in::industrial(triangles), file);
-  throw Error(Errc::invalid_argument,
-              "there is no built-in scene \"" + name + "\"; use three-walls, four-walls or industrial");
+  throw Error(Errc::invalid_argument, "there is no built-in scene \"" + name +
+                                          "\"; use three-walls, four-walls or industrial" +
+                                          did_you_mean(name, built_in_scene_names()));
 }
 
 }  // namespace vantage

@@ -113,6 +113,15 @@ std::string quoted(const std::string& text) {
 
 File::File(const std::filesystem::path& path, bool allow_outside)
     : path_(path), allow_outside_(allow_outside), bytes_(read_file(path, "the scene cannot be read")) {
+  read_bytes();
+}
+
+File::File(std::vector<std::uint8_t> bytes, const std::string& name)
+    : path_(name), allow_outside_(false), in_memory_(true), bytes_(std::move(bytes)) {
+  read_bytes();
+}
+
+void File::read_bytes() {
   const Bytes glb_chunk = open_container();
   check_version();
   check_extensions();
@@ -281,6 +290,9 @@ std::vector<std::uint8_t> File::read_uri(const std::string& uri, const std::stri
     throw malformed(what + " lies at " + quoted(uri) + "; name the file relative to the scene's folder instead");
   if (uri.find("://") != std::string::npos)
     throw malformed(what + " lies at " + quoted(uri) + "; only files are read: download it first");
+  if (in_memory_)
+    throw malformed(what + " lies in the file " + quoted(uri) +
+                    ", which glTF in memory cannot name; put it into the bytes");
   const std::string name = percent_decoded(uri), user = path_.string() + ": " + what;
   if (name.find('\0') != std::string::npos) throw malformed(what + ": " + quoted(uri) + " is no file name");
   return read_file(locate(path_.parent_path(), name, allow_outside_, user), user + " is missing");

@@ -31,6 +31,8 @@ class File {
   // Its buffers and images may lie below its own folder, or anywhere if `allow_outside`. Throws Error: io,
   // malformed_file.
   File(const std::filesystem::path& path, bool allow_outside);
+  // From memory; `name` opens messages. Its buffers and images lie in it. Throws Error malformed_file.
+  File(std::vector<std::uint8_t> bytes, const std::string& name);
 
   const tinygltf::Model& model() const { return model_; }
   const nlohmann::json& document() const { return json_; }
@@ -45,6 +47,7 @@ class File {
   Error malformed(const std::string& what) const;
 
  private:
+  void read_bytes();
   Bytes open_container();
   void parse(Bytes text);
   void check_version() const;
@@ -56,6 +59,7 @@ class File {
 
   std::filesystem::path path_;
   bool allow_outside_;
+  bool in_memory_ = false;
   std::vector<std::uint8_t> bytes_;                     // the whole file; a GLB's buffer 0 stays in here
   std::vector<std::vector<std::uint8_t>> own_buffers_;  // the others
   std::vector<Bytes> buffers_;

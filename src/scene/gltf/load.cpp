@@ -16,7 +16,9 @@
 #include "scene/gltf/primitive.hpp"
 #include "scene/positions.hpp"
 #include "scene/raw_scene.hpp"
+#include "scene/recognise_units.hpp"
 #include "vantage/scene.hpp"
+#include "vantage/scene_builder.hpp"
 
 namespace vantage {
 namespace gltf {
@@ -74,8 +76,8 @@ std::uint32_t packed_colour(const double* rgba, int components) {
 
 class Loader {
  public:
-  Loader(const std::filesystem::path& path, const SceneOptions& options)
-      : file_(path, options.allow_outside), options_(options), materials_(file_, raw_.notes) {
+  Loader(File file, const SceneOptions& options)
+      : file_(std::move(file)), options_(options), materials_(file_, raw_.notes) {
     raw_.options = options;
   }
 
@@ -83,6 +85,7 @@ class Loader {
     const auto placed = flatten_scene(file_, options_, raw_.notes);
     std::vector<Job> jobs = list_jobs(placed);
     for (const Job& job : jobs) read(job);
+    settle_axes();
     note_skipped();
     raw_.materials = std::move(materials_.materials);
     raw_.images = std::move(materials_.images);
@@ -94,6 +97,28 @@ class Loader {
   }
 
  private:
+  // Who marked a file for this program knows what glTF says.
+  bool prepared() const {
+    const nlohmann::json& document = file_.document();
+    const auto marked = [](const nlohmann::json& element) {
+      const auto extras = element.find("extras");
+      return extras != element.end() && extras->is_object() && extras->contains("vantage");
+    };
+    for (const char* array : {"scenes", "nodes", "meshes", "materials"})
+      if (const auto elements = document.find(array); elements != document.end())
+        if (std::ranges::any_of(*elements, marked)) return true;
+    return marked(document.at("asset"));
+  }
+
+  void settle_axes() {
+    Recognised axes{options_.unit.value_or(Unit::metre), options_.up.value_or(UpAxis::y), {}};
+    if (!(options_.unit && options_.up) && !prepared())
+      axes = recognise(gather_evidence(raw_, boxes_), options_.unit, options_.up);
+    boxes_ = {};
+    if (!axes.note.empty()) raw_.notes.push_back(axes.note);
+    reinterpret_axes(raw_, axes.unit, axes.up);
+  }
+
   std::vector<Job> list_jobs(const std::vector<PlacedMesh>& placed) {
     std::vector<Job> jobs;
     bool some_surveyed = false;
@@ -140,8 +165,18 @@ class Loader {
     raw_.ranges.push_back({static_cast<std::uint32_t>(raw_.triangles.size()),
                            static_cast<std::uint32_t>(primitive->triangles.size() * instances), job.material->index});
     raw_.meshes.push_back({job.placed->name, *job.role, job.diffuse, raw_.ranges.back().triangle_count, job.weight});
+    const std::size_t first = raw_.positions.size();
     for (const glm::dmat4& world_from_mesh : job.placed->world_from_mesh)
       append(*primitive, *job.material, world_from_mesh);
+    if (instances == 1) note_box(*job.placed, first);
+  }
+
+  // The box of a node, over all primitives of its mesh.
+  void note_box(const PlacedMesh& placed, std::size_t first_vertex) {
+    if (boxed_ != &placed) boxes_.push_back({placed.name, {}});
+    boxed_ = &placed;
+    for (std::size_t v = first_vertex; v < raw_.positions.size(); ++v)
+      boxes_.back().box.extend(to_vec3(raw_.positions[v]));
   }
 
   void append_triangles(const Primitive& primitive, const glm::dmat4& world_from_mesh, std::size_t first_vertex,
@@ -259,6 +294,8 @@ class Loader {
   RawScene raw_;
   MaterialTable materials_;
   SkippedPrimitives skipped_;
+  std::vector<NamedBox> boxes_;
+  const PlacedMesh* boxed_ = nullptr;
   std::size_t mirrored_meshes_ = 0;
   bool search_without_uv_ = false;
 };
@@ -266,17 +303,31 @@ class Loader {
 }  // namespace
 }  // namespace gltf
 
-Scene Scene::load(const std::filesystem::path& file, const SceneOptions& options) {
+namespace {
+
+// `open` gives the glTF file.
+template <class Open>
+Scene load_scene(Open&& open, const std::string& name, const SceneOptions& options) {
   if (!(options.default_diffuse >= 0 && options.default_diffuse <= 1))
     throw Error(Errc::invalid_argument,
                 "default_diffuse must be in [0, 1]; " + std::to_string(options.default_diffuse) + " was given");
   try {
-    return Scene(finish_scene(gltf::Loader(file, options).load(), file.string()));
+    return Scene(finish_scene(gltf::Loader(open(), options).load(), name));
   } catch (const std::bad_alloc&) {
-    throw Error(Errc::out_of_memory, file.string() + ": the scene does not fit into memory");
+    throw Error(Errc::out_of_memory, name + ": the scene does not fit into memory");
   } catch (const std::length_error&) {
-    throw Error(Errc::out_of_memory, file.string() + ": the scene does not fit into memory");
+    throw Error(Errc::out_of_memory, name + ": the scene does not fit into memory");
   }
+}
+
+}  // namespace
+
+Scene Scene::load(const std::filesystem::path& file, const SceneOptions& options) {
+  return load_scene([&] { return gltf::File(file, options.allow_outside); }, file.string(), options);
+}
+
+Scene load_gltf(std::span<const std::uint8_t> bytes, const SceneOptions& options, const std::string& name) {
+  return load_scene([&] { return gltf::File({bytes.begin(), bytes.end()}, name); }, name, options);
 }
 
 }  // namespace vantage

@@ -3,6 +3,7 @@
 #include <fstream>
 
 #include "program.hpp"
+#include "vantage/scanner.hpp"
 
 namespace vantage::test {
 namespace {
@@ -113,7 +114,7 @@ TEST_F(Layers, ASceneReachesForNoFileUnlessTheUserSaysSo) {
   EXPECT_EQ(run_program(allowed).exit_code, 0);
 }
 
-// A scene without marks, larger than any site: lengths follow its size, and it says so.
+// A scene without marks, larger than any site: what is measured by follows its size, people do not, and it says so.
 TEST_F(Layers, UnusualSizesScaleTheLengths) {
   const std::string box = R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
     "nodes": [{"mesh": 0, "scale": [1000, 1000, 1000]}],
@@ -124,16 +125,16 @@ TEST_F(Layers, UnusualSizesScaleTheLengths) {
     "buffers": [{"byteLength": 42, "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAAAAAAIA/AAABAAIA"}]})";
   write("large.gltf", box);
   const std::vector<std::string> arguments{"evaluate",    path("large.gltf"), "--engine", "embree",   "--station",
-                                           "500,-200,93", "--step",           "1",        "--sample", "10",
+                                           "500,-100,93", "--step",           "1",        "--sample", "10",
                                            "--json"};
   const Outcome outcome = run_program(arguments);
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const auto resolved = nlohmann::json::parse(outcome.out)["options"];
   EXPECT_EQ(resolved["user-size"], 5);  // 1000 m are 50 times 20 m
   EXPECT_EQ(resolved["spacing"], 0.5);
-  EXPECT_EQ(resolved["height"], 92.5);
-  EXPECT_EQ(resolved["range"][1], 6500);
-  EXPECT_NE(outcome.err.find("unlike a site"), std::string::npos) << outcome.err;
+  EXPECT_EQ(resolved["height"], Scanner{}.height_m);
+  EXPECT_EQ(resolved["range"][1], Scanner{}.max_range_m);
+  EXPECT_NE(outcome.err.find("larger than a site"), std::string::npos) << outcome.err;
 }
 
 }  // namespace

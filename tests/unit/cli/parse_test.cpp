@@ -51,8 +51,15 @@ TEST(Parse, CountsAreWholeNumbersInRange) {
 
 TEST(Parse, StationsAreHeadsOrUvs) {
   EXPECT_EQ(parse_station("1,-2,3.5", "--station").position, (Vec3{1, -2, 3.5}));
-  EXPECT_EQ(parse_station("0.25,0.5", "--station").uv, (Uv{0.25, 0.5}));
-  for (const char* text : {"1", "1,2,3,4", "", "1;2;3"})
+  EXPECT_EQ(parse_station("0.25,0.5", "--station").pair, (std::array{0.25, 0.5}));
+  EXPECT_EQ(parse_station("u=0.25,v=0.5", "--station").uv, (Uv{0.25, 0.5}));
+  EXPECT_EQ(parse_station("y=3.6, x=5", "--station").xy, (std::array{5.0, 3.6}));
+  EXPECT_EQ(parse_station("x=5,y=3.6,z=1.85", "--station").position, (Vec3{5, 3.6, 1.85}));
+  EXPECT_EQ(parse_station("x=5,y=3.6,ground=-1", "--station").ground, (Vec3{5, 3.6, -1}));
+  for (const char* text :
+       {"x=5", "x=5,z=1", "u=1", "u=1,v=2,x=3", "x=1,y=2,z=3,ground=1", "x=1,2", "a=1,b=2", "x=1,x=2"})
+    EXPECT_NE(refusal([&] { parse_station(text, "--station"); }), "accepted") << text;
+  for (const char* text : {"1", "1,2,3,4", "", "1;2;3", "5;3,6;1,85"})
     EXPECT_NE(refusal([&] { parse_station(text, "--station"); }).find("is no station"), std::string::npos) << text;
   EXPECT_NE(refusal([] { parse_station("1,nan,3", "--station"); }).find("'nan' is not a finite number"),
             std::string::npos);

@@ -56,7 +56,8 @@ TEST_F(Plan, EvaluateGivesBackTheSameNumbers) {
   const auto front = json_of(plan("plan", {"--problem", "coverage-overlap-fix", "--stations", "4"}));
   for (std::size_t k = 0; k < front["front"].size(); ++k) {
     const auto again = json_of({"evaluate", scene_, "--engine", "embree", "--config", path("plan/config.json"),
-                                "--stations", path("plan/front.json"), "--entry", std::to_string(k)});
+                                "--stations", path("plan/front.json"), "--entry", std::to_string(k + 1)});
+    EXPECT_EQ(front["front"][k]["entry"], k + 1);
     EXPECT_EQ(again["coverage"], front["front"][k]["exact"]["coverage"]) << k;
     EXPECT_EQ(again["overlap"], front["front"][k]["exact"]["overlap"]) << k;
   }

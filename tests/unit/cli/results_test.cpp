@@ -94,6 +94,24 @@ TEST_F(Results, StationsComeFromTables) {
   EXPECT_EQ(read_in, typed);
 }
 
+TEST_F(Results, SurveyorsTablesAreRead) {
+  auto plain = json_of(evaluate({}));
+  plain.erase("seconds");
+  for (const char* table : {"Easting;Northing;Height\r\n8,0;0;1,5\r\n-8;0;1,5\r\n0;8;1,5\r\n0;-8;1,5\r\n",
+                            "N\tE\tZ\n0\t8\t1.5\n0\t-8\t1.5\n8\t0\t1.5\n-8\t0\t1.5\n"}) {
+    write("heads.csv", table);
+    auto read_in = json_of(coarse("evaluate", {"--stations", path("heads.csv")}));
+    read_in.erase("seconds");
+    EXPECT_EQ(read_in, plain);
+  }
+}
+
+TEST_F(Results, PointCloudsCarryTheCoordinateSystem) {
+  auto arguments = coarse("scan", {"--station", "8,0,1.5", "--crs", "EPSG:25832", "-o", path("c.las")});
+  EXPECT_EQ(json_of(arguments)["options"]["crs"], "EPSG:25832");
+  EXPECT_NE(read("c.las").find("PROJCS[\"ETRS89 / UTM zone 32N\""), std::string::npos);
+}
+
 TEST_F(Results, PlacesOnTheSearchAreaAreFoundAgain) {
   const auto heads = json_of(evaluate({}));
   std::vector<std::string> uvs;
@@ -109,7 +127,7 @@ TEST_F(Results, PlacesOnTheSearchAreaAreFoundAgain) {
 
 TEST_F(Results, HolesAndClashesAreToldAndLeftOut) {
   const Outcome outcome = run_program(
-      coarse("evaluate", {"--station", "8,0,1.5", "--station", "99,99", "--station", "5.1,0,1.5", "--json"}));
+      coarse("evaluate", {"--station", "8,0,1.5", "--station", "u=99,v=99", "--station", "5.1,0,1.5", "--json"}));
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const auto result = nlohmann::json::parse(outcome.out);
   EXPECT_EQ(result["stations"][0]["status"], "ok");
@@ -117,8 +135,8 @@ TEST_F(Results, HolesAndClashesAreToldAndLeftOut) {
   EXPECT_TRUE(result["stations"][1]["position"].is_null());
   EXPECT_EQ(result["stations"][2]["status"], "clash");
   EXPECT_EQ(result["coverage"], json_of(coarse("evaluate", {"--station", "8,0,1.5"}))["coverage"]);
-  EXPECT_NE(outcome.err.find("warning: station 1"), std::string::npos) << outcome.err;
-  EXPECT_NE(outcome.err.find("warning: station 2"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("warning: S2 at"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("warning: S3 at"), std::string::npos) << outcome.err;
 }
 
 TEST_F(Results, ScanCountsWhatItWrites) {
@@ -154,8 +172,8 @@ TEST_F(Results, ScanWithoutAFileOnlyCounts) {
 TEST_F(Results, PanoramasArePictures) {
   const auto result = json_of(
       coarse("panorama", {"--station", "8,0,1.5", "--width", "64", "--views", "range,mesh", "-o", path("views")}));
-  EXPECT_EQ(files(), (std::vector<std::string>{"views/station_0_mesh.png", "views/station_0_range.png"}));
-  EXPECT_EQ(read("views/station_0_range.png").substr(1, 3), "PNG");
+  EXPECT_EQ(files(), (std::vector<std::string>{"views/station_1_mesh.png", "views/station_1_range.png"}));
+  EXPECT_EQ(read("views/station_1_range.png").substr(1, 3), "PNG");
   EXPECT_EQ(result["stations"][0]["pictures"].size(), 2u);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Mistakes that users make: each gets one clear line and a stated exit code, and leaves nothing behind.
 #include "program.hpp"
+#include "vantage/station_files.hpp"
 
 namespace vantage::test {
 namespace {
@@ -31,6 +32,54 @@ TEST_F(Usage, CommandsAndOptionsMustExist) {
   expect_refused(run_program({"evaluate"}), 2, "which scene?");
   expect_refused(run_program({"generate", "four-walls"}), 2, "-o");
   expect_refused(run_program({"generate", "five-walls", "-o", path("x.glb")}), 2, "five-walls");
+}
+
+TEST_F(Usage, MistypedNamesGetASuggestion) {
+  expect_refused(run_program({"paln", scene_, "--stations", "4"}), 2,
+                 "there is no command paln; did you mean plan? See vantage --help");
+  expect_refused(run_program(coarse("plan", {"--statoins", "4", "-o", path("plan")})), 2,
+                 "there is no option --statoins; did you mean --stations?");
+  expect_refused(run_program(coarse("plan", {"--min_overlp=0.3"})), 2, "did you mean --min-overlap?");
+  expect_refused(run_program({"evaluate", scene_, "second.glb"}), 2, "'second.glb' is one word too many");
+  expect_refused(run_program(coarse("plan", {"--problem", "coverge-fix", "--stations", "4", "-o", path("plan")})), 2,
+                 "did you mean coverage-fix?");
+  expect_refused(run_program(coarse("plan", {"--objectives", "coverage,overlop", "--stations", "4", "-o", path("p")})),
+                 2, "did you mean overlap?");
+  expect_refused(run_program({"evaluate", scene_, "--engine", "embre"}), 2, "did you mean embree?");
+  expect_refused(run_program({"evaluate", scene_, "--station", "8,0,1.5", "--scanner", "rtc36"}), 2,
+                 "did you mean rtc360?");
+  expect_refused(run_program({"generate", "four_wals", "-o", path("x.glb")}), 2, "did you mean four-walls?");
+  write("config.json", R"({"user-sise": 0.2})");
+  expect_refused(run_program({"evaluate", scene_, "--station", "8,0,1.5", "--config", path("config.json")}), 2,
+                 "there is no option 'user-sise'; did you mean --user-size?");
+}
+
+TEST_F(Usage, TwoNumbersThatMayBeTwoThingsAreAskedFor) {
+  expect_refused(run_program(coarse("evaluate", {"--station", "5,3.6"})), 2, "give x=5,y=3.6;");
+  expect_refused(run_program(coarse("evaluate", {"--station", "5,3.6"})), 2, "give u=5,v=3.6");
+  expect_refused(run_program(coarse("evaluate", {"--station", "x=500,y=0"})), 2, "no ground to stand on");
+  const auto there = json_of(coarse("evaluate", {"--station", "x=8,y=0"}));
+  EXPECT_EQ(there["stations"][0]["status"], "ok");
+  EXPECT_NEAR(there["stations"][0]["position"][0].get<double>(), 8, 1e-9);
+  EXPECT_NEAR(there["stations"][0]["position"][1].get<double>(), 0, 1e-9);
+  expect_refused(run_program(coarse("evaluate", {"--stations", path("front.json"), "--entry", "0"})), 2,
+                 "counted from 1");
+}
+
+TEST_F(Usage, OutputsThatAFormatCannotHoldAreRefused) {
+  const std::vector<std::string> station{"--station", "8,0,1.5"};
+  const auto refused = [&](const char* command, std::vector<std::string> more, const std::string& words) {
+    more.insert(more.end(), station.begin(), station.end());
+    expect_refused(run_program(coarse(command, more)), 2, words);
+  };
+  refused("evaluate", {"--cartography", path("c.las")}, "--cartography");
+  refused("evaluate", {"--picture", path("p.pdf")}, "must end with .png .svg");
+  refused("evaluate", {"--write-stations", path("s.shp")}, "must end with .dxf .geojson .kml");
+  refused("evaluate", {"--write-stations", path("s.kml")}, has_projections() ? "--crs" : "PROJ");
+  refused("scan", {"-o", path("c.e57"), "--outputs", "ids"}, "but no range, ids");
+  refused("scan", {"-o", path("c.las"), "--outputs", "range,colour"}, "but no range");
+  refused("scan", {"-o", path("c.las"), "--crs", "EPSG:4326"}, "EPSG:4326");
+  EXPECT_EQ(files(), std::vector<std::string>{});
 }
 
 TEST_F(Usage, NumbersMustMakeSense) {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "report/pictures.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,7 +11,6 @@
 #include "report/front_view.hpp"
 #include "report/relief.hpp"
 #include "report/search_tint.hpp"
-#include "report/spread.hpp"
 #include "support/temporary_folder.hpp"
 #include "unit/report/drawn.hpp"
 #include "unit/report/files.hpp"
@@ -73,18 +74,6 @@ TEST(Chart, LabelsKeepOffEachOther) {
   }
   for (std::size_t i = 0; i < taken.size(); ++i)
     for (std::size_t j = i + 1; j < taken.size(); ++j) EXPECT_FALSE(taken[i].overlaps(taken[j])) << i << " " << j;
-}
-
-TEST(Spread, PartsWhatOverlapsAndLeavesTheRest) {
-  std::vector<Point> anchors(9, Point{50, 50});
-  anchors.push_back({200, 200});
-  for (int k = 0; k < 20; ++k) anchors.push_back({300 + 3.0 * k, 100.0 + k % 3});
-  const auto discs = spread(anchors, 10);
-  for (std::size_t i = 0; i < discs.size(); ++i)
-    for (std::size_t j = i + 1; j < discs.size(); ++j)
-      EXPECT_GT(std::hypot(discs[i].x - discs[j].x, discs[i].y - discs[j].y), 20) << i << " " << j;
-  EXPECT_EQ(discs[9].x, 200);
-  EXPECT_LT(std::hypot(discs[0].x - 50, discs[0].y - 50), 60);
 }
 
 TEST(SearchTint, HasARimAtItsEdgeAndNoneAtSeams) {
@@ -161,6 +150,7 @@ TEST(Relief, ShowsTheTopmostSurface) {
   EXPECT_FALSE(std::isfinite(z_at(open, 3, 0)));
   const HeightBuffer cut = look_from_above(data, window, 0.5);
   EXPECT_NEAR(z_at(cut, 0.3, 0.2), 0, 1e-6);
+  EXPECT_NEAR(z_at(cut, -1.5, 0.5), 0, 1e-6);  // the wall is cut through
   const auto pixels = shade(data, open);
   EXPECT_EQ(pixels[100 * 200 + 190], 0u);
   EXPECT_EQ(pixels[100 * 200 + 105] >> 24, 255u);
@@ -280,31 +270,40 @@ TEST(Pictures, RefuseOtherFormats) {
   EXPECT_EQ(test::entries(folder.path()), 0u);
 }
 
-TEST(Pictures, PlanViewDrawsEveryKindOfStation) {
-  const test::TemporaryFolder folder;
+SearchArea floor_of_room() {
   SearchMesh mesh;
   mesh.positions = {{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}};
   mesh.uvs = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
-  const SearchArea area = SearchArea::from_mesh(mesh);
+  return SearchArea::from_mesh(mesh);
+}
+
+TEST(Pictures, PlanViewDrawsEveryKindOfStation) {
+  const test::TemporaryFolder folder;
+  const SearchArea area = floor_of_room();
+  const auto station = [](double x, double y, StationStatus status, bool kept) {
+    return PlacedStation{.uv = {}, .position = {x, y, 1.8}, .ground = {x, y, 0}, .status = status, .kept = kept};
+  };
   const std::vector<PlacedStation> stations{
-      {.uv = {0.2, 0.2}, .position = {-1, -1, 1.8}, .status = StationStatus::ok},
-      {.uv = {0.2, 0.2}, .position = {-1, -1, 1.8}, .status = StationStatus::ok},
-      {.uv = {0.9, 0.2}, .position = {1.6, -1, 1.8}, .status = StationStatus::ok},
-      {.uv = {0.9, 0.9}, .position = {1.6, 1.6, 1.8}, .status = StationStatus::clash},
-      {.uv = {5, 5}, .position = {}, .status = StationStatus::hole}};
-  OverlapMatrix overlap(5);
-  overlap.set(0, 2, 0.7);
+      station(-1, -1, StationStatus::ok, false),  station(-1, -1, StationStatus::ok, false),
+      station(1.6, -1, StationStatus::ok, false), station(1.6, 1.6, StationStatus::clash, false),
+      station(0, 1.6, StationStatus::ok, true),   {.uv = {5, 5}, .position = {}, .status = StationStatus::hole}};
+  OverlapMatrix overlap(6);
+  overlap.set(0, 2, 0.5);
   draw_plan_view(folder / "plan.png", room(), area, stations, overlap, "A room");
   draw_plan_view(folder / "plan.svg", room(), area, stations, overlap, "A room");
-  draw_plan_view(folder / "unlinked.png", room(), area, stations, OverlapMatrix(5), "A room");
-  draw_plan_view(folder / "none.png", room(), area, {}, {}, "No station");
+  draw_plan_view(folder / "unlinked.png", room(), area, stations, OverlapMatrix(6), "A room");
+  const auto written = draw_plan_view(folder / "none.png", room(), area, {}, {}, "No station");
+  EXPECT_EQ(written, std::vector{folder / "none.png"});
   EXPECT_EQ(test::entries(folder.path()), 4u);
   const test::Drawn plan(folder / "plan.png"), unlinked(folder / "unlinked.png"), none(folder / "none.png");
-  constexpr Colour number{0.10, 0.22, 0.45}, skipped{0.93, 0.93, 0.94};
-  constexpr std::size_t disc = 700;  // pixels; one with its number has 900 and more
+  constexpr Colour number{0.10, 0.22, 0.45}, kept{0.42, 0.16, 0.44}, skipped{0.93, 0.93, 0.94};
+  constexpr std::size_t disc = 600;  // pixels; one with its name has 700 and more
+  constexpr std::size_t spot = 80;   // a true spot, without the rim
   EXPECT_EQ(plan.patches(number, disc).size(), 4u) << "three stations, two moved apart, and the legend's";
+  EXPECT_EQ(plan.patches(kept, disc).size(), 2u) << "the kept one, and the legend's";
   EXPECT_EQ(plan.patches(skipped, disc).size(), 2u) << "the one that clashes, and the legend's";
+  EXPECT_GE(plan.patches(number, spot).size(), 5u) << "and the spot that two stand on";
   EXPECT_EQ(none.patches(number, disc).size(), 1u);
   EXPECT_EQ(none.patches(skipped, disc).size(), 0u);
   EXPECT_GT(plan.near(style::orange, 40), unlinked.near(style::orange, 40) + 200) << "the link, the only one";
@@ -312,6 +311,58 @@ TEST(Pictures, PlanViewDrawsEveryKindOfStation) {
   EXPECT_GT(none.ink(), 1'000'000u);
   EXPECT_GT(shapes(test::content(folder / "plan.svg")), 40u);
   EXPECT_THROW(draw_plan_view(folder / "bad.png", room(), area, stations, OverlapMatrix(3), "Wrong"), Error);
+}
+
+TEST(Pictures, NothingOfAPlanViewIsCutOff) {
+  const test::TemporaryFolder folder;
+  const std::string title(90, 'W');  // wider than the map
+  const auto page = plan_view_pictures(
+      {.scene = room(), .area = floor_of_room(), .stations = {}, .names = {}, .overlap = {}, .title = title});
+  ASSERT_EQ(page.size(), 1u);
+  Canvas scratch(1, 1);
+  EXPECT_GT(page[0].canvas->width(), 86 + scratch.text_width(title, {.size = 17, .bold = true}));
+}
+
+// Two floors with a wall as a box on each, and a slab between them.
+TEST(Pictures, EachFloorHasAPageAndItsWallsAreFilled) {
+  std::vector<Vec3> p;
+  std::vector<std::array<std::uint32_t, 3>> t;
+  const auto box = [&](Vec3 a, Vec3 b) {
+    const auto n = static_cast<std::uint32_t>(p.size());
+    for (int k = 0; k < 8; ++k) p.push_back({k & 1 ? b.x : a.x, k & 2 ? b.y : a.y, k & 4 ? b.z : a.z});
+    for (const auto& [i, j, k, l] : std::vector<std::array<std::uint32_t, 4>>{
+             {0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}})
+      t.insert(t.end(), {{n + i, n + j, n + k}, {n + i, n + k, n + l}});
+  };
+  box({0, 0, -0.2}, {10, 8, 0}), box({0, 0, 2.8}, {10, 8, 3});
+  box({4.8, 0, 0}, {5.2, 8, 2.8});  // across the lower floor
+  box({0, 3.9, 3}, {3, 4.1, 5.5});  // a short one on the upper floor
+  SearchMesh mesh;
+  for (const double z : {0.0, 3.0}) {
+    const auto n = static_cast<std::uint32_t>(mesh.positions.size());
+    mesh.positions.insert(mesh.positions.end(), {{0, 0, z}, {10, 0, z}, {10, 8, z}, {0, 8, z}});
+    mesh.uvs.insert(mesh.uvs.end(), {{z, 0}, {z + 1, 0}, {z + 1, 1}, {z, 1}});
+    mesh.triangles.insert(mesh.triangles.end(), {{n, n + 1, n + 2}, {n, n + 2, n + 3}});
+  }
+  const std::vector<PlacedStation> stations{{.uv = {}, .position = {2, 2, 1.85}, .ground = {2, 2, 0}},
+                                            {.uv = {}, .position = {8, 6, 4.85}, .ground = {8, 6, 3}}};
+  const test::TemporaryFolder folder;
+  const auto written = draw_plan_view(folder / "plan.png", Scene::from_triangles(p, t), SearchArea::from_mesh(mesh),
+                                      stations, OverlapMatrix(2), "A house");
+  ASSERT_EQ(written, (std::vector{folder / "plan.png", folder / "plan-level-1.png", folder / "plan-level-2.png"}));
+  constexpr Colour cut{0.27, 0.28, 0.31}, number{0.10, 0.22, 0.45};
+  const auto largest = [&](const std::filesystem::path& file) {
+    std::size_t pixels = 0;
+    for (const auto& patch : test::Drawn(file).patches(cut, 100)) pixels = std::max(pixels, patch.pixels);
+    return static_cast<double>(pixels);
+  };
+  // The window is 10.6 m on 700 units of two pixels.
+  const double metre = 1400 / 10.6;
+  EXPECT_NEAR(largest(written[1]), 0.4 * 8 * metre * metre, 0.12 * 0.4 * 8 * metre * metre);
+  EXPECT_NEAR(largest(written[2]), 0.2 * 3 * metre * metre, 0.12 * 0.2 * 3 * metre * metre);
+  EXPECT_EQ(test::Drawn(written[0]).patches(number, 600).size(), 3u) << "both floors side by side, and the legend's";
+  for (const std::size_t k : {1u, 2u})
+    EXPECT_EQ(test::Drawn(written[k]).patches(number, 600).size(), 2u) << "its own station, and the legend's";
 }
 
 }  // namespace

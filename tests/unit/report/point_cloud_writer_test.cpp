@@ -32,6 +32,7 @@ ScanChunk chunk_of(std::uint32_t outputs) {
   return c;
 }
 
+constexpr std::uint32_t kOfLas = scan_position | scan_reflectivity | scan_colour;
 constexpr std::uint32_t kAll =
     scan_range | scan_position | scan_normal | scan_reflectivity | scan_ids | scan_colour | scan_voxel;
 
@@ -88,14 +89,14 @@ TEST(PointCloudWriter, PlyReadsBack) {
 
 TEST(PointCloudWriter, LasIsFormat7Of14) {
   const test::TemporaryFolder folder;
-  PointCloudWriter writer(folder / "a.las", kOrigin, kAll);
-  writer.write(chunk_of(kAll), 7);
+  PointCloudWriter writer(folder / "a.las", kOrigin, kOfLas);
+  writer.write(chunk_of(kOfLas), 7);
   writer.close();
   const std::string bytes = content(folder / "a.las");
   ASSERT_EQ(bytes.size(), 375u + 2 * 36);
   EXPECT_EQ(bytes.substr(0, 4), "LASF");
   const auto get = [&](auto value, std::size_t at) { return take<decltype(value)>(bytes, at); };
-  EXPECT_EQ(get(std::uint16_t{}, 6), 16);  // WKT bit
+  EXPECT_EQ(get(std::uint16_t{}, 6), 0);  // no coordinate system, so no bit that promises one
   EXPECT_EQ(get(std::uint8_t{}, 24), 1);
   EXPECT_EQ(get(std::uint8_t{}, 25), 4);
   EXPECT_EQ(get(std::uint16_t{}, 94), 375);   // header size
@@ -139,6 +140,46 @@ TEST(PointCloudWriter, LasRefusesWhatItCannotHold) {
   far.ray_count = 1;
   far.position = {{300'000.0f, 0, 0}};
   EXPECT_THROW(writer.write(far, 0), Error);
+}
+
+TEST(PointCloudWriter, LasCarriesItsCoordinateSystem) {
+  const test::TemporaryFolder folder;
+  const std::string crs = coordinate_system("EPSG:25832");
+  PointCloudWriter writer(folder / "a.las", kOrigin, scan_position, crs);
+  writer.write(chunk_of(scan_position), 1);
+  writer.close();
+  const std::string bytes = content(folder / "a.las");
+  const auto get = [&](auto value, std::size_t at) { return take<decltype(value)>(bytes, at); };
+  EXPECT_EQ(get(std::uint16_t{}, 6), 16);  // the WKT bit
+  EXPECT_EQ(get(std::uint32_t{}, 100), 1u);
+  EXPECT_EQ(bytes.substr(375 + 2, 16), std::string("LASF_Projection") + '\0');
+  EXPECT_EQ(get(std::uint16_t{}, 375 + 18), 2112);
+  const std::size_t length = get(std::uint16_t{}, 375 + 20);
+  EXPECT_EQ(bytes.substr(375 + 54, length), crs + '\0');
+  const std::size_t points = get(std::uint32_t{}, 96);
+  EXPECT_EQ(points, 375 + 54 + length);
+  ASSERT_EQ(bytes.size(), points + 2 * 36);
+  EXPECT_NEAR(get(std::int32_t{}, points) * 1e-4 + get(double{}, 155), 500'124.75, 5.1e-5);
+}
+
+TEST(PointCloudWriter, LasRefusesOutputsThatItHasNoPlaceFor) {
+  const test::TemporaryFolder folder;
+  try {
+    PointCloudWriter writer(folder / "a.las", kOrigin, scan_position | scan_normal | scan_colour | scan_range);
+    ADD_FAILURE() << "not refused";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), Errc::invalid_argument);
+    EXPECT_NE(std::string(error.what()).find("but no range, normal"), std::string::npos) << error.what();
+  }
+  EXPECT_EQ(test::entries(folder.path()), 0u);
+}
+
+TEST(PointCloudWriter, PlySaysItsCoordinateSystemInAComment) {
+  const test::TemporaryFolder folder;
+  PointCloudWriter writer(folder / "a.ply", {}, scan_position, coordinate_system("EPSG:32719"));
+  writer.write(chunk_of(scan_position), 1);
+  writer.close();
+  EXPECT_NE(content(folder / "a.ply").find("\ncomment crs PROJCS[\"WGS 84 / UTM zone 19S\","), std::string::npos);
 }
 
 TEST(PointCloudWriter, LeavesNothingUnlessClosed) {

@@ -77,8 +77,10 @@ const std::vector<Change<SceneOptions>> kScene{
      false},
     {"scene_index", [](SceneOptions& o) { o.scene_index = 0; }, false},
     {"default_diffuse", [](SceneOptions& o) { o.default_diffuse = 0.25; }, false},
-    {"allow_outside", [](SceneOptions& o) { o.allow_outside = true; }, false}};
-static_assert(member_count<SceneOptions>() == 8);
+    {"allow_outside", [](SceneOptions& o) { o.allow_outside = true; }, false},
+    {"unit", [](SceneOptions& o) { o.unit = Unit::foot; }, false},
+    {"up", [](SceneOptions& o) { o.up = UpAxis::z; }, false}};
+static_assert(member_count<SceneOptions>() == 10);
 
 const std::vector<Change<SimulatorConfig>> kSimulation{
     {"engine", [](SimulatorConfig& c) { c.engine = Engine::automatic; }, false},
@@ -116,8 +118,17 @@ const std::vector<Change<SurveyProblem>> kProblem{
      }},
     {"objectives", [](SurveyProblem& p) { p.objectives.pop_back(); }},
     {"requirements", [](SurveyProblem& p) { p.requirements = {make_requirement("coverage>=0.5")}; }},
-    {"link_overlap", [](SurveyProblem& p) { p.link_overlap = 0.05; }}};
-static_assert(member_count<SurveyProblem>() == 8);
+    {"link_overlap", [](SurveyProblem& p) { p.link_overlap = 0.05; }},
+    {"registration", [](SurveyProblem& p) { p.registration.tilt = Angle::degrees(1); }}};
+static_assert(member_count<SurveyProblem>() == 9);
+
+const std::vector<Change<SurveyProblem>> kRegistration{
+    {"rho_m", [](SurveyProblem& p) { p.registration.model.rho_m = 0.002; }},
+    {"patch_m", [](SurveyProblem& p) { p.registration.model.patch_m = 1; }},
+    {"position_m", [](SurveyProblem& p) { p.registration.position_m = 0.1; }},
+    {"heading", [](SurveyProblem& p) { p.registration.heading = Angle::degrees(1); }},
+    {"tilt", [](SurveyProblem& p) { p.registration.tilt = Angle(); }}};
+static_assert(member_count<RegistrationOptions>() == 4 && member_count<RegistrationModel>() == 2);
 
 const std::vector<Change<PlanConfig>> kPlan{
     {"population", [](PlanConfig& c) { c.population = 7; }},
@@ -190,6 +201,7 @@ TEST(Settings, OfASimulationAllCount) { expect_all_count(kSimulation, &PlanRun::
 TEST(Settings, OfASearchAreaAllCount) { expect_all_count(kWalkable, &PlanRun::walkable); }
 TEST(Settings, OfASecurityVolumeAllCount) { expect_all_count(kSecurity, &PlanRun::security); }
 TEST(Settings, OfAProblemAllCount) { expect_all_count(kProblem, &PlanRun::problem); }
+TEST(Settings, OfRegistrationAllCount) { expect_all_count(kRegistration, &PlanRun::problem); }
 TEST(Settings, OfASearchAllCount) { expect_all_count(kPlan, &PlanRun::config); }
 
 TEST(Settings, OfASceneAllCount) {

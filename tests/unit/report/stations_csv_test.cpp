@@ -27,11 +27,14 @@ std::string refusal(const std::string& text) {
 TEST(StationsCsv, ReadsBackToTheSameBits) {
   const test::TemporaryFolder folder;
   const std::vector<PlacedStation> stations{
-      {.uv = {1.0 / 3, 2.0 / 7}, .position = {500'000.1, 4'500'000.0 / 3, 1e-300}, .status = StationStatus::ok},
+      {.uv = {1.0 / 3, 2.0 / 7},
+       .position = {500'000.1, 4'500'000.0 / 3, 1e-300},
+       .ground = {500'000.1, 4'500'000.0 / 3, -1.0 / 3}},
       {.uv = {0.1 + 0.2, 5e-324}, .position = {}, .status = StationStatus::hole},
-      {.uv = {1, 0}, .position = {-0.1, 1e20, 3}, .status = StationStatus::clash}};
+      {.uv = {1, 0}, .position = {-0.1, 1e20, 3}, .status = StationStatus::clash, .kept = true}};
   write_stations_csv(folder / "s.csv", stations);
-  EXPECT_EQ(test::content(folder / "s.csv").substr(0, 29), "station,x,y,z,u,v,status\n1,50");
+  EXPECT_EQ(test::content(folder / "s.csv").substr(0, 58),
+            "station,name,x,y,z,ground_z,u,v,status,kept\n1,S1,500000.1,");
   const auto rows = read_stations_csv(folder / "s.csv");
   ASSERT_EQ(rows.size(), 3u);
   EXPECT_EQ(rows[0].position, stations[0].position);
@@ -39,6 +42,9 @@ TEST(StationsCsv, ReadsBackToTheSameBits) {
   EXPECT_FALSE(rows[1].position);  // a hole is nowhere, not at the origin
   EXPECT_EQ(rows[1].uv, stations[1].uv);
   EXPECT_EQ(rows[2].position, stations[2].position);
+  EXPECT_EQ(rows[0].ground, stations[0].ground);
+  EXPECT_EQ(rows[1].name, "S2");
+  EXPECT_EQ(rows[2].name, "K1");
 }
 
 TEST(StationsCsv, ReadsWhatOthersWrite) {
@@ -55,6 +61,58 @@ TEST(StationsCsv, ReadsWhatOthersWrite) {
   EXPECT_TRUE(read("x,y,z\n").empty());
 }
 
+TEST(StationsCsv, ReadsSurveyorsColumns) {
+  const Vec3 head{500'123.5, 4'500'321.25, 101.75};
+  for (const char* text :
+       {"Easting,Northing,Height\n500123.5,4500321.25,101.75\n",
+        "Name;Easting [m];Northing [m];Height [m]\r\nP1;500123,5;4500321,25;101,75\r\n",
+        "\xEF\xBB\xBFN\tE\tZ\n4500321.25\t500123.5\t101.75\n", "point x y z\nP1   500123.5 4500321.25  101.75\n",
+        "\"Easting\";\"Northing\";\"head z\"\n\"500123,5\";\"4500321,25\";\"101,75\"\n"}) {
+    SCOPED_TRACE(text);
+    const auto rows = read(text);
+    ASSERT_EQ(rows.size(), 1u);
+    EXPECT_EQ(rows[0].position, head);
+    EXPECT_FALSE(rows[0].ground);
+    EXPECT_FALSE(rows[0].xy);
+  }
+  const auto named = read("Name;E;N;ground_z\nS1;1,5;-2,25;0\n\"Tür; links\";3;4;0,125\n");
+  ASSERT_EQ(named.size(), 2u);
+  EXPECT_EQ(named[0].ground, (Vec3{1.5, -2.25, 0}));
+  EXPECT_FALSE(named[0].position);
+  EXPECT_EQ(named[0].name, "S1");
+  EXPECT_EQ(named[1].name, "Tür; links");
+  EXPECT_EQ(named[1].ground, (Vec3{3, 4, 0.125}));
+  const auto both = read("x,y,z,ground_z\n1,2,3,1.15\n");
+  EXPECT_EQ(both[0].position, (Vec3{1, 2, 3}));
+  EXPECT_EQ(both[0].ground, (Vec3{1, 2, 1.15}));
+  const auto flat = read("x,y\n1,2\n");
+  ASSERT_TRUE(flat[0].xy);
+  EXPECT_EQ(*flat[0].xy, (std::array<double, 2>{1, 2}));
+}
+
+TEST(StationsCsv, RefusesWhatCanBeReadInTwoWays) {
+  EXPECT_NE(refusal("x,Easting,y,z\n").find(":1: \"x\" and \"Easting\" both may be the easting"), std::string::npos);
+  EXPECT_NE(refusal("E,N,Z,Height\n")
+                .find("\"Z\" and \"Height\" both may be the height of the scanner's head: call "
+                      "it head_z, and that of the ground ground_z"),
+            std::string::npos);
+  EXPECT_NE(refusal("x,y,z\n1,5,2,5,3,0\n")
+                .find(":2: the line has 6 cells, the header 3; numbers with decimal commas "
+                      "need ; between the cells"),
+            std::string::npos);
+  EXPECT_NE(refusal("x;y;z\n1.234,5;2;3\n").find("\"1.234,5\" is no number for x"), std::string::npos);
+  EXPECT_NE(refusal("x;y;z\n1,234,567;2;3\n").find("marks between the thousands"), std::string::npos);
+  EXPECT_NE(refusal("Easting [mm],Northing [mm],Height\n").find("is in mm"), std::string::npos);
+  EXPECT_NE(refusal("lat,lon,z\n").find("\"lat\" is an angle"), std::string::npos);
+  EXPECT_NE(refusal("1,2,3\n4,5,6\n").find("the first line holds numbers"), std::string::npos);
+  EXPECT_NE(refusal("E,N,Heigth\n1,2,3\n").find("is \"Heigth\" height?"), std::string::npos)
+      << "else it would be passed over";
+  EXPECT_NE(refusal(std::string("glTF\2\0\0\0x,y,z\n", 14)).find("no table"), std::string::npos);
+  EXPECT_EQ(read("Punkt;Rechtswert;Hochwert;H\xC3\xB6he\nP1;5,0;3,6;1,85\n")[0].position, (Vec3{5, 3.6, 1.85}));
+  EXPECT_NE(refusal("Eastng,Northing,Height\n").find("is \"Eastng\" easting?"), std::string::npos);
+  EXPECT_NE(refusal(std::string("\xFF\xFEx\0,\0", 7)).find("UTF-16"), std::string::npos);
+}
+
 TEST(StationsCsv, NamesTheLineThatIsWrong) {
   EXPECT_NE(refusal("x,y,z\n1,2,3\n1,2\n").find("s.csv:3: the line has 2 cells"), std::string::npos);
   EXPECT_NE(refusal("x,y,z\n1,two,3\n").find(":2: \"two\" is no number for y"), std::string::npos);
@@ -63,9 +121,9 @@ TEST(StationsCsv, NamesTheLineThatIsWrong) {
   EXPECT_NE(refusal("x,y,z\n1,2,3m\n").find("\"3m\""), std::string::npos);
   EXPECT_NE(refusal("x,y,z\n1,,3\n").find("some are empty"), std::string::npos);
   EXPECT_NE(refusal("x,y,z,u,v\n,,,,\n").find("neither"), std::string::npos);
-  EXPECT_NE(refusal("x,y\n1,2\n").find(":1: the header must name x,y,z or u,v"), std::string::npos);
+  EXPECT_NE(refusal("x,z\n1,2\n").find(":1: the header is \"x,z\"; it must name x,y,z"), std::string::npos);
   EXPECT_NE(refusal("u,v,x\n1,2,3\n").find("the header"), std::string::npos);
-  EXPECT_NE(refusal("x,x,y,z\n").find("twice"), std::string::npos);
+  EXPECT_NE(refusal("u,u,v\n").find("twice"), std::string::npos);
   EXPECT_NE(refusal("").find("is empty"), std::string::npos);
   EXPECT_THROW(read_stations_csv("/nonexistent/stations.csv"), Error);
 }

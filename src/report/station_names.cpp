@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <set>
+
+#include "core/text.hpp"
+#include "vantage/summary.hpp"
+
+namespace vantage {
+
+std::vector<std::string> station_names(std::span<const PlacedStation> stations, std::span<const std::string> given) {
+  std::vector<std::string> names;
+  std::set<std::string> taken;
+  std::size_t placed = 0, kept = 0;
+  for (std::size_t k = 0; k < stations.size(); ++k) {
+    std::string name = stations[k].kept ? "K" + number(++kept) : "S" + number(++placed);
+    if (k < given.size() && !given[k].empty()) name = given[k];
+    if (!taken.insert(name).second) taken.insert(name += " (" + number(k + 1) + ")");
+    names.push_back(std::move(name));
+  }
+  return names;
+}
+
+}  // namespace vantage

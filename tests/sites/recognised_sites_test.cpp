@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// Unit and up of the reference sites, however they are written.
+#include <gtest/gtest.h>
+
+#include "sites/site.hpp"
+#include "support/temporary_folder.hpp"
+#include "vantage/scene.hpp"
+
+namespace vantage {
+namespace {
+
+using test::Site;
+using test::Variant;
+
+Box bounds(const Site& site) {
+  Box box;
+  for (const test::Part& part : site.parts)
+    for (const Vec3& p : part.positions) box.extend(p + site.offset);
+  return box;
+}
+
+void expect_box(const Box& found, const Box& wanted, const std::string& what) {
+  const double near = 2e-3;  // floats of millimetres at 60 m
+  for (const auto& [a, b] : {std::pair{found.min, wanted.min}, {found.max, wanted.max}}) {
+    EXPECT_NEAR(a.x, b.x, near) << what;
+    EXPECT_NEAR(a.y, b.y, near) << what;
+    EXPECT_NEAR(a.z, b.z, near) << what;
+  }
+}
+
+std::string text(const Scene& scene) {
+  std::string out;
+  for (const std::string& note : scene.notes()) out += note + "\n";
+  return out;
+}
+
+class RecognisedSites : public testing::TestWithParam<const char*> {
+ protected:
+  Scene load(const Variant& variant, const SceneOptions& options = {}) {
+    const test::TemporaryFolder folder;
+    write_site(test::make_site(GetParam(), variant), variant, folder / "site.glb");
+    return Scene::load(folder / "site.glb", options);
+  }
+};
+INSTANTIATE_TEST_SUITE_P(All, RecognisedSites, testing::ValuesIn(test::site_names().begin(), test::site_names().end()),
+                         [](const auto& site) { return std::string(site.param); });
+
+TEST_P(RecognisedSites, InEveryVariant) {
+  for (const double per_metre : {1.0, 1000.0, 100.0, 1 / 0.0254, 1 / 0.3048})
+    for (const bool z_up : {false, true})
+      for (const bool utm : {false, true}) {
+        const Variant variant{.z_up = z_up, .utm = utm, .per_metre = per_metre};
+        const Scene scene = load(variant);
+        const std::string what = std::to_string(per_metre) + (z_up ? " Z up" : " Y up") + (utm ? " UTM: " : ": ");
+        expect_box(scene.bounds(), bounds(test::make_site(GetParam(), variant)), what + text(scene));
+        EXPECT_EQ(text(scene).find("--unit") != std::string::npos, per_metre != 1) << what << text(scene);
+        EXPECT_EQ(text(scene).find("--up") != std::string::npos, z_up) << what << text(scene);
+      }
+}
+
+TEST_P(RecognisedSites, AsAreNamelessOnesThatKeepToGltf) {
+  const Variant variant{.nameless = true};
+  const Scene scene = load(variant);
+  expect_box(scene.bounds(), bounds(test::make_site(GetParam(), variant)), text(scene));
+  EXPECT_EQ(text(scene).find("--u"), std::string::npos) << text(scene);
+}
+
+TEST_P(RecognisedSites, AndOptionsSayTheSame) {
+  const Variant variant{.millimetres = true, .z_up = true};
+  const Scene asked = load(variant), told = load(variant, {.unit = Unit::millimetre, .up = UpAxis::z});
+  EXPECT_EQ(asked.fingerprint(), told.fingerprint());
+  EXPECT_EQ(text(told).find("--u"), std::string::npos) << text(told);
+}
+
+}  // namespace
+}  // namespace vantage
