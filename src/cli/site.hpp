@@ -27,8 +27,9 @@ struct SiteOptions {
   std::optional<double> heading, horizontal, vertical, zenith_start, height;
   std::optional<std::array<double, 2>> range;
   std::optional<std::string> noise;
+  std::optional<std::array<double, 2>> beam;  // mrad, mm
 
-  std::optional<double> user_size, spacing;
+  std::optional<double> user_size, spacing, incidence;
   std::optional<std::array<double, 3>> security;
   std::optional<double> slope, headroom, min_area;
 
