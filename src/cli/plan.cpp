@@ -9,6 +9,7 @@
 #include "cli/missed.hpp"
 #include "cli/options.hpp"
 #include "cli/problem.hpp"
+#include "cli/prove.hpp"
 #include "cli/run_report.hpp"
 #include "cli/site.hpp"
 #include "cli/stations.hpp"
@@ -24,7 +25,7 @@ struct PlanOptions {
   SiteOptions site;
   ProblemOptions problem;
   PlanConfig config;
-  bool exact = false, greedy = false, resume = false, json = false;
+  bool exact = false, greedy = false, resume = false, prove = false, json = false;
   std::optional<SampleSize> sample;
   std::vector<StationText> start;
   std::optional<std::string> output;
@@ -92,6 +93,9 @@ struct PlanOptions {
         ->group("Search")
         ->excludes(exact_flag);
     add_text(command, "-o,--output", "DIR", "Folder for the results", output)->group("Results");
+    command
+        .add_flag("--prove", prove, "Bound what any network of as many stations captures: how near does the plan come?")
+        ->group("Results");
     command.add_flag("--resume", resume, "Go on from the folder's checkpoint")->group("Results");
     command.add_flag("--json", json, "Print one JSON object, the same as front.json");
   }
@@ -283,6 +287,8 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
     write_missed(
         std::vector<std::filesystem::path>{folder / "missed.csv", folder / "missed.ply", folder / "missed.png"}, site,
         simulator, *field, result.front[chosen].stations, program);
+  if (options.prove)
+    prove(folder / "bound.json", site, simulator, result.front[chosen].stations, problem.kept.size(), program);
   if (options.json)
     program.console.print(front_json(result, simulator) + "\n");
   else
