@@ -244,8 +244,6 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   config.resume = options.resume;
   config.checkpoint = folder / "checkpoint.bin";
   const SearchArea& area = site.area();
-  if (area.derived())
-    spdlog::info("no search area is marked: stations may stand on {} walkable triangles", area.mesh().triangles.size());
 
   Simulator simulator(site.scene, site.scanner, site.config);
   tell_engine(simulator);
