@@ -94,7 +94,7 @@ nlohmann::json to_json(const RegistrationError& error, const Estimate& whole) {
   return {{"error_mm", 1e3 * whole.value},
           {"standard_error_mm", 1e3 * whole.standard_error},
           {"worst_mm", 1e3 * error.worst_m},
-          {"worst_station", error.worst_station},
+          {"worst_station", error.worst_station + 1},
           {"stations", std::move(stations)}};
 }
 
@@ -177,15 +177,6 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
       return exit_failed;
   }
   if (options.matrix) write_overlap_csv(*options.matrix, matrix);
-  if (options.picture) {
-    draw_plan_view(*options.picture, site.scene, site.area(), placed, matrix,
-                   fmt::format("{} station{}: coverage {:.3f}, overlap {:.3f}", placed.size(),
-                               placed.size() == 1 ? "" : "s", covered.value, overlapped.value),
-                   link_overlap, names);
-  }
-
-  for (const std::string& file : options.station_files)
-    write_stations(file, {placed, names}, matrix, link_overlap, site.area(), site.crs_text());
   const RegistrationOptions registration = options.registration.settle();
   Estimate registered;
   RegistrationError error;
@@ -193,7 +184,15 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
     registered = registration_estimate(counts, voxels, registration);
     error = registration_error(counts, voxels, registration);
   }
+  if (options.picture) {
+    draw_plan_view(*options.picture, site.scene, site.area(), placed, matrix,
+                   fmt::format("{} station{}: coverage {:.3f}, overlap {:.3f}", placed.size(),
+                               placed.size() == 1 ? "" : "s", covered.value, overlapped.value),
+                   link_overlap, names, error.stations);
+  }
 
+  for (const std::string& file : options.station_files)
+    write_stations(file, {placed, names}, matrix, link_overlap, site.area(), site.crs_text());
   nlohmann::json rows = nlohmann::json::array();
   for (std::size_t k = 0; k < stations.size(); ++k) {
     auto row = to_json(stations[k], names[k]);

@@ -9,7 +9,6 @@
 #include <cmath>
 
 #include "trace/embree/range_noise.hpp"
-#include "trace/exact_float.hpp"
 #include "trace/target_clones.hpp"
 
 namespace vantage {
@@ -49,13 +48,13 @@ struct View {
   bool behind = false;
 };
 
-// w = 1/s² of docs/method.md; 0 where the plane is seen too flat. Bit for bit what the shader computes.
+// w = 1/s² of docs/method.md; 0 where the plane is seen too flat, or by too few points.
 View view_of(const Patch& patch, const Float3& head, const NoiseModel& noise, const RangeNoise& table) {
   const float x = head.x - patch.point.x, y = head.y - patch.point.y, z = head.z - patch.point.z;
   const float xx = x * x, yy = y * y, zz = z * z;
   const float level = xx + yy;
   const float square = std::max(level + zz, 1e-6f);
-  const float inverse = exact_inverse_sqrt(square);
+  const float inverse = 1.0f / std::sqrt(square);
   const float nx = patch.normal.x * x, ny = patch.normal.y * y, nz = patch.normal.z * z;
   const float nxy = nx + ny;
   const float facing = (nxy + nz) * inverse;
@@ -65,16 +64,26 @@ View view_of(const Patch& patch, const Float3& head, const NoiseModel& noise, co
   const float flat = std::max(level * inverse_square, least_sin_zenith_squared);
   const float seen = patch.rays * cosine;
   const float density = seen * inverse_square;
-  const float expected = density * exact_inverse_sqrt(flat);
+  const float expected = density / std::sqrt(flat);
   if (expected < patch.least) return {};
   float variance = patch.variance;
   if (noise.enabled()) {
     const float points = std::max(expected, 1.0f);
     const float sigma = table.sigma(square * inverse, patch.diffuse * cosine);
     const float along = sigma * cosine;  // of range noise, what is along the normal
-    variance = variance + along * along * exact_reciprocal(points);
+    variance = variance + along * along / points;
   }
-  return {exact_reciprocal(variance), facing < 0};
+  return {1.0f / variance, facing < 0};
+}
+
+VANTAGE_TARGET_CLONES
+void add_products(std::int64_t* sums, const std::int32_t* products, const std::int32_t* weights,
+                  const std::uint8_t* columns, std::size_t many) {
+  for (std::size_t k = 0; k < many; ++k) {
+    const std::int32_t x = weights[k];
+    std::int64_t* of = sums + columns[k] * of_pair;
+    for (std::size_t c = 0; c < of_pair; ++c) of[c] += std::int64_t{x} * products[c];
+  }
 }
 
 class Summer {
@@ -109,7 +118,7 @@ class Summer {
 
   // Moments of the covered surface, a voxel's shared by the stations that see it.
   void add_surface(const Patch& patch, std::uint64_t mask, int seen, std::int64_t* sums) const {
-    const auto weight = static_cast<std::int64_t>(patch.extent * exact_reciprocal(static_cast<float>(seen)) + 0.5f);
+    const auto weight = static_cast<std::int64_t>(patch.extent * (1.0f / static_cast<float>(seen)) + 0.5f);
     const std::int64_t x = patch.place[0], y = patch.place[1], z = patch.place[2];
     const std::array<std::int64_t, of_station> moments{1, x, y, z, x * x, x * y, x * z, y * y, y * z, z * z};
     for (; mask != 0; mask &= mask - 1) {
@@ -140,16 +149,20 @@ class Summer {
       for (std::size_t b = a; b < 6; ++b) products[m++] = std::int32_t{patch.jacobian[a]} * patch.jacobian[b];
     for (std::size_t side = 0; side < 2; ++side) {
       if (many[side] < 2) continue;
-      const float scale = exact_reciprocal(total[side]) * units_;
+      const float scale = units_ / total[side];
       for (std::size_t a = 0; a + 1 < many[side]; ++a) {
         const std::size_t i = places[side][a];
         const float scaled = weights[side][a] * scale;
-        std::int64_t* row = sums + (i * (2 * stations_ - i - 1) / 2) * of_pair;
-        for (std::size_t b = a + 1; b < many[side]; ++b) {
-          const auto x = static_cast<std::int32_t>(scaled * weights[side][b] + 0.5f);
-          std::int64_t* of = row + (places[side][b] - i - 1) * of_pair;
-          for (std::size_t c = 0; c < of_pair; ++c) of[c] += std::int64_t{x} * products[c];
+        // A row of pairs: of i with each station after it.
+        std::array<std::int32_t, max_stations> shared;
+        std::array<std::uint8_t, max_stations> columns;
+        std::size_t length = 0;
+        for (std::size_t b = a + 1; b < many[side]; ++b, ++length) {
+          shared[length] = static_cast<std::int32_t>(scaled * weights[side][b] + 0.5f);
+          columns[length] = static_cast<std::uint8_t>(places[side][b] - i - 1);
         }
+        add_products(sums + (i * (2 * stations_ - i - 1) / 2) * of_pair, products.data(), shared.data(), columns.data(),
+                     length);
       }
     }
   }

@@ -313,6 +313,29 @@ TEST(Pictures, PlanViewDrawsEveryKindOfStation) {
   EXPECT_THROW(draw_plan_view(folder / "bad.png", room(), area, stations, OverlapMatrix(3), "Wrong"), Error);
 }
 
+TEST(Pictures, PlanViewDrawsStandardEllipses) {
+  const test::TemporaryFolder folder;
+  const std::vector<PlacedStation> stations{{.uv = {}, .position = {-1, -1, 1.8}, .ground = {-1, -1, 0}},
+                                            {.uv = {}, .position = {1, 1, 1.8}, .ground = {1, 1, 0}}};
+  std::vector<StationError> errors(2);
+  errors[0].covariance = {4e-6, 0, 0, 0, 1e-6, 0, 0, 0, 1e-6};
+  errors[1].covariance = {5e-6, 4e-6, 0, 4e-6, 5e-6, 0, 0, 0, 1e-6};  // 3 mm and 1 mm along the diagonals
+  const PlanView view{.scene = room(),
+                      .area = floor_of_room(),
+                      .stations = stations,
+                      .names = {"S1", "S2"},
+                      .overlap = {},
+                      .title = "",
+                      .errors = errors};
+  EXPECT_NEAR(kWidestEllipse / view.ellipse_scale(), 3e-3, 1e-12);
+  const auto red = [&](const char* name, std::span<const StationError> shown) {
+    draw_plan_view(folder / name, room(), floor_of_room(), stations, {}, "A room", default_link_overlap, {}, shown);
+    return test::Drawn(folder / name).near({0.72, 0.12, 0.12}, 40);
+  };
+  EXPECT_GT(red("with.png", errors), red("without.png", {}) + 200);
+  EXPECT_THROW(red("wrong.png", std::span(errors).first(1)), Error);
+}
+
 TEST(Pictures, NothingOfAPlanViewIsCutOff) {
   const test::TemporaryFolder folder;
   const std::string title(90, 'W');  // wider than the map
