@@ -10,8 +10,8 @@
 #include "lib/point.glsl"
 
 layout(local_size_x = group_size) in;  // block_columns × block_rows
-layout(constant_id = 1) const bool with_masks = true;
-layout(constant_id = 2) const bool with_tiles = false;
+layout(constant_id = 2) const bool with_masks = true;
+layout(constant_id = 3) const bool with_tiles = false;
 layout(push_constant, scalar) uniform Push { CountPush push; };
 
 void main() {
@@ -36,13 +36,17 @@ void main() {
   alive = alive && row < push.first_row + push.row_count && column < parameters.columns;
 
   bool is_point = false, counted = false;
+  uint misses = 0u;
   if (alive) {
     const vec3 direction = ray_direction(row, column);
     const Hit hit = trace(push.origin, direction, parameters.min_range, far, want_nearest, starts);
     is_point = hit.id != no_primitive;
     if (is_point && (hit.id & surveyed_bit) != 0u) {
-      const uint rank = rank_of(point_of(hit, push.origin, direction, ray_number(row, column), push.place));
-      if (rank != no_rank) {
+      Look look = unseen;
+      if (with_look) look = look_of(hit, direction);
+      const uint rank = rank_of(point_of(hit, look, push.origin, direction, ray_number(row, column), push.place));
+      if (rank != no_rank) misses = misses_of(hit, look, direction);
+      if (rank != no_rank && misses == 0u) {
         counted = true;
         atomicAdd(push.counts.at[rank], 1u);
         if (with_masks) {
@@ -54,8 +58,18 @@ void main() {
     }
   }
   const uint points = subgroupAdd(is_point ? 1u : 0u), counted_points = subgroupAdd(counted ? 1u : 0u);
+  const uint first_word = 2u * station_counters * push.place;
   if (subgroupElect()) {
-    if (points > 0u) add64(push.station_counters, 4u * push.place, points);
-    if (counted_points > 0u) add64(push.station_counters, 4u * push.place + 2u, counted_points);
+    if (points > 0u) add64(push.counters, first_word + 2u * counter_points, points);
+    if (counted_points > 0u) add64(push.counters, first_word + 2u * counter_counted, counted_points);
+  }
+  if (with_limits && subgroupMax(misses) > 0u) {
+    const uint dropped = subgroupAdd(misses != 0u ? 1u : 0u);
+    const uvec3 each = subgroupAdd(uvec3(misses & 1u, misses >> 1 & 1u, misses >> 2 & 1u));
+    if (subgroupElect()) {
+      add64(push.counters, first_word + 2u * counter_dropped, dropped);
+      for (uint k = 0u; k < 3u; ++k)
+        if (each[k] > 0u) add64(push.counters, first_word + 2u * (counter_misses + k), each[k]);
+    }
   }
 }

@@ -10,7 +10,7 @@
 #include "lib/point.glsl"
 
 layout(local_size_x = group_size) in;
-layout(constant_id = 1) const bool with_masks = true;
+layout(constant_id = 2) const bool with_masks = true;
 layout(push_constant, scalar) uniform Push { SamplePush push; };
 
 void main() {
@@ -34,9 +34,11 @@ void main() {
       const Hit hit = trace(station.origin, direction, parameters.min_range,
                             min(parameters.max_range, range.y + reach), range.x - reach, from_the_root);
       if (hit.id != no_primitive && (hit.id & surveyed_bit) != 0u) {
-        const vec3 point = point_of(hit, station.origin, direction, uint64_t(job.ray), station.place);
+        Look look = unseen;
+        if (with_look) look = look_of(hit, direction);
+        const vec3 point = point_of(hit, look, station.origin, direction, uint64_t(job.ray), station.place);
         uvec3 cell;
-        if (cell_of(point, cell) && cell == uvec3(voxel.x, voxel.y, voxel.z)) {
+        if (cell_of(point, cell) && cell == uvec3(voxel.x, voxel.y, voxel.z) && misses_of(hit, look, direction) == 0u) {
           atomicAdd(push.counts.at[entry], 1u);
           if (with_masks) {
             const uint word = (network * push.mask_words + (station.place >> 5)) * push.voxel_count + job.voxel;

@@ -23,14 +23,15 @@ void main() {
                         parameters.max_range, want_nearest, from_the_root);
   const bool is_point = hit.id != no_primitive;
   float t = uintBitsToFloat(0x7F800000u);
-  Look look = Look(vec3(0), 0.0);
+  Look look = unseen;
   uint rank = no_rank;
   vec3 position = vec3(uintBitsToFloat(0x7FC00000u));
   if (is_point) {
-    if (with_noise || GIVEN(push.normal) || GIVEN(push.reflectivity)) look = look_of(hit, direction);
+    if (with_look || GIVEN(push.normal) || GIVEN(push.reflectivity)) look = look_of(hit, direction);
     t = range_of(hit, look, ray_number(row, column), push.place);
     position = point_on_ray(push.origin, direction, t);
-    if (GIVEN(push.voxel) && (hit.id & surveyed_bit) != 0u) rank = rank_of(position);
+    if (GIVEN(push.voxel) && (hit.id & surveyed_bit) != 0u && misses_of(hit, look, direction) == 0u)
+      rank = rank_of(position);
   }
   if (GIVEN(push.range)) push.range.at[k] = t;
   if (GIVEN(push.position)) push.position.at[k] = position;

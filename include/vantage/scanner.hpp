@@ -44,6 +44,10 @@ struct Scanner {
   double min_range_m = 0.1;                  ///< d_min.
   double max_range_m = 130.0;                ///< d_max.
   NoiseTable noise = {};                     ///< Empty: exact ranges.
+  /// Full angle by which the beam widens, and its diameter where it leaves the scanner, both to 1/e² of the intensity
+  /// on the axis. Both 0: not known.
+  Angle beam_divergence = Angle::radians(0);
+  double exit_diameter_m = 0;
 
   std::uint32_t rows() const;     ///< Zenith steps.
   std::uint32_t columns() const;  ///< Azimuth steps.

@@ -38,6 +38,8 @@ struct MeshInfo {
   std::uint32_t weight = 1;
   bool door = false;          ///< A closed leaf that counts as open for who walks, and still blocks rays.
   bool station_area = false;  ///< Stations may stand on it, whatever else it is for.
+  double detail_m = 0;        ///< Widest footprint of the beam whose point counts, in metres; 0: any.
+  double accuracy_m = 0;  ///< Largest range noise (one standard deviation) of a point that counts, in metres; 0: any.
 };
 
 /// What a length of 1 in a file stands for.
@@ -65,8 +67,10 @@ struct SceneOptions {
   std::vector<std::string> ignore = {};    ///< Nodes that are left out.
   /// Nodes by pattern, and what their voxels count in coverage; where several match one node, as with roles.
   std::vector<std::pair<std::string, std::uint32_t>> weights = {};
-  std::vector<std::string> doors = {};                    ///< Nodes that are `MeshInfo::door`.
-  std::vector<std::string> station_area = {};             ///< Nodes that are `MeshInfo::station_area`.
+  std::vector<std::string> doors = {};         ///< Nodes that are `MeshInfo::door`.
+  std::vector<std::string> station_area = {};  ///< Nodes that are `MeshInfo::station_area`.
+  /// Nodes by pattern, and the detail and accuracy wanted of them, in millimetres (`MeshInfo`); likewise.
+  std::vector<std::pair<std::string, double>> details_mm = {}, accuracies_mm = {};
   std::optional<std::size_t> scene_index = std::nullopt;  ///< Which glTF scene; empty: the file's default.
   double default_diffuse = 0.5;  ///< R where neither extras nor a plain base colour (its luminance) give one.
   bool allow_outside = false;    ///< Let the file name buffers and images outside its own folder.

@@ -23,12 +23,18 @@ struct SimulatorConfig {
   Engine engine = Engine::automatic;
   std::optional<std::uint32_t> device_index = std::nullopt;  ///< Empty: the best that has the engine.
   double user_size_m = 0.1;                                  ///< Upper bound of the voxel size (equation 2).
-  double point_spacing_m = 0.01;            ///< Wanted spacing n of points; goal density = voxel_size² / n².
-  bool noise = true;                        ///< Apply the scanner's noise table, if it has one.
+  double point_spacing_m = 0.01;  ///< Wanted spacing n of points; goal density = voxel_size² / n².
+  bool noise = true;              ///< Apply the scanner's noise table, if it has one.
+  /// Largest angle between a ray and the normal of the surface at which its point counts, above 0° and at most 90°.
+  /// Empty: `default_max_incidence` where any surveyed mesh has a detail or accuracy (`MeshInfo`), otherwise none.
+  std::optional<Angle> max_incidence = std::nullopt;
   std::uint64_t seed = 1;                   ///< Of noise and of the voxel sample.
   bool validation = false;                  ///< Load the Vulkan validation layer; its errors become `Error`s.
   std::uint64_t max_rays_per_dispatch = 0;  ///< 0: chosen so that a dispatch stays well below a watchdog's limit.
 };
+
+/// At 60° the beam's footprint is twice as long as square on, and a matt surface sends back half as much.
+inline constexpr Angle default_max_incidence = Angle::degrees(60);
 
 Settings settings(const SimulatorConfig& config);
 
@@ -120,8 +126,8 @@ struct VoxelPatch {
 /// Not thread-safe: one Simulator per thread. Same inputs, seed and engine: same result, bit for bit.
 class Simulator {
  public:
-  /// Throws Error: invalid_argument (goal density below 1, with the smallest user size that works; bad scanner),
-  /// no_suitable_device, out_of_memory.
+  /// Throws Error: invalid_argument (goal density below 1, with the smallest user size that works; bad scanner; a
+  /// detail or accuracy without the scanner's beam or noise table; a bad incidence), no_suitable_device, out_of_memory.
   Simulator(const Scene& scene, const Scanner& scanner, const SimulatorConfig& config = {});
   Simulator(Simulator&&) noexcept;
   Simulator& operator=(Simulator&&) noexcept;
@@ -134,7 +140,9 @@ class Simulator {
   Vec3 origin() const noexcept;                ///< Local origin; survey = local + origin.
   std::uint64_t voxel_count() const noexcept;  ///< N_v of equation 8.
   double voxel_size_m() const noexcept;
-  double goal_density() const noexcept;         ///< Points wanted in a voxel.
+  double goal_density() const noexcept;  ///< Points wanted in a voxel.
+  /// What `max_incidence` comes to; empty: points have no limits of any kind, and all on surveyed voxels count.
+  std::optional<Angle> max_incidence() const noexcept;
   Vec3 voxel_centre(std::uint64_t rank) const;  ///< Survey frame. REQUIRES: rank < voxel_count().
   /// What a voxel counts in coverage (`MeshInfo::weight`). REQUIRES: rank < voxel_count().
   std::uint32_t voxel_weight(std::uint64_t rank) const;

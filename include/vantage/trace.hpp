@@ -62,6 +62,19 @@ struct RegistrationSums {
   std::vector<double> surface;
 };
 
+/// Points of one station that lie in surveyed voxels and do not count, because they are not good enough
+/// (`SimulatorConfig::max_incidence`, `MeshInfo::detail_m`, `MeshInfo::accuracy_m`). One may miss several limits.
+struct DroppedPoints {
+  std::uint64_t points = 0;     ///< That miss some limit.
+  std::uint64_t incidence = 0;  ///< Too far from square on.
+  std::uint64_t footprint = 0;  ///< The beam too wide on the surface.
+  std::uint64_t noise = 0;      ///< The range too noisy.
+  friend bool operator==(const DroppedPoints&, const DroppedPoints&) = default;
+  friend DroppedPoints operator+(const DroppedPoints& a, const DroppedPoints& b) {
+    return {a.points + b.points, a.incidence + b.incidence, a.footprint + b.footprint, a.noise + b.noise};
+  }
+};
+
 /// What a simulated network left in the surveyed voxels, reduced to integers. Exact, so independent of engine, order
 /// and chunking.
 struct NetworkCounts {
@@ -74,6 +87,7 @@ struct NetworkCounts {
   std::uint32_t stations = 0;         ///< N_stations, skipped ones included.
   std::vector<std::uint64_t> points;  ///< Per station, all meshes; empty where not counted (rays were skipped).
   std::vector<std::uint64_t> points_on_surveyed;  ///< Per station, those that count.
+  std::vector<DroppedPoints> dropped;             ///< Per station; empty where points have no limits, or of a sample.
   std::vector<std::uint64_t> seen;                ///< Per station: voxels with a point of it. Empty without overlap.
   /// Voxels seen by both i and j, i < j, in the order (0,1), (0,2), …, (1,2), …; empty without overlap.
   std::vector<std::uint64_t> shared;

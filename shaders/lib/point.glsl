@@ -2,17 +2,21 @@
 // From a hit to the point that the scanner reports for it.
 #ifndef VANTAGE_LIB_POINT
 #define VANTAGE_LIB_POINT
+#include "lib/limits.glsl"
 #include "lib/pattern.glsl"
 #include "lib/shade.glsl"
 #include "trace/hit.glsl"
 
 layout(constant_id = 0) const bool with_noise = false;
+layout(constant_id = 1) const bool with_limits = false;
+const bool with_look = with_noise || with_limits;
 
 // What a hit looks like from where the ray comes from.
 struct Look {
   vec3 normal;
   float reflectivity;
 };
+const Look unseen = Look(vec3(0), 0.0);
 
 Look look_of(Hit hit, vec3 direction) {
   const uint triangle = hit.id & ~surveyed_bit;
@@ -25,10 +29,14 @@ float range_of(Hit hit, Look look, uint64_t ray, uint place) {
   return with_noise ? noisy_range(hit.t, look.reflectivity, ray, place) : hit.t;
 }
 
-vec3 point_of(Hit hit, vec3 origin, vec3 direction, uint64_t ray, uint place) {
-  Look look = Look(vec3(0), 0.0);
-  if (with_noise) look = look_of(hit, direction);
+vec3 point_of(Hit hit, Look look, vec3 origin, vec3 direction, uint64_t ray, uint place) {
   return point_on_ray(origin, direction, range_of(hit, look, ray, place));
+}
+
+// The limits that a hit on a surveyed mesh misses, a bit each; its point counts where there are none. `look` is read
+// where there are limits.
+uint misses_of(Hit hit, Look look, vec3 direction) {
+  return with_limits ? limits_missed(hit.id & ~surveyed_bit, look.normal, look.reflectivity, direction, hit.t) : 0u;
 }
 
 #endif

@@ -17,6 +17,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Vec3s { vec3
 layout(buffer_reference, scalar, buffer_reference_align = 16) buffer Vec4s { vec4 at[]; };
 layout(buffer_reference) buffer BrickQuarters;
 layout(buffer_reference) buffer Slots;
+layout(buffer_reference) buffer Limits;
 layout(buffer_reference) buffer SampleVoxels;
 layout(buffer_reference) buffer SampleTriangles;
 layout(buffer_reference) buffer SampleStations;
@@ -27,6 +28,7 @@ layout(buffer_reference) buffer SampleItems;
 
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer BrickQuarters { uvec4 at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer Slots { BrickSlot at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Limits { PointLimits at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer SampleVoxels { SampleVoxel at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer SampleTriangles { SampleTriangle at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer SampleStations { SampleStation at[]; };

@@ -31,6 +31,17 @@ VANTAGE_CONST uint tile_groups_y = 32768;  // tiles along y of an indirect dispa
 
 VANTAGE_CONST uint traversal_arrays = 3;
 
+// What a point must be to count; 0: no limit. A mesh has one of these, those that ask for the same share it.
+struct PointLimits {
+  float least_cosine_square;       // of the angle between ray and normal
+  float largest_footprint_square;  // of the major axis of the beam on the surface, in metres squared
+  float largest_sigma;             // of the range, in metres
+};
+// A bit for each limit that a point misses.
+VANTAGE_CONST uint misses_incidence = 1;
+VANTAGE_CONST uint misses_footprint = 2;
+VANTAGE_CONST uint misses_noise = 4;
+
 struct TraceParameters {
   VANTAGE_ADDRESS(Floats) sin_zenith;
   VANTAGE_ADDRESS(Floats) cos_zenith;
@@ -39,7 +50,7 @@ struct TraceParameters {
   VANTAGE_ADDRESS(BrickQuarters) bricks;  // VoxelBrick, 16 bytes at a time
   VANTAGE_ADDRESS(Slots) slots;
   uint64_t traversal[traversal_arrays];  // addresses of what the engine's own trace() reads; it knows what they are
-  // For normals, reflectivity and noise only; 0 where the run needs none.
+  // For normals, reflectivity, noise and limits only; 0 where the run needs none.
   VANTAGE_ADDRESS(Vec3s) positions;
   VANTAGE_ADDRESS(Vec3s) normals;    // 0: geometric normals
   VANTAGE_ADDRESS(Uints) triangles;  // three vertex numbers each
@@ -47,6 +58,8 @@ struct TraceParameters {
   VANTAGE_ADDRESS(Floats) sigma;
   VANTAGE_ADDRESS(Floats) noise_reaches;  // by column of sigma: no hit up to there is moved further
   VANTAGE_ADDRESS(Vec4s) normal_table;
+  VANTAGE_ADDRESS(Uints) limits_of;  // per scene triangle: which of `limits`
+  VANTAGE_ADDRESS(Limits) limits;
   uint rows;
   uint columns;
   float min_range;
@@ -69,13 +82,23 @@ struct TraceParameters {
   float first_zenith;
   float first_azimuth;
   uint has_normals;
+  float exit_diameter;  // of the beam, in metres
+  float divergence;     // full angle, in radians
 };
 
-// Counts of one station. station_counters: 4 words a station, points and points that count, 64 bits each.
+// What is summed for each station, 64 bits each: points, those that count, and where points have limits those in a
+// surveyed voxel that miss some, and that miss each.
+VANTAGE_CONST uint counter_points = 0;
+VANTAGE_CONST uint counter_counted = 1;
+VANTAGE_CONST uint counter_dropped = 2;
+VANTAGE_CONST uint counter_misses = 3;  // incidence, footprint, noise
+VANTAGE_CONST uint station_counters = 6;
+
+// Counts of one station.
 struct CountPush {
   VANTAGE_ADDRESS(Uints) counts;
-  VANTAGE_ADDRESS(Uints) masks;  // the 32-bit word that holds the station's bit, of every voxel
-  VANTAGE_ADDRESS(Uints) station_counters;
+  VANTAGE_ADDRESS(Uints) masks;     // the 32-bit word that holds the station's bit, of every voxel
+  VANTAGE_ADDRESS(Uints) counters;  // [station][counter]
   VANTAGE_ADDRESS(Floats) tile_far;
   VANTAGE_ADDRESS(Uints) tile_list;  // number of tiles, then the tiles
   uint64_t starts;                   // what the engine's pass left for each listed tile; 0: it has none

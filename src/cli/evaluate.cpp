@@ -2,6 +2,7 @@
 #include <spdlog/spdlog.h>
 
 #include "cli/command.hpp"
+#include "cli/dropped_points.hpp"
 #include "cli/missed.hpp"
 #include "cli/options.hpp"
 #include "cli/registration.hpp"
@@ -199,6 +200,8 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
     row["points_on_surveyed"] = nullptr;
     if (!sampled && !counts.points.empty()) row["points"] = counts.points[k];
     if (!sampled && !counts.points_on_surveyed.empty()) row["points_on_surveyed"] = counts.points_on_surveyed[k];
+    row["dropped"] = nullptr;
+    if (!counts.dropped.empty()) row["dropped"] = to_json(counts.dropped[k]);
     rows.push_back(std::move(row));
   }
   SurveySummary summary{.names = names, .captured = covered.value, .captured_error = covered.standard_error};
@@ -216,6 +219,7 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
                         {"overlap_se", nullptr},
                         {"overlap_matrix", nullptr},
                         {"stations", std::move(rows)},
+                        {"dropped", nullptr},
                         {"voxels", voxels},
                         {"voxel_size", simulator.voxel_size_m()},
                         {"goal_density", simulator.goal_density()},
@@ -234,6 +238,7 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
     }
     if (options.with_registration) json["registration"] = to_json(error, registered);
     if (sampled) json["sample"] = counts.voxels;
+    if (!counts.dropped.empty()) json["dropped"] = to_json(all_dropped(counts));
     program.console.print(json);
   } else {
     std::string text =
@@ -249,6 +254,7 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
                           sampled ? fmt::format(" ± {:.2f}", 1e3 * registered.standard_error) : "",
                           names[error.worst_station], 1e3 * error.worst_m);
     }
+    if (!counts.dropped.empty()) text += dropped_text(counts) + "\n";
     text += "\n" + summary_text(summary);
     program.console.print(text);
   }

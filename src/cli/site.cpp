@@ -16,11 +16,11 @@ namespace vantage::cli {
 namespace {
 
 // Options that a preset states, and so takes out of the scene's hands.
-const std::set<std::string> preset_keys{"step", "horizontal", "vertical", "zenith-start", "range", "noise"};
+const std::set<std::string> preset_keys{"step", "horizontal", "vertical", "zenith-start", "range", "noise", "beam"};
 // Options that a scene may carry defaults for: what is measured, never where files go.
-const std::set<std::string> scene_keys{"scanner", "step",     "heading",  "horizontal", "vertical", "zenith-start",
-                                       "height",  "range",    "noise",    "user-size",  "spacing",  "security",
-                                       "slope",   "headroom", "min-area", "station",    "crs"};
+const std::set<std::string> scene_keys{"scanner",  "step",  "heading",  "horizontal", "vertical",  "zenith-start",
+                                       "height",   "range", "noise",    "beam",       "user-size", "spacing",
+                                       "security", "slope", "headroom", "min-area",   "station",   "crs"};
 
 template <std::size_t N>
 Setter numbers_into(std::optional<std::array<double, N>>& target, std::size_t fewest, const Interval& interval) {
@@ -60,6 +60,10 @@ Scanner resolve_scanner(const SiteOptions& options, double scale) {
                                               std::to_string(scanner.max_range_m));
   }
   if (options.noise) scanner.noise = load_noise(*options.noise);
+  if (options.beam) {
+    scanner.beam_divergence = Angle::radians((*options.beam)[0] * 1e-3);
+    scanner.exit_diameter_m = (*options.beam)[1] * 1e-3;
+  }
   scanner.check();
   return scanner;
 }
@@ -68,6 +72,22 @@ Scanner resolve_scanner(const SiteOptions& options, double scale) {
 std::string noise_source(const SiteOptions& options, const Scanner& scanner) {
   std::string noise = scanner.noise.empty() ? "off" : options.noise ? *options.noise : options.scanner.value_or("off");
   return noise.ends_with(".csv") ? std::filesystem::absolute(noise).string() : noise;
+}
+
+// The detail that all surveyed meshes ask for; empty where they ask for none or differ.
+std::optional<double> common_detail(const Scene& scene) {
+  std::optional<double> common;
+  for (const MeshInfo& mesh : scene.meshes()) {
+    if (mesh.role != Role::surveyed) continue;
+    if (mesh.detail_m == 0 || mesh.detail_m != common.value_or(mesh.detail_m)) return std::nullopt;
+    common = mesh.detail_m;
+  }
+  return common;
+}
+
+bool asks_for_detail(const Scene& scene) {
+  return std::ranges::any_of(scene.meshes(),
+                             [](const MeshInfo& mesh) { return mesh.role == Role::surveyed && mesh.detail_m > 0; });
 }
 
 // One line on what was made up for a scene of unusual size.
@@ -105,16 +125,33 @@ void SiteOptions::add(CLI::App& command) {
       ->group("Scene");
   add_texts(command, "--search", "PATTERN", "Nodes where stations may stand", roles.search)->group("Scene");
   add_texts(command, "--ignore", "PATTERN", "Nodes to leave out", roles.ignore)->group("Scene");
-  add_values(command, "--weight", "PATTERN=W",
+  // PATTERN=VALUE of one option, its value as `parse` reads it.
+  const auto add_wishes = [&](const char* name, const char* unit, const char* help, const char* example, auto& wishes,
+                              auto parse) {
+    add_values(command, name, unit, help,
+               [&wishes, unit, example, parse](const std::string& text, const std::string& what) {
+                 const std::size_t equals = text.rfind('=');
+                 if (equals == std::string::npos || equals == 0)
+                   throw Error(Errc::invalid_argument,
+                               what + ": \"" + text + "\" is not " + unit + ", as \"" + example + "\"");
+                 wishes.emplace_back(text.substr(0, equals), parse(text.substr(equals + 1), what));
+               })
+        ->group("Scene");
+  };
+  const auto length = [](const std::string& text, const std::string& what) {
+    return parse_number(text, what, positive);
+  };
+  add_wishes("--weight", "PATTERN=W",
              "What a voxel of these nodes counts in coverage, 1 to 255, where others count 1; may be repeated",
-             [this](const std::string& text, const std::string& what) {
-               const std::size_t equals = text.rfind('=');
-               if (equals == std::string::npos || equals == 0)
-                 throw Error(Errc::invalid_argument, what + ": \"" + text + "\" is not PATTERN=W, as \"facade*=5\"");
-               roles.weights.emplace_back(text.substr(0, equals), static_cast<std::uint32_t>(parse_count(
-                                                                      text.substr(equals + 1), what, 1, 255)));
-             })
-      ->group("Scene");
+             "facade*=5", roles.weights, [](const std::string& text, const std::string& what) {
+               return static_cast<std::uint32_t>(parse_count(text, what, 1, 255));
+             });
+  add_wishes("--detail", "PATTERN=MM",
+             "Widest footprint of the beam, in millimetres, of points that count on these nodes; may be repeated",
+             "pipe*=10", roles.details_mm, length);
+  add_wishes("--accuracy", "PATTERN=MM",
+             "Largest range noise, in millimetres, of points that count on these nodes; may be repeated", "flange*=1",
+             roles.accuracies_mm, length);
   add_value(command, "--unit", "UNIT", "What lengths in the file are: m, cm, mm, in or ft; recognised otherwise",
             [this](const std::string& text, const std::string& what) {
               try {
@@ -167,8 +204,17 @@ void SiteOptions::add(CLI::App& command) {
       ->group("Scanner");
   add_text(command, "--noise", "TABLE", "Range noise: off, a scanner's name (rtc360), or a CSV file", noise)
       ->group("Scanner");
+  add_value(command, "--beam", "MRAD,MM",
+            "Full angle by which the beam widens, in milliradians, and its diameter at the exit, in millimetres",
+            numbers_into(beam, 2, not_negative))
+      ->group("Scanner");
 
   add_number(command, "--user-size", "M", "Upper bound of the voxel size", user_size, positive)->group("Measure");
+  add_number(
+      command, "--incidence", "DEG",
+      "Largest angle between ray and normal of points that count, 90: any; 60 with --detail or --accuracy, else 90",
+      incidence, {.low = 0, .high = 90, .low_included = false})
+      ->group("Measure");
   add_number(command, "--spacing", "M", "Wanted distance between points; sets the goal density", spacing, positive)
       ->group("Measure");
 
@@ -291,7 +337,11 @@ LoadedSite open_site(CLI::App& command, SiteOptions& options) {
   site.config.seed = options.seed;
   site.config.validation = options.validation;
   site.config.user_size_m = options.user_size.value_or(site.config.user_size_m * scale);
-  site.config.point_spacing_m = options.spacing.value_or(site.config.point_spacing_m * scale);
+  if (!options.spacing && !common_detail(site.scene) && asks_for_detail(site.scene))
+    spdlog::info("the surveyed meshes do not all ask for the same detail: the spacing of points is the usual one");
+  site.config.point_spacing_m =
+      options.spacing.value_or(common_detail(site.scene).value_or(site.config.point_spacing_m * scale));
+  if (options.incidence) site.config.max_incidence = Angle::degrees(*options.incidence);
   site.config.noise = !site.scanner.noise.empty();
   site.security = options.area.volume(small);
   site.walkable = options.area.walkable(small);

@@ -28,8 +28,9 @@ struct SiteOptions {
   std::optional<double> heading, horizontal, vertical, zenith_start, height;
   std::optional<std::array<double, 2>> range;
   std::optional<std::string> noise;
+  std::optional<std::array<double, 2>> beam;  // mrad, mm
 
-  std::optional<double> user_size, spacing;
+  std::optional<double> user_size, spacing, incidence;
   AreaOptions area;
 
   Engine engine = Engine::automatic;

@@ -68,10 +68,11 @@ class Node {
     }
     return found;
   }
-  // A figure has its source beside it; the values are its other members.
+  // A figure has its source beside it, or says that it is assumed; the values are its other members.
   const Node& sourced() const {
     const Node source = member("source");
-    if (!sources_->contains(source.text())) source.fail("\"" + source.text() + "\" is not among the scanner's sources");
+    if (source.text() != "assumed" && !sources_->contains(source.text()))
+      source.fail("\"" + source.text() + "\" is not among the scanner's sources");
     return *this;
   }
   double figure() const {
@@ -172,7 +173,7 @@ Scanner read_scanner(const Document& document, const std::string& key, std::stri
   std::set<std::string> sources;
   const Node node(document.scanners()[key], document.file + ": " + key, &sources);
   node.only({"name", "sources", "horizontal_angle_deg", "vertical_angle_deg", "zenith_start_deg", "min_range_m",
-             "max_range_m", "settings", "default_setting", "noise"});
+             "max_range_m", "beam_divergence_mrad", "exit_diameter_mm", "settings", "default_setting", "noise"});
   const Node listed = node.member("sources");
   if (!listed.json().is_object()) listed.fail("must be an object of texts");
   for (const auto& [name, ignored] : listed.json().items()) {
@@ -202,6 +203,9 @@ Scanner read_scanner(const Document& document, const std::string& key, std::stri
   };
   scanner.min_range_m = range("min_range_m");
   scanner.max_range_m = range("max_range_m");
+  if (node.has("beam_divergence_mrad"))
+    scanner.beam_divergence = Angle::radians(node.member("beam_divergence_mrad").figure() * 1e-3);
+  if (node.has("exit_diameter_mm")) scanner.exit_diameter_m = node.member("exit_diameter_mm").figure() * 1e-3;
   if (node.has("noise")) scanner.noise = noise_of(node.member("noise"));
   try {
     scanner.check();

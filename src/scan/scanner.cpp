@@ -92,6 +92,10 @@ void Scanner::check() const {
   if (!(std::isfinite(min_range_m) && min_range_m >= 0)) refuse("min_range_m", min_range_m, "0 or more");
   if (!(std::isfinite(max_range_m) && max_range_m > min_range_m))
     refuse("max_range_m", max_range_m, "finite and above min_range_m, " + number(min_range_m));
+  const double divergence = beam_divergence.in_radians() * 1e3;
+  if (!(divergence >= 0 && divergence < 100)) refuse("beam_divergence in mrad", divergence, "in [0, 100)");
+  if (!(std::isfinite(exit_diameter_m) && exit_diameter_m >= 0))
+    refuse("exit_diameter_m", exit_diameter_m, "0 or more");
   check_noise(noise);
 }
 

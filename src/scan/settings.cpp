@@ -19,6 +19,8 @@ Settings settings(const Scanner& scanner) {
       .add("noise", nlohmann::ordered_json{{"distances_m", scanner.noise.distances_m},
                                            {"reflectivities", scanner.noise.reflectivities},
                                            {"sigma_m", scanner.noise.sigma_m}})
+      .add("beam_divergence_mrad", scanner.beam_divergence.in_radians() * 1e3, {"beam"})
+      .add("exit_diameter_mm", scanner.exit_diameter_m * 1e3, {"beam"})
       .take();
 }
 
@@ -28,6 +30,7 @@ Settings settings(const SimulatorConfig& config) {
       .add("device_index", config.device_index, {.decides = false})
       .add("user_size_m", config.user_size_m, {"user-size"})
       .add("point_spacing_m", config.point_spacing_m, {"spacing"})
+      .add("max_incidence_deg", config.max_incidence, {"incidence"})
       .add("noise", config.noise)
       .add("seed", config.seed, {"seed"})
       .add("validation", config.validation, {.decides = false})

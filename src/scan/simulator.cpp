@@ -10,6 +10,7 @@
 #include <sstream>
 #include <utility>
 
+#include "scan/limit_model.hpp"
 #include "scan/noise_model.hpp"
 #include "scan/pattern.hpp"
 #include "scan/scan_chunk.hpp"
@@ -99,6 +100,8 @@ struct Simulator::Impl {
     goal = grid->voxel_size() * grid->voxel_size() / (config.point_spacing_m * config.point_spacing_m);
     pattern = std::make_shared<RayPattern>(make_pattern(scanner));
     noise = config.noise ? make_noise_model(scanner, config.seed) : NoiseModel{.sigma = {}, .seed = config.seed};
+    const LimitModel limits = make_limit_model(data(), scanner, config);
+    limited = limits.enabled();
     // Shares the scene's storage for as long as the engine wants it.
     const auto kept = std::make_shared<const Scene>(scene);
     tracer = make_tracer(config.engine, config.device_index,
@@ -107,7 +110,8 @@ struct Simulator::Impl {
                           .pattern = pattern,
                           .noise = std::make_shared<const NoiseModel>(noise),
                           .max_rays_per_dispatch = config.max_rays_per_dispatch,
-                          .validation = config.validation});
+                          .validation = config.validation,
+                          .limits = std::make_shared<const LimitModel>(limits)});
     tracer->set_goal_density(goal);
   }
 
@@ -174,6 +178,7 @@ struct Simulator::Impl {
   double goal = 0;
   std::shared_ptr<const RayPattern> pattern;
   NoiseModel noise;
+  bool limited = false;
   std::vector<std::uint32_t> sampled;
   Patches patches;
   NoiseModel range_noise;
@@ -194,6 +199,7 @@ Vec3 Simulator::origin() const noexcept { return impl_->data().origin; }
 std::uint64_t Simulator::voxel_count() const noexcept { return impl_->grid->size(); }
 double Simulator::voxel_size_m() const noexcept { return impl_->grid->voxel_size(); }
 double Simulator::goal_density() const noexcept { return impl_->goal; }
+std::optional<Angle> Simulator::max_incidence() const noexcept { return incidence_limit(impl_->data(), impl_->config); }
 
 Vec3 Simulator::voxel_centre(std::uint64_t rank) const {
   const auto [x, y, z] = morton_decode(impl_->grid->key(rank));
@@ -260,6 +266,7 @@ NetworkCounts Simulator::evaluate(const Network& network, const EvaluateOptions&
     NetworkCounts counts = nothing_seen(voxel_count(), impl_->grid->total_weight(), network.size(), options.overlap,
                                         options.registration.has_value());
     counts.points_on_surveyed.assign(network.size(), 0);
+    if (impl_->limited) counts.dropped.assign(network.size(), {});
     if (!options.skip) counts.points.assign(network.size(), 0);
     return counts;
   }

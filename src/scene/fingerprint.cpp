@@ -16,7 +16,8 @@ std::uint64_t Scene::fingerprint() const noexcept {
   hash.add_all(scene.triangles);
   for (const MeshRange& range : scene.ranges) hash.add(range.triangle_count), hash.add(range.material);
   for (const MeshInfo& mesh : scene.meshes) {
-    hash.add(static_cast<int>(mesh.role)), hash.add(mesh.diffuse), hash.add(mesh.weight);
+    hash.add(static_cast<int>(mesh.role)), hash.add(mesh.diffuse), hash.add(mesh.weight), hash.add(mesh.detail_m),
+        hash.add(mesh.accuracy_m);
     if (mesh.door || mesh.station_area) hash.add(mesh.door), hash.add(mesh.station_area);
   }
   for (const Material& material : scene.materials) {

@@ -5,14 +5,20 @@
 namespace vantage {
 
 Settings settings(const SceneOptions& options) {
-  std::vector<std::string> weights;
-  for (const auto& [pattern, weight] : options.weights) weights.push_back(pattern + "=" + std::to_string(weight));
+  // As the program's options take them; numbers to the last bit.
+  const auto listed = [](const auto& values) {
+    std::vector<std::string> texts;
+    for (const auto& [pattern, value] : values) texts.push_back(pattern + "=" + nlohmann::json(value).dump());
+    return texts;
+  };
   return SettingList()
       .add("surveyed", options.surveyed, {"surveyed", false})
       .add("blocking", options.blocking, {"blocking", false})
       .add("search", options.search, {"search", false})
       .add("ignore", options.ignore, {"ignore", false})
-      .add("weights", weights, {"weight", false})
+      .add("weights", listed(options.weights), {"weight", false})
+      .add("details_mm", listed(options.details_mm), {"detail", false})
+      .add("accuracies_mm", listed(options.accuracies_mm), {"accuracy", false})
       .add("doors", options.doors, {"doors", false})
       .add("station_area", options.station_area, {"station-area", false})
       .add("scene_index", options.scene_index, {"scene-index", false})

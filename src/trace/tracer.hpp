@@ -45,6 +45,22 @@ struct NoiseModel {
   bool enabled() const { return !sigma.empty(); }
 };
 
+// What a point must be to count, decided on the hit itself, before noise moves the point (docs/method.md). A limit that
+// is 0 is none.
+struct LimitModel {
+  struct Limits {
+    float least_cosine_square = 0;       // of the angle between ray and normal
+    float largest_footprint_square = 0;  // of the major axis of the beam on the surface, metres squared
+    float largest_sigma = 0;             // of the range, metres
+    friend bool operator==(const Limits&, const Limits&) = default;
+  };
+  std::vector<Limits> meshes;                    // one for each of the scene; empty: every point counts
+  float exit_diameter = 0;                       // of the beam, metres
+  float divergence = 0;                          // full angle, radians
+  std::shared_ptr<const NoiseModel> noise = {};  // what σ is looked up in, applied or not; given where it is limited
+  bool enabled() const { return !meshes.empty(); }
+};
+
 // Everything an engine needs to be built. Borrowed for the constructor only, unless the engine says otherwise.
 struct TraceScene {
   std::shared_ptr<const SceneData> scene;
@@ -54,6 +70,7 @@ struct TraceScene {
   std::uint64_t max_rays_per_dispatch = 0;  // 0: the engine's choice
   bool validation = false;
   bool sort_triangles = true;  // for drivers that build on the order given; off only to measure what sorting gains
+  std::shared_ptr<const LimitModel> limits = {};  // null: every point counts
 };
 
 // A station as an engine sees it.

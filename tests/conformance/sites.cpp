@@ -6,6 +6,7 @@
 #include <numbers>
 #include <tuple>
 
+#include "scan/limit_model.hpp"
 #include "scan/noise_model.hpp"
 #include "scan/pattern.hpp"
 #include "scene/raw_scene.hpp"
@@ -112,6 +113,17 @@ std::shared_ptr<const SceneData> built_in(const std::string& name) {
   return std::make_shared<const SceneData>(Scene::load(file).data());
 }
 
+// Each mesh asks for something else, among what a scanner a few metres off gives and does not give.
+LimitModel some_limits(SceneData scene, Scanner scanner) {
+  scanner.beam_divergence = Angle::radians(5e-4);
+  scanner.exit_diameter_m = 0.006;
+  for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+    scene.meshes[m].detail_m = m % 2 == 0 ? 0.0105 : 0.0125;
+    scene.meshes[m].accuracy_m = m % 3 == 0 ? 0.0004 : 0;
+  }
+  return make_limit_model(scene, scanner, {.max_incidence = Angle::degrees(50)});
+}
+
 TestSite make_site(const std::string& name, std::shared_ptr<const SceneData> scene, double user_size_m,
                    double step_degrees, const std::vector<Vec3>& heads) {
   TestSite site;
@@ -126,6 +138,7 @@ TestSite make_site(const std::string& name, std::shared_ptr<const SceneData> sce
   scanner.noise = rtc360_noise();
   site.pattern = std::make_shared<const RayPattern>(make_pattern(scanner));
   site.noise = std::make_shared<const NoiseModel>(make_noise_model(scanner, 4711));
+  site.limits = std::make_shared<const LimitModel>(some_limits(*site.scene, scanner));
   scanner.noise = {};
   site.no_noise = std::make_shared<const NoiseModel>(make_noise_model(scanner, 4711));
   for (const Vec3& head : heads) {
@@ -138,10 +151,10 @@ TestSite make_site(const std::string& name, std::shared_ptr<const SceneData> sce
 
 }  // namespace
 
-const std::vector<ReferenceHit>& TestSite::reference(std::size_t station, bool noisy) const {
-  static std::map<std::tuple<std::string, std::size_t, bool>, std::vector<ReferenceHit>> made;
-  std::vector<ReferenceHit>& hits = made[{name, station, noisy}];
-  if (hits.empty()) hits = ReferenceTracer(trace_scene(noisy)).scan(stations[station]);
+const std::vector<ReferenceHit>& TestSite::reference(std::size_t station, bool noisy, bool limited) const {
+  static std::map<std::tuple<std::string, std::size_t, bool, bool>, std::vector<ReferenceHit>> made;
+  std::vector<ReferenceHit>& hits = made[{name, station, noisy, limited}];
+  if (hits.empty()) hits = ReferenceTracer(trace_scene(noisy, limited)).scan(stations[station]);
   return hits;
 }
 

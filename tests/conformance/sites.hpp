@@ -17,12 +17,19 @@ struct TestSite {
   std::shared_ptr<const VoxelGrid> grid;
   std::shared_ptr<const RayPattern> pattern;
   std::shared_ptr<const NoiseModel> noise, no_noise;
-  std::vector<TraceStation> stations;  // at least four, places 0, 1, …; inside and outside
+  std::shared_ptr<const LimitModel> limits;  // some of each kind, so that each drops points and lets others pass
+  std::vector<TraceStation> stations;        // at least four, places 0, 1, …; inside and outside
 
-  TraceScene trace_scene(bool noisy) const { return {scene, grid, pattern, noisy ? noise : no_noise, 0, false}; }
+  TraceScene trace_scene(bool noisy, bool limited = false) const {
+    return {.scene = scene,
+            .grid = grid,
+            .pattern = pattern,
+            .noise = noisy ? noise : no_noise,
+            .limits = limited ? limits : nullptr};
+  }
   std::uint64_t rays() const { return std::uint64_t{pattern->rows()} * pattern->columns(); }
   // Made once for each station and kind.
-  const std::vector<ReferenceHit>& reference(std::size_t station, bool noisy) const;
+  const std::vector<ReferenceHit>& reference(std::size_t station, bool noisy, bool limited = false) const;
 };
 
 // three-walls, four-walls, boiler-house. Made once.

@@ -125,7 +125,31 @@ class RayTest {
       cell[axis] = inside ? static_cast<std::uint32_t>(scaled) : 0;
     }
     if (inside) hit.voxel = grid.find(morton_encode(cell[0], cell[1], cell[2]));
+    if (hit.voxel == no_voxel || !s_.limits || !s_.limits->enabled()) return;
+    hold_to_limits(hit);
+    if (hit.dropped.points > 0) hit.voxel = no_voxel;
   }
+
+  // By angle, length and standard deviation themselves.
+  void hold_to_limits(ReferenceHit& hit) const {
+    const LimitModel& model = *s_.limits;
+    const LimitModel::Limits& limits = model.meshes[s_.scene->mesh_of(hit.triangle)];
+    const double cosine = -dot(hit.normal, direction_of(hit)), incidence = std::acos(std::min(cosine, 1.0));
+    const double axis = (model.exit_diameter + model.divergence * hit.t) / cosine;
+    const auto hold = [&](double value, double largest) -> std::uint64_t {
+      hit.limit_distance = std::min(hit.limit_distance, std::abs(value - largest) / largest);
+      return value > largest ? 1 : 0;
+    };
+    if (limits.least_cosine_square > 0)
+      hit.dropped.incidence = hold(incidence, std::acos(std::sqrt(static_cast<double>(limits.least_cosine_square))));
+    if (limits.largest_footprint_square > 0)
+      hit.dropped.footprint = hold(axis, std::sqrt(static_cast<double>(limits.largest_footprint_square)));
+    if (limits.largest_sigma > 0)
+      hit.dropped.noise = hold(model_sigma(*model.noise, hit.t, hit.reflectivity), limits.largest_sigma);
+    hit.dropped.points = hit.dropped.incidence + hit.dropped.footprint + hit.dropped.noise > 0 ? 1 : 0;
+  }
+
+  Vec3 direction_of(const ReferenceHit& hit) const { return unit(hit.point - origin_); }
 
   const TraceScene& s_;
   const TraceStation& station_;

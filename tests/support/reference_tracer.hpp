@@ -17,11 +17,14 @@ struct ReferenceHit {
   double range = 0;  // with it
   double reflectivity = 0;
   Vec3 point, normal;
-  std::uint32_t voxel = no_voxel;
+  std::uint32_t voxel = no_voxel;  // no_voxel too where the point misses a limit
+  DroppedPoints dropped;           // for what it would be: counted where the point lies in a surveyed voxel
   // How little would have to move for the answer to be another: metres from the ray to the nearest edge of a triangle
   // that it hits or passes, or to an end of the range; to another surface behind the hit; and from the point to its
   // nearest voxel face.
   double edge_distance = 1e300, gap = 1e300, face_distance = 1e300;
+  // And relative to a limit, how near the point comes to it.
+  double limit_distance = 1e300;
 };
 
 class ReferenceTracer {

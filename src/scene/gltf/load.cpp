@@ -34,6 +34,7 @@ struct Job {
   std::optional<Role> role;  // empty: nothing says
   double diffuse = 0;
   std::uint32_t weight = 1;
+  double detail_mm = 0, accuracy_mm = 0;  // 0: any
   const MaterialInfo* material = nullptr;
 };
 
@@ -127,13 +128,18 @@ class Loader {
       const auto& primitives = file_.model().meshes[static_cast<std::size_t>(mesh.mesh)].primitives;
       for (std::size_t p = 0; p < primitives.size(); ++p) {
         const MaterialInfo& material = materials_.get(primitives[p].material);
-        Job job{&mesh, p, mesh.pattern_role, 0, 1, &material};
+        Job job{.placed = &mesh, .primitive = p, .role = mesh.pattern_role, .material = &material};
         std::optional<std::uint32_t> weight = mesh.pattern_weight;
+        std::optional<double> detail = mesh.pattern_detail_mm, accuracy = mesh.pattern_accuracy_mm;
         for (const Marks* marks : {&mesh.marks, &mesh_marks, &material.marks}) {
           if (!job.role) job.role = marks->role;
           if (!weight) weight = marks->weight;
+          if (!detail) detail = marks->detail_mm;
+          if (!accuracy) accuracy = marks->accuracy_mm;
         }
         job.weight = weight.value_or(1);
+        job.detail_mm = detail.value_or(0);
+        job.accuracy_mm = accuracy.value_or(0);
         const std::optional<double> given[] = {mesh.marks.diffuse, mesh_marks.diffuse, material.marks.diffuse,
                                                material.luminance};
         const auto first = std::ranges::find_if(given, [](const auto& value) { return value.has_value(); });
@@ -164,8 +170,13 @@ class Loader {
     }
     raw_.ranges.push_back({static_cast<std::uint32_t>(raw_.triangles.size()),
                            static_cast<std::uint32_t>(primitive->triangles.size() * instances), job.material->index});
-    raw_.meshes.push_back({job.placed->name, *job.role, job.diffuse, raw_.ranges.back().triangle_count, job.weight,
-                           job.placed->door, job.placed->station_area});
+    raw_.meshes.push_back({.name = job.placed->name,
+                           .role = *job.role,
+                           .diffuse = job.diffuse,
+                           .triangle_count = raw_.ranges.back().triangle_count,
+                           .weight = job.weight,
+                           .detail_m = job.detail_mm * 1e-3,
+                           .accuracy_m = job.accuracy_mm * 1e-3});
     const std::size_t first = raw_.positions.size();
     for (const glm::dmat4& world_from_mesh : job.placed->world_from_mesh)
       append(*primitive, *job.material, world_from_mesh);

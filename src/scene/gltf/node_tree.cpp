@@ -86,6 +86,18 @@ Patterns<bool> name_patterns(const std::vector<std::string>& patterns) {
   return names;
 }
 
+// "detail" or "accuracy".
+Patterns<double> length_patterns(const std::vector<std::pair<std::string, double>>& lengths_mm, const char* what) {
+  Patterns<double> lengths;
+  for (const auto& [pattern, length] : lengths_mm) {
+    if (!(std::isfinite(length) && length > 0))
+      throw Error(Errc::invalid_argument, std::string("the ") + what + " of " + quoted(pattern) + " is " +
+                                              std::to_string(length) + " mm; it must be above 0");
+    lengths.add(pattern, length);
+  }
+  return lengths;
+}
+
 std::string node_name(const tinygltf::Model& model, int index) {
   const tinygltf::Node& node = model.nodes[static_cast<std::size_t>(index)];
   if (!node.name.empty()) return node.name;
@@ -222,6 +234,15 @@ Marks read_marks(const File& file, const char* array, int index, const std::stri
                            "; it must be a whole number from 1 to 255");
     marks.weight = weight->get<std::uint32_t>();
   }
+  const auto length = [&](const char* key, std::optional<double>& target) {
+    const auto value = object.find(key);
+    if (value == object.end()) return;
+    if (!value->is_number() || !(value->get<double>() > 0))
+      throw file.malformed(where + "." + key + " is " + quoted(value->dump()) + "; it must be a number above 0");
+    target = value->get<double>();
+  };
+  length("detail_mm", marks.detail_mm);
+  length("accuracy_mm", marks.accuracy_mm);
   return marks;
 }
 
@@ -233,15 +254,19 @@ std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& opti
     glm::dmat4 world_from_parent;
     std::optional<Role> pattern_role;
     std::optional<std::uint32_t> pattern_weight;
+    std::optional<double> pattern_detail_mm, pattern_accuracy_mm;
     Marks marks;
     bool door = false, station_area = false;
   };
   std::vector<Visit> stack;  // an own stack: node trees may be deeper than the thread's
   const std::vector<int> roots = root_nodes(file, options);
-  for (auto it = roots.rbegin(); it != roots.rend(); ++it) stack.push_back({*it, -1, survey_from_gltf, {}, {}, {}});
+  for (auto it = roots.rbegin(); it != roots.rend(); ++it)
+    stack.push_back({*it, -1, survey_from_gltf, {}, {}, {}, {}, {}});
   Patterns<Role> roles = role_patterns(options);
   Patterns<std::uint32_t> weights = weight_patterns(options);
   Patterns<bool> doors = name_patterns(options.doors), station_areas = name_patterns(options.station_area);
+  Patterns<double> details = length_patterns(options.details_mm, "detail"),
+                   accuracies = length_patterns(options.accuracies_mm, "accuracy");
   std::vector<PlacedMesh> placed;
   std::vector<std::string> names;
   std::vector<bool> visited(model.nodes.size());
@@ -264,10 +289,14 @@ std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& opti
     if (const auto weight = weights.find(name)) visit.pattern_weight = weight;
     visit.door = doors.find(name).value_or(visit.door);
     visit.station_area = station_areas.find(name).value_or(visit.station_area);
+    if (const auto detail = details.find(name)) visit.pattern_detail_mm = detail;
+    if (const auto accuracy = accuracies.find(name)) visit.pattern_accuracy_mm = accuracy;
     const Marks own = read_marks(file, "nodes", visit.node, where);
     if (own.role) visit.marks.role = own.role;
     if (own.diffuse) visit.marks.diffuse = own.diffuse;
     if (own.weight) visit.marks.weight = own.weight;
+    if (own.detail_mm) visit.marks.detail_mm = own.detail_mm;
+    if (own.accuracy_mm) visit.marks.accuracy_mm = own.accuracy_mm;
     const glm::dmat4 world_from_node = visit.world_from_parent * local_transform(file, node, where);
     if (!finite(world_from_node)) throw file.malformed(where + ": its transform is not finite");
     if (node.mesh >= 0) {
@@ -281,6 +310,8 @@ std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& opti
                       instance_transforms(file, visit.node, where),
                       visit.pattern_role,
                       visit.pattern_weight,
+                      visit.pattern_detail_mm,
+                      visit.pattern_accuracy_mm,
                       visit.door,
                       visit.station_area,
                       visit.marks};
@@ -291,13 +322,16 @@ std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& opti
       placed.push_back(std::move(mesh));
     }
     for (auto it = node.children.rbegin(); it != node.children.rend(); ++it)
-      stack.push_back({*it, visit.node, world_from_node, visit.pattern_role, visit.pattern_weight, visit.marks,
-                       visit.door, visit.station_area});
+      stack.push_back({*it, visit.node, world_from_node, visit.pattern_role, visit.pattern_weight,
+                       visit.pattern_detail_mm, visit.pattern_accuracy_mm, visit.marks, visit.door,
+                       visit.station_area});
   }
   roles.check(names);
   weights.check(names);
   doors.check(names);
   station_areas.check(names);
+  details.check(names);
+  accuracies.check(names);
   if (skinned > 0)
     notes.push_back(std::to_string(skinned) + " skinned meshes stand as modelled: skins are not applied");
   return placed;

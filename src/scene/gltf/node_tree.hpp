@@ -18,8 +18,10 @@ struct Marks {
   std::optional<Role> role;
   std::optional<double> diffuse;
   std::optional<std::uint32_t> weight;
+  std::optional<double> detail_mm, accuracy_mm;
 };
-// Throws Error malformed_file for an unknown role, a diffuse coefficient outside [0, 1] or a weight outside 1 … 255.
+// Throws Error malformed_file for an unknown role, a diffuse coefficient outside [0, 1], a weight outside 1 … 255, a
+// detail or accuracy that is not above 0.
 Marks read_marks(const File& file, const char* array, int index, const std::string& name);
 
 // A node that carries a mesh.
@@ -29,8 +31,9 @@ struct PlacedMesh {
   std::vector<glm::dmat4> world_from_mesh;  // affine, to the survey frame; several with EXT_mesh_gpu_instancing
   std::optional<Role> pattern_role;         // by the nearest node whose name matches a pattern
   std::optional<std::uint32_t> pattern_weight;
+  std::optional<double> pattern_detail_mm, pattern_accuracy_mm;
   bool door = false, station_area = false;  // whether a pattern says so of it or of a node above it
-  Marks marks = {};  // by the nearest node that has them
+  Marks marks = {};                         // by the nearest node that has them
 };
 
 // Throws Error: malformed_file (cycles, nodes with two parents, matrices that are not finite or not affine),

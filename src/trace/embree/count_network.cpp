@@ -18,8 +18,9 @@ namespace {
 
 struct TileSums {
   std::uint64_t rays = 0, points = 0, points_on_surveyed = 0;
+  DroppedPoints dropped = {};
   friend TileSums operator+(const TileSums& a, const TileSums& b) {
-    return {a.rays + b.rays, a.points + b.points, a.points_on_surveyed + b.points_on_surveyed};
+    return {a.rays + b.rays, a.points + b.points, a.points_on_surveyed + b.points_on_surveyed, a.dropped + b.dropped};
   }
 };
 
@@ -32,6 +33,7 @@ TileSums count_tile(const StationRays& station_rays, const TraceStation& station
   station_rays.caster().cast(rays);
 
   const Surface& surface = station_rays.surface();
+  const bool limited = station_rays.limited();
   TileSums sums;
   sums.rays = rays.size;
   voxels.clear();
@@ -44,7 +46,13 @@ TileSums count_tile(const StationRays& station_rays, const TraceStation& station
       ++sums.points;
       if (!surface.surveyed(triangle)) continue;
       const float range = station_rays.range(rays, slot, first + column, station.place);
-      voxels.add(StationRays::point(rays, slot, range));
+      const Float3 point = StationRays::point(rays, slot, range);
+      const DroppedPoints dropped = limited ? station_rays.dropped(rays, slot) : DroppedPoints{};
+      if (dropped.points == 0) {
+        voxels.add(point);
+      } else if (station_rays.grid().rank_of(point) != no_voxel) {
+        sums.dropped = sums.dropped + dropped;
+      }
     }
   }
   voxels.each_rank([&](std::uint32_t rank) {
@@ -70,6 +78,7 @@ NetworkCounts count_network(const StationRays& rays, std::span<const TraceStatio
   PointBuckets points_found(rays.grid().size());
   std::uint64_t traced = 0;
   std::vector<std::uint64_t> points(options.skip ? 0 : station_count), on_surveyed(station_count);
+  std::vector<DroppedPoints> dropped(rays.limited() ? station_count : 0);
   bool cancelled = false;
   for (std::size_t s = 0; s < stations.size() && !cancelled; ++s) {
     const TraceStation& station = stations[s];
@@ -98,12 +107,14 @@ NetworkCounts count_network(const StationRays& rays, std::span<const TraceStatio
     traced += sums.rays;
     if (!options.skip) points[station.place] = sums.points;
     on_surveyed[station.place] = sums.points_on_surveyed;
+    if (rays.limited()) dropped[station.place] = sums.dropped;
   }
 
   NetworkCounts result = reduce_field(field.count, field.stations, station_count, goal_density, rays.grid().weights());
   result.rays = traced;
   result.points = std::move(points);
   result.points_on_surveyed = std::move(on_surveyed);
+  result.dropped = std::move(dropped);
   result.cancelled = cancelled;
   result.trace_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
   return result;

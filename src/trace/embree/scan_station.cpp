@@ -50,8 +50,11 @@ void scan_tile(const StationRays& station_rays, const TraceStation& station, con
     if (outputs & Tracer::primitive) chunk.primitive[k] = triangle;
     if (outputs & Tracer::barycentric)
       chunk.barycentric[k] = {static_cast<float>(weights[0]), static_cast<float>(weights[1])};
-    if (outputs & Tracer::voxel)
-      chunk.voxel[k] = hit && surface.surveyed(triangle) ? station_rays.grid().rank_of(point) : no_voxel;
+    if (outputs & Tracer::voxel) {
+      const bool counts =
+          hit && surface.surveyed(triangle) && !(station_rays.limited() && station_rays.dropped(rays, slot).points > 0);
+      chunk.voxel[k] = counts ? station_rays.grid().rank_of(point) : no_voxel;
+    }
   }
 }
 

@@ -8,6 +8,7 @@
 #include <limits>
 #include <memory>
 
+#include "trace/embree/point_judge.hpp"
 #include "trace/embree/range_noise.hpp"
 #include "trace/embree/ray_caster.hpp"
 #include "trace/embree/surface.hpp"
@@ -30,6 +31,7 @@ class StationRays {
         grid_(scene.grid),
         pattern_(scene.pattern),
         noise_(scene.noise),
+        judge_(scene.limits),
         planes_(std::make_shared<Planes>(scene.scene)),
         caster_(scene.scene, planes_),
         surface_(scene.scene, planes_),
@@ -81,6 +83,18 @@ class StationRays {
     return noise_.displaced(t, surface_.reflectivity(triangle, rays.origin, d, t), ray, place);
   }
 
+  bool limited() const { return judge_.enabled(); }
+  // What a point is dropped for; nothing where it counts. REQUIRES: limited(); rays.primitive[slot] is a hit on a
+  // surveyed mesh.
+  DroppedPoints dropped(const RayBundle& rays, std::uint32_t slot) const {
+    const std::uint32_t triangle = rays.primitive[slot];
+    const Float3 d{rays.x[slot], rays.y[slot], rays.z[slot]};
+    const float t = rays.t[slot];
+    const std::array<double, 3> normal = surface_.normal_at(triangle, rays.origin, d, t);
+    const double cosine = normal[0] * d.x + normal[1] * d.y + normal[2] * d.z;
+    return judge_.missed(surface_.mesh(triangle), cosine, t, surface_.reflectivity(triangle, d, normal));
+  }
+
   static Float3 point(const RayBundle& rays, std::uint32_t slot, float range) {
     return {rays.origin.x + range * rays.x[slot], rays.origin.y + range * rays.y[slot],
             rays.origin.z + range * rays.z[slot]};
@@ -91,6 +105,7 @@ class StationRays {
   std::shared_ptr<const VoxelGrid> grid_;
   std::shared_ptr<const RayPattern> pattern_;
   RangeNoise noise_;
+  PointJudge judge_;
   std::shared_ptr<const Planes> planes_;
   RayCaster caster_;
   Surface surface_;

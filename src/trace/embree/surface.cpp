@@ -61,10 +61,12 @@ std::array<double, 3> Surface::normal(std::uint32_t triangle, const Float3& d,
   return {n.x, n.y, n.z};
 }
 
+std::array<double, 3> Surface::normal_at(std::uint32_t triangle, const Float3& o, const Float3& d, float t) const {
+  return normal(triangle, d, scene_->normals.empty() ? std::array<double, 2>{} : barycentric(triangle, o, d, t));
+}
+
 float Surface::reflectivity(std::uint32_t triangle, const Float3& o, const Float3& d, float t) const {
-  const std::array<double, 2> weights =
-      scene_->normals.empty() ? std::array<double, 2>{} : barycentric(triangle, o, d, t);
-  return reflectivity(triangle, d, normal(triangle, d, weights));
+  return reflectivity(triangle, d, normal_at(triangle, o, d, t));
 }
 
 }  // namespace vantage

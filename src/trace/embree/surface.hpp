@@ -17,12 +17,15 @@ class Surface {
  public:
   Surface(std::shared_ptr<const SceneData> scene, std::shared_ptr<const Planes> planes);
 
+  std::uint32_t mesh(std::uint32_t triangle) const { return mesh_[triangle]; }
   bool surveyed(std::uint32_t triangle) const { return (surveyed_[triangle / 64] >> (triangle % 64) & 1) != 0; }
 
   // Weights of the triangle's second and third vertex at distance t.
   std::array<double, 2> barycentric(std::uint32_t triangle, const Float3& o, const Float3& d, float t) const;
   // Unit normal turned against d: of the vertices, interpolated, or of the plane where they have none or cancel out.
   std::array<double, 3> normal(std::uint32_t triangle, const Float3& d, const std::array<double, 2>& weights) const;
+  // The same at distance t.
+  std::array<double, 3> normal_at(std::uint32_t triangle, const Float3& o, const Float3& d, float t) const;
   // R·(I·(−N)), never below 0.
   float reflectivity(std::uint32_t triangle, const Float3& d, const std::array<double, 3>& normal) const {
     const double facing = -(normal[0] * d.x + normal[1] * d.y + normal[2] * d.z);

@@ -335,6 +335,7 @@ void SampledVoxelCounter::finish() {
     const Ray& ray = listed_[cast_ray_[slot]];
     const float range = rays_.range(bundle_, slot, rays_.ray(ray.row, ray.column), station_->place);
     if (!lies_in(rays_.grid(), StationRays::point(bundle_, slot, range), voxels_.cell(first_ + i))) continue;
+    if (rays_.limited() && rays_.dropped(bundle_, slot).points > 0) continue;
     if (counts_[i] != std::numeric_limits<std::uint32_t>::max()) ++counts_[i];
     if (!masks_.empty()) masks_[i] |= bit;
   }

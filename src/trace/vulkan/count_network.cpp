@@ -121,7 +121,8 @@ class VulkanTracer::ExactCount {
   // Counts are sums, so the parts of a submission need not wait for each other.
   void record_part(const Recorder& r, const CountPart& part, std::size_t k) {
     if (headroom_.clamp_before(plan_.rays_of({&part, 1}))) record_clamp(r);
-    const ComputePipeline& pipeline = t_.kernels_.get(Kernel::count, {t_.noise(), options_.masks, options_.skip});
+    const ComputePipeline& pipeline =
+        t_.kernels_.get(Kernel::count, {t_.noise(), t_.limits(), options_.masks, options_.skip});
     const CountPush push = count_push(part, k);
     if (options_.skip) {
       r.dispatch_indirect(pipeline, push, t_.tile_dispatch_, k * dispatch_bytes);
@@ -159,7 +160,7 @@ class VulkanTracer::ExactCount {
     CountPush push{};
     push.counts = t_.counts_.address();
     push.masks = mask_words_ ? t_.masks_.address() + std::uint64_t{station.place / 32} * voxels_ * word : 0;
-    push.station_counters = t_.station_counters_.address();
+    push.counters = t_.station_counters_.address();
     push.origin = {station.origin.x, station.origin.y, station.origin.z};
     push.place = station.place;
     push.first_row = part.first_row;
@@ -185,9 +186,14 @@ class VulkanTracer::ExactCount {
   void read_counters(NetworkCounts& result) const {
     result.points_on_surveyed.assign(station_counts_[0], 0);
     if (!options_.skip) result.points.assign(station_counts_[0], 0);
+    if (t_.limits()) result.dropped.assign(station_counts_[0], {});
     for (const TraceStation& each : stations_) {
-      if (!options_.skip) result.points[each.place] = counters_[2 * each.place];
-      result.points_on_surveyed[each.place] = counters_[2 * each.place + 1];
+      const std::uint64_t* const own = counters_.data() + std::size_t{station_counters} * each.place;
+      if (!options_.skip) result.points[each.place] = own[counter_points];
+      result.points_on_surveyed[each.place] = own[counter_counted];
+      if (t_.limits())
+        result.dropped[each.place] = {own[counter_dropped], own[counter_misses], own[counter_misses + 1],
+                                      own[counter_misses + 2]};
     }
     result.rays = options_.skip ? tile_rays_ : plan_.all_rays();
   }
@@ -215,7 +221,7 @@ class VulkanTracer::ExactCount {
   std::optional<Traversal::TilePass> tile_pass_;
   // As they come back from the device.
   std::vector<std::uint32_t> totals_;
-  std::array<std::uint64_t, 2 * most_stations> counters_{};  // points, and points that count, of every place
+  std::array<std::uint64_t, std::size_t{station_counters} * most_stations> counters_{};  // of every place
   std::uint64_t tile_rays_ = 0;
 };
 

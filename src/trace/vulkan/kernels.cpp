@@ -19,9 +19,9 @@ struct Source {
 
 Source source_of(Kernel kernel, const Traversal& traversal) {
   switch (kernel) {
-    case Kernel::count: return {"count", traversal.shaders().count, sizeof(CountPush), 3};
-    case Kernel::scan: return {"scan", traversal.shaders().scan, sizeof(ScanPush), 1};
-    case Kernel::sample_trace: return {"sample trace", traversal.shaders().sample_trace, sizeof(SamplePush), 2};
+    case Kernel::count: return {"count", traversal.shaders().count, sizeof(CountPush), 4};
+    case Kernel::scan: return {"scan", traversal.shaders().scan, sizeof(ScanPush), 2};
+    case Kernel::sample_trace: return {"sample trace", traversal.shaders().sample_trace, sizeof(SamplePush), 3};
     case Kernel::tile_pass: return {"tile pass", traversal.tile_pass().value().shader, sizeof(TilePush), 0};
     case Kernel::tiles: return {"tiles", shaders::tiles, sizeof(TilePush), 0};
     case Kernel::tile_list: return {"tile list", shaders::tile_list, sizeof(TilePush), 0};
@@ -37,7 +37,7 @@ Source source_of(Kernel kernel, const Traversal& traversal) {
 
 }  // namespace
 
-const ComputePipeline& Kernels::get(Kernel kernel, std::array<bool, 3> constants) {
+const ComputePipeline& Kernels::get(Kernel kernel, std::array<bool, 4> constants) {
   ComputePipeline& pipeline = pipelines_[{kernel, constants}];
   if (!pipeline) {
     const Source source = source_of(kernel, traversal_);

@@ -35,13 +35,13 @@ class Kernels {
 
   // `constants` are the kernel's specialization constants, in the order of their constant_id. REQUIRES: for tile_pass,
   // an engine that has one.
-  const ComputePipeline& get(Kernel kernel, std::array<bool, 3> constants = {});
+  const ComputePipeline& get(Kernel kernel, std::array<bool, 4> constants = {});
 
  private:
   const Device& device_;
   const Traversal& traversal_;
   const TraceSet& set_;
-  std::map<std::pair<Kernel, std::array<bool, 3>>, ComputePipeline> pipelines_;
+  std::map<std::pair<Kernel, std::array<bool, 4>>, ComputePipeline> pipelines_;
 };
 
 }  // namespace vantage::vulkan

@@ -239,8 +239,8 @@ class VulkanTracer::SampledCount {
     r.shader_after_shader();
     r.dispatch(kernels.get(Kernel::sample_arguments, {true}), push, 1);
     r.shader_after_shader();
-    r.dispatch_indirect(kernels.get(Kernel::sample_trace, {t_.noise(), job_.masks}), push, t_.sample_control_,
-                        dispatch);
+    r.dispatch_indirect(kernels.get(Kernel::sample_trace, {t_.noise(), t_.limits(), job_.masks}), push,
+                        t_.sample_control_, dispatch);
   }
 
   SamplePush push_of(const Batch& batch, const SampleChunk& chunk, std::size_t k) const {

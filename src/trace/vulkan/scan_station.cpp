@@ -42,7 +42,7 @@ void VulkanTracer::scan(const TraceStation& station, std::uint64_t first_ray, st
   want(voxel, chunk.voxel, push.voxel, "scan voxel");
 
   // The arrays hold rays from first_ray on; a part's rows are counted from there, so its outputs move along.
-  const ComputePipeline& pipeline = kernels_.get(Kernel::scan, {noise()});
+  const ComputePipeline& pipeline = kernels_.get(Kernel::scan, {noise(), limits()});
   const auto first_row = static_cast<std::uint32_t>(first_ray / columns);
   for (std::uint32_t row = 0; row < rows; row += rows_per_dispatch()) {
     ScanPush part = push;

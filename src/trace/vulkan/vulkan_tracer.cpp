@@ -96,29 +96,61 @@ void VulkanTracer::upload_scene() {
   p.first_zenith = static_cast<float>(pattern.first_zenith);
   p.first_azimuth = static_cast<float>(pattern.first_azimuth);
   p.has_normals = scene_.scene->normals.empty() ? 0 : 1;
-  if (noise()) {
-    upload_noise();
+  if (noise()) upload_noise();
+  if (limits()) upload_limits();
+  if (noise() || limits()) {
     upload_shading();
   } else {
     write_parameters();
   }
 }
 
+void VulkanTracer::upload_sigma(const NoiseModel& model) {
+  sigma_ = to_device<float>(model.sigma, "sigma table");
+  parameters_.sigma = sigma_.address();
+  parameters_.noise_min_range = model.min_range;
+  parameters_.noise_inverse_span = model.inverse_span;
+}
+
 void VulkanTracer::upload_noise() {
   const NoiseModel& model = *scene_.noise;
-  sigma_ = to_device<float>(model.sigma, "sigma table");
+  upload_sigma(model);
   normal_table_ = to_device<float>(normal_table(), "normal table");
   reaches_ = noise_reaches(model);
   noise_reaches_ = to_device<float>(reaches_, "noise reaches");
   TraceParameters& p = parameters_;
-  p.sigma = sigma_.address();
   p.noise_reaches = noise_reaches_.address();
   p.normal_table = normal_table_.address();
   p.noise_reach = model.reach;
-  p.noise_min_range = model.min_range;
-  p.noise_inverse_span = model.inverse_span;
   p.seed_low = static_cast<std::uint32_t>(model.seed);
   p.seed_high = static_cast<std::uint32_t>(model.seed >> 32);
+}
+
+// Meshes that ask for the same share one entry.
+void VulkanTracer::upload_limits() {
+  const LimitModel& model = *scene_.limits;
+  const SceneData& scene = *scene_.scene;
+  std::vector<LimitModel::Limits> distinct;
+  std::vector<PointLimits> limits;
+  std::vector<std::uint32_t> of_triangle(scene.triangles.size());
+  for (std::size_t m = 0; m < scene.ranges.size(); ++m) {
+    const LimitModel::Limits& own = model.meshes[m];
+    const auto found = std::ranges::find(distinct, own);
+    const auto index = static_cast<std::uint32_t>(found - distinct.begin());
+    if (found == distinct.end()) {
+      distinct.push_back(own);
+      limits.push_back({own.least_cosine_square, own.largest_footprint_square, own.largest_sigma});
+    }
+    std::fill_n(of_triangle.begin() + scene.ranges[m].first_triangle, scene.ranges[m].triangle_count, index);
+  }
+  limits_ = to_device<PointLimits>(limits, "point limits");
+  limits_of_ = to_device<std::uint32_t>(of_triangle, "limits of triangles");
+  if (!noise() && model.noise) upload_sigma(*model.noise);
+  TraceParameters& p = parameters_;
+  p.limits = limits_.address();
+  p.limits_of = limits_of_.address();
+  p.exit_diameter = model.exit_diameter;
+  p.divergence = model.divergence;
 }
 
 void VulkanTracer::upload_shading() {

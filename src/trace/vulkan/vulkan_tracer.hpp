@@ -60,11 +60,14 @@ class VulkanTracer final : public Tracer {
   std::unique_ptr<Traversal> build_traversal(const VulkanEngine& engine);
   void upload_scene();
   void upload_noise();
+  void upload_sigma(const NoiseModel& model);
+  void upload_limits();
   void upload_shading();
   void upload_sample(std::span<const std::uint32_t> sample, std::span<const std::vector<TraceStation>> networks);
   double sample_reach(std::span<const std::vector<TraceStation>> networks) const;
   void write_parameters() { commands_.upload(parameters_buffer_, &parameters_, sizeof parameters_); }
   bool noise() const { return scene_.noise && scene_.noise->enabled(); }
+  bool limits() const { return scene_.limits && scene_.limits->enabled(); }
   std::uint64_t rays_per_dispatch() const {
     if (scene_.max_rays_per_dispatch > 0) return scene_.max_rays_per_dispatch;
     return info_.software ? software_rays_per_dispatch : hardware_rays_per_dispatch;
@@ -127,6 +130,7 @@ class VulkanTracer final : public Tracer {
   Kernels kernels_;
   Buffer sin_zenith_, cos_zenith_, sin_azimuth_, cos_azimuth_, bricks_, slots_;
   Buffer positions_, normals_, triangles_, diffuse_, sigma_, noise_reaches_, normal_table_;  // filled when first needed
+  Buffer limits_, limits_of_;                                                                // where points have any
   Buffer weights_;  // of voxels, where they have any
   Buffer counts_, masks_, station_counters_, totals_, station_counts_;
   Buffer tile_far_, tile_list_, tile_dispatch_, tile_rays_, tile_starts_;

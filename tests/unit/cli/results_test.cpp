@@ -78,6 +78,30 @@ TEST_F(Results, SkippingAndFullSamplesChangeNoCoverage) {
   EXPECT_EQ(sampled["sample"], all["voxels"]);
 }
 
+TEST_F(Results, PointsThatAreNotGoodEnoughAreToldByLimit) {
+  const auto all = json_of(evaluate({})),
+             good = json_of(evaluate({"--incidence", "40", "--detail", "*=15", "--beam", "0.5,6"}));
+  EXPECT_TRUE(all["dropped"].is_null());
+  EXPECT_TRUE(all["stations"][0]["dropped"].is_null());
+  EXPECT_GT(good["dropped"]["incidence"], 0);
+  EXPECT_EQ(good["dropped"]["noise"], 0);
+  std::uint64_t dropped = 0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const auto lost = good["stations"][k]["dropped"]["points"].get<std::uint64_t>();
+    EXPECT_EQ(good["stations"][k]["points_on_surveyed"].get<std::uint64_t>() + lost,
+              all["stations"][k]["points_on_surveyed"]);
+    dropped += lost;
+  }
+  EXPECT_EQ(good["dropped"]["points"], dropped);
+  EXPECT_EQ(good["options"]["incidence"], 40);
+  EXPECT_EQ(good["options"]["beam"][1], 6);
+  EXPECT_TRUE(all["options"]["detail"].empty());
+  const auto sampled =
+      json_of(evaluate({"--incidence", "40", "--detail", "*=15", "--beam", "0.5,6", "--sample", "100%"}));
+  EXPECT_EQ(sampled["coverage"], good["coverage"]);
+  EXPECT_TRUE(sampled["dropped"].is_null());
+}
+
 TEST_F(Results, AWantedErrorIsReached) {
   const auto result = json_of({"evaluate", scene_, "--engine", "embree", "--station", "8,0,1.5", "--step", "0.5",
                                "--spacing", "0.05", "--error", "0.01"});

@@ -90,7 +90,9 @@ TEST_F(Usage, NumbersMustMakeSense) {
       {"--horizontal", "0"},      {"--vertical", "400"},  {"--seed", "-3"},      {"--seed", "1.5"},
       {"--engine", "cuda"},       {"--diffuse", "2"},     {"--station", "1"},    {"--station", "1,2,x"},
       {"--scanner", "nokia3310"}, {"--noise", "loud"},    {"--sample", "0"},     {"--error", "0"},
-      {"--device", "99"},         {"--weight", "wall"},   {"--weight", "*=0"},   {"--weight", "*=256"}};
+      {"--device", "99"},         {"--weight", "wall"},   {"--weight", "*=0"},   {"--weight", "*=256"},
+      {"--detail", "wall"},       {"--detail", "*=0"},    {"--accuracy", "*=x"}, {"--incidence", "0"},
+      {"--incidence", "91"},      {"--beam", "0.5"}};
   for (const auto& [option, value] : cases) {
     SCOPED_TRACE(option + " " + value);
     auto arguments = coarse("evaluate", {});
@@ -109,6 +111,17 @@ TEST_F(Usage, NumbersMustMakeSense) {
 TEST_F(Usage, WeightsNameWhatTheFileHas) {
   expect_refused(run_program({"evaluate", scene_, "--station", "8,0,1.5", "--weight", "roof=2"}), 2,
                  "\"roof\" matches no node");
+}
+
+TEST_F(Usage, LimitsOfPointsNeedAScannerThatIsKnown) {
+  const std::vector<std::string> base{"evaluate", scene_, "--station", "8,0,1.5", "--engine", "embree"};
+  const auto with = [&](const std::vector<std::string>& more) {
+    auto all = base;
+    all.insert(all.end(), more.begin(), more.end());
+    return run_program(all);
+  };
+  expect_refused(with({"--noise", "off", "--detail", "*=10"}), 2, "the beam of the scanner");
+  expect_refused(with({"--noise", "off", "--accuracy", "*=1"}), 2, "no noise table");
 }
 
 TEST_F(Usage, VoxelsSmallerThanTheSpacingNameTheSmallestSize) {

@@ -61,8 +61,10 @@ const std::vector<Change<Scanner>> kScanner{
     {"height_m", [](Scanner& s) { s.height_m = 2; }},
     {"min_range_m", [](Scanner& s) { s.min_range_m = 0.2; }},
     {"max_range_m", [](Scanner& s) { s.max_range_m = 99; }},
-    {"noise", [](Scanner& s) { s.noise = rtc360_noise(); }}};
-static_assert(member_count<Scanner>() == 11);
+    {"noise", [](Scanner& s) { s.noise = rtc360_noise(); }},
+    {"beam_divergence", [](Scanner& s) { s.beam_divergence = Angle::radians(3e-4); }},
+    {"exit_diameter_m", [](Scanner& s) { s.exit_diameter_m = 0.004; }}};
+static_assert(member_count<Scanner>() == 13);
 
 // Of the file that is read; a scene's own fingerprint tells runs apart.
 const std::vector<Change<SceneOptions>> kScene{
@@ -77,6 +79,16 @@ const std::vector<Change<SceneOptions>> kScene{
      false},
     {"doors", [](SceneOptions& o) { o.doors = {"door*"}; }, false},
     {"station_area", [](SceneOptions& o) { o.station_area = {"floor"}; }, false},
+    {"details_mm",
+     [](SceneOptions& o) {
+       o.details_mm = {{"wall*", 5}};
+     },
+     false},
+    {"accuracies_mm",
+     [](SceneOptions& o) {
+       o.accuracies_mm = {{"wall*", 2}};
+     },
+     false},
     {"scene_index", [](SceneOptions& o) { o.scene_index = 0; }, false},
     {"default_diffuse", [](SceneOptions& o) { o.default_diffuse = 0.25; }, false},
     {"allow_outside", [](SceneOptions& o) { o.allow_outside = true; }, false},
@@ -89,11 +101,12 @@ const std::vector<Change<SimulatorConfig>> kSimulation{
     {"device_index", [](SimulatorConfig& c) { c.device_index = 0; }, false},
     {"user_size_m", [](SimulatorConfig& c) { c.user_size_m = 0.4; }},
     {"point_spacing_m", [](SimulatorConfig& c) { c.point_spacing_m = 0.1; }},
+    {"max_incidence", [](SimulatorConfig& c) { c.max_incidence = Angle::degrees(70); }},
     {"noise", [](SimulatorConfig& c) { c.noise = false; }},
     {"seed", [](SimulatorConfig& c) { c.seed = 2; }},
     {"validation", [](SimulatorConfig& c) { c.validation = true; }, false},
     {"max_rays_per_dispatch", [](SimulatorConfig& c) { c.max_rays_per_dispatch = 1000; }, false}};
-static_assert(member_count<SimulatorConfig>() == 8);
+static_assert(member_count<SimulatorConfig>() == 9);
 
 const std::vector<Change<WalkableOptions>> kWalkable{
     {"max_slope", [](WalkableOptions& o) { o.max_slope = Angle::degrees(5); }},

@@ -46,6 +46,8 @@ TEST(Presets, Rtc360) {
   EXPECT_EQ(scanner.noise.reflectivities, paper.reflectivities);
   ASSERT_EQ(scanner.noise.sigma_m.size(), paper.sigma_m.size());
   for (std::size_t k = 0; k < paper.sigma_m.size(); ++k) EXPECT_DOUBLE_EQ(scanner.noise.sigma_m[k], paper.sigma_m[k]);
+  EXPECT_DOUBLE_EQ(scanner.beam_divergence.in_radians(), 0.0005);
+  EXPECT_DOUBLE_EQ(scanner.exit_diameter_m, 0.006);
   EXPECT_EQ(load_scanner("RTC360", presets).name, scanner.name);
   EXPECT_DOUBLE_EQ(load_scanner("Rtc360@3MM", presets).zenith_step.in_radians(), 0.0003);
 }
@@ -63,6 +65,17 @@ TEST(Presets, ScannersThatDoNotLookUp) {
 TEST(Presets, PixelsPerTurn) {
   EXPECT_EQ(load_scanner("focus-x330@1/1", presets).columns(), 40960u);
   EXPECT_EQ(load_scanner("zf5016@high", presets).columns(), 10000u);
+}
+
+// The beam of every preset is known, or said to be assumed.
+TEST(Presets, HaveABeam) {
+  for (const ScannerPreset& preset : list_scanners(presets)) {
+    const Scanner scanner = load_scanner(preset.key, presets);
+    EXPECT_GT(scanner.beam_divergence.in_radians(), 1e-4) << preset.key;
+    EXPECT_LT(scanner.beam_divergence.in_radians(), 1e-3) << preset.key;
+    EXPECT_GT(scanner.exit_diameter_m, 0.002) << preset.key;
+    EXPECT_LT(scanner.exit_diameter_m, 0.01) << preset.key;
+  }
 }
 
 TEST(Presets, NamesThatAreNotThereListWhatIs) {
@@ -83,14 +96,16 @@ TEST(Presets, NamesThatAreNotThereListWhatIs) {
 TEST(Presets, EveryFigureHasASource) {
   std::ifstream in(presets);
   const auto document = nlohmann::json::parse(in);
+  const auto sourced = [](const nlohmann::json& scanner, const nlohmann::json& figure) {
+    return figure.at("source") == "assumed" || scanner["sources"].contains(figure.at("source"));
+  };
   for (const auto& [key, scanner] : document["scanners"].items()) {
     for (const auto& [name, figure] : scanner.items()) {
       if (name == "name" || name == "sources" || name == "default_setting") continue;
       if (name == "settings") {
-        for (const auto& [setting, entry] : figure.items())
-          EXPECT_TRUE(scanner["sources"].contains(entry.at("source"))) << key << setting;
+        for (const auto& [setting, entry] : figure.items()) EXPECT_TRUE(sourced(scanner, entry)) << key << setting;
       } else {
-        EXPECT_TRUE(scanner["sources"].contains(figure.at("source"))) << key << name;
+        EXPECT_TRUE(sourced(scanner, figure)) << key << name;
       }
     }
   }

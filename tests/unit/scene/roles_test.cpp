@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Roles, weights and diffuse coefficients: extras, patterns, their order, and what holds where nothing is said.
+// Roles, weights, limits of points and diffuse coefficients: extras, patterns, their order, and what holds where
+// nothing is said.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -205,6 +206,38 @@ TEST(Weights, FollowTheRulesOfRoles) {
   EXPECT_NE(message(builder, options, Errc::invalid_argument).find("window"), std::string::npos);
   for (const json& mark :
        {json{{"weight", 0}}, json{{"weight", 256}}, json{{"weight", 1.5}}, json{{"weight", "high"}}}) {
+    GlbBuilder wrong;
+    wrong.triangle("tank", mark);
+    EXPECT_NE(message(wrong, {}, Errc::malformed_file).find("\"tank\""), std::string::npos) << mark;
+  }
+}
+
+TEST(PointLimits, OfMeshesFollowTheRulesOfRoles) {
+  GlbBuilder builder;
+  builder.triangle("wall", {{"detail_mm", 20}, {"accuracy_mm", 3}});
+  builder.triangle("flange", {{"detail_mm", 8.5}});
+  builder.triangle("floor");
+  const int group = builder.node({{"name", "plant"}, {"extras", {{"vantage", {{"accuracy_mm", 1}}}}}});
+  builder.child(group, {{"name", "pump"}, {"mesh", 0}, {"translation", {50, 0, 0}}});
+  using Limits = std::map<std::string, std::pair<double, double>>;  // in millimetres
+  const auto limits = [&](const SceneOptions& options) {
+    Limits all;
+    const Scene scene = load(builder, options);
+    for (const MeshInfo& info : scene.meshes()) all[info.name] = {info.detail_m * 1e3, info.accuracy_m * 1e3};
+    return all;
+  };
+  EXPECT_EQ(limits({}), (Limits{{"wall", {20, 3}}, {"flange", {8.5, 0}}, {"floor", {0, 0}}, {"pump", {0, 1}}}));
+  SceneOptions options;
+  options.details_mm = {{"fl*", 10}, {"flange", 4}};
+  options.accuracies_mm = {{"plant", 2}};
+  EXPECT_EQ(limits(options), (Limits{{"wall", {20, 3}}, {"flange", {4, 0}}, {"floor", {10, 0}}, {"pump", {0, 2}}}));
+  EXPECT_NE(load(builder).fingerprint(), load(builder, options).fingerprint());
+
+  options.details_mm = {{"wall", 0}};
+  EXPECT_NE(message(builder, options, Errc::invalid_argument).find("the detail of \"wall\" is 0"), std::string::npos);
+  options.details_mm = {{"window", 2}};
+  EXPECT_NE(message(builder, options, Errc::invalid_argument).find("window"), std::string::npos);
+  for (const json& mark : {json{{"detail_mm", 0}}, json{{"detail_mm", "fine"}}, json{{"accuracy_mm", -1}}}) {
     GlbBuilder wrong;
     wrong.triangle("tank", mark);
     EXPECT_NE(message(wrong, {}, Errc::malformed_file).find("\"tank\""), std::string::npos) << mark;

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whether a point is worth having: by angle of incidence, footprint of the beam and range noise (docs/method.md). By
+// additions, multiplications and comparisons alone, so that every device decides alike.
+#ifndef VANTAGE_LIB_LIMITS
+#define VANTAGE_LIB_LIMITS
+#include "lib/exact.glsl"
+#include "lib/parameters.glsl"
+#include "lib/shade.glsl"
+
+uint limits_missed(uint triangle, vec3 normal, float reflectivity, vec3 direction, float t) {
+  const PointLimits limits = parameters.limits.at[parameters.limits_of.at[triangle]];
+  const float cosine = exact_dot(normal, direction);
+  precise float square = cosine * cosine;
+  uint misses = square < limits.least_cosine_square ? misses_incidence : 0u;
+  if (limits.largest_footprint_square > 0.0) {
+    precise float widened = parameters.divergence * t;
+    precise float diameter = parameters.exit_diameter + widened;
+    precise float area = diameter * diameter;
+    precise float allowed = limits.largest_footprint_square * square;
+    if (area > allowed) misses |= misses_footprint;
+  }
+  if (limits.largest_sigma > 0.0 && sigma_at(t, reflectivity) > limits.largest_sigma) misses |= misses_noise;
+  return misses;
+}
+
+#endif

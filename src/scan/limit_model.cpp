@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scan/limit_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+
+#include "scan/noise_model.hpp"
+#include "vantage/error.hpp"
+
+namespace vantage {
+namespace {
+
+// The first surveyed mesh that asks for it; null where none does.
+const MeshInfo* first_with(const SceneData& scene, double MeshInfo::*wish) {
+  const auto found = std::ranges::find_if(
+      scene.meshes, [&](const MeshInfo& mesh) { return mesh.role == Role::surveyed && mesh.*wish > 0; });
+  return found == scene.meshes.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+std::optional<Angle> incidence_limit(const SceneData& scene, const SimulatorConfig& config) {
+  if (config.max_incidence) return config.max_incidence;
+  if (first_with(scene, &MeshInfo::detail_m) || first_with(scene, &MeshInfo::accuracy_m)) return default_max_incidence;
+  return std::nullopt;
+}
+
+LimitModel make_limit_model(const SceneData& scene, const Scanner& scanner, const SimulatorConfig& config) {
+  LimitModel model;
+  const std::optional<Angle> incidence = incidence_limit(scene, config);
+  if (!incidence) return model;
+  const double degrees = incidence->in_degrees();
+  if (!(degrees > 0 && degrees <= 90 + 1e-9))
+    throw Error(Errc::invalid_argument,
+                "the largest incidence is " + std::to_string(degrees) + "°; it must be above 0° and at most 90°");
+  if (const MeshInfo* const mesh = first_with(scene, &MeshInfo::detail_m);
+      mesh && scanner.beam_divergence.in_radians() == 0 && scanner.exit_diameter_m == 0) {
+    throw Error(Errc::invalid_argument,
+                "a detail is wanted of \"" + mesh->name + "\", but the beam of the scanner \"" + scanner.name +
+                    "\" is not known: choose a scanner that states it, or give its divergence and exit diameter");
+  }
+  if (const MeshInfo* const mesh = first_with(scene, &MeshInfo::accuracy_m)) {
+    if (scanner.noise.empty())
+      throw Error(Errc::invalid_argument, "an accuracy is wanted of \"" + mesh->name + "\", but the scanner \"" +
+                                              scanner.name + "\" has no noise table: give one");
+    model.noise = std::make_shared<const NoiseModel>(make_noise_model(scanner, config.seed));
+  }
+  const double cosine = std::cos(incidence->in_radians());
+  const float least = degrees < 90 - 1e-9 ? static_cast<float>(cosine * cosine) : 0.0f;
+  model.exit_diameter = static_cast<float>(scanner.exit_diameter_m);
+  model.divergence = static_cast<float>(scanner.beam_divergence.in_radians());
+  for (const MeshInfo& mesh : scene.meshes) {
+    model.meshes.push_back({});
+    if (mesh.role != Role::surveyed) continue;
+    model.meshes.back() = {least, static_cast<float>(mesh.detail_m * mesh.detail_m),
+                           static_cast<float>(mesh.accuracy_m)};
+  }
+  if (model.noise && !model.noise->enabled()) {  // a table of zeros, which misses nothing
+    model.noise = nullptr;
+    for (LimitModel::Limits& limits : model.meshes) limits.largest_sigma = 0;
+  }
+  return model;
+}
+
+}  // namespace vantage

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whether a point is worth having, in double precision.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <utility>
+
+#include "trace/embree/range_noise.hpp"
+#include "trace/tracer.hpp"
+
+namespace vantage {
+
+class PointJudge {
+ public:
+  // `model` may be null.
+  explicit PointJudge(std::shared_ptr<const LimitModel> model)
+      : model_(std::move(model)), noise_(model_ ? model_->noise : nullptr) {}
+
+  bool enabled() const { return model_ && model_->enabled(); }
+
+  // Which limits of its mesh a point misses; all 0 where it counts. `cosine` is that between ray and normal, of either
+  // sign; `t` the distance without noise. REQUIRES: enabled().
+  DroppedPoints missed(std::uint32_t mesh, double cosine, float t, float reflectivity) const {
+    const LimitModel::Limits& limits = model_->meshes[mesh];
+    const double square = cosine * cosine;
+    const double diameter =
+        static_cast<double>(model_->exit_diameter) + static_cast<double>(model_->divergence) * static_cast<double>(t);
+    DroppedPoints dropped;
+    dropped.incidence = square < static_cast<double>(limits.least_cosine_square);
+    dropped.footprint = limits.largest_footprint_square > 0 &&
+                        diameter * diameter > static_cast<double>(limits.largest_footprint_square) * square;
+    dropped.noise = limits.largest_sigma > 0 && noise_.sigma(t, reflectivity) > limits.largest_sigma;
+    dropped.points = dropped.incidence + dropped.footprint + dropped.noise > 0;
+    return dropped;
+  }
+
+ private:
+  std::shared_ptr<const LimitModel> model_;
+  RangeNoise noise_;
+};
+
+}  // namespace vantage
