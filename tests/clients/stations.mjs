@@ -86,9 +86,9 @@ for (const [code, place] of [[31467, [3_550_000.5, 5_400_000.25, 480]], [25832, 
   fs.writeFileSync(at('site.glb'), moved(read('walls.glb'), place));
   const at3 = (...p) => p.map((v, k) => v + place[k]).join(',');
   const files = ['stations.geojson', 'stations.kml', 'stations.dxf'];
-  // The third's tripod stands in a wall's way or nowhere; the last has no ground.
-  const out = vantage('evaluate', 'site.glb', '--station', at3(2.5, 2, 1.85), '--station', at3(3.25, 2.5, 1.85),
-                      '--station', at3(0.05, 2, 1.85), '--station', '5,5', '--engine', 'embree', '--step', '1', '--crs',
+  // The third stands at a wall; the last has no ground.
+  const out = vantage('evaluate', 'site.glb', '--station', at3(8, 0, 1.5), '--station', at3(8, 3, 1.5), '--station',
+                      at3(5.3, 0, 1.5), '--station', 'u=5,v=5', '--engine', 'embree', '--step', '1', '--crs',
                       `EPSG:${code}`, '--json', ...files.flatMap((file) => ['--write-stations', file]));
   const { stations, overlap_matrix: overlap } = JSON.parse(out);
   assert.equal(stations.length, 4);
