@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes a scene from arrays, evaluates two stations in it, moves one of its meshes and evaluates them again:
+// Makes a scene from arrays, evaluates a station in it, moves one of its meshes and evaluates it again:
 //   example_own_scene
 #include <cstdio>
 #include <string>
@@ -22,7 +22,7 @@ double coverage_of(const vantage::Scene& scene) {
   vantage::Scanner scanner;
   scanner.azimuth_step = scanner.zenith_step = vantage::Angle::degrees(0.25);
   vantage::Simulator simulator(scene, scanner, {.user_size_m = 0.1, .point_spacing_m = 0.05});
-  const vantage::Network network{{.position = {-4, 0, 1.6}}, {.position = {4, 0, 1.6}}};
+  const vantage::Network network{{.position = {0, 0, 1.6}}};
   return vantage::coverage(simulator.evaluate(network), simulator.goal_density());
 }
 
@@ -37,7 +37,8 @@ int main() {
 
     std::printf("crate before the wall: coverage %.3f\n", coverage_of(builder.build()));
     builder.move(crate, {.translation = {0, -4, 0.01}});
-    std::printf("crate out of the way: coverage %.3f%s\n", coverage_of(builder.build()),
+    const vantage::Scene moved = builder.build();
+    std::printf("crate out of the way: coverage %.3f%s\n", coverage_of(moved),
                 builder.rebuilt_all() ? "" : ", the other meshes kept");
     return 0;
   } catch (const vantage::Error& error) {

@@ -34,8 +34,8 @@ struct CaptureBound {
   double relaxation = 0;  ///< What fractions of candidates reach: no relaxation's bound is lower than this.
   bool complete = false;  ///< The relaxation came to its tolerance in time.
   /// By how much the bound of all candidates exceeds that of the first half of them, which are as evenly spread: what a
-  /// position between candidates can add, measured. Gains shrink as candidates are doubled, so the next doubling has
-  /// hardly more. Never below 0.
+  /// position between candidates can add, measured, not proven: the next doubling has mostly as much or less. Never
+  /// below 0.
   double spacing_term = 0;
   double half_bound = 1;                 ///< That bound, of the first half.
   std::vector<std::size_t> chosen = {};  ///< The best rows found, the fixed ones first.

@@ -22,9 +22,9 @@
 namespace vantage {
 
 /// Well-known text (version 1, OGC 01-009, which LAS 1.4 asks for) of the coordinate system that a scene's survey frame
-/// stands in. `text`: "EPSG:25832" and the like (UTM zones on WGS 84, ETRS89, NAD83, GDA94 and GDA2020), the name of a
-/// .prj or .wkt file, or such a text. Throws Error: io, invalid_argument (a code that is not known, angles, a unit
-/// other than metres, version 2).
+/// stands in. `text`: "EPSG:25832" and the like (UTM zones on WGS 84, ETRS89, NAD83, GDA94 and GDA2020; with PROJ any),
+/// the name of a .prj or .wkt file, or such a text. Throws Error: io, invalid_argument (a code that is not known,
+/// angles, a unit other than metres, version 2).
 std::string coordinate_system(const std::string& text);
 
 /// What a file that keeps stations apart (E57) says of one.
@@ -107,20 +107,23 @@ void draw_history_fronts(const std::filesystem::path& file, const PlanResult& re
 /// drawn. Where most of the ground lies under something, and where a building has several floors, it is cut 1.2 m above
 /// the floor and what is cut through is filled. Several floors stand side by side, and each again on a page of its own,
 /// PLAN-level-1.png and so on, from the lowest. `names`: of the stations, where they have names; "S1", "S2", … and for
-/// kept ones "K1", … otherwise. Returns the files that it wrote.
+/// kept ones "K1", … otherwise. `errors`: of the stations, where they are predicted: a standard
+/// ellipse (one sigma, of the head in x and y) around each. Returns the files that it wrote.
 std::vector<std::filesystem::path> draw_plan_view(const std::filesystem::path& file, const Scene& scene,
                                                   const SearchArea& area, std::span<const PlacedStation> stations,
                                                   const OverlapMatrix& overlap, const std::string& title,
                                                   double link_overlap = default_link_overlap,
-                                                  std::span<const std::string> names = {});
+                                                  std::span<const std::string> names = {},
+                                                  std::span<const StationError> errors = {});
 
 /// Writes a whole result folder: front.csv, front.json, history.csv, fronts.csv (every iteration's front), and for the
 /// chosen compromise stations.csv, overlap.csv (where it is confirmed), coverage.ply (where `field`, its voxel field,
 /// is given), and the pictures front.png, hypervolume.png, history.png (with several objectives), plan.png (each also
-/// as .svg), of several floors also plan-level-1.png and so on. Makes the folder where there is none. Returns the index
-/// of the chosen entry.
+/// as .svg), of several floors also plan-level-1.png and so on; and for the crew stations.dxf, and where `crs`, the
+/// `coordinate_system()` of the survey frame, is given and this build has PROJ stations.geojson and stations.kml. Makes
+/// the folder where there is none. Returns the index of the chosen entry.
 std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& result, const Simulator& simulator,
-                       const SearchArea& area, const VoxelField* field = nullptr);
+                       const SearchArea& area, const VoxelField* field = nullptr, const std::string& crs = {});
 
 /// The compromise shown where one must be chosen: of the entries that miss the requirements least the one with the
 /// largest product of its objectives' gains (1 less the scaled value). Where an objective looks at pairs, of those

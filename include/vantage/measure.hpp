@@ -3,12 +3,14 @@
 /// and how stations hang together.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "vantage/settings.hpp"
 #include "vantage/simulator.hpp"
 #include "vantage/trace.hpp"
 
@@ -57,6 +59,57 @@ OverlapMatrix overlap_standard_errors(const NetworkCounts& counts, std::uint64_t
 /// `simulator.voxel_count()`, then the error is 0. Throws Error invalid_argument unless wanted > 0.
 std::uint64_t voxels_for_standard_error(Simulator& simulator, std::span<const Network> networks, double wanted,
                                         bool overlap = true, const Progress& progress = {});
+
+/// What registration starts from: one standard deviation of what site and instrument say of a station's pose before
+/// scans are matched, and how well scans have the surface. Reasons and sources: docs/method.md.
+struct RegistrationOptions {
+  RegistrationModel model = {};
+  double position_m = 0.03;             ///< Of the head, in each axis; above 0.
+  Angle heading = Angle::degrees(0.2);  ///< Above 0.
+  /// Of each of the two tilts: a dual-axis compensator's. 0: exactly level, so 4 unknowns a station instead of 6; some
+  /// degrees: not levelled at all.
+  Angle tilt = Angle::degrees(15.0 / 3600);
+};
+
+Settings settings(const RegistrationOptions& options);
+/// Throws Error invalid_argument with the member and its value.
+void check(const RegistrationOptions& options);
+
+/// What the error of one station's pose does.
+struct StationError {
+  double rms_m = 0;  ///< Root mean square over the surface that it sees; 0 where it sees none.
+  /// Covariance of its head, m², survey frame: row-major, x, y, z.
+  std::array<double, 9> covariance{};
+  /// Axes of the standard ellipsoid (one sigma) of that, metres: longest first.
+  std::array<Vec3, 3> axes{};
+};
+
+/// Predicted error of a registered network, metres.
+struct RegistrationError {
+  double rms_m = 0;    ///< Over the covered surface: root mean square of the displacement of its points.
+  double worst_m = 0;  ///< `rms_m` of the worst station.
+  std::size_t worst_station = 0;
+  std::vector<StationError> stations;
+  /// Per station, what gives the displacement anywhere: covariance of [turn · scale_m, shift], 6 × 6 row-major, of the
+  /// displacement shift + turn × (p − centre).
+  std::vector<std::array<double, 36>> poses;
+  Vec3 centre;  ///< Local frame, as `RegistrationSums::centre`.
+  double scale_m = 1;
+
+  /// Root mean square of the displacement that station `station` gives a point of the local frame.
+  double at(std::size_t station, const Vec3& local) const;
+};
+
+/// The covariance of a least-squares adjustment of all scans, planes against planes (Gelfand et al. 2003; Censi 2007),
+/// less the best-fitting motion of the whole: that is the survey's own frame, and no error of the registration. Of a
+/// sample of a site of `voxels` voxels what the whole site would give. Parts that share nothing have the error that
+/// they start from. Where nothing is covered, the error of a position. REQUIRES: `counts.registration` was filled, with
+/// `options.model`.
+RegistrationError registration_error(const NetworkCounts& counts, std::uint64_t voxels,
+                                     const RegistrationOptions& options = {});
+/// `registration_error(…).rms_m` and its standard error, by the jackknife over the groups of a sample.
+Estimate registration_estimate(const NetworkCounts& counts, std::uint64_t voxels,
+                               const RegistrationOptions& options = {});
 
 /// The overlap graph as registration sees it: which stations hang together, and by what.
 struct Connectivity {

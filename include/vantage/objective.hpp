@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -32,9 +33,12 @@ struct Needs {
   bool counts = true;       ///< `MeasuredNetwork::counts`. False: of places alone, so no ray is traced for it.
   bool pairs = false;       ///< `NetworkCounts::seen` and `shared`, and `MeasuredNetwork::overlap`.
   bool visibility = false;  ///< `MeasuredNetwork::visible_parts`.
+  /// `NetworkCounts::registration`, and with it `pairs`. What is measured together has one model.
+  std::optional<RegistrationModel> registration = std::nullopt;
 };
 constexpr Needs operator|(const Needs& a, const Needs& b) {
-  return {a.counts || b.counts, a.pairs || b.pairs, a.visibility || b.visibility};
+  return {a.counts || b.counts, a.pairs || b.pairs, a.visibility || b.visibility,
+          a.registration ? a.registration : b.registration};
 }
 
 /// One measure of a network, to be searched for, required or reported. A program's own needs no change of the library:
@@ -94,6 +98,7 @@ struct ObjectiveSettings {
   std::size_t stations_min = 1, stations_max = max_stations;  ///< N_min and N_max, without kept stations.
   double link_overlap = default_link_overlap;                 ///< `parts`: pairs of less overlap are not linked.
   FitnessWeights fitness = {};
+  RegistrationOptions registration = {};  ///< `registration`, `registration_worst`.
 };
 /// Names of the built-in objectives, as "coverage", "overlap", "stations".
 std::span<const std::string> objective_names();

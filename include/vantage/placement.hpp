@@ -17,11 +17,26 @@
 
 namespace vantage {
 
-/// How a search area is derived where the scene marks none: upward, gentle and clear surfaces.
+/// A region seen from above, survey frame: what an odd number of its rings goes around.
+struct PlanRegion {
+  std::vector<std::vector<std::array<double, 2>>> rings;  ///< Corners (x, y); closed whether or not the first returns.
+  bool holds(double x, double y) const;
+};
+
+/// How a search area is derived where the scene marks none: upward, gentle and clear surfaces that a person with a
+/// tripod gets to from where one enters.
 struct WalkableOptions {
   Angle max_slope = Angle::degrees(25);  ///< Between a triangle's normal and up; most pitched roofs are steeper.
   double headroom_m = 2.0;               ///< Clear height needed above the surface.
-  double min_area_m2 = 0.25;  ///< Connected parts smaller than this, or far narrower than its side, are left out.
+  double min_area_m2 = 0.25;       ///< Connected parts smaller than this, or far narrower than its side, are left out.
+  double passage_width_m = 0.6;    ///< Of the narrowest opening that a person passes.
+  double passage_height_m = 1.9;   ///< Of the lowest.
+  double climb_m = 0.25;           ///< The highest step that a person takes.
+  std::optional<Vec3> enter = {};  ///< Where one enters the site, survey frame; empty: found by itself.
+  /// Heights of ground, lowest and highest, survey frame. Like the two below it also holds for a marked search area.
+  std::optional<std::array<double, 2>> levels = {};
+  std::vector<PlanRegion> within = {};   ///< Where not empty: only ground in one of these.
+  std::vector<PlanRegion> without = {};  ///< No ground in any of these.
 };
 
 Settings settings(const WalkableOptions& options);
@@ -33,14 +48,34 @@ struct SearchMesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
+/// Why a surface that one could stand on is no part of a derived search area.
+enum class LeftOutReason {
+  unreachable,  ///< Nothing leads there: a roof, a table, the top of a wall.
+  sealed,       ///< No opening that a person passes leads there, or it is inside something solid.
+  narrow,       ///< No room for a person beside what stands there.
+  headroom,     ///< Something hangs too low above it.
+  limits,       ///< Outside of the levels and regions that were asked for.
+  small,        ///< A connected part below the smallest area.
+};
+std::string to_string(LeftOutReason);
+
+/// What was left out for one reason.
+struct LeftOut {
+  LeftOutReason reason = LeftOutReason::unreachable;
+  double area_m2 = 0;
+  std::vector<Vec3> positions = {};  ///< Survey frame.
+  std::vector<std::array<std::uint32_t, 3>> triangles = {};
+};
+
 /// The search area: maps (u, v) to the ground through a quadtree (section 4.2).
 /// Immutable; copies share storage; safe to read from any thread.
 class SearchArea {
  public:
   /// The scene's marked search area; where it has none, or none with (u, v), charts in true proportion are made.
-  /// Where no ground is found around the model, a horizontal plane is laid under it, at its lowest point, and reaches
-  /// out on every side by the model's largest extent. `description()` says what was done. Throws Error:
-  /// invalid_argument when the scene has neither a mesh nor a usable search area, or an option is out of its range.
+  /// Meshes with `MeshInfo::station_area` go before both. Where no ground is found around the model, a horizontal plane
+  /// is laid under it, at its lowest point, and reaches out on every side by the model's largest extent.
+  /// `description()` says what was done. Throws Error: invalid_argument when the scene has neither a mesh nor a usable
+  /// search area, an option is out of its range, or nothing is left within the levels and regions.
   static SearchArea build(const Scene& scene, const WalkableOptions& options = {});
   /// Throws Error: invalid_argument when no triangle has an area in (u, v), or the arrays do not fit together.
   static SearchArea from_mesh(SearchMesh mesh);
@@ -51,6 +86,8 @@ class SearchArea {
   const std::string& description() const noexcept;  ///< Where the search area comes from, for logs and reports.
   const SearchMesh& mesh() const noexcept;
   const WalkableOptions& options() const noexcept;  ///< What it was built with.
+  /// By reason, the largest first; of a marked search area only what lies outside of the limits.
+  std::span<const LeftOut> left_out() const noexcept;
   /// Ground point under (u, v), survey frame; empty in a hole. Points on an edge or a vertex are always found, and so
   /// is what lies outside by no more than 1e-9 of the (u, v) extent. Where charts overlap, the first triangle of the
   /// mesh wins.

@@ -36,6 +36,7 @@ struct SurveyProblem {
   std::vector<Requirement> requirements = {};  ///< Networks that break one rank behind all that do not, by how much.
   /// Pairs of less overlap count as not linked in reports and pictures.
   double link_overlap = default_link_overlap;
+  RegistrationOptions registration = {};  ///< What scans register from, and how well they have surfaces.
 
   /// What the built-in objectives have to be told of this problem.
   ObjectiveSettings settings() const;

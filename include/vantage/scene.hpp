@@ -36,6 +36,8 @@ struct MeshInfo {
   std::uint32_t triangle_count = 0;
   /// What a voxel of it counts in coverage, 1 to 255, relative to voxels of other surveyed meshes.
   std::uint32_t weight = 1;
+  bool door = false;          ///< A closed leaf that counts as open for who walks, and still blocks rays.
+  bool station_area = false;  ///< Stations may stand on it, whatever else it is for.
 };
 
 /// What a length of 1 in a file stands for.
@@ -63,6 +65,8 @@ struct SceneOptions {
   std::vector<std::string> ignore = {};    ///< Nodes that are left out.
   /// Nodes by pattern, and what their voxels count in coverage; where several match one node, as with roles.
   std::vector<std::pair<std::string, std::uint32_t>> weights = {};
+  std::vector<std::string> doors = {};                    ///< Nodes that are `MeshInfo::door`.
+  std::vector<std::string> station_area = {};             ///< Nodes that are `MeshInfo::station_area`.
   std::optional<std::size_t> scene_index = std::nullopt;  ///< Which glTF scene; empty: the file's default.
   double default_diffuse = 0.5;  ///< R where neither extras nor a plain base colour (its luminance) give one.
   bool allow_outside = false;    ///< Let the file name buffers and images outside its own folder.

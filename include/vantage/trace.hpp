@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "vantage/types.hpp"
+
 namespace vantage {
 
 /// How rays are traced. Counts do not depend on the choice but for ray-triangle rounding at edges.
@@ -37,6 +39,29 @@ std::vector<EngineInfo> list_engines();
 /// Most stations of a network: each has a bit in the station mask of a voxel.
 inline constexpr std::size_t max_stations = 64;
 
+/// How well one scan has a surface, apart from the noise of its ranges: a modelling error ρ that is one and the same
+/// over a patch of side L, so that a huge wall is not a million independent measurements.
+struct RegistrationModel {
+  double rho_m = 0.0015;  ///< ρ, one standard deviation along the surface's normal; above 0.
+  double patch_m = 0.5;   ///< L, above 0.
+  friend bool operator==(const RegistrationModel&, const RegistrationModel&) = default;
+};
+
+/// What the stations' masks say of how scans register: sums over voxels of point-to-plane information (docs/method.md).
+/// Exact, but for one rounding of each sum to double.
+struct RegistrationSums {
+  static constexpr std::size_t of_pair = 21, of_station = 10;
+  Vec3 centre;              ///< Local frame: what places and rotations are relative to.
+  double radius_m = 1;      ///< Places are in units of it, rotations of 1 / it.
+  std::vector<Vec3> heads;  ///< Per station, metres from the centre; empty where sums were not asked for.
+  /// Per pair, in the order of `NetworkCounts::shared`: the upper triangle, row by row, of Σ w_i w_j / Σ_k w_k · J Jᵀ
+  /// in 1/m², J = [place × normal, normal].
+  std::vector<double> pairs;
+  /// Per station: moments 1, x, y, z, xx, xy, xz, yy, yz, zz of the places of the surface it sees, in faces of a voxel;
+  /// what k stations see counts 1/k for each.
+  std::vector<double> surface;
+};
+
 /// What a simulated network left in the surveyed voxels, reduced to integers. Exact, so independent of engine, order
 /// and chunking.
 struct NetworkCounts {
@@ -52,6 +77,7 @@ struct NetworkCounts {
   std::vector<std::uint64_t> seen;                ///< Per station: voxels with a point of it. Empty without overlap.
   /// Voxels seen by both i and j, i < j, in the order (0,1), (0,2), …, (1,2), …; empty without overlap.
   std::vector<std::uint64_t> shared;
+  RegistrationSums registration;  ///< Where asked for.
   /// The same counts for each of G interleaved groups of a sample, for standard errors; empty when exact.
   std::vector<NetworkCounts> groups;
   /// Sum over successive sampled voxels of the squared difference of min(count/goal, 1); for the standard error of

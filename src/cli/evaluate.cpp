@@ -4,6 +4,7 @@
 #include "cli/command.hpp"
 #include "cli/missed.hpp"
 #include "cli/options.hpp"
+#include "cli/registration.hpp"
 #include "cli/run_report.hpp"
 #include "cli/site.hpp"
 #include "cli/stations.hpp"
@@ -14,10 +15,12 @@ namespace {
 struct EvaluateCommandOptions {
   SiteOptions site;
   StationOptions stations;
-  bool exact = false, skip = false, no_overlap = false;
+  RegistrationCliOptions registration;
+  bool exact = false, skip = false, no_overlap = false, with_registration = false;
   std::optional<SampleSize> sample;
   std::optional<double> error, link_overlap;
   std::optional<std::string> cartography, matrix, picture;
+  std::vector<std::string> station_files;
   MissedFiles missed;
   bool json = false;
 
@@ -41,12 +44,19 @@ struct EvaluateCommandOptions {
     sample_option->excludes(exact_flag)->excludes(skip_flag);
     error_option->excludes(exact_flag)->excludes(skip_flag)->excludes(sample_option);
     command.add_flag("--no-overlap", no_overlap, "Coverage only")->group("Evaluation");
+    command.add_flag("--registration", with_registration, "Predict the error of the registered scans")
+        ->group("Registration");
+    registration.add(command);
     add_text(command, "--cartography", "FILE", "Write every surveyed voxel with its count, in false colours: .ply",
              cartography)
         ->group("Results");
     missed.add(command);
     add_text(command, "--overlap-csv", "FILE", "Write the overlap matrix: .csv", matrix)->group("Results");
     add_text(command, "--picture", "FILE", "Draw the stations and their overlaps from above: .png or .svg", picture)
+        ->group("Results");
+    add_texts(command, "--write-stations", "FILE",
+              "Write the stations for the crew: .dxf, and where --crs is given .geojson or .kml; may be repeated",
+              station_files)
         ->group("Results");
     add_number(
         command, "--link-overlap", "W",
@@ -55,15 +65,36 @@ struct EvaluateCommandOptions {
         ->group("Results");
     command.add_flag("--json", json, "Print one JSON object");
   }
+
+  std::optional<RegistrationModel> model() const {
+    return with_registration ? std::optional(registration.settle().model) : std::nullopt;
+  }
 };
 
 NetworkCounts evaluate_sample(Simulator& simulator, const Network& network, const EvaluateCommandOptions& options,
                               const Progress& progress) {
   const bool overlap = !options.no_overlap;
+  const std::optional<RegistrationModel> model = options.model();
   const std::uint64_t voxels =
       options.error ? voxels_for_standard_error(simulator, {&network, 1}, *options.error, overlap, progress)
                     : options.sample->of(simulator.voxel_count());
-  return simulator.evaluate_sampled({&network, 1}, {.voxels = voxels, .overlap = overlap}, progress).front();
+  return simulator
+      .evaluate_sampled({&network, 1}, {.voxels = voxels, .overlap = overlap, .registration = model}, progress)
+      .front();
+}
+
+// Millimetres; axes of the standard ellipsoid of each head, longest first, in the survey frame.
+nlohmann::json to_json(const RegistrationError& error, const Estimate& whole) {
+  const auto mm = [](const Vec3& v) { return nlohmann::json{1e3 * v.x, 1e3 * v.y, 1e3 * v.z}; };
+  nlohmann::json stations = nlohmann::json::array();
+  for (const StationError& station : error.stations)
+    stations.push_back({{"error_mm", 1e3 * station.rms_m},
+                        {"head_axes_mm", {mm(station.axes[0]), mm(station.axes[1]), mm(station.axes[2])}}});
+  return {{"error_mm", 1e3 * whole.value},
+          {"standard_error_mm", 1e3 * whole.standard_error},
+          {"worst_mm", 1e3 * error.worst_m},
+          {"worst_station", error.worst_station + 1},
+          {"stations", std::move(stations)}};
 }
 
 nlohmann::json matrix_json(const OverlapMatrix& overlap) {
@@ -97,6 +128,10 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
   must_end(options.cartography, "--cartography", ".ply");
   must_end(options.picture, "--picture", ".png", ".svg");
   must_end(options.matrix, "--overlap-csv", ".csv");
+  for (const std::string& file : options.station_files) {
+    must_end(file, "--write-stations", ".dxf", ".geojson", ".kml");
+    if (!file.ends_with(".dxf")) to_wgs84(site.crs_text(), {});  // an error now, not behind the rays
+  }
   if (options.cartography && sampled)
     throw Error(Errc::invalid_argument, "--cartography: shows every voxel, and so needs --exact");
   options.missed.check();
@@ -104,6 +139,9 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
     throw Error(Errc::invalid_argument, "--missed: looks at every voxel, and so needs --exact");
   if ((options.matrix || options.picture) && !overlap)
     throw Error(Errc::invalid_argument, "--overlap-csv and --picture show overlaps, which --no-overlap leaves out");
+
+  if (options.with_registration && !overlap)
+    throw Error(Errc::invalid_argument, "--registration: looks at what scans share, which --no-overlap leaves out");
 
   Simulator simulator(site.scene, site.scanner, site.config);
   tell_engine(simulator);
@@ -113,11 +151,13 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
   const Progress progress{.report = [&](double done) { line.update(done); }, .stop = program.stop};
   VoxelField field;
   const NetworkCounts counts =
-      sampled
-          ? evaluate_sample(simulator, network, options, progress)
-          : simulator.evaluate(
-                network, {.overlap = overlap, .skip = options.skip, .field = options.cartography || !options.missed.files.empty() ? &field : nullptr},
-                progress);
+      sampled ? evaluate_sample(simulator, network, options, progress)
+              : simulator.evaluate(network,
+                                   {.overlap = overlap,
+                                    .skip = options.skip,
+                                    .field = options.cartography || !options.missed.files.empty() ? &field : nullptr,
+                                    .registration = options.model()},
+                                   progress);
   if (counts.cancelled) {
     spdlog::error("stopped before the end; nothing was written");
     return exit_failed;
@@ -136,13 +176,22 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
       return exit_failed;
   }
   if (options.matrix) write_overlap_csv(*options.matrix, matrix);
+  const RegistrationOptions registration = options.registration.settle();
+  Estimate registered;
+  RegistrationError error;
+  if (options.with_registration) {
+    registered = registration_estimate(counts, voxels, registration);
+    error = registration_error(counts, voxels, registration);
+  }
   if (options.picture) {
     draw_plan_view(*options.picture, site.scene, site.area(), placed, matrix,
                    fmt::format("{} station{}: coverage {:.3f}, overlap {:.3f}", placed.size(),
                                placed.size() == 1 ? "" : "s", covered.value, overlapped.value),
-                   link_overlap, names);
+                   link_overlap, names, error.stations);
   }
 
+  for (const std::string& file : options.station_files)
+    write_stations(file, {placed, names}, matrix, link_overlap, site.area(), site.crs_text());
   nlohmann::json rows = nlohmann::json::array();
   for (std::size_t k = 0; k < stations.size(); ++k) {
     auto row = to_json(stations[k], names[k]);
@@ -183,6 +232,7 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
       json["overlap_se"] = overlapped.standard_error;
       json["overlap_matrix"] = matrix_json(matrix);
     }
+    if (options.with_registration) json["registration"] = to_json(error, registered);
     if (sampled) json["sample"] = counts.voxels;
     program.console.print(json);
   } else {
@@ -194,6 +244,11 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
     };
     text += "coverage " + with_error(covered) + "\n";
     if (overlap) text += "overlap  " + with_error(overlapped) + "\n";
+    if (options.with_registration) {
+      text += fmt::format("registration {:.2f}{} mm, worst station {}: {:.2f} mm\n", 1e3 * registered.value,
+                          sampled ? fmt::format(" ± {:.2f}", 1e3 * registered.standard_error) : "",
+                          names[error.worst_station], 1e3 * error.worst_m);
+    }
     text += "\n" + summary_text(summary);
     program.console.print(text);
   }

@@ -9,6 +9,7 @@
 #include "cli/missed.hpp"
 #include "cli/options.hpp"
 #include "cli/problem.hpp"
+#include "cli/prove.hpp"
 #include "cli/run_report.hpp"
 #include "cli/site.hpp"
 #include "cli/stations.hpp"
@@ -24,7 +25,7 @@ struct PlanOptions {
   SiteOptions site;
   ProblemOptions problem;
   PlanConfig config;
-  bool exact = false, greedy = false, resume = false, json = false;
+  bool exact = false, greedy = false, resume = false, prove = false, json = false;
   std::optional<SampleSize> sample;
   std::vector<StationText> start;
   std::optional<std::string> output;
@@ -92,6 +93,9 @@ struct PlanOptions {
         ->group("Search")
         ->excludes(exact_flag);
     add_text(command, "-o,--output", "DIR", "Folder for the results", output)->group("Results");
+    command
+        .add_flag("--prove", prove, "Bound what any network of as many stations captures: how near does the plan come?")
+        ->group("Results");
     command.add_flag("--resume", resume, "Go on from the folder's checkpoint")->group("Results");
     command.add_flag("--json", json, "Print one JSON object, the same as front.json");
   }
@@ -200,6 +204,20 @@ std::string summary(const PlanResult& result, std::size_t chosen, const std::str
   return text + summary_text(summary_of(entry, result)) + "results in " + folder + "\n";
 }
 
+// The site's coordinate system, where stations can be put on a map by it; else nothing, and a line that says why.
+std::string map_system(const LoadedSite& site) {
+  const std::string crs = site.crs_text();
+  if (crs.empty()) return crs;
+  try {
+    const Box box = site.scene.bounds();
+    to_wgs84(crs, std::vector<Vec3>{box.min, box.max, {box.min.x, box.max.y, 0}, {box.max.x, box.min.y, 0}});
+    return crs;
+  } catch (const Error& error) {
+    spdlog::warn("no stations.geojson and stations.kml: {}", error.what());
+    return "";
+  }
+}
+
 // Every voxel's count under the network that is shown; empty where it was stopped.
 std::optional<VoxelField> cartography(Simulator& simulator, const PlanEntry& entry, Program& program) {
   ProgressLine line(program.console, "cartography");
@@ -226,8 +244,6 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   config.resume = options.resume;
   config.checkpoint = folder / "checkpoint.bin";
   const SearchArea& area = site.area();
-  if (area.derived())
-    spdlog::info("no search area is marked: stations may stand on {} walkable triangles", area.mesh().triangles.size());
 
   Simulator simulator(site.scene, site.scanner, site.config);
   tell_engine(simulator);
@@ -242,6 +258,7 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   }
   write_text(folder / "config.json", as_options(site, options, problem, config).dump(2) + "\n");
 
+  const std::string crs = map_system(site);
   PlanResult result;
   {
     ProgressLine line(program.console, "search");
@@ -263,11 +280,13 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   const auto field = cartography(simulator, result.front[compromise(result)], program);
   if (!field) spdlog::warn("stopped: {} is not written", (folder / "coverage.ply").string());
   spdlog::info("writing {}", folder.string());
-  const std::size_t chosen = write_plan(folder, result, simulator, area, field ? &*field : nullptr);
+  const std::size_t chosen = write_plan(folder, result, simulator, area, field ? &*field : nullptr, crs);
   if (field)
     write_missed(
         std::vector<std::filesystem::path>{folder / "missed.csv", folder / "missed.ply", folder / "missed.png"}, site,
         simulator, *field, result.front[chosen].stations, program);
+  if (options.prove)
+    prove(folder / "bound.json", site, simulator, result.front[chosen].stations, problem.kept.size(), program);
   if (options.json)
     program.console.print(front_json(result, simulator) + "\n");
   else

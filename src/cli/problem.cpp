@@ -76,6 +76,7 @@ void ProblemOptions::add(CLI::App& command) {
               fitness = FitnessWeights{weights[0], weights[1], weights[2]};
             })
       ->group("Problem");
+  registration.add(command);
 }
 
 SurveyProblem ProblemOptions::settle() const {
@@ -102,6 +103,9 @@ SurveyProblem ProblemOptions::settle() const {
   }
   asked.heights_m = heights;
   asked.link_overlap = least;
+  asked.registration = registration.settle();
+  for (Objective& objective : asked.objectives)
+    if (objective.needs.registration) objective = make_objective(objective.name, asked.settings());
   if (min_overlap && *min_overlap > 0) asked.requirements.push_back(make_requirement("parts<=1", asked.settings()));
   for (const std::string& text : requirements)
     asked.requirements.push_back(named("--require", [&] { return make_requirement(text, asked.settings()); }));

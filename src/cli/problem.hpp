@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cli/parse.hpp"
+#include "cli/registration.hpp"
 #include "cli/site.hpp"
 
 namespace vantage::cli {
@@ -20,6 +21,7 @@ struct ProblemOptions {
   std::optional<std::array<double, 2>> heights;
   std::optional<double> link_overlap, min_overlap;
   std::optional<FitnessWeights> fitness;
+  RegistrationCliOptions registration;
 
   void add(CLI::App& command);
   // Problem and number of stations say much about each other; what is missing follows from what is there. Kept stations

@@ -83,8 +83,8 @@ void tell_scaled(const SiteOptions& options, const LoadedSite& site, double scal
     add(options.height.has_value(), fmt::format("height {:.3g}", site.scanner.height_m));
     add(options.range || options.scanner,
         fmt::format("range {:.3g},{:.3g}", site.scanner.min_range_m, site.scanner.max_range_m));
-    add(options.security.has_value(), fmt::format("security {:.3g},{:.3g},{:.3g}", site.security.lower_m,
-                                                  site.security.upper_m, site.security.radius_m));
+    add(options.area.security.has_value(), fmt::format("security {:.3g},{:.3g},{:.3g}", site.security.lower_m,
+                                                       site.security.upper_m, site.security.radius_m));
   }
   if (made_up.empty()) return;
   const Vec3 size = site.scene.bounds().size();
@@ -172,17 +172,7 @@ void SiteOptions::add(CLI::App& command) {
   add_number(command, "--spacing", "M", "Wanted distance between points; sets the goal density", spacing, positive)
       ->group("Measure");
 
-  add_value(command, "--security", "H1,H2,R",
-            "Clear space a station needs: two spheres of radius R at heights H1 and H2 above the ground; R 0: none",
-            numbers_into(security, 3, not_negative))
-      ->group("Placement");
-  add_number(command, "--slope", "DEG", "Steepest ground that counts as walkable, where the scene marks no search area",
-             slope, {.low = 0, .high = 90, .high_included = false})
-      ->group("Placement");
-  add_number(command, "--headroom", "M", "Clear height that walkable ground needs", headroom, not_negative)
-      ->group("Placement");
-  add_number(command, "--min-area", "M2", "Smallest connected piece of walkable ground", min_area, not_negative)
-      ->group("Placement");
+  area.add(command, roles);
 
   add_value(command, "--engine", "ENGINE", "auto, ray_query, compute_bvh or embree",
             [this](const std::string& text, const std::string& what) {
@@ -221,7 +211,10 @@ double length_scale(const Box& bounds) {
 }
 
 const SearchArea& LoadedSite::area() {
-  if (!area_) area_ = SearchArea::build(scene, walkable);
+  if (!area_) {
+    area_ = SearchArea::build(scene, walkable);
+    tell_area(*area_, scene);
+  }
   return *area_;
 }
 
@@ -254,6 +247,7 @@ nlohmann::json LoadedSite::as_options() const {
     options.update(options_of(list));
   options["noise"] = noise;
   if (!crs.empty()) options["crs"] = crs;
+  area_options.add_files_to(options);
   return options;
 }
 
@@ -299,16 +293,9 @@ LoadedSite open_site(CLI::App& command, SiteOptions& options) {
   site.config.user_size_m = options.user_size.value_or(site.config.user_size_m * scale);
   site.config.point_spacing_m = options.spacing.value_or(site.config.point_spacing_m * scale);
   site.config.noise = !site.scanner.noise.empty();
-  if (options.security) {
-    site.security = {(*options.security)[0], (*options.security)[1], (*options.security)[2]};
-  } else {
-    site.security.lower_m *= small;
-    site.security.upper_m *= small;
-    site.security.radius_m *= small;
-  }
-  if (options.slope) site.walkable.max_slope = Angle::degrees(*options.slope);
-  site.walkable.headroom_m = options.headroom.value_or(site.walkable.headroom_m * small);
-  site.walkable.min_area_m2 = options.min_area.value_or(site.walkable.min_area_m2 * small * small);
+  site.security = options.area.volume(small);
+  site.walkable = options.area.walkable(small);
+  site.area_options = options.area;
   site.noise = noise_source(options, site.scanner);
   site.crs = options.crs.value_or("");
   static_cast<void>(site.crs_text());  // an error now, not behind an hour's work

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/area.hpp"
 #include "vantage/vantage.hpp"
 
 namespace vantage::cli {
@@ -29,8 +30,7 @@ struct SiteOptions {
   std::optional<std::string> noise;
 
   std::optional<double> user_size, spacing;
-  std::optional<std::array<double, 3>> security;
-  std::optional<double> slope, headroom, min_area;
+  AreaOptions area;
 
   Engine engine = Engine::automatic;
   std::optional<std::uint32_t> device;
@@ -50,6 +50,7 @@ struct LoadedSite {
   SimulatorConfig config;
   SecurityVolume security;
   WalkableOptions walkable;
+  AreaOptions area_options = {};
   std::string noise;     // where its table came from: off, a scanner's name, or a file
   std::string crs = {};  // the survey frame's coordinate system, as given; empty: not known
 

@@ -30,6 +30,13 @@ NetworkCounts without_group(const NetworkCounts& all, const NetworkCounts& group
   rest.shared.resize(all.shared.size());
   std::transform(all.seen.begin(), all.seen.end(), group.seen.begin(), rest.seen.begin(), std::minus<>());
   std::transform(all.shared.begin(), all.shared.end(), group.shared.begin(), rest.shared.begin(), std::minus<>());
+  // Differences of sums that are exact but for their last place.
+  rest.registration = all.registration;
+  const auto take_off = [](std::vector<double>& sums, const std::vector<double>& some) {
+    for (std::size_t k = 0; k < some.size(); ++k) sums[k] -= some[k];
+  };
+  take_off(rest.registration.pairs, group.registration.pairs);
+  take_off(rest.registration.surface, group.registration.surface);
   return rest;
 }
 
@@ -102,6 +109,16 @@ Estimate overlap_estimate(const NetworkCounts& counts, std::uint64_t population)
   if (unsampled == 0 || counts.seen.empty()) return estimate;
   const auto of = [](const NetworkCounts& rest) { return clustering_coefficient(overlap_matrix(rest)); };
   estimate.standard_error = jackknife_error(replicates<double>(counts, of), unsampled);
+  return estimate;
+}
+
+Estimate registration_estimate(const NetworkCounts& counts, std::uint64_t voxels, const RegistrationOptions& options) {
+  const auto of = [&](const NetworkCounts& rest) { return registration_error(rest, voxels, options).rms_m; };
+  Estimate estimate{of(counts), 0};
+  const double unsampled = unsampled_share(counts, voxels);
+  // Nothing is further off than where it starts.
+  if (unsampled > 0)
+    estimate.standard_error = jackknife_error(replicates<double>(counts, of), unsampled, 2 * options.position_m);
   return estimate;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "placement/area_limits.hpp"
 #include "placement/plane_quadtree.hpp"
 #include "placement/walkable.hpp"
 #include "scene/scene_data.hpp"
@@ -18,14 +19,22 @@ struct SearchArea::Impl {
   bool derived = false;
   std::string description;
   WalkableOptions options = {};
+  std::vector<LeftOut> left_out = {};
+  AreaLimits limits = {};
   std::optional<PlaneQuadtree> in_uv;
   // Over the mesh seen from above. Only stations given by X, Y, Z need it, so it is built when the first one asks.
   mutable std::once_flag plan_once;
   mutable std::vector<Uv> plan_points;
   mutable std::optional<PlaneQuadtree> in_plan;
 
-  Impl(SearchMesh given, bool was_derived, std::string how, const WalkableOptions& with = {})
-      : mesh(std::move(given)), derived(was_derived), description(std::move(how)), options(with) {
+  Impl(SearchMesh given, bool was_derived, std::string how, const WalkableOptions& with = {},
+       std::vector<LeftOut> without = {})
+      : mesh(std::move(given)),
+        derived(was_derived),
+        description(std::move(how)),
+        options(with),
+        left_out(std::move(without)),
+        limits(with) {
     if (mesh.uvs.size() != mesh.positions.size())
       throw Error(Errc::invalid_argument, "a search area needs one (u, v) per position; it has " +
                                               std::to_string(mesh.uvs.size()) + " for " +
@@ -69,16 +78,28 @@ struct SearchArea::Impl {
 
 SearchArea SearchArea::build(const Scene& scene, const WalkableOptions& options) {
   const SceneData& data = scene.data();
-  if (!data.search_uvs.empty() && PlaneQuadtree::any_candidate(data.search_uvs, data.search_triangles)) {
-    SearchArea area;
-    area.impl_ = std::make_shared<const Impl>(SearchMesh{data.search_positions, data.search_uvs, data.search_triangles},
-                                              false, "as the scene marks it, with its own (u, v)", options);
-    return area;
+  WalkableSurface surface;
+  if (!has_station_area(data) && !data.search_uvs.empty() &&
+      PlaneQuadtree::any_candidate(data.search_uvs, data.search_triangles))
+    surface = {.mesh = {data.search_positions, data.search_uvs, data.search_triangles},
+               .derived = false,
+               .description = "as the scene marks it, with its own (u, v)"};
+  else
+    surface = find_walkable_surface(data, options);
+  if (const AreaLimits limits(options); limits.any() && surface.left_out.empty()) {  // a marked one
+    Box bounds;
+    for (const Vec3& p : surface.mesh.positions)
+      if (std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)) bounds.extend(p);
+    LeftOut cut_off;
+    surface.mesh = cut_to_limits(surface.mesh, limits, piece_spacing(options, bounds), cut_off);
+    if (surface.mesh.triangles.empty())
+      throw Error(Errc::invalid_argument,
+                  "nothing of the search area lies within the levels and regions that were asked for");
+    if (cut_off.area_m2 > 0) surface.left_out.push_back(std::move(cut_off));
   }
-  WalkableSurface surface = find_walkable_surface(data, options);
   SearchArea area;
-  area.impl_ =
-      std::make_shared<const Impl>(std::move(surface.mesh), surface.derived, std::move(surface.description), options);
+  area.impl_ = std::make_shared<const Impl>(std::move(surface.mesh), surface.derived, std::move(surface.description),
+                                            options, std::move(surface.left_out));
   return area;
 }
 
@@ -94,19 +115,23 @@ bool SearchArea::derived() const noexcept { return impl_->derived; }
 const std::string& SearchArea::description() const noexcept { return impl_->description; }
 const SearchMesh& SearchArea::mesh() const noexcept { return impl_->mesh; }
 const WalkableOptions& SearchArea::options() const noexcept { return impl_->options; }
+std::span<const LeftOut> SearchArea::left_out() const noexcept { return impl_->left_out; }
 
 std::optional<Vec3> SearchArea::locate(Uv uv) const {
   const auto at = impl_->in_uv->find(uv);
   if (!at) return std::nullopt;
-  return impl_->position(*at);
+  const Vec3 ground = impl_->position(*at);
+  if (impl_->limits.any() && !impl_->limits.allow(ground)) return std::nullopt;
+  return ground;
 }
 
 std::optional<Uv> SearchArea::project(const Vec3& ground) const {
   std::optional<Uv> result;
   double nearest = std::numeric_limits<double>::infinity();
   impl_->plan().find_all({ground.x, ground.y}, [&](const TrianglePoint& at) {
-    const double distance = std::abs(impl_->position(at).z - ground.z);
-    if (!(distance < nearest)) return;
+    const Vec3 place = impl_->position(at);
+    const double distance = std::abs(place.z - ground.z);
+    if (!(distance < nearest) || (impl_->limits.any() && !impl_->limits.allow(place))) return;
     nearest = distance;
     const auto& t = impl_->mesh.triangles[at.triangle];
     const Uv i = impl_->mesh.uvs[t[0]], j = impl_->mesh.uvs[t[1]], k = impl_->mesh.uvs[t[2]];

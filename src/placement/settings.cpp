@@ -3,12 +3,29 @@
 #include "vantage/placement.hpp"
 
 namespace vantage {
+namespace {
+
+// The files that regions came from are for those who read them; what counts is what they held.
+std::vector<std::vector<std::vector<std::array<double, 2>>>> rings_of(const std::vector<PlanRegion>& regions) {
+  std::vector<std::vector<std::vector<std::array<double, 2>>>> rings;
+  for (const PlanRegion& region : regions) rings.push_back(region.rings);
+  return rings;
+}
+
+}  // namespace
 
 Settings settings(const WalkableOptions& options) {
   return SettingList()
       .add("max_slope_deg", options.max_slope, {"slope"})
       .add("headroom_m", options.headroom_m, {"headroom"})
       .add("min_area_m2", options.min_area_m2, {"min-area"})
+      .add("passage_width_m", options.passage_width_m, {"passage"})
+      .add("passage_height_m", options.passage_height_m, {"passage"})
+      .add("climb_m", options.climb_m, {"climb"})
+      .add("enter", options.enter, {"enter"})
+      .add("levels", options.levels, {"levels"})
+      .add("within", rings_of(options.within))
+      .add("without", rings_of(options.without))
       .take();
 }
 

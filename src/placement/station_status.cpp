@@ -29,6 +29,18 @@ std::string explain(StationStatus status) {
   return "";
 }
 
+std::string to_string(LeftOutReason reason) {
+  switch (reason) {
+    case LeftOutReason::unreachable: return "nothing leads there (roofs, furniture, tops of walls)";
+    case LeftOutReason::sealed: return "sealed, no opening leads there";
+    case LeftOutReason::narrow: return "too narrow";
+    case LeftOutReason::headroom: return "no headroom";
+    case LeftOutReason::limits: return "outside of the levels and regions asked for";
+    case LeftOutReason::small: return "too small";
+  }
+  return "unknown";
+}
+
 bool active(const PlacedStation& station) {
   switch (station.status) {
     case StationStatus::ok:

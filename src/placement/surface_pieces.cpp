@@ -15,41 +15,42 @@ namespace {
 
 using Corners = std::array<glm::dvec3, 3>;
 
-enum class Share : std::uint8_t { none, some, all };
+using Kind = std::uint8_t;
+constexpr Kind dropped = 0, mixed = 255;
 
 struct Part {
   std::uint32_t source;
+  Kind kind;
   Corners corners;
 };
 
 class Splitter {
  public:
-  Splitter(double spacing_m, const std::function<bool(const glm::dvec3&)>& clear)
-      : longest_(spacing_m * spacing_m), clear_(clear) {}
+  Splitter(double spacing_m, const std::function<Kind(const glm::dvec3&)>& kind_of)
+      : longest_(spacing_m * spacing_m), kind_of_(kind_of) {}
 
-  // Appends the largest clear parts, unless all of the triangle is clear.
-  Share split(const Corners& p, std::uint32_t source, std::vector<Part>& parts, int depth = 0) const {
+  // Appends the largest parts of one kind, unless all of the triangle is of one.
+  Kind split(const Corners& p, std::uint32_t source, std::vector<Part>& parts, int depth = 0) const {
     std::array<double, 3> length;
     for (int e = 0; e < 3; ++e) {
       const glm::dvec3 edge = p[(e + 1) % 3] - p[e];
       length[e] = dot(edge, edge);
     }
     const int e = static_cast<int>(std::max_element(length.begin(), length.end()) - length.begin());
-    if (length[e] <= longest_ || depth == max_depth)
-      return clear_((p[0] + p[1] + p[2]) * (1.0 / 3)) ? Share::all : Share::none;
+    if (length[e] <= longest_ || depth == max_depth) return kind_of_((p[0] + p[1] + p[2]) * (1.0 / 3));
     const glm::dvec3 a = p[e], b = p[(e + 1) % 3], c = p[(e + 2) % 3], middle = (a + b) * 0.5;
     const Corners first{a, middle, c}, second{middle, b, c};
-    const Share left = split(first, source, parts, depth + 1), right = split(second, source, parts, depth + 1);
-    if (left == right && left != Share::some) return left;
-    if (left == Share::all) parts.push_back({source, first});
-    if (right == Share::all) parts.push_back({source, second});
-    return Share::some;
+    const Kind left = split(first, source, parts, depth + 1), right = split(second, source, parts, depth + 1);
+    if (left == right && left != mixed) return left;
+    if (left != dropped && left != mixed) parts.push_back({source, left, first});
+    if (right != dropped && right != mixed) parts.push_back({source, right, second});
+    return mixed;
   }
 
  private:
   static constexpr int max_depth = 40;  // halving the area 40 times is enough for any spacing that callers choose
   double longest_;
-  const std::function<bool(const glm::dvec3&)>& clear_;
+  const std::function<Kind(const glm::dvec3&)>& kind_of_;
 };
 
 Corners corners_of(const SurfacePieces& pieces, std::uint32_t piece) {
@@ -59,16 +60,16 @@ Corners corners_of(const SurfacePieces& pieces, std::uint32_t piece) {
 
 }  // namespace
 
-SurfacePieces clear_pieces(std::vector<glm::dvec3> points, std::span<const Triangle> triangles, double spacing_m,
-                           const std::function<bool(const glm::dvec3&)>& clear) {
-  const Splitter splitter(spacing_m, clear);
-  std::vector<Share> share(triangles.size());
+SurfacePieces sort_pieces(std::vector<glm::dvec3> points, std::span<const Triangle> triangles, double spacing_m,
+                          const std::function<std::uint8_t(const glm::dvec3&)>& kind_of) {
+  const Splitter splitter(spacing_m, kind_of);
+  std::vector<Kind> whole(triangles.size());
   tbb::enumerable_thread_specific<std::vector<Part>> collected;
   tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, static_cast<std::uint32_t>(triangles.size())),
                     [&](const tbb::blocked_range<std::uint32_t>& range) {
                       std::vector<Part>& parts = collected.local();
                       for (std::uint32_t t = range.begin(); t != range.end(); ++t)
-                        share[t] = splitter.split(
+                        whole[t] = splitter.split(
                             {points[triangles[t][0]], points[triangles[t][1]], points[triangles[t][2]]}, t, parts);
                     });
   // One thread does a whole source, so a stable sort by source restores the order that a single thread would give.
@@ -80,18 +81,37 @@ SurfacePieces clear_pieces(std::vector<glm::dvec3> points, std::span<const Trian
   result.points = std::move(points);
   auto part = parts.begin();
   for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-    if (share[t] == Share::all) {
+    if (whole[t] != dropped && whole[t] != mixed) {
       result.triangles.push_back(triangles[t]);
       result.source.push_back(t);
+      result.kind.push_back(whole[t]);
     }
     for (; part != parts.end() && part->source == t; ++part) {
       const auto first = static_cast<std::uint32_t>(result.points.size());
       result.points.insert(result.points.end(), part->corners.begin(), part->corners.end());
       result.triangles.push_back({first, first + 1, first + 2});
       result.source.push_back(t);
+      result.kind.push_back(part->kind);
     }
   }
   return result;
+}
+
+SurfacePieces pieces_of_kind(const SurfacePieces& pieces, std::uint8_t kind) {
+  SurfacePieces result;
+  result.points = pieces.points;
+  for (std::size_t i = 0; i < pieces.triangles.size(); ++i) {
+    if (pieces.kind[i] != kind) continue;
+    result.triangles.push_back(pieces.triangles[i]);
+    result.source.push_back(pieces.source[i]);
+  }
+  return result;
+}
+
+SurfacePieces clear_pieces(std::vector<glm::dvec3> points, std::span<const Triangle> triangles, double spacing_m,
+                           const std::function<bool(const glm::dvec3&)>& clear) {
+  return sort_pieces(std::move(points), triangles, spacing_m,
+                     [&](const glm::dvec3& p) { return static_cast<Kind>(clear(p) ? 1 : dropped); });
 }
 
 double piece_area(const SurfacePieces& pieces, std::uint32_t piece) {

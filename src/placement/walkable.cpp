@@ -6,11 +6,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <optional>
 #include <sstream>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include "placement/area_limits.hpp"
 #include "placement/charts.hpp"
+#include "placement/ground_field.hpp"
 #include "placement/mesh_tree.hpp"
 #include "placement/surface_pieces.hpp"
 #include "scene/positions.hpp"
@@ -21,11 +26,11 @@ namespace {
 
 // Parts this near the model's largest extent to each other are connected.
 constexpr double weld_share = 1e-5;
-// Walkable surfaces are a ground when, in the lower half of the model, those of about one height cover this share of
-// its outline seen from above. The flat parts of a machine are clear too, but lie at many heights, or on its top, and
-// are not where one stands to scan it.
+// Walkable surfaces are a ground when, in the lower half of the model, those that are reached, with all that continues
+// them, cover this share of its outline seen from above. The flat parts of a machine are clear too, but lie apart, or
+// on its top, and are not where one stands to scan it. So
+// they are where as much, reached or not, lies under a cover: in a building.
 constexpr double ground_share = 0.3;
-constexpr double one_height = 0.1;  // of the model's height
 constexpr double lower_half = 0.5;
 // A part that is large enough but holds no disc of this radius, in sides of the smallest square part, is the top of a
 // pipe or a rail. Parts so many times the smallest area need no look.
@@ -100,37 +105,52 @@ double first_height(const Box& bounds, double headroom_m) {
   return std::max(0.01 * headroom_m, 1e-5 * extent_of(bounds));
 }
 
-bool is_ground(const std::vector<Chart>& charts, const Box& bounds, double outline_area) {
-  std::vector<std::pair<double, double>> levels;  // (height, area) of each chart
-  const double height = bounds.size().z;
-  for (const Chart& c : charts)
-    if (c.mean_z <= bounds.min.z + lower_half * height) levels.emplace_back(c.mean_z, c.plan_area);
-  std::sort(levels.begin(), levels.end());
-  double most = 0, sum = 0;
-  for (std::size_t first = 0, last = 0; last < levels.size(); ++last) {
-    sum += levels[last].second;
-    for (; levels[last].first - levels[first].first > one_height * height; ++first) sum -= levels[first].second;
-    most = std::max(most, sum);
-  }
-  return most > 0 && most >= ground_share * outline_area;
+// What becomes of a place, as a kind of piece.
+enum Kind : std::uint8_t { kept = 1, first_left_out };
+
+std::uint8_t kind_of(LeftOutReason reason) {
+  return static_cast<std::uint8_t>(first_left_out + static_cast<std::uint8_t>(reason));
 }
 
-WalkableSurface derive_walkable(const SceneData& scene, const MeshTree& tree, const std::vector<glm::dvec3>& points,
-                                const WalkableOptions& options) {
-  WalkableSurface surface;
-  const double extent = extent_of(scene.local_bounds), least_up = std::cos(options.max_slope.in_radians());
-  std::vector<Triangle> upward;
-  for (const Triangle& t : scene.triangles)
-    if (unit_normal(points[t[0]], points[t[1]], points[t[2]]).z >= least_up) upward.push_back(t);
-  if (upward.empty()) return surface;
+LeftOutReason reason_of(Access access) {
+  switch (access) {
+    case Access::headroom: return LeftOutReason::headroom;
+    case Access::unreachable: return LeftOutReason::unreachable;
+    case Access::sealed: return LeftOutReason::sealed;
+    case Access::narrow:
+    case Access::reached: break;
+  }
+  return LeftOutReason::narrow;
+}
 
-  const double from = first_height(scene.local_bounds, options.headroom_m), to = std::max(options.headroom_m, 2 * from);
-  const double spacing = std::max(options.headroom_m / 5, extent / 512);
-  const SurfacePieces pieces = clear_pieces(points, upward, spacing, [&](const glm::dvec3& p) {
-    return !tree.covered(p, from, to) &&
-           !tree.inside_solid(p + glm::dvec3{0, 0, (from + to) / 2});  // above bumps of the ground
-  });
-  std::vector<Chart> charts = make_charts(pieces, weld_share * extent);
+// What the pieces of each kind but `kept` come to, and the charts that are too small.
+std::vector<LeftOut> gather_left_out(const SurfacePieces& pieces, const SurfacePieces& clear,
+                                     const std::vector<Chart>& small, const Vec3& origin) {
+  std::vector<LeftOut> all;
+  const auto add = [&](LeftOut& to, const SurfacePieces& from, std::uint32_t piece) {
+    const auto first = static_cast<std::uint32_t>(to.positions.size());
+    for (const std::uint32_t v : from.triangles[piece]) to.positions.push_back(to_vec3(from.points[v]) + origin);
+    to.triangles.push_back({first, first + 1, first + 2});
+    to.area_m2 += piece_area(from, piece);
+  };
+  for (const LeftOutReason reason : {LeftOutReason::unreachable, LeftOutReason::sealed, LeftOutReason::narrow,
+                                     LeftOutReason::headroom, LeftOutReason::limits}) {
+    LeftOut out{.reason = reason};
+    for (std::uint32_t i = 0; i < pieces.triangles.size(); ++i)
+      if (pieces.kind[i] == kind_of(reason)) add(out, pieces, i);
+    if (!out.triangles.empty()) all.push_back(std::move(out));
+  }
+  LeftOut out{.reason = LeftOutReason::small};
+  for (const Chart& chart : small)
+    for (const std::uint32_t piece : chart.pieces) add(out, clear, piece);
+  if (!out.triangles.empty()) all.push_back(std::move(out));
+  std::stable_sort(all.begin(), all.end(), [](const LeftOut& a, const LeftOut& b) { return a.area_m2 > b.area_m2; });
+  return all;
+}
+
+// Charts of at least the smallest area that are not mere strips; the others go to `small`.
+std::vector<Chart> wide_charts(const SurfacePieces& pieces, std::vector<Chart> charts, const WalkableOptions& options,
+                               std::vector<Chart>& small) {
   std::vector<char> fit(charts.size());
   tbb::parallel_for(std::size_t{0}, charts.size(), [&](std::size_t i) {
     const Chart& c = charts[i];
@@ -139,30 +159,150 @@ WalkableSurface derive_walkable(const SceneData& scene, const MeshTree& tree, co
               holds_disc(pieces, c, disc_share * std::sqrt(options.min_area_m2)));
   });
   std::vector<Chart> wide;
-  for (std::size_t i = 0; i < charts.size(); ++i)
-    if (fit[i]) wide.push_back(std::move(charts[i]));
-  charts = std::move(wide);
+  for (std::size_t i = 0; i < charts.size(); ++i) (fit[i] ? wide : small).push_back(std::move(charts[i]));
+  return wide;
+}
 
-  if (!is_ground(charts, scene.local_bounds, plan_hull_area(points))) return surface;
-  surface.mesh = unfold(pieces, charts, scene.origin);
-  surface.description = "derived from walkable surfaces: " + charts_text(charts.size(), total_area(charts));
+std::string place_text(const Vec3& p) {
+  std::ostringstream text;
+  text.precision(3);
+  text << std::fixed << p.x << "," << p.y << "," << p.z;
+  return text.str();
+}
+
+[[noreturn]] void refuse_limits() {
+  throw Error(Errc::invalid_argument,
+              "nothing that one could stand on lies within the levels and regions that were asked for");
+}
+
+// Surfaces with room for a scanner, of those triangles that `usable` accepts, where `allowed` is what the field says of
+// their places.
+WalkableSurface derive_from(const SceneData& scene, const MeshTree& tree, const GroundField& field,
+                            const std::vector<glm::dvec3>& points, const std::vector<Triangle>& upward,
+                            const WalkableOptions& options, bool any_access) {
+  const AreaLimits limits(options);
+  const double extent = extent_of(scene.local_bounds);
+  const double from = first_height(scene.local_bounds, options.headroom_m), to = std::max(options.headroom_m, 2 * from);
+  const double spacing = piece_spacing(options, scene.local_bounds);
+  const SurfacePieces pieces = sort_pieces(points, upward, spacing, [&](const glm::dvec3& p) -> std::uint8_t {
+    const Access access = field.at(p);
+    const bool room = access != Access::narrow && access != Access::headroom;
+    if (access != Access::reached && !(any_access && room)) return kind_of(reason_of(access));
+    if (limits.any() && !limits.allow_near(to_vec3(p) + scene.origin, spacing)) return kind_of(LeftOutReason::limits);
+    if (tree.covered(p, from, to)) return kind_of(LeftOutReason::headroom);
+    if (tree.inside_solid(p + glm::dvec3{0, 0, (from + to) / 2}))  // above bumps of the ground
+      return kind_of(LeftOutReason::sealed);
+    return kept;
+  });
+  const SurfacePieces clear = pieces_of_kind(pieces, kept);
+  std::vector<Chart> small;
+  const std::vector<Chart> charts = wide_charts(clear, make_charts(clear, weld_share * extent), options, small);
+  WalkableSurface surface;
+  surface.left_out = gather_left_out(pieces, clear, small, scene.origin);
+  if (charts.empty()) {
+    if (limits.any() && std::any_of(surface.left_out.begin(), surface.left_out.end(),
+                                    [](const LeftOut& out) { return out.reason == LeftOutReason::limits; }))
+      refuse_limits();
+    return surface;
+  }
+  surface.mesh = unfold(clear, charts, scene.origin);
+  surface.description = charts_text(charts.size(), total_area(charts));
   return surface;
 }
 
-WalkableSurface lay_plane(const SceneData& scene, const MeshTree& tree) {
+std::vector<Triangle> upward_triangles(const SceneData& scene, const std::vector<glm::dvec3>& points,
+                                       const WalkableOptions& options, bool station_area) {
+  const double least_up = std::cos(options.max_slope.in_radians());
+  std::vector<Triangle> upward;
+  for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+    if (scene.meshes[m].door || (station_area && !scene.meshes[m].station_area)) continue;
+    const MeshRange& range = scene.ranges[m];
+    for (std::uint32_t i = range.first_triangle; i < range.first_triangle + range.triangle_count; ++i) {
+      const Triangle& t = scene.triangles[i];
+      if (unit_normal(points[t[0]], points[t[1]], points[t[2]]).z >= least_up) upward.push_back(t);
+    }
+  }
+  return upward;
+}
+
+std::optional<glm::dvec3> local_entry(const SceneData& scene, const WalkableOptions& options) {
+  if (!options.enter) return std::nullopt;
+  return to_glm(*options.enter - scene.origin);
+}
+
+WalkableSurface use_station_area(const SceneData& scene, const MeshTree& tree, const std::vector<glm::dvec3>& points,
+                                 const WalkableOptions& options) {
+  GroundField field(scene, options);
+  field.reach(tree, local_entry(scene, options));
+  WalkableSurface surface =
+      derive_from(scene, tree, field, points, upward_triangles(scene, points, options, true), options, true);
+  if (surface.mesh.triangles.empty())
+    throw Error(
+        Errc::invalid_argument,
+        "none of the surfaces that stations are to stand on has room for one: they are steep, covered, narrow or "
+        "smaller than the smallest area");
+  surface.derived = false;
+  surface.description = "the surfaces that were named for standing, where there is room: " + surface.description;
+  return surface;
+}
+
+WalkableSurface derive_walkable(const SceneData& scene, const MeshTree& tree, const std::vector<glm::dvec3>& points,
+                                const WalkableOptions& options) {
+  const std::vector<Triangle> upward = upward_triangles(scene, points, options, false);
+  if (upward.empty()) return {};
+  GroundField field(scene, options);
+  field.reach(tree, local_entry(scene, options));
+  const Box& bounds = scene.local_bounds;
+  const double lower_half_z = bounds.min.z + lower_half * bounds.size().z;
+  const double wanted = ground_share * plan_hull_area(points);
+  if (!field.entry() || (!options.enter && field.ground_area(lower_half_z) < wanted && field.covered_area() < wanted))
+    return {};
+  WalkableSurface surface = derive_from(scene, tree, field, points, upward, options, false);
+  if (surface.mesh.triangles.empty()) return surface;
+  surface.description = "derived from walkable surfaces, entered near " +
+                        place_text(to_vec3(*field.entry()) + scene.origin) + ": " + surface.description;
+  if (const auto beyond = field.high_steps()) {
+    std::ostringstream text;
+    text.precision(3);
+    text << "; " << beyond->area_m2 << " m² more lie beyond steps of up to " << beyond->highest_m
+         << " m, higher than a person is taken to climb";
+    surface.description += text.str();
+  }
+  return surface;
+}
+
+WalkableSurface lay_plane(const SceneData& scene, const MeshTree& tree, const WalkableOptions& options) {
   const Box& b = scene.local_bounds;
+  const AreaLimits limits(options);
   double reach = extent_of(b);
   if (!(reach > 0)) reach = 1;
   const glm::dvec3 low{b.min.x - reach, b.min.y - reach, b.min.z}, high{b.max.x + reach, b.max.y + reach, b.min.z};
   std::vector<glm::dvec3> points{low, {high.x, low.y, low.z}, high, {low.x, high.y, low.z}};
   const std::vector<Triangle> triangles{{0, 1, 2}, {0, 2, 3}};
+  GroundField field(scene, options, GroundField::Plane{reach, b.min.z});
+  field.reach(tree, local_entry(scene, options));
   // Under the model itself there is no place to stand.
   const double from = 1e-4 * reach, to = b.size().z + reach, spacing = std::max(high.x - low.x, high.y - low.y) / 256;
-  const SurfacePieces pieces = clear_pieces(std::move(points), triangles, spacing,
-                                            [&](const glm::dvec3& p) { return !tree.covered(p, from, to); });
-  const auto charts = make_charts(pieces, weld_share * reach);
+  const SurfacePieces pieces =
+      sort_pieces(std::move(points), triangles, spacing, [&](const glm::dvec3& p) -> std::uint8_t {
+        const Access access = field.at(p);
+        if (tree.covered(p, from, to)) return kind_of(LeftOutReason::headroom);
+        if (access != Access::reached)
+          return kind_of(access == Access::unreachable ? LeftOutReason::sealed : reason_of(access));
+        if (limits.any() && !limits.allow_near(to_vec3(p) + scene.origin, spacing))
+          return kind_of(LeftOutReason::limits);
+        return kept;
+      });
+  const SurfacePieces clear = pieces_of_kind(pieces, kept);
+  const auto charts = make_charts(clear, weld_share * reach);
   WalkableSurface surface;
-  surface.mesh = unfold(pieces, charts, scene.origin);
+  surface.left_out = gather_left_out(pieces, clear, {}, scene.origin);
+  if (charts.empty()) {
+    if (limits.any()) refuse_limits();
+    throw Error(Errc::invalid_argument,
+                "there is no ground around the model, and no room on a plane laid under it; mark a search area");
+  }
+  surface.mesh = unfold(clear, charts, scene.origin);
   std::ostringstream text;
   text << "a horizontal plane laid under the model, at its lowest point (z = " << b.min.z + scene.origin.z
        << "), reaching " << reach << " m beyond it on every side, as no walkable ground was found around it: "
@@ -183,13 +323,30 @@ void check(const WalkableOptions& options) {
     refuse("the headroom above a walkable surface, in metres,", options.headroom_m, "finite and not negative");
   if (!(options.min_area_m2 >= 0) || !std::isfinite(options.min_area_m2))
     refuse("the smallest area of a walkable part, in m²,", options.min_area_m2, "finite and not negative");
+  if (!(options.passage_width_m > 0) || !std::isfinite(options.passage_width_m))
+    refuse("the width of the narrowest passage, in metres,", options.passage_width_m, "finite and above 0");
+  if (!(options.climb_m >= 0) || !std::isfinite(options.climb_m))
+    refuse("the highest step, in metres,", options.climb_m, "finite and not negative");
+  if (!(options.passage_height_m > options.climb_m) || !std::isfinite(options.passage_height_m))
+    refuse("the height of the lowest passage, in metres,", options.passage_height_m,
+           "finite and above the highest step");
+  AreaLimits{options};
 }
 
 }  // namespace
 
+double piece_spacing(const WalkableOptions& options, const Box& bounds) {
+  return std::max(options.headroom_m / 5, extent_of(bounds) / 512);
+}
+
+bool has_station_area(const SceneData& scene) {
+  return std::any_of(scene.meshes.begin(), scene.meshes.end(), [](const MeshInfo& m) { return m.station_area; });
+}
+
 WalkableSurface find_walkable_surface(const SceneData& scene, const WalkableOptions& options) {
   check(options);
-  if (!scene.search_triangles.empty()) {
+  const bool named = has_station_area(scene);
+  if (!named && !scene.search_triangles.empty()) {
     WalkableSurface marked = unfold_marked(scene, options);
     if (!marked.mesh.triangles.empty()) return marked;
   }
@@ -201,8 +358,9 @@ WalkableSurface find_walkable_surface(const SceneData& scene, const WalkableOpti
   std::vector<glm::dvec3> points;
   points.reserve(scene.positions.size());
   for (const Float3& p : scene.positions) points.push_back(to_glm(p));
+  if (named) return use_station_area(scene, tree, points, options);
   WalkableSurface walkable = derive_walkable(scene, tree, points, options);
-  return walkable.mesh.triangles.empty() ? lay_plane(scene, tree) : walkable;
+  return walkable.mesh.triangles.empty() ? lay_plane(scene, tree, options) : walkable;
 }
 
 }  // namespace vantage

@@ -11,6 +11,7 @@
 #include "plan/search.hpp"
 #include "plan/simulator_evaluator.hpp"
 #include "plan/site.hpp"
+#include "plan/somewhere_to_stand.hpp"
 #include "vantage/planner.hpp"
 
 namespace vantage {
@@ -43,6 +44,9 @@ PlanResult plan(Simulator& simulator, const SearchArea& area, const ClashChecker
   const auto start = std::chrono::steady_clock::now();
   const SurveyProblem problem = settled(asked);
   const Measures measures = measures_of(problem);
+  std::vector<double> heights{simulator.scanner().height_m};
+  if (problem.heights_m) heights.assign(problem.heights_m->begin(), problem.heights_m->end());
+  require_somewhere_to_stand(area, clash, heights);
   const Site site = make_site(area, clash, simulator.scanner());
   const DecisionSpace space(site, problem);
   SimulatorEvaluator evaluator(

@@ -29,16 +29,24 @@ Settings settings(const SurveyProblem& problem) {
   for (const Requirement& requirement : problem.requirements) requirements.push_back(to_string(requirement));
   const bool named = std::ranges::count(problem_names(), problem.name) > 0;
   const std::string low = std::to_string(problem.stations_min), high = std::to_string(problem.stations_max);
-  return SettingList()
-      .add("problem", problem.name, {.option = named ? "problem" : "", .decides = false})
-      .add("stations", low == high ? low : low + ".." + high, {"stations"})
-      .add("kept", problem.kept, {"keep"})
-      .add("heights_m", problem.heights_m, {"heights"})
-      .add("objective_names", names, {.option = named ? "" : "objectives"})
-      .add("objectives", objectives)
-      .add("requirements", requirements, {"require"})
-      .add("link_overlap", problem.link_overlap, {"link-overlap"})
-      .take();
+  Settings list = SettingList()
+                      .add("problem", problem.name, {.option = named ? "problem" : "", .decides = false})
+                      .add("stations", low == high ? low : low + ".." + high, {"stations"})
+                      .add("kept", problem.kept, {"keep"})
+                      .add("heights_m", problem.heights_m, {"heights"})
+                      .add("objective_names", names, {.option = named ? "" : "objectives"})
+                      .add("objectives", objectives)
+                      .add("requirements", requirements, {"require"})
+                      .add("link_overlap", problem.link_overlap, {"link-overlap"})
+                      .take();
+  const Settings usual = settings(RegistrationOptions{});
+  for (std::size_t k = 0; k < usual.size(); ++k) {
+    Setting setting = settings(problem.registration)[k];
+    setting.name = "registration_" + setting.name;
+    if (setting.json == usual[k].json) setting.option.clear();
+    list.push_back(std::move(setting));
+  }
+  return list;
 }
 
 Settings settings(const PlanConfig& config) {

@@ -17,15 +17,22 @@ std::vector<Network> to_networks(std::span<const PlacedNetwork> placed) {
 }  // namespace
 
 std::optional<std::vector<NetworkCounts>> SimulatorEvaluator::count(std::span<const Network> networks,
-                                                                    const Needs& needs, const Progress& progress) {
+                                                                    const Needs& needs, bool errors,
+                                                                    const Progress& progress) {
   std::vector<NetworkCounts> counts;
   if (!needs.counts) return std::vector<NetworkCounts>(networks.size());
   if (options_.sample_voxels > 0) {
-    counts = simulator_.evaluate_sampled(
-        networks, {.voxels = options_.sample_voxels, .overlap = needs.pairs, .stop_at_goal = !needs.pairs}, progress);
+    counts = simulator_.evaluate_sampled(networks,
+                                         {.voxels = options_.sample_voxels,
+                                          .overlap = needs.pairs,
+                                          .stop_at_goal = !needs.pairs,
+                                          .registration = needs.registration,
+                                          .registration_groups = errors},
+                                         progress);
   } else {
     for (const Network& network : networks) {
-      counts.push_back(simulator_.evaluate(network, {.overlap = needs.pairs}, progress));
+      counts.push_back(
+          simulator_.evaluate(network, {.overlap = needs.pairs, .registration = needs.registration}, progress));
       if (counts.back().cancelled) break;
     }
   }
@@ -51,7 +58,7 @@ std::optional<std::vector<std::vector<double>>> SimulatorEvaluator::evaluate(std
                                                                              const Progress& progress) {
   const Needs needs = measures_.searched_needs();
   const std::vector<Network> networks = to_networks(placed);
-  const auto counts = count(networks, needs, progress);
+  const auto counts = count(networks, needs, false, progress);
   if (!counts) return std::nullopt;
   std::vector<std::vector<double>> values(placed.size());
   tbb::parallel_for(std::size_t{0}, placed.size(), [&](std::size_t k) {
@@ -65,7 +72,7 @@ std::optional<std::vector<std::vector<Estimate>>> SimulatorEvaluator::estimate(s
                                                                                const Progress& progress) {
   const Needs needs = measures_.all_needs();
   const std::vector<Network> networks = to_networks(placed);
-  const auto counts = count(networks, needs, progress);
+  const auto counts = count(networks, needs, true, progress);
   if (!counts) return std::nullopt;
   std::vector<std::vector<Estimate>> estimates(placed.size());
   tbb::parallel_for(std::size_t{0}, placed.size(), [&](std::size_t k) {
@@ -77,7 +84,8 @@ std::optional<std::vector<std::vector<Estimate>>> SimulatorEvaluator::estimate(s
 
 std::optional<ConfirmedNetwork> SimulatorEvaluator::confirm(const PlacedNetwork& placed, const Progress& progress) {
   const Network network = to_network(placed);
-  NetworkCounts counts = simulator_.evaluate(network, {.overlap = true}, progress);
+  NetworkCounts counts =
+      simulator_.evaluate(network, {.overlap = true, .registration = measures_.all_needs().registration}, progress);
   trace_seconds_ += counts.trace_seconds;
   if (counts.cancelled) return std::nullopt;
   const MeasuredNetwork seen = measured(counts, placed, network, measures_.all_needs());

@@ -30,7 +30,8 @@ class SimulatorEvaluator final : public NetworkEvaluator {
   double trace_seconds() const override { return trace_seconds_; }
 
  private:
-  std::optional<std::vector<NetworkCounts>> count(std::span<const Network> networks, const Needs& needs,
+  // `errors`: whether standard errors are wanted of them.
+  std::optional<std::vector<NetworkCounts>> count(std::span<const Network> networks, const Needs& needs, bool errors,
                                                   const Progress& progress);
   MeasuredNetwork measured(const NetworkCounts& counts, const PlacedNetwork& stations, const Network& network,
                            const Needs& needs) const;

@@ -29,7 +29,10 @@ const std::array<Named, 5>& named_problems() {
 }  // namespace
 
 ObjectiveSettings SurveyProblem::settings() const {
-  return {.stations_min = stations_min, .stations_max = stations_max, .link_overlap = link_overlap};
+  return {.stations_min = stations_min,
+          .stations_max = stations_max,
+          .link_overlap = link_overlap,
+          .registration = registration};
 }
 
 SurveyProblem survey_problem(std::span<const std::string> objectives, std::size_t stations_min,

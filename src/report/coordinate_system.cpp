@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Coordinate reference systems as LAS 1.4 wants them: well-known text after OGC 01-009 (Coordinate Transformation
 // Services, 2001). Written here from the definitions of the EPSG registry for the UTM zones, which follow a rule;
-// anything else comes as text.
+// anything else comes from PROJ, where it is there, or as text.
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "core/text.hpp"
+#include "report/geodetic.hpp"
 #include "vantage/error.hpp"
 #include "vantage/export.hpp"
 
@@ -55,6 +56,8 @@ std::string utm_text(const UtmFamily& f, int code) {
 
 [[noreturn]] void refuse(const std::string& why) { throw Error(Errc::invalid_argument, why); }
 
+std::string checked(const std::string& written, const std::string& source);
+
 std::string of_code(std::string_view digits, const std::string& asked) {
   int code = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), code);
@@ -62,6 +65,7 @@ std::string of_code(std::string_view digits, const std::string& asked) {
     refuse("'" + asked + "' is no coordinate system: give EPSG and its number, as EPSG:25832");
   for (const UtmFamily& family : kFamilies)
     if (code >= family.first && code <= family.last) return utm_text(family, code);
+  if (const std::string text = epsg_text(code); !text.empty()) return checked(text, asked);
   std::string known;
   for (const UtmFamily& f : kFamilies)
     known += (known.empty() ? "" : ", ") + std::to_string(f.first) + " to " + std::to_string(f.last);

@@ -88,6 +88,12 @@ double draw_plan_legend(Canvas& canvas, Point at, const PlanView& view, const Pl
     words("true spot of a disc beside it");
     at.y += 28;
   }
+  if (const double scale = view.ellipse_scale(); scale > 0) {
+    canvas.circle({at.x + 12, at.y}, 8, {.colour = {0.72, 0.12, 0.12}, .width = 1.3});
+    words("standard ellipse of a head:");
+    canvas.text({at.x + 34, at.y + 17}, "the widest " + fixed(1000 * kWidestEllipse / scale, 2) + " mm", text);
+    at.y += 45;
+  }
   const auto holes = std::ranges::count(view.stations, StationStatus::hole, &PlacedStation::status);
   if (holes > 0) {
     canvas.text(at, std::to_string(holes) + (holes == 1 ? " station in a hole," : " stations in holes,"), text);
@@ -172,6 +178,9 @@ std::vector<PlanPage> plan_view_pictures(const PlanView& view) {
     throw Error(Errc::invalid_argument, "draw_plan_view: " + std::to_string(view.stations.size()) +
                                             " stations, but an overlap matrix of " +
                                             std::to_string(view.overlap.size()));
+  if (view.errors.size() != view.stations.size() && !view.errors.empty())
+    throw Error(Errc::invalid_argument, "draw_plan_view: " + std::to_string(view.stations.size()) + " stations, but " +
+                                            std::to_string(view.errors.size()) + " errors");
   const Box window = plan_window(view);
   const std::vector<PlanLevel> levels = plan_levels(view.area.mesh());
   std::vector<PlanPage> pages;
@@ -185,14 +194,16 @@ std::vector<PlanPage> plan_view_pictures(const PlanView& view) {
 std::vector<std::filesystem::path> draw_plan_view(const std::filesystem::path& file, const Scene& scene,
                                                   const SearchArea& area, std::span<const PlacedStation> stations,
                                                   const OverlapMatrix& overlap, const std::string& title,
-                                                  double link_overlap, std::span<const std::string> names) {
+                                                  double link_overlap, std::span<const std::string> names,
+                                                  std::span<const StationError> errors) {
   const PlanView view{.scene = scene,
                       .area = area,
                       .stations = stations,
                       .names = station_names(stations, names),
                       .overlap = overlap,
                       .link_overlap = link_overlap,
-                      .title = title};
+                      .title = title,
+                      .errors = errors};
   std::vector<std::filesystem::path> written;
   for (const PlanPage& page : plan_view_pictures(view)) {
     const std::filesystem::path one =

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "core/text.hpp"
+#include "report/geodetic.hpp"
 #include "vantage/error.hpp"
 #include "vantage/station_files.hpp"
 
@@ -17,19 +18,34 @@ struct Destroy {
   void operator()(PJ* operation) const { proj_destroy(operation); }
 };
 using Operation = std::unique_ptr<PJ, Destroy>;
+using Context = std::unique_ptr<PJ_CONTEXT, Destroy>;
+
+// A context of one's own: PROJ's default is one for all threads. No network: a result must not hang on it.
+Context make_context() {
+  Context context(proj_context_create());
+  proj_context_set_enable_network(context.get(), 0);
+  proj_log_level(context.get(), PJ_LOG_NONE);
+  return context;
+}
 
 }  // namespace
 
 bool has_projections() noexcept { return true; }
 
+std::string epsg_text(int code) {
+  const Context context = make_context();
+  const Operation system(
+      proj_create_from_database(context.get(), "EPSG", std::to_string(code).c_str(), PJ_CATEGORY_CRS, 0, nullptr));
+  constexpr const char* options[] = {"MULTILINE=NO", nullptr};
+  const char* text = system ? proj_as_wkt(context.get(), system.get(), PJ_WKT1_GDAL, options) : nullptr;
+  return text ? text : "";
+}
+
 std::vector<GeodeticPoint> to_wgs84(const std::string& crs, std::span<const Vec3> points) {
   if (crs.empty())
     throw Error(Errc::invalid_argument,
                 "longitude and latitude need the coordinate system of the site: give --crs, as EPSG:25832");
-  // A context of its own: PROJ's default is one for all threads. No network: a result must not hang on it.
-  const std::unique_ptr<PJ_CONTEXT, Destroy> context(proj_context_create());
-  proj_context_set_enable_network(context.get(), 0);
-  proj_log_level(context.get(), PJ_LOG_NONE);
+  const Context context = make_context();
   const auto refuse = [&] {
     const int error = proj_context_errno(context.get());
     throw Error(Errc::invalid_argument, "PROJ finds no way from the site's coordinate system to WGS 84" +

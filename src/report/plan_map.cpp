@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 
 #include "core/text.hpp"
@@ -106,6 +107,7 @@ class Stations {
 
   void draw(PlanMapContent& content) {
     draw_links(content);
+    draw_ellipses();
     for (std::size_t k = 0; k < shown_.size(); ++k)
       if (!on_level(k)) draw_elsewhere(canvas_, spots_[k], name(k)), content.elsewhere = true;
     for (std::size_t k = 0; k < shown_.size(); ++k) {
@@ -156,6 +158,27 @@ class Stations {
                 on_level(link.a) != on_level(link.b));
   }
 
+  // One sigma of each head in x and y, on a scale of their own.
+  void draw_ellipses() {
+    const double scale = view_.ellipse_scale();
+    if (!(scale > 0)) return;
+    for (std::size_t k = 0; k < shown_.size(); ++k) {
+      if (!on_level(k) || !active(station(k))) continue;
+      const auto& c = view_.errors[shown_[k]].covariance;
+      // the curve that a unit circle goes to under the square root of the covariance, by Cholesky's factor
+      const double a = std::sqrt(std::max(c[0], 0.0)), b = a > 0 ? c[1] / a : 0,
+                   d = std::sqrt(std::max(c[4] - b * b, 0.0));
+      std::vector<Point> curve;
+      constexpr int kSteps = 72;
+      for (int s = 0; s <= kSteps; ++s) {
+        const double t = 2 * std::numbers::pi * s / kSteps, x = a * std::cos(t), y = b * std::cos(t) + d * std::sin(t);
+        curve.push_back({spots_[k].x + scale * x, spots_[k].y - scale * y});
+      }
+      canvas_.polygon(curve, kSkipped, 0.12);
+      canvas_.path(curve, {.colour = kSkipped, .width = 1.3});
+    }
+  }
+
   // The ground's height beside each, and its name where that does not fit into the disc.
   void draw_labels() {
     const TextStyle style{.size = 10.5, .across = Align::middle, .halo = 2};
@@ -167,7 +190,8 @@ class Stations {
     }
     for (std::size_t k = 0; k < shown_.size(); ++k) {
       if (!on_level(k)) continue;
-      const std::string text = (name(k).size() > 3 ? name(k) + ", " : "") + "z " + fixed(station(k).ground.z, 2);
+      const std::string text = (name(k).size() > 3 ? name(k) + ", " : "") + "z " +
+                               fixed(std::round(100 * station(k).ground.z) / 100 + 0.0, 2);
       const Rect place = place_label(discs_[k], kDisc + 3, canvas_.text_width(text, style) + 4, 13,
                                      {map_.x + 2, map_.y + 2, map_.width - 4, map_.height - 4}, taken);
       canvas_.text({place.x + place.width / 2, place.y + place.height / 2}, text, style);
@@ -189,6 +213,17 @@ void disc_text(Canvas& canvas, Point at, const std::string& text, const Colour& 
 }
 
 }  // namespace
+
+double PlanView::ellipse_scale() const {
+  double widest = 0;  // semi-axis, metres: the root of the larger eigenvalue in x and y
+  for (std::size_t k = 0; k < errors.size() && errors.size() == stations.size(); ++k) {
+    if (!active(stations[k])) continue;
+    const auto& c = errors[k].covariance;
+    const double middle = (c[0] + c[4]) / 2, half = std::hypot((c[0] - c[4]) / 2, c[1]);
+    widest = std::max(widest, std::sqrt(std::max(middle + half, 0.0)));
+  }
+  return widest > 0 && std::isfinite(widest) ? kWidestEllipse / widest : 0;
+}
 
 Box plan_window(const PlanView& view) {
   const SceneData& scene = view.scene.data();

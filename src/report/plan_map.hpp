@@ -24,7 +24,12 @@ struct PlanView {
   OverlapMatrix overlap;           // of all stations, or of none
   double link_overlap = default_link_overlap;
   std::string title;
+  std::span<const StationError> errors = {};  // of the stations, or of none: their standard ellipses are drawn
+
+  // Canvas units a metre of such an ellipse; 0 where there is none. The widest is as wide as kWidestEllipse.
+  double ellipse_scale() const;
 };
+inline constexpr double kWidestEllipse = 30;  // semi-axis, canvas units
 
 // What a map came to show, for its legend.
 struct PlanMapContent {

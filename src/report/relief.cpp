@@ -109,7 +109,9 @@ HeightBuffer look_from_above(const SceneData& scene, const MapWindow& window, do
       z[k] = p[k].z;
     }
     painter.triangle(c, z, t);
-    if (normal_of(scene, t)[2] < kSteep)
+    // What is cut through shows as its section.
+    const bool below = z_cut - scene.origin.z >= std::max({z[0], z[1], z[2]});
+    if (below && normal_of(scene, t)[2] < kSteep)
       for (std::size_t k = 0; k < 3; ++k) painter.line(c[k], c[(k + 1) % 3], z[k], z[(k + 1) % 3], t);
   }
   return heights;

@@ -55,7 +55,8 @@ void for_each_pixel(const MapWindow& window, const std::array<MapPoint, 3>& c, P
   }
 }
 
-// The topmost surface below `z_cut` (survey frame) under each pixel's centre.
+// The topmost surface below `z_cut` (survey frame) under each pixel's centre. Steep surfaces, which cover no area, are
+// lines along their edges; but for those that the cut goes through, which section.hpp draws.
 struct HeightBuffer {
   MapWindow window;
   std::vector<float> z;                 // local frame; −infinity where there is nothing

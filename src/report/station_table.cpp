@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "core/text.hpp"
 #include "vantage/summary.hpp"
@@ -17,8 +18,9 @@ std::string station_table(std::span<const PlacedStation> stations, std::span<con
     std::array<std::string, kColumns> row{names[k]};
     row[5] = to_string(s.status);
     if (s.status != StationStatus::hole) {
-      row[1] = fixed(s.ground.x, 3), row[2] = fixed(s.ground.y, 3), row[3] = fixed(s.ground.z, 3);
-      row[4] = fixed(s.position.z, 3);
+      const auto metres = [](double value) { return fixed(std::round(1000 * value) / 1000 + 0.0, 3); };  // no "-0.000"
+      row[1] = metres(s.ground.x), row[2] = metres(s.ground.y), row[3] = metres(s.ground.z);
+      row[4] = metres(s.position.z);
     }
     if (s.kept) row[5] += ", kept";
     if (k < points.size()) row[6] = number(points[k]);

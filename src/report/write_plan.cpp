@@ -6,12 +6,13 @@
 #include "report/tables.hpp"
 #include "vantage/error.hpp"
 #include "vantage/export.hpp"
+#include "vantage/station_files.hpp"
 #include "vantage/summary.hpp"
 
 namespace vantage {
 
 std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& result, const Simulator& simulator,
-                       const SearchArea& area, const VoxelField* field) {
+                       const SearchArea& area, const VoxelField* field, const std::string& crs) {
   if (result.front.empty())
     throw Error(Errc::invalid_argument,
                 "there is nothing to write: the search ended before its first networks were evaluated");
@@ -45,6 +46,9 @@ std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& re
                               .link_overlap = result.problem.link_overlap,
                               .title = title}))
     save("plan" + page.suffix, *page.canvas);
+  const auto names = station_names(entry.stations);
+  write_station_files(folder, {entry.stations, names}, entry.exact_overlap_matrix, result.problem.link_overlap, area,
+                      crs);
   return chosen;
 }
 

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vantage/simulator.hpp"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numeric>
 #include <sstream>
 #include <utility>
 
@@ -11,6 +14,7 @@
 #include "scan/pattern.hpp"
 #include "scan/scan_chunk.hpp"
 #include "scan/voxel_sample.hpp"
+#include "trace/registration_sums.hpp"
 #include "trace/tracer.hpp"
 #include "vantage/error.hpp"
 #include "voxel/voxel_grid.hpp"
@@ -63,7 +67,8 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 }
 
 // What a network without an active station leaves: the voxels, and zeros.
-NetworkCounts nothing_seen(std::uint64_t voxels, std::uint64_t weight, std::size_t stations, bool overlap) {
+NetworkCounts nothing_seen(std::uint64_t voxels, std::uint64_t weight, std::size_t stations, bool overlap,
+                           bool registration) {
   NetworkCounts counts;
   counts.voxels = voxels;
   counts.weight = weight;
@@ -72,7 +77,17 @@ NetworkCounts nothing_seen(std::uint64_t voxels, std::uint64_t weight, std::size
     counts.seen.assign(stations, 0);
     counts.shared.assign(stations * (stations - 1) / 2, 0);
   }
+  if (registration) {
+    counts.registration.heads.assign(stations, Vec3{});
+    counts.registration.pairs.assign(stations * (stations - 1) / 2 * RegistrationSums::of_pair, 0);
+    counts.registration.surface.assign(stations * RegistrationSums::of_station, 0);
+  }
   return counts;
+}
+
+void check_registration(const std::optional<RegistrationModel>& registration, bool overlap) {
+  if (registration && !overlap)
+    throw Error(Errc::invalid_argument, "registration is summed from station masks, and so needs overlap");
 }
 
 }  // namespace
@@ -137,6 +152,21 @@ struct Simulator::Impl {
     return sampled;
   }
 
+  // The planes of the sample asked for last, or of all voxels. Range noise is the scanner's, simulated or not.
+  const Patches& patches_of(std::span<const std::uint32_t> ranks, const RegistrationModel& model) {
+    if (!(model.rho_m > 0 && std::isfinite(model.rho_m) && model.patch_m > 0 && std::isfinite(model.patch_m))) {
+      std::ostringstream what;
+      what << "registration: the modelling error is " << model.rho_m << " m over patches of " << model.patch_m
+           << " m; both must be above 0";
+      throw Error(Errc::invalid_argument, what.str());
+    }
+    if (patches.patches.size() != ranks.size() || patches.model != model) {
+      patches = make_patches(data(), *grid, ranks, *pattern, model);
+      range_noise = make_noise_model(scanner, config.seed);
+    }
+    return patches;
+  }
+
   Scene scene;
   Scanner scanner;
   SimulatorConfig config;
@@ -145,6 +175,8 @@ struct Simulator::Impl {
   std::shared_ptr<const RayPattern> pattern;
   NoiseModel noise;
   std::vector<std::uint32_t> sampled;
+  Patches patches;
+  NoiseModel range_noise;
   std::unique_ptr<Tracer> tracer;
 };
 
@@ -218,23 +250,36 @@ ScanSummary Simulator::scan(const Station& station, const ScanOptions& options,
 }
 
 NetworkCounts Simulator::evaluate(const Network& network, const EvaluateOptions& options, const Progress& progress) {
+  check_registration(options.registration, options.overlap);
   const std::vector<TraceStation> active = impl_->active_stations(network);
   if (active.empty()) {
     if (options.field) {
       options.field->count.assign(voxel_count(), 0);
       options.field->stations.assign(voxel_count(), 0);
     }
-    NetworkCounts counts = nothing_seen(voxel_count(), impl_->grid->total_weight(), network.size(), options.overlap);
+    NetworkCounts counts = nothing_seen(voxel_count(), impl_->grid->total_weight(), network.size(), options.overlap,
+                                        options.registration.has_value());
     counts.points_on_surveyed.assign(network.size(), 0);
     if (!options.skip) counts.points.assign(network.size(), 0);
     return counts;
   }
-  return impl_->tracer->count(active, static_cast<std::uint32_t>(network.size()),
-                              {.masks = options.overlap, .skip = options.skip, .field = options.field}, progress);
+  VoxelField own;
+  VoxelField* field = options.registration && !options.field ? &own : options.field;
+  const auto size = static_cast<std::uint32_t>(network.size());
+  NetworkCounts counts =
+      impl_->tracer->count(active, size, {.masks = options.overlap, .skip = options.skip, .field = field}, progress);
+  if (options.registration && !counts.cancelled) {
+    std::vector<std::uint32_t> ranks(voxel_count());
+    std::iota(ranks.begin(), ranks.end(), 0u);
+    const Patches& patches = impl_->patches_of(ranks, *options.registration);
+    counts.registration = sum_patches(patches, impl_->range_noise, active, size, field->stations, 0).front();
+  }
+  return counts;
 }
 
 std::vector<NetworkCounts> Simulator::evaluate_sampled(std::span<const Network> networks, const SampleOptions& options,
                                                        const Progress& progress) {
+  check_registration(options.registration, options.overlap);
   const std::vector<std::uint32_t>& sample = impl_->sample(options.voxels);
   std::vector<NetworkCounts> all(networks.size());
   // Networks without an active station are not the engine's concern.
@@ -244,11 +289,12 @@ std::vector<NetworkCounts> Simulator::evaluate_sampled(std::span<const Network> 
   for (std::size_t k = 0; k < networks.size(); ++k) {
     std::vector<TraceStation> active = impl_->active_stations(networks[k]);
     if (active.empty() || sample.empty()) {
-      all[k] = nothing_seen(sample.size(), impl_->weight_of(sample, 0, 1), networks[k].size(), options.overlap);
+      all[k] = nothing_seen(sample.size(), impl_->weight_of(sample, 0, 1), networks[k].size(), options.overlap,
+                            options.registration.has_value());
       for (std::uint32_t g = 0; g < sample_groups; ++g)
         all[k].groups.push_back(nothing_seen((sample.size() + sample_groups - 1 - g) / sample_groups,
                                              impl_->weight_of(sample, g, sample_groups), networks[k].size(),
-                                             options.overlap));
+                                             options.overlap, options.registration.has_value()));
       if (options.points) options.points(k, std::vector<std::uint32_t>(sample.size()));
       continue;
     }
@@ -261,15 +307,35 @@ std::vector<NetworkCounts> Simulator::evaluate_sampled(std::span<const Network> 
   const auto points = [&](std::size_t k, std::span<const std::uint32_t> counted) {
     options.points(places[k], counted);
   };
+  std::vector<std::vector<RegistrationSums>> registration(options.registration ? traced.size() : 0);
+  std::function<void(std::size_t, std::span<const std::uint64_t>)> sum;
+  if (options.registration) {
+    const Patches& patches = impl_->patches_of(sample, *options.registration);
+    const std::uint32_t groups = options.registration_groups ? sample_groups : 0;
+    sum = [&, groups](std::size_t first, std::span<const std::uint64_t> masks) {
+      tbb::parallel_for(std::size_t{0}, masks.size() / sample.size(), [&, first, masks](std::size_t k) {
+        registration[first + k] = sum_patches(patches, impl_->range_noise, traced[first + k], sizes[first + k],
+                                              masks.subspan(k * sample.size(), sample.size()), groups);
+      });
+    };
+  }
   std::vector<NetworkCounts> counts =
       impl_->tracer->count_sampled(traced, sizes,
                                    {.sample = sample,
                                     .groups = sample_groups,
                                     .masks = options.overlap,
                                     .stop_at = stop_at_goal ? static_cast<std::uint32_t>(std::ceil(impl_->goal)) : 0,
-                                    .points = options.points ? decltype(options.points)(points) : nullptr},
+                                    .points = options.points ? decltype(options.points)(points) : nullptr,
+                                    .station_masks = sum},
                                    progress);
-  for (std::size_t k = 0; k < counts.size(); ++k) all[places[k]] = std::move(counts[k]);
+  for (std::size_t k = 0; k < counts.size(); ++k) {
+    if (k < registration.size() && !registration[k].empty()) {
+      counts[k].registration = std::move(registration[k][0]);
+      for (std::size_t g = 1; g < registration[k].size(); ++g)
+        counts[k].groups[g - 1].registration = std::move(registration[k][g]);
+    }
+    all[places[k]] = std::move(counts[k]);
+  }
   return all;
 }
 

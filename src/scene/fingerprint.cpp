@@ -15,8 +15,10 @@ std::uint64_t Scene::fingerprint() const noexcept {
   hash.add_all(scene.colours);
   hash.add_all(scene.triangles);
   for (const MeshRange& range : scene.ranges) hash.add(range.triangle_count), hash.add(range.material);
-  for (const MeshInfo& mesh : scene.meshes)
+  for (const MeshInfo& mesh : scene.meshes) {
     hash.add(static_cast<int>(mesh.role)), hash.add(mesh.diffuse), hash.add(mesh.weight);
+    if (mesh.door || mesh.station_area) hash.add(mesh.door), hash.add(mesh.station_area);
+  }
   for (const Material& material : scene.materials) {
     for (const float channel : material.base_colour) hash.add(channel);
     hash.add(material.image), hash.add(material.repeat_u), hash.add(material.repeat_v);

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "core/glm.hpp"
-#include "scene/positions.hpp"
+#include "scene/sound_triangle.hpp"
 
 namespace vantage {
 namespace {
@@ -358,14 +358,17 @@ SceneEvidence gather_evidence(const RawScene& raw, const std::vector<NamedBox>& 
   constexpr int kBins = 1 << 14;
   constexpr double kFlat = 0.9999, kFarthest = 1e12;
   SceneEvidence evidence;
-  const auto sound = [&](const Triangle& t) {
+  const auto within = [&](const Triangle& t, double limit) {
     return std::ranges::all_of(t, [&](std::uint32_t v) {
       const glm::dvec3& p = raw.positions[v];
-      return std::abs(p.x) < kFarthest && std::abs(p.y) < kFarthest && std::abs(p.z) < kFarthest;
+      return std::abs(p.x) < limit && std::abs(p.y) < limit && std::abs(p.z) < limit;
     });
   };
+  // Broken vertices are no evidence; but all of a site in millimetres may lie as far out as a vertex that is broken.
+  const bool near = std::ranges::any_of(raw.triangles, [&](const Triangle& t) { return within(t, kFarthest_m); });
+  const auto counts = [&](const Triangle& t) { return within(t, near ? kFarthest_m : kFarthest); };
   for (const Triangle& t : raw.triangles)
-    if (sound(t))
+    if (counts(t))
       for (const std::uint32_t v : t) evidence.bounds.extend(file_from_survey(raw.positions[v]));
   for (const NamedBox& node : nodes) {
     NamedBox turned{node.name, {}};
@@ -380,7 +383,7 @@ SceneEvidence gather_evidence(const RawScene& raw, const std::vector<NamedBox>& 
   std::array<std::vector<Bin>, 6> bins;  // axis, and which side
   for (auto& side : bins) side.resize(kBins);
   for (const Triangle& t : raw.triangles) {
-    if (!sound(t)) continue;
+    if (!counts(t)) continue;
     const Vec3 a = file_from_survey(raw.positions[t[0]]), b = file_from_survey(raw.positions[t[1]]),
                c = file_from_survey(raw.positions[t[2]]);
     const Vec3 normal = cross(b - a, c - a) * 0.5;

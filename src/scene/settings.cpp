@@ -13,6 +13,8 @@ Settings settings(const SceneOptions& options) {
       .add("search", options.search, {"search", false})
       .add("ignore", options.ignore, {"ignore", false})
       .add("weights", weights, {"weight", false})
+      .add("doors", options.doors, {"doors", false})
+      .add("station_area", options.station_area, {"station-area", false})
       .add("scene_index", options.scene_index, {"scene-index", false})
       .add("default_diffuse", options.default_diffuse, {"diffuse", false})
       .add("unit", options.unit ? std::optional<std::string>(to_string(*options.unit)) : std::nullopt, {"unit", false})

@@ -111,6 +111,9 @@ class Tracer {
     // Where wanted: told the points in each voxel of the sample, once for every network that was counted to its end, in
     // any order, on the calling thread.
     std::function<void(std::size_t network, std::span<const std::uint32_t> points)> points = {};
+    // Where wanted, with masks: told the station masks [network][voxel of the sample] of consecutive networks, once for
+    // every network that was counted to its end, on the calling thread.
+    std::function<void(std::size_t first_network, std::span<const std::uint64_t> masks)> station_masks = {};
   };
   virtual std::vector<NetworkCounts> count_sampled(std::span<const std::vector<TraceStation>> networks,
                                                    std::span<const std::uint32_t> station_counts, const SampleJob& job,

@@ -553,6 +553,30 @@ TEST_P(Conformance, PointsOfASampleAreThoseOfTheVoxelField) {
   }
 }
 
+// What registration is summed from: the masks themselves, so that its sums are the same on every engine.
+TEST_P(Conformance, StationMasksOfASampleAreThoseOfTheVoxelField) {
+  for (const TestSite& site : sites()) {
+    std::vector<std::uint32_t> everything(site.grid->size());
+    std::iota(everything.begin(), everything.end(), 0u);
+    const std::vector<std::vector<TraceStation>> networks{site.stations, random_stations(site, 40, 7)};
+    const std::vector<std::uint32_t> sizes{4, 40};
+    std::vector<std::vector<std::uint64_t>> masks(networks.size());
+    Tracer::SampleJob job{everything, 20, true, 0};
+    job.station_masks = [&](std::size_t first, std::span<const std::uint64_t> of) {
+      for (std::size_t k = 0; k < of.size() / everything.size(); ++k) {
+        const auto own = of.subspan(k * everything.size(), everything.size());
+        masks[first + k].assign(own.begin(), own.end());
+      }
+    };
+    tracer(site, false).count_sampled(networks, sizes, job, {});
+    for (std::size_t n = 0; n < networks.size(); ++n) {
+      VoxelField field;
+      tracer(site, false).count(networks[n], sizes[n], {true, true, &field}, {});
+      EXPECT_EQ(masks[n], field.stations) << site.name << ", network " << n;
+    }
+  }
+}
+
 // Many scanners in one place: what the first saturate, the rest need not look at.
 TEST_P(Conformance, SamplesStopAtTheGoalOnlyWhereAsked) {
   const TestSite& site = sites()[2];

@@ -67,7 +67,7 @@ Site office() {
     add_block(site, "shelf_" + std::to_string(i + 1), block(20.1 + 0.7 * i, 20.7 + 0.7 * i, 14.2, 14.7, 0, 2.0));
   add_block(site, "shelf_6", block(23.2, 23.7, 9.5, 13.0, 0, 2.0));
   for (const double x : {0.35, 6.11, 12.11}) add_block(site, "cupboard", block(x, x + 0.45, 3.6, 5.2, 0, 1.8));
-  add_block(site, "copier", block(13.0, 13.7, 6.6, 7.1, 0, 1.1));
+  add_block(site, "copier", block(14.0, 14.7, 6.6, 7.1, 0, 1.1));
   return site;
 }
 

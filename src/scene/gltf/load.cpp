@@ -164,7 +164,8 @@ class Loader {
     }
     raw_.ranges.push_back({static_cast<std::uint32_t>(raw_.triangles.size()),
                            static_cast<std::uint32_t>(primitive->triangles.size() * instances), job.material->index});
-    raw_.meshes.push_back({job.placed->name, *job.role, job.diffuse, raw_.ranges.back().triangle_count, job.weight});
+    raw_.meshes.push_back({job.placed->name, *job.role, job.diffuse, raw_.ranges.back().triangle_count, job.weight,
+                           job.placed->door, job.placed->station_area});
     const std::size_t first = raw_.positions.size();
     for (const glm::dmat4& world_from_mesh : job.placed->world_from_mesh)
       append(*primitive, *job.material, world_from_mesh);

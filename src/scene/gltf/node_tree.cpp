@@ -80,6 +80,12 @@ Patterns<std::uint32_t> weight_patterns(const SceneOptions& options) {
   return weights;
 }
 
+Patterns<bool> name_patterns(const std::vector<std::string>& patterns) {
+  Patterns<bool> names;
+  for (const std::string& pattern : patterns) names.add(pattern, true);
+  return names;
+}
+
 std::string node_name(const tinygltf::Model& model, int index) {
   const tinygltf::Node& node = model.nodes[static_cast<std::size_t>(index)];
   if (!node.name.empty()) return node.name;
@@ -228,12 +234,14 @@ std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& opti
     std::optional<Role> pattern_role;
     std::optional<std::uint32_t> pattern_weight;
     Marks marks;
+    bool door = false, station_area = false;
   };
   std::vector<Visit> stack;  // an own stack: node trees may be deeper than the thread's
   const std::vector<int> roots = root_nodes(file, options);
   for (auto it = roots.rbegin(); it != roots.rend(); ++it) stack.push_back({*it, -1, survey_from_gltf, {}, {}, {}});
   Patterns<Role> roles = role_patterns(options);
   Patterns<std::uint32_t> weights = weight_patterns(options);
+  Patterns<bool> doors = name_patterns(options.doors), station_areas = name_patterns(options.station_area);
   std::vector<PlacedMesh> placed;
   std::vector<std::string> names;
   std::vector<bool> visited(model.nodes.size());
@@ -254,6 +262,8 @@ std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& opti
     names.push_back(name);
     if (const auto role = roles.find(name)) visit.pattern_role = role;
     if (const auto weight = weights.find(name)) visit.pattern_weight = weight;
+    visit.door = doors.find(name).value_or(visit.door);
+    visit.station_area = station_areas.find(name).value_or(visit.station_area);
     const Marks own = read_marks(file, "nodes", visit.node, where);
     if (own.role) visit.marks.role = own.role;
     if (own.diffuse) visit.marks.diffuse = own.diffuse;
@@ -265,9 +275,15 @@ std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& opti
         throw file.malformed(where + " refers to mesh " + std::to_string(node.mesh) + "; there are " +
                              std::to_string(model.meshes.size()));
       if (node.skin >= 0) ++skinned;
-      PlacedMesh mesh{
-          visit.node,           node.mesh,  name, instance_transforms(file, visit.node, where), visit.pattern_role,
-          visit.pattern_weight, visit.marks};
+      PlacedMesh mesh{visit.node,
+                      node.mesh,
+                      name,
+                      instance_transforms(file, visit.node, where),
+                      visit.pattern_role,
+                      visit.pattern_weight,
+                      visit.door,
+                      visit.station_area,
+                      visit.marks};
       for (glm::dmat4& transform : mesh.world_from_mesh) {
         transform = world_from_node * transform;
         if (!finite(transform)) throw file.malformed(where + ": the transform of an instance is not finite");
@@ -275,10 +291,13 @@ std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& opti
       placed.push_back(std::move(mesh));
     }
     for (auto it = node.children.rbegin(); it != node.children.rend(); ++it)
-      stack.push_back({*it, visit.node, world_from_node, visit.pattern_role, visit.pattern_weight, visit.marks});
+      stack.push_back({*it, visit.node, world_from_node, visit.pattern_role, visit.pattern_weight, visit.marks,
+                       visit.door, visit.station_area});
   }
   roles.check(names);
   weights.check(names);
+  doors.check(names);
+  station_areas.check(names);
   if (skinned > 0)
     notes.push_back(std::to_string(skinned) + " skinned meshes stand as modelled: skins are not applied");
   return placed;

@@ -29,7 +29,8 @@ struct PlacedMesh {
   std::vector<glm::dmat4> world_from_mesh;  // affine, to the survey frame; several with EXT_mesh_gpu_instancing
   std::optional<Role> pattern_role;         // by the nearest node whose name matches a pattern
   std::optional<std::uint32_t> pattern_weight;
-  Marks marks;  // by the nearest node that has them
+  bool door = false, station_area = false;  // whether a pattern says so of it or of a node above it
+  Marks marks = {};  // by the nearest node that has them
 };
 
 // Throws Error: malformed_file (cycles, nodes with two parents, matrices that are not finite or not affine),

@@ -95,6 +95,7 @@ std::vector<NetworkCounts> sample_networks(const StationRays& rays, std::span<co
       results[first + k].rays = traced[k];
       if (job.points && !cancelled) job.points(first + k, own_counts);
     }
+    if (job.station_masks && !cancelled) job.station_masks(first, std::span(masks).first(here * n));
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
     for (std::size_t k = 0; k < here; ++k) results[first + k].trace_seconds = seconds / static_cast<double>(here);
   }

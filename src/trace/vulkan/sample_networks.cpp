@@ -159,6 +159,7 @@ class VulkanTracer::SampledCount {
                static_cast<double>(networks_.size()));
     }
     if (job_.points) hand_out_points(batch);
+    if (job_.station_masks) hand_out_masks(batch);
     return true;
   }
 
@@ -167,6 +168,20 @@ class VulkanTracer::SampledCount {
     t_.commands_.download(t_.counts_, points.data(), points.size() * word);
     for (std::size_t n = 0; n < batch.size(); ++n)
       job_.points(batch.first + n, std::span(points).subspan(n * voxels_, voxels_));
+  }
+
+  void hand_out_masks(const Batch& batch) {
+    const std::size_t of_network = std::size_t{voxels_} * mask_words_;
+    std::vector<std::uint32_t> words(of_network * batch.size());
+    t_.commands_.download(t_.masks_, words.data(), words.size() * word);
+    std::vector<std::uint64_t> masks(std::size_t{voxels_} * batch.size());
+    tbb::parallel_for(std::size_t{0}, batch.size(), [&](std::size_t n) {
+      const std::uint32_t* low = words.data() + n * of_network;
+      const std::uint32_t* high = mask_words_ > 1 ? low + voxels_ : nullptr;
+      for (std::size_t v = 0; v < voxels_; ++v)
+        masks[n * voxels_ + v] = low[v] | (high ? std::uint64_t{high[v]} << 32 : 0);
+    });
+    job_.station_masks(batch.first, masks);
   }
 
   // Returns what each chunk wanted to list, and the seconds that the device took.

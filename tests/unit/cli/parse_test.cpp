@@ -53,7 +53,7 @@ TEST(Parse, StationsAreHeadsOrUvs) {
   EXPECT_EQ(parse_station("1,-2,3.5", "--station").position, (Vec3{1, -2, 3.5}));
   EXPECT_EQ(parse_station("0.25,0.5", "--station").pair, (std::array{0.25, 0.5}));
   EXPECT_EQ(parse_station("u=0.25,v=0.5", "--station").uv, (Uv{0.25, 0.5}));
-  EXPECT_EQ(parse_station("y=3.6, x=5", "--station").xy, (std::array{5, 3.6}));
+  EXPECT_EQ(parse_station("y=3.6, x=5", "--station").xy, (std::array{5.0, 3.6}));
   EXPECT_EQ(parse_station("x=5,y=3.6,z=1.85", "--station").position, (Vec3{5, 3.6, 1.85}));
   EXPECT_EQ(parse_station("x=5,y=3.6,ground=-1", "--station").ground, (Vec3{5, 3.6, -1}));
   for (const char* text :

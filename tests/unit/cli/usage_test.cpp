@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Mistakes that users make: each gets one clear line and a stated exit code, and leaves nothing behind.
 #include "program.hpp"
+#include "vantage/station_files.hpp"
 
 namespace vantage::test {
 namespace {
@@ -73,6 +74,9 @@ TEST_F(Usage, OutputsThatAFormatCannotHoldAreRefused) {
   };
   refused("evaluate", {"--cartography", path("c.las")}, "--cartography");
   refused("evaluate", {"--picture", path("p.pdf")}, "must end with .png .svg");
+  refused("evaluate", {"--write-stations", path("s.shp")}, "must end with .dxf .geojson .kml");
+  refused("evaluate", {"--write-stations", path("s.kml")}, has_projections() ? "--crs" : "PROJ");
+  refused("scan", {"-o", path("c.e57"), "--outputs", "ids"}, "but no range, ids");
   refused("scan", {"-o", path("c.las"), "--outputs", "range,colour"}, "but no range");
   refused("scan", {"-o", path("c.las"), "--crs", "EPSG:4326"}, "EPSG:4326");
   EXPECT_EQ(files(), std::vector<std::string>{});

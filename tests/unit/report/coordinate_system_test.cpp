@@ -4,6 +4,7 @@
 #include "support/temporary_folder.hpp"
 #include "unit/report/files.hpp"
 #include "vantage/error.hpp"
+#include "vantage/station_files.hpp"
 
 namespace vantage {
 namespace {
@@ -55,7 +56,7 @@ TEST(CoordinateSystem, OthersComeAsText) {
   EXPECT_EQ(coordinate_system(folder / "site.prj"),
             "PROJCS[\"Site grid\",GEOGCS[\"x y\",UNIT[\"degree\",0.017]],UNIT[\"Meter\",1.0],AXIS[\"E\",EAST]]");
   EXPECT_THROW(coordinate_system(folder / "none.prj"), Error);
-  EXPECT_NE(refusal("EPSG:31467").find("well-known text, as SITE.prj"), std::string::npos) << "known to others";
+  EXPECT_NE(refusal("EPSG:999999").find("well-known text, as SITE.prj"), std::string::npos);
   EXPECT_NE(refusal("EPSG:").find("no coordinate system"), std::string::npos);
   EXPECT_NE(refusal("EPSG:25832x").find("as EPSG:25832"), std::string::npos);
   EXPECT_NE(refusal("25832").find("EPSG:25832"), std::string::npos);
@@ -64,6 +65,20 @@ TEST(CoordinateSystem, OthersComeAsText) {
   EXPECT_NE(refusal("PROJCS[\"x\",UNIT[\"foot\",0.3048]]").find("its unit is 0.3048 m"), std::string::npos);
   EXPECT_NE(refusal("PROJCS[\"x\",UNIT[\"metre\",1]").find("brackets"), std::string::npos);
   EXPECT_NE(refusal("FOO[\"x\"]").find("PROJCS["), std::string::npos);
+}
+
+// What is not built in comes from PROJ's registry, where there is one.
+TEST(CoordinateSystem, AsksProjForOtherCodes) {
+  if (has_projections()) {
+    const std::string text = coordinate_system("EPSG:31467");
+    EXPECT_TRUE(text.starts_with("PROJCS[")) << text;
+    EXPECT_NE(text.find("AUTHORITY[\"EPSG\",\"31467\"]"), std::string::npos) << text;
+    EXPECT_EQ(text.find('\n'), std::string::npos);
+    EXPECT_NE(refusal("EPSG:4326").find("angles"), std::string::npos);
+    EXPECT_NE(refusal("EPSG:2263").find("unit"), std::string::npos) << "feet";
+  } else {
+    EXPECT_NE(refusal("EPSG:31467").find("SITE.prj"), std::string::npos);
+  }
 }
 
 }  // namespace

@@ -150,6 +150,7 @@ TEST(Relief, ShowsTheTopmostSurface) {
   EXPECT_FALSE(std::isfinite(z_at(open, 3, 0)));
   const HeightBuffer cut = look_from_above(data, window, 0.5);
   EXPECT_NEAR(z_at(cut, 0.3, 0.2), 0, 1e-6);
+  EXPECT_NEAR(z_at(cut, -1.5, 0.5), 0, 1e-6);  // the wall is cut through
   const auto pixels = shade(data, open);
   EXPECT_EQ(pixels[100 * 200 + 190], 0u);
   EXPECT_EQ(pixels[100 * 200 + 105] >> 24, 255u);
@@ -310,6 +311,29 @@ TEST(Pictures, PlanViewDrawsEveryKindOfStation) {
   EXPECT_GT(none.ink(), 1'000'000u);
   EXPECT_GT(shapes(test::content(folder / "plan.svg")), 40u);
   EXPECT_THROW(draw_plan_view(folder / "bad.png", room(), area, stations, OverlapMatrix(3), "Wrong"), Error);
+}
+
+TEST(Pictures, PlanViewDrawsStandardEllipses) {
+  const test::TemporaryFolder folder;
+  const std::vector<PlacedStation> stations{{.uv = {}, .position = {-1, -1, 1.8}, .ground = {-1, -1, 0}},
+                                            {.uv = {}, .position = {1, 1, 1.8}, .ground = {1, 1, 0}}};
+  std::vector<StationError> errors(2);
+  errors[0].covariance = {4e-6, 0, 0, 0, 1e-6, 0, 0, 0, 1e-6};
+  errors[1].covariance = {5e-6, 4e-6, 0, 4e-6, 5e-6, 0, 0, 0, 1e-6};  // 3 mm and 1 mm along the diagonals
+  const PlanView view{.scene = room(),
+                      .area = floor_of_room(),
+                      .stations = stations,
+                      .names = {"S1", "S2"},
+                      .overlap = {},
+                      .title = "",
+                      .errors = errors};
+  EXPECT_NEAR(kWidestEllipse / view.ellipse_scale(), 3e-3, 1e-12);
+  const auto red = [&](const char* name, std::span<const StationError> shown) {
+    draw_plan_view(folder / name, room(), floor_of_room(), stations, {}, "A room", default_link_overlap, {}, shown);
+    return test::Drawn(folder / name).near({0.72, 0.12, 0.12}, 40);
+  };
+  EXPECT_GT(red("with.png", errors), red("without.png", {}) + 200);
+  EXPECT_THROW(red("wrong.png", std::span(errors).first(1)), Error);
 }
 
 TEST(Pictures, NothingOfAPlanViewIsCutOff) {

@@ -75,12 +75,14 @@ const std::vector<Change<SceneOptions>> kScene{
        o.weights = {{"wall*", 3}};
      },
      false},
+    {"doors", [](SceneOptions& o) { o.doors = {"door*"}; }, false},
+    {"station_area", [](SceneOptions& o) { o.station_area = {"floor"}; }, false},
     {"scene_index", [](SceneOptions& o) { o.scene_index = 0; }, false},
     {"default_diffuse", [](SceneOptions& o) { o.default_diffuse = 0.25; }, false},
     {"allow_outside", [](SceneOptions& o) { o.allow_outside = true; }, false},
     {"unit", [](SceneOptions& o) { o.unit = Unit::foot; }, false},
     {"up", [](SceneOptions& o) { o.up = UpAxis::z; }, false}};
-static_assert(member_count<SceneOptions>() == 10);
+static_assert(member_count<SceneOptions>() == 12);
 
 const std::vector<Change<SimulatorConfig>> kSimulation{
     {"engine", [](SimulatorConfig& c) { c.engine = Engine::automatic; }, false},
@@ -96,8 +98,26 @@ static_assert(member_count<SimulatorConfig>() == 8);
 const std::vector<Change<WalkableOptions>> kWalkable{
     {"max_slope", [](WalkableOptions& o) { o.max_slope = Angle::degrees(5); }},
     {"headroom_m", [](WalkableOptions& o) { o.headroom_m = 3; }},
-    {"min_area_m2", [](WalkableOptions& o) { o.min_area_m2 = 3; }}};
-static_assert(member_count<WalkableOptions>() == 3);
+    {"min_area_m2", [](WalkableOptions& o) { o.min_area_m2 = 3; }},
+    {"passage_width_m", [](WalkableOptions& o) { o.passage_width_m = 1; }},
+    {"passage_height_m", [](WalkableOptions& o) { o.passage_height_m = 3; }},
+    {"climb_m", [](WalkableOptions& o) { o.climb_m = 0.1; }},
+    {"enter",
+     [](WalkableOptions& o) {
+       o.enter = {0, -5, 0};
+     }},
+    {"levels",
+     [](WalkableOptions& o) {
+       o.levels = {-1, 1};
+     }},
+    {"within",
+     [](WalkableOptions& o) {
+       o.within = {{{{{-9, -9}, {9, -9}, {9, 9}}}}};
+     }},
+    {"without", [](WalkableOptions& o) {
+       o.without = {{{{{-9, -9}, {9, -9}, {9, 9}}}}};
+     }}};
+static_assert(member_count<WalkableOptions>() == 10);
 
 const std::vector<Change<SecurityVolume>> kSecurity{{"lower_m", [](SecurityVolume& v) { v.lower_m = 0.7; }},
                                                     {"upper_m", [](SecurityVolume& v) { v.upper_m = 1.5; }},
@@ -118,8 +138,17 @@ const std::vector<Change<SurveyProblem>> kProblem{
      }},
     {"objectives", [](SurveyProblem& p) { p.objectives.pop_back(); }},
     {"requirements", [](SurveyProblem& p) { p.requirements = {make_requirement("coverage>=0.5")}; }},
-    {"link_overlap", [](SurveyProblem& p) { p.link_overlap = 0.05; }}};
-static_assert(member_count<SurveyProblem>() == 8);
+    {"link_overlap", [](SurveyProblem& p) { p.link_overlap = 0.05; }},
+    {"registration", [](SurveyProblem& p) { p.registration.tilt = Angle::degrees(1); }}};
+static_assert(member_count<SurveyProblem>() == 9);
+
+const std::vector<Change<SurveyProblem>> kRegistration{
+    {"rho_m", [](SurveyProblem& p) { p.registration.model.rho_m = 0.002; }},
+    {"patch_m", [](SurveyProblem& p) { p.registration.model.patch_m = 1; }},
+    {"position_m", [](SurveyProblem& p) { p.registration.position_m = 0.1; }},
+    {"heading", [](SurveyProblem& p) { p.registration.heading = Angle::degrees(1); }},
+    {"tilt", [](SurveyProblem& p) { p.registration.tilt = Angle(); }}};
+static_assert(member_count<RegistrationOptions>() == 4 && member_count<RegistrationModel>() == 2);
 
 const std::vector<Change<PlanConfig>> kPlan{
     {"population", [](PlanConfig& c) { c.population = 7; }},
@@ -192,6 +221,7 @@ TEST(Settings, OfASimulationAllCount) { expect_all_count(kSimulation, &PlanRun::
 TEST(Settings, OfASearchAreaAllCount) { expect_all_count(kWalkable, &PlanRun::walkable); }
 TEST(Settings, OfASecurityVolumeAllCount) { expect_all_count(kSecurity, &PlanRun::security); }
 TEST(Settings, OfAProblemAllCount) { expect_all_count(kProblem, &PlanRun::problem); }
+TEST(Settings, OfRegistrationAllCount) { expect_all_count(kRegistration, &PlanRun::problem); }
 TEST(Settings, OfASearchAllCount) { expect_all_count(kPlan, &PlanRun::config); }
 
 TEST(Settings, OfASceneAllCount) {

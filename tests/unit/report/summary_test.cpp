@@ -66,6 +66,20 @@ TEST(Summary, SaysInWordsWhatItKnowsAndNothingElse) {
   EXPECT_EQ(summary_lines(linked)[1].text, "one station, nothing to link");
 }
 
+TEST(Summary, TheTableHasGroundAndHeadToTheMillimetre) {
+  std::vector<PlacedStation> stations(3);
+  stations[0].position = {500'000.12345, 2.5, 1.85}, stations[0].ground = {500'000.12345, 2.5, -0.0001};
+  stations[0].kept = true;
+  stations[1].status = StationStatus::hole;
+  stations[2].position = {-1, 20.0004, 3.1}, stations[2].ground = {-1, 20.0004, 1.25};
+  const std::vector<std::uint64_t> points{12, 0, 345};
+  EXPECT_EQ(station_table(stations, station_names(stations), points),
+            "station    ground x       y      z  head z  status    points on surveyed meshes\n"
+            "K1       500000.123   2.500  0.000   1.850  ok, kept                         12\n"
+            "S1                                          hole                              0\n"
+            "S2           -1.000  20.000  1.250   3.100  ok                              345\n");
+}
+
 TEST(Summary, OfAPlanTellsWhatItMisses) {
   PlanResult result = test::sample_result("coverage-overlap-fix", 3, 3, 1);
   result.problem.requirements = {make_requirement("coverage>=0.99"), make_requirement("coverage>=0.2")};

@@ -89,7 +89,7 @@ TEST_P(WritePlan, WhatIsWrittenEvaluatesToTheSameNumbers) {
 
   for (const char* name :
        {"front.csv", "front.json", "history.csv", "fronts.csv", "coverage.ply", "overlap.csv", "stations.csv",
-        "front.png", "front.svg", "hypervolume.png", "hypervolume.svg", "plan.png", "plan.svg"})
+        "stations.dxf", "front.png", "front.svg", "hypervolume.png", "hypervolume.svg", "plan.png", "plan.svg"})
     EXPECT_TRUE(std::filesystem::exists(folder / "out" / name)) << name;
 
   // stations.csv

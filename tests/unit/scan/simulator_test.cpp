@@ -366,6 +366,39 @@ TEST(EvaluateSampled, AllVoxelsAreExact) {
             std::string::npos);
 }
 
+TEST(Registration, OfAllVoxelsIsExactAndOfASampleNear) {
+  Simulator simulator(wall_and_floor().scene(), coarse_scanner(0.5), config(0.1, 0.05));
+  const Network network{{{0, 0, 0}}, {{1, -2, 0.5}}, {{3, 1, -0.4}}};
+  const RegistrationModel model;
+  const NetworkCounts exact = simulator.evaluate(network, {.registration = model});
+  const NetworkCounts all =
+      simulator.evaluate_sampled({&network, 1}, {.voxels = simulator.voxel_count(), .registration = model})[0];
+  EXPECT_EQ(all.registration.pairs, exact.registration.pairs);
+  EXPECT_EQ(all.registration.surface, exact.registration.surface);
+  EXPECT_EQ(registration_estimate(all, simulator.voxel_count()).standard_error, 0.0);
+  ASSERT_EQ(all.groups.size(), 20u);
+  EXPECT_EQ(all.groups[3].registration.pairs.size(), exact.registration.pairs.size());
+  const double whole = registration_error(exact, simulator.voxel_count()).rms_m;
+  EXPECT_GT(whole, 0);
+
+  const NetworkCounts some =
+      simulator.evaluate_sampled({&network, 1}, {.voxels = simulator.voxel_count() / 2, .registration = model})[0];
+  const Estimate estimate = registration_estimate(some, simulator.voxel_count());
+  EXPECT_GT(estimate.standard_error, 0);
+  EXPECT_NEAR(estimate.value, whole, 5 * estimate.standard_error);
+
+  const NetworkCounts search = simulator.evaluate_sampled(
+      {&network, 1}, {.voxels = simulator.voxel_count() / 2, .registration = model, .registration_groups = false})[0];
+  EXPECT_EQ(search.registration.pairs, some.registration.pairs);
+  EXPECT_TRUE(search.groups[0].registration.pairs.empty());
+  EXPECT_TRUE(simulator.evaluate(network).registration.heads.empty());
+  EXPECT_NE(message_of([&] { simulator.evaluate(network, {.overlap = false, .registration = model}); }).find("overlap"),
+            std::string::npos);
+  const Network none{{{0, 0, 0}, false}, {{1, 0, 0}, false}};
+  EXPECT_NEAR(registration_error(simulator.evaluate(none, {.registration = model}), 1).rms_m, 0.03 * std::sqrt(3.0),
+              1e-12);
+}
+
 TEST(Simulator, TwoCoexistAndCanBeMoved) {
   const Scene scene = wall_and_floor().scene();
   Simulator a(scene, coarse_scanner(2), config()), b(scene, coarse_scanner(3), config());

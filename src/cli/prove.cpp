@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/prove.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+namespace vantage::cli {
+
+void prove(const std::filesystem::path& file, LoadedSite& site, Simulator& simulator,
+           std::span<const PlacedStation> stations, std::size_t kept, Program& program) {
+  if (stations.size() <= kept) return;
+  ProgressLine line(program.console, "bound");
+  const Progress progress{.report = [&](double done) { line.update(done); }, .stop = program.abort};
+  const Candidates candidates =
+      find_candidates(simulator, site.area(), site.clash(), {.first = 1024, .most = 1024}, progress);
+  CaptureRows rows = candidates.rows();
+  const std::size_t first = rows.size(), placed = stations.size() - kept;
+  rows.append(capture_rows(simulator, stations, rows.sample_voxels(), progress));
+  if (rows.cancelled()) {
+    spdlog::warn("stopped: {} is not written", file.string());
+    return;
+  }
+  // The plan itself on the voxels of the bound, so that the sample favours neither.
+  std::vector<std::size_t> plan(stations.size()), fixed(kept);
+  std::iota(plan.begin(), plan.end(), first);
+  std::iota(fixed.begin(), fixed.end(), first);
+  const Estimate reached = rows.coverage(plan);
+  const CaptureBound bound = bound_capture(rows, placed, fixed, {}, progress);
+  const double gap = reached.value > 0 ? std::max(bound.bound / reached.value - 1, 0.0) : 0;
+  spdlog::info(
+      "within {:.1f} % of the best that any {} stations can do: coverage {:.4f} ± {:.4f} on a sample, where no network "
+      "of {} candidates has more than {:.4f}; twice as many candidates raised that by {:.4f}",
+      100 * gap, placed, reached.value, reached.standard_error, candidates.stations().size(), bound.bound,
+      bound.spacing_term);
+  nlohmann::json chosen = nlohmann::json::array();
+  for (const std::size_t k : bound.chosen) {
+    const Vec3& head = (k < first ? candidates.stations()[k] : stations[k - first]).position;
+    chosen.push_back({head.x, head.y, head.z});
+  }
+  write_text(file, nlohmann::json{{"stations", placed},
+                                  {"kept", kept},
+                                  {"reached", reached.value},
+                                  {"reached_se", reached.standard_error},
+                                  {"bound", bound.bound},
+                                  {"gap", gap},
+                                  {"complete", bound.complete},
+                                  {"spacing_term", bound.spacing_term},
+                                  {"candidates", candidates.stations().size()},
+                                  {"spacing", candidates.spacing_m()},
+                                  {"visible", candidates.visible().value},
+                                  {"visible_se", candidates.visible().standard_error},
+                                  {"best_of_candidates", bound.reached.value},
+                                  {"chosen", std::move(chosen)},
+                                  {"sample", rows.voxels().size()}}
+                           .dump(2) +
+                       "\n");
+}
+
+}  // namespace vantage::cli

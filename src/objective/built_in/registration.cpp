@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "objective/built_in/registration.hpp"
+
+#include <string>
+#include <utility>
+
+#include "objective/built_in/built_in.hpp"
+
+namespace vantage::built_in {
+namespace {
+
+constexpr double millimetres = 1000;
+// What a search sees as the end of the scale. Better networks register to some tenths of a millimetre.
+constexpr double worst_mm = 10;
+
+std::string parameters_of(const RegistrationOptions& options) {
+  std::string text;
+  for (const Setting& setting : vantage::settings(options))
+    text += (text.empty() ? "" : ", ") + setting.name + " " + setting.json;
+  return text;
+}
+
+}  // namespace
+
+Objective registration_figure(const ObjectiveSettings& settings, std::string name, std::string label,
+                              double RegistrationError::*figure) {
+  const RegistrationOptions options = settings.registration;
+  check(options);
+  return {.name = std::move(name),
+          .label = std::move(label),
+          .unit = "mm",
+          .best = 0,
+          .worst = worst_mm,
+          .needs = {.pairs = true, .registration = options.model},
+          .value =
+              [options, figure](const MeasuredNetwork& m) {
+                return registration_error(m.counts, m.voxels, options).*figure * millimetres;
+              },
+          .parameters = parameters_of(options)};
+}
+
+Objective registration(const ObjectiveSettings& settings) {
+  return registration_figure(settings, "registration", "Registration error over the covered surface (predicted)",
+                             &RegistrationError::rms_m);
+}
+
+}  // namespace vantage::built_in

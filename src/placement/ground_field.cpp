@@ -1,0 +1,584 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "placement/ground_field.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <tuple>
+#include <utility>
+
+#include "scene/positions.hpp"
+#include "vantage/error.hpp"
+
+namespace vantage {
+namespace {
+
+constexpr double columns_per_passage = 12;
+constexpr double most_columns = 6e6;  // some 300 MB at three storeys
+// A person walks where no scanner stands: stairs are often drawn as a slope, seldom steeper than this.
+constexpr double walking_slope_degrees = 40;
+// No wall passes between the middles of two columns that touch, corner to corner, at half this distance from either.
+constexpr double half_diagonal = 0.7072;
+constexpr int cylinders = 3;
+constexpr double tolerance_share = 1e-3;  // of climb, height and width: rounding of the vertices
+
+// What is in the way, as bits.
+constexpr std::uint8_t beside = 1, overhead = 2, at_door = 4;
+
+using Corners = std::array<glm::dvec3, 3>;
+
+double squared(const glm::dvec2& v) { return v.x * v.x + v.y * v.y; }
+double turn(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
+
+// Squared distance from p to a convex polygon; a polygon without area is its outline.
+double squared_distance(const glm::dvec2& p, std::span<const glm::dvec2> polygon) {
+  double nearest = std::numeric_limits<double>::infinity();
+  bool left = false, right = false;
+  double area = 0;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const glm::dvec2 a = polygon[i], edge = polygon[(i + 1) % polygon.size()] - a, to = p - a;
+    const double side = turn(edge, to), length = squared(edge);
+    left = left || side > 0, right = right || side < 0;
+    area += turn(a - polygon[0], a + edge - polygon[0]);
+    const double s = length > 0 ? std::clamp((edge.x * to.x + edge.y * to.y) / length, 0.0, 1.0) : 0.0;
+    nearest = std::min(nearest, squared(to - edge * s));
+  }
+  return !(left && right) && std::abs(area) > 1e-12 ? 0 : nearest;
+}
+
+// The part of a triangle from `low` to `high`, seen from above. At most five corners.
+struct Slice {
+  std::array<glm::dvec2, 8> corners;
+  std::size_t count = 0;
+};
+Slice slice(const Corners& t, double low, double high) {
+  std::array<glm::dvec3, 8> from{t[0], t[1], t[2]}, to;
+  std::size_t n = 3;
+  for (const auto& [side, limit] : {std::pair{1.0, low}, std::pair{-1.0, -high}}) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      const glm::dvec3 a = from[i], b = from[(i + 1) % n];
+      const double da = side * a.z - limit, db = side * b.z - limit;
+      if (da >= 0) to[kept++] = a;
+      if ((da >= 0) != (db >= 0)) to[kept++] = a + (b - a) * (da / (da - db));
+    }
+    n = kept;
+    std::swap(from, to);
+  }
+  Slice result;
+  for (std::size_t i = 0; i < n; ++i) result.corners[result.count++] = {from[i].x, from[i].y};
+  return result;
+}
+
+Corners corners_of(const SceneData& scene, const Triangle& t) {
+  return {to_glm(scene.positions[t[0]]), to_glm(scene.positions[t[1]]), to_glm(scene.positions[t[2]])};
+}
+
+// Visits (row, first column, last column) of the middles that may lie within `reach` of a triangle seen from above.
+struct Grid {
+  glm::dvec2 corner;
+  double cell;
+  std::uint32_t columns, rows;
+};
+template <class Visit>
+void for_rows(const Grid& grid, const Corners& t, double reach, Visit&& visit) {
+  const auto clamp_to = [](double x, std::uint32_t n) {
+    return static_cast<std::int64_t>(std::clamp(x, -1.0, static_cast<double>(n)));
+  };
+  const auto first_at = [&](double x, double corner, std::uint32_t n) {
+    return std::max<std::int64_t>(0, clamp_to(std::ceil((x - corner) / grid.cell - 0.5), n));
+  };
+  const auto last_at = [&](double x, double corner, std::uint32_t n) {
+    return std::min<std::int64_t>(std::int64_t{n} - 1, clamp_to(std::floor((x - corner) / grid.cell - 0.5), n));
+  };
+  const double y_min = std::min({t[0].y, t[1].y, t[2].y}), y_max = std::max({t[0].y, t[1].y, t[2].y});
+  for (std::int64_t row = first_at(y_min - reach, grid.corner.y, grid.rows),
+                    last = last_at(y_max + reach, grid.corner.y, grid.rows);
+       row <= last; ++row) {
+    // What of the triangle lies at the heights of this row, by `reach` more on either side.
+    const double y = grid.corner.y + (static_cast<double>(row) + 0.5) * grid.cell, low = y - reach, high = y + reach;
+    double x_min = std::numeric_limits<double>::infinity(), x_max = -x_min;
+    for (int e = 0; e < 3; ++e) {
+      const glm::dvec3 &a = t[e], &b = t[(e + 1) % 3];
+      if (a.y >= low && a.y <= high) x_min = std::min(x_min, a.x), x_max = std::max(x_max, a.x);
+      for (const double line : {low, high})
+        if ((a.y < line) != (b.y < line)) {
+          const double x = a.x + (b.x - a.x) * ((line - a.y) / (b.y - a.y));
+          x_min = std::min(x_min, x), x_max = std::max(x_max, x);
+        }
+    }
+    const std::int64_t from = first_at(x_min - reach, grid.corner.x, grid.columns),
+                       to = last_at(x_max + reach, grid.corner.x, grid.columns);
+    if (x_min <= x_max && from <= to)
+      visit(static_cast<std::uint32_t>(row), static_cast<std::uint32_t>(from), static_cast<std::uint32_t>(to));
+  }
+}
+
+// Floats in an order that their bits as integers have.
+std::uint32_t ordered(float x) {
+  const auto bits = std::bit_cast<std::uint32_t>(x);
+  return bits & 0x80000000u ? ~bits : bits | 0x80000000u;
+}
+float from_ordered(std::uint32_t bits) { return std::bit_cast<float>(bits & 0x80000000u ? bits & 0x7FFFFFFFu : ~bits); }
+
+void raise_to(float& top, float z) {
+  std::atomic_ref<float> shared(top);
+  float now = shared.load(std::memory_order_relaxed);
+  while (now < z && !shared.compare_exchange_weak(now, z, std::memory_order_relaxed)) {
+  }
+}
+
+}  // namespace
+
+GroundField::GroundField(const SceneData& scene, const WalkableOptions& options, std::optional<Plane> plane)
+    : radius_(0.5 * options.passage_width_m),
+      climb_(options.climb_m * (1 + tolerance_share)),
+      height_(options.passage_height_m * (1 - tolerance_share)),
+      slope_(std::max(options.max_slope.in_radians(), Angle::degrees(walking_slope_degrees).in_radians())),
+      border_(plane.has_value()) {
+  lay_grid(scene, plane);
+  find_samples(scene, plane);
+  find_room(scene);
+  find_parts();
+}
+
+void GroundField::lay_grid(const SceneData& scene, std::optional<Plane> plane) {
+  const Box& b = scene.local_bounds;
+  const double margin = plane ? plane->reach : 0;
+  const double width = b.size().x + 2 * margin, depth = b.size().y + 2 * margin;
+  cell_ = 2 * radius_ / columns_per_passage;
+  cell_ = std::max({cell_, std::sqrt(width * depth / most_columns), std::max(width, depth) / most_columns});
+  corner_ = {b.min.x - margin, b.min.y - margin};
+  columns_ = static_cast<std::uint32_t>(std::max(1.0, std::ceil(width / cell_)));
+  rows_ = static_cast<std::uint32_t>(std::max(1.0, std::ceil(depth / cell_)));
+}
+
+void GroundField::find_samples(const SceneData& scene, std::optional<Plane> plane) {
+  const Grid grid{corner_, cell_, columns_, rows_};
+  const std::size_t count = std::size_t{columns_} * rows_;
+  top_.assign(count, -std::numeric_limits<float>::infinity());
+  const double least_up = std::cos(slope_);
+  tbb::enumerable_thread_specific<std::vector<std::uint64_t>> collected;
+  const auto look = [&](const tbb::blocked_range<std::size_t>& range) {
+    auto& own = collected.local();
+    for (std::size_t i = range.begin(); i != range.end(); ++i) {
+      const Corners t = corners_of(scene, scene.triangles[i]);
+      const glm::dvec3 n = cross(t[1] - t[0], t[2] - t[0]);
+      if (n.z == 0) continue;
+      const bool walkable = !plane && n.z >= least_up * length(n);
+      for_rows(grid, t, 0, [&](std::uint32_t row, std::uint32_t from, std::uint32_t to) {
+        for (std::uint32_t c = from; c <= to; ++c) {
+          const std::uint32_t column = row * columns_ + c;
+          const glm::dvec2 p = middle(column);
+          const auto z = static_cast<float>(t[0].z - (n.x * (p.x - t[0].x) + n.y * (p.y - t[0].y)) / n.z);
+          raise_to(top_[column], z);
+          if (walkable) own.push_back(std::uint64_t{column} << 32 | ordered(z));
+        }
+      });
+    }
+  };
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, scene.triangles.size(), 64), look);
+  std::vector<std::uint64_t> all;
+  for (const auto& some : collected) all.insert(all.end(), some.begin(), some.end());
+  if (plane)
+    for (std::size_t column = 0; column < count; ++column)
+      all.push_back(std::uint64_t{column} << 32 | ordered(static_cast<float>(plane->z)));
+  tbb::parallel_sort(all.begin(), all.end());
+
+  // Triangles that meet over a middle, and surfaces that all but touch, are one sample.
+  const auto apart = static_cast<float>(tolerance_share * height_);
+  first_.assign(count + 1, 0);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto column = static_cast<std::uint32_t>(all[i] >> 32);
+    const float z = from_ordered(static_cast<std::uint32_t>(all[i]));
+    if (!column_.empty() && column_.back() == column && z - z_.back() < apart) continue;
+    column_.push_back(column);
+    z_.push_back(z);
+    ++first_[column + 1];
+  }
+  for (std::size_t column = 0; column < count; ++column) first_[column + 1] += first_[column];
+}
+
+void GroundField::find_room(const SceneData& scene) {
+  const Grid grid{corner_, cell_, columns_, rows_};
+  taken_.assign(z_.size(), 0);
+  std::array<double, cylinders> radius;
+  for (int i = 0; i < cylinders; ++i)
+    radius[i] = std::max((1 - tolerance_share) * (i + 1) * radius_ / cylinders - cell_ / 2, half_diagonal * cell_);
+  const double widest = radius[cylinders - 1], shorter = radius_ / cylinders;
+  const auto mark = [&](std::uint32_t sample, std::uint8_t what) {
+    std::atomic_ref<std::uint8_t>(taken_[sample]).fetch_or(what, std::memory_order_relaxed);
+  };
+  const auto look = [&](const tbb::blocked_range<std::size_t>& range) {
+    std::size_t mesh = scene.mesh_of(static_cast<std::uint32_t>(range.begin()));
+    for (std::size_t i = range.begin(); i != range.end(); ++i) {
+      while (i >= scene.ranges[mesh].first_triangle + scene.ranges[mesh].triangle_count) ++mesh;
+      const bool door = scene.meshes[mesh].door;
+      const Corners t = corners_of(scene, scene.triangles[i]);
+      const double z_min = std::min({t[0].z, t[1].z, t[2].z}), z_max = std::max({t[0].z, t[1].z, t[2].z});
+      const std::array<glm::dvec2, 3> plan{glm::dvec2(t[0].x, t[0].y), {t[1].x, t[1].y}, {t[2].x, t[2].y}};
+      for_rows(grid, t, widest, [&](std::uint32_t row, std::uint32_t from, std::uint32_t to) {
+        for (std::uint32_t c = from; c <= to; ++c) {
+          const std::uint32_t column = row * columns_ + c;
+          double whole = -1;  // squared distance to all of the triangle, once it is known
+          for (std::uint32_t s = first_[column]; s < first_[column + 1]; ++s) {
+            const double low = z_[s] + climb_, high = z_[s] + height_;
+            if (z_max <= low || z_min >= high) continue;
+            const std::uint8_t known = std::atomic_ref<std::uint8_t>(taken_[s]).load(std::memory_order_relaxed);
+            if (known == (beside | overhead | at_door)) continue;
+            const glm::dvec2 p = middle(column);
+            if (whole < 0) whole = squared_distance(p, plan);
+            if (whole >= widest * widest) break;
+            if (door) {
+              mark(s, at_door);
+              continue;
+            }
+            for (int k = cylinders - 1; k >= 0; --k) {
+              const double bottom = low + k * shorter, top = high - k * shorter;
+              if (whole >= radius[k] * radius[k]) break;
+              if (z_max <= bottom || z_min >= top) continue;
+              double distance = whole;
+              if (z_min < bottom || z_max > top) {
+                const Slice part = slice(t, bottom, top);
+                if (part.count == 0) continue;
+                distance = squared_distance(p, std::span(part.corners).first(part.count));
+              }
+              if (distance >= radius[k] * radius[k]) continue;
+              mark(s, distance == 0 ? overhead : beside);
+              break;
+            }
+          }
+        }
+      });
+    }
+  };
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, scene.triangles.size(), 64), look);
+}
+
+template <class Visit>
+void GroundField::for_neighbours(std::uint32_t sample, Visit&& visit) const {
+  const std::uint32_t column = column_[sample], x = column % columns_, y = column / columns_;
+  const double step = std::max(climb_, 1.1 * std::tan(slope_) * std::sqrt(2.0) * cell_);
+  for (std::uint32_t ny = y > 0 ? y - 1 : 0; ny <= std::min(y + 1, rows_ - 1); ++ny)
+    for (std::uint32_t nx = x > 0 ? x - 1 : 0; nx <= std::min(x + 1, columns_ - 1); ++nx) {
+      if (nx == x && ny == y) continue;
+      const std::uint32_t other = ny * columns_ + nx;
+      for (std::uint32_t s = first_[other]; s < first_[other + 1]; ++s)
+        if (std::abs(double{z_[s]} - z_[sample]) <= step) visit(s);
+    }
+}
+
+// The columns so many steps away along x and y.
+template <class Visit>
+void GroundField::for_columns_beside(std::uint32_t column, std::int64_t far, Visit&& visit) const {
+  const std::int64_t x = column % columns_, y = column / columns_;
+  for (const auto& [dx, dy] : {std::pair<int, int>{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
+    const std::int64_t nx = x + dx * far, ny = y + dy * far;
+    if (nx < 0 || ny < 0 || nx >= columns_ || ny >= rows_) continue;
+    visit(static_cast<std::uint32_t>(ny * columns_ + nx));
+  }
+}
+
+void GroundField::find_parts() {
+  part_.assign(z_.size(), nowhere);
+  std::vector<std::uint32_t> open;
+  for (std::uint32_t seed = 0; seed < z_.size(); ++seed) {
+    if ((taken_[seed] & (beside | overhead)) || part_[seed] != nowhere) continue;
+    const auto number = static_cast<std::uint32_t>(parts_.size());
+    Part& part = parts_.emplace_back();
+    part.first = seed;
+    part_[seed] = number;
+    open.assign(1, seed);
+    while (!open.empty()) {
+      const std::uint32_t s = open.back();
+      open.pop_back();
+      ++part.samples;
+      part.mean_z += z_[s];
+      part.in_the_sky += z_[s] + climb_ >= top_[column_[s]];
+      part.at_door = part.at_door || (taken_[s] & at_door);
+      for_neighbours(s, [&](std::uint32_t n) {
+        if ((taken_[n] & (beside | overhead)) || part_[n] != nowhere) return;
+        part_[n] = number;
+        open.push_back(n);
+      });
+    }
+    part.mean_z /= static_cast<double>(part.samples);
+  }
+  // What lies over a room of another part: a roof over its house.
+  for (std::uint32_t s = 0; s < z_.size(); ++s) {
+    if (part_[s] == nowhere) continue;
+    for (std::uint32_t below = first_[column_[s]]; below < s; ++below)
+      if (part_[below] != nowhere && part_[below] != part_[s] && z_[below] <= z_[s] - height_ * 0.8 &&
+          parts_[part_[below]].area(cell_) >= room()) {
+        ++parts_[part_[s]].above_others;
+        break;
+      }
+  }
+}
+
+// Whether one sees out of the model, level, at the height of the knees and of the head, from where the part ends.
+bool GroundField::leads_out(const MeshTree& tree, const Part& part, std::uint32_t number) const {
+  constexpr std::size_t most = 2000;
+  constexpr int ways = 16;
+  std::vector<std::uint32_t> edge;
+  for (std::uint32_t s = part.first; s < z_.size(); ++s) {
+    if (part_[s] != number) continue;
+    int neighbours = 0;
+    for_neighbours(s, [&](std::uint32_t n) { neighbours += part_[n] == number; });
+    if (neighbours < 8) edge.push_back(s);
+  }
+  const double far = cell_ * (columns_ + rows_);
+  const std::size_t stride = std::max<std::size_t>(1, edge.size() / most);
+  for (std::size_t i = 0; i < edge.size(); i += stride) {
+    const glm::dvec2 p = middle(column_[edge[i]]);
+    for (int k = 0; k < ways; ++k) {
+      const double angle = 2 * 3.14159265358979323846 * k / ways;
+      const glm::dvec3 way{far * std::cos(angle), far * std::sin(angle), 0};
+      bool out = true;
+      for (const double share : {0.27, 0.8}) {
+        const glm::dvec3 from{p.x, p.y, z_[edge[i]] + share * height_};
+        out = out && !tree.between(from, from + way);
+      }
+      if (out) return true;
+    }
+  }
+  return false;
+}
+
+std::optional<std::uint32_t> GroundField::choose_part(const MeshTree& tree) const {
+  // Shares of the largest: a way in may be small beside its hall, but of what is closed none is more than another.
+  constexpr double large_open = 0.2, large_closed = 0.5;
+  const double storey = 0.8 * height_;  // parts nearer in height than this lie on one level
+  struct Candidate {
+    std::uint32_t part;
+    double area, z;
+  };
+  std::vector<Candidate> open, closed, roofs;
+  for (std::uint32_t i = 0; i < parts_.size(); ++i) {
+    const Part& part = parts_[i];
+    if (part.area(cell_) < room()) continue;
+    const bool sky = 2 * part.in_the_sky > part.samples;
+    const Candidate candidate{i, part.area(cell_), part.mean_z};
+    if (sky && 2 * part.above_others > part.samples)
+      roofs.push_back(candidate);
+    else if (sky || part.at_door)
+      open.push_back(candidate);
+    else
+      closed.push_back(candidate);
+  }
+  const auto only_above = [](std::vector<Candidate>& some, double area) {
+    std::erase_if(some, [&](const Candidate& c) { return c.area < area; });
+  };
+  const auto largest_of = [](const std::vector<Candidate>& some) {
+    double largest = 0;
+    for (const Candidate& c : some) largest = std::max(largest, c.area);
+    return largest;
+  };
+  const double largest = std::max(largest_of(open), largest_of(closed));
+  only_above(open, large_open * largest);
+  only_above(closed, large_open * largest);
+  std::erase_if(closed, [&](const Candidate& c) {
+    if (!leads_out(tree, parts_[c.part], c.part)) return false;
+    open.push_back(c);
+    return true;
+  });
+  if (open.empty() && closed.empty()) closed = roofs;
+  only_above(closed, large_closed * largest_of(closed));
+  const auto& choice = open.empty() ? closed : open;
+  if (choice.empty()) return std::nullopt;
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const Candidate& c : choice) lowest = std::min(lowest, c.z);
+  const Candidate* best = nullptr;
+  for (const Candidate& c : choice)
+    if (c.z <= lowest + storey && (!best || c.area > best->area || (c.area == best->area && c.part < best->part)))
+      best = &c;
+  return best->part;
+}
+
+void GroundField::reach(const MeshTree& tree, std::optional<glm::dvec3> enter) {
+  access_.assign(parts_.size(), Access::unreachable);
+  std::optional<std::uint32_t> start;  // a sample
+  if (enter) {
+    const double within = 2 * radius_ / 0.3;  // 2 m for a passage of 0.6 m
+    double best = within * within;
+    for (std::uint32_t s = 0; s < z_.size(); ++s) {
+      if (part_[s] == nowhere) continue;
+      const glm::dvec2 p = middle(column_[s]);
+      const glm::dvec3 d = glm::dvec3{p.x, p.y, z_[s]} - *enter;
+      if (dot(d, d) < best) best = dot(d, d), start = s;
+    }
+    if (!start) {
+      std::ostringstream text;
+      text << "there is no place with room for a person within " << within
+           << " m of where the site is to be entered (enter)";
+      throw Error(Errc::invalid_argument, text.str());
+    }
+    access_[part_[*start]] = Access::reached;
+  } else if (border_) {
+    const auto at_border = [&](std::uint32_t column) {
+      const std::uint32_t x = column % columns_, y = column / columns_;
+      return x == 0 || y == 0 || x + 1 == columns_ || y + 1 == rows_;
+    };
+    for (std::uint32_t s = 0; s < z_.size(); ++s)
+      if (part_[s] != nowhere && at_border(column_[s])) {
+        if (!start) start = s;
+        access_[part_[s]] = Access::reached;
+      }
+  } else if (const auto part = choose_part(tree)) {
+    access_[*part] = Access::reached;
+    start = parts_[*part].first;
+  }
+  if (start) {
+    const glm::dvec2 p = middle(column_[*start]);
+    entry_ = glm::dvec3{p.x, p.y, z_[*start]};
+  }
+  tell_apart();
+  look_beyond_high_steps();
+}
+
+// Of the parts that are not reached, those behind walls: under a cover, and not a step above or below what is reached
+// beside them.
+void GroundField::tell_apart() {
+  const auto far = static_cast<std::int64_t>(std::ceil(4 * radius_ / cell_));  // across a wall and both its margins
+  std::vector<std::int64_t> level(parts_.size(), 0);                           // more votes for than against
+  for (std::uint32_t s = 0; s < z_.size(); ++s) {
+    if (part_[s] == nowhere || access_[part_[s]] == Access::reached) continue;
+    for_columns_beside(column_[s], far, [&](std::uint32_t other) {
+      for (std::uint32_t n = first_[other]; n < first_[other + 1]; ++n) {
+        if (part_[n] == nowhere || access_[part_[n]] != Access::reached) continue;
+        const double step = std::abs(double{z_[n]} - z_[s]);
+        level[part_[s]] += step <= climb_ ? 1 : step <= height_ ? -1 : 0;
+      }
+    });
+  }
+  for (std::size_t i = 0; i < parts_.size(); ++i)
+    if (access_[i] != Access::reached && parts_[i].area(cell_) >= room() && level[i] >= 0 &&
+        2 * parts_[i].in_the_sky <= parts_[i].samples)
+      access_[i] = Access::sealed;
+}
+
+// Steps that keep a person from a hall are worth a word; those onto a bed are not. Each tread of a stair that is too
+// steep is a part of its own, so one goes from part to part.
+void GroundField::look_beyond_high_steps() {
+  struct Edge {
+    std::uint32_t from, to;
+    double step;
+  };
+  const double highest = 2 * climb_, hall = 10 * room();
+  const auto across = static_cast<std::int64_t>(std::ceil(radius_ / cell_)) + 1;
+  std::vector<Edge> edges;
+  for (std::uint32_t s = 0; s < z_.size(); ++s) {
+    if (part_[s] == nowhere) continue;
+    for_columns_beside(column_[s], across, [&](std::uint32_t other) {
+      for (std::uint32_t n = first_[other]; n < first_[other + 1]; ++n) {
+        const double step = std::abs(double{z_[n]} - z_[s]);
+        if (part_[n] != nowhere && part_[n] != part_[s] && step > climb_ && step <= highest)
+          edges.push_back({part_[s], part_[n], step});
+      }
+    });
+  }
+  const auto by_parts = [](const Edge& a, const Edge& b) {
+    return std::tie(a.from, a.to, a.step) < std::tie(b.from, b.to, b.step);
+  };
+  tbb::parallel_sort(edges.begin(), edges.end(), by_parts);
+  edges.erase(std::unique(edges.begin(), edges.end(),
+                          [](const Edge& a, const Edge& b) { return a.from == b.from && a.to == b.to; }),
+              edges.end());
+  std::vector<char> seen(parts_.size(), 0);
+  std::vector<std::uint32_t> open;
+  for (std::uint32_t i = 0; i < parts_.size(); ++i)
+    if (access_[i] == Access::reached) seen[i] = 1, open.push_back(i);
+  HighSteps beyond;
+  while (!open.empty()) {
+    const std::uint32_t from = open.back();
+    open.pop_back();
+    for (auto e = std::lower_bound(edges.begin(), edges.end(), Edge{from, 0, 0}, by_parts);
+         e != edges.end() && e->from == from; ++e) {
+      if (seen[e->to]) continue;
+      seen[e->to] = 1;
+      open.push_back(e->to);
+      beyond.highest_m = std::max(beyond.highest_m, e->step);
+      if (parts_[e->to].area(cell_) >= hall) beyond.area_m2 += parts_[e->to].area(cell_);
+    }
+  }
+  if (beyond.area_m2 > 0) high_steps_ = beyond;
+}
+
+double GroundField::covered_area() const {
+  double area = 0;
+  for (const Part& part : parts_)
+    if (2 * part.in_the_sky <= part.samples && part.area(cell_) >= room()) area += part.area(cell_);
+  return area;
+}
+
+std::optional<std::uint32_t> GroundField::column_at(double x, double y) const {
+  const double c = std::floor((x - corner_.x) / cell_), r = std::floor((y - corner_.y) / cell_);
+  if (!(c >= -1 && r >= -1 && c <= columns_ && r <= rows_)) return std::nullopt;
+  const auto inside = [](double i, std::uint32_t n) {
+    return static_cast<std::uint32_t>(std::clamp(i, 0.0, static_cast<double>(n - 1)));
+  };
+  return inside(r, rows_) * columns_ + inside(c, columns_);
+}
+
+std::optional<std::uint32_t> GroundField::nearest(std::uint32_t column, double z, double tolerance) const {
+  std::optional<std::uint32_t> best;
+  for (std::uint32_t s = first_[column]; s < first_[column + 1]; ++s) {
+    const double distance = std::abs(z_[s] - z);
+    if (distance <= tolerance) tolerance = distance, best = s;
+  }
+  return best;
+}
+
+Access GroundField::at(const glm::dvec3& place) const {
+  const auto column = column_at(place.x, place.y);
+  if (!column) return Access::narrow;
+  const double tolerance = std::max(0.5 * climb_, std::tan(slope_) * cell_);
+  std::optional<std::uint32_t> sample = nearest(*column, place.z, tolerance);
+  if (!sample) {  // a strip too thin to cover the column's middle
+    const std::int64_t x = *column % columns_, y = *column / columns_;
+    double best = std::numeric_limits<double>::infinity();
+    for (std::int64_t ny = std::max<std::int64_t>(0, y - 1); ny <= std::min<std::int64_t>(y + 1, rows_ - 1); ++ny)
+      for (std::int64_t nx = std::max<std::int64_t>(0, x - 1); nx <= std::min<std::int64_t>(x + 1, columns_ - 1);
+           ++nx) {
+        const auto other = static_cast<std::uint32_t>(ny * columns_ + nx);
+        const auto candidate = nearest(other, place.z, tolerance);
+        const double distance = squared(middle(other) - glm::dvec2(place.x, place.y));
+        if (candidate && distance < best) best = distance, sample = candidate;
+      }
+  }
+  if (!sample) return Access::narrow;
+  if (part_[*sample] != nowhere) return access_[part_[*sample]];
+  return taken_[*sample] & overhead ? Access::headroom : Access::narrow;
+}
+
+double GroundField::ground_area(double highest_z) const {
+  std::vector<char> seen(z_.size(), 0);
+  std::vector<std::uint32_t> open;
+  for (std::uint32_t s = 0; s < z_.size(); ++s)
+    if (part_[s] != nowhere && access_[part_[s]] == Access::reached) seen[s] = 1, open.push_back(s);
+  while (!open.empty()) {
+    const std::uint32_t s = open.back();
+    open.pop_back();
+    for_neighbours(s, [&](std::uint32_t n) {
+      if (seen[n]) return;
+      seen[n] = 1;
+      open.push_back(n);
+    });
+  }
+  std::uint64_t columns = 0;
+  std::uint32_t last = nowhere;
+  for (std::uint32_t s = 0; s < z_.size(); ++s)
+    if (seen[s] && z_[s] <= highest_z && column_[s] != last) ++columns, last = column_[s];
+  return static_cast<double>(columns) * cell_ * cell_;
+}
+
+}  // namespace vantage

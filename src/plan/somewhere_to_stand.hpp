@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "vantage/placement.hpp"
+
+namespace vantage {
+
+// Throws Error malformed_file where no place of the search area, out of some thousands spread over its true area, is
+// free of clashes: a search there would draw until its end. `heights_m`: of the head above the ground, any of which
+// will do.
+void require_somewhere_to_stand(const SearchArea& area, const ClashChecker& clash, std::span<const double> heights_m);
+
+}  // namespace vantage

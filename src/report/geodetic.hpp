@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+namespace vantage {
+
+// Well-known text (version 1, as GDAL writes it, in one line) of a code of the EPSG registry; empty where PROJ knows
+// none, or this build has no PROJ.
+std::string epsg_text(int code);
+
+}  // namespace vantage

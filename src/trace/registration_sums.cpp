@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trace/registration_sums.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "trace/embree/range_noise.hpp"
+#include "trace/target_clones.hpp"
+
+namespace vantage {
+namespace {
+
+constexpr std::size_t of_pair = RegistrationSums::of_pair, of_station = RegistrationSums::of_station;
+// Voxels whose whole numbers fit in 64 bits together: 2^15 of weight times 2^30 of two components of J.
+constexpr std::size_t block = std::size_t{1} << 16;
+constexpr double least_share = 0.5;       // of a voxel's surface that one plane must have
+constexpr double least_area = 1e-3;       // of a face: what is less is a corner that no scan resolves
+constexpr double points_of_a_plane = 10;  // within a patch: fewer, and a scan has no normal there to register by
+constexpr float least_cosine = 0.01f;     // flatter, and it is open which side is seen
+constexpr float least_sin_zenith_squared = 0.0025f;  // above and below the head rays are no denser than at 3°
+
+constexpr double largest_section = 1.5;  // in faces: no plane has more than 3√3/4 within a cube
+
+std::int16_t quantised(double x) { return static_cast<std::int16_t>(std::lround(x * patch_unit)); }
+
+__extension__ using Wide = __int128;
+
+// Of one block, or of several.
+template <class Number>
+struct Accumulator {
+  std::vector<Number> pairs, surface;
+  Accumulator(std::size_t stations, std::size_t groups)
+      : pairs(groups * stations * (stations - 1) / 2 * of_pair), surface(groups * stations * of_station) {}
+  template <class Other>
+  void add(const Accumulator<Other>& other) {
+    for (std::size_t k = 0; k < pairs.size(); ++k) pairs[k] += other.pairs[k];
+    for (std::size_t k = 0; k < surface.size(); ++k) surface[k] += other.surface[k];
+  }
+};
+
+// What a station makes of a plane.
+struct View {
+  float weight = 0;  // 1 / s²
+  bool behind = false;
+};
+
+// w = 1/s² of docs/method.md; 0 where the plane is seen too flat, or by too few points.
+View view_of(const Patch& patch, const Float3& head, const NoiseModel& noise, const RangeNoise& table) {
+  const float x = head.x - patch.point.x, y = head.y - patch.point.y, z = head.z - patch.point.z;
+  const float xx = x * x, yy = y * y, zz = z * z;
+  const float level = xx + yy;
+  const float square = std::max(level + zz, 1e-6f);
+  const float inverse = 1.0f / std::sqrt(square);
+  const float nx = patch.normal.x * x, ny = patch.normal.y * y, nz = patch.normal.z * z;
+  const float nxy = nx + ny;
+  const float facing = (nxy + nz) * inverse;
+  const float cosine = std::abs(facing);
+  if (cosine < least_cosine) return {};
+  const float inverse_square = inverse * inverse;
+  const float flat = std::max(level * inverse_square, least_sin_zenith_squared);
+  const float seen = patch.rays * cosine;
+  const float density = seen * inverse_square;
+  const float expected = density / std::sqrt(flat);
+  if (expected < patch.least) return {};
+  float variance = patch.variance;
+  if (noise.enabled()) {
+    const float points = std::max(expected, 1.0f);
+    const float sigma = table.sigma(square * inverse, patch.diffuse * cosine);
+    const float along = sigma * cosine;  // of range noise, what is along the normal
+    variance = variance + along * along / points;
+  }
+  return {1.0f / variance, facing < 0};
+}
+
+VANTAGE_TARGET_CLONES
+void add_products(std::int64_t* sums, const std::int32_t* products, const std::int32_t* weights,
+                  const std::uint8_t* columns, std::size_t many) {
+  for (std::size_t k = 0; k < many; ++k) {
+    const std::int32_t x = weights[k];
+    std::int64_t* of = sums + columns[k] * of_pair;
+    for (std::size_t c = 0; c < of_pair; ++c) of[c] += std::int64_t{x} * products[c];
+  }
+}
+
+class Summer {
+ public:
+  Summer(const Patches& patches, const NoiseModel& noise, std::span<const TraceStation> stations, std::uint32_t count,
+         std::span<const std::uint64_t> masks, std::uint32_t groups)
+      : patches_(patches),
+        noise_(noise),
+        table_(std::shared_ptr<const NoiseModel>(std::shared_ptr<void>(), &noise)),
+        heads_(count),
+        masks_(masks),
+        stations_(count),
+        groups_(groups),
+        units_(static_cast<float>(patch_weight_units / patches.largest)) {
+    for (const TraceStation& station : stations) heads_[station.place] = station.origin;
+  }
+
+  void add(std::size_t first, std::size_t end, Accumulator<std::int64_t>& sums) const {
+    for (std::size_t k = first; k < end; ++k)
+      if (masks_[k] != 0) add_voxel(k, sums);
+  }
+
+ private:
+  void add_voxel(std::size_t k, Accumulator<std::int64_t>& sums) const {
+    const Patch& patch = patches_.patches[k];
+    const std::size_t group = groups_ > 1 ? k % groups_ : 0;
+    const int seen = std::popcount(masks_[k]);
+    add_surface(patch, masks_[k], seen, sums.surface.data() + group * stations_ * of_station);
+    if (seen > 1 && patch.variance > 0)
+      add_pairs(patch, masks_[k], sums.pairs.data() + group * (stations_ * (stations_ - 1) / 2) * of_pair);
+  }
+
+  // Moments of the covered surface, a voxel's shared by the stations that see it.
+  void add_surface(const Patch& patch, std::uint64_t mask, int seen, std::int64_t* sums) const {
+    const auto weight = static_cast<std::int64_t>(patch.extent * (1.0f / static_cast<float>(seen)) + 0.5f);
+    const std::int64_t x = patch.place[0], y = patch.place[1], z = patch.place[2];
+    const std::array<std::int64_t, of_station> moments{1, x, y, z, x * x, x * y, x * z, y * y, y * z, z * z};
+    for (; mask != 0; mask &= mask - 1) {
+      std::int64_t* of = sums + static_cast<std::size_t>(std::countr_zero(mask)) * of_station;
+      for (std::size_t m = 0; m < of_station; ++m) of[m] += weight * moments[m];
+    }
+  }
+
+  void add_pairs(const Patch& patch, std::uint64_t mask, std::int64_t* sums) const {
+    // The stations on either side of the plane.
+    std::array<std::array<std::uint8_t, max_stations>, 2> places;
+    std::array<std::array<float, max_stations>, 2> weights;
+    std::array<std::size_t, 2> many{};
+    std::array<float, 2> total{};
+    for (; mask != 0; mask &= mask - 1) {
+      const auto place = static_cast<std::size_t>(std::countr_zero(mask));
+      const View view = view_of(patch, heads_[place], noise_, table_);
+      if (view.weight == 0) continue;
+      const std::size_t side = view.behind;
+      places[side][many[side]] = static_cast<std::uint8_t>(place);
+      weights[side][many[side]++] = view.weight;
+      total[side] = total[side] + view.weight;
+    }
+    if (many[0] < 2 && many[1] < 2) return;
+    std::array<std::int32_t, of_pair> products;
+    std::size_t m = 0;
+    for (std::size_t a = 0; a < 6; ++a)
+      for (std::size_t b = a; b < 6; ++b) products[m++] = std::int32_t{patch.jacobian[a]} * patch.jacobian[b];
+    for (std::size_t side = 0; side < 2; ++side) {
+      if (many[side] < 2) continue;
+      const float scale = units_ / total[side];
+      for (std::size_t a = 0; a + 1 < many[side]; ++a) {
+        const std::size_t i = places[side][a];
+        const float scaled = weights[side][a] * scale;
+        // A row of pairs: of i with each station after it.
+        std::array<std::int32_t, max_stations> shared;
+        std::array<std::uint8_t, max_stations> columns;
+        std::size_t length = 0;
+        for (std::size_t b = a + 1; b < many[side]; ++b, ++length) {
+          shared[length] = static_cast<std::int32_t>(scaled * weights[side][b] + 0.5f);
+          columns[length] = static_cast<std::uint8_t>(places[side][b] - i - 1);
+        }
+        add_products(sums + (i * (2 * stations_ - i - 1) / 2) * of_pair, products.data(), shared.data(), columns.data(),
+                     length);
+      }
+    }
+  }
+
+  const Patches& patches_;
+  const NoiseModel& noise_;
+  RangeNoise table_;
+  std::vector<Float3> heads_;  // by place
+  std::span<const std::uint64_t> masks_;
+  std::size_t stations_, groups_;
+  float units_;
+};
+
+RegistrationSums to_sums(const Accumulator<Wide>& all, const Patches& patches, std::span<const TraceStation> stations,
+                         std::size_t count, std::size_t group) {
+  RegistrationSums sums;
+  sums.centre = patches.centre;
+  sums.radius_m = patches.radius;
+  sums.heads.assign(count, Vec3{});
+  for (const TraceStation& s : stations)
+    sums.heads[s.place] = Vec3{s.origin.x, s.origin.y, s.origin.z} - patches.centre;
+  const double weight = patches.largest / static_cast<double>(patch_weight_units) / patch_unit / patch_unit;
+  const std::size_t pairs = count * (count - 1) / 2 * of_pair;
+  for (std::size_t k = 0; k < pairs; ++k)
+    sums.pairs.push_back(static_cast<double>(all.pairs[group * pairs + k]) * weight);
+  constexpr std::array<int, of_station> order{0, 1, 1, 1, 2, 2, 2, 2, 2, 2};
+  for (std::size_t k = 0; k < count * of_station; ++k)
+    sums.surface.push_back(static_cast<double>(all.surface[group * count * of_station + k]) * 0x1p-15 /
+                           std::pow(patch_unit, order[k % of_station]));
+  return sums;
+}
+
+}  // namespace
+
+Patches make_patches(std::span<const VoxelSurface> surfaces, const PatchFrame& frame, const RayPattern& pattern,
+                     const RegistrationModel& model) {
+  Patches made;
+  made.model = model;
+  made.centre = frame.centre;
+  made.radius = frame.side_m * std::sqrt(0.75);
+  const double face = frame.voxel_m * frame.voxel_m;
+  const double floor = model.rho_m * model.rho_m * model.patch_m * model.patch_m;
+  made.largest = largest_section * face / floor;
+  made.patches.reserve(surfaces.size());
+  for (const VoxelSurface& surface : surfaces) {
+    Patch patch{.point = surface.point, .normal = surface.normal, .diffuse = surface.diffuse};
+    patch.rays = static_cast<float>(surface.area / (pattern.zenith_step * pattern.azimuth_step));
+    patch.least = static_cast<float>(points_of_a_plane * surface.area / (model.patch_m * model.patch_m));
+    if (surface.share >= least_share && surface.area >= least_area * face)
+      patch.variance = static_cast<float>(floor / surface.area);
+    patch.extent = static_cast<float>(surface.extent / face * 0x1p15);
+    const std::array<double, 3> q{(surface.point.x - frame.centre.x) / made.radius,
+                                  (surface.point.y - frame.centre.y) / made.radius,
+                                  (surface.point.z - frame.centre.z) / made.radius};
+    const std::array<double, 3> n{surface.normal.x, surface.normal.y, surface.normal.z};
+    for (std::size_t a = 0; a < 3; ++a) {
+      const std::size_t b = (a + 1) % 3, c = (a + 2) % 3;
+      patch.place[a] = quantised(q[a]);
+      patch.jacobian[a] = quantised(q[b] * n[c] - q[c] * n[b]);
+      patch.jacobian[3 + a] = quantised(n[a]);
+    }
+    made.patches.push_back(patch);
+  }
+  return made;
+}
+
+Patches make_patches(const SceneData& scene, const VoxelGrid& grid, std::span<const std::uint32_t> ranks,
+                     const RayPattern& pattern, const RegistrationModel& model) {
+  const double side = std::ldexp(grid.voxel_size(), grid.depth());
+  const auto middle = [&](int axis) { return grid.min()[static_cast<std::size_t>(axis)] + side / 2; };
+  return make_patches(voxel_surfaces(scene, grid, ranks), {{middle(0), middle(1), middle(2)}, side, grid.voxel_size()},
+                      pattern, model);
+}
+
+std::vector<RegistrationSums> sum_patches(const Patches& patches, const NoiseModel& noise,
+                                          std::span<const TraceStation> stations, std::uint32_t station_count,
+                                          std::span<const std::uint64_t> masks, std::uint32_t groups) {
+  const Summer summer(patches, noise, stations, station_count, masks, groups);
+  const std::size_t sets = std::max<std::size_t>(groups, 1), blocks = (masks.size() + block - 1) / block;
+  const auto all = tbb::parallel_reduce(
+      tbb::blocked_range<std::size_t>(0, blocks, 1), Accumulator<Wide>(station_count, sets),
+      [&](const tbb::blocked_range<std::size_t>& range, Accumulator<Wide> sums) {
+        for (std::size_t b = range.begin(); b != range.end(); ++b) {
+          Accumulator<std::int64_t> here(station_count, sets);
+          summer.add(b * block, std::min(masks.size(), (b + 1) * block), here);
+          sums.add(here);
+        }
+        return sums;
+      },
+      [](Accumulator<Wide> a, const Accumulator<Wide>& b) {
+        a.add(b);
+        return a;
+      });
+  if (groups == 0) return {to_sums(all, patches, stations, station_count, 0)};
+  Accumulator<Wide> total(station_count, 1);
+  for (std::size_t k = 0; k < all.pairs.size(); ++k) total.pairs[k % total.pairs.size()] += all.pairs[k];
+  for (std::size_t k = 0; k < all.surface.size(); ++k) total.surface[k % total.surface.size()] += all.surface[k];
+  std::vector<RegistrationSums> sums{to_sums(total, patches, stations, station_count, 0)};
+  for (std::size_t g = 0; g < groups; ++g) sums.push_back(to_sums(all, patches, stations, station_count, g));
+  return sums;
+}
+
+}  // namespace vantage
