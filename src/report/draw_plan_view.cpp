@@ -6,6 +6,7 @@
 
 #include "core/text.hpp"
 #include "report/chart.hpp"
+#include "report/left_out_hatch.hpp"
 #include "report/pictures.hpp"
 #include "report/plan_map.hpp"
 #include "report/relief.hpp"
@@ -52,6 +53,15 @@ double draw_plan_legend(Canvas& canvas, Point at, const PlanView& view, const Pl
   canvas.rectangle({at.x + 0.5, at.y - 6.5, 23, 13}, {.colour = kSearchTint, .width = 1, .opacity = kSearchRim});
   words("search area");
   at.y += 28;
+  if (content.left_out) {
+    canvas.fill({at.x, at.y - 7, 24, 14}, kBlockingTint);
+    canvas.clip({at.x, at.y - 7, 24, 14});
+    for (double x = at.x - 14; x < at.x + 24; x += 5.5)
+      canvas.line({x, at.y + 7}, {x + 14, at.y - 7}, {.colour = kLeftOutTint, .width = 1.4, .opacity = 0.6});
+    canvas.unclip();
+    words("walkable, but left out");
+    at.y += 28;
+  }
   const auto station = [&](const std::string& name, const PlacedStation& example, const std::string& what) {
     draw_station(canvas, {at.x + 12, at.y}, name, example);
     words(what);

@@ -8,6 +8,7 @@
 
 #include "core/text.hpp"
 #include "report/chart.hpp"
+#include "report/left_out_hatch.hpp"
 #include "report/place_discs.hpp"
 #include "report/relief.hpp"
 #include "report/search_tint.hpp"
@@ -289,6 +290,7 @@ PlanMapContent draw_plan_map(Canvas& canvas, const Rect& map, const PlanView& vi
                     title, subtitle);
   std::vector<std::uint32_t> site = shade(data, heights);
   tint_search_area(site, heights, data.origin.z, mesh);
+  content.left_out = hatch_left_out(site, heights, data.origin.z, view.area.left_out(), level);
   if (section) paint_section(site, *section, pixels);
   canvas.image(map, halve(site, pixels.columns), pixels.columns / 2);
   canvas.rectangle(map, {.colour = style::faint, .width = 1});

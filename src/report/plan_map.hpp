@@ -34,12 +34,14 @@ inline constexpr double kWidestEllipse = 30;  // semi-axis, canvas units
 // What a map came to show, for its legend.
 struct PlanMapContent {
   bool cut = false;        // at a height, with what is solid there filled
+  bool left_out = false;   // ground that is no part of the search area
   bool elsewhere = false;  // stations of other floors
   bool moved = false;      // discs beside their spots
   bool bridge = false;     // links that hold two parts together
   double largest = 0;      // overlap of a link; 0: there is none
   PlanMapContent operator|(const PlanMapContent& o) const {
-    return {cut || o.cut, elsewhere || o.elsewhere, moved || o.moved, bridge || o.bridge, std::max(largest, o.largest)};
+    return {cut || o.cut,     left_out || o.left_out, elsewhere || o.elsewhere,
+            moved || o.moved, bridge || o.bridge,     std::max(largest, o.largest)};
   }
 };
 

@@ -172,4 +172,17 @@ std::vector<std::uint32_t> halve(const std::vector<std::uint32_t>& pixels, std::
   return half;
 }
 
+std::uint32_t laid_over(std::uint32_t pixel, const Colour& colour, double opacity) {
+  const auto bytes = to_bytes(colour);
+  const std::uint32_t paper = 255 - (pixel >> 24);
+  std::uint32_t mixed = 0xFF000000u;
+  for (int k = 0; k < 3; ++k) {
+    const int shift = 16 - 8 * k;
+    const double below = (pixel >> shift & 255u) + paper;
+    mixed |= static_cast<std::uint32_t>(std::lround(below + opacity * (bytes[static_cast<std::size_t>(k)] - below)))
+             << shift;
+  }
+  return mixed;
+}
+
 }  // namespace vantage

@@ -69,6 +69,9 @@ HeightBuffer look_from_above(const SceneData& scene, const MapWindow& window, do
 // is nothing.
 std::vector<std::uint32_t> shade(const SceneData& scene, const HeightBuffer& heights);
 
+// A colour over an opaque pixel, or over white paper.
+std::uint32_t laid_over(std::uint32_t pixel, const Colour& colour, double opacity);
+
 // Halves both sides by averaging two by two. REQUIRES: even numbers of columns and rows.
 std::vector<std::uint32_t> halve(const std::vector<std::uint32_t>& pixels, std::size_t columns);
 

@@ -59,20 +59,6 @@ std::vector<std::uint8_t> rim_of(const std::vector<std::uint8_t>& set, std::size
   return rim;
 }
 
-// The colour over an opaque pixel, or over white paper.
-std::uint32_t over(std::uint32_t pixel, const Colour& colour, double opacity) {
-  const auto bytes = to_bytes(colour);
-  const std::uint32_t paper = 255 - (pixel >> 24);
-  std::uint32_t mixed = 0xFF000000u;
-  for (int k = 0; k < 3; ++k) {
-    const int shift = 16 - 8 * k;
-    const double below = (pixel >> shift & 255u) + paper;
-    mixed |= static_cast<std::uint32_t>(std::lround(below + opacity * (bytes[static_cast<std::size_t>(k)] - below)))
-             << shift;
-  }
-  return mixed;
-}
-
 }  // namespace
 
 void tint_search_area(std::vector<std::uint32_t>& pixels, const HeightBuffer& heights, double origin_z,
@@ -81,9 +67,9 @@ void tint_search_area(std::vector<std::uint32_t>& pixels, const HeightBuffer& he
                                   rim = rim_of(cover, heights.window.columns, kRim);
   for (std::size_t k = 0; k < pixels.size(); ++k) {
     if (rim[k])
-      pixels[k] = over(pixels[k], kSearchTint, cover[k] == shown ? kSearchRim : kHiddenRim);
+      pixels[k] = laid_over(pixels[k], kSearchTint, cover[k] == shown ? kSearchRim : kHiddenRim);
     else if (cover[k] == shown)
-      pixels[k] = over(pixels[k], kSearchTint, kSearchOpacity);
+      pixels[k] = laid_over(pixels[k], kSearchTint, kSearchOpacity);
   }
 }
 
