@@ -84,7 +84,7 @@ NetworkCounts evaluate_sample(Simulator& simulator, const Network& network, cons
 }
 
 // Millimetres; axes of the standard ellipsoid of each head, longest first, in the survey frame.
-nlohmann::json to_json(const RegistrationError& error, const Estimate& whole) {
+nlohmann::json registration_json(const RegistrationError& error, const Estimate& whole) {
   const auto mm = [](const Vec3& v) { return nlohmann::json{1e3 * v.x, 1e3 * v.y, 1e3 * v.z}; };
   nlohmann::json stations = nlohmann::json::array();
   for (const StationError& station : error.stations)
@@ -233,7 +233,7 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
       json["overlap_se"] = overlapped.standard_error;
       json["overlap_matrix"] = matrix_json(matrix);
     }
-    if (options.with_registration) json["registration"] = to_json(error, registered);
+    if (options.with_registration) json["registration"] = registration_json(error, registered);
     if (sampled) json["sample"] = counts.voxels;
     program.console.print(json);
   } else {
