@@ -85,7 +85,7 @@ NetworkCounts evaluate_sample(Simulator& simulator, const Network& network, cons
 }
 
 // Millimetres; axes of the standard ellipsoid of each head, longest first, in the survey frame.
-nlohmann::json to_json(const RegistrationError& error, const Estimate& whole) {
+nlohmann::json registration_json(const RegistrationError& error, const Estimate& whole) {
   const auto mm = [](const Vec3& v) { return nlohmann::json{1e3 * v.x, 1e3 * v.y, 1e3 * v.z}; };
   nlohmann::json stations = nlohmann::json::array();
   for (const StationError& station : error.stations)
@@ -236,7 +236,7 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
       json["overlap_se"] = overlapped.standard_error;
       json["overlap_matrix"] = matrix_json(matrix);
     }
-    if (options.with_registration) json["registration"] = to_json(error, registered);
+    if (options.with_registration) json["registration"] = registration_json(error, registered);
     if (sampled) json["sample"] = counts.voxels;
     if (!counts.dropped.empty()) json["dropped"] = to_json(all_dropped(counts));
     program.console.print(json);
