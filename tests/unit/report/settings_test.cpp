@@ -94,7 +94,7 @@ const std::vector<Change<SceneOptions>> kScene{
     {"allow_outside", [](SceneOptions& o) { o.allow_outside = true; }, false},
     {"unit", [](SceneOptions& o) { o.unit = Unit::foot; }, false},
     {"up", [](SceneOptions& o) { o.up = UpAxis::z; }, false}};
-static_assert(member_count<SceneOptions>() == 12);
+static_assert(member_count<SceneOptions>() == 14);
 
 const std::vector<Change<SimulatorConfig>> kSimulation{
     {"engine", [](SimulatorConfig& c) { c.engine = Engine::automatic; }, false},
