@@ -7,7 +7,7 @@
 
 namespace vantage::cli {
 
-nlohmann::json to_json(const DroppedPoints& dropped) {
+nlohmann::json dropped_json(const DroppedPoints& dropped) {
   return {{"points", dropped.points},
           {"incidence", dropped.incidence},
           {"footprint", dropped.footprint},

@@ -201,7 +201,7 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
     if (!sampled && !counts.points.empty()) row["points"] = counts.points[k];
     if (!sampled && !counts.points_on_surveyed.empty()) row["points_on_surveyed"] = counts.points_on_surveyed[k];
     row["dropped"] = nullptr;
-    if (!counts.dropped.empty()) row["dropped"] = to_json(counts.dropped[k]);
+    if (!counts.dropped.empty()) row["dropped"] = dropped_json(counts.dropped[k]);
     rows.push_back(std::move(row));
   }
   SurveySummary summary{.names = names, .captured = covered.value, .captured_error = covered.standard_error};
@@ -238,7 +238,7 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
     }
     if (options.with_registration) json["registration"] = registration_json(error, registered);
     if (sampled) json["sample"] = counts.voxels;
-    if (!counts.dropped.empty()) json["dropped"] = to_json(all_dropped(counts));
+    if (!counts.dropped.empty()) json["dropped"] = dropped_json(all_dropped(counts));
     program.console.print(json);
   } else {
     std::string text =
