@@ -41,7 +41,7 @@ struct CaptureBound {
   std::vector<std::size_t> chosen = {};  ///< The best rows found, the fixed ones first.
   Estimate reached;                      ///< Their coverage, with the sample's standard error.
   /// How much better than `reached` any choice of candidates can be, as a share of it.
-  double gap() const { return reached.value > 0 ? bound / reached.value - 1 : 0; }
+  double gap() const { return bound > reached.value && reached.value > 0 ? bound / reached.value - 1 : 0; }
 };
 
 /// Σ y <= stations over the linear relaxation of coverage: max Σ w_v z_v, z_v <= b_v + Σ_k y_k min(points_kv / goal,

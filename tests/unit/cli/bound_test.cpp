@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// What can be captured at best, and why the rest is not.
+#include <sstream>
+
+#include "program.hpp"
+
+namespace vantage::test {
+namespace {
+
+class Bound : public ProgramTest {};
+
+TEST_F(Bound, HoldsForWhatItFinds) {
+  const auto json =
+      json_of(coarse("bound", {"--stations", "2,4", "--capture", "0.5", "--candidates", "32", "--sample", "300"}));
+  ASSERT_EQ(json["stations"].size(), 2u);
+  EXPECT_EQ(json["candidates"], 32);
+  double before = 0;
+  for (const auto& one : json["stations"]) {
+    EXPECT_GE(one["bound"].get<double>(), one["reached"].get<double>() - 1e-9);
+    EXPECT_GE(one["bound"].get<double>(), one["relaxation"].get<double>() - 1e-9);
+    EXPECT_GT(one["reached"].get<double>(), before);
+    EXPECT_EQ(one["chosen"].size(), one["stations"].get<std::size_t>());
+    before = one["reached"].get<double>();
+  }
+  const auto& half = json["captures"][0];
+  EXPECT_EQ(half["possible"], true);
+  EXPECT_LE(half["at_least"].get<std::size_t>(), half["enough"].size());
+}
+
+TEST_F(Bound, AsksForANumberOrACapture) {
+  expect_refused(run_program(coarse("bound", {})), 2, "--stations N, --capture C");
+  expect_refused(run_program(coarse("bound", {"--stations", "0"})), 2, "--stations");
+  expect_refused(run_program(coarse("bound", {"--capture", "1.2"})), 2, "--capture");
+}
+
+TEST_F(Bound, EvaluateTellsWhatIsMissed) {
+  const Outcome outcome =
+      run_program(coarse("evaluate", {"--station", "8,0,1.5", "--missed", path("missed.csv"), "--missed",
+                                      path("missed.ply"), "--missed", path("missed.png")}));
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(files(), (std::vector<std::string>{"missed.csv", "missed.ply", "missed.png"}));
+  std::istringstream csv(read("missed.csv"));
+  std::string header, all;
+  std::getline(csv, header);
+  std::getline(csv, all);
+  EXPECT_EQ(header, "node,voxels,captured,hidden,out_of_range,too_flat,too_sparse,not_chosen");
+  ASSERT_TRUE(all.starts_with("(all),")) << all;
+  std::istringstream fields(all.substr(6));
+  std::string field;
+  std::getline(fields, field, ',');  // voxels
+  double sum = 0;
+  while (std::getline(fields, field, ',')) sum += std::stod(field);
+  EXPECT_NEAR(sum, 1, 1e-3);
+  expect_refused(run_program(coarse("evaluate", {"--station", "8,0,1.5", "--missed", path("missed.txt")})), 2,
+                 "missed.txt");
+}
+
+}  // namespace
+}  // namespace vantage::test
