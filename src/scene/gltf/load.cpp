@@ -175,6 +175,8 @@ class Loader {
                            .diffuse = job.diffuse,
                            .triangle_count = raw_.ranges.back().triangle_count,
                            .weight = job.weight,
+                           .door = job.placed->door,
+                           .station_area = job.placed->station_area,
                            .detail_m = job.detail_mm * 1e-3,
                            .accuracy_m = job.accuracy_mm * 1e-3});
     const std::size_t first = raw_.positions.size();
