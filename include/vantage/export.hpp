@@ -93,7 +93,7 @@ std::string run_parameters_json(const Simulator& simulator, const PlanResult* re
 
 /// `front.json`: keys problem, objectives, hypervolume, evaluations, stop_reason, front, seconds, engine, device, seed,
 /// parameters, version. Every network of the front carries its values by their objectives' names. Whatever is numbered
-/// (`entry`, `compromise`, stations of links) counts from 1.
+/// (`entry`, `answer`, stations of links) counts from 1.
 std::string front_json(const PlanResult& result, const Simulator& simulator);
 void write_front_csv(const std::filesystem::path& file, const PlanResult& result);
 
@@ -117,19 +117,13 @@ std::vector<std::filesystem::path> draw_plan_view(const std::filesystem::path& f
                                                   std::span<const StationError> errors = {});
 
 /// Writes a whole result folder: front.csv, front.json, history.csv, fronts.csv (every iteration's front), and for the
-/// chosen compromise stations.csv, overlap.csv (where it is confirmed), coverage.ply (where `field`, its voxel field,
+/// `answer()` stations.csv, overlap.csv (where it is confirmed), coverage.ply (where `field`, its voxel field,
 /// is given), and the pictures front.png, hypervolume.png, history.png (with several objectives), plan.png (each also
 /// as .svg), of several floors also plan-level-1.png and so on; and for the crew stations.dxf, and where `crs`, the
 /// `coordinate_system()` of the survey frame, is given and this build has PROJ stations.geojson and stations.kml. Makes
 /// the folder where there is none. Returns the index of the chosen entry.
 std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& result, const Simulator& simulator,
                        const SearchArea& area, const VoxelField* field = nullptr, const std::string& crs = {});
-
-/// The compromise shown where one must be chosen: of the entries that miss the requirements least the one with the
-/// largest product of its objectives' gains (1 less the scaled value). Where an objective looks at pairs, of those
-/// whose stations all hang together by the problem's `link_overlap`, as far as there are any confirmed: parts of a
-/// network cannot be registered with each other, however well each overlaps in itself.
-std::size_t compromise(const PlanResult& result);
 
 /// CSV: `node,voxels,captured,hidden,out_of_range,too_flat,too_sparse,not_chosen`, shares of the node's voxels.
 void write_missed_csv(const std::filesystem::path& file, std::span<const MissedShare> shares);

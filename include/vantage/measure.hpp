@@ -36,6 +36,9 @@ class OverlapMatrix {
 double coverage(const NetworkCounts& counts, double goal_density);
 /// Equation 11 for every pair; 0/0 is 0.
 OverlapMatrix overlap_matrix(const NetworkCounts& counts);
+/// Scan overlap of every pair: what two scans share, of the smaller one, |i and j| / min(|i|, |j|); 0/0 is 0. How
+/// practice states the overlap that registration takes. Not equation 11, which is shared over either.
+OverlapMatrix scan_overlap_matrix(const NetworkCounts& counts);
 /// Equation 13: average weighted clustering coefficient, in [0, 1]; the maximum is over all pairs. 0/0 is 0, so
 /// networks of one or two stations, or without a shared voxel, have 0.
 double clustering_coefficient(const OverlapMatrix& overlap);

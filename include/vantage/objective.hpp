@@ -26,18 +26,29 @@ struct MeasuredNetwork {
   OverlapMatrix overlap = {};               ///< Equation 11, by `overlap_matrix()`; empty where none needs pairs.
   /// Connected parts of the graph of stations that see each other within range; 0 where no objective needs visibility.
   std::size_t visible_parts = 0;
+  /// What the stations left on all surfaces, surveyed or not, by the coarser simulator of `surroundings_of()`: pairs
+  /// with it. Null where no objective needs it. `surroundings_voxels`: how many voxels that has in all.
+  const NetworkCounts* surroundings = nullptr;
+  std::uint64_t surroundings_voxels = 0;
+  double minutes_on_site = 0;  ///< By `OnSite`, without kept stations; 0 where no objective needs it.
 };
 
 /// What an objective looks at besides the stations. What nobody needs is not computed.
 struct Needs {
-  bool counts = true;       ///< `MeasuredNetwork::counts`. False: of places alone, so no ray is traced for it.
-  bool pairs = false;       ///< `NetworkCounts::seen` and `shared`, and `MeasuredNetwork::overlap`.
-  bool visibility = false;  ///< `MeasuredNetwork::visible_parts`.
+  bool counts = true;         ///< `MeasuredNetwork::counts`. False: of places alone, so no ray is traced for it.
+  bool pairs = false;         ///< `NetworkCounts::seen` and `shared`, and `MeasuredNetwork::overlap`.
+  bool visibility = false;    ///< `MeasuredNetwork::visible_parts`.
+  bool surroundings = false;  ///< `MeasuredNetwork::surroundings`.
+  bool time = false;          ///< `MeasuredNetwork::minutes_on_site`.
   /// `NetworkCounts::registration`, and with it `pairs`. What is measured together has one model.
   std::optional<RegistrationModel> registration = std::nullopt;
 };
 constexpr Needs operator|(const Needs& a, const Needs& b) {
-  return {a.counts || b.counts, a.pairs || b.pairs, a.visibility || b.visibility,
+  return {a.counts || b.counts,
+          a.pairs || b.pairs,
+          a.visibility || b.visibility,
+          a.surroundings || b.surroundings,
+          a.time || b.time,
           a.registration ? a.registration : b.registration};
 }
 
@@ -69,6 +80,9 @@ struct Objective {
   bool maximised() const { return best > worst; }
 };
 
+/// What all of them look at together.
+Needs needs_of(std::span<const Objective> objectives);
+
 /// Value and standard error of an objective; the error is 0 where all voxels were counted, or none matter.
 Estimate estimate(const Objective& objective, const MeasuredNetwork& measured);
 
@@ -99,6 +113,7 @@ struct ObjectiveSettings {
   double link_overlap = default_link_overlap;                 ///< `parts`: pairs of less overlap are not linked.
   FitnessWeights fitness = {};
   RegistrationOptions registration = {};  ///< `registration`, `registration_worst`.
+  double visible = 1;  ///< `capture`: the coverage that all allowed positions together would reach.
 };
 /// Names of the built-in objectives, as "coverage", "overlap", "stations".
 std::span<const std::string> objective_names();

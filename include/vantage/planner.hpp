@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <stop_token>
@@ -15,7 +16,9 @@
 #include <string_view>
 #include <vector>
 
+#include "vantage/candidates.hpp"
 #include "vantage/objective.hpp"
+#include "vantage/on_site.hpp"
 #include "vantage/optimiser.hpp"
 #include "vantage/placement.hpp"
 #include "vantage/progress.hpp"
@@ -37,6 +40,14 @@ struct SurveyProblem {
   /// Pairs of less overlap count as not linked in reports and pictures.
   double link_overlap = default_link_overlap;
   RegistrationOptions registration = {};  ///< What scans register from, and how well they have surfaces.
+  /// In two steps: first the fewest stations, of `stations_min` to `stations_max`, that keep the requirements on
+  /// `coverage`, `capture`, `link` and `apart`; then, at that number, the best by the objectives under all
+  /// requirements.
+  bool fewest = false;
+  /// What can be seen: the coverage (equation 8) that `capture` is a share of. Empty: found by `find_candidates()`
+  /// where `capture` is asked for.
+  std::optional<double> visible = std::nullopt;
+  OnSiteOptions on_site = {};  ///< For the objective `time`, and the time on site that every plan tells.
 
   /// What the built-in objectives have to be told of this problem.
   ObjectiveSettings settings() const;
@@ -51,6 +62,11 @@ SurveyProblem coverage_overlap_fix(std::size_t stations);
 SurveyProblem coverage_min(std::size_t stations_min, std::size_t stations_max);
 SurveyProblem coverage_overlap_min(std::size_t stations_min, std::size_t stations_max);
 SurveyProblem fitness_min(std::size_t stations_min, std::size_t stations_max, const FitnessWeights& weights = {});
+/// The surveyor's question: the fewest stations that capture so much of what can be seen, all linked along some
+/// spanning tree by scan overlaps of at least `link`, `apart_m` or more from each other; then, at that number, the
+/// strongest weakest link.
+SurveyProblem fewest_stations(double capture = 0.9, double link = 0.3, std::size_t stations_min = 1,
+                              std::size_t stations_max = max_stations, double apart_m = 1);
 /// One of `problem_names()`: "coverage-fix", "coverage-overlap-fix", "coverage-min", "coverage-overlap-min",
 /// "fitness-min". Throws Error invalid_argument and lists the names, or where a -fix problem is given a range or a -min
 /// problem none.
@@ -62,8 +78,10 @@ SurveyProblem survey_problem(std::span<const std::string> objectives, std::size_
 
 /// How to search.
 struct PlanConfig {
-  std::size_t population = 0;    ///< 0: with one objective 10, or 20 where the number is searched; else 100.
-  std::size_t iterations = 100;  ///< Of `population` evaluations each.
+  std::size_t population = 0;  ///< 0: with one objective 10, or 20 where the number is searched; else 100.
+  /// Of `population` evaluations each. 0, where the fewest stations are asked for: by the site, so that the search
+  /// traces about twice as many stations as looking at what can be seen did.
+  std::size_t iterations = 100;
   double sigma0 = 0.2;
   Algorithm algorithm = Algorithm::mo_cma_es;  ///< Of problems with several objectives.
   MoCmaEsConfig::Scheme scheme = MoCmaEsConfig::Scheme::steady_state;
@@ -106,7 +124,10 @@ struct PlanEntry {
   bool dominated = false;
   /// By how much the requirements are missed in all, as shares of their objectives' scales; 0: it keeps them.
   double missed = 0;
-  OverlapMatrix exact_overlap_matrix;
+  OverlapMatrix exact_overlap_matrix;  ///< Equation 11.
+  /// By `scan_overlap_matrix()` over all surfaces; empty unless a measure needs the surroundings.
+  OverlapMatrix exact_scan_overlap_matrix;
+  std::optional<Visit> visit = std::nullopt;  ///< The round on site without the kept stations, where it was worked out.
   std::vector<std::uint64_t> points_on_surveyed;  ///< Per station, exact.
   /// `values.at(name).best_known()`. Throws std::out_of_range.
   double value(const std::string& name) const { return values.at(name).best_known(); }
@@ -130,6 +151,8 @@ struct PlanResult {
   /// All that is told of a network: the objectives, then what requirements bound, then coverage and overlap.
   std::vector<Objective> measures;
   std::vector<PlanEntry> front;  ///< By the objectives in order, best first. One entry where there is one objective.
+  /// What can be seen, and where from: where `capture` is asked for, or the number of stations is decided first.
+  std::shared_ptr<const Candidates> candidates;
   std::vector<PlanIteration> history;
   /// Final, as the search saw it; reference point (1, …, 1) of scaled objectives. With one objective that is 1 less its
   /// scaled value.
@@ -148,7 +171,10 @@ struct PlanProgress {
   std::uint64_t evaluations = 0;
   double hypervolume = 0, evaluations_per_second = 0;
   double seconds_left = 0;  ///< Below 0: not known yet.
-  std::string phase;        ///< "search" or "confirm"
+  std::string phase;        ///< "look" (at what can be seen), "choose", "search" or "confirm".
+  /// The front as it is now, as the optimiser has it: decision vectors and `scaled_objectives()`, 1 and more where
+  /// requirements are missed. Valid for the call.
+  std::span<const ParetoPoint> front = {};
 };
 
 /// As `Progress`, for a search.
@@ -164,6 +190,19 @@ struct PlanWatch {
 /// throw; the checkpoint is written before an exception leaves.
 PlanResult plan(Simulator& simulator, const SearchArea& area, const ClashChecker& clash, const SurveyProblem& problem,
                 const PlanConfig& config = {}, const PlanWatch& watch = {});
+
+/// The network that is the answer: of those that keep all requirements, with a question for few stations, those of
+/// fewest stations first; then the one whose scaled objectives are nearest to the best values by Euclidean distance
+/// (the utopia point of compromise programming: Zeleny, Compromise Programming, 1973). Where an objective looks at
+/// pairs and nothing is required, of those whose stations all hang together by the problem's `link_overlap`, as far as
+/// there are any confirmed: parts of a network cannot be registered with each other, however well each overlaps in
+/// itself. Where none keeps the requirements, the one that misses least. Throws Error invalid_argument where the front
+/// is empty.
+std::size_t answer(const PlanResult& result);
+/// Whether the answer keeps all requirements. False where that is not known for sure: it was not confirmed.
+bool met(const PlanResult& result);
+/// What would help where the answer does not keep the requirements, a sentence each.
+std::vector<std::string> what_would_help(const PlanResult& result);
 
 /// What the search minimises of a network, in the order of `problem.objectives`: their scaled values; α for the number
 /// of stations where that is searched. `x`: its decision vector; `values`: of the objectives.
@@ -191,11 +230,6 @@ struct GreedyResult {
 /// invalid_argument where no candidate can stand.
 GreedyResult greedy_network(Simulator& simulator, const SearchArea& area, const ClashChecker& clash,
                             const GreedyConfig& config = {}, const Progress& progress = {});
-
-/// Decision vector to stations: locate, raise by `height_m`, check for clashes.
-std::vector<PlacedStation> place_stations(const SearchArea& area, const ClashChecker& clash, double height_m,
-                                          std::span<const double> uvs);
-Network to_network(std::span<const PlacedStation> stations);
 
 /// Decision vector to stations: locate, raise by `height_m`, check for clashes.
 std::vector<PlacedStation> place_stations(const SearchArea& area, const ClashChecker& clash, double height_m,

@@ -48,6 +48,9 @@ struct Scanner {
   /// on the axis. Both 0: not known.
   Angle beam_divergence = Angle::radians(0);
   double exit_diameter_m = 0;
+  /// How fast rays are measured, for the time on site. The figure that no preset gives is an assumption of ours: what
+  /// phase and time-of-flight scanners of the last ten years have reached.
+  double points_per_second = 1'000'000;
 
   std::uint32_t rows() const;     ///< Zenith steps.
   std::uint32_t columns() const;  ///< Azimuth steps.

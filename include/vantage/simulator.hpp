@@ -169,4 +169,10 @@ class Simulator {
   std::unique_ptr<Impl> impl_;
 };
 
+/// A coarser simulator over the same site with every mesh surveyed, for how scans overlap: registration goes by all
+/// that they share, wanted or not. Voxels of a hundredth of the site's largest extent at most, 0.5 m at most, never
+/// finer than those of `simulator`; rays so that two of them pass a voxel across at the site's far end or the range's,
+/// never finer than the scanner's; no noise. Same engine, device and seed. Costs memory and time of another simulator.
+Simulator surroundings_of(const Simulator& simulator);
+
 }  // namespace vantage

@@ -10,7 +10,8 @@
 
 namespace vantage::cli {
 
-enum ExitCode : int { exit_ok = 0, exit_failed = 1, exit_usage = 2 };
+// exit_unmet: results are there, but no network keeps what was required.
+enum ExitCode : int { exit_ok = 0, exit_failed = 1, exit_usage = 2, exit_unmet = 3 };
 
 // What a command finds around it.
 struct Program {

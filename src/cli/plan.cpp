@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "cli/command.hpp"
+#include "cli/deadline.hpp"
 #include "cli/missed.hpp"
 #include "cli/options.hpp"
 #include "cli/problem.hpp"
@@ -20,15 +21,20 @@ namespace {
 // What a sampled search needs for errors of .002 in coverage, and of .007 in overlap, on large sites
 // (docs/benchmarks.md).
 constexpr std::uint64_t sample_for_coverage = 20'000, sample_for_overlap = 100'000;
+// Where every candidate is looked at: errors of .004, which the choice keeps as a margin and every ray then judges.
+constexpr std::uint64_t sample_for_fewest = 5'000;
 
 struct PlanOptions {
   SiteOptions site;
   ProblemOptions problem;
   PlanConfig config;
-  bool exact = false, greedy = false, resume = false, prove = false, json = false;
+  bool exact = false, greedy = false, resume = false, force = false, prove = false, json = false;
+  double max_seconds = 0;
   std::optional<SampleSize> sample;
   std::vector<StationText> start;
   std::optional<std::string> output;
+
+  PlanOptions() { config.iterations = 0; }  // until it is given or the problem is known
 
   void add(CLI::App& command) {
     site.add(command);
@@ -43,10 +49,11 @@ struct PlanOptions {
                 }
               })
         ->group("Search");
-    add_size(command, "--population", "M", "Networks per iteration; 10 for coverage-fix, 20 for a fitness, else 100",
+    add_size(command, "--population", "M",
+             "Networks per iteration; with one objective 10, or 20 where it searches the number; else 100",
              config.population, 2, 100'000);
-    add_size(command, "--iterations", "K", "Iterations of M networks each; 100 otherwise", config.iterations, 1,
-             100'000'000);
+    add_size(command, "--iterations", "K", "Iterations of M networks each; by the site, or 100 for problems by name",
+             config.iterations, 1, 100'000'000);
     add_size(command, "--batch", "B", "Networks asked for at once by the steady state; by the engine otherwise",
              config.batch, 1, 100'000);
     add_size(command, "--redraws", "N", "How often stations in holes or clashes are drawn again; 8 otherwise",
@@ -76,9 +83,8 @@ struct PlanOptions {
                 greedy = true;
               })
         ->group("Search");
-    add_value(
-        command, "--max-time", "T", "Stop searching after so long: 90, 90s, 15min or 2h",
-        [this](const std::string& text, const std::string& what) { config.max_seconds = parse_duration(text, what); })
+    add_value(command, "--max-time", "T", "Be done after so long, with all that a plan takes: 90, 90s, 15min or 2h",
+              [this](const std::string& text, const std::string& what) { max_seconds = parse_duration(text, what); })
         ->group("Search");
     add_value(command, "--target-hypervolume", "V", "Stop when the front has this hypervolume, 0 to 1",
               [this](const std::string& text, const std::string& what) {
@@ -92,11 +98,13 @@ struct PlanOptions {
               [this](const std::string& text, const std::string& what) { sample = parse_sample(text, what); })
         ->group("Search")
         ->excludes(exact_flag);
-    add_text(command, "-o,--output", "DIR", "Folder for the results", output)->group("Results");
+    add_text(command, "-o,--output", "DIR", "Folder for the results; the scene's name and -plan otherwise", output)
+        ->group("Results");
+    auto* resumes = command.add_flag("--resume", resume, "Go on from the folder's checkpoint")->group("Results");
+    command.add_flag("--force", force, "Overwrite the results of another run")->group("Results")->excludes(resumes);
     command
         .add_flag("--prove", prove, "Bound what any network of as many stations captures: how near does the plan come?")
         ->group("Results");
-    command.add_flag("--resume", resume, "Go on from the folder's checkpoint")->group("Results");
     command.add_flag("--json", json, "Print one JSON object, the same as front.json");
   }
 
@@ -114,6 +122,7 @@ std::uint64_t default_sample(const SurveyProblem& problem, std::uint64_t voxels)
   const auto pairs = [](const Objective& objective) { return objective.needs.pairs; };
   const bool overlap = std::ranges::any_of(problem.objectives, pairs) ||
                        std::ranges::any_of(problem.requirements, pairs, &Requirement::objective);
+  if (problem.fewest) return std::min(sample_for_fewest, voxels);
   const std::uint64_t enough = std::max<std::uint64_t>(voxels / 4, 5'000);
   return std::min({overlap ? sample_for_overlap : sample_for_coverage, enough, voxels});
 }
@@ -135,7 +144,22 @@ std::vector<Vec3> heads_of(LoadedSite& site, const std::vector<StationText>& sta
 nlohmann::json as_options(const LoadedSite& site, const PlanOptions& given, const SurveyProblem& problem,
                           const PlanConfig& config) {
   nlohmann::json options = options_of(settings(problem));
+  if (given.problem.surveyors()) {
+    // The requirements that this question has by itself go by their own options, so that 0 can take one away.
+    nlohmann::json further = nlohmann::json::array();
+    for (const char* own : {"capture", "link", "apart"}) options[own] = 0;
+    for (const Requirement& requirement : problem.requirements) {
+      const std::string& name = requirement.objective.name;
+      if (options.contains(name) && requirement.bound == Requirement::Bound::at_least)
+        options[name] = requirement.limit;
+      else
+        further.push_back(to_string(requirement));
+    }
+    options["require"] = std::move(further);
+    options["problem"] = problem.name;
+  }
   options.update(options_of(settings(config)));
+  if (given.max_seconds > 0) options["max-time"] = given.max_seconds;
   if (config.sample_voxels == 0) options["exact"] = true;
   if (given.problem.fitness) {
     const FitnessWeights& weights = *given.problem.fitness;
@@ -148,19 +172,47 @@ nlohmann::json as_options(const LoadedSite& site, const PlanOptions& given, cons
 
 // Heads of a greedy choice for the largest network; empty where it was stopped.
 std::vector<Vec3> greedy_start(LoadedSite& site, Simulator& simulator, const SurveyProblem& problem,
-                               const PlanConfig& config, Program& program) {
+                               const PlanConfig& config, Program& program, std::stop_token stop) {
   ProgressLine line(program.console, "greedy");
   const GreedyResult greedy =
       greedy_network(simulator, site.area(), site.clash(),
                      {.stations = problem.stations_max,
                       .sample_voxels = std::min<std::uint64_t>(config.sample_voxels, sample_for_coverage),
                       .fixed = problem.kept},
-                     {.report = [&](double done) { line.update(done); }, .stop = program.stop});
+                     {.report = [&](double done) { line.update(done); }, .stop = std::move(stop)});
   std::vector<Vec3> heads;
   if (greedy.cancelled) return heads;
   for (const auto& station : greedy.stations) heads.push_back(station.position);
   spdlog::info("greedy: {} stations cover {:.4f}", heads.size(), greedy.coverage.back());
   return heads;
+}
+
+// What a folder holds already.
+struct Before {
+  bool another_run = false;
+  std::uint64_t evaluations = 0, confirmed = 0;  // of the results; 0: there are none
+};
+
+Before look_into(const std::filesystem::path& folder, const nlohmann::json& options) {
+  Before before;
+  std::error_code ignored;
+  const auto read = [](const std::filesystem::path& file) {
+    try {
+      return read_json(file.string());
+    } catch (const Error&) {
+      return nlohmann::json();  // damaged, or none of ours: nothing to go by
+    }
+  };
+  if (std::filesystem::exists(folder / "config.json", ignored))
+    before.another_run = read(folder / "config.json") != options;
+  if (std::filesystem::exists(folder / "front.json", ignored)) {
+    const nlohmann::json results = read(folder / "front.json");
+    if (!results.is_object()) return before;
+    before.evaluations = results.value("evaluations", std::uint64_t{0});
+    for (const auto& entry : results.value("front", nlohmann::json::array()))
+      if (entry.is_object() && entry.contains("exact") && !entry["exact"].is_null()) ++before.confirmed;
+  }
+  return before;
 }
 
 // What it misses, and where it does not hang together.
@@ -190,7 +242,7 @@ std::string summary(const PlanResult& result, std::size_t chosen, const std::str
     const PlanEntry& entry = result.front[k];
     for (const Objective* measure : told) text += fmt::format("{:9.4f} ", entry.value(measure->name));
     text += fmt::format("{:>8}{}{}\n", entry.stations.size(),
-                        k == chosen       ? "  <- compromise"
+                        k == chosen       ? "  <- answer"
                         : entry.dominated ? "  dominated"
                                           : "",
                         remarks(entry, result));
@@ -201,7 +253,9 @@ std::string summary(const PlanResult& result, std::size_t chosen, const std::str
   text += fmt::format(", stopped: {}\n", to_string(result.stop_reason));
   const PlanEntry& entry = result.front[chosen];
   text += "\n" + station_table(entry.stations, station_names(entry.stations), entry.points_on_surveyed) + "\n";
-  return text + summary_text(summary_of(entry, result)) + "results in " + folder + "\n";
+  text += summary_text(summary_of(entry, result));
+  for (const std::string& help : what_would_help(result)) text += fmt::format("{:<10}{}\n", "would help", help);
+  return text + "results in " + folder + "\n";
 }
 
 // The site's coordinate system, where stations can be put on a map by it; else nothing, and a line that says why.
@@ -219,23 +273,52 @@ std::string map_system(const LoadedSite& site) {
 }
 
 // Every voxel's count under the network that is shown; empty where it was stopped.
-std::optional<VoxelField> cartography(Simulator& simulator, const PlanEntry& entry, Program& program) {
+std::optional<VoxelField> cartography(Simulator& simulator, const PlanEntry& entry, Program& program,
+                                      std::stop_token abort) {
   ProgressLine line(program.console, "cartography");
   VoxelField field;
-  const NetworkCounts counts =
-      simulator.evaluate(to_network(entry.stations), {.overlap = true, .field = &field},
-                         {.report = [&](double done) { line.update(done); }, .stop = program.abort});
+  const NetworkCounts counts = simulator.evaluate(to_network(entry.stations), {.overlap = true, .field = &field},
+                                                  {.report = [&](double done) { line.update(done); }, .stop = abort});
   if (counts.cancelled) return std::nullopt;
   return field;
 }
 
+std::string told(const PlanProgress& now) {
+  if (now.phase == "look" || now.phase == "choose")
+    return now.evaluations > 0 ? fmt::format("{} stations", now.evaluations) : "";
+  return fmt::format("hypervolume {:.4f}, {} networks, {:.3g} a second", now.hypervolume, now.evaluations,
+                     now.evaluations_per_second);
+}
+
+PlanResult run_plan(LoadedSite& site, Simulator& simulator, const SurveyProblem& problem, const PlanConfig& config,
+                    Program& program, const Deadline& deadline) {
+  ProgressLine line(program.console, "search");
+  std::string phase;
+  const auto report = [&](const PlanProgress& now) {
+    line.set_label(now.phase);
+    // What it will take is told as each part of it begins to be known.
+    if (now.phase != phase && now.seconds_left > 0) {
+      phase = now.phase;
+      spdlog::info("{}: about {}", phase, duration_text(now.seconds_left));
+    }
+    const double done =
+        now.iterations > 0 ? static_cast<double>(now.iteration) / static_cast<double>(now.iterations) : 0;
+    line.update(done, told(now), now.seconds_left);
+  };
+  PlanResult result = plan(simulator, site.area(), site.clash(), problem, config,
+                           {.report = report, .stop = deadline.stop(), .abort = deadline.abort()});
+  if (result.stop_reason == StopReason::cancelled && deadline.passed()) result.stop_reason = StopReason::max_time;
+  return result;
+}
+
 int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
+  const Deadline deadline(options.max_seconds, program.stop, program.abort);
   LoadedSite site = open_site(command, options.site);
   weigh_ground(site);
-  SurveyProblem problem = options.problem.settle();
-  if (!options.output) throw Error(Errc::invalid_argument, "plan: say where the results go with -o DIR");
-  const std::filesystem::path folder = *options.output;
-  make_folder(folder);  // an hour's search must not end at a folder that cannot be written
+  SurveyProblem problem = options.problem.settle(length_scale(site.scene.bounds()));
+  const std::filesystem::path folder =
+      options.output ? std::filesystem::path(*options.output)
+                     : std::filesystem::path(std::filesystem::path(options.site.scene).stem().string() + "-plan");
 
   PlanConfig& config = options.config;
   config.start = heads_of(site, options.start, "--start");
@@ -243,6 +326,7 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   config.seed = site.config.seed;
   config.resume = options.resume;
   config.checkpoint = folder / "checkpoint.bin";
+  if (config.iterations == 0 && !problem.fewest) config.iterations = PlanConfig().iterations;
   const SearchArea& area = site.area();
 
   Simulator simulator(site.scene, site.scanner, site.config);
@@ -251,37 +335,50 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   if (!options.exact)
     config.sample_voxels =
         options.sample ? options.sample->of(simulator.voxel_count()) : default_sample(problem, simulator.voxel_count());
-  if (options.greedy) {
+  if (options.greedy && !problem.fewest) {
     if (!options.start.empty())
       throw Error(Errc::invalid_argument, "--seed-with and --start both say where to start: give one");
-    config.start = greedy_start(site, simulator, problem, config, program);
+    config.start = greedy_start(site, simulator, problem, config, program, deadline.stop());
   }
-  write_text(folder / "config.json", as_options(site, options, problem, config).dump(2) + "\n");
+  const nlohmann::json as_given = as_options(site, options, problem, config);
+  const Before before = look_into(folder, as_given);
+  if (before.another_run && !options.resume && !options.force)
+    throw Error(Errc::invalid_argument, "plan: " + folder.string() +
+                                            " holds the results of another run; give another folder with -o, --resume "
+                                            "to go on with it, or --force to overwrite it");
+  make_folder(folder);  // an hour's search must not end at a folder that cannot be written
+  if (!options.resume) write_text(folder / "config.json", as_given.dump(2) + "\n");
+  if (options.resume) {
+    if (std::filesystem::exists(config.checkpoint))
+      spdlog::info("resuming from {}", config.checkpoint.string());
+    else
+      spdlog::info("{} holds nothing to resume: beginning", folder.string());
+  }
 
   const std::string crs = map_system(site);
-  PlanResult result;
-  {
-    ProgressLine line(program.console, "search");
-    const auto report = [&](const PlanProgress& now) {
-      line.set_label(now.phase);
-      const double done =
-          now.iterations > 0 ? static_cast<double>(now.iteration) / static_cast<double>(now.iterations) : 0;
-      line.update(done,
-                  fmt::format("hypervolume {:.4f}, {} networks, {:.3g} a second", now.hypervolume, now.evaluations,
-                              now.evaluations_per_second),
-                  now.seconds_left);
-    };
-    result = plan(simulator, area, site.clash(), problem, config,
-                  {.report = report, .stop = program.stop, .abort = program.abort});
-  }
+  // A search stops by its own clock too, so that it can say so.
+  config.max_seconds = deadline.seconds_to_search();
+  PlanResult result = run_plan(site, simulator, problem, config, program, deadline);
+  config.max_seconds = result.config.max_seconds = options.max_seconds;
   if (result.front.empty())
     throw Error(Errc::invalid_argument,
                 "there is nothing to write: the search ended before its first networks were evaluated");
-  const auto field = cartography(simulator, result.front[compromise(result)], program);
+  if (options.resume) {
+    const auto confirmed = static_cast<std::uint64_t>(std::ranges::count(result.front, true, &PlanEntry::confirmed));
+    if (result.evaluations < before.evaluations || (confirmed == 0 && before.confirmed > 0)) {
+      spdlog::warn("{} holds better results, of {} evaluations; these of {} are not written", folder.string(),
+                   before.evaluations, result.evaluations);
+      program.console.print(options.json ? front_json(result, simulator) + "\n"
+                                         : summary(result, answer(result), folder.string()));
+      return result.problem.requirements.empty() || met(result) ? exit_ok : exit_unmet;
+    }
+    write_text(folder / "config.json", as_given.dump(2) + "\n");
+  }
+  const auto field = cartography(simulator, result.front[answer(result)], program, deadline.abort());
   if (!field) spdlog::warn("stopped: {} is not written", (folder / "coverage.ply").string());
   spdlog::info("writing {}", folder.string());
   const std::size_t chosen = write_plan(folder, result, simulator, area, field ? &*field : nullptr, crs);
-  if (field)
+  if (field && !deadline.passed())
     write_missed(
         std::vector<std::filesystem::path>{folder / "missed.csv", folder / "missed.ply", folder / "missed.png"}, site,
         simulator, *field, result.front[chosen].stations, program);
@@ -291,7 +388,7 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
     program.console.print(front_json(result, simulator) + "\n");
   else
     program.console.print(summary(result, chosen, folder.string()));
-  return exit_ok;
+  return result.problem.requirements.empty() || met(result) ? exit_ok : exit_unmet;
 }
 
 }  // namespace

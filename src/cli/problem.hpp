@@ -20,13 +20,20 @@ struct ProblemOptions {
   std::vector<StationText> keep;
   std::optional<std::array<double, 2>> heights;
   std::optional<double> link_overlap, min_overlap;
+  std::optional<double> capture, link, apart, set_up_min, walking_m_per_s;
+  std::optional<double> time_on_site_min;
   std::optional<FitnessWeights> fitness;
   RegistrationCliOptions registration;
 
   void add(CLI::App& command);
+  // Whether it is the surveyor's question: no other problem is named, nor a list of objectives for a given number.
+  bool surveyors() const;
   // Problem and number of stations say much about each other; what is missing follows from what is there. Kept stations
-  // are left to the caller. Throws Error invalid_argument.
-  SurveyProblem settle() const;
+  // are left to the caller. `scale`: of lengths that nobody gave. Throws Error invalid_argument.
+  SurveyProblem settle(double scale = 1) const;
 };
+
+// What is exported as an option of its own, as the default question has it.
+inline constexpr double default_capture = 0.9, default_link = 0.3, default_apart_m = 1;
 
 }  // namespace vantage::cli

@@ -16,7 +16,8 @@ namespace vantage::cli {
 namespace {
 
 // Options that a preset states, and so takes out of the scene's hands.
-const std::set<std::string> preset_keys{"step", "horizontal", "vertical", "zenith-start", "range", "noise", "beam"};
+const std::set<std::string> preset_keys{"step",  "horizontal", "vertical", "zenith-start",
+                                        "range", "rate",       "noise",    "beam"};
 // Options that a scene may carry defaults for: what is measured, never where files go.
 const std::set<std::string> scene_keys{"scanner",  "step",  "heading",  "horizontal", "vertical",  "zenith-start",
                                        "height",   "range", "noise",    "beam",       "user-size", "spacing",
@@ -59,6 +60,7 @@ Scanner resolve_scanner(const SiteOptions& options, double scale) {
                                               std::to_string(scanner.min_range_m) + " is not below " +
                                               std::to_string(scanner.max_range_m));
   }
+  if (options.rate) scanner.points_per_second = *options.rate;
   if (options.noise) scanner.noise = load_noise(*options.noise);
   if (options.beam) {
     scanner.beam_divergence = Angle::radians((*options.beam)[0] * 1e-3);
@@ -207,6 +209,10 @@ void SiteOptions::add(CLI::App& command) {
   add_value(command, "--beam", "MRAD,MM",
             "Full angle by which the beam widens, in milliradians, and its diameter at the exit, in millimetres",
             numbers_into(beam, 2, not_negative))
+      ->group("Scanner");
+
+  add_number(command, "--rate", "N", "Points measured a second, for the time on site; the preset's, or a million", rate,
+             positive)
       ->group("Scanner");
 
   add_number(command, "--user-size", "M", "Upper bound of the voxel size", user_size, positive)->group("Measure");

@@ -29,6 +29,7 @@ struct SiteOptions {
   std::optional<std::array<double, 2>> range;
   std::optional<std::string> noise;
   std::optional<std::array<double, 2>> beam;  // mrad, mm
+  std::optional<double> rate;
 
   std::optional<double> user_size, spacing, incidence;
   AreaOptions area;

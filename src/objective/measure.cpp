@@ -29,6 +29,16 @@ OverlapMatrix overlap_matrix(const NetworkCounts& counts) {
   return overlap;
 }
 
+OverlapMatrix scan_overlap_matrix(const NetworkCounts& counts) {
+  OverlapMatrix overlap(counts.stations);
+  if (counts.seen.empty()) return overlap;
+  for (std::size_t i = 0; i < counts.stations; ++i)
+    for (std::size_t j = i + 1; j < counts.stations; ++j)
+      if (const std::uint64_t both = counts.shared_by(i, j))
+        overlap.set(i, j, static_cast<double>(both) / static_cast<double>(std::min(counts.seen[i], counts.seen[j])));
+  return overlap;
+}
+
 double clustering_coefficient(const OverlapMatrix& overlap) {
   const std::size_t n = overlap.size();
   double largest = 0;

@@ -41,6 +41,12 @@ std::string_view trimmed(std::string_view text) {
 
 }  // namespace
 
+Needs needs_of(std::span<const Objective> objectives) {
+  Needs needs{.counts = false};
+  for (const Objective& objective : objectives) needs = needs | objective.needs;
+  return needs;
+}
+
 double Objective::unscaled(double f) const {
   if (by_alpha)
     return static_cast<double>(

@@ -82,24 +82,43 @@ Estimate coverage_estimate(const NetworkCounts& counts, double goal_density, std
 
 Estimate estimate(const Objective& objective, const MeasuredNetwork& measured) {
   Estimate estimate{objective.value(measured), 0};
+  const double scale = std::abs(objective.best - objective.worst);
   const NetworkCounts& counts = measured.counts;
-  const double unsampled = unsampled_share(counts, measured.voxels);
-  if (!objective.needs.counts || unsampled == 0) return estimate;
-  if (objective.standard_error) {
-    estimate.standard_error = objective.standard_error(measured);
-    return estimate;
+  double variance = 0;
+  const auto add = [&](double error) { variance += error * error; };
+  if (const double unsampled = unsampled_share(counts, measured.voxels); objective.needs.counts && unsampled > 0) {
+    if (objective.standard_error) {
+      add(objective.standard_error(measured));
+    } else {
+      const auto of = [&](const NetworkCounts& rest) {
+        return objective.value({.counts = rest,
+                                .stations = measured.stations,
+                                .kept = measured.kept,
+                                .goal_density = measured.goal_density,
+                                .voxels = measured.voxels,
+                                .overlap = objective.needs.pairs ? overlap_matrix(rest) : OverlapMatrix{},
+                                .visible_parts = measured.visible_parts,
+                                .surroundings = measured.surroundings,
+                                .surroundings_voxels = measured.surroundings_voxels,
+                                .minutes_on_site = measured.minutes_on_site});
+      };
+      add(jackknife_error(replicates<double>(counts, of), unsampled, scale));
+    }
   }
-  const auto of = [&](const NetworkCounts& rest) {
-    return objective.value({.counts = rest,
-                            .stations = measured.stations,
-                            .kept = measured.kept,
-                            .goal_density = measured.goal_density,
-                            .voxels = measured.voxels,
-                            .overlap = objective.needs.pairs ? overlap_matrix(rest) : OverlapMatrix{},
-                            .visible_parts = measured.visible_parts});
-  };
-  estimate.standard_error =
-      jackknife_error(replicates<double>(counts, of), unsampled, std::abs(objective.best - objective.worst));
+  // Another sample, of other voxels: its error is on top.
+  if (objective.needs.surroundings && measured.surroundings) {
+    const double unsampled = unsampled_share(*measured.surroundings, measured.surroundings_voxels);
+    const auto of = [&](const NetworkCounts& rest) {
+      MeasuredNetwork without{.counts = counts, .stations = measured.stations};
+      without.kept = measured.kept, without.goal_density = measured.goal_density, without.voxels = measured.voxels;
+      without.overlap = measured.overlap, without.visible_parts = measured.visible_parts;
+      without.surroundings = &rest, without.surroundings_voxels = measured.surroundings_voxels;
+      without.minutes_on_site = measured.minutes_on_site;
+      return objective.value(without);
+    };
+    if (unsampled > 0) add(jackknife_error(replicates<double>(*measured.surroundings, of), unsampled, scale));
+  }
+  estimate.standard_error = std::sqrt(variance);
   return estimate;
 }
 

@@ -32,7 +32,8 @@ std::size_t population_of(const SurveyProblem& problem, const PlanConfig& config
 }
 
 std::unique_ptr<Optimiser> choose_optimiser(const DecisionSpace& space, const SurveyProblem& problem,
-                                            const PlanConfig& config, std::size_t batch) {
+                                            const PlanConfig& config, std::size_t batch,
+                                            const std::vector<double>& start) {
   check(problem, config);
   OptimiserConfig chosen{.population = population_of(problem, config),
                          .sigma0 = config.sigma0,
@@ -49,10 +50,16 @@ std::unique_ptr<Optimiser> choose_optimiser(const DecisionSpace& space, const Su
   if (problem.objectives.size() == 1) {
     chosen.x_tolerance = kStepTolerance;
     chosen.cma.f_tolerance = kCoverageTolerance;
-    if (!config.start.empty()) chosen.start = {space.encode(config.start)};
+    if (!start.empty())
+      chosen.start = {start};
+    else if (!config.start.empty())
+      chosen.start = {space.encode(config.start)};
     return make_optimiser(Algorithm::cma_es, space.dimension(), 1, chosen);
   }
-  if (!config.start.empty()) chosen.start = space.encode_each(config.start);
+  if (!start.empty())
+    chosen.start = {start};
+  else if (!config.start.empty())
+    chosen.start = space.encode_each(config.start);
   if (chosen.start.size() > chosen.population) chosen.start.resize(chosen.population);
   return make_optimiser(config.algorithm, space.dimension(), problem.objectives.size(), chosen);
 }

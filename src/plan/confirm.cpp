@@ -92,6 +92,7 @@ std::vector<PlanEntry> confirm_front(const SearchOutcome& found, const DecisionS
         evaluator.confirm(networks[k], {.report = [&](double done) { report(k, done); }, .stop = watch.abort});
     if (!exact) break;
     entry.exact_overlap_matrix = std::move(exact->overlaps);
+    entry.exact_scan_overlap_matrix = std::move(exact->scan_overlaps);
     entry.points_on_surveyed = std::move(exact->points_on_surveyed);
     entry.confirmed = true;
     for (std::size_t m = 0; m < measures.all.size(); ++m) {

@@ -111,6 +111,19 @@ std::vector<double> DecisionSpace::encode(std::span<const Vec3> heads) const {
   return x;
 }
 
+std::vector<double> DecisionSpace::encode(std::span<const PlacedStation> stations) const {
+  std::vector<double> x(dimension());
+  for (std::size_t i = 0; i < max_; ++i) {
+    const PlacedStation& station = stations[i % stations.size()];
+    x[2 * i] = station.uv.u, x[2 * i + 1] = station.uv.v;
+    if (heights_)
+      x[2 * max_ + i] = std::clamp(station.position.z - station.ground.z, height_bounds_[0], height_bounds_[1]);
+  }
+  if (searches_number())
+    x.back() = static_cast<double>(std::max(stations.size(), min_) - min_) / static_cast<double>(max_ - min_);
+  return x;
+}
+
 std::vector<std::vector<double>> DecisionSpace::encode_each(std::span<const Vec3> heads) const {
   std::vector<std::vector<double>> xs{encode(heads)};
   if (searches_number())

@@ -31,6 +31,8 @@ class DecisionSpace {
   std::size_t kept() const { return kept_.size(); }
   // x whose stations stand at `heads`; further ones repeat them. Throws where one is outside the search area.
   std::vector<double> encode(std::span<const Vec3> heads) const;
+  // x of these stations, by their (u, v). REQUIRES: as many as are searched at most, at least one.
+  std::vector<double> encode(std::span<const PlacedStation> stations) const;
   // An x for each number of stations that `heads` suffice for, the largest number first.
   std::vector<std::vector<double>> encode_each(std::span<const Vec3> heads) const;
 

@@ -27,12 +27,6 @@ std::size_t place_of(std::vector<Objective>& all, const Objective& objective) {
   return all.size() - 1;
 }
 
-Needs needs_of(std::span<const Objective> objectives) {
-  Needs needs{.counts = false};
-  for (const Objective& objective : objectives) needs = needs | objective.needs;
-  return needs;
-}
-
 }  // namespace
 
 Needs Measures::searched_needs() const { return needs_of(std::span(all).first(searched)); }

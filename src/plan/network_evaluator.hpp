@@ -20,6 +20,7 @@ using PlacedNetwork = std::vector<PlacedStation>;
 struct ConfirmedNetwork {
   std::vector<double> values;  // of all measures
   OverlapMatrix overlaps = {};
+  OverlapMatrix scan_overlaps = {};  // over all surfaces; empty where no measure needs it
   std::vector<std::uint64_t> points_on_surveyed = {};
 };
 

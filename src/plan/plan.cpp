@@ -3,86 +3,116 @@
 #include <chrono>
 #include <utility>
 
-#include "plan/choose_optimiser.hpp"
-#include "plan/confirm.hpp"
-#include "plan/decision_space.hpp"
-#include "plan/identity.hpp"
-#include "plan/measures.hpp"
-#include "plan/search.hpp"
-#include "plan/simulator_evaluator.hpp"
-#include "plan/site.hpp"
+#include "plan/plan_fewest.hpp"
+#include "plan/run.hpp"
 #include "plan/somewhere_to_stand.hpp"
 #include "vantage/planner.hpp"
 
 namespace vantage {
 namespace {
 
-// Offspring at once in the steady state. Every one more is a step further from the textbook's one at a time, so no more
-// than the engine needs to be kept busy: a whole network with every ray keeps any engine busy, a sampled one only a
-// CPU.
-std::size_t batch_of(const Simulator& simulator, const PlanConfig& config) {
-  if (config.batch > 0) return config.batch;
-  if (config.sample_voxels == 0) return 1;
-  const bool cpu = simulator.engine().engine == Engine::embree || simulator.engine().software;
-  return cpu ? 4 : 32;
+bool asks_for(const SurveyProblem& problem, std::string_view name) {
+  const auto named = [&](const Objective& objective) { return objective.name == name; };
+  return std::ranges::any_of(problem.objectives, named) ||
+         std::ranges::any_of(problem.requirements, named, &Requirement::objective);
 }
 
-// What a problem says, with the scale of the number of stations as it is.
+// What a problem says, with the scale of the number of stations as it is, and `capture` of what can be seen.
 SurveyProblem settled(SurveyProblem problem) {
-  for (Objective& objective : problem.objectives) {
-    if (!objective.by_alpha) continue;
+  const auto settle = [&](Objective& objective) {
+    if (objective.name == "capture") objective = make_objective("capture", problem.settings());
+    if (!objective.by_alpha) return;
     objective.best = static_cast<double>(problem.kept.size() + problem.stations_min);
     objective.worst = static_cast<double>(problem.kept.size() + problem.stations_max);
-  }
+  };
+  for (Objective& objective : problem.objectives) settle(objective);
+  if (problem.visible)
+    for (Requirement& requirement : problem.requirements)
+      if (requirement.objective.name == "capture") settle(requirement.objective);
   return problem;
+}
+
+// More are tried where it pays: around the stations that are chosen.
+constexpr std::size_t kMostCandidates = 512;
+// The front of more entries than this has its rounds worked out for the answer alone.
+constexpr std::size_t kMostRounds = 16;
+
+bool same_places(const PlanEntry& a, const PlanEntry& b) {
+  return std::ranges::equal(a.stations, b.stations, {}, &PlacedStation::position, &PlacedStation::position);
+}
+
+// Networks that stand where another does, and, where any keeps its stations apart, those that do not. The problems of
+// the method, by name, keep their fronts as they are.
+void drop_doubles(std::vector<PlanEntry>& front, const SurveyProblem& problem) {
+  if (std::ranges::count(problem_names(), problem.name) > 0) return;
+  std::vector<PlanEntry> left;
+  for (PlanEntry& entry : front)
+    if (std::ranges::none_of(left, [&](const PlanEntry& other) { return same_places(entry, other); }))
+      left.push_back(std::move(entry));
+  for (const Requirement& requirement : problem.requirements) {
+    if (requirement.objective.name != "apart") continue;
+    const auto keeps = [&](const PlanEntry& entry) { return requirement.missed_by(entry.value("apart")) == 0; };
+    if (std::ranges::any_of(left, keeps)) std::erase_if(left, [&](const PlanEntry& entry) { return !keeps(entry); });
+  }
+  front = std::move(left);
+}
+
+void work_out_rounds(PlanResult& result, Run& run) {
+  if (result.front.empty()) return;
+  const std::size_t chosen = answer(result), kept = result.problem.kept.size();
+  for (std::size_t k = 0; k < result.front.size(); ++k) {
+    PlanEntry& entry = result.front[k];
+    if (k == chosen || result.front.size() <= kMostRounds)
+      entry.visit = run.on_site().visit(std::span(entry.stations).subspan(kept));
+  }
 }
 
 }  // namespace
 
 PlanResult plan(Simulator& simulator, const SearchArea& area, const ClashChecker& clash, const SurveyProblem& asked,
                 const PlanConfig& config, const PlanWatch& watch) {
-  const auto start = std::chrono::steady_clock::now();
-  const SurveyProblem problem = settled(asked);
-  const Measures measures = measures_of(problem);
+  using Clock = std::chrono::steady_clock;
+  const auto start = Clock::now();
+  const auto since = [](Clock::time_point then) { return std::chrono::duration<double>(Clock::now() - then).count(); };
+  SurveyProblem problem = asked;
   std::vector<double> heights{simulator.scanner().height_m};
   if (problem.heights_m) heights.assign(problem.heights_m->begin(), problem.heights_m->end());
   require_somewhere_to_stand(area, clash, heights);
-  const Site site = make_site(area, clash, simulator.scanner());
-  const DecisionSpace space(site, problem);
-  SimulatorEvaluator evaluator(
-      simulator, measures,
-      {.sample_voxels = config.sample_voxels,
-       .kept = problem.kept.size(),
-       .visible_parts = [&](const Network& network) { return visibility_parts(site, network); }});
-  const std::size_t batch = batch_of(simulator, config);
-  SearchOutcome found = search(
-      {.space = space,
-       .problem = problem,
-       .measures = measures,
-       .config = config,
-       .evaluator = evaluator,
-       .batch = batch,
-       .identity = identity(simulator, site, area, clash, problem, config, population_of(problem, config), batch),
-       .watch = watch.report,
-       .stop = watch.stop});
-  const double searched = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  const double searched_trace = evaluator.trace_seconds();
-
+  std::shared_ptr<const Candidates> candidates;
+  const bool limit_wanted = !problem.visible && asks_for(problem, "capture");
+  if (problem.fewest || limit_wanted) {
+    const auto report = [&](double done) {
+      if (!watch.report) return;
+      const double seconds = since(start);
+      watch.report({.seconds_left = done > 0 ? seconds / done - seconds : -1, .phase = "look"});
+    };
+    candidates = std::make_shared<const Candidates>(
+        find_candidates(simulator, area, clash, {.most = kMostCandidates, .sample_voxels = config.sample_voxels},
+                        {.report = report, .stop = watch.stop}));
+    // Nothing seen at all: every network captures all of nothing.
+    if (limit_wanted) problem.visible = candidates->visible().value > 0 ? candidates->visible().value : 1;
+  }
+  problem = settled(std::move(problem));
+  Run run(simulator, area, clash, config);
+  run.ask(problem);
   PlanResult result;
-  result.problem = problem, result.config = config;
-  result.population = population_of(problem, config), result.batch = batch;
-  result.walkable = area.options(), result.security = clash.volume();
-  result.measures = measures.all;
-  result.front = confirm_front(found, space, problem, measures, config.sample_voxels > 0, evaluator, watch);
-  result.exact_hypervolume = judge_by_every_ray(result.front, problem, measures);
-  result.history = std::move(found.history);
-  result.hypervolume = found.hypervolume;
-  result.evaluations = found.evaluations, result.resumed_evaluations = found.resumed_evaluations;
-  result.drawn = found.drawn, result.redrawn = found.redrawn;
-  result.stop_reason = found.stop_reason;
-  result.seconds =
-      found.seconds + std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() - searched;
-  result.trace_seconds = found.trace_seconds + evaluator.trace_seconds() - searched_trace;
+  if (problem.fewest) {
+    result = plan_fewest(run, simulator, candidates, config, watch);
+    result.seconds = since(start);
+    result.trace_seconds = run.evaluator().trace_seconds();
+  } else {
+    const SearchOutcome found = run.search(problem, config, {}, watch);
+    const auto searched = Clock::now();
+    const double searched_trace = run.evaluator().trace_seconds();
+    result = run.result(found);
+    result.front = run.confirm(found, problem, watch);
+    drop_doubles(result.front, problem);
+    result.exact_hypervolume = judge_by_every_ray(result.front, problem, run.measures());
+    result.seconds = found.seconds + since(searched);
+    result.trace_seconds = found.trace_seconds + run.evaluator().trace_seconds() - searched_trace;
+  }
+  result.candidates = std::move(candidates);
+  work_out_rounds(result, run);
   return result;
 }
 

@@ -27,7 +27,7 @@ class Search {
         space_(setup.space),
         population_(population_of(setup.problem, config_)),
         budget_(static_cast<std::uint64_t>(config_.iterations) * population_),
-        optimiser_(choose_optimiser(space_, setup.problem, config_, setup.batch)),
+        optimiser_(choose_optimiser(space_, setup.problem, config_, setup.batch, setup.start)),
         evaluator_(setup.evaluator) {}
 
   SearchOutcome run() {
@@ -99,7 +99,12 @@ class Search {
 
   // Asks for a batch and draws again what stands in holes and clashes. Fills networks_.
   std::vector<double> draw() {
-    const std::span<const double> asked = optimiser_->ask();
+    std::span<const double> asked = optimiser_->ask();
+    if (!setup_.start.empty() && optimiser_->evaluations() == 0) {
+      // MO-CMA-ES has it among its first points; CMA-ES only draws around it.
+      optimiser_->replace(0, setup_.start);
+      asked = optimiser_->ask();
+    }
     std::vector<double> xs(asked.begin(), asked.end());
     const std::size_t n = space_.dimension(), count = xs.size() / n;
     std::vector<PlacedNetwork> placed(count);
@@ -140,7 +145,8 @@ class Search {
     PlanIteration& line = history_.emplace_back();
     line.iteration = iteration, line.evaluations = optimiser_->evaluations();
     line.hypervolume = optimiser_->hypervolume();
-    for (ParetoPoint& point : optimiser_->front()) line.front.push_back(std::move(point.f));
+    front_ = optimiser_->front();
+    for (const ParetoPoint& point : front_) line.front.push_back(point.f);
     line.seconds = seconds();
   }
 
@@ -173,7 +179,8 @@ class Search {
                   .hypervolume = history_.empty() ? 0 : history_.back().hypervolume,
                   .evaluations_per_second = rate,
                   .seconds_left = left,
-                  .phase = "search"});
+                  .phase = "search",
+                  .front = front_});
   }
 
   double seconds() const { return earlier_seconds_ + std::chrono::duration<double>(Clock::now() - start_).count(); }
@@ -241,6 +248,7 @@ class Search {
   std::vector<PlacedNetwork> networks_;  // of the open batch
 
   std::vector<PlanIteration> history_;
+  std::vector<ParetoPoint> front_;  // as of the last iteration
   std::uint64_t drawn_ = 0, redrawn_ = 0, evaluated_ = 0, resumed_ = 0;
   SearchSnapshot snapshot_;
   std::vector<std::vector<double>> since_, replay_;

@@ -23,6 +23,8 @@ struct SearchSetup {
   NetworkEvaluator& evaluator;
   std::size_t batch = 1;  // offspring at once in the steady state
   std::string identity = {};
+  // A network to begin with that is evaluated as it stands, so that no front is worse; empty: what `config` says.
+  std::vector<double> start = {};
   std::function<void(const PlanProgress&)> watch = {};
   std::stop_token stop = {};
 };

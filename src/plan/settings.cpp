@@ -19,6 +19,15 @@ nlohmann::ordered_json to_json(const Objective& objective) {
 
 }  // namespace
 
+Settings settings(const OnSiteOptions& options) {
+  return SettingList()
+      .add("set_up_min", options.set_up_min, {"set-up"})
+      .add("walking_m_per_s", options.walking_m_per_s, {"walking"})
+      .add("detour", options.detour)
+      .add("entrance", options.entrance)
+      .take();
+}
+
 Settings settings(const SurveyProblem& problem) {
   nlohmann::ordered_json objectives = nlohmann::ordered_json::array(), requirements = objectives;
   std::string names;
@@ -38,6 +47,12 @@ Settings settings(const SurveyProblem& problem) {
                       .add("objectives", objectives)
                       .add("requirements", requirements, {"require"})
                       .add("link_overlap", problem.link_overlap, {"link-overlap"})
+                      .add("fewest", problem.fewest)
+                      .add("visible", problem.visible)
+                      .add("set_up_min", problem.on_site.set_up_min, {"set-up"})
+                      .add("walking_m_per_s", problem.on_site.walking_m_per_s, {"walking"})
+                      .add("detour", problem.on_site.detour)
+                      .add("entrance", problem.on_site.entrance)
                       .take();
   const Settings usual = settings(RegistrationOptions{});
   for (std::size_t k = 0; k < usual.size(); ++k) {
@@ -54,7 +69,7 @@ Settings settings(const PlanConfig& config) {
   const bool generational = config.scheme == MoCmaEsConfig::Scheme::generational;
   return SettingList()
       .add("population", config.population, {unless(config.population == 0, "population")})
-      .add("iterations", config.iterations, {"iterations", false})
+      .add("iterations", config.iterations, {unless(config.iterations == 0, "iterations"), false})
       .add("sigma0", config.sigma0, {"sigma"})
       .add("algorithm", to_string(config.algorithm), {"algorithm"})
       .add("scheme", generational ? "generational" : "steady-state", {"scheme"})

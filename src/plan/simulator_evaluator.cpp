@@ -16,23 +16,43 @@ std::vector<Network> to_networks(std::span<const PlacedNetwork> placed) {
 
 }  // namespace
 
-std::optional<std::vector<NetworkCounts>> SimulatorEvaluator::count(std::span<const Network> networks,
-                                                                    const Needs& needs, bool errors,
-                                                                    const Progress& progress) {
+std::optional<SimulatorEvaluator::Counted> SimulatorEvaluator::count(std::span<const Network> networks,
+                                                                     const Needs& needs, bool errors,
+                                                                     const Progress& progress) {
+  Counted counted;
+  counted.surveyed.resize(networks.size());
+  if (needs.counts) {
+    auto counts = count_with(simulator_, networks,
+                             {.voxels = options_.sample_voxels,
+                              .overlap = needs.pairs,
+                              .stop_at_goal = !needs.pairs,
+                              .registration = needs.registration,
+                              .registration_groups = errors},
+                             progress);
+    if (!counts) return std::nullopt;
+    counted.surveyed = std::move(*counts);
+  }
+  if (needs.surroundings) {
+    auto counts =
+        count_with(*options_.surroundings, networks, {.voxels = options_.surroundings_voxels, .overlap = true},
+                   {.report = {}, .stop = progress.stop});
+    if (!counts) return std::nullopt;
+    counted.surroundings = std::move(*counts);
+  }
+  return counted;
+}
+
+std::optional<std::vector<NetworkCounts>> SimulatorEvaluator::count_with(Simulator& simulator,
+                                                                         std::span<const Network> networks,
+                                                                         const SampleOptions& sample,
+                                                                         const Progress& progress) {
   std::vector<NetworkCounts> counts;
-  if (!needs.counts) return std::vector<NetworkCounts>(networks.size());
-  if (options_.sample_voxels > 0) {
-    counts = simulator_.evaluate_sampled(networks,
-                                         {.voxels = options_.sample_voxels,
-                                          .overlap = needs.pairs,
-                                          .stop_at_goal = !needs.pairs,
-                                          .registration = needs.registration,
-                                          .registration_groups = errors},
-                                         progress);
+  if (sample.voxels > 0) {
+    counts = simulator.evaluate_sampled(networks, sample, progress);
   } else {
     for (const Network& network : networks) {
       counts.push_back(
-          simulator_.evaluate(network, {.overlap = needs.pairs, .registration = needs.registration}, progress));
+          simulator.evaluate(network, {.overlap = sample.overlap, .registration = sample.registration}, progress));
       if (counts.back().cancelled) break;
     }
   }
@@ -43,15 +63,19 @@ std::optional<std::vector<NetworkCounts>> SimulatorEvaluator::count(std::span<co
   return counts;
 }
 
-MeasuredNetwork SimulatorEvaluator::measured(const NetworkCounts& counts, const PlacedNetwork& stations,
-                                             const Network& network, const Needs& needs) const {
+MeasuredNetwork SimulatorEvaluator::measured(const NetworkCounts& counts, const NetworkCounts* surroundings,
+                                             const PlacedNetwork& stations, const Network& network,
+                                             const Needs& needs) const {
   return {.counts = counts,
           .stations = stations,
           .kept = options_.kept,
           .goal_density = simulator_.goal_density(),
           .voxels = simulator_.voxel_count(),
           .overlap = needs.pairs ? overlap_matrix(counts) : OverlapMatrix{},
-          .visible_parts = needs.visibility ? options_.visible_parts(network) : 0};
+          .visible_parts = needs.visibility ? options_.visible_parts(network) : 0,
+          .surroundings = surroundings,
+          .surroundings_voxels = surroundings ? options_.surroundings->voxel_count() : 0,
+          .minutes_on_site = needs.time ? options_.minutes(std::span(stations).subspan(options_.kept)) : 0};
 }
 
 std::optional<std::vector<std::vector<double>>> SimulatorEvaluator::evaluate(std::span<const PlacedNetwork> placed,
@@ -60,9 +84,13 @@ std::optional<std::vector<std::vector<double>>> SimulatorEvaluator::evaluate(std
   const std::vector<Network> networks = to_networks(placed);
   const auto counts = count(networks, needs, false, progress);
   if (!counts) return std::nullopt;
+  const auto measured_at = [&](std::size_t k) {
+    return measured(counts->surveyed[k], needs.surroundings ? &counts->surroundings[k] : nullptr, placed[k],
+                    networks[k], needs);
+  };
   std::vector<std::vector<double>> values(placed.size());
   tbb::parallel_for(std::size_t{0}, placed.size(), [&](std::size_t k) {
-    const MeasuredNetwork network = measured((*counts)[k], placed[k], networks[k], needs);
+    const MeasuredNetwork network = measured_at(k);
     for (std::size_t m = 0; m < measures_.searched; ++m) values[k].push_back(measures_.all[m].value(network));
   });
   return values;
@@ -74,9 +102,13 @@ std::optional<std::vector<std::vector<Estimate>>> SimulatorEvaluator::estimate(s
   const std::vector<Network> networks = to_networks(placed);
   const auto counts = count(networks, needs, true, progress);
   if (!counts) return std::nullopt;
+  const auto measured_at = [&](std::size_t k) {
+    return measured(counts->surveyed[k], needs.surroundings ? &counts->surroundings[k] : nullptr, placed[k],
+                    networks[k], needs);
+  };
   std::vector<std::vector<Estimate>> estimates(placed.size());
   tbb::parallel_for(std::size_t{0}, placed.size(), [&](std::size_t k) {
-    const MeasuredNetwork network = measured((*counts)[k], placed[k], networks[k], needs);
+    const MeasuredNetwork network = measured_at(k);
     for (const Objective& objective : measures_.all) estimates[k].push_back(vantage::estimate(objective, network));
   });
   return estimates;
@@ -88,8 +120,16 @@ std::optional<ConfirmedNetwork> SimulatorEvaluator::confirm(const PlacedNetwork&
       simulator_.evaluate(network, {.overlap = true, .registration = measures_.all_needs().registration}, progress);
   trace_seconds_ += counts.trace_seconds;
   if (counts.cancelled) return std::nullopt;
-  const MeasuredNetwork seen = measured(counts, placed, network, measures_.all_needs());
+  const Needs needs = measures_.all_needs();
+  NetworkCounts around;
+  if (needs.surroundings) {
+    around = options_.surroundings->evaluate(network, {.overlap = true}, {.report = {}, .stop = progress.stop});
+    trace_seconds_ += around.trace_seconds;
+    if (around.cancelled) return std::nullopt;
+  }
+  const MeasuredNetwork seen = measured(counts, needs.surroundings ? &around : nullptr, placed, network, needs);
   ConfirmedNetwork confirmed{.values = {}, .overlaps = seen.overlap};
+  if (needs.surroundings) confirmed.scan_overlaps = scan_overlap_matrix(around);
   for (const Objective& objective : measures_.all) confirmed.values.push_back(objective.value(seen));
   confirmed.points_on_surveyed = std::move(counts.points_on_surveyed);
   return confirmed;

@@ -16,8 +16,13 @@ class SimulatorEvaluator final : public NetworkEvaluator {
     std::size_t kept = 0;             // stations at the head of every network that were there before
     // Connected parts of the visibility graph; needed where a measure needs it.
     std::function<std::size_t(const Network&)> visible_parts = {};
+    // Over all surfaces; needed where a measure needs it. With so many sampled voxels, or every ray.
+    Simulator* surroundings = nullptr;
+    std::uint64_t surroundings_voxels = 0;
+    // Minutes on site without the kept stations; needed where a measure needs it.
+    std::function<double(std::span<const PlacedStation>)> minutes = {};
   };
-  // Borrows the simulator.
+  // Borrows the simulators.
   SimulatorEvaluator(Simulator& simulator, Measures measures, Options options)
       : simulator_(simulator), measures_(std::move(measures)), options_(std::move(options)) {}
 
@@ -30,11 +35,17 @@ class SimulatorEvaluator final : public NetworkEvaluator {
   double trace_seconds() const override { return trace_seconds_; }
 
  private:
+  struct Counted {
+    std::vector<NetworkCounts> surveyed, surroundings;  // the latter empty where nothing needs them
+  };
   // `errors`: whether standard errors are wanted of them.
-  std::optional<std::vector<NetworkCounts>> count(std::span<const Network> networks, const Needs& needs, bool errors,
-                                                  const Progress& progress);
-  MeasuredNetwork measured(const NetworkCounts& counts, const PlacedNetwork& stations, const Network& network,
-                           const Needs& needs) const;
+  std::optional<Counted> count(std::span<const Network> networks, const Needs& needs, bool errors,
+                               const Progress& progress);
+  // Of no voxels: with every ray.
+  std::optional<std::vector<NetworkCounts>> count_with(Simulator& simulator, std::span<const Network> networks,
+                                                       const SampleOptions& sample, const Progress& progress);
+  MeasuredNetwork measured(const NetworkCounts& counts, const NetworkCounts* surroundings,
+                           const PlacedNetwork& stations, const Network& network, const Needs& needs) const;
 
   Simulator& simulator_;
   Measures measures_;

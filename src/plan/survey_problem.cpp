@@ -32,7 +32,8 @@ ObjectiveSettings SurveyProblem::settings() const {
   return {.stations_min = stations_min,
           .stations_max = stations_max,
           .link_overlap = link_overlap,
-          .registration = registration};
+          .registration = registration,
+          .visible = visible.value_or(1)};
 }
 
 SurveyProblem survey_problem(std::span<const std::string> objectives, std::size_t stations_min,
@@ -69,6 +70,22 @@ std::span<const std::string> problem_names() {
     return all;
   }();
   return names;
+}
+
+SurveyProblem fewest_stations(double capture, double link, std::size_t stations_min, std::size_t stations_max,
+                              double apart_m) {
+  const std::vector<std::string> goal{"link"};
+  SurveyProblem problem = survey_problem(goal, stations_min, stations_max);
+  problem.name = "survey";
+  problem.fewest = true;
+  const auto require = [&](const char* name, double limit) {
+    if (limit > 0)
+      problem.requirements.push_back({make_objective(name, problem.settings()), Requirement::Bound::at_least, limit});
+  };
+  require("capture", capture);
+  require("link", link);
+  require("apart", apart_m);
+  return problem;
 }
 
 SurveyProblem coverage_fix(std::size_t stations) { return survey_problem("coverage-fix", stations, stations); }

@@ -5,7 +5,6 @@
 
 #include "core/text.hpp"
 #include "report/front_view.hpp"
-#include "report/linked.hpp"
 #include "report/pictures.hpp"
 #include "vantage/export.hpp"
 
@@ -73,7 +72,7 @@ std::unique_ptr<Canvas> front_picture(const PlanResult& result) {
     legend.push_back({LegendItem::Mark::hollow, key, "search, " + grouped(result.config.sample_voxels) + " voxels"});
   else if (!any_confirmed)
     legend.push_back({LegendItem::Mark::hollow, key, "as the search saw it"});
-  const PlanEntry* best = result.front.empty() ? nullptr : &result.front[compromise(result)];
+  const PlanEntry* best = result.front.empty() ? nullptr : &result.front[answer(result)];
   if (best && known(best->confirmed ? view.confirmed(*best) : view.searched(*best))) {
     const PlanEntry& chosen = *best;
     const FrontDot dot = chosen.confirmed ? view.confirmed(chosen) : view.searched(chosen);
@@ -87,8 +86,9 @@ std::unique_ptr<Canvas> front_picture(const PlanResult& result) {
     canvas.text({place.x + place.width / 2, place.y + place.height / 2}, words, text);
     if (!view.single())
       legend.push_back({LegendItem::Mark::ring, style::orange,
-                        links_matter(result) && linked(chosen, result) ? "compromise: largest linked product"
-                                                                       : "compromise: largest product of gains"});
+                        result.problem.requirements.empty() ? "answer: nearest to the best of all"
+                        : met(result)                       ? "answer: keeps what is required"
+                                                            : "nearest to what is required"});
   }
   draw_legend(canvas, {area.x, kHeight - 24}, legend);
   return page;

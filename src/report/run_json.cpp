@@ -60,6 +60,15 @@ ordered_json links_json(const OverlapMatrix& overlap, double min_overlap) {
   return json;
 }
 
+// Stations are numbered from 1, in the order of visiting.
+ordered_json visit_json(const Visit& visit, std::size_t kept) {
+  ordered_json order = ordered_json::array();
+  for (const std::size_t station : visit.order) order.push_back(kept + station + 1);
+  return {{"order", std::move(order)},       {"minutes", visit.minutes},   {"scan_min", visit.scan_min},
+          {"set_up_min", visit.set_up_min},  {"walk_min", visit.walk_min}, {"walk_m", visit.walk_m},
+          {"unconnected", visit.unconnected}};
+}
+
 // NaN has no JSON; what is not known is null.
 ordered_json known(double value) { return value == value ? ordered_json(value) : ordered_json(); }
 
@@ -105,6 +114,8 @@ ordered_json entry_json(const PlanEntry& entry, std::size_t number, const PlanRe
   json["stations"] = std::move(stations);
   json["x"] = entry.x;
   if (entry.confirmed) json["links"] = links_json(entry.exact_overlap_matrix, result.problem.link_overlap);
+  if (entry.exact_scan_overlap_matrix.size() > 0) json["scan_links"] = links_json(entry.exact_scan_overlap_matrix, 0);
+  if (entry.visit) json["on_site"] = visit_json(*entry.visit, result.problem.kept.size());
   return json;
 }
 
@@ -141,10 +152,16 @@ std::string front_json(const PlanResult& result, const Simulator& simulator) {
                        {"evaluations", result.evaluations},  {"stations_drawn", result.drawn},
                        {"stations_redrawn", result.redrawn}, {"stop_reason", to_string(result.stop_reason)}};
   if (!result.front.empty()) {
-    const std::size_t chosen = compromise(result);
-    json["compromise"] = chosen + 1;
+    const std::size_t chosen = answer(result);
+    json["answer"] = chosen + 1;
+    json["met"] = met(result);
+    json["what_would_help"] = what_would_help(result);
     json["summary"] = to_json(summary_lines(summary_of(result.front[chosen], result)));
   }
+  if (result.candidates)
+    json["visible"] = {{"coverage", result.candidates->visible().value},
+                       {"standard_error", result.candidates->visible().standard_error},
+                       {"candidates", result.candidates->stations().size()}};
   json["front"] = std::move(front);
   json["seconds"] = {{"total", result.seconds}, {"trace", result.trace_seconds}};
   json["engine"] = to_string(simulator.engine().engine);

@@ -138,12 +138,19 @@ SurveySummary summary_of(const PlanEntry& entry, const PlanResult& result) {
   summary.captured_error = entry.confirmed ? 0 : covered.standard_error;
   if (const auto captured = entry.values.find("capture"); captured != entry.values.end())
     summary.of_visible = captured->second.best_known();
-  if (const auto time = entry.values.find("time"); time != entry.values.end())
-    summary.seconds_on_site = 60 * time->second.best_known();
+  if (entry.visit) summary.seconds_on_site = 60 * entry.visit->minutes;
   if (entry.confirmed) {
     std::vector<bool> used;
     for (const PlacedStation& station : entry.stations) used.push_back(active(station));
-    summary.links = summary_links(entry.exact_overlap_matrix, result.problem.link_overlap, used);
+    if (entry.exact_scan_overlap_matrix.size() == 0) {
+      summary.links = summary_links(entry.exact_overlap_matrix, result.problem.link_overlap, used);
+    } else {
+      double least = 0;
+      for (const Requirement& requirement : result.problem.requirements)
+        if (requirement.objective.name == "link") least = std::max(least, requirement.limit);
+      summary.links = summary_links(entry.exact_scan_overlap_matrix, least, used);
+      summary.links->measure = "scan overlap";
+    }
   }
   summary.faults = station_faults(entry.stations, summary.names);
   for (const Requirement& requirement : result.problem.requirements) {

@@ -19,7 +19,7 @@ std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& re
   std::error_code failed;
   std::filesystem::create_directories(folder, failed);
   if (failed) throw Error(Errc::io, "cannot make the folder " + folder.string() + ": " + failed.message());
-  const std::size_t chosen = compromise(result);
+  const std::size_t chosen = answer(result);
   const PlanEntry& entry = result.front[chosen];
 
   write_front_csv(folder / "front.csv", result);

@@ -173,7 +173,8 @@ Scanner read_scanner(const Document& document, const std::string& key, std::stri
   std::set<std::string> sources;
   const Node node(document.scanners()[key], document.file + ": " + key, &sources);
   node.only({"name", "sources", "horizontal_angle_deg", "vertical_angle_deg", "zenith_start_deg", "min_range_m",
-             "max_range_m", "beam_divergence_mrad", "exit_diameter_mm", "settings", "default_setting", "noise"});
+             "max_range_m", "points_per_second", "beam_divergence_mrad", "exit_diameter_mm", "settings",
+             "default_setting", "noise"});
   const Node listed = node.member("sources");
   if (!listed.json().is_object()) listed.fail("must be an object of texts");
   for (const auto& [name, ignored] : listed.json().items()) {
@@ -188,7 +189,8 @@ Scanner read_scanner(const Document& document, const std::string& key, std::stri
                 "scanner \"" + key + "\" has no setting \"" + setting + "\"; it has " + names_of(settings.json()));
   }
   const Node chosen = settings.member(setting);
-  chosen.only({"step_deg", "spacing_mm", "at_m", "pixels_per_turn", "min_range_m", "max_range_m", "source", "note"});
+  chosen.only({"step_deg", "spacing_mm", "at_m", "pixels_per_turn", "min_range_m", "max_range_m", "points_per_second",
+               "source", "note"});
   chosen.sourced();
 
   Scanner scanner;
@@ -197,12 +199,14 @@ Scanner read_scanner(const Document& document, const std::string& key, std::stri
   scanner.vertical_angle = Angle::degrees(node.member("vertical_angle_deg").figure());
   if (node.has("zenith_start_deg")) scanner.zenith_start = Angle::degrees(node.member("zenith_start_deg").figure());
   scanner.azimuth_step = scanner.zenith_step = step_of(chosen);
-  // A setting's own range goes before the scanner's.
-  const auto range = [&](const char* name) {
+  // A setting's own figures go before the scanner's.
+  const auto own_or_common = [&](const char* name) {
     return chosen.has(name) ? chosen.member(name).number() : node.member(name).figure();
   };
-  scanner.min_range_m = range("min_range_m");
-  scanner.max_range_m = range("max_range_m");
+  scanner.min_range_m = own_or_common("min_range_m");
+  scanner.max_range_m = own_or_common("max_range_m");
+  if (chosen.has("points_per_second") || node.has("points_per_second"))
+    scanner.points_per_second = own_or_common("points_per_second");
   if (node.has("beam_divergence_mrad"))
     scanner.beam_divergence = Angle::radians(node.member("beam_divergence_mrad").figure() * 1e-3);
   if (node.has("exit_diameter_mm")) scanner.exit_diameter_m = node.member("exit_diameter_mm").figure() * 1e-3;

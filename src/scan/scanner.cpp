@@ -96,6 +96,8 @@ void Scanner::check() const {
   if (!(divergence >= 0 && divergence < 100)) refuse("beam_divergence in mrad", divergence, "in [0, 100)");
   if (!(std::isfinite(exit_diameter_m) && exit_diameter_m >= 0))
     refuse("exit_diameter_m", exit_diameter_m, "0 or more");
+  if (!(std::isfinite(points_per_second) && points_per_second > 0))
+    refuse("points_per_second", points_per_second, "finite and above 0");
   check_noise(noise);
 }
 

@@ -16,6 +16,7 @@ Settings settings(const Scanner& scanner) {
       .add("height_m", scanner.height_m, {"height"})
       .add("min_range_m", scanner.min_range_m, {"range"})
       .add("max_range_m", scanner.max_range_m, {"range"})
+      .add("points_per_second", scanner.points_per_second, {"rate"})
       .add("noise", nlohmann::ordered_json{{"distances_m", scanner.noise.distances_m},
                                            {"reflectivities", scanner.noise.reflectivities},
                                            {"sigma_m", scanner.noise.sigma_m}})

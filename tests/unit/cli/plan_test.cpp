@@ -83,7 +83,7 @@ TEST_F(Plan, TheSameSeedGivesTheSameFront) {
 // On the software device, or any other with ray queries: what the README's first command does, with coarse rays.
 TEST_F(Plan, RayQueriesGiveTheSameFrontAgain) {
   const auto by_ray_query = [&](const std::string& folder) {
-    auto arguments = plan(folder, {"--stations", "3", "--seed", "5"});
+    auto arguments = plan(folder, {"--problem", "coverage-overlap-fix", "--stations", "3", "--seed", "5"});
     *std::find(arguments.begin(), arguments.end(), "embree") = "ray_query";
     auto front = json_of(arguments);
     drop_times(front);
@@ -117,22 +117,59 @@ TEST_F(Plan, ItsConfigurationGivesTheSameFrontAgain) {
 }
 
 TEST_F(Plan, SaysWhatANetworkMisses) {
-  const Outcome outcome = run_program(plan("plan", {"--stations", "2", "--require", "coverage >= 0.99"}));
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  const Outcome outcome = run_program(
+      plan("plan", {"--objectives", "coverage,overlap", "--stations", "2", "--require", "coverage >= 0.99"}));
+  EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
+  EXPECT_NE(outcome.out.find("would help"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("more stations than 2"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("misses coverage >= 0.99"), std::string::npos) << outcome.out;
-  const Outcome wrong = run_program(plan("plan", {"--stations", "2", "--require", "speed>=3"}));
+  const Outcome wrong = run_program(plan("wrong", {"--stations", "2", "--require", "speed>=3"}));
   EXPECT_EQ(wrong.exit_code, 2);
   EXPECT_NE(wrong.err.find("--require: unknown objective \"speed\"; known: coverage"), std::string::npos) << wrong.err;
 }
 
-TEST_F(Plan, TheProblemFollowsFromTheStations) {
-  EXPECT_EQ(json_of(plan("a", {"--stations", "3"}))["problem"], "coverage-overlap-fix");
-  EXPECT_EQ(json_of(plan("b", {"--stations", "2..3"}))["problem"], "coverage-overlap-min");
+// Four walls seen from outside: no two stations of a plan see the same of them, let alone all.
+TEST_F(Plan, AsksTheSurveyorsQuestionWhereNoneIsNamed) {
+  const auto front = json_of(plan("plan", {"--link", "0", "--capture", "0"}));
+  EXPECT_EQ(front["problem"], "survey");
+  ASSERT_EQ(front["front"].size(), 1u);
+  EXPECT_EQ(front["front"][0]["missed"], 0);
+  EXPECT_EQ(front["front"][0]["station_count"], 1) << "nothing is asked of it";
+
+  EXPECT_EQ(run_program(plan("plan", {"--stations", "2"})).exit_code, 2) << "the folder holds another run";
+  const Outcome few = run_program(plan("plan", {"--stations", "2", "--force"}));
+  EXPECT_EQ(few.exit_code, 3) << few.err;
+  EXPECT_NE(few.out.find("would help"), std::string::npos) << few.out;
+}
+
+TEST_F(Plan, IsDoneWithinTheTimeGiven) {
+  const auto begun = std::chrono::steady_clock::now();
+  const Outcome outcome = run_program({"plan", scene_, "--engine", "embree", "--step", "0.5", "--link", "0",
+                                       "--iterations", "10000000", "--max-time", "2", "-o", path("plan")});
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+  EXPECT_TRUE(outcome.exit_code == 0 || outcome.exit_code == 3) << outcome.err;
+  EXPECT_TRUE(std::filesystem::exists(path("plan/stations.csv"))) << outcome.err;
+  EXPECT_LT(seconds, 60) << "ten million iterations take hours";
+}
+
+TEST_F(Plan, KeepsBetterResultsWhenResumedWithLess) {
+  const std::vector<std::string> asked{"--problem", "coverage-overlap-fix", "--stations", "3"};
+  auto more = asked;
+  more.insert(more.end(), {"--iterations", "6"});
+  const auto first = json_of(plan("plan", more));
+  auto less = asked;
+  less.insert(less.end(), {"--iterations", "2", "--resume"});
+  const Outcome resumed = run_program(plan("plan", less));
+  EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
+  EXPECT_NE(resumed.err.find("resuming"), std::string::npos) << resumed.err;
+  EXPECT_GE(nlohmann::json::parse(read("plan/front.json"))["evaluations"], first["evaluations"]);
+  EXPECT_EQ(nlohmann::json::parse(read("plan/front.json"))["front"], first["front"]);
 }
 
 TEST_F(Plan, FirstInterruptEndsInGoodOrder) {
-  const Outcome outcome =
-      run_program(plan("plan", {"--stations", "3", "--iterations", "10000000", "--json"}), [&](int process) {
+  const Outcome outcome = run_program(
+      plan("plan", {"--problem", "coverage-overlap-fix", "--stations", "3", "--iterations", "10000000", "--json"}),
+      [&](int process) {
         for (int tries = 0; tries < 600 && !std::filesystem::exists(path("plan/config.json")); ++tries)
           std::this_thread::sleep_for(std::chrono::milliseconds(50));
         std::this_thread::sleep_for(std::chrono::milliseconds(300));
@@ -145,8 +182,8 @@ TEST_F(Plan, FirstInterruptEndsInGoodOrder) {
   EXPECT_TRUE(std::filesystem::exists(path("plan/front.json")));
 
   const auto done = front["evaluations"].get<std::size_t>();
-  const auto resumed =
-      json_of(plan("plan", {"--stations", "3", "--resume", "--iterations", std::to_string(done / 6 + 2)}));
+  const auto resumed = json_of(plan("plan", {"--problem", "coverage-overlap-fix", "--stations", "3", "--resume",
+                                             "--iterations", std::to_string(done / 6 + 2)}));
   EXPECT_GT(resumed["evaluations"], done);
 }
 

@@ -137,7 +137,7 @@ TEST_F(Usage, NumbersOfStations) {
   expect_refused(run_program(coarse("evaluate", many)), 2, "65 stations");
   for (const char* stations : {"0", "65", "8..4", "0..4", "4..65", "four", "4..", "-4"})
     expect_refused(run_program(coarse("plan", {"--stations", stations, "-o", path("plan")})), 2, "--stations");
-  expect_refused(run_program(coarse("plan", {"-o", path("plan")})), 2, "--stations");
+  expect_refused(run_program(coarse("plan", {"--problem", "coverage-fix", "-o", path("plan")})), 2, "--stations");
   expect_refused(run_program(coarse("plan", {"--problem", "coverage-min", "--stations", "4", "-o", path("plan")})), 2,
                  "range");
   expect_refused(run_program(coarse("plan", {"--problem", "coverage-fix", "--stations", "4..6", "-o", path("plan")})),

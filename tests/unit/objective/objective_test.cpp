@@ -66,6 +66,80 @@ TEST(Objective, TheWeakestLinkIsThatOfTheStrongestTree) {
   EXPECT_EQ(weakest(1), 1);  // nothing to link
 }
 
+TEST(Objective, LinkIsOverAllSurfaces) {
+  NetworkCounts surveyed, around;
+  surveyed.stations = around.stations = 3;
+  surveyed.seen = {10, 10, 10}, surveyed.shared = {0, 0, 0};  // nothing wanted is shared
+  around.seen = {100, 50, 40};
+  //               0-1 0-2 1-2
+  around.shared = {25, 2, 16};
+  const auto link = [&](std::size_t stations) {
+    const std::vector<PlacedStation> placed(stations);
+    return make_objective("link").value({.counts = surveyed, .stations = placed, .surroundings = &around});
+  };
+  EXPECT_EQ(link(3), 0.4);  // 25/50 and 16/40 span it
+  around.shared[2] = 0;
+  EXPECT_EQ(link(3), 0.05);
+  around.shared[1] = 0;
+  EXPECT_EQ(link(3), 0) << "in two parts";
+  around.stations = 1, around.seen = {5}, around.shared = {};
+  EXPECT_EQ(link(1), 1);
+  EXPECT_TRUE(make_objective("link").needs.surroundings);
+  EXPECT_FALSE(make_objective("link").needs.counts);
+}
+
+TEST(Objective, LinksErrorComesFromTheSurroundingsSample) {
+  NetworkCounts surveyed, around, half, rest;
+  for (NetworkCounts* counts : {&around, &half, &rest}) counts->stations = 2;
+  around.voxels = 100, around.seen = {40, 40}, around.shared = {20};
+  half.voxels = rest.voxels = 50;
+  half.seen = {20, 20}, half.shared = {8}, rest.seen = {20, 20}, rest.shared = {12};
+  around.groups = {half, rest};
+  const std::vector<PlacedStation> placed(2);
+  MeasuredNetwork measured{.counts = surveyed, .stations = placed};
+  measured.surroundings = &around, measured.surroundings_voxels = 1000;
+  const Estimate link = estimate(make_objective("link"), measured);
+  EXPECT_EQ(link.value, 0.5);
+  // Replicates 0.6 and 0.4 about 0.5, less the tenth that was sampled.
+  EXPECT_NEAR(link.standard_error, std::sqrt(0.9 * 0.5 * 0.02), 1e-12);
+  measured.surroundings_voxels = 100;
+  EXPECT_EQ(estimate(make_objective("link"), measured).standard_error, 0);
+}
+
+TEST(Objective, CaptureIsOfWhatCanBeSeen) {
+  EXPECT_EQ(value_of("capture"), 0.75);
+  EXPECT_EQ(value_of("capture", {.visible = 0.8}), 0.75 / 0.8);
+  EXPECT_EQ(value_of("capture", {.visible = 0.5}), 1) << "at most 1";
+  EXPECT_THROW(make_objective("capture", {.visible = 0}), Error);
+  EXPECT_THROW(make_objective("capture", {.visible = 1.5}), Error);
+}
+
+TEST(Objective, ApartIsBetweenTheNearestTwo) {
+  const NetworkCounts counts;
+  std::vector<PlacedStation> placed(3);
+  placed[1].position = {3, 4, 0}, placed[2].position = {3, 4, 2};
+  const auto apart = [&] { return make_objective("apart").value({.counts = counts, .stations = placed}); };
+  EXPECT_EQ(apart(), 2);
+  placed[2].status = StationStatus::hole;
+  EXPECT_EQ(apart(), 5);
+  placed.resize(1);
+  EXPECT_EQ(apart(), std::numeric_limits<double>::infinity());
+  const Requirement apart_by_1 = make_requirement("apart>=1");
+  EXPECT_EQ(apart_by_1.missed_by(apart()), 0);
+  EXPECT_EQ(apart_by_1.missed_by(0.25), 0.75);
+}
+
+TEST(Objective, TimeIsWhatTheRoundTakes) {
+  const NetworkCounts counts;
+  const std::vector<PlacedStation> placed(2);
+  MeasuredNetwork measured{.counts = counts, .stations = placed};
+  measured.minutes_on_site = 42;
+  const Objective time = make_objective("time", {.stations_max = 4});
+  EXPECT_EQ(time.value(measured), 42);
+  EXPECT_FALSE(time.maximised());
+  EXPECT_EQ(time.scaled(120), 0.5) << "of an hour a station";
+}
+
 TEST(Objective, FitnessIsEquation1) {
   const auto fitness = [](std::size_t stations, double covered, std::size_t parts) {
     NetworkCounts counts;

@@ -105,5 +105,21 @@ TEST(ChooseOptimiser, RefusesWhatCannotBe) {
   EXPECT_EQ(population_of(coverage_min(4, 8), {}), 100u);
 }
 
+TEST(SurveyProblem, TheSurveyorsQuestionAsksForFewStations) {
+  const SurveyProblem problem = fewest_stations(0.95, 0.2, 2, 9, 0);
+  EXPECT_TRUE(problem.fewest);
+  EXPECT_EQ(problem.stations_min, 2u);
+  EXPECT_EQ(problem.stations_max, 9u);
+  ASSERT_EQ(problem.requirements.size(), 2u);
+  EXPECT_EQ(to_string(problem.requirements[0]), "capture >= 0.95");
+  EXPECT_EQ(to_string(problem.requirements[1]), "link >= 0.2");
+  ASSERT_EQ(problem.objectives.size(), 1u);
+  EXPECT_EQ(problem.objectives[0].name, "link");
+  EXPECT_EQ(fewest_stations().requirements.size(), 3u);
+  EXPECT_TRUE(fewest_stations(0, 0, 1, 4, 0).requirements.empty());
+  for (const std::string& name : problem_names())
+    EXPECT_FALSE(survey_problem(name, 4, name.ends_with("-min") ? 8 : 4).fewest);
+}
+
 }  // namespace
 }  // namespace vantage

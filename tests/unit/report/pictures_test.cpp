@@ -206,7 +206,7 @@ TEST(Pictures, TheFrontHasADotForEveryNetwork) {
     draw_front(folder / "front.png", result);
     const test::Drawn front(folder / "front.png");
     EXPECT_EQ(front.patches(style::orange, 2 * kDot).size(), problem == "coverage-fix" ? 0u : 2u)
-        << problem << ": a ring around the compromise, and the legend's";
+        << problem << ": a ring around the answer, and the legend's";
     if (problem != "coverage-overlap-min") {
       EXPECT_EQ(front.patches(style::blue, kDot).size(), networks + 1) << problem;
       continue;

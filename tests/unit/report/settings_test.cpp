@@ -62,9 +62,10 @@ const std::vector<Change<Scanner>> kScanner{
     {"min_range_m", [](Scanner& s) { s.min_range_m = 0.2; }},
     {"max_range_m", [](Scanner& s) { s.max_range_m = 99; }},
     {"noise", [](Scanner& s) { s.noise = rtc360_noise(); }},
+    {"points_per_second", [](Scanner& s) { s.points_per_second = 2e6; }},
     {"beam_divergence", [](Scanner& s) { s.beam_divergence = Angle::radians(3e-4); }},
     {"exit_diameter_m", [](Scanner& s) { s.exit_diameter_m = 0.004; }}};
-static_assert(member_count<Scanner>() == 13);
+static_assert(member_count<Scanner>() == 14);
 
 // Of the file that is read; a scene's own fingerprint tells runs apart.
 const std::vector<Change<SceneOptions>> kScene{
@@ -152,8 +153,11 @@ const std::vector<Change<SurveyProblem>> kProblem{
     {"objectives", [](SurveyProblem& p) { p.objectives.pop_back(); }},
     {"requirements", [](SurveyProblem& p) { p.requirements = {make_requirement("coverage>=0.5")}; }},
     {"link_overlap", [](SurveyProblem& p) { p.link_overlap = 0.05; }},
-    {"registration", [](SurveyProblem& p) { p.registration.tilt = Angle::degrees(1); }}};
-static_assert(member_count<SurveyProblem>() == 9);
+    {"registration", [](SurveyProblem& p) { p.registration.tilt = Angle::degrees(1); }},
+    {"fewest", [](SurveyProblem& p) { p.fewest = true; }},
+    {"visible", [](SurveyProblem& p) { p.visible = 0.7; }},
+    {"on_site", [](SurveyProblem& p) { p.on_site.set_up_min = 5; }}};
+static_assert(member_count<SurveyProblem>() == 12);
 
 const std::vector<Change<SurveyProblem>> kRegistration{
     {"rho_m", [](SurveyProblem& p) { p.registration.model.rho_m = 0.002; }},

@@ -81,11 +81,11 @@ TEST_P(WritePlan, WhatIsWrittenEvaluatesToTheSameNumbers) {
   const PlanResult result = plan(survey.simulator, survey.area, survey.clash, asked(GetParam()), config);
   ASSERT_FALSE(result.front.empty());
   EXPECT_EQ(result.evaluations, 48u);
-  const PlanEntry& entry = result.front[compromise(result)];
+  const PlanEntry& entry = result.front[answer(result)];
   VoxelField seen;
   survey.simulator.evaluate(to_network(entry.stations), {.overlap = true, .field = &seen});
   const std::size_t chosen = write_plan(folder / "out", result, survey.simulator, survey.area, &seen);
-  ASSERT_EQ(chosen, compromise(result));
+  ASSERT_EQ(chosen, answer(result));
 
   for (const char* name :
        {"front.csv", "front.json", "history.csv", "fronts.csv", "coverage.ply", "overlap.csv", "stations.csv",

@@ -29,9 +29,9 @@ PlanResult front_of(SurveyProblem problem, std::initializer_list<std::array<doub
   return result;
 }
 
-TEST(Compromise, HasTheLargestProductOfGains) {
+TEST(Answer, IsNearestToTheBestOfAllObjectives) {
   const auto best_of = [](const SurveyProblem& problem) {
-    return compromise(front_of(problem, {{0.99, 0.16, 0.9}, {0.98, 0.75, 0.8}, {0.50, 1.00, 0.1}}));
+    return answer(front_of(problem, {{0.99, 0.16, 0.9}, {0.98, 0.75, 0.8}, {0.50, 1.00, 0.1}}));
   };
   EXPECT_EQ(best_of(coverage_fix(1)), 0u);
   EXPECT_EQ(best_of(coverage_overlap_fix(1)), 1u);
@@ -39,7 +39,7 @@ TEST(Compromise, HasTheLargestProductOfGains) {
   EXPECT_EQ(best_of(coverage_overlap_min(1, 2)), 2u);
 }
 
-TEST(Compromise, TakesWhatTheSearchSawWhereNothingWasConfirmed) {
+TEST(Answer, TakesWhatTheSearchSawWhereNothingWasConfirmed) {
   PlanResult result = front_of(coverage_overlap_fix(1), {{0, 0, 0}, {0, 0, 0}});
   const double unknown = std::numeric_limits<double>::quiet_NaN();
   for (std::size_t k = 0; k < 2; ++k) {
@@ -47,35 +47,53 @@ TEST(Compromise, TakesWhatTheSearchSawWhereNothingWasConfirmed) {
     const double seen = 0.4 + 0.1 * static_cast<double>(k);
     result.front[k].values["coverage"] = result.front[k].values["overlap"] = {seen, 0, unknown};
   }
-  EXPECT_EQ(compromise(result), 1u);
+  EXPECT_EQ(answer(result), 1u);
 }
 
-TEST(Compromise, HangsTogetherWhereAnyEntryDoes) {
+TEST(Answer, HangsTogetherWhereAnyEntryDoes) {
   PlanResult result = front_of(coverage_overlap_fix(3), {{0.9, 0.5, 0}, {0.8, 0.5, 0}, {0.7, 0.5, 0}});
   result.front[0].exact_overlap_matrix = chain(0.9, 0.005);
   result.front[1].exact_overlap_matrix = chain(0.02, 0.02);
   result.front[2].exact_overlap_matrix = chain(0.1, 0.1);
   const auto with_links_from = [&](double least) {
     result.problem.link_overlap = least;
-    return compromise(result);
+    return answer(result);
   };
   EXPECT_EQ(with_links_from(default_link_overlap), 1u);
   EXPECT_EQ(with_links_from(0.001), 0u);
   EXPECT_EQ(with_links_from(0.05), 2u);
   EXPECT_EQ(with_links_from(0.5), 0u) << "none does";
   result.problem = coverage_fix(3);
-  EXPECT_EQ(compromise(result), 0u) << "overlap does not matter";
+  EXPECT_EQ(answer(result), 0u) << "overlap does not matter";
 }
 
-TEST(Compromise, KeepsTheRequirementsWhereAnyEntryDoes) {
+TEST(Answer, KeepsTheRequirementsWhereAnyEntryDoes) {
   PlanResult result = front_of(coverage_overlap_fix(1), {{0.99, 0.9, 0}, {0.5, 0.5, 0}, {0.6, 0.3, 0}});
   result.front[0].missed = 0.01;
-  EXPECT_EQ(compromise(result), 1u);
+  EXPECT_EQ(answer(result), 1u);
   result.front[1].missed = 0.2, result.front[2].missed = 0.1;
-  EXPECT_EQ(compromise(result), 0u) << "none does: the one that misses least";
+  EXPECT_EQ(answer(result), 0u) << "none does: the one that misses least";
 }
 
-TEST(Compromise, RefusesAnEmptyFront) { EXPECT_THROW(compromise({}), Error); }
+TEST(Answer, HasTheFewestStationsThatKeepWhatIsRequired) {
+  PlanResult result = front_of(coverage_overlap_fix(1), {{0.95, 0.9, 0}, {0.91, 0.5, 0}, {0.92, 0.6, 0}});
+  result.problem.fewest = true;
+  result.problem.requirements = {make_requirement("coverage>=0.9")};
+  result.front[0].stations.resize(3), result.front[1].stations.resize(2), result.front[2].stations.resize(2);
+  EXPECT_EQ(answer(result), 2u) << "then the best";
+  EXPECT_TRUE(met(result));
+  EXPECT_TRUE(what_would_help(result).empty());
+  for (PlanEntry& entry : result.front) entry.missed = 0.1;
+  result.front[0].missed = 0.05, result.front[0].values["coverage"].exact = 0.85;
+  EXPECT_EQ(answer(result), 0u);
+  EXPECT_FALSE(met(result));
+  ASSERT_EQ(what_would_help(result).size(), 1u);
+  EXPECT_NE(what_would_help(result)[0].find("coverage"), std::string::npos);
+  result.front[0].missed = 0, result.front[0].confirmed = false;
+  EXPECT_FALSE(met(result)) << "not for sure";
+}
+
+TEST(Answer, RefusesAnEmptyFront) { EXPECT_THROW(answer({}), Error); }
 
 }  // namespace
 }  // namespace vantage

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "objective/built_in/built_in.hpp"
+
+namespace vantage::built_in {
+
+// The distance of the two stations that stand nearest to each other; those that cannot be used stand nowhere.
+Objective apart(const ObjectiveSettings&) {
+  return {.name = "apart",
+          .label = "Distance of the nearest two stations",
+          .unit = "m",
+          .needs = {.counts = false},
+          .value = [](const MeasuredNetwork& m) {
+            double nearest = std::numeric_limits<double>::infinity();
+            for (std::size_t i = 0; i < m.stations.size(); ++i)
+              for (std::size_t j = i + 1; j < m.stations.size(); ++j) {
+                if (!active(m.stations[i]) || !active(m.stations[j])) continue;
+                const Vec3 between = m.stations[i].position - m.stations[j].position;
+                nearest = std::min(nearest, std::sqrt(dot(between, between)));
+              }
+            return nearest;
+          }};
+}
+
+}  // namespace vantage::built_in

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "core/text.hpp"
+#include "objective/built_in/built_in.hpp"
+#include "vantage/error.hpp"
+
+namespace vantage::built_in {
+
+// Coverage as a share of what can be seen at all. At most 1: the limit is an estimate, that a plan may pass by its
+// error.
+Objective capture(const ObjectiveSettings& settings) {
+  const double visible = settings.visible;
+  if (!(visible > 0 && visible <= 1))
+    throw Error(Errc::invalid_argument,
+                "capture is told against what can be seen, a coverage above 0 and at most 1, not " + number(visible));
+  return {.name = "capture",
+          .label = "Capture (share of what can be seen)",
+          .value =
+              [visible](const MeasuredNetwork& m) {
+                return std::min(1.0, vantage::coverage(m.counts, m.goal_density) / visible);
+              },
+          .standard_error =
+              [visible](const MeasuredNetwork& m) {
+                return coverage_estimate(m.counts, m.goal_density, m.voxels).standard_error / visible;
+              },
+          .parameters = "of a coverage of " + number(visible)};
+}
+
+}  // namespace vantage::built_in

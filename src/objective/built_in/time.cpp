@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "objective/built_in/built_in.hpp"
+
+namespace vantage::built_in {
+
+// Minutes from entering the site to leaving it.
+Objective time(const ObjectiveSettings& settings) {
+  return {.name = "time",
+          .label = "Time on site",
+          .unit = "min",
+          .best = 0,
+          // An hour a station, where the number is known: a scale that no survey leaves.
+          .worst = 60 * static_cast<double>(settings.stations_max),
+          .needs = {.counts = false, .time = true},
+          .value = [](const MeasuredNetwork& m) { return m.minutes_on_site; }};
+}
+
+}  // namespace vantage::built_in

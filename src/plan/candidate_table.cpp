@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plan/candidate_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace vantage {
+
+CandidateTable::CandidateTable(Simulator& simulator, Simulator* surroundings, std::uint64_t sample_voxels,
+                               std::uint64_t surroundings_voxels, double nearest_m)
+    : simulator_(simulator),
+      surroundings_(surroundings),
+      sample_voxels_(sample_voxels),
+      surroundings_voxels_(surroundings_voxels),
+      nearest_m_(nearest_m),
+      rows_(simulator, sample_voxels),
+      around_(surroundings ? CaptureRows(*surroundings, surroundings_voxels) : CaptureRows()) {}
+
+bool CandidateTable::add(std::span<const PlacedStation> stations, const Progress& progress) {
+  const CaptureRows fresh = capture_rows(simulator_, stations, sample_voxels_, progress);
+  const bool whole = add(stations.first(std::min(stations.size(), fresh.size())), fresh, progress);
+  return whole && !fresh.cancelled();
+}
+
+bool CandidateTable::add(std::span<const PlacedStation> stations, const CaptureRows& known, const Progress& progress) {
+  std::size_t count = std::min(stations.size(), known.size());
+  if (surroundings_) {
+    const CaptureRows fresh = capture_rows(*surroundings_, stations.first(count), surroundings_voxels_,
+                                           {.report = {}, .stop = progress.stop});
+    around_.append(fresh);
+    count = std::min(count, fresh.size());
+  }
+  if (count == known.size()) {
+    rows_.append(known);
+  } else {
+    // The first ones only: rows of both kinds must be of the same stations.
+    std::vector<std::uint32_t> points;
+    for (std::size_t k = 0; k < count; ++k) {
+      points.assign(rows_.voxels().size(), 0);
+      for (const CapturedVoxel& one : known.row(k)) points[one.voxel] = one.points;
+      rows_.add(points);
+    }
+  }
+  stations_.insert(stations_.end(), stations.begin(), stations.begin() + static_cast<std::ptrdiff_t>(count));
+  pairs_ = surroundings_ ? PairTable(around_, stations_, nearest_m_) : PairTable(CaptureRows(), stations_, nearest_m_);
+  return count == stations.size();
+}
+
+std::vector<PlacedStation> positions_around(const Site& site, std::span<const PlacedStation> stations, std::size_t each,
+                                            double radius_m) {
+  // A sunflower's seeds: turned on by the golden angle, each disc's area shared evenly (Vogel: A Better Way to
+  // Construct the Sunflower Head, 1979).
+  const double golden = 2 * std::numbers::pi * (2 - std::numbers::phi);
+  std::vector<PlacedStation> found;
+  for (const PlacedStation& station : stations) {
+    for (std::size_t k = 0; k < each; ++k) {
+      const double share = (static_cast<double>(k) + 0.5) / static_cast<double>(each);
+      const double away = radius_m * std::sqrt(share), turn = golden * static_cast<double>(k);
+      const auto uv = site.project(station.ground + Vec3{away * std::cos(turn), away * std::sin(turn), 0});
+      if (!uv) continue;
+      const PlacedStation placed = place_station(site, *uv, site.height_m);
+      // Not the floor below, where a station would see all else.
+      if (placed.status == StationStatus::ok && std::abs(placed.ground.z - station.ground.z) <= radius_m)
+        found.push_back(placed);
+    }
+  }
+  return found;
+}
+
+}  // namespace vantage

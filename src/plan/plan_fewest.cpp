@@ -1,0 +1,334 @@
+// SPDX-License-Identifier: Apache-2.0
+// How many, then where. Candidates and what they capture and share come first, as rows of counts; on these the fewest
+// stations are chosen, around these more candidates are tried, and from there the optimiser searches for the best
+// network of that number. Whatever was traced with every ray is kept, and the best of it is the answer.
+#include "plan/plan_fewest.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "plan/candidate_table.hpp"
+#include "plan/choose_optimiser.hpp"
+#include "plan/fewest_on_rows.hpp"
+#include "plan/spread_positions.hpp"
+
+namespace vantage {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Standard errors of the sample by which a choice keeps away from what is required, so that most choices hold with
+// every ray.
+constexpr double kMarginErrors = 1;
+// Rounds of further candidates around those chosen: how many for each station, and within what share of the distance
+// between candidates, halved each round.
+constexpr std::size_t kRounds = 3, kAround = 8;
+constexpr double kAroundRadius = 0.8;
+constexpr std::size_t kLateCandidates = 96;
+// The search after that may trace so many stations for each candidate that was looked at.
+constexpr double kSearchShare = 2;
+constexpr std::size_t kLeastIterations = 10, kMostIterations = 100;
+// First steps of that search: about the distance between candidates, not the size of the site.
+constexpr double kRefiningSigma = 0.03;
+// Choices made anew with larger margins, where every ray shows that a requirement is missed after all.
+constexpr std::size_t kRepairs = 3;
+constexpr double kBeyond = 1.25;  // of what was missed, on top
+
+// The limit of an at-least requirement, or 0.
+double limit_of(const SurveyProblem& problem, std::string_view name) {
+  double limit = 0;
+  for (const Requirement& r : problem.requirements)
+    if (r.objective.name == name && r.bound == Requirement::Bound::at_least) limit = std::max(limit, r.limit);
+  return limit;
+}
+
+class FewestPlan {
+ public:
+  FewestPlan(Run& run, Simulator& simulator, const Candidates& candidates, const PlanConfig& config,
+             const PlanWatch& watch)
+      : run_(run),
+
+        candidates_(candidates),
+        config_(config),
+        watch_(watch),
+        problem_(run.problem()),
+        link_(limit_of(problem_, "link")),
+        table_(simulator, link_ > 0 || wants_links() ? &run.surroundings() : nullptr, sample_of(simulator),
+               surroundings_sample(), limit_of(problem_, "apart")) {
+    const double visible = problem_.visible.value_or(1);
+    coverage_ = std::max(limit_of(problem_, "coverage"), visible * limit_of(problem_, "capture"));
+    coverage_margin_ = kMarginErrors * candidates.visible().standard_error;
+  }
+
+  PlanResult run() {
+    look_at_links();
+    if (table_.stations().size() <= problem_.kept.size()) return nothing_known();
+    choose();
+    for (std::size_t round = 0; round < kRounds && !stopped(); ++round) choose_around(round);
+    const std::vector<PlacedStation> chosen = stations_of(choice_);
+    SearchOutcome found = search(chosen);
+    take(confirmed(found));
+    for (std::size_t k = 0; k < kRepairs && best_missed() > 0 && !stopped() && repair(); ++k) {
+    }
+    PlanResult result = run_.result(found);
+    result.evaluations += traced_;
+    result.front = front();
+    result.exact_hypervolume = judge_by_every_ray(result.front, problem_, run_.measures());
+    return result;
+  }
+
+ private:
+  bool stopped() const { return watch_.stop.stop_requested() || watch_.abort.stop_requested(); }
+  bool wants_links() const {
+    return std::ranges::any_of(problem_.objectives, [](const Objective& o) { return o.name == "link"; });
+  }
+  std::uint64_t sample_of(const Simulator& simulator) const {
+    return config_.sample_voxels > 0 ? config_.sample_voxels : simulator.voxel_count();
+  }
+  std::uint64_t surroundings_sample() {
+    const std::uint64_t sample = run_.surroundings_voxels();
+    return sample > 0 ? sample : std::numeric_limits<std::uint32_t>::max();  // all there are
+  }
+  Progress progress(const char* phase) {
+    return {.report = [this, phase](double) { tell(phase, -1); }, .stop = watch_.stop};
+  }
+  void tell(const char* phase, double seconds_left) {
+    if (watch_.report) watch_.report({.evaluations = traced_, .seconds_left = seconds_left, .phase = phase});
+  }
+
+  void look_at_links() {
+    std::vector<PlacedStation> kept;
+    for (const Vec3& head : problem_.kept) {
+      kept.push_back(run_.site().check_head(head));
+      if (active(kept.back())) kept.back().status = StationStatus::ok;  // rows of others are empty
+    }
+    // Kept stations come first in every network, so they are traced even where time is short.
+    if (!kept.empty()) table_.add(kept, {.report = {}, .stop = watch_.abort});
+    // Where the time is over before links were looked at, those of a few: a network that hangs together is worth more
+    // than one chosen from many.
+    const std::span<const PlacedStation> all = candidates_.stations();
+    if (stopped())
+      table_.add(all.first(std::min(all.size(), kLateCandidates)), candidates_.rows(),
+                 {.report = {}, .stop = watch_.abort});
+    else
+      table_.add(all, candidates_.rows(), progress("look"));
+    traced_ += table_.stations().size();
+  }
+
+  RowQuestion question(std::size_t fewest, std::size_t most) const {
+    return {.rows = table_.rows(),
+            .pairs = table_.pairs(),
+            .coverage = coverage_ + (coverage_ > 0 ? coverage_margin_ : 0),
+            .link = link_ > 0 ? link_ + link_margin_ : 0,
+            .fixed = problem_.kept.size(),
+            .fewest = fewest,
+            .most = most};
+  }
+  RowQuestion question() const { return question(problem_.stations_min, problem_.stations_max); }
+  std::vector<PlacedStation> stations_of(const RowAnswer& answer) const {
+    std::vector<PlacedStation> stations;
+    for (const std::size_t row : answer.rows) stations.push_back(table_.stations()[row]);
+    return stations;
+  }
+
+  void choose() {
+    tell("choose", -1);
+    choice_ = fewest_on_rows(question(), watch_.stop, {}, &nearly_);
+    choice_ = better_on_rows(question(), std::move(choice_), watch_.stop);
+  }
+
+  // More candidates around what was chosen, and around the best network of one station fewer.
+  void choose_around(std::size_t round) {
+    const double radius = kAroundRadius * std::ldexp(std::max(candidates_.spacing_m(), 0.1), -static_cast<int>(round));
+    std::vector<PlacedStation> around;
+    const auto add = [&](const RowAnswer& answer) {
+      std::vector<PlacedStation> stations = stations_of(answer);
+      stations.erase(stations.begin(), stations.begin() + static_cast<std::ptrdiff_t>(problem_.kept.size()));
+      const auto more = positions_around(run_.site(), stations, kAround, radius);
+      around.insert(around.end(), more.begin(), more.end());
+    };
+    add(choice_);
+    if (nearly_) add(*nearly_);
+    const std::size_t before = table_.stations().size();
+    table_.add(around, progress("choose"));
+    traced_ += table_.stations().size() - before;
+    if (nearly_) {
+      RowQuestion fewer = question();
+      fewer.most = std::min(fewer.most, nearly_->rows.size() - problem_.kept.size());
+      RowAnswer better = better_on_rows(fewer, std::move(*nearly_), watch_.stop);
+      nearly_ = better;
+      if (better.missed <= choice_.missed) {
+        nearly_.reset();
+        choice_ = fewest_on_rows(question(), watch_.stop, std::move(better), &nearly_);
+      }
+    }
+    choice_ = better_on_rows(question(), std::move(choice_), watch_.stop);
+  }
+
+  SurveyProblem narrowed(std::size_t stations) const {
+    SurveyProblem narrowed = problem_;
+    narrowed.stations_min = narrowed.stations_max = stations;
+    for (Requirement& requirement : narrowed.requirements) {
+      if (requirement.bound != Requirement::Bound::at_least) continue;
+      if (requirement.objective.name == "capture")
+        requirement.limit = std::min(1.0, requirement.limit + coverage_margin_ / problem_.visible.value_or(1));
+      if (requirement.objective.name == "coverage")
+        requirement.limit = std::min(1.0, requirement.limit + coverage_margin_);
+      if (requirement.objective.name == "link") requirement.limit += link_margin_;
+    }
+    for (Objective& objective : narrowed.objectives)
+      if (objective.by_alpha) objective.best = objective.worst = static_cast<double>(problem_.kept.size() + stations);
+    return narrowed;
+  }
+
+  SearchOutcome search(const std::vector<PlacedStation>& chosen) {
+    const std::size_t count = chosen.size() - problem_.kept.size();
+    SearchOutcome found;
+    const SurveyProblem narrow = narrowed(count);
+    const DecisionSpace space(run_.site(), narrow);
+    const std::vector<double> start = space.encode(std::span(chosen).subspan(problem_.kept.size()));
+    PlanConfig config = config_;
+    config.sigma0 = std::min(config.sigma0, kRefiningSigma);
+    if (config.iterations == 0) {
+      const double stations = kSearchShare * static_cast<double>(candidates_.stations().size());
+      const auto each = static_cast<double>(population_of(narrow, config) * count);
+      config.iterations = std::clamp(static_cast<std::size_t>(stations / each), kLeastIterations, kMostIterations);
+    }
+    if (!stopped()) found = run_.search(narrow, config, start, watch_);
+    if (stopped() && found.stop_reason == StopReason::running) found.stop_reason = StopReason::cancelled;
+    // The choice itself is kept where the search did not come to it.
+    if (found.front.empty()) found.front.push_back({.x = start, .f = std::vector<double>(narrow.objectives.size(), 2)});
+    return found;
+  }
+
+  std::vector<PlanEntry> confirmed(const SearchOutcome& found) {
+    std::size_t count = problem_.stations_min;
+    if (!found.front.empty()) {
+      const std::size_t each = problem_.heights_m ? 3 : 2;
+      count = found.front.front().x.size() / each;
+    }
+    return run_.confirm(found, narrowed(count), watch_);
+  }
+
+  // Entries of networks that stand where others do already are none.
+  void take(std::vector<PlanEntry> entries) {
+    for (PlanEntry& entry : entries) {
+      std::vector<double> values;
+      for (const Objective& measure : run_.measures().all) values.push_back(entry.value(measure.name));
+      entry.missed = missed_by(problem_, run_.measures(), values);
+      entries_.push_back(std::move(entry));
+    }
+  }
+  double best_missed() const {
+    double least = std::numeric_limits<double>::infinity();
+    for (const PlanEntry& entry : entries_)
+      if (entry.confirmed) least = std::min(least, entry.missed);
+    return least;
+  }
+
+  // Chooses anew, further from the limits by what every ray showed to be missing. False where that cannot help.
+  bool repair() {
+    const PlanEntry* nearest = nullptr;
+    for (const PlanEntry& entry : entries_)
+      if (entry.confirmed && (!nearest || entry.missed < nearest->missed)) nearest = &entry;
+    if (!nearest || choice_.missed > 0) return false;
+    const auto shortfall = [&](std::string_view name) {
+      const auto found = nearest->values.find(std::string(name));
+      const double limit = limit_of(problem_, name);
+      return limit > 0 && found != nearest->values.end() ? std::max(0.0, limit - found->second.best_known()) : 0;
+    };
+    const double coverage = std::max(shortfall("coverage"), shortfall("capture") * problem_.visible.value_or(1));
+    const double link = shortfall("link");
+    if (coverage == 0 && link == 0) return false;
+    coverage_margin_ += kBeyond * coverage, link_margin_ += kBeyond * link;
+    nearly_.reset();
+    // From where it is, at this number, or else by what one more allows.
+    choice_ = judge_rows(question(), choice_.rows);
+    RowAnswer same = better_on_rows(question(), choice_, watch_.stop);
+    choice_ = same.missed == 0 ? std::move(same) : fewest_on_rows(question(), watch_.stop, {}, &nearly_);
+    choice_ = better_on_rows(question(), std::move(choice_), watch_.stop);
+    const std::vector<PlacedStation> chosen = stations_of(choice_);
+    const std::size_t count = chosen.size() - problem_.kept.size();
+    const SurveyProblem narrow = narrowed(count);
+    SearchOutcome found;
+    found.front.push_back(
+        {.x = DecisionSpace(run_.site(), narrow).encode(std::span(chosen).subspan(problem_.kept.size())),
+         .f = std::vector<double>(narrow.objectives.size(), 0)});
+    take(run_.confirm(found, narrow, watch_));
+    return true;
+  }
+
+  // Of all networks that were confirmed, or of all where none was: those of fewest stations that keep what is required,
+  // else those that miss least; and of these, those that no other one dominates.
+  std::vector<PlanEntry> front() {
+    const bool any_confirmed = std::ranges::any_of(entries_, &PlanEntry::confirmed);
+    std::vector<PlanEntry> left;
+    for (PlanEntry& entry : entries_)
+      if (entry.confirmed || !any_confirmed) left.push_back(std::move(entry));
+    const auto rank = [](const PlanEntry& entry) {
+      return std::pair{entry.missed, entry.missed > 0 ? std::size_t{0} : entry.stations.size()};
+    };
+    if (left.empty()) return left;
+    const auto best = rank(*std::ranges::min_element(left, {}, rank));
+    std::erase_if(left, [&](const PlanEntry& entry) { return rank(entry) != best; });
+
+    const std::size_t objectives = problem_.objectives.size();
+    std::vector<double> scaled;
+    for (const PlanEntry& entry : left)
+      for (const Objective& objective : problem_.objectives)
+        scaled.push_back(objective.scaled(entry.value(objective.name)));
+    const std::vector<std::size_t> ranks = non_dominated_ranks(scaled, objectives);
+    std::vector<PlanEntry> front;
+    for (std::size_t k = 0; k < left.size(); ++k) {
+      const bool doubled =
+          std::ranges::any_of(front, [&](const PlanEntry& other) { return same_places(other, left[k]); });
+      if (ranks[k] == 0 && !doubled && (objectives > 1 || front.empty())) front.push_back(std::move(left[k]));
+    }
+    return front;
+  }
+  static bool same_places(const PlanEntry& a, const PlanEntry& b) {
+    return std::ranges::equal(a.stations, b.stations, {}, &PlacedStation::position, &PlacedStation::position);
+  }
+
+  // Time ran out before anything was traced: an allowed position, of which nothing is known.
+  PlanResult nothing_known() {
+    SearchOutcome none;
+    none.stop_reason = StopReason::cancelled;
+    PlanResult result = run_.result(none);
+    std::vector<PlacedStation> one = candidates_.stations();
+    if (one.empty()) one = spread_positions(run_.site(), run_.area().mesh(), run_.site().height_m, 1).stations;
+    if (one.empty()) return result;
+    one.resize(1);
+    SearchOutcome found;
+    found.front.push_back({.x = DecisionSpace(run_.site(), narrowed(1)).encode(one),
+                           .f = std::vector<double>(problem_.objectives.size(), 2)});
+    result.front = confirmed(found);
+    result.exact_hypervolume = judge_by_every_ray(result.front, problem_, run_.measures());
+    return result;
+  }
+
+  Run& run_;
+
+  const Candidates& candidates_;
+  const PlanConfig& config_;
+  const PlanWatch& watch_;
+  const SurveyProblem problem_;
+  double link_, coverage_ = 0, coverage_margin_ = 0, link_margin_ = 0;
+  CandidateTable table_;
+  RowAnswer choice_;
+  std::optional<RowAnswer> nearly_;
+  std::vector<PlanEntry> entries_;
+  std::uint64_t traced_ = 0;
+};
+
+}  // namespace
+
+PlanResult plan_fewest(Run& run, Simulator& simulator, std::shared_ptr<const Candidates> candidates,
+                       const PlanConfig& config, const PlanWatch& watch) {
+  return FewestPlan(run, simulator, *candidates, config, watch).run();
+}
+
+}  // namespace vantage

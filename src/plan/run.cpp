@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plan/run.hpp"
+
+#include <algorithm>
+
+#include "plan/choose_optimiser.hpp"
+#include "plan/identity.hpp"
+
+namespace vantage {
+namespace {
+
+// Scan overlap is a share of what a scan sees, some thousand voxels of so many: known to 0.01.
+constexpr std::uint64_t kSurroundingsVoxels = 10'000;
+
+}  // namespace
+
+// Every one more is a step further from the textbook's one at a time, so no more than the engine needs to be kept busy:
+// a whole network with every ray keeps any engine busy, a sampled one only a CPU.
+std::size_t batch_of(const Simulator& simulator, const PlanConfig& config) {
+  if (config.batch > 0) return config.batch;
+  if (config.sample_voxels == 0) return 1;
+  const bool cpu = simulator.engine().engine == Engine::embree || simulator.engine().software;
+  return cpu ? 4 : 32;
+}
+
+Run::Run(Simulator& simulator, const SearchArea& area, const ClashChecker& clash, const PlanConfig& config)
+    : simulator_(simulator),
+      area_(area),
+      clash_(clash),
+      config_(config),
+      site_(make_site(area, clash, simulator.scanner())) {}
+
+void Run::ask(const SurveyProblem& problem) {
+  problem_ = problem;
+  measures_ = measures_of(problem);
+  const Needs needs = measures_.all_needs();
+  evaluator_.emplace(
+      simulator_, measures_,
+      SimulatorEvaluator::Options{
+          .sample_voxels = config_.sample_voxels,
+          .kept = problem.kept.size(),
+          .visible_parts = [this](const Network& network) { return visibility_parts(site_, network); },
+          .surroundings = needs.surroundings ? &surroundings() : nullptr,
+          .surroundings_voxels = surroundings_voxels(),
+          .minutes = needs.time ? [this, &ways = on_site()](
+                                      std::span<const PlacedStation> stations) { return ways.visit(stations).minutes; }
+                                : std::function<double(std::span<const PlacedStation>)>()});
+}
+
+Simulator& Run::surroundings() {
+  if (!surroundings_) surroundings_ = std::make_unique<Simulator>(surroundings_of(simulator_));
+  return *surroundings_;
+}
+
+const OnSite& Run::on_site() {
+  if (!on_site_) on_site_.emplace(area_, clash_, simulator_.scanner(), problem_.on_site);
+  return *on_site_;
+}
+
+std::uint64_t Run::surroundings_voxels() const { return std::min(config_.sample_voxels, kSurroundingsVoxels); }
+
+SearchOutcome Run::search(const SurveyProblem& narrowed, const PlanConfig& config, const std::vector<double>& start,
+                          const PlanWatch& watch) {
+  const DecisionSpace space(site_, narrowed);
+  const std::size_t batch = batch_of(simulator_, config);
+  return vantage::search(
+      {.space = space,
+       .problem = narrowed,
+       .measures = measures_,
+       .config = config,
+       .evaluator = *evaluator_,
+       .batch = batch,
+       .identity = identity(simulator_, site_, area_, clash_, narrowed, config, population_of(narrowed, config), batch),
+       .start = start,
+       .watch = watch.report,
+       .stop = watch.stop});
+}
+
+std::vector<PlanEntry> Run::confirm(const SearchOutcome& found, const SurveyProblem& narrowed, const PlanWatch& watch) {
+  const DecisionSpace space(site_, narrowed);
+  return confirm_front(found, space, narrowed, measures_, config_.sample_voxels > 0, *evaluator_, watch);
+}
+
+PlanResult Run::result(const SearchOutcome& found) const {
+  PlanResult result;
+  result.problem = problem_, result.config = config_;
+  result.population = population_of(problem_, config_), result.batch = batch_of(simulator_, config_);
+  result.walkable = area_.options(), result.security = clash_.volume();
+  result.measures = measures_.all;
+  result.history = found.history;
+  result.hypervolume = found.hypervolume;
+  result.evaluations = found.evaluations, result.resumed_evaluations = found.resumed_evaluations;
+  result.drawn = found.drawn, result.redrawn = found.redrawn;
+  result.stop_reason = found.stop_reason;
+  return result;
+}
+
+}  // namespace vantage

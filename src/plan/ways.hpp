@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// Shortest ways over a search area, on a graph of places spread evenly over it.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <unordered_map>
+#include <vector>
+
+#include "vantage/placement.hpp"
+
+namespace vantage {
+
+class Ways {
+ public:
+  // `sees`: whether one can go straight from one ground point to the other.
+  Ways(const SearchMesh& ground, const std::function<bool(const Vec3&, const Vec3&)>& sees);
+
+  // Metres along the graph; empty where it does not connect them, or has no place near one of them.
+  std::optional<double> between(const Vec3& from, const Vec3& to) const;
+  double spacing_m() const { return spacing_; }
+  std::size_t places() const { return places_.size(); }
+
+ private:
+  struct Link {
+    std::uint32_t to;
+    float metres;
+  };
+  std::optional<std::uint32_t> nearest(const Vec3& ground) const;
+  std::shared_ptr<const std::vector<float>> distances_from(std::uint32_t place) const;
+
+  double spacing_ = 1;
+  std::vector<Vec3> places_;
+  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cells_;
+  std::vector<std::vector<Link>> links_;
+  // Of places asked for before, and no more than some: networks of a search share stations.
+  mutable std::mutex mutex_;
+  mutable std::unordered_map<std::uint32_t, std::shared_ptr<const std::vector<float>>> known_;
+};
+
+}  // namespace vantage

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <optional>
+
+#include "scene/all_surveyed.hpp"
+#include "vantage/simulator.hpp"
+
+namespace vantage {
+namespace {
+
+// Voxels of a hundredth to a two-hundredth of the site: a door and a desk are told apart, a bolt is not. Half a metre
+// at most, or rooms of a large site melt into each other.
+constexpr double extent_share = 0.01, largest_voxel_m = 0.5;
+// Two rays a voxel across where the site ends. What is nearer has more; what is seen more flatly has fewer, as it has
+// in a survey.
+constexpr double rays_across = 2, fewest_rays = 16;
+
+double extent_of(const Scene& scene) {
+  const Vec3 size = scene.bounds().size();
+  return std::max({size.x, size.y, size.z});
+}
+
+}  // namespace
+
+Simulator surroundings_of(const Simulator& simulator) {
+  const Scene scene = all_surveyed(simulator.scene());
+  const double extent = extent_of(scene);
+  SimulatorConfig config = simulator.config();
+  config.engine = simulator.engine().engine;
+  config.device_index = simulator.engine().device_index;
+  config.user_size_m = std::max(simulator.voxel_size_m(), std::min(extent_share * extent, largest_voxel_m));
+  config.point_spacing_m = config.user_size_m / 4;  // a goal is of no use here, but has to be at least 1
+  config.noise = false;
+  config.max_incidence = std::nullopt;
+
+  Scanner scanner = simulator.scanner();
+  const double reach = std::min(scanner.max_range_m, extent);
+  if (reach > 0) {
+    const Angle step = Angle::radians(config.user_size_m / 2 / (rays_across * reach));
+    // But no scanner of a handful of rays, where the sweep itself is narrow.
+    const auto coarser = [&](Angle own, Angle sweep) {
+      return std::max(own, std::min(step, Angle::radians(sweep.in_radians() / fewest_rays)));
+    };
+    scanner.azimuth_step = coarser(scanner.azimuth_step, scanner.horizontal_angle);
+    scanner.zenith_step = coarser(scanner.zenith_step, Angle::radians(scanner.vertical_angle.in_radians() / 2));
+  }
+  return Simulator(scene, scanner, config);
+}
+
+}  // namespace vantage
