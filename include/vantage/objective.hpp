@@ -113,7 +113,7 @@ struct ObjectiveSettings {
   double link_overlap = default_link_overlap;                 ///< `parts`: pairs of less overlap are not linked.
   FitnessWeights fitness = {};
   RegistrationOptions registration = {};  ///< `registration`, `registration_worst`.
-  double visible = 1;  ///< `capture`: the coverage that all allowed positions together would reach.
+  double visible = 1;                     ///< `capture`: the coverage that all allowed positions together would reach.
 };
 /// Names of the built-in objectives, as "coverage", "overlap", "stations".
 std::span<const std::string> objective_names();

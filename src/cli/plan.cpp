@@ -316,6 +316,7 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   LoadedSite site = open_site(command, options.site);
   weigh_ground(site);
   SurveyProblem problem = options.problem.settle(length_scale(site.scene.bounds()));
+  problem.on_site.entrance = site.walkable.enter;  // rounds begin and end where one comes in
   const std::filesystem::path folder =
       options.output ? std::filesystem::path(*options.output)
                      : std::filesystem::path(std::filesystem::path(options.site.scene).stem().string() + "-plan");

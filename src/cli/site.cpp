@@ -115,6 +115,15 @@ void tell_scaled(const SiteOptions& options, const LoadedSite& site, double scal
                scale, made_up);
 }
 
+// Where nobody asks for a spacing: as dense as the scanner's own steps are square on at 10 m, the distance that makers
+// state resolutions at, so that one station can give it. Not below the library's, whose goal a fine pattern meets with
+// ease; nor so wide that a voxel would want less than a point.
+double usual_spacing(const Scanner& scanner, const SimulatorConfig& config, double scale) {
+  const double step = std::max(scanner.azimuth_step.in_radians(), scanner.zenith_step.in_radians());
+  const double usual = config.point_spacing_m * scale;
+  return std::max(usual, std::min(10 * step * scale, config.user_size_m / 2));
+}
+
 }  // namespace
 
 void SiteOptions::add(CLI::App& command) {
@@ -346,7 +355,7 @@ LoadedSite open_site(CLI::App& command, SiteOptions& options) {
   if (!options.spacing && !common_detail(site.scene) && asks_for_detail(site.scene))
     spdlog::info("the surveyed meshes do not all ask for the same detail: the spacing of points is the usual one");
   site.config.point_spacing_m =
-      options.spacing.value_or(common_detail(site.scene).value_or(site.config.point_spacing_m * scale));
+      options.spacing.value_or(common_detail(site.scene).value_or(usual_spacing(site.scanner, site.config, scale)));
   if (options.incidence) site.config.max_incidence = Angle::degrees(*options.incidence);
   site.config.noise = !site.scanner.noise.empty();
   site.security = options.area.volume(small);

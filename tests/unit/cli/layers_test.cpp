@@ -131,7 +131,7 @@ TEST_F(Layers, UnusualSizesScaleTheLengths) {
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const auto resolved = nlohmann::json::parse(outcome.out)["options"];
   EXPECT_EQ(resolved["user-size"], 5);  // 1000 m are 50 times 20 m
-  EXPECT_EQ(resolved["spacing"], 0.5);
+  EXPECT_EQ(resolved["spacing"], 2.5);  // steps of 1° give 8.7 m at 500 m: half the user size, the widest
   EXPECT_EQ(resolved["height"], Scanner{}.height_m);
   EXPECT_EQ(resolved["range"][1], Scanner{}.max_range_m);
   EXPECT_NE(outcome.err.find("larger than a site"), std::string::npos) << outcome.err;

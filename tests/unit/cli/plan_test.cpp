@@ -70,9 +70,10 @@ TEST_F(Plan, EvaluateGivesBackTheSameNumbers) {
 TEST_F(Plan, TheSameSeedGivesTheSameFront) {
   for (const char* problem : {"coverage-fix", "coverage-overlap-min"}) {
     const std::string stations = std::string(problem) == "coverage-fix" ? "2" : "2..4";
-    auto first = json_of(plan("first", {"--problem", problem, "--stations", stations, "--seed", "5"}));
-    auto second = json_of(plan("second", {"--problem", problem, "--stations", stations, "--seed", "5"}));
-    auto other = json_of(plan("other", {"--problem", problem, "--stations", stations, "--seed", "6"}));
+    const auto folder = [&](const char* run) { return std::string(problem) + "-" + run; };
+    auto first = json_of(plan(folder("first"), {"--problem", problem, "--stations", stations, "--seed", "5"}));
+    auto second = json_of(plan(folder("second"), {"--problem", problem, "--stations", stations, "--seed", "5"}));
+    auto other = json_of(plan(folder("other"), {"--problem", problem, "--stations", stations, "--seed", "6"}));
     drop_times(first);
     drop_times(second);
     EXPECT_EQ(first, second);
