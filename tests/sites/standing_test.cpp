@@ -28,7 +28,9 @@ struct Case {
 std::vector<Case> cases() {
   std::vector<Case> all;
   for (const char* name : test::site_names())
-    for (const test::Variant variant : {test::Variant{}, test::Variant{.utm = true}}) all.push_back({name, variant});
+    for (const test::Variant variant :
+         {test::Variant{}, test::Variant{.utm = true}, test::Variant{.millimetres = true}, test::Variant{.z_up = true}})
+      all.push_back({name, variant});
   return all;
 }
 
@@ -42,7 +44,11 @@ class StandingOnSites : public testing::TestWithParam<Case> {
   }
 };
 INSTANTIATE_TEST_SUITE_P(All, StandingOnSites, testing::ValuesIn(cases()), [](const auto& site) {
-  return std::string(site.param.name) + (site.param.variant.utm ? "_utm" : "");
+  const test::Variant& variant = site.param.variant;
+  return std::string(site.param.name) + (variant.utm           ? "_utm"
+                                         : variant.millimetres ? "_mm"
+                                         : variant.z_up        ? "_z_up"
+                                                               : "");
 });
 
 TEST_P(StandingOnSites, EveryPlaceIsAFloorThatIsReachedAndEveryRoomHasSome) {

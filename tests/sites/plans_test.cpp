@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// The default question on whole places as users bring them: what it asks for is met, every room is visited, and the
+// time on site is about what it takes.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "sites/site.hpp"
+#include "support/temporary_folder.hpp"
+#include "vantage/planner.hpp"
+
+namespace vantage {
+namespace {
+
+// Rays and voxels that make a plan a matter of seconds.
+constexpr double kStep_deg = 0.6, kVoxel_m = 0.3, kSpacing_m = 0.1;
+constexpr std::uint64_t kSample = 4'000;
+// Of the share that the whole site is captured by, what a room without a station of its own has to have.
+constexpr double kRoomShare = 0.7;
+
+Scanner coarse_scanner() {
+  Scanner scanner;
+  scanner.azimuth_step = scanner.zenith_step = Angle::degrees(kStep_deg);
+  return scanner;
+}
+
+bool within(const test::Place& place, const Vec3& local, double low, double high) {
+  return local.x >= place.x0 && local.x <= place.x1 && local.y >= place.y0 && local.y <= place.y1 &&
+         local.z >= place.z + low && local.z <= place.z + high;
+}
+
+// Mean fill of the voxels from a place's floor up to a person's reach.
+double captured_of(const test::Place& place, const test::Site& site, const Simulator& simulator,
+                   const VoxelField& field) {
+  double sum = 0, count = 0;
+  for (std::uint64_t rank = 0; rank < simulator.voxel_count(); ++rank) {
+    if (!within(place, simulator.voxel_centre(rank) - site.offset, -0.5 * simulator.voxel_size_m(), 2)) continue;
+    sum += std::min(1.0, field.count[rank] / simulator.goal_density());
+    ++count;
+  }
+  return count > 0 ? sum / count : 1;
+}
+
+class Plans : public testing::TestWithParam<std::string> {};
+
+TEST_P(Plans, MeetWhatIsAskedAndVisitEveryRoom) {
+  const test::TemporaryFolder folder;
+  const test::Site site = test::make_site(GetParam());
+  test::write_site(site, {}, folder / "site.glb");
+  const Scene scene = Scene::load(folder / "site.glb");
+  const SearchArea area = SearchArea::build(scene);
+  const ClashChecker clash(scene);
+  Simulator simulator(scene, coarse_scanner(),
+                      {.engine = Engine::embree, .user_size_m = kVoxel_m, .point_spacing_m = kSpacing_m});
+  const PlanResult result =
+      plan(simulator, area, clash, fewest_stations(), {.iterations = 0, .sample_voxels = kSample});
+  ASSERT_EQ(result.front.size(), 1u);
+  const PlanEntry& entry = result.front[answer(result)];
+  std::string missing;
+  for (const std::string& help : what_would_help(result)) missing += help + "\n";
+  EXPECT_TRUE(met(result)) << missing;
+  EXPECT_GE(entry.value("capture"), 0.9);
+  EXPECT_GE(entry.value("link"), 0.3);
+  EXPECT_NEAR(entry.value("link"), connectivity(entry.exact_scan_overlap_matrix, 0).weakest_overlap, 1e-12);
+  EXPECT_GE(entry.value("apart"), 1);
+
+  VoxelField field;
+  const NetworkCounts counts = simulator.evaluate(to_network(entry.stations), {.overlap = false, .field = &field});
+  const double whole = coverage(counts, simulator.goal_density());
+  EXPECT_NEAR(entry.value("coverage"), whole, 1e-12);
+  for (const test::Place& place : site.places) {
+    const bool visited = std::ranges::any_of(entry.stations, [&](const PlacedStation& station) {
+      return within(place, station.ground - site.offset, -0.2, 0.5);
+    });
+    EXPECT_TRUE(visited || captured_of(place, site, simulator, field) >= kRoomShare * whole) << place.name;
+  }
+
+  // Straight lines in the order told, a quarter longer for what is in the way.
+  ASSERT_TRUE(entry.visit);
+  const OnSiteOptions on_site;
+  double walk = 0;
+  for (std::size_t k = 0; k < entry.visit->order.size(); ++k) {
+    const Vec3 way = entry.stations[entry.visit->order[(k + 1) % entry.visit->order.size()]].ground -
+                     entry.stations[entry.visit->order[k]].ground;
+    walk += 1.25 * std::sqrt(dot(way, way));
+  }
+  const auto count = static_cast<double>(entry.stations.size());
+  const double minutes = count * (on_site.set_up_min + static_cast<double>(coarse_scanner().rays()) / 1e6 / 60) +
+                         walk / on_site.walking_m_per_s / 60;
+  EXPECT_NEAR(entry.visit->minutes, minutes, 0.3 * minutes);
+  EXPECT_EQ(entry.visit->order.size(), entry.stations.size());
+}
+
+INSTANTIATE_TEST_SUITE_P(OfEverySite, Plans, testing::Values("office", "house", "street", "plant"),
+                         [](const auto& site) { return site.param; });
+
+}  // namespace
+}  // namespace vantage
