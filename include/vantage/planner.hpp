@@ -175,6 +175,9 @@ struct PlanProgress {
   /// The front as it is now, as the optimiser has it: decision vectors and `scaled_objectives()`, 1 and more where
   /// requirements are missed. Valid for the call.
   std::span<const ParetoPoint> front = {};
+  /// Told once, when it is known: the coverage that a head on every one of `evaluations` places all over the ground
+  /// would reach together.
+  std::optional<double> visible = std::nullopt;
 };
 
 /// As `Progress`, for a search.

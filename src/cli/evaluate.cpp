@@ -170,8 +170,6 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
 
   if (options.cartography) write_coverage_ply(*options.cartography, simulator, field);
   if (!options.missed.files.empty()) {
-    std::vector<PlacedStation> placed;
-    for (const auto& station : stations) placed.push_back(station.placed);
     if (!write_missed(std::vector<std::filesystem::path>(options.missed.files.begin(), options.missed.files.end()),
                       site, simulator, field, placed, program))
       return exit_failed;

@@ -296,6 +296,9 @@ PlanResult run_plan(LoadedSite& site, Simulator& simulator, const SurveyProblem&
   std::string phase;
   const auto report = [&](const PlanProgress& now) {
     line.set_label(now.phase);
+    if (now.visible)
+      spdlog::info("{:.1f} % of the site can be seen from {} places all over the ground together", 100 * *now.visible,
+                   now.evaluations);
     // What it will take is told as each part of it begins to be known.
     if (now.phase != phase && now.seconds_left > 0) {
       phase = now.phase;

@@ -89,6 +89,11 @@ PlanResult plan(Simulator& simulator, const SearchArea& area, const ClashChecker
     candidates = std::make_shared<const Candidates>(
         find_candidates(simulator, area, clash, {.most = kMostCandidates, .sample_voxels = config.sample_voxels},
                         {.report = report, .stop = watch.stop}));
+    if (watch.report)
+      watch.report({.evaluations = candidates->stations().size(),
+                    .seconds_left = -1,
+                    .phase = "look",
+                    .visible = candidates->visible().value});
     // Nothing seen at all: every network captures all of nothing.
     if (limit_wanted) problem.visible = candidates->visible().value > 0 ? candidates->visible().value : 1;
   }

@@ -102,9 +102,15 @@ TEST_P(StandingOnSites, WhatIsLeftOutIsToldByReason) {
   EXPECT_GT(told, 1);
   EXPECT_LT(unreachable[Surface::floor] + sealed[Surface::floor], 1) << "a floor that is reached is told as left out";
   const std::string name = GetParam().name;
-  if (name == "office") EXPECT_GT(unreachable[Surface::roof], 250);
-  if (name == "house") EXPECT_GT(sealed[Surface::sealed], 5);
-  if (name == "street") EXPECT_GT(sealed[Surface::sealed], 6 * 40);
+  if (name == "office") {
+    EXPECT_GT(unreachable[Surface::roof], 250);
+  }
+  if (name == "house") {
+    EXPECT_GT(sealed[Surface::sealed], 5);
+  }
+  if (name == "street") {
+    EXPECT_GT(sealed[Surface::sealed], 6 * 40);
+  }
 }
 
 }  // namespace
