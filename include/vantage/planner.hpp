@@ -64,7 +64,7 @@ SurveyProblem coverage_overlap_min(std::size_t stations_min, std::size_t station
 SurveyProblem fitness_min(std::size_t stations_min, std::size_t stations_max, const FitnessWeights& weights = {});
 /// The surveyor's question: the fewest stations that capture so much of what can be seen, all linked along some
 /// spanning tree by scan overlaps of at least `link`, `apart_m` or more from each other; then, at that number, the
-/// strongest weakest link.
+/// least registration error.
 SurveyProblem fewest_stations(double capture = 0.9, double link = 0.3, std::size_t stations_min = 1,
                               std::size_t stations_max = max_stations, double apart_m = 1);
 /// One of `problem_names()`: "coverage-fix", "coverage-overlap-fix", "coverage-min", "coverage-overlap-min",

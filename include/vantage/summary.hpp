@@ -60,13 +60,14 @@ struct SurveySummary {
   double captured_error = 0;                             ///< Its standard error; 0 where every ray was cast.
   std::optional<double> of_visible = std::nullopt;       ///< The same as a share of what can be seen at all.
   std::optional<SummaryLinks> links = std::nullopt;      ///< Empty: not measured.
+  std::optional<double> registration_mm = std::nullopt;  ///< Predicted error of the registered scans; empty: not known.
   std::optional<double> seconds_on_site = std::nullopt;  ///< Empty: not known.
   std::vector<SummaryFault> faults = {};                 ///< Besides those that the links show.
 };
 /// Of a network of a plan: what the search and the confirmation know of it.
 SurveySummary summary_of(const PlanEntry& entry, const PlanResult& result);
 
-/// A line of a summary: "captured", "linked", "on site" or "to do", and what there is to say.
+/// A line of a summary: "captured", "linked", "registered", "on site" or "to do", and what there is to say.
 struct SummaryLine {
   std::string heading = {}, text = {};
 };

@@ -4,7 +4,9 @@
 #include "cli/command.hpp"
 #include "cli/dropped_points.hpp"
 #include "cli/missed.hpp"
+#include "cli/on_site.hpp"
 #include "cli/options.hpp"
+#include "cli/problem.hpp"
 #include "cli/registration.hpp"
 #include "cli/run_report.hpp"
 #include "cli/site.hpp"
@@ -13,13 +15,17 @@
 namespace vantage::cli {
 namespace {
 
+// Of voxels, for what can be seen at all: known to .004.
+constexpr std::uint64_t visible_sample = 20'000;
+
 struct EvaluateCommandOptions {
   SiteOptions site;
   StationOptions stations;
   RegistrationCliOptions registration;
-  bool exact = false, skip = false, no_overlap = false, with_registration = false;
+  OnSiteCliOptions on_site;
+  bool exact = false, skip = false, no_overlap = false, with_registration = false, visible = false;
   std::optional<SampleSize> sample;
-  std::optional<double> error, link_overlap;
+  std::optional<double> error, link, link_overlap;
   std::optional<std::string> cartography, matrix, picture;
   std::vector<std::string> station_files;
   MissedFiles missed;
@@ -48,6 +54,16 @@ struct EvaluateCommandOptions {
     command.add_flag("--registration", with_registration, "Predict the error of the registered scans")
         ->group("Registration");
     registration.add(command);
+    command
+        .add_flag("--visible", visible,
+                  "Tell it as a share of what can be seen at all, too: takes as long as some hundred sampled stations")
+        ->group("Evaluation");
+    add_number(
+        command, "--link", "SHARE",
+        fmt::format("Scan overlap from which on two stations count as linked, 0 to 1; {} otherwise", default_link),
+        link, {.low = 0, .high = 1})
+        ->group("Evaluation");
+    on_site.add(command, "Evaluation");
     add_text(command, "--cartography", "FILE", "Write every surveyed voxel with its count, in false colours: .ply",
              cartography)
         ->group("Results");
@@ -59,10 +75,11 @@ struct EvaluateCommandOptions {
               "Write the stations for the crew: .dxf, and where --crs is given .geojson or .kml; may be repeated",
               station_files)
         ->group("Results");
-    add_number(
-        command, "--link-overlap", "W",
-        fmt::format("Overlap from which on two stations count as linked, 0 to 1; {} otherwise", default_link_overlap),
-        link_overlap, {.low = 0, .high = 1})
+    add_number(command, "--link-overlap", "W",
+               fmt::format(
+                   "Overlap (equation 11) from which on the picture and the drawings show a link, 0 to 1; {} otherwise",
+                   default_link_overlap),
+               link_overlap, {.low = 0, .high = 1})
         ->group("Results");
     command.add_flag("--json", json, "Print one JSON object");
   }
@@ -71,6 +88,19 @@ struct EvaluateCommandOptions {
     return with_registration ? std::optional(registration.settle().model) : std::nullopt;
   }
 };
+
+// Over all surfaces, by every ray of a coarser pattern.
+NetworkCounts evaluate_surroundings(const Simulator& simulator, const Network& network, std::stop_token stop) {
+  return surroundings_of(simulator).evaluate(network, {.overlap = true}, {.report = {}, .stop = std::move(stop)});
+}
+
+// As `plan` looks at it before it searches.
+Estimate visible_share(LoadedSite& site, Simulator& simulator, std::uint64_t sample, Program& program) {
+  ProgressLine line(program.console, "look");
+  return find_candidates(simulator, site.area(), site.clash(), {.most = 512, .sample_voxels = sample},
+                         {.report = [&](double done) { line.update(done); }, .stop = program.stop})
+      .visible();
+}
 
 NetworkCounts evaluate_sample(Simulator& simulator, const Network& network, const EvaluateCommandOptions& options,
                               const Progress& progress) {
@@ -159,7 +189,9 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
                                     .field = options.cartography || !options.missed.files.empty() ? &field : nullptr,
                                     .registration = options.model()},
                                    progress);
-  if (counts.cancelled) {
+  const NetworkCounts surroundings =
+      overlap && !counts.cancelled ? evaluate_surroundings(simulator, network, program.stop) : NetworkCounts{};
+  if (counts.cancelled || surroundings.cancelled) {
     spdlog::error("stopped before the end; nothing was written");
     return exit_failed;
   }
@@ -203,10 +235,23 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
     rows.push_back(std::move(row));
   }
   SurveySummary summary{.names = names, .captured = covered.value, .captured_error = covered.standard_error};
+  const OverlapMatrix scan_overlaps = overlap ? scan_overlap_matrix(surroundings) : OverlapMatrix{};
   if (overlap) {
     std::vector<bool> used;
     for (const PlacedStation& station : placed) used.push_back(active(station));
-    summary.links = summary_links(matrix, link_overlap, used);
+    summary.links = summary_links(scan_overlaps, options.link.value_or(default_link), used);
+    summary.links->measure = "scan overlap";
+  }
+  std::optional<Estimate> visible;
+  if (options.visible) {
+    visible = visible_share(site, simulator, sampled ? counts.voxels : visible_sample, program);
+    if (visible->value > 0) summary.of_visible = std::min(1.0, covered.value / visible->value);
+  }
+  if (options.with_registration) summary.registration_mm = 1e3 * registered.value;
+  std::optional<Visit> visit;
+  if (site.has_area()) {
+    visit = OnSite(site.area(), site.clash(), site.scanner, options.on_site.settle(site)).visit(placed);
+    summary.seconds_on_site = 60 * visit->minutes;
   }
   summary.faults = station_faults(placed, names);
   if (options.json) {
@@ -216,6 +261,10 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
                         {"overlap", nullptr},
                         {"overlap_se", nullptr},
                         {"overlap_matrix", nullptr},
+                        {"scan_overlap_matrix", nullptr},
+                        {"visible", nullptr},
+                        {"visible_se", nullptr},
+                        {"minutes_on_site", nullptr},
                         {"stations", std::move(rows)},
                         {"dropped", nullptr},
                         {"voxels", voxels},
@@ -233,7 +282,10 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
       json["overlap"] = overlapped.value;
       json["overlap_se"] = overlapped.standard_error;
       json["overlap_matrix"] = matrix_json(matrix);
+      json["scan_overlap_matrix"] = matrix_json(scan_overlaps);
     }
+    if (visible) json["visible"] = visible->value, json["visible_se"] = visible->standard_error;
+    if (visit) json["minutes_on_site"] = visit->minutes;
     if (options.with_registration) json["registration"] = registration_json(error, registered);
     if (sampled) json["sample"] = counts.voxels;
     if (!counts.dropped.empty()) json["dropped"] = dropped_json(all_dropped(counts));

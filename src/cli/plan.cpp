@@ -254,7 +254,7 @@ std::string summary(const PlanResult& result, std::size_t chosen, const std::str
   const PlanEntry& entry = result.front[chosen];
   text += "\n" + station_table(entry.stations, station_names(entry.stations), entry.points_on_surveyed) + "\n";
   text += summary_text(summary_of(entry, result));
-  for (const std::string& help : what_would_help(result)) text += fmt::format("{:<10}{}\n", "would help", help);
+  for (const std::string& help : what_would_help(result)) text += fmt::format("{:<11}{}\n", "would help", help);
   return text + "results in " + folder + "\n";
 }
 
@@ -319,7 +319,7 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   LoadedSite site = open_site(command, options.site);
   weigh_ground(site);
   SurveyProblem problem = options.problem.settle(length_scale(site.scene.bounds()));
-  problem.on_site.entrance = site.walkable.enter;  // rounds begin and end where one comes in
+  problem.on_site = options.problem.on_site.settle(site);
   const std::filesystem::path folder =
       options.output ? std::filesystem::path(*options.output)
                      : std::filesystem::path(std::filesystem::path(options.site.scene).stem().string() + "-plan");

@@ -66,12 +66,7 @@ void ProblemOptions::add(CLI::App& command) {
       command, "--max-time-on-site", "T", "Longest time that the survey may take on site: 90min or 6h",
       [this](const std::string& text, const std::string& what) { time_on_site_min = parse_duration(text, what) / 60; })
       ->group("Problem");
-  add_number(command, "--set-up", "MIN", "Minutes at each station besides the scan itself; 3 otherwise", set_up_min,
-             not_negative)
-      ->group("Problem");
-  add_number(command, "--walking", "M/S", "How fast one walks with the scanner; 0.8 m/s otherwise", walking_m_per_s,
-             positive)
-      ->group("Problem");
+  on_site.add(command, "Problem");
   add_value(
       command, "--objectives", "LIST",
       "What to search for once the number is decided, or with --stations at once: any of " + joined(objective_names()),
@@ -172,8 +167,6 @@ SurveyProblem ProblemOptions::settle(double scale) const {
   asked.registration = registration.settle();
   for (Objective& objective : asked.objectives)
     if (objective.needs.registration) objective = make_objective(objective.name, asked.settings());
-  if (set_up_min) asked.on_site.set_up_min = *set_up_min;
-  if (walking_m_per_s) asked.on_site.walking_m_per_s = *walking_m_per_s;
   const auto at_least = [&](const char* name, std::optional<double> limit) {
     if (limit && *limit > 0) require(asked, fmt::format("{}>={}", name, *limit));
   };

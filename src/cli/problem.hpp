@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/on_site.hpp"
 #include "cli/parse.hpp"
 #include "cli/registration.hpp"
 #include "cli/site.hpp"
@@ -20,16 +21,17 @@ struct ProblemOptions {
   std::vector<StationText> keep;
   std::optional<std::array<double, 2>> heights;
   std::optional<double> link_overlap, min_overlap;
-  std::optional<double> capture, link, apart, set_up_min, walking_m_per_s;
+  std::optional<double> capture, link, apart;
   std::optional<double> time_on_site_min;
   std::optional<FitnessWeights> fitness;
   RegistrationCliOptions registration;
+  OnSiteCliOptions on_site;
 
   void add(CLI::App& command);
   // Whether it is the surveyor's question: no other problem is named, nor a list of objectives for a given number.
   bool surveyors() const;
   // Problem and number of stations say much about each other; what is missing follows from what is there. Kept stations
-  // are left to the caller. `scale`: of lengths that nobody gave. Throws Error invalid_argument.
+  // and rounds on site are left to the caller. `scale`: of lengths that nobody gave. Throws Error invalid_argument.
   SurveyProblem settle(double scale = 1) const;
 };
 

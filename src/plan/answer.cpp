@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <tuple>
 
 #include "core/text.hpp"
@@ -26,6 +27,13 @@ double distance(const PlanEntry& entry, const SurveyProblem& problem) {
   double sum = 0;
   for (const double f : scaled_objectives(problem, entry.x, values)) sum += std::isnan(f) ? 1 : f * f;
   return std::sqrt(sum);
+}
+
+std::optional<double> time_limit(const SurveyProblem& problem) {
+  for (const Requirement& requirement : problem.requirements)
+    if (requirement.objective.name == "time" && requirement.bound == Requirement::Bound::at_most)
+      return requirement.limit;
+  return std::nullopt;
 }
 
 }  // namespace
@@ -68,6 +76,9 @@ std::vector<std::string> what_would_help(const PlanResult& result) {
       if (placed >= problem.stations_max)
         help.push_back("more stations than " + std::to_string(problem.stations_max) + " for " + to_string(requirement) +
                        "; these reach " + reached);
+      else if (const auto most = time_limit(problem))
+        help.push_back("more time than " + number(*most) + " min on site, or a lower " + name + " than " +
+                       number(requirement.limit) + "; this reaches " + reached);
       else
         help.push_back("a lower " + name + " than " + number(requirement.limit) + "; this reaches " + reached +
                        (problem.visible && name == "coverage" && requirement.limit > *problem.visible

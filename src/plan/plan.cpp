@@ -3,6 +3,7 @@
 #include <chrono>
 #include <utility>
 
+#include "plan/drop_networks.hpp"
 #include "plan/plan_fewest.hpp"
 #include "plan/run.hpp"
 #include "plan/somewhere_to_stand.hpp"
@@ -36,26 +37,6 @@ SurveyProblem settled(SurveyProblem problem) {
 constexpr std::size_t kMostCandidates = 512;
 // The front of more entries than this has its rounds worked out for the answer alone.
 constexpr std::size_t kMostRounds = 16;
-
-bool same_places(const PlanEntry& a, const PlanEntry& b) {
-  return std::ranges::equal(a.stations, b.stations, {}, &PlacedStation::position, &PlacedStation::position);
-}
-
-// Networks that stand where another does, and, where any keeps its stations apart, those that do not. The problems of
-// the method, by name, keep their fronts as they are.
-void drop_doubles(std::vector<PlanEntry>& front, const SurveyProblem& problem) {
-  if (std::ranges::count(problem_names(), problem.name) > 0) return;
-  std::vector<PlanEntry> left;
-  for (PlanEntry& entry : front)
-    if (std::ranges::none_of(left, [&](const PlanEntry& other) { return same_places(entry, other); }))
-      left.push_back(std::move(entry));
-  for (const Requirement& requirement : problem.requirements) {
-    if (requirement.objective.name != "apart") continue;
-    const auto keeps = [&](const PlanEntry& entry) { return requirement.missed_by(entry.value("apart")) == 0; };
-    if (std::ranges::any_of(left, keeps)) std::erase_if(left, [&](const PlanEntry& entry) { return !keeps(entry); });
-  }
-  front = std::move(left);
-}
 
 void work_out_rounds(PlanResult& result, Run& run) {
   if (result.front.empty()) return;
@@ -111,7 +92,7 @@ PlanResult plan(Simulator& simulator, const SearchArea& area, const ClashChecker
     const double searched_trace = run.evaluator().trace_seconds();
     result = run.result(found);
     result.front = run.confirm(found, problem, watch);
-    drop_doubles(result.front, problem);
+    drop_networks(result.front, problem);
     result.exact_hypervolume = judge_by_every_ray(result.front, problem, run.measures());
     result.seconds = found.seconds + since(searched);
     result.trace_seconds = found.trace_seconds + run.evaluator().trace_seconds() - searched_trace;

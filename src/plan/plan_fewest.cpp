@@ -12,6 +12,7 @@
 
 #include "plan/candidate_table.hpp"
 #include "plan/choose_optimiser.hpp"
+#include "plan/drop_networks.hpp"
 #include "plan/fewest_on_rows.hpp"
 #include "plan/spread_positions.hpp"
 
@@ -45,16 +46,24 @@ double limit_of(const SurveyProblem& problem, std::string_view name) {
   return limit;
 }
 
+// How long the survey may take on site; infinite where nothing is said.
+double most_minutes(const SurveyProblem& problem) {
+  double limit = std::numeric_limits<double>::infinity();
+  for (const Requirement& r : problem.requirements)
+    if (r.objective.name == "time" && r.bound == Requirement::Bound::at_most) limit = std::min(limit, r.limit);
+  return limit;
+}
+
 class FewestPlan {
  public:
   FewestPlan(Run& run, Simulator& simulator, const Candidates& candidates, const PlanConfig& config,
              const PlanWatch& watch)
       : run_(run),
-
         candidates_(candidates),
         config_(config),
         watch_(watch),
         problem_(run.problem()),
+        most_(problem_.stations_max),
         link_(limit_of(problem_, "link")),
         table_(simulator, link_ > 0 || wants_links() ? &run.surroundings() : nullptr, sample_of(simulator),
                surroundings_sample(), limit_of(problem_, "apart")) {
@@ -127,7 +136,7 @@ class FewestPlan {
             .fewest = fewest,
             .most = most};
   }
-  RowQuestion question() const { return question(problem_.stations_min, problem_.stations_max); }
+  RowQuestion question() const { return question(problem_.stations_min, most_); }
   std::vector<PlacedStation> stations_of(const RowAnswer& answer) const {
     std::vector<PlacedStation> stations;
     for (const std::size_t row : answer.rows) stations.push_back(table_.stations()[row]);
@@ -137,7 +146,28 @@ class FewestPlan {
   void choose() {
     tell("choose", -1);
     choice_ = fewest_on_rows(question(), watch_.stop, {}, &nearly_);
+    fit_time();
     choice_ = better_on_rows(question(), std::move(choice_), watch_.stop);
+  }
+
+  double minutes(const RowAnswer& answer) {
+    const std::vector<PlacedStation> stations = stations_of(answer);
+    return run_.on_site().visit(std::span(stations).subspan(problem_.kept.size())).minutes;
+  }
+
+  // Where a round of as many as it takes lasts too long: the most that can be captured by as many as there is time for.
+  void fit_time() {
+    const double limit = most_minutes(problem_);
+    if (limit == std::numeric_limits<double>::infinity()) return;
+    const std::size_t kept = problem_.kept.size();
+    const double each = run_.on_site().minutes_per_scan() + run_.on_site().options().set_up_min;
+    std::size_t placed = choice_.rows.size() - kept;
+    if (each > 0) placed = std::min(placed, static_cast<std::size_t>(std::max(1.0, limit / each)));
+    for (; minutes(choice_) > limit && placed >= std::max<std::size_t>(problem_.stations_min, 1); --placed) {
+      most_ = placed;
+      nearly_.reset();
+      choice_ = fewest_on_rows(question(), watch_.stop);
+    }
   }
 
   // More candidates around what was chosen, and around the best network of one station fewer.
@@ -268,6 +298,7 @@ class FewestPlan {
     std::vector<PlanEntry> left;
     for (PlanEntry& entry : entries_)
       if (entry.confirmed || !any_confirmed) left.push_back(std::move(entry));
+    drop_unplaced(left, problem_.kept.size());
     const auto rank = [](const PlanEntry& entry) {
       return std::pair{entry.missed, entry.missed > 0 ? std::size_t{0} : entry.stations.size()};
     };
@@ -288,9 +319,6 @@ class FewestPlan {
       if (ranks[k] == 0 && !doubled && (objectives > 1 || front.empty())) front.push_back(std::move(left[k]));
     }
     return front;
-  }
-  static bool same_places(const PlanEntry& a, const PlanEntry& b) {
-    return std::ranges::equal(a.stations, b.stations, {}, &PlacedStation::position, &PlacedStation::position);
   }
 
   // Time ran out before anything was traced: an allowed position, of which nothing is known.
@@ -316,6 +344,7 @@ class FewestPlan {
   const PlanConfig& config_;
   const PlanWatch& watch_;
   const SurveyProblem problem_;
+  std::size_t most_;  // stations
   double link_, coverage_ = 0, coverage_margin_ = 0, link_margin_ = 0;
   CandidateTable table_;
   RowAnswer choice_;

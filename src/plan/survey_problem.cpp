@@ -74,7 +74,7 @@ std::span<const std::string> problem_names() {
 
 SurveyProblem fewest_stations(double capture, double link, std::size_t stations_min, std::size_t stations_max,
                               double apart_m) {
-  const std::vector<std::string> goal{"link"};
+  const std::vector<std::string> goal{"registration"};
   SurveyProblem problem = survey_problem(goal, stations_min, stations_max);
   problem.name = "survey";
   problem.fewest = true;

@@ -138,6 +138,8 @@ SurveySummary summary_of(const PlanEntry& entry, const PlanResult& result) {
   summary.captured_error = entry.confirmed ? 0 : covered.standard_error;
   if (const auto captured = entry.values.find("capture"); captured != entry.values.end())
     summary.of_visible = captured->second.best_known();
+  if (const auto error = entry.values.find("registration"); error != entry.values.end())
+    summary.registration_mm = error->second.best_known();
   if (entry.visit) summary.seconds_on_site = 60 * entry.visit->minutes;
   if (entry.confirmed) {
     std::vector<bool> used;
@@ -165,6 +167,8 @@ SurveySummary summary_of(const PlanEntry& entry, const PlanResult& result) {
 std::vector<SummaryLine> summary_lines(const SurveySummary& summary) {
   std::vector<SummaryLine> lines{{"captured", captured_text(summary)}};
   if (summary.links) lines.push_back({"linked", links_text(summary)});
+  if (summary.registration_mm && std::isfinite(*summary.registration_mm))
+    lines.push_back({"registered", "to about " + fixed(*summary.registration_mm, 2) + " mm, as predicted"});
   if (summary.seconds_on_site) lines.push_back({"on site", "about " + duration(*summary.seconds_on_site)});
   for (const std::string& advice : links_advice(summary)) lines.push_back({"to do", advice});
   for (const SummaryFault& fault : summary.faults) lines.push_back({"to do", fault.what + ": " + fault.advice});
@@ -176,7 +180,7 @@ std::string summary_text(const SurveySummary& summary) {
   for (const SummaryLine& line : summary_lines(summary)) {
     std::string heading = line.heading == last ? "" : line.heading;
     last = line.heading;
-    heading.resize(10, ' ');
+    heading.resize(11, ' ');
     text += heading + line.text + "\n";
   }
   return text;

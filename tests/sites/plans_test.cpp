@@ -93,6 +93,37 @@ TEST_P(Plans, MeetWhatIsAskedAndVisitEveryRoom) {
   EXPECT_EQ(entry.visit->order.size(), entry.stations.size());
 }
 
+TEST(PlansInATime, HaveAsManyStationsAsThereIsTimeFor) {
+  const test::TemporaryFolder folder;
+  test::write_site(test::make_site("office"), {}, folder / "site.glb");
+  const Scene scene = Scene::load(folder / "site.glb");
+  const SearchArea area = SearchArea::build(scene);
+  const ClashChecker clash(scene);
+  Simulator simulator(scene, coarse_scanner(),
+                      {.engine = Engine::embree, .user_size_m = kVoxel_m, .point_spacing_m = kSpacing_m});
+  const PlanConfig config{.iterations = 2, .sample_voxels = kSample};
+  const auto planned = [&](const SurveyProblem& problem) { return plan(simulator, area, clash, problem, config); };
+  const PlanResult free = planned(fewest_stations());
+  const PlanEntry& all = free.front[answer(free)];
+  ASSERT_TRUE(all.visit);
+
+  SurveyProblem hurried = fewest_stations();
+  const double limit = 0.6 * all.visit->minutes;
+  hurried.requirements.push_back({make_objective("time"), Requirement::Bound::at_most, limit});
+  const PlanResult result = planned(hurried);
+  const PlanEntry& entry = result.front[answer(result)];
+  ASSERT_TRUE(entry.visit);
+  EXPECT_LE(entry.visit->minutes, limit);
+  EXPECT_LT(entry.value("capture"), all.value("capture"));
+  EXPECT_FALSE(met(result));
+  // The walk of the whole network is about as long as that of a part of it gets.
+  const double each = (all.visit->scan_min + all.visit->set_up_min) / static_cast<double>(all.stations.size());
+  EXPECT_GE(static_cast<double>(entry.stations.size()) + 1, std::floor((limit - all.visit->walk_min) / each));
+  const std::vector<std::string> help = what_would_help(result);
+  ASSERT_FALSE(help.empty());
+  EXPECT_NE(help.front().find("more time than"), std::string::npos) << help.front();
+}
+
 INSTANTIATE_TEST_SUITE_P(OfEverySite, Plans, testing::Values("office", "house", "street", "plant"),
                          [](const auto& site) { return site.param; });
 

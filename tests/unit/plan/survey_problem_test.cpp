@@ -114,7 +114,7 @@ TEST(SurveyProblem, TheSurveyorsQuestionAsksForFewStations) {
   EXPECT_EQ(to_string(problem.requirements[0]), "capture >= 0.95");
   EXPECT_EQ(to_string(problem.requirements[1]), "link >= 0.2");
   ASSERT_EQ(problem.objectives.size(), 1u);
-  EXPECT_EQ(problem.objectives[0].name, "link");
+  EXPECT_EQ(problem.objectives[0].name, "registration");
   EXPECT_EQ(fewest_stations().requirements.size(), 3u);
   EXPECT_TRUE(fewest_stations(0, 0, 1, 4, 0).requirements.empty());
   for (const std::string& name : problem_names())

@@ -41,27 +41,29 @@ TEST(Summary, LinksTellPartsAndWhereTheyAreNearest) {
 
 TEST(Summary, SaysInWordsWhatItKnowsAndNothingElse) {
   SurveySummary summary{.names = {"S1", "S2", "S3", "S4", "S5", "S6", "S7"}, .captured = 0.7125};
-  EXPECT_EQ(summary_text(summary), "captured  71.2 % of the site\n");
+  EXPECT_EQ(summary_text(summary), "captured   71.2 % of the site\n");
   summary.captured_error = 0.004;
   summary.of_visible = 0.92;
+  summary.registration_mm = 1.234;
   summary.seconds_on_site = 3 * 3600 + 25 * 60 + 20;
   summary.links = summary_links(three_parts(), 0.01, kUsed);
   summary.faults = {{"S7 is in a hole", "move it"}};
   EXPECT_EQ(
       summary_text(summary),
-      "captured  71.2 % ± 0.4 % of the site, 92.0 % of what can be seen\n"
-      "linked    no: in 3 parts, by overlap of at least 0.01: S1, S2 and S3; S4 and S5; S6 stands alone\n"
-      "on site   about 3 h 25 min\n"
-      "to do     link S4 to S3, the nearest to it with 0.004: put a station between them, or move them closer\n"
-      "          S6 shares nothing with any station of another part: put a station between it and S1, or tie it in "
+      "captured   71.2 % ± 0.4 % of the site, 92.0 % of what can be seen\n"
+      "linked     no: in 3 parts, by overlap of at least 0.01: S1, S2 and S3; S4 and S5; S6 stands alone\n"
+      "registered to about 1.23 mm, as predicted\n"
+      "on site    about 3 h 25 min\n"
+      "to do      link S4 to S3, the nearest to it with 0.004: put a station between them, or move them closer\n"
+      "           S6 shares nothing with any station of another part: put a station between it and S1, or tie it in "
       "with targets\n"
-      "          S7 is in a hole: move it\n");
+      "           S7 is in a hole: move it\n");
   OverlapMatrix pair(2);
   pair.set(0, 1, 0.3);
   SurveySummary linked{.names = {"K1", "S1"}, .captured = 1, .links = summary_links(pair, 0.01, {true, true})};
   EXPECT_EQ(summary_text(linked),
-            "captured  100.0 % of the site\n"
-            "linked    yes: all 2 stations, by overlap of at least 0.01; weakest link K1–S1 with 0.300\n");
+            "captured   100.0 % of the site\n"
+            "linked     yes: all 2 stations, by overlap of at least 0.01; weakest link K1–S1 with 0.300\n");
   linked.links = summary_links(OverlapMatrix(1), 0.01, {true});
   EXPECT_EQ(summary_lines(linked)[1].text, "one station, nothing to link");
 }
