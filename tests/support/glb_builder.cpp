@@ -94,7 +94,7 @@ void GlbBuilder::write_gltf_data_uri(const std::filesystem::path& file) const {
 }
 
 void write_bytes(const std::filesystem::path& file, const std::string& bytes) {
-  std::filesystem::create_directories(file.parent_path());
+  if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path());
   std::filesystem::remove(file);  // some file systems flush when a file is overwritten, which takes milliseconds
   std::ofstream(file, std::ios::binary) << bytes;
 }
