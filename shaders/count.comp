@@ -58,7 +58,7 @@ void main() {
     }
   }
   const uint points = subgroupAdd(is_point ? 1u : 0u), counted_points = subgroupAdd(counted ? 1u : 0u);
-  const uint first_word = 2u * station_counters * push.place;
+  const uint first_word = 2u * station_counters * (push.place & 63u);  // its bit
   if (subgroupElect()) {
     if (points > 0u) add64(push.counters, first_word + 2u * counter_points, points);
     if (counted_points > 0u) add64(push.counters, first_word + 2u * counter_counted, counted_points);

@@ -41,7 +41,7 @@ void main() {
         if (cell_of(point, cell) && cell == uvec3(voxel.x, voxel.y, voxel.z) && misses_of(hit, look, direction) == 0u) {
           atomicAdd(push.counts.at[entry], 1u);
           if (with_masks) {
-            const uint word = (network * push.mask_words + (station.place >> 5)) * push.voxel_count + job.voxel;
+            const uint word = (network * push.mask_words + ((station.place & 63u) >> 5)) * push.voxel_count + job.voxel;
             const uint bit = 1u << (station.place & 31u);
             if ((push.masks.at[word] & bit) == 0u) atomicOr(push.masks.at[word], bit);
           }

@@ -36,8 +36,12 @@ struct EngineInfo {
 /// All engines on all devices of this machine, usable or not. Never throws for want of a device.
 std::vector<EngineInfo> list_engines();
 
-/// Most stations of a network: each has a bit in the station mask of a voxel.
-inline constexpr std::size_t max_stations = 64;
+/// Most stations of a network.
+inline constexpr std::size_t max_stations = 1024;
+/// Each station has a bit in the station mask of a voxel: bit i % 64 of word i / 64.
+inline constexpr std::size_t mask_bits = 64;
+/// Words of such a mask.
+constexpr std::size_t mask_words(std::size_t stations) { return (stations + mask_bits - 1) / mask_bits; }
 
 /// How well one scan has a surface, apart from the noise of its ranges: a modelling error ρ that is one and the same
 /// over a patch of side L, so that a huge wall is not a million independent measurements.
@@ -105,8 +109,10 @@ struct NetworkCounts {
 
 /// A voxel field: the cartography of coverage. Element k belongs to the k-th surveyed voxel in Morton order.
 struct VoxelField {
-  std::vector<std::uint32_t> count;     ///< Points, saturating.
-  std::vector<std::uint64_t> stations;  ///< Bit i: station i has a point in the voxel.
+  std::vector<std::uint32_t> count;  ///< Points, saturating.
+  /// Word w of voxel k at w · count.size() + k, `mask_words()` words in all; bit b of it: station 64 w + b has a point
+  /// in the voxel. Empty without overlap.
+  std::vector<std::uint64_t> stations;
 };
 
 }  // namespace vantage

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <bitset>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -57,10 +58,10 @@ Parts parts_of(const PairTable& pairs, std::span<const std::size_t> rows, double
 // Parts left once `row` is there too.
 std::size_t parts_with(const PairTable& pairs, std::span<const std::size_t> rows, const Parts& parts, std::size_t row,
                        double link) {
-  std::uint64_t joined = 0;  // no network has more than 64 stations
+  std::bitset<max_stations> joined;
   for (std::size_t i = 0; i < rows.size(); ++i)
-    if (static_cast<double>(pairs.overlap(rows[i], row)) >= link) joined |= std::uint64_t{1} << parts.part[i];
-  return parts.count + 1 - static_cast<std::size_t>(std::popcount(joined));
+    if (static_cast<double>(pairs.overlap(rows[i], row)) >= link) joined.set(parts.part[i]);
+  return parts.count + 1 - joined.count();
 }
 
 double weakest_of(const PairTable& pairs, std::span<const std::size_t> rows) {

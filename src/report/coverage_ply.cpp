@@ -15,14 +15,17 @@ void write_coverage_ply(const std::filesystem::path& file, const Simulator& simu
     throw Error(Errc::invalid_argument,
                 "the cartography's counts and stations of each voxel need a .ply file, not " + file.string());
   const std::uint64_t voxels = simulator.voxel_count();
-  if (field.count.size() != voxels || (!field.stations.empty() && field.stations.size() != voxels))
+  if (field.count.size() != voxels || (voxels > 0 && field.stations.size() % voxels != 0))
     throw Error(Errc::invalid_argument, "the voxel field has " + std::to_string(field.count.size()) +
                                             " counts, the scene " + std::to_string(voxels) + " surveyed voxels");
-  const bool masks = !field.stations.empty();
+  const std::size_t words = voxels > 0 ? field.stations.size() / voxels : 0;
   std::vector<PlyProperty> properties{{"double", "x"},    {"double", "y"},   {"double", "z"},    {"uchar", "red"},
                                       {"uchar", "green"}, {"uchar", "blue"}, {"float", "ratio"}, {"uint", "count"}};
-  // PLY knows no 64-bit integer: a bit a station, 1 to 32, and 33 to 64.
-  if (masks) properties.insert(properties.end(), {{"uint", "stations_low"}, {"uint", "stations_high"}});
+  // PLY knows no 64-bit integer: a bit a station, 1 to 32, and 33 to 64; of larger networks 65 to 96 and so on.
+  for (std::size_t w = 0; w < words; ++w) {
+    const std::string of = w == 0 ? "" : "_" + std::to_string(w + 1);
+    properties.push_back({"uint", "stations" + of + "_low"}), properties.push_back({"uint", "stations" + of + "_high"});
+  }
 
   AtomicFile out(file);
   out.write(PlyHeader(properties).text(voxels));
@@ -37,9 +40,9 @@ void write_coverage_ply(const std::filesystem::path& file, const Simulator& simu
       for (const std::uint8_t channel : to_bytes(ramp(kCoverageRamp, ratio))) append(bytes, channel);
       append(bytes, static_cast<float>(ratio));
       append(bytes, field.count[rank]);
-      if (masks) {
-        append(bytes, static_cast<std::uint32_t>(field.stations[rank]));
-        append(bytes, static_cast<std::uint32_t>(field.stations[rank] >> 32));
+      for (std::size_t w = 0; w < words; ++w) {
+        append(bytes, static_cast<std::uint32_t>(field.stations[w * voxels + rank]));
+        append(bytes, static_cast<std::uint32_t>(field.stations[w * voxels + rank] >> 32));
       }
     }
     out.write(bytes);

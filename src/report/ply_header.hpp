@@ -14,7 +14,7 @@ namespace vantage {
 
 struct PlyProperty {
   const char* type;
-  const char* name;
+  std::string name;
 };
 
 class PlyHeader {

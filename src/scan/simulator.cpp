@@ -15,6 +15,7 @@
 #include "scan/pattern.hpp"
 #include "scan/scan_chunk.hpp"
 #include "scan/voxel_sample.hpp"
+#include "trace/passes.hpp"
 #include "trace/registration_sums.hpp"
 #include "trace/tracer.hpp"
 #include "vantage/error.hpp"
@@ -84,6 +85,26 @@ NetworkCounts nothing_seen(std::uint64_t voxels, std::uint64_t weight, std::size
     counts.registration.surface.assign(stations * RegistrationSums::of_station, 0);
   }
   return counts;
+}
+
+// Where one of them is large: its masks are put together on the host, and those of many would not fit side by side.
+std::vector<NetworkCounts> evaluate_one_by_one(Simulator& simulator, std::span<const Network> networks,
+                                               const SampleOptions& options, const Progress& progress) {
+  std::vector<NetworkCounts> all;
+  const auto share = [&](double done) {
+    progress((static_cast<double>(all.size()) + done) / static_cast<double>(networks.size()));
+  };
+  for (std::size_t k = 0; k < networks.size(); ++k) {
+    SampleOptions one = options;
+    if (options.points)
+      one.points = [&options, k](std::size_t, std::span<const std::uint32_t> points) { options.points(k, points); };
+    NetworkCounts counts =
+        simulator.evaluate_sampled(networks.subspan(k, 1), one, {.report = share, .stop = progress.stop}).front();
+    all.push_back(std::move(counts));
+    if (all.back().cancelled) break;
+  }
+  for (std::size_t k = all.size(); k < networks.size(); ++k) all.push_back(all.back());
+  return all;
 }
 
 void check_registration(const std::optional<RegistrationModel>& registration, bool overlap) {
@@ -261,7 +282,7 @@ NetworkCounts Simulator::evaluate(const Network& network, const EvaluateOptions&
   if (active.empty()) {
     if (options.field) {
       options.field->count.assign(voxel_count(), 0);
-      options.field->stations.assign(voxel_count(), 0);
+      options.field->stations.assign(voxel_count() * mask_words(network.size()), 0);
     }
     NetworkCounts counts = nothing_seen(voxel_count(), impl_->grid->total_weight(), network.size(), options.overlap,
                                         options.registration.has_value());
@@ -274,7 +295,8 @@ NetworkCounts Simulator::evaluate(const Network& network, const EvaluateOptions&
   VoxelField* field = options.registration && !options.field ? &own : options.field;
   const auto size = static_cast<std::uint32_t>(network.size());
   NetworkCounts counts =
-      impl_->tracer->count(active, size, {.masks = options.overlap, .skip = options.skip, .field = field}, progress);
+      count_in_passes(*impl_->tracer, active, size, {.masks = options.overlap, .skip = options.skip, .field = field},
+                      *impl_->grid, impl_->goal, progress);
   if (options.registration && !counts.cancelled) {
     std::vector<std::uint32_t> ranks(voxel_count());
     std::iota(ranks.begin(), ranks.end(), 0u);
@@ -287,6 +309,8 @@ NetworkCounts Simulator::evaluate(const Network& network, const EvaluateOptions&
 std::vector<NetworkCounts> Simulator::evaluate_sampled(std::span<const Network> networks, const SampleOptions& options,
                                                        const Progress& progress) {
   check_registration(options.registration, options.overlap);
+  const bool large = std::ranges::any_of(networks, [](const Network& n) { return n.size() > mask_bits; });
+  if (large && networks.size() > 1) return evaluate_one_by_one(*this, networks, options, progress);
   const std::vector<std::uint32_t>& sample = impl_->sample(options.voxels);
   std::vector<NetworkCounts> all(networks.size());
   // Networks without an active station are not the engine's concern.
@@ -320,21 +344,25 @@ std::vector<NetworkCounts> Simulator::evaluate_sampled(std::span<const Network> 
     const Patches& patches = impl_->patches_of(sample, *options.registration);
     const std::uint32_t groups = options.registration_groups ? sample_groups : 0;
     sum = [&, groups](std::size_t first, std::span<const std::uint64_t> masks) {
-      tbb::parallel_for(std::size_t{0}, masks.size() / sample.size(), [&, first, masks](std::size_t k) {
+      const std::size_t each = sample.size() * (large ? mask_words(sizes[first]) : 1);
+      tbb::parallel_for(std::size_t{0}, masks.size() / each, [&, first, masks, each](std::size_t k) {
         registration[first + k] = sum_patches(patches, impl_->range_noise, traced[first + k], sizes[first + k],
-                                              masks.subspan(k * sample.size(), sample.size()), groups);
+                                              masks.subspan(k * each, each), groups);
       });
     };
   }
-  std::vector<NetworkCounts> counts =
-      impl_->tracer->count_sampled(traced, sizes,
-                                   {.sample = sample,
-                                    .groups = sample_groups,
-                                    .masks = options.overlap,
-                                    .stop_at = stop_at_goal ? static_cast<std::uint32_t>(std::ceil(impl_->goal)) : 0,
-                                    .points = options.points ? decltype(options.points)(points) : nullptr,
-                                    .station_masks = sum},
-                                   progress);
+  const Tracer::SampleJob job{.sample = sample,
+                              .groups = sample_groups,
+                              .masks = options.overlap,
+                              .stop_at = stop_at_goal ? static_cast<std::uint32_t>(std::ceil(impl_->goal)) : 0,
+                              .points = options.points ? decltype(options.points)(points) : nullptr,
+                              .station_masks = sum};
+  std::vector<NetworkCounts> counts;
+  if (large)
+    counts.push_back(count_sampled_in_passes(*impl_->tracer, traced.front(), sizes.front(), job, *impl_->grid,
+                                             impl_->goal, progress));
+  else
+    counts = impl_->tracer->count_sampled(traced, sizes, job, progress);
   for (std::size_t k = 0; k < counts.size(); ++k) {
     if (k < registration.size() && !registration[k].empty()) {
       counts[k].registration = std::move(registration[k][0]);

@@ -43,6 +43,7 @@ void transpose(std::array<std::uint64_t, block>& rows) {
   }
 }
 
+// Of up to 64 stations.
 VANTAGE_TARGET_CLONES
 void add_pairs(const std::uint64_t* masks, std::size_t n, std::size_t stations, std::uint64_t* seen,
                std::uint64_t* shared) {
@@ -63,6 +64,37 @@ void add_pairs(const std::uint64_t* masks, std::size_t n, std::size_t stations, 
           pair[j] += static_cast<std::uint64_t>(std::popcount(plane & planes[i + 1 + j]));
       }
       pair += rest;
+    }
+  }
+}
+
+// Of more: only those are paired that see any voxel of the block. `size`: voxels in all, the distance between words.
+VANTAGE_TARGET_CLONES
+void add_many_pairs(const std::uint64_t* masks, std::size_t size, std::size_t n, std::size_t stations,
+                    std::uint64_t* seen, std::uint64_t* shared) {
+  std::vector<std::uint64_t> plane(stations);
+  std::vector<std::size_t> here;
+  for (std::size_t first = 0; first < n; first += block) {
+    here.clear();
+    const std::size_t end = std::min(n, first + block);
+    for (std::size_t w = 0; w < mask_words(stations); ++w) {
+      std::array<std::uint64_t, block> planes{};
+      std::uint64_t any = 0;
+      for (std::size_t k = first; k < end; ++k) any |= planes[k - first] = masks[w * size + k];
+      if (any == 0) continue;
+      transpose(planes);
+      for (; any != 0; any &= any - 1) {
+        const auto b = static_cast<std::size_t>(std::countr_zero(any));
+        plane[w * mask_bits + b] = planes[b];
+        here.push_back(w * mask_bits + b);
+      }
+    }
+    for (std::size_t a = 0; a < here.size(); ++a) {
+      const std::size_t i = here[a];
+      seen[i] += static_cast<std::uint64_t>(std::popcount(plane[i]));
+      std::uint64_t* const pair = shared + i * (2 * stations - i - 1) / 2;
+      for (std::size_t b = a + 1; b < here.size(); ++b)
+        pair[here[b] - i - 1] += static_cast<std::uint64_t>(std::popcount(plane[i] & plane[here[b]]));
     }
   }
 }
@@ -92,7 +124,10 @@ NetworkCounts reduce_field(std::span<const std::uint32_t> counts, std::span<cons
             part.partial_points += weight * counts[k];
           }
         }
-        if (!masks.empty())
+        if (!masks.empty() && stations > mask_bits)
+          add_many_pairs(masks.data() + first, counts.size(), end - first, stations, part.seen.data(),
+                         part.shared.data());
+        else if (!masks.empty())
           add_pairs(masks.data() + first, end - first, stations, part.seen.data(), part.shared.data());
         return part;
       },

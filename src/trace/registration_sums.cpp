@@ -33,8 +33,8 @@ __extension__ using Wide = __int128;
 template <class Number>
 struct Accumulator {
   std::vector<Number> pairs, surface;
-  Accumulator(std::size_t stations, std::size_t groups)
-      : pairs(groups * stations * (stations - 1) / 2 * of_pair), surface(groups * stations * of_station) {}
+  Accumulator(std::size_t stations, std::size_t pairs_kept, std::size_t groups)
+      : pairs(groups * pairs_kept * of_pair), surface(groups * stations * of_station) {}
   template <class Other>
   void add(const Accumulator<Other>& other) {
     for (std::size_t k = 0; k < pairs.size(); ++k) pairs[k] += other.pairs[k];
@@ -78,10 +78,10 @@ View view_of(const Patch& patch, const Float3& head, const NoiseModel& noise, co
 
 VANTAGE_TARGET_CLONES
 void add_products(std::int64_t* sums, const std::int32_t* products, const std::int32_t* weights,
-                  const std::uint8_t* columns, std::size_t many) {
+                  const std::uint32_t* columns, std::size_t many) {
   for (std::size_t k = 0; k < many; ++k) {
     const std::int32_t x = weights[k];
-    std::int64_t* of = sums + columns[k] * of_pair;
+    std::int64_t* of = sums + std::size_t{columns[k]} * of_pair;
     for (std::size_t c = 0; c < of_pair; ++c) of[c] += std::int64_t{x} * products[c];
   }
 }
@@ -99,46 +99,81 @@ class Summer {
         groups_(groups),
         units_(static_cast<float>(patch_weight_units / patches.largest)) {
     for (const TraceStation& station : stations) heads_[station.place] = station.origin;
+    if (count > mask_bits) number_pairs();
   }
 
+  // Pairs that are summed: all of them, or of large networks those that share a voxel.
+  std::size_t pairs() const { return kept_.empty() ? all_pairs() : kept_.size(); }
+  std::size_t all_pairs() const { return stations_ * (stations_ - 1) / 2; }
+  // Of those, the k-th, among all.
+  std::size_t pair(std::size_t k) const { return kept_.empty() ? k : kept_[k]; }
+
   void add(std::size_t first, std::size_t end, Accumulator<std::int64_t>& sums) const {
+    std::array<std::uint16_t, max_stations> seen;
     for (std::size_t k = first; k < end; ++k)
-      if (masks_[k] != 0) add_voxel(k, sums);
+      if (const std::size_t many = stations_of(k, seen)) add_voxel(k, std::span(seen).first(many), sums);
   }
 
  private:
-  void add_voxel(std::size_t k, Accumulator<std::int64_t>& sums) const {
+  // Those that saw a voxel, ascending; how many.
+  std::size_t stations_of(std::size_t voxel, std::array<std::uint16_t, max_stations>& seen) const {
+    std::size_t many = 0;
+    const std::size_t voxels = patches_.patches.size();
+    for (std::size_t at = voxel, first = 0; first < stations_; at += voxels, first += mask_bits)
+      for (std::uint64_t mask = masks_[at]; mask != 0; mask &= mask - 1)
+        seen[many++] = static_cast<std::uint16_t>(first + static_cast<std::size_t>(std::countr_zero(mask)));
+    return many;
+  }
+
+  void number_pairs() {
+    number_.assign(all_pairs(), 0);
+    std::array<std::uint16_t, max_stations> seen;
+    for (std::size_t k = 0; k < patches_.patches.size(); ++k) {
+      const std::size_t many = stations_of(k, seen);
+      for (std::size_t a = 0; a + 1 < many; ++a)
+        for (std::size_t b = a + 1; b < many; ++b) number_[row_of(seen[a]) + seen[b] - seen[a] - 1u] = 1;
+    }
+    for (std::size_t p = 0; p < number_.size(); ++p) {
+      if (number_[p] == 0) continue;
+      number_[p] = static_cast<std::uint32_t>(kept_.size());
+      kept_.push_back(static_cast<std::uint32_t>(p));
+    }
+    if (kept_.empty()) kept_.push_back(0);  // none at all: one sum of nothing
+  }
+  std::size_t row_of(std::size_t i) const { return i * (2 * stations_ - i - 1) / 2; }
+  std::uint32_t number_of(std::size_t pair) const {
+    return number_.empty() ? static_cast<std::uint32_t>(pair) : number_[pair];
+  }
+
+  void add_voxel(std::size_t k, std::span<const std::uint16_t> seen, Accumulator<std::int64_t>& sums) const {
     const Patch& patch = patches_.patches[k];
     const std::size_t group = groups_ > 1 ? k % groups_ : 0;
-    const int seen = std::popcount(masks_[k]);
-    add_surface(patch, masks_[k], seen, sums.surface.data() + group * stations_ * of_station);
-    if (seen > 1 && patch.variance > 0)
-      add_pairs(patch, masks_[k], sums.pairs.data() + group * (stations_ * (stations_ - 1) / 2) * of_pair);
+    add_surface(patch, seen, sums.surface.data() + group * stations_ * of_station);
+    if (seen.size() > 1 && patch.variance > 0) add_pairs(patch, seen, sums.pairs.data() + group * pairs() * of_pair);
   }
 
   // Moments of the covered surface, a voxel's shared by the stations that see it.
-  void add_surface(const Patch& patch, std::uint64_t mask, int seen, std::int64_t* sums) const {
-    const auto weight = static_cast<std::int64_t>(patch.extent * (1.0f / static_cast<float>(seen)) + 0.5f);
+  void add_surface(const Patch& patch, std::span<const std::uint16_t> seen, std::int64_t* sums) const {
+    const auto weight = static_cast<std::int64_t>(patch.extent * (1.0f / static_cast<float>(seen.size())) + 0.5f);
     const std::int64_t x = patch.place[0], y = patch.place[1], z = patch.place[2];
     const std::array<std::int64_t, of_station> moments{1, x, y, z, x * x, x * y, x * z, y * y, y * z, z * z};
-    for (; mask != 0; mask &= mask - 1) {
-      std::int64_t* of = sums + static_cast<std::size_t>(std::countr_zero(mask)) * of_station;
+    for (const std::size_t station : seen) {
+      std::int64_t* of = sums + station * of_station;
       for (std::size_t m = 0; m < of_station; ++m) of[m] += weight * moments[m];
     }
   }
 
-  void add_pairs(const Patch& patch, std::uint64_t mask, std::int64_t* sums) const {
+  void add_pairs(const Patch& patch, std::span<const std::uint16_t> seen, std::int64_t* sums) const {
     // The stations on either side of the plane.
-    std::array<std::array<std::uint8_t, max_stations>, 2> places;
+    std::array<std::array<std::uint16_t, max_stations>, 2> places;
     std::array<std::array<float, max_stations>, 2> weights;
     std::array<std::size_t, 2> many{};
     std::array<float, 2> total{};
-    for (; mask != 0; mask &= mask - 1) {
-      const auto place = static_cast<std::size_t>(std::countr_zero(mask));
+    for (const std::uint16_t place : seen) {
       const View view = view_of(patch, heads_[place], noise_, table_);
       if (view.weight == 0) continue;
       const std::size_t side = view.behind;
-      places[side][many[side]] = static_cast<std::uint8_t>(place);
+      places[side][many[side]] = place;
       weights[side][many[side]++] = view.weight;
       total[side] = total[side] + view.weight;
     }
@@ -155,14 +190,13 @@ class Summer {
         const float scaled = weights[side][a] * scale;
         // A row of pairs: of i with each station after it.
         std::array<std::int32_t, max_stations> shared;
-        std::array<std::uint8_t, max_stations> columns;
+        std::array<std::uint32_t, max_stations> columns;
         std::size_t length = 0;
         for (std::size_t b = a + 1; b < many[side]; ++b, ++length) {
           shared[length] = static_cast<std::int32_t>(scaled * weights[side][b] + 0.5f);
-          columns[length] = static_cast<std::uint8_t>(places[side][b] - i - 1);
+          columns[length] = number_of(row_of(i) + places[side][b] - i - 1);
         }
-        add_products(sums + (i * (2 * stations_ - i - 1) / 2) * of_pair, products.data(), shared.data(), columns.data(),
-                     length);
+        add_products(sums, products.data(), shared.data(), columns.data(), length);
       }
     }
   }
@@ -174,10 +208,11 @@ class Summer {
   std::span<const std::uint64_t> masks_;
   std::size_t stations_, groups_;
   float units_;
+  std::vector<std::uint32_t> number_, kept_;  // of each pair among the kept ones, and back; empty where all are kept
 };
 
-RegistrationSums to_sums(const Accumulator<Wide>& all, const Patches& patches, std::span<const TraceStation> stations,
-                         std::size_t count, std::size_t group) {
+RegistrationSums to_sums(const Accumulator<Wide>& all, const Summer& summer, const Patches& patches,
+                         std::span<const TraceStation> stations, std::size_t count, std::size_t group) {
   RegistrationSums sums;
   sums.centre = patches.centre;
   sums.radius_m = patches.radius;
@@ -185,9 +220,11 @@ RegistrationSums to_sums(const Accumulator<Wide>& all, const Patches& patches, s
   for (const TraceStation& s : stations)
     sums.heads[s.place] = Vec3{s.origin.x, s.origin.y, s.origin.z} - patches.centre;
   const double weight = patches.largest / static_cast<double>(patch_weight_units) / patch_unit / patch_unit;
-  const std::size_t pairs = count * (count - 1) / 2 * of_pair;
-  for (std::size_t k = 0; k < pairs; ++k)
-    sums.pairs.push_back(static_cast<double>(all.pairs[group * pairs + k]) * weight);
+  sums.pairs.assign(summer.all_pairs() * of_pair, 0);
+  for (std::size_t p = 0; p < summer.pairs() && summer.all_pairs() > 0; ++p)
+    for (std::size_t c = 0; c < of_pair; ++c)
+      sums.pairs[summer.pair(p) * of_pair + c] =
+          static_cast<double>(all.pairs[(group * summer.pairs() + p) * of_pair + c]) * weight;
   constexpr std::array<int, of_station> order{0, 1, 1, 1, 2, 2, 2, 2, 2, 2};
   for (std::size_t k = 0; k < count * of_station; ++k)
     sums.surface.push_back(static_cast<double>(all.surface[group * count * of_station + k]) * 0x1p-15 /
@@ -241,13 +278,14 @@ std::vector<RegistrationSums> sum_patches(const Patches& patches, const NoiseMod
                                           std::span<const TraceStation> stations, std::uint32_t station_count,
                                           std::span<const std::uint64_t> masks, std::uint32_t groups) {
   const Summer summer(patches, noise, stations, station_count, masks, groups);
-  const std::size_t sets = std::max<std::size_t>(groups, 1), blocks = (masks.size() + block - 1) / block;
+  const std::size_t sets = std::max<std::size_t>(groups, 1), voxels = patches.patches.size(),
+                    blocks = (voxels + block - 1) / block;
   const auto all = tbb::parallel_reduce(
-      tbb::blocked_range<std::size_t>(0, blocks, 1), Accumulator<Wide>(station_count, sets),
+      tbb::blocked_range<std::size_t>(0, blocks, 1), Accumulator<Wide>(station_count, summer.pairs(), sets),
       [&](const tbb::blocked_range<std::size_t>& range, Accumulator<Wide> sums) {
         for (std::size_t b = range.begin(); b != range.end(); ++b) {
-          Accumulator<std::int64_t> here(station_count, sets);
-          summer.add(b * block, std::min(masks.size(), (b + 1) * block), here);
+          Accumulator<std::int64_t> here(station_count, summer.pairs(), sets);
+          summer.add(b * block, std::min(voxels, (b + 1) * block), here);
           sums.add(here);
         }
         return sums;
@@ -256,12 +294,12 @@ std::vector<RegistrationSums> sum_patches(const Patches& patches, const NoiseMod
         a.add(b);
         return a;
       });
-  if (groups == 0) return {to_sums(all, patches, stations, station_count, 0)};
-  Accumulator<Wide> total(station_count, 1);
+  if (groups == 0) return {to_sums(all, summer, patches, stations, station_count, 0)};
+  Accumulator<Wide> total(station_count, summer.pairs(), 1);
   for (std::size_t k = 0; k < all.pairs.size(); ++k) total.pairs[k % total.pairs.size()] += all.pairs[k];
   for (std::size_t k = 0; k < all.surface.size(); ++k) total.surface[k % total.surface.size()] += all.surface[k];
-  std::vector<RegistrationSums> sums{to_sums(total, patches, stations, station_count, 0)};
-  for (std::size_t g = 0; g < groups; ++g) sums.push_back(to_sums(all, patches, stations, station_count, g));
+  std::vector<RegistrationSums> sums{to_sums(total, summer, patches, stations, station_count, 0)};
+  for (std::size_t g = 0; g < groups; ++g) sums.push_back(to_sums(all, summer, patches, stations, station_count, g));
   return sums;
 }
 

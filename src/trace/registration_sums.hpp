@@ -56,8 +56,9 @@ Patches make_patches(const SceneData& scene, const VoxelGrid& grid, std::span<co
                      const RayPattern& pattern, const RegistrationModel& model);
 
 // Sums over all patches, then those of each of `groups` interleaved groups. masks: of the stations that saw each
-// patch's voxel, by place. `noise`: disabled where ranges are exact. Exact, so it depends on neither order nor threads.
-// REQUIRES: masks.size() == patches.size(), and no bit that is not a station's.
+// patch's voxel, by place, word after word as in `VoxelField`. `noise`: disabled where ranges are exact. Exact, so it
+// depends on neither order nor threads. REQUIRES: masks.size() == patches.size() · mask_words(station_count), and no
+// bit that is not a station's.
 std::vector<RegistrationSums> sum_patches(const Patches& patches, const NoiseModel& noise,
                                           std::span<const TraceStation> stations, std::uint32_t station_count,
                                           std::span<const std::uint64_t> masks, std::uint32_t groups);

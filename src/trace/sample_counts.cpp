@@ -21,9 +21,10 @@ NetworkCounts reduce_sample(std::span<const std::uint32_t> counts, std::span<con
     group_weights.clear();
     for (std::size_t i = g; i < counts.size(); i += groups) {
       group_counts.push_back(counts[i]);
-      if (!masks.empty()) group_masks.push_back(masks[i]);
       if (!weights.empty()) group_weights.push_back(weights[i]);
     }
+    for (std::size_t w = 0; w * counts.size() < masks.size(); ++w)
+      for (std::size_t i = g; i < counts.size(); i += groups) group_masks.push_back(masks[w * counts.size() + i]);
     all.groups.push_back(reduce_field(group_counts, group_masks, stations, goal_density, group_weights));
     // A group without voxels still has its stations' zeros.
     if (!masks.empty() && all.groups.back().seen.empty()) {

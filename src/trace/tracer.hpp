@@ -76,7 +76,10 @@ struct TraceScene {
 // A station as an engine sees it.
 struct TraceStation {
   Float3 origin;            // head, local frame
-  std::uint32_t place = 0;  // in its network: keys the noise, is its bit in the mask
+  std::uint32_t place = 0;  // in its network: keys the noise
+  // Its bit in a mask and its index among a call's stations, whose places are all within one run of `mask_bits` that
+  // begins at a multiple of it.
+  std::uint32_t bit() const { return place % static_cast<std::uint32_t>(mask_bits); }
 };
 
 // One engine on one device. Not thread-safe.

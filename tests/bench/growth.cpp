@@ -202,7 +202,7 @@ void GrowthOptions::add(CLI::App& command) {
   command.add_option("--base-triangles", base_triangles, "Triangles while another quantity varies")
       ->capture_default_str();
   command.add_option("--base-stations", base_stations, "Stations, likewise")
-      ->check(CLI::Range(1, 64))
+      ->check(CLI::Range(1, 1024))
       ->capture_default_str();
   command.add_option("--base-user-size", base_user_size_m, "Upper bound of the voxel size, metres, likewise")
       ->capture_default_str();
@@ -212,7 +212,7 @@ void GrowthOptions::add(CLI::App& command) {
       ->capture_default_str();
   command.add_option("--stations", stations, "Stations of a network")
       ->delimiter(',')
-      ->check(CLI::Range(1, 64))
+      ->check(CLI::Range(1, 1024))
       ->capture_default_str();
   command.add_option("--user-sizes", user_sizes_m, "Upper bounds of the voxel size, metres")
       ->delimiter(',')

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Networks of 1, 2 and 64 stations, all in holes, seeing nothing in common; and more points than 32 bits hold.
+// Networks of 1, 2, 64 and 150 stations, all in holes, seeing nothing in common; and more points than 32 bits hold.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "stress/engine_suite.hpp"
@@ -27,6 +28,10 @@ Network ring(std::size_t stations) {
   return network;
 }
 
+Network ring_of(const Network& all, std::size_t stations) {
+  return {all.begin(), all.begin() + static_cast<std::ptrdiff_t>(stations)};
+}
+
 Simulator simulator(const EngineInfo& engine) {
   Scanner scanner;
   scanner.azimuth_step = scanner.zenith_step = Angle::degrees(3);
@@ -37,38 +42,48 @@ Simulator simulator(const EngineInfo& engine) {
 
 TEST_P(Networks, OfAnySizeAddUpTheirStations) {
   Simulator engine = simulator(GetParam());
-  const Network all = ring(64);
+  const Network all = ring(150);
   VoxelField sum;
   sum.count.assign(engine.voxel_count(), 0);
-  sum.stations.assign(engine.voxel_count(), 0);
+  sum.stations.assign(mask_words(all.size()) * engine.voxel_count(), 0);
   for (std::size_t k = 0; k < all.size(); ++k) {
     VoxelField one;
     const NetworkCounts counts = engine.evaluate({all[k]}, {.field = &one});
     EXPECT_EQ(clustering_coefficient(overlap_matrix(counts)), 0);
     for (std::size_t v = 0; v < one.count.size(); ++v) {
       sum.count[v] += one.count[v];
-      sum.stations[v] |= one.stations[v] << k;
+      sum.stations[k / mask_bits * one.count.size() + v] |= one.stations[v] << (k % mask_bits);
       ASSERT_LE(one.stations[v], 1u);
     }
     if (k == 1) {
       VoxelField two;
       const NetworkCounts pair = engine.evaluate({all[0], all[1]}, {.field = &two});
       EXPECT_EQ(two.count, sum.count);
-      EXPECT_EQ(two.stations, sum.stations);
+      EXPECT_TRUE(std::ranges::equal(two.stations, std::span(sum.stations).first(two.stations.size())));
       EXPECT_GT(pair.shared_by(0, 1), 0u);
       EXPECT_EQ(clustering_coefficient(overlap_matrix(pair)), 0) << "two stations make no triangle";
+    }
+    if (k == 63) {
+      VoxelField word;
+      engine.evaluate(ring_of(all, 64), {.field = &word});
+      EXPECT_EQ(word.count, sum.count);
+      EXPECT_TRUE(std::ranges::equal(word.stations, std::span(sum.stations).first(word.stations.size())));
     }
   }
   VoxelField field;
   const NetworkCounts counts = engine.evaluate(all, {.field = &field});
   EXPECT_EQ(field.count, sum.count);
   EXPECT_EQ(field.stations, sum.stations);
-  EXPECT_EQ(counts.seen.size(), 64u);
-  EXPECT_EQ(counts.shared.size(), 64u * 63 / 2);
+  EXPECT_EQ(counts.seen.size(), 150u);
+  EXPECT_EQ(counts.shared.size(), 150u * 149 / 2);
+  const NetworkCounts sampled = engine.evaluate_sampled({&all, 1}, {.voxels = engine.voxel_count()}).front();
+  EXPECT_EQ(sampled.shared, counts.shared);
+  EXPECT_EQ(sampled.saturated, counts.saturated);
+  EXPECT_EQ(sampled.partial_points, counts.partial_points);
   const double overlap = clustering_coefficient(overlap_matrix(counts));
   EXPECT_GT(overlap, 0.1);
   EXPECT_LE(overlap, 1);
-  EXPECT_THROW(engine.evaluate(ring(65)), Error);
+  EXPECT_THROW(engine.evaluate(ring(max_stations + 1)), Error);
   EXPECT_THROW(engine.evaluate({}), Error);
 }
 

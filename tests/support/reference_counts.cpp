@@ -18,12 +18,16 @@ NetworkCounts reference_counts(const VoxelField& field, std::uint32_t stations, 
     }
   }
   if (field.stations.empty()) return counts;
+  const std::size_t voxels = field.count.size();
+  const auto sees = [&](std::uint32_t station, std::size_t voxel) {
+    return field.stations[station / 64 * voxels + voxel] >> (station % 64) & 1;
+  };
   for (std::uint32_t i = 0; i < stations; ++i) {
     counts.seen.push_back(0);
-    for (const std::uint64_t mask : field.stations) counts.seen[i] += mask >> i & 1;
+    for (std::size_t k = 0; k < voxels; ++k) counts.seen[i] += sees(i, k);
     for (std::uint32_t j = i + 1; j < stations; ++j) {
       counts.shared.push_back(0);
-      for (const std::uint64_t mask : field.stations) counts.shared.back() += (mask >> i & 1) & (mask >> j & 1);
+      for (std::size_t k = 0; k < voxels; ++k) counts.shared.back() += sees(i, k) & sees(j, k);
     }
   }
   return counts;

@@ -100,14 +100,14 @@ NetworkCounts count_network(const StationRays& rays, std::span<const TraceStatio
                           return part;
                         },
                         std::plus<>());
-      points_found.flush(field, std::uint64_t{1} << station.place);
+      points_found.flush(field, std::uint64_t{1} << station.bit());
       progress((static_cast<double>(s) + static_cast<double>(end) / static_cast<double>(tiles.size())) /
                static_cast<double>(stations.size()));
     }
     traced += sums.rays;
-    if (!options.skip) points[station.place] = sums.points;
-    on_surveyed[station.place] = sums.points_on_surveyed;
-    if (rays.limited()) dropped[station.place] = sums.dropped;
+    if (!options.skip) points[station.bit()] = sums.points;
+    on_surveyed[station.bit()] = sums.points_on_surveyed;
+    if (rays.limited()) dropped[station.bit()] = sums.dropped;
   }
 
   NetworkCounts result = reduce_field(field.count, field.stations, station_count, goal_density, rays.grid().weights());

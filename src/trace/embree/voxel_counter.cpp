@@ -328,7 +328,7 @@ void SampledVoxelCounter::cast() {
 void SampledVoxelCounter::finish() {
   const Surface& surface = rays_.surface();
   rays_.caster().cast(bundle_);
-  const std::uint64_t bit = std::uint64_t{1} << station_->place;
+  const std::uint64_t bit = std::uint64_t{1} << station_->bit();
   for (std::uint32_t slot = 0; slot < bundle_.size; ++slot) {
     const std::uint32_t triangle = bundle_.primitive[slot], i = cast_voxel_[slot];
     if (triangle == RayBundle::no_hit || !surface.surveyed(triangle)) continue;

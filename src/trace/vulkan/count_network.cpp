@@ -159,7 +159,7 @@ class VulkanTracer::ExactCount {
     const TraceStation& station = stations_[part.station];
     CountPush push{};
     push.counts = t_.counts_.address();
-    push.masks = mask_words_ ? t_.masks_.address() + std::uint64_t{station.place / 32} * voxels_ * word : 0;
+    push.masks = mask_words_ ? t_.masks_.address() + std::uint64_t{station.bit() / 32} * voxels_ * word : 0;
     push.counters = t_.station_counters_.address();
     push.origin = {station.origin.x, station.origin.y, station.origin.z};
     push.place = station.place;
@@ -188,11 +188,11 @@ class VulkanTracer::ExactCount {
     if (!options_.skip) result.points.assign(station_counts_[0], 0);
     if (t_.limits()) result.dropped.assign(station_counts_[0], {});
     for (const TraceStation& each : stations_) {
-      const std::uint64_t* const own = counters_.data() + std::size_t{station_counters} * each.place;
-      if (!options_.skip) result.points[each.place] = own[counter_points];
-      result.points_on_surveyed[each.place] = own[counter_counted];
+      const std::uint64_t* const own = counters_.data() + std::size_t{station_counters} * each.bit();
+      if (!options_.skip) result.points[each.bit()] = own[counter_points];
+      result.points_on_surveyed[each.bit()] = own[counter_counted];
       if (t_.limits())
-        result.dropped[each.place] = {own[counter_dropped], own[counter_misses], own[counter_misses + 1],
+        result.dropped[each.bit()] = {own[counter_dropped], own[counter_misses], own[counter_misses + 1],
                                       own[counter_misses + 2]};
     }
     result.rays = options_.skip ? tile_rays_ : plan_.all_rays();

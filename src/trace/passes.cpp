@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trace/passes.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "trace/field_counts.hpp"
+#include "trace/sample_counts.hpp"
+
+namespace vantage {
+namespace {
+
+constexpr auto bits = static_cast<std::uint32_t>(mask_bits);
+
+// Stations of consecutive places; `word`: of the mask, `size`: how many places it spans.
+struct Pass {
+  std::size_t word;
+  std::uint32_t size;
+  std::vector<TraceStation> stations;
+};
+
+// Those with a station to trace.
+std::vector<Pass> passes_of(std::span<const TraceStation> stations, std::uint32_t station_count) {
+  std::vector<Pass> passes;
+  for (std::uint32_t first = 0; first < station_count; first += bits) {
+    Pass pass{.word = first / bits, .size = std::min(bits, station_count - first), .stations = {}};
+    for (const TraceStation& station : stations)
+      if (station.place >= first && station.place - first < bits) pass.stations.push_back(station);
+    if (!pass.stations.empty()) passes.push_back(std::move(pass));
+  }
+  return passes;
+}
+
+void add(std::vector<std::uint32_t>& counts, std::span<const std::uint32_t> more) {
+  constexpr std::uint32_t most = std::numeric_limits<std::uint32_t>::max();
+  for (std::size_t k = 0; k < counts.size(); ++k) counts[k] = more[k] > most - counts[k] ? most : counts[k] + more[k];
+}
+
+// A pass's figures of its own stations, among those of all.
+template <class Figure>
+void place(std::vector<Figure>& all, const std::vector<Figure>& own, const Pass& pass, std::uint32_t station_count) {
+  if (own.empty()) return;
+  all.resize(station_count);
+  std::ranges::copy(own, all.begin() + static_cast<std::ptrdiff_t>(pass.word * mask_bits));
+}
+
+Progress share_of(const Progress& progress, std::size_t pass, std::size_t passes) {
+  return {.report = [&progress, pass, passes](
+                        double done) { progress((static_cast<double>(pass) + done) / static_cast<double>(passes)); },
+          .stop = progress.stop};
+}
+
+}  // namespace
+
+NetworkCounts count_in_passes(Tracer& tracer, std::span<const TraceStation> stations, std::uint32_t station_count,
+                              const Tracer::CountOptions& options, const VoxelGrid& grid, double goal_density,
+                              const Progress& progress) {
+  if (station_count <= bits) return tracer.count(stations, station_count, options, progress);
+  VoxelField own, part;
+  VoxelField& field = options.field ? *options.field : own;
+  field.count.assign(grid.size(), 0);
+  field.stations.assign(options.masks ? grid.size() * mask_words(station_count) : 0, 0);
+  NetworkCounts told;
+  const std::vector<Pass> passes = passes_of(stations, station_count);
+  for (std::size_t k = 0; k < passes.size(); ++k) {
+    const Pass& pass = passes[k];
+    const NetworkCounts counts =
+        tracer.count(pass.stations, pass.size, {.masks = options.masks, .skip = options.skip, .field = &part},
+                     share_of(progress, k, passes.size()));
+    told.rays += counts.rays;
+    told.trace_seconds += counts.trace_seconds;
+    place(told.points, counts.points, pass, station_count);
+    place(told.points_on_surveyed, counts.points_on_surveyed, pass, station_count);
+    place(told.dropped, counts.dropped, pass, station_count);
+    if (counts.cancelled) {
+      told.cancelled = true;
+      break;
+    }
+    add(field.count, part.count);
+    if (options.masks)
+      std::ranges::copy(part.stations, field.stations.begin() + static_cast<std::ptrdiff_t>(pass.word * grid.size()));
+  }
+  NetworkCounts all = reduce_field(field.count, field.stations, station_count, goal_density, grid.weights());
+  all.rays = told.rays, all.trace_seconds = told.trace_seconds, all.cancelled = told.cancelled;
+  all.points = std::move(told.points);
+  all.points_on_surveyed = std::move(told.points_on_surveyed);
+  all.dropped = std::move(told.dropped);
+  return all;
+}
+
+NetworkCounts count_sampled_in_passes(Tracer& tracer, std::span<const TraceStation> stations,
+                                      std::uint32_t station_count, const Tracer::SampleJob& job, const VoxelGrid& grid,
+                                      double goal_density, const Progress& progress) {
+  const std::vector<Pass> passes = passes_of(stations, station_count);
+  std::vector<std::vector<TraceStation>> networks;
+  std::vector<std::uint32_t> sizes;
+  for (const Pass& pass : passes) networks.push_back(pass.stations), sizes.push_back(pass.size);
+  const std::size_t voxels = job.sample.size();
+  std::vector<std::uint32_t> counts(voxels, 0);
+  std::vector<std::uint64_t> masks(job.masks ? voxels * mask_words(station_count) : 0, 0);
+  Tracer::SampleJob one = job;
+  one.points = [&](std::size_t, std::span<const std::uint32_t> points) { add(counts, points); };
+  if (job.masks)
+    one.station_masks = [&](std::size_t first, std::span<const std::uint64_t> told) {
+      for (std::size_t k = 0; k * voxels < told.size(); ++k)
+        std::ranges::copy(told.subspan(k * voxels, voxels),
+                          masks.begin() + static_cast<std::ptrdiff_t>(passes[first + k].word * voxels));
+    };
+  const std::vector<NetworkCounts> parts = tracer.count_sampled(networks, sizes, one, progress);
+
+  std::vector<std::uint8_t> weights;
+  if (!grid.weights().empty())
+    for (const std::uint32_t rank : job.sample) weights.push_back(grid.weights()[rank]);
+  NetworkCounts all = reduce_sample(counts, masks, job.groups, station_count, goal_density, weights);
+  for (const NetworkCounts& part : parts) {
+    all.rays += part.rays;
+    all.trace_seconds += part.trace_seconds;
+    all.cancelled = all.cancelled || part.cancelled;
+  }
+  if (all.cancelled) return all;
+  if (job.points) job.points(0, counts);
+  if (job.station_masks) job.station_masks(0, masks);
+  return all;
+}
+
+}  // namespace vantage

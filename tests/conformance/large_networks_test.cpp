@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// Networks of more stations than a mask's word has bits: counted in passes, they are what the scans of their stations
+// add up to.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <numeric>
+
+#include "conformance/engines_under_test.hpp"
+#include "conformance/sites.hpp"
+#include "support/expect_counts.hpp"
+#include "support/reference_counts.hpp"
+#include "trace/passes.hpp"
+
+namespace vantage::test {
+namespace {
+
+constexpr double goal_density = 312.5;  // reached by some voxels, and not by others
+
+// The site's stations again and again, a little aside each time; every ninth is left out.
+std::vector<TraceStation> many_stations(const TestSite& site, std::uint32_t count) {
+  std::vector<TraceStation> stations;
+  for (std::uint32_t k = 0; k < count; ++k) {
+    if (k % 9 == 4) continue;
+    TraceStation station = site.stations[k % site.stations.size()];
+    station.origin.x += 0.003f * static_cast<float>(k), station.origin.y -= 0.002f * static_cast<float>(k);
+    station.place = k;
+    stations.push_back(station);
+  }
+  return stations;
+}
+
+VoxelField field_of_scans(Tracer& tracer, const TestSite& site, std::span<const TraceStation> stations,
+                          std::uint32_t count) {
+  const std::size_t voxels = site.grid->size();
+  VoxelField field;
+  field.count.resize(voxels);
+  field.stations.resize(voxels * mask_words(count));
+  Tracer::RawChunk chunk;
+  for (const TraceStation& station : stations) {
+    tracer.scan(station, 0, site.rays(), Tracer::voxel, chunk);
+    for (const std::uint32_t rank : chunk.voxel) {
+      if (rank == no_voxel) continue;
+      ++field.count[rank];
+      field.stations[station.place / 64 * voxels + rank] |= std::uint64_t{1} << (station.place % 64);
+    }
+  }
+  return field;
+}
+
+class LargeNetworksConformance : public testing::TestWithParam<EngineUnderTest> {};
+
+TEST_P(LargeNetworksConformance, CountWhatTheirScansAddUpTo) {
+  const TestSite& site = sites()[0];
+  std::vector<std::uint32_t> all(site.grid->size());
+  std::iota(all.begin(), all.end(), 0u);
+  for (const bool noisy : {false, true}) {
+    const std::unique_ptr<Tracer> tracer = GetParam().make(site.trace_scene(noisy));
+    tracer->set_goal_density(goal_density);
+    for (const std::uint32_t count : {65u, 200u}) {
+      if (count > 65 && !noisy) continue;
+      SCOPED_TRACE(std::to_string(count) + (noisy ? " stations, noise" : " stations"));
+      const std::vector<TraceStation> stations = many_stations(site, count);
+      const VoxelField expected = field_of_scans(*tracer, site, stations, count);
+      const NetworkCounts reference = reference_counts(expected, count, goal_density);
+      EXPECT_GT(reference.saturated, 0u);
+      EXPECT_GT(reference.partial_points, 0u);
+      VoxelField field;
+      const NetworkCounts exact =
+          count_in_passes(*tracer, stations, count, {true, true, &field}, *site.grid, goal_density, {});
+      expect_equal_counts(exact, reference);
+      EXPECT_EQ(field.count, expected.count);
+      EXPECT_EQ(field.stations, expected.stations);
+      const NetworkCounts sampled = count_sampled_in_passes(*tracer, stations, count, {.sample = all, .masks = true},
+                                                            *site.grid, goal_density, {});
+      expect_equal_counts(sampled, reference);
+      ASSERT_EQ(sampled.groups.size(), 20u);
+      std::uint64_t shared = 0;
+      for (const NetworkCounts& group : sampled.groups) shared += group.shared_by(63, 64);
+      EXPECT_EQ(shared, reference.shared_by(63, 64));
+      const NetworkCounts coverage = count_sampled_in_passes(
+          *tracer, stations, count,
+          {.sample = all, .masks = false, .stop_at = static_cast<std::uint32_t>(std::ceil(goal_density))}, *site.grid,
+          goal_density, {});
+      EXPECT_EQ(coverage.saturated, reference.saturated);
+      EXPECT_EQ(coverage.partial_points, reference.partial_points);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Engines, LargeNetworksConformance, testing::ValuesIn(engines_under_test()),
+                         [](const auto& engine) { return engine.param.name; });
+
+}  // namespace
+}  // namespace vantage::test
