@@ -77,11 +77,12 @@ class FewestPlan {
     if (table_.stations().size() <= problem_.kept.size()) return nothing_known();
     choose();
     for (std::size_t round = 0; round < kRounds && !stopped(); ++round) choose_around(round);
-    const std::vector<PlacedStation> chosen = stations_of(choice_);
-    SearchOutcome found = search(chosen);
-    take(confirmed(found));
+    // The search begins where every ray says that it is enough.
+    take(confirmed_choice());
     for (std::size_t k = 0; k < kRepairs && best_missed() > 0 && !stopped() && repair(); ++k) {
     }
+    const SearchOutcome found = search(stations_of(choice_));
+    take(confirmed(found));
     PlanResult result = run_.result(found);
     result.evaluations += traced_;
     result.front = front();
@@ -229,18 +230,23 @@ class FewestPlan {
     }
     if (!stopped()) found = run_.search(narrow, config, start, watch_);
     if (stopped() && found.stop_reason == StopReason::running) found.stop_reason = StopReason::cancelled;
-    // The choice itself is kept where the search did not come to it.
-    if (found.front.empty()) found.front.push_back({.x = start, .f = std::vector<double>(narrow.objectives.size(), 2)});
     return found;
   }
 
   std::vector<PlanEntry> confirmed(const SearchOutcome& found) {
-    std::size_t count = problem_.stations_min;
-    if (!found.front.empty()) {
-      const std::size_t each = problem_.heights_m ? 3 : 2;
-      count = found.front.front().x.size() / each;
-    }
-    return run_.confirm(found, narrowed(count), watch_);
+    if (found.front.empty()) return {};
+    const std::size_t each = problem_.heights_m ? 3 : 2;
+    return run_.confirm(found, narrowed(found.front.front().x.size() / each), watch_);
+  }
+
+  std::vector<PlanEntry> confirmed_choice() {
+    const std::vector<PlacedStation> chosen = stations_of(choice_);
+    const SurveyProblem narrow = narrowed(chosen.size() - problem_.kept.size());
+    SearchOutcome found;
+    found.front.push_back(
+        {.x = DecisionSpace(run_.site(), narrow).encode(std::span(chosen).subspan(problem_.kept.size())),
+         .f = std::vector<double>(narrow.objectives.size(), 2)});  // not known
+    return run_.confirm(found, narrow, watch_);
   }
 
   // Entries of networks that stand where others do already are none.
@@ -280,14 +286,7 @@ class FewestPlan {
     RowAnswer same = better_on_rows(question(), choice_, watch_.stop);
     choice_ = same.missed == 0 ? std::move(same) : fewest_on_rows(question(), watch_.stop, {}, &nearly_);
     choice_ = better_on_rows(question(), std::move(choice_), watch_.stop);
-    const std::vector<PlacedStation> chosen = stations_of(choice_);
-    const std::size_t count = chosen.size() - problem_.kept.size();
-    const SurveyProblem narrow = narrowed(count);
-    SearchOutcome found;
-    found.front.push_back(
-        {.x = DecisionSpace(run_.site(), narrow).encode(std::span(chosen).subspan(problem_.kept.size())),
-         .f = std::vector<double>(narrow.objectives.size(), 0)});
-    take(run_.confirm(found, narrow, watch_));
+    take(confirmed_choice());
     return true;
   }
 

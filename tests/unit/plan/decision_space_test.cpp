@@ -124,10 +124,10 @@ TEST(DecisionSpace, RefusesWhatCannotBe) {
   };
   refused(stations(0, 0), "at least one");
   refused(stations(5, 4), "5 is above stations_max 4");
-  refused(stations(4, 65), "65 were asked for");
+  refused(stations(4, 1025), "1025 were asked for");
   SurveyProblem config = stations(4, 64);
   config.kept = {{1, 1, 1}};
-  refused(config, "65 were asked for");
+  refused(config, "1025 were asked for");
   config = stations(4, 4);
   config.heights_m = {2, 1};
   refused(config, "heights_m");

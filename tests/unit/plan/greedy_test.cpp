@@ -49,7 +49,7 @@ TEST(Greedy, CandidatesStandOnlyWhereTheyMay) {
   EXPECT_EQ(result.stations.size(), 40u);
   for (const PlacedStation& s : result.stations) EXPECT_EQ(s.status, StationStatus::ok);
   EXPECT_THROW(choose_greedily(site, evaluator, {.stations = 8, .candidates = 5}, {}), Error);
-  EXPECT_THROW(choose_greedily(site, evaluator, {.stations = 65, .candidates = 500}, {}), Error);
+  EXPECT_THROW(choose_greedily(site, evaluator, {.stations = max_stations + 1, .candidates = 500}, {}), Error);
   Site nowhere = site;
   nowhere.locate = [](Uv) { return std::nullopt; };
   EXPECT_THROW(choose_greedily(nowhere, evaluator, {}, {}), Error);
