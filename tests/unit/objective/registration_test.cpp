@@ -4,6 +4,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -367,6 +368,45 @@ TEST(RegistrationError, StandardErrorsHold) {
   RecordProperty("held", held);
   EXPECT_GE(share, 0.93 - 0.02);  // ± what 300 trials leave open
   EXPECT_LE(share, 0.97 + 0.02);
+}
+
+TEST(Registration, SumsOfLargeNetworksAreThoseOfTheSameStationsInASmallOne) {
+  Made made;
+  made.heads = {{0.1, 0, 0}, {-0.4, 0.3, 0.2}, {0.5, -0.2, -0.3}};
+  made.room({0, 0, 0}, 4, 3, 12, 0b111);
+  for (std::size_t k = 0; k < made.masks.size(); ++k) made.masks[k] = k % 8;
+  const Patches patches = made.patches();
+  constexpr std::uint32_t groups = 5, large = 150;
+  const std::vector<TraceStation> few = made.stations();
+  const std::vector<RegistrationSums> small = sum_patches(patches, {}, few, 3, made.masks, groups);
+
+  const std::array<std::uint32_t, 3> places{3, 70, 149};
+  std::vector<TraceStation> many = few;
+  std::vector<std::uint64_t> masks(made.masks.size() * mask_words(large));
+  for (std::size_t s = 0; s < many.size(); ++s) {
+    many[s].place = places[s];
+    for (std::size_t k = 0; k < made.masks.size(); ++k)
+      masks[places[s] / 64 * made.masks.size() + k] |= (made.masks[k] >> s & 1) << (places[s] % 64);
+  }
+  const std::vector<RegistrationSums> sums = sum_patches(patches, {}, many, large, masks, groups);
+  ASSERT_EQ(sums.size(), small.size());
+  constexpr std::size_t of_pair = RegistrationSums::of_pair, of_station = RegistrationSums::of_station;
+  for (std::size_t g = 0; g < sums.size(); ++g) {
+    std::vector<double> pairs(large * (large - 1) / 2 * of_pair), surface(large * of_station);
+    std::size_t pair = 0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      std::copy_n(small[g].surface.begin() + static_cast<std::ptrdiff_t>(a * of_station), of_station,
+                  surface.begin() + static_cast<std::ptrdiff_t>(places[a] * of_station));
+      for (std::size_t b = a + 1; b < 3; ++b, ++pair) {
+        const std::size_t i = places[a], j = places[b];
+        std::copy_n(small[g].pairs.begin() + static_cast<std::ptrdiff_t>(pair * of_pair), of_pair,
+                    pairs.begin() + static_cast<std::ptrdiff_t>((i * (2 * large - i - 1) / 2 + j - i - 1) * of_pair));
+      }
+    }
+    EXPECT_EQ(sums[g].pairs, pairs);
+    EXPECT_EQ(sums[g].surface, surface);
+    EXPECT_GT(*std::ranges::max_element(small[g].pairs), 0);
+  }
 }
 
 }  // namespace
