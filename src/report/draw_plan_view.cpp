@@ -102,7 +102,7 @@ double draw_plan_legend(Canvas& canvas, Point at, const PlanView& view, const Pl
   }
   if (content.largest > 0) {
     at.y += 6;
-    canvas.text(at, "Overlap of two stations", {.size = 12.5, .bold = true});
+    canvas.text(at, view.overlap_words, {.size = 12.5, .bold = true});
     at.y += 22;
     for (const double overlap : kLinkSamples) {
       draw_link(canvas, {at.x, at.y}, {at.x + 24, at.y}, overlap, false, false);
@@ -117,6 +117,12 @@ double draw_plan_legend(Canvas& canvas, Point at, const PlanView& view, const Pl
     canvas.text(at, "largest " + fixed(content.largest, 3), faint);
     canvas.text({at.x, at.y + 17}, "below " + number(view.link_overlap) + " not drawn", faint);
     at.y += 34;
+    if (content.hidden_links > 0) {
+      canvas.text(at, "strongest tree, two of each station;", faint);
+      canvas.text({at.x, at.y + 17}, number(static_cast<double>(content.hidden_links)) + " further links not drawn",
+                  faint);
+      at.y += 34;
+    }
   } else if (view.stations.size() > 1 && view.overlap.size() == view.stations.size()) {
     canvas.text({at.x, at.y + 6}, "no overlap above " + number(view.link_overlap), faint);
     at.y += 24;

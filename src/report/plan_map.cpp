@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include "core/text.hpp"
 #include "report/chart.hpp"
@@ -13,6 +14,7 @@
 #include "report/relief.hpp"
 #include "report/search_tint.hpp"
 #include "report/section.hpp"
+#include "report/shown_links.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage {
@@ -134,13 +136,8 @@ class Stations {
   Colour colour(std::size_t k) const { return station(k).kept ? kKept : kStation; }
 
   void draw_links(PlanMapContent& content) {
-    struct Link {
-      std::size_t a, b;
-      double overlap;
-      bool bridge;
-    };
-    std::vector<Link> links;
     if (view_.overlap.size() != view_.stations.size()) return;
+    std::vector<ShownLink> links;
     const auto bridges = connectivity(view_.overlap, view_.link_overlap).bridges;
     for (std::size_t a = 0; a < shown_.size(); ++a) {
       for (std::size_t b = a + 1; b < shown_.size(); ++b) {
@@ -152,8 +149,10 @@ class Stations {
         content.largest = std::max(content.largest, value);
       }
     }
-    std::sort(links.begin(), links.end(), [](const Link& a, const Link& b) { return a.overlap < b.overlap; });
-    for (const Link& link : links)
+    const std::size_t all = links.size();
+    links = shown_links(std::move(links), shown_.size());
+    content.hidden_links += all - links.size();
+    for (const ShownLink& link : links)
       draw_link(canvas_, spots_[link.a], spots_[link.b], link.overlap, link.bridge,
                 on_level(link.a) != on_level(link.b));
   }

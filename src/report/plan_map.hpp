@@ -24,6 +24,7 @@ struct PlanView {
   OverlapMatrix overlap;           // of all stations, or of none
   double link_overlap = default_link_overlap;
   std::string title;
+  std::string overlap_words = "Overlap of two stations";  // what `overlap` is, in the legend
   std::span<const StationError> errors = {};  // of the stations, or of none: their standard ellipses are drawn
 
   // Canvas units a metre of such an ellipse; 0 where there is none. The widest is as wide as kWidestEllipse.
@@ -33,15 +34,16 @@ inline constexpr double kWidestEllipse = 30;  // semi-axis, canvas units
 
 // What a map came to show, for its legend.
 struct PlanMapContent {
-  bool cut = false;        // at a height, with what is solid there filled
-  bool left_out = false;   // ground that is no part of the search area
-  bool elsewhere = false;  // stations of other floors
-  bool moved = false;      // discs beside their spots
-  bool bridge = false;     // links that hold two parts together
-  double largest = 0;      // overlap of a link; 0: there is none
+  bool cut = false;              // at a height, with what is solid there filled
+  bool left_out = false;         // ground that is no part of the search area
+  bool elsewhere = false;        // stations of other floors
+  bool moved = false;            // discs beside their spots
+  bool bridge = false;           // links that hold two parts together
+  double largest = 0;            // overlap of a link; 0: there is none
+  std::size_t hidden_links = 0;  // that would make a tangle
   PlanMapContent operator|(const PlanMapContent& o) const {
-    return {cut || o.cut,     left_out || o.left_out, elsewhere || o.elsewhere,
-            moved || o.moved, bridge || o.bridge,     std::max(largest, o.largest)};
+    return {cut || o.cut,       left_out || o.left_out,       elsewhere || o.elsewhere,     moved || o.moved,
+            bridge || o.bridge, std::max(largest, o.largest), hidden_links + o.hidden_links};
   }
 };
 

@@ -10,6 +10,17 @@
 #include "vantage/summary.hpp"
 
 namespace vantage {
+namespace {
+
+std::string title_of(const PlanEntry& entry, const SurveySummary& summary) {
+  std::string title = std::to_string(entry.stations.size()) + (entry.stations.size() == 1 ? " station" : " stations");
+  if (summary.of_visible)
+    return title + ": " + fixed(100 * summary.captured, 1) + " % of the site captured, " +
+           fixed(100 * *summary.of_visible, 1) + " % of what can be seen";
+  return title + ": coverage " + fixed(entry.value("coverage"), 3) + ", overlap " + fixed(entry.value("overlap"), 3);
+}
+
+}  // namespace
 
 std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& result, const Simulator& simulator,
                        const SearchArea& area, const VoxelField* field, const std::string& crs) {
@@ -30,21 +41,23 @@ std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& re
   if (entry.confirmed) write_overlap_csv(folder / "overlap.csv", entry.exact_overlap_matrix);
   if (field) write_coverage_ply(folder / "coverage.ply", simulator, *field);
 
-  std::string title = std::to_string(entry.stations.size()) + (entry.stations.size() == 1 ? " station" : " stations");
-  title += ": coverage " + fixed(entry.value("coverage"), 3) + ", overlap " + fixed(entry.value("overlap"), 3);
+  const SurveySummary summary = summary_of(entry, result);
   const auto save = [&](const std::string& name, const Canvas& picture) {
     for (const char* extension : {".png", ".svg"}) picture.save(folder / (name + extension));
   };
   save("front", *front_picture(result));
   save("hypervolume", *hypervolume_picture(result));
   if (result.problem.objectives.size() > 1) save("history", *history_picture(result));
-  for (const PlanPage& page : plan_view_pictures({.scene = simulator.scene(),
-                              .area = area,
-                              .stations = entry.stations,
-                              .names = station_names(entry.stations),
-                              .overlap = entry.exact_overlap_matrix,
-                              .link_overlap = result.problem.link_overlap,
-                              .title = title}))
+  const bool scans = entry.exact_scan_overlap_matrix.size() > 0;
+  for (const PlanPage& page :
+       plan_view_pictures({.scene = simulator.scene(),
+       .area = area,
+       .stations = entry.stations,
+       .names = summary.names,
+       .overlap = scans ? entry.exact_scan_overlap_matrix : entry.exact_overlap_matrix,
+       .link_overlap = scans && summary.links ? summary.links->least : result.problem.link_overlap,
+       .title = title_of(entry, summary),
+       .overlap_words = scans ? "Scan overlap of two stations" : "Overlap of two stations"}))
     save("plan" + page.suffix, *page.canvas);
   const auto names = station_names(entry.stations);
   write_station_files(folder, {entry.stations, names}, entry.exact_overlap_matrix, result.problem.link_overlap, area,
