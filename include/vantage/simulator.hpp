@@ -31,12 +31,21 @@ struct SimulatorConfig {
   std::uint64_t seed = 1;                   ///< Of noise and of the voxel sample.
   bool validation = false;                  ///< Load the Vulkan validation layer; its errors become `Error`s.
   std::uint64_t max_rays_per_dispatch = 0;  ///< 0: chosen so that a dispatch stays well below a watchdog's limit.
+  /// Where `estimate_memory` comes to more, nothing is built. 0: half of what is free.
+  std::uint64_t max_memory_bytes = 0;
 };
 
 /// At 60° the beam's footprint is twice as long as square on, and a matt surface sends back half as much.
 inline constexpr Angle default_max_incidence = Angle::degrees(60);
 
 Settings settings(const SimulatorConfig& config);
+
+/// What a simulation takes of the host's memory, told from triangles and areas, before any of it is taken.
+struct MemoryEstimate {
+  std::uint64_t voxels = 0;  ///< Surveyed ones, about: cells of the grid that the surfaces meet.
+  std::uint64_t bytes = 0;   ///< Of a whole process, at most at once, scene included; tracing on the CPU.
+};
+MemoryEstimate estimate_memory(const Scene& scene, double user_size_m, std::size_t stations = mask_bits);
 
 /// A station is the position of the scanner's head in the survey frame; upright always.
 struct Station {

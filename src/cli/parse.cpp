@@ -171,4 +171,24 @@ double parse_duration(std::string_view text, const std::string& what) {
   return unit * parse_number(number, what, positive);
 }
 
+std::uint64_t parse_bytes(std::string_view text, const std::string& what) {
+  std::string_view number = text;
+  for (const std::string_view end : {"iB", "B"})
+    if (number.ends_with(end)) {
+      number.remove_suffix(end.size());
+      break;
+    }
+  double unit = 1;
+  constexpr std::string_view prefixes = "KMGT";
+  if (const auto power = number.empty() ? std::string_view::npos : prefixes.find(number.back());
+      power != std::string_view::npos) {
+    unit = std::exp2(10.0 * static_cast<double>(power + 1));
+    number.remove_suffix(1);
+  }
+  while (number.ends_with(' ')) number.remove_suffix(1);
+  const double bytes = unit * parse_number(number, what, positive);
+  if (!(bytes >= 1 && bytes < 0x1p63)) refuse(what, text, "is no number of bytes");
+  return static_cast<std::uint64_t>(bytes);
+}
+
 }  // namespace vantage::cli

@@ -61,5 +61,7 @@ SampleSize parse_sample(std::string_view text, const std::string& what);
 
 // Seconds: a number, or one with s, min or h behind it.
 double parse_duration(std::string_view text, const std::string& what);
+// "4G", "500 MiB", "2e9": bytes; K, M, G, T are powers of 1024.
+std::uint64_t parse_bytes(std::string_view text, const std::string& what);
 
 }  // namespace vantage::cli

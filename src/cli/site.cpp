@@ -252,6 +252,10 @@ void SiteOptions::add(CLI::App& command) {
   add_value(command, "--seed", "N", "Seed of noise, samples and search; 1 otherwise",
             [this](const std::string& text, const std::string& what) { seed = parse_count(text, what); })
       ->group("Run");
+  add_value(command, "--memory", "SIZE",
+            "Refuse what is estimated to take more memory: 4G, 500M; half of what is free otherwise",
+            [this](const std::string& text, const std::string& what) { memory = parse_bytes(text, what); })
+      ->group("Run");
   command.add_flag("--validation", validation, "Check every Vulkan call with the validation layer")->group("Run");
   add_text(command, "--crs", "EPSG:N|FILE",
            "Coordinate system of the scene: EPSG:25832 and the like, or a .prj or .wkt file; point clouds carry it",
@@ -351,6 +355,7 @@ LoadedSite open_site(CLI::App& command, SiteOptions& options) {
   site.config.device_index = options.device;
   site.config.seed = options.seed;
   site.config.validation = options.validation;
+  site.config.max_memory_bytes = options.memory;
   site.config.user_size_m = options.user_size.value_or(site.config.user_size_m * scale);
   if (!options.spacing && !common_detail(site.scene) && asks_for_detail(site.scene))
     spdlog::info("the surveyed meshes do not all ask for the same detail: the spacing of points is the usual one");

@@ -38,6 +38,7 @@ struct SiteOptions {
   std::optional<std::uint32_t> device;
   std::uint64_t seed = 1;
   bool validation = false;
+  std::uint64_t memory = 0;  // bytes; 0: half of what is free
 
   std::optional<std::string> crs, config_file;
 

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "scan/limit_model.hpp"
+#include "scan/memory_estimate.hpp"
 #include "scan/noise_model.hpp"
 #include "scan/pattern.hpp"
 #include "scan/scan_chunk.hpp"
@@ -117,6 +118,7 @@ void check_registration(const std::optional<RegistrationModel>& registration, bo
 struct Simulator::Impl {
   Impl(const Scene& s, const Scanner& sc, const SimulatorConfig& c) : scene(s), scanner(sc), config(c) {
     scanner.check();
+    require_memory(scene, config);
     grid = build_grid(data(), config);
     goal = grid->voxel_size() * grid->voxel_size() / (config.point_spacing_m * config.point_spacing_m);
     pattern = std::make_shared<RayPattern>(make_pattern(scanner));

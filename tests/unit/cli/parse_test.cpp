@@ -88,6 +88,12 @@ TEST(Parse, SamplesAreNumbersOrShares) {
 }
 
 TEST(Parse, Durations) {
+  EXPECT_EQ(parse_bytes("4G", "--memory"), std::uint64_t{4} << 30);
+  EXPECT_EQ(parse_bytes("1.5 GiB", "--memory"), std::uint64_t{3} << 29);
+  EXPECT_EQ(parse_bytes("500MB", "--memory"), std::uint64_t{500} << 20);
+  EXPECT_EQ(parse_bytes("2e9", "--memory"), 2'000'000'000u);
+  for (const char* text : {"", "G", "0", "-1G", "4X", "1e30", "nan", "4GG"})
+    EXPECT_NE(refusal([&] { parse_bytes(text, "--memory"); }), "accepted") << text;
   EXPECT_EQ(parse_duration("90", "--max-time"), 90);
   EXPECT_EQ(parse_duration("90s", "--max-time"), 90);
   EXPECT_EQ(parse_duration("1.5min", "--max-time"), 90);

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // What scan, evaluate and the small commands hand out.
+#include <sys/resource.h>
+
 #include <filesystem>
 #include <fstream>
 
 #include "program.hpp"
+#include "vantage/simulator.hpp"
 
 namespace vantage::test {
 namespace {
@@ -207,6 +210,22 @@ TEST_F(Results, EvaluateWritesItsTablesAndPictures) {
   EXPECT_EQ(files(), (std::vector<std::string>{"coverage.ply", "overlap.csv", "plan.png"}));
   EXPECT_EQ(read("coverage.ply").substr(0, 3), "ply");
   EXPECT_EQ(read("plan.png").substr(1, 3), "PNG");
+}
+
+// The most that the program ever held, beside what is told beforehand; of children that were waited for, the largest.
+TEST_F(Results, MemoryIsAsEstimated) {
+  const double size = 0.004;
+  const MemoryEstimate estimate = estimate_memory(Scene::load(scene_), size);
+  ASSERT_GT(estimate.voxels, 8'000'000u);
+  const auto options = {"--user-size", "0.004", "--spacing", "0.002"};
+  std::vector<std::string> more(options.begin(), options.end());
+  more.insert(more.end(), {"--memory", std::to_string(estimate.bytes - 1)});
+  expect_refused(run_program(evaluate(more)), 1, "would fit");
+  more.back() = std::to_string(estimate.bytes);
+  EXPECT_EQ(run_program(evaluate(more)).exit_code, 0);
+  rusage used{};
+  getrusage(RUSAGE_CHILDREN, &used);
+  EXPECT_NEAR(static_cast<double>(used.ru_maxrss) * 1024 / static_cast<double>(estimate.bytes), 1, 0.2);
 }
 
 }  // namespace

@@ -106,8 +106,10 @@ const std::vector<Change<SimulatorConfig>> kSimulation{
     {"noise", [](SimulatorConfig& c) { c.noise = false; }},
     {"seed", [](SimulatorConfig& c) { c.seed = 2; }},
     {"validation", [](SimulatorConfig& c) { c.validation = true; }, false},
-    {"max_rays_per_dispatch", [](SimulatorConfig& c) { c.max_rays_per_dispatch = 1000; }, false}};
-static_assert(member_count<SimulatorConfig>() == 9);
+    {"max_rays_per_dispatch", [](SimulatorConfig& c) { c.max_rays_per_dispatch = 1000; }, false},
+    // What a machine has to spare is no part of what is computed on it.
+    {"max_memory_bytes", [](SimulatorConfig& c) { c.max_memory_bytes = std::uint64_t{1} << 40; }, false, false}};
+static_assert(member_count<SimulatorConfig>() == 10);
 
 const std::vector<Change<WalkableOptions>> kWalkable{
     {"max_slope", [](WalkableOptions& o) { o.max_slope = Angle::degrees(5); }},

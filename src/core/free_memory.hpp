@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace vantage {
+
+// Bytes that this process can still take without swapping: what the system calls available, and no more than its
+// control group leaves. Empty where neither can be read.
+std::optional<std::uint64_t> free_memory();
+
+// "850 MiB", "12.3 GiB"
+std::string bytes_text(std::uint64_t bytes);
+
+}  // namespace vantage

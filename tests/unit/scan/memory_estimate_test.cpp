@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <regex>
+#include <string>
+
+#include "core/free_memory.hpp"
+#include "support/temporary_folder.hpp"
+#include "vantage/error.hpp"
+#include "vantage/simulator.hpp"
+
+namespace vantage {
+namespace {
+
+Scene built_in(const std::string& name, std::size_t triangles) {
+  const test::TemporaryFolder folder;
+  write_built_in_scene(name, triangles, folder / "scene.glb");
+  return Scene::load(folder / "scene.glb");
+}
+
+Simulator simulator(const Scene& scene, double user_size_m, std::uint64_t most = 0) {
+  Scanner scanner;
+  scanner.azimuth_step = scanner.zenith_step = Angle::degrees(10);
+  return {scene,
+          scanner,
+          {.engine = Engine::embree,
+           .user_size_m = user_size_m,
+           .point_spacing_m = user_size_m / 4,
+           .max_memory_bytes = most}};
+}
+
+TEST(MemoryEstimate, KnowsTheNumberOfVoxels) {
+  for (const auto& [name, triangles] : {std::pair{"three-walls", 0}, {"four-walls", 0}, {"industrial", 20'000}}) {
+    const Scene scene = built_in(name, static_cast<std::size_t>(triangles));
+    for (const double size : {0.2, 0.05}) {
+      const auto voxels = static_cast<double>(simulator(scene, size).voxel_count());
+      const auto estimate = static_cast<double>(estimate_memory(scene, size).voxels);
+      EXPECT_NEAR(estimate / voxels, 1, 0.2) << name << ", " << size << " m: " << voxels << " voxels";
+    }
+  }
+}
+
+TEST(MemoryEstimate, RefusesWhatDoesNotFitAndNamesWhatWould) {
+  const Scene scene = built_in("four-walls", 0);
+  const std::uint64_t budget = std::uint64_t{400} << 20;
+  ASSERT_GT(estimate_memory(scene, 1e-3).bytes, budget);
+  try {
+    simulator(scene, 1e-3, budget);
+    FAIL() << "not refused";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), Errc::out_of_memory);
+    const std::string what = error.what();
+    EXPECT_NE(what.find("400 MiB"), std::string::npos) << what;
+    std::smatch size;
+    ASSERT_TRUE(std::regex_search(what, size, std::regex("a user size of ([0-9.e-]+) m would fit"))) << what;
+    EXPECT_NO_THROW(simulator(scene, std::stod(size[1]), budget)) << what;
+  }
+}
+
+TEST(MemoryEstimate, GrowsWithWhatItIsOf) {
+  const Scene small = built_in("industrial", 20'000), large = built_in("industrial", 40'000);
+  EXPECT_GT(estimate_memory(large, 0.1).bytes, estimate_memory(small, 0.1).bytes);
+  EXPECT_GT(estimate_memory(small, 0.05).bytes, estimate_memory(small, 0.1).bytes);
+  EXPECT_GT(estimate_memory(small, 0.1, 65).bytes, estimate_memory(small, 0.1, 64).bytes);
+  EXPECT_EQ(estimate_memory(small, 0.1, 1).bytes, estimate_memory(small, 0.1, 64).bytes);
+  EXPECT_GT(estimate_memory(small, 1e-12).bytes, std::uint64_t{1} << 50);
+}
+
+TEST(FreeMemory, IsSomeAndItsTextHasAUnit) {
+  const auto free = free_memory();
+  ASSERT_TRUE(free);
+  EXPECT_GT(*free, std::uint64_t{64} << 20);
+  EXPECT_LT(*free, std::uint64_t{1} << 48);
+  EXPECT_EQ(bytes_text(std::uint64_t{850} << 20), "850 MiB");
+  EXPECT_EQ(bytes_text(std::uint64_t{12} << 30), "12.0 GiB");
+}
+
+}  // namespace
+}  // namespace vantage
