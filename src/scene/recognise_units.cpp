@@ -254,6 +254,28 @@ UpCases up_cases(const SceneEvidence& evidence, const std::array<std::vector<Run
   return cases;
 }
 
+// What is drawn on a grid lies at whole numbers, of which most are multiples of 8 where lengths are inches, and of 10
+// where they are parts of a metre. Shares of the area of all faces across an axis.
+struct DrawingGrid {
+  double eights = 0, tens = 0;
+};
+DrawingGrid drawing_grid(const SceneEvidence& evidence) {
+  constexpr double kWhole = 1e-3;
+  constexpr std::size_t kFewest = 30;  // different coordinates: fewer may be what they are by chance
+  double all = 0, eights = 0, tens = 0;
+  std::size_t whole = 0;
+  for (const auto& levels : evidence.levels)
+    for (const FlatLevel& level : levels) {
+      all += level.area;
+      const double nearest = std::round(level.at);
+      if (nearest == 0 || std::abs(level.at - nearest) > kWhole) continue;
+      ++whole;
+      if (std::fmod(nearest, 8) == 0) eights += level.area;
+      if (std::fmod(nearest, 10) == 0) tens += level.area;
+    }
+  return whole < kFewest ? DrawingGrid{} : DrawingGrid{eights / all, tens / all};
+}
+
 Case unit_case(const SceneEvidence& evidence, const std::array<std::vector<Run>, 3>& runs, int up, double metres) {
   Case found;
   std::map<std::string_view, std::pair<int, int>> things;  // how many fit, and how many there are
@@ -285,6 +307,12 @@ Case unit_case(const SceneEvidence& evidence, const std::array<std::vector<Run>,
   const Vec3 size = evidence.bounds.size();
   const double wide = up == kY ? size.z : size.y;
   if (within(storey.height, 2.2, 4.5) && storey.area > 0.25 * size.x * wide) found.add(1, "the height of a storey");
+  const DrawingGrid grid = drawing_grid(evidence);
+  if (metres == metres_in(Unit::inch) && grid.eights > 0.5 && grid.eights > 2 * grid.tens)
+    found.add(1, "coordinates that are multiples of 8");
+  if ((metres == metres_in(Unit::centimetre) || metres == metres_in(Unit::millimetre)) && grid.tens > 0.5 &&
+      grid.tens > 2 * grid.eights)
+    found.add(0.5, "coordinates that are multiples of 10");
   return found;
 }
 

@@ -71,6 +71,26 @@ TEST(RecogniseUnits, OneSignIsEnoughOnlyWhereMetresAreAbsurd) {
   EXPECT_EQ(recognised(bare_room(1)).note, "");
 }
 
+// Many faces across each axis, a grid apart.
+SceneEvidence drawn_on(double grid, double extent) {
+  SceneEvidence evidence;
+  evidence.bounds = {{0, 0, 0}, {extent, 0.3 * extent, extent}};
+  for (auto& levels : evidence.levels)
+    for (int k = 1; k <= 40; ++k) levels.push_back({grid * (k * k % 97 + k), 100.0 + k, k % 2 == 0});
+  for (auto& levels : evidence.levels) std::ranges::sort(levels, {}, &FlatLevel::at);
+  evidence.area = 3 * 40 * 120, evidence.open = {0, evidence.area, 0};
+  return evidence;
+}
+
+TEST(RecogniseUnits, ADrawingsGridTellsInchesFromPartsOfAMetre) {
+  EXPECT_EQ(recognised(drawn_on(8, 4096)).unit, Unit::inch);
+  EXPECT_NE(recognised(drawn_on(8, 4096)).note.find("multiples of 8"), std::string::npos);
+  EXPECT_EQ(recognised(drawn_on(10, 4096)).unit, Unit::metre) << "tens are of centimetres as well as of millimetres";
+  EXPECT_EQ(recognised(drawn_on(7, 4096)).unit, Unit::metre);
+  EXPECT_EQ(recognised(drawn_on(8.02, 4096)).unit, Unit::metre);
+  EXPECT_EQ(recognised(drawn_on(8, 400)).unit, Unit::metre) << "one sign is not enough where metres may be right";
+}
+
 TEST(RecogniseUnits, TellsWhatNothingSettles) {
   SceneEvidence terrain;  // open below, and 20 km wide
   terrain.bounds = {{0, 0, 0}, {20'000, 900, 20'000}};
