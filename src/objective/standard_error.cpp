@@ -131,13 +131,24 @@ Estimate overlap_estimate(const NetworkCounts& counts, std::uint64_t population)
   return estimate;
 }
 
-Estimate registration_estimate(const NetworkCounts& counts, std::uint64_t voxels, const RegistrationOptions& options) {
-  const auto of = [&](const NetworkCounts& rest) { return registration_error(rest, voxels, options).rms_m; };
-  Estimate estimate{of(counts), 0};
-  const double unsampled = unsampled_share(counts, voxels);
+Estimate registration_estimate(const NetworkCounts& counts, std::uint64_t voxels, const RegistrationOptions& options,
+                               const NetworkCounts* surroundings, std::uint64_t surroundings_voxels) {
+  const auto error = [&](const NetworkCounts& surveyed, const NetworkCounts* around) {
+    return registration_error(surveyed, voxels, options, around, surroundings_voxels).rms_m;
+  };
+  Estimate estimate{error(counts, surroundings), 0};
   // Nothing is further off than where it starts.
-  if (unsampled > 0)
-    estimate.standard_error = jackknife_error(replicates<double>(counts, of), unsampled, 2 * options.position_m);
+  const double scale = 2 * options.position_m;
+  if (const double unsampled = unsampled_share(counts, voxels); unsampled > 0) {
+    const auto of = [&](const NetworkCounts& rest) { return error(rest, surroundings); };
+    estimate.standard_error = jackknife_error(replicates<double>(counts, of), unsampled, scale);
+  }
+  if (options.surfaces != RegistrationSurfaces::all) return estimate;
+  if (const double unsampled = unsampled_share(*surroundings, surroundings_voxels); unsampled > 0) {
+    const auto of = [&](const NetworkCounts& rest) { return error(counts, &rest); };
+    estimate.standard_error =
+        std::hypot(estimate.standard_error, jackknife_error(replicates<double>(*surroundings, of), unsampled, scale));
+  }
   return estimate;
 }
 

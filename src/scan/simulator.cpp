@@ -98,7 +98,7 @@ struct Simulator::Impl {
     scanner.check();
     grid = build_grid(data(), config);
     goal = grid->voxel_size() * grid->voxel_size() / (config.point_spacing_m * config.point_spacing_m);
-    pattern = std::make_shared<RayPattern>(make_pattern(scanner));
+    pattern = registered = std::make_shared<RayPattern>(make_pattern(scanner));
     noise = config.noise ? make_noise_model(scanner, config.seed) : NoiseModel{.sigma = {}, .seed = config.seed};
     const LimitModel limits = make_limit_model(data(), scanner, config);
     limited = limits.enabled();
@@ -165,7 +165,7 @@ struct Simulator::Impl {
       throw Error(Errc::invalid_argument, what.str());
     }
     if (patches.patches.size() != ranks.size() || patches.model != model) {
-      patches = make_patches(data(), *grid, ranks, *pattern, model);
+      patches = make_patches(data(), *grid, ranks, *registered, model);
       range_noise = make_noise_model(scanner, config.seed);
     }
     return patches;
@@ -176,7 +176,7 @@ struct Simulator::Impl {
   SimulatorConfig config;
   std::shared_ptr<const VoxelGrid> grid;
   double goal = 0;
-  std::shared_ptr<const RayPattern> pattern;
+  std::shared_ptr<const RayPattern> pattern, registered;  // the latter: that of the scans that are registered
   NoiseModel noise;
   bool limited = false;
   std::vector<std::uint32_t> sampled;
@@ -225,6 +225,10 @@ std::vector<VoxelPatch> Simulator::voxel_patches(std::span<const std::uint32_t> 
 }
 
 std::vector<std::uint32_t> Simulator::sampled_voxels(std::uint64_t voxels) const { return impl_->sample(voxels); }
+
+void Simulator::stand_for(const Scanner& scanner) {
+  impl_->registered = std::make_shared<RayPattern>(make_pattern(scanner));
+}
 
 ScanSummary Simulator::scan(const Station& station, const ScanOptions& options,
                             const std::function<void(const ScanChunk&)>& sink, const Progress& progress) {

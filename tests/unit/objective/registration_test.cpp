@@ -270,6 +270,59 @@ TEST(RegistrationError, OfASampleIsThatOfTheWhole) {
   EXPECT_NEAR(registration_error(half, m.masks.size(), weak()).rms_m, m.error().rms_m, 1e-12);
 }
 
+// Corners, seen by nobody, that move a frame and widen it.
+void widen(Made& m, const Vec3& a, const Vec3& b) {
+  for (const Vec3& corner : {a, b}) m.one(corner, Z, 0.01, 0);
+}
+
+// What holds scans together is counted on a grid of its own; whose error is told is not.
+TEST(RegistrationError, GoesByAllSurfacesWhereAsked) {
+  const double a = 2, d = 3;
+  Made around{.heads = {{0.5, 0, 0}, {-0.5, 0, 0}}}, surveyed{.heads = around.heads};
+  around.room({}, d, a, 20, 3);
+  surveyed.room({}, d, a, 40, 3);
+  for (VoxelSurface& s : surveyed.surfaces) s.share = 0.1f;  // nothing to hold on to
+  widen(surveyed, {-20, -3, -4}, {5, 30, 9});
+  RegistrationOptions options = weak();
+  EXPECT_GT(surveyed.error(options).rms_m, 1);
+  options.surfaces = RegistrationSurfaces::all;
+  NetworkCounts counts = surveyed.counts(), held = around.counts();
+  const Room room(d, a, 20);
+  const double expected = std::sqrt((3 * room.shift + 2 * room.turn * room.radius_squared) / 4);
+  EXPECT_NEAR(registration_error(counts, counts.voxels, options, &held, held.voxels).rms_m, expected, 1e-3 * expected);
+  EXPECT_NEAR(registration_error(counts, counts.voxels, options, &held, 4 * held.voxels).rms_m, expected / 2,
+              1e-3 * expected)
+      << "a quarter of the surroundings was counted";
+  EXPECT_EQ(registration_error(counts, counts.voxels, weak(), &held, held.voxels).rms_m, surveyed.error().rms_m)
+      << "not asked for";
+  // And what is counted twice over, once on each grid, is one and the same.
+  Made same = around;
+  EXPECT_NEAR(registration_error(same.counts(), same.masks.size(), options, &held, held.voxels).rms_m,
+              same.error().rms_m, 1e-9);
+  EXPECT_THROW(registration_error(counts, counts.voxels, options), Error);
+  held.registration = {};
+  EXPECT_THROW(registration_error(counts, counts.voxels, options, &held, held.voxels), Error);
+}
+
+// A station that sees nothing surveyed hands on the poses of its neighbours.
+TEST(RegistrationError, HandsPosesOnByStationsThatSeeNothingSurveyed) {
+  Made around{.heads = {{0, 0, 0}, {0.001, 0, 0}, {0.002, 0, 0}}}, surveyed{.heads = around.heads};
+  around.room({}, 3, 2, 20, 3);
+  around.room({}, 3, 2, 20, 6);
+  surveyed.room({}, 3, 2, 20, 1);
+  surveyed.room({}, 3, 2, 20, 4);
+  RegistrationOptions options = weak();
+  options.surfaces = RegistrationSurfaces::all;
+  const NetworkCounts counts = surveyed.counts(), held = around.counts();
+  const RegistrationError error = registration_error(counts, counts.voxels, options, &held, held.voxels);
+  const Room room(3, 2, 20);
+  // Two links in a row, and half of the difference to each end: a quarter of its variance.
+  const double expected = std::sqrt(2 * (3 * room.shift + 2 * room.turn * room.radius_squared) / 4);
+  EXPECT_NEAR(error.rms_m, expected, 1e-3 * expected);
+  EXPECT_EQ(error.stations[1].rms_m, 0);
+  EXPECT_GT(dot(error.stations[1].axes[0], error.stations[1].axes[0]), 0) << "its head is not where it should be, too";
+}
+
 TEST(RegistrationError, CountsRangeNoiseByTheRaysOfAFreeView) {
   Made m{.heads = {{0.5, 0, 0}, {0.5, 0, 0}}};  // a level wall head on: no obliquity in either direction
   m.one({10.5, 0, 0}, X, 0.01, 3);
