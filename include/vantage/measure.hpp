@@ -122,7 +122,8 @@ RegistrationError registration_error(const NetworkCounts& counts, std::uint64_t 
                                      const RegistrationOptions& options = {},
                                      const NetworkCounts* surroundings = nullptr,
                                      std::uint64_t surroundings_voxels = 0);
-/// `registration_error(…).rms_m` and its standard error, by the jackknife over the groups of each sample.
+/// `registration_error(…).rms_m` and its standard error, by the jackknife over the groups of each sample; of a sample
+/// less the bias that these show, at most one standard error.
 Estimate registration_estimate(const NetworkCounts& counts, std::uint64_t voxels,
                                const RegistrationOptions& options = {}, const NetworkCounts* surroundings = nullptr,
                                std::uint64_t surroundings_voxels = 0);
