@@ -122,8 +122,7 @@ RegistrationError registration_error(const NetworkCounts& counts, std::uint64_t 
                                      const RegistrationOptions& options = {},
                                      const NetworkCounts* surroundings = nullptr,
                                      std::uint64_t surroundings_voxels = 0);
-/// `registration_error(…).rms_m` and its standard error, by the jackknife over the groups of each sample; of a sample
-/// less the bias that these show, at most one standard error.
+/// `registration_error(…).rms_m`, of a sample less its bias, and the standard error, by the jackknife over its groups.
 Estimate registration_estimate(const NetworkCounts& counts, std::uint64_t voxels,
                                const RegistrationOptions& options = {}, const NetworkCounts* surroundings = nullptr,
                                std::uint64_t surroundings_voxels = 0);
