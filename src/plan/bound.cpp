@@ -91,7 +91,7 @@ void branch(CaptureMaster& master, const CaptureRows& rows, std::span<const std:
   while (!progress.stopped() && result.bound - reached > closed) {
     const double left = seconds - std::chrono::duration<double>(Clock::now() - begun).count();
     if (left <= 0) break;
-    const CaptureMaster::Choice choice = master.choose(result.stations, left, graph);
+    const CaptureMaster::Choice choice = master.choose(result.stations, left, std::max(reached, 0.0), graph);
     result.bound = std::min(result.bound, choice.bound);
     if (choice.rows.empty()) break;
     Rows chosen(fixed.begin(), fixed.end());

@@ -5,6 +5,9 @@
 #include <chrono>
 #include <cmath>
 #include <coin/CbcModel.hpp>
+#include <coin/CglFlowCover.hpp>
+#include <coin/CglGomory.hpp>
+#include <coin/CglMixedIntegerRounding2.hpp>
 #include <coin/ClpSimplex.hpp>
 #include <coin/OsiClpSolverInterface.hpp>
 #include <functional>
@@ -26,6 +29,8 @@ constexpr std::size_t voxels_per_group = 50;
 constexpr std::size_t idle_rounds = 6;
 // What branch and bound may be wrong by: its tolerances.
 constexpr double bound_slack = 1e-6;
+// Solutions as good as the known one must not be lost to rounding.
+constexpr double known_slack = 1e-7;
 // A cut must be broken by this share of all weight.
 constexpr double broken = 1e-9;
 
@@ -319,17 +324,31 @@ std::vector<int> CaptureMaster::Impl::add_flow(ClpSimplex& lp, std::size_t stati
       in[k].add(y, -all), net[k].add(y, -1);
     lp.addRow(static_cast<int>(in[k].index.size()), in[k].index.data(), in[k].value.data(), -COIN_DBL_MAX, there * all);
     lp.addRow(static_cast<int>(net[k].index.size()), net[k].index.data(), net[k].value.data(), there, there);
+    // A fraction of a flow reaches far; so each taken row needs a taken neighbour, too.
+    Terms neighbours;
+    bool fixed_neighbour = there > 0;
+    for (std::size_t l = 0; l < candidates; ++l) {
+      if (!graph.linked(k, l)) continue;
+      fixed_neighbour = fixed_neighbour || is_fixed(l);
+      neighbours.add(static_cast<int>(l), -1);
+    }
+    if (fixed_neighbour || all < 2) continue;
+    neighbours.add(y, 1);
+    lp.addRow(static_cast<int>(neighbours.index.size()), neighbours.index.data(), neighbours.value.data(),
+              -COIN_DBL_MAX, 0);
   }
   return whole;
 }
 
-CaptureMaster::Choice CaptureMaster::choose(std::size_t stations, double seconds, const RowGraph* graph) const {
+CaptureMaster::Choice CaptureMaster::choose(std::size_t stations, double seconds, double known,
+                                            const RowGraph* graph) const {
   const Impl& m = *impl_;
   ClpSimplex lp;
   m.load(lp);
   lp.setOptimizationDirection(-1);
   for (std::size_t g = 0; g < m.groups; ++g) lp.setObjectiveCoefficient(static_cast<int>(m.candidates + g), 1);
   lp.setRowUpper(Impl::number, static_cast<double>(stations));
+  lp.setRowLower(Impl::capture, known - known_slack);
   std::vector<int> whole;
   if (graph) whole = m.add_flow(lp, stations, *graph);
   OsiClpSolverInterface solver(&lp);
@@ -340,6 +359,15 @@ CaptureMaster::Choice CaptureMaster::choose(std::size_t stations, double seconds
   model.setLogLevel(0);
   model.messageHandler()->setLogLevel(0);
   model.setMaximumSeconds(seconds);
+  // What costs to be used at all, as flows between stations do.
+  CglFlowCover flow_cover;
+  CglMixedIntegerRounding2 rounding;
+  CglGomory gomory;
+  if (graph) {
+    model.addCutGenerator(&flow_cover, -1, "flow cover");
+    model.addCutGenerator(&rounding, -1, "rounding");
+    model.addCutGenerator(&gomory, -1, "gomory");
+  }
   model.branchAndBound();
   Choice choice;
   // Maximised, so Cbc's values are those of the negated objective.
