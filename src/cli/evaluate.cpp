@@ -264,6 +264,7 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
     entry.stations = placed;
     entry.confirmed = !sampled;
     entry.exact_overlap_matrix = matrix;
+    if (options.with_registration) entry.registration = error;
     const auto known = [&](const Estimate& e) {
       return MeasuredValue{.searched = e.value, .standard_error = e.standard_error, .exact = sampled ? NAN : e.value};
     };

@@ -7,10 +7,11 @@
 namespace vantage::vulkan {
 
 void VulkanTracer::upload_patches(const RegistrationJob& job) {
-  if (patches_ == job.patches) return;
-  registration_patches_ = to_device<RegistrationPatch>(job.patches->patches, "registration patches");
-  if (job.noise->enabled()) registration_sigma_ = to_device<float>(job.noise->sigma, "registration sigma table");
-  patches_ = job.patches;
+  if (patches_ != job.patches)
+    registration_patches_ = to_device<RegistrationPatch>(job.patches->patches, "registration patches");
+  if (patch_noise_ != job.noise && job.noise->enabled())
+    registration_sigma_ = to_device<float>(job.noise->sigma, "registration sigma table");
+  patches_ = job.patches, patch_noise_ = job.noise;
 }
 
 std::vector<RegistrationSums> VulkanTracer::sum_registration(const RegistrationJob& job, const RegisteredNetworks& of) {
