@@ -24,9 +24,10 @@ def draw_from_above(axes, simulator, found, heads, title):
     walls = axes.scatter(*xy.T, c=share, cmap="RdYlGn", vmin=0, vmax=1, s=9, marker="s", linewidths=0)
     axes.scatter(*heads[:, :2].T, c="black", s=45, zorder=3)
     for number, (x, y, _) in enumerate(heads, 1):
-        axes.annotate(f"S{number}", (x, y), xytext=(6, 5), textcoords="offset points")
-    axes.set(title=title, xlabel="x (m)", ylabel="y (m)", aspect="equal")
-    axes.margins(0.12)
+        axes.annotate(f"S{number}", (x, y), xytext=(6, 5), textcoords="offset points", fontsize=8, zorder=4,
+                      bbox={"facecolor": "white", "alpha": 0.7, "pad": 1, "linewidth": 0})
+    reach = 1.12 * np.abs(heads[:, :2]).max()
+    axes.set(title=title, xlabel="x (m)", ylabel="y (m)", aspect="equal", xlim=(-reach, reach), ylim=(-reach, reach))
     return walls
 
 
