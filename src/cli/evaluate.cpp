@@ -31,7 +31,7 @@ struct EvaluateCommandOptions {
   std::optional<SampleSize> sample;
   std::optional<double> error, link, link_overlap;
   std::optional<std::string> cartography, matrix, picture;
-  std::vector<std::string> station_files, reports;
+  std::vector<std::string> station_files, registration_files, reports;
   MissedFiles missed;
   bool json = false;
 
@@ -58,6 +58,11 @@ struct EvaluateCommandOptions {
     command.add_flag("--registration", with_registration, "Predict the error of the registered scans")
         ->group("Registration");
     registration.add(command);
+    add_texts(command, "--registration-map", "FILE",
+              "Write the predicted error on the surface, in false colours: .ply, or .png or .svg from above; may be "
+              "repeated",
+              registration_files)
+        ->group("Registration");
     command
         .add_flag("--visible", visible,
                   "Tell it as a share of what can be seen at all, too: takes as long as some hundred sampled stations")
@@ -96,11 +101,6 @@ struct EvaluateCommandOptions {
   }
 };
 
-// Over all surfaces, by every ray of a coarser pattern.
-NetworkCounts evaluate_surroundings(const Simulator& simulator, const Network& network, std::stop_token stop) {
-  return surroundings_of(simulator).evaluate(network, {.overlap = true}, {.report = {}, .stop = std::move(stop)});
-}
-
 // As `plan` looks at it before it searches.
 Estimate visible_share(LoadedSite& site, Simulator& simulator, std::uint64_t sample, Program& program) {
   ProgressLine line(program.console, "look");
@@ -119,6 +119,25 @@ NetworkCounts evaluate_sample(Simulator& simulator, const Network& network, cons
   return simulator
       .evaluate_sampled({&network, 1}, {.voxels = voxels, .overlap = overlap, .registration = model}, progress)
       .front();
+}
+
+// Over all surfaces, surveyed or not, by every ray of a coarser pattern: scan overlaps and, where it goes by them,
+// registration.
+struct Surroundings {
+  NetworkCounts counts;
+  std::uint64_t voxels = 0;
+};
+Surroundings surroundings(const Simulator& simulator, const Network& network,
+                          const std::optional<RegistrationModel>& registration, std::stop_token stop) {
+  Simulator all = surroundings_of(simulator);
+  return {
+      all.evaluate(network, {.overlap = true, .registration = registration}, {.report = {}, .stop = std::move(stop)}),
+      all.voxel_count()};
+}
+
+int stopped_early() {
+  spdlog::error("stopped before the end; nothing was written");
+  return exit_failed;
 }
 
 // Millimetres; axes of the standard ellipsoid of each head, longest first, in the survey frame.
@@ -181,6 +200,12 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
   if ((options.matrix || options.picture) && !overlap)
     throw Error(Errc::invalid_argument, "--overlap-csv and --picture show overlaps, which --no-overlap leaves out");
 
+  for (const std::string& file : options.registration_files)
+    must_end(file, "--registration-map", ".ply", ".png", ".svg");
+  if (!options.registration_files.empty() && (sampled || !options.with_registration))
+    throw Error(
+        Errc::invalid_argument,
+        "--registration-map: shows the error of --registration on every voxel, and so needs both it and --exact");
   if (options.with_registration && !overlap)
     throw Error(Errc::invalid_argument, "--registration: looks at what scans share, which --no-overlap leaves out");
 
@@ -191,7 +216,8 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
   ProgressLine line(program.console, "evaluate");
   const Progress progress{.report = [&](double done) { line.update(done); }, .stop = program.stop};
   VoxelField field;
-  const bool with_field = options.cartography || !options.missed.files.empty() || !options.reports.empty();
+  const bool with_field = options.cartography || !options.missed.files.empty() || !options.registration_files.empty() ||
+                          !options.reports.empty();
   const NetworkCounts counts = sampled ? evaluate_sample(simulator, network, options, progress)
                                        : simulator.evaluate(network,
                                                             {.overlap = overlap,
@@ -199,13 +225,20 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
                                                              .field = with_field ? &field : nullptr,
                                                              .registration = options.model()},
                                                             progress);
-  const NetworkCounts surroundings =
-      overlap && !counts.cancelled ? evaluate_surroundings(simulator, network, program.stop) : NetworkCounts{};
-  if (counts.cancelled || surroundings.cancelled) {
-    spdlog::error("stopped before the end; nothing was written");
-    return exit_failed;
-  }
+  if (counts.cancelled) return stopped_early();
+  const RegistrationOptions registration = options.registration.settle();
+  const bool by_all = options.with_registration && registration.surfaces == RegistrationSurfaces::all;
+  Surroundings around;
+  if (overlap)
+    around = surroundings(simulator, network, by_all ? std::optional(registration.model) : std::nullopt, program.stop);
+  if (around.counts.cancelled) return stopped_early();
   const std::uint64_t voxels = simulator.voxel_count();
+  Estimate registered;
+  RegistrationError error;
+  if (options.with_registration) {
+    registered = registration_estimate(counts, voxels, registration, &around.counts, around.voxels);
+    error = registration_error(counts, voxels, registration, &around.counts, around.voxels);
+  }
   const Estimate covered = coverage_estimate(counts, simulator.goal_density(), voxels);
   const Estimate overlapped = overlap ? overlap_estimate(counts, voxels) : Estimate{};
   const OverlapMatrix matrix = overlap ? overlap_matrix(counts) : OverlapMatrix{};
@@ -220,12 +253,11 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
     write_missed(std::vector<std::filesystem::path>(options.missed.files.begin(), options.missed.files.end()), *judged,
                  simulator, placed);
   if (options.matrix) write_overlap_csv(*options.matrix, matrix);
-  const RegistrationOptions registration = options.registration.settle();
-  Estimate registered;
-  RegistrationError error;
-  if (options.with_registration) {
-    registered = registration_estimate(counts, voxels, registration);
-    error = registration_error(counts, voxels, registration);
+  for (const std::string& file : options.registration_files) {
+    if (file.ends_with(".ply"))
+      write_registration_ply(file, simulator, field, error);
+    else
+      draw_registration(file, simulator, field, error, placed, "Registration error on the surface (predicted)");
   }
   if (options.picture) {
     draw_plan_view(*options.picture, site.scene, site.area(), placed, matrix,
@@ -248,7 +280,7 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
     rows.push_back(std::move(row));
   }
   SurveySummary summary{.names = names, .captured = covered.value, .captured_error = covered.standard_error};
-  const OverlapMatrix scan_overlaps = overlap ? scan_overlap_matrix(surroundings) : OverlapMatrix{};
+  const OverlapMatrix scan_overlaps = overlap ? scan_overlap_matrix(around.counts) : OverlapMatrix{};
   if (overlap) {
     std::vector<bool> used;
     for (const PlacedStation& station : placed) used.push_back(active(station));
@@ -272,6 +304,7 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
     entry.stations = placed;
     entry.confirmed = !sampled;
     entry.exact_overlap_matrix = matrix;
+    if (options.with_registration) entry.registration = error;
     const auto known = [&](const Estimate& e) {
       return MeasuredValue{.searched = e.value, .standard_error = e.standard_error, .exact = sampled ? NAN : e.value};
     };
@@ -320,7 +353,10 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
     }
     if (visible) json["visible"] = visible->value, json["visible_se"] = visible->standard_error;
     if (visit) json["minutes_on_site"] = visit->minutes;
-    if (options.with_registration) json["registration"] = registration_json(error, registered);
+    if (options.with_registration) {
+      json["registration"] = registration_json(error, registered);
+      json["registration"]["surfaces"] = to_string(options.registration.surfaces);
+    }
     if (sampled) json["sample"] = counts.voxels;
     if (!counts.dropped.empty()) json["dropped"] = dropped_json(all_dropped(counts));
     program.console.print(json);

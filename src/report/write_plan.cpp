@@ -41,6 +41,8 @@ std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& re
   if (entry.confirmed) write_overlap_csv(folder / "overlap.csv", entry.exact_overlap_matrix);
   if (field) write_coverage_ply(folder / "coverage.ply", simulator, *field);
 
+  if (field && entry.registration)
+    write_registration_ply(folder / "registration.ply", simulator, *field, *entry.registration);
   const SurveySummary summary = summary_of(entry, result);
   const auto save = [&](const std::string& name, const Canvas& picture) {
     for (const char* extension : {".png", ".svg"}) picture.save(folder / (name + extension));
@@ -48,6 +50,12 @@ std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& re
   save("front", *front_picture(result));
   save("hypervolume", *hypervolume_picture(result));
   if (result.problem.objectives.size() > 1) save("history", *history_picture(result));
+  if (field && entry.registration)
+    for (const char* extension : {".png", ".svg"})
+      draw_registration(folder / (std::string("registration") + extension), simulator, *field, *entry.registration,
+                        entry.stations, "Registration error on the surface (predicted)");
+  std::span<const StationError> errors;
+  if (entry.registration) errors = entry.registration->stations;
   const bool scans = entry.exact_scan_overlap_matrix.size() > 0;
   for (const PlanPage& page :
        plan_view_pictures({.scene = simulator.scene(),
@@ -57,7 +65,8 @@ std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& re
        .overlap = scans ? entry.exact_scan_overlap_matrix : entry.exact_overlap_matrix,
        .link_overlap = scans && summary.links ? summary.links->least : result.problem.link_overlap,
        .title = title_of(entry, summary),
-       .overlap_words = scans ? "Scan overlap of two stations" : "Overlap of two stations"}))
+       .overlap_words = scans ? "Scan overlap of two stations" : "Overlap of two stations",
+       .errors = errors}))
     save("plan" + page.suffix, *page.canvas);
   const auto names = station_names(entry.stations);
   write_station_files(folder, {entry.stations, names}, entry.exact_overlap_matrix, result.problem.link_overlap, area,

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "trace/field_counts.hpp"
+#include "trace/registration_sums.hpp"
 #include "trace/sample_counts.hpp"
 
 namespace vantage {
@@ -99,6 +100,7 @@ NetworkCounts count_sampled_in_passes(Tracer& tracer, std::span<const TraceStati
   std::vector<std::uint32_t> counts(voxels, 0);
   std::vector<std::uint64_t> masks(job.masks ? voxels * mask_words(station_count) : 0, 0);
   Tracer::SampleJob one = job;
+  one.registration = nullptr;
   one.points = [&](std::size_t, std::span<const std::uint32_t> points) { add(counts, points); };
   if (job.masks)
     one.station_masks = [&](std::size_t first, std::span<const std::uint64_t> told) {
@@ -118,6 +120,8 @@ NetworkCounts count_sampled_in_passes(Tracer& tracer, std::span<const TraceStati
     all.cancelled = all.cancelled || part.cancelled;
   }
   if (all.cancelled) return all;
+  if (job.registration)
+    take_registration(all, sum_patches(*job.registration, stations, station_count, masks, job.groups));
   if (job.points) job.points(0, counts);
   if (job.station_masks) job.station_masks(0, masks);
   return all;
