@@ -118,6 +118,12 @@ class Tracer {
   virtual NetworkCounts count(std::span<const TraceStation> stations, std::uint32_t station_count,
                               const CountOptions& options, const Progress& progress) = 0;
 
+  // Each network as count() does it; networks[k] lists the active stations of network k, station_counts[k] is its
+  // N_stations. Where cancelled, those that were not reached say so. REQUIRES: no field.
+  virtual std::vector<NetworkCounts> count_each(std::span<const std::vector<TraceStation>> networks,
+                                                std::span<const std::uint32_t> station_counts,
+                                                const CountOptions& options, const Progress& progress);
+
   // Sampled: the same counts over the voxels of `sample` (ascending ranks) only, for many networks in one submission.
   // networks[k] lists the active stations of network k; station_counts[k] is its N_stations.
   struct SampleJob {
@@ -136,7 +142,7 @@ class Tracer {
                                                    std::span<const std::uint32_t> station_counts, const SampleJob& job,
                                                    const Progress& progress) = 0;
   // Goal density: a voxel with count >= goal is saturated. Set once after construction.
-  void set_goal_density(double goal) { goal_density_ = goal; }
+  virtual void set_goal_density(double goal) { goal_density_ = goal; }
 
  protected:
   double goal_density_ = 1;
@@ -145,5 +151,8 @@ class Tracer {
 // Builds the engine that `engine` names; `automatic` decides as DESIGN says. Throws Error no_suitable_device with every
 // refusal.
 std::unique_ptr<Tracer> make_tracer(Engine engine, std::optional<std::uint32_t> device_index, const TraceScene& scene);
+// One tracer over several devices, which tells `warn` of those that it loses. REQUIRES: at least one device.
+std::unique_ptr<Tracer> make_tracer(std::span<const DeviceChoice> devices, const TraceScene& scene,
+                                    std::function<void(const std::string&)> warn);
 
 }  // namespace vantage

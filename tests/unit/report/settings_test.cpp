@@ -100,6 +100,11 @@ static_assert(member_count<SceneOptions>() == 14);
 const std::vector<Change<SimulatorConfig>> kSimulation{
     {"engine", [](SimulatorConfig& c) { c.engine = Engine::automatic; }, false},
     {"device_index", [](SimulatorConfig& c) { c.device_index = 0; }, false},
+    {"devices",
+     [](SimulatorConfig& c) {
+       c.devices = {{Engine::embree, 0}};
+     },
+     false},
     {"user_size_m", [](SimulatorConfig& c) { c.user_size_m = 0.4; }},
     {"point_spacing_m", [](SimulatorConfig& c) { c.point_spacing_m = 0.1; }},
     {"max_incidence", [](SimulatorConfig& c) { c.max_incidence = Angle::degrees(70); }},
@@ -107,7 +112,7 @@ const std::vector<Change<SimulatorConfig>> kSimulation{
     {"seed", [](SimulatorConfig& c) { c.seed = 2; }},
     {"validation", [](SimulatorConfig& c) { c.validation = true; }, false},
     {"max_rays_per_dispatch", [](SimulatorConfig& c) { c.max_rays_per_dispatch = 1000; }, false}};
-static_assert(member_count<SimulatorConfig>() == 9);
+static_assert(member_count<SimulatorConfig>() == 11);  // and whom to warn, which is no setting
 
 const std::vector<Change<WalkableOptions>> kWalkable{
     {"max_slope", [](WalkableOptions& o) { o.max_slope = Angle::degrees(5); }},
