@@ -110,7 +110,7 @@ struct EvaluateOptions {
 struct SampleOptions {
   std::uint64_t voxels = 20'000;  ///< Number of surveyed voxels; as many as there are: all of them.
   bool overlap = true;
-  bool stop_at_goal = false;  ///< Stop counting a voxel at the goal density; only without overlap.
+  bool stop_at_goal = false;  ///< Stop counting a voxel's points at the goal density.
   /// Where wanted: told the points of every network in each voxel of the sample (`Simulator::sampled_voxels`, in that
   /// order), once for each network that was counted to its end, in any order, on the calling thread. A voxel at the
   /// goal may have fewer than it got where `stop_at_goal`.

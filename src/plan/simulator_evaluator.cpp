@@ -25,7 +25,7 @@ std::optional<SimulatorEvaluator::Counted> SimulatorEvaluator::count(std::span<c
     auto counts = count_with(simulator_, networks,
                              {.voxels = options_.sample_voxels,
                               .overlap = needs.pairs,
-                              .stop_at_goal = !needs.pairs,
+                              .stop_at_goal = true,
                               .registration = needs.registration,
                               .registration_groups = errors},
                              progress);

@@ -338,7 +338,6 @@ std::vector<NetworkCounts> Simulator::evaluate_sampled(std::span<const Network> 
     places.push_back(k);
   }
   if (traced.empty()) return all;
-  const bool stop_at_goal = options.stop_at_goal && !options.overlap;
   const auto points = [&](std::size_t k, std::span<const std::uint32_t> counted) {
     options.points(places[k], counted);
   };
@@ -359,7 +358,7 @@ std::vector<NetworkCounts> Simulator::evaluate_sampled(std::span<const Network> 
                                    {.sample = sample,
                                     .groups = sample_groups,
                                     .masks = options.overlap,
-                                    .stop_at = stop_at_goal ? static_cast<std::uint32_t>(std::ceil(impl_->goal)) : 0,
+                                    .stop_at = options.stop_at_goal ? static_cast<std::uint32_t>(std::ceil(impl_->goal)) : 0,
                                     .points = options.points ? decltype(options.points)(points) : nullptr,
                                     .station_masks = sum},
                                    progress);

@@ -130,7 +130,7 @@ class Tracer {
     std::span<const std::uint32_t> sample;
     std::uint32_t groups = 20;  // interleaved: voxel number i of the sample is in group i % groups
     bool masks = true;
-    std::uint32_t stop_at = 0;  // goal rounded up, or 0; only without masks
+    std::uint32_t stop_at = 0;  // goal rounded up: a voxel's points need not be counted beyond; or 0
     // Where wanted: told the points in each voxel of the sample, once for every network that was counted to its end, in
     // any order, on the calling thread.
     std::function<void(std::size_t network, std::span<const std::uint32_t> points)> points = {};

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "bare_embree.hpp"
+#include "devices.hpp"
 #include "error.hpp"
 #include "growth.hpp"
 #include "intervals.hpp"
@@ -29,6 +30,8 @@ int main(int argc, char** argv) {
       *app.add_subcommand("growth", "Time and memory over triangles, stations, voxels and the size of the sample"));
   vantage::bench::IntervalsOptions intervals;
   intervals.add(*app.add_subcommand("intervals", "How often a sample's 95 % intervals hold the value of every ray"));
+  vantage::bench::DevicesOptions devices;
+  devices.add(*app.add_subcommand("devices", "How the rate grows with the devices that share the work"));
   CLI11_PARSE(app, argc, argv);
   try {
     if (app.got_subcommand("rates")) vantage::bench::run_rates(rates);
@@ -36,6 +39,7 @@ int main(int argc, char** argv) {
     if (app.got_subcommand("population")) vantage::bench::run_population(population);
     if (app.got_subcommand("error")) vantage::bench::run_error(error);
     if (app.got_subcommand("intervals")) vantage::bench::run_intervals(intervals);
+    if (app.got_subcommand("devices")) vantage::bench::run_devices(devices);
     if (app.got_subcommand("growth")) vantage::bench::run_growth(growth);
   } catch (const vantage::Error& failure) {
     std::fprintf(stderr, "%s\n", failure.what());

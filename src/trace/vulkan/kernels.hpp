@@ -22,9 +22,11 @@ enum class Kernel {
   clamp,
   reduce,
   sample_list,
+  sample_sights,
   sample_queue,
   sample_arguments,
-  sample_trace
+  sample_trace,
+  sample_count
 };
 
 class Kernels {
