@@ -307,13 +307,14 @@ void SampledVoxelCounter::settle() {
 }
 
 // Traces the rays of what is visible, and counts points: where a voxel is to be filled only, first as many as mostly
-// do.
+// do, and one where it is full and only wanted is whether it is seen.
 void SampledVoxelCounter::cast() {
   bundle_.size = 0;
   if (stop_at_ != 0) {
     const std::uint32_t some = stop_at_ + stop_at_ / 4 + 1;
     for (Sight& sight : visible_)
-      if (!full(sight.voxel)) cast(sight, std::min(some, sight.end - sight.begin));
+      if (!full(sight.voxel))
+        cast(sight, std::min(counts_[sight.voxel] >= stop_at_ ? 1 : some, sight.end - sight.begin));
     finish();
   }
   for (Sight& sight : visible_)
