@@ -21,7 +21,6 @@ layout(buffer_reference) buffer Limits;
 layout(buffer_reference) buffer SampleVoxels;
 layout(buffer_reference) buffer SampleTriangles;
 layout(buffer_reference) buffer SampleStations;
-layout(buffer_reference) buffer SampleSights;
 layout(buffer_reference) buffer SampleRays;
 layout(buffer_reference) buffer SampleItems;
 
@@ -33,7 +32,6 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Lim
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer SampleVoxels { SampleVoxel at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer SampleTriangles { SampleTriangle at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer SampleStations { SampleStation at[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SampleSights { SampleSight at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SampleRays { SampleRay at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SampleItems { SampleItem at[]; };
 

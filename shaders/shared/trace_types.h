@@ -187,47 +187,32 @@ struct SampleStation {
   uint place;
   uint network;  // within the batch
 };
-// A pair with rays to trace. They are traced in stages, each from where the one before left the pair's window.
-struct SampleSight {
+struct SampleRay {
   uint voxel;  // within the sample
   uint slot;
-  uint walked;  // rays of the window looked at
-  uint listed;  // those of them that were traced
-  uint points;  // that these left in the voxel
-  uint hider;   // a triangle that stopped one of them before the voxel; no_primitive: none
-};
-struct SampleRay {
-  uint sight;
   uint ray;
 };
-// Part of a sight that has more than sample_part rays left.
+// Part of a pair with more than sample_part rays.
 struct SampleItem {
-  uint sight;
+  uint voxel;
+  uint slot;
   uint part;
 };
 VANTAGE_CONST uint sample_part = 64;
-// One ray says what hides a voxel, some more whether it is full, then come all others.
-VANTAGE_CONST uint stage_probe = 0;
-VANTAGE_CONST uint stage_some = 1;
-VANTAGE_CONST uint stage_rest = 2;
-VANTAGE_CONST uint sample_stages = 3;
-VANTAGE_CONST uint fewest_some = 4, most_some = 16;  // rays of a sight in stage_some
 // Control words of one chunk.
-VANTAGE_CONST uint control_rays = 0;  // listed in each stage, or wanted: where there is no room, the chunk must be cut
-VANTAGE_CONST uint control_items = 3;
-VANTAGE_CONST uint control_sights = 4;
-VANTAGE_CONST uint control_dispatch = 5;  // three words
+VANTAGE_CONST uint control_rays = 0;  // rays listed, or wanted: more than the capacity means that the chunk must be cut
+VANTAGE_CONST uint control_items = 1;
+VANTAGE_CONST uint control_dispatch = 4;  // three words
 VANTAGE_CONST uint control_words = 8;
 struct SamplePush {
   VANTAGE_ADDRESS(SampleVoxels) voxels;
   VANTAGE_ADDRESS(SampleTriangles) triangles;
   VANTAGE_ADDRESS(SampleStations) stations;
-  VANTAGE_ADDRESS(SampleSights) sights;  // as many as the chunk has pairs
   VANTAGE_ADDRESS(SampleRays) rays;
   VANTAGE_ADDRESS(SampleItems) items;
   VANTAGE_ADDRESS(Uints) control;
   VANTAGE_ADDRESS(Uints) counts;        // [network][voxel]
-  VANTAGE_ADDRESS(Uints) masks;         // [network][word][voxel]; 0: none
+  VANTAGE_ADDRESS(Uints) masks;         // [network][word][voxel]
   VANTAGE_ADDRESS(Uints) network_rays;  // 64 bits a network
   uint voxel_count;                     // of the sample
   uint first_voxel;
@@ -238,18 +223,7 @@ struct SamplePush {
   uint ray_capacity;
   uint item_capacity;
   uint mask_words;
-  uint stop_at;  // points at which a voxel needs no more; no_stop: never
-  uint stage;
-  uint most;  // rays that a thread lists of a sight in this stage
-};
-VANTAGE_CONST uint no_stop = 0xFFFFFFFFu;
-
-struct SampleArgumentsPush {
-  VANTAGE_ADDRESS(Uints) control;
-  uint over;  // the control word that says how many threads come next
-  uint ray_capacity;
-  uint item_capacity;
-  uint padding;
+  uint stop_at;  // points at which a voxel needs no more; 0: never
 };
 
 VANTAGE_SHARED_END

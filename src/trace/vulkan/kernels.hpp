@@ -22,11 +22,9 @@ enum class Kernel {
   clamp,
   reduce,
   sample_list,
-  sample_sights,
   sample_queue,
   sample_arguments,
-  sample_trace,
-  sample_count
+  sample_trace
 };
 
 class Kernels {

@@ -89,16 +89,14 @@ class VulkanTracer::SampledCount {
         most_stations_(*std::max_element(station_counts.begin(), station_counts.end())),
         mask_words_(job.masks ? (most_stations_ > 32 ? 2 : 1) : 0),
         stride_(totals_seen + most_stations_ + most_stations_ * (most_stations_ - 1) / 2),
-        some_(job.stop_at > 0 ? std::clamp(job.stop_at + job.stop_at / 4, fewest_some, most_some) : fewest_some),
-        room_(sample_room(tracer.scene_.pattern->columns(), some_, tracer.info_.software,
-                          tracer.scene_.max_rays_per_dispatch)),
+        room_(
+            sample_room(tracer.scene_.pattern->columns(), tracer.info_.software, tracer.scene_.max_rays_per_dispatch)),
         batch_size_(static_cast<std::size_t>(
             std::clamp<std::uint64_t>(entries_per_batch / std::max(voxels_, 1u), 1, networks.size()))),
         totals_(networks.size() * job.groups * stride_),
         rays_(networks.size()) {}
 
   std::vector<NetworkCounts> run(const Progress& progress) {
-    t_.upload_shading();  // of a triangle that hides something its corners are looked up
     t_.upload_sample(job_.sample, networks_);
     ensure_buffers();
     reduction_ = reduction();
@@ -133,7 +131,6 @@ class VulkanTracer::SampledCount {
 
   void ensure_buffers() {
     const std::uint64_t entries = std::uint64_t{voxels_} * batch_size_;
-    t_.ensure(t_.sample_sights_, std::uint64_t{room_.pairs} * sizeof(SampleSight), "sample sights");
     t_.ensure(t_.sample_rays_, std::uint64_t{room_.rays} * sizeof(SampleRay), "sample rays");
     t_.ensure(t_.sample_items_, std::uint64_t{room_.items} * sizeof(SampleItem), "sample items");
     t_.ensure(t_.counts_, entries * word, "counts");
@@ -213,14 +210,8 @@ class VulkanTracer::SampledCount {
     };
     const double taken = t_.commands_.run_and_download(record, wanted);
     std::vector<SampleList> lists;
-    for (std::size_t k = 0; k < chunks.size(); ++k) {
-      const std::uint32_t* const own = control.data() + k * control_words;
-      SampleList& list = lists.emplace_back(SampleList{.items = own[control_items]});
-      for (std::uint32_t stage = 0; stage < sample_stages; ++stage) {
-        list.rays = std::max(list.rays, own[control_rays + stage]);
-        list.traced += own[control_rays + stage];
-      }
-    }
+    for (std::size_t k = 0; k < chunks.size(); ++k)
+      lists.push_back({control[k * control_words + control_rays], control[k * control_words + control_items]});
     return {std::move(lists), taken};
   }
 
@@ -230,36 +221,26 @@ class VulkanTracer::SampledCount {
       r.zero(t_.network_rays_);
     }
     r.update(t_.sample_stations_, batch.slots.data(), batch.slots.size() * sizeof(SampleStation));
-    const VkDeviceSize entries = std::uint64_t{voxels_} * batch.size();
-    r.zero(t_.counts_, 0, entries * word);
-    if (mask_words_) r.zero(t_.masks_, 0, entries * mask_words_ * word);
+    r.zero(t_.counts_);
+    if (mask_words_) r.zero(t_.masks_);
   }
 
-  // Lists and traces one chunk in stages, whose control words are number k of the submission, and counts it.
-  void record_chunk(const Recorder& r, SamplePush push, const SampleChunk& chunk, std::size_t k) {
+  // Lists and traces one chunk, whose control words are number k of the submission.
+  void record_chunk(const Recorder& r, const SamplePush& push, const SampleChunk& chunk, std::size_t k) {
     Kernels& kernels = t_.kernels_;
     const VkDeviceSize dispatch = (k * control_words + control_dispatch) * word;
-    // So many threads as the control word says by then.
-    const auto over = [&](std::uint32_t control, const ComputePipeline& pipeline) {
-      const SampleArgumentsPush arguments{push.control, control, push.ray_capacity, push.item_capacity, 0};
-      r.shader_after_shader();
-      r.dispatch(kernels.get(Kernel::sample_arguments), arguments, 1);
-      r.shader_after_shader();
-      r.dispatch_indirect(pipeline, push, t_.sample_control_, dispatch);
-    };
-    for (push.stage = stage_probe; push.stage < sample_stages; ++push.stage) {
-      push.most = push.stage == stage_probe ? 1 : push.stage == stage_some ? some_ : sample_part;
-      if (push.stage == stage_probe) {
-        r.shader_after_shader();  // the chunk before still reads the lists
-        r.dispatch(kernels.get(Kernel::sample_list), push, groups_of(chunk.end_voxel - chunk.first_voxel),
-                   chunk.end_slot - chunk.first_slot);
-      } else {
-        over(control_sights, kernels.get(Kernel::sample_sights));
-      }
-      if (push.stage == stage_rest) over(control_items, kernels.get(Kernel::sample_queue));
-      over(control_rays + push.stage, kernels.get(Kernel::sample_trace, {t_.noise(), t_.limits()}));
-    }
-    over(control_sights, kernels.get(Kernel::sample_count));
+    r.shader_after_shader();  // the chunk before still reads the list
+    r.dispatch(kernels.get(Kernel::sample_list), push, groups_of(chunk.end_voxel - chunk.first_voxel),
+               chunk.end_slot - chunk.first_slot);
+    r.shader_after_shader();
+    r.dispatch(kernels.get(Kernel::sample_arguments, {false}), push, 1);
+    r.shader_after_shader();
+    r.dispatch_indirect(kernels.get(Kernel::sample_queue), push, t_.sample_control_, dispatch);
+    r.shader_after_shader();
+    r.dispatch(kernels.get(Kernel::sample_arguments, {true}), push, 1);
+    r.shader_after_shader();
+    r.dispatch_indirect(kernels.get(Kernel::sample_trace, {t_.noise(), t_.limits(), job_.masks}), push,
+                        t_.sample_control_, dispatch);
   }
 
   SamplePush push_of(const Batch& batch, const SampleChunk& chunk, std::size_t k) const {
@@ -267,7 +248,6 @@ class VulkanTracer::SampledCount {
     push.voxels = t_.sample_voxels_.address();
     push.triangles = t_.sample_triangles_.address();
     push.stations = t_.sample_stations_.address();
-    push.sights = t_.sample_sights_.address();
     push.rays = t_.sample_rays_.address();
     push.items = t_.sample_items_.address();
     push.control = t_.sample_control_.address() + k * control_words * word;
@@ -283,7 +263,7 @@ class VulkanTracer::SampledCount {
     push.ray_capacity = room_.rays;
     push.item_capacity = room_.items;
     push.mask_words = mask_words_;
-    push.stop_at = job_.stop_at > 0 ? job_.stop_at : no_stop;
+    push.stop_at = job_.masks ? 0 : job_.stop_at;
     return push;
   }
 
@@ -303,7 +283,7 @@ class VulkanTracer::SampledCount {
     constexpr std::uint64_t telling = 1000;  // fewer pairs say little about the rest
     for (std::size_t k = chunks.size(); k-- > 0;)
       if (chunks[k].pairs() > telling)
-        t_.rays_per_pair_ = 0.5 * (t_.rays_per_pair_ + wanted[k].traced / static_cast<double>(chunks[k].pairs()));
+        t_.rays_per_pair_ = 0.5 * (t_.rays_per_pair_ + wanted[k].rays / static_cast<double>(chunks[k].pairs()));
   }
 
   VulkanTracer& t_;
@@ -311,8 +291,7 @@ class VulkanTracer::SampledCount {
   std::span<const std::uint32_t> station_counts_;
   SampleJob job_;
   std::uint32_t voxels_, most_stations_, mask_words_, stride_;
-  std::uint32_t some_;  // rays of a sight that mostly fill a voxel in view
-  SampleRoom room_;
+  SampleList room_;
   std::size_t batch_size_;
   Reduction reduction_{};
   double seconds_ = 0;

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cassert>
 
-#include "shared/trace_types.h"
 #include "trace/vulkan/groups.hpp"
 
 namespace vantage::vulkan {
@@ -22,15 +21,14 @@ std::array<SampleChunk, 2> SampleChunk::halves() const {
   return {a, b};
 }
 
-SampleRoom sample_room(std::uint32_t columns, std::uint32_t some, bool software, std::uint64_t max_rays_per_dispatch) {
+SampleList sample_room(std::uint32_t columns, bool software, std::uint64_t max_rays_per_dispatch) {
   std::uint64_t rays = software ? 1u << 20 : 1u << 24;
   if (max_rays_per_dispatch > 0) rays = std::min(rays, max_rays_per_dispatch);
-  rays = std::max<std::uint64_t>({rays, std::uint64_t{2} * columns, some});
-  return {static_cast<std::uint32_t>(rays), std::max(1u << 16, 2 * columns / sample_part),
-          static_cast<std::uint32_t>(std::min<std::uint64_t>(rays / some, 1u << 22))};
+  return {static_cast<std::uint32_t>(std::max<std::uint64_t>(rays, 2 * columns)),
+          std::max(1u << 16, 2 * columns / sample_part)};
 }
 
-SamplePlan::SamplePlan(std::uint32_t slots, std::uint32_t voxels, std::uint32_t rows, const SampleRoom& room)
+SamplePlan::SamplePlan(std::uint32_t slots, std::uint32_t voxels, std::uint32_t rows, const SampleList& room)
     : room_(room), rows_(rows), all_pairs_(static_cast<double>(slots) * voxels) {
   if (slots > 0 && voxels > 0) todo_.push_back({0, slots, 0, voxels, 0, rows});
 }
@@ -39,7 +37,7 @@ std::vector<SampleChunk> SamplePlan::next(double rays, double rays_per_pair) {
   constexpr double safety = 1.5;
   const auto too_large = [&](const SampleChunk& chunk) {
     return chunk.end_slot - chunk.first_slot > most_groups ||
-           groups_of(chunk.end_voxel - chunk.first_voxel) > most_groups || chunk.pairs() > room_.pairs ||
+           groups_of(chunk.end_voxel - chunk.first_voxel) > most_groups ||
            (chunk.pairs() > 1 && static_cast<double>(chunk.pairs()) * rays_per_pair * safety > room_.rays);
   };
   std::vector<SampleChunk> chunks;
@@ -62,7 +60,7 @@ double SamplePlan::settle(std::span<const SampleChunk> chunks, std::span<const S
   for (std::size_t k = chunks.size(); k-- > 0;) {
     if (fits(wanted[k])) {
       done_pairs_ += static_cast<double>(chunks[k].pairs()) * (chunks[k].end_row - chunks[k].first_row) / rows_;
-      traced += static_cast<double>(wanted[k].traced);
+      traced += wanted[k].rays;
     } else {
       const auto [a, b] = chunks[k].halves();
       todo_.push_front(b);

@@ -24,27 +24,19 @@ struct SampleChunk {
   bool operator==(const SampleChunk&) const = default;
 };
 
-// What a chunk's kernels wanted to list.
+// What a chunk's kernels wanted to list; or how much of that there is room for.
 struct SampleList {
-  std::uint32_t rays = 0;  // in the stage that wanted most
-  std::uint32_t items = 0;
-  std::uint64_t traced = 0;  // in all stages
-};
-
-// How much of that there is room for, and for how many pairs. REQUIRES: each pair may have a ray, and as many as
-// stage_some lists of it.
-struct SampleRoom {
-  std::uint32_t rays, items, pairs;
+  std::uint32_t rays, items;
 };
 
 // Room for the lists of an engine: as many rays as a dispatch may trace, where that is limited, and never less than a
-// row of one pair may have. `some`: what stage_some lists of a pair.
-SampleRoom sample_room(std::uint32_t columns, std::uint32_t some, bool software, std::uint64_t max_rays_per_dispatch);
+// row of one pair may have.
+SampleList sample_room(std::uint32_t columns, bool software, std::uint64_t max_rays_per_dispatch);
 
 // What is left to do of a batch.
 class SamplePlan {
  public:
-  SamplePlan(std::uint32_t slots, std::uint32_t voxels, std::uint32_t rows, const SampleRoom& room);
+  SamplePlan(std::uint32_t slots, std::uint32_t voxels, std::uint32_t rows, const SampleList& room);
 
   // The chunks of the next submission, in order: each probably fits, if a pair has so many rays, and all together
   // probably have `rays`; one at least, unless nothing is left.
@@ -58,7 +50,7 @@ class SamplePlan {
  private:
   bool fits(const SampleList& wanted) const { return wanted.rays <= room_.rays && wanted.items <= room_.items; }
 
-  SampleRoom room_;
+  SampleList room_;
   std::uint32_t rows_;
   std::deque<SampleChunk> todo_;
   double all_pairs_, done_pairs_ = 0;

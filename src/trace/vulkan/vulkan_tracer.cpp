@@ -38,10 +38,9 @@ VulkanTracer::VulkanTracer(const VulkanEngine& engine, const EngineInfo& info, s
       kernels_(device_, *traversal_, set_),
       exact_pace_(seconds_per_exact_submission, static_cast<double>(rays_per_dispatch()),
                   static_cast<double>(rays_per_dispatch()), static_cast<double>(rays_per_dispatch())),
-      sampled_pace_(
-          seconds_per_sampled_submission,
-          info.software || scene.max_rays_per_dispatch > 0 ? 0 : first_sampled_rays_on_hardware, 0,
-          0.5 * sample_room(scene.pattern->columns(), fewest_some, info.software, scene.max_rays_per_dispatch).rays) {
+      sampled_pace_(seconds_per_sampled_submission,
+                    info.software || scene.max_rays_per_dispatch > 0 ? 0 : first_sampled_rays_on_hardware, 0,
+                    0.5 * sample_room(scene.pattern->columns(), info.software, scene.max_rays_per_dispatch).rays) {
   if (scene.pattern->rows() > most_groups * block_rows ||
       std::uint64_t{scene.pattern->rows()} * scene.pattern->columns() >= std::uint64_t{1} << 31)
     throw Error(Errc::invalid_argument, "the scan pattern has " + std::to_string(scene.pattern->rows()) + " x " +

@@ -21,23 +21,18 @@ TEST(SampleChunk, HalvesAreTheWholeAndShareNothing) {
 
 TEST(SampleRoom, KeepsToADispatchAndHoldsARow) {
   for (const bool software : {false, true}) {
-    const SampleRoom usual = sample_room(10'000, fewest_some, software, 0);
-    EXPECT_EQ(sample_room(10'000, fewest_some, software, 50'000).rays, 50'000u);
-    EXPECT_EQ(sample_room(10'000, fewest_some, software, std::uint64_t{1} << 40).rays, usual.rays);
-    EXPECT_EQ(sample_room(10'000, fewest_some, software, 1).rays, 20'000u) << "a row of one pair always fits";
-    EXPECT_GE(sample_room(1u << 30, fewest_some, software, 0).rays, 1u << 30);
-    EXPECT_GE(sample_room(1u << 30, fewest_some, software, 0).items, (1u << 30) / sample_part);
-    for (const std::uint64_t most : {0, 1, 50'000}) {
-      const SampleRoom room = sample_room(1, most_some, software, most);
-      EXPECT_GE(room.pairs, 1u);
-      EXPECT_LE(std::uint64_t{room.pairs} * most_some, room.rays) << "only the last stage may want too many";
-    }
+    const SampleList usual = sample_room(10'000, software, 0);
+    EXPECT_EQ(sample_room(10'000, software, 50'000).rays, 50'000u);
+    EXPECT_EQ(sample_room(10'000, software, std::uint64_t{1} << 40).rays, usual.rays);
+    EXPECT_EQ(sample_room(10'000, software, 1).rays, 20'000u) << "a row of one pair always fits";
+    EXPECT_GE(sample_room(1u << 30, software, 0).rays, 1u << 30);
+    EXPECT_GE(sample_room(1u << 30, software, 0).items, (1u << 30) / sample_part);
   }
 }
 
 TEST(SamplePlan, NothingToDoIsDone) {
   for (const auto& [slots, voxels] : {std::pair{0u, 5u}, {5u, 0u}}) {
-    SamplePlan plan(slots, voxels, 10, {100, 100, 100});
+    SamplePlan plan(slots, voxels, 10, {100, 100});
     EXPECT_TRUE(plan.finished());
     EXPECT_TRUE(plan.next(1e9, 8).empty());
     EXPECT_EQ(plan.done(), 1);
@@ -45,7 +40,7 @@ TEST(SamplePlan, NothingToDoIsDone) {
 }
 
 TEST(SamplePlan, NoDispatchHasTooManyGroups) {
-  SamplePlan plan(200'000, 20'000'000, 10, {1u << 30, 1u << 30, 1u << 30});
+  SamplePlan plan(200'000, 20'000'000, 10, {1u << 30, 1u << 30});
   for (int k = 0; k < 5; ++k) {
     const std::vector<SampleChunk> chunks = plan.next(0, 1e-12);
     ASSERT_EQ(chunks.size(), 1u);
@@ -54,24 +49,13 @@ TEST(SamplePlan, NoDispatchHasTooManyGroups) {
   }
 }
 
-TEST(SamplePlan, NoChunkHasMorePairsThanThereIsRoomFor) {
-  SamplePlan plan(300, 1000, 10, {1u << 30, 1u << 30, 12'345});
-  std::uint64_t pairs = 0;
-  for (const SampleChunk& chunk : plan.next(1e12, 1e-9)) {
-    EXPECT_LE(chunk.pairs(), 12'345u);
-    pairs += chunk.pairs();
-  }
-  EXPECT_EQ(pairs, 300'000u);
-  EXPECT_TRUE(plan.finished());
-}
-
 TEST(SamplePlan, WhatOverflowsComesAgainInHalvesAndFirst) {
-  SamplePlan plan(4, 10, 8, {100, 10, 100});
+  SamplePlan plan(4, 10, 8, {100, 10});
   const std::vector<SampleChunk> chunks = plan.next(1e9, 4);  // 20 pairs a chunk: 80 rays, and half as many to be safe
   ASSERT_EQ(chunks.size(), 4u);
   EXPECT_TRUE(plan.finished());
   // The first fits; the second has too many rays, the last too many items.
-  EXPECT_EQ(plan.settle(chunks, std::vector<SampleList>{{100, 10, 150}, {101, 0, 101}, {7, 0, 7}, {0, 11, 0}}), 157);
+  EXPECT_EQ(plan.settle(chunks, std::vector<SampleList>{{100, 10}, {101, 0}, {7, 0}, {0, 11}}), 107);
   EXPECT_FALSE(plan.finished());
   EXPECT_DOUBLE_EQ(plan.done(), 0.5);
   const std::vector<SampleChunk> again = plan.next(1e9, 0.1);
@@ -87,7 +71,7 @@ TEST(SamplePlan, EveryRowOfEveryPairIsTracedOnce) {
     RandomStream random(seed);
     std::vector<std::uint32_t> rays(slots * voxels * rows);
     for (std::uint32_t& each : rays) each = static_cast<std::uint32_t>(columns * std::pow(random.uniform(), 8));
-    const SampleRoom room{2 * columns, 4, 40};
+    const SampleList room{2 * columns, 4};
     SamplePlan plan(slots, voxels, rows, room);
     std::vector<int> traced(rays.size());
     double total = 0, done = 0;
@@ -98,13 +82,12 @@ TEST(SamplePlan, EveryRowOfEveryPairIsTracedOnce) {
       std::vector<SampleList> wanted;
       for (const SampleChunk& chunk : chunks) {
         std::vector<std::size_t> inside;
-        SampleList list;
+        SampleList list{0, 0};
         for (std::uint32_t s = chunk.first_slot; s < chunk.end_slot; ++s)
           for (std::uint32_t v = chunk.first_voxel; v < chunk.end_voxel; ++v)
             for (std::uint32_t r = chunk.first_row; r < chunk.end_row; ++r)
               inside.push_back((std::size_t{s} * voxels + v) * rows + r);
         for (const std::size_t k : inside) list.rays += rays[k];
-        list.traced = list.rays;
         list.items = chunk.pairs() > 3 ? static_cast<std::uint32_t>(random.bits() % 7) : 0;
         wanted.push_back(list);
         if (list.rays > room.rays || list.items > room.items) continue;  // as the kernels do
