@@ -139,8 +139,8 @@ class VulkanTracer final : public Tracer {
   std::vector<std::uint32_t> sample_;  // what the sample buffers hold
   double sample_margin_ = 0;           // how far from its voxel a triangle is listed there
   NoiseReaches reaches_{};             // where there is noise
-  Buffer sample_voxels_, sample_triangles_, sample_stations_, sample_rays_, sample_items_, sample_control_,
-      network_rays_, sample_weights_;
+  Buffer sample_voxels_, sample_triangles_, sample_stations_, sample_rays_, sample_sights_, sample_items_,
+      sample_control_, network_rays_, sample_weights_;
   double rays_per_pair_ = 8;  // as seen so far; it sizes chunks, not the results
 };
 
