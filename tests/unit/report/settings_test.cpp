@@ -105,6 +105,7 @@ const std::vector<Change<SimulatorConfig>> kSimulation{
        c.devices = {{Engine::embree, 0}};
      },
      false},
+    {"warn", [](SimulatorConfig& c) { c.warn = [](const std::string&) {}; }, false, false},
     {"user_size_m", [](SimulatorConfig& c) { c.user_size_m = 0.4; }},
     {"point_spacing_m", [](SimulatorConfig& c) { c.point_spacing_m = 0.1; }},
     {"max_incidence", [](SimulatorConfig& c) { c.max_incidence = Angle::degrees(70); }},
@@ -112,7 +113,7 @@ const std::vector<Change<SimulatorConfig>> kSimulation{
     {"seed", [](SimulatorConfig& c) { c.seed = 2; }},
     {"validation", [](SimulatorConfig& c) { c.validation = true; }, false},
     {"max_rays_per_dispatch", [](SimulatorConfig& c) { c.max_rays_per_dispatch = 1000; }, false}};
-static_assert(member_count<SimulatorConfig>() == 11);  // and whom to warn, which is no setting
+static_assert(member_count<SimulatorConfig>() == 11);
 
 const std::vector<Change<WalkableOptions>> kWalkable{
     {"max_slope", [](WalkableOptions& o) { o.max_slope = Angle::degrees(5); }},
