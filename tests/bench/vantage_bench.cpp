@@ -4,8 +4,10 @@
 #include <cstdio>
 
 #include "bare_embree.hpp"
+#include "choose.hpp"
 #include "devices.hpp"
 #include "error.hpp"
+#include "gap.hpp"
 #include "growth.hpp"
 #include "intervals.hpp"
 #include "population.hpp"
@@ -32,6 +34,10 @@ int main(int argc, char** argv) {
   intervals.add(*app.add_subcommand("intervals", "How often a sample's 95 % intervals hold the value of every ray"));
   vantage::bench::DevicesOptions devices;
   devices.add(*app.add_subcommand("devices", "How the rate grows with the devices that share the work"));
+  vantage::bench::GapOptions gap;
+  gap.add(*app.add_subcommand("gap", "What stations capture at most, and at best as found, over the candidates"));
+  vantage::bench::ChooseOptions choose;
+  choose.add(*app.add_subcommand("choose", "Choosing many stations on a made-up large site: greedy, swaps and drops"));
   CLI11_PARSE(app, argc, argv);
   try {
     if (app.got_subcommand("rates")) vantage::bench::run_rates(rates);
@@ -40,6 +46,8 @@ int main(int argc, char** argv) {
     if (app.got_subcommand("error")) vantage::bench::run_error(error);
     if (app.got_subcommand("intervals")) vantage::bench::run_intervals(intervals);
     if (app.got_subcommand("devices")) vantage::bench::run_devices(devices);
+    if (app.got_subcommand("gap")) vantage::bench::run_gap(gap);
+    if (app.got_subcommand("choose")) vantage::bench::run_choose(choose);
     if (app.got_subcommand("growth")) vantage::bench::run_growth(growth);
   } catch (const vantage::Error& failure) {
     std::fprintf(stderr, "%s\n", failure.what());

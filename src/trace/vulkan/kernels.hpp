@@ -25,7 +25,8 @@ enum class Kernel {
   sample_sights,
   sample_queue,
   sample_arguments,
-  sample_trace
+  sample_trace,
+  registration
 };
 
 class Kernels {

@@ -111,7 +111,7 @@ TEST_F(Usage, NumbersMustMakeSense) {
 
 TEST_F(Usage, SeveralDevicesShareTheWork) {
   const auto on = [&](const std::string& devices) {
-    return run_program({"evaluate", scene_, "--station", "8,0,1.5", "--station", "-8,0,1.5", "--step", "1",
+    return run_program({"evaluate", scene_, "--station", "8,0,1.5", "--station", "0,-8,1.5", "--step", "1",
                         "--user-size", "0.5", "--spacing", "0.1", "--engine", "compute_bvh", "--device", devices,
                         "--json"});
   };

@@ -105,6 +105,7 @@ const std::vector<Change<SimulatorConfig>> kSimulation{
        c.devices = {{Engine::embree, 0}};
      },
      false},
+    {"warn", [](SimulatorConfig& c) { c.warn = [](const std::string&) {}; }, false, false},
     {"user_size_m", [](SimulatorConfig& c) { c.user_size_m = 0.4; }},
     {"point_spacing_m", [](SimulatorConfig& c) { c.point_spacing_m = 0.1; }},
     {"max_incidence", [](SimulatorConfig& c) { c.max_incidence = Angle::degrees(70); }},
@@ -112,7 +113,7 @@ const std::vector<Change<SimulatorConfig>> kSimulation{
     {"seed", [](SimulatorConfig& c) { c.seed = 2; }},
     {"validation", [](SimulatorConfig& c) { c.validation = true; }, false},
     {"max_rays_per_dispatch", [](SimulatorConfig& c) { c.max_rays_per_dispatch = 1000; }, false}};
-static_assert(member_count<SimulatorConfig>() == 11);  // and whom to warn, which is no setting
+static_assert(member_count<SimulatorConfig>() == 11);
 
 const std::vector<Change<WalkableOptions>> kWalkable{
     {"max_slope", [](WalkableOptions& o) { o.max_slope = Angle::degrees(5); }},
@@ -169,8 +170,9 @@ const std::vector<Change<SurveyProblem>> kRegistration{
     {"patch_m", [](SurveyProblem& p) { p.registration.model.patch_m = 1; }},
     {"position_m", [](SurveyProblem& p) { p.registration.position_m = 0.1; }},
     {"heading", [](SurveyProblem& p) { p.registration.heading = Angle::degrees(1); }},
-    {"tilt", [](SurveyProblem& p) { p.registration.tilt = Angle(); }}};
-static_assert(member_count<RegistrationOptions>() == 4 && member_count<RegistrationModel>() == 2);
+    {"tilt", [](SurveyProblem& p) { p.registration.tilt = Angle(); }},
+    {"surfaces", [](SurveyProblem& p) { p.registration.surfaces = RegistrationSurfaces::all; }}};
+static_assert(member_count<RegistrationOptions>() == 5 && member_count<RegistrationModel>() == 2);
 
 const std::vector<Change<PlanConfig>> kPlan{
     {"population", [](PlanConfig& c) { c.population = 7; }},

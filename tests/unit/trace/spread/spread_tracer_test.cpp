@@ -17,7 +17,7 @@
 namespace vantage {
 namespace {
 
-constexpr double goal = 3.5;
+constexpr double goal = 40;
 constexpr std::uint32_t all_outputs = Tracer::range | Tracer::position | Tracer::normal | Tracer::reflectivity |
                                       Tracer::primitive | Tracer::barycentric | Tracer::voxel;
 
