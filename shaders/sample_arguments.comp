@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sizes the next indirect dispatch of a chunk: over its queue if there is none yet, then over its rays. One thread.
+// Sizes the next indirect dispatch of a chunk, over what a control word counts. One thread.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/references.glsl"
 
 layout(local_size_x = 1) in;
-layout(push_constant, scalar) uniform Push { SamplePush push; };
-layout(constant_id = 0) const bool for_rays = false;
+layout(push_constant, scalar) uniform Push { SampleArgumentsPush push; };
 
 void main() {
-  const uint wanted = push.control.at[for_rays ? control_rays : control_items];
+  const uint wanted = push.control.at[push.over];
   // What does not fit is not begun: the host cuts the chunk and comes back.
   const bool fits = push.control.at[control_rays] <= push.ray_capacity &&
-                    push.control.at[control_items] <= push.item_capacity;
+                    push.control.at[control_parts] <= push.item_capacity;
   const uint groups = fits ? (wanted + (group_size - 1u)) / group_size : 0u;
   push.control.at[control_dispatch] = min(groups, groups_in_row);
   push.control.at[control_dispatch + 1u] = (groups + groups_in_row - 1u) / groups_in_row;

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lists the rays of the real pattern that may put a point into a sampled voxel. A thread a pair of slot and voxel;
-// pairs with many rays are queued in parts, and the same code with QUEUE defined works through the queue, a thread a
-// part.
+// Lists the rays of the real pattern that may put a point into a sampled voxel, of pairs of slot and voxel. How many
+// rays pass a cube differs much from pair to pair, so the threads of a subgroup share out all rays of their pairs
+// evenly.
+//
+// A pair with very many rays is a sight: just a part of them, spread out over the cube, is listed at first. When that
+// has been traced, the same code with SIGHTS defined queues the parts of those sights that are still open, a thread a
+// sight; with QUEUE defined it works through the queue.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/parameters.glsl"
@@ -52,70 +56,143 @@ bool is_candidate(Cube cube, vec3 origin, uint row, uint column, uint first_tria
   return false;
 }
 
+// The step of a walk that comes by all of `count` rays, none twice, and spreads the first of them out.
+uint step_of(uint count) {
+  if (count <= sample_part) return 1u;
+  uint step = uint(0.618034 * float(count));
+  for (;; ++step) {
+    uint a = count, b = step;
+    while (b != 0u) {
+      const uint rest = a % b;
+      a = b;
+      b = rest;
+    }
+    if (a == 1u) return step;
+  }
+}
+
+// What the threads of a workgroup tell each other of their pairs.
+shared Cube cubes[group_size];
+shared vec3 origins[group_size];
+shared RayWindow windows[group_size];
+shared uvec4 walks[group_size];  // columns, rays of the window, step and start
+shared uvec2 triangles[group_size];
+shared uint ends[group_size];  // of the thread's rays among those of the subgroup
+shared uvec2 founds[group_size];  // a bit a ray
+
+uvec2 ray_of(uint thread, uint k) {
+  const uvec4 walk = walks[thread];
+  uint at = walk.w + k;
+  if (walk.y > sample_part) {
+    const bool short_walk = walk.y < 1u << 25;  // 32 bits hold any place of it
+    at = short_walk ? (k * walk.z + walk.w) % walk.y : uint((uint64_t(k) * walk.z + walk.w) % walk.y);
+  }
+  return ray_in_window(windows[thread], int(walk.x), int(at));
+}
+
+#ifdef SIGHTS
+// A sight is closed when the voxel is full and its station is known to see it.
+void main() {
+  const uint k = thread_of_rows();
+  if (k >= push.control.at[control_sights]) return;
+  const SampleSight sight = push.sights.at[k];
+  const SampleStation station = push.stations.at[sight.slot];
+  if (push.stop_at > 0u && push.counts.at[station.network * push.voxel_count + sight.voxel] >= push.stop_at) {
+    if (push.mask_words == 0u) return;
+    const uint word = (station.network * push.mask_words + ((station.place & 63u) >> 5)) * push.voxel_count + sight.voxel;
+    if ((push.masks.at[word] >> (station.place & 31u) & 1u) != 0u) return;
+  }
+  const uint parts = (sight.count - sight.walked + sample_part - 1u) / sample_part;
+  const uint at = atomicAdd(push.control.at[control_items], parts);
+  for (uint p = 0u; p < parts; ++p) push.items.at[at + p] = SampleItem(k, p);
+}
+#else
 void main() {
 #ifdef QUEUE
   const uint k = thread_of_rows();
-  const uint queued = push.control.at[control_items];
-  const bool alive = queued <= push.item_capacity && k < queued;
-  SampleItem item = SampleItem(push.first_voxel, push.first_slot, 0u);
+  const bool alive = k < push.control.at[control_items];
+  SampleItem item = SampleItem(0u, 0u);
   if (alive) item = push.items.at[k];
+  const SampleSight sight = push.sights.at[item.sight];
+  const uint of_voxel = sight.voxel, slot = sight.slot;
 #else
-  SampleItem item = SampleItem(push.first_voxel + gl_WorkGroupID.x * group_size + gl_LocalInvocationIndex,
-                               push.first_slot + gl_WorkGroupID.y, 0u);
-  const bool alive = item.voxel < push.end_voxel;
-  if (!alive) item.voxel = push.first_voxel;
+  const uint thread_voxel = push.first_voxel + gl_WorkGroupID.x * group_size + gl_LocalInvocationIndex;
+  const bool alive = thread_voxel < push.end_voxel;
+  const uint of_voxel = alive ? thread_voxel : push.first_voxel, slot = push.first_slot + gl_WorkGroupID.y;
 #endif
-  const SampleVoxel voxel = push.voxels.at[item.voxel];
-  const vec3 origin = push.stations.at[item.slot].origin;
+  const SampleVoxel voxel = push.voxels.at[of_voxel];
+  const vec3 origin = push.stations.at[slot].origin;
   const Cube cube = cube_of(voxel, origin);
-  const uint end_triangle =
-      end_of_triangles(cube, voxel.first_triangle, push.voxels.at[item.voxel + 1u].first_triangle);
+  const uint end_triangle = end_of_triangles(cube, voxel.first_triangle, push.voxels.at[of_voxel + 1u].first_triangle);
 
-  uvec2 found = uvec2(0);  // a bit a ray
-  RayWindow window;
-  int columns = 0, first = 0;
+  const uint self = gl_LocalInvocationIndex;
+  uint mine = 0u;  // rays to look at
   if (alive && end_triangle > voxel.first_triangle) {
-    window = rays_of_box(cube.low, cube.high);
+    RayWindow window = rays_of_box(cube.low, cube.high);
     window.row0 = max(window.row0, int(push.first_row));
     window.row1 = min(window.row1, int(push.end_row) - 1);
-    columns = column_count_of(window);
     // 64 bits would be needed only for patterns of over 2^31 rays, which the host refuses.
-    const int count = row_count_of(window) * columns;
+    const int rows = row_count_of(window), columns = column_count_of(window);
+    const uint count = uint(rows * columns), step = step_of(count);
+    uint start = count <= sample_part ? 0u : uint(rows / 2 * columns + columns / 2);
 #ifdef QUEUE
-    first = int(item.part * sample_part);
-    const int end = min(first + int(sample_part), count);
+    const uint from = sight.walked + item.part * sample_part;
+    mine = min(sample_part, count - from);
+    start = uint((uint64_t(from) * step + start) % count);
 #else
-    int end = count;
-    if (count > int(sample_part)) {
-      const uint parts = (uint(count) + sample_part - 1u) / sample_part;
-      const uint at = atomicAdd(push.control.at[control_items], parts);
-      for (uint p = 0; p < parts && at + p < push.item_capacity; ++p)
-        push.items.at[at + p] = SampleItem(item.voxel, item.slot, p);
-      end = 0;
+    mine = count;
+    if (count > sample_part) {
+      // Where all are wanted, none first.
+      mine = push.stop_at > 0u ? sample_part : 0u;
+      const uint parts = (count - mine + sample_part - 1u) / sample_part;
+      const uint known = atomicAdd(push.control.at[control_parts], parts);
+      if (known + parts <= push.item_capacity)
+        push.sights.at[atomicAdd(push.control.at[control_sights], 1u)] = SampleSight(of_voxel, slot, mine, count);
     }
 #endif
-    for (int k = first; k < end; ++k) {
-      const uvec2 ray = ray_in_window(window, columns, k);
-      if (is_candidate(cube, origin, ray.x, ray.y, voxel.first_triangle, end_triangle)) {
-        const int bit = k - first;
-        if (bit < 32) found.x |= 1u << bit;
-        else found.y |= 1u << (bit - 32);
-      }
-    }
+    cubes[self] = cube;
+    origins[self] = origin;
+    windows[self] = window;
+    walks[self] = uvec4(columns, count, step, start);
+    triangles[self] = uvec2(voxel.first_triangle, end_triangle);
   }
+  const uint first = subgroupMin(self), threads = subgroupAdd(1u), rank = subgroupExclusiveAdd(1u);  // of the subgroup
+  const uint end = subgroupInclusiveAdd(mine), all = subgroupMax(end);
+  ends[self] = end;
+  founds[self] = uvec2(0u);
+  subgroupBarrier();
+  // Sharing costs as much as half of the work again.
+  const bool share = 2u * subgroupMax(mine) * threads > 3u * all;
+  for (uint j = share ? rank : 0u; j < (share ? all : mine); j += share ? threads : 1u) {
+    // The first thread whose rays end behind j.
+    uint low = share ? first : self, high = share ? first + threads - 1u : self;
+    while (low < high) {
+      const uint middle = (low + high) / 2u;
+      if (ends[middle] > j) high = middle;
+      else low = middle + 1u;
+    }
+    const uint k = j - (!share || low == first ? 0u : ends[low - 1u]);
+    const uvec2 ray = ray_of(low, k);
+    if (!is_candidate(cubes[low], origins[low], ray.x, ray.y, triangles[low].x, triangles[low].y)) continue;
+    if (k < 32u) atomicOr(founds[low].x, 1u << k);
+    else atomicOr(founds[low].y, 1u << (k - 32u));
+  }
+  subgroupBarrier();
 
   // One atomic a subgroup.
-  const uint mine = uint(bitCount(found.x) + bitCount(found.y));
-  const uint before = subgroupExclusiveAdd(mine), all = subgroupAdd(mine);
+  uvec2 found = founds[self];
+  const uint wanted = uint(bitCount(found.x) + bitCount(found.y));
+  const uint before = subgroupExclusiveAdd(wanted), sum = subgroupAdd(wanted);
   uint base = 0u;
-  if (subgroupElect() && all > 0u) base = atomicAdd(push.control.at[control_rays], all);
+  if (subgroupElect() && sum > 0u) base = atomicAdd(push.control.at[push.list], sum);
   uint at = subgroupBroadcastFirst(base) + before;
   while ((found.x | found.y) != 0u) {
     const int bit = found.x != 0u ? findLSB(found.x) : 32 + findLSB(found.y);
     if (bit < 32) found.x &= found.x - 1u;
     else found.y &= found.y - 1u;
-    const uvec2 ray = ray_in_window(window, columns, first + bit);
-    if (at < push.ray_capacity) push.rays.at[at] = SampleRay(item.voxel, item.slot, ray.x * parameters.columns + ray.y);
+    const uvec2 ray = ray_of(self, uint(bit));
+    if (at < push.ray_capacity) push.rays.at[at] = SampleRay(of_voxel, slot, ray.x * parameters.columns + ray.y);
     ++at;
   }
 }
+#endif

@@ -15,7 +15,7 @@ layout(push_constant, scalar) uniform Push { SamplePush push; };
 
 void main() {
   const uint k = thread_of_rows();
-  const uint listed = push.control.at[control_rays];
+  const uint listed = push.control.at[push.list];
   uint network = 0u;
   bool traced = false;
   if (listed <= push.ray_capacity && k < listed) {
@@ -24,7 +24,11 @@ void main() {
     const SampleVoxel voxel = push.voxels.at[job.voxel];
     network = station.network;
     const uint entry = network * push.voxel_count + job.voxel;
-    traced = push.stop_at == 0u || push.counts.at[entry] < push.stop_at;
+    const uint word = (network * push.mask_words + ((station.place & 63u) >> 5)) * push.voxel_count + job.voxel;
+    const uint bit = 1u << (station.place & 31u);
+    // Since it was listed others may have filled the voxel, and shown that the station sees it.
+    traced = push.stop_at == 0u || push.counts.at[entry] < push.stop_at ||
+             (with_masks && (push.masks.at[word] & bit) == 0u);
     if (traced) {
       const uint row = job.ray / parameters.columns, column = job.ray % parameters.columns;
       const vec3 direction = ray_direction(row, column);
@@ -41,8 +45,6 @@ void main() {
         if (cell_of(point, cell) && cell == uvec3(voxel.x, voxel.y, voxel.z) && misses_of(hit, look, direction) == 0u) {
           atomicAdd(push.counts.at[entry], 1u);
           if (with_masks) {
-            const uint word = (network * push.mask_words + ((station.place & 63u) >> 5)) * push.voxel_count + job.voxel;
-            const uint bit = 1u << (station.place & 31u);
             if ((push.masks.at[word] & bit) == 0u) atomicOr(push.masks.at[word], bit);
           }
         }

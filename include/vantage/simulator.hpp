@@ -22,7 +22,13 @@ namespace vantage {
 struct SimulatorConfig {
   Engine engine = Engine::automatic;
   std::optional<std::uint32_t> device_index = std::nullopt;  ///< Empty: the best that has the engine.
-  double user_size_m = 0.1;                                  ///< Upper bound of the voxel size (equation 2).
+  /// Several that share the work, in place of `engine` and `device_index`. Results are those of one device, bit for
+  /// bit, where all have the same engine; engines differ by rounding at edges, and so do results then.
+  std::vector<DeviceChoice> devices = {};
+  /// Told, on the calling thread, of a device that failed and was dropped: the others do its work again, and the last
+  /// one's failure is an `Error`.
+  std::function<void(const std::string&)> warn = {};
+  double user_size_m = 0.1;       ///< Upper bound of the voxel size (equation 2).
   double point_spacing_m = 0.01;  ///< Wanted spacing n of points; goal density = voxel_size² / n².
   bool noise = true;              ///< Apply the scanner's noise table, if it has one.
   /// Largest angle between a ray and the normal of the surface at which its point counts, above 0° and at most 90°.
@@ -113,7 +119,7 @@ struct EvaluateOptions {
 struct SampleOptions {
   std::uint64_t voxels = 20'000;  ///< Number of surveyed voxels; as many as there are: all of them.
   bool overlap = true;
-  bool stop_at_goal = false;  ///< Stop counting a voxel at the goal density; only without overlap.
+  bool stop_at_goal = false;  ///< Stop counting a voxel's points at the goal density.
   /// Where wanted: told the points of every network in each voxel of the sample (`Simulator::sampled_voxels`, in that
   /// order), once for each network that was counted to its end, in any order, on the calling thread. A voxel at the
   /// goal may have fewer than it got where `stop_at_goal`.
@@ -168,6 +174,11 @@ class Simulator {
 
   /// Every ray of every station. REQUIRES: 1 to `max_stations` stations. A cancelled evaluation says so in `cancelled`.
   NetworkCounts evaluate(const Network& network, const EvaluateOptions& options = {}, const Progress& progress = {});
+
+  /// Each network as evaluate() does it, shared out over the devices. Where cancelled, those that were not reached say
+  /// so. REQUIRES: no field.
+  std::vector<NetworkCounts> evaluate_each(std::span<const Network> networks, const EvaluateOptions& options = {},
+                                           const Progress& progress = {});
 
   /// Networks on a sample of the voxels; one submission for all.
   std::vector<NetworkCounts> evaluate_sampled(std::span<const Network> networks, const SampleOptions& options = {},

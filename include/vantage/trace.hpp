@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,16 @@ struct EngineInfo {
 };
 /// All engines on all devices of this machine, usable or not. Never throws for want of a device.
 std::vector<EngineInfo> list_engines();
+
+/// An engine on a device, as it is asked for.
+struct DeviceChoice {
+  Engine engine = Engine::automatic;
+  std::optional<std::uint32_t> index = std::nullopt;  ///< `EngineInfo::device_index`; empty: the best that has it.
+  friend bool operator==(const DeviceChoice&, const DeviceChoice&) = default;
+};
+/// Every hardware device that has the engine; of `automatic`, the engine of the best. Where there is none, what
+/// `engine` alone stands for.
+std::vector<DeviceChoice> all_devices(Engine engine = Engine::automatic);
 
 /// Most stations of a network.
 inline constexpr std::size_t max_stations = 1024;

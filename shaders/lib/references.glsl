@@ -22,6 +22,7 @@ layout(buffer_reference) buffer SampleVoxels;
 layout(buffer_reference) buffer SampleTriangles;
 layout(buffer_reference) buffer SampleStations;
 layout(buffer_reference) buffer SampleRays;
+layout(buffer_reference) buffer SampleSights;
 layout(buffer_reference) buffer SampleItems;
 
 #include "shared/trace_types.h"
@@ -33,6 +34,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer Sa
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer SampleTriangles { SampleTriangle at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer SampleStations { SampleStation at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SampleRays { SampleRay at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SampleSights { SampleSight at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SampleItems { SampleItem at[]; };
 
 const uint brick_quarters = 5u;  // 16 bytes each, of a VoxelBrick

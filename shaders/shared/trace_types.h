@@ -192,23 +192,33 @@ struct SampleRay {
   uint slot;
   uint ray;
 };
-// Part of a pair with more than sample_part rays.
-struct SampleItem {
+// A pair with more than sample_part rays: some of them are traced before the rest is listed, which may not be needed.
+struct SampleSight {
   uint voxel;
   uint slot;
+  uint walked;  // rays of its window looked at
+  uint count;   // rays of its window
+};
+// Part of the rest of a sight.
+struct SampleItem {
+  uint sight;
   uint part;
 };
 VANTAGE_CONST uint sample_part = 64;
 // Control words of one chunk.
-VANTAGE_CONST uint control_rays = 0;  // rays listed, or wanted: more than the capacity means that the chunk must be cut
-VANTAGE_CONST uint control_items = 1;
-VANTAGE_CONST uint control_dispatch = 4;  // three words
+VANTAGE_CONST uint control_rays = 0;   // listed at first, or wanted: more than the capacity means that the chunk must be cut
+VANTAGE_CONST uint control_parts = 1;  // that the sights would have; likewise
+VANTAGE_CONST uint control_sights = 2;
+VANTAGE_CONST uint control_items = 3;      // parts that are looked at
+VANTAGE_CONST uint control_rest = 4;       // rays listed of these
+VANTAGE_CONST uint control_dispatch = 5;  // three words
 VANTAGE_CONST uint control_words = 8;
 struct SamplePush {
   VANTAGE_ADDRESS(SampleVoxels) voxels;
   VANTAGE_ADDRESS(SampleTriangles) triangles;
   VANTAGE_ADDRESS(SampleStations) stations;
   VANTAGE_ADDRESS(SampleRays) rays;
+  VANTAGE_ADDRESS(SampleSights) sights;  // as many as items
   VANTAGE_ADDRESS(SampleItems) items;
   VANTAGE_ADDRESS(Uints) control;
   VANTAGE_ADDRESS(Uints) counts;        // [network][voxel]
@@ -224,6 +234,16 @@ struct SamplePush {
   uint item_capacity;
   uint mask_words;
   uint stop_at;  // points at which a voxel needs no more; 0: never
+  uint list;     // control_rays or control_rest
+};
+
+// Sizes a dispatch over what control word `over` counts.
+struct SampleArgumentsPush {
+  VANTAGE_ADDRESS(Uints) control;
+  uint over;
+  uint ray_capacity;
+  uint item_capacity;
+  uint padding;
 };
 
 VANTAGE_SHARED_END

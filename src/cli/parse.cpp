@@ -158,6 +158,26 @@ SampleSize parse_sample(std::string_view text, const std::string& what) {
   return {.voxels = parse_count(text, what, 1), .share = std::nullopt};
 }
 
+DeviceList parse_devices(std::string_view text, const std::string& what) {
+  DeviceList list;
+  for (const std::string_view part : split(text, ',')) {
+    if (part == "all" || part == "cpu") {
+      bool& given = part == "all" ? list.all : list.cpu;
+      if (given) refuse(what, text, "names " + std::string(part) + " twice");
+      given = true;
+      continue;
+    }
+    if (part.empty() || part.find_first_not_of("+-0123456789 ") != std::string_view::npos)
+      refuse(what, text, "is no list of devices: 0, or 0,1, or all, or any of them with cpu");
+    const auto number = static_cast<std::uint32_t>(parse_count(part, what, 0, 0xFFFF));
+    if (std::find(list.numbers.begin(), list.numbers.end(), number) != list.numbers.end())
+      refuse(what, text, "names device " + std::to_string(number) + " twice");
+    list.numbers.push_back(number);
+  }
+  if (list.all && !list.numbers.empty()) refuse(what, text, "names devices besides all of them");
+  return list;
+}
+
 double parse_duration(std::string_view text, const std::string& what) {
   double unit = 1;
   std::string_view number = text;

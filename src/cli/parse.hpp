@@ -59,6 +59,13 @@ struct SampleSize {
 };
 SampleSize parse_sample(std::string_view text, const std::string& what);
 
+// Devices, comma-separated: all, numbers as `vantage info` lists them, cpu.
+struct DeviceList {
+  bool all = false, cpu = false;
+  std::vector<std::uint32_t> numbers = {};
+};
+DeviceList parse_devices(std::string_view text, const std::string& what);
+
 // Seconds: a number, or one with s, min or h behind it.
 double parse_duration(std::string_view text, const std::string& what);
 // "4G", "500 MiB", "2e9": bytes; K, M, G, T are powers of 1024.

@@ -14,7 +14,8 @@ void tell_engine(const Simulator& simulator) {
   const EngineInfo& info = simulator.engine();
   // Of Embree also where it was asked for: whether this processor gives what all others do.
   std::string reason = info.engine == Engine::embree ? ": " + info.reason : "";
-  if (simulator.config().engine == Engine::automatic && !simulator.config().device_index)
+  const SimulatorConfig& config = simulator.config();
+  if (config.engine == Engine::automatic && !config.device_index && config.devices.empty())
     for (const auto& engine : list_engines())
       if (engine.chosen_by_default) reason = ": " + engine.reason;
   spdlog::info("{} on {}{}", to_string(info.engine), info.device, reason);

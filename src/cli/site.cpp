@@ -124,6 +124,22 @@ double usual_spacing(const Scanner& scanner, const SimulatorConfig& config, doub
   return std::max(usual, std::min(10 * step * scale, config.user_size_m / 2));
 }
 
+// One device is named as ever; several are listed. The processor is one by the name of its engine.
+void choose_devices(SimulatorConfig& config, const SiteOptions& options) {
+  const DeviceList& asked = options.devices;
+  config.engine = options.engine;
+  if (asked.all) config.devices = all_devices(options.engine);
+  for (const std::uint32_t number : asked.numbers) config.devices.push_back({options.engine, number});
+  const DeviceChoice cpu{Engine::embree, std::nullopt};
+  if (asked.cpu && std::find(config.devices.begin(), config.devices.end(), cpu) == config.devices.end())
+    config.devices.push_back(cpu);
+  config.warn = [](const std::string& line) { spdlog::warn("{}", line); };
+  if (config.devices.size() != 1) return;
+  config.engine = config.devices.front().engine;
+  config.device_index = config.devices.front().index;
+  config.devices.clear();
+}
+
 }  // namespace
 
 void SiteOptions::add(CLI::App& command) {
@@ -244,10 +260,9 @@ void SiteOptions::add(CLI::App& command) {
               }
             })
       ->group("Run");
-  add_value(command, "--device", "N", "Number of the device, as `vantage info` lists it",
-            [this](const std::string& text, const std::string& what) {
-              device = static_cast<std::uint32_t>(parse_count(text, what, 0, 0xFFFF));
-            })
+  add_value(command, "--device", "LIST",
+            "Number of the device, as `vantage info` lists it; several that share the work: 0,1, or all, or 0,cpu",
+            [this](const std::string& text, const std::string& what) { devices = parse_devices(text, what); })
       ->group("Run");
   add_value(command, "--seed", "N", "Seed of noise, samples and search; 1 otherwise",
             [this](const std::string& text, const std::string& what) { seed = parse_count(text, what); })
@@ -351,8 +366,7 @@ LoadedSite open_site(CLI::App& command, SiteOptions& options) {
                   .security = {},
                   .walkable = {},
                   .noise = {}};
-  site.config.engine = options.engine;
-  site.config.device_index = options.device;
+  choose_devices(site.config, options);
   site.config.seed = options.seed;
   site.config.validation = options.validation;
   site.config.max_memory_bytes = options.memory;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cli/area.hpp"
+#include "cli/parse.hpp"
 #include "vantage/vantage.hpp"
 
 namespace vantage::cli {
@@ -35,7 +36,7 @@ struct SiteOptions {
   AreaOptions area;
 
   Engine engine = Engine::automatic;
-  std::optional<std::uint32_t> device;
+  DeviceList devices;
   std::uint64_t seed = 1;
   bool validation = false;
   std::uint64_t memory = 0;  // bytes; 0: half of what is free

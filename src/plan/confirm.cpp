@@ -85,12 +85,20 @@ std::vector<PlanEntry> confirm_front(const SearchOutcome& found, const DecisionS
       }
     }
   }
-  for (std::size_t k = 0; k < entries.size() && !watch.abort.stop_requested(); ++k) {
-    report(k, 0);
+  report(0, 0);
+  const Progress progress{.report =
+                              [&](double share) {
+                                constexpr double rounding = 1e-9;
+                                const double done = share * static_cast<double>(entries.size());
+                                const auto whole = static_cast<std::size_t>(done + rounding);
+                                report(whole, std::max(0.0, done - static_cast<double>(whole)));
+                              },
+                          .stop = watch.abort};
+  std::vector<std::optional<ConfirmedNetwork>> confirmed = evaluator.confirm(networks, progress);
+  for (std::size_t k = 0; k < entries.size(); ++k) {
+    std::optional<ConfirmedNetwork>& exact = confirmed[k];
+    if (!exact) continue;
     PlanEntry& entry = entries[k];
-    std::optional<ConfirmedNetwork> exact =
-        evaluator.confirm(networks[k], {.report = [&](double done) { report(k, done); }, .stop = watch.abort});
-    if (!exact) break;
     entry.exact_overlap_matrix = std::move(exact->overlaps);
     entry.exact_scan_overlap_matrix = std::move(exact->scan_overlaps);
     entry.points_on_surveyed = std::move(exact->points_on_surveyed);

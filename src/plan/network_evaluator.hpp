@@ -36,8 +36,9 @@ class NetworkEvaluator {
   // All measures with standard errors, for the few networks of a front.
   virtual std::optional<std::vector<std::vector<Estimate>>> estimate(std::span<const PlacedNetwork> networks,
                                                                      const Progress& progress) = 0;
-  // With every ray; empty when stopped.
-  virtual std::optional<ConfirmedNetwork> confirm(const PlacedNetwork& network, const Progress& progress) = 0;
+  // With every ray; empty what was not reached before it was stopped.
+  virtual std::vector<std::optional<ConfirmedNetwork>> confirm(std::span<const PlacedNetwork> networks,
+                                                               const Progress& progress) = 0;
   virtual double trace_seconds() const = 0;
 };
 

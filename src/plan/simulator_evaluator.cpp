@@ -30,7 +30,7 @@ std::optional<SimulatorEvaluator::Counted> SimulatorEvaluator::count(std::span<c
     auto counts = count_with(simulator_, networks,
                              {.voxels = options_.sample_voxels,
                               .overlap = needs.pairs,
-                              .stop_at_goal = !needs.pairs,
+                              .stop_at_goal = true,
                               .registration = needs.registration,
                               .registration_groups = errors},
                              progress);
@@ -54,20 +54,12 @@ std::optional<std::vector<NetworkCounts>> SimulatorEvaluator::count_with(Simulat
                                                                          std::span<const Network> networks,
                                                                          const SampleOptions& sample,
                                                                          const Progress& progress) {
-  std::vector<NetworkCounts> counts;
-  if (sample.voxels > 0) {
-    counts = simulator.evaluate_sampled(networks, sample, progress);
-  } else {
-    for (const Network& network : networks) {
-      counts.push_back(
-          simulator.evaluate(network, {.overlap = sample.overlap, .registration = sample.registration}, progress));
-      if (counts.back().cancelled) break;
-    }
-  }
+  const EvaluateOptions every_ray{.overlap = sample.overlap, .registration = sample.registration};
+  std::vector<NetworkCounts> counts = sample.voxels > 0 ? simulator.evaluate_sampled(networks, sample, progress)
+                                                        : simulator.evaluate_each(networks, every_ray, progress);
   for (const NetworkCounts& c : counts) trace_seconds_ += c.trace_seconds;
   for (const NetworkCounts& c : counts)
     if (c.cancelled) return std::nullopt;
-  if (counts.size() != networks.size()) return std::nullopt;
   return counts;
 }
 
@@ -122,29 +114,37 @@ std::optional<std::vector<std::vector<Estimate>>> SimulatorEvaluator::estimate(s
   return estimates;
 }
 
-std::optional<ConfirmedNetwork> SimulatorEvaluator::confirm(const PlacedNetwork& placed, const Progress& progress) {
-  const Network network = to_network(placed);
-  NetworkCounts counts =
-      simulator_.evaluate(network, {.overlap = true, .registration = measures_.all_needs().registration}, progress);
-  trace_seconds_ += counts.trace_seconds;
-  if (counts.cancelled) return std::nullopt;
+std::vector<std::optional<ConfirmedNetwork>> SimulatorEvaluator::confirm(std::span<const PlacedNetwork> placed,
+                                                                         const Progress& progress) {
   const Needs needs = measures_.all_needs();
-  NetworkCounts around;
-  if (needs.surroundings) {
-    around = options_.surroundings->evaluate(network, {.overlap = true, .registration = registered_around(needs)},
-                                             {.report = {}, .stop = progress.stop});
-    trace_seconds_ += around.trace_seconds;
-    if (around.cancelled) return std::nullopt;
+  const std::vector<Network> networks = to_networks(placed);
+  const auto count = [&](Simulator& simulator, const EvaluateOptions& options, const Progress& own) {
+    std::vector<NetworkCounts> counts = simulator.evaluate_each(networks, options, own);
+    for (const NetworkCounts& c : counts) trace_seconds_ += c.trace_seconds;
+    return counts;
+  };
+  std::vector<NetworkCounts> counts =
+      count(simulator_, {.overlap = true, .registration = needs.registration}, progress);
+  std::vector<NetworkCounts> around;
+  if (needs.surroundings)
+    around = count(*options_.surroundings, {.overlap = true, .registration = registered_around(needs)},
+                   {.report = {}, .stop = progress.stop});
+
+  std::vector<std::optional<ConfirmedNetwork>> all(placed.size());
+  for (std::size_t k = 0; k < placed.size(); ++k) {
+    if (counts[k].cancelled || (needs.surroundings && around[k].cancelled)) continue;
+    const MeasuredNetwork seen =
+        measured(counts[k], needs.surroundings ? &around[k] : nullptr, placed[k], networks[k], needs);
+    ConfirmedNetwork& confirmed = all[k].emplace();
+    confirmed.overlaps = seen.overlap;
+    if (needs.surroundings) confirmed.scan_overlaps = scan_overlap_matrix(around[k]);
+    for (const Objective& objective : measures_.all) confirmed.values.push_back(objective.value(seen));
+    if (needs.registration)
+      confirmed.registration = registration_error(counts[k], seen.voxels, options_.registration, seen.surroundings,
+                                                  seen.surroundings_voxels);
+    confirmed.points_on_surveyed = std::move(counts[k].points_on_surveyed);
   }
-  const MeasuredNetwork seen = measured(counts, needs.surroundings ? &around : nullptr, placed, network, needs);
-  ConfirmedNetwork confirmed{.values = {}, .overlaps = seen.overlap};
-  if (needs.surroundings) confirmed.scan_overlaps = scan_overlap_matrix(around);
-  for (const Objective& objective : measures_.all) confirmed.values.push_back(objective.value(seen));
-  if (needs.registration)
-    confirmed.registration =
-        registration_error(counts, seen.voxels, options_.registration, seen.surroundings, seen.surroundings_voxels);
-  confirmed.points_on_surveyed = std::move(counts.points_on_surveyed);
-  return confirmed;
+  return all;
 }
 
 }  // namespace vantage

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <string>
+#include <vector>
+
 #include "core/setting_list.hpp"
 #include "vantage/simulator.hpp"
 
@@ -26,9 +29,13 @@ Settings settings(const Scanner& scanner) {
 }
 
 Settings settings(const SimulatorConfig& config) {
+  std::vector<std::string> devices;
+  for (const DeviceChoice& device : config.devices)
+    devices.push_back(to_string(device.engine) + (device.index ? " " + std::to_string(*device.index) : ""));
   return SettingList()
       .add("engine", to_string(config.engine), {.decides = false})
       .add("device_index", config.device_index, {.decides = false})
+      .add("devices", devices, {.decides = false})
       .add("user_size_m", config.user_size_m, {"user-size"})
       .add("point_spacing_m", config.point_spacing_m, {"spacing"})
       .add("max_incidence_deg", config.max_incidence, {"incidence"})

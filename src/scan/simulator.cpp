@@ -125,14 +125,15 @@ struct Simulator::Impl {
     limited = limits.enabled();
     // Shares the scene's storage for as long as the engine wants it.
     const auto kept = std::make_shared<const Scene>(scene);
-    tracer = make_tracer(config.engine, config.device_index,
-                         {.scene = {kept, &kept->data()},
-                          .grid = grid,
-                          .pattern = pattern,
-                          .noise = std::make_shared<const NoiseModel>(noise),
-                          .max_rays_per_dispatch = config.max_rays_per_dispatch,
-                          .validation = config.validation,
-                          .limits = std::make_shared<const LimitModel>(limits)});
+    const TraceScene traced{.scene = {kept, &kept->data()},
+                            .grid = grid,
+                            .pattern = pattern,
+                            .noise = std::make_shared<const NoiseModel>(noise),
+                            .max_rays_per_dispatch = config.max_rays_per_dispatch,
+                            .validation = config.validation,
+                            .limits = std::make_shared<const LimitModel>(limits)};
+    tracer = config.devices.empty() ? make_tracer(config.engine, config.device_index, traced)
+                                    : make_tracer(config.devices, traced, config.warn);
     tracer->set_goal_density(goal);
   }
 
@@ -309,6 +310,33 @@ NetworkCounts Simulator::evaluate(const Network& network, const EvaluateOptions&
   return counts;
 }
 
+std::vector<NetworkCounts> Simulator::evaluate_each(std::span<const Network> networks, const EvaluateOptions& options,
+                                                    const Progress& progress) {
+  std::vector<NetworkCounts> all(networks.size());
+  for (NetworkCounts& counts : all) counts.cancelled = true;
+  // Networks without an active station are not the engine's concern; nor are sums over the field, which are made here.
+  std::vector<std::vector<TraceStation>> traced;
+  std::vector<std::uint32_t> sizes;
+  std::vector<std::size_t> places;
+  const auto many = static_cast<double>(networks.size());
+  for (std::size_t k = 0; k < networks.size() && !progress.stopped(); ++k) {
+    std::vector<TraceStation> active = impl_->active_stations(networks[k]);
+    if (active.empty() || options.registration) {
+      all[k] = evaluate(
+          networks[k], options,
+          {.report = [&](double part) { progress((static_cast<double>(k) + part) / many); }, .stop = progress.stop});
+      continue;
+    }
+    traced.push_back(std::move(active));
+    sizes.push_back(static_cast<std::uint32_t>(networks[k].size()));
+    places.push_back(k);
+  }
+  std::vector<NetworkCounts> counts =
+      impl_->tracer->count_each(traced, sizes, {.masks = options.overlap, .skip = options.skip}, progress);
+  for (std::size_t k = 0; k < counts.size(); ++k) all[places[k]] = std::move(counts[k]);
+  return all;
+}
+
 std::vector<NetworkCounts> Simulator::evaluate_sampled(std::span<const Network> networks, const SampleOptions& options,
                                                        const Progress& progress) {
   check_registration(options.registration, options.overlap);
@@ -337,7 +365,6 @@ std::vector<NetworkCounts> Simulator::evaluate_sampled(std::span<const Network> 
     places.push_back(k);
   }
   if (traced.empty()) return all;
-  const bool stop_at_goal = options.stop_at_goal && !options.overlap;
   const auto points = [&](std::size_t k, std::span<const std::uint32_t> counted) {
     options.points(places[k], counted);
   };
@@ -347,7 +374,7 @@ std::vector<NetworkCounts> Simulator::evaluate_sampled(std::span<const Network> 
   const Tracer::SampleJob job{.sample = sample,
                               .groups = sample_groups,
                               .masks = options.overlap,
-                              .stop_at = stop_at_goal ? static_cast<std::uint32_t>(std::ceil(impl_->goal)) : 0,
+                              .stop_at = options.stop_at_goal ? static_cast<std::uint32_t>(std::ceil(impl_->goal)) : 0,
                               .points = options.points ? decltype(options.points)(points) : nullptr,
                               .registration = registration ? &*registration : nullptr};
   std::vector<NetworkCounts> counts;

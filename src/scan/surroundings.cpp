@@ -26,8 +26,10 @@ Simulator surroundings_of(const Simulator& simulator) {
   const Scene scene = all_surveyed(simulator.scene());
   const double extent = extent_of(scene);
   SimulatorConfig config = simulator.config();
-  config.engine = simulator.engine().engine;
-  config.device_index = simulator.engine().device_index;
+  if (config.devices.empty()) {
+    config.engine = simulator.engine().engine;
+    config.device_index = simulator.engine().device_index;
+  }
   config.user_size_m = std::max(simulator.voxel_size_m(), std::min(extent_share * extent, largest_voxel_m));
   config.point_spacing_m = config.user_size_m / 4;  // a goal is of no use here, but has to be at least 1
   config.noise = false;

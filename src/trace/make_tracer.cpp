@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The only file that names every engine.
 #include <algorithm>
+#include <future>
 #include <iterator>
 #include <string>
 #include <utility>
 
 #include "trace/choose_engine.hpp"
 #include "trace/embree/embree_tracer.hpp"
+#include "trace/spread/spread_tracer.hpp"
 #include "trace/tracer.hpp"
 #include "trace/vulkan/compute_bvh/compute_bvh.hpp"
 #include "trace/vulkan/ray_query/ray_query.hpp"
@@ -74,6 +76,27 @@ std::unique_ptr<Tracer> make_tracer(Engine engine, std::optional<std::uint32_t> 
   if (chosen == std::end(vulkan_engines))
     throw Error(Errc::invalid_argument, "there is no engine number " + std::to_string(static_cast<int>(engine)));
   return make_vulkan_tracer(**chosen, device_index, scene);
+}
+
+std::vector<DeviceChoice> all_devices(Engine engine) {
+  const std::vector<EngineInfo> listed = list_engines();
+  if (engine == Engine::automatic) engine = listed[default_engine(listed)].engine;
+  std::vector<DeviceChoice> all;
+  for (const EngineInfo& info : listed)
+    if (info.engine == engine && info.usable && !info.software) all.push_back({engine, info.device_index});
+  if (all.empty()) all.push_back({engine, std::nullopt});
+  return all;
+}
+
+std::unique_ptr<Tracer> make_tracer(std::span<const DeviceChoice> devices, const TraceScene& scene,
+                                    std::function<void(const std::string&)> warn) {
+  std::vector<std::future<std::unique_ptr<Tracer>>> building;
+  for (const DeviceChoice& device : devices)
+    building.push_back(std::async(std::launch::async, [&] { return make_tracer(device.engine, device.index, scene); }));
+  std::vector<std::unique_ptr<Tracer>> tracers;
+  for (auto& each : building) tracers.push_back(each.get());
+  if (tracers.size() == 1) return std::move(tracers.front());
+  return std::make_unique<SpreadTracer>(std::move(tracers), scene, std::move(warn));
 }
 
 }  // namespace vantage

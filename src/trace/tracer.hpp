@@ -123,13 +123,19 @@ class Tracer {
   virtual NetworkCounts count(std::span<const TraceStation> stations, std::uint32_t station_count,
                               const CountOptions& options, const Progress& progress) = 0;
 
+  // Each network as count() does it; networks[k] lists the active stations of network k, station_counts[k] is its
+  // N_stations. Where cancelled, those that were not reached say so. REQUIRES: no field.
+  virtual std::vector<NetworkCounts> count_each(std::span<const std::vector<TraceStation>> networks,
+                                                std::span<const std::uint32_t> station_counts,
+                                                const CountOptions& options, const Progress& progress);
+
   // Sampled: the same counts over the voxels of `sample` (ascending ranks) only, for many networks in one submission.
   // networks[k] lists the active stations of network k; station_counts[k] is its N_stations.
   struct SampleJob {
     std::span<const std::uint32_t> sample;
     std::uint32_t groups = 20;  // interleaved: voxel number i of the sample is in group i % groups
     bool masks = true;
-    std::uint32_t stop_at = 0;  // goal rounded up, or 0; only without masks
+    std::uint32_t stop_at = 0;  // goal rounded up: a voxel's points need not be counted beyond; or 0
     // Where wanted: told the points in each voxel of the sample, once for every network that was counted to its end, in
     // any order, on the calling thread.
     std::function<void(std::size_t network, std::span<const std::uint32_t> points)> points = {};
@@ -142,7 +148,7 @@ class Tracer {
                                                    std::span<const std::uint32_t> station_counts, const SampleJob& job,
                                                    const Progress& progress) = 0;
   // Goal density: a voxel with count >= goal is saturated. Set once after construction.
-  void set_goal_density(double goal) { goal_density_ = goal; }
+  virtual void set_goal_density(double goal) { goal_density_ = goal; }
 
  protected:
   double goal_density_ = 1;
@@ -151,5 +157,8 @@ class Tracer {
 // Builds the engine that `engine` names; `automatic` decides as DESIGN says. Throws Error no_suitable_device with every
 // refusal.
 std::unique_ptr<Tracer> make_tracer(Engine engine, std::optional<std::uint32_t> device_index, const TraceScene& scene);
+// One tracer over several devices, which tells `warn` of those that it loses. REQUIRES: at least one device.
+std::unique_ptr<Tracer> make_tracer(std::span<const DeviceChoice> devices, const TraceScene& scene,
+                                    std::function<void(const std::string&)> warn);
 
 }  // namespace vantage

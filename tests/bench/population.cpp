@@ -89,7 +89,7 @@ void run_population(const PopulationOptions& options) {
 
     for (const std::uint64_t size : options.sizes)
       for (const bool overlap : {false, true}) {
-        const SampleOptions sample{.voxels = size, .overlap = overlap, .stop_at_goal = !overlap};
+        const SampleOptions sample{.voxels = size, .overlap = overlap, .stop_at_goal = true};
         double best = std::numeric_limits<double>::infinity(), device_ms = 0;
         std::vector<NetworkCounts> counts;
         std::vector<Objectives> objectives(networks.size());

@@ -5,6 +5,7 @@
 
 #include "bare_embree.hpp"
 #include "choose.hpp"
+#include "devices.hpp"
 #include "error.hpp"
 #include "gap.hpp"
 #include "growth.hpp"
@@ -31,6 +32,8 @@ int main(int argc, char** argv) {
       *app.add_subcommand("growth", "Time and memory over triangles, stations, voxels and the size of the sample"));
   vantage::bench::IntervalsOptions intervals;
   intervals.add(*app.add_subcommand("intervals", "How often a sample's 95 % intervals hold the value of every ray"));
+  vantage::bench::DevicesOptions devices;
+  devices.add(*app.add_subcommand("devices", "How the rate grows with the devices that share the work"));
   vantage::bench::GapOptions gap;
   gap.add(*app.add_subcommand("gap", "What stations capture at most, and at best as found, over the candidates"));
   vantage::bench::ChooseOptions choose;
@@ -42,6 +45,7 @@ int main(int argc, char** argv) {
     if (app.got_subcommand("population")) vantage::bench::run_population(population);
     if (app.got_subcommand("error")) vantage::bench::run_error(error);
     if (app.got_subcommand("intervals")) vantage::bench::run_intervals(intervals);
+    if (app.got_subcommand("devices")) vantage::bench::run_devices(devices);
     if (app.got_subcommand("gap")) vantage::bench::run_gap(gap);
     if (app.got_subcommand("choose")) vantage::bench::run_choose(choose);
     if (app.got_subcommand("growth")) vantage::bench::run_growth(growth);

@@ -3,9 +3,11 @@
 
 #include <array>
 #include <ostream>
+#include <utility>
 
 #include "conformance/brute_force/brute_force.hpp"
 #include "support/engines.hpp"
+#include "trace/spread/spread_tracer.hpp"
 #include "trace/vulkan/vulkan_engines.hpp"
 
 namespace vantage::test {
@@ -17,6 +19,19 @@ std::vector<EngineUnderTest> engines_under_test() {
   for (const EngineInfo& info : usable_engines())
     engines.push_back({name_of(info),
                        [info](const TraceScene& scene) { return make_tracer(info.engine, info.device_index, scene); }});
+  // And several devices together, software ones where there are no others. A network is always split, or one so small
+  // never would be.
+  const auto together = [&](const std::string& name, const DeviceChoice& device, std::size_t many) {
+    engines.push_back({name, [device, many](const TraceScene& scene) {
+                         std::vector<std::unique_ptr<Tracer>> tracers;
+                         for (std::size_t k = 0; k < many; ++k)
+                           tracers.push_back(make_tracer(device.engine, device.index, scene));
+                         return std::make_unique<SpreadTracer>(std::move(tracers), scene, Team::Warn(),
+                                                               SpreadTracer::Split::always);
+                       }});
+  };
+  together("two_compute_bvh", {.engine = Engine::compute_bvh}, 2);
+  together("three_embree", {.engine = Engine::embree}, 3);
   const std::array added{&brute_force_engine};
   for (const EngineInfo& info : list_vulkan_engines(added))
     if (info.usable)

@@ -78,7 +78,7 @@ std::vector<NetworkCounts> sample_networks(const StationRays& rays, std::span<co
           const std::size_t network = task / blocks, start = task % blocks * block;
           const std::size_t many = std::min(block, n - start);
           SampledVoxelCounter counter(rays, voxels, pad);
-          counter.count(networks[first + network], start, job.masks ? 0 : job.stop_at,
+          counter.count(networks[first + network], start, job.stop_at,
                         std::span(counts).subspan(network * n + start, many),
                         job.masks ? std::span(masks).subspan(network * n + start, many) : std::span<std::uint64_t>());
           std::atomic_ref(traced[network]).fetch_add(counter.traced(), std::memory_order_relaxed);

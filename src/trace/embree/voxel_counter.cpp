@@ -64,6 +64,7 @@ SampledVoxelCounter::SampledVoxelCounter(const StationRays& rays, const SampledV
 void SampledVoxelCounter::count(std::span<const TraceStation> stations, std::size_t first, std::uint32_t stop_at,
                                 std::span<std::uint32_t> counts, std::span<std::uint64_t> masks) {
   first_ = first;
+  stop_at_ = stop_at;
   counts_ = counts;
   masks_ = masks;
   for (const TraceStation& station : stations) {
@@ -73,7 +74,7 @@ void SampledVoxelCounter::count(std::span<const TraceStation> stations, std::siz
     bundle_.start = rays_.pattern().min_range;
     look_from(first, counts.size());
     for (std::uint32_t i = 0; i < counts.size(); ++i) {
-      if (stop_at == 0 || counts[i] < stop_at) list_rays(i, stop_at);
+      if (!full(i)) list_rays(i);
     }
     settle();
   }
@@ -152,7 +153,7 @@ void SampledVoxelCounter::fill_nearest(std::span<const SampledVoxels::Plane> pla
 
 // Lists the rays that may leave a point in voxel number i of the block.
 VANTAGE_TARGET_CLONES
-void SampledVoxelCounter::list_rays(std::uint32_t i, std::uint32_t stop_at) {
+void SampledVoxelCounter::list_rays(std::uint32_t i) {
   const RayPattern& pattern = rays_.pattern();
   const double half = rays_.grid().voxel_size() / 2 + pad_, corner = half * 1.7320509;
   const double first = (pattern.min_range - reach_) * (1 - trust), last = (pattern.max_range + reach_) * (1 + trust);
@@ -214,7 +215,7 @@ void SampledVoxelCounter::list_rays(std::uint32_t i, std::uint32_t stop_at) {
         if (fan_.size < Fan::capacity) continue;
         fill_nearest(planes, cube);
         list_fan(sight);
-        if (stop_at != 0 && counts_[i] >= stop_at) return;
+        if (full(i)) return;
       }
     }
   }
@@ -305,24 +306,37 @@ void SampledVoxelCounter::settle() {
   listed_size_ = 0;
 }
 
-// Traces all rays of what is visible, and counts points.
+// Traces the rays of what is visible, and counts points: where a voxel is to be filled only, first as many as mostly
+// do, and one where it is full and only wanted is whether it is seen.
 void SampledVoxelCounter::cast() {
   bundle_.size = 0;
-  for (const Sight& sight : visible_) {
-    traced_ += sight.end - sight.begin - (sight.probed ? 1 : 0);
-    for (std::uint32_t k = sight.begin; k < sight.end; ++k) {
-      const Ray& ray = listed_[k];
-      const std::uint32_t slot = bundle_.size++;
-      bundle_.x[slot] = ray.d.x;
-      bundle_.y[slot] = ray.d.y;
-      bundle_.z[slot] = ray.d.z;
-      bundle_.end[slot] = sight.farthest;
-      cast_ray_[slot] = k;
-      cast_voxel_[slot] = sight.voxel;
-      if (bundle_.size == RayBundle::capacity) finish();
-    }
+  if (stop_at_ != 0) {
+    const std::uint32_t some = stop_at_ + stop_at_ / 4 + 1;
+    for (Sight& sight : visible_)
+      if (!full(sight.voxel))
+        cast(sight, std::min(counts_[sight.voxel] >= stop_at_ ? 1 : some, sight.end - sight.begin));
+    finish();
   }
+  for (Sight& sight : visible_)
+    if (!full(sight.voxel)) cast(sight, sight.end - sight.begin);
   finish();
+}
+
+// Takes the first so many rays.
+void SampledVoxelCounter::cast(Sight& sight, std::uint32_t many) {
+  traced_ += many - (sight.probed && many > 0 ? 1 : 0);
+  sight.probed = false;
+  for (const std::uint32_t end = sight.begin + many; sight.begin < end; ++sight.begin) {
+    const Ray& ray = listed_[sight.begin];
+    const std::uint32_t slot = bundle_.size++;
+    bundle_.x[slot] = ray.d.x;
+    bundle_.y[slot] = ray.d.y;
+    bundle_.z[slot] = ray.d.z;
+    bundle_.end[slot] = sight.farthest;
+    cast_ray_[slot] = sight.begin;
+    cast_voxel_[slot] = sight.voxel;
+    if (bundle_.size == RayBundle::capacity) finish();
+  }
 }
 
 void SampledVoxelCounter::finish() {

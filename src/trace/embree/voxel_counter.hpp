@@ -28,8 +28,8 @@ class SampledVoxelCounter {
   SampledVoxelCounter(const StationRays& rays, const SampledVoxels& voxels, double pad);
 
   // Of voxels first, first + 1, …: every station's points (saturating), or, where `stop_at` is not 0, stations' points
-  // until there are so many; and a bit for each station that has one there. `masks` is empty or as long as `counts`.
-  // REQUIRES: no more than `block` voxels; counts and masks are 0.
+  // until there are so many and it is known who has one; and a bit for each station that has one there. `masks` is
+  // empty or as long as `counts`. REQUIRES: no more than `block` voxels; counts and masks are 0.
   void count(std::span<const TraceStation> stations, std::size_t first, std::uint32_t stop_at,
              std::span<std::uint32_t> counts, std::span<std::uint64_t> masks);
   std::uint64_t traced() const { return traced_; }
@@ -64,12 +64,17 @@ class SampledVoxelCounter {
   };
 
   void look_from(std::size_t first, std::size_t n);
-  void list_rays(std::uint32_t i, std::uint32_t stop_at);
+  // Whether the present station need not look at voxel number i of the block any more.
+  bool full(std::uint32_t i) const {
+    return stop_at_ != 0 && counts_[i] >= stop_at_ && (masks_.empty() || (masks_[i] >> station_->place & 1) != 0);
+  }
+  void list_rays(std::uint32_t i);
   void fill_nearest(std::span<const SampledVoxels::Plane> planes, const Cube& cube);
   void list_fan(Sight& sight);
   void settle();
   void drop_hidden(Sight& sight, std::uint32_t by);
   void cast();
+  void cast(Sight& sight, std::uint32_t many);
   void finish();
 
   const StationRays& rays_;
@@ -78,6 +83,7 @@ class SampledVoxelCounter {
   const TraceStation* station_ = nullptr;
   Vec3 head_;
   std::size_t first_ = 0;
+  std::uint32_t stop_at_ = 0;
   std::span<std::uint32_t> counts_;
   std::span<std::uint64_t> masks_;
   std::uint64_t traced_ = 0;

@@ -30,8 +30,10 @@ Source source_of(Kernel kernel, const Traversal& traversal) {
     case Kernel::reduce: return {"reduce", shaders::reduce, sizeof(ReducePush), 0};
     case Kernel::registration: return {"registration", shaders::registration, sizeof(RegisterPush), 0};
     case Kernel::sample_list: return {"sample list", shaders::sample_list, sizeof(SamplePush), 0};
+    case Kernel::sample_sights: return {"sample sights", shaders::sample_sights, sizeof(SamplePush), 0};
     case Kernel::sample_queue: return {"sample queue", shaders::sample_queue, sizeof(SamplePush), 0};
-    case Kernel::sample_arguments: return {"sample arguments", shaders::sample_arguments, sizeof(SamplePush), 1};
+    case Kernel::sample_arguments:
+      return {"sample arguments", shaders::sample_arguments, sizeof(SampleArgumentsPush), 0};
   }
   assert(false);
   return {};

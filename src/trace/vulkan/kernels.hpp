@@ -22,6 +22,7 @@ enum class Kernel {
   clamp,
   reduce,
   sample_list,
+  sample_sights,
   sample_queue,
   sample_arguments,
   sample_trace,

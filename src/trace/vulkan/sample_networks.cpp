@@ -133,6 +133,7 @@ class VulkanTracer::SampledCount {
   void ensure_buffers() {
     const std::uint64_t entries = std::uint64_t{voxels_} * batch_size_;
     t_.ensure(t_.sample_rays_, std::uint64_t{room_.rays} * sizeof(SampleRay), "sample rays");
+    t_.ensure(t_.sample_sights_, std::uint64_t{room_.items} * sizeof(SampleSight), "sample sights");
     t_.ensure(t_.sample_items_, std::uint64_t{room_.items} * sizeof(SampleItem), "sample items");
     t_.ensure(t_.counts_, entries * word, "counts");
     if (mask_words_) t_.ensure(t_.masks_, entries * mask_words_ * word, "station masks");
@@ -232,7 +233,8 @@ class VulkanTracer::SampledCount {
     const double taken = t_.commands_.run_and_download(record, wanted);
     std::vector<SampleList> lists;
     for (std::size_t k = 0; k < chunks.size(); ++k)
-      lists.push_back({control[k * control_words + control_rays], control[k * control_words + control_items]});
+      lists.push_back({control[k * control_words + control_rays], control[k * control_words + control_parts],
+                       control[k * control_words + control_rest]});
     return {std::move(lists), taken};
   }
 
@@ -247,21 +249,27 @@ class VulkanTracer::SampledCount {
   }
 
   // Lists and traces one chunk, whose control words are number k of the submission.
-  void record_chunk(const Recorder& r, const SamplePush& push, const SampleChunk& chunk, std::size_t k) {
+  void record_chunk(const Recorder& r, SamplePush push, const SampleChunk& chunk, std::size_t k) {
     Kernels& kernels = t_.kernels_;
     const VkDeviceSize dispatch = (k * control_words + control_dispatch) * word;
+    const ComputePipeline& trace = kernels.get(Kernel::sample_trace, {t_.noise(), t_.limits(), job_.masks});
+    // A thread for each that the control word counts by then.
+    const auto over = [&](std::uint32_t control, const ComputePipeline& pipeline) {
+      const SampleArgumentsPush arguments{push.control, control, push.ray_capacity, push.item_capacity, 0};
+      r.shader_after_shader();
+      r.dispatch(kernels.get(Kernel::sample_arguments), arguments, 1);
+      r.shader_after_shader();
+      r.dispatch_indirect(pipeline, push, t_.sample_control_, dispatch);
+    };
+    push.list = control_rays;
     r.shader_after_shader();  // the chunk before still reads the list
     r.dispatch(kernels.get(Kernel::sample_list), push, groups_of(chunk.end_voxel - chunk.first_voxel),
                chunk.end_slot - chunk.first_slot);
-    r.shader_after_shader();
-    r.dispatch(kernels.get(Kernel::sample_arguments, {false}), push, 1);
-    r.shader_after_shader();
-    r.dispatch_indirect(kernels.get(Kernel::sample_queue), push, t_.sample_control_, dispatch);
-    r.shader_after_shader();
-    r.dispatch(kernels.get(Kernel::sample_arguments, {true}), push, 1);
-    r.shader_after_shader();
-    r.dispatch_indirect(kernels.get(Kernel::sample_trace, {t_.noise(), t_.limits(), job_.masks}), push,
-                        t_.sample_control_, dispatch);
+    over(control_rays, trace);
+    push.list = control_rest;
+    over(control_sights, kernels.get(Kernel::sample_sights));
+    over(control_items, kernels.get(Kernel::sample_queue));
+    over(control_rest, trace);
   }
 
   SamplePush push_of(const Batch& batch, const SampleChunk& chunk, std::size_t k) const {
@@ -270,6 +278,7 @@ class VulkanTracer::SampledCount {
     push.triangles = t_.sample_triangles_.address();
     push.stations = t_.sample_stations_.address();
     push.rays = t_.sample_rays_.address();
+    push.sights = t_.sample_sights_.address();
     push.items = t_.sample_items_.address();
     push.control = t_.sample_control_.address() + k * control_words * word;
     push.counts = t_.counts_.address();
@@ -284,7 +293,7 @@ class VulkanTracer::SampledCount {
     push.ray_capacity = room_.rays;
     push.item_capacity = room_.items;
     push.mask_words = mask_words_;
-    push.stop_at = job_.masks ? 0 : job_.stop_at;
+    push.stop_at = job_.stop_at;
     return push;
   }
 

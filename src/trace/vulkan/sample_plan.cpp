@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 
+#include "shared/trace_types.h"
 #include "trace/vulkan/groups.hpp"
 
 namespace vantage::vulkan {
@@ -24,8 +25,10 @@ std::array<SampleChunk, 2> SampleChunk::halves() const {
 SampleList sample_room(std::uint32_t columns, bool software, std::uint64_t max_rays_per_dispatch) {
   std::uint64_t rays = software ? 1u << 20 : 1u << 24;
   if (max_rays_per_dispatch > 0) rays = std::min(rays, max_rays_per_dispatch);
-  return {static_cast<std::uint32_t>(std::max<std::uint64_t>(rays, 2 * columns)),
-          std::max(1u << 16, 2 * columns / sample_part)};
+  // Whatever comes of the items has room where they have.
+  const auto room =
+      static_cast<std::uint32_t>(std::max<std::uint64_t>({rays, std::uint64_t{2} * columns, sample_part}));
+  return {room, room / sample_part};
 }
 
 SamplePlan::SamplePlan(std::uint32_t slots, std::uint32_t voxels, std::uint32_t rows, const SampleList& room)
@@ -60,7 +63,7 @@ double SamplePlan::settle(std::span<const SampleChunk> chunks, std::span<const S
   for (std::size_t k = chunks.size(); k-- > 0;) {
     if (fits(wanted[k])) {
       done_pairs_ += static_cast<double>(chunks[k].pairs()) * (chunks[k].end_row - chunks[k].first_row) / rows_;
-      traced += wanted[k].rays;
+      traced += static_cast<double>(wanted[k].rays) + wanted[k].rest;
     } else {
       const auto [a, b] = chunks[k].halves();
       todo_.push_front(b);

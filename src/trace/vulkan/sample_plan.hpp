@@ -27,6 +27,7 @@ struct SampleChunk {
 // What a chunk's kernels wanted to list; or how much of that there is room for.
 struct SampleList {
   std::uint32_t rays, items;
+  std::uint32_t rest = 0;  // rays that came of the items; there is room for them where there is for these
 };
 
 // Room for the lists of an engine: as many rays as a dispatch may trace, where that is limited, and never less than a

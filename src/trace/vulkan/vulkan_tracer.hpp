@@ -150,8 +150,8 @@ class VulkanTracer final : public Tracer {
   std::vector<std::uint32_t> sample_;  // what the sample buffers hold
   double sample_margin_ = 0;           // how far from its voxel a triangle is listed there
   NoiseReaches reaches_{};             // where there is noise
-  Buffer sample_voxels_, sample_triangles_, sample_stations_, sample_rays_, sample_items_, sample_control_,
-      network_rays_, sample_weights_;
+  Buffer sample_voxels_, sample_triangles_, sample_stations_, sample_rays_, sample_sights_, sample_items_,
+      sample_control_, network_rays_, sample_weights_;
   std::shared_ptr<const Patches> patches_;  // what the next buffers hold
   std::shared_ptr<const NoiseModel> patch_noise_;
   Buffer registration_patches_, registration_sigma_, registration_heads_, registration_sums_;

@@ -87,6 +87,16 @@ TEST(Parse, SamplesAreNumbersOrShares) {
     EXPECT_NE(refusal([&] { parse_sample(text, "--sample"); }), "accepted") << text;
 }
 
+TEST(Parse, Devices) {
+  const DeviceList several = parse_devices("0,3,cpu", "--device");
+  EXPECT_EQ(several.numbers, (std::vector<std::uint32_t>{0, 3}));
+  EXPECT_TRUE(several.cpu);
+  EXPECT_FALSE(several.all);
+  EXPECT_TRUE(parse_devices("all", "--device").all);
+  for (const char* text : {"", ",", "0,", "0,0", "all,all", "all,2", "cpu,cpu", "gpu", "-1", "65536", "1.5"})
+    EXPECT_NE(refusal([&] { parse_devices(text, "--device"); }), "accepted") << text;
+}
+
 TEST(Parse, Durations) {
   EXPECT_EQ(parse_bytes("4G", "--memory"), std::uint64_t{4} << 30);
   EXPECT_EQ(parse_bytes("1.5 GiB", "--memory"), std::uint64_t{3} << 29);

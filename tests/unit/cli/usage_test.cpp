@@ -90,9 +90,10 @@ TEST_F(Usage, NumbersMustMakeSense) {
       {"--horizontal", "0"},      {"--vertical", "400"},  {"--seed", "-3"},      {"--seed", "1.5"},
       {"--engine", "cuda"},       {"--diffuse", "2"},     {"--station", "1"},    {"--station", "1,2,x"},
       {"--scanner", "nokia3310"}, {"--noise", "loud"},    {"--sample", "0"},     {"--error", "0"},
-      {"--device", "99"},         {"--weight", "wall"},   {"--weight", "*=0"},   {"--weight", "*=256"},
-      {"--detail", "wall"},       {"--detail", "*=0"},    {"--accuracy", "*=x"}, {"--incidence", "0"},
-      {"--incidence", "91"},      {"--beam", "0.5"}};
+      {"--device", "99"},         {"--device", "0,0"},    {"--device", "0,gpu"}, {"--device", "all,1"},
+      {"--weight", "wall"},       {"--weight", "*=0"},    {"--weight", "*=256"}, {"--detail", "wall"},
+      {"--detail", "*=0"},        {"--accuracy", "*=x"},  {"--incidence", "0"},  {"--incidence", "91"},
+      {"--beam", "0.5"}};
   for (const auto& [option, value] : cases) {
     SCOPED_TRACE(option + " " + value);
     auto arguments = coarse("evaluate", {});
@@ -106,6 +107,23 @@ TEST_F(Usage, NumbersMustMakeSense) {
     expect_refused(outcome, outcome.exit_code, value.substr(value.find_last_of(",=") + 1));
   }
   EXPECT_EQ(files(), std::vector<std::string>{});
+}
+
+TEST_F(Usage, SeveralDevicesShareTheWork) {
+  const auto on = [&](const std::string& devices) {
+    return run_program({"evaluate", scene_, "--station", "8,0,1.5", "--station", "0,-8,1.5", "--step", "1",
+                        "--user-size", "0.5", "--spacing", "0.1", "--engine", "compute_bvh", "--device", devices,
+                        "--json"});
+  };
+  for (const std::string devices : {"cpu", "0,cpu", "all", "all,cpu"}) {
+    SCOPED_TRACE(devices);
+    const Outcome outcome = on(devices);
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    const auto json = nlohmann::json::parse(outcome.out);
+    EXPECT_EQ(json["device"].get<std::string>().find("threads)") != std::string::npos, devices.ends_with("cpu"));
+    EXPECT_EQ(json["engine"], devices == "cpu" ? "embree" : "compute_bvh");
+    EXPECT_GT(json["coverage"].get<double>(), 0);
+  }
 }
 
 TEST_F(Usage, WeightsNameWhatTheFileHas) {

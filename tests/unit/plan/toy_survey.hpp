@@ -125,15 +125,20 @@ class ToyEvaluator final : public NetworkEvaluator {
     }
     return estimates;
   }
-  std::optional<ConfirmedNetwork> confirm(const PlacedNetwork& network, const Progress& progress) override {
-    if (progress.stopped()) return std::nullopt;
-    ++confirmed;
-    ConfirmedNetwork result{.values = {},
-                            .overlaps = OverlapMatrix(network.size()),
-                            .points_on_surveyed = std::vector<std::uint64_t>(network.size(), 7)};
-    for (const Objective& measure : measures.all)
-      result.values.push_back(value_of(measure, network) - (measure.by_alpha ? 0 : 0.001));
-    return result;
+  std::vector<std::optional<ConfirmedNetwork>> confirm(std::span<const PlacedNetwork> networks,
+                                                       const Progress& progress) override {
+    std::vector<std::optional<ConfirmedNetwork>> all(networks.size());
+    for (std::size_t k = 0; k < networks.size(); ++k) {
+      progress(static_cast<double>(k) / static_cast<double>(networks.size()));
+      if (progress.stopped()) break;
+      ++confirmed;
+      all[k] = {.values = {},
+                .overlaps = OverlapMatrix(networks[k].size()),
+                .points_on_surveyed = std::vector<std::uint64_t>(networks[k].size(), 7)};
+      for (const Objective& measure : measures.all)
+        all[k]->values.push_back(value_of(measure, networks[k]) - (measure.by_alpha ? 0 : 0.001));
+    }
+    return all;
   }
   double trace_seconds() const override { return 0.25; }
 };

@@ -100,6 +100,12 @@ static_assert(member_count<SceneOptions>() == 14);
 const std::vector<Change<SimulatorConfig>> kSimulation{
     {"engine", [](SimulatorConfig& c) { c.engine = Engine::automatic; }, false},
     {"device_index", [](SimulatorConfig& c) { c.device_index = 0; }, false},
+    {"devices",
+     [](SimulatorConfig& c) {
+       c.devices = {{Engine::embree, 0}};
+     },
+     false},
+    {"warn", [](SimulatorConfig& c) { c.warn = [](const std::string&) {}; }, false, false},
     {"user_size_m", [](SimulatorConfig& c) { c.user_size_m = 0.4; }},
     {"point_spacing_m", [](SimulatorConfig& c) { c.point_spacing_m = 0.1; }},
     {"max_incidence", [](SimulatorConfig& c) { c.max_incidence = Angle::degrees(70); }},
@@ -109,7 +115,7 @@ const std::vector<Change<SimulatorConfig>> kSimulation{
     {"max_rays_per_dispatch", [](SimulatorConfig& c) { c.max_rays_per_dispatch = 1000; }, false},
     // What a machine has to spare is no part of what is computed on it.
     {"max_memory_bytes", [](SimulatorConfig& c) { c.max_memory_bytes = std::uint64_t{1} << 40; }, false, false}};
-static_assert(member_count<SimulatorConfig>() == 10);
+static_assert(member_count<SimulatorConfig>() == 12);
 
 const std::vector<Change<WalkableOptions>> kWalkable{
     {"max_slope", [](WalkableOptions& o) { o.max_slope = Angle::degrees(5); }},

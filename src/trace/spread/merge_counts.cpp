@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trace/spread/merge_counts.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <limits>
+#include <utility>
+
+namespace vantage {
+namespace {
+
+template <class T>
+void add_each(std::vector<T>& sums, const std::vector<T>& parts) {
+  sums.resize(std::max(sums.size(), parts.size()));
+  for (std::size_t k = 0; k < parts.size(); ++k) sums[k] = sums[k] + parts[k];
+}
+
+}  // namespace
+
+void add_field(VoxelField& field, VoxelField&& part) {
+  if (field.count.empty()) {
+    field = std::move(part);
+    return;
+  }
+  constexpr std::size_t grain = std::size_t{1} << 16;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, field.count.size(), grain), [&](const auto& range) {
+    for (std::size_t k = range.begin(); k < range.end(); ++k) {
+      const std::uint32_t sum = field.count[k] + part.count[k];
+      field.count[k] = sum < part.count[k] ? std::numeric_limits<std::uint32_t>::max() : sum;
+    }
+    if (field.stations.empty()) return;
+    for (std::size_t k = range.begin(); k < range.end(); ++k) field.stations[k] |= part.stations[k];
+  });
+}
+
+void add_station_sums(NetworkCounts& counts, const NetworkCounts& part) {
+  counts.rays += part.rays;
+  add_each(counts.points, part.points);
+  add_each(counts.points_on_surveyed, part.points_on_surveyed);
+  add_each(counts.dropped, part.dropped);
+}
+
+}  // namespace vantage

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// Work in a row of items, handed out in pieces: large ones first, then smaller, so that all who work on it end together
+// however fast each is. Not thread-safe.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace vantage {
+
+struct Piece {
+  std::size_t first = 0, end = 0;
+  std::size_t size() const { return end - first; }
+};
+
+class Pieces {
+ public:
+  explicit Pieces(std::size_t items) : items_(items) {}
+
+  bool empty() const { return next_ == items_ && returned_.empty(); }
+  // For one that does the part `share` of all that is done. `known`: whether by experience; where not, a small piece
+  // is to give some. REQUIRES: not empty.
+  Piece take(double share, bool known);
+  // What was taken and not done.
+  void give_back(const Piece& piece) { returned_.push_back(piece); }
+
+ private:
+  std::size_t items_, next_ = 0;
+  std::vector<Piece> returned_;
+};
+
+}  // namespace vantage

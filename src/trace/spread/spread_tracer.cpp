@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trace/spread/spread_tracer.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+#include <mutex>
+#include <utility>
+
+#include "trace/field_counts.hpp"
+#include "trace/spread/merge_counts.hpp"
+
+namespace vantage {
+namespace {
+
+// Until one was seen: a field of counts and masks from a device to here, and merged.
+constexpr double first_merge_seconds_a_voxel = 1e-8;
+
+// "2 x NVIDIA H200", "NVIDIA H200, Intel Xeon (16 threads)".
+EngineInfo info_of_all(const std::vector<std::unique_ptr<Tracer>>& tracers) {
+  std::vector<std::pair<std::string, int>> devices;
+  for (const auto& tracer : tracers) {
+    const std::string& name = tracer->info().device;
+    const auto known = std::find_if(devices.begin(), devices.end(), [&](const auto& d) { return d.first == name; });
+    if (known == devices.end()) {
+      devices.emplace_back(name, 1);
+    } else {
+      ++known->second;
+    }
+  }
+  EngineInfo all = tracers.front()->info();
+  all.device.clear();
+  for (const auto& [name, many] : devices)
+    all.device += (all.device.empty() ? "" : ", ") + (many > 1 ? std::to_string(many) + " x " : "") + name;
+  all.reason = "asked for together";
+  return all;
+}
+
+template <class T>
+void put(std::vector<T>& whole, const std::vector<T>& part, std::size_t at, std::size_t size) {
+  if (part.empty()) return;
+  whole.resize(size);
+  std::copy(part.begin(), part.end(), whole.begin() + static_cast<std::ptrdiff_t>(at));
+}
+
+}  // namespace
+
+SpreadTracer::SpreadTracer(std::vector<std::unique_ptr<Tracer>> tracers, const TraceScene& scene, Team::Warn warn,
+                           Split split)
+    : info_(info_of_all(tracers)),
+      grid_(scene.grid),
+      pattern_(scene.pattern),
+      team_(std::move(tracers), std::move(warn)),
+      split_(split),
+      merge_seconds_a_voxel_(first_merge_seconds_a_voxel) {}
+
+void SpreadTracer::set_goal_density(double goal) {
+  Tracer::set_goal_density(goal);
+  for (std::size_t k = 0; k < team_.size(); ++k)
+    if (Tracer* const member = team_.member(k)) member->set_goal_density(goal);
+}
+
+std::uint64_t SpreadTracer::preferred_scan_rays() const {
+  std::uint64_t sum = 0;
+  for (std::size_t k = 0; k < team_.size(); ++k)
+    if (const Tracer* const member = team_.member(k)) sum += member->preferred_scan_rays();
+  return sum;
+}
+
+void SpreadTracer::scan(const TraceStation& station, std::uint64_t first_ray, std::uint64_t ray_count,
+                        std::uint32_t outputs, RawChunk& chunk) {
+  const std::uint64_t columns = pattern_->columns();
+  std::mutex mutex;
+  RawChunk whole;
+  team_.work(ray_count / columns, rows_, {}, [&](Tracer& tracer, const Piece& rows, const Progress&, const auto&) {
+    RawChunk part;
+    const std::uint64_t at = rows.first * columns;
+    tracer.scan(station, first_ray + at, rows.size() * columns, outputs, part);
+    const std::lock_guard lock(mutex);
+    if (rows.size() * columns == ray_count) {
+      whole = std::move(part);
+      return true;
+    }
+    put(whole.range, part.range, at, ray_count);
+    put(whole.position, part.position, at, ray_count);
+    put(whole.normal, part.normal, at, ray_count);
+    put(whole.reflectivity, part.reflectivity, at, ray_count);
+    put(whole.primitive, part.primitive, at, ray_count);
+    put(whole.barycentric, part.barycentric, at, ray_count);
+    put(whole.voxel, part.voxel, at, ray_count);
+    return true;
+  });
+  chunk = std::move(whole);
+}
+
+NetworkCounts SpreadTracer::count(std::span<const TraceStation> stations, std::uint32_t station_count,
+                                  const CountOptions& options, const Progress& progress) {
+  return split_pays(stations.size()) ? count_by_station(stations, station_count, options, progress)
+                                     : count_whole(stations, station_count, options, progress);
+}
+
+bool SpreadTracer::split_pays(std::size_t stations) const {
+  const auto members = static_cast<double>(team_.left());
+  if (members < 2 || stations < 2) return false;
+  if (split_ == Split::always) return true;
+  const double alone = seconds_a_station_ * static_cast<double>(stations);
+  return alone * (1 - 1 / members) > merge_seconds_a_voxel_ * static_cast<double>(grid_->size()) * members;
+}
+
+NetworkCounts SpreadTracer::count_whole(std::span<const TraceStation> stations, std::uint32_t station_count,
+                                        const CountOptions& options, const Progress& progress) {
+  NetworkCounts counts;
+  team_.work(1, networks_, progress, [&](Tracer& tracer, const Piece&, const Progress& own, const auto&) {
+    counts = tracer.count(stations, station_count, options, own);
+    return !counts.cancelled;
+  });
+  if (!counts.cancelled && !stations.empty())
+    seconds_a_station_ = counts.trace_seconds / static_cast<double>(stations.size());
+  return counts;
+}
+
+NetworkCounts SpreadTracer::count_by_station(std::span<const TraceStation> stations, std::uint32_t station_count,
+                                             const CountOptions& options, const Progress& progress) {
+  using Clock = std::chrono::steady_clock;
+  std::mutex mutex;
+  VoxelField field;
+  NetworkCounts sums;
+  double tracing = 0, merging = 0;
+  std::size_t merged = 0;
+  const auto one = [&](Tracer& tracer, const Piece& piece, const Progress& own, const auto&) {
+    VoxelField part;
+    const auto begun = Clock::now();
+    const NetworkCounts counts = tracer.count(stations.subspan(piece.first, piece.size()), station_count,
+                                              {.masks = options.masks, .skip = options.skip, .field = &part}, own);
+    if (counts.cancelled) return false;
+    const std::lock_guard lock(mutex);
+    add_field(field, std::move(part));
+    add_station_sums(sums, counts);
+    const double whole = std::chrono::duration<double>(Clock::now() - begun).count();
+    tracing += counts.trace_seconds;
+    merging += std::max(0.0, whole - counts.trace_seconds);
+    ++merged;
+    return true;
+  };
+  const std::size_t members = team_.left();
+  const bool finished = team_.work(stations.size(), stations_, progress, one);
+  field.count.resize(grid_->size());
+  field.stations.resize(options.masks ? grid_->size() : 0);
+  NetworkCounts counts = reduce_field(field.count, field.stations, station_count, goal_density_, grid_->weights());
+  add_station_sums(counts, sums);
+  counts.cancelled = !finished;
+  counts.trace_seconds = tracing / static_cast<double>(members);
+  if (merged > 0) merge_seconds_a_voxel_ = merging / static_cast<double>(merged * grid_->size());
+  if (options.field) *options.field = std::move(field);
+  return counts;
+}
+
+std::vector<NetworkCounts> SpreadTracer::count_each(std::span<const std::vector<TraceStation>> networks,
+                                                    std::span<const std::uint32_t> station_counts,
+                                                    const CountOptions& options, const Progress& progress) {
+  if (networks.size() < team_.left()) return Tracer::count_each(networks, station_counts, options, progress);
+  std::vector<NetworkCounts> all(networks.size());
+  for (NetworkCounts& counts : all) counts.cancelled = true;
+  team_.work(networks.size(), networks_, progress,
+             [&](Tracer& tracer, const Piece& piece, const Progress& own, const auto&) {
+               const std::vector<NetworkCounts> counts =
+                   tracer.count_each(networks.subspan(piece.first, piece.size()),
+                                     station_counts.subspan(piece.first, piece.size()), options, own);
+               // Nobody else writes there.
+               std::copy(counts.begin(), counts.end(), all.begin() + static_cast<std::ptrdiff_t>(piece.first));
+               return std::none_of(counts.begin(), counts.end(), [](const auto& c) { return c.cancelled; });
+             });
+  return all;
+}
+
+std::vector<NetworkCounts> SpreadTracer::count_sampled(std::span<const std::vector<TraceStation>> networks,
+                                                       std::span<const std::uint32_t> station_counts,
+                                                       const SampleJob& job, const Progress& progress) {
+  std::vector<NetworkCounts> all(networks.size());
+  // A member that is dropped may have told of networks that another then counts again.
+  std::vector<bool> points_told(job.points ? networks.size() : 0), masks_told(job.station_masks ? networks.size() : 0);
+  const std::size_t members = team_.left();
+  const bool finished = team_.work(
+      networks.size(), samples_, progress,
+      [&](Tracer& tracer, const Piece& piece, const Progress& own, const Team::OnCaller& ask) {
+        SampleJob part = job;
+        if (job.points)
+          part.points = [&](std::size_t k, std::span<const std::uint32_t> points) {
+            ask([&] {
+              if (points_told[piece.first + k]) return;
+              job.points(piece.first + k, points);
+              points_told[piece.first + k] = true;
+            });
+          };
+        if (job.station_masks)
+          part.station_masks = [&](std::size_t first, std::span<const std::uint64_t> masks) {
+            ask([&] {
+              const std::size_t voxels = job.sample.size(), end = masks.size() / voxels;
+              for (std::size_t k = 0; k < end;) {
+                std::size_t run = k;
+                while (run < end && !masks_told[piece.first + first + run])
+                  masks_told[piece.first + first + run++] = true;
+                if (run > k) job.station_masks(piece.first + first + k, masks.subspan(k * voxels, (run - k) * voxels));
+                k = run + 1;
+              }
+            });
+          };
+        std::vector<NetworkCounts> counts = tracer.count_sampled(
+            networks.subspan(piece.first, piece.size()), station_counts.subspan(piece.first, piece.size()), part, own);
+        const bool done = std::none_of(counts.begin(), counts.end(), [](const auto& c) { return c.cancelled; });
+        // Nobody else writes there.
+        std::move(counts.begin(), counts.end(), all.begin() + static_cast<std::ptrdiff_t>(piece.first));
+        return done;
+      });
+  for (NetworkCounts& counts : all) {
+    counts.cancelled = !finished;
+    counts.trace_seconds /= static_cast<double>(members);
+  }
+  return all;
+}
+
+}  // namespace vantage

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// One tracer made of several, each on a device of its own: sampled networks, networks of every ray and rows of a scan
+// are pulled in pieces, and a single network of every ray is split by its stations where merging costs less than that
+// gains. All counts are integers, so who counted what does not show.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "trace/spread/team.hpp"
+#include "trace/tracer.hpp"
+
+namespace vantage {
+
+class SpreadTracer final : public Tracer {
+ public:
+  // When one network is split by its stations.
+  enum class Split { where_it_pays, always };
+  // The tracers are of one scene. REQUIRES: at least one.
+  SpreadTracer(std::vector<std::unique_ptr<Tracer>> tracers, const TraceScene& scene, Team::Warn warn,
+               Split split = Split::where_it_pays);
+
+  const EngineInfo& info() const override { return info_; }
+  void set_goal_density(double goal) override;
+
+  void scan(const TraceStation& station, std::uint64_t first_ray, std::uint64_t ray_count, std::uint32_t outputs,
+            RawChunk& chunk) override;
+  std::uint64_t preferred_scan_rays() const override;
+  NetworkCounts count(std::span<const TraceStation> stations, std::uint32_t station_count, const CountOptions& options,
+                      const Progress& progress) override;
+  std::vector<NetworkCounts> count_each(std::span<const std::vector<TraceStation>> networks,
+                                        std::span<const std::uint32_t> station_counts, const CountOptions& options,
+                                        const Progress& progress) override;
+  std::vector<NetworkCounts> count_sampled(std::span<const std::vector<TraceStation>> networks,
+                                           std::span<const std::uint32_t> station_counts, const SampleJob& job,
+                                           const Progress& progress) override;
+
+ private:
+  NetworkCounts count_whole(std::span<const TraceStation> stations, std::uint32_t station_count,
+                            const CountOptions& options, const Progress& progress);
+  NetworkCounts count_by_station(std::span<const TraceStation> stations, std::uint32_t station_count,
+                                 const CountOptions& options, const Progress& progress);
+  bool split_pays(std::size_t stations) const;
+
+  EngineInfo info_;
+  std::shared_ptr<const VoxelGrid> grid_;
+  std::shared_ptr<const RayPattern> pattern_;
+  Team team_;
+  Split split_;
+  TeamRates rows_, networks_, samples_, stations_;
+  double seconds_a_station_ = 0;  // of networks counted whole, as seen last; 0: not yet
+  double merge_seconds_a_voxel_;
+};
+
+}  // namespace vantage

@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trace/spread/team.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <exception>
+#include <mutex>
+#include <numeric>
+#include <optional>
+#include <stop_token>
+#include <thread>
+#include <utility>
+
+#include "vantage/error.hpp"
+
+namespace vantage {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+// Failures that another device may not have.
+bool of_the_device(const Error& error) {
+  return error.code() == Errc::device_failure || error.code() == Errc::out_of_memory;
+}
+
+void learn(double& items_a_second, std::size_t items, double seconds) {
+  if (!(seconds > 0)) return;
+  const double seen = static_cast<double>(items) / seconds;
+  items_a_second = items_a_second > 0 ? 0.5 * (items_a_second + seen) : seen;
+}
+
+}  // namespace
+
+Team::Team(std::vector<std::unique_ptr<Tracer>> tracers, Warn warn)
+    : tracers_(std::move(tracers)), warn_(std::move(warn)) {
+  assert(!tracers_.empty());
+  for (const auto& tracer : tracers_)
+    names_.push_back(to_string(tracer->info().engine) + " on device " + std::to_string(tracer->info().device_index) +
+                     ", " + tracer->info().device);
+}
+
+std::size_t Team::left() const {
+  return static_cast<std::size_t>(
+      std::count_if(tracers_.begin(), tracers_.end(), [](const auto& tracer) { return tracer != nullptr; }));
+}
+
+std::size_t Team::fastest(const TeamRates& rates) const {
+  std::size_t best = tracers_.size();
+  for (std::size_t k = 0; k < tracers_.size(); ++k)
+    if (tracers_[k] && (best == tracers_.size() || rates.items_a_second[k] > rates.items_a_second[best])) best = k;
+  return best;
+}
+
+void Team::drop(std::size_t k, const std::string& why) {
+  tracers_[k] = nullptr;
+  if (warn_) warn_(names_[k] + " is dropped, its work done again by the " + std::to_string(left()) + " left: " + why);
+}
+
+// One call of work() by several: what they share, behind one mutex.
+class Team::Shift {
+ public:
+  Shift(Team& team, std::size_t items, TeamRates& rates, const Progress& progress, const Do& job)
+      : team_(team),
+        job_(job),
+        rates_(rates),
+        progress_(progress),
+        items_(items),
+        pieces_(items),
+        under_way_(team.size(), 0),
+        failures_(team.size()),
+        outside_(progress.stop, [this] { stop_.request_stop(); }) {}
+
+  // Until nothing is left to take, or nobody to take it. Returns whether anything may have been left.
+  bool run() {
+    std::vector<std::jthread> threads;
+    working_ = team_.left();
+    for (std::size_t k = 0; k < team_.size(); ++k)
+      if (team_.member(k)) threads.emplace_back([this, k] { serve(k); });
+    answer();
+    threads.clear();
+    if (thrown_) std::rethrow_exception(thrown_);
+    for (std::size_t k = 0; k < failures_.size(); ++k) {
+      if (!failures_[k]) continue;
+      if (team_.left() == 1) throw *std::exchange(failures_[k], nullptr);
+      team_.drop(k, std::exchange(failures_[k], nullptr)->what());
+    }
+    return !pieces_.empty() && !stop_.stop_requested();
+  }
+  bool finished() const { return pieces_.empty() && !cut_; }
+
+ private:
+  struct Question {
+    const std::function<void()>* what;
+    std::exception_ptr thrown;
+    bool answered = false;
+  };
+  struct QuestionThrew {};
+
+  void serve(std::size_t k) {
+    try {
+      for (std::optional<Piece> piece = next(k); piece; piece = next(k)) {
+        const auto start = Clock::now();
+        const bool done =
+            job_(*team_.member(k), *piece, {[&](double part) { note(k, part, *piece); }, stop_.get_token()},
+                 [this](const std::function<void()>& what) { ask(what); });
+        finish(k, *piece, done, seconds_since(start));
+      }
+    } catch (const QuestionThrew&) {
+      stop_.request_stop();
+    } catch (const Error& error) {
+      fail(k, error);
+    } catch (...) {
+      give_up(std::current_exception());
+    }
+    const std::lock_guard lock(mutex_);
+    --working_;
+    wake_.notify_all();
+  }
+
+  std::optional<Piece> next(std::size_t k) {
+    const std::lock_guard lock(mutex_);
+    if (pieces_.empty() || stop_.stop_requested()) return std::nullopt;
+    double all = 0;
+    bool known = true;
+    std::size_t members = 0;
+    for (std::size_t i = 0; i < team_.size(); ++i) {
+      if (!team_.member(i) || failures_[i]) continue;
+      ++members;
+      all += rates_.items_a_second[i];
+      known &= rates_.items_a_second[i] > 0;
+    }
+    own_piece_[k] = pieces_.take(known ? rates_.items_a_second[k] / all : 1.0 / static_cast<double>(members), known);
+    return own_piece_[k];
+  }
+
+  void note(std::size_t k, double part, const Piece& piece) {
+    const std::lock_guard lock(mutex_);
+    under_way_[k] = part * static_cast<double>(piece.size());
+    news_ = true;
+    wake_.notify_all();
+  }
+
+  void finish(std::size_t k, const Piece& piece, bool done, double seconds) {
+    const std::lock_guard lock(mutex_);
+    under_way_[k] = 0;
+    if (done) {
+      done_ += piece.size();
+      learn(rates_.items_a_second[k], piece.size(), seconds);
+    } else {
+      cut_ = true;
+    }
+    news_ = true;
+    wake_.notify_all();
+  }
+
+  void fail(std::size_t k, const Error& error) {
+    if (!of_the_device(error)) return give_up(std::make_exception_ptr(error));
+    const std::lock_guard lock(mutex_);
+    failures_[k] = std::make_unique<Error>(error);
+    pieces_.give_back(own_piece_[k]);
+    under_way_[k] = 0;
+  }
+
+  void give_up(std::exception_ptr thrown) {
+    const std::lock_guard lock(mutex_);
+    if (!thrown_) thrown_ = std::move(thrown);
+    stop_.request_stop();
+  }
+
+  // On a member's thread.
+  void ask(const std::function<void()>& what) {
+    Question question{&what, nullptr};
+    std::unique_lock lock(mutex_);
+    questions_.push_back(&question);
+    wake_.notify_all();
+    wake_.wait(lock, [&] { return question.answered; });
+    if (!question.thrown) return;
+    if (!thrown_) thrown_ = question.thrown;
+    throw QuestionThrew{};
+  }
+
+  // On the caller's thread, until all members are through.
+  void answer() {
+    std::unique_lock lock(mutex_);
+    for (;;) {
+      wake_.wait(lock, [&] { return working_ == 0 || news_ || !questions_.empty(); });
+      if (!questions_.empty()) {
+        Question& question = *questions_.front();
+        questions_.pop_front();
+        lock.unlock();
+        try {
+          (*question.what)();
+        } catch (...) {
+          question.thrown = std::current_exception();
+        }
+        lock.lock();
+        question.answered = true;
+        wake_.notify_all();
+      } else if (news_) {
+        news_ = false;
+        told_ = std::max(told_, std::accumulate(under_way_.begin(), under_way_.end(), static_cast<double>(done_)));
+        const double share = told_ / static_cast<double>(items_);
+        lock.unlock();
+        try {
+          progress_(share);
+        } catch (...) {
+          give_up(std::current_exception());
+        }
+        lock.lock();
+      } else {
+        return;
+      }
+    }
+  }
+
+  Team& team_;
+  const Do& job_;
+  TeamRates& rates_;
+  const Progress& progress_;
+  std::size_t items_;
+
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  Pieces pieces_;
+  std::vector<Piece> own_piece_ = std::vector<Piece>(team_.size());
+  std::vector<double> under_way_;  // items of each member's piece
+  std::vector<std::unique_ptr<Error>> failures_;
+  std::deque<Question*> questions_;
+  std::exception_ptr thrown_;
+  std::size_t working_ = 0, done_ = 0;
+  double told_ = 0;
+  bool news_ = false, cut_ = false;
+  std::stop_source stop_;
+  std::stop_callback<std::function<void()>> outside_;
+};
+
+bool Team::work(std::size_t items, TeamRates& rates, const Progress& progress, const Do& job) {
+  rates.items_a_second.resize(size());
+  if (items == 0) return true;
+  if (items == 1 || left() == 1) return work_alone(items, rates, progress, job);
+  Shift shift(*this, items, rates, progress, job);
+  while (shift.run()) {
+  }
+  return shift.finished();
+}
+
+// No threads where one does it all.
+bool Team::work_alone(std::size_t items, TeamRates& rates, const Progress& progress, const Do& job) {
+  for (;;) {
+    const std::size_t k = fastest(rates);
+    try {
+      const auto start = Clock::now();
+      const bool done = job(*tracers_[k], {0, items}, progress, [](const std::function<void()>& what) { what(); });
+      if (done) learn(rates.items_a_second[k], items, seconds_since(start));
+      return done;
+    } catch (const Error& error) {
+      if (!of_the_device(error) || left() == 1) throw;
+      drop(k, error.what());
+    }
+  }
+}
+
+}  // namespace vantage

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trace/spread/pieces.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace vantage {
+namespace {
+
+// Takes all, in turns; how often each item was taken.
+std::vector<int> taken(Pieces& pieces, std::size_t items, const std::vector<double>& shares, bool known) {
+  std::vector<int> times(items);
+  for (std::size_t k = 0; !pieces.empty(); ++k) {
+    const Piece piece = pieces.take(shares[k % shares.size()], known);
+    EXPECT_GT(piece.size(), 0u);
+    for (std::size_t i = piece.first; i < piece.end; ++i) ++times[i];
+  }
+  return times;
+}
+
+TEST(Pieces, AreAllItemsOnce) {
+  for (const std::size_t items : {1u, 2u, 3u, 17u, 250u, 1000u})
+    for (const std::vector<double>& shares : {std::vector{0.5, 0.5}, {0.999, 0.001}, {0.25, 0.25, 0.25, 0.25}})
+      for (const bool known : {false, true}) {
+        Pieces pieces(items);
+        EXPECT_EQ(taken(pieces, items, shares, known), std::vector<int>(items, 1)) << items;
+      }
+}
+
+TEST(Pieces, FollowTheShare) {
+  Pieces pieces(1000);
+  EXPECT_EQ(pieces.take(0.9, true).size(), 675u);        // three quarters of what would be fair
+  EXPECT_EQ(pieces.take(0.1, true).size(), 25u);         // of what is left
+  EXPECT_EQ(Pieces(1000).take(0.5, false).size(), 32u);  // a sixteenth of its half, to see how long that takes
+}
+
+TEST(Pieces, WhatIsGivenBackIsTakenAgain) {
+  Pieces pieces(10);
+  const Piece lost = pieces.take(1, true);
+  pieces.give_back(lost);
+  const Piece again = pieces.take(0.1, true);
+  EXPECT_EQ(again.first, lost.first);
+  EXPECT_EQ(again.end, lost.end);
+}
+
+}  // namespace
+}  // namespace vantage
