@@ -31,7 +31,7 @@ struct EditCommandOptions {
   void add(CLI::App& command) {
     site.add(command);
     stations.add(command);
-    add_value(command, "--sample", "N|P%", "Measure on so many voxels; 30000 otherwise",
+    add_value(command, "--sample", "N|P%", "Measure on so many voxels; 40000 otherwise",
               [this](const std::string& text, const std::string& what) { sample = parse_sample(text, what); })
         ->group("Evaluation");
     add_number(

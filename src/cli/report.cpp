@@ -41,9 +41,10 @@ void write_reports(std::span<const std::filesystem::path> files, const PlanResul
 
 void write_reports(std::span<const std::filesystem::path> files, const MeasuredStations& measured,
                    const std::string& title, const ReportSources& sources, Program& program, std::stop_token stop) {
-  const auto& [stations, names, counts, link_overlap] = measured;
-  write(files, report_of(measured_network(stations, names, counts, sources.simulator, link_overlap), sources.simulator),
-        title, sources, program, std::move(stop));
+  ReportNetwork network =
+      measured_network(measured.stations, measured.names, measured.counts, sources.simulator, measured.link_overlap);
+  if (measured.registration) network.entry.registration = *measured.registration;
+  write(files, report_of(std::move(network), sources.simulator), title, sources, program, std::move(stop));
 }
 
 }  // namespace vantage::cli

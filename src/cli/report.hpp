@@ -33,6 +33,7 @@ struct MeasuredStations {
   const std::vector<std::string>& names;
   const NetworkCounts& counts;
   double link_overlap = default_link_overlap;
+  const RegistrationError* registration = nullptr;  // null: not predicted
 };
 void write_reports(std::span<const std::filesystem::path> files, const MeasuredStations& measured,
                    const std::string& title, const ReportSources& sources, Program& program, std::stop_token stop);

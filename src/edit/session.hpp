@@ -26,8 +26,8 @@ struct EditStation {
 
 struct EditOptions {
   double link_overlap = default_link_overlap;
-  std::uint64_t voxels = 30'000;  // of the sample that every change is measured on
-  std::size_t cells = 60'000;     // of the colours, at most
+  std::uint64_t voxels = 40'000;  // of the sample that every change is measured on
+  std::size_t cells = 20'000;     // of the colours, at most
   double improve_seconds = 10;    // of one short search
 };
 

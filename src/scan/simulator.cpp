@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vantage/simulator.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -98,7 +96,7 @@ struct Simulator::Impl {
     scanner.check();
     grid = build_grid(data(), config);
     goal = grid->voxel_size() * grid->voxel_size() / (config.point_spacing_m * config.point_spacing_m);
-    pattern = std::make_shared<RayPattern>(make_pattern(scanner));
+    pattern = registered = std::make_shared<RayPattern>(make_pattern(scanner));
     noise = config.noise ? make_noise_model(scanner, config.seed) : NoiseModel{.sigma = {}, .seed = config.seed};
     const LimitModel limits = make_limit_model(data(), scanner, config);
     limited = limits.enabled();
@@ -157,18 +155,17 @@ struct Simulator::Impl {
   }
 
   // The planes of the sample asked for last, or of all voxels. Range noise is the scanner's, simulated or not.
-  const Patches& patches_of(std::span<const std::uint32_t> ranks, const RegistrationModel& model) {
+  RegistrationJob registration_of(std::span<const std::uint32_t> ranks, const RegistrationModel& model, bool groups) {
     if (!(model.rho_m > 0 && std::isfinite(model.rho_m) && model.patch_m > 0 && std::isfinite(model.patch_m))) {
       std::ostringstream what;
       what << "registration: the modelling error is " << model.rho_m << " m over patches of " << model.patch_m
            << " m; both must be above 0";
       throw Error(Errc::invalid_argument, what.str());
     }
-    if (patches.patches.size() != ranks.size() || patches.model != model) {
-      patches = make_patches(data(), *grid, ranks, *pattern, model);
-      range_noise = make_noise_model(scanner, config.seed);
-    }
-    return patches;
+    if (!patches || patches->patches.size() != ranks.size() || patches->model != model)
+      patches = std::make_shared<Patches>(make_patches(data(), *grid, ranks, *registered, model));
+    if (!range_noise) range_noise = std::make_shared<NoiseModel>(make_noise_model(scanner, config.seed));
+    return {patches, range_noise, groups};
   }
 
   Scene scene;
@@ -176,12 +173,12 @@ struct Simulator::Impl {
   SimulatorConfig config;
   std::shared_ptr<const VoxelGrid> grid;
   double goal = 0;
-  std::shared_ptr<const RayPattern> pattern;
+  std::shared_ptr<const RayPattern> pattern, registered;  // the latter: that of the scans that are registered
   NoiseModel noise;
   bool limited = false;
   std::vector<std::uint32_t> sampled;
-  Patches patches;
-  NoiseModel range_noise;
+  std::shared_ptr<const Patches> patches;
+  std::shared_ptr<const NoiseModel> range_noise;
   std::unique_ptr<Tracer> tracer;
 };
 
@@ -225,6 +222,10 @@ std::vector<VoxelPatch> Simulator::voxel_patches(std::span<const std::uint32_t> 
 }
 
 std::vector<std::uint32_t> Simulator::sampled_voxels(std::uint64_t voxels) const { return impl_->sample(voxels); }
+
+void Simulator::stand_for(const Scanner& scanner) {
+  impl_->registered = std::make_shared<RayPattern>(make_pattern(scanner));
+}
 
 ScanSummary Simulator::scan(const Station& station, const ScanOptions& options,
                             const std::function<void(const ScanChunk&)>& sink, const Progress& progress) {
@@ -278,8 +279,8 @@ NetworkCounts Simulator::evaluate(const Network& network, const EvaluateOptions&
   if (options.registration && !counts.cancelled) {
     std::vector<std::uint32_t> ranks(voxel_count());
     std::iota(ranks.begin(), ranks.end(), 0u);
-    const Patches& patches = impl_->patches_of(ranks, *options.registration);
-    counts.registration = sum_patches(patches, impl_->range_noise, active, size, field->stations, 0).front();
+    const RegistrationJob job = impl_->registration_of(ranks, *options.registration, false);
+    take_registration(counts, sum_patches(job, active, size, field->stations, 0));
   }
   return counts;
 }
@@ -314,18 +315,9 @@ std::vector<NetworkCounts> Simulator::evaluate_sampled(std::span<const Network> 
   const auto points = [&](std::size_t k, std::span<const std::uint32_t> counted) {
     options.points(places[k], counted);
   };
-  std::vector<std::vector<RegistrationSums>> registration(options.registration ? traced.size() : 0);
-  std::function<void(std::size_t, std::span<const std::uint64_t>)> sum;
-  if (options.registration) {
-    const Patches& patches = impl_->patches_of(sample, *options.registration);
-    const std::uint32_t groups = options.registration_groups ? sample_groups : 0;
-    sum = [&, groups](std::size_t first, std::span<const std::uint64_t> masks) {
-      tbb::parallel_for(std::size_t{0}, masks.size() / sample.size(), [&, first, masks](std::size_t k) {
-        registration[first + k] = sum_patches(patches, impl_->range_noise, traced[first + k], sizes[first + k],
-                                              masks.subspan(k * sample.size(), sample.size()), groups);
-      });
-    };
-  }
+  std::optional<RegistrationJob> registration;
+  if (options.registration)
+    registration = impl_->registration_of(sample, *options.registration, options.registration_groups);
   std::vector<NetworkCounts> counts =
       impl_->tracer->count_sampled(traced, sizes,
                                    {.sample = sample,
@@ -333,16 +325,9 @@ std::vector<NetworkCounts> Simulator::evaluate_sampled(std::span<const Network> 
                                     .masks = options.overlap,
                                     .stop_at = stop_at_goal ? static_cast<std::uint32_t>(std::ceil(impl_->goal)) : 0,
                                     .points = options.points ? decltype(options.points)(points) : nullptr,
-                                    .station_masks = sum},
+                                    .registration = registration ? &*registration : nullptr},
                                    progress);
-  for (std::size_t k = 0; k < counts.size(); ++k) {
-    if (k < registration.size() && !registration[k].empty()) {
-      counts[k].registration = std::move(registration[k][0]);
-      for (std::size_t g = 1; g < registration[k].size(); ++g)
-        counts[k].groups[g - 1].registration = std::move(registration[k][g]);
-    }
-    all[places[k]] = std::move(counts[k]);
-  }
+  for (std::size_t k = 0; k < counts.size(); ++k) all[places[k]] = std::move(counts[k]);
   return all;
 }
 
