@@ -39,6 +39,7 @@ void add_generate(CLI::App& app, Program& program);
 void add_scan(CLI::App& app, Program& program);
 void add_evaluate(CLI::App& app, Program& program);
 void add_plan(CLI::App& app, Program& program);
+void add_edit(CLI::App& app, Program& program);
 void add_bound(CLI::App& app, Program& program);
 void add_panorama(CLI::App& app, Program& program);
 

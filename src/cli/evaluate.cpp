@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <spdlog/spdlog.h>
 
-#include <cmath>
 #include <filesystem>
 
 #include "cli/command.hpp"
@@ -300,25 +299,13 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
   }
   summary.faults = station_faults(placed, names);
   if (!options.reports.empty()) {
-    PlanEntry entry;
-    entry.stations = placed;
-    entry.confirmed = !sampled;
-    entry.exact_overlap_matrix = matrix;
-    if (options.with_registration) entry.registration = error;
-    const auto known = [&](const Estimate& e) {
-      return MeasuredValue{.searched = e.value, .standard_error = e.standard_error, .exact = sampled ? NAN : e.value};
-    };
-    entry.values["coverage"] = known(covered);
-    if (overlap) entry.values["overlap"] = known(overlapped);
-    if (!sampled) entry.points_on_surveyed = counts.points_on_surveyed;
-    Report report{.title = std::filesystem::path(options.site.scene).stem().string(),
-                  .question = fmt::format("{} station{}, as given", placed.size(), placed.size() == 1 ? "" : "s"),
-                  .command = program.command,
-                  .parameters = run_parameters_json(simulator)};
-    report.measures = {make_objective("coverage")};
-    if (overlap) report.measures.push_back(make_objective("overlap"));
-    report.networks.push_back({.entry = std::move(entry), .names = names, .summary = summary, .links = matrix});
-    write_reports(std::vector<std::filesystem::path>(options.reports.begin(), options.reports.end()), std::move(report),
+    write_reports(std::vector<std::filesystem::path>(options.reports.begin(), options.reports.end()),
+                  {.stations = placed,
+                   .names = names,
+                   .counts = counts,
+                   .link_overlap = link_overlap,
+                   .registration = options.with_registration ? &error : nullptr},
+                  std::filesystem::path(options.site.scene).stem().string(),
                   {site, simulator, sampled ? nullptr : &field, judged ? &*judged : nullptr}, program, program.abort);
   }
   if (options.json) {

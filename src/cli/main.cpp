@@ -45,6 +45,7 @@ int run(int argc, char** argv) {
   add_panorama(app, program);
   add_evaluate(app, program);
   add_plan(app, program);
+  add_edit(app, program);
   add_bound(app, program);
   try {
     app.parse(argc, argv);

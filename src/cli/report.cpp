@@ -1,20 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/report.hpp"
 
+#include "page/report.hpp"
+
 namespace vantage::cli {
 
-std::string why_no_report() { return ""; }
+namespace {
 
-void write_reports(std::span<const std::filesystem::path> files, const PlanResult& result, const std::string& title,
-                   const ReportSources& sources, Program& program, std::stop_token stop) {
-  Report report = report_of(result, sources.simulator);
+// `report`: but for its title, command and what is missed.
+void write(std::span<const std::filesystem::path> files, Report report, const std::string& title,
+           const ReportSources& sources, Program& program, std::stop_token stop) {
   report.title = title;
   report.command = program.command;
-  write_reports(files, std::move(report), sources, program, std::move(stop));
-}
-
-void write_reports(std::span<const std::filesystem::path> files, Report report, const ReportSources& sources,
-                   Program& program, std::stop_token stop) {
   ReportMissed missed;
   if (sources.judged) {
     missed = {.ranks = sources.judged->ranks, .why = sources.judged->why};
@@ -31,6 +28,23 @@ void write_reports(std::span<const std::filesystem::path> files, Report report, 
     else
       write_report_html(file, report, site, {.report = [&](double done) { line.update(done); }, .stop = stop});
   }
+}
+
+}  // namespace
+
+std::string why_no_report() { return ""; }
+
+void write_reports(std::span<const std::filesystem::path> files, const PlanResult& result, const std::string& title,
+                   const ReportSources& sources, Program& program, std::stop_token stop) {
+  write(files, report_of(result, sources.simulator), title, sources, program, std::move(stop));
+}
+
+void write_reports(std::span<const std::filesystem::path> files, const MeasuredStations& measured,
+                   const std::string& title, const ReportSources& sources, Program& program, std::stop_token stop) {
+  ReportNetwork network =
+      measured_network(measured.stations, measured.names, measured.counts, sources.simulator, measured.link_overlap);
+  if (measured.registration) network.entry.registration = *measured.registration;
+  write(files, report_of(std::move(network), sources.simulator), title, sources, program, std::move(stop));
 }
 
 }  // namespace vantage::cli

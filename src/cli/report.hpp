@@ -6,11 +6,11 @@
 #include <span>
 #include <stop_token>
 #include <string>
+#include <vector>
 
 #include "cli/command.hpp"
 #include "cli/missed.hpp"
 #include "cli/site.hpp"
-#include "page/report.hpp"
 
 namespace vantage::cli {
 
@@ -27,7 +27,15 @@ struct ReportSources {
 // Each file by its extension: .html or .pdf. A line says where this build has none.
 void write_reports(std::span<const std::filesystem::path> files, const PlanResult& result, const std::string& title,
                    const ReportSources& sources, Program& program, std::stop_token stop);
-void write_reports(std::span<const std::filesystem::path> files, Report report, const ReportSources& sources,
-                   Program& program, std::stop_token stop);
+// Of stations that were measured without a plan.
+struct MeasuredStations {
+  std::span<const PlacedStation> stations;
+  const std::vector<std::string>& names;
+  const NetworkCounts& counts;
+  double link_overlap = default_link_overlap;
+  const RegistrationError* registration = nullptr;  // null: not predicted
+};
+void write_reports(std::span<const std::filesystem::path> files, const MeasuredStations& measured,
+                   const std::string& title, const ReportSources& sources, Program& program, std::stop_token stop);
 
 }  // namespace vantage::cli

@@ -16,7 +16,8 @@ void write_reports(std::span<const std::filesystem::path>, const PlanResult&, co
   spdlog::warn("no report: {}", why_no_report());
 }
 
-void write_reports(std::span<const std::filesystem::path>, Report, const ReportSources&, Program&, std::stop_token) {
+void write_reports(std::span<const std::filesystem::path>, const MeasuredStations&, const std::string&,
+                   const ReportSources&, Program&, std::stop_token) {
   spdlog::warn("no report: {}", why_no_report());
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "page/report.hpp"
 
+#include <cmath>
+
 #include "report/front_view.hpp"
 #include "vantage/export.hpp"
 
@@ -23,6 +25,42 @@ Report report_of(const PlanResult& result, const Simulator& simulator) {
           entry.exact_scan_overlap_matrix.size() > 0 ? entry.exact_scan_overlap_matrix : entry.exact_overlap_matrix;
     report.networks.push_back(std::move(network));
   }
+  return report;
+}
+
+ReportNetwork measured_network(std::span<const PlacedStation> stations, std::vector<std::string> names,
+                               const NetworkCounts& counts, const Simulator& simulator, double link_overlap) {
+  ReportNetwork network{.names = std::move(names)};
+  PlanEntry& entry = network.entry;
+  entry.stations.assign(stations.begin(), stations.end());
+  entry.confirmed = counts.voxels == simulator.voxel_count();
+  const auto known = [&](const Estimate& estimate) {
+    return MeasuredValue{.searched = estimate.value,
+                         .standard_error = estimate.standard_error,
+                         .exact = entry.confirmed ? estimate.value : std::nan("")};
+  };
+  const Estimate covered = coverage_estimate(counts, simulator.goal_density(), simulator.voxel_count());
+  entry.values["coverage"] = known(covered);
+  if (entry.confirmed) entry.points_on_surveyed = counts.points_on_surveyed;
+  network.summary = {.names = network.names, .captured = covered.value, .captured_error = covered.standard_error};
+  if (!counts.seen.empty()) {
+    entry.values["overlap"] = known(overlap_estimate(counts, simulator.voxel_count()));
+    entry.exact_overlap_matrix = network.links = overlap_matrix(counts);
+    std::vector<bool> used;
+    for (const PlacedStation& station : stations) used.push_back(active(station));
+    network.summary.links = summary_links(network.links, link_overlap, used);
+  }
+  network.summary.faults = station_faults(stations, network.names);
+  return network;
+}
+
+Report report_of(ReportNetwork network, const Simulator& simulator) {
+  const std::size_t stations = network.names.size();
+  Report report{.question = std::to_string(stations) + (stations == 1 ? " station" : " stations") + ", as given",
+                .parameters = run_parameters_json(simulator)};
+  for (const char* name : {"coverage", "overlap"})
+    if (network.entry.values.contains(name)) report.measures.push_back(make_objective(name));
+  report.networks.push_back(std::move(network));
   return report;
 }
 

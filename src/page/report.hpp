@@ -18,7 +18,7 @@ namespace vantage {
 
 // A network as the report shows it.
 struct ReportNetwork {
-  PlanEntry entry;
+  PlanEntry entry = {};
   std::vector<std::string> names = {};  // of its stations
   SurveySummary summary = {};
   // By what two of its stations are linked, as the summary says: equation 11, or the scan overlap. Empty: not measured.
@@ -39,6 +39,12 @@ struct Report {
 
 // Of a plan: a network for each entry of the front, numbered as in front.json.
 Report report_of(const PlanResult& result, const Simulator& simulator);
+
+// Of stations that were measured without a plan: by every ray, or on a sample. `names`: one a station.
+ReportNetwork measured_network(std::span<const PlacedStation> stations, std::vector<std::string> names,
+                               const NetworkCounts& counts, const Simulator& simulator, double link_overlap);
+// With that network alone.
+Report report_of(ReportNetwork network, const Simulator& simulator);
 
 // Why voxels of the answer are missed: a reason for each of `ranks`, as `why_missed()` has them.
 struct ReportMissed {

@@ -82,40 +82,11 @@
     at('legend').replaceChildren(...items);
   }
 
-  const origin = report.view.origin[2], levels = report.view.levels;
-  function cutAt(local) {
-    const [low, high] = [view.low.z, view.high.z];
-    at('cut').value = Math.round((1000 * (local - low)) / (high - low));
-    at('cut-height').textContent = `${(local + origin).toFixed(2)} m`;
-    const level = levels[Number(at('level').value)];
-    view.setSlice(level ? level.low - origin : low - 1, local >= high ? high + 1 : local);
-  }
-  function levelChosen() {
-    const level = levels[Number(at('level').value)];
-    cutAt(level ? level.high - origin : view.high.z);
-    view.oblique();
-  }
   function setUpTools() {
-    at('level-label').hidden = levels.length === 0;
-    levels.forEach((level, k) => at('level').append(element('option', { value: k },
-      levels.length > 1 ? `${k + 1}, floor at ${level.floor.toFixed(2)} m` : 'without ceiling')));
-    at('level').append(element('option', { value: -1 }, 'whole site'));
-    at('level').value = levels.length === 1 ? 0 : -1;
-    const first = report.networks[report.answer].stations.find((s) => s.ground);
-    if (levels.length > 1 && first) at('level').value = Math.max(0, levels.findLastIndex((l) => l.floor <= first.ground[2] + 0.6));
-    at('level').addEventListener('change', levelChosen);
-    at('cut').setAttribute('aria-label', 'Height of the cut');
-    at('cut').addEventListener('input', () => cutAt(view.low.z + (at('cut').value / 1000) * (view.high.z - view.low.z)));
+    sliceTools(view, report.view.levels, report.view.origin[2], report.networks[report.answer].stations.find((s) => s.ground));
     at('oblique').addEventListener('click', () => { stepBack(); view.oblique(); });
     at('above').addEventListener('click', () => { stepBack(); view.above(); });
     at('leave').addEventListener('click', stepBack);
-    view.canvas.addEventListener('keydown', (event) => {
-      const step = { PageUp: 20, PageDown: -20 }[event.key];
-      if (!step) return;
-      event.preventDefault();
-      at('cut').value = Number(at('cut').value) + step;
-      at('cut').dispatchEvent(new Event('input'));
-    });
     const modes = [...at('modes').querySelectorAll('button')].filter((button) => {
       const possible = button.dataset.mode !== 'why' || (report.view.cells && report.view.cells.reasons);
       button.hidden = !possible;
@@ -138,7 +109,6 @@
       });
     });
     modes.forEach((button, k) => { button.setAttribute('aria-checked', String(k === 0)); button.tabIndex = k === 0 ? 0 : -1; });
-    levelChosen();
   }
 
   if (report.axes.length) {

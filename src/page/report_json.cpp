@@ -53,6 +53,8 @@ ordered_json links_json(const ReportNetwork& network) {
   return links;
 }
 
+}  // namespace
+
 ordered_json network_json(const ReportNetwork& network) {
   const PlanEntry& entry = network.entry;
   ordered_json values, summary = ordered_json::array();
@@ -75,6 +77,8 @@ ordered_json network_json(const ReportNetwork& network) {
   }
   return json;
 }
+
+namespace {
 
 ordered_json missed_json(const Report& report) {
   ordered_json reasons = ordered_json::array(), nodes = ordered_json::array();

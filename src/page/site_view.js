@@ -257,6 +257,17 @@ class SiteView {
     this.drawMarks();
   }
 
+  // The same stations elsewhere.
+  moveStations(stations, links) {
+    this.stations = stations;
+    this.links = links;
+    this.labels.forEach((label, k) => {
+      label.classList.toggle('left-out', !stations[k].active);
+      label.hidden = !stations[k].head;
+    });
+    this.drawMarks();
+  }
+
   drawMarks() {
     this.marks.traverse((mark) => { if (mark.geometry) mark.geometry.dispose(); });
     this.marks.remove(...this.marks.children);
@@ -481,4 +492,38 @@ class SiteView {
     }
     this.printed.src = page.toDataURL('image/png');
   }
+}
+
+// The page's controls of the storey that is shown and of the height of its cut. `origin`: the local frame's height;
+// `first`: a station whose storey is shown at first.
+function sliceTools(view, levels, origin, first) {
+  const [level, cut, height] = ['level', 'cut', 'cut-height'].map((id) => document.getElementById(id));
+  document.getElementById('level-label').hidden = levels.length === 0;
+  const option = (value, text) => level.append(Object.assign(document.createElement('option'), { value, textContent: text }));
+  levels.forEach((l, k) => option(k, levels.length > 1 ? `${k + 1}, floor at ${l.floor.toFixed(2)} m` : 'without ceiling'));
+  option(-1, 'whole site');
+  level.value = levels.length === 0 ? -1 : 0;
+  if (first) levels.forEach((l, k) => { if (l.floor <= first.ground[2] + 0.6) level.value = k; });
+  const cutAt = (local) => {
+    const low = view.low.z, high = view.high.z, chosen = levels[Number(level.value)];
+    cut.value = Math.round((1000 * (local - low)) / (high - low));
+    height.textContent = `${(local + origin).toFixed(2)} m`;
+    view.setSlice(chosen ? chosen.low - origin : low - 1, local >= high ? high + 1 : local);
+  };
+  const choose = () => {
+    const chosen = levels[Number(level.value)];
+    cutAt(chosen ? chosen.high - origin : view.high.z);
+    view.oblique();
+  };
+  const slide = () => cutAt(view.low.z + (cut.value / 1000) * (view.high.z - view.low.z));
+  level.addEventListener('change', choose);
+  cut.addEventListener('input', slide);
+  view.canvas.addEventListener('keydown', (event) => {
+    const step = { PageUp: 20, PageDown: -20 }[event.key];
+    if (!step) return;
+    event.preventDefault();
+    cut.value = Number(cut.value) + step;
+    slide();
+  });
+  choose();
 }

@@ -141,7 +141,8 @@ function parameterTable(holder, parameters) {
 function stationCard(holder, network, k, only, { pick, stand }) {
   if (k === null) {
     holder.replaceChildren(element('h3', {}, 'Stations'), element('p', { class: 'muted' },
-      'Pick a station, by its name in the view or in the table, for its links, what it alone sees and the view from there.'));
+      'Pick a station, by its name in the view or in the table, for its links, what it alone sees'
+        + (stand ? ' and the view from there.' : ', to lock it or to take it away.')));
     return;
   }
   const s = network.stations[k], parts = [element('h3', {}, s.name)];

@@ -129,8 +129,8 @@ ordered_json colours_json(const Report& report, const ReportSite& site, const Co
 }
 
 // The storeys of a site under roofs, each a slice that shows its walls and heads and no ceiling. Empty: an open site.
-ordered_json levels_json(const Report& report, const ReportSite& site) {
-  const SearchMesh& ground = site.area.mesh();
+ordered_json levels_json(const Simulator& simulator, const SearchArea& area, std::span<const PlacedStation> stations) {
+  const SearchMesh& ground = area.mesh();
   std::vector<PlanLevel> levels = plan_levels(ground);
   if (levels.size() == 1) {
     Box box;
@@ -138,18 +138,18 @@ ordered_json levels_json(const Report& report, const ReportSite& site) {
       for (const std::uint32_t v : t) box.extend(ground.positions[v]);
     constexpr std::size_t kAcross = 400;
     const double pixel = std::max({box.size().x, box.size().y, 1e-3}) / kAcross;
-    const SceneData& scene = site.simulator.scene().data();
+    const SceneData& scene = simulator.scene().data();
     const auto from_above = look_from_above(
         scene, {.x_min = box.min.x, .y_max = box.max.y, .pixel_m = pixel, .columns = kAcross, .rows = kAcross},
-        site.simulator.scene().bounds().max.z + 1);
+        simulator.scene().bounds().max.z + 1);
     const auto floor = covered_floor(ground, from_above, scene);
     if (!floor) return ordered_json::array();
     levels.front().floor = *floor;
   }
-  double height = site.simulator.scanner().height_m;
-  for (const PlacedStation& s : report.networks[report.answer].entry.stations)
+  double height = simulator.scanner().height_m;
+  for (const PlacedStation& s : stations)
     if (s.status != StationStatus::hole) height = std::max(height, s.position.z - s.ground.z);
-  const Box bounds = site.simulator.scene().bounds();
+  const Box bounds = simulator.scene().bounds();
   ordered_json json = ordered_json::array();
   for (std::size_t k = 0; k < levels.size(); ++k) {
     const double above = levels[k].floor + 1.1 * height;  // heads clear of the cut, below most ceilings
@@ -162,13 +162,14 @@ ordered_json levels_json(const Report& report, const ReportSite& site) {
 
 }  // namespace
 
-ordered_json view_json(const Report& report, const ReportSite& site, const Progress& progress) {
-  const Simulator& simulator = site.simulator;
-  const CoverageCells cells = coverage_cells(simulator, kVoxels, kCells);
-  ordered_json json = {
-      {"origin", to_json(simulator.origin())}, {"mesh", mesh_json(surface_mesh(simulator.scene().data(), kTriangles))},
-      {"levels", levels_json(report, site)},   {"voxel_m", simulator.voxel_size_m()},
-      {"goal", simulator.goal_density()},      {"cells", nullptr}};
+ordered_json site_json(const Simulator& simulator, const SearchArea& area, std::span<const PlacedStation> stations,
+                       const CoverageCells& cells) {
+  ordered_json json = {{"origin", to_json(simulator.origin())},
+                       {"mesh", mesh_json(surface_mesh(simulator.scene().data(), kTriangles))},
+                       {"levels", levels_json(simulator, area, stations)},
+                       {"voxel_m", simulator.voxel_size_m()},
+                       {"goal", simulator.goal_density()},
+                       {"cells", nullptr}};
   if (cells.keys.empty()) return json;
   std::vector<std::uint32_t> steps;
   for (std::size_t c = 0; c < cells.keys.size(); ++c) steps.push_back(cells.keys[c] - (c > 0 ? cells.keys[c - 1] : 0));
@@ -176,8 +177,15 @@ ordered_json view_json(const Report& report, const ReportSite& site, const Progr
                    {"size_m", cells.size_m},
                    {"count", cells.keys.size()},
                    {"keys", packed(byte_planes<std::uint32_t>(steps))},
-                   {"reasons", nullptr},
-                   {"networks", colours_json(report, site, cells, progress)}};
+                   {"reasons", nullptr}};
+  return json;
+}
+
+ordered_json view_json(const Report& report, const ReportSite& site, const Progress& progress) {
+  const CoverageCells cells = coverage_cells(site.simulator, kVoxels, kCells);
+  ordered_json json = site_json(site.simulator, site.area, report.networks[report.answer].entry.stations, cells);
+  if (cells.keys.empty()) return json;
+  json["cells"]["networks"] = colours_json(report, site, cells, progress);
   if (site.missed && !site.missed->ranks.empty())
     json["cells"]["reasons"] = packed(cell_reasons(cells, site.missed->ranks, site.missed->why));
   return json;

@@ -6,7 +6,7 @@ import fs from 'node:fs';
 import os from 'node:os';
 import path from 'node:path';
 
-const program = process.argv[2];
+export const program = process.argv[2];
 assert.ok(program, 'which program? node SCRIPT PROGRAM');
 
 export const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'vantage-clients-'));

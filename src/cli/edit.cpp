@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <spawn.h>
+#include <spdlog/spdlog.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "cli/command.hpp"
+#include "cli/missed.hpp"
+#include "cli/options.hpp"
+#include "cli/report.hpp"
+#include "cli/run_report.hpp"
+#include "cli/site.hpp"
+#include "cli/stations.hpp"
+#include "edit/server.hpp"
+
+extern char** environ;
+
+namespace vantage::cli {
+namespace {
+
+struct EditCommandOptions {
+  SiteOptions site;
+  StationOptions stations;
+  EditOptions edit;
+  std::optional<SampleSize> sample;
+  std::optional<std::string> output;
+  std::optional<double> link_overlap;
+  bool no_browser = false;
+
+  void add(CLI::App& command) {
+    site.add(command);
+    stations.add(command);
+    add_value(command, "--sample", "N|P%", "Measure on so many voxels; 40000 otherwise",
+              [this](const std::string& text, const std::string& what) { sample = parse_sample(text, what); })
+        ->group("Evaluation");
+    add_number(
+        command, "--link-overlap", "W",
+        fmt::format("Overlap from which on two stations count as linked, 0 to 1; {} otherwise", default_link_overlap),
+        link_overlap, {.low = 0, .high = 1})
+        ->group("Results");
+    add_text(command, "-o,--output", "DIR", "Folder for the results; the scene's name and -edit otherwise", output)
+        ->group("Results");
+    command.add_flag("--no-browser", no_browser, "Print the address and open no browser")->group("Results");
+  }
+};
+
+// What every change leaves behind, so that nothing is lost whatever ends the program.
+struct Keeper {
+  std::filesystem::path file;
+  std::string scene;
+
+  void keep(const std::vector<EditStation>& stations) const {
+    nlohmann::json rows = nlohmann::json::array();
+    for (const auto& [id, placed, locked] : stations)
+      rows.push_back({{"position", {placed.position.x, placed.position.y, placed.position.z}},
+                      {"uv", {placed.uv.u, placed.uv.v}},
+                      {"locked", locked}});
+    write_text(file, nlohmann::json{{"scene", scene}, {"stations", rows}}.dump(2) + "\n");
+  }
+
+  // Where the scene is another, nothing.
+  std::vector<EditStation> restored(LoadedSite& site) const {
+    std::error_code ignored;
+    if (!std::filesystem::exists(file, ignored)) return {};
+    std::vector<EditStation> stations;
+    try {
+      const auto json = read_json(file.string());
+      if (json.at("scene") != scene) {
+        spdlog::warn("{} is of another scene, and is left aside", file.string());
+        return {};
+      }
+      for (const auto& row : json.at("stations")) {
+        const auto& p = row.at("position");
+        const auto& uv = row.at("uv");
+        const auto placed = place(site, {{.position = Vec3{p.at(0), p.at(1), p.at(2)}, .uv = Uv{uv.at(0), uv.at(1)}}});
+        stations.push_back({.placed = placed.front().placed, .locked = row.at("locked")});
+      }
+    } catch (const nlohmann::json::exception& error) {
+      throw Error(Errc::malformed_file, file.string() + ": is not what the editor keeps: " + error.what());
+    }
+    spdlog::info("going on with the {} stations of {}", stations.size(), file.string());
+    return stations;
+  }
+};
+
+void open_browser(const std::string& address) {
+  if (!std::getenv("DISPLAY") && !std::getenv("WAYLAND_DISPLAY")) return;
+  std::string command = "xdg-open", url = address;
+  char* const arguments[] = {command.data(), url.data(), nullptr};
+  pid_t child = 0;
+  if (posix_spawnp(&child, "xdg-open", nullptr, nullptr, arguments, environ) != 0)
+    spdlog::warn("no browser can be opened by xdg-open; open the address by hand");
+}
+
+int edit(CLI::App& command, EditCommandOptions& options, Program& program) {
+  LoadedSite site = open_site(command, options.site);
+  weigh_ground(site);
+  const std::string title = std::filesystem::path(options.site.scene).stem().string();
+  const std::filesystem::path folder = options.output ? *options.output : title + "-edit";
+  make_folder(folder);
+  const Keeper keeper{folder / "edit.json", fmt::format("{:016x}", site.scene.fingerprint())};
+  std::vector<EditStation> stations;
+  if (options.stations.typed.empty() && !options.stations.file) {
+    stations = keeper.restored(site);
+  } else {
+    for (const SiteStation& station : place(site, options.stations.read(max_stations))) {
+      if (station.placed.status == StationStatus::hole)
+        throw Error(Errc::invalid_argument, fmt::format("--station: no ground under u,v = {:g},{:g}",
+                                                        station.placed.uv.u, station.placed.uv.v));
+      stations.push_back({.placed = station.placed});
+    }
+  }
+  Simulator simulator(site.scene, site.scanner, site.config);
+  tell_engine(simulator);
+  tell_grid(simulator);
+  if (options.link_overlap) options.edit.link_overlap = *options.link_overlap;
+  if (options.sample) options.edit.voxels = options.sample->of(simulator.voxel_count());
+  const auto save = [&](const std::vector<PlacedStation>& placed, const NetworkCounts& counts, const VoxelField& field,
+                        const Progress& progress) {
+    write_stations_csv(folder / "stations.csv", placed);
+    const auto judged = judge_missed(site, simulator, field, program);
+    if (progress.stopped()) return;
+    write_reports(std::vector<std::filesystem::path>{folder / "report.html", folder / "report.pdf"},
+                  {.stations = placed,
+                   .names = station_names(placed),
+                   .counts = counts,
+                   .link_overlap = options.edit.link_overlap},
+                  title, {site, simulator, &field, judged ? &*judged : nullptr}, program, progress.stop);
+    spdlog::info("saved in {}", folder.string());
+  };
+  EditSession session(
+      simulator, site.area(), site.clash(), stations, options.edit,
+      [&](const std::vector<EditStation>& now) { keeper.keep(now); }, save);
+  serve_editor(
+      session, title,
+      [&](const std::string& address) {
+        program.console.print(address + "\n");
+        spdlog::info("the editor is at this address until Ctrl-C; {} has the stations at any time",
+                     keeper.file.string());
+        if (!options.no_browser) open_browser(address);
+      },
+      program.stop);
+  return exit_ok;
+}
+
+}  // namespace
+
+void add_edit(CLI::App& app, Program& program) {
+  add_command<EditCommandOptions>(app, program, "edit", "Move stations by hand, in a browser on this machine", edit);
+}
+
+}  // namespace vantage::cli

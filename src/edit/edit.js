@@ -1,0 +1,265 @@
+'use strict';
+// Stations by hand: every change goes to the program, and what is shown is what it answers.
+
+(async () => {
+  const data = JSON.parse(document.getElementById('data').textContent);
+  const at = (id) => document.getElementById(id);
+  const origin = data.view.origin, levels = data.view.levels;
+  const waiting = [];
+  let state = null, selected = null, adding = false, sending = false, connected = true, drag = null;
+
+  at('title').textContent = data.title;
+  const view = new SiteView(at('canvas'), data.view, pick);
+  await view.load();
+  const ground = await groundOf(data.view.ground);
+  view.scene.add(ground);
+
+  // Where stations may stand, laid over the floors.
+  async function groundOf(packed) {
+    const geometry = new THREE.BufferGeometry();
+    const positions = new Float32Array((await unpack(packed.positions)).buffer);
+    geometry.setAttribute('position', new THREE.BufferAttribute(positions, 3));
+    geometry.setIndex(new THREE.BufferAttribute(fromPlanes(await unpack(packed.indices), packed.corners, 4), 1));
+    const material = new THREE.ShaderMaterial({
+      vertexShader: edgeVertexShader, uniforms: view.uniforms, transparent: true, depthWrite: false, side: THREE.DoubleSide,
+      fragmentShader: edgeFragmentShader.replace('vec4(0.08, 0.10, 0.14, 0.35)', 'vec4(0.05, 0.48, 0.36, 0.45)'),
+    });
+    const mesh = new THREE.Mesh(geometry, material);
+    mesh.frustumCulled = false;
+    mesh.visible = false;
+    return mesh;
+  }
+  function showGround() {
+    ground.visible = at('show-ground').checked || adding || drag !== null;
+    view.draw();
+  }
+
+  // One request at a time; of the places of a drag that come meanwhile the last alone is kept.
+  async function send(change) {
+    if (sending) {
+      const last = waiting[waiting.length - 1];
+      if (last && change.begin === false && last.do === 'move' && last.id === change.id) waiting.pop(), change.begin = last.begin;
+      waiting.push(change);
+      return;
+    }
+    sending = true;
+    try {
+      const response = await fetch('change', { method: 'POST', headers: { 'Content-Type': 'application/json' }, body: JSON.stringify(change) });
+      const answer = await response.json();
+      online();
+      if (!response.ok) throw new Error(answer.error);
+      await show(answer);
+      if (answer.refused) tell(capital(answer.refused), true);
+      view.labels.forEach((label, k) => label.classList.toggle('refused', Boolean(answer.refused) && state.ids[k] === change.id));
+    } catch (error) {
+      offline();
+    }
+    sending = false;
+    if (waiting.length) await send(waiting.shift());
+  }
+  const capital = (text) => text && text[0].toUpperCase() + text.slice(1);
+  function tell(text, bad = false) {
+    at('status').textContent = text;
+    at('status').classList.toggle('bad', bad);
+  }
+  function offline() {
+    connected = false;
+    tell('The program does not answer. What was changed is kept in its folder: start it again with the same command.', true);
+  }
+  function online() {
+    if (!connected) tell('');
+    connected = true;
+  }
+  async function poll() {
+    try {
+      if (!sending && !drag) {
+        const response = await fetch(`state?version=${state.version}`);
+        online();
+        if (response.status === 200) await show(await response.json());
+      }
+    } catch (error) {
+      offline();
+    }
+    setTimeout(poll, state.busy ? 300 : 1000);
+  }
+
+  async function show(next) {
+    if (state && next.version < state.version) return;
+    const before = state, network = next.network;
+    const [coverage, only] = await Promise.all([unpack(next.coverage), unpack(next.only)]);
+    const keep = before && selected !== null ? before.ids[selected] : null;
+    const focused = view.labels.indexOf(document.activeElement);
+    const same = before && before.ids.join() === next.ids.join();
+    state = next;
+    selected = keep === null ? null : state.ids.indexOf(keep);
+    if (selected === -1) selected = null;
+    if (same) view.moveStations(network.stations, network.links || []);
+    else view.setNetwork(network.stations, network.links || []);
+    view.setColours(coverage, only);
+    view.select(selected);
+    view.only = only;
+    view.labels.forEach((label, k) => {
+      label.classList.toggle('locked', state.locked[k]);
+      label.setAttribute('aria-label', `${network.stations[k].name}${state.locked[k] ? ', locked' : ''}`);
+      label.onpointerdown = (event) => grab(event, k);
+      label.onkeydown = (event) => labelKey(event, k);
+    });
+    if (!same && focused >= 0 && view.labels.length) view.labels[Math.min(focused, view.labels.length - 1)].focus();
+    figures(at('figures'), network);
+    const tile = at('figures').querySelector('dd small');
+    const { value, error } = network.values.coverage;
+    tile.textContent = state.exact ? `coverage ${value.toFixed(4)}, by every ray` : `coverage ${value.toFixed(4)} ± ${error.toFixed(4)}, from a sample`;
+    words(at('words'), network, '');
+    stationTable(at('stations'), network, pick);
+    linkTable(at('links'), at('links-words'), network);
+    card();
+    legend();
+    at('undo').disabled = !state.undo || Boolean(state.busy);
+    at('redo').disabled = !state.redo || Boolean(state.busy);
+    at('exact').disabled = state.exact || !state.ids.length || Boolean(state.busy);
+    at('improve').disabled = !state.ids.length || Boolean(state.busy);
+    at('add').disabled = Boolean(state.busy);
+    at('save').textContent = state.busy ? 'Stop' : 'Save';
+    if (state.busy) tell(`${capital(state.busy.what)}${state.busy.done > 0 ? `, ${Math.round(100 * state.busy.done)} %` : ' …'}`);
+    else tell(capital(state.message));
+    document.documentElement.dataset.version = state.version;
+  }
+
+  function legend() {
+    const item = (style, text, kind = '') => element('span', {}, element('i', { class: kind, style }), text);
+    at('legend').replaceChildren(
+      element('span', {}, 'no points', element('i', { class: 'ramp', style: `background:linear-gradient(90deg,${VIEW_COLOURS.ramp.join()})` }), 'wanted density'),
+      item(`background:${VIEW_COLOURS.blocking}`, 'not surveyed'), item(`background:${VIEW_COLOURS.only}`, 'only the picked station sees'),
+      item(`background:${VIEW_COLOURS.link}`, 'link', 'stroke'),
+      item(`background:repeating-linear-gradient(90deg,${VIEW_COLOURS.bridge} 0 6px,transparent 6px 9px)`, 'bridge', 'stroke'));
+  }
+
+  function pick(k) {
+    if (drag && drag.moved) return;
+    selected = k === selected ? null : k;
+    view.select(selected);
+    card();
+  }
+  function card() {
+    const share = selected === null ? null : view.only.reduce((n, v) => n + (v === selected + 1), 0) / view.only.length;
+    stationCard(at('station'), state.network, selected, share, { pick, stand: null });
+    if (selected === null) {
+      if (!state.ids.length) at('station').append(element('p', {}, 'There is no station yet: add one, then say where.'));
+      return;
+    }
+    const id = state.ids[selected], locked = state.locked[selected];
+    const button = (text, change) => {
+      const node = element('button', { type: 'button' }, text);
+      node.addEventListener('click', () => send(change));
+      at('station').append(node);
+      return node;
+    };
+    button(locked ? 'Unlock' : 'Lock', { do: 'lock', id, locked: !locked });
+    button('Remove', { do: 'remove', id }).disabled = locked;
+  }
+
+  // The ray through a place of the screen.
+  function ray(event) {
+    const box = view.canvas.getBoundingClientRect(), caster = new THREE.Raycaster();
+    caster.setFromCamera({ x: (2 * (event.clientX - box.left)) / box.width - 1, y: 1 - (2 * (event.clientY - box.top)) / box.height }, view.camera);
+    return caster;
+  }
+  const inSurvey = (point) => point.toArray().map((v, k) => v + origin[k]);
+
+  // A station is dragged over the plane of its own ground.
+  function grab(event, k) {
+    if (event.button !== 0 || state.busy) return;
+    const station = state.network.stations[k], label = view.labels[k];
+    if (state.locked[k]) return;
+    event.preventDefault();
+    label.focus();
+    label.setPointerCapture(event.pointerId);
+    const height = view.local(station.ground).z, plane = new THREE.Plane(new THREE.Vector3(0, 0, 1), -height);
+    const from = ray(event).ray.intersectPlane(plane, new THREE.Vector3());
+    if (!from) return;
+    drag = { id: state.ids[k], offset: view.local(station.ground).sub(from), moved: false };
+    label.classList.add('held');
+    view.controls.enabled = false;
+    showGround();
+    const to = (e) => {
+      const point = ray(e).ray.intersectPlane(plane, new THREE.Vector3());
+      return point && inSurvey(point.add(drag.offset));
+    };
+    const move = (e) => {
+      if (!drag.moved && Math.hypot(e.clientX - event.clientX, e.clientY - event.clientY) < 4) return;
+      const place = to(e);
+      if (!place) return;
+      send({ do: 'move', id: drag.id, to: place, begin: !drag.moved, end: false });
+      drag.moved = true;
+      drag.last = place;
+    };
+    const drop = (e) => {
+      label.onpointermove = label.onpointerup = label.onpointercancel = null;
+      label.classList.remove('held');
+      view.controls.enabled = true;
+      if (drag.moved) send({ do: 'move', id: drag.id, to: to(e) || drag.last, begin: false, end: true });
+      const moved = drag.moved;
+      setTimeout(() => { drag = null; showGround(); }, moved ? 50 : 0);
+    };
+    label.onpointermove = move;
+    label.onpointerup = drop;
+    label.onpointercancel = drop;
+  }
+  function labelKey(event, k) {
+    const by = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
+    const id = state.ids[k];
+    if (by) {
+      const step = event.shiftKey ? 1 : 0.25, [x, y, z] = state.network.stations[k].ground;
+      send({ do: 'move', id, to: [x + step * by[0], y + step * by[1], z] });
+    } else if (event.key === 'Delete') send({ do: 'remove', id });
+    else if (event.key === 'l' || event.key === 'L') send({ do: 'lock', id, locked: !state.locked[k] });
+    else return;
+    event.preventDefault();
+  }
+
+  // The first surface that is shown below the pointer, or the ground where one may stand.
+  function surfaceAt(event) {
+    const [low, high] = view.slice;
+    const hit = ray(event).intersectObjects([view.surface, ground]).find(({ point }) => point.z >= low && point.z <= high);
+    return hit && inSurvey(hit.point);
+  }
+  function setAdding(on) {
+    adding = on;
+    at('add').setAttribute('aria-pressed', String(on));
+    at('canvas').classList.toggle('adding', on);
+    if (on) tell('Click where the station is to stand; Enter puts it in the middle of the view, Escape leaves it.');
+    showGround();
+  }
+  let pressed = null;
+  view.canvas.addEventListener('pointerdown', (event) => { pressed = [event.clientX, event.clientY]; });
+  view.canvas.addEventListener('pointerup', (event) => {
+    if (!adding || !pressed || Math.hypot(event.clientX - pressed[0], event.clientY - pressed[1]) > 5) return;
+    const place = surfaceAt(event);
+    setAdding(false);
+    if (place) send({ do: 'add', to: place });
+    else tell('There is nothing to stand on.', true);
+  });
+  document.addEventListener('keydown', (event) => {
+    if (event.key === 'Escape' && adding) setAdding(false);
+    if (event.key === 'Enter' && adding && document.activeElement === view.canvas) {
+      setAdding(false);
+      send({ do: 'add', to: inSurvey(view.controls.target) });
+    }
+    if ((event.ctrlKey || event.metaKey) && event.key.toLowerCase() === 'z') {
+      event.preventDefault();
+      send({ do: event.shiftKey ? 'redo' : 'undo' });
+    }
+  });
+  at('add').addEventListener('click', () => { setAdding(!adding); if (adding) view.canvas.focus(); });
+  at('save').addEventListener('click', () => send({ do: state.busy ? 'stop' : 'save' }));
+  for (const what of ['undo', 'redo', 'exact', 'improve']) at(what).addEventListener('click', () => send({ do: what }));
+  at('show-ground').addEventListener('change', showGround);
+
+  sliceTools(view, levels, origin[2], data.state.network.stations.find((s) => s.ground));
+  at('oblique').addEventListener('click', () => view.oblique());
+  at('above').addEventListener('click', () => view.above());
+  await show(data.state);
+  view.oblique();
+  poll();
+  document.documentElement.dataset.ready = 'true';
+})();

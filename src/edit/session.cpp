@@ -1,0 +1,332 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "edit/session.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "page/packed.hpp"
+#include "page/report.hpp"
+#include "page/report_json.hpp"
+#include "trace/sample_counts.hpp"
+#include "vantage/error.hpp"
+#include "vantage/planner.hpp"
+#include "vantage/summary.hpp"
+
+namespace vantage {
+namespace {
+
+using nlohmann::json;
+using nlohmann::ordered_json;
+
+constexpr std::size_t kMostUndo = 200;
+constexpr std::uint32_t kGroups = 20;           // of a sample, as the simulator makes them
+constexpr std::uint64_t kCellVoxels = 200'000;  // that say where cells are
+
+std::vector<std::uint8_t> bytes_of(const std::vector<float>& values) {
+  const auto* first = reinterpret_cast<const std::uint8_t*>(values.data());
+  return {first, first + values.size() * sizeof(float)};
+}
+
+double number_of(const json& value, const char* what) {
+  if (!value.is_number()) throw Error(Errc::invalid_argument, std::string(what) + ": not a number");
+  const double number = value.get<double>();
+  if (!std::isfinite(number)) throw Error(Errc::invalid_argument, std::string(what) + ": not a finite number");
+  return number;
+}
+
+bool flag_of(const json& request, const char* key) {
+  const auto at = request.find(key);
+  return at != request.end() && at->is_boolean() && at->get<bool>();
+}
+
+}  // namespace
+
+EditSession::EditSession(Simulator& simulator, const SearchArea& area, const ClashChecker& clash,
+                         const std::vector<EditStation>& stations, const EditOptions& options, Keep keep, Save save)
+    : simulator_(simulator),
+      area_(area),
+      clash_(clash),
+      options_(options),
+      keep_(std::move(keep)),
+      save_(std::move(save)),
+      cells_(coverage_cells(simulator, std::max(kCellVoxels, options.voxels), options.cells)),
+      stations_(stations) {
+  if (simulator.voxel_count() > 0)
+    sample_ = simulator.sampled_voxels(std::min(options.voxels, simulator.voxel_count()));
+  for (const std::uint32_t rank : sample_) weights_.push_back(static_cast<std::uint8_t>(simulator.voxel_weight(rank)));
+  // None where all are 1: as the simulator has it.
+  if (std::ranges::count(weights_, 1) == std::ssize(weights_)) weights_.clear();
+  for (EditStation& station : stations_) station.id = next_id_++;
+  measure();
+}
+
+EditSession::~EditSession() { stop_job_.request_stop(); }
+
+ordered_json EditSession::site() const {
+  std::vector<PlacedStation> stations;
+  {
+    const std::scoped_lock lock(mutex_);
+    stations = placed();
+  }
+  ordered_json json = site_json(simulator_, area_, stations, cells_);
+  const SearchMesh& ground = area_.mesh();
+  std::vector<float> positions;
+  for (const Vec3& p : ground.positions) {
+    const Vec3 local = p - simulator_.origin();
+    for (const double v : {local.x, local.y, local.z}) positions.push_back(static_cast<float>(v));
+  }
+  std::vector<std::uint32_t> indices;
+  for (const auto& t : ground.triangles) indices.insert(indices.end(), t.begin(), t.end());
+  json["ground"] = {{"corners", indices.size()},
+                    {"positions", packed(bytes_of(positions))},
+                    {"indices", packed(byte_planes<std::uint32_t>(indices))}};
+  json["height_m"] = simulator_.scanner().height_m;
+  return json;
+}
+
+ordered_json EditSession::state() const {
+  const std::scoped_lock lock(mutex_);
+  ordered_json ids = ordered_json::array(), locked = ids;
+  for (const EditStation& station : stations_) {
+    ids.push_back(station.id);
+    locked.push_back(station.locked);
+  }
+  const auto stations = placed();
+  const ReportNetwork network =
+      measured_network(stations, station_names(stations), counts_, simulator_, options_.link_overlap);
+  ordered_json json = {{"version", version_.load()},
+                       {"network", network_json(network)},
+                       {"ids", std::move(ids)},
+                       {"locked", std::move(locked)},
+                       {"coverage", packed(colours_.coverage)},
+                       {"only", packed(colours_.only)},
+                       {"sample", exact_ ? std::uint64_t{0} : sample_.size()},
+                       {"exact", exact_},
+                       {"undo", !undo_.empty()},
+                       {"redo", !redo_.empty()},
+                       {"message", message_},
+                       {"busy", nullptr}};
+  if (!busy_.empty()) json["busy"] = {{"what", busy_}, {"done", done_}};
+  return json;
+}
+
+void EditSession::change(const json& request) {
+  const std::scoped_lock lock(mutex_);
+  const auto named = request.is_object() ? request.find("do") : request.end();
+  if (!request.is_object() || named == request.end() || !named->is_string())
+    throw Error(Errc::invalid_argument, "a change is an object that says what to do");
+  const std::string what = named->get<std::string>();
+  if (what == "stop") {
+    stop_job_.request_stop();
+    return;
+  }
+  if (!busy_.empty()) throw Error(Errc::invalid_argument, "wait until this is done, or stop it: " + busy_);
+  message_.clear();
+  if (what == "exact")
+    return start("tracing every ray", [this](const Progress& progress) { trace_exactly(progress, {}); });
+  if (what == "improve") return start("improving the others", [this](const Progress& progress) { improve(progress); });
+  if (what == "save") {
+    keep_(stations_);
+    return start("saving", [this](const Progress& progress) {
+      trace_exactly(progress, [&](const VoxelField& field) { save_(placed(), counts_, field, progress); });
+    });
+  }
+  bool dragging = false;
+  if (what == "move") {
+    if (flag_of(request, "end")) keep_(stations_);  // of the drag so far, should it end off the ground
+    const PlacedStation ground = on_ground(request.value("to", json()));
+    EditStation& station = with_id(request);
+    if (station.locked) throw Error(Errc::invalid_argument, "this station is locked");
+    dragging = request.contains("begin") && !flag_of(request, "begin");
+    if (!dragging) remember();
+    station.placed = ground;
+  } else if (what == "add") {
+    if (stations_.size() >= max_stations)
+      throw Error(Errc::invalid_argument,
+                  "there are " + std::to_string(max_stations) + " stations, the most there may be");
+    const PlacedStation ground = on_ground(request.value("to", json()));
+    remember();
+    stations_.push_back({.id = next_id_++, .placed = ground});
+  } else if (what == "remove") {
+    EditStation& station = with_id(request);
+    if (station.locked) throw Error(Errc::invalid_argument, "this station is locked");
+    remember();
+    stations_.erase(stations_.begin() + (&station - stations_.data()));
+  } else if (what == "lock") {
+    EditStation& station = with_id(request);
+    remember();
+    station.locked = flag_of(request, "locked");
+  } else if (what == "undo") {
+    step(undo_, redo_);
+  } else if (what == "redo") {
+    step(redo_, undo_);
+  } else {
+    throw Error(Errc::invalid_argument, "'" + what + "' is nothing that can be done here");
+  }
+  if (what != "lock") measure();
+  ++version_;
+  if (!dragging || flag_of(request, "end")) keep_(stations_);
+}
+
+EditStation& EditSession::with_id(const json& request) {
+  const auto id = request.find("id");
+  for (EditStation& station : stations_)
+    if (id != request.end() && *id == station.id) return station;
+  throw Error(Errc::invalid_argument, "there is no such station any more");
+}
+
+PlacedStation EditSession::on_ground(const json& to) const {
+  if (!to.is_array() || to.size() != 3) throw Error(Errc::invalid_argument, "to: three numbers are wanted");
+  const Vec3 at{number_of(to[0], "x"), number_of(to[1], "y"), number_of(to[2], "z")};
+  const auto uv = area_.project(at);
+  if (!uv) throw Error(Errc::invalid_argument, "there is no ground to stand on");
+  const double pair[] = {uv->u, uv->v};
+  return place_stations(area_, clash_, simulator_.scanner().height_m, pair).front();
+}
+
+std::vector<PlacedStation> EditSession::placed() const {
+  std::vector<PlacedStation> stations;
+  for (const EditStation& station : stations_) stations.push_back(station.placed);
+  return stations;
+}
+
+Network EditSession::network() const { return to_network(placed()); }
+
+void EditSession::remember() {
+  undo_.push_back(stations_);
+  if (undo_.size() > kMostUndo) undo_.erase(undo_.begin());
+  redo_.clear();
+}
+
+void EditSession::step(std::vector<Stations>& from, std::vector<Stations>& to) {
+  if (from.empty()) throw Error(Errc::invalid_argument, "there is nothing to go back to");
+  to.push_back(std::move(stations_));
+  stations_ = std::move(from.back());
+  from.pop_back();
+}
+
+// Points add up, so those stations alone are traced that have moved. Each keeps its place among the others while it is,
+// as its noise goes by that: all numbers are those of `vantage evaluate --sample`.
+void EditSession::measure() {
+  exact_ = false;
+  std::erase_if(traced_, [&](const Traced& traced) {
+    return traced.place >= stations_.size() || stations_[traced.place].id != traced.id ||
+           stations_[traced.place].placed.position != traced.head;
+  });
+  std::vector<Network> alone;
+  std::vector<Traced> fresh;
+  for (std::size_t k = 0; k < stations_.size(); ++k) {
+    const PlacedStation& placed = stations_[k].placed;
+    if (!active(placed) || std::ranges::count(traced_, k, &Traced::place) > 0) continue;
+    Network network(stations_.size(), {.position = placed.position, .active = false});
+    network[k].active = true;
+    alone.push_back(std::move(network));
+    fresh.push_back({.place = k, .id = stations_[k].id, .head = placed.position, .points = {}});
+  }
+  if (!alone.empty() && !sample_.empty())
+    simulator_.evaluate_sampled(alone, {.voxels = sample_.size(),
+                                        .overlap = false,
+                                        .points = [&](std::size_t n, std::span<const std::uint32_t> counted) {
+                                          fresh[n].points.assign(counted.begin(), counted.end());
+                                        }});
+  std::ranges::move(fresh, std::back_inserter(traced_));
+  std::vector<std::uint32_t> points(sample_.size(), 0);
+  std::vector<std::uint64_t> masks(sample_.size(), 0);
+  for (const Traced& traced : traced_) {
+    if (!active(stations_[traced.place].placed)) continue;
+    for (std::size_t i = 0; i < traced.points.size(); ++i) {
+      points[i] += traced.points[i];
+      if (traced.points[i] > 0) masks[i] |= std::uint64_t{1} << traced.place;
+    }
+  }
+  counts_ = reduce_sample(points, masks, kGroups, static_cast<std::uint32_t>(stations_.size()),
+                          simulator_.goal_density(), weights_);
+  colours_ = cell_colours(cells_, sample_, points, masks, simulator_.goal_density());
+}
+
+void EditSession::start(const std::string& what, std::function<void(const Progress&)> work) {
+  busy_ = what, done_ = 0;
+  ++version_;
+  stop_job_ = std::stop_source();
+  job_ = std::jthread([this, work = std::move(work), stop = stop_job_.get_token()] {
+    const auto report = [this](double done) {
+      const std::scoped_lock lock(mutex_);
+      done_ = done;
+      ++version_;
+    };
+    std::string failure;
+    try {
+      work({.report = report, .stop = stop});
+    } catch (const std::exception& error) {
+      failure = error.what();
+    }
+    const std::scoped_lock lock(mutex_);
+    busy_.clear();
+    if (!failure.empty()) message_ = failure;
+    ++version_;
+  });
+}
+
+void EditSession::trace_exactly(const Progress& progress, const std::function<void(const VoxelField&)>& then) {
+  const Network all = network();  // nobody changes it while this is busy
+  if (std::ranges::none_of(all, &Station::active)) throw Error(Errc::invalid_argument, "there is no station to trace");
+  VoxelField field;
+  NetworkCounts counts = simulator_.evaluate(all, {.field = &field}, progress);
+  if (counts.cancelled) return;
+  std::vector<std::uint32_t> points;
+  std::vector<std::uint64_t> masks;
+  for (const std::uint32_t rank : cells_.ranks) {
+    points.push_back(field.count[rank]);
+    masks.push_back(field.stations[rank]);
+  }
+  CellColours colours = cell_colours(cells_, cells_.ranks, points, masks, simulator_.goal_density());
+  {
+    const std::scoped_lock lock(mutex_);
+    counts_ = std::move(counts), colours_ = std::move(colours), exact_ = true;
+  }
+  if (!then) return;
+  then(field);
+  const std::scoped_lock lock(mutex_);
+  message_ = "saved";
+}
+
+// A short search from where the stations are, for more coverage and no more parts than now.
+void EditSession::improve(const Progress& progress) {
+  std::vector<Vec3> kept, start;
+  for (const EditStation& s : stations_) (s.locked ? kept : start).push_back(s.placed.position);
+  if (start.empty()) throw Error(Errc::invalid_argument, "all stations are locked");
+  const std::size_t parts = connectivity(overlap_matrix(counts_), options_.link_overlap).parts;
+  const double before = coverage(counts_, simulator_.goal_density());
+  const std::string names[] = {"coverage"};
+  SurveyProblem problem = survey_problem(names, start.size(), start.size(), options_.link_overlap);
+  problem.kept = kept;
+  problem.requirements = {
+      make_requirement("parts<=" + std::to_string(std::max<std::size_t>(parts, 1)), problem.settings())};
+  const PlanConfig config{.iterations = 1'000'000,
+                          .sigma0 = 0.05,
+                          .sample_voxels = sample_.size(),
+                          .start = start,
+                          .max_seconds = options_.improve_seconds};
+  std::stop_source abort;  // what is found is measured here, on the sample
+  const auto watch = [&](const PlanProgress& now) {
+    if (now.phase == "confirm") abort.request_stop();
+    if (progress.report && now.iterations > 0) progress.report(0);
+  };
+  const PlanResult result = plan(simulator_, area_, clash_, problem, config,
+                                 {.report = watch, .stop = progress.stop, .abort = abort.get_token()});
+  const std::scoped_lock lock(mutex_);
+  const PlanEntry* best = result.front.empty() ? nullptr : &result.front[answer(result)];
+  if (!best || best->missed > 0 || best->value("coverage") <= before) {
+    message_ = "nothing better was found in " + std::to_string(static_cast<int>(options_.improve_seconds)) + " s";
+    return;
+  }
+  remember();
+  std::size_t next = kept.size();  // kept ones come first
+  for (EditStation& s : stations_)
+    if (!s.locked) s.placed = best->stations[next++];
+  measure();
+  keep_(stations_);
+  message_ = "improved";
+}
+
+}  // namespace vantage

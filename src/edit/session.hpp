@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// Stations that people move by hand, and what they capture: the editor without its page.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "page/coverage_cells.hpp"
+#include "vantage/measure.hpp"
+#include "vantage/placement.hpp"
+#include "vantage/simulator.hpp"
+
+namespace vantage {
+
+struct EditStation {
+  std::uint32_t id = 0;  // its own for as long as the session lasts
+  PlacedStation placed;
+  bool locked = false;  // neither moved nor removed, by hand or by search
+};
+
+struct EditOptions {
+  double link_overlap = default_link_overlap;
+  std::uint64_t voxels = 40'000;  // of the sample that every change is measured on
+  std::size_t cells = 20'000;     // of the colours, at most
+  double improve_seconds = 10;    // of one short search
+};
+
+// Borrows all that it is given. Every call is safe from any thread; what takes long runs on a thread of its own, and
+// changes are refused meanwhile.
+class EditSession {
+ public:
+  // Called after every change that is not one of many of a drag, with the stations as they are then.
+  using Keep = std::function<void(const std::vector<EditStation>&)>;
+  // Writes the results of these stations, measured by every ray; on the session's own thread.
+  using Save =
+      std::function<void(const std::vector<PlacedStation>&, const NetworkCounts&, const VoxelField&, const Progress&)>;
+
+  EditSession(Simulator& simulator, const SearchArea& area, const ClashChecker& clash,
+              const std::vector<EditStation>& stations, const EditOptions& options, Keep keep, Save save);
+  ~EditSession();  // stops what is under way
+  EditSession(const EditSession&) = delete;
+  EditSession& operator=(const EditSession&) = delete;
+
+  // What does not change: `site_json`, and the ground where stations may stand.
+  nlohmann::ordered_json site() const;
+  // version, network (as in a report), ids, locked, colours, busy{what, done}, undo, redo, exact, message.
+  nlohmann::ordered_json state() const;
+  std::uint64_t version() const { return version_; }
+
+  // {"do": …}: "move" {"id", "to": [x, y, z], "begin"} to the ground above or below a point of the survey frame
+  // (`begin` false: goes on with a drag), "add" {"to"}, "remove" {"id"}, "lock" {"id", "locked"}, "undo", "redo",
+  // "exact", "improve", "save", "stop". Throws Error invalid_argument for what cannot be done, and changes nothing
+  // then.
+  void change(const nlohmann::json& request);
+
+ private:
+  using Stations = std::vector<EditStation>;
+  EditStation& with_id(const nlohmann::json& request);
+  PlacedStation on_ground(const nlohmann::json& to) const;
+  Network network() const;
+  std::vector<PlacedStation> placed() const;
+  void remember();
+  void step(std::vector<Stations>& from, std::vector<Stations>& to);
+  void measure();
+  void start(const std::string& what, std::function<void(const Progress&)> work);
+  void trace_exactly(const Progress& progress, const std::function<void(const VoxelField&)>& then);
+  void improve(const Progress& progress);
+
+  Simulator& simulator_;
+  const SearchArea& area_;
+  const ClashChecker& clash_;
+  const EditOptions options_;
+  const Keep keep_;
+  const Save save_;
+  CoverageCells cells_;
+  std::vector<std::uint32_t> sample_;
+  std::vector<std::uint8_t> weights_;  // of its voxels; empty: all count the same
+
+  mutable std::mutex mutex_;  // of all below
+  Stations stations_;
+  std::vector<Stations> undo_, redo_;
+  std::uint32_t next_id_ = 1;
+  std::atomic<std::uint64_t> version_ = 1;
+  // What a station left in each voxel of the sample, where it stood when that was traced.
+  struct Traced {
+    std::size_t place;
+    std::uint32_t id;
+    Vec3 head;
+    std::vector<std::uint32_t> points;
+  };
+  std::vector<Traced> traced_;
+  NetworkCounts counts_;
+  CellColours colours_;
+  bool exact_ = false;
+  std::string busy_, message_;
+  double done_ = 0;
+  std::stop_source stop_job_;
+  std::jthread job_;
+};
+
+}  // namespace vantage

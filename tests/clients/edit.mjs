@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+// The editor in a real browser: a station is dragged, moved by keys, added, locked and saved, and the page says what the
+// program on the command line says. What comes from elsewhere is refused.
+import assert from 'node:assert/strict';
+import { spawn } from 'node:child_process';
+import { once } from 'node:events';
+import fs from 'node:fs';
+import http from 'node:http';
+
+import { coloursOf, launch, paleTexts, watchedPage } from './browser.mjs';
+import { at, folder, program, read, vantage } from './vantage.mjs';
+
+const coarse = ['--step', '1', '--user-size', '0.2', '--spacing', '0.05', '--engine', 'embree'];
+vantage('generate', 'four-walls', '-o', 'walls.glb');
+
+// The editor's process, and its address once it is said.
+async function start(...args) {
+  const editor = spawn(program, ['edit', 'walls.glb', ...coarse, '--sample', '2000', '-o', 'edited', '--no-browser', ...args], { cwd: folder });
+  let log = '';
+  editor.stderr.on('data', (text) => { log += text; });
+  process.on('exit', () => editor.kill('SIGKILL'));
+  const [line] = await Promise.race([once(editor.stdout, 'data'), once(editor, 'exit').then(() => assert.fail(log))]);
+  return { editor, url: line.toString().trim() };
+}
+async function stop(editor) {
+  const ended = once(editor, 'exit');
+  editor.kill('SIGINT');
+  const [code] = await ended;
+  assert.equal(code, 0, 'Ctrl-C ends it in good order');
+}
+
+// One request as anybody on this machine could send it.
+function ask(url, { method = 'GET', headers = {}, body } = {}) {
+  return new Promise((resolve, reject) => {
+    const request = http.request(url, { method, headers }, (response) => {
+      let text = '';
+      response.on('data', (part) => { text += part; });
+      response.on('end', () => resolve({ status: response.statusCode, text, headers: response.headers }));
+    });
+    request.on('error', reject);
+    request.end(body);
+  });
+}
+
+let { editor, url } = await start('--station', '8,0,1.5', '--station', '8,6,1.5');
+const { origin, host } = new URL(url);
+const post = { method: 'POST', headers: { Origin: origin }, body: '{"do":"undo"}' };
+assert.equal(new URL(url).hostname, '127.0.0.1');
+assert.equal((await ask(url)).status, 200);
+for (const [what, status, where, options] of [
+  ['no token', 404, origin, {}], ['another token', 404, `${origin}/${'0'.repeat(32)}/`, {}], ['a file', 404, `${origin}/etc/passwd`, {}],
+  ['a path out of the page', 404, `${url}../walls.glb`, {}], ['nothing of that name', 404, `${url}walls.glb`, {}],
+  ['another host', 403, url, { headers: { Host: 'example.org' } }], ['a host by name', 403, url, { headers: { Host: host.replace('127.0.0.1', 'localhost') } }],
+  ['another origin', 403, `${url}change`, { ...post, headers: { Origin: 'http://example.org' } }],
+  ['no origin', 403, `${url}change`, { ...post, headers: {} }], ['a null origin', 403, `${url}change`, { ...post, headers: { Origin: 'null' } }],
+  ['too much', 413, `${url}change`, { ...post, body: JSON.stringify({ do: 'x'.repeat(10000) }) }],
+  ['no JSON', 400, `${url}change`, { ...post, body: '{' }],
+]) assert.equal((await ask(where, options)).status, status, what);
+assert.match(JSON.parse((await ask(`${url}change`, post)).text).refused, /nothing to go back to/);
+assert.match((await ask(url)).headers['content-security-policy'], /default-src 'none'/);
+
+const browser = await launch();
+const page = await watchedPage(browser, { width: 1280, height: 900 });
+await page.goto(url);
+await page.waitForSelector('html[data-ready]');
+const version = () => page.evaluate(() => Number(document.documentElement.dataset.version));
+const changed = async (act) => {
+  const before = await version();
+  await act();
+  await page.waitForFunction((v) => Number(document.documentElement.dataset.version) > v, before);
+};
+const rows = async () => (await page.locator('#stations tbody tr').allInnerTexts()).map((row) => row.split('\t').map((cell) => cell.trim()));
+const coverage = async () => (await page.locator('#figures dd small').first().innerText()).match(/[\d.]+/)[0];
+
+// The same stations give the same numbers on the command line.
+async function checkNumbers(how) {
+  fs.writeFileSync(at('now.csv'), fs.readFileSync(at('edited/edit.json')) && ['x,y,z,u,v',
+    ...JSON.parse(read('edited/edit.json')).stations.map((s) => [...s.position, ...s.uv].join())].join('\n'));
+  const said = JSON.parse(vantage('evaluate', 'walls.glb', ...coarse, ...how, '--stations', 'now.csv', '--json'));
+  assert.equal(await coverage(), said.coverage.toFixed(4));
+  (await rows()).forEach((row, k) => assert.deepEqual(row.slice(1, 4), said.stations[k].position.map((v) => v.toFixed(3))));
+}
+
+const { colours } = await coloursOf(page, '#canvas', () => true);
+assert.ok(colours > 100, `the view is blank: ${colours} colours`);
+assert.deepEqual(await paleTexts(page), []);
+
+// Drag the first station by its name.
+await page.locator('#above').click();
+await page.waitForTimeout(200);
+const [placed, number] = [await rows(), await coverage()];
+const box = await page.locator('.label').first().boundingBox();
+await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+await page.mouse.down();
+await changed(async () => {
+  for (let step = 1; step <= 5; ++step) await page.mouse.move(box.x + box.width / 2 + 8 * step, box.y + box.height / 2 + 10 * step);
+});
+await page.mouse.up();
+await page.waitForTimeout(1500);
+assert.notDeepEqual((await rows())[0], placed[0]);
+assert.deepEqual((await rows())[1].slice(0, 5), placed[1].slice(0, 5));
+assert.notEqual(await coverage(), number);
+await checkNumbers(['--sample', '2000']);
+await changed(() => page.locator('#undo').click());
+assert.deepEqual(await rows(), placed);
+
+// By keys: a step to the east, a lock that holds, a third station, one less.
+const label = page.locator('.label').nth(1);
+await label.focus();
+await changed(() => page.keyboard.press('Shift+ArrowRight'));
+assert.ok(Math.abs(Number((await rows())[1][1]) - Number(placed[1][1]) - 1) < 0.002);
+await label.focus();
+await changed(() => page.keyboard.press('l'));
+await label.focus();
+await page.keyboard.press('ArrowRight');
+await page.waitForFunction(() => document.getElementById('status').textContent.includes('locked'));
+await page.locator('#add').click();
+const spots = await Promise.all([0, 1].map((k) => page.locator('.label').nth(k).boundingBox()));
+await changed(() => page.mouse.click((spots[0].x + spots[1].x) / 2 + 20, (spots[0].y + spots[1].y) / 2 + 20));
+assert.equal((await rows()).length, 3);
+await checkNumbers(['--sample', '2000']);
+
+// A second tab shows what the first one does.
+const second = await watchedPage(browser, { width: 390, height: 844 });
+await second.goto(url);
+await second.waitForSelector('html[data-ready]');
+await page.locator('.label').nth(2).focus();
+await changed(() => page.keyboard.press('Delete'));
+await second.waitForFunction(() => document.querySelectorAll('#stations tbody tr').length === 2);
+assert.deepEqual(second.troubles, []);
+await second.close();
+
+await changed(() => page.locator('#exact').click());
+await page.waitForFunction(() => document.querySelector('#figures dd small').textContent.includes('every ray'));
+await checkNumbers(['--exact']);
+await page.locator('#save').click();
+await page.waitForFunction(() => document.getElementById('status').textContent === 'Saved', null, { timeout: 120000 });
+for (const file of ['stations.csv', 'report.html', 'report.pdf']) assert.ok(fs.existsSync(at(`edited/${file}`)), file);
+const heads = await rows();
+assert.deepEqual(page.troubles, []);
+assert.deepEqual(page.requests.filter((request) => !request.startsWith(url)), [], 'requests go nowhere else');
+
+// Gone without a word, it is where it was.
+editor.kill('SIGKILL');
+await page.waitForFunction(() => document.getElementById('status').textContent.includes('does not answer'));
+await page.close();
+({ editor, url } = await start());
+const again = await watchedPage(browser, { width: 820, height: 1180 });
+await again.goto(url);
+await again.waitForSelector('html[data-ready]');
+const texts = (await again.locator('#stations tbody tr').allInnerTexts()).map((row) => row.split('\t').map((cell) => cell.trim()));
+assert.deepEqual(texts.map((row) => row.slice(0, 5)), heads.map((row) => row.slice(0, 5)));
+assert.equal(await again.locator('.label.locked').count(), 1);
+if (process.env.VANTAGE_SCREENSHOTS) await again.screenshot({ path: `${process.env.VANTAGE_SCREENSHOTS}/edit.png` });
+assert.deepEqual(again.troubles, []);
+await stop(editor);  // with the tab still open
+await browser.close();

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "edit/session.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+
+#include "support/quad_scene.hpp"
+#include "vantage/error.hpp"
+#include "vantage/planner.hpp"
+
+namespace vantage {
+namespace {
+
+using nlohmann::json;
+using State = nlohmann::ordered_json;
+
+// A wall that is surveyed, and more of it that counts three times, on a floor to stand on; a scanner with noise.
+Scene weighed_site() {
+  test::QuadScene quads = test::wall_and_floor({1000, 2000, 50});
+  quads.quad({-5, -3, -1.5f}, {0, 6, 0}, {0, 0, 4});
+  quads.data().meshes.back().weight = 3;
+  return quads.scene();
+}
+
+Scanner noisy_scanner() {
+  Scanner scanner = load_scanner("rtc360");
+  scanner.azimuth_step = scanner.zenith_step = Angle::degrees(0.5);
+  scanner.height_m = 1.5;
+  return scanner;
+}
+
+struct Bench {
+  Scene scene = weighed_site();
+  SearchArea area = SearchArea::build(scene);
+  ClashChecker clash{scene};
+  Simulator simulator{scene, noisy_scanner(), {.engine = Engine::embree, .user_size_m = 0.2, .point_spacing_m = 0.1}};
+  EditOptions options{.voxels = 300, .cells = 200, .improve_seconds = 0.5};
+  std::size_t kept = 0;
+  std::vector<EditStation> last_kept;
+  std::vector<PlacedStation> saved;
+  std::uint64_t saved_voxels = 0;
+  EditSession session{simulator,
+                      area,
+                      clash,
+                      {},
+                      options,
+                      [this](const std::vector<EditStation>& stations) { ++kept, last_kept = stations; },
+                      [this](const std::vector<PlacedStation>& stations, const NetworkCounts& counts, const VoxelField&,
+                             const Progress&) { saved = stations, saved_voxels = counts.voxels; }};
+
+  State add(double x, double y) {
+    session.change({{"do", "add"}, {"to", {1000 + x, 2000 + y, 50 - 1.5}}});
+    return session.state();
+  }
+  void move(int id, double x, double y) {
+    session.change({{"do", "move"}, {"id", id}, {"to", {1000 + x, 2000 + y, 50 - 1.5}}});
+  }
+  Network network() const {
+    Network stations;
+    const State state = session.state();
+    for (const auto& s : state["network"]["stations"])
+      stations.push_back({.position = {s["head"][0], s["head"][1], s["head"][2]}, .active = s["active"]});
+    return stations;
+  }
+  State finished() const {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(2);
+    State state = session.state();
+    while (!state["busy"].is_null() && std::chrono::steady_clock::now() < end) state = session.state();
+    return state;
+  }
+};
+
+// What `vantage evaluate --sample` and `--exact` say of the same stations, to the last bit.
+TEST(EditSession, ShowsTheNumbersOfTheProgram) {
+  Bench bench;
+  bench.add(2, -1);
+  bench.add(-2, 1);
+  bench.add(0, 3);
+  for (const auto& [id, x, y] : {std::tuple{2, -3.0, 2.0}, {1, 3.0, -2.5}, {3, 1.0, 0.5}, {2, -2.5, -2.0}}) {
+    bench.move(id, x, y);
+    const State state = bench.session.state();
+    const Network network = bench.network();
+    const NetworkCounts counts =
+        bench.simulator.evaluate_sampled({&network, 1}, {.voxels = bench.options.voxels}).front();
+    const std::uint64_t voxels = bench.simulator.voxel_count();
+    ASSERT_GT(voxels, bench.options.voxels);
+    const Estimate covered = coverage_estimate(counts, bench.simulator.goal_density(), voxels);
+    const Estimate overlap = overlap_estimate(counts, voxels);
+    EXPECT_GT(covered.value, 0);
+    EXPECT_EQ(state["network"]["values"]["coverage"]["value"], covered.value);
+    EXPECT_EQ(state["network"]["values"]["coverage"]["error"], covered.standard_error);
+    EXPECT_EQ(state["network"]["values"]["overlap"]["value"], overlap.value);
+    EXPECT_EQ(state["network"]["values"]["overlap"]["error"], overlap.standard_error);
+    const OverlapMatrix matrix = overlap_matrix(counts);
+    for (const auto& link : state["network"]["links"]) EXPECT_EQ(link["value"], matrix(link["a"], link["b"]));
+  }
+  bench.session.change({{"do", "exact"}});
+  const State state = bench.finished();
+  EXPECT_TRUE(state["exact"]);
+  const Network network = bench.network();
+  EXPECT_EQ(state["network"]["values"]["coverage"]["value"],
+            coverage(bench.simulator.evaluate(network), bench.simulator.goal_density()));
+  EXPECT_EQ(state["network"]["values"]["coverage"]["error"], 0);
+}
+
+TEST(EditSession, GoesBackAndForth) {
+  Bench bench;
+  bench.add(2, -1);
+  const State one = bench.session.state()["network"];
+  bench.add(-2, 1);
+  bench.move(1, 3, -2);
+  const State moved = bench.session.state()["network"];
+  // A drag is one step, however many places it goes through.
+  for (const double x : {2.5, 2.0, 1.5})
+    bench.session.change(
+        {{"do", "move"}, {"id", 1}, {"to", {1000 + x, 2000.0, 48.5}}, {"begin", x == 2.5}, {"end", x == 1.5}});
+  EXPECT_NE(bench.session.state()["network"], moved);
+  bench.session.change({{"do", "undo"}});
+  EXPECT_EQ(bench.session.state()["network"], moved);
+  bench.session.change({{"do", "undo"}});
+  bench.session.change({{"do", "undo"}});
+  EXPECT_EQ(bench.session.state()["network"], one);
+  for (int k = 0; k < 2; ++k) bench.session.change({{"do", "redo"}});
+  EXPECT_EQ(bench.session.state()["network"], moved);
+  bench.session.change({{"do", "remove"}, {"id", 2}});
+  EXPECT_EQ(bench.session.state()["ids"], State({1}));
+  EXPECT_FALSE(bench.session.state()["redo"]);
+  EXPECT_EQ(bench.last_kept.size(), 1u);
+}
+
+TEST(EditSession, RefusesWhatCannotBe) {
+  Bench bench;
+  bench.add(2, -1);
+  bench.session.change({{"do", "lock"}, {"id", 1}, {"locked", true}});
+  const auto before = bench.session.state();
+  const json far{9000, 9000, 0};
+  for (const json& request : {
+           json{{"do", "move"}, {"id", 1}, {"to", {1001, 2001, 48.5}}},  // locked
+           json{{"do", "remove"}, {"id", 1}},
+           json{{"do", "add"}, {"to", far}},  // no ground
+           json{{"do", "add"}, {"to", {1, 2}}},
+           json{{"do", "add"}, {"to", {1, "2", 3}}},
+           json{{"do", "add"}},
+           json{{"do", "move"}, {"id", 7}, {"to", {1001, 2001, 48.5}}},
+           json{{"do", "move"}, {"id", "1"}, {"to", {1001, 2001, 48.5}}},
+           json{{"do", "redo"}},
+           json{{"do", "fly"}},
+           json{{"do", 3}},
+           json::array(),
+           json(),
+       }) {
+    EXPECT_THROW(bench.session.change(request), Error) << request;
+    EXPECT_EQ(bench.session.state()["network"], before["network"]) << request;
+  }
+}
+
+TEST(EditSession, ImprovesTheOthersAndKeepsLockedOnes) {
+  Bench bench;
+  // One far off the wall that counts, one locked.
+  bench.add(9, 9);
+  bench.add(2, -1);
+  bench.session.change({{"do", "lock"}, {"id", 2}, {"locked", true}});
+  const State before = bench.session.state();
+  bench.session.change({{"do", "improve"}});
+  EXPECT_THROW(bench.add(0, 0), Error);  // busy
+  const State after = bench.finished();
+  EXPECT_EQ(after["message"], "improved");
+  EXPECT_EQ(after["ids"], before["ids"]);
+  EXPECT_EQ(after["network"]["stations"][1]["head"], before["network"]["stations"][1]["head"]);
+  EXPECT_NE(after["network"]["stations"][0]["head"], before["network"]["stations"][0]["head"]);
+  EXPECT_GT(after["network"]["captured"], before["network"]["captured"]);
+  EXPECT_LE(after["network"]["parts"], before["network"]["parts"]);
+  bench.session.change({{"do", "undo"}});
+  EXPECT_EQ(bench.session.state()["network"], before["network"]);
+}
+
+TEST(EditSession, SavesWhatEveryRaySays) {
+  Bench bench;
+  bench.add(2, -1);
+  bench.add(-2, 1);
+  bench.session.change({{"do", "save"}});
+  EXPECT_EQ(bench.finished()["message"], "saved");
+  EXPECT_EQ(bench.saved.size(), 2u);
+  EXPECT_EQ(bench.saved_voxels, bench.simulator.voxel_count());
+}
+
+TEST(EditSession, BeginsWithNothing) {
+  Bench bench;
+  const State state = bench.session.state();
+  EXPECT_EQ(state["network"]["stations"].size(), 0u);
+  EXPECT_EQ(state["network"]["captured"], 0);
+  bench.session.change({{"do", "exact"}});
+  EXPECT_EQ(bench.finished()["message"], "there is no station to trace");
+}
+
+}  // namespace
+}  // namespace vantage
