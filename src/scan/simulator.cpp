@@ -94,26 +94,34 @@ void check_registration(const std::optional<RegistrationModel>& registration, bo
 }  // namespace
 
 struct Simulator::Impl {
-  Impl(const Scene& s, const Scanner& sc, const SimulatorConfig& c) : scene(s), scanner(sc), config(c) {
-    scanner.check();
+  Impl(const Scene& s, std::span<const Scanner> all, const SimulatorConfig& c)
+      : scene(s), scanners(all.begin(), all.end()), config(c) {
+    if (scanners.empty()) throw Error(Errc::invalid_argument, "no scanner given; a simulator has one at least");
+    for (const Scanner& scanner : scanners) scanner.check();
     grid = build_grid(data(), config);
     goal = grid->voxel_size() * grid->voxel_size() / (config.point_spacing_m * config.point_spacing_m);
-    pattern = std::make_shared<RayPattern>(make_pattern(scanner));
-    noise = config.noise ? make_noise_model(scanner, config.seed) : NoiseModel{.sigma = {}, .seed = config.seed};
-    const LimitModel limits = make_limit_model(data(), scanner, config);
-    limited = limits.enabled();
+    for (const Scanner& scanner : scanners) traced.push_back(trace_scanner(scanner));
     // Shares the scene's storage for as long as the engine wants it.
     const auto kept = std::make_shared<const Scene>(scene);
     tracer = make_tracer(config.engine, config.device_index,
                          {.scene = {kept, &kept->data()},
                           .grid = grid,
-                          .pattern = pattern,
-                          .noise = std::make_shared<const NoiseModel>(noise),
+                          .scanners = traced,
                           .max_rays_per_dispatch = config.max_rays_per_dispatch,
-                          .validation = config.validation,
-                          .limits = std::make_shared<const LimitModel>(limits)});
+                          .validation = config.validation});
     tracer->set_goal_density(goal);
   }
+
+  TraceScanner trace_scanner(const Scanner& scanner) const {
+    const auto noise =
+        config.noise ? make_noise_model(scanner, config.seed) : NoiseModel{.sigma = {}, .seed = config.seed};
+    return {.pattern = std::make_shared<const RayPattern>(make_pattern(scanner)),
+            .noise = std::make_shared<const NoiseModel>(noise),
+            .limits = std::make_shared<const LimitModel>(make_limit_model(data(), scanner, config))};
+  }
+
+  // Whether points have limits, they have them with every scanner.
+  bool limited() const { return traced.front().limits->enabled(); }
 
   const SceneData& data() const { return scene.data(); }
 
@@ -125,8 +133,18 @@ struct Simulator::Impl {
            << station.position.z << "); a position must be finite";
       throw Error(Errc::invalid_argument, what.str());
     }
+    const StationSetup& setup = station.setup;
+    if (!(std::isfinite(setup.heading.in_radians()) && std::isfinite(setup.tilt.in_radians())))
+      throw Error(Errc::invalid_argument,
+                  "station " + std::to_string(place + 1) + " has a heading or a tilt that is not finite");
+    if (setup.scanner >= scanners.size())
+      throw Error(Errc::invalid_argument, "station " + std::to_string(place + 1) + " has scanner number " +
+                                              std::to_string(setup.scanner) + ", counted from 0, and there are " +
+                                              std::to_string(scanners.size()));
     return {{static_cast<float>(local.x), static_cast<float>(local.y), static_cast<float>(local.z)},
-            static_cast<std::uint32_t>(place)};
+            static_cast<std::uint32_t>(place),
+            setup.scanner,
+            make_turn(setup)};
   }
 
   std::vector<TraceStation> active_stations(const Network& network) const {
@@ -165,34 +183,42 @@ struct Simulator::Impl {
       throw Error(Errc::invalid_argument, what.str());
     }
     if (patches.patches.size() != ranks.size() || patches.model != model) {
-      patches = make_patches(data(), *grid, ranks, *pattern, model);
-      range_noise = make_noise_model(scanner, config.seed);
+      patches = make_patches(data(), *grid, ranks, *traced.front().pattern, model);
+      patch_scanners.clear();
+      const RayPattern& first = *traced.front().pattern;
+      for (std::size_t k = 0; k < scanners.size(); ++k) {
+        const RayPattern& own = *traced[k].pattern;
+        patch_scanners.push_back(
+            {std::make_shared<const NoiseModel>(make_noise_model(scanners[k], config.seed)),
+             static_cast<float>(first.zenith_step * first.azimuth_step / (own.zenith_step * own.azimuth_step))});
+      }
     }
     return patches;
   }
 
   Scene scene;
-  Scanner scanner;
+  std::vector<Scanner> scanners;
   SimulatorConfig config;
   std::shared_ptr<const VoxelGrid> grid;
   double goal = 0;
-  std::shared_ptr<const RayPattern> pattern;
-  NoiseModel noise;
-  bool limited = false;
+  std::vector<TraceScanner> traced;  // of the scanners
   std::vector<std::uint32_t> sampled;
   Patches patches;
-  NoiseModel range_noise;
+  std::vector<PatchScanner> patch_scanners;
   std::unique_ptr<Tracer> tracer;
 };
 
 Simulator::Simulator(const Scene& scene, const Scanner& scanner, const SimulatorConfig& config)
-    : impl_(std::make_unique<Impl>(scene, scanner, config)) {}
+    : impl_(std::make_unique<Impl>(scene, std::span(&scanner, 1), config)) {}
+Simulator::Simulator(const Scene& scene, std::span<const Scanner> scanners, const SimulatorConfig& config)
+    : impl_(std::make_unique<Impl>(scene, scanners, config)) {}
 Simulator::Simulator(Simulator&&) noexcept = default;
 Simulator& Simulator::operator=(Simulator&&) noexcept = default;
 Simulator::~Simulator() = default;
 
 const EngineInfo& Simulator::engine() const noexcept { return impl_->tracer->info(); }
-const Scanner& Simulator::scanner() const noexcept { return impl_->scanner; }
+const Scanner& Simulator::scanner() const noexcept { return impl_->scanners.front(); }
+std::span<const Scanner> Simulator::scanners() const noexcept { return impl_->scanners; }
 const Scene& Simulator::scene() const noexcept { return impl_->scene; }
 const SimulatorConfig& Simulator::config() const noexcept { return impl_->config; }
 Vec3 Simulator::origin() const noexcept { return impl_->data().origin; }
@@ -234,8 +260,10 @@ ScanSummary Simulator::scan(const Station& station, const ScanOptions& options,
   ScanSummary summary;
   if (!station.active) return summary;
   const TraceStation from = impl_->trace_station(station, options.place);
-  const std::uint64_t columns = impl_->pattern->columns(), rays = columns * impl_->pattern->rows();
-  const std::uint64_t rows_at_once = std::max<std::uint64_t>(1, impl_->tracer->preferred_scan_rays() / columns);
+  const Scanner& scanner = impl_->scanners[from.scanner];
+  const std::uint64_t columns = scanner.columns(), rays = scanner.rays();
+  const std::uint64_t rows_at_once =
+      std::max<std::uint64_t>(1, impl_->tracer->preferred_scan_rays(from.scanner) / columns);
   Tracer::RawChunk raw;
   ScanChunk chunk;
   for (std::uint64_t first = 0; first < rays; first += chunk.ray_count) {
@@ -248,7 +276,7 @@ ScanSummary Simulator::scan(const Station& station, const ScanOptions& options,
     const auto start = std::chrono::steady_clock::now();
     impl_->tracer->scan(from, first, chunk.ray_count, raw_outputs(options), raw);
     summary.trace_seconds += seconds_since(start);
-    fill_chunk(chunk, raw, options, impl_->data(), impl_->scanner, summary);
+    fill_chunk(chunk, raw, options, impl_->data(), scanner, station.setup, summary);
     if (sink) sink(chunk);
     progress(static_cast<double>(first + chunk.ray_count) / static_cast<double>(rays));
   }
@@ -266,7 +294,7 @@ NetworkCounts Simulator::evaluate(const Network& network, const EvaluateOptions&
     NetworkCounts counts = nothing_seen(voxel_count(), impl_->grid->total_weight(), network.size(), options.overlap,
                                         options.registration.has_value());
     counts.points_on_surveyed.assign(network.size(), 0);
-    if (impl_->limited) counts.dropped.assign(network.size(), {});
+    if (impl_->limited()) counts.dropped.assign(network.size(), {});
     if (!options.skip) counts.points.assign(network.size(), 0);
     return counts;
   }
@@ -279,7 +307,7 @@ NetworkCounts Simulator::evaluate(const Network& network, const EvaluateOptions&
     std::vector<std::uint32_t> ranks(voxel_count());
     std::iota(ranks.begin(), ranks.end(), 0u);
     const Patches& patches = impl_->patches_of(ranks, *options.registration);
-    counts.registration = sum_patches(patches, impl_->range_noise, active, size, field->stations, 0).front();
+    counts.registration = sum_patches(patches, impl_->patch_scanners, active, size, field->stations, 0).front();
   }
   return counts;
 }
@@ -321,7 +349,7 @@ std::vector<NetworkCounts> Simulator::evaluate_sampled(std::span<const Network> 
     const std::uint32_t groups = options.registration_groups ? sample_groups : 0;
     sum = [&, groups](std::size_t first, std::span<const std::uint64_t> masks) {
       tbb::parallel_for(std::size_t{0}, masks.size() / sample.size(), [&, first, masks](std::size_t k) {
-        registration[first + k] = sum_patches(patches, impl_->range_noise, traced[first + k], sizes[first + k],
+        registration[first + k] = sum_patches(patches, impl_->patch_scanners, traced[first + k], sizes[first + k],
                                               masks.subspan(k * sample.size(), sample.size()), groups);
       });
     };

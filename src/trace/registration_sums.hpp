@@ -20,7 +20,7 @@ namespace vantage {
 // One voxel's plane as the sums need it.
 struct Patch {
   Float3 point, normal;  // local frame; unit length
-  float rays = 0;        // area / (Δh·Δv): rays of a free view, but for distance and obliquity
+  float rays = 0;        // area / (Δh·Δv) of the first scanner: rays of a free view, but for distance and obliquity
   float least = 0;       // so many of them, or the station has too few points to tell a plane from
   float variance = 0;    // m² of the modelling error, ρ²L²/A; 0: no plane to hold anything together by
   float diffuse = 0;
@@ -55,10 +55,16 @@ Patches make_patches(std::span<const VoxelSurface> surfaces, const PatchFrame& f
 Patches make_patches(const SceneData& scene, const VoxelGrid& grid, std::span<const std::uint32_t> ranks,
                      const RayPattern& pattern, const RegistrationModel& model);
 
+// A scanner as the sums need it.
+struct PatchScanner {
+  std::shared_ptr<const NoiseModel> noise = {};  // null or disabled: ranges are exact
+  float density = 1;                             // of its rays, to those of the scanner that the patches were made for
+};
+
 // Sums over all patches, then those of each of `groups` interleaved groups. masks: of the stations that saw each
-// patch's voxel, by place. `noise`: disabled where ranges are exact. Exact, so it depends on neither order nor threads.
-// REQUIRES: masks.size() == patches.size(), and no bit that is not a station's.
-std::vector<RegistrationSums> sum_patches(const Patches& patches, const NoiseModel& noise,
+// patch's voxel, by place. `scanners`: one for each that a station names. Exact, so it depends on neither order nor
+// threads. REQUIRES: masks.size() == patches.size(), and no bit that is not a station's.
+std::vector<RegistrationSums> sum_patches(const Patches& patches, std::span<const PatchScanner> scanners,
                                           std::span<const TraceStation> stations, std::uint32_t station_count,
                                           std::span<const std::uint64_t> masks, std::uint32_t groups);
 
