@@ -14,6 +14,7 @@ readonly packages=(
   libvulkan-dev libvulkan-volk-dev libvulkan1 glslang-tools spirv-tools spirv-headers
   libembree-dev libtbb-dev libeigen3-dev libglm-dev libtinygltf-dev nlohmann-json3-dev
   libstb-dev libcli11-dev libspdlog-dev libcairo2-dev coinor-libclp-dev coinor-libcbc-dev libproj-dev
+  libjs-three libmeshoptimizer-dev zlib1g-dev
 )
 readonly test_packages=(libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev vulkan-validationlayers clang-format proj-bin)
 
@@ -42,6 +43,7 @@ if [ "$mode" != program ]; then
   # Whoever has them from elsewhere keeps those.
   command -v node >/dev/null || wanted+=(nodejs)
   command -v npm >/dev/null || wanted+=(npm)
+  command -v chromium >/dev/null || wanted+=(chromium)
 fi
 missing=()
 for package in "${wanted[@]}"; do installed "$package" || missing+=("$package"); done

@@ -18,6 +18,18 @@ find_program(VANTAGE_GLSLANG NAMES glslangValidator glslang REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(cairo REQUIRED IMPORTED_TARGET cairo)
 pkg_check_modules(cbc REQUIRED IMPORTED_TARGET cbc clp) # linear programs, and their integer solutions
+# The report is a page with three.js in it. It is left out where one of these is missing.
+find_file(VANTAGE_THREE_JS three.min.js PATHS /usr/share/javascript/three /usr/local/share/javascript/three)
+find_file(VANTAGE_ORBIT_JS OrbitControls.js PATHS /usr/share/javascript/three/examples/js/controls
+                                                  /usr/local/share/javascript/three/examples/js/controls)
+find_package(meshoptimizer QUIET)
+find_package(ZLIB QUIET)
+set(VANTAGE_HAVE_REPORT FALSE)
+if(VANTAGE_THREE_JS AND VANTAGE_ORBIT_JS AND meshoptimizer_FOUND AND ZLIB_FOUND)
+  set(VANTAGE_HAVE_REPORT TRUE)
+elseif(VANTAGE_BUILD_CLI)
+  message(STATUS "No report: libjs-three, libmeshoptimizer-dev or zlib1g-dev is not installed")
+endif()
 # Longitude and latitude of stations; without it those formats are refused.
 option(VANTAGE_WITH_PROJ "Use PROJ where it is installed" ON)
 set(VANTAGE_HAVE_PROJ FALSE)

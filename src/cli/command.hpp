@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <functional>
 #include <stop_token>
+#include <string>
 
 #include "cli/console.hpp"
 
@@ -17,6 +18,7 @@ enum ExitCode : int { exit_ok = 0, exit_failed = 1, exit_usage = 2, exit_unmet =
 struct Program {
   Console& console;
   std::stop_token stop, abort;
+  std::string command = {};            // as it was typed
   std::function<int()> selected = {};  // set by the command that the user named
 };
 

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <spdlog/spdlog.h>
 
+#include <cmath>
+#include <filesystem>
+
 #include "cli/command.hpp"
 #include "cli/dropped_points.hpp"
 #include "cli/missed.hpp"
 #include "cli/options.hpp"
 #include "cli/registration.hpp"
+#include "cli/report.hpp"
 #include "cli/run_report.hpp"
 #include "cli/site.hpp"
 #include "cli/stations.hpp"
@@ -21,7 +25,7 @@ struct EvaluateCommandOptions {
   std::optional<SampleSize> sample;
   std::optional<double> error, link_overlap;
   std::optional<std::string> cartography, matrix, picture;
-  std::vector<std::string> station_files;
+  std::vector<std::string> station_files, reports;
   MissedFiles missed;
   bool json = false;
 
@@ -58,6 +62,9 @@ struct EvaluateCommandOptions {
     add_texts(command, "--write-stations", "FILE",
               "Write the stations for the crew: .dxf, and where --crs is given .geojson or .kml; may be repeated",
               station_files)
+        ->group("Results");
+    add_texts(command, "--report", "FILE",
+              "Write all of it as a page for a browser, .html, or on paper, .pdf; may be repeated", reports)
         ->group("Results");
     add_number(
         command, "--link-overlap", "W",
@@ -135,6 +142,9 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
   }
   if (options.cartography && sampled)
     throw Error(Errc::invalid_argument, "--cartography: shows every voxel, and so needs --exact");
+  for (const std::string& file : options.reports) must_end(file, "--report", ".html", ".pdf");
+  if (!options.reports.empty() && !why_no_report().empty())
+    throw Error(Errc::invalid_argument, "--report: " + why_no_report());
   options.missed.check();
   if (!options.missed.files.empty() && sampled)
     throw Error(Errc::invalid_argument, "--missed: looks at every voxel, and so needs --exact");
@@ -151,14 +161,14 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
   ProgressLine line(program.console, "evaluate");
   const Progress progress{.report = [&](double done) { line.update(done); }, .stop = program.stop};
   VoxelField field;
-  const NetworkCounts counts =
-      sampled ? evaluate_sample(simulator, network, options, progress)
-              : simulator.evaluate(network,
-                                   {.overlap = overlap,
-                                    .skip = options.skip,
-                                    .field = options.cartography || !options.missed.files.empty() ? &field : nullptr,
-                                    .registration = options.model()},
-                                   progress);
+  const bool with_field = options.cartography || !options.missed.files.empty() || !options.reports.empty();
+  const NetworkCounts counts = sampled ? evaluate_sample(simulator, network, options, progress)
+                                       : simulator.evaluate(network,
+                                                            {.overlap = overlap,
+                                                             .skip = options.skip,
+                                                             .field = with_field ? &field : nullptr,
+                                                             .registration = options.model()},
+                                                            progress);
   if (counts.cancelled) {
     spdlog::error("stopped before the end; nothing was written");
     return exit_failed;
@@ -169,11 +179,14 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
   const OverlapMatrix matrix = overlap ? overlap_matrix(counts) : OverlapMatrix{};
 
   if (options.cartography) write_coverage_ply(*options.cartography, simulator, field);
-  if (!options.missed.files.empty()) {
-    if (!write_missed(std::vector<std::filesystem::path>(options.missed.files.begin(), options.missed.files.end()),
-                      site, simulator, field, placed, program))
-      return exit_failed;
+  std::optional<JudgedVoxels> judged;
+  if (!options.missed.files.empty() || (!options.reports.empty() && !sampled)) {
+    judged = judge_missed(site, simulator, field, program);
+    if (!judged && program.abort.stop_requested()) return exit_failed;
   }
+  if (judged)
+    write_missed(std::vector<std::filesystem::path>(options.missed.files.begin(), options.missed.files.end()), *judged,
+                 simulator, placed);
   if (options.matrix) write_overlap_csv(*options.matrix, matrix);
   const RegistrationOptions registration = options.registration.settle();
   Estimate registered;
@@ -209,6 +222,27 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
     summary.links = summary_links(matrix, link_overlap, used);
   }
   summary.faults = station_faults(placed, names);
+  if (!options.reports.empty()) {
+    PlanEntry entry;
+    entry.stations = placed;
+    entry.confirmed = !sampled;
+    entry.exact_overlap_matrix = matrix;
+    const auto known = [&](const Estimate& e) {
+      return MeasuredValue{.searched = e.value, .standard_error = e.standard_error, .exact = sampled ? NAN : e.value};
+    };
+    entry.values["coverage"] = known(covered);
+    if (overlap) entry.values["overlap"] = known(overlapped);
+    if (!sampled) entry.points_on_surveyed = counts.points_on_surveyed;
+    Report report{.title = std::filesystem::path(options.site.scene).stem().string(),
+                  .question = fmt::format("{} station{}, as given", placed.size(), placed.size() == 1 ? "" : "s"),
+                  .command = program.command,
+                  .parameters = run_parameters_json(simulator)};
+    report.measures = {make_objective("coverage")};
+    if (overlap) report.measures.push_back(make_objective("overlap"));
+    report.networks.push_back({.entry = std::move(entry), .names = names, .summary = summary, .links = matrix});
+    write_reports(std::vector<std::filesystem::path>(options.reports.begin(), options.reports.end()), std::move(report),
+                  {site, simulator, sampled ? nullptr : &field, judged ? &*judged : nullptr}, program, program.abort);
+  }
   if (options.json) {
     nlohmann::json json{{"summary", lines_json(summary)},
                         {"coverage", covered.value},

@@ -14,10 +14,28 @@
 namespace vantage::cli {
 namespace {
 
+// As a shell takes it back.
+std::string typed(int argc, char** argv) {
+  std::string text = "vantage";
+  for (int k = 1; k < argc; ++k) {
+    const std::string word = argv[k];
+    constexpr const char* kPlain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_=+,./:%@^";
+    if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) {
+      text += " " + word;
+      continue;
+    }
+    text += " '";
+    for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    text += "'";
+  }
+  return text;
+}
+
 int run(int argc, char** argv) {
   Interrupts interrupts;
   Console console;
-  Program program{.console = console, .stop = interrupts.stop(), .abort = interrupts.abort()};
+  Program program{
+      .console = console, .stop = interrupts.stop(), .abort = interrupts.abort(), .command = typed(argc, argv)};
   CLI::App app{"vantage plans terrestrial LiDAR surveys: where should the scanner stand?", "vantage"};
   app.set_version_flag("--version", std::string("vantage ") + version());
   app.require_subcommand(0, 1);

@@ -33,37 +33,39 @@ void MissedFiles::check() const {
       throw Error(Errc::invalid_argument, "--missed: " + file + " is none of .csv, .ply, .png and .svg");
 }
 
-bool write_missed(std::span<const std::filesystem::path> files, LoadedSite& site, const Simulator& simulator,
-                  const VoxelField& field, std::span<const PlacedStation> stations, Program& program) {
-  if (files.empty() || simulator.voxel_count() == 0) return true;
+std::optional<JudgedVoxels> judge_missed(LoadedSite& site, const Simulator& simulator, const VoxelField& field,
+                                         Program& program) {
+  if (simulator.voxel_count() == 0) return std::nullopt;
   const MissedOptions options;
   const std::vector<PlacedStation> candidates =
       candidate_positions(site.area(), site.clash(), site.scanner, options.candidates);
-  const std::vector<std::uint32_t> ranks = simulator.sampled_voxels(std::min(most_voxels, simulator.voxel_count()));
-  std::vector<std::uint32_t> points;
-  for (const std::uint32_t rank : ranks) points.push_back(field.count[rank]);
+  JudgedVoxels judged{.ranks = simulator.sampled_voxels(std::min(most_voxels, simulator.voxel_count()))};
+  for (const std::uint32_t rank : judged.ranks) judged.points.push_back(field.count[rank]);
   ProgressLine line(program.console, "why missed");
-  const std::vector<WhyMissed> why =
-      why_missed(simulator, site.clash(), candidates, ranks, points, options,
-                 {.report = [&](double done) { line.update(done); }, .stop = program.abort});
-  if (why.empty()) return false;
-  const std::vector<MissedShare> shares = missed_by_node(simulator, ranks, why);
-  const MissedShare& all = shares.front();
+  judged.why = why_missed(simulator, site.clash(), candidates, judged.ranks, judged.points, options,
+                          {.report = [&](double done) { line.update(done); }, .stop = program.abort});
+  if (judged.why.empty()) return std::nullopt;
+  judged.shares = missed_by_node(simulator, judged.ranks, judged.why);
+  const MissedShare& all = judged.shares.front();
   spdlog::info(
       "of the surveyed voxels {:.1f} % are captured, {:.1f} % could be by other stations; {:.1f} % are hidden from "
       "{} positions all over the ground, {:.1f} % out of range, {:.1f} % seen too flatly, {:.1f} % too sparsely",
       100 * all.share(WhyMissed::captured), 100 * all.share(WhyMissed::not_chosen), 100 * all.share(WhyMissed::hidden),
       candidates.size(), 100 * all.share(WhyMissed::far), 100 * all.share(WhyMissed::flat),
       100 * all.share(WhyMissed::sparse));
+  return judged;
+}
+
+void write_missed(std::span<const std::filesystem::path> files, const JudgedVoxels& judged, const Simulator& simulator,
+                  std::span<const PlacedStation> stations) {
   for (const std::filesystem::path& file : files) {
     if (file.extension() == ".csv")
-      write_missed_csv(file, shares);
+      write_missed_csv(file, judged.shares);
     else if (file.extension() == ".ply")
-      write_missed_ply(file, simulator, ranks, why, points);
+      write_missed_ply(file, simulator, judged.ranks, judged.why, judged.points);
     else
-      draw_missed(file, simulator, ranks, why, stations, "Why surfaces are not captured");
+      draw_missed(file, simulator, judged.ranks, judged.why, stations, "Why surfaces are not captured");
   }
-  return true;
 }
 
 }  // namespace vantage::cli

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,9 +24,18 @@ struct MissedFiles {
   void check() const;
 };
 
-// Judges the voxels of a field, on large sites a sample of them, and writes each file by its extension: .csv a table by
-// node, .ply a cloud, .png or .svg a picture from above. False where it was stopped, and nothing was written.
-bool write_missed(std::span<const std::filesystem::path> files, LoadedSite& site, const Simulator& simulator,
-                  const VoxelField& field, std::span<const PlacedStation> stations, Program& program);
+// What became of each of these voxels of a field, and of each node's.
+struct JudgedVoxels {
+  std::vector<std::uint32_t> ranks = {}, points = {};
+  std::vector<WhyMissed> why = {};
+  std::vector<MissedShare> shares = {};
+};
+// Of a large site a sample of them. Empty where it was stopped, or nothing is surveyed.
+std::optional<JudgedVoxels> judge_missed(LoadedSite& site, const Simulator& simulator, const VoxelField& field,
+                                         Program& program);
+
+// Writes each file by its extension: .csv a table by node, .ply a cloud, .png or .svg a picture from above.
+void write_missed(std::span<const std::filesystem::path> files, const JudgedVoxels& judged, const Simulator& simulator,
+                  std::span<const PlacedStation> stations);
 
 }  // namespace vantage::cli

@@ -11,6 +11,7 @@
 #include "cli/options.hpp"
 #include "cli/problem.hpp"
 #include "cli/prove.hpp"
+#include "cli/report.hpp"
 #include "cli/run_report.hpp"
 #include "cli/site.hpp"
 #include "cli/station_scanners.hpp"
@@ -29,7 +30,7 @@ struct PlanOptions {
   SiteOptions site;
   ProblemOptions problem;
   PlanConfig config;
-  bool exact = false, greedy = false, resume = false, force = false, prove = false, json = false;
+  bool exact = false, greedy = false, resume = false, force = false, prove = false, no_report = false, json = false;
   double max_seconds = 0;
   std::optional<SampleSize> sample;
   std::vector<StationText> start;
@@ -106,6 +107,7 @@ struct PlanOptions {
     command
         .add_flag("--prove", prove, "Bound what any network of as many stations captures: how near does the plan come?")
         ->group("Results");
+    command.add_flag("--no-report", no_report, "Leave out report.html and report.pdf")->group("Results");
     command.add_flag("--json", json, "Print one JSON object, the same as front.json");
   }
 
@@ -409,10 +411,16 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   if (!field) spdlog::warn("stopped: {} is not written", (folder / "coverage.ply").string());
   spdlog::info("writing {}", folder.string());
   const std::size_t chosen = write_plan(folder, result, simulator, area, field ? &*field : nullptr, crs);
-  if (field && !deadline.passed())
+  std::optional<JudgedVoxels> judged;
+  if (field && !deadline.passed()) judged = judge_missed(site, simulator, *field, program);
+  if (judged)
     write_missed(
-        std::vector<std::filesystem::path>{folder / "missed.csv", folder / "missed.ply", folder / "missed.png"}, site,
-        simulator, *field, result.front[chosen].stations, program);
+        std::vector<std::filesystem::path>{folder / "missed.csv", folder / "missed.ply", folder / "missed.png"},
+        *judged, simulator, result.front[chosen].stations);
+  if (!options.no_report)
+    write_reports(std::vector<std::filesystem::path>{folder / "report.html", folder / "report.pdf"}, result,
+                  std::filesystem::path(options.site.scene).stem().string(),
+                  {site, simulator, field ? &*field : nullptr, judged ? &*judged : nullptr}, program, deadline.abort());
   if (options.prove)
     prove(folder / "bound.json", site, simulator, result.front[chosen].stations, problem.kept.size(), program);
   if (options.json)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/canvas.hpp"
 
+#include <cairo-pdf.h>
 #include <cairo-svg.h>
 #include <cairo.h>
 
@@ -187,6 +188,16 @@ void Canvas::image(const Rect& r, std::span<const std::uint32_t> pixels, std::si
   cairo_restore(c);
 }
 
+void Canvas::page(const Rect& r, const Canvas& other) {
+  cairo_t* c = impl_->context.get();
+  clip(r);
+  cairo_translate(c, r.x, r.y);
+  cairo_scale(c, r.width / other.width(), r.height / other.height());
+  cairo_set_source_surface(c, other.impl_->recording.get(), 0, 0);
+  cairo_paint(c);
+  unclip();
+}
+
 void Canvas::clip(const Rect& r) {
   cairo_save(impl_->context.get());
   cairo_new_path(impl_->context.get());
@@ -195,6 +206,25 @@ void Canvas::clip(const Rect& r) {
 }
 
 void Canvas::unclip() { cairo_restore(impl_->context.get()); }
+
+void Canvas::save_pages(const std::filesystem::path& file, std::span<const std::unique_ptr<Canvas>> pages,
+                        const std::string& title) {
+  std::string bytes;
+  const Surface surface(cairo_pdf_surface_create_for_stream(append_bytes, &bytes, 1, 1));
+  cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_TITLE, title.c_str());
+  const Context context(cairo_create(surface.get()));
+  for (const auto& page : pages) {
+    require(cairo_status(page->impl_->context.get()), file);
+    cairo_pdf_surface_set_size(surface.get(), page->width(), page->height());
+    cairo_set_source_surface(context.get(), page->impl_->recording.get(), 0, 0);
+    cairo_paint(context.get());
+    cairo_show_page(context.get());
+  }
+  require(cairo_status(context.get()), file);
+  cairo_surface_finish(surface.get());
+  require(cairo_surface_status(surface.get()), file);
+  write_atomically(file, bytes);
+}
 
 void Canvas::save(const std::filesystem::path& file) const {
   require(cairo_status(impl_->context.get()), file);

@@ -64,12 +64,17 @@ class Canvas {
   double text_width(const std::string& text, const TextStyle& style = {}) const;
   // Rows of 0xAARRGGBB from the top, premultiplied, stretched over the rectangle.
   void image(const Rect& r, std::span<const std::uint32_t> pixels, std::size_t columns);
+  // Another page, shrunk or stretched to the rectangle.
+  void page(const Rect& r, const Canvas& other);
   // Everything until the matching unclip() is cut off outside.
   void clip(const Rect& r);
   void unclip();
 
   // .png (two device pixels a unit) or .svg by extension. Throws Error: io, invalid_argument.
   void save(const std::filesystem::path& file) const;
+  // A .pdf of these pages, a point a unit. Throws Error: io.
+  static void save_pages(const std::filesystem::path& file, std::span<const std::unique_ptr<Canvas>> pages,
+                         const std::string& title);
 
  private:
   struct Impl;

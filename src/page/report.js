@@ -1,0 +1,169 @@
+'use strict';
+// Puts the page together: one network is shown at a time, and everything follows it.
+
+(async () => {
+  const report = JSON.parse(document.getElementById('report').textContent);
+  const at = (id) => document.getElementById(id);
+  let network = null, current = -1, selected = null, view = null, mark = () => {}, only = null;
+
+  at('title').textContent = report.title;
+  at('question').textContent = report.question;
+  at('command').textContent = report.command;
+  at('footer').textContent = `Made by vantage ${report.version}. Heights and places are those of the site’s model.`;
+  parameterTable(at('parameters'), report.parameters);
+  if (report.missed.nodes.length) missedTable(at('missed'), at('missed-words'), report.missed);
+  else at('missed-section').hidden = true;
+
+  function pick(k) {
+    selected = k === selected ? null : k;
+    if (view) {
+      if (view.standing) stepBack();
+      view.select(selected);
+    }
+    at('stations').querySelectorAll('tbody tr').forEach((row, i) => row.classList.toggle('picked', i === selected));
+    card();
+  }
+  function card() {
+    // By cells: a station's own among all that are shown.
+    const share = only && selected !== null ? only.reduce((n, v) => n + (v === selected + 1), 0) / only.length : null;
+    stationCard(at('station'), network, selected, share, { pick, stand: view ? stand : null });
+  }
+  function stand(k) {
+    view.stand(k);
+    at('leave').hidden = false;
+    at('leave').focus();
+  }
+  function stepBack() {
+    view.leave();
+    at('leave').hidden = true;
+  }
+
+  async function show(k) {
+    current = k;
+    network = report.networks[k];
+    selected = null;
+    mark(k);
+    at('which').textContent = `Network ${k + 1} of ${report.networks.length}`;
+    at('to-answer').disabled = k === report.answer;
+    figures(at('figures'), network);
+    words(at('words'), network, k === report.answer && report.missed.nodes.length ? missedWords(report.missed) : '');
+    stationTable(at('stations'), network, pick);
+    linkTable(at('links'), at('links-words'), network);
+    valuesTable(at('values'), report, network);
+    only = null;
+    if (view) {
+      view.setNetwork(network.stations, network.links || []);
+      const kept = report.view.cells && report.view.cells.networks[k];
+      const [coverage, alone] = kept ? await Promise.all([unpack(kept.coverage), unpack(kept.only)]) : [null, null];
+      if (current !== k) return;  // another was picked meanwhile
+      view.setColours(coverage, alone);
+      only = alone;
+      legend(kept);
+    }
+    card();
+  }
+
+  function legend(kept) {
+    const mode = view.wanted, items = [];
+    const item = (style, text, kind = '') => items.push(element('span', {}, element('i', { class: kind, style }), text));
+    if (mode === 'coverage' && view.known) {
+      const nothing = element('span', {}, 'no points', element('i', { class: 'ramp', style: `background:linear-gradient(90deg,${VIEW_COLOURS.ramp.join()})` }), 'wanted density');
+      items.push(nothing);
+      if (report.view.cells.reasons) item('', 'no place to stand could help', 'hatch');
+    } else if (mode === 'why') {
+      report.missed.reasons.forEach((r, k) => item(`background:${VIEW_COLOURS.reasons[k]}`, r.words));
+    }
+    if (mode === 'coverage' && !view.known) items.push(element('span', {}, 'The colours of this network are not kept in this page.'));
+    if (mode !== 'plain') item(`background:${VIEW_COLOURS.blocking}`, 'not surveyed');
+    if (view.known && mode !== 'plain') item(`background:${VIEW_COLOURS.only}`, 'only the picked station sees');
+    item(`background:${VIEW_COLOURS.link}`, 'link', 'stroke');
+    item(`background:repeating-linear-gradient(90deg,${VIEW_COLOURS.bridge} 0 6px,transparent 6px 9px)`, 'bridge', 'stroke');
+    if (kept && kept.sample > 0 && mode === 'coverage') items.push(element('span', { class: 'muted' }, `colours from a sample of ${grouped(kept.sample)} voxels`));
+    at('legend').replaceChildren(...items);
+  }
+
+  const origin = report.view.origin[2], levels = report.view.levels;
+  function cutAt(local) {
+    const [low, high] = [view.low.z, view.high.z];
+    at('cut').value = Math.round((1000 * (local - low)) / (high - low));
+    at('cut-height').textContent = `${(local + origin).toFixed(2)} m`;
+    const level = levels[Number(at('level').value)];
+    view.setSlice(level ? level.low - origin : low - 1, local >= high ? high + 1 : local);
+  }
+  function levelChosen() {
+    const level = levels[Number(at('level').value)];
+    cutAt(level ? level.high - origin : view.high.z);
+    view.oblique();
+  }
+  function setUpTools() {
+    at('level-label').hidden = levels.length === 0;
+    levels.forEach((level, k) => at('level').append(element('option', { value: k },
+      levels.length > 1 ? `${k + 1}, floor at ${level.floor.toFixed(2)} m` : 'without ceiling')));
+    at('level').append(element('option', { value: -1 }, 'whole site'));
+    at('level').value = levels.length === 1 ? 0 : -1;
+    const first = report.networks[report.answer].stations.find((s) => s.ground);
+    if (levels.length > 1 && first) at('level').value = Math.max(0, levels.findLastIndex((l) => l.floor <= first.ground[2] + 0.6));
+    at('level').addEventListener('change', levelChosen);
+    at('cut').setAttribute('aria-label', 'Height of the cut');
+    at('cut').addEventListener('input', () => cutAt(view.low.z + (at('cut').value / 1000) * (view.high.z - view.low.z)));
+    at('oblique').addEventListener('click', () => { stepBack(); view.oblique(); });
+    at('above').addEventListener('click', () => { stepBack(); view.above(); });
+    at('leave').addEventListener('click', stepBack);
+    view.canvas.addEventListener('keydown', (event) => {
+      const step = { PageUp: 20, PageDown: -20 }[event.key];
+      if (!step) return;
+      event.preventDefault();
+      at('cut').value = Number(at('cut').value) + step;
+      at('cut').dispatchEvent(new Event('input'));
+    });
+    const modes = [...at('modes').querySelectorAll('button')].filter((button) => {
+      const possible = button.dataset.mode !== 'why' || (report.view.cells && report.view.cells.reasons);
+      button.hidden = !possible;
+      return possible;
+    });
+    const choose = (button) => {
+      modes.forEach((other) => { other.setAttribute('aria-checked', String(other === button)); other.tabIndex = other === button ? 0 : -1; });
+      view.setMode(button.dataset.mode);
+      legend(report.view.cells && report.view.cells.networks[current]);
+    };
+    modes.forEach((button, k) => {
+      button.addEventListener('click', () => choose(button));
+      button.addEventListener('keydown', (event) => {
+        const step = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 }[event.key];
+        if (!step) return;
+        event.preventDefault();
+        const next = modes[(k + step + modes.length) % modes.length];
+        next.focus();
+        choose(next);
+      });
+    });
+    modes.forEach((button, k) => { button.setAttribute('aria-checked', String(k === 0)); button.tabIndex = k === 0 ? 0 : -1; });
+    levelChosen();
+  }
+
+  if (report.axes.length) {
+    at('front').hidden = false;
+    mark = frontChart(at('chart'), report, show);
+    const step = (by) => show((current + by + report.networks.length) % report.networks.length);
+    at('previous').addEventListener('click', () => step(-1));
+    at('next').addEventListener('click', () => step(1));
+    at('to-answer').addEventListener('click', () => show(report.answer));
+  }
+  try {
+    view = new SiteView(at('canvas'), report.view, pick);
+    await view.load();
+    setUpTools();
+  } catch (error) {
+    if (window.WebGL2RenderingContext && window.DecompressionStream && view) console.error(error);
+    view = null;
+    at('view').hidden = true;
+    at('no-view').hidden = false;
+  }
+  await show(report.answer);
+  if (view) view.oblique();  // with its stations in sight
+  window.addEventListener('beforeprint', () => {
+    at('parameters').open = true;
+    if (view) view.picture();
+  });
+  document.documentElement.dataset.ready = 'true';
+})();

@@ -1,0 +1,484 @@
+'use strict';
+// The site in three dimensions: its surfaces in false colours, stations and links. Local frame, Z up, metres.
+
+const VIEW_COLOURS = {
+  // From nothing to the wanted density: orange over pale to blue, which all eyes tell apart.
+  ramp: ['#d8570b', '#f2a65a', '#f4ead2', '#8fbfdd', '#2c7bb6'],
+  unseen: '#4a4453',  // with stripes
+  blocking: '#d6d3cd',
+  only: '#f5c400',
+  reasons: ['#8fbfdd', '#4a4453', '#0b7a5b', '#c969a0', '#f0d43a', '#d8570b'],  // by WhyMissed
+  link: '#1d4f91',
+  bridge: '#8c2d91',
+  station: '#1d4f91',
+  kept: '#6b2a70',
+};
+
+const vertexShader = `
+  attribute float kind;
+  varying vec3 vAt;
+  varying float vKind;
+  void main() {
+    vec4 at = modelMatrix * vec4(position, 1.0);
+    vAt = at.xyz;
+    vKind = kind;
+    gl_Position = projectionMatrix * viewMatrix * at;
+  }`;
+
+// A cell's colours stand in a hash table of two textures, probed as in CellTable.
+const fragmentShader = `
+  precision highp int;
+  uniform sampler2D keys, values;
+  uniform vec3 corner;
+  uniform float side, low, high;
+  uniform int shift, only, mode;
+  uniform vec3 ramp[5], reasons[6];
+  uniform vec3 unseen, blocking, onlyColour, eye;
+  varying vec3 vAt;
+  varying float vKind;
+
+  ivec2 texel(uint slot) { return ivec2(int(slot & 511u), int(slot >> 9)); }
+
+  bool find(vec3 at, out uvec4 value) {
+    vec3 cell = floor((at - corner) / side);
+    if (any(lessThan(cell, vec3(0.0))) || any(greaterThan(cell, vec3(2047.0, 2047.0, 1022.0)))) return false;
+    uvec3 c = uvec3(cell);
+    uint key = c.x | c.y << 11 | c.z << 22;
+    uint slots = 1u << uint(32 - shift);
+    uint slot = (key * 2654435769u) >> uint(shift);
+    for (int probe = 0; probe < 32; ++probe) {
+      uvec4 t = uvec4(texelFetch(keys, texel(slot), 0) * 255.0 + 0.5);
+      uint found = t.x | t.y << 8 | t.z << 16 | t.w << 24;
+      if (found == key) {
+        value = uvec4(texelFetch(values, texel(slot), 0) * 255.0 + 0.5);
+        return true;
+      }
+      if (found == 0xffffffffu) return false;
+      slot = (slot + 1u) & (slots - 1u);
+    }
+    return false;
+  }
+
+  vec3 along(float share) {
+    float at = clamp(share, 0.0, 1.0) * 4.0;
+    vec3 colour = ramp[0];
+    for (int k = 0; k < 4; ++k) colour = mix(colour, ramp[k + 1], clamp(at - float(k), 0.0, 1.0));
+    return colour;
+  }
+
+  void main() {
+    if (vAt.z < low || vAt.z > high) discard;
+    vec3 normal = normalize(cross(dFdx(vAt), dFdy(vAt)));
+    vec3 colour = blocking;
+    bool surveyed = mod(vKind + 0.5, 2.0) > 1.0, solid = vKind > 1.5;
+    if (solid && !gl_FrontFacing) {  // cut open: the inside of something
+      gl_FragColor = vec4(0.30, 0.32, 0.36, 1.0);
+      return;
+    }
+    uvec4 value;
+    if (surveyed && mode != 2 &&
+        (find(vAt, value) || find(vAt + 0.4 * side * normal, value) || find(vAt - 0.4 * side * normal, value))) {
+      bool striped = value.g >= 1u && value.g <= 4u && value.r < 13u;  // no point, and no place that could help
+      if (mode == 1 && value.g < 6u) {
+        for (int k = 0; k < 6; ++k) if (int(value.g) == k) colour = reasons[k];
+        striped = false;
+      } else {
+        colour = along(float(value.r) / 254.0);
+      }
+      if (striped) colour = mod(gl_FragCoord.x + gl_FragCoord.y, 9.0) < 3.0 ? unseen + 0.22 : unseen;
+      if (only > 0) colour = int(value.b) == only ? onlyColour : mix(colour, vec3(0.93), 0.72);
+    } else if (surveyed) {
+      colour = vec3(0.90, 0.87, 0.80);
+    }
+    vec3 towards = normalize(eye - vAt);
+    if (dot(normal, towards) < 0.0) normal = -normal;
+    float light = 0.70 + 0.18 * dot(normal, normalize(vec3(-0.4, -0.6, 0.9))) + 0.16 * abs(dot(normal, towards));
+    gl_FragColor = vec4(colour * light, 1.0);
+  }`;
+
+const edgeVertexShader = `
+  uniform vec3 eye;
+  varying float vHeight;
+  void main() {
+    vHeight = position.z;
+    vec3 before = mix(position, eye, 0.0015);  // the surfaces that meet there
+    gl_Position = projectionMatrix * viewMatrix * vec4(before, 1.0);
+  }`;
+
+const edgeFragmentShader = `
+  uniform float low, high;
+  varying float vHeight;
+  void main() {
+    if (vHeight < low || vHeight > high) discard;
+    gl_FragColor = vec4(0.08, 0.10, 0.14, 0.35);
+  }`;
+
+// Keys to slots by multiplication (Knuth), linear probing, at most half full.
+class CellTable {
+  constructor(keys) {
+    let bits = 11;
+    while (1 << bits < 2 * keys.length) ++bits;
+    this.shift = 32 - bits;
+    this.rows = 1 << (bits - 9);
+    const slots = 1 << bits;
+    const held = new Uint32Array(slots).fill(0xffffffff);
+    this.slot = new Uint32Array(keys.length);
+    keys.forEach((key, k) => {
+      let slot = Math.imul(key, 2654435769) >>> this.shift;
+      while (held[slot] !== 0xffffffff) slot = (slot + 1) & (slots - 1);
+      held[slot] = key;
+      this.slot[k] = slot;
+    });
+    this.keys = this.texture(new Uint8Array(held.buffer));
+    this.bytes = new Uint8Array(4 * slots);
+    this.values = this.texture(this.bytes);
+  }
+
+  texture(bytes) {
+    const texture = new THREE.DataTexture(bytes, 512, this.rows, THREE.RGBAFormat, THREE.UnsignedByteType);
+    texture.magFilter = texture.minFilter = THREE.NearestFilter;
+    texture.needsUpdate = true;
+    return texture;
+  }
+
+  // A byte a cell each; `channel` 0: coverage, 1: reason, 2: the only station.
+  set(channel, bytes, otherwise) {
+    this.slot.forEach((slot, k) => { this.bytes[4 * slot + channel] = bytes ? bytes[k] : otherwise; });
+    this.values.needsUpdate = true;
+  }
+}
+
+class SiteView {
+  // `view`: of the report's data. Calls onPick(k) when a station is picked by its label.
+  constructor(holder, view, onPick) {
+    this.holder = holder;
+    this.view = view;
+    this.onPick = onPick;
+    this.canvas = document.createElement('canvas');
+    const context = this.canvas.getContext('webgl2', { antialias: true });
+    if (!context) throw new Error('no WebGL 2');
+    this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, context, antialias: true });
+    this.renderer.setClearColor(0xffffff, 0);
+    this.renderer.setClearAlpha(0);
+    this.canvas.tabIndex = 0;
+    this.canvas.setAttribute('role', 'application');
+    this.canvas.setAttribute('aria-label', 'The site in three dimensions. Arrows turn, plus and minus come closer.');
+    this.canvas.setAttribute('aria-describedby', 'view-help');
+    this.printed = document.createElement('img');
+    this.printed.alt = 'The site with its stations and links';
+    holder.append(this.canvas, this.printed);
+
+    const low = new THREE.Vector3(...view.mesh.low), high = new THREE.Vector3(...view.mesh.high);
+    this.low = low;
+    this.high = high;
+    this.focus = [new THREE.Vector3(...view.mesh.surveyed_low), new THREE.Vector3(...view.mesh.surveyed_high)];
+    this.extent = this.focus[1].distanceTo(this.focus[0]);
+    this.centre = this.focus[0].clone().add(this.focus[1]).multiplyScalar(0.5);
+    this.scene = new THREE.Scene();
+    this.camera = new THREE.PerspectiveCamera(38, 1, this.extent / 2000, this.extent * 20);
+    this.camera.up.set(0, 0, 1);
+    this.controls = new THREE.OrbitControls(this.camera, this.canvas);
+    this.controls.enableKeys = false;
+    this.controls.screenSpacePanning = true;
+    this.controls.addEventListener('change', () => this.draw());
+    this.marks = new THREE.Group();
+    this.scene.add(this.marks);
+    this.labels = [];
+    this.stations = [];
+    this.links = [];
+    this.selected = null;
+    this.slice = [low.z, high.z];
+    this.canvas.addEventListener('keydown', (event) => this.key(event));
+    new ResizeObserver(() => this.resize()).observe(holder);
+  }
+
+  async load() {
+    const { positions, indices, kinds } = await unpackMesh(this.view.mesh);
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute('position', new THREE.BufferAttribute(positions, 3));
+    geometry.setAttribute('kind', new THREE.BufferAttribute(kinds, 1));
+    geometry.setIndex(new THREE.BufferAttribute(indices, 1));
+    const cells = this.view.cells;
+    this.table = new CellTable(cells ? await unpackKeys(cells) : new Uint32Array(0));
+    this.table.set(1, cells && cells.reasons ? await unpack(cells.reasons) : null, 255);
+    const colours = (list) => list.map((c) => new THREE.Color(c));
+    this.uniforms = {
+      keys: { value: this.table.keys }, values: { value: this.table.values }, shift: { value: this.table.shift },
+      corner: { value: new THREE.Vector3(...(cells ? cells.corner : [0, 0, 0])) }, side: { value: cells ? cells.size_m : 1 },
+      low: { value: this.slice[0] }, high: { value: this.slice[1] }, only: { value: 0 }, mode: { value: cells ? 0 : 2 },
+      ramp: { value: colours(VIEW_COLOURS.ramp) }, reasons: { value: colours(VIEW_COLOURS.reasons) },
+      unseen: { value: new THREE.Color(VIEW_COLOURS.unseen) }, blocking: { value: new THREE.Color(VIEW_COLOURS.blocking) },
+      onlyColour: { value: new THREE.Color(VIEW_COLOURS.only) }, eye: { value: this.camera.position },
+    };
+    const material = new THREE.ShaderMaterial({ vertexShader, fragmentShader, uniforms: this.uniforms, side: THREE.DoubleSide });
+    this.surface = new THREE.Mesh(geometry, material);
+    this.surface.position.copy(this.low);
+    this.surface.scale.copy(this.high).sub(this.low).divideScalar(65535);
+    this.surface.frustumCulled = false;
+    this.scene.add(this.surface);
+    this.addEdges(positions, indices);
+    this.resize();
+    this.oblique();
+  }
+
+  // Where surfaces meet at an angle, as far as that does not take long.
+  addEdges(positions, indices) {
+    if (indices.length > 3 * 80000) return;
+    const geometry = new THREE.BufferGeometry();
+    const scaled = new Float32Array(positions.length), low = this.low.toArray(), size = this.high.clone().sub(this.low).toArray();
+    positions.forEach((v, k) => { scaled[k] = low[k % 3] + (v / 65535) * size[k % 3]; });
+    geometry.setAttribute('position', new THREE.BufferAttribute(scaled, 3));
+    geometry.setIndex(new THREE.BufferAttribute(indices, 1));
+    const material = new THREE.ShaderMaterial({ vertexShader: edgeVertexShader, fragmentShader: edgeFragmentShader, uniforms: this.uniforms, transparent: true });
+    const edges = new THREE.LineSegments(new THREE.EdgesGeometry(geometry, 30), material);
+    edges.frustumCulled = false;
+    this.scene.add(edges);
+  }
+
+  local(point) { return new THREE.Vector3(...point.map((v, k) => v - this.view.origin[k])); }
+
+  // `stations` and `links` as in the report.
+  setNetwork(stations, links) {
+    this.stations = stations;
+    this.links = links;
+    this.selected = null;
+    this.labels.forEach((label) => label.remove());
+    this.labels = stations.map((station, k) => {
+      const label = document.createElement('button');
+      label.type = 'button';
+      label.className = 'label' + (station.kept ? ' kept' : '') + (station.active ? '' : ' left-out');
+      label.textContent = station.name;
+      label.setAttribute('aria-pressed', 'false');
+      label.addEventListener('click', () => this.onPick(k));
+      label.hidden = !station.head;
+      this.holder.append(label);
+      return label;
+    });
+    this.drawMarks();
+  }
+
+  drawMarks() {
+    this.marks.traverse((mark) => { if (mark.geometry) mark.geometry.dispose(); });
+    this.marks.remove(...this.marks.children);
+    const size = Math.min(Math.max(this.extent * 0.005, 0.05), 1.5);
+    const add = (geometry, colour, at, overall) => {
+      const mark = new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({ color: colour, depthTest: !overall, transparent: Boolean(overall), opacity: overall ? 0.85 : 1 }));
+      if (overall) mark.renderOrder = 1;
+      mark.position.copy(at);
+      this.marks.add(mark);
+      return mark;
+    };
+    const rod = (a, b, radius, colour, overall) => {
+      const along = b.clone().sub(a);
+      const mark = add(new THREE.CylinderGeometry(radius, radius, along.length(), 8), colour, a.clone().add(b).multiplyScalar(0.5), overall);
+      mark.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), along.normalize());
+    };
+    this.stations.forEach((station, k) => {
+      if (!station.head) return;
+      const head = this.local(station.head), colour = k === this.selected ? '#111111' : station.kept ? VIEW_COLOURS.kept : VIEW_COLOURS.station;
+      if (!this.shown(head)) return;
+      add(new THREE.SphereGeometry(size, 20, 14), colour, head);
+      rod(this.local(station.ground), head, size * 0.18, colour);
+    });
+    const most = Math.max(0.5, ...this.links.map((link) => link.value));
+    for (const link of this.links) {
+      const a = this.local(this.stations[link.a].head), b = this.local(this.stations[link.b].head);
+      if (!this.shown(a) || !this.shown(b)) continue;
+      const faint = this.selected !== null && link.a !== this.selected && link.b !== this.selected;
+      if (faint) continue;
+      const radius = size * (0.06 + 0.3 * link.value / most);
+      if (!link.bridge) {
+        rod(a, b, radius, VIEW_COLOURS.link, true);
+        continue;
+      }
+      const dashes = Math.max(3, Math.round(a.distanceTo(b) / (4 * size)));
+      for (let d = 0; d < dashes; ++d)
+        rod(a.clone().lerp(b, d / dashes), a.clone().lerp(b, (d + 0.6) / dashes), radius, VIEW_COLOURS.bridge, true);
+    }
+    this.draw();
+  }
+
+  shown(at) { return at.z >= this.slice[0] - 0.5 && at.z <= this.slice[1] + 0.5; }
+
+  // A byte a cell each; null: not known.
+  setColours(coverage, only) {
+    this.known = Boolean(coverage);
+    this.table.set(0, coverage, 255);
+    this.table.set(2, only, 0);
+    this.setMode(this.wanted || 'coverage');
+  }
+
+  setMode(mode) {
+    this.wanted = mode;
+    this.uniforms.mode.value = mode === 'why' ? 1 : mode === 'coverage' && this.known ? 0 : 2;
+    this.draw();
+  }
+
+  // Local heights between which surfaces are shown.
+  setSlice(low, high) {
+    this.slice = [low, high];
+    this.uniforms.low.value = low;
+    this.uniforms.high.value = high;
+    this.drawMarks();
+  }
+
+  select(k) {
+    this.selected = k;
+    this.uniforms.only.value = k === null || !this.known ? 0 : k + 1;
+    this.labels.forEach((label, i) => label.setAttribute('aria-pressed', String(i === k)));
+    this.drawMarks();
+  }
+
+  // What the camera has to hold: surveyed surfaces and stations, as far as the slice leaves them.
+  frame(direction) {
+    this.leave();
+    const [low, high] = this.focus.map((corner) => corner.clone().setZ(Math.min(Math.max(corner.z, this.slice[0]), this.slice[1])));
+    for (const station of this.stations)
+      for (const point of [station.head, station.ground])
+        if (point && this.shown(this.local(station.head))) {
+          low.min(this.local(point));
+          high.max(this.local(point));
+        }
+    const target = low.clone().add(high).multiplyScalar(0.5);
+    const towards = direction.clone().normalize();
+    const up = Math.tan(THREE.Math.degToRad(this.camera.fov / 2)), across = up * this.camera.aspect;
+    let distance = 0;
+    // As near as all corners allow, then what is seen into the middle; a few rounds of it settle.
+    for (let round = 0; round < 6; ++round) {
+      this.camera.position.copy(target).add(towards);
+      this.camera.lookAt(target);
+      this.camera.updateMatrixWorld();
+      const inverse = new THREE.Matrix4().getInverse(this.camera.matrixWorld), corners = [];
+      for (let corner = 0; corner < 8; ++corner)
+        corners.push(new THREE.Vector3(corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y, corner & 4 ? high.z : low.z).applyMatrix4(inverse));
+      distance = Math.max(...corners.map((at) => 1 + at.z + Math.max(Math.abs(at.x) / across, Math.abs(at.y) / up)));
+      const middle = (axis) => {
+        const places = corners.map((at) => at[axis] / (distance - 1 - at.z));
+        return (distance * (Math.min(...places) + Math.max(...places))) / 2;
+      };
+      const right = new THREE.Vector3().setFromMatrixColumn(this.camera.matrixWorld, 0), top = new THREE.Vector3().setFromMatrixColumn(this.camera.matrixWorld, 1);
+      target.addScaledVector(right, middle('x')).addScaledVector(top, middle('y'));
+    }
+    this.camera.position.copy(target).addScaledVector(towards, 1.06 * distance);
+    this.controls.target.copy(target);
+    this.controls.update();
+    this.draw();
+  }
+  oblique() { this.frame(new THREE.Vector3(-0.45, -0.75, 0.8)); }
+  above() { this.frame(new THREE.Vector3(0, -0.001, 1)); }
+
+  // Looks round from a station's head, at the whole site.
+  stand(k) {
+    const head = this.local(this.stations[k].head), outward = this.centre.clone().sub(head).setZ(0);
+    if (outward.length() < 0.1) outward.set(1, 0, 0);
+    this.standing = { slice: this.slice };
+    this.camera.fov = 75;
+    this.camera.updateProjectionMatrix();
+    this.camera.position.copy(head);
+    this.controls.target.copy(head).addScaledVector(outward.normalize(), 0.02);
+    this.controls.enableZoom = this.controls.enablePan = false;
+    this.controls.rotateSpeed = -0.4;
+    this.marks.visible = false;
+    this.setSlice(this.low.z, this.high.z);
+    this.controls.update();
+    this.draw();
+  }
+  leave() {
+    if (!this.standing) return;
+    const { slice } = this.standing;
+    this.standing = null;
+    this.camera.fov = 38;
+    this.camera.updateProjectionMatrix();
+    this.controls.enableZoom = this.controls.enablePan = true;
+    this.controls.rotateSpeed = 1;
+    this.marks.visible = true;
+    this.setSlice(...slice);
+    this.oblique();
+  }
+
+  key(event) {
+    const turn = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[event.key];
+    const offset = this.camera.position.clone().sub(this.controls.target);
+    if (turn) {
+      const step = 0.12 * (this.standing ? -1 : 1), length = offset.length();
+      const azimuth = Math.atan2(offset.y, offset.x) + step * turn[0];
+      const polar = Math.min(Math.max(Math.acos(offset.z / length) + step * turn[1], 0.01), Math.PI - 0.01);
+      offset.set(Math.sin(polar) * Math.cos(azimuth), Math.sin(polar) * Math.sin(azimuth), Math.cos(polar)).multiplyScalar(length);
+    } else if (event.key === '+' || event.key === '=' || event.key === '-') {
+      if (this.standing) return;
+      offset.multiplyScalar(event.key === '-' ? 1.15 : 1 / 1.15);
+    } else if (event.key === 'Home') {
+      event.preventDefault();
+      return this.oblique();
+    } else {
+      return;
+    }
+    event.preventDefault();
+    this.camera.position.copy(this.controls.target).add(offset);
+    this.controls.update();
+    this.draw();
+  }
+
+  resize() {
+    const width = this.holder.clientWidth, height = this.holder.clientHeight;
+    if (!width || !height || (width === this.width && height === this.height)) return;
+    this.width = width;
+    this.height = height;
+    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
+    this.renderer.setSize(width, height, false);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    this.draw();
+  }
+
+  draw() {
+    if (this.waiting || !this.surface) return;
+    this.waiting = true;
+    requestAnimationFrame(() => this.drawNow());
+  }
+  drawNow() {
+    this.waiting = false;
+    if (!this.width) return;
+    const distance = this.camera.position.distanceTo(this.controls.target);
+    this.camera.near = this.standing ? 0.03 : Math.max(0.03 * distance, this.extent / 5000);
+    this.camera.far = distance + 2 * this.high.distanceTo(this.low);
+    this.camera.updateProjectionMatrix();
+    this.renderer.render(this.scene, this.camera);
+    this.labels.forEach((label, k) => {
+      const station = this.stations[k];
+      if (!station.head) return;
+      const head = this.local(station.head), at = head.clone().project(this.camera);
+      const hidden = at.z > 1 || Math.abs(at.x) > 1.05 || Math.abs(at.y) > 1.05 || Boolean(this.standing);
+      label.hidden = hidden;
+      if (hidden) return;
+      label.classList.toggle('off', !this.shown(head));
+      const x = ((at.x + 1) / 2) * this.width, y = ((1 - at.y) / 2) * this.height;
+      label.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) translate(-50%, calc(-100% - 7px))`;
+    });
+  }
+
+  // What is on the screen, with the stations' names, for paper.
+  picture() {
+    this.drawNow();
+    const page = document.createElement('canvas'), scale = this.canvas.width / this.width;
+    page.width = this.canvas.width;
+    page.height = this.canvas.height;
+    const pen = page.getContext('2d');
+    pen.fillStyle = '#fff';
+    pen.fillRect(0, 0, page.width, page.height);
+    pen.drawImage(this.canvas, 0, 0);
+    const frame = this.holder.getBoundingClientRect();
+    pen.font = `600 ${13 * scale}px system-ui, sans-serif`;
+    pen.textAlign = 'center';
+    pen.textBaseline = 'middle';
+    for (const label of this.labels) {
+      const box = label.getBoundingClientRect();
+      if (label.hidden || !box.width) continue;
+      pen.fillStyle = getComputedStyle(label).backgroundColor;
+      pen.fillRect((box.left - frame.left) * scale, (box.top - frame.top) * scale, box.width * scale, box.height * scale);
+      pen.fillStyle = '#fff';
+      pen.fillText(label.textContent, (box.left + box.width / 2 - frame.left) * scale, (box.top + box.height / 2 - frame.top) * scale);
+    }
+    this.printed.src = page.toDataURL('image/png');
+  }
+}

@@ -1,0 +1,174 @@
+'use strict';
+// Tables and words. All text goes in as text, never as markup.
+
+function element(name, attributes = {}, ...children) {
+  const node = document.createElement(name);
+  for (const [key, value] of Object.entries(attributes)) node.setAttribute(key, value);
+  node.append(...children.filter((child) => child !== null && child !== undefined));
+  return node;
+}
+
+const percent = (share, digits = 1) => `${(100 * share).toFixed(digits)} %`;
+const grouped = (n) => String(n).replace(/\B(?=(\d{3})+$)/g, '\u2009');
+const metres = (v) => v.toFixed(3);
+function duration(seconds) {
+  const minutes = Math.round(seconds / 60);
+  return minutes < 60 ? `${minutes} min` : `${Math.floor(minutes / 60)} h ${minutes % 60} min`;
+}
+
+function table(titles, rows, textColumns = []) {
+  const cell = (name, content, k) => {
+    const node = element(name, textColumns.includes(k) ? { class: 'text' } : {});
+    node.append(content === null || content === undefined ? '–' : content);
+    if (name === 'th') node.scope = 'col';
+    return node;
+  };
+  return element('table', {}, element('thead', {}, element('tr', {}, ...titles.map((t, k) => cell('th', t, k)))),
+    element('tbody', {}, ...rows.map((row) => element('tr', {}, ...row.map((c, k) => cell('td', c, k))))));
+}
+
+// A link is weak where it is within a quarter of what counts as one at all.
+const weak = (network, link) => link.value < 1.25 * network.least_link;
+
+function figures(holder, network) {
+  const used = network.stations.filter((s) => s.active).length, kept = network.stations.filter((s) => s.kept).length;
+  const tile = (name, value, note, bad) =>
+    element('div', bad ? { class: 'bad' } : {}, element('dt', {}, name), element('dd', {}, value, element('small', {}, note)));
+  const tiles = [
+    network.of_visible !== null
+      ? tile('Captured', percent(network.of_visible), `of what can be seen; ${percent(network.captured)} of the site`)
+      : tile('Captured', percent(network.captured), 'of the site’s surfaces, at the wanted density'),
+    tile('Stations', String(used), kept ? `${kept} there already, ${used - kept} new` : 'all new'),
+  ];
+  if (network.parts !== null)
+    tiles.push(network.parts === 1
+      ? tile('Hangs together', 'Yes', used === 1 ? 'one station' : `all stations, by ${network.link_measure} of ${network.least_link} and more`)
+      : tile('Hangs together', 'No', `falls into ${network.parts} parts`, true));
+  if (network.seconds_on_site !== null) tiles.push(tile('On site', duration(network.seconds_on_site), 'with setting up and walking'));
+  holder.replaceChildren(...tiles);
+}
+
+// "57.2 % hidden from everywhere, 2.1 % …", what there is most of first; of all surfaces of the proposed network.
+function missedWords(missed) {
+  const { shares } = missed.nodes[0];
+  return missed.reasons.map((r, k) => [shares[k], r.words]).slice(1).filter(([s]) => s >= 5e-4).sort((a, b) => b[0] - a[0])
+    .map(([s, text]) => `${percent(s)} ${text}`).join(', ');
+}
+
+function words(holder, network, missed) {
+  const lines = [...network.summary];
+  if (missed) lines.splice(1, 0, { heading: 'missed', text: missed });
+  holder.replaceChildren(...lines.flatMap(({ heading, text }, k) => {
+    const repeated = k > 0 && lines[k - 1].heading === heading;
+    const name = heading[0].toUpperCase() + heading.slice(1);
+    const title = element('dt', heading === 'to do' ? { class: 'todo' } : {}, repeated ? element('span', { class: 'hidden' }, name) : name);
+    return [title, element('dd', {}, text[0].toUpperCase() + text.slice(1))];
+  }));
+}
+
+function stationTable(holder, network, pick) {
+  const count = (k) => (network.links ? network.links.filter((l) => l.a === k || l.b === k).length : null);
+  const rows = network.stations.map((s, k) => {
+    const name = element('button', { type: 'button' }, s.name);
+    name.addEventListener('click', () => pick(k));
+    return [name, ...(s.head || [null, null, null]).map((v) => (v === null ? null : metres(v))), s.ground ? metres(s.ground[2]) : null,
+      s.points === null ? null : grouped(s.points), count(k),
+      s.kept ? element('span', { class: 'tag' }, 'there before') : s.fault ? element('span', { class: 'tag weak' }, s.fault) : ''];
+  });
+  holder.replaceChildren(table(['Name', 'x (m)', 'y (m)', 'Head z (m)', 'Ground z (m)', 'Points on the site', 'Links', ''], rows, [7]));
+}
+
+function linkTable(holder, wordsHolder, network) {
+  if (!network.links) {
+    wordsHolder.textContent = 'How scans overlap was not measured.';
+    holder.replaceChildren();
+    return;
+  }
+  wordsHolder.textContent = `Pairs of stations with ${network.link_measure} of at least ${network.least_link}, weakest first. `
+    + 'A bridge is the only link between two parts: lose it, and the survey falls apart. Weak: within a quarter of the least that counts.';
+  const rows = [...network.links].sort((l, r) => l.value - r.value).map((l) => {
+    const tags = [];
+    if (l.bridge) tags.push(element('span', { class: 'tag bridge' }, 'bridge'), ' ');
+    if (weak(network, l)) tags.push(element('span', { class: 'tag weak' }, 'weak'), ' ');
+    if (l.weakest) tags.push(element('span', { class: 'tag' }, 'weakest that all hang by'));
+    const cell = element('span', {});
+    cell.append(...tags);
+    return [network.stations[l.a].name, network.stations[l.b].name, percent(l.value), cell];
+  });
+  holder.replaceChildren(rows.length ? table(['From', 'To', network.link_measure === 'overlap' ? 'Overlap' : 'Scan overlap', ''], rows, [0, 1, 3])
+    : element('p', {}, 'No two stations are linked.'));
+}
+
+function missedTable(holder, wordsHolder, missed) {
+  const [all, ...nodes] = missed.nodes;
+  const share = (node, name) => node.shares[missed.reasons.findIndex((r) => r.name === name)];
+  const told = missedWords(missed);
+  wordsHolder.textContent = `Of the proposed network: ${percent(share(all, 'captured'))} of the surfaces have the wanted density of points; `
+    + (told ? told + '. ' : '')
+    + 'What is hidden, out of range or too flat from everywhere no choice of stations can help; what is “not with these stations”, more of them would.';
+  nodes.sort((a, b) => b.voxels * (1 - share(b, 'captured')) - a.voxels * (1 - share(a, 'captured')));
+  const row = (node, name) => {
+    const bar = element('span', { class: 'bar', 'aria-hidden': 'true' });
+    node.shares.forEach((s, k) => bar.append(element('i', { style: `width:${100 * s}%;background:${VIEW_COLOURS.reasons[k]}` })));
+    return [name, bar, ...node.shares.map((s) => (100 * s).toFixed(1))];
+  };
+  const body = table(['Mesh', '', ...missed.reasons.map((r) => r.words[0].toUpperCase() + r.words.slice(1) + ' (%)')],
+    [row(all, 'All'), ...nodes.map((node) => row(node, node.node || '(no name)'))], [1]);
+  body.querySelectorAll('th').forEach((th) => { th.style.whiteSpace = 'normal'; });
+  holder.replaceChildren(body);
+}
+
+function valuesTable(holder, report, network) {
+  const rows = report.measures.filter((m) => network.values[m.name]).map((m) => {
+    const { value, error } = network.values[m.name];
+    return [m.label, value === null ? null : value.toFixed(4) + (error > 0 ? ` ± ${error.toFixed(4)}` : ''), m.unit, m.name];
+  });
+  holder.replaceChildren(table(['Measure', network.confirmed ? 'By every ray' : 'From a sample', 'Unit', 'In front.json'], rows, [2, 3]));
+}
+
+function parameterTable(holder, parameters) {
+  const rows = [];
+  const walk = (value, path) => {
+    if (value !== null && typeof value === 'object' && !Array.isArray(value))
+      Object.entries(value).forEach(([key, inner]) => walk(inner, path ? `${path}.${key}` : key));
+    else rows.push([path, typeof value === 'string' ? value : JSON.stringify(value)]);
+  };
+  walk(parameters, '');
+  holder.append(table(['Parameter', 'Value'], rows, [1]));
+}
+
+// The card beside the view: one station, or what one can do.
+function stationCard(holder, network, k, only, { pick, stand }) {
+  if (k === null) {
+    holder.replaceChildren(element('h3', {}, 'Stations'), element('p', { class: 'muted' },
+      'Pick a station, by its name in the view or in the table, for its links, what it alone sees and the view from there.'));
+    return;
+  }
+  const s = network.stations[k], parts = [element('h3', {}, s.name)];
+  const facts = element('dl', {});
+  const fact = (name, text) => facts.append(element('dt', {}, name), element('dd', {}, text));
+  if (s.head) {
+    fact('Head', s.head.map(metres).join(', ') + ' m');
+    fact('Ground', `${metres(s.ground[2])} m, ${(s.head[2] - s.ground[2]).toFixed(2)} m below`);
+  }
+  if (s.points !== null) fact('Points', `${grouped(s.points)} on the site`);
+  if (only !== null) fact('Only it sees', percent(only) + ' of the site');
+  if (s.kept) fact('', 'was there before');
+  if (s.fault) fact('Mind', s.fault);
+  parts.push(facts);
+  const links = (network.links || []).filter((l) => l.a === k || l.b === k).sort((l, r) => r.value - l.value);
+  if (network.links) {
+    parts.push(element('strong', {}, links.length ? 'Linked to' : 'Linked to no other station'));
+    parts.push(element('ul', {}, ...links.map((l) => element('li', {},
+      `${network.stations[l.a === k ? l.b : l.a].name}, ${percent(l.value)}${l.bridge ? ', a bridge' : ''}${weak(network, l) ? ', weak' : ''}`))));
+  }
+  if (s.head && stand) {
+    const look = element('button', { type: 'button', id: 'stand' }, 'Look round from here');
+    look.addEventListener('click', () => stand(k));
+    parts.push(look);
+  }
+  const clear = element('button', { type: 'button' }, 'Deselect');
+  clear.addEventListener('click', () => pick(null));
+  parts.push(clear);
+  holder.replaceChildren(...parts);
+}
