@@ -3,11 +3,17 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 
 namespace vantage::cli {
 namespace {
 
-bool same(const Scanner& a, const Scanner& b) {
+// A step that went through a table of degrees and back may differ in its last digit.
+bool near(Angle a, Angle b) { return std::abs(a.in_radians() - b.in_radians()) <= 1e-12 * a.in_radians(); }
+
+bool same(const Scanner& a, Scanner b) {
+  if (!near(a.azimuth_step, b.azimuth_step) || !near(a.zenith_step, b.zenith_step)) return false;
+  b.azimuth_step = a.azimuth_step, b.zenith_step = a.zenith_step;
   const auto text = [](const Setting& setting) { return setting.json; };
   return std::ranges::equal(settings(a), settings(b), {}, text, text);
 }
