@@ -16,7 +16,8 @@ readonly packages=(
   libstb-dev libcli11-dev libspdlog-dev libcairo2-dev coinor-libclp-dev coinor-libcbc-dev libproj-dev
   libjs-three libmeshoptimizer-dev zlib1g-dev
 )
-readonly test_packages=(libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev vulkan-validationlayers clang-format proj-bin)
+readonly test_packages=(libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev vulkan-validationlayers clang-format proj-bin
+  pybind11-dev python3-dev python3-pip python3-numpy python3-matplotlib)
 
 mode=program
 case "${1-}" in
@@ -30,6 +31,23 @@ say() { printf 'setup: %s\n' "$*" >&2; }
 installed() { [ "$(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }
 version_of() { dpkg-query -W -f '${Version}' "$1" 2>/dev/null || true; }
 candidate_of() { apt-cache policy "$1" 2>/dev/null | sed -n 's/^ *Candidate: //p'; }
+# Debian's suite of newer packages, added where apt does not know it yet; its name is left in `backports`.
+add_backports() {
+  . /etc/os-release
+  backports="${VERSION_CODENAME}-backports"
+  if apt-get indextargets --format '$(CODENAME) $(SUITE)' 'Created-By: Packages' | grep -qwF "$backports"; then return; fi
+  local mirror keyring signed=""
+  mirror=$(apt-get indextargets --format '$(REPO_URI)' 'Created-By: Packages' "Codename: $VERSION_CODENAME" | head -n 1)
+  if [ -z "$mirror" ]; then
+    say "cannot read the mirror of $VERSION_CODENAME from apt's configuration; add the suite $backports by hand and run $0 again"
+    exit 1
+  fi
+  keyring=/usr/share/keyrings/debian-archive-keyring.gpg
+  [ -f "$keyring" ] && signed="[signed-by=$keyring] "
+  say "adding the suite $backports"
+  echo "deb $signed$mirror $backports main" >/etc/apt/sources.list.d/vantage-backports.list
+  apt-get update -qq
+}
 
 if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
   say "this script installs packages with apt, which this system lacks."
@@ -48,14 +66,18 @@ fi
 missing=()
 for package in "${wanted[@]}"; do installed "$package" || missing+=("$package"); done
 
+builder=python3-scikit-build-core # of the Python module; Debian 12 has it in backports
+builder_needed=no
+if [ "$mode" != program ] && ! installed "$builder"; then builder_needed=yes; fi
 mesa=$(version_of mesa-vulkan-drivers)
 mesa_needed=no
 if ! installed mesa-vulkan-drivers || dpkg --compare-versions "$mesa" lt "$mesa_minimum"; then mesa_needed=yes; fi
 
-if [ ${#missing[@]} -gt 0 ] || [ "$mesa_needed" = yes ]; then
+if [ ${#missing[@]} -gt 0 ] || [ "$builder_needed" = yes ] || [ "$mesa_needed" = yes ]; then
   if [ "$(id -u)" -ne 0 ]; then
     say "root is needed to install what is missing:"
     [ ${#missing[@]} -eq 0 ] || say "  packages: ${missing[*]}"
+    [ "$builder_needed" = no ] || say "  $builder; Debian 12 has it in backports"
     [ "$mesa_needed" = no ] || say "  mesa-vulkan-drivers >= $mesa_minimum (here: ${mesa:-none}); Debian 12 has it in backports"
     say "Run this script once as root (sudo $0), then again as yourself."
     exit 1
@@ -67,24 +89,20 @@ if [ ${#missing[@]} -gt 0 ] || [ "$mesa_needed" = yes ]; then
     say "installing ${missing[*]}"
     apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
   fi
+  if [ "$builder_needed" = yes ]; then
+    say "installing $builder"
+    target=()
+    if ! apt-get install -s -qq --no-install-recommends "$builder" >/dev/null 2>&1; then
+      add_backports
+      target=(-t "$backports")
+    fi
+    apt-get install -y -qq --no-install-recommends "${target[@]}" "$builder" >/dev/null
+  fi
   if [ "$mesa_needed" = yes ]; then
     target=()
     candidate=$(candidate_of mesa-vulkan-drivers)
     if dpkg --compare-versions "${candidate:-0}" lt "$mesa_minimum"; then
-      . /etc/os-release
-      backports="${VERSION_CODENAME}-backports"
-      if ! apt-get indextargets --format '$(CODENAME) $(SUITE)' 'Created-By: Packages' | grep -qwF "$backports"; then
-        mirror=$(apt-get indextargets --format '$(REPO_URI)' 'Created-By: Packages' "Codename: $VERSION_CODENAME" | head -n 1)
-        if [ -z "$mirror" ]; then
-          say "cannot read the mirror of $VERSION_CODENAME from apt's configuration; add the suite $backports by hand and run $0 again"
-          exit 1
-        fi
-        keyring=/usr/share/keyrings/debian-archive-keyring.gpg
-        [ -f "$keyring" ] && signed="[signed-by=$keyring] " || signed=""
-        say "adding the suite $backports"
-        echo "deb $signed$mirror $backports main" >/etc/apt/sources.list.d/vantage-backports.list
-        apt-get update -qq
-      fi
+      add_backports
       target=(-t "$backports")
     fi
     say "installing mesa-vulkan-drivers >= $mesa_minimum"

@@ -3,7 +3,7 @@
 vantage_engine_shaders(vantage ray_query trace/ray_query)
 vantage_engine_shaders(vantage compute_bvh trace/compute_bvh)
 vantage_shader(vantage tile_starts trace/compute_bvh/tile_starts.comp)
-foreach(kernel tiles tile_list clamp reduce sample_list sample_arguments)
+foreach(kernel tiles tile_list clamp reduce sample_list sample_arguments registration)
   vantage_shader(vantage ${kernel} ${kernel}.comp)
 endforeach()
 vantage_shader(vantage sample_queue sample_list.comp DEFINES QUEUE)

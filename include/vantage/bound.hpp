@@ -51,6 +51,15 @@ struct CaptureBound {
 CaptureBound bound_capture(const CaptureRows& rows, std::size_t stations, std::span<const std::size_t> fixed = {},
                            const BoundConfig& config = {}, const Progress& progress = {});
 
+/// The same of networks that hang together: along some of `links` each station is reached from each other, the fixed
+/// ones included. `chosen` is such a network, empty where none was found; at most `max_stations` in all. Links enter
+/// the branch and bound, where the spanning tree is asked for as a flow (Dehbi, Leonhardt, Oehrlein, Haunert: Optimal
+/// scan planning with enforced network connectivity, 2021); without time for it `bound` is that of any network. Throws
+/// Error invalid_argument for a link of rows that are not there, too.
+CaptureBound bound_linked_capture(const CaptureRows& rows, std::size_t stations, std::span<const RowLink> links,
+                                  std::span<const std::size_t> fixed = {}, const BoundConfig& config = {},
+                                  const Progress& progress = {});
+
 /// How many stations a wanted coverage takes.
 struct StationsBound {
   bool possible = false;     ///< False: all candidates together do not capture as much.

@@ -3,6 +3,7 @@
 /// up, so one pass over single stations answers every question of which of them to take.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -76,6 +77,15 @@ class CaptureRows {
 /// A cancelled call holds the rows of the first stations and says so.
 CaptureRows capture_rows(Simulator& simulator, std::span<const PlacedStation> stations, std::uint64_t sample_voxels,
                          const Progress& progress = {});
+
+/// Two rows, the first below the second.
+using RowLink = std::array<std::size_t, 2>;
+
+/// Pairs of `stations` whose scans overlap by at least `least` (the share of the smaller that the other sees too), on a
+/// sample of `sample_voxels` of `surroundings`, which is a simulator of all surfaces (`surroundings_of()`). A stopped
+/// call knows the first stations' only.
+std::vector<RowLink> links_between(Simulator& surroundings, std::span<const PlacedStation> stations, double least,
+                                   std::uint64_t sample_voxels = 10'000, const Progress& progress = {});
 
 /// Allowed positions (`StationStatus::ok`) at the scanner's height, `most` of them at most, spread evenly over the
 /// ground in square metres; so are the first n of them, for every n. Where most of it is forbidden there may be fewer.

@@ -127,8 +127,9 @@ std::vector<std::filesystem::path> draw_plan_view(const std::filesystem::path& f
 /// `answer()` stations.csv, overlap.csv (where it is confirmed), coverage.ply (where `field`, its voxel field,
 /// is given), and the pictures front.png, hypervolume.png, history.png (with several objectives), plan.png (each also
 /// as .svg), of several floors also plan-level-1.png and so on; and for the crew stations.dxf, and where `crs`, the
-/// `coordinate_system()` of the survey frame, is given and this build has PROJ stations.geojson and stations.kml. Makes
-/// the folder where there is none. Returns the index of the chosen entry.
+/// `coordinate_system()` of the survey frame, is given and this build has PROJ stations.geojson and stations.kml. Where
+/// the registration error is known, plan.png has its ellipses, and with `field` there are registration.ply, .png and
+/// .svg. Makes the folder where there is none. Returns the index of the chosen entry.
 std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& result, const Simulator& simulator,
                        const SearchArea& area, const VoxelField* field = nullptr, const std::string& crs = {});
 
@@ -143,6 +144,16 @@ void write_missed_ply(const std::filesystem::path& file, const Simulator& simula
 /// shows before those that nothing helps, and these before what is captured.
 void draw_missed(const std::filesystem::path& file, const Simulator& simulator, std::span<const std::uint32_t> ranks,
                  std::span<const WhyMissed> why, std::span<const PlacedStation> stations, const std::string& title);
+
+/// The predicted registration error on the surface in false colours: every surveyed voxel that a station sees as a
+/// point with its `error_mm`, the root mean square over the stations that see it, from dark (none) to yellow (the
+/// largest). `field`: with station masks, of the network that `error` is of. Binary PLY, survey frame. Throws Error.
+void write_registration_ply(const std::filesystem::path& file, const Simulator& simulator, const VoxelField& field,
+                            const RegistrationError& error);
+/// The same from above, .png or .svg, what is not seen in grey.
+void draw_registration(const std::filesystem::path& file, const Simulator& simulator, const VoxelField& field,
+                       const RegistrationError& error, std::span<const PlacedStation> stations,
+                       const std::string& title);
 
 /// Writes text to a file atomically. Throws Error io.
 void write_text(const std::filesystem::path& file, const std::string& text);

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -63,6 +64,13 @@ OverlapMatrix overlap_standard_errors(const NetworkCounts& counts, std::uint64_t
 std::uint64_t voxels_for_standard_error(Simulator& simulator, std::span<const Network> networks, double wanted,
                                         bool overlap = true, const Progress& progress = {});
 
+/// Whose surfaces hold scans together.
+enum class RegistrationSurfaces {
+  surveyed,  ///< Those that are surveyed and no others: on the safe side.
+  all,       ///< Those that nobody surveys too, as ground and neighbours: by the voxels of `surroundings_of()`.
+};
+std::string to_string(RegistrationSurfaces);
+
 /// What registration starts from: one standard deviation of what site and instrument say of a station's pose before
 /// scans are matched, and how well scans have the surface. Reasons and sources: docs/method.md.
 struct RegistrationOptions {
@@ -72,6 +80,7 @@ struct RegistrationOptions {
   /// Of each of the two tilts: a dual-axis compensator's. 0: exactly level, so 4 unknowns a station instead of 6; some
   /// degrees: not levelled at all.
   Angle tilt = Angle::degrees(15.0 / 3600);
+  RegistrationSurfaces surfaces = RegistrationSurfaces::surveyed;  ///< The error is that of surveyed ones either way.
 };
 
 Settings settings(const RegistrationOptions& options);
@@ -106,13 +115,17 @@ struct RegistrationError {
 /// The covariance of a least-squares adjustment of all scans, planes against planes (Gelfand et al. 2003; Censi 2007),
 /// less the best-fitting motion of the whole: that is the survey's own frame, and no error of the registration. Of a
 /// sample of a site of `voxels` voxels what the whole site would give. Parts that share nothing have the error that
-/// they start from. Where nothing is covered, the error of a position. REQUIRES: `counts.registration` was filled, with
-/// `options.model`.
+/// they start from. Where nothing is covered, the error of a position. `surroundings`: the same network's counts by
+/// `surroundings_of()`, of a site of `surroundings_voxels`; looked at where `options.surfaces` are all. Throws Error
+/// invalid_argument unless `registration` was filled in all counts that are looked at. REQUIRES: with `options.model`.
 RegistrationError registration_error(const NetworkCounts& counts, std::uint64_t voxels,
-                                     const RegistrationOptions& options = {});
-/// `registration_error(…).rms_m` and its standard error, by the jackknife over the groups of a sample.
+                                     const RegistrationOptions& options = {},
+                                     const NetworkCounts* surroundings = nullptr,
+                                     std::uint64_t surroundings_voxels = 0);
+/// `registration_error(…).rms_m`, of a sample less its bias, and the standard error, by the jackknife over its groups.
 Estimate registration_estimate(const NetworkCounts& counts, std::uint64_t voxels,
-                               const RegistrationOptions& options = {});
+                               const RegistrationOptions& options = {}, const NetworkCounts* surroundings = nullptr,
+                               std::uint64_t surroundings_voxels = 0);
 
 /// The overlap graph as registration sees it: which stations hang together, and by what.
 struct Connectivity {

@@ -42,6 +42,7 @@ struct Needs {
   bool time = false;          ///< `MeasuredNetwork::minutes_on_site`.
   /// `NetworkCounts::registration`, and with it `pairs`. What is measured together has one model.
   std::optional<RegistrationModel> registration = std::nullopt;
+  bool surroundings_registration = false;  ///< That of `MeasuredNetwork::surroundings` too, by the same model.
 };
 constexpr Needs operator|(const Needs& a, const Needs& b) {
   return {a.counts || b.counts,
@@ -49,7 +50,8 @@ constexpr Needs operator|(const Needs& a, const Needs& b) {
           a.visibility || b.visibility,
           a.surroundings || b.surroundings,
           a.time || b.time,
-          a.registration ? a.registration : b.registration};
+          a.registration ? a.registration : b.registration,
+          a.surroundings_registration || b.surroundings_registration};
 }
 
 /// One measure of a network, to be searched for, required or reported. A program's own needs no change of the library:

@@ -16,6 +16,7 @@
 #include <string_view>
 #include <vector>
 
+#include "vantage/bound.hpp"
 #include "vantage/candidates.hpp"
 #include "vantage/objective.hpp"
 #include "vantage/on_site.hpp"
@@ -134,6 +135,8 @@ struct PlanEntry {
   OverlapMatrix exact_overlap_matrix;  ///< Equation 11.
   /// By `scan_overlap_matrix()` over all surfaces; empty unless a measure needs the surroundings.
   OverlapMatrix exact_scan_overlap_matrix;
+  /// By every ray, of the problem's `registration`, where a measure needs it and the entry is confirmed.
+  std::optional<RegistrationError> registration = std::nullopt;
   std::optional<Visit> visit = std::nullopt;  ///< The round on site without the kept stations, where it was worked out.
   std::vector<std::uint64_t> points_on_surveyed;  ///< Per station, exact.
   /// `values.at(name).best_known()`. Throws std::out_of_range.
@@ -242,6 +245,28 @@ struct GreedyResult {
 /// invalid_argument where no candidate can stand.
 GreedyResult greedy_network(Simulator& simulator, const SearchArea& area, const ClashChecker& clash,
                             const GreedyConfig& config = {}, const Progress& progress = {});
+
+struct ExactConfig {
+  std::size_t stations = 4;              ///< How many to choose.
+  std::size_t candidates = 256;          ///< Positions to choose from, spread evenly over the ground.
+  std::uint64_t sample_voxels = 20'000;  ///< 0: every voxel.
+  double link = 0;               ///< Least scan overlap along some spanning tree; 0: stations need not hang together.
+  double max_seconds = 60;       ///< Of branch and bound. What is found when they are over depends on the machine.
+  std::vector<Vec3> fixed = {};  ///< Stations that are there already; neither counted nor returned.
+};
+
+/// What `exact_network` chose.
+struct ExactResult {
+  std::vector<PlacedStation> stations;  ///< Empty where no network that hangs together was found.
+  CaptureBound choice;                  ///< Coverage of the choice, and the most that any choice of candidates has.
+  bool cancelled = false;
+};
+
+/// The best network among candidates, as an integer program: `bound_capture`, or `bound_linked_capture` where it has to
+/// hang together. Without a gap it is the best there is among them. A baseline, and a first network for
+/// `PlanConfig::start`. Throws Error invalid_argument where no candidate can stand.
+ExactResult exact_network(Simulator& simulator, const SearchArea& area, const ClashChecker& clash,
+                          const ExactConfig& config = {}, const Progress& progress = {});
 
 /// Decision vector to stations: locate, raise by `height_m`, check for clashes.
 std::vector<PlacedStation> place_stations(const SearchArea& area, const ClashChecker& clash, double height_m,

@@ -172,6 +172,9 @@ class Simulator {
                                               const Progress& progress = {});
 
  private:
+  friend Simulator surroundings_of(const Simulator& simulator);
+  // Registration goes by the scans of these scanners, for whose rays fewer stand here. One for each of `scanners()`.
+  void stand_for(std::span<const Scanner> scanners);
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
@@ -179,7 +182,8 @@ class Simulator {
 /// A coarser simulator over the same site with every mesh surveyed, for how scans overlap: registration goes by all
 /// that they share, wanted or not. Voxels of a hundredth of the site's largest extent at most, 0.5 m at most, never
 /// finer than those of `simulator`; rays so that two of them pass a voxel across at the site's far end or the range's,
-/// never finer than the scanner's; no noise. Same engine, device and seed. Costs memory and time of another simulator.
+/// never finer than the scanner's; no noise. Registration's sums are those of the scanner's own scans. Same engine,
+/// device and seed. Costs memory and time of another simulator.
 Simulator surroundings_of(const Simulator& simulator);
 
 }  // namespace vantage

@@ -4,6 +4,7 @@
 #define VANTAGE_LIB_SHADE
 #include "lib/exact.glsl"
 #include "lib/philox.glsl"
+#include "lib/sigma.glsl"
 #include "lib/parameters.glsl"
 
 vec3 unit_or(vec3 v, vec3 otherwise) {
@@ -68,26 +69,7 @@ float normal_from_bits(uint u) {
 }
 
 float sigma_at(float t, float reflectivity) {
-  precise float from_start = t - parameters.noise_min_range;
-  precise float normalised = from_start * parameters.noise_inverse_span;
-  precise float x = clamp(normalised, 0.0, 1.0) * 100.0;
-  precise float y = reflectivity * 100.0;
-  const uint i = min(uint(x), noise_table_side - 2u), j = min(uint(y), noise_table_side - 2u);
-  precise float fx = x - float(i);
-  precise float fy = y - float(j);
-  const uint at = j * noise_table_side + i;
-  const float s00 = parameters.sigma.at[at], s01 = parameters.sigma.at[at + 1u];
-  const float s10 = parameters.sigma.at[at + noise_table_side], s11 = parameters.sigma.at[at + noise_table_side + 1u];
-  precise float d0 = s01 - s00;
-  precise float e0 = fx * d0;
-  precise float low = s00 + e0;
-  precise float d1 = s11 - s10;
-  precise float e1 = fx * d1;
-  precise float high = s10 + e1;
-  precise float d2 = high - low;
-  precise float e2 = fy * d2;
-  precise float s = low + e2;
-  return s;
+  return sigma_in(parameters.sigma, parameters.noise_min_range, parameters.noise_inverse_span, t, reflectivity);
 }
 
 // Range with noise. Depends on nothing but seed, station, ray and hit.

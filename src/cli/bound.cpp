@@ -22,6 +22,7 @@ struct BoundOptions {
   CandidateConfig candidates{.most = 1024};
   std::optional<SampleSize> sample;
   BoundConfig bound;
+  std::optional<double> link;
   bool json = false;
 
   void add(CLI::App& command) {
@@ -58,6 +59,10 @@ struct BoundOptions {
         command, "--branch", "T", "Time for branch and bound towards the best choice itself; none otherwise",
         [this](const std::string& text, const std::string& what) { bound.exact_seconds = parse_duration(text, what); })
         ->group("Bound");
+    add_number(command, "--link", "SHARE",
+               "Of --stations, count those networks alone whose scans overlap by so much along some spanning tree",
+               link, {.low = 0, .high = 1, .low_included = false})
+        ->group("Bound");
     command.add_flag("--json", json, "Print one JSON object");
   }
 };
@@ -74,6 +79,11 @@ nlohmann::json heads_json(const Candidates& candidates, const std::vector<std::s
 std::string percent(double share) { return fmt::format("{:.1f} %", 100 * share); }
 
 std::string text_of(const CaptureBound& bound, double visible) {
+  if (bound.chosen.empty())
+    return fmt::format(
+        "{:>3} stations  capture at most {:.4f} of what can be seen (coverage {:.4f}); no network of them "
+        "that hangs together was found\n",
+        bound.stations, std::min(bound.bound / visible, 1.0), bound.bound);
   std::string text = fmt::format(
       "{:>3} stations  capture at most {:.4f} of what can be seen (coverage {:.4f}); found {:.4f} (coverage {:.4f} ± "
       "{:.4f}), within {} of the best that any {} candidates can do\n",
@@ -114,9 +124,17 @@ int bound(CLI::App& command, BoundOptions& options, Program& program) {
       "{:.2f} m from one\n",
       visible, candidates.visible().standard_error, candidates.stations().size(), candidates.spacing_m());
   nlohmann::json by_number = nlohmann::json::array(), by_capture = by_number;
+  std::vector<RowLink> links;
+  if (options.link) {
+    line.set_label("links");
+    Simulator surroundings = surroundings_of(simulator);
+    links = links_between(surroundings, candidates.stations(), *options.link, 10'000, progress);
+  }
   line.set_label("bound");
   for (const std::size_t stations : options.stations) {
-    const CaptureBound found = bound_capture(candidates.rows(), stations, {}, options.bound, progress);
+    const CaptureBound found =
+        options.link ? bound_linked_capture(candidates.rows(), stations, links, {}, options.bound, progress)
+                     : bound_capture(candidates.rows(), stations, {}, options.bound, progress);
     text += text_of(found, visible);
     by_number.push_back({{"stations", stations},
                          {"bound", found.bound},

@@ -25,7 +25,7 @@ struct EvaluateCommandOptions {
   std::optional<SampleSize> sample;
   std::optional<double> error, link_overlap;
   std::optional<std::string> cartography, matrix, picture;
-  std::vector<std::string> station_files, reports;
+  std::vector<std::string> station_files, registration_files, reports;
   MissedFiles missed;
   bool json = false;
 
@@ -52,6 +52,11 @@ struct EvaluateCommandOptions {
     command.add_flag("--registration", with_registration, "Predict the error of the registered scans")
         ->group("Registration");
     registration.add(command);
+    add_texts(command, "--registration-map", "FILE",
+              "Write the predicted error on the surface, in false colours: .ply, or .png or .svg from above; may be "
+              "repeated",
+              registration_files)
+        ->group("Registration");
     add_text(command, "--cartography", "FILE", "Write every surveyed voxel with its count, in false colours: .ply",
              cartography)
         ->group("Results");
@@ -89,6 +94,26 @@ NetworkCounts evaluate_sample(Simulator& simulator, const Network& network, cons
   return simulator
       .evaluate_sampled({&network, 1}, {.voxels = voxels, .overlap = overlap, .registration = model}, progress)
       .front();
+}
+
+// What registration has of surfaces that nobody surveys, where it goes by them.
+struct Surroundings {
+  NetworkCounts counts;
+  std::uint64_t voxels = 0;
+};
+Surroundings surroundings(const Simulator& simulator, const Network& network, const RegistrationOptions& options,
+                          std::uint64_t sample, const Progress& progress) {
+  if (options.surfaces != RegistrationSurfaces::all) return {};
+  Simulator all = surroundings_of(simulator);
+  return {sample > 0
+              ? all.evaluate_sampled({&network, 1}, {.voxels = sample, .registration = options.model}, progress).front()
+              : all.evaluate(network, {.registration = options.model}, progress),
+          all.voxel_count()};
+}
+
+int stopped_early() {
+  spdlog::error("stopped before the end; nothing was written");
+  return exit_failed;
 }
 
 // Millimetres; axes of the standard ellipsoid of each head, longest first, in the survey frame.
@@ -151,6 +176,12 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
   if ((options.matrix || options.picture) && !overlap)
     throw Error(Errc::invalid_argument, "--overlap-csv and --picture show overlaps, which --no-overlap leaves out");
 
+  for (const std::string& file : options.registration_files)
+    must_end(file, "--registration-map", ".ply", ".png", ".svg");
+  if (!options.registration_files.empty() && (sampled || !options.with_registration))
+    throw Error(
+        Errc::invalid_argument,
+        "--registration-map: shows the error of --registration on every voxel, and so needs both it and --exact");
   if (options.with_registration && !overlap)
     throw Error(Errc::invalid_argument, "--registration: looks at what scans share, which --no-overlap leaves out");
 
@@ -161,7 +192,8 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
   ProgressLine line(program.console, "evaluate");
   const Progress progress{.report = [&](double done) { line.update(done); }, .stop = program.stop};
   VoxelField field;
-  const bool with_field = options.cartography || !options.missed.files.empty() || !options.reports.empty();
+  const bool with_field = options.cartography || !options.missed.files.empty() || !options.registration_files.empty() ||
+                          !options.reports.empty();
   const NetworkCounts counts = sampled ? evaluate_sample(simulator, network, options, progress)
                                        : simulator.evaluate(network,
                                                             {.overlap = overlap,
@@ -169,11 +201,17 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
                                                              .field = with_field ? &field : nullptr,
                                                              .registration = options.model()},
                                                             progress);
-  if (counts.cancelled) {
-    spdlog::error("stopped before the end; nothing was written");
-    return exit_failed;
-  }
+  if (counts.cancelled) return stopped_early();
   const std::uint64_t voxels = simulator.voxel_count();
+  Estimate registered;
+  RegistrationError error;
+  if (options.with_registration) {
+    const RegistrationOptions registration = options.registration.settle();
+    const Surroundings around = surroundings(simulator, network, registration, sampled ? counts.voxels : 0, progress);
+    if (around.counts.cancelled) return stopped_early();
+    registered = registration_estimate(counts, voxels, registration, &around.counts, around.voxels);
+    error = registration_error(counts, voxels, registration, &around.counts, around.voxels);
+  }
   const Estimate covered = coverage_estimate(counts, simulator.goal_density(), voxels);
   const Estimate overlapped = overlap ? overlap_estimate(counts, voxels) : Estimate{};
   const OverlapMatrix matrix = overlap ? overlap_matrix(counts) : OverlapMatrix{};
@@ -188,12 +226,11 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
     write_missed(std::vector<std::filesystem::path>(options.missed.files.begin(), options.missed.files.end()), *judged,
                  simulator, placed);
   if (options.matrix) write_overlap_csv(*options.matrix, matrix);
-  const RegistrationOptions registration = options.registration.settle();
-  Estimate registered;
-  RegistrationError error;
-  if (options.with_registration) {
-    registered = registration_estimate(counts, voxels, registration);
-    error = registration_error(counts, voxels, registration);
+  for (const std::string& file : options.registration_files) {
+    if (file.ends_with(".ply"))
+      write_registration_ply(file, simulator, field, error);
+    else
+      draw_registration(file, simulator, field, error, placed, "Registration error on the surface (predicted)");
   }
   if (options.picture) {
     draw_plan_view(*options.picture, site.scene, site.area(), placed, matrix,
@@ -227,6 +264,7 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
     entry.stations = placed;
     entry.confirmed = !sampled;
     entry.exact_overlap_matrix = matrix;
+    if (options.with_registration) entry.registration = error;
     const auto known = [&](const Estimate& e) {
       return MeasuredValue{.searched = e.value, .standard_error = e.standard_error, .exact = sampled ? NAN : e.value};
     };
@@ -268,7 +306,10 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
       json["overlap_se"] = overlapped.standard_error;
       json["overlap_matrix"] = matrix_json(matrix);
     }
-    if (options.with_registration) json["registration"] = registration_json(error, registered);
+    if (options.with_registration) {
+      json["registration"] = registration_json(error, registered);
+      json["registration"]["surfaces"] = to_string(options.registration.surfaces);
+    }
     if (sampled) json["sample"] = counts.voxels;
     if (!counts.dropped.empty()) json["dropped"] = dropped_json(all_dropped(counts));
     program.console.print(json);

@@ -30,8 +30,9 @@ struct PlanOptions {
   SiteOptions site;
   ProblemOptions problem;
   PlanConfig config;
-  bool exact = false, greedy = false, resume = false, force = false, prove = false, no_report = false, json = false;
-  double max_seconds = 0;
+  bool exact = false, resume = false, force = false, prove = false, no_report = false, json = false;
+  double max_seconds = 0, seed_seconds = ExactConfig().max_seconds;
+  std::string seed_with;  // nothing, greedy or exact
   std::optional<SampleSize> sample;
   std::vector<StationText> start;
   std::optional<std::string> output;
@@ -79,11 +80,16 @@ struct PlanOptions {
     add_values(command, "--start", "X,Y,Z|U,V", "A station of the network to start from; repeat it for each",
                [this](const std::string& text, const std::string& what) { start.push_back(parse_station(text, what)); })
         ->group("Search");
-    add_value(command, "--seed-with", "greedy", "Start from a greedy choice of stations",
+    add_value(command, "--seed-with", "greedy|exact",
+              "Start from a choice among candidates: a greedy one, or the best by branch and bound",
               [this](const std::string& text, const std::string& what) {
-                if (text != "greedy") throw Error(Errc::invalid_argument, what + ": '" + text + "' is not greedy");
-                greedy = true;
+                if (text != "greedy" && text != "exact")
+                  throw Error(Errc::invalid_argument, what + ": '" + text + "' is neither greedy nor exact");
+                seed_with = text;
               })
+        ->group("Search");
+    add_value(command, "--seed-time", "T", "Time for the exact choice: 90, 90s or 2min; 1min otherwise",
+              [this](const std::string& text, const std::string& what) { seed_seconds = parse_duration(text, what); })
         ->group("Search");
     add_value(command, "--max-time", "T", "Be done after so long, with all that a plan takes: 90, 90s, 15min or 2h",
               [this](const std::string& text, const std::string& what) { max_seconds = parse_duration(text, what); })
@@ -211,6 +217,34 @@ std::vector<Vec3> greedy_start(LoadedSite& site, Simulator& simulator, const Sur
   if (greedy.cancelled) return heads;
   for (const auto& station : greedy.stations) heads.push_back(station.position);
   spdlog::info("greedy: {} stations cover {:.4f}", heads.size(), greedy.coverage.back());
+  return heads;
+}
+
+// Heads of the best choice for the largest network that was found in time; empty where none was.
+std::vector<Vec3> exact_start(LoadedSite& site, Simulator& simulator, const SurveyProblem& problem,
+                              const PlanConfig& config, double seconds, Program& program, std::stop_token stop) {
+  double link = 0;
+  for (const Requirement& requirement : problem.requirements)
+    if (requirement.objective.name == "link" && requirement.bound == Requirement::Bound::at_least)
+      link = requirement.limit;
+  ProgressLine line(program.console, "exact");
+  const ExactResult exact =
+      exact_network(simulator, site.area(), site.clash(),
+                    {.stations = problem.stations_max,
+                     .sample_voxels = std::min<std::uint64_t>(config.sample_voxels, sample_for_coverage),
+                     .link = link,
+                     .max_seconds = seconds,
+                     .fixed = problem.kept},
+                    {.report = [&](double done) { line.update(done); }, .stop = std::move(stop)});
+  std::vector<Vec3> heads;
+  if (exact.cancelled) return heads;
+  for (const auto& station : exact.stations) heads.push_back(station.position);
+  if (heads.empty())
+    spdlog::warn("exact: no network of {} stations was found that hangs together by overlaps of {:g}",
+                 problem.stations_max, link);
+  else
+    spdlog::info("exact: {} stations cover {:.4f}, within {:.1f} % of the best that any of the candidates can do",
+                 heads.size(), exact.choice.reached.value, 100 * exact.choice.gap());
   return heads;
 }
 
@@ -368,10 +402,16 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   if (!options.exact)
     config.sample_voxels =
         options.sample ? options.sample->of(simulator.voxel_count()) : default_sample(problem, simulator.voxel_count());
-  if (options.greedy && !problem.fewest) {
+  if (!options.seed_with.empty()) {
     if (!options.start.empty())
       throw Error(Errc::invalid_argument, "--seed-with and --start both say where to start: give one");
-    config.start = greedy_start(site, simulator, problem, config, program, deadline.stop());
+    if (problem.fewest)
+      throw Error(Errc::invalid_argument,
+                  "--seed-with: the question for the fewest stations starts from its own "
+                  "choice; give --stations and --objectives, or another --problem");
+    config.start = options.seed_with == "greedy"
+                       ? greedy_start(site, simulator, problem, config, program, deadline.stop())
+                       : exact_start(site, simulator, problem, config, options.seed_seconds, program, deadline.stop());
   }
   const nlohmann::json as_given = as_options(site, options, problem, config);
   const Before before = look_into(folder, as_given);

@@ -5,6 +5,7 @@
 
 #include "cli/options.hpp"
 #include "cli/parse.hpp"
+#include "vantage/error.hpp"
 
 namespace vantage::cli {
 
@@ -25,6 +26,14 @@ void RegistrationCliOptions::add(CLI::App& command) {
   number("--registration-tilt", "DEG",
          "Standard deviation of a scan's tilts, by its compensator; 0: exactly level, some degrees: not levelled",
          usual.tilt.in_degrees(), tilt_deg, {.low = 0, .high = 180});
+  add_value(command, "--registration-surfaces", "surveyed|all",
+            "What holds scans together: surveyed surfaces, or also those that nobody surveys; surveyed otherwise",
+            [this](const std::string& text, const std::string& what) {
+              if (text != "all" && text != "surveyed")
+                throw Error(Errc::invalid_argument, what + ": '" + text + "' is neither surveyed nor all");
+              surfaces = text == "all" ? RegistrationSurfaces::all : RegistrationSurfaces::surveyed;
+            })
+      ->group("Registration");
 }
 
 RegistrationOptions RegistrationCliOptions::settle() const {
@@ -34,6 +43,7 @@ RegistrationOptions RegistrationCliOptions::settle() const {
   if (position_m) options.position_m = *position_m;
   if (heading_deg) options.heading = Angle::degrees(*heading_deg);
   if (tilt_deg) options.tilt = Angle::degrees(*tilt_deg);
+  options.surfaces = surfaces;
   return options;
 }
 

@@ -11,6 +11,7 @@ namespace vantage::cli {
 
 struct RegistrationCliOptions {
   std::optional<double> rho_m, patch_m, position_m, heading_deg, tilt_deg;
+  RegistrationSurfaces surfaces = RegistrationSurfaces::surveyed;
 
   void add(CLI::App& command);
   RegistrationOptions settle() const;

@@ -79,17 +79,22 @@ struct Moments {
 // The stations that see something, and what holds them together.
 class Adjustment {
  public:
-  Adjustment(const RegistrationSums& sums, double share, const RegistrationOptions& options)
+  // `sums`: of what holds the scans together, of which `share` counts once for each voxel that was not looked at.
+  // `covered`: of the surface whose error is asked for.
+  Adjustment(const RegistrationSums& sums, double share, const RegistrationSums& covered,
+             const RegistrationOptions& options)
       : sums_(sums), share_(share), options_(options), unknowns_(options.tilt.in_radians() > 0 ? 6 : 4) {
     Moments all;
+    const Vector3d offset = to_eigen(sums.centre - covered.centre) / covered.radius_m;
     for (std::size_t k = 0; k < sums.heads.size(); ++k) {
-      const Moments own(sums.surface.data() + k * of_station);
-      if (!(own.mass > 0)) continue;
+      const Moments own =
+          Moments(covered.surface.data() + k * of_station).moved(offset, sums.radius_m / covered.radius_m);
+      if (!(own.mass > 0) && !(sums.surface[k * of_station] > 0)) continue;
       stations_.push_back(k);
       moments_.push_back(own);
       all.add(own);
     }
-    if (stations_.empty()) return;
+    if (!(all.mass > 0)) return;
     centre_ = all.first / all.mass;
     const double spread = (all.second.trace() / all.mass - centre_.squaredNorm());
     scale_ = std::max(std::sqrt(std::max(spread, 0.0)), least_scale_m / sums.radius_m);
@@ -102,7 +107,7 @@ class Adjustment {
     result.stations.resize(sums_.heads.size());
     result.poses.resize(sums_.heads.size());
     result.centre = sums_.centre;
-    if (stations_.empty()) {
+    if (!(mass_ > 0)) {
       result.rms_m = result.worst_m = std::sqrt(3.0) * options_.position_m;
       return result;
     }
@@ -116,7 +121,7 @@ class Adjustment {
       const double squares = std::max((moments_[k].quadratic() * covariances[k]).trace(), 0.0);
       total += squares;
       StationError& station = result.stations[place];
-      station.rms_m = std::sqrt(squares / moments_[k].mass);
+      station.rms_m = moments_[k].mass > 0 ? std::sqrt(squares / moments_[k].mass) : 0;
       if (station.rms_m > result.worst_m) {
         result.worst_m = station.rms_m;
         result.worst_station = place;
@@ -230,6 +235,10 @@ class Adjustment {
 
 }  // namespace
 
+std::string to_string(RegistrationSurfaces surfaces) {
+  return surfaces == RegistrationSurfaces::all ? "all" : "surveyed";
+}
+
 Settings settings(const RegistrationOptions& options) {
   return SettingList()
       .add("rho_m", options.model.rho_m, {"registration-rho"})
@@ -237,6 +246,7 @@ Settings settings(const RegistrationOptions& options) {
       .add("position_m", options.position_m, {"registration-position"})
       .add("heading_deg", options.heading, {"registration-heading"})
       .add("tilt_deg", options.tilt, {"registration-tilt"})
+      .add("surfaces", to_string(options.surfaces), {"registration-surfaces"})
       .take();
 }
 
@@ -261,12 +271,19 @@ double RegistrationError::at(std::size_t station, const Vec3& local) const {
 }
 
 RegistrationError registration_error(const NetworkCounts& counts, std::uint64_t voxels,
-                                     const RegistrationOptions& options) {
+                                     const RegistrationOptions& options, const NetworkCounts* surroundings,
+                                     std::uint64_t surroundings_voxels) {
   check(options);
-  if (counts.registration.heads.size() != counts.stations)
-    throw Error(Errc::invalid_argument, "registration: the evaluation was not asked for its sums");
-  const double share = counts.voxels > 0 ? static_cast<double>(voxels) / static_cast<double>(counts.voxels) : 1;
-  return Adjustment(counts.registration, share, options).error();
+  const bool all = options.surfaces == RegistrationSurfaces::all;
+  const auto summed = [&](const NetworkCounts* c) { return c && c->registration.heads.size() == counts.stations; };
+  if (!summed(&counts)) throw Error(Errc::invalid_argument, "registration: the evaluation was not asked for its sums");
+  if (all && !summed(surroundings))
+    throw Error(Errc::invalid_argument,
+                "registration: by all surfaces, but the surroundings were not evaluated, or not asked for their sums");
+  const NetworkCounts& held_by = all ? *surroundings : counts;
+  const std::uint64_t of = all ? surroundings_voxels : voxels;
+  const double share = held_by.voxels > 0 ? static_cast<double>(of) / static_cast<double>(held_by.voxels) : 1;
+  return Adjustment(held_by.registration, share, counts.registration, options).error();
 }
 
 }  // namespace vantage

@@ -60,6 +60,15 @@ double jackknife_error(const std::vector<double>& values, double unsampled, doub
   return std::min(std::sqrt(unsampled * (groups - 1) / groups * squares), largest_error * scale);
 }
 
+// How much too large a function of a sample tends to be, by the same replicates (Quenouille 1956): the part of its bias
+// that falls as 1/n, n counted against the population.
+double jackknife_bias(double estimate, const std::vector<double>& values, double unsampled) {
+  const double groups = static_cast<double>(values.size());
+  double sum = 0;
+  for (const double value : values) sum += value - estimate;
+  return values.empty() ? 0 : unsampled * (groups - 1) / groups * sum;
+}
+
 }  // namespace
 
 Estimate coverage_estimate(const NetworkCounts& counts, double goal_density, std::uint64_t population) {
@@ -131,13 +140,26 @@ Estimate overlap_estimate(const NetworkCounts& counts, std::uint64_t population)
   return estimate;
 }
 
-Estimate registration_estimate(const NetworkCounts& counts, std::uint64_t voxels, const RegistrationOptions& options) {
-  const auto of = [&](const NetworkCounts& rest) { return registration_error(rest, voxels, options).rms_m; };
-  Estimate estimate{of(counts), 0};
-  const double unsampled = unsampled_share(counts, voxels);
-  // Nothing is further off than where it starts.
-  if (unsampled > 0)
-    estimate.standard_error = jackknife_error(replicates<double>(counts, of), unsampled, 2 * options.position_m);
+Estimate registration_estimate(const NetworkCounts& counts, std::uint64_t voxels, const RegistrationOptions& options,
+                               const NetworkCounts* surroundings, std::uint64_t surroundings_voxels) {
+  const auto error = [&](const NetworkCounts& surveyed, const NetworkCounts* around) {
+    return registration_error(surveyed, voxels, options, around, surroundings_voxels).rms_m;
+  };
+  const double seen = error(counts, surroundings);
+  Estimate estimate{seen, 0};
+  const auto add = [&](const std::vector<double>& values, double unsampled) {
+    // Nothing is further off than where it starts.
+    const double own = jackknife_error(values, unsampled, 2 * options.position_m);
+    estimate.value -= std::clamp(jackknife_bias(seen, values, unsampled), -own, own);
+    estimate.standard_error = std::hypot(estimate.standard_error, own);
+  };
+  if (const double unsampled = unsampled_share(counts, voxels); unsampled > 0)
+    add(replicates<double>(counts, [&](const NetworkCounts& rest) { return error(rest, surroundings); }), unsampled);
+  if (options.surfaces == RegistrationSurfaces::all)
+    if (const double unsampled = unsampled_share(*surroundings, surroundings_voxels); unsampled > 0)
+      add(replicates<double>(*surroundings, [&](const NetworkCounts& rest) { return error(counts, &rest); }),
+          unsampled);
+  estimate.value = std::max(estimate.value, 0.0);
   return estimate;
 }
 

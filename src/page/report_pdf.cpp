@@ -107,6 +107,8 @@ Sheet summary_sheet(const Report& report, const ReportSite& site) {
     sheet.y += 2;
   }
   sheet.y += 10;
+  std::span<const StationError> errors;
+  if (network.entry.registration) errors = network.entry.registration->stations;
   const auto pages =
       plan_view_pictures({.scene = site.simulator.scene(),
                           .area = site.area,
@@ -114,7 +116,8 @@ Sheet summary_sheet(const Report& report, const ReportSite& site) {
                           .names = network.names,
                           .overlap = network.entry.exact_overlap_matrix,
                           .link_overlap = network.summary.links ? network.summary.links->least : default_link_overlap,
-                          .title = "Plan"});
+                          .title = "Plan",
+                          .errors = errors});
   const Canvas& plan = *pages.front().canvas;
   const double scale = std::min((kWidth - 2 * kMargin) / plan.width(), sheet.left() / plan.height());
   sheet.canvas->page({kMargin, sheet.y, plan.width() * scale, plan.height() * scale}, plan);

@@ -9,6 +9,8 @@
 #include "core/setting_list.hpp"
 #include "plan/capture_master.hpp"
 #include "plan/choose_on_rows.hpp"
+#include "plan/fewest_on_rows.hpp"
+#include "plan/row_graph.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage {
@@ -37,29 +39,103 @@ std::vector<double> as_shares(const Rows& chosen, std::size_t candidates) {
 // A choice that comes as near to its bound is the best: branch and bound has tolerances.
 constexpr double closed = 1e-5;
 
+// Whether a row besides the taken ones leaves the network whole.
+MayTake keeping_together(const RowGraph* graph) {
+  if (!graph) return {};
+  return [graph](std::size_t row, std::span<const std::size_t> taken) {
+    Rows all(taken.begin(), taken.end());
+    all.push_back(row);
+    return graph->connected(all);
+  };
+}
+
+// A good network of so many rows at most that hangs together; empty where none is met.
+Rows choose_linked(const CaptureRows& rows, std::size_t stations, std::span<const std::size_t> fixed,
+                   const RowGraph& graph, const Progress& progress) {
+  // Arrays of numbers for a choice that knows fixed rows by standing first.
+  Rows order(fixed.begin(), fixed.end());
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    if (std::ranges::find(fixed, k) == fixed.end()) order.push_back(k);
+  CaptureRows sorted(rows.weights(), rows.goal_density());
+  std::vector<std::uint32_t> points;
+  std::vector<float> overlaps(order.size() * order.size());
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    points.assign(rows.voxels().size(), 0);
+    for (const CapturedVoxel& seen : rows.row(order[k])) points[seen.voxel] = seen.points;
+    sorted.add(points);
+    for (std::size_t l = 0; l < order.size(); ++l) overlaps[k * order.size() + l] = graph.linked(order[k], order[l]);
+  }
+  const PairTable pairs(order.size(), std::move(overlaps));
+  const RowAnswer answer = fewest_on_rows({.rows = sorted,
+                                           .pairs = pairs,
+                                           .coverage = 1,
+                                           .link = 1,
+                                           .fixed = fixed.size(),
+                                           .fewest = stations,
+                                           .most = stations},
+                                          progress.stop);
+  Rows chosen;
+  for (const std::size_t k : answer.rows) chosen.push_back(order[k]);
+  if (!graph.connected(chosen)) return {};
+  return improve_by_swaps(rows, std::move(chosen), fixed.size(), 1e-9, keeping_together(&graph), progress);
+}
+
 // Branch and bound over the cuts, which are added where its choices turn out to hold less than the cuts say, until the
 // choice holds what the bound allows.
-void branch(CaptureMaster& master, const CaptureRows& rows, std::span<const std::size_t> fixed, double seconds,
-            CaptureBound& result, const Progress& progress) {
+void branch(CaptureMaster& master, const CaptureRows& rows, std::span<const std::size_t> fixed, const RowGraph* graph,
+            double seconds, CaptureBound& result, const Progress& progress) {
   using Clock = std::chrono::steady_clock;
   const auto begun = Clock::now();
-  double reached = RowCover(rows, result.chosen).value();
+  const MayTake may_take = keeping_together(graph);
+  double reached = result.chosen.empty() ? -1 : RowCover(rows, result.chosen).value();
   while (!progress.stopped() && result.bound - reached > closed) {
     const double left = seconds - std::chrono::duration<double>(Clock::now() - begun).count();
     if (left <= 0) break;
-    const CaptureMaster::Choice choice = master.choose(result.stations, left);
+    const CaptureMaster::Choice choice = master.choose(result.stations, left, std::max(reached, 0.0), graph);
     result.bound = std::min(result.bound, choice.bound);
     if (choice.rows.empty()) break;
     Rows chosen(fixed.begin(), fixed.end());
     chosen.insert(chosen.end(), choice.rows.begin(), choice.rows.end());
     master.cut_at(as_shares(choice.rows, rows.size()));
-    chosen = improve_by_swaps(rows, std::move(chosen), fixed.size(), 1e-9, {}, progress);
+    chosen = improve_by_swaps(rows, std::move(chosen), fixed.size(), 1e-9, may_take, progress);
     master.cut_at(as_shares({chosen.begin() + static_cast<std::ptrdiff_t>(fixed.size()), chosen.end()}, rows.size()));
     if (const double value = RowCover(rows, chosen).value(); value > reached) {
       reached = value;
       result.chosen = std::move(chosen);
     }
   }
+}
+
+// With `graph`, of networks that hang together.
+CaptureBound bound_of(const CaptureRows& rows, std::size_t stations, std::span<const std::size_t> fixed,
+                      const RowGraph* graph, const BoundConfig& config, const Progress& progress) {
+  check(rows, fixed);
+  if (stations < 1) throw Error(Errc::invalid_argument, "bound: of how many stations? At least 1");
+  CaptureBound result;
+  result.stations = stations;
+  const Progress silent{{}, progress.stop};
+  result.chosen =
+      graph ? choose_linked(rows, stations, fixed, *graph, silent) : choose_rows(rows, stations, fixed, silent);
+  const Rows free(result.chosen.begin() + static_cast<std::ptrdiff_t>(std::min(fixed.size(), result.chosen.size())),
+                  result.chosen.end());
+  const auto solve = [&](CaptureMaster& master, std::size_t candidates, double from) {
+    master.cut_at(as_shares(free, candidates));
+    const auto share = [&](double done) { progress(from + 0.5 * done); };
+    return master.most(static_cast<double>(stations), config.tolerance, config.max_seconds, {share, progress.stop});
+  };
+  // The first half of the candidates, as evenly spread as all of them.
+  const std::size_t half = std::max<std::size_t>(rows.size() / 2, 1);
+  CaptureMaster coarse(rows, half, fixed), master(rows, rows.size(), fixed);
+  const Relaxed before = solve(coarse, half, 0), after = solve(master, rows.size(), 0.5);
+  result.bound = after.bound;
+  result.relaxation = after.reached;
+  result.complete = before.complete && after.complete;
+  result.half_bound = before.bound;
+  result.spacing_term = std::max(after.bound - before.bound, 0.0);
+  if (config.exact_seconds > 0) branch(master, rows, fixed, graph, config.exact_seconds, result, progress);
+  result.reached = rows.coverage(result.chosen);
+  progress(1);
+  return result;
 }
 
 }  // namespace
@@ -80,30 +156,22 @@ Rows choose_rows(const CaptureRows& rows, std::size_t stations, std::span<const 
 
 CaptureBound bound_capture(const CaptureRows& rows, std::size_t stations, std::span<const std::size_t> fixed,
                            const BoundConfig& config, const Progress& progress) {
-  check(rows, fixed);
-  if (stations < 1) throw Error(Errc::invalid_argument, "bound: of how many stations? At least 1");
-  CaptureBound result;
-  result.stations = stations;
-  result.chosen = choose_rows(rows, stations, fixed, {{}, progress.stop});
-  const Rows free(result.chosen.begin() + static_cast<std::ptrdiff_t>(fixed.size()), result.chosen.end());
-  const auto solve = [&](CaptureMaster& master, std::size_t candidates, double from) {
-    master.cut_at(as_shares(free, candidates));
-    const auto share = [&](double done) { progress(from + 0.5 * done); };
-    return master.most(static_cast<double>(stations), config.tolerance, config.max_seconds, {share, progress.stop});
-  };
-  // The first half of the candidates, as evenly spread as all of them.
-  const std::size_t half = std::max<std::size_t>(rows.size() / 2, 1);
-  CaptureMaster coarse(rows, half, fixed), master(rows, rows.size(), fixed);
-  const Relaxed before = solve(coarse, half, 0), after = solve(master, rows.size(), 0.5);
-  result.bound = after.bound;
-  result.relaxation = after.reached;
-  result.complete = before.complete && after.complete;
-  result.half_bound = before.bound;
-  result.spacing_term = std::max(after.bound - before.bound, 0.0);
-  if (config.exact_seconds > 0) branch(master, rows, fixed, config.exact_seconds, result, progress);
-  result.reached = rows.coverage(result.chosen);
-  progress(1);
-  return result;
+  return bound_of(rows, stations, fixed, nullptr, config, progress);
+}
+
+CaptureBound bound_linked_capture(const CaptureRows& rows, std::size_t stations, std::span<const RowLink> links,
+                                  std::span<const std::size_t> fixed, const BoundConfig& config,
+                                  const Progress& progress) {
+  if (stations + fixed.size() > max_stations)
+    throw Error(Errc::invalid_argument, "bound: " + std::to_string(stations + fixed.size()) +
+                                            " stations are asked to hang together, but " +
+                                            std::to_string(max_stations) + " is the most of a network");
+  for (const auto& [a, b] : links)
+    if (a >= rows.size() || b >= rows.size())
+      throw Error(Errc::invalid_argument, "bound: a link of rows " + std::to_string(a) + " and " + std::to_string(b) +
+                                              ", of which there are " + std::to_string(rows.size()));
+  const RowGraph graph(rows.size(), links);
+  return bound_of(rows, stations, fixed, &graph, config, progress);
 }
 
 StationsBound bound_stations(const CaptureRows& rows, double capture, std::span<const std::size_t> fixed,
@@ -116,14 +184,7 @@ StationsBound bound_stations(const CaptureRows& rows, double capture, std::span<
   CaptureMaster master(rows, rows.size(), fixed);
   const Rows greedy = choose_greedily(rows, rows.size(), fixed, capture);
   if (RowCover(rows, greedy).value() >= capture) {
-    // With one station fewer, swaps may still find it.
-    result.chosen = greedy;
-    while (result.chosen.size() > fixed.size() && !progress.stopped()) {
-      Rows fewer(result.chosen.begin(), result.chosen.end() - 1);
-      fewer = improve_by_swaps(rows, std::move(fewer), fixed.size(), 1e-9, {}, progress);
-      if (RowCover(rows, fewer).value() < capture) break;
-      result.chosen = std::move(fewer);
-    }
+    result.chosen = drop_and_swap(rows, greedy, fixed.size(), capture, {{}, progress.stop});
     master.cut_at(as_shares({result.chosen.begin() + static_cast<std::ptrdiff_t>(fixed.size()), result.chosen.end()},
                             rows.size()));
   }

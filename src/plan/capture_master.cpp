@@ -5,6 +5,9 @@
 #include <chrono>
 #include <cmath>
 #include <coin/CbcModel.hpp>
+#include <coin/CglFlowCover.hpp>
+#include <coin/CglGomory.hpp>
+#include <coin/CglMixedIntegerRounding2.hpp>
 #include <coin/ClpSimplex.hpp>
 #include <coin/OsiClpSolverInterface.hpp>
 #include <functional>
@@ -26,6 +29,8 @@ constexpr std::size_t voxels_per_group = 50;
 constexpr std::size_t idle_rounds = 6;
 // What branch and bound may be wrong by: its tolerances.
 constexpr double bound_slack = 1e-6;
+// Solutions as good as the known one must not be lost to rounding.
+constexpr double known_slack = 1e-7;
 // A cut must be broken by this share of all weight.
 constexpr double broken = 1e-9;
 
@@ -42,14 +47,16 @@ struct CaptureMaster::Impl {
   };
 
   const CaptureRows& rows;
+  std::vector<std::size_t> fixed;
   std::size_t candidates, groups;
   std::vector<double> base;          // b_v
   std::vector<double> weight;        // w_v / Σ w
   std::vector<double> group_weight;  // Σ w of each group
   std::vector<Cut> cuts;
 
-  Impl(const CaptureRows& r, std::size_t n, std::span<const std::size_t> fixed)
+  Impl(const CaptureRows& r, std::size_t n, std::span<const std::size_t> f)
       : rows(r),
+        fixed(f.begin(), f.end()),
         candidates(n),
         groups(std::clamp<std::size_t>(r.voxels().size() / voxels_per_group, 1, most_groups)),
         base(r.voxels().size()),
@@ -134,6 +141,10 @@ struct CaptureMaster::Impl {
     }
     return least;
   }
+
+  // Further columns and rows under which the taken rows hang together: at one of them a unit for each enters, each
+  // keeps one and hands the others on along links to taken rows. Returns the columns that have to be whole.
+  std::vector<int> add_flow(ClpSimplex& lp, std::size_t stations, const RowGraph& graph) const;
 
   Relaxed solve(bool fewest, double limit, double tolerance, double seconds, const Progress& progress);
 
@@ -271,20 +282,92 @@ Relaxed CaptureMaster::Impl::solve(bool fewest, double limit, double tolerance, 
   }
 }
 
-CaptureMaster::Choice CaptureMaster::choose(std::size_t stations, double seconds) const {
+std::vector<int> CaptureMaster::Impl::add_flow(ClpSimplex& lp, std::size_t stations, const RowGraph& graph) const {
+  const auto all = static_cast<double>(stations + fixed.size());
+  const auto is_fixed = [&](std::size_t k) { return std::ranges::find(fixed, k) != fixed.end(); };
+  const auto add_column = [&](double most) {
+    lp.addColumn(0, nullptr, nullptr, 0, most, 0);
+    return lp.numberColumns() - 1;
+  };
+  std::vector<int> whole;
+  // What each row takes in, and what it takes in less what it hands on.
+  struct Terms {
+    std::vector<int> index;
+    std::vector<double> value;
+    void add(int column, double factor) { index.push_back(column), value.push_back(factor); }
+  };
+  std::vector<Terms> in(candidates), net(candidates);
+  Terms sources;
+  for (std::size_t k = 0; k < candidates; ++k) {
+    if (!fixed.empty() && k != fixed.front()) continue;
+    const int flow = add_column(all), here = add_column(1);
+    whole.push_back(here);
+    sources.add(here, 1);
+    const int index[] = {flow, here};
+    const double value[] = {1, -all};
+    lp.addRow(2, index, value, -COIN_DBL_MAX, 0);
+    in[k].add(flow, 1), net[k].add(flow, 1);
+  }
+  lp.addRow(static_cast<int>(sources.index.size()), sources.index.data(), sources.value.data(), -COIN_DBL_MAX, 1);
+  for (std::size_t a = 0; a < candidates; ++a)
+    for (std::size_t b = 0; b < candidates; ++b) {
+      if (!graph.linked(a, b)) continue;
+      const int flow = add_column(all - 1);
+      in[b].add(flow, 1), net[b].add(flow, 1), net[a].add(flow, -1);
+    }
+  for (std::size_t k = 0; k < candidates; ++k) {
+    const int y = static_cast<int>(k);
+    const double there = is_fixed(k) ? 1 : 0;
+    if (there > 0)
+      lp.setColumnUpper(y, 0);  // it cannot be taken again
+    else
+      in[k].add(y, -all), net[k].add(y, -1);
+    lp.addRow(static_cast<int>(in[k].index.size()), in[k].index.data(), in[k].value.data(), -COIN_DBL_MAX, there * all);
+    lp.addRow(static_cast<int>(net[k].index.size()), net[k].index.data(), net[k].value.data(), there, there);
+    // A fraction of a flow reaches far; so each taken row needs a taken neighbour, too.
+    Terms neighbours;
+    bool fixed_neighbour = there > 0;
+    for (std::size_t l = 0; l < candidates; ++l) {
+      if (!graph.linked(k, l)) continue;
+      fixed_neighbour = fixed_neighbour || is_fixed(l);
+      neighbours.add(static_cast<int>(l), -1);
+    }
+    if (fixed_neighbour || all < 2) continue;
+    neighbours.add(y, 1);
+    lp.addRow(static_cast<int>(neighbours.index.size()), neighbours.index.data(), neighbours.value.data(),
+              -COIN_DBL_MAX, 0);
+  }
+  return whole;
+}
+
+CaptureMaster::Choice CaptureMaster::choose(std::size_t stations, double seconds, double known,
+                                            const RowGraph* graph) const {
   const Impl& m = *impl_;
   ClpSimplex lp;
   m.load(lp);
   lp.setOptimizationDirection(-1);
   for (std::size_t g = 0; g < m.groups; ++g) lp.setObjectiveCoefficient(static_cast<int>(m.candidates + g), 1);
   lp.setRowUpper(Impl::number, static_cast<double>(stations));
+  lp.setRowLower(Impl::capture, known - known_slack);
+  std::vector<int> whole;
+  if (graph) whole = m.add_flow(lp, stations, *graph);
   OsiClpSolverInterface solver(&lp);
   solver.messageHandler()->setLogLevel(0);
+  for (const int column : whole) solver.setInteger(column);
   for (std::size_t k = 0; k < m.candidates; ++k) solver.setInteger(static_cast<int>(k));
   CbcModel model(solver);
   model.setLogLevel(0);
   model.messageHandler()->setLogLevel(0);
   model.setMaximumSeconds(seconds);
+  // What costs to be used at all, as flows between stations do.
+  CglFlowCover flow_cover;
+  CglMixedIntegerRounding2 rounding;
+  CglGomory gomory;
+  if (graph) {
+    model.addCutGenerator(&flow_cover, -1, "flow cover");
+    model.addCutGenerator(&rounding, -1, "rounding");
+    model.addCutGenerator(&gomory, -1, "gomory");
+  }
   model.branchAndBound();
   Choice choice;
   // Maximised, so Cbc's values are those of the negated objective.

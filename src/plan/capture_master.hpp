@@ -14,6 +14,7 @@
 #include <span>
 #include <vector>
 
+#include "plan/row_graph.hpp"
 #include "vantage/candidates.hpp"
 #include "vantage/progress.hpp"
 
@@ -47,12 +48,13 @@ class CaptureMaster {
   Relaxed fewest(double capture, double tolerance, double seconds, const Progress& progress = {});
 
   // The best integer y of so many stations at most, by branch and bound over the cuts so far; empty where none was
-  // found in time. `bound` is an upper bound for any choice of so many candidates.
+  // found in time. `bound` is an upper bound for any choice of so many candidates. `known`: what some choice is known
+  // to have; worse ones are not looked at. With `graph`, of choices that hang together with the fixed rows.
   struct Choice {
     std::vector<std::size_t> rows;
     double bound = 1;
   };
-  Choice choose(std::size_t stations, double seconds) const;
+  Choice choose(std::size_t stations, double seconds, double known = 0, const RowGraph* graph = nullptr) const;
 
  private:
   struct Impl;

@@ -139,4 +139,23 @@ std::vector<std::size_t> improve_by_swaps(const CaptureRows& rows, std::vector<s
   return chosen;
 }
 
+std::vector<std::size_t> drop_and_swap(const CaptureRows& rows, std::vector<std::size_t> chosen, std::size_t fixed,
+                                       double enough, const Progress& progress) {
+  while (chosen.size() > fixed && !progress.stopped()) {
+    const RowCover cover(rows, chosen);
+    std::size_t least = fixed;
+    double lost = cover.loss(chosen[fixed]);
+    for (std::size_t at = fixed + 1; at < chosen.size(); ++at)
+      if (const double loss = cover.loss(chosen[at]); loss < lost) lost = loss, least = at;
+    std::vector<std::size_t> fewer = chosen;
+    fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(least));
+    if (RowCover(rows, fewer).value() < enough) {
+      fewer = improve_by_swaps(rows, std::move(fewer), fixed, 1e-9, {}, progress);
+      if (RowCover(rows, fewer).value() < enough) break;
+    }
+    chosen = std::move(fewer);
+  }
+  return chosen;
+}
+
 }  // namespace vantage

@@ -51,4 +51,10 @@ std::vector<std::size_t> improve_by_swaps(const CaptureRows& rows, std::vector<s
                                           std::size_t fixed = 0, double least = 1e-9, const MayTake& may_take = {},
                                           const Progress& progress = {});
 
+// With F at `enough` or above, rows fewer: drops the one that takes least along (not one of the first `fixed`), and
+// where that is too much makes up for it by swaps, until these cannot. F stays at `enough`. Deterministic unless
+// stopped. REQUIRES: F(chosen) >= enough.
+std::vector<std::size_t> drop_and_swap(const CaptureRows& rows, std::vector<std::size_t> chosen, std::size_t fixed,
+                                       double enough, const Progress& progress = {});
+
 }  // namespace vantage

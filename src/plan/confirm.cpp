@@ -94,6 +94,7 @@ std::vector<PlanEntry> confirm_front(const SearchOutcome& found, const DecisionS
     entry.exact_overlap_matrix = std::move(exact->overlaps);
     entry.exact_scan_overlap_matrix = std::move(exact->scan_overlaps);
     entry.points_on_surveyed = std::move(exact->points_on_surveyed);
+    entry.registration = std::move(exact->registration);
     entry.confirmed = true;
     for (std::size_t m = 0; m < measures.all.size(); ++m) {
       MeasuredValue& value = entry.values.at(measures.all[m].name);

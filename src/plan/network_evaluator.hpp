@@ -22,6 +22,7 @@ struct ConfirmedNetwork {
   OverlapMatrix overlaps = {};
   OverlapMatrix scan_overlaps = {};  // over all surfaces; empty where no measure needs it
   std::vector<std::uint64_t> points_on_surveyed = {};
+  std::optional<RegistrationError> registration = std::nullopt;  // where a measure needs it
 };
 
 class NetworkEvaluator {

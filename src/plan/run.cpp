@@ -42,6 +42,7 @@ void Run::ask(const SurveyProblem& problem) {
           .visible_parts = [this](const Network& network) { return visibility_parts(site_, network); },
           .surroundings = needs.surroundings ? &surroundings() : nullptr,
           .surroundings_voxels = surroundings_voxels(),
+          .registration = problem.registration,
           .minutes = needs.time ? [this, &ways = on_site()](
                                       std::span<const PlacedStation> stations) { return ways.visit(stations).minutes; }
                                 : std::function<double(std::span<const PlacedStation>)>()});

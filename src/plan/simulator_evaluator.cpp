@@ -14,6 +14,11 @@ std::vector<Network> to_networks(std::span<const PlacedNetwork> placed) {
   return networks;
 }
 
+// The model by which scans are held together by all surfaces, where they are.
+std::optional<RegistrationModel> registered_around(const Needs& needs) {
+  return needs.surroundings_registration ? needs.registration : std::nullopt;
+}
+
 }  // namespace
 
 std::optional<SimulatorEvaluator::Counted> SimulatorEvaluator::count(std::span<const Network> networks,
@@ -33,9 +38,12 @@ std::optional<SimulatorEvaluator::Counted> SimulatorEvaluator::count(std::span<c
     counted.surveyed = std::move(*counts);
   }
   if (needs.surroundings) {
-    auto counts =
-        count_with(*options_.surroundings, networks, {.voxels = options_.surroundings_voxels, .overlap = true},
-                   {.report = {}, .stop = progress.stop});
+    auto counts = count_with(*options_.surroundings, networks,
+                             {.voxels = options_.surroundings_voxels,
+                              .overlap = true,
+                              .registration = registered_around(needs),
+                              .registration_groups = errors},
+                             {.report = {}, .stop = progress.stop});
     if (!counts) return std::nullopt;
     counted.surroundings = std::move(*counts);
   }
@@ -123,7 +131,8 @@ std::optional<ConfirmedNetwork> SimulatorEvaluator::confirm(const PlacedNetwork&
   const Needs needs = measures_.all_needs();
   NetworkCounts around;
   if (needs.surroundings) {
-    around = options_.surroundings->evaluate(network, {.overlap = true}, {.report = {}, .stop = progress.stop});
+    around = options_.surroundings->evaluate(network, {.overlap = true, .registration = registered_around(needs)},
+                                             {.report = {}, .stop = progress.stop});
     trace_seconds_ += around.trace_seconds;
     if (around.cancelled) return std::nullopt;
   }
@@ -131,6 +140,9 @@ std::optional<ConfirmedNetwork> SimulatorEvaluator::confirm(const PlacedNetwork&
   ConfirmedNetwork confirmed{.values = {}, .overlaps = seen.overlap};
   if (needs.surroundings) confirmed.scan_overlaps = scan_overlap_matrix(around);
   for (const Objective& objective : measures_.all) confirmed.values.push_back(objective.value(seen));
+  if (needs.registration)
+    confirmed.registration =
+        registration_error(counts, seen.voxels, options_.registration, seen.surroundings, seen.surroundings_voxels);
   confirmed.points_on_surveyed = std::move(counts.points_on_surveyed);
   return confirmed;
 }

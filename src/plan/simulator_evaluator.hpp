@@ -19,6 +19,7 @@ class SimulatorEvaluator final : public NetworkEvaluator {
     // Over all surfaces; needed where a measure needs it. With so many sampled voxels, or every ray.
     Simulator* surroundings = nullptr;
     std::uint64_t surroundings_voxels = 0;
+    RegistrationOptions registration = {};  // of confirmed networks, where a measure needs it
     // Minutes on site without the kept stations; needed where a measure needs it.
     std::function<double(std::span<const PlacedStation>)> minutes = {};
   };

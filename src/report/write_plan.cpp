@@ -30,6 +30,8 @@ std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& re
   if (entry.confirmed) write_overlap_csv(folder / "overlap.csv", entry.exact_overlap_matrix);
   if (field) write_coverage_ply(folder / "coverage.ply", simulator, *field);
 
+  if (field && entry.registration)
+    write_registration_ply(folder / "registration.ply", simulator, *field, *entry.registration);
   std::string title = std::to_string(entry.stations.size()) + (entry.stations.size() == 1 ? " station" : " stations");
   title += ": coverage " + fixed(entry.value("coverage"), 3) + ", overlap " + fixed(entry.value("overlap"), 3);
   const auto save = [&](const std::string& name, const Canvas& picture) {
@@ -38,13 +40,20 @@ std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& re
   save("front", *front_picture(result));
   save("hypervolume", *hypervolume_picture(result));
   if (result.problem.objectives.size() > 1) save("history", *history_picture(result));
+  if (field && entry.registration)
+    for (const char* extension : {".png", ".svg"})
+      draw_registration(folder / (std::string("registration") + extension), simulator, *field, *entry.registration,
+                        entry.stations, "Registration error on the surface (predicted)");
+  std::span<const StationError> errors;
+  if (entry.registration) errors = entry.registration->stations;
   for (const PlanPage& page : plan_view_pictures({.scene = simulator.scene(),
                               .area = area,
                               .stations = entry.stations,
                               .names = station_names(entry.stations),
                               .overlap = entry.exact_overlap_matrix,
                               .link_overlap = result.problem.link_overlap,
-                              .title = title}))
+                              .title = title,
+                              .errors = errors}))
     save("plan" + page.suffix, *page.canvas);
   const auto names = station_names(entry.stations);
   write_station_files(folder, {entry.stations, names}, entry.exact_overlap_matrix, result.problem.link_overlap, area,

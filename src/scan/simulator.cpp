@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vantage/simulator.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -101,6 +99,7 @@ struct Simulator::Impl {
     grid = build_grid(data(), config);
     goal = grid->voxel_size() * grid->voxel_size() / (config.point_spacing_m * config.point_spacing_m);
     for (const Scanner& scanner : scanners) traced.push_back(trace_scanner(scanner));
+    registered = scanners;
     // Shares the scene's storage for as long as the engine wants it.
     const auto kept = std::make_shared<const Scene>(scene);
     tracer = make_tracer(config.engine, config.device_index,
@@ -175,25 +174,24 @@ struct Simulator::Impl {
   }
 
   // The planes of the sample asked for last, or of all voxels. Range noise is the scanner's, simulated or not.
-  const Patches& patches_of(std::span<const std::uint32_t> ranks, const RegistrationModel& model) {
+  RegistrationJob registration_of(std::span<const std::uint32_t> ranks, const RegistrationModel& model, bool groups) {
     if (!(model.rho_m > 0 && std::isfinite(model.rho_m) && model.patch_m > 0 && std::isfinite(model.patch_m))) {
       std::ostringstream what;
       what << "registration: the modelling error is " << model.rho_m << " m over patches of " << model.patch_m
            << " m; both must be above 0";
       throw Error(Errc::invalid_argument, what.str());
     }
-    if (patches.patches.size() != ranks.size() || patches.model != model) {
-      patches = make_patches(data(), *grid, ranks, *traced.front().pattern, model);
-      patch_scanners.clear();
-      const RayPattern& first = *traced.front().pattern;
-      for (std::size_t k = 0; k < scanners.size(); ++k) {
-        const RayPattern& own = *traced[k].pattern;
-        patch_scanners.push_back(
-            {std::make_shared<const NoiseModel>(make_noise_model(scanners[k], config.seed)),
-             static_cast<float>(first.zenith_step * first.azimuth_step / (own.zenith_step * own.azimuth_step))});
-      }
+    if (!patches || patches->patches.size() != ranks.size() || patches->model != model)
+      patches = std::make_shared<Patches>(make_patches(data(), *grid, ranks, make_pattern(registered.front()), model));
+    if (patch_scanners.empty()) {
+      const auto solid_angle = [](const Scanner& scanner) {
+        return scanner.zenith_step.in_radians() * scanner.azimuth_step.in_radians();
+      };
+      for (const Scanner& scanner : registered)
+        patch_scanners.push_back({std::make_shared<const NoiseModel>(make_noise_model(scanner, config.seed)),
+                                  static_cast<float>(solid_angle(registered.front()) / solid_angle(scanner))});
     }
-    return patches;
+    return {patches, patch_scanners, groups};
   }
 
   Scene scene;
@@ -202,8 +200,9 @@ struct Simulator::Impl {
   std::shared_ptr<const VoxelGrid> grid;
   double goal = 0;
   std::vector<TraceScanner> traced;  // of the scanners
+  std::vector<Scanner> registered;   // those of the scans that are registered
   std::vector<std::uint32_t> sampled;
-  Patches patches;
+  std::shared_ptr<const Patches> patches;
   std::vector<PatchScanner> patch_scanners;
   std::unique_ptr<Tracer> tracer;
 };
@@ -251,6 +250,10 @@ std::vector<VoxelPatch> Simulator::voxel_patches(std::span<const std::uint32_t> 
 }
 
 std::vector<std::uint32_t> Simulator::sampled_voxels(std::uint64_t voxels) const { return impl_->sample(voxels); }
+
+void Simulator::stand_for(std::span<const Scanner> scanners) {
+  impl_->registered.assign(scanners.begin(), scanners.end());
+}
 
 ScanSummary Simulator::scan(const Station& station, const ScanOptions& options,
                             const std::function<void(const ScanChunk&)>& sink, const Progress& progress) {
@@ -306,8 +309,8 @@ NetworkCounts Simulator::evaluate(const Network& network, const EvaluateOptions&
   if (options.registration && !counts.cancelled) {
     std::vector<std::uint32_t> ranks(voxel_count());
     std::iota(ranks.begin(), ranks.end(), 0u);
-    const Patches& patches = impl_->patches_of(ranks, *options.registration);
-    counts.registration = sum_patches(patches, impl_->patch_scanners, active, size, field->stations, 0).front();
+    const RegistrationJob job = impl_->registration_of(ranks, *options.registration, false);
+    take_registration(counts, sum_patches(job, active, size, field->stations, 0));
   }
   return counts;
 }
@@ -342,18 +345,9 @@ std::vector<NetworkCounts> Simulator::evaluate_sampled(std::span<const Network> 
   const auto points = [&](std::size_t k, std::span<const std::uint32_t> counted) {
     options.points(places[k], counted);
   };
-  std::vector<std::vector<RegistrationSums>> registration(options.registration ? traced.size() : 0);
-  std::function<void(std::size_t, std::span<const std::uint64_t>)> sum;
-  if (options.registration) {
-    const Patches& patches = impl_->patches_of(sample, *options.registration);
-    const std::uint32_t groups = options.registration_groups ? sample_groups : 0;
-    sum = [&, groups](std::size_t first, std::span<const std::uint64_t> masks) {
-      tbb::parallel_for(std::size_t{0}, masks.size() / sample.size(), [&, first, masks](std::size_t k) {
-        registration[first + k] = sum_patches(patches, impl_->patch_scanners, traced[first + k], sizes[first + k],
-                                              masks.subspan(k * sample.size(), sample.size()), groups);
-      });
-    };
-  }
+  std::optional<RegistrationJob> registration;
+  if (options.registration)
+    registration = impl_->registration_of(sample, *options.registration, options.registration_groups);
   std::vector<NetworkCounts> counts =
       impl_->tracer->count_sampled(traced, sizes,
                                    {.sample = sample,
@@ -361,16 +355,9 @@ std::vector<NetworkCounts> Simulator::evaluate_sampled(std::span<const Network> 
                                     .masks = options.overlap,
                                     .stop_at = stop_at_goal ? static_cast<std::uint32_t>(std::ceil(impl_->goal)) : 0,
                                     .points = options.points ? decltype(options.points)(points) : nullptr,
-                                    .station_masks = sum},
+                                    .registration = registration ? &*registration : nullptr},
                                    progress);
-  for (std::size_t k = 0; k < counts.size(); ++k) {
-    if (k < registration.size() && !registration[k].empty()) {
-      counts[k].registration = std::move(registration[k][0]);
-      for (std::size_t g = 1; g < registration[k].size(); ++g)
-        counts[k].groups[g - 1].registration = std::move(registration[k][g]);
-    }
-    all[places[k]] = std::move(counts[k]);
-  }
+  for (std::size_t k = 0; k < counts.size(); ++k) all[places[k]] = std::move(counts[k]);
   return all;
 }
 

@@ -46,7 +46,9 @@ Simulator surroundings_of(const Simulator& simulator) {
     scanner.azimuth_step = coarser(scanner.azimuth_step, scanner.horizontal_angle);
     scanner.zenith_step = coarser(scanner.zenith_step, Angle::radians(scanner.vertical_angle.in_radians() / 2));
   }
-  return Simulator(scene, scanners, config);
+  Simulator surroundings(scene, scanners, config);
+  surroundings.stand_for(simulator.scanners());
+  return surroundings;
 }
 
 }  // namespace vantage

@@ -5,28 +5,28 @@
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <optional>
 
 #include "trace/embree/range_noise.hpp"
+#include "trace/exact_arithmetic.hpp"
 #include "trace/target_clones.hpp"
 
 namespace vantage {
 namespace {
 
 constexpr std::size_t of_pair = RegistrationSums::of_pair, of_station = RegistrationSums::of_station;
-// Voxels whose whole numbers fit in 64 bits together: 2^15 of weight times 2^30 of two components of J.
-constexpr std::size_t block = std::size_t{1} << 16;
+constexpr std::size_t block = patches_in_64_bits / 2;
+static_assert(of_pair == pair_sums && of_station == station_sums);
 constexpr double least_share = 0.5;       // of a voxel's surface that one plane must have
 constexpr double least_area = 1e-3;       // of a face: what is less is a corner that no scan resolves
 constexpr double points_of_a_plane = 10;  // within a patch: fewer, and a scan has no normal there to register by
-constexpr float least_cosine = 0.01f;     // flatter, and it is open which side is seen
-constexpr float least_sin_zenith_squared = 0.0025f;  // above and below the head rays are no denser than at 3°
 
 constexpr double largest_section = 1.5;  // in faces: no plane has more than 3√3/4 within a cube
 
-std::int16_t quantised(double x) { return static_cast<std::int16_t>(std::lround(x * patch_unit)); }
+int quantised(double x) { return static_cast<int>(std::lround(x * patch_unit)); }
 
 __extension__ using Wide = __int128;
 
@@ -58,7 +58,7 @@ struct Head {
 };
 
 // w = 1/s² of docs/method.md; 0 where the plane is seen too flat, or by too few points.
-View view_of(const Patch& patch, const Head& head) {
+View view_of(const RegistrationPatch& patch, const Head& head) {
   const float x = head.origin.x - patch.point.x, y = head.origin.y - patch.point.y, z = head.origin.z - patch.point.z;
   const float xx = x * x, yy = y * y, zz = z * z;
   float level = xx + yy;
@@ -67,7 +67,7 @@ View view_of(const Patch& patch, const Head& head) {
     const float along = x * head.axis->x + y * head.axis->y + z * head.axis->z;
     level = std::max(square - along * along, 0.0f);
   }
-  const float inverse = 1.0f / std::sqrt(square);
+  const float inverse = exact_inverse_sqrt(square);
   const float nx = patch.normal.x * x, ny = patch.normal.y * y, nz = patch.normal.z * z;
   const float nxy = nx + ny;
   const float facing = (nxy + nz) * inverse;
@@ -77,16 +77,16 @@ View view_of(const Patch& patch, const Head& head) {
   const float flat = std::max(level * inverse_square, least_sin_zenith_squared);
   const float seen = patch.rays * head.density * cosine;
   const float density = seen * inverse_square;
-  const float expected = density / std::sqrt(flat);
+  const float expected = density * exact_inverse_sqrt(flat);
   if (expected < patch.least) return {};
   float variance = patch.variance;
   if (head.noise->enabled()) {
     const float points = std::max(expected, 1.0f);
     const float sigma = head.noise->sigma(square * inverse, patch.diffuse * cosine);
     const float along = sigma * cosine;  // of range noise, what is along the normal
-    variance = variance + along * along / points;
+    variance = variance + along * along * exact_reciprocal(points);
   }
-  return {1.0f / variance, facing < 0};
+  return {exact_reciprocal(variance), facing < 0};
 }
 
 VANTAGE_TARGET_CLONES
@@ -124,7 +124,7 @@ class Summer {
 
  private:
   void add_voxel(std::size_t k, Accumulator<std::int64_t>& sums) const {
-    const Patch& patch = patches_.patches[k];
+    const RegistrationPatch& patch = patches_.patches[k];
     const std::size_t group = groups_ > 1 ? k % groups_ : 0;
     const int seen = std::popcount(masks_[k]);
     add_surface(patch, masks_[k], seen, sums.surface.data() + group * stations_ * of_station);
@@ -133,8 +133,8 @@ class Summer {
   }
 
   // Moments of the covered surface, a voxel's shared by the stations that see it.
-  void add_surface(const Patch& patch, std::uint64_t mask, int seen, std::int64_t* sums) const {
-    const auto weight = static_cast<std::int64_t>(patch.extent * (1.0f / static_cast<float>(seen)) + 0.5f);
+  void add_surface(const RegistrationPatch& patch, std::uint64_t mask, int seen, std::int64_t* sums) const {
+    const auto weight = static_cast<std::int64_t>(patch.extent * exact_reciprocal(static_cast<float>(seen)) + 0.5f);
     const std::int64_t x = patch.place[0], y = patch.place[1], z = patch.place[2];
     const std::array<std::int64_t, of_station> moments{1, x, y, z, x * x, x * y, x * z, y * y, y * z, z * z};
     for (; mask != 0; mask &= mask - 1) {
@@ -143,7 +143,7 @@ class Summer {
     }
   }
 
-  void add_pairs(const Patch& patch, std::uint64_t mask, std::int64_t* sums) const {
+  void add_pairs(const RegistrationPatch& patch, std::uint64_t mask, std::int64_t* sums) const {
     // The stations on either side of the plane.
     std::array<std::array<std::uint8_t, max_stations>, 2> places;
     std::array<std::array<float, max_stations>, 2> weights;
@@ -162,10 +162,10 @@ class Summer {
     std::array<std::int32_t, of_pair> products;
     std::size_t m = 0;
     for (std::size_t a = 0; a < 6; ++a)
-      for (std::size_t b = a; b < 6; ++b) products[m++] = std::int32_t{patch.jacobian[a]} * patch.jacobian[b];
+      for (std::size_t b = a; b < 6; ++b) products[m++] = patch.jacobian[a] * patch.jacobian[b];
     for (std::size_t side = 0; side < 2; ++side) {
       if (many[side] < 2) continue;
-      const float scale = units_ / total[side];
+      const float scale = units_ * exact_reciprocal(total[side]);
       for (std::size_t a = 0; a + 1 < many[side]; ++a) {
         const std::size_t i = places[side][a];
         const float scaled = weights[side][a] * scale;
@@ -191,8 +191,10 @@ class Summer {
   float units_;
 };
 
-RegistrationSums to_sums(const Accumulator<Wide>& all, const Patches& patches, std::span<const TraceStation> stations,
-                         std::size_t count, std::size_t group) {
+// `pairs` and `surface`: of all stations.
+template <class Number>
+RegistrationSums to_sums(std::span<const Number> pairs, std::span<const Number> surface, const Patches& patches,
+                         std::span<const TraceStation> stations, std::size_t count) {
   RegistrationSums sums;
   sums.centre = patches.centre;
   sums.radius_m = patches.radius;
@@ -200,14 +202,18 @@ RegistrationSums to_sums(const Accumulator<Wide>& all, const Patches& patches, s
   for (const TraceStation& s : stations)
     sums.heads[s.place] = Vec3{s.origin.x, s.origin.y, s.origin.z} - patches.centre;
   const double weight = patches.largest / static_cast<double>(patch_weight_units) / patch_unit / patch_unit;
-  const std::size_t pairs = count * (count - 1) / 2 * of_pair;
-  for (std::size_t k = 0; k < pairs; ++k)
-    sums.pairs.push_back(static_cast<double>(all.pairs[group * pairs + k]) * weight);
+  for (const Number& sum : pairs) sums.pairs.push_back(static_cast<double>(sum) * weight);
   constexpr std::array<int, of_station> order{0, 1, 1, 1, 2, 2, 2, 2, 2, 2};
-  for (std::size_t k = 0; k < count * of_station; ++k)
-    sums.surface.push_back(static_cast<double>(all.surface[group * count * of_station + k]) * 0x1p-15 /
-                           std::pow(patch_unit, order[k % of_station]));
+  for (std::size_t k = 0; k < surface.size(); ++k)
+    sums.surface.push_back(static_cast<double>(surface[k]) * 0x1p-15 / std::pow(patch_unit, order[k % of_station]));
   return sums;
+}
+
+RegistrationSums to_sums(const Accumulator<Wide>& all, const Patches& patches, std::span<const TraceStation> stations,
+                         std::size_t count, std::size_t group) {
+  const std::size_t pairs = count * (count - 1) / 2 * of_pair, surface = count * of_station;
+  return to_sums(std::span(all.pairs).subspan(group * pairs, pairs),
+                 std::span(all.surface).subspan(group * surface, surface), patches, stations, count);
 }
 
 }  // namespace
@@ -223,7 +229,10 @@ Patches make_patches(std::span<const VoxelSurface> surfaces, const PatchFrame& f
   made.largest = largest_section * face / floor;
   made.patches.reserve(surfaces.size());
   for (const VoxelSurface& surface : surfaces) {
-    Patch patch{.point = surface.point, .normal = surface.normal, .diffuse = surface.diffuse};
+    RegistrationPatch patch{};
+    patch.point = {surface.point.x, surface.point.y, surface.point.z};
+    patch.normal = {surface.normal.x, surface.normal.y, surface.normal.z};
+    patch.diffuse = surface.diffuse;
     patch.rays = static_cast<float>(surface.area / (pattern.zenith_step * pattern.azimuth_step));
     patch.least = static_cast<float>(points_of_a_plane * surface.area / (model.patch_m * model.patch_m));
     if (surface.share >= least_share && surface.area >= least_area * face)
@@ -278,6 +287,23 @@ std::vector<RegistrationSums> sum_patches(const Patches& patches, std::span<cons
   std::vector<RegistrationSums> sums{to_sums(total, patches, stations, station_count, 0)};
   for (std::size_t g = 0; g < groups; ++g) sums.push_back(to_sums(all, patches, stations, station_count, g));
   return sums;
+}
+
+std::vector<RegistrationSums> sum_patches(const RegistrationJob& job, std::span<const TraceStation> stations,
+                                          std::uint32_t station_count, std::span<const std::uint64_t> masks,
+                                          std::uint32_t groups) {
+  return sum_patches(*job.patches, job.scanners, stations, station_count, masks, job.groups ? groups : 0);
+}
+
+void take_registration(NetworkCounts& counts, std::vector<RegistrationSums> sums) {
+  counts.registration = std::move(sums[0]);
+  for (std::size_t g = 1; g < sums.size(); ++g) counts.groups[g - 1].registration = std::move(sums[g]);
+}
+
+RegistrationSums registration_sums(const Patches& patches, std::span<const TraceStation> stations,
+                                   std::uint32_t station_count, std::span<const std::int64_t> sums) {
+  const std::size_t count = station_count, pairs = count * (count - 1) / 2 * of_pair;
+  return to_sums(sums.first(pairs), sums.subspan(pairs, count * of_station), patches, stations, count);
 }
 
 }  // namespace vantage

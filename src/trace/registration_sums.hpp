@@ -6,28 +6,16 @@
 // the vectors J that are quantised, not their products, so that what a surface leaves free stays exactly free.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
 
+#include "shared/registration_types.h"
 #include "trace/tracer.hpp"
 #include "voxel/voxel_surfaces.hpp"
 
 namespace vantage {
-
-// One voxel's plane as the sums need it.
-struct Patch {
-  Float3 point, normal;  // local frame; unit length
-  float rays = 0;        // area / (Δh·Δv) of the first scanner: rays of a free view, but for distance and obliquity
-  float least = 0;       // so many of them, or the station has too few points to tell a plane from
-  float variance = 0;    // m² of the modelling error, ρ²L²/A; 0: no plane to hold anything together by
-  float diffuse = 0;
-  float extent = 0;                        // surface of the voxel as a share of a face, times 2^15
-  std::array<std::int16_t, 6> jacobian{};  // [(p − c)/R × n, n] · patch_unit
-  std::array<std::int16_t, 3> place{};     // (p − c)/R · patch_unit
-};
 
 inline constexpr int patch_unit = 32767;
 // The largest weight, of a station at a full voxel, is so many units of what is summed.
@@ -35,7 +23,7 @@ inline constexpr float patch_weight_units = 65536;
 
 // The planes of the voxels of a sample, or of all of them.
 struct Patches {
-  std::vector<Patch> patches;
+  std::vector<RegistrationPatch> patches;
   Vec3 centre;         // c: of the grid's cube, local frame
   double radius = 1;   // R: half the cube's diagonal, metres
   double largest = 1;  // weight, 1/m², that is patch_weight_units
@@ -57,8 +45,15 @@ Patches make_patches(const SceneData& scene, const VoxelGrid& grid, std::span<co
 
 // A scanner as the sums need it.
 struct PatchScanner {
-  std::shared_ptr<const NoiseModel> noise = {};  // null or disabled: ranges are exact
-  float density = 1;                             // of its rays, to those of the scanner that the patches were made for
+  std::shared_ptr<const NoiseModel> noise;  // not enabled where ranges are exact
+  float density = 1;                        // of its rays, to those of the scanner that the patches were made for
+};
+
+// What an engine is asked for beside the counts of a sample, with masks: `NetworkCounts::registration`.
+struct RegistrationJob {
+  std::shared_ptr<const Patches> patches;  // of the sample's voxels
+  std::vector<PatchScanner> scanners;      // one for each that a station names
+  bool groups = false;                     // those of the sample's groups too
 };
 
 // Sums over all patches, then those of each of `groups` interleaved groups. masks: of the stations that saw each
@@ -67,5 +62,17 @@ struct PatchScanner {
 std::vector<RegistrationSums> sum_patches(const Patches& patches, std::span<const PatchScanner> scanners,
                                           std::span<const TraceStation> stations, std::uint32_t station_count,
                                           std::span<const std::uint64_t> masks, std::uint32_t groups);
+
+std::vector<RegistrationSums> sum_patches(const RegistrationJob& job, std::span<const TraceStation> stations,
+                                          std::uint32_t station_count, std::span<const std::uint64_t> masks,
+                                          std::uint32_t groups);
+// Such sums into the counts of a network and, where there are any of them, of its groups.
+void take_registration(NetworkCounts& counts, std::vector<RegistrationSums> sums);
+
+// Voxels whose whole numbers fit in 64 bits together, signed: 2^15 of weight times 2^30 of two components of J.
+inline constexpr std::size_t patches_in_64_bits = std::size_t{1} << 17;
+// Of whole numbers that an engine has summed: `sums` of each pair, then of each station.
+RegistrationSums registration_sums(const Patches& patches, std::span<const TraceStation> stations,
+                                   std::uint32_t station_count, std::span<const std::int64_t> sums);
 
 }  // namespace vantage

@@ -68,6 +68,8 @@ struct TraceScanner {
   std::shared_ptr<const LimitModel> limits = {};  // null: every point counts
 };
 
+struct RegistrationJob;  // trace/registration_sums.hpp
+
 // Everything an engine needs to be built. Borrowed for the constructor only, unless the engine says otherwise.
 struct TraceScene {
   std::shared_ptr<const SceneData> scene;
@@ -149,6 +151,7 @@ class Tracer {
     // Where wanted, with masks: told the station masks [network][voxel of the sample] of consecutive networks, once for
     // every network that was counted to its end, on the calling thread.
     std::function<void(std::size_t first_network, std::span<const std::uint64_t> masks)> station_masks = {};
+    const RegistrationJob* registration = nullptr;  // where wanted, with masks
   };
   virtual std::vector<NetworkCounts> count_sampled(std::span<const std::vector<TraceStation>> networks,
                                                    std::span<const std::uint32_t> station_counts, const SampleJob& job,

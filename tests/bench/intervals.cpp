@@ -58,26 +58,32 @@ void run_intervals(const IntervalsOptions& options) {
     SimulatorConfig config = options.site.config();
     config.engine = info.engine;
     if (info.engine != Engine::embree) config.device_index = info.device_index;
-    std::vector<Tally> of_coverage(options.sizes.size()), of_overlap(options.sizes.size());
+    std::vector<Tally> of_coverage(options.sizes.size()), of_overlap(options.sizes.size()),
+        of_registration(options.sizes.size());
     for (std::uint32_t draw = 0; draw < options.draws; ++draw) {
       config.seed = 1 + draw;  // of the noise too, so the truth is counted with the same
       Simulator simulator(scene, scanner, config);
       const double goal = simulator.goal_density();
       for (std::size_t k = draw; k < networks.size(); k += options.draws) {
-        const NetworkCounts exact = simulator.evaluate(networks[k]);
+        const NetworkCounts exact = simulator.evaluate(networks[k], {.registration = RegistrationModel{}});
         const double true_coverage = coverage(exact, goal),
-                     true_overlap = clustering_coefficient(overlap_matrix(exact));
+                     true_overlap = clustering_coefficient(overlap_matrix(exact)),
+                     true_registration = registration_estimate(exact, simulator.voxel_count()).value;
         for (std::size_t s = 0; s < options.sizes.size(); ++s) {
-          const NetworkCounts counts =
-              simulator.evaluate_sampled({&networks[k], 1}, {.voxels = options.sizes[s]}).front();
+          const NetworkCounts counts = simulator
+                                           .evaluate_sampled({&networks[k], 1}, {.voxels = options.sizes[s],
+                                                                                 .registration = RegistrationModel{}})
+                                           .front();
           of_coverage[s].add(coverage_estimate(counts, goal, simulator.voxel_count()), true_coverage);
           of_overlap[s].add(overlap_estimate(counts, simulator.voxel_count()), true_overlap);
+          of_registration[s].add(registration_estimate(counts, simulator.voxel_count()), true_registration);
         }
       }
     }
     for (std::size_t s = 0; s < options.sizes.size(); ++s) {
       print(to_string(info.engine), options.sizes[s], "coverage", of_coverage[s], n);
       print(to_string(info.engine), options.sizes[s], "overlap", of_overlap[s], n);
+      print(to_string(info.engine), options.sizes[s], "registration", of_registration[s], n);  // metres
     }
   }
 }

@@ -4,7 +4,9 @@
 #include <cstdio>
 
 #include "bare_embree.hpp"
+#include "choose.hpp"
 #include "error.hpp"
+#include "gap.hpp"
 #include "growth.hpp"
 #include "intervals.hpp"
 #include "population.hpp"
@@ -29,6 +31,10 @@ int main(int argc, char** argv) {
       *app.add_subcommand("growth", "Time and memory over triangles, stations, voxels and the size of the sample"));
   vantage::bench::IntervalsOptions intervals;
   intervals.add(*app.add_subcommand("intervals", "How often a sample's 95 % intervals hold the value of every ray"));
+  vantage::bench::GapOptions gap;
+  gap.add(*app.add_subcommand("gap", "What stations capture at most, and at best as found, over the candidates"));
+  vantage::bench::ChooseOptions choose;
+  choose.add(*app.add_subcommand("choose", "Choosing many stations on a made-up large site: greedy, swaps and drops"));
   CLI11_PARSE(app, argc, argv);
   try {
     if (app.got_subcommand("rates")) vantage::bench::run_rates(rates);
@@ -36,6 +42,8 @@ int main(int argc, char** argv) {
     if (app.got_subcommand("population")) vantage::bench::run_population(population);
     if (app.got_subcommand("error")) vantage::bench::run_error(error);
     if (app.got_subcommand("intervals")) vantage::bench::run_intervals(intervals);
+    if (app.got_subcommand("gap")) vantage::bench::run_gap(gap);
+    if (app.got_subcommand("choose")) vantage::bench::run_choose(choose);
     if (app.got_subcommand("growth")) vantage::bench::run_growth(growth);
   } catch (const vantage::Error& failure) {
     std::fprintf(stderr, "%s\n", failure.what());

@@ -21,6 +21,7 @@
 #include "scan/noise_model.hpp"
 #include "support/expect_counts.hpp"
 #include "support/reference_counts.hpp"
+#include "trace/registration_sums.hpp"
 
 namespace vantage::test {
 namespace {
@@ -534,6 +535,46 @@ TEST_P(Conformance, StationMasksOfASampleAreThoseOfTheVoxelField) {
       VoxelField field;
       tracer(site, false).count(networks[n], sizes[n], {true, true, &field}, {});
       EXPECT_EQ(masks[n], field.stations) << site.name << ", network " << n;
+    }
+  }
+}
+
+// And the sums themselves, to the last bit: of few stations and many, of which some pairs see nothing together.
+TEST_P(Conformance, RegistrationSumsAreThoseOfTheStationMasks) {
+  for (const TestSite& site : sites()) {
+    std::vector<std::uint32_t> sample;
+    for (std::uint32_t rank = 0; rank < std::min<std::uint32_t>(site.grid->size(), 30'000); rank += 5)
+      sample.push_back(rank);
+    std::vector<std::vector<TraceStation>> networks{
+        site.stations, random_stations(site, 40, 7), {site.stations[0]}, random_stations(site, 17, 8)};
+    networks[0].erase(networks[0].begin() + 1);  // one that stands nowhere keeps its place
+    const std::vector<std::uint32_t> sizes{static_cast<std::uint32_t>(site.stations.size()), 40, 1, 17};
+    const auto patches =
+        std::make_shared<const Patches>(make_patches(*site.scene, *site.grid, sample, *site.pattern, {}));
+    for (const auto& [noisy, groups] : {std::pair{false, false}, {true, false}, {true, true}}) {
+      SCOPED_TRACE(site.name + (noisy ? ", noise" : "") + (groups ? ", groups" : ""));
+      const RegistrationJob registration{patches, {{noisy ? site.noise : site.no_noise}}, groups};
+      std::vector<std::vector<std::uint64_t>> masks(networks.size());
+      Tracer::SampleJob job{sample, 20, true, 0};
+      job.station_masks = [&](std::size_t first, std::span<const std::uint64_t> of) {
+        for (std::size_t k = 0; k < of.size() / sample.size(); ++k) {
+          const auto own = of.subspan(k * sample.size(), sample.size());
+          masks[first + k].assign(own.begin(), own.end());
+        }
+      };
+      job.registration = &registration;
+      const auto counts = tracer(site, false).count_sampled(networks, sizes, job, {});
+      bool any = false;
+      for (std::size_t n = 0; n < networks.size(); ++n) {
+        const auto expected = sum_patches(registration, networks[n], sizes[n], masks[n], 20);
+        EXPECT_EQ(counts[n].registration.pairs, expected[0].pairs) << n;
+        EXPECT_EQ(counts[n].registration.surface, expected[0].surface) << n;
+        EXPECT_EQ(counts[n].registration.heads.size(), sizes[n]);
+        for (std::size_t g = 0; groups && g < 20; ++g)
+          EXPECT_EQ(counts[n].groups[g].registration.pairs, expected[g + 1].pairs) << n << ' ' << g;
+        any = any || std::ranges::any_of(expected[0].pairs, [](double sum) { return sum != 0; });
+      }
+      EXPECT_TRUE(any);
     }
   }
 }

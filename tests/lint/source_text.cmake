@@ -7,7 +7,7 @@ set(seen 0)
 string(ASCII 128 low)
 string(ASCII 191 high)
 string(REPEAT "[^\n]" 121 long_line)
-foreach(folder include src shaders tests examples)
+foreach(folder include src shaders tests examples python)
   file(GLOB_RECURSE sources RELATIVE ${ROOT} ${ROOT}/${folder}/*.cpp ${ROOT}/${folder}/*.hpp ${ROOT}/${folder}/*.c ${ROOT}/${folder}/*.h
        ${ROOT}/${folder}/*.comp ${ROOT}/${folder}/*.glsl)
   foreach(source IN LISTS sources)

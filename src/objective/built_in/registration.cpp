@@ -26,17 +26,20 @@ Objective registration_figure(const ObjectiveSettings& settings, std::string nam
                               double RegistrationError::*figure) {
   const RegistrationOptions options = settings.registration;
   check(options);
-  return {.name = std::move(name),
-          .label = std::move(label),
-          .unit = "mm",
-          .best = 0,
-          .worst = worst_mm,
-          .needs = {.pairs = true, .registration = options.model},
-          .value =
-              [options, figure](const MeasuredNetwork& m) {
-                return registration_error(m.counts, m.voxels, options).*figure * millimetres;
-              },
-          .parameters = parameters_of(options)};
+  const bool all = options.surfaces == RegistrationSurfaces::all;
+  return {
+      .name = std::move(name),
+      .label = std::move(label),
+      .unit = "mm",
+      .best = 0,
+      .worst = worst_mm,
+      .needs = {.pairs = true, .surroundings = all, .registration = options.model, .surroundings_registration = all},
+      .value =
+          [options, figure](const MeasuredNetwork& m) {
+            return registration_error(m.counts, m.voxels, options, m.surroundings, m.surroundings_voxels).*figure *
+                   millimetres;
+          },
+      .parameters = parameters_of(options)};
 }
 
 Objective registration(const ObjectiveSettings& settings) {

@@ -12,6 +12,7 @@
 
 #include "trace/embree/voxel_counter.hpp"
 #include "trace/rays_of_box.hpp"
+#include "trace/registration_sums.hpp"
 #include "trace/sample_counts.hpp"
 
 namespace vantage {
@@ -98,6 +99,12 @@ std::vector<NetworkCounts> sample_networks(std::span<const StationRays> scanners
       results[first + k].rays = traced[k];
       if (job.points && !cancelled) job.points(first + k, own_counts);
     }
+    if (job.registration && !cancelled)
+      tbb::parallel_for(std::size_t{0}, here, [&](std::size_t k) {
+        take_registration(results[first + k],
+                          sum_patches(*job.registration, networks[first + k], station_counts[first + k],
+                                      std::span(masks).subspan(k * n, n), job.groups));
+      });
     if (job.station_masks && !cancelled) job.station_masks(first, std::span(masks).first(here * n));
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
     for (std::size_t k = 0; k < here; ++k) results[first + k].trace_seconds = seconds / static_cast<double>(here);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "embedded_shaders.hpp"
+#include "shared/registration_types.h"
 #include "shared/trace_types.h"
 
 namespace vantage::vulkan {
@@ -27,6 +28,7 @@ Source source_of(Kernel kernel, const Traversal& traversal) {
     case Kernel::tile_list: return {"tile list", shaders::tile_list, sizeof(TilePush), 0};
     case Kernel::clamp: return {"clamp", shaders::clamp, sizeof(ClampPush), 0};
     case Kernel::reduce: return {"reduce", shaders::reduce, sizeof(ReducePush), 0};
+    case Kernel::registration: return {"registration", shaders::registration, sizeof(RegisterPush), 0};
     case Kernel::sample_list: return {"sample list", shaders::sample_list, sizeof(SamplePush), 0};
     case Kernel::sample_queue: return {"sample queue", shaders::sample_queue, sizeof(SamplePush), 0};
     case Kernel::sample_arguments: return {"sample arguments", shaders::sample_arguments, sizeof(SamplePush), 1};

@@ -24,7 +24,8 @@ enum class Kernel {
   sample_list,
   sample_queue,
   sample_arguments,
-  sample_trace
+  sample_trace,
+  registration
 };
 
 class Kernels {

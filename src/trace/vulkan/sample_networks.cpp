@@ -109,6 +109,7 @@ class VulkanTracer::SampledCount {
       cancelled = !count_batch({first, std::min(first + batch_size_, networks_.size())}, progress);
     std::vector<NetworkCounts> results(networks_.size());
     t_.read_totals(results, station_counts_, totals_, reduction_, stride_);
+    for (std::size_t n = 0; n < registration_.size(); ++n) take_registration(results[n], std::move(registration_[n]));
     for (std::size_t n = 0; n < results.size(); ++n) {
       results[n].rays = rays_[n];
       results[n].cancelled = cancelled;
@@ -177,7 +178,8 @@ class VulkanTracer::SampledCount {
       slots_done += slots;
     }
     if (job_.points) hand_out_points(batch);
-    if (job_.station_masks) hand_out_masks(batch);
+    if (job_.station_masks) job_.station_masks(batch.first, masks_of(batch));
+    if (job_.registration) register_batch(batch);
     return true;
   }
 
@@ -207,7 +209,7 @@ class VulkanTracer::SampledCount {
       job_.points(batch.first + n, std::span(points).subspan(n * voxels_, voxels_));
   }
 
-  void hand_out_masks(const Batch& batch) {
+  std::vector<std::uint64_t> masks_of(const Batch& batch) {
     const std::size_t of_network = std::size_t{voxels_} * mask_words_;
     std::vector<std::uint32_t> words(of_network * batch.size());
     t_.commands_.download(t_.masks_, words.data(), words.size() * word);
@@ -218,7 +220,28 @@ class VulkanTracer::SampledCount {
       for (std::size_t v = 0; v < voxels_; ++v)
         masks[n * voxels_ + v] = low[v] | (high ? std::uint64_t{high[v]} << 32 : 0);
     });
-    job_.station_masks(batch.first, masks);
+    return masks;
+  }
+
+  // On the device, but for standard errors, which are asked for the few networks of a front, for samples whose sums
+  // take more than 64 bits, and for stations that are not set up as usual.
+  void register_batch(const Batch& batch) {
+    const RegistrationJob& job = *job_.registration;
+    const auto networks = networks_.subspan(batch.first, batch.size());
+    const auto station_counts = station_counts_.subspan(batch.first, batch.size());
+    const Run& run = batch.runs.front();
+    const bool usual = batch.runs.size() == 1 && run.scanner == &t_.scanners_.front() && !run.turned;
+    if (!job.groups && voxels_ <= patches_in_64_bits && usual) {
+      auto sums = t_.sum_registration(job, {networks, station_counts, voxels_, mask_words_});
+      for (RegistrationSums& one : sums) registration_.push_back({std::move(one)});
+      return;
+    }
+    const std::vector<std::uint64_t> masks = masks_of(batch);
+    registration_.resize(batch.end);
+    tbb::parallel_for(std::size_t{0}, batch.size(), [&](std::size_t k) {
+      registration_[batch.first + k] =
+          sum_patches(job, networks[k], station_counts[k], std::span(masks).subspan(k * voxels_, voxels_), job_.groups);
+    });
   }
 
   // Returns what each chunk wanted to list, and the seconds that the device took.
@@ -339,6 +362,7 @@ class VulkanTracer::SampledCount {
   // As they come back from the device.
   std::vector<std::uint32_t> totals_;
   std::vector<std::uint64_t> rays_;
+  std::vector<std::vector<RegistrationSums>> registration_;  // of networks, where asked for
 };
 
 std::vector<NetworkCounts> VulkanTracer::count_sampled(std::span<const std::vector<TraceStation>> networks,

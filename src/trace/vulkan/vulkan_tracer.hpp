@@ -6,7 +6,8 @@
 //   scan_station.cpp     points of one station
 //   count_network.cpp    every ray of a network
 //   sample_networks.cpp  the rays of sampled voxels, for many networks
-//   reduction.cpp        from counts and masks to what the objectives need
+//   reduction.cpp        from counts and masks to what coverage and overlap need
+//   registration.cpp     from masks to what the registration error needs
 #pragma once
 
 #include <algorithm>
@@ -18,6 +19,7 @@
 #include <vector>
 
 #include "shared/trace_types.h"
+#include "trace/registration_sums.hpp"
 #include "trace/tracer.hpp"
 #include "trace/vulkan/commands.hpp"
 #include "trace/vulkan/device_scanner.hpp"
@@ -125,6 +127,15 @@ class VulkanTracer final : public Tracer {
   void ensure_totals(std::size_t networks, std::uint32_t groups, std::uint32_t stride);
   void record_totals_start(const Recorder& r, std::span<const std::uint32_t> station_counts);
 
+  // The sums of consecutive networks whose masks are on the device.
+  struct RegisteredNetworks {
+    std::span<const std::vector<TraceStation>> networks;
+    std::span<const std::uint32_t> station_counts;
+    std::uint32_t voxels, mask_words;
+  };
+  void upload_patches(const RegistrationJob& job);
+  std::vector<RegistrationSums> sum_registration(const RegistrationJob& job, const RegisteredNetworks& of);
+
   EngineInfo info_;
   TraceScene scene_;
   Device device_;
@@ -144,6 +155,9 @@ class VulkanTracer final : public Tracer {
   double sample_margin_ = 0;           // how far from its voxel a triangle is listed there
   Buffer sample_voxels_, sample_triangles_, sample_stations_, sample_rays_, sample_items_, sample_control_,
       network_rays_, sample_weights_;
+  std::shared_ptr<const Patches> patches_;  // what the next buffers hold
+  std::shared_ptr<const NoiseModel> patch_noise_;
+  Buffer registration_patches_, registration_sigma_, registration_heads_, registration_sums_;
   double rays_per_pair_ = 8;  // as seen so far; it sizes chunks, not the results
 };
 

@@ -27,6 +27,18 @@ TEST_F(Bound, HoldsForWhatItFinds) {
   EXPECT_LE(half["at_least"].get<std::size_t>(), half["enough"].size());
 }
 
+TEST_F(Bound, KeepsNetworksTogetherWhereAsked) {
+  const std::vector<std::string> asked{"--stations", "3", "--candidates", "24", "--sample", "200", "--branch", "20s"};
+  auto linked = asked;
+  linked.insert(linked.end(), {"--link", "0.3"});
+  const auto any = json_of(coarse("bound", asked))["stations"][0];
+  const auto together = json_of(coarse("bound", linked))["stations"][0];
+  EXPECT_EQ(together["chosen"].size(), 3u);
+  EXPECT_LE(together["reached"].get<double>(), any["reached"].get<double>() + 1e-9);
+  EXPECT_LE(together["reached"].get<double>(), together["bound"].get<double>() + 1e-9);
+  expect_refused(run_program(coarse("bound", {"--stations", "3", "--link", "0"})), 2, "--link");
+}
+
 TEST_F(Bound, AsksForANumberOrACapture) {
   expect_refused(run_program(coarse("bound", {})), 2, "--stations N, --capture C");
   expect_refused(run_program(coarse("bound", {"--stations", "0"})), 2, "--stations");

@@ -102,6 +102,30 @@ TEST_F(Results, PointsThatAreNotGoodEnoughAreToldByLimit) {
   EXPECT_TRUE(sampled["dropped"].is_null());
 }
 
+TEST_F(Results, RegistrationMayGoByAllSurfaces) {
+  // Two stations before one wall, which leaves their places along it free; the ground and other walls do not.
+  const std::vector<std::string> heads{"--station", "8,0,1.5", "--station", "6,2,1.5", "--registration"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), heads.begin(), heads.end());
+    return json_of(coarse("evaluate", more));
+  };
+  const auto surveyed = with({}), all = with({"--registration-surfaces", "all"});
+  EXPECT_EQ(surveyed["registration"]["surfaces"], "surveyed");
+  EXPECT_EQ(all["registration"]["surfaces"], "all");
+  EXPECT_EQ(all["coverage"], surveyed["coverage"]);
+  EXPECT_EQ(all["overlap"], surveyed["overlap"]);
+  EXPECT_NE(all["registration"]["error_mm"], surveyed["registration"]["error_mm"]);
+  const auto sampled = with({"--registration-surfaces", "all", "--sample", "100%"});
+  EXPECT_NEAR(sampled["registration"]["error_mm"].get<double>(), all["registration"]["error_mm"].get<double>(),
+              4 * sampled["registration"]["standard_error_mm"].get<double>() + 1e-9);
+  with({"--registration-map", path("error.ply"), "--registration-map", path("error.png")});
+  EXPECT_EQ(files(), (std::vector<std::string>{"error.ply", "error.png"}));
+  expect_refused(run_program(coarse("evaluate", {"--station", "8,0,1.5", "--registration-surfaces", "some"})), 2,
+                 "'some' is neither surveyed nor all");
+  expect_refused(run_program(coarse("evaluate", {"--station", "8,0,1.5", "--registration-map", path("error.ply")})), 2,
+                 "--registration-map");
+}
+
 TEST_F(Results, AWantedErrorIsReached) {
   const auto result = json_of({"evaluate", scene_, "--engine", "embree", "--station", "8,0,1.5", "--step", "0.5",
                                "--spacing", "0.05", "--error", "0.01"});

@@ -8,6 +8,7 @@
 #include <coin/ClpSimplex.hpp>
 #include <functional>
 
+#include "core/philox.hpp"
 #include "plan/capture_master.hpp"
 #include "unit/plan/random_rows.hpp"
 #include "vantage/error.hpp"
@@ -152,6 +153,58 @@ TEST(Bound, HoldsForEveryChoiceAndBranchingFindsTheBest) {
     EXPECT_NEAR(with.reached.value, best_of_all(rows, 2, fixed), 1e-9);
     EXPECT_GE(with.bound, with.reached.value - 1e-9);
   }
+}
+
+// Whether rows hang together along links, by hand: what the first reaches in as many steps as there are rows.
+bool hangs_together(const Rows& chosen, const std::vector<RowLink>& links) {
+  Rows reached{chosen.front()};
+  for (std::size_t step = 0; step < chosen.size(); ++step)
+    for (const auto& [a, b] : links)
+      for (const auto& [from, to] : {std::pair{a, b}, {b, a}})
+        if (std::ranges::count(reached, from) && std::ranges::count(chosen, to) && !std::ranges::count(reached, to))
+          reached.push_back(to);
+  return reached.size() == chosen.size();
+}
+
+TEST(Bound, FindsTheBestThatHangsTogether) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    SCOPED_TRACE(seed);
+    const CaptureRows rows = random_rows(12, 150, seed, 0.15, 2);
+    RandomStream random(seed + 100);
+    std::vector<RowLink> links;
+    for (std::size_t a = 0; a < rows.size(); ++a)
+      for (std::size_t b = a + 1; b < rows.size(); ++b)
+        if (random.uniform() < 0.2) links.push_back({a, b});
+    const BoundConfig config{.tolerance = 1e-6, .exact_seconds = 60};
+    for (const Rows& fixed : {Rows{}, Rows{3}}) {
+      double best = 0, best_of_any = 0;
+      each_choice(rows.size(), 4, [&](Rows chosen) {
+        chosen.insert(chosen.end(), fixed.begin(), fixed.end());
+        if (fixed.size() == 1 && std::ranges::count(chosen, 3u) > 1) return;
+        const double value = rows.coverage(chosen).value;
+        best_of_any = std::max(best_of_any, value);
+        if (hangs_together(chosen, links)) best = std::max(best, value);
+      });
+      ASSERT_GT(best, 0);
+      const CaptureBound found = bound_linked_capture(rows, 4, links, fixed, config);
+      EXPECT_NEAR(found.reached.value, best, 1e-9);
+      EXPECT_NEAR(found.bound, best, 2e-5);
+      EXPECT_TRUE(hangs_together(found.chosen, links));
+      EXPECT_EQ(found.chosen.size(), 4 + fixed.size());
+      EXPECT_TRUE(std::equal(fixed.begin(), fixed.end(), found.chosen.begin()));
+      EXPECT_GE(bound_linked_capture(rows, 4, links, fixed).bound, best - 1e-9) << "without branch and bound";
+      EXPECT_LE(best, best_of_any);
+    }
+  }
+}
+
+TEST(Bound, SaysWhereNothingHangsTogether) {
+  const CaptureRows rows = random_rows(6, 80, 4, 0.3);
+  const CaptureBound none = bound_linked_capture(rows, 3, {}, Rows{0, 1}, {.exact_seconds = 10});
+  EXPECT_TRUE(none.chosen.empty());
+  EXPECT_EQ(none.reached.value, 0);
+  EXPECT_THROW(bound_linked_capture(rows, 3, std::vector<RowLink>{{0, 6}}), Error);
+  EXPECT_THROW(bound_linked_capture(rows, 65, {}), Error);
 }
 
 TEST(Bound, RefusesWhatMakesNoSense) {

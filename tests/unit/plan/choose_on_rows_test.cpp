@@ -114,5 +114,24 @@ TEST(ChooseOnRows, SwapsEndWhereNoneHelps) {
   }
 }
 
+TEST(ChooseOnRows, DropsWhatIsToSpareAndNoMore) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    SCOPED_TRACE(seed);
+    const CaptureRows rows = random_rows(25, 120, seed, 0.15, 3);
+    const double enough = 0.6 * rows.coverage().value;
+    Rows all(rows.size());
+    std::iota(all.begin(), all.end(), 0u);
+    const Rows few = drop_and_swap(rows, all, 2, enough);
+    EXPECT_GE(captured(rows, few), enough);
+    EXPECT_LT(few.size(), all.size());
+    EXPECT_TRUE(std::equal(few.begin(), few.begin() + 2, all.begin())) << "the fixed ones stay";
+    for (std::size_t at = 2; at < few.size(); ++at) {
+      Rows fewer = few;
+      fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(at));
+      EXPECT_LT(captured(rows, fewer), enough);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace vantage

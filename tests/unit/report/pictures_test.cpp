@@ -11,6 +11,7 @@
 #include "report/front_view.hpp"
 #include "report/relief.hpp"
 #include "report/search_tint.hpp"
+#include "support/quad_scene.hpp"
 #include "support/temporary_folder.hpp"
 #include "unit/report/drawn.hpp"
 #include "unit/report/files.hpp"
@@ -334,6 +335,36 @@ TEST(Pictures, PlanViewDrawsStandardEllipses) {
   };
   EXPECT_GT(red("with.png", errors), red("without.png", {}) + 200);
   EXPECT_THROW(red("wrong.png", std::span(errors).first(1)), Error);
+}
+
+TEST(Pictures, RegistrationMapsShowTheErrorWhereItIs) {
+  const test::TemporaryFolder folder;
+  Simulator simulator(test::wall_and_floor().scene(), test::coarse_scanner(1),
+                      {.engine = Engine::embree, .user_size_m = 0.5, .point_spacing_m = 0.2});
+  VoxelField field;
+  field.count.assign(simulator.voxel_count(), 1);
+  field.stations.assign(simulator.voxel_count(), 0);
+  for (std::size_t k = 1; k < field.stations.size(); ++k) field.stations[k] = k % 2 ? 1 : 3;
+  // Shifts of 1 mm and 7 mm, one sigma along x.
+  RegistrationError error;
+  error.stations.resize(2), error.poses.resize(2);
+  error.poses[0][21] = 1e-6, error.poses[1][21] = 49e-6;
+  write_registration_ply(folder / "error.ply", simulator, field, error);
+  const std::string ply = test::content(folder / "error.ply");
+  std::size_t at = ply.find("end_header\n") + 11;
+  EXPECT_NE(ply.find("element vertex " + std::to_string(simulator.voxel_count() - 1) + "\n"), std::string::npos);
+  for (std::size_t k = 1; k < field.stations.size(); ++k) {
+    ASSERT_EQ(test::take<double>(ply, at), simulator.voxel_centre(k).x);
+    at += 19;
+    ASSERT_FLOAT_EQ(test::take<float>(ply, at), k % 2 ? 1.0f : 5.0f) << k;
+  }
+  EXPECT_EQ(at, ply.size());
+  const std::vector<PlacedStation> stations{{.uv = {}, .position = {0, 0, 0}, .status = StationStatus::ok}};
+  for (const char* name : {"error.png", "error.svg"})
+    draw_registration(folder / name, simulator, field, error, stations, "Where scans are off");
+  EXPECT_GT(test::Drawn(folder / "error.png").near(kRisingRamp.back(), 40), 500u) << "the largest on top";
+  field.stations.pop_back();
+  EXPECT_THROW(write_registration_ply(folder / "bad.ply", simulator, field, error), Error);
 }
 
 TEST(Pictures, NothingOfAPlanViewIsCutOff) {

@@ -169,8 +169,9 @@ const std::vector<Change<SurveyProblem>> kRegistration{
     {"patch_m", [](SurveyProblem& p) { p.registration.model.patch_m = 1; }},
     {"position_m", [](SurveyProblem& p) { p.registration.position_m = 0.1; }},
     {"heading", [](SurveyProblem& p) { p.registration.heading = Angle::degrees(1); }},
-    {"tilt", [](SurveyProblem& p) { p.registration.tilt = Angle(); }}};
-static_assert(member_count<RegistrationOptions>() == 4 && member_count<RegistrationModel>() == 2);
+    {"tilt", [](SurveyProblem& p) { p.registration.tilt = Angle(); }},
+    {"surfaces", [](SurveyProblem& p) { p.registration.surfaces = RegistrationSurfaces::all; }}};
+static_assert(member_count<RegistrationOptions>() == 5 && member_count<RegistrationModel>() == 2);
 
 const std::vector<Change<PlanConfig>> kPlan{
     {"population", [](PlanConfig& c) { c.population = 7; }},

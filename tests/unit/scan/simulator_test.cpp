@@ -453,6 +453,48 @@ TEST(Registration, OfAllVoxelsIsExactAndOfASampleNear) {
               1e-12);
 }
 
+// A surveyed panel in a room that nobody surveys.
+QuadScene panel_in_a_room() {
+  QuadScene scene;
+  scene.quad({4.9f, -1, -0.5f}, {0, 2, 0}, {0, 0, 1.5f});
+  const Role other = Role::blocking;
+  scene.quad({-5, -4, -1.5f}, {10, 0, 0}, {0, 8, 0}, other).quad({-5, -4, 2}, {10, 0, 0}, {0, 8, 0}, other);
+  scene.quad({5, -4, -1.5f}, {0, 8, 0}, {0, 0, 3.5f}, other).quad({-5, -4, -1.5f}, {0, 8, 0}, {0, 0, 3.5f}, other);
+  scene.quad({-5, 4, -1.5f}, {10, 0, 0}, {0, 0, 3.5f}, other).quad({-5, -4, -1.5f}, {10, 0, 0}, {0, 0, 3.5f}, other);
+  return scene;
+}
+
+TEST(Registration, GoesByTheScansThatSurroundingsStandFor) {
+  Scanner scanner = coarse_scanner(0.1);
+  scanner.noise = {.distances_m = {10}, .reflectivities = {0.5}, .sigma_m = {0.02}};
+  Simulator simulator(panel_in_a_room().scene(), scanner, config(0.1, 0.05));
+  const Network network{{{0, 0, 0}}, {{-2, 1, 0.2}}};
+  const RegistrationOptions surveyed, all{.surfaces = RegistrationSurfaces::all};
+  const NetworkCounts counts = simulator.evaluate(network, {.registration = all.model});
+  Simulator around = surroundings_of(simulator);
+  const NetworkCounts held = around.evaluate(network, {.registration = all.model});
+  const double one_panel = registration_error(counts, counts.voxels, surveyed).rms_m;
+  const double whole_room = registration_error(counts, counts.voxels, all, &held, held.voxels).rms_m;
+  EXPECT_LT(whole_room, one_panel / 5);
+
+  // The same room with everything surveyed, by all rays of the scanner.
+  QuadScene open = panel_in_a_room();
+  for (MeshInfo& mesh : open.data().meshes) mesh.role = Role::surveyed;
+  Simulator fine(open.scene(), scanner, config(0.1, 0.05));
+  const NetworkCounts seen = fine.evaluate(network, {.registration = all.model});
+  const double by_all_rays = registration_error(counts, counts.voxels, all, &seen, seen.voxels).rms_m;
+  EXPECT_NEAR(whole_room, by_all_rays, 0.05 * by_all_rays);
+
+  // And of samples of both, within the errors that they have.
+  const NetworkCounts few =
+      simulator.evaluate_sampled({&network, 1}, {.voxels = counts.voxels / 2, .registration = all.model})[0];
+  const NetworkCounts few_around =
+      around.evaluate_sampled({&network, 1}, {.voxels = held.voxels / 2, .registration = all.model})[0];
+  const Estimate estimate = registration_estimate(few, counts.voxels, all, &few_around, held.voxels);
+  EXPECT_GT(estimate.standard_error, registration_estimate(few, counts.voxels, all, &held, held.voxels).standard_error);
+  EXPECT_NEAR(estimate.value, whole_room, 4 * estimate.standard_error);
+}
+
 TEST(Simulator, TwoCoexistAndCanBeMoved) {
   const Scene scene = wall_and_floor().scene();
   Simulator a(scene, coarse_scanner(2), config()), b(scene, coarse_scanner(3), config());

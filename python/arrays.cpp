@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "arrays.hpp"
+
+#include <limits>
+
+namespace vantage::python {
+
+std::vector<std::array<std::uint32_t, 3>> triangles_of(const py::array& array) {
+  const auto wrong = [](const std::string& text) { throw Error(Errc::invalid_argument, "triangles: " + text); };
+  const char kind = array.dtype().kind();
+  if (kind != 'i' && kind != 'u') wrong("integers are wanted, and these are " + std::string(py::str(array.dtype())));
+  if (array.ndim() != 2 || array.shape(1) != 3)
+    wrong("an array of shape (m, 3) is wanted, and this one's is " + shape_text(array));
+  const auto indices = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>::ensure(array);
+  if (!indices) throw py::error_already_set();
+  std::vector<std::array<std::uint32_t, 3>> triangles(static_cast<std::size_t>(array.shape(0)));
+  const std::int64_t* next = indices.data();
+  for (auto& triangle : triangles) {
+    for (std::uint32_t& corner : triangle) {
+      if (*next < 0 || *next > std::numeric_limits<std::uint32_t>::max())
+        wrong("no corner has the index " + std::to_string(*next));
+      corner = static_cast<std::uint32_t>(*next++);
+    }
+  }
+  return triangles;
+}
+
+Network network_of(const py::object& stations) {
+  if (!py::isinstance<py::array>(stations) && py::isinstance<py::sequence>(stations) && py::len(stations) > 0 &&
+      py::isinstance<PlacedStation>(stations[py::int_(0)]))
+    return to_network(stations.cast<std::vector<PlacedStation>>());
+  const auto heads = Doubles::ensure(stations);
+  if (!heads) throw py::error_already_set();
+  Network network;
+  for (const Vec3& head : rows_of<Vec3>(heads, "stations")) network.push_back({.position = head});
+  return network;
+}
+
+py::array_t<double> heads_of(std::span<const PlacedStation> stations) {
+  std::vector<Vec3> heads;
+  for (const PlacedStation& station : stations) heads.push_back(station.position);
+  return adopt(std::move(heads));
+}
+
+py::object from_json(const std::string& text) { return py::module_::import("json").attr("loads")(text); }
+
+py::dict to_dict(const Settings& settings) {
+  py::dict dict;
+  for (const Setting& setting : settings) dict[py::str(setting.name)] = from_json(setting.json);
+  return dict;
+}
+
+}  // namespace vantage::python

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// The library's arrays as numpy's and back, without a copy where one outlives the other.
+#pragma once
+
+#include <pybind11/numpy.h>
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "casters.hpp"
+
+namespace vantage::python {
+
+static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(Uv) == 2 * sizeof(double));
+
+using Shape = std::vector<py::ssize_t>;
+
+/// Numbers that `owner` holds and never changes: read-only, and they keep it alive.
+template <class Number, class Value>
+py::array_t<Number> view(std::span<const Value> values, const py::object& owner, std::size_t width = 1) {
+  static_assert(sizeof(Value) % sizeof(Number) == 0);
+  Shape shape{static_cast<py::ssize_t>(values.size() * sizeof(Value) / sizeof(Number) / width)};
+  if (width > 1) shape.push_back(static_cast<py::ssize_t>(width));
+  py::array_t<Number> array(shape, reinterpret_cast<const Number*>(values.data()), owner);
+  py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
+  return array;
+}
+
+/// An array that takes over a vector.
+template <class Number, class Value>
+py::array_t<Number> adopt(std::vector<Value>&& values, const Shape& shape) {
+  auto kept = std::make_unique<std::vector<Value>>(std::move(values));
+  const auto* data = reinterpret_cast<const Number*>(kept->data());
+  const py::capsule owner(kept.get(), [](void* vector) { delete static_cast<std::vector<Value>*>(vector); });
+  kept.release();
+  return py::array_t<Number>(shape, data, owner);
+}
+inline py::array_t<double> adopt(std::vector<Vec3>&& points) {
+  const auto count = static_cast<py::ssize_t>(points.size());
+  return adopt<double>(std::move(points), {count, 3});
+}
+
+/// Numbers as a caller gives them; converted where they are of another type or laid out otherwise.
+using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+inline std::string shape_text(const py::array& array) { return py::str(array.attr("shape")); }
+
+/// Rows of two or three numbers. Throws Error invalid_argument for another shape.
+template <class Row>
+std::span<const Row> rows_of(const Doubles& array, const char* what) {
+  constexpr py::ssize_t width = sizeof(Row) / sizeof(double);
+  if (array.ndim() == 2 && array.shape(1) == width)
+    return {reinterpret_cast<const Row*>(array.data()), static_cast<std::size_t>(array.shape(0))};
+  throw Error(Errc::invalid_argument, std::string(what) + ": an array of shape (n, " + std::to_string(width) +
+                                          ") is wanted, and this one's is " + shape_text(array));
+}
+
+/// Indices of corners. Throws Error invalid_argument: another shape, no integers, or none of 0 to 2³² − 1.
+std::vector<std::array<std::uint32_t, 3>> triangles_of(const py::array& array);
+
+/// Heads of stations as an array of (n, 3) or as `PlacedStation`s, of which those that are not active keep their place.
+Network network_of(const py::object& stations);
+
+/// The heads of stations, one row each.
+py::array_t<double> heads_of(std::span<const PlacedStation> stations);
+
+/// JSON text as Python's own values.
+py::object from_json(const std::string& text);
+/// Settings by their names.
+py::dict to_dict(const Settings& settings);
+
+}  // namespace vantage::python

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "evaluation.hpp"
+
+#include "module.hpp"
+#include "options.hpp"
+
+namespace vantage::python {
+namespace {
+
+[[noreturn]] void not_asked_for(const std::string& what, const std::string& how) {
+  throw Error(Errc::invalid_argument, what + ": was not asked for; evaluate with " + how);
+}
+
+const NetworkCounts& with_pairs(const Evaluation& e, const char* what) {
+  if (e.counts.stations > 0 && e.counts.seen.empty()) not_asked_for(what, "overlap=True");
+  return e.counts;
+}
+
+const VoxelField& field_of(const Evaluation& e, const char* what) {
+  if (!e.field) not_asked_for(what, "field=True");
+  return *e.field;
+}
+
+py::array_t<std::uint64_t> shared_voxels(const Evaluation& e) {
+  const NetworkCounts& counts = with_pairs(e, "shared");
+  const std::size_t n = counts.stations;
+  std::vector<std::uint64_t> shared(n * n);
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < n; ++j) shared[i * n + j] = i == j ? counts.seen[i] : counts.shared_by(i, j);
+  return adopt<std::uint64_t>(std::move(shared), {static_cast<py::ssize_t>(n), static_cast<py::ssize_t>(n)});
+}
+
+py::dict values_of(const Evaluation& e) {
+  const bool pairs = !e.counts.seen.empty();
+  const Estimate covered = coverage_estimate(e.counts, e.goal_density, e.voxels);
+  py::dict dict;
+  dict["coverage"] = covered.value;
+  dict["coverage_se"] = covered.standard_error;
+  for (const char* key : {"overlap", "overlap_se", "overlap_matrix"}) dict[key] = py::none();
+  if (pairs) {
+    const Estimate overlap = overlap_estimate(e.counts, e.voxels);
+    dict["overlap"] = overlap.value;
+    dict["overlap_se"] = overlap.standard_error;
+    dict["overlap_matrix"] = matrix_of(overlap_matrix(e.counts)).attr("tolist")();
+  }
+  dict["points"] = e.counts.points;
+  dict["points_on_surveyed"] = e.counts.points_on_surveyed;
+  dict["voxels"] = e.voxels;
+  dict["sample"] = e.counts.voxels == e.voxels ? py::none() : py::object(py::int_(e.counts.voxels));
+  dict["goal_density"] = e.goal_density;
+  dict["rays"] = e.counts.rays;
+  dict["trace_seconds"] = e.counts.trace_seconds;
+  return dict;
+}
+
+void add_registration(py::module_& m) {
+  const auto options = [] {
+    return Options<RegistrationOptions>("RegistrationOptions")
+        .add<double>(
+            "rho_m", [](const RegistrationOptions& o) { return o.model.rho_m; },
+            [](RegistrationOptions& o, double value) { o.model.rho_m = value; },
+            "Modelling error along the normal, one sigma, one and the same over a patch; metres.")
+        .add<double>(
+            "patch_m", [](const RegistrationOptions& o) { return o.model.patch_m; },
+            [](RegistrationOptions& o, double value) { o.model.patch_m = value; }, "Side of such a patch, metres.")
+        .add("position_m", &RegistrationOptions::position_m, "Sigma of a head before registration, in each axis.")
+        .add("heading_deg", &RegistrationOptions::heading, "Sigma of the heading before registration.")
+        .add("tilt_deg", &RegistrationOptions::tilt, "Sigma of each tilt; 0: exactly level.");
+  }();
+  py::class_<RegistrationOptions> type(
+      m, "RegistrationOptions",
+      ("What registration starts from, and how well scans have the surface (docs/registration.md)." + options.doc())
+          .c_str());
+  type.def(py::init([options](const py::kwargs& given) {
+        const RegistrationOptions made = options.read(given);
+        check(made);
+        return made;
+      }))
+      .def("__repr__", [options](const RegistrationOptions& o) { return options.repr(o); });
+  options.attributes(type);
+
+  py::class_<RegistrationError>(m, "RegistrationError", "Predicted error of a registered network, metres.")
+      .def_readonly("rms_m", &RegistrationError::rms_m, "Root mean square displacement over the covered surface.")
+      .def_readonly("worst_m", &RegistrationError::worst_m, "The same of the worst station.")
+      .def_readonly("worst_station", &RegistrationError::worst_station, "Which that is, from 0.")
+      .def_property_readonly(
+          "station_rms_m",
+          [](const RegistrationError& error) {
+            std::vector<double> rms;
+            for (const StationError& station : error.stations) rms.push_back(station.rms_m);
+            const auto n = static_cast<py::ssize_t>(rms.size());
+            return adopt<double>(std::move(rms), {n});
+          },
+          "Per station, over the surface that it sees: (n,).")
+      .def_property_readonly(
+          "head_covariance_m2",
+          [](const RegistrationError& error) {
+            std::vector<std::array<double, 9>> covariances;
+            for (const StationError& station : error.stations) covariances.push_back(station.covariance);
+            const auto n = static_cast<py::ssize_t>(covariances.size());
+            return adopt<double>(std::move(covariances), {n, 3, 3});
+          },
+          "Covariances of the heads in the survey frame, square metres: (n, 3, 3).");
+}
+
+void add_connectivity(py::module_& m) {
+  py::class_<Connectivity>(m, "Connectivity", "Which stations hang together, and by what. Stations count from 0.")
+      .def_readonly("parts", &Connectivity::parts, "How many connected parts.")
+      .def_readonly("part", &Connectivity::part, "Per station the part that it is in.")
+      .def_readonly("bridges", &Connectivity::bridges, "Links without which a part falls in two.")
+      .def_readonly("weakest_link", &Connectivity::weakest_link,
+                    "Of one part: the weakest link of the strongest spanning tree.")
+      .def_readonly("weakest_overlap", &Connectivity::weakest_overlap, "Its overlap.");
+}
+
+}  // namespace
+
+void add_evaluations(py::module_& m) {
+  add_registration(m);
+  add_connectivity(m);
+  py::class_<Evaluation>(
+      m, "Evaluation",
+      "What a network of n stations leaves in the surveyed voxels: of every ray, or of a sample of the voxels, where\n"
+      "`coverage_se` and the like are standard errors. Measures that were not asked for raise Error.")
+      .def_property_readonly(
+          "coverage", [](const Evaluation& e) { return coverage(e.counts, e.goal_density); },
+          "Equation 8 of the paper, in [0, 1].")
+      .def_property_readonly(
+          "coverage_se",
+          [](const Evaluation& e) { return coverage_estimate(e.counts, e.goal_density, e.voxels).standard_error; },
+          "Standard error; 0 where all voxels were counted.")
+      .def_property_readonly(
+          "overlap",
+          [](const Evaluation& e) { return clustering_coefficient(overlap_matrix(with_pairs(e, "overlap"))); },
+          "Average weighted clustering coefficient (equation 13), in [0, 1].")
+      .def_property_readonly(
+          "overlap_se",
+          [](const Evaluation& e) { return overlap_estimate(with_pairs(e, "overlap_se"), e.voxels).standard_error; },
+          "Standard error; 0 where all voxels were counted.")
+      .def_property_readonly(
+          "overlap_matrix",
+          [](const Evaluation& e) { return matrix_of(overlap_matrix(with_pairs(e, "overlap_matrix"))); },
+          "Voxels shared over voxels seen by either (equation 11): (n, n), 0 on the diagonal.")
+      .def_property_readonly(
+          "overlap_matrix_se",
+          [](const Evaluation& e) {
+            return matrix_of(overlap_standard_errors(with_pairs(e, "overlap_matrix_se"), e.voxels));
+          },
+          "Standard errors of that: (n, n).")
+      .def_property_readonly(
+          "scan_overlap_matrix",
+          [](const Evaluation& e) { return matrix_of(scan_overlap_matrix(with_pairs(e, "scan_overlap_matrix"))); },
+          "Voxels shared over those of the smaller scan, as practice states it: (n, n), 0 on the diagonal.")
+      .def(
+          "connectivity",
+          [](const Evaluation& e, double min_overlap) {
+            return connectivity(overlap_matrix(with_pairs(e, "connectivity")), min_overlap);
+          },
+          py::arg("min_overlap") = default_link_overlap,
+          "How stations hang together by the overlaps (equation 11) of at least `min_overlap`.")
+      .def_property_readonly(
+          "registration",
+          [](const Evaluation& e) {
+            if (!e.registration) not_asked_for("registration", "registration=RegistrationOptions()");
+            return registration_error(e.counts, e.voxels, *e.registration);
+          },
+          "Predicted error of the registered scans.")
+      .def_property_readonly(
+          "seen",
+          [](const py::object& self) {
+            return view<std::uint64_t>(std::span(with_pairs(self.cast<const Evaluation&>(), "seen").seen), self);
+          },
+          "Per station, voxels with a point of it: (n,), read-only.")
+      .def_property_readonly("shared", &shared_voxels,
+                             "Voxels with points of both: (n, n), on the diagonal those of the station itself.")
+      .def_property_readonly(
+          "points",
+          [](const py::object& self) {
+            return view<std::uint64_t>(std::span(self.cast<const Evaluation&>().counts.points), self);
+          },
+          "Per station, points on all meshes: (n,), read-only; (0,) where they were not counted.")
+      .def_property_readonly(
+          "points_on_surveyed",
+          [](const py::object& self) {
+            return view<std::uint64_t>(std::span(self.cast<const Evaluation&>().counts.points_on_surveyed), self);
+          },
+          "Per station, points that count: (n,), read-only.")
+      .def_property_readonly(
+          "voxel_points",
+          [](const py::object& self) {
+            return view<std::uint32_t>(std::span(field_of(self.cast<const Evaluation&>(), "voxel_points").count), self);
+          },
+          "Points in each voxel, in the order of `Simulator.voxel_centres`: (N_v,), read-only.")
+      .def_property_readonly(
+          "voxel_stations",
+          [](const py::object& self) {
+            return view<std::uint64_t>(std::span(field_of(self.cast<const Evaluation&>(), "voxel_stations").stations),
+                                       self);
+          },
+          "Bit i: station i has a point in the voxel: (N_v,), read-only.")
+      .def_readonly("voxels", &Evaluation::voxels, "Surveyed voxels of the site, N_v.")
+      .def_property_readonly(
+          "sample", [](const Evaluation& e) { return e.counts.voxels; }, "Voxels that were counted; `voxels`: all.")
+      .def_readonly("goal_density", &Evaluation::goal_density, "Points wanted in a voxel.")
+      .def_property_readonly(
+          "stations", [](const Evaluation& e) { return e.counts.stations; }, "How many.")
+      .def_property_readonly(
+          "rays", [](const Evaluation& e) { return e.counts.rays; }, "Rays that were traced.")
+      .def_property_readonly(
+          "trace_seconds", [](const Evaluation& e) { return e.counts.trace_seconds; }, "Time spent tracing.")
+      .def_property_readonly(
+          "cancelled", [](const Evaluation& e) { return e.counts.cancelled; },
+          "Stopped before its end: counts too little.")
+      .def("to_dict", &values_of, "Plain values by the names that `vantage evaluate --json` gives them.")
+      .def("__repr__", [](const Evaluation& e) {
+        return "<vantage.Evaluation of " + std::to_string(e.counts.stations) + " stations: coverage " +
+               std::string(py::str(py::float_(coverage(e.counts, e.goal_density)))) + ">";
+      });
+}
+
+}  // namespace vantage::python

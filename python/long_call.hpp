@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// Calls that take long: other Python threads run meanwhile, and between chunks of work signals are seen and the
+// caller's function hears how far it is.
+#pragma once
+
+#include <exception>
+#include <mutex>
+#include <stop_token>
+#include <utility>
+
+#include "casters.hpp"
+
+namespace vantage::python {
+
+/// One thread at a time uses what it guards. Others get an Error: a `Simulator` is for one thread, and waiting for it
+/// would hang where an objective, which a search calls, uses the simulator of that search.
+class Busy {
+ public:
+  explicit Busy(std::mutex& mutex) : lock_(mutex, std::try_to_lock) {
+    if (!lock_)
+      throw Error(Errc::invalid_argument,
+                  "the simulator is in use by another call: make one for each thread, and none in an objective");
+  }
+
+ private:
+  std::unique_lock<std::mutex> lock_;
+};
+
+class LongCall {
+ public:
+  /// `heard`: called with what is reported; None: nobody listens. Where it returns False the work is stopped, and its
+  /// result says so; where it raises, or a signal's handler does, as for Ctrl-C, it is stopped and the call raises
+  /// that.
+  explicit LongCall(py::object heard) : heard_(std::move(heard)) {}
+
+  std::stop_token stop() const { return stop_.get_token(); }
+  /// Asked for in the second case alone: nobody waits for a result.
+  std::stop_token abort() const { return abort_.get_token(); }
+  Progress progress() {
+    return {.report = [this](double done) { report([done] { return done; }); }, .stop = stop()};
+  }
+
+  /// `told()` makes what is told, where anybody listens.
+  template <class Told>
+  void report(const Told& told) {
+    if (raised_) return;
+    const py::gil_scoped_acquire lock;
+    try {
+      if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+      if (!heard_.is_none() && heard_(told()).is(py::bool_(false))) stop_.request_stop();
+    } catch (...) {
+      raised_ = std::current_exception();
+      stop_.request_stop();
+      abort_.request_stop();
+    }
+  }
+
+  /// Does the work without the interpreter's lock.
+  template <class Work>
+  auto run(const Work& work) {
+    try {
+      auto result = [&] {
+        const py::gil_scoped_release unlocked;
+        return work();
+      }();
+      if (raised_) std::rethrow_exception(raised_);
+      return result;
+    } catch (...) {
+      if (raised_) std::rethrow_exception(raised_);
+      throw;
+    }
+  }
+
+ private:
+  py::object heard_;
+  std::stop_source stop_, abort_;
+  std::exception_ptr raised_;
+};
+
+}  // namespace vantage::python

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "module.hpp"
+
+#include <pybind11/numpy.h>
+
+#include "options.hpp"
+
+namespace vantage::python {
+
+void add_errors(py::module_& m) {
+  static PyObject* error = PyErr_NewExceptionWithDoc(
+      "vantage.Error",
+      "What vantage raises: str(error) says what, where and what to do.\n\n"
+      "Attributes:\n"
+      "    code: 'invalid_argument', 'io', 'malformed_file', 'no_suitable_device', 'out_of_memory' or\n"
+      "        'device_failure'.\n"
+      "    details: a tuple of further lines, as why each device was refused.",
+      PyExc_RuntimeError, nullptr);
+  m.add_object("Error", error);
+  py::register_exception_translator([](std::exception_ptr thrown) {
+    try {
+      if (thrown) std::rethrow_exception(thrown);
+    } catch (const Error& e) {
+      const py::object raised = py::handle(error)(e.what());
+      raised.attr("code") = name_of(e.code());
+      raised.attr("details") = py::tuple(py::cast(std::vector<std::string>(e.details().begin(), e.details().end())));
+      PyErr_SetObject(error, raised.ptr());
+    }
+  });
+}
+
+}  // namespace vantage::python
+
+PYBIND11_MODULE(_core, m) {
+  using namespace vantage::python;
+  // pybind11 looks numpy up when the first array is made, and two objectives that make one at once would wait for each
+  // other: one for the lookup, which the other is at, and that one for the interpreter's lock.
+  py::detail::npy_api::get();
+  // Everything belongs to the package, whose `__init__.py` takes it over: so say messages, signatures and pickles.
+  const py::object name = m.attr("__name__");
+  m.attr("__name__") = "vantage";
+  add_errors(m);
+  add_scenes(m);
+  add_scanners(m);
+  add_placement(m);
+  add_evaluations(m);
+  add_simulators(m);
+  add_candidates(m);
+  add_problems(m);
+  add_plans(m);
+  m.attr("__name__") = name;
+
+  m.attr("__version__") = vantage::version();
+  py::dict defaults;
+  for (const auto& [call, options] : all_defaults()) defaults[py::str(call)] = options;
+  m.attr("_defaults") = defaults;
+}

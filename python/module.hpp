@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// The parts of the module `vantage`, in the order in which they are made: a later one names types of the earlier.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+namespace vantage::python {
+
+void add_errors(pybind11::module_& m);
+void add_scenes(pybind11::module_& m);
+void add_scanners(pybind11::module_& m);
+void add_placement(pybind11::module_& m);
+void add_evaluations(pybind11::module_& m);
+void add_simulators(pybind11::module_& m);
+void add_candidates(pybind11::module_& m);
+void add_problems(pybind11::module_& m);
+void add_plans(pybind11::module_& m);
+
+}  // namespace vantage::python

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+// The members of an option struct as keyword arguments: named once, for calls, attributes and docstrings alike.
+#pragma once
+
+#include <concepts>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "casters.hpp"
+
+namespace vantage::python {
+
+/// Defaults of every table by the name of the call or class that takes them, for the test of the stubs.
+inline std::vector<std::pair<std::string, py::dict>>& all_defaults() {
+  static auto* defaults = new std::vector<std::pair<std::string, py::dict>>;
+  return *defaults;
+}
+
+template <class Struct>
+class Options {
+ public:
+  /// `name`: of the call or class, which opens messages.
+  explicit Options(std::string name) : name_(std::move(name)) {}
+
+  template <class Value>
+  Options& add(const char* name, Value Struct::*member, const char* doc) {
+    return add<Value>(
+        name, [member](const Struct& s) { return s.*member; },
+        [member](Struct& s, Value value) { s.*member = std::move(value); }, doc);
+  }
+  template <class Value, class Get, class Set>
+  Options& add(const char* name, Get get, Set set, const char* doc) {
+    members_.push_back({name, doc,
+                        [get](const Struct& s) -> py::object {
+                          if constexpr (std::derived_from<Value, py::object>)
+                            return get(s);
+                          else
+                            return py::cast(get(s));
+                        },
+                        [set, where = name_ + ": " + name](Struct& s, const py::object& given) {
+                          set(s, value_of<Value>(given, where));
+                        }});
+    return *this;
+  }
+
+  /// The struct that keyword arguments ask for; in the order of the table, whatever theirs. Throws TypeError for names
+  /// that are not in it.
+  Struct read(const py::kwargs& given) const {
+    Struct made{};
+    std::size_t taken = 0;
+    for (const Member& member : members_) {
+      if (!given.contains(member.name)) continue;
+      member.set(made, given[member.name.c_str()]);
+      ++taken;
+    }
+    if (taken < given.size()) {
+      for (const auto& item : given) {
+        const auto name = item.first.cast<std::string>();
+        if (std::ranges::find(members_, name, &Member::name) == members_.end())
+          throw py::type_error(name_ + ": no option '" + name + "'; there are " + names());
+      }
+    }
+    return made;
+  }
+
+  /// "Options:" and a line for each, to end a docstring with.
+  std::string doc() const {
+    const Struct usual{};
+    std::string text = "\n\nOptions:\n";
+    py::dict defaults;
+    for (const Member& member : members_) {
+      const py::object value = member.get(usual);
+      defaults[py::str(member.name)] = value;
+      text += "    " + member.name + ": " + member.doc + " Default: " + std::string(py::repr(value)) + ".\n";
+    }
+    all_defaults().emplace_back(name_, defaults);
+    return text;
+  }
+
+  /// The members as attributes.
+  template <class... Extra>
+  void attributes(py::class_<Struct, Extra...>& type) const {
+    for (const Member& member : members_)
+      type.def_property(member.name.c_str(), py::cpp_function([get = member.get](const Struct& s) { return get(s); }),
+                        py::cpp_function([set = member.set](Struct& s, const py::object& value) { set(s, value); }),
+                        member.doc.c_str());
+  }
+
+  std::string repr(const Struct& s) const {
+    std::string text;
+    for (const Member& member : members_)
+      text += (text.empty() ? "" : ", ") + member.name + "=" + std::string(py::repr(member.get(s)));
+    return name_ + "(" + text + ")";
+  }
+
+ private:
+  struct Member {
+    std::string name, doc;
+    std::function<py::object(const Struct&)> get;
+    std::function<void(Struct&, const py::object&)> set;
+  };
+
+  template <class Value>
+  static Value value_of(const py::object& given, const std::string& where) {
+    py::detail::make_caster<Value> caster;
+    if (!caster.load(given, true))
+      throw py::type_error(where + ": " + std::string(py::repr(given)) + " is no " + caster.name.text +
+                           (std::unsigned_integral<Value> ? " of 0 or more" : ""));
+    return py::detail::cast_op<Value>(std::move(caster));
+  }
+  std::string names() const {
+    std::string all;
+    for (const Member& member : members_) all += (all.empty() ? "" : ", ") + member.name;
+    return all;
+  }
+
+  std::string name_;
+  std::vector<Member> members_;
+};
+
+}  // namespace vantage::python

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <limits>
+
+#include "arrays.hpp"
+#include "module.hpp"
+#include "options.hpp"
+
+namespace vantage::python {
+namespace {
+
+constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
+
+Doubles doubles_of(const py::object& given) {
+  auto array = Doubles::ensure(given);
+  if (!array) throw py::error_already_set();
+  return array;
+}
+
+// A function of each row.
+template <class Result, class Row, class Of>
+py::array_t<Result> for_each_row(const Doubles& rows, const char* what, const Of& of) {
+  const auto points = rows_of<Row>(rows, what);
+  py::array_t<Result> results(static_cast<py::ssize_t>(points.size()));
+  std::ranges::transform(points, results.mutable_data(), of);
+  return results;
+}
+
+Options<WalkableOptions> walkable_options() {
+  using Rings = std::vector<std::vector<std::array<double, 2>>>;
+  const auto regions = [](const std::vector<PlanRegion>& from) {
+    std::vector<Rings> to;
+    for (const PlanRegion& region : from) to.push_back(region.rings);
+    return to;
+  };
+  const auto of_rings = [](std::vector<Rings> from) {
+    std::vector<PlanRegion> to;
+    for (Rings& rings : from) to.push_back({std::move(rings)});
+    return to;
+  };
+  return Options<WalkableOptions>("SearchArea")
+      .add("max_slope_deg", &WalkableOptions::max_slope, "Steepest ground that is walked on.")
+      .add("headroom_m", &WalkableOptions::headroom_m, "Clear height needed above it.")
+      .add("min_area_m2", &WalkableOptions::min_area_m2, "Smaller connected parts are left out.")
+      .add("passage_width_m", &WalkableOptions::passage_width_m, "Of the narrowest opening that a person passes.")
+      .add("passage_height_m", &WalkableOptions::passage_height_m, "Of the lowest.")
+      .add("climb_m", &WalkableOptions::climb_m, "The highest step that a person takes.")
+      .add("enter", &WalkableOptions::enter, "Where one enters, (x, y, z); None: found.")
+      .add("levels", &WalkableOptions::levels, "Lowest and highest height of ground; None: any.")
+      .add<std::vector<Rings>>(
+          "within", [regions](const WalkableOptions& o) { return regions(o.within); },
+          [of_rings](WalkableOptions& o, std::vector<Rings> rings) { o.within = of_rings(std::move(rings)); },
+          "Regions, lists of rings of corners (x, y): only ground in one of these.")
+      .add<std::vector<Rings>>(
+          "without", [regions](const WalkableOptions& o) { return regions(o.without); },
+          [of_rings](WalkableOptions& o, std::vector<Rings> rings) { o.without = of_rings(std::move(rings)); },
+          "Regions: no ground in any of these.");
+}
+
+void add_stations(py::module_& m) {
+  py::class_<PlacedStation>(m, "PlacedStation", "A station, and what became of it.")
+      .def_readonly("uv", &PlacedStation::uv, "On the search area.")
+      .def_readonly("position", &PlacedStation::position, "The scanner's head (x, y, z), survey frame, metres.")
+      .def_readonly("ground", &PlacedStation::ground, "Where the tripod stands, survey frame, metres.")
+      .def_property_readonly(
+          "status", [](const PlacedStation& s) { return to_string(s.status); },
+          "'ok', 'hole', 'clash', 'inside', 'off_ground' or 'outside'.")
+      .def_readonly("kept", &PlacedStation::kept, "Was there before the plan.")
+      .def_property_readonly("active", &active, "Whether it adds to what its network measures.")
+      .def("__repr__", [](const PlacedStation& s) {
+        return "<vantage.PlacedStation at " + std::string(py::repr(py::cast(s.position))) + ", " + to_string(s.status) +
+               ">";
+      });
+  m.def(
+      "heads", [](const std::vector<PlacedStation>& stations) { return heads_of(stations); }, py::arg("stations"),
+      "Heads of stations, survey frame: (n, 3), metres.");
+}
+
+void add_search_area(py::module_& m) {
+  const auto options = walkable_options();
+  py::class_<SearchArea>(m, "SearchArea",
+                         ("Where a scanner may stand: maps (u, v) to the ground (section 4.2 of the paper). Made of "
+                          "what the scene marks, or\n"
+                          "else of the ground that a person with a tripod gets to.\n"
+                          "Raises Error invalid_argument: nothing to stand on, or an option out of its range." +
+                          options.doc())
+                             .c_str())
+      .def(py::init([options](const Scene& scene, const py::kwargs& given) {
+             const WalkableOptions how = options.read(given);
+             const py::gil_scoped_release unlocked;
+             return SearchArea::build(scene, how);
+           }),
+           py::arg("scene"))
+      .def_property_readonly("uv_min", &SearchArea::uv_min, "Lowest (u, v).")
+      .def_property_readonly("uv_max", &SearchArea::uv_max, "Highest (u, v).")
+      .def_property_readonly("derived", &SearchArea::derived, "Whether it was made from walkable surfaces.")
+      .def_property_readonly("description", &SearchArea::description, "Where it comes from, a sentence.")
+      .def_property_readonly(
+          "positions",
+          [](const py::object& self) {
+            return view<double>(std::span(self.cast<const SearchArea&>().mesh().positions), self, 3);
+          },
+          "Vertices of its triangles, survey frame: (n, 3), metres, read-only.")
+      .def_property_readonly(
+          "uvs",
+          [](const py::object& self) {
+            return view<double>(std::span(self.cast<const SearchArea&>().mesh().uvs), self, 2);
+          },
+          "Their (u, v): (n, 2), read-only.")
+      .def_property_readonly(
+          "triangles",
+          [](const py::object& self) {
+            return view<std::uint32_t>(std::span(self.cast<const SearchArea&>().mesh().triangles), self, 3);
+          },
+          "Indices of vertices: (m, 3), read-only.")
+      .def(
+          "locate",
+          [](const SearchArea& area, const py::object& uvs) {
+            const Doubles rows = doubles_of(uvs);
+            std::vector<Vec3> found;
+            for (const Uv& uv : rows_of<Uv>(rows, "uvs"))
+              found.push_back(area.locate(uv).value_or(Vec3{kNowhere, kNowhere, kNowhere}));
+            return adopt(std::move(found));
+          },
+          py::arg("uvs"), "Ground under each (u, v) of (n, 2), survey frame: (n, 3), metres; NaN in a hole.")
+      .def(
+          "project",
+          [](const SearchArea& area, const py::object& grounds) {
+            const Doubles rows = doubles_of(grounds);
+            std::vector<Uv> found;
+            for (const Vec3& ground : rows_of<Vec3>(rows, "grounds"))
+              found.push_back(area.project(ground).value_or(Uv{kNowhere, kNowhere}));
+            const auto count = static_cast<py::ssize_t>(found.size());
+            return adopt<double>(std::move(found), {count, 2});
+          },
+          py::arg("grounds"),
+          "(u, v) straight above or below each point of (n, 3), survey frame, metres: (n, 2); NaN outside.")
+      .def("__repr__", [](const SearchArea& area) { return "<vantage.SearchArea: " + area.description() + ">"; });
+}
+
+void add_clash(py::module_& m) {
+  const auto options = Options<SecurityVolume>("ClashChecker")
+                           .add("lower_m", &SecurityVolume::lower_m, "Height of the lower sphere's centre.")
+                           .add("upper_m", &SecurityVolume::upper_m, "Of the upper one's.")
+                           .add("radius_m", &SecurityVolume::radius_m, "Of both; 0 switches the check off.");
+  py::class_<ClashChecker>(
+      m, "ClashChecker",
+      ("The security volume of section 4.3 of the paper, two spheres above the ground, against all meshes of a scene.\n"
+       "Raises Error invalid_argument." +
+       options.doc())
+          .c_str())
+      .def(py::init([options](const Scene& scene, const py::kwargs& given) {
+             const SecurityVolume volume = options.read(given);
+             const py::gil_scoped_release unlocked;
+             return ClashChecker(scene, volume);
+           }),
+           py::arg("scene"))
+      .def(
+          "clashes",
+          [](const ClashChecker& clash, const py::object& grounds, std::optional<double> height_m) {
+            return for_each_row<bool, Vec3>(doubles_of(grounds), "grounds", [&](const Vec3& ground) {
+              return height_m ? clash.clashes(ground, *height_m) : clash.clashes(ground);
+            });
+          },
+          py::arg("grounds"), py::arg("height_m") = py::none(),
+          "Whether something stands within the volume above each ground of (n, 3), survey frame, metres: (n,). With\n"
+          "height_m, of the head above the ground, mast and head are kept clear too.")
+      .def("sees", &ClashChecker::sees, py::arg("a"), py::arg("b"),
+           "Whether nothing stands between two points (x, y, z), survey frame.")
+      .def(
+          "distance",
+          [](const ClashChecker& clash, const py::object& points, double limit_m) {
+            return for_each_row<double, Vec3>(doubles_of(points), "points",
+                                              [&](const Vec3& point) { return clash.distance(point, limit_m); });
+          },
+          py::arg("points"), py::arg("limit_m"),
+          "Distance of each point of (n, 3) from the nearest mesh, at most limit_m: (n,), metres.");
+  m.def(
+      "place_heads",
+      [](const SearchArea& area, const ClashChecker& clash, double height_m, const py::object& heads) {
+        const Doubles rows = doubles_of(heads);
+        std::vector<PlacedStation> placed;
+        for (const Vec3& head : rows_of<Vec3>(rows, "heads"))
+          placed.push_back(place_head(&area, clash, height_m, head).station);
+        return placed;
+      },
+      py::arg("area"), py::arg("clash"), py::arg("height_m"), py::arg("heads"),
+      "Stations by their heads (n, 3), survey frame, metres, checked as those of a search are.");
+}
+
+}  // namespace
+
+void add_placement(py::module_& m) {
+  add_stations(m);
+  add_search_area(m);
+  add_clash(m);
+}
+
+}  // namespace vantage::python

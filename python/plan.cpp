@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "evaluation.hpp"
+#include "module.hpp"
+#include "options.hpp"
+#include "simulator.hpp"
+
+namespace vantage::python {
+namespace {
+
+/// A result, and the simulator and the search area that reports of it look at.
+struct Plan {
+  PlanResult result;
+  py::object simulator, area;
+};
+/// A network of its front; shares the result.
+struct Entry {
+  std::shared_ptr<const Plan> plan;
+  std::size_t index = 0;
+  const PlanEntry& get() const { return plan->result.front[index]; }
+};
+/// `PlanProgress` that outlives the call.
+struct Watched : PlanProgress {
+  explicit Watched(const PlanProgress& now) : PlanProgress(now), points(now.front.begin(), now.front.end()) {
+    front = {};
+  }
+  std::vector<ParetoPoint> points;
+};
+
+const Simulator& simulator_of(const Plan& plan) { return plan.simulator.cast<const GuardedSimulator&>().simulator; }
+
+py::array_t<double> table_of(const std::vector<std::vector<double>>& rows) {
+  const std::size_t width = rows.empty() ? 0 : rows.front().size();
+  std::vector<double> flat;
+  for (const auto& row : rows) flat.insert(flat.end(), row.begin(), row.end());
+  return adopt<double>(std::move(flat), {static_cast<py::ssize_t>(rows.size()), static_cast<py::ssize_t>(width)});
+}
+
+py::array_t<double> scaled_front(const Watched& now) {
+  std::vector<std::vector<double>> rows;
+  for (const ParetoPoint& point : now.points) rows.push_back(point.f);
+  return table_of(rows);
+}
+
+Options<PlanConfig> plan_options() {
+  return Options<PlanConfig>("plan")
+      .add("population", &PlanConfig::population,
+           "0: 10 with one objective, 20 where the number is searched, else 100.")
+      .add("iterations", &PlanConfig::iterations, "Of `population` evaluations each.")
+      .add("sigma0", &PlanConfig::sigma0, "Initial step, as a share of the range.")
+      .add("algorithm", &PlanConfig::algorithm, "'mo_cma_es', 'nsga2' or 'random_search', for several objectives.")
+      .add("scheme", &PlanConfig::scheme, "'steady-state' or 'generational'.")
+      .add("batch", &PlanConfig::batch, "Offspring at once in the steady state; 0: chosen by the engine.")
+      .add("sample_voxels", &PlanConfig::sample_voxels, "0: exact search; else sampled with so many voxels.")
+      .add("start", &PlanConfig::start, "Heads (x, y, z) of an initial network; empty: random.")
+      .add("redraws", &PlanConfig::redraws, "How often stations in holes or clashes are drawn again.")
+      .add("max_seconds", &PlanConfig::max_seconds, "Of the search; 0: no limit.")
+      .add("target_hypervolume", &PlanConfig::target_hypervolume, "Stop there; None: never.")
+      .add("stagnation_iterations", &PlanConfig::stagnation_iterations, "Stop after so many without growth; 0: never.")
+      .add("seed", &PlanConfig::seed, "Of everything that is drawn.")
+      .add<std::filesystem::path>(
+          "checkpoint", [](const PlanConfig& c) { return c.checkpoint.string(); },
+          [](PlanConfig& c, std::filesystem::path file) { c.checkpoint = std::move(file); },
+          "File to write every so often and when the search ends; '': none.")
+      .add("checkpoint_seconds", &PlanConfig::checkpoint_seconds, "How often.")
+      .add("resume", &PlanConfig::resume, "Go on from the checkpoint; from the start where there is none yet.");
+}
+
+std::shared_ptr<Plan> plan_survey(GuardedSimulator& guarded, const SearchArea& area, const ClashChecker& clash,
+                                  const SurveyProblem& problem, py::object progress, const Options<PlanConfig>& options,
+                                  const py::kwargs& given) {
+  const PlanConfig config = options.read(given);
+  LongCall call(std::move(progress));
+  PlanResult result = call.run([&] {
+    const Busy busy(guarded.mutex);
+    return plan(guarded.simulator, area, clash, problem, config,
+                {.report = [&](const PlanProgress& now) { call.report([&] { return Watched(now); }); },
+                 .stop = call.stop(),
+                 .abort = call.abort()});
+  });
+  return std::make_shared<Plan>(Plan{std::move(result), py::cast(guarded, py::return_value_policy::reference),
+                                     py::cast(area, py::return_value_policy::reference)});
+}
+
+void add_progress(py::module_& m) {
+  py::class_<Watched>(m, "PlanProgress", "How far a search is.")
+      .def_readonly("phase", &Watched::phase, "'look' (at what can be seen), 'choose', 'search' or 'confirm'.")
+      .def_readonly("iteration", &Watched::iteration, "Of `iterations`.")
+      .def_readonly("iterations", &Watched::iterations, "As asked for.")
+      .def_readonly("evaluations", &Watched::evaluations, "Networks that were evaluated.")
+      .def_readonly("evaluations_per_second", &Watched::evaluations_per_second, "How fast.")
+      .def_readonly("hypervolume", &Watched::hypervolume, "Of the front as it is now.")
+      .def_readonly("seconds_left", &Watched::seconds_left, "Below 0: not known yet.")
+      .def_readonly("visible", &Watched::visible, "What can be seen, told once, when it is known; else None.")
+      .def_property_readonly("front", &scaled_front,
+                             "What the optimiser minimises of each network of the front, 0 best: (k, objectives).");
+}
+
+void add_entries(py::module_& m) {
+  py::class_<MeasuredValue>(m, "MeasuredValue", "What became known of one measure of a network.")
+      .def_readonly("searched", &MeasuredValue::searched, "As the search saw it; NaN where it kept none.")
+      .def_readonly("standard_error", &MeasuredValue::standard_error, "Of `searched`; 0 when exact.")
+      .def_readonly("exact", &MeasuredValue::exact, "By every ray; NaN unless confirmed.")
+      .def_property_readonly("best_known", &MeasuredValue::best_known, "The exact value where there is one.");
+  py::class_<Entry>(m, "PlanEntry", "One network of a front.")
+      .def_property_readonly(
+          "x",
+          [](const Entry& e) {
+            return py::array_t<double>(static_cast<py::ssize_t>(e.get().x.size()), e.get().x.data());
+          },
+          "Decision vector: u1, v1, ..., uN, vN, then heights and alpha where they are searched.")
+      .def_property_readonly(
+          "stations", [](const Entry& e) { return e.get().stations; }, "Its stations.")
+      .def_property_readonly(
+          "heads", [](const Entry& e) { return heads_of(e.get().stations); },
+          "Their heads, survey frame: (n, 3), metres.")
+      .def_property_readonly(
+          "values", [](const Entry& e) { return e.get().values; }, "MeasuredValue by the names of the plan's measures.")
+      .def(
+          "value",
+          [](const Entry& e, const std::string& name) {
+            const auto found = e.get().values.find(name);
+            if (found == e.get().values.end()) throw py::key_error(name);
+            return found->second.best_known();
+          },
+          py::arg("name"), "values[name].best_known")
+      .def_property_readonly(
+          "confirmed", [](const Entry& e) { return e.get().confirmed; }, "Whether the exact values were computed.")
+      .def_property_readonly(
+          "dominated", [](const Entry& e) { return e.get().dominated; }, "By another one, once every ray is traced.")
+      .def_property_readonly(
+          "missed", [](const Entry& e) { return e.get().missed; }, "By how much requirements are missed; 0: kept.")
+      .def_property_readonly(
+          "overlap_matrix", [](const Entry& e) { return matrix_of(e.get().exact_overlap_matrix); },
+          "Equation 11 by every ray: (n, n); (0, 0) unless confirmed.")
+      .def_property_readonly(
+          "scan_overlap_matrix", [](const Entry& e) { return matrix_of(e.get().exact_scan_overlap_matrix); },
+          "Scan overlaps over all surfaces: (n, n); (0, 0) unless a measure needs them.")
+      .def("__repr__", [](const Entry& e) {
+        std::string text;
+        for (const auto& [name, value] : e.get().values)
+          text += ", " + name + " " + std::string(py::str(py::float_(value.best_known())));
+        return "<vantage.PlanEntry of " + std::to_string(e.get().stations.size()) + " stations" + text + ">";
+      });
+}
+
+py::list history_of(const Plan& plan) {
+  py::list lines;
+  for (const PlanIteration& iteration : plan.result.history) {
+    py::dict line;
+    line["iteration"] = iteration.iteration;
+    line["evaluations"] = iteration.evaluations;
+    line["hypervolume"] = iteration.hypervolume;
+    line["seconds"] = iteration.seconds;
+    line["front"] = table_of(iteration.front);
+    lines.append(line);
+  }
+  return lines;
+}
+
+void add_results(py::module_& m) {
+  py::class_<Plan, std::shared_ptr<Plan>>(m, "PlanResult", "What a search found.")
+      .def_property_readonly(
+          "front",
+          [](const std::shared_ptr<Plan>& plan) {
+            std::vector<Entry> entries;
+            for (std::size_t k = 0; k < plan->result.front.size(); ++k) entries.push_back({plan, k});
+            return entries;
+          },
+          "Its networks, by the objectives in order, best first; one where there is one objective.")
+      .def_property_readonly(
+          "answer",
+          [](const std::shared_ptr<Plan>& plan) {
+            return Entry{plan, answer(plan->result)};
+          },
+          "The network that is the answer: nearest to the best values of those that keep all requirements.")
+      .def_property_readonly(
+          "met", [](const Plan& plan) { return met(plan.result); }, "Whether the answer keeps all requirements.")
+      .def_property_readonly(
+          "what_would_help", [](const Plan& plan) { return what_would_help(plan.result); },
+          "Where it does not: a sentence each.")
+      .def_property_readonly(
+          "measures",
+          [](const Plan& plan) {
+            std::vector<std::string> names;
+            for (const Objective& measure : plan.result.measures) names.push_back(measure.name);
+            return names;
+          },
+          "Names of all that is told of a network.")
+      .def_property_readonly(
+          "history", &history_of,
+          "A dict an iteration: iteration, evaluations, hypervolume, seconds, front (k, objectives).")
+      .def_property_readonly(
+          "hypervolume", [](const Plan& plan) { return plan.result.hypervolume; }, "As the search saw it.")
+      .def_property_readonly(
+          "exact_hypervolume", [](const Plan& plan) { return plan.result.exact_hypervolume; }, "By every ray.")
+      .def_property_readonly(
+          "evaluations", [](const Plan& plan) { return plan.result.evaluations; }, "Networks that were evaluated.")
+      .def_property_readonly(
+          "stop_reason", [](const Plan& plan) { return to_string(plan.result.stop_reason); }, "Why the search ended.")
+      .def_property_readonly(
+          "seconds", [](const Plan& plan) { return plan.result.seconds; }, "What it took.")
+      .def_property_readonly(
+          "summary",
+          [](const Plan& plan) {
+            return summary_text(summary_of(plan.result.front.at(answer(plan.result)), plan.result));
+          },
+          "What the answer comes to, in plain words.")
+      .def(
+          "to_dict", [](const Plan& plan) { return from_json(front_json(plan.result, simulator_of(plan))); },
+          "What front.json holds: the front, every parameter, engine, seed and version. Entries count from 1.")
+      .def(
+          "write",
+          [](const Plan& plan, const std::filesystem::path& folder, const std::string& crs) {
+            const auto& area = plan.area.cast<const SearchArea&>();
+            const Simulator& simulator = simulator_of(plan);
+            const py::gil_scoped_release unlocked;
+            write_plan(folder, plan.result, simulator, area, nullptr, crs);
+          },
+          py::arg("folder"), py::arg("crs") = "",
+          "Writes the result folder: front.csv, front.json, stations.csv, the pictures (docs/files.md). crs: the "
+          "frame,\n"
+          "as 'EPSG:25832', for maps. Raises Error: io, invalid_argument.")
+      .def("__repr__", [](const Plan& plan) {
+        return "<vantage.PlanResult of " + std::to_string(plan.result.front.size()) + " networks, " +
+               std::to_string(plan.result.evaluations) + " evaluations, " + to_string(plan.result.stop_reason) + ">";
+      });
+}
+
+}  // namespace
+
+void add_plans(py::module_& m) {
+  add_progress(m);
+  add_entries(m);
+  add_results(m);
+  const auto options = plan_options();
+  m.def(
+      "plan",
+      [options](GuardedSimulator& simulator, const SearchArea& area, const ClashChecker& clash,
+                const SurveyProblem& problem, py::object progress, const py::kwargs& given) {
+        return plan_survey(simulator, area, clash, problem, std::move(progress), options, given);
+      },
+      py::arg("simulator"), py::arg("area"), py::arg("clash"), py::arg("problem"), py::kw_only(),
+      py::arg("progress") = py::none(),
+      ("Searches for networks. Same inputs, same seed: same result but for seconds.\n\n"
+       "progress: called with a PlanProgress between evaluations; where it returns False the search ends, and what "
+       "was\n"
+       "found is confirmed and returned. Ctrl-C, and whatever progress or an objective raises, ends the call by that\n"
+       "exception; a checkpoint is written before.\n"
+       "Raises Error: invalid_argument, malformed_file (a damaged checkpoint)." +
+       options.doc())
+          .c_str());
+}
+
+}  // namespace vantage::python

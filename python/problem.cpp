@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "evaluation.hpp"
+#include "module.hpp"
+#include "options.hpp"
+
+namespace vantage::python {
+namespace {
+
+/// What an objective in Python looks at: a copy, so that it may be kept.
+struct Measured {
+  Evaluation evaluation;
+  std::vector<PlacedStation> stations = {};
+  std::size_t kept = 0, visible_parts = 0;
+  double minutes_on_site = 0;
+  std::optional<Evaluation> surroundings = std::nullopt;
+};
+
+Measured copy_of(const MeasuredNetwork& network) {
+  Measured copy{
+      .evaluation = {.counts = network.counts, .goal_density = network.goal_density, .voxels = network.voxels},
+      .stations = {network.stations.begin(), network.stations.end()},
+      .kept = network.kept,
+      .visible_parts = network.visible_parts,
+      .minutes_on_site = network.minutes_on_site};
+  if (network.surroundings)
+    copy.surroundings = {
+        .counts = *network.surroundings, .goal_density = network.goal_density, .voxels = network.surroundings_voxels};
+  return copy;
+}
+
+using Measure = std::function<double(const MeasuredNetwork&)>;
+
+// Searches copy objectives, and call them, where they do not hold the interpreter's lock.
+Measure measure_of(const py::function& function) {
+  std::shared_ptr<py::function> held(new py::function(function), [](py::function* kept) {
+    const py::gil_scoped_acquire lock;
+    delete kept;
+  });
+  return [held](const MeasuredNetwork& network) {
+    const py::gil_scoped_acquire lock;
+    const py::object value = (*held)(copy_of(network));
+    const double number = PyFloat_AsDouble(value.ptr());
+    if (number == -1 && PyErr_Occurred()) throw py::error_already_set();
+    return number;
+  };
+}
+
+Objective objective_of(std::string name, const py::function& value, std::string label, std::string unit, double best,
+                       double worst, bool counts, bool pairs, bool visibility, bool surroundings, bool time,
+                       const std::optional<py::function>& standard_error, std::string parameters) {
+  Objective made{
+      .name = std::move(name),
+      .label = std::move(label),
+      .unit = std::move(unit),
+      .best = best,
+      .worst = worst,
+      .needs = {.counts = counts, .pairs = pairs, .visibility = visibility, .surroundings = surroundings, .time = time},
+      .value = measure_of(value),
+      .parameters = std::move(parameters)};
+  if (standard_error) made.standard_error = measure_of(*standard_error);
+  return made;
+}
+
+void add_objectives(py::module_& m) {
+  py::class_<Measured>(m, "MeasuredNetwork", "What an objective looks at. A copy: it may be kept.")
+      .def_readonly("evaluation", &Measured::evaluation,
+                    "Its counts, of every ray or of a sample; pairs where the objective needs them.")
+      .def_readonly("stations", &Measured::stations, "Its stations, kept ones first, skipped ones included.")
+      .def_property_readonly(
+          "heads", [](const Measured& network) { return heads_of(network.stations); },
+          "Their heads, survey frame: (n, 3), metres.")
+      .def_readonly("kept", &Measured::kept, "How many of them were there before.")
+      .def_readonly("visible_parts", &Measured::visible_parts,
+                    "Connected parts of the stations that see each other; 0 unless needed.")
+      .def_readonly("minutes_on_site", &Measured::minutes_on_site, "Without kept stations; 0 unless needed.")
+      .def_readonly("surroundings", &Measured::surroundings,
+                    "Counts on all surfaces, surveyed or not; None unless needed.");
+  py::class_<Objective>(
+      m, "Objective",
+      "One measure of a network, to be searched for, required or reported; best above worst: more is\n"
+      "better.")
+      .def(py::init(&objective_of), py::arg("name"), py::arg("value"), py::kw_only(), py::arg("label") = "",
+           py::arg("unit") = "", py::arg("best") = 1.0, py::arg("worst") = 0.0, py::arg("counts") = true,
+           py::arg("pairs") = false, py::arg("visibility") = false, py::arg("surroundings") = false,
+           py::arg("time") = false, py::arg("standard_error") = py::none(), py::arg("parameters") = "",
+           "name: lower-case letters, digits, `_`. value: a function of a MeasuredNetwork, which gives the same for "
+           "the\n"
+           "same. best, worst: the scale that the search and the hypervolume go by. counts, pairs, visibility,\n"
+           "surroundings, time: what of the network it looks at; the rest is not computed. standard_error: a function\n"
+           "as value; None: by the jackknife. parameters: what it was made with; runs resume only under the same.")
+      .def_readonly("name", &Objective::name, "Its key in tables and results.")
+      .def_readonly("label", &Objective::label, "For axes.")
+      .def_readonly("unit", &Objective::unit, "'mm'; empty: a plain number.")
+      .def_readonly("best", &Objective::best, "Scaled to 0.")
+      .def_readonly("worst", &Objective::worst, "Scaled to 1: the reference point of the hypervolume.")
+      .def("__repr__", [](const Objective& o) { return "<vantage.Objective '" + o.name + "'>"; });
+  py::class_<Requirement>(m, "Requirement", "A bound that a wanted network keeps.")
+      .def(py::init([](Objective objective, const std::string& bound, double limit) {
+             if (bound != ">=" && bound != "<=")
+               throw Error(Errc::invalid_argument, "bound: '" + bound + "' is neither '>=' nor '<='");
+             return Requirement{std::move(objective),
+                                bound == ">=" ? Requirement::Bound::at_least : Requirement::Bound::at_most, limit};
+           }),
+           py::arg("objective"), py::arg("bound"), py::arg("limit"), "bound: '>=' or '<='.")
+      .def_readonly("objective", &Requirement::objective, "What is bounded.")
+      .def_readonly("limit", &Requirement::limit, "By what.")
+      .def("__str__", [](const Requirement& r) { return to_string(r); })
+      .def("__repr__", [](const Requirement& r) { return "<vantage.Requirement " + to_string(r) + ">"; });
+  m.def(
+      "objective_names",
+      [] {
+        const auto names = objective_names();
+        return std::vector<std::string>(names.begin(), names.end());
+      },
+      "The built-in objectives.");
+}
+
+// Built-in ones by their names.
+std::vector<Objective> objectives_from(const py::iterable& given, const SurveyProblem& problem) {
+  std::vector<Objective> made;
+  for (const auto& each : given)
+    made.push_back(py::isinstance<py::str>(each) ? make_objective(each.cast<std::string>(), problem.settings())
+                                                 : each.cast<Objective>());
+  return made;
+}
+std::vector<Requirement> requirements_from(const py::iterable& given, const SurveyProblem& problem) {
+  std::vector<Requirement> made;
+  for (const auto& each : given)
+    made.push_back(py::isinstance<py::str>(each) ? make_requirement(each.cast<std::string>(), problem.settings())
+                                                 : each.cast<Requirement>());
+  return made;
+}
+
+// Lists come as tuples: what is appended to a copy would be lost without a word.
+Options<SurveyProblem> problem_options() {
+  return Options<SurveyProblem>("SurveyProblem")
+      .add("name", &SurveyProblem::name, "For tables and pictures.")
+      .add("stations_min", &SurveyProblem::stations_min, "Fewest stations to place.")
+      .add("stations_max", &SurveyProblem::stations_max, "Most; where it differs from that, the number is searched.")
+      .add<py::iterable>(
+          "kept", [](const SurveyProblem& p) { return py::tuple(py::cast(p.kept)); },
+          [](SurveyProblem& p, const py::iterable& given) { p.kept = py::list(given).cast<std::vector<Vec3>>(); },
+          "Heads (x, y, z) of stations that are there already, survey frame, metres.")
+      .add("heights_m", &SurveyProblem::heights_m, "Lowest and highest head above ground; None: the scanner's.")
+      .add("link_overlap", &SurveyProblem::link_overlap, "Pairs of less overlap count as not linked.")
+      .add("registration", &SurveyProblem::registration, "What scans register from.")
+      .add("fewest", &SurveyProblem::fewest, "First the fewest stations that keep the requirements, then the best.")
+      .add("visible", &SurveyProblem::visible, "The coverage that `capture` is a share of; None: found.")
+      .add<py::iterable>(
+          "objectives", [](const SurveyProblem& p) { return py::tuple(py::cast(p.objectives)); },
+          [](SurveyProblem& p, const py::iterable& given) { p.objectives = objectives_from(given, p); },
+          "What is searched for: Objectives, or names of built-in ones.")
+      .add<py::iterable>(
+          "requirements", [](const SurveyProblem& p) { return py::tuple(py::cast(p.requirements)); },
+          [](SurveyProblem& p, const py::iterable& given) { p.requirements = requirements_from(given, p); },
+          "What a network has to keep: Requirements, or texts like 'coverage >= 0.9'.");
+}
+
+}  // namespace
+
+void add_problems(py::module_& m) {
+  add_objectives(m);
+  const auto options = problem_options();
+  py::class_<SurveyProblem> type(
+      m, "SurveyProblem",
+      ("What is asked: how many stations, where they may be, what a network is searched for and what it has to keep.\n"
+       "With one objective the best network is searched, with several a front. Names of built-in objectives are "
+       "looked\n"
+       "up when they are given: set the numbers of stations before." +
+       options.doc())
+          .c_str());
+  type.def(py::init([options](const py::kwargs& given) { return options.read(given); }))
+      .def(
+          "to_dict", [](const SurveyProblem& problem) { return to_dict(settings(problem)); },
+          "Its members by their names.")
+      .def("__repr__", [options](const SurveyProblem& problem) { return options.repr(problem); });
+  options.attributes(type);
+  const auto stations = py::arg("stations");
+  const auto low = py::arg("stations_min"), high = py::arg("stations_max");
+  m.def("coverage_fix", &coverage_fix, stations, "Table 2 of the paper: coverage of so many stations.");
+  m.def("coverage_overlap_fix", &coverage_overlap_fix, stations, "Coverage against overlap of so many stations.");
+  m.def("coverage_min", &coverage_min, low, high, "Coverage against the number of stations.");
+  m.def("coverage_overlap_min", &coverage_overlap_min, low, high, "Coverage, overlap and number of stations.");
+  m.def(
+      "fitness_min",
+      [](std::size_t least, std::size_t most, double coverage, double station_count, double visibility) {
+        return fitness_min(least, most, {coverage, station_count, visibility});
+      },
+      low, high, py::arg("coverage") = FitnessWeights{}.coverage,
+      py::arg("station_count") = FitnessWeights{}.station_count, py::arg("visibility") = FitnessWeights{}.visibility,
+      "The weighted fitness of equation 1 of the paper, a baseline.");
+  m.def("fewest_stations", &fewest_stations, py::arg("capture") = 0.9, py::arg("link") = 0.3,
+        py::arg("stations_min") = 1, py::arg("stations_max") = max_stations, py::arg("apart_m") = 1.0,
+        "The surveyor's question: the fewest stations that capture that share of what can be seen, all linked by scan\n"
+        "overlaps of at least `link`, apart_m metres or more from each other; then the strongest weakest link.");
+}
+
+}  // namespace vantage::python

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "arrays.hpp"
+#include "module.hpp"
+#include "options.hpp"
+
+namespace vantage::python {
+namespace {
+
+// {'distances_m': (d,), 'reflectivities': (r,), 'sigma_m': (r, d)}; None: no noise.
+py::object noise_of(const NoiseTable& noise) {
+  if (noise.empty()) return py::none();
+  py::dict dict;
+  dict["distances_m"] =
+      py::array_t<double>(static_cast<py::ssize_t>(noise.distances_m.size()), noise.distances_m.data());
+  dict["reflectivities"] =
+      py::array_t<double>(static_cast<py::ssize_t>(noise.reflectivities.size()), noise.reflectivities.data());
+  dict["sigma_m"] = py::array_t<double>(
+      Shape{static_cast<py::ssize_t>(noise.reflectivities.size()), static_cast<py::ssize_t>(noise.distances_m.size())},
+      noise.sigma_m.data());
+  return dict;
+}
+
+NoiseTable noise_from(const py::object& given) {
+  if (given.is_none()) return {};
+  const auto part = [&](const char* key) {
+    const auto numbers = Doubles::ensure(given[key]);
+    if (!numbers) throw py::error_already_set();
+    return std::vector<double>(numbers.data(), numbers.data() + numbers.size());
+  };
+  return {.distances_m = part("distances_m"), .reflectivities = part("reflectivities"), .sigma_m = part("sigma_m")};
+}
+
+Options<Scanner> scanner_options() {
+  return Options<Scanner>("Scanner")
+      .add("name", &Scanner::name, "What it is called.")
+      .add("heading_deg", &Scanner::heading, "Azimuth of the middle of the sweep, degrees from +X towards +Y.")
+      .add("horizontal_angle_deg", &Scanner::horizontal_angle, "H, above 0 to 360.")
+      .add("vertical_angle_deg", &Scanner::vertical_angle, "V, the mirror's sweep over both sides: zeniths to V/2.")
+      .add("zenith_start_deg", &Scanner::zenith_start, "First zenith, from straight up.")
+      .add("azimuth_step_deg", &Scanner::azimuth_step, "Between columns.")
+      .add("zenith_step_deg", &Scanner::zenith_step, "Between rows.")
+      .add("height_m", &Scanner::height_m, "Of the head above the search area.")
+      .add("min_range_m", &Scanner::min_range_m, "d_min.")
+      .add("max_range_m", &Scanner::max_range_m, "d_max.")
+      .add("points_per_second", &Scanner::points_per_second, "How fast rays are measured, for the time on site.")
+      .add<py::object>(
+          "noise", [](const Scanner& s) { return noise_of(s.noise); },
+          [](Scanner& s, const py::object& noise) { s.noise = noise_from(noise); },
+          "Standard deviations of ranges: a dict of 'distances_m' (d,), 'reflectivities' (r,), 'sigma_m' (r, d); None: "
+          "exact.")
+      .add<double>(
+          "beam_divergence_mrad", [](const Scanner& s) { return s.beam_divergence.in_radians() * 1e3; },
+          [](Scanner& s, double mrad) { s.beam_divergence = Angle::radians(mrad * 1e-3); },
+          "Full angle to 1/e^2; 0: not known.")
+      .add<double>(
+          "exit_diameter_mm", [](const Scanner& s) { return s.exit_diameter_m * 1e3; },
+          [](Scanner& s, double mm) { s.exit_diameter_m = mm * 1e-3; },
+          "Diameter of the beam where it leaves the scanner, to 1/e^2; 0: not known.");
+}
+
+}  // namespace
+
+void add_scanners(py::module_& m) {
+  const auto options = scanner_options();
+  py::class_<Scanner> type(
+      m, "Scanner",
+      ("A terrestrial laser scanner (section 3.2 of the paper). Ray (row, column) has zenith\n"
+       "zenith_start + (row + 1/2) zenith_step and azimuth heading - H/2 + (column + 1/2) azimuth_step." +
+       options.doc())
+          .c_str());
+  type.def(py::init([options](const py::kwargs& given) { return options.read(given); }))
+      .def_static(
+          "load", [](const std::string& name, const std::filesystem::path& more) { return load_scanner(name, more); },
+          py::arg("name"), py::arg("more") = "",
+          "A preset by its key, as 'rtc360' or 'rtc360@6mm'. more: a file of further ones, as data/scanners.json.\n"
+          "Raises Error: io, malformed_file, invalid_argument (lists what exists).")
+      .def_property_readonly("rows", &Scanner::rows, "Zenith steps.")
+      .def_property_readonly("columns", &Scanner::columns, "Azimuth steps.")
+      .def_property_readonly("rays", &Scanner::rays, "rows * columns.")
+      .def("check", &Scanner::check, "Raises Error invalid_argument with the member that is out of range.")
+      .def(
+          "to_dict", [](const Scanner& scanner) { return to_dict(settings(scanner)); }, "Its members by their names.")
+      .def("__repr__", [options](const Scanner& scanner) { return options.repr(scanner); });
+  options.attributes(type);
+  m.def(
+      "scanners",
+      [](const std::filesystem::path& more) {
+        std::vector<std::pair<std::string, std::string>> all;
+        for (const ScannerPreset& preset : list_scanners(more)) all.emplace_back(preset.key, preset.summary);
+        return all;
+      },
+      py::arg("more") = "", "Pairs (key, summary) of the presets, those of the file `more` first.");
+}
+
+}  // namespace vantage::python

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "arrays.hpp"
+#include "module.hpp"
+#include "options.hpp"
+
+namespace vantage::python {
+namespace {
+
+using Globs = std::vector<std::string>;
+
+Options<SceneOptions> scene_options() {
+  return Options<SceneOptions>("Scene.load")
+      .add("surveyed", &SceneOptions::surveyed, "Patterns (`*`, `?`) of the nodes that are surveyed.")
+      .add("blocking", &SceneOptions::blocking, "Nodes that only block.")
+      .add("search", &SceneOptions::search, "Nodes that form the search area.")
+      .add("ignore", &SceneOptions::ignore, "Nodes that are left out.")
+      .add("weights", &SceneOptions::weights, "Pairs (pattern, weight of its voxels in coverage, 1 to 255).")
+      .add("details_mm", &SceneOptions::details_mm, "Pairs (pattern, widest footprint of the beam that counts, mm).")
+      .add("accuracies_mm", &SceneOptions::accuracies_mm, "Pairs (pattern, largest range noise that counts, mm).")
+      .add("doors", &SceneOptions::doors, "Leaves that count as open for who walks, and block rays.")
+      .add("station_area", &SceneOptions::station_area, "Nodes that stations may stand on.")
+      .add("scene_index", &SceneOptions::scene_index, "Which glTF scene; None: the file's own.")
+      .add("default_diffuse", &SceneOptions::default_diffuse, "Diffuse reflection R where the file gives none.")
+      .add("unit", &SceneOptions::unit, "'m', 'cm', 'mm', 'in' or 'ft'; None: recognised.")
+      .add("up", &SceneOptions::up, "'y' or 'z'; None: recognised.")
+      .add("allow_outside", &SceneOptions::allow_outside, "Let the file name others outside of its own folder.");
+}
+
+SceneMesh mesh_of(const Doubles& positions, const py::array& triangles, std::string name, std::optional<Role> role,
+                  double diffuse, std::uint32_t weight, std::array<float, 4> colour, const Vec3& translation,
+                  std::array<double, 4> rotation) {
+  const auto points = rows_of<Vec3>(positions, "positions");
+  return {.name = std::move(name),
+          .positions = {points.begin(), points.end()},
+          .triangles = triangles_of(triangles),
+          .role = role,
+          .diffuse = diffuse,
+          .weight = weight,
+          .colour = colour,
+          .pose = {translation, rotation}};
+}
+
+void add_mesh_info(py::module_& m) {
+  py::class_<MeshInfo>(m, "MeshInfo", "One mesh of a scene.")
+      .def_readonly("name", &MeshInfo::name, "The node's name, or the mesh's where the node has none.")
+      .def_property_readonly(
+          "role", [](const MeshInfo& mesh) { return mesh.role; }, "'surveyed' or 'blocking'.")
+      .def_readonly("diffuse", &MeshInfo::diffuse, "Diffuse reflection coefficient R, in [0, 1].")
+      .def_readonly("triangle_count", &MeshInfo::triangle_count, "How many triangles it has.")
+      .def_readonly("weight", &MeshInfo::weight, "What a voxel of it counts in coverage, 1 to 255.")
+      .def_readonly("door", &MeshInfo::door, "A closed leaf that counts as open for who walks.")
+      .def_readonly("station_area", &MeshInfo::station_area, "Stations may stand on it.")
+      .def_readonly("detail_m", &MeshInfo::detail_m, "Widest footprint of the beam that counts, metres; 0: any.")
+      .def_readonly("accuracy_m", &MeshInfo::accuracy_m, "Largest range noise (sigma) that counts, metres; 0: any.")
+      .def("__repr__", [](const MeshInfo& mesh) {
+        return "<vantage.MeshInfo '" + mesh.name + "', " + name_of(mesh.role) + ", " +
+               std::to_string(mesh.triangle_count) + " triangles>";
+      });
+}
+
+void add_scene(py::module_& m) {
+  const auto options = scene_options();
+  py::class_<Scene>(m, "Scene",
+                    "The 3D model of a site: what is surveyed, what blocks, and where a scanner may stand. Immutable.\n"
+                    "The survey frame is right-handed with Z up, in metres.")
+      .def_static(
+          "load",
+          [options](const std::filesystem::path& file, const py::kwargs& given) {
+            const SceneOptions how = options.read(given);
+            const py::gil_scoped_release unlocked;
+            return Scene::load(file, how);
+          },
+          py::arg("file"),
+          ("Loads a .glb or .gltf file. Y up becomes Z up, (x, y, z) -> (x, -z, y), and other units become metres.\n"
+           "Raises Error: io, malformed_file, invalid_argument, out_of_memory." +
+           options.doc())
+              .c_str())
+      .def_static(
+          "from_triangles",
+          [](const Doubles& positions, const py::array& triangles, double diffuse) {
+            return Scene::from_triangles(rows_of<Vec3>(positions, "positions"), triangles_of(triangles), diffuse);
+          },
+          py::arg("positions"), py::arg("triangles"), py::arg("diffuse") = 0.5,
+          "One surveyed mesh: positions (n, 3), metres, survey frame; triangles (m, 3), indices of positions.\n"
+          "Raises Error: invalid_argument, malformed_file (no triangle with area).")
+      .def_property_readonly(
+          "bounds",
+          [](const Scene& scene) {
+            const Box box = scene.bounds();
+            return adopt(std::vector<Vec3>{box.min, box.max});
+          },
+          "Lowest and highest corner of all surveyed and blocking meshes: (2, 3), metres.")
+      .def_property_readonly(
+          "meshes",
+          [](const Scene& scene) { return std::vector<MeshInfo>(scene.meshes().begin(), scene.meshes().end()); },
+          "What it is made of, by the numbers that scans give meshes.")
+      .def_property_readonly("triangle_count", &Scene::triangle_count, "Over all meshes.")
+      .def_property_readonly("has_search_area", &Scene::has_search_area,
+                             "Whether the file marks where stations may stand.")
+      .def_property_readonly(
+          "notes",
+          [](const Scene& scene) { return std::vector<std::string>(scene.notes().begin(), scene.notes().end()); },
+          "What was dropped or turned when it was loaded, a sentence each.")
+      .def_property_readonly(
+          "defaults", [](const Scene& scene) { return from_json(scene.defaults_json()); },
+          "Parameters that a built-in scene brings along.")
+      .def_property_readonly("fingerprint", &Scene::fingerprint, "Hash of all that can change a result.")
+      .def("__repr__", [](const Scene& scene) {
+        return "<vantage.Scene of " + std::to_string(scene.meshes().size()) + " meshes, " +
+               std::to_string(scene.triangle_count()) + " triangles>";
+      });
+}
+
+void add_builder(py::module_& m) {
+  py::class_<SceneBuilder>(
+      m, "SceneBuilder",
+      "Makes scenes of meshes from arrays, which may be moved and replaced between one `build` and the next.")
+      .def(py::init<>())
+      .def(
+          "add",
+          [](SceneBuilder& builder, const Doubles& positions, const py::array& triangles, std::string name,
+             std::optional<Role> role, double diffuse, std::uint32_t weight, std::array<float, 4> colour,
+             const Vec3& translation, std::array<double, 4> rotation) {
+            return builder.add(
+                mesh_of(positions, triangles, std::move(name), role, diffuse, weight, colour, translation, rotation));
+          },
+          py::arg("positions"), py::arg("triangles"), py::kw_only(), py::arg("name") = "mesh",
+          py::arg("role") = py::none(), py::arg("diffuse") = 0.5, py::arg("weight") = 1,
+          py::arg("colour") = std::array<float, 4>{1, 1, 1, 1}, py::arg("translation") = Vec3{},
+          py::arg("rotation") = std::array<double, 4>{0, 0, 0, 1},
+          "Adds a mesh and returns its number, from 0. positions: (n, 3), metres, Z up; triangles: (m, 3), indices of\n"
+          "positions, counter-clockwise from outside. role: 'surveyed', 'blocking', 'search' (part of the search\n"
+          "area) or 'ignore'; None: surveyed, or blocking once any mesh is marked surveyed. colour: linear RGBA in\n"
+          "[0, 1]. Its points are turned by the quaternion rotation (x, y, z, w), then moved by translation (metres).\n"
+          "Raises Error invalid_argument.")
+      .def(
+          "replace",
+          [](SceneBuilder& builder, std::size_t mesh, const Doubles& positions, const py::array& triangles,
+             std::string name, std::optional<Role> role, double diffuse, std::uint32_t weight,
+             std::array<float, 4> colour, const Vec3& translation, std::array<double, 4> rotation) {
+            builder.replace(mesh, mesh_of(positions, triangles, std::move(name), role, diffuse, weight, colour,
+                                          translation, rotation));
+          },
+          py::arg("mesh"), py::arg("positions"), py::arg("triangles"), py::kw_only(), py::arg("name") = "mesh",
+          py::arg("role") = py::none(), py::arg("diffuse") = 0.5, py::arg("weight") = 1,
+          py::arg("colour") = std::array<float, 4>{1, 1, 1, 1}, py::arg("translation") = Vec3{},
+          py::arg("rotation") = std::array<double, 4>{0, 0, 0, 1},
+          "Puts another mesh in the place of number `mesh`; the rest as `add`.")
+      .def(
+          "move",
+          [](SceneBuilder& builder, std::size_t mesh, const Vec3& translation, std::array<double, 4> rotation) {
+            builder.move(mesh, {translation, rotation});
+          },
+          py::arg("mesh"), py::arg("translation") = Vec3{}, py::arg("rotation") = std::array<double, 4>{0, 0, 0, 1},
+          "Puts mesh number `mesh` elsewhere: metres, and a quaternion (x, y, z, w).")
+      .def("build", &SceneBuilder::build,
+           "The scene as it stands now. Raises Error malformed_file: nothing is surveyed.")
+      .def_property_readonly("rebuilt_all", &SceneBuilder::rebuilt_all,
+                             "Whether the last `build` made every mesh anew.")
+      .def("__len__", &SceneBuilder::size);
+}
+
+}  // namespace
+
+void add_scenes(py::module_& m) {
+  add_mesh_info(m);
+  add_scene(m);
+  add_builder(m);
+  m.def(
+      "load_gltf",
+      [options = scene_options()](const py::bytes& bytes, const std::string& name, const py::kwargs& given) {
+        const std::string_view text = bytes;
+        return load_gltf({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, options.read(given), name);
+      },
+      py::arg("bytes"), py::arg("name") = "glTF in memory",
+      "Loads a scene from the bytes of a .glb or .gltf file; `name` opens messages. Options as `Scene.load`.");
+  m.def(
+      "built_in_scene_names",
+      [] {
+        const auto names = built_in_scene_names();
+        return std::vector<std::string>(names.begin(), names.end());
+      },
+      "Scenes that `write_built_in_scene` can make.");
+  m.def(
+      "write_built_in_scene",
+      [](const std::string& name, const std::filesystem::path& file, std::size_t triangles) {
+        write_built_in_scene(name, triangles, file);
+      },
+      py::arg("name"), py::arg("file"), py::arg("triangles") = 0, py::call_guard<py::gil_scoped_release>(),
+      "Writes a built-in scene as GLB. triangles: for 'industrial', 20 000 and up; the others take no heed of it.");
+}
+
+}  // namespace vantage::python

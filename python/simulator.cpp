@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simulator.hpp"
+
+#include "evaluation.hpp"
+#include "module.hpp"
+#include "options.hpp"
+#include "scan.hpp"
+
+namespace vantage::python {
+namespace {
+
+Options<SimulatorConfig> simulator_options() {
+  return Options<SimulatorConfig>("Simulator")
+      .add("engine", &SimulatorConfig::engine, "'auto', 'ray_query', 'compute_bvh' or 'embree'.")
+      .add("device_index", &SimulatorConfig::device_index, "Which device; None: the best that has the engine.")
+      .add("user_size_m", &SimulatorConfig::user_size_m, "Upper bound of the voxel size (equation 2), metres.")
+      .add("point_spacing_m", &SimulatorConfig::point_spacing_m,
+           "Wanted spacing n of points, metres; goal density = voxel_size^2 / n^2.")
+      .add("max_incidence_deg", &SimulatorConfig::max_incidence,
+           "Largest angle from the normal at which points count; None: 60 where meshes have limits, else any.")
+      .add("noise", &SimulatorConfig::noise, "Apply the scanner's noise table, if it has one.")
+      .add("seed", &SimulatorConfig::seed, "Of noise and of the voxel sample.")
+      .add("validation", &SimulatorConfig::validation, "Load the Vulkan validation layer.")
+      .add("max_rays_per_dispatch", &SimulatorConfig::max_rays_per_dispatch, "0: chosen.");
+}
+
+Evaluation evaluate(GuardedSimulator& self, const py::object& stations, bool overlap, bool skip, bool field,
+                    const std::optional<RegistrationOptions>& registration, py::object progress) {
+  const Network network = network_of(stations);
+  Evaluation made{.goal_density = self.simulator.goal_density(),
+                  .voxels = self.simulator.voxel_count(),
+                  .registration = registration};
+  EvaluateOptions options{.overlap = overlap, .skip = skip};
+  if (field) options.field = &made.field.emplace();
+  if (registration) options.registration = registration->model;
+  LongCall call(std::move(progress));
+  made.counts = call.run([&] {
+    const Busy busy(self.mutex);
+    return self.simulator.evaluate(network, options, call.progress());
+  });
+  return made;
+}
+
+std::vector<Evaluation> evaluate_sampled(GuardedSimulator& self, const py::sequence& networks, std::uint64_t voxels,
+                                         bool overlap, const std::optional<RegistrationOptions>& registration,
+                                         py::object progress) {
+  std::vector<Network> all;
+  for (const auto& stations : networks) all.push_back(network_of(py::reinterpret_borrow<py::object>(stations)));
+  SampleOptions options{.voxels = voxels, .overlap = overlap};
+  if (registration) options.registration = registration->model;
+  LongCall call(std::move(progress));
+  std::vector<NetworkCounts> counts = call.run([&] {
+    const Busy busy(self.mutex);
+    return self.simulator.evaluate_sampled(all, options, call.progress());
+  });
+  std::vector<Evaluation> made;
+  for (NetworkCounts& each : counts)
+    made.push_back({.counts = std::move(each),
+                    .goal_density = self.simulator.goal_density(),
+                    .voxels = self.simulator.voxel_count(),
+                    .registration = registration});
+  return made;
+}
+
+py::array_t<double> voxel_centres(const GuardedSimulator& self) {
+  std::vector<Vec3> centres(self.simulator.voxel_count());
+  for (std::uint64_t rank = 0; rank < centres.size(); ++rank) centres[rank] = self.simulator.voxel_centre(rank);
+  return adopt(std::move(centres));
+}
+
+py::array_t<std::uint32_t> voxel_weights(const GuardedSimulator& self) {
+  std::vector<std::uint32_t> weights(self.simulator.voxel_count());
+  for (std::uint64_t rank = 0; rank < weights.size(); ++rank) weights[rank] = self.simulator.voxel_weight(rank);
+  const auto count = static_cast<py::ssize_t>(weights.size());
+  return adopt<std::uint32_t>(std::move(weights), {count});
+}
+
+void add_engines(py::module_& m) {
+  py::class_<EngineInfo>(m, "EngineInfo", "An engine on a device.")
+      .def_property_readonly(
+          "engine", [](const EngineInfo& info) { return info.engine; }, "'ray_query', 'compute_bvh' or 'embree'.")
+      .def_readonly("device", &EngineInfo::device, "The device's name.")
+      .def_readonly("driver", &EngineInfo::driver, "Driver or library with version.")
+      .def_readonly("device_index", &EngineInfo::device_index, "For `Simulator(device_index=...)`.")
+      .def_readonly("usable", &EngineInfo::usable, "Whether it can be used.")
+      .def_readonly("software", &EngineInfo::software, "A CPU behind a GPU interface.")
+      .def_readonly("chosen_by_default", &EngineInfo::chosen_by_default, "What 'auto' takes.")
+      .def_readonly("reason", &EngineInfo::reason, "Why it was taken or refused.")
+      .def("__repr__", [](const EngineInfo& info) {
+        return "<vantage.EngineInfo " + name_of(info.engine) + " on " + info.device +
+               (info.usable ? "" : ", not usable") + ">";
+      });
+  m.def("list_engines", &list_engines, py::call_guard<py::gil_scoped_release>(),
+        "All engines on all devices of this machine, usable or not.");
+}
+
+}  // namespace
+
+void add_simulators(py::module_& m) {
+  add_engines(m);
+  add_scans(m);
+  const auto options = simulator_options();
+  py::class_<GuardedSimulator>(
+      m, "Simulator",
+      ("Simulates a scanner in a scene. Other Python threads run while it traces; a simulator itself serves one call "
+       "at\n"
+       "a time, and a second raises Error. Same inputs, seed and engine: same result, bit for bit.\n\n"
+       "`progress` is called, where it is given, with the share done in [0, 1]; where it returns False the call ends\n"
+       "early and its result says `cancelled`. Ctrl-C ends a call too, by KeyboardInterrupt." +
+       options.doc())
+          .c_str())
+      .def(py::init([options](const Scene& scene, const Scanner& scanner, const py::kwargs& given) {
+             const SimulatorConfig config = options.read(given);
+             const py::gil_scoped_release unlocked;
+             return new GuardedSimulator{Simulator(scene, scanner, config)};
+           }),
+           py::arg("scene"), py::arg("scanner"))
+      .def_property_readonly(
+          "engine", [](const GuardedSimulator& self) { return self.simulator.engine(); }, "The engine chosen.")
+      .def_property_readonly(
+          "scanner", [](const GuardedSimulator& self) { return self.simulator.scanner(); }, "A copy of its scanner.")
+      .def_property_readonly(
+          "scene", [](const GuardedSimulator& self) { return self.simulator.scene(); }, "Its scene.")
+      .def_property_readonly(
+          "voxel_count", [](const GuardedSimulator& self) { return self.simulator.voxel_count(); },
+          "Surveyed voxels, N_v of equation 8.")
+      .def_property_readonly(
+          "voxel_size_m", [](const GuardedSimulator& self) { return self.simulator.voxel_size_m(); },
+          "Side of a voxel, metres.")
+      .def_property_readonly(
+          "goal_density", [](const GuardedSimulator& self) { return self.simulator.goal_density(); },
+          "Points wanted in a voxel.")
+      .def("voxel_centres", &voxel_centres, "Centres of the surveyed voxels, survey frame: (N_v, 3), metres.")
+      .def("voxel_weights", &voxel_weights, "What each voxel counts in coverage: (N_v,).")
+      .def("scan", &scan, py::arg("position"),
+           py::arg("outputs") = std::vector<std::string>{"position", "reflectivity"}, py::kw_only(),
+           py::arg("grid") = false, py::arg("place") = 0, py::arg("progress") = py::none(),
+           "The points of one station, whose head is at `position` (x, y, z), survey frame, metres.\n\n"
+           "outputs: any of 'position', 'normal', 'reflectivity', 'mesh', 'primitive', 'colour', 'voxel'; row, column\n"
+           "and range_m are always there. grid: arrays of shape (rows, columns, ...), an element a ray, instead of\n"
+           "(points, ...). place: the station's in its network, which keys the noise.\n"
+           "Raises Error invalid_argument: a position that is not finite, an output that there is not.")
+      .def(
+          "evaluate", &evaluate, py::arg("stations"), py::kw_only(), py::arg("overlap") = true, py::arg("skip") = true,
+          py::arg("field") = false, py::arg("registration") = py::none(), py::arg("progress") = py::none(),
+          "Every ray of every station. stations: heads (n, 3), survey frame, metres, or `PlacedStation`s; n at most\n"
+          "64. overlap: count pairs. skip: leave out rays that can reach no surveyed voxel; counts do not change, but\n"
+          "`points` is not counted. field: keep the counts of every voxel. registration: RegistrationOptions; predict\n"
+          "its error.\n"
+          "Raises Error invalid_argument.")
+      .def("evaluate_sampled", &evaluate_sampled, py::arg("networks"), py::kw_only(), py::arg("voxels") = 20'000,
+           py::arg("overlap") = true, py::arg("registration") = py::none(), py::arg("progress") = py::none(),
+           "Several networks, each as for `evaluate`, on one sample of the surveyed voxels: an Evaluation each, with\n"
+           "standard errors. voxels: of the sample; as many as there are: all of them.")
+      .def("__repr__", [](const GuardedSimulator& self) {
+        return "<vantage.Simulator on " + name_of(self.simulator.engine().engine) + ", " +
+               std::to_string(self.simulator.voxel_count()) + " voxels>";
+      });
+}
+
+}  // namespace vantage::python

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+// The predicted registration error where it is: on the surface.
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "core/atomic_file.hpp"
+#include "core/text.hpp"
+#include "report/ply_header.hpp"
+#include "report/point_sink.hpp"
+#include "report/voxel_map.hpp"
+#include "vantage/error.hpp"
+#include "vantage/export.hpp"
+
+namespace vantage {
+namespace {
+
+constexpr Colour kUnseen{0.86, 0.86, 0.87};
+// More than a picture has pixels for.
+constexpr std::uint64_t kMostDrawn = 200'000;
+
+// Millimetres, root mean square over the stations that see the voxel; below 0 where none does.
+std::vector<float> errors_of(const Simulator& simulator, const VoxelField& field, const RegistrationError& error,
+                             std::span<const std::uint32_t> ranks) {
+  std::vector<float> found(ranks.size());
+  tbb::parallel_for(std::size_t{0}, ranks.size(), [&](std::size_t k) {
+    const Vec3 place = simulator.voxel_centre(ranks[k]) - simulator.origin();
+    double squares = 0;
+    std::uint64_t mask = field.stations[ranks[k]];
+    const int seen = std::popcount(mask);
+    for (; mask != 0; mask &= mask - 1) {
+      const double one = error.at(static_cast<std::size_t>(std::countr_zero(mask)), place);
+      squares += one * one;
+    }
+    found[k] = seen > 0 ? static_cast<float>(1000 * std::sqrt(squares / seen)) : -1;
+  });
+  return found;
+}
+
+void check(const Simulator& simulator, const VoxelField& field) {
+  if (field.stations.size() != simulator.voxel_count())
+    throw Error(Errc::invalid_argument, "registration map: the voxel field has stations of " +
+                                            std::to_string(field.stations.size()) + " voxels, the scene " +
+                                            std::to_string(simulator.voxel_count()) + " surveyed ones");
+}
+
+double largest(std::span<const float> errors) {
+  const double most = errors.empty() ? 0 : static_cast<double>(*std::ranges::max_element(errors));
+  return most > 0 ? most : 1;
+}
+
+}  // namespace
+
+void write_registration_ply(const std::filesystem::path& file, const Simulator& simulator, const VoxelField& field,
+                            const RegistrationError& error) {
+  check(simulator, field);
+  std::vector<std::uint32_t> ranks;
+  for (std::uint32_t rank = 0; rank < field.stations.size(); ++rank)
+    if (field.stations[rank] != 0) ranks.push_back(rank);
+  const std::vector<float> errors = errors_of(simulator, field, error, ranks);
+  const double most = largest(errors);
+  AtomicFile out(file);
+  out.write(PlyHeader({{"double", "x"},
+                       {"double", "y"},
+                       {"double", "z"},
+                       {"uchar", "red"},
+                       {"uchar", "green"},
+                       {"uchar", "blue"},
+                       {"float", "error_mm"}})
+                .text(ranks.size()));
+  std::string bytes;
+  for (std::size_t k = 0; k < ranks.size(); ++k) {
+    const Vec3 centre = simulator.voxel_centre(ranks[k]);
+    append(bytes, centre.x), append(bytes, centre.y), append(bytes, centre.z);
+    for (const std::uint8_t channel : to_bytes(ramp(kRisingRamp, static_cast<double>(errors[k]) / most)))
+      append(bytes, channel);
+    append(bytes, errors[k]);
+    if (bytes.size() > (1u << 20) || k + 1 == ranks.size()) out.write(bytes), bytes.clear();
+  }
+  out.commit();
+}
+
+void draw_registration(const std::filesystem::path& file, const Simulator& simulator, const VoxelField& field,
+                       const RegistrationError& error, std::span<const PlacedStation> stations,
+                       const std::string& title) {
+  check(simulator, field);
+  const std::vector<std::uint32_t> ranks = simulator.sampled_voxels(std::min(kMostDrawn, simulator.voxel_count()));
+  const std::vector<float> errors = errors_of(simulator, field, error, ranks);
+  const double most = largest(errors);
+  // The worst on top: what lies over it must not hide it.
+  std::vector<std::size_t> order(ranks.size());
+  for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
+  std::ranges::stable_sort(order, {}, [&](std::size_t k) { return errors[k]; });
+  std::vector<ColouredVoxel> voxels;
+  for (const std::size_t k : order)
+    voxels.push_back({ranks[k], errors[k] < 0 ? kUnseen : ramp(kRisingRamp, static_cast<double>(errors[k]) / most)});
+  const auto legend = [&](Canvas& canvas, Point at) {
+    canvas.text(at, "Predicted error", {.size = 12.5, .bold = true});
+    canvas.text({at.x, at.y + 17}, "one sigma, after registration", {.size = 12.5});
+    at.y += 38;
+    constexpr int kSteps = 60;
+    constexpr double kHeight = 150;
+    for (int step = 0; step < kSteps; ++step)
+      canvas.fill({at.x, at.y + kHeight * (kSteps - 1 - step) / kSteps, 24, kHeight / kSteps + 0.5},
+                  ramp(kRisingRamp, (step + 0.5) / kSteps));
+    for (const double share : {0.0, 0.5, 1.0})
+      canvas.text({at.x + 34, at.y + kHeight * (1 - share)}, fixed(share * most, most < 10 ? 2 : 0) + " mm",
+                  {.size = 12.5});
+    at.y += kHeight + 24;
+    canvas.fill({at.x, at.y - 7, 24, 14}, kUnseen);
+    canvas.text({at.x + 34, at.y}, "not seen", {.size = 12.5});
+    return Point{at.x, at.y + 24};
+  };
+  draw_voxel_map(file, simulator, voxels, stations, title, "Surveyed surfaces from above, the largest error on top",
+                 legend);
+}
+
+}  // namespace vantage

@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: Apache-2.0
+import sys
+import threading
+import time
+import unittest
+
+import numpy as np
+import vantage
+from sites import BEFORE_EACH_WALL, COARSE, FOUR_WALLS, four_walls, program_json
+
+HEADS = [[8, 0, 1.5], [9, 8, 1.5], [0, 12, 1.5]]  # none sees the walls in the south and the west
+
+
+
+class Evaluations(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.simulator = four_walls()
+
+    def test_measures_are_those_of_the_counts_in_numpy(self):
+        """Coverage (equation 8) and overlaps (equation 11) once more, from the count and the mask of every voxel."""
+        found = self.simulator.evaluate(HEADS, field=True)
+        share = np.minimum(found.voxel_points / self.simulator.goal_density, 1)
+        self.assertAlmostEqual(found.coverage, share.mean(), places=12)
+        self.assertTrue(((share > 0) & (share < 1)).any() and (share == 1).any())
+        sees = (found.voxel_stations[:, None] >> np.arange(3, dtype=np.uint64)) & np.uint64(1)
+        both = sees.T @ sees
+        np.testing.assert_array_equal(found.shared, both)
+        np.testing.assert_array_equal(found.seen, np.diag(both))
+        seen = np.diag(both).astype(float)
+        apart = 1 - np.eye(3)
+        np.testing.assert_allclose(found.overlap_matrix, apart * both / (seen[:, None] + seen - both), rtol=1e-12)
+        np.testing.assert_allclose(found.scan_overlap_matrix, apart * both / np.minimum(seen[:, None], seen), rtol=1e-12)
+        self.assertEqual((found.coverage_se, found.overlap_se), (0, 0))
+        self.assertEqual(found.connectivity().parts, 1)
+        self.assertEqual(found.points_on_surveyed.sum(), found.voxel_points.sum())
+
+    def test_the_program_says_the_same(self):
+        found = self.simulator.evaluate(HEADS, skip=False).to_dict()
+        stations = [part for head in HEADS for part in ("--station", ",".join(map(str, head)))]
+        told = program_json("evaluate", FOUR_WALLS, *COARSE, *stations)
+        for key in ("coverage", "overlap", "overlap_matrix", "voxels", "goal_density", "rays"):
+            self.assertEqual(found[key], told[key], key)
+        self.assertEqual(found["points"], [station["points"] for station in told["stations"]])
+
+    def test_a_sample_of_all_voxels_is_exact(self):
+        exact = self.simulator.evaluate(HEADS)
+        all_voxels, some = [
+            self.simulator.evaluate_sampled([BEFORE_EACH_WALL, HEADS], voxels=voxels)[1]
+            for voxels in (self.simulator.voxel_count, 500)]
+        self.assertEqual(all_voxels.coverage, exact.coverage)
+        np.testing.assert_array_equal(all_voxels.shared, exact.shared)
+        self.assertEqual(some.sample, 500)
+        self.assertGreater(some.coverage_se, 0)
+        self.assertLess(abs(some.coverage - exact.coverage), 5 * some.coverage_se)
+        self.assertEqual(some.overlap_matrix_se.shape, (3, 3))
+
+    def test_registration_is_predicted(self):
+        found = self.simulator.evaluate(HEADS, registration=vantage.RegistrationOptions())
+        error = found.registration
+        self.assertEqual(error.station_rms_m.shape, (3,))
+        self.assertEqual(error.head_covariance_m2.shape, (3, 3, 3))
+        np.testing.assert_allclose(error.head_covariance_m2, error.head_covariance_m2.transpose(0, 2, 1))
+        self.assertEqual(error.worst_m, error.station_rms_m.max())
+        self.assertEqual(error.worst_station, error.station_rms_m.argmax())
+        stations = [part for head in HEADS for part in ("--station", ",".join(map(str, head)))]
+        told = program_json("evaluate", FOUR_WALLS, *COARSE, *stations, "--registration")["registration"]
+        self.assertEqual(error.rms_m * 1e3, told["error_mm"])
+
+    def test_what_was_not_asked_for_says_so(self):
+        found = self.simulator.evaluate(HEADS, overlap=False)
+        for name in ("overlap", "overlap_matrix", "shared", "seen"):
+            with self.assertRaisesRegex(vantage.Error, name + ": was not asked for; evaluate with overlap=True"):
+                getattr(found, name)
+        with self.assertRaisesRegex(vantage.Error, "field=True"):
+            found.voxel_points
+        with self.assertRaisesRegex(vantage.Error, "RegistrationOptions"):
+            found.registration
+        self.assertIsNone(found.to_dict()["overlap"])
+
+    def test_bad_stations_are_refused(self):
+        for stations, text in [([[0, 0]], r"stations: .* \(1, 2\)"), ([], "stations"), (np.zeros((65, 3)), "64")]:
+            with self.assertRaisesRegex(vantage.Error, text):
+                self.simulator.evaluate(stations)
+
+    def test_voxels_are_arrays(self):
+        centres = self.simulator.voxel_centres()
+        self.assertEqual(centres.shape, (self.simulator.voxel_count, 3))
+        low, high = self.simulator.scene.bounds
+        self.assertTrue(((centres > low - 0.2) & (centres < high + 0.2)).all())
+        np.testing.assert_array_equal(self.simulator.voxel_weights(), 1)
+
+
+class LongCalls(unittest.TestCase):
+    def test_progress_is_told_and_may_end_the_call(self):
+        simulator = four_walls(max_rays_per_dispatch=50_000)
+        told = []
+        simulator.evaluate(HEADS, progress=told.append)
+        self.assertEqual(told, sorted(told))
+        self.assertTrue(told and 0 <= told[0] and told[-1] <= 1)
+        self.assertTrue(simulator.evaluate(HEADS, progress=lambda done: False).cancelled)
+        scan = simulator.scan(HEADS[0], grid=True, progress=lambda done: False)
+        self.assertTrue(scan.cancelled)
+        self.assertEqual(scan.position.shape, (len(scan), 3))
+        self.assertFalse(simulator.evaluate(HEADS, progress=lambda done: None).cancelled)
+
+    def test_what_progress_raises_ends_the_call(self):
+        simulator = four_walls()
+
+        def fail(done):
+            raise LookupError("enough")
+
+        with self.assertRaisesRegex(LookupError, "enough"):
+            simulator.evaluate(HEADS, progress=fail)
+        self.assertGreater(simulator.evaluate(HEADS).coverage, 0)
+
+    def test_other_threads_run_meanwhile(self):
+        simulator = four_walls(point_spacing_m=0.01)
+        counted, done = 0, threading.Event()
+
+        def count():
+            nonlocal counted
+            while not done.is_set():
+                counted += 1
+                time.sleep(0)  # hands the lock on, which nobody takes by force here
+
+        interval = sys.getswitchinterval()
+        sys.setswitchinterval(1000)
+        thread = threading.Thread(target=count)
+        try:
+            thread.start()
+            before = counted
+            simulator.evaluate(BEFORE_EACH_WALL, skip=False)
+            after = counted
+        finally:
+            sys.setswitchinterval(interval)
+            done.set()
+            thread.join()
+        self.assertGreater(after, before)
+
+    def test_a_simulator_serves_one_call_at_a_time(self):
+        simulator = four_walls()
+        raised = []
+
+        def again(done):
+            try:
+                simulator.evaluate(HEADS)
+            except vantage.Error as error:
+                raised.append(error)
+
+        self.assertFalse(simulator.evaluate(HEADS, progress=again).cancelled)
+        self.assertRegex(str(raised[0]), "in use by another call: make one for each thread")
+
+
+if __name__ == "__main__":
+    unittest.main()

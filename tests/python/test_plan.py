@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: Apache-2.0
+import json
+import os
+import tempfile
+import unittest
+
+import numpy as np
+import vantage
+from sites import COARSE, FOUR_WALLS, four_walls, program
+
+SMALL = {"population": 10, "iterations": 5, "sample_voxels": 500, "seed": 7}
+
+
+class Plans(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.simulator = four_walls()
+        cls.area = vantage.SearchArea(cls.simulator.scene)
+        cls.clash = vantage.ClashChecker(cls.simulator.scene)
+
+    def plan(self, problem, **options):
+        return vantage.plan(self.simulator, self.area, self.clash, problem, **{**SMALL, **options})
+
+    def assert_same_front(self, a, b):
+        self.assertEqual(len(a.front), len(b.front))
+        for one, other in zip(a.front, b.front):
+            np.testing.assert_array_equal(one.x, other.x)
+            self.assertEqual(one.value("coverage"), other.value("coverage"))
+
+    def test_the_program_finds_the_same(self):
+        simulator = four_walls(seed=SMALL["seed"])  # the program has one seed for all
+        found = vantage.plan(simulator, self.area, self.clash, vantage.coverage_overlap_fix(4), **SMALL).to_dict()
+        with tempfile.TemporaryDirectory() as folder:
+            code, _, text = program(
+                "plan", FOUR_WALLS, *COARSE, "--problem", "coverage-overlap-fix", "--stations", 4, "--population", 10,
+                "--iterations", 5, "--sample", 500, "--seed", 7, "-o", os.path.join(folder, "plan"))
+            self.assertEqual(code, 0, text)
+            with open(os.path.join(folder, "plan", "front.json")) as file:
+                told = json.load(file)
+        for key in ("front", "hypervolume", "exact_hypervolume", "evaluations", "answer", "engine", "seed"):
+            self.assertEqual(found[key], told[key], key)
+
+    def test_objectives_in_python_are_searched_as_built_in_ones(self):
+        built_in = self.plan(vantage.coverage_overlap_fix(4))
+        own = self.plan(vantage.SurveyProblem(objectives=[
+            vantage.Objective("own_coverage", lambda network: network.evaluation.coverage),
+            vantage.Objective("own_overlap", lambda network: network.evaluation.overlap, pairs=True)]))
+        self.assert_same_front(built_in, own)
+        self.assertEqual(built_in.hypervolume, own.hypervolume)
+        entry = own.answer
+        self.assertEqual(entry.value("own_coverage"), entry.value("coverage"))
+        self.assertGreater(entry.values["own_coverage"].standard_error, 0)
+        self.assertEqual(self.simulator.evaluate(entry.heads).coverage, entry.value("coverage"))
+
+    def test_requirements_and_kept_stations_hold(self):
+        problem = vantage.SurveyProblem(
+            stations_min=3, stations_max=3, kept=[(0, 0, 1.5)], objectives=["overlap"], requirements=["coverage >= 0.6"])
+        problem.requirements += (vantage.Requirement(problem.objectives[0], "<=", 1.0),)
+        self.assertEqual([str(each) for each in problem.requirements], ["coverage >= 0.6", "overlap <= 1"])
+        found = self.plan(problem)
+        self.assertTrue(found.met)
+        self.assertEqual(found.what_would_help, [])
+        answer = found.answer
+        self.assertGreaterEqual(answer.value("coverage"), 0.6)
+        self.assertEqual([station.kept for station in answer.stations], [True, False, False, False])
+        np.testing.assert_array_equal(answer.heads[0], [0, 0, 1.5])
+        self.assertIn("captured", found.summary)
+        with self.assertRaises(AttributeError):
+            problem.objectives.append("coverage")
+
+    def test_the_surveyors_question_is_answered(self):
+        found = self.plan(vantage.fewest_stations(capture=0.8, stations_max=6), iterations=2)
+        self.assertTrue(found.met)
+        self.assertGreaterEqual(found.answer.value("capture"), 0.8)
+
+    def test_progress_is_told_and_may_end_the_search(self):
+        told = []
+        found = self.plan(vantage.coverage_overlap_fix(4), progress=told.append)
+        self.assertEqual([now.phase for now in told if now.phase in ("look", "choose")], [])
+        searching = [now for now in told if now.phase == "search"]
+        self.assertEqual(searching[-1].evaluations, found.evaluations)
+        self.assertEqual(searching[-1].front.shape[1], 2)
+        self.assertEqual(searching[-1].hypervolume, found.hypervolume)
+        self.assertEqual(found.history[-1]["hypervolume"], found.hypervolume)
+        stopped = self.plan(
+            vantage.coverage_overlap_fix(4), iterations=1000, progress=lambda now: now.iteration < 3)
+        self.assertEqual(stopped.stop_reason, "cancelled")
+        self.assertLess(stopped.evaluations, 1000)
+        self.assertTrue(all(entry.confirmed for entry in stopped.front))
+
+    def test_what_python_raises_comes_through(self):
+        def fail(_):
+            raise LookupError("no such thing")
+
+        with self.assertRaisesRegex(LookupError, "no such thing"):
+            self.plan(vantage.SurveyProblem(objectives=[vantage.Objective("fails", fail)]))
+        with self.assertRaisesRegex(LookupError, "no such thing"):
+            self.plan(vantage.coverage_fix(4), progress=fail)
+        with self.assertRaisesRegex(TypeError, "must be real number"):
+            self.plan(vantage.SurveyProblem(objectives=[vantage.Objective("text", lambda network: "much")]))
+        with self.assertRaisesRegex(TypeError, "plan: population: -1 is no int of 0 or more"):
+            self.plan(vantage.coverage_fix(4), population=-1)
+        with self.assertRaisesRegex(vantage.Error, "nonsense"):
+            vantage.SurveyProblem(objectives=["nonsense"])
+
+    def test_an_ended_search_goes_on_to_the_same_bits(self):
+        whole = self.plan(vantage.coverage_overlap_fix(4))
+        with tempfile.TemporaryDirectory() as folder:
+            file = os.path.join(folder, "checkpoint")
+
+            def interrupt(now):
+                if now.iteration == 2:
+                    raise KeyboardInterrupt
+
+            with self.assertRaises(KeyboardInterrupt):
+                self.plan(vantage.coverage_overlap_fix(4), checkpoint=file, progress=interrupt)
+            resumed = self.plan(vantage.coverage_overlap_fix(4), checkpoint=file, resume=True)
+        self.assert_same_front(whole, resumed)
+        self.assertEqual(whole.hypervolume, resumed.hypervolume)
+
+    def test_a_result_outlives_what_it_was_made_with(self):
+        simulator = four_walls()
+        found = vantage.plan(
+            simulator, vantage.SearchArea(simulator.scene), vantage.ClashChecker(simulator.scene),
+            vantage.coverage_fix(3), **SMALL)
+        del simulator
+        entry = found.answer
+        with tempfile.TemporaryDirectory() as folder:
+            found.write(os.path.join(folder, "plan"))
+            written = os.listdir(os.path.join(folder, "plan"))
+        self.assertLessEqual({"front.json", "front.csv", "stations.csv", "plan.png"}, set(written))
+        self.assertEqual(json.loads(json.dumps(found.to_dict()))["problem"], "coverage-fix")
+        del found
+        self.assertEqual(entry.heads.shape, (3, 3))
+
+
+if __name__ == "__main__":
+    unittest.main()

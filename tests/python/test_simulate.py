@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: Apache-2.0
+import gc
+import unittest
+
+import numpy as np
+import vantage
+from sites import wall
+
+DIFFUSE = 0.6
+
+
+def scan_of_wall(offset=(0.0, 0.0, 0.0), **options):
+    scene = vantage.Scene.from_triangles(*wall(offset), diffuse=DIFFUSE)
+    scanner = vantage.Scanner(azimuth_step_deg=0.5, zenith_step_deg=0.5)
+    return scanner, vantage.Simulator(scene, scanner, engine="embree").scan(offset, **options)
+
+
+class Scans(unittest.TestCase):
+    def test_a_wall_has_the_points_of_the_pattern(self):
+        """Against the closed form: ray (i, j) hits the plane y = 3 at 3 / (sin zenith sin azimuth)."""
+        outputs = ["position", "normal", "reflectivity", "mesh", "primitive", "colour", "voxel"]
+        scanner, scan = scan_of_wall(outputs=outputs)
+        zenith = np.radians((np.arange(scanner.rows) + 0.5) * 0.5)[:, None]
+        azimuth = np.radians(-180 + (np.arange(scanner.columns) + 0.5) * 0.5)[None, :]
+        rays = np.stack(np.broadcast_arrays(
+            np.sin(zenith) * np.cos(azimuth), np.sin(zenith) * np.sin(azimuth), np.cos(zenith)), axis=-1)
+        with np.errstate(divide="ignore"):
+            at = 3 / rays[..., 1]
+        points = rays * at[..., None]
+        expected = (at > 0) & (np.abs(points[..., 0]) <= 2) & (np.abs(points[..., 2]) <= 1)
+
+        self.assertEqual(scan.rays, scanner.rays)
+        self.assertEqual(scan.points, expected.sum())
+        self.assertEqual(len(scan), scan.points)
+        row, column = np.nonzero(expected)
+        np.testing.assert_array_equal(scan.row, row)
+        np.testing.assert_array_equal(scan.column, column)
+        np.testing.assert_allclose(scan.range_m, at[expected], rtol=1e-5)
+        np.testing.assert_allclose(scan.position, points[expected], atol=1e-5)
+        np.testing.assert_allclose(scan.normal, np.tile([0, -1, 0], (len(scan), 1)), atol=1e-6)
+        np.testing.assert_allclose(scan.reflectivity, DIFFUSE * rays[expected][:, 1], atol=1e-5)
+        np.testing.assert_array_equal(scan.mesh, 0)
+        np.testing.assert_array_equal(np.unique(scan.primitive), [0, 1])
+        self.assertEqual(scan.colour.view("u1").reshape(-1, 4).shape, (len(scan), 4))
+
+    def test_a_grid_has_the_same_points(self):
+        scanner, points = scan_of_wall()
+        _, grid = scan_of_wall(grid=True)
+        self.assertEqual(grid.position.shape, (scanner.rows, scanner.columns, 3))
+        self.assertEqual(grid.range_m.shape, (scanner.rows, scanner.columns))
+        hit = np.isfinite(grid.range_m)
+        np.testing.assert_array_equal(grid.row[hit], points.row)
+        np.testing.assert_array_equal(grid.column[hit], points.column)
+        np.testing.assert_array_equal(grid.position[hit], points.position)
+        self.assertTrue(np.isnan(grid.position[~hit]).all())
+
+    def test_georeferenced_positions_keep_their_digits(self):
+        utm = (389_123.25, 5_820_456.5, 35.0)
+        _, near = scan_of_wall()
+        _, far = scan_of_wall(utm)
+        self.assertEqual(far.position.dtype, np.float64)
+        np.testing.assert_allclose(far.position - utm, near.position, atol=1e-5)
+
+    def test_arrays_are_no_copies_and_outlive_the_scan(self):
+        _, scan = scan_of_wall()
+        positions, ranges = scan.position, scan.range_m
+        self.assertFalse(positions.flags.writeable or positions.flags.owndata)
+        self.assertTrue(np.shares_memory(positions, scan.position))
+        before = positions.copy(), ranges.copy()
+        del scan
+        gc.collect()
+        np.testing.assert_array_equal(positions, before[0])
+        np.testing.assert_array_equal(ranges, before[1])
+
+    def test_what_was_not_asked_for_says_so(self):
+        _, scan = scan_of_wall(outputs=[])
+        self.assertGreater(len(scan.range_m), 0)
+        with self.assertRaisesRegex(vantage.Error, "position: was not asked for"):
+            scan.position
+        with self.assertRaisesRegex(vantage.Error, "outputs: there is no 'colur'; there are position, normal"):
+            scan_of_wall(outputs=["colur"])
+        simulator = vantage.Simulator(vantage.Scene.from_triangles(*wall()), vantage.Scanner(), engine="embree")
+        with self.assertRaises(vantage.Error) as raised:
+            simulator.scan((np.nan, 0, 0))
+        self.assertEqual(raised.exception.code, "invalid_argument")
+
+
+class Scanners(unittest.TestCase):
+    def test_members_go_in_and_come_out(self):
+        scanner = vantage.Scanner(azimuth_step_deg=0.2, max_range_m=40)
+        self.assertEqual((scanner.azimuth_step_deg, scanner.max_range_m), (0.2, 40))
+        scanner.zenith_step_deg = 0.3
+        self.assertEqual((scanner.rows, scanner.columns, scanner.rays), (500, 1800, 900_000))
+        self.assertEqual(scanner.to_dict()["max_range_m"], 40)
+        noise = {"distances_m": [10, 50], "reflectivities": [0.1, 0.5, 0.9], "sigma_m": np.full((3, 2), 1e-3)}
+        scanner.noise = noise
+        np.testing.assert_array_equal(scanner.noise["sigma_m"], noise["sigma_m"])
+        scanner.noise = None
+        self.assertIsNone(scanner.noise)
+        scanner.max_range_m = -1
+        with self.assertRaisesRegex(vantage.Error, "-1"):
+            scanner.check()
+
+    def test_presets_are_found_by_name(self):
+        self.assertIn("rtc360", dict(vantage.scanners()))
+        self.assertLess(vantage.Scanner.load("rtc360@3mm").azimuth_step_deg,
+                        vantage.Scanner.load("rtc360@6mm").azimuth_step_deg)
+        with self.assertRaises(vantage.Error):
+            vantage.Scanner.load("nobodys")
+
+    def test_engines_are_listed(self):
+        engines = {info.engine: info for info in vantage.list_engines()}
+        self.assertTrue(engines["embree"].usable)
+
+
+if __name__ == "__main__":
+    unittest.main()

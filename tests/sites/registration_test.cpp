@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// The predicted registration error on a whole place: what a sample tells of it, and that it does not depend on where on
+// Earth the place lies.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "sites/site.hpp"
+#include "support/temporary_folder.hpp"
+#include "vantage/measure.hpp"
+
+namespace vantage {
+namespace {
+
+// An office floor, and a station in the middle of each of its first rooms where one can stand.
+struct SurveyedOffice {
+  explicit SurveyedOffice(const test::Variant& variant) {
+    const test::TemporaryFolder folder;
+    const test::Site site = test::make_site("office", variant);
+    test::write_site(site, variant, folder / "site.glb");
+    scene = Scene::load(folder / "site.glb");
+    for (const test::Place& place : site.places) {
+      const Vec3 ground = site.offset + Vec3{(place.x0 + place.x1) / 2, (place.y0 + place.y1) / 2, place.z};
+      if (network.size() < 10 && site.at(ground).surface == test::Surface::floor)
+        network.push_back({ground + Vec3{0, 0, 1.7}});
+    }
+  }
+  Simulator simulator(std::uint64_t seed) const {
+    Scanner scanner;
+    scanner.azimuth_step = scanner.zenith_step = Angle::degrees(0.25);
+    return Simulator(scene, scanner,
+                     {.engine = Engine::embree, .user_size_m = 0.1, .point_spacing_m = 0.05, .seed = seed});
+  }
+  Scene scene = Scene::from_triangles({}, {});
+  Network network;
+};
+
+TEST(Registration, OfASampleOf20kIsThatOfTheWholeTo5Percent) {
+  const SurveyedOffice office({});
+  ASSERT_GE(office.network.size(), 6u);
+  Simulator all = office.simulator(1);
+  ASSERT_GT(all.voxel_count(), 100'000u);
+  const NetworkCounts exact = all.evaluate(office.network, {.registration = RegistrationModel{}});
+  const double truth = registration_error(exact, exact.voxels).rms_m;
+  double squares = 0;
+  constexpr int draws = 20;
+  for (std::uint64_t seed = 1; seed <= draws; ++seed) {
+    Simulator simulator = office.simulator(seed);
+    const NetworkCounts counts =
+        simulator.evaluate_sampled({&office.network, 1}, {.voxels = 20'000, .registration = RegistrationModel{}})[0];
+    const Estimate estimate = registration_estimate(counts, exact.voxels);
+    squares += std::pow(estimate.value / truth - 1, 2);
+  }
+  EXPECT_LT(std::sqrt(squares / draws), 0.05) << truth;
+}
+
+TEST(Registration, IsTheSameThousandsOfKilometresFromTheOrigin) {
+  const SurveyedOffice here({}), far({.utm = true});
+  ASSERT_GT(far.network.front().position.y, 5e6);
+  const auto error = [](const SurveyedOffice& office) {
+    Simulator simulator = office.simulator(1);
+    const NetworkCounts counts = simulator.evaluate(office.network, {.registration = RegistrationModel{}});
+    return registration_error(counts, counts.voxels);
+  };
+  const RegistrationError a = error(here), b = error(far);
+  EXPECT_NEAR(b.rms_m, a.rms_m, 1e-3 * a.rms_m);
+  EXPECT_NEAR(b.worst_m, a.worst_m, 1e-3 * a.worst_m);
+  EXPECT_EQ(b.worst_station, a.worst_station);
+}
+
+}  // namespace
+}  // namespace vantage
