@@ -161,17 +161,15 @@ void main() {
   ends[self] = end;
   founds[self] = uvec2(0u);
   subgroupBarrier();
-  // Sharing costs as much as half of the work again.
-  const bool share = 2u * subgroupMax(mine) * threads > 3u * all;
-  for (uint j = share ? rank : 0u; j < (share ? all : mine); j += share ? threads : 1u) {
+  for (uint j = rank; j < all; j += threads) {
     // The first thread whose rays end behind j.
-    uint low = share ? first : self, high = share ? first + threads - 1u : self;
+    uint low = first, high = first + threads - 1u;
     while (low < high) {
       const uint middle = (low + high) / 2u;
       if (ends[middle] > j) high = middle;
       else low = middle + 1u;
     }
-    const uint k = j - (!share || low == first ? 0u : ends[low - 1u]);
+    const uint k = j - (low == first ? 0u : ends[low - 1u]);
     const uvec2 ray = ray_of(low, k);
     if (!is_candidate(cubes[low], origins[low], ray.x, ray.y, triangles[low].x, triangles[low].y)) continue;
     if (k < 32u) atomicOr(founds[low].x, 1u << k);
