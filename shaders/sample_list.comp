@@ -44,8 +44,7 @@ uint end_of_triangles(Cube cube, uint first_triangle, uint end_triangle) {
   return end;
 }
 
-bool is_candidate(Cube cube, vec3 origin, uint row, uint column, uint first_triangle, uint end_triangle) {
-  const vec3 d = ray_direction(row, column);
+bool is_candidate(Cube cube, vec3 origin, vec3 d, uint first_triangle, uint end_triangle) {
   const vec2 range = passage(cube, d);
   if (range.x > range.y || range.y + parameters.noise_reach < parameters.min_range ||
       range.x - parameters.noise_reach > parameters.max_range)
@@ -73,7 +72,7 @@ uint step_of(uint count) {
 
 // What the threads of a workgroup tell each other of their pairs.
 shared Cube cubes[group_size];
-shared vec3 origins[group_size];
+shared uint slots[group_size];
 shared RayWindow windows[group_size];
 shared uvec4 walks[group_size];  // columns, rays of the window, step and start
 shared uvec2 triangles[group_size];
@@ -121,14 +120,17 @@ void main() {
   const uint of_voxel = alive ? thread_voxel : push.first_voxel, slot = push.first_slot + gl_WorkGroupID.y;
 #endif
   const SampleVoxel voxel = push.voxels.at[of_voxel];
-  const vec3 origin = push.stations.at[slot].origin;
+  const SampleStation station = push.stations.at[slot];
+  const vec3 origin = station.origin;
   const Cube cube = cube_of(voxel, origin);
   const uint end_triangle = end_of_triangles(cube, voxel.first_triangle, push.voxels.at[of_voxel + 1u].first_triangle);
 
   const uint self = gl_LocalInvocationIndex;
   uint mine = 0u;  // rays to look at
   if (alive && end_triangle > voxel.first_triangle) {
-    RayWindow window = rays_of_box(cube.low, cube.high);
+    vec3 low = cube.low, high = cube.high;
+    if (turned) turn_back(station.turn, low, high);
+    RayWindow window = rays_of_box(low, high);
     window.row0 = max(window.row0, int(push.first_row));
     window.row1 = min(window.row1, int(push.end_row) - 1);
     // 64 bits would be needed only for patterns of over 2^31 rays, which the host refuses.
@@ -151,7 +153,7 @@ void main() {
     }
 #endif
     cubes[self] = cube;
-    origins[self] = origin;
+    slots[self] = slot;
     windows[self] = window;
     walks[self] = uvec4(columns, count, step, start);
     triangles[self] = uvec2(voxel.first_triangle, end_triangle);
@@ -171,7 +173,9 @@ void main() {
     }
     const uint k = j - (low == first ? 0u : ends[low - 1u]);
     const uvec2 ray = ray_of(low, k);
-    if (!is_candidate(cubes[low], origins[low], ray.x, ray.y, triangles[low].x, triangles[low].y)) continue;
+    const SampleStation from = push.stations.at[slots[low]];
+    const vec3 direction = ray_direction(ray.x, ray.y, from.turn);
+    if (!is_candidate(cubes[low], from.origin, direction, triangles[low].x, triangles[low].y)) continue;
     if (k < 32u) atomicOr(founds[low].x, 1u << k);
     else atomicOr(founds[low].y, 1u << (k - 32u));
   }

@@ -49,7 +49,7 @@ SpreadTracer::SpreadTracer(std::vector<std::unique_ptr<Tracer>> tracers, const T
                            Split split)
     : info_(info_of_all(tracers)),
       grid_(scene.grid),
-      pattern_(scene.pattern),
+      scanners_(scene.scanners),
       team_(std::move(tracers), std::move(warn)),
       split_(split),
       merge_seconds_a_voxel_(first_merge_seconds_a_voxel) {}
@@ -60,16 +60,16 @@ void SpreadTracer::set_goal_density(double goal) {
     if (Tracer* const member = team_.member(k)) member->set_goal_density(goal);
 }
 
-std::uint64_t SpreadTracer::preferred_scan_rays() const {
+std::uint64_t SpreadTracer::preferred_scan_rays(std::uint32_t scanner) const {
   std::uint64_t sum = 0;
   for (std::size_t k = 0; k < team_.size(); ++k)
-    if (const Tracer* const member = team_.member(k)) sum += member->preferred_scan_rays();
+    if (const Tracer* const member = team_.member(k)) sum += member->preferred_scan_rays(scanner);
   return sum;
 }
 
 void SpreadTracer::scan(const TraceStation& station, std::uint64_t first_ray, std::uint64_t ray_count,
                         std::uint32_t outputs, RawChunk& chunk) {
-  const std::uint64_t columns = pattern_->columns();
+  const std::uint64_t columns = scanners_[station.scanner].pattern->columns();
   std::mutex mutex;
   RawChunk whole;
   team_.work(ray_count / columns, rows_, {}, [&](Tracer& tracer, const Piece& rows, const Progress&, const auto&) {

@@ -27,7 +27,7 @@ class SpreadTracer final : public Tracer {
 
   void scan(const TraceStation& station, std::uint64_t first_ray, std::uint64_t ray_count, std::uint32_t outputs,
             RawChunk& chunk) override;
-  std::uint64_t preferred_scan_rays() const override;
+  std::uint64_t preferred_scan_rays(std::uint32_t scanner) const override;
   NetworkCounts count(std::span<const TraceStation> stations, std::uint32_t station_count, const CountOptions& options,
                       const Progress& progress) override;
   std::vector<NetworkCounts> count_each(std::span<const std::vector<TraceStation>> networks,
@@ -46,7 +46,7 @@ class SpreadTracer final : public Tracer {
 
   EngineInfo info_;
   std::shared_ptr<const VoxelGrid> grid_;
-  std::shared_ptr<const RayPattern> pattern_;
+  std::vector<TraceScanner> scanners_;
   Team team_;
   Split split_;
   TeamRates rows_, networks_, samples_, stations_;

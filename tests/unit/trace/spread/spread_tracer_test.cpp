@@ -33,7 +33,9 @@ class Frail final : public Tracer {
 
   const EngineInfo& info() const override { return tracer_->info(); }
   void set_goal_density(double density) override { tracer_->set_goal_density(density); }
-  std::uint64_t preferred_scan_rays() const override { return tracer_->preferred_scan_rays(); }
+  std::uint64_t preferred_scan_rays(std::uint32_t scanner) const override {
+    return tracer_->preferred_scan_rays(scanner);
+  }
   void scan(const TraceStation& station, std::uint64_t first_ray, std::uint64_t ray_count, std::uint32_t outputs,
             RawChunk& chunk) override {
     tracer_->scan(station, first_ray, ray_count, outputs, chunk);
@@ -101,7 +103,9 @@ struct Site {
     tracer->set_goal_density(goal);
     return tracer;
   }
-  std::uint64_t rays() const { return std::uint64_t{scene.pattern->rows()} * scene.pattern->columns(); }
+  std::uint64_t rays() const {
+    return std::uint64_t{scene.scanners[0].pattern->rows()} * scene.scanners[0].pattern->columns();
+  }
 };
 
 void expect_all_equal(const NetworkCounts& got, const NetworkCounts& expected) {
@@ -128,7 +132,7 @@ struct Answers {
 
 Answers ask(Tracer& tracer, const Site& site) {
   Answers answers;
-  const std::uint64_t columns = site.scene.pattern->columns();
+  const std::uint64_t columns = site.scene.scanners[0].pattern->columns();
   tracer.scan(site.networks[0][0], 10 * columns, site.rays() - 30 * columns, all_outputs, answers.scan);
   answers.exact = tracer.count(site.networks[4], site.sizes[4], {true, false, &answers.field}, {});
   answers.each = tracer.count_each(site.networks, site.sizes, {true, true, nullptr}, {});
