@@ -72,7 +72,6 @@ uint step_of(uint count) {
 
 // What the threads of a workgroup tell each other of their pairs.
 shared Cube cubes[group_size];
-shared vec3 origins[group_size];
 shared uint slots[group_size];
 shared RayWindow windows[group_size];
 shared uvec4 walks[group_size];  // columns, rays of the window, step and start
@@ -154,7 +153,6 @@ void main() {
     }
 #endif
     cubes[self] = cube;
-    origins[self] = origin;
     slots[self] = slot;
     windows[self] = window;
     walks[self] = uvec4(columns, count, step, start);
@@ -165,20 +163,19 @@ void main() {
   ends[self] = end;
   founds[self] = uvec2(0u);
   subgroupBarrier();
-  // Sharing costs as much as half of the work again.
-  const bool share = 2u * subgroupMax(mine) * threads > 3u * all;
-  for (uint j = share ? rank : 0u; j < (share ? all : mine); j += share ? threads : 1u) {
+  for (uint j = rank; j < all; j += threads) {
     // The first thread whose rays end behind j.
-    uint low = share ? first : self, high = share ? first + threads - 1u : self;
+    uint low = first, high = first + threads - 1u;
     while (low < high) {
       const uint middle = (low + high) / 2u;
       if (ends[middle] > j) high = middle;
       else low = middle + 1u;
     }
-    const uint k = j - (!share || low == first ? 0u : ends[low - 1u]);
+    const uint k = j - (low == first ? 0u : ends[low - 1u]);
     const uvec2 ray = ray_of(low, k);
-    const vec3 d = ray_direction(ray.x, ray.y, push.stations.at[slots[low]].turn);
-    if (!is_candidate(cubes[low], origins[low], d, triangles[low].x, triangles[low].y)) continue;
+    const SampleStation from = push.stations.at[slots[low]];
+    const vec3 direction = ray_direction(ray.x, ray.y, from.turn);
+    if (!is_candidate(cubes[low], from.origin, direction, triangles[low].x, triangles[low].y)) continue;
     if (k < 32u) atomicOr(founds[low].x, 1u << k);
     else atomicOr(founds[low].y, 1u << (k - 32u));
   }

@@ -290,7 +290,7 @@ class VulkanTracer::SampledCount {
 
   // Lists and traces one chunk, whose control words are number k of the submission.
   void record_chunk(const Recorder& r, const Run& run, SamplePush push, const SampleChunk& chunk, std::size_t k) {
-    const auto pipeline = [&](Kernel kernel, std::array<bool, 4> constants = {}) -> BoundPipeline {
+    const auto pipeline = [&](Kernel kernel, std::array<bool, 4> constants = {}) {
       return t_.kernels_.get(run.scanner->set(), run.turned, kernel, constants);
     };
     const VkDeviceSize dispatch = (k * control_words + control_dispatch) * word;
@@ -300,7 +300,7 @@ class VulkanTracer::SampledCount {
     const auto over = [&](std::uint32_t control, const BoundPipeline& kernel) {
       const SampleArgumentsPush arguments{push.control, control, push.ray_capacity, push.item_capacity, 0};
       r.shader_after_shader();
-      r.dispatch(t_.kernels_.get(Kernel::sample_arguments), arguments, 1);
+      r.dispatch(pipeline(Kernel::sample_arguments), arguments, 1);
       r.shader_after_shader();
       r.dispatch_indirect(kernel, push, t_.sample_control_, dispatch);
     };
