@@ -187,12 +187,27 @@ void add_clash(py::module_& m) {
       "Stations by their heads (n, 3), survey frame, metres, checked as those of a search are.");
 }
 
+void add_ground(py::module_& m) {
+  m.def(
+      "weigh_ground",
+      [](const Scene& scene, const SearchArea& area) {
+        if (!ground_is_unmarked(scene, area)) return scene;
+        const GroundWeights found = ground_weights(scene, area);
+        return found.changes ? with_weights(scene, found.weights) : scene;
+      },
+      py::arg("scene"), py::arg("area"),
+      "The scene as the program evaluates it: where nothing says what is surveyed, ground that stations stand on "
+      "weighs\n"
+      "less, so that it makes a third of coverage at most. Otherwise the same scene.");
+}
+
 }  // namespace
 
 void add_placement(py::module_& m) {
   add_stations(m);
   add_search_area(m);
   add_clash(m);
+  add_ground(m);
 }
 
 }  // namespace vantage::python

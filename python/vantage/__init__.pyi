@@ -246,6 +246,8 @@ def place_heads(
     area: SearchArea, clash: ClashChecker, height_m: float, heads: npt.ArrayLike
 ) -> List[PlacedStation]: ...
 
+def weigh_ground(scene: Scene, area: SearchArea) -> Scene: ...
+
 class RegistrationOptions:
     def __init__(
         self,
