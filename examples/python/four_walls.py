@@ -66,7 +66,8 @@ front = [entry for entry in eight.front if not entry.dominated]
 coverage, overlap = (np.array([entry.value(name) for entry in front]) for name in ("coverage", "overlap"))
 enough = coverage >= min(0.98, coverage.max())
 shown = np.argmax(np.where(enough, overlap, -1))
-print(f"the network shown, of most overlap at coverage 0.98: coverage {coverage[shown]:.3f}, overlap {overlap[shown]:.3f} (paper: 0.98, 0.75)")
+print("the network shown, of most overlap at coverage 0.98: "
+      f"coverage {coverage[shown]:.3f}, overlap {overlap[shown]:.3f} (paper: 0.98, 0.75)")
 
 figure, (left, middle, right) = plt.subplots(1, 3, figsize=(15, 4.8), layout="constrained")
 walls = draw_from_above(left, simulator, simulator.evaluate(four.heads, field=True), four.heads,

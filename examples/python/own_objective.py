@@ -13,7 +13,8 @@ def loneliest(network):
 
 
 def report(now):
-    print(f"\r{now.phase} {now.iteration} of {now.iterations}, hypervolume {now.hypervolume:.3f}", end="", file=sys.stderr)
+    print(f"\r{now.phase} {now.iteration} of {now.iterations}, hypervolume {now.hypervolume:.3f}", end="",
+          file=sys.stderr)
 
 
 if len(sys.argv) != 4:
@@ -24,7 +25,8 @@ simulator = vantage.Simulator(scene, scanner, user_size_m=0.2, point_spacing_m=0
 area, clash = vantage.SearchArea(scene), vantage.ClashChecker(scene)
 
 stations = int(sys.argv[2])
-neighbour = vantage.Objective("neighbour", loneliest, label="What the loneliest scan shares with its neighbour", pairs=True)
+neighbour = vantage.Objective(
+    "neighbour", loneliest, label="What the loneliest scan shares with its neighbour", pairs=True)
 problem = vantage.SurveyProblem(
     stations_min=stations, stations_max=stations, objectives=["coverage", neighbour], requirements=["coverage >= 0.5"])
 result = vantage.plan(

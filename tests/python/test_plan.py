@@ -54,8 +54,8 @@ class Plans(unittest.TestCase):
 
     def test_objectives_in_python_may_look_at_registration(self):
         options = vantage.RegistrationOptions()
-        own = vantage.Objective("own_mm", lambda network: 1e3 * network.evaluation.registration.rms_m, best=0, worst=100,
-                                registration=options)
+        own = vantage.Objective("own_mm", lambda network: 1e3 * network.evaluation.registration.rms_m, best=0,
+                                worst=100, registration=options)
         answer = self.plan(vantage.SurveyProblem(objectives=[own, "registration"]), population=4, iterations=2).answer
         expected = 1e3 * self.simulator.evaluate(answer.heads, registration=options).registration.rms_m
         self.assertEqual(answer.value("own_mm"), expected)
@@ -64,7 +64,8 @@ class Plans(unittest.TestCase):
 
     def test_requirements_and_kept_stations_hold(self):
         problem = vantage.SurveyProblem(
-            stations_min=3, stations_max=3, kept=[(0, 0, 1.5)], objectives=["overlap"], requirements=["coverage >= 0.6"])
+            stations_min=3, stations_max=3, kept=[(0, 0, 1.5)], objectives=["overlap"],
+            requirements=["coverage >= 0.6"])
         problem.requirements += (vantage.Requirement(problem.objectives[0], "<=", 1.0),)
         self.assertEqual([str(each) for each in problem.requirements], ["coverage >= 0.6", "overlap <= 1"])
         found = self.plan(problem)

@@ -108,15 +108,16 @@ class Placing(unittest.TestCase):
         self.assertLess(triangles.max(), len(positions))
 
     def test_ground_makes_a_third_of_coverage_at_most(self):
-        ground = np.array([[-10, -10, 0], [10, -10, 0], [10, 10, 0], [-10, 10, 0]], float), np.array([[0, 1, 2], [0, 2, 3]])
+        corners = np.array([[-10, -10, 0], [10, -10, 0], [10, 10, 0], [-10, 10, 0]], float)
         builder = vantage.SceneBuilder()
-        builder.add(*ground, name="ground")
+        builder.add(corners, np.array([[0, 1, 2], [0, 2, 3]]), name="ground")
         builder.add(*wall((0, 0, 1.01)), name="wall")
         scene = builder.build()
         self.assertEqual([mesh.weight for mesh in scene.meshes], [1, 1])
         weighed = vantage.weigh_ground(scene, vantage.SearchArea(scene))
         self.assertEqual(weighed.meshes[0].weight, 1)
-        self.assertIn(weighed.meshes[1].weight, (100, 101))  # 400 m² of ground, 8 m² of wall: 2 · 400 / 8, rounded up
+        # 400 m² of ground, 8 m² of wall: 2 · 400 / 8, rounded up.
+        self.assertIn(weighed.meshes[1].weight, (100, 101))
         marked = vantage.Scene.load(FOUR_WALLS)
         self.assertEqual(
             vantage.weigh_ground(marked, vantage.SearchArea(marked)).fingerprint, marked.fingerprint)
