@@ -122,7 +122,7 @@ void add_bounds(py::module_& m) {
       .def_readonly("relaxation", &StationsBound::relaxation, "The bound before it is rounded up.")
       .def_readonly("complete", &StationsBound::complete, "The relaxation came to its tolerance in time.")
       .def_readonly("chosen", &StationsBound::chosen, "A choice that has it: the fixed rows first.");
-  const auto capture = bound_options("bound_capture"), stations = bound_options("bound_stations");
+  const auto capture = bound_options("bound_capture"), wanted = bound_options("bound_stations");
   m.def(
       "bound_capture",
       [capture](const CaptureRows& rows, std::size_t count, const Rows& fixed, py::object progress,
@@ -137,16 +137,44 @@ void add_bounds(py::module_& m) {
           .c_str());
   m.def(
       "bound_stations",
-      [stations](const CaptureRows& rows, double wanted, const Rows& fixed, py::object progress,
-                 const py::kwargs& given) {
-        const BoundConfig config = stations.read(given);
+      [wanted](const CaptureRows& rows, double share, const Rows& fixed, py::object progress, const py::kwargs& given) {
+        const BoundConfig config = wanted.read(given);
         LongCall call(std::move(progress));
-        return call.run([&] { return bound_stations(rows, wanted, fixed, config, call.progress()); });
+        return call.run([&] { return bound_stations(rows, share, fixed, config, call.progress()); });
       },
       py::arg("rows"), py::arg("capture"), py::arg("fixed") = Rows{}, py::kw_only(), py::arg("progress") = py::none(),
       ("How many rows a coverage of `capture` takes at least. Raises Error invalid_argument unless 0 < capture <= 1." +
-       stations.doc())
+       wanted.doc())
           .c_str());
+  const auto linked = bound_options("bound_linked_capture");
+  m.def(
+      "bound_linked_capture",
+      [linked](const CaptureRows& rows, std::size_t count, const std::vector<RowLink>& links, const Rows& fixed,
+               py::object progress, const py::kwargs& given) {
+        const BoundConfig config = linked.read(given);
+        LongCall call(std::move(progress));
+        return call.run([&] { return bound_linked_capture(rows, count, links, fixed, config, call.progress()); });
+      },
+      py::arg("rows"), py::arg("stations"), py::arg("links"), py::arg("fixed") = Rows{}, py::kw_only(),
+      py::arg("progress") = py::none(),
+      ("The same of networks that hang together along some of `links`, pairs of rows; `chosen` is empty where none "
+       "was\n"
+       "found." +
+       linked.doc())
+          .c_str());
+  m.def(
+      "links_between",
+      [](GuardedSimulator& self, const std::vector<PlacedStation>& stations, double least, std::uint64_t sample_voxels,
+         py::object progress) {
+        LongCall call(std::move(progress));
+        return call.run([&] {
+          const Busy busy(self.mutex);
+          return links_between(self.surroundings(), stations, least, sample_voxels, call.progress());
+        });
+      },
+      py::arg("simulator"), py::arg("stations"), py::arg("least"), py::kw_only(), py::arg("sample_voxels") = 10'000,
+      py::arg("progress") = py::none(),
+      "Pairs of stations whose scans overlap by at least `least` over all surfaces, as a share of the smaller scan.");
   m.def(
       "choose_rows",
       [](const CaptureRows& rows, std::size_t count, const Rows& fixed, py::object progress) {
@@ -187,6 +215,37 @@ void add_greedy(py::module_& m) {
           .c_str());
 }
 
+void add_exact(py::module_& m) {
+  py::class_<ExactResult>(m, "ExactResult", "What `exact_network` chose.")
+      .def_readonly("stations", &ExactResult::stations, "Empty where none that hangs together was found.")
+      .def_readonly("choice", &ExactResult::choice, "Its coverage, and the most that any choice of candidates has.")
+      .def_readonly("cancelled", &ExactResult::cancelled, "Stopped before its end.");
+  const auto options =
+      Options<ExactConfig>("exact_network")
+          .add("candidates", &ExactConfig::candidates, "Positions to choose from, spread evenly over the ground.")
+          .add("sample_voxels", &ExactConfig::sample_voxels, "0: every voxel.")
+          .add("link", &ExactConfig::link, "Least scan overlap along some spanning tree; 0: any.")
+          .add("max_seconds", &ExactConfig::max_seconds, "Of branch and bound.")
+          .add("fixed", &ExactConfig::fixed, "Heads of stations that are there already.");
+  m.def(
+      "exact_network",
+      [options](GuardedSimulator& self, const SearchArea& area, const ClashChecker& clash, std::size_t stations,
+                py::object progress, const py::kwargs& given) {
+        ExactConfig config = options.read(given);
+        config.stations = stations;
+        LongCall call(std::move(progress));
+        return call.run([&] {
+          const Busy busy(self.mutex);
+          return exact_network(self.simulator, area, clash, config, call.progress());
+        });
+      },
+      py::arg("simulator"), py::arg("area"), py::arg("clash"), py::arg("stations"), py::kw_only(),
+      py::arg("progress") = py::none(),
+      ("The best network among candidates, as an integer program: without a gap the best there is among them." +
+       options.doc())
+          .c_str());
+}
+
 }  // namespace
 
 void add_candidates(py::module_& m) {
@@ -194,6 +253,7 @@ void add_candidates(py::module_& m) {
   add_finding(m);
   add_bounds(m);
   add_greedy(m);
+  add_exact(m);
 }
 
 }  // namespace vantage::python

@@ -27,6 +27,12 @@ struct Names<Role> {
       {{Role::surveyed, "surveyed"}, {Role::blocking, "blocking"}, {Role::search, "search"}, {Role::ignore, "ignore"}}};
 };
 template <>
+struct Names<RegistrationSurfaces> {
+  static constexpr const char* what = "choice of surfaces";
+  static constexpr std::array<std::pair<RegistrationSurfaces, const char*>, 2> all{
+      {{RegistrationSurfaces::surveyed, "surveyed"}, {RegistrationSurfaces::all, "all"}}};
+};
+template <>
 struct Names<MoCmaEsConfig::Scheme> {
   static constexpr const char* what = "scheme";
   static constexpr std::array<std::pair<MoCmaEsConfig::Scheme, const char*>, 2> all{
@@ -92,6 +98,8 @@ template <>
 struct type_caster<vantage::UpAxis> : vantage::python::NameCaster<vantage::UpAxis> {};
 template <>
 struct type_caster<vantage::Algorithm> : vantage::python::NameCaster<vantage::Algorithm> {};
+template <>
+struct type_caster<vantage::RegistrationSurfaces> : vantage::python::NameCaster<vantage::RegistrationSurfaces> {};
 template <>
 struct type_caster<vantage::MoCmaEsConfig::Scheme> : vantage::python::NameCaster<vantage::MoCmaEsConfig::Scheme> {};
 

@@ -65,7 +65,8 @@ void add_registration(py::module_& m) {
             [](RegistrationOptions& o, double value) { o.model.patch_m = value; }, "Side of such a patch, metres.")
         .add("position_m", &RegistrationOptions::position_m, "Sigma of a head before registration, in each axis.")
         .add("heading_deg", &RegistrationOptions::heading, "Sigma of the heading before registration.")
-        .add("tilt_deg", &RegistrationOptions::tilt, "Sigma of each tilt; 0: exactly level.");
+        .add("tilt_deg", &RegistrationOptions::tilt, "Sigma of each tilt; 0: exactly level.")
+        .add("surfaces", &RegistrationOptions::surfaces, "What holds scans together: 'surveyed' surfaces or 'all'.");
   }();
   py::class_<RegistrationOptions> type(
       m, "RegistrationOptions",
@@ -162,9 +163,16 @@ void add_evaluations(py::module_& m) {
           "registration",
           [](const Evaluation& e) {
             if (!e.registration) not_asked_for("registration", "registration=RegistrationOptions()");
-            return registration_error(e.counts, e.voxels, *e.registration);
+            return registration_error(e.counts, e.voxels, *e.registration, &e.surroundings, e.surroundings_voxels);
           },
           "Predicted error of the registered scans.")
+      .def_property_readonly(
+          "registration_estimate",
+          [](const Evaluation& e) {
+            if (!e.registration) not_asked_for("registration_estimate", "registration=RegistrationOptions()");
+            return registration_estimate(e.counts, e.voxels, *e.registration, &e.surroundings, e.surroundings_voxels);
+          },
+          "(rms_m, its standard error), of a sample less its bias.")
       .def_property_readonly(
           "seen",
           [](const py::object& self) {

@@ -14,6 +14,9 @@ struct Evaluation {
   std::uint64_t voxels = 0;  ///< Of the site.
   std::optional<RegistrationOptions> registration = std::nullopt;
   std::optional<VoxelField> field = std::nullopt;
+  /// The same network's counts on all surfaces, and how many voxels these have, where registration goes by them.
+  NetworkCounts surroundings = {};
+  std::uint64_t surroundings_voxels = 0;
 };
 
 /// An overlap matrix as an array that shares its numbers.

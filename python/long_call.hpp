@@ -36,8 +36,9 @@ class LongCall {
   std::stop_token stop() const { return stop_.get_token(); }
   /// Asked for in the second case alone: nobody waits for a result.
   std::stop_token abort() const { return abort_.get_token(); }
-  Progress progress() {
-    return {.report = [this](double done) { report([done] { return done; }); }, .stop = stop()};
+  /// Of a part of the work, from one share of it to another.
+  Progress progress(double from = 0, double to = 1) {
+    return {.report = [=, this](double done) { report([=] { return from + done * (to - from); }); }, .stop = stop()};
   }
 
   /// `told()` makes what is told, where anybody listens.

@@ -135,6 +135,9 @@ void add_entries(py::module_& m) {
       .def_property_readonly(
           "scan_overlap_matrix", [](const Entry& e) { return matrix_of(e.get().exact_scan_overlap_matrix); },
           "Scan overlaps over all surfaces: (n, n); (0, 0) unless a measure needs them.")
+      .def_property_readonly(
+          "registration", [](const Entry& e) { return e.get().registration; },
+          "Predicted error by every ray; None unless confirmed and a measure needs it.")
       .def("__repr__", [](const Entry& e) {
         std::string text;
         for (const auto& [name, value] : e.get().values)

@@ -15,13 +15,15 @@ struct Measured {
   std::optional<Evaluation> surroundings = std::nullopt;
 };
 
-Measured copy_of(const MeasuredNetwork& network) {
-  Measured copy{
-      .evaluation = {.counts = network.counts, .goal_density = network.goal_density, .voxels = network.voxels},
-      .stations = {network.stations.begin(), network.stations.end()},
-      .kept = network.kept,
-      .visible_parts = network.visible_parts,
-      .minutes_on_site = network.minutes_on_site};
+Measured copy_of(const MeasuredNetwork& network, const std::optional<RegistrationOptions>& registration) {
+  Measured copy{.evaluation = {.counts = network.counts,
+                               .goal_density = network.goal_density,
+                               .voxels = network.voxels,
+                               .registration = registration},
+                .stations = {network.stations.begin(), network.stations.end()},
+                .kept = network.kept,
+                .visible_parts = network.visible_parts,
+                .minutes_on_site = network.minutes_on_site};
   if (network.surroundings)
     copy.surroundings = {
         .counts = *network.surroundings, .goal_density = network.goal_density, .voxels = network.surroundings_voxels};
@@ -31,14 +33,14 @@ Measured copy_of(const MeasuredNetwork& network) {
 using Measure = std::function<double(const MeasuredNetwork&)>;
 
 // Searches copy objectives, and call them, where they do not hold the interpreter's lock.
-Measure measure_of(const py::function& function) {
+Measure measure_of(const py::function& function, const std::optional<RegistrationOptions>& registration) {
   std::shared_ptr<py::function> held(new py::function(function), [](py::function* kept) {
     const py::gil_scoped_acquire lock;
     delete kept;
   });
-  return [held](const MeasuredNetwork& network) {
+  return [held, registration](const MeasuredNetwork& network) {
     const py::gil_scoped_acquire lock;
-    const py::object value = (*held)(copy_of(network));
+    const py::object value = (*held)(copy_of(network, registration));
     const double number = PyFloat_AsDouble(value.ptr());
     if (number == -1 && PyErr_Occurred()) throw py::error_already_set();
     return number;
@@ -47,6 +49,7 @@ Measure measure_of(const py::function& function) {
 
 Objective objective_of(std::string name, const py::function& value, std::string label, std::string unit, double best,
                        double worst, bool counts, bool pairs, bool visibility, bool surroundings, bool time,
+                       const std::optional<RegistrationOptions>& registration,
                        const std::optional<py::function>& standard_error, std::string parameters) {
   Objective made{
       .name = std::move(name),
@@ -55,9 +58,16 @@ Objective objective_of(std::string name, const py::function& value, std::string 
       .best = best,
       .worst = worst,
       .needs = {.counts = counts, .pairs = pairs, .visibility = visibility, .surroundings = surroundings, .time = time},
-      .value = measure_of(value),
+      .value = measure_of(value, registration),
       .parameters = std::move(parameters)};
-  if (standard_error) made.standard_error = measure_of(*standard_error);
+  if (registration) {
+    const bool by_all = registration->surfaces == RegistrationSurfaces::all;
+    made.needs.pairs = true;
+    made.needs.registration = registration->model;
+    made.needs.surroundings_registration = by_all;
+    made.needs.surroundings = surroundings || by_all;
+  }
+  if (standard_error) made.standard_error = measure_of(*standard_error, registration);
   return made;
 }
 
@@ -82,11 +92,13 @@ void add_objectives(py::module_& m) {
       .def(py::init(&objective_of), py::arg("name"), py::arg("value"), py::kw_only(), py::arg("label") = "",
            py::arg("unit") = "", py::arg("best") = 1.0, py::arg("worst") = 0.0, py::arg("counts") = true,
            py::arg("pairs") = false, py::arg("visibility") = false, py::arg("surroundings") = false,
-           py::arg("time") = false, py::arg("standard_error") = py::none(), py::arg("parameters") = "",
+           py::arg("time") = false, py::arg("registration") = py::none(), py::arg("standard_error") = py::none(),
+           py::arg("parameters") = "",
            "name: lower-case letters, digits, `_`. value: a function of a MeasuredNetwork, which gives the same for "
            "the\n"
            "same. best, worst: the scale that the search and the hypervolume go by. counts, pairs, visibility,\n"
-           "surroundings, time: what of the network it looks at; the rest is not computed. standard_error: a function\n"
+           "surroundings, time, registration (RegistrationOptions): what of the network it looks at; the rest is not\n"
+           "computed. standard_error: a function\n"
            "as value; None: by the jackknife. parameters: what it was made with; runs resume only under the same.")
       .def_readonly("name", &Objective::name, "Its key in tables and results.")
       .def_readonly("label", &Objective::label, "For axes.")

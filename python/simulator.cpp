@@ -33,10 +33,17 @@ Evaluation evaluate(GuardedSimulator& self, const py::object& stations, bool ove
   EvaluateOptions options{.overlap = overlap, .skip = skip};
   if (field) options.field = &made.field.emplace();
   if (registration) options.registration = registration->model;
+  const bool by_all = registration && registration->surfaces == RegistrationSurfaces::all;
   LongCall call(std::move(progress));
   made.counts = call.run([&] {
     const Busy busy(self.mutex);
-    return self.simulator.evaluate(network, options, call.progress());
+    NetworkCounts counts = self.simulator.evaluate(network, options, call.progress(0, by_all ? 0.5 : 1));
+    if (by_all && !counts.cancelled) {
+      made.surroundings =
+          self.surroundings().evaluate(network, {.registration = registration->model}, call.progress(0.5, 1));
+      made.surroundings_voxels = self.surroundings().voxel_count();
+    }
+    return counts;
   });
   return made;
 }
@@ -48,18 +55,26 @@ std::vector<Evaluation> evaluate_sampled(GuardedSimulator& self, const py::seque
   for (const auto& stations : networks) all.push_back(network_of(py::reinterpret_borrow<py::object>(stations)));
   SampleOptions options{.voxels = voxels, .overlap = overlap};
   if (registration) options.registration = registration->model;
+  const bool by_all = registration && registration->surfaces == RegistrationSurfaces::all;
   LongCall call(std::move(progress));
-  std::vector<NetworkCounts> counts = call.run([&] {
+  return call.run([&] {
     const Busy busy(self.mutex);
-    return self.simulator.evaluate_sampled(all, options, call.progress());
+    std::vector<NetworkCounts> counts =
+                                   self.simulator.evaluate_sampled(all, options, call.progress(0, by_all ? 0.5 : 1)),
+                               around;
+    if (by_all) around = self.surroundings().evaluate_sampled(all, options, call.progress(0.5, 1));
+    std::vector<Evaluation> made;
+    for (std::size_t k = 0; k < counts.size(); ++k) {
+      made.push_back({.counts = std::move(counts[k]),
+                      .goal_density = self.simulator.goal_density(),
+                      .voxels = self.simulator.voxel_count(),
+                      .registration = registration});
+      if (!by_all) continue;
+      made.back().surroundings = std::move(around[k]);
+      made.back().surroundings_voxels = self.surroundings().voxel_count();
+    }
+    return made;
   });
-  std::vector<Evaluation> made;
-  for (NetworkCounts& each : counts)
-    made.push_back({.counts = std::move(each),
-                    .goal_density = self.simulator.goal_density(),
-                    .voxels = self.simulator.voxel_count(),
-                    .registration = registration});
-  return made;
 }
 
 py::array_t<double> voxel_centres(const GuardedSimulator& self) {

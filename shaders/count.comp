@@ -38,7 +38,7 @@ void main() {
   bool is_point = false, counted = false;
   uint misses = 0u;
   if (alive) {
-    const vec3 direction = ray_direction(row, column);
+    const vec3 direction = ray_direction(row, column, push.turn);
     const Hit hit = trace(push.origin, direction, parameters.min_range, far, want_nearest, starts);
     is_point = hit.id != no_primitive;
     if (is_point && (hit.id & surveyed_bit) != 0u) {

@@ -40,8 +40,7 @@ uint end_of_triangles(Cube cube, uint first_triangle, uint end_triangle) {
   return end;
 }
 
-bool is_candidate(Cube cube, vec3 origin, uint row, uint column, uint first_triangle, uint end_triangle) {
-  const vec3 d = ray_direction(row, column);
+bool is_candidate(Cube cube, vec3 origin, vec3 d, uint first_triangle, uint end_triangle) {
   const vec2 range = passage(cube, d);
   if (range.x > range.y || range.y + parameters.noise_reach < parameters.min_range ||
       range.x - parameters.noise_reach > parameters.max_range)
@@ -66,7 +65,8 @@ void main() {
   if (!alive) item.voxel = push.first_voxel;
 #endif
   const SampleVoxel voxel = push.voxels.at[item.voxel];
-  const vec3 origin = push.stations.at[item.slot].origin;
+  const SampleStation station = push.stations.at[item.slot];
+  const vec3 origin = station.origin;
   const Cube cube = cube_of(voxel, origin);
   const uint end_triangle =
       end_of_triangles(cube, voxel.first_triangle, push.voxels.at[item.voxel + 1u].first_triangle);
@@ -75,7 +75,9 @@ void main() {
   RayWindow window;
   int columns = 0, first = 0;
   if (alive && end_triangle > voxel.first_triangle) {
-    window = rays_of_box(cube.low, cube.high);
+    vec3 low = cube.low, high = cube.high;
+    if (turned) turn_back(station.turn, low, high);
+    window = rays_of_box(low, high);
     window.row0 = max(window.row0, int(push.first_row));
     window.row1 = min(window.row1, int(push.end_row) - 1);
     columns = column_count_of(window);
@@ -96,7 +98,8 @@ void main() {
 #endif
     for (int k = first; k < end; ++k) {
       const uvec2 ray = ray_in_window(window, columns, k);
-      if (is_candidate(cube, origin, ray.x, ray.y, voxel.first_triangle, end_triangle)) {
+      const vec3 d = ray_direction(ray.x, ray.y, station.turn);
+      if (is_candidate(cube, origin, d, voxel.first_triangle, end_triangle)) {
         const int bit = k - first;
         if (bit < 32) found.x |= 1u << bit;
         else found.y |= 1u << (bit - 32);

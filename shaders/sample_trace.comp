@@ -27,7 +27,7 @@ void main() {
     traced = push.stop_at == 0u || push.counts.at[entry] < push.stop_at;
     if (traced) {
       const uint row = job.ray / parameters.columns, column = job.ray % parameters.columns;
-      const vec3 direction = ray_direction(row, column);
+      const vec3 direction = ray_direction(row, column, station.turn);
       const Cube cube = cube_of(voxel, station.origin);
       const vec2 range = passage(cube, direction);
       const float reach = parameters.noise_reach + cube.slack;

@@ -18,7 +18,7 @@ void main() {
   if (row >= push.first_row + push.row_count || column >= parameters.columns) return;
   const uint k = (row - push.first_row) * parameters.columns + column;
 
-  const vec3 direction = ray_direction(row, column);
+  const vec3 direction = ray_direction(row, column, push.turn);
   const Hit hit = trace(push.origin, direction, parameters.min_range,
                         parameters.max_range, want_nearest, from_the_root);
   const bool is_point = hit.id != no_primitive;

@@ -6,6 +6,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "lib/rays_of_box.glsl"
 #include "lib/tiles.glsl"
+#include "lib/turn.glsl"
 
 layout(local_size_x = group_size) in;
 layout(push_constant, scalar) uniform Push { TilePush push; };
@@ -28,9 +29,10 @@ void main() {
   const vec3 corner = parameters.voxel_min + vec3(brick) * size;
   const vec3 largest = max(abs(corner), abs(push.origin)) + size;
   const float slack = max(max(largest.x, largest.y), largest.z) * (1.0 / 262144.0) + parameters.noise_reach;
-  const vec3 low = corner - push.origin - slack, high = corner - push.origin + (size + slack);
+  vec3 low = corner - push.origin - slack, high = corner - push.origin + (size + slack);
   if (length(clamp(vec3(0), low, high)) > parameters.max_range) return;
   const uint far = floatBitsToUint(length(max(abs(low), abs(high))) * 1.0001);
+  if (turned) turn_back(push.turn, low, high);
   const RayWindow window = rays_of_box(low, high);
   mark(window.row0, window.row1, window.column0, window.column1, far);
   mark(window.row0, window.row1, window.wrapped0, window.wrapped1, far);

@@ -29,9 +29,10 @@ std::string coordinate_system(const std::string& text);
 
 /// What a file that keeps stations apart (E57) says of one.
 struct StationScan {
-  std::string name;  ///< As people call it: "S1".
-  Vec3 head;         ///< The scanner's head, survey frame, metres; upright, as always.
-  Scanner scanner;   ///< Its model, and how its rays are numbered and headed.
+  std::string name;         ///< As people call it: "S1".
+  Vec3 head;                ///< The scanner's head, survey frame, metres.
+  Scanner scanner;          ///< Its model, and how its rays are numbered and headed.
+  StationSetup setup = {};  ///< How it is turned.
 };
 
 /// Streams a point cloud to a file in constant memory. The format follows the extension: .ply (binary little endian),
@@ -68,24 +69,30 @@ void write_coverage_ply(const std::filesystem::path& file, const Simulator& simu
 /// Square matrix with a header line; row and column i are station i.
 void write_overlap_csv(const std::filesystem::path& file, const OverlapMatrix& overlap);
 
-/// Stations of one network as CSV: `station,name,x,y,z,ground_z,u,v,status,kept`. Survey frame; x, y, z of the head,
-/// ground_z of the ground. Numbers read back to the same bits.
-void write_stations_csv(const std::filesystem::path& file, std::span<const PlacedStation> stations);
+/// Stations of one network as CSV: `station,name,x,y,z,ground_z,u,v,status,kept`, and where one of them is turned or
+/// does not have the first scanner, `heading,tilt,scanner,step` (degrees; the scanner's name). Survey frame; x, y, z of
+/// the head, ground_z of the ground. Numbers read back to the same bits. `scanners`: what `StationSetup::scanner`
+/// counts; without them the last two columns are left out.
+void write_stations_csv(const std::filesystem::path& file, std::span<const PlacedStation> stations,
+                        std::span<const Scanner> scanners = {});
 
 /// What `read_stations_csv` found on one line. Survey frame, metres.
 struct StationRow {
-  std::optional<Vec3> position;             ///< The scanner's head.
-  std::optional<Vec3> ground;               ///< The point of the ground below it.
-  std::optional<std::array<double, 2>> xy;  ///< East and north alone, where no height is given.
-  std::optional<Uv> uv;                     ///< On the search area.
-  std::string name;                         ///< As its owner calls it; empty where the file has no names.
+  std::optional<Vec3> position;              ///< The scanner's head.
+  std::optional<Vec3> ground;                ///< The point of the ground below it.
+  std::optional<std::array<double, 2>> xy;   ///< East and north alone, where no height is given.
+  std::optional<Uv> uv;                      ///< On the search area.
+  std::string name;                          ///< As its owner calls it; empty where the file has no names.
+  StationSetup setup = {};                   ///< Heading and tilt.
+  std::string scanner = {};                  ///< As `load_scanner()` takes it; empty: not said.
+  std::optional<Angle> step = std::nullopt;  ///< Of azimuth and zenith.
 };
 /// Reads a table with a header. Columns in any order, others are ignored: x, y, z (the head's), or E, N, Z, or Easting,
-/// Northing, Height; ground_z for the ground's height; u, v; name. A unit may follow in brackets, and must be m. Cells
-/// are parted by commas, semicolons, tabs or blanks, as the header has them; but for commas, numbers may have decimal
-/// commas. Quotes, byte order marks, carriage returns, empty lines and those that begin with # do no harm.
-/// Throws Error: io, malformed_file with the line (two columns for one quantity, a unit that is not m, a line with more
-/// cells than the header, …).
+/// Northing, Height; ground_z for the ground's height; u, v; name; heading, tilt and step in degrees; scanner. A unit
+/// may follow in brackets, and must be m, or deg for angles. Cells are parted by commas, semicolons, tabs or blanks, as
+/// the header has them; but for commas, numbers may have decimal commas. Quotes, byte order marks, carriage returns,
+/// empty lines and those that begin with # do no harm. Throws Error: io, malformed_file with the line (two columns for
+/// one quantity, a unit that is not m, a line with more cells than the header, …).
 std::vector<StationRow> read_stations_csv(const std::filesystem::path& file);
 
 /// Everything about a run that its results must name: version, engine, device, seed, scene, every parameter. JSON text.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -43,13 +44,18 @@ class OnSite {
   /// Lays a graph of some 20 000 places at most over the search area, 0.25 m apart or more, its links between
   /// neighbours that see each other at hip height. Throws Error invalid_argument (an option out of its range).
   OnSite(const SearchArea& area, const ClashChecker& clash, const Scanner& scanner, const OnSiteOptions& options = {});
+  /// With several scanners, which stations choose from by `StationSetup::scanner`. Throws as above, and Error
+  /// invalid_argument for none.
+  OnSite(const SearchArea& area, const ClashChecker& clash, std::span<const Scanner> scanners,
+         const OnSiteOptions& options = {});
 
   /// Metres from one ground point to another along the search area; empty where it does not connect them.
   std::optional<double> way_m(const Vec3& from, const Vec3& to) const;
   /// The order by nearest neighbour, made better by turning parts of it round (2-opt) and moving up to three stations
-  /// elsewhere (Or-opt) until neither helps.
+  /// elsewhere (Or-opt) until neither helps. Throws std::out_of_range for a scanner that is not there.
   Visit visit(std::span<const PlacedStation> stations) const;
-  double minutes_per_scan() const noexcept;  ///< `Scanner::rays()` at `Scanner::points_per_second`.
+  /// `Scanner::rays()` at `Scanner::points_per_second`. Throws std::out_of_range.
+  double minutes_per_scan(std::uint32_t scanner = 0) const;
   const OnSiteOptions& options() const noexcept;
 
  private:

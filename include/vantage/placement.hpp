@@ -13,6 +13,7 @@
 
 #include "vantage/scene.hpp"
 #include "vantage/settings.hpp"
+#include "vantage/station_setup.hpp"
 #include "vantage/types.hpp"
 
 namespace vantage {
@@ -119,6 +120,7 @@ struct PlacedStation {
   Vec3 ground = {};  ///< Under the head, where the tripod stands, survey frame. (0, 0, 0) in a hole.
   StationStatus status = StationStatus::ok;
   bool kept = false;  ///< Was there before the plan.
+  StationSetup setup = {};
 };
 /// Whether it adds to what its network measures: it is in no hole, in nothing solid and in no clash. A kept station was
 /// scanned, so that a clash says something of the scene only. Heads off the ground and outside of the search area

@@ -34,6 +34,11 @@ struct SurveyProblem {
   /// equation 7.
   std::size_t stations_min = 4, stations_max = 4;
   std::vector<Vec3> kept = {};  ///< Heads of stations that are there already: the first of every network, on top.
+  /// How they are set up, one each; empty: upright, with the first scanner.
+  std::vector<StationSetup> kept_setups = {};
+  /// Indices into `Simulator::scanners()` that each station chooses from, in the order in which they are tried: one
+  /// model with finer and finer steps, say. Empty: the first scanner.
+  std::vector<std::uint32_t> scanners = {};
   /// Lowest and highest height of the head above the search area, searched per station; empty: the scanner's height.
   std::optional<std::array<double, 2>> heights_m = std::nullopt;
   std::vector<Objective> objectives = {};      ///< At least one. One: the best network is searched; several: a front.
@@ -117,7 +122,9 @@ struct MeasuredValue {
 
 /// One network of the front.
 struct PlanEntry {
-  std::vector<double> x;  ///< Decision vector: u1, v1, …, uN, vN [, h1, …, hN] [, α].
+  /// Decision vector: u1, v1, …, uN, vN [, h1, …, hN] [, s1, …, sN] [, α]; s in [0, 1) chooses among
+  /// `SurveyProblem::scanners`, each as often as any other.
+  std::vector<double> x;
   std::vector<PlacedStation> stations;
   std::map<std::string, MeasuredValue> values;  ///< By objective's name, of `PlanResult::measures`.
   bool confirmed = false;                       ///< Whether the exact values were computed.
@@ -151,6 +158,7 @@ struct PlanResult {
   std::size_t population = 0, batch = 0;  ///< As chosen where the configuration left it open.
   WalkableOptions walkable;               ///< What the search area was built with.
   SecurityVolume security;                ///< What the clash checker was built with.
+  std::vector<Scanner> scanners;          ///< What `StationSetup::scanner` counts.
   /// All that is told of a network: the objectives, then what requirements bound, then coverage and overlap.
   std::vector<Objective> measures;
   std::vector<PlanEntry> front;  ///< By the objectives in order, best first. One entry where there is one objective.
@@ -220,6 +228,7 @@ struct GreedyConfig {
   std::size_t candidates = 300;          ///< Positions to choose from, spread evenly over the search area's (u, v).
   std::uint64_t sample_voxels = 20'000;  ///< 0: with every ray.
   std::vector<Vec3> fixed = {};          ///< Stations that are there already; neither counted nor returned.
+  std::vector<StationSetup> fixed_setups = {};  ///< As `SurveyProblem::kept_setups`.
 };
 
 /// What `greedy_network` chose.

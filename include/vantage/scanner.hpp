@@ -71,9 +71,9 @@ struct ScannerPreset {
   std::string summary;  ///< One line for `vantage info`.
 };
 
-/// A scanner by "key" or "key@setting", e.g. "rtc360@6mm"; upper or lower case. The presets (data/scanners.json) are
-/// part of the library; a file `more` of that form adds to them, and goes before them where a key is in both. Throws
-/// Error: io, malformed_file, invalid_argument (lists what exists).
+/// A scanner by "key" or "key@setting", e.g. "rtc360@6mm", or by its name in full; upper or lower case. The presets
+/// (data/scanners.json) are part of the library; a file `more` of that form adds to them, and goes before them where a
+/// key is in both. Throws Error: io, malformed_file, invalid_argument (lists what exists).
 Scanner load_scanner(const std::string& name, const std::filesystem::path& more = {});
 /// All of them, those of `more` first. Throws Error: io, malformed_file.
 std::vector<ScannerPreset> list_scanners(const std::filesystem::path& more = {});

@@ -15,6 +15,7 @@
 #include "vantage/progress.hpp"
 #include "vantage/scanner.hpp"
 #include "vantage/scene.hpp"
+#include "vantage/station_setup.hpp"
 #include "vantage/trace.hpp"
 
 namespace vantage {
@@ -38,10 +39,11 @@ inline constexpr Angle default_max_incidence = Angle::degrees(60);
 
 Settings settings(const SimulatorConfig& config);
 
-/// A station is the position of the scanner's head in the survey frame; upright always.
+/// A station is the position of the scanner's head in the survey frame, and how it is set up there.
 struct Station {
   Vec3 position;
   bool active = true;  ///< False: in a hole or a clash. Keeps its place in the network but is not simulated.
+  StationSetup setup = {};
 };
 using Network = std::vector<Station>;
 
@@ -129,12 +131,16 @@ class Simulator {
   /// Throws Error: invalid_argument (goal density below 1, with the smallest user size that works; bad scanner; a
   /// detail or accuracy without the scanner's beam or noise table; a bad incidence), no_suitable_device, out_of_memory.
   Simulator(const Scene& scene, const Scanner& scanner, const SimulatorConfig& config = {});
+  /// With several scanners, which stations choose from by `StationSetup::scanner`: other models, or one with other
+  /// steps. Throws as above, and Error invalid_argument for none.
+  Simulator(const Scene& scene, std::span<const Scanner> scanners, const SimulatorConfig& config = {});
   Simulator(Simulator&&) noexcept;
   Simulator& operator=(Simulator&&) noexcept;
   ~Simulator();
 
   const EngineInfo& engine() const noexcept;
-  const Scanner& scanner() const noexcept;
+  const Scanner& scanner() const noexcept;             ///< The first.
+  std::span<const Scanner> scanners() const noexcept;  ///< All of them.
   const Scene& scene() const noexcept;
   const SimulatorConfig& config() const noexcept;
   Vec3 origin() const noexcept;                ///< Local origin; survey = local + origin.
@@ -153,7 +159,8 @@ class Simulator {
   std::vector<std::uint32_t> sampled_voxels(std::uint64_t voxels) const;
 
   /// Scans one station in chunks of rows; `sink` sees them in ray order. An inactive station has no chunks. A cancelled
-  /// scan says so in `cancelled`. Throws Error invalid_argument (a position that is not finite, unknown outputs).
+  /// scan says so in `cancelled`. Throws Error invalid_argument (a position or angle that is not finite, a scanner that
+  /// is not there, unknown outputs).
   ScanSummary scan(const Station& station, const ScanOptions& options,
                    const std::function<void(const ScanChunk&)>& sink, const Progress& progress = {});
 
@@ -166,8 +173,8 @@ class Simulator {
 
  private:
   friend Simulator surroundings_of(const Simulator& simulator);
-  // Registration goes by the scans of this scanner, for whose rays fewer stand here.
-  void stand_for(const Scanner& scanner);
+  // Registration goes by the scans of these scanners, for whose rays fewer stand here. One for each of `scanners()`.
+  void stand_for(std::span<const Scanner> scanners);
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

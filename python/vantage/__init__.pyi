@@ -255,12 +255,14 @@ class RegistrationOptions:
         position_m: float = 0.03,
         heading_deg: float = 0.2,
         tilt_deg: float = 0.004166666667,
+        surfaces: Literal["surveyed", "all"] = "surveyed",
     ) -> None: ...
     rho_m: float
     patch_m: float
     position_m: float
     heading_deg: float
     tilt_deg: float
+    surfaces: Literal["surveyed", "all"]
 
 class RegistrationError:
     @property
@@ -304,6 +306,8 @@ class Evaluation:
     def connectivity(self, min_overlap: float = 0.01) -> Connectivity: ...
     @property
     def registration(self) -> RegistrationError: ...
+    @property
+    def registration_estimate(self) -> Estimate: ...
     @property
     def seen(self) -> npt.NDArray[np.uint64]: ...
     @property
@@ -549,6 +553,25 @@ def bound_stations(
     max_seconds: float = 120.0,
     exact_seconds: float = 0.0,
 ) -> StationsBound: ...
+def bound_linked_capture(
+    rows: CaptureRows,
+    stations: int,
+    links: Sequence[Tuple[int, int]],
+    fixed: Sequence[int] = [],
+    *,
+    progress: Optional[Progress] = None,
+    tolerance: float = 0.001,
+    max_seconds: float = 120.0,
+    exact_seconds: float = 0.0,
+) -> CaptureBound: ...
+def links_between(
+    simulator: Simulator,
+    stations: Sequence[PlacedStation],
+    least: float,
+    *,
+    sample_voxels: int = 10000,
+    progress: Optional[Progress] = None,
+) -> List[List[int]]: ...
 def choose_rows(
     rows: CaptureRows, stations: int, fixed: Sequence[int] = [], *, progress: Optional[Progress] = None
 ) -> List[int]: ...
@@ -574,6 +597,28 @@ def greedy_network(
     sample_voxels: int = 20000,
     fixed: Sequence[Sequence[float]] = [],
 ) -> GreedyResult: ...
+
+class ExactResult:
+    @property
+    def stations(self) -> List[PlacedStation]: ...
+    @property
+    def choice(self) -> CaptureBound: ...
+    @property
+    def cancelled(self) -> bool: ...
+
+def exact_network(
+    simulator: Simulator,
+    area: SearchArea,
+    clash: ClashChecker,
+    stations: int,
+    *,
+    progress: Optional[Progress] = None,
+    candidates: int = 256,
+    sample_voxels: int = 20000,
+    link: float = 0.0,
+    max_seconds: float = 60.0,
+    fixed: Sequence[Sequence[float]] = [],
+) -> ExactResult: ...
 
 class MeasuredNetwork:
     @property
@@ -606,6 +651,7 @@ class Objective:
         visibility: bool = False,
         surroundings: bool = False,
         time: bool = False,
+        registration: Optional[RegistrationOptions] = None,
         standard_error: Optional[Callable[[MeasuredNetwork], float]] = None,
         parameters: str = "",
     ) -> None: ...
@@ -725,6 +771,8 @@ class PlanEntry:
     def overlap_matrix(self) -> Floats: ...
     @property
     def scan_overlap_matrix(self) -> Floats: ...
+    @property
+    def registration(self) -> Optional[RegistrationError]: ...
 
 class PlanResult:
     @property

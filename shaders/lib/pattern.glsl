@@ -3,11 +3,14 @@
 #ifndef VANTAGE_LIB_PATTERN
 #define VANTAGE_LIB_PATTERN
 #include "lib/parameters.glsl"
+#include "lib/turn.glsl"
 
-vec3 ray_direction(uint row, uint column) {
+// `turn`: the station's, read where it is turned.
+vec3 ray_direction(uint row, uint column, vec3 turn[3]) {
   const float s = parameters.sin_zenith.at[row];
   precise vec3 d = vec3(s * parameters.cos_azimuth.at[column], s * parameters.sin_azimuth.at[column],
                         parameters.cos_zenith.at[row]);
+  if (turned) d = turn_direction(turn, d);
   return d;
 }
 

@@ -31,6 +31,8 @@ VANTAGE_CONST uint tile_groups_y = 32768;  // tiles along y of an indirect dispa
 
 VANTAGE_CONST uint traversal_arrays = 3;
 
+VANTAGE_CONST uint turned_constant = 4;  // constant_id of `turned` in lib/turn.glsl
+
 // What a point must be to count; 0: no limit. A mesh has one of these, those that ask for the same share it.
 struct PointLimits {
   float least_cosine_square;       // of the angle between ray and normal
@@ -106,6 +108,8 @@ struct CountPush {
   uint place;
   uint first_row;
   uint row_count;
+  vec3 turn[3];  // rows of the rotation from the scanner's frame; read where the station is turned
+  uint padding;
 };
 
 // Which tiles of directions see a surveyed brick, and how far the last one reaches.
@@ -118,7 +122,7 @@ struct TilePush {
   vec3 origin;
   uint first_row;
   uint row_count;
-  uint padding;
+  vec3 turn[3];
 };
 
 struct ScanPush {
@@ -133,6 +137,8 @@ struct ScanPush {
   uint place;
   uint first_row;
   uint row_count;
+  vec3 turn[3];
+  uint padding;
 };
 
 // Keeps counts from wrapping: no count exceeds count_limit after it, and a dispatch adds less than the rest.
@@ -186,6 +192,7 @@ struct SampleStation {
   vec3 origin;
   uint place;
   uint network;  // within the batch
+  vec3 turn[3];
 };
 struct SampleRay {
   uint voxel;  // within the sample

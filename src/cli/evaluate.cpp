@@ -185,7 +185,7 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
   if (options.with_registration && !overlap)
     throw Error(Errc::invalid_argument, "--registration: looks at what scans share, which --no-overlap leaves out");
 
-  Simulator simulator(site.scene, site.scanner, site.config);
+  Simulator simulator(site.scene, site.scanners, site.config);
   tell_engine(simulator);
   tell_grid(simulator);
   const Network network = to_network(stations);
@@ -243,7 +243,7 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
     write_stations(file, {placed, names}, matrix, link_overlap, site.area(), site.crs_text());
   nlohmann::json rows = nlohmann::json::array();
   for (std::size_t k = 0; k < stations.size(); ++k) {
-    auto row = to_json(stations[k], names[k]);
+    auto row = to_json(stations[k], names[k], site.scanners);
     row["points"] = nullptr;
     row["points_on_surveyed"] = nullptr;
     if (!sampled && !counts.points.empty()) row["points"] = counts.points[k];

@@ -72,7 +72,7 @@ int panorama(CLI::App& command, PanoramaCommandOptions& options, Program& progra
       spdlog::error("stopped at station {}; the pictures of those before it are in {}", k + 1, folder.string());
       return exit_failed;
     }
-    auto row = to_json(stations[k], names[k]);
+    auto row = to_json(stations[k], names[k], site.scanners);
     for (const auto& image : images) {
       const std::string name = fmt::format("station_{}_{}.png", k + 1, to_string(image.view));
       write_png(folder / name, image.image);

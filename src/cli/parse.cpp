@@ -95,24 +95,43 @@ std::vector<double> parse_numbers(std::string_view text, const std::string& what
 namespace {
 
 StationText parse_named_station(std::string_view text, const std::string& what) {
-  std::optional<double> x, y, z, ground, u, v;
+  std::optional<double> x, y, z, ground, u, v, heading, tilt, step;
+  StationText station;
   const std::initializer_list<std::pair<const char*, std::optional<double>*>> names{
-      {"x", &x}, {"y", &y}, {"z", &z}, {"ground", &ground}, {"u", &u}, {"v", &v}};
+      {"x", &x},       {"y", &y},      {"z", &z}, {"ground", &ground}, {"u", &u}, {"v", &v}, {"heading", &heading},
+      {"tilt", &tilt}, {"step", &step}};
   for (const auto part : split(text, ',')) {
     const std::size_t equals = part.find('=');
     const std::string_view name = trim(part.substr(0, equals));
+    if (name == "scanner" && equals != std::string_view::npos) {
+      station.scanner = trim(part.substr(equals + 1));
+      continue;
+    }
     const auto known = std::find_if(names.begin(), names.end(), [&](const auto& one) { return one.first == name; });
     if (equals == std::string_view::npos || known == names.end())
-      refuse(what, text, "is no station: '" + std::string(part) + "' is none of x=, y=, z=, ground=, u=, v=");
+      refuse(what, text,
+             "is no station: '" + std::string(part) +
+                 "' is none of x=, y=, z=, ground=, u=, v=, heading=, tilt=, step=, "
+                 "scanner=");
     if (*known->second) refuse(what, text, "says " + std::string(name) + " twice");
     *known->second = parse_number(part.substr(equals + 1), what);
   }
-  if (u && v && !x && !y && !z && !ground) return {.uv = Uv{*u, *v}};
+  if (heading) station.setup.heading = Angle::degrees(*heading);
+  if (tilt) station.setup.tilt = Angle::degrees(*tilt);
+  if (step) station.step = Angle::degrees(*step);
+  if (u && v && !x && !y && !z && !ground) {
+    station.uv = Uv{*u, *v};
+    return station;
+  }
   if (!x || !y || u || v || (z && ground))
     refuse(what, text, "is no station: give x=,y=; x=,y=,z= of the scanner's head; x=,y=,ground=; or u=,v=");
-  if (z) return {.position = Vec3{*x, *y, *z}};
-  if (ground) return {.ground = Vec3{*x, *y, *ground}};
-  return {.xy = std::array{*x, *y}};
+  if (z)
+    station.position = Vec3{*x, *y, *z};
+  else if (ground)
+    station.ground = Vec3{*x, *y, *ground};
+  else
+    station.xy = std::array{*x, *y};
+  return station;
 }
 
 }  // namespace

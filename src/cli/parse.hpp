@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "vantage/station_setup.hpp"
 #include "vantage/types.hpp"
 
 namespace vantage::cli {
@@ -35,7 +36,8 @@ std::vector<double> parse_numbers(std::string_view text, const std::string& what
                                   const Interval& interval = any_number);
 
 // A station as it is typed: X,Y,Z of the scanner's head, u,v on the search area, or with its quantities named:
-// x=5,y=3.6 (the ground there is looked for), x=5,y=3.6,z=1.85, x=5,y=3.6,ground=0, u=0.25,v=0.5.
+// x=5,y=3.6 (the ground there is looked for), x=5,y=3.6,z=1.85, x=5,y=3.6,ground=0, u=0.25,v=0.5; and with those how it
+// is set up: heading=30,tilt=90,step=0.1,scanner=rtc360@6mm.
 struct StationText {
   std::optional<Vec3> position = {};  // the head
   std::optional<Uv> uv = {};
@@ -43,6 +45,9 @@ struct StationText {
   std::optional<std::array<double, 2>> xy = {};
   std::optional<std::array<double, 2>> pair = {};  // two numbers without names: u,v, unless they cannot be
   std::string name = {};
+  StationSetup setup = {};  // heading and tilt
+  std::string scanner = {};
+  std::optional<Angle> step = {};
 };
 StationText parse_station(std::string_view text, const std::string& what);
 

@@ -14,6 +14,7 @@
 #include "cli/report.hpp"
 #include "cli/run_report.hpp"
 #include "cli/site.hpp"
+#include "cli/station_scanners.hpp"
 #include "cli/stations.hpp"
 
 namespace vantage::cli {
@@ -135,8 +136,9 @@ std::uint64_t default_sample(const SurveyProblem& problem, std::uint64_t voxels)
   return std::min({overlap ? sample_for_overlap : sample_for_coverage, enough, voxels});
 }
 
-std::vector<Vec3> heads_of(LoadedSite& site, const std::vector<StationText>& stations, const std::string& what) {
-  std::vector<Vec3> heads;
+std::vector<PlacedStation> heads_of(LoadedSite& site, const std::vector<StationText>& stations,
+                                    const std::string& what) {
+  std::vector<PlacedStation> heads;
   for (const auto& station : place(site, stations)) {
     if (station.placed.status == StationStatus::hole)
       throw Error(Errc::invalid_argument,
@@ -144,14 +146,36 @@ std::vector<Vec3> heads_of(LoadedSite& site, const std::vector<StationText>& sta
     if (station.placed.status != StationStatus::ok)
       spdlog::warn("{}: the station at {:.6g},{:.6g},{:.6g} {}", what, station.placed.position.x,
                    station.placed.position.y, station.placed.position.z, explain(station.placed.status));
-    heads.push_back(station.placed.position);
+    heads.push_back(station.placed);
   }
   return heads;
+}
+
+void keep(SurveyProblem& problem, std::span<const PlacedStation> stations) {
+  for (const PlacedStation& station : stations) problem.kept.push_back(station.position);
+  if (std::ranges::all_of(stations, [](const PlacedStation& s) { return s.setup == StationSetup(); })) return;
+  for (const PlacedStation& station : stations) problem.kept_setups.push_back(station.setup);
+}
+
+// As --keep takes it.
+std::string typed(const Vec3& head, const StationSetup& setup, const Scanner& scanner) {
+  return fmt::format("x={},y={},z={},heading={},tilt={},step={},scanner={}", head.x, head.y, head.z,
+                     setup.heading.in_degrees(), setup.tilt.in_degrees(), scanner.azimuth_step.in_degrees(),
+                     scanner.name);
 }
 
 nlohmann::json as_options(const LoadedSite& site, const PlanOptions& given, const SurveyProblem& problem,
                           const PlanConfig& config) {
   nlohmann::json options = options_of(settings(problem));
+  if (!problem.kept_setups.empty()) {
+    options["keep"] = nlohmann::json::array();
+    for (std::size_t k = 0; k < problem.kept.size(); ++k) {
+      const StationSetup& setup = problem.kept_setups[k];
+      options["keep"].push_back(typed(problem.kept[k], setup, site.scanners[setup.scanner]));
+    }
+  }
+  if (!given.problem.search_steps.empty())
+    options["search-step"] = fmt::format("{}", fmt::join(given.problem.search_steps, ","));
   if (given.problem.surveyors()) {
     // The requirements that this question has by itself go by their own options, so that 0 can take one away.
     nlohmann::json further = nlohmann::json::array();
@@ -186,7 +210,8 @@ std::vector<Vec3> greedy_start(LoadedSite& site, Simulator& simulator, const Sur
       greedy_network(simulator, site.area(), site.clash(),
                      {.stations = problem.stations_max,
                       .sample_voxels = std::min<std::uint64_t>(config.sample_voxels, sample_for_coverage),
-                      .fixed = problem.kept},
+                      .fixed = problem.kept,
+                      .fixed_setups = problem.kept_setups},
                      {.report = [&](double done) { line.update(done); }, .stop = std::move(stop)});
   std::vector<Vec3> heads;
   if (greedy.cancelled) return heads;
@@ -361,15 +386,17 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
                      : std::filesystem::path(std::filesystem::path(options.site.scene).stem().string() + "-plan");
 
   PlanConfig& config = options.config;
-  config.start = heads_of(site, options.start, "--start");
-  problem.kept = heads_of(site, options.problem.keep, "--keep");
+  for (const PlacedStation& station : heads_of(site, options.start, "--start"))
+    config.start.push_back(station.position);
+  keep(problem, heads_of(site, options.problem.keep, "--keep"));
+  problem.scanners = scanners_with(site, options.site.scanner.value_or(""), options.problem.search_steps);
   config.seed = site.config.seed;
   config.resume = options.resume;
   config.checkpoint = folder / "checkpoint.bin";
   if (config.iterations == 0 && !problem.fewest) config.iterations = PlanConfig().iterations;
   const SearchArea& area = site.area();
 
-  Simulator simulator(site.scene, site.scanner, site.config);
+  Simulator simulator(site.scene, site.scanners, site.config);
   tell_engine(simulator);
   tell_grid(simulator);
   if (!options.exact)

@@ -95,6 +95,13 @@ void ProblemOptions::add(CLI::App& command) {
   add_values(command, "--keep", "X,Y,Z|U,V", "A station that is there already, on top of --stations; may be repeated",
              [this](const std::string& text, const std::string& what) { keep.push_back(parse_station(text, what)); })
       ->group("Problem");
+  add_value(command, "--search-step", "LIST",
+            "Choose each station's step among these: degrees, as 0.2,0.1,0.05, or settings of the scanner, as 12mm,3mm",
+            [this](const std::string& text, const std::string&) {
+              search_steps.clear();
+              for (const auto part : split(text, ',')) search_steps.emplace_back(part);
+            })
+      ->group("Problem");
   add_value(command, "--heights", "LOW,HIGH", "Search each station's height between these, in metres",
             [this](const std::string& text, const std::string& what) {
               const auto values = parse_numbers(text, what, 2, 2, not_negative);

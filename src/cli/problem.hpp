@@ -18,6 +18,7 @@ struct ProblemOptions {
   std::vector<std::string> objectives, requirements;
   std::optional<CountRange> stations;
   std::vector<StationText> keep;
+  std::vector<std::string> search_steps;
   std::optional<std::array<double, 2>> heights;
   std::optional<double> link_overlap, min_overlap;
   std::optional<double> capture, link, apart, set_up_min, walking_m_per_s;

@@ -75,7 +75,7 @@ int scan(CLI::App& command, ScanCommandOptions& options, Program& program) {
       spdlog::warn("the station at {:.6g},{:.6g},{:.6g} {}", station.placed.position.x, station.placed.position.y,
                    station.placed.position.z, explain(station.placed.status));
 
-  Simulator simulator(site.scene, site.scanner, site.config);
+  Simulator simulator(site.scene, site.scanners, site.config);
   tell_engine(simulator);
   tell_grid(simulator);
 
@@ -94,10 +94,14 @@ int scan(CLI::App& command, ScanCommandOptions& options, Program& program) {
       what.colour = [&panorama = options.panoramas[k]](Angle zenith, Angle azimuth) {
         return panorama.colour(zenith, azimuth);
       };
+    const StationSetup& setup = stations[k].placed.setup;
     if (writer)
-      writer->begin_station({.name = names[k], .head = stations[k].placed.position, .scanner = simulator.scanner()});
+      writer->begin_station({.name = names[k],
+                             .head = stations[k].placed.position,
+                             .scanner = simulator.scanners()[setup.scanner],
+                             .setup = setup});
     const ScanSummary one = simulator.scan(
-        {.position = stations[k].placed.position}, what,
+        {.position = stations[k].placed.position, .setup = setup}, what,
         [&](const ScanChunk& chunk) {
           if (writer) writer->write(chunk, static_cast<std::uint16_t>(k + 1));
         },
@@ -110,7 +114,7 @@ int scan(CLI::App& command, ScanCommandOptions& options, Program& program) {
     sum.points += one.points;
     sum.points_on_surveyed += one.points_on_surveyed;
     sum.trace_seconds += one.trace_seconds;
-    auto row = to_json(stations[k], names[k]);
+    auto row = to_json(stations[k], names[k], site.scanners);
     row["points"] = one.points;
     row["points_on_surveyed"] = one.points_on_surveyed;
     row["hits_on_surveyed"] = one.hits_on_surveyed;

@@ -343,10 +343,12 @@ LoadedSite open_site(CLI::App& command, SiteOptions& options) {
   const double small = std::min(scale, 1.0);  // people and tripods do not grow with a site
   LoadedSite site{.scene = std::move(scene),
                   .scanner = resolve_scanner(options, small),
+                  .scanners = {},
                   .config = {},
                   .security = {},
                   .walkable = {},
                   .noise = {}};
+  site.scanners = {site.scanner};
   site.config.engine = options.engine;
   site.config.device_index = options.device;
   site.config.seed = options.seed;

@@ -49,6 +49,7 @@ struct SiteOptions {
 struct LoadedSite {
   Scene scene;
   Scanner scanner;
+  std::vector<Scanner> scanners = {};  // what StationSetup::scanner counts: `scanner`, then those of single stations
   SimulatorConfig config;
   SecurityVolume security;
   WalkableOptions walkable;

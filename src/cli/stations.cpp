@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "cli/options.hpp"
+#include "cli/station_scanners.hpp"
 
 namespace vantage::cli {
 namespace {
@@ -31,7 +32,11 @@ std::vector<StationText> read_front(const std::string& file, std::uint64_t entry
     for (const auto& station : entries[entry - 1].at("stations")) {
       StationText text{.position = vec3_of(station.value("position", nlohmann::json())),
                        .uv = uv_of(station.value("uv", nlohmann::json())),
-                       .name = station.value("name", "")};
+                       .name = station.value("name", ""),
+                       .setup = {.heading = Angle::degrees(station.value("heading", 0.0)),
+                                 .tilt = Angle::degrees(station.value("tilt", 0.0))},
+                       .scanner = station.value("scanner", "")};
+      if (station.contains("step")) text.step = Angle::degrees(station["step"].get<double>());
       if (station.value("status", "ok") == "hole") text.position.reset();
       if (!text.position && !text.uv)
         throw Error(Errc::malformed_file, file + ": a station has neither position nor uv");
@@ -46,13 +51,17 @@ std::vector<StationText> read_front(const std::string& file, std::uint64_t entry
 }  // namespace
 
 void StationOptions::add(CLI::App& command) {
-  add_values(command, "--station", "X,Y,Z|U,V",
-             "A station: the scanner's head, or a point of the search area; x=,y= finds the ground; may be repeated",
-             [this](const std::string& text, const std::string& what) { typed.push_back(parse_station(text, what)); })
+  add_values(
+      command, "--station", "X,Y,Z|U,V",
+      "A station: the scanner's head, or a point of the search area; x=,y= finds the ground; with heading=,tilt=,"
+      "scanner=,step= where it is not set up as usual; may be repeated",
+      [this](const std::string& text, const std::string& what) { typed.push_back(parse_station(text, what)); })
       ->group("Stations");
-  add_text(command, "--stations", "FILE",
-           "Stations from a table with columns x,y,z or Easting,Northing,Height or u,v, or from a plan's front.json",
-           file)
+  add_text(
+      command, "--stations", "FILE",
+      "Stations from a table with columns x,y,z or Easting,Northing,Height or u,v, and where wanted heading, tilt, "
+      "scanner and step; or from a plan's front.json",
+      file)
       ->group("Stations");
   add_value(command, "--entry", "K", "Which entry of front.json, counted from 1; 1 otherwise",
             [this](const std::string& text, const std::string& what) {
@@ -70,8 +79,14 @@ std::vector<StationText> StationOptions::read(std::size_t most) const {
     throw Error(Errc::invalid_argument, "--entry goes with --stations front.json");
   } else if (file) {
     for (const auto& row : read_stations_csv(*file))
-      stations.push_back(
-          {.position = row.position, .uv = row.uv, .ground = row.ground, .xy = row.xy, .name = row.name});
+      stations.push_back({.position = row.position,
+                          .uv = row.uv,
+                          .ground = row.ground,
+                          .xy = row.xy,
+                          .name = row.name,
+                          .setup = row.setup,
+                          .scanner = row.scanner,
+                          .step = row.step});
   }
   if (stations.empty())
     throw Error(Errc::invalid_argument, "no station given: add --station X,Y,Z, --station u,v or --stations FILE");
@@ -133,25 +148,28 @@ std::vector<SiteStation> place(LoadedSite& site, const std::vector<StationText>&
   std::vector<SiteStation> placed;
   for (const auto& typed : stations) {
     const StationText station = settled(site, typed);
-    if (!station.position) {
+    if (station.position) {
+      const PlacedHead head =
+          place_head(site.has_area() ? &site.area() : nullptr, site.clash(), height, *station.position, station.uv);
+      placed.push_back({head.station, head.has_uv, station.name});
+    } else {
       const std::array<double, 2> uv{station.uv->u, station.uv->v};
       placed.push_back({place_stations(site.area(), site.clash(), height, uv).front(), true, station.name});
-      continue;
     }
-    const PlacedHead head =
-        place_head(site.has_area() ? &site.area() : nullptr, site.clash(), height, *station.position, station.uv);
-    placed.push_back({head.station, head.has_uv, station.name});
+    StationSetup& setup = placed.back().placed.setup = station.setup;
+    setup.scanner = scanner_of(site, station.scanner, station.step);
   }
   return placed;
 }
 
 Network to_network(const std::vector<SiteStation>& stations) {
   Network network;
-  for (const auto& station : stations) network.push_back({station.placed.position, active(station.placed)});
+  for (const auto& station : stations)
+    network.push_back({station.placed.position, active(station.placed), station.placed.setup});
   return network;
 }
 
-nlohmann::json to_json(const SiteStation& station, const std::string& name) {
+nlohmann::json to_json(const SiteStation& station, const std::string& name, std::span<const Scanner> scanners) {
   const PlacedStation& placed = station.placed;
   nlohmann::json json{{"name", name},
                       {"position", nullptr},
@@ -162,6 +180,13 @@ nlohmann::json to_json(const SiteStation& station, const std::string& name) {
   if (placed.status != StationStatus::hole)
     json["position"] = list(placed.position), json["ground"] = list(placed.ground);
   if (station.has_uv) json["uv"] = {placed.uv.u, placed.uv.v};
+  if (placed.setup != StationSetup()) {
+    const Scanner& scanner = scanners[placed.setup.scanner];
+    json["heading"] = placed.setup.heading.in_degrees();
+    json["tilt"] = placed.setup.tilt.in_degrees();
+    json["scanner"] = scanner.name;
+    if (scanner.azimuth_step == scanner.zenith_step) json["step"] = scanner.azimuth_step.in_degrees();
+  }
   return json;
 }
 

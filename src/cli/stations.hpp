@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -32,15 +33,16 @@ struct SiteStation {
 };
 
 // Heads stay where they are given; (u, v) go to the ground below and up by the scanner's height. Both are checked for
-// clashes, heads also for what they stand on.
+// clashes, heads also for what they stand on. Scanners of their own join those of the site.
 std::vector<SiteStation> place(LoadedSite& site, const std::vector<StationText>& stations);
 
 Network to_network(const std::vector<SiteStation>& stations);
 std::vector<PlacedStation> placed_of(const std::vector<SiteStation>& stations);
 // As in all tables and pictures.
 std::vector<std::string> names_of(const std::vector<SiteStation>& stations);
-// {name, position, ground, uv, status}; null where there is none.
-nlohmann::json to_json(const SiteStation& station, const std::string& name);
+// {name, position, ground, uv, status}; null where there is none. And {heading, tilt, scanner, step} of a station that
+// is not set up as usual. `scanners`: the site's.
+nlohmann::json to_json(const SiteStation& station, const std::string& name, std::span<const Scanner> scanners);
 // One warning a station that is not where a scanner could be.
 void warn_of_unusable(const std::vector<SiteStation>& stations);
 

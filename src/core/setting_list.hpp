@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "vantage/settings.hpp"
+#include "vantage/station_setup.hpp"
 #include "vantage/types.hpp"
 
 namespace vantage {
@@ -34,6 +35,10 @@ class SettingList {
   }
   static Json to_json(const Angle& angle) { return angle.in_degrees(); }
   static Json to_json(const Vec3& v) { return {v.x, v.y, v.z}; }
+  static Json to_json(const StationSetup& setup) {
+    return {
+        {"heading_deg", setup.heading.in_degrees()}, {"tilt_deg", setup.tilt.in_degrees()}, {"scanner", setup.scanner}};
+  }
   template <class Value>
   static Json to_json(const std::optional<Value>& value) {
     return value ? to_json(*value) : Json();

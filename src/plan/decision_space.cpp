@@ -31,17 +31,20 @@ void check(const SurveyProblem& problem) {
 }  // namespace
 
 DecisionSpace::DecisionSpace(const Site& site, const SurveyProblem& problem)
-    : site_(site), min_(problem.stations_min), max_(problem.stations_max), heights_(problem.heights_m.has_value()) {
+    : site_(site),
+      min_(problem.stations_min),
+      max_(problem.stations_max),
+      heights_(problem.heights_m.has_value()),
+      scanners_(problem.scanners) {
   check(problem);
   if (heights_) height_bounds_ = *problem.heights_m;
-  for (const Vec3& head : problem.kept) {
-    // A kept station was scanned from where it stands, whatever the search area says; its (u, v) is for the reader.
-    kept_.push_back(site.check_head(head));
-    kept_.back().kept = true;
-  }
+  // A kept station was scanned from where it stands, whatever the search area says; its (u, v) is for the reader.
+  kept_ = kept_stations(site, problem.kept, problem.kept_setups);
 }
 
-std::size_t DecisionSpace::dimension() const { return max_ * (heights_ ? 3 : 2) + (searches_number() ? 1 : 0); }
+std::size_t DecisionSpace::dimension() const {
+  return first_scanner() + (searches_scanner() ? max_ : 0) + (searches_number() ? 1 : 0);
+}
 
 Bounds DecisionSpace::bounds() const {
   Bounds bounds;
@@ -52,6 +55,10 @@ Bounds DecisionSpace::bounds() const {
   if (heights_) {
     bounds.lower.insert(bounds.lower.end(), max_, height_bounds_[0]);
     bounds.upper.insert(bounds.upper.end(), max_, height_bounds_[1]);
+  }
+  if (searches_scanner()) {
+    bounds.lower.insert(bounds.lower.end(), max_, 0.0);
+    bounds.upper.insert(bounds.upper.end(), max_, 1.0);
   }
   if (searches_number()) bounds.lower.push_back(0), bounds.upper.push_back(1);
   return bounds;
@@ -65,10 +72,25 @@ double DecisionSpace::height(std::span<const double> x, std::size_t i) const {
   return heights_ ? x[2 * max_ + i] : site_.height_m;
 }
 
+std::uint32_t DecisionSpace::scanner(std::span<const double> x, std::size_t i) const {
+  if (!searches_scanner()) return scanners_.empty() ? 0 : scanners_.front();
+  const auto n = static_cast<double>(scanners_.size());
+  return scanners_[static_cast<std::size_t>(std::clamp(std::floor(x[first_scanner() + i] * n), 0.0, n - 1))];
+}
+
+double DecisionSpace::encoded(std::uint32_t scanner) const {
+  const auto found = std::ranges::find(scanners_, scanner);
+  const auto place = static_cast<double>(found == scanners_.end() ? 0 : found - scanners_.begin());
+  return (place + 0.5) / static_cast<double>(scanners_.size());
+}
+
 std::vector<PlacedStation> DecisionSpace::decode(std::span<const double> x) const {
   std::vector<PlacedStation> stations = kept_;
   const std::size_t n = placed_count(x);
-  for (std::size_t i = 0; i < n; ++i) stations.push_back(place_station(site_, {x[2 * i], x[2 * i + 1]}, height(x, i)));
+  for (std::size_t i = 0; i < n; ++i) {
+    stations.push_back(place_station(site_, {x[2 * i], x[2 * i + 1]}, height(x, i)));
+    stations.back().setup.scanner = scanner(x, i);
+  }
   return stations;
 }
 
@@ -84,6 +106,7 @@ std::vector<std::vector<std::size_t>> DecisionSpace::blocks() const {
   for (std::size_t k = 0; k < max_; ++k) {
     auto& block = blocks.emplace_back(std::vector{2 * k, 2 * k + 1});
     if (heights_) block.push_back(2 * max_ + k);
+    if (searches_scanner()) block.push_back(first_scanner() + k);
   }
   return blocks;
 }
@@ -104,6 +127,7 @@ std::vector<double> DecisionSpace::encode(std::span<const Vec3> heads) const {
       const auto ground = site_.locate(*uv);
       x[2 * max_ + i] = std::clamp(ground ? head.z - ground->z : site_.height_m, height_bounds_[0], height_bounds_[1]);
     }
+    if (searches_scanner()) x[first_scanner() + i] = encoded(scanners_.front());
   }
   if (searches_number())
     x.back() =
@@ -118,6 +142,7 @@ std::vector<double> DecisionSpace::encode(std::span<const PlacedStation> station
     x[2 * i] = station.uv.u, x[2 * i + 1] = station.uv.v;
     if (heights_)
       x[2 * max_ + i] = std::clamp(station.position.z - station.ground.z, height_bounds_[0], height_bounds_[1]);
+    if (searches_scanner()) x[first_scanner() + i] = encoded(station.setup.scanner);
   }
   if (searches_number())
     x.back() = static_cast<double>(std::max(stations.size(), min_) - min_) / static_cast<double>(max_ - min_);

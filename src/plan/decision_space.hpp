@@ -38,9 +38,14 @@ class DecisionSpace {
 
  private:
   double height(std::span<const double> x, std::size_t i) const;
+  bool searches_scanner() const { return scanners_.size() > 1; }
+  std::size_t first_scanner() const { return max_ * (heights_ ? 3 : 2); }  // coordinate
+  std::uint32_t scanner(std::span<const double> x, std::size_t i) const;
+  double encoded(std::uint32_t scanner) const;  // the middle of what stands for it
   const Site& site_;
   std::size_t min_, max_;
   bool heights_;
+  std::vector<std::uint32_t> scanners_;
   std::array<double, 2> height_bounds_{};
   std::vector<PlacedStation> kept_;
 };

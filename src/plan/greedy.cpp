@@ -55,11 +55,7 @@ GreedyResult choose_greedily(const Site& site, NetworkEvaluator& evaluator, cons
 
   GreedyResult result;
   std::vector<PlacedStation>& chosen = result.stations;
-  PlacedNetwork kept;
-  for (const Vec3& head : config.fixed) {
-    kept.push_back(site.check_head(head));
-    kept.back().kept = true;
-  }
+  const PlacedNetwork kept = kept_stations(site, config.fixed, config.fixed_setups);
   double covered = 0;
   if (!kept.empty()) {
     const std::vector<PlacedNetwork> one{kept};

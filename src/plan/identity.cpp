@@ -78,7 +78,7 @@ std::string identity(const Simulator& simulator, const Site& site, const SearchA
   lines.add("engine", to_string(simulator.engine().engine));
   lines.add("population", std::uint64_t{population});
   lines.add("batch", std::uint64_t{batch});
-  lines.add("scanner", settings(simulator.scanner()));
+  for (const Scanner& scanner : simulator.scanners()) lines.add("scanner", settings(scanner));
   lines.add("simulation", settings(simulator.config()));
   lines.add("walkable", settings(area.options()));
   lines.add("security", settings(clash.volume()));

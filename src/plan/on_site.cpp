@@ -105,25 +105,31 @@ class Round {
 }  // namespace
 
 struct OnSite::Impl {
-  Impl(const SearchArea& area, const ClashChecker& clash, const OnSiteOptions& o, double scan)
-      : options(o), scan_min(scan), ways(area.mesh(), [&clash](const Vec3& a, const Vec3& b) {
+  Impl(const SearchArea& area, const ClashChecker& clash, const OnSiteOptions& o, std::vector<double> scans)
+      : options(o), scan_min(std::move(scans)), ways(area.mesh(), [&clash](const Vec3& a, const Vec3& b) {
           const Vec3 hip{0, 0, kHip_m};
           return clash.sees(a + hip, b + hip);
         }) {}
   OnSiteOptions options;
-  double scan_min;
+  std::vector<double> scan_min;  // by scanner
   Ways ways;
 };
 
-OnSite::OnSite(const SearchArea& area, const ClashChecker& clash, const Scanner& scanner,
+OnSite::OnSite(const SearchArea& area, const ClashChecker& clash, const Scanner& scanner, const OnSiteOptions& options)
+    : OnSite(area, clash, std::span(&scanner, 1), options) {}
+
+OnSite::OnSite(const SearchArea& area, const ClashChecker& clash, std::span<const Scanner> scanners,
                const OnSiteOptions& options) {
   check(options);
-  const double scan_min = static_cast<double>(scanner.rays()) / scanner.points_per_second / 60;
-  impl_ = std::make_shared<const Impl>(area, clash, options, scan_min);
+  if (scanners.empty()) throw Error(Errc::invalid_argument, "on site: no scanner given");
+  std::vector<double> scan_min;
+  for (const Scanner& scanner : scanners)
+    scan_min.push_back(static_cast<double>(scanner.rays()) / scanner.points_per_second / 60);
+  impl_ = std::make_shared<const Impl>(area, clash, options, std::move(scan_min));
 }
 
 std::optional<double> OnSite::way_m(const Vec3& from, const Vec3& to) const { return impl_->ways.between(from, to); }
-double OnSite::minutes_per_scan() const noexcept { return impl_->scan_min; }
+double OnSite::minutes_per_scan(std::uint32_t scanner) const { return impl_->scan_min.at(scanner); }
 const OnSiteOptions& OnSite::options() const noexcept { return impl_->options; }
 
 Visit OnSite::visit(std::span<const PlacedStation> stations) const {
@@ -160,7 +166,10 @@ Visit OnSite::visit(std::span<const PlacedStation> stations) const {
     if (!connected[a][b]) ++visit.unconnected;
   }
   const auto count = static_cast<double>(station_of.size());
-  visit.scan_min = count * impl_->scan_min;
+  // By scanner, so that stations of one make a product: no sum that rounds on the way.
+  std::vector<double> scans(impl_->scan_min.size());
+  for (const std::size_t i : station_of) scans.at(stations[i].setup.scanner) += 1;
+  for (std::size_t k = 0; k < scans.size(); ++k) visit.scan_min += scans[k] * impl_->scan_min[k];
   visit.set_up_min = count * options.set_up_min;
   visit.walk_min = visit.walk_m / options.walking_m_per_s / 60;
   visit.minutes = visit.scan_min + visit.set_up_min + visit.walk_min;

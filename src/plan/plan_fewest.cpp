@@ -100,11 +100,9 @@ class FewestPlan {
   }
 
   void look_at_links() {
-    std::vector<PlacedStation> kept;
-    for (const Vec3& head : problem_.kept) {
-      kept.push_back(run_.site().check_head(head));
-      if (active(kept.back())) kept.back().status = StationStatus::ok;  // rows of others are empty
-    }
+    std::vector<PlacedStation> kept = kept_stations(run_.site(), problem_.kept, problem_.kept_setups);
+    for (PlacedStation& station : kept)
+      if (active(station)) station.status = StationStatus::ok;  // rows of others are empty
     // Kept stations come first in every network, so they are traced even where time is short.
     if (!kept.empty()) table_.add(kept, {.report = {}, .stop = watch_.abort});
     // Where the time is over before links were looked at, those of a few: a network that hangs together is worth more

@@ -54,7 +54,7 @@ Simulator& Run::surroundings() {
 }
 
 const OnSite& Run::on_site() {
-  if (!on_site_) on_site_.emplace(area_, clash_, simulator_.scanner(), problem_.on_site);
+  if (!on_site_) on_site_.emplace(area_, clash_, simulator_.scanners(), problem_.on_site);
   return *on_site_;
 }
 
@@ -87,6 +87,7 @@ PlanResult Run::result(const SearchOutcome& found) const {
   result.problem = problem_, result.config = config_;
   result.population = population_of(problem_, config_), result.batch = batch_of(simulator_, config_);
   result.walkable = area_.options(), result.security = clash_.volume();
+  result.scanners.assign(simulator_.scanners().begin(), simulator_.scanners().end());
   result.measures = measures_.all;
   result.history = found.history;
   result.hypervolume = found.hypervolume;

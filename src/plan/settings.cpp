@@ -54,6 +54,11 @@ Settings settings(const SurveyProblem& problem) {
                       .add("detour", problem.on_site.detour)
                       .add("entrance", problem.on_site.entrance)
                       .take();
+  // Of stations that are not set up as all others, where there are any.
+  SettingList setups;
+  if (!problem.kept_setups.empty()) setups.add("kept_setups", problem.kept_setups);
+  if (!problem.scanners.empty()) setups.add("scanners", problem.scanners);
+  for (Setting& setting : setups.take()) list.push_back(std::move(setting));
   const Settings usual = settings(RegistrationOptions{});
   for (std::size_t k = 0; k < usual.size(); ++k) {
     Setting setting = settings(problem.registration)[k];

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plan/site.hpp"
 
+#include <string>
+
+#include "vantage/error.hpp"
+
 namespace vantage {
 
 PlacedStation place_station(const Site& site, Uv uv, double height_m) {
@@ -11,6 +15,20 @@ PlacedStation place_station(const Site& site, Uv uv, double height_m) {
   station.ground = *ground;
   station.status = site.clashes(*ground, height_m) ? StationStatus::clash : StationStatus::ok;
   return station;
+}
+
+std::vector<PlacedStation> kept_stations(const Site& site, std::span<const Vec3> heads,
+                                         std::span<const StationSetup> setups) {
+  if (!setups.empty() && setups.size() != heads.size())
+    throw Error(Errc::invalid_argument, "kept stations: " + std::to_string(heads.size()) + " heads and " +
+                                            std::to_string(setups.size()) + " setups; one each, or none");
+  std::vector<PlacedStation> kept;
+  for (std::size_t k = 0; k < heads.size(); ++k) {
+    kept.push_back(site.check_head(heads[k]));
+    kept.back().kept = true;
+    if (!setups.empty()) kept.back().setup = setups[k];
+  }
+  return kept;
 }
 
 std::size_t visibility_parts(const Site& site, const Network& network) {
@@ -29,7 +47,7 @@ Network to_network(std::span<const PlacedStation> stations) {
   Network network;
   network.reserve(stations.size());
   for (const PlacedStation& station : stations)
-    network.push_back({.position = station.position, .active = active(station)});
+    network.push_back({.position = station.position, .active = active(station), .setup = station.setup});
   return network;
 }
 

@@ -5,6 +5,8 @@
 
 #include <functional>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "vantage/planner.hpp"
 #include "vantage/scanner.hpp"
@@ -26,6 +28,10 @@ struct Site {
 Site make_site(const SearchArea& area, const ClashChecker& clash, const Scanner& scanner);
 
 PlacedStation place_station(const Site& site, Uv uv, double height_m);
+
+// Stations that are there already. `setups`: one each, or none. Throws Error invalid_argument for another number.
+std::vector<PlacedStation> kept_stations(const Site& site, std::span<const Vec3> heads,
+                                         std::span<const StationSetup> setups);
 
 // Connected parts of the graph of stations that see each other within range. A skipped station is a part of its own.
 std::size_t visibility_parts(const Site& site, const Network& network);

@@ -42,12 +42,32 @@ std::vector<std::size_t> bytes_of(const std::vector<E57Field>& fields) {
   return bytes;
 }
 
-// Turns by −heading about the vertical: from the survey's axes to the scanner's.
-struct Turn {
-  double c = 1, s = 0;
-  explicit Turn(Angle heading) : c(std::cos(heading.in_radians())), s(std::sin(heading.in_radians())) {}
-  std::array<double, 3> operator()(double x, double y, double z) const { return {c * x + s * y, c * y - s * x, z}; }
+// From the survey's axes to the scanner's: those of its pose, turned about its own axis by its heading.
+class IntoScanner {
+ public:
+  IntoScanner() = default;
+  IntoScanner(const StationSetup& setup, Angle own_heading)
+      : rows_(setup.survey_from_scanner()),
+        c_(std::cos(own_heading.in_radians())),
+        s_(std::sin(own_heading.in_radians())) {}
+  std::array<double, 3> operator()(double x, double y, double z) const {
+    const Vec3 d = rows_[0] * x + rows_[1] * y + rows_[2] * z;
+    return {c_ * d.x + s_ * d.y, c_ * d.y - s_ * d.x, d.z};
+  }
+
+ private:
+  std::array<Vec3, 3> rows_{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  double c_ = 1, s_ = 0;
 };
+
+// Of Rz(heading) · Ry(tilt) · Rz(own heading): w, x, y, z.
+std::array<double, 4> quaternion_of(const StationSetup& setup, Angle own_heading) {
+  const double heading = setup.heading.in_radians(), own = own_heading.in_radians();
+  const double sum = (heading + own) / 2, difference = (own - heading) / 2, half = setup.tilt.in_radians() / 2;
+  if (half == 0) return {std::cos(sum), 0, 0, std::sin(sum)};
+  return {std::cos(half) * std::cos(sum), std::sin(half) * std::sin(difference), std::sin(half) * std::cos(difference),
+          std::cos(half) * std::sin(sum)};
+}
 
 std::uint64_t hash_of(const E57Scan& scan, std::uint64_t points, std::uint64_t salt) {
   Hash hash;
@@ -66,14 +86,13 @@ class E57Sink final : public PointSink {
 
   void begin_station(const StationScan& station) override {
     end_station();
-    const Angle half = Angle::radians(station.scanner.heading.in_radians() / 2);
     E57Scan scan;
     scan.name = station.name, scan.sensor_model = station.scanner.name;
     scan.translation = station.head;
-    scan.rotation = {std::cos(half.in_radians()), 0, 0, std::sin(half.in_radians())};
+    scan.rotation = quaternion_of(station.setup, station.scanner.heading);
     scan.fields = fields_of(outputs_, station.scanner);
     columns_ = station.scanner.columns();
-    turn_ = Turn(station.scanner.heading);
+    into_scanner_ = IntoScanner(station.setup, station.scanner.heading);
     shift_ = origin_ - station.head;
     points_.emplace(file_, bytes_of(scan.fields));
     scans_.push_back(std::move(scan));
@@ -87,7 +106,7 @@ class E57Sink final : public PointSink {
       if (!hit(chunk, k)) continue;
       std::size_t field = 0;
       const auto& p = chunk.position[k];
-      put_position(turn_(shift_.x + double{p[0]}, shift_.y + double{p[1]}, shift_.z + double{p[2]}), fields);
+      put_position(into_scanner_(shift_.x + double{p[0]}, shift_.y + double{p[1]}, shift_.z + double{p[2]}), fields);
       field = 3;
       const std::uint64_t ray = chunk.first_ray + k;
       put_index(field, static_cast<std::uint32_t>(ray / columns_), fields[field].bytes), ++field;
@@ -99,7 +118,7 @@ class E57Sink final : public PointSink {
           points_->put(field++, static_cast<std::uint8_t>(chunk.colour[k] >> shift));
       if (outputs_ & scan_normal) {
         const auto& n = chunk.normal[k];
-        for (const double c : turn_(n[0], n[1], n[2])) points_->put(field++, static_cast<float>(c));
+        for (const double c : into_scanner_(n[0], n[1], n[2])) points_->put(field++, static_cast<float>(c));
       }
       points_->next();
       ++total_;
@@ -174,7 +193,7 @@ class E57Sink final : public PointSink {
   std::string crs_;
   std::vector<E57Scan> scans_;
   std::optional<E57Points> points_;  // of the last of them, until it ends
-  Turn turn_{Angle{}};
+  IntoScanner into_scanner_;
   std::uint64_t columns_ = 1, total_ = 0;
 };
 

@@ -15,7 +15,7 @@
 namespace vantage {
 namespace {
 
-enum class Column { east, north, head, ground, u, v, name };
+enum class Column { east, north, head, ground, u, v, name, heading, tilt, scanner, step };
 
 // What columns are called; a name stands for one quantity alone.
 const std::map<std::string, Column, std::less<>>& known_columns() {
@@ -52,7 +52,11 @@ const std::map<std::string, Column, std::less<>>& known_columns() {
                                                                 {"höhe", Column::head},
                                                                 {"hoehe", Column::head},
                                                                 {"name", Column::name},
-                                                                {"point", Column::name}};
+                                                                {"point", Column::name},
+                                                                {"heading", Column::heading},
+                                                                {"tilt", Column::tilt},
+                                                                {"scanner", Column::scanner},
+                                                                {"step", Column::step}};
   return names;
 }
 
@@ -157,8 +161,11 @@ class Table {
                  "\" is an angle; vantage takes metres in the scene's frame, as Easting and Northing");
       const auto known = known_columns().find(column.name);
       if (known == known_columns().end()) continue;
-      if (!column.unit.empty() && column.unit != "m" && known->second != Column::name)
-        refuse("\"" + cells[i] + "\" is in " + column.unit + "; vantage takes metres");
+      const std::string_view wanted = unit_of(known->second);
+      const bool degrees = wanted == "deg" && column.unit == "°";
+      if (!column.unit.empty() && !wanted.empty() && column.unit != wanted && !degrees)
+        refuse("\"" + cells[i] + "\" is in " + column.unit + "; vantage takes " +
+               (wanted == "m" ? "metres" : "degrees"));
       const auto [found, is_new] = at_.try_emplace(known->second, i);
       if (is_new) continue;
       refuse("\"" + cells[found->second] + "\" and \"" + cells[i] + "\" both may be " + meaning(known->second));
@@ -179,6 +186,17 @@ class Table {
     refuse("the header is \"" + header_ + "\"; " + kWanted + hint);
   }
 
+  static std::string_view unit_of(Column column) {
+    switch (column) {
+      case Column::heading:
+      case Column::tilt:
+      case Column::step: return "deg";
+      case Column::name:
+      case Column::scanner: return "";
+      default: return "m";
+    }
+  }
+
   static std::string meaning(Column column) {
     switch (column) {
       case Column::east: return "the easting: leave one of them out";
@@ -188,6 +206,10 @@ class Table {
       case Column::u: return "u: it appears twice";
       case Column::v: return "v: it appears twice";
       case Column::name: return "the station's name: leave one of them out";
+      case Column::heading: return "the heading: leave one of them out";
+      case Column::tilt: return "the tilt: leave one of them out";
+      case Column::scanner: return "the scanner: leave one of them out";
+      case Column::step: return "the step: leave one of them out";
     }
     return "";
   }
@@ -220,8 +242,19 @@ class Table {
     else if (u || v)
       refuse("one of u and v is empty");
     if (!x && !u) refuse("the line has neither a position nor (u, v)");
-    if (const auto found = at_.find(Column::name); found != at_.end() && found->second < cells.size())
-      row.name = cells[found->second];
+    const auto word = [&](Column column) {
+      const auto found = at_.find(column);
+      return found != at_.end() && found->second < cells.size() ? cells[found->second] : std::string();
+    };
+    row.name = word(Column::name);
+    row.scanner = word(Column::scanner);
+    const auto angle = [&](Column column) -> std::optional<Angle> {
+      const auto degrees = value(column);
+      return degrees ? std::optional(Angle::degrees(*degrees)) : std::nullopt;
+    };
+    row.setup.heading = angle(Column::heading).value_or(Angle());
+    row.setup.tilt = angle(Column::tilt).value_or(Angle());
+    row.step = angle(Column::step);
     return row;
   }
 

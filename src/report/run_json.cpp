@@ -3,6 +3,7 @@
 
 #include <cstdio>
 
+#include "report/station_cells.hpp"
 #include "vantage/export.hpp"
 #include "vantage/summary.hpp"
 #include "vantage/version.hpp"
@@ -78,10 +79,21 @@ ordered_json to_json(const std::vector<SummaryLine>& lines) {
   return json;
 }
 
+// As the columns of stations.csv.
+void add_setup(ordered_json& station, const StationSetup& setup, std::span<const Scanner> scanners) {
+  const Scanner& scanner = scanners[setup.scanner];
+  station["heading"] = setup.heading.in_degrees();
+  station["tilt"] = setup.tilt.in_degrees();
+  station["scanner"] = scanner.name;
+  if (scanner.azimuth_step == scanner.zenith_step) station["step"] = scanner.azimuth_step.in_degrees();
+}
+
 // `number`: of the entry, from 1.
-ordered_json entry_json(const PlanEntry& entry, std::size_t number, const PlanResult& result) {
+ordered_json entry_json(const PlanEntry& entry, std::size_t number, const PlanResult& result,
+                        std::span<const Scanner> scanners) {
   ordered_json stations = ordered_json::array();
   const auto names = station_names(entry.stations);
+  const bool setups = tells_setups(entry.stations) || !result.problem.scanners.empty();
   for (std::size_t i = 0; i < entry.stations.size(); ++i) {
     const PlacedStation& s = entry.stations[i];
     ordered_json station = {{"name", names[i]},       {"position", nullptr},           {"ground", nullptr},
@@ -90,6 +102,7 @@ ordered_json entry_json(const PlanEntry& entry, std::size_t number, const PlanRe
       station["position"] = to_json(s.position);
       station["ground"] = to_json(s.ground);
     }
+    if (setups) add_setup(station, s.setup, scanners);
     if (entry.confirmed && i < entry.points_on_surveyed.size())
       station["points_on_surveyed"] = entry.points_on_surveyed[i];
     stations.push_back(std::move(station));
@@ -132,6 +145,8 @@ ordered_json run_parameters(const Simulator& simulator, const PlanResult* result
                        {"voxels", simulator.voxel_count()},
                        {"voxel_size_m", simulator.voxel_size_m()},
                        {"goal_density", simulator.goal_density()}};
+  if (simulator.scanners().size() > 1)
+    for (const Scanner& scanner : simulator.scanners()) json["scanners"].push_back(scanner_json(scanner));
   if (!result) return json;
   json["walkable"] = to_json(settings(result->walkable));
   json["security"] = to_json(settings(result->security));
@@ -145,7 +160,8 @@ std::string run_parameters_json(const Simulator& simulator, const PlanResult* re
 
 std::string front_json(const PlanResult& result, const Simulator& simulator) {
   ordered_json front = ordered_json::array(), objectives = front;
-  for (const PlanEntry& entry : result.front) front.push_back(entry_json(entry, front.size() + 1, result));
+  for (const PlanEntry& entry : result.front)
+    front.push_back(entry_json(entry, front.size() + 1, result, simulator.scanners()));
   for (const Objective& objective : result.problem.objectives) objectives.push_back(objective.name);
   ordered_json json = {{"problem", result.problem.name},     {"objectives", std::move(objectives)},
                        {"hypervolume", result.hypervolume},  {"exact_hypervolume", known(result.exact_hypervolume)},

@@ -2,22 +2,46 @@
 // A station in tables: the same columns wherever one is written.
 #pragma once
 
+#include <algorithm>
+#include <span>
 #include <string>
 
 #include "core/text.hpp"
 #include "vantage/placement.hpp"
+#include "vantage/scanner.hpp"
 
 namespace vantage {
 
 inline constexpr const char* kStationColumns[] = {"name", "x", "y", "z", "ground_z", "u", "v", "status", "kept"};
 
+// Of how a station is set up, where a table says so.
+inline constexpr const char* kSetupColumns[] = {"heading", "tilt", "scanner", "step"};
+
+// Whether it has to: some station is turned, or has another scanner than the first.
+inline bool tells_setups(std::span<const PlacedStation> stations) {
+  return std::ranges::any_of(stations, [](const PlacedStation& s) { return s.setup != StationSetup(); });
+}
+
+inline std::string quoted(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string cell = "\"";
+  for (const char c : text) cell += c == '"' ? '\'' : c;
+  return cell + "\"";
+}
+
+// Degrees; the scanner as load_scanner() takes it, and its step where both are one.
+inline std::string setup_cells(const StationSetup& setup, std::span<const Scanner> scanners) {
+  std::string cells = number(setup.heading.in_degrees()) + "," + number(setup.tilt.in_degrees());
+  if (setup.scanner >= scanners.size()) return cells + ",,";
+  const Scanner& scanner = scanners[setup.scanner];
+  cells += "," + quoted(scanner.name) + ",";
+  return scanner.azimuth_step == scanner.zenith_step ? cells + number(scanner.azimuth_step.in_degrees()) : cells;
+}
+
 // One cell a column, with commas between them. A station in a hole has no position; empty cells keep a reader from
 // taking it for the origin.
 inline std::string station_cells(const PlacedStation& s, const std::string& name) {
-  const bool quoted = name.find_first_of(",\"\n") != std::string::npos;
-  std::string cells;
-  for (const char c : name) cells += quoted && c == '"' ? '\'' : c;
-  if (quoted) cells = "\"" + cells + "\"";
+  std::string cells = quoted(name);
   if (s.status == StationStatus::hole)
     cells += ",,,,,";
   else

@@ -28,14 +28,21 @@ void write_overlap_csv(const std::filesystem::path& file, const OverlapMatrix& o
 void write_front_csv(const std::filesystem::path& file, const PlanResult& result) {
   const bool alpha = result.problem.stations_min < result.problem.stations_max;
   std::size_t most = 0;
-  for (const PlanEntry& entry : result.front) most = std::max(most, entry.stations.size());
+  bool setups = !result.problem.scanners.empty();
+  for (const PlanEntry& entry : result.front) {
+    most = std::max(most, entry.stations.size());
+    setups |= tells_setups(entry.stations);
+  }
   std::string text = "entry,station_count";
   for (const Objective& measure : result.measures) text += "," + measure.name + "," + measure.name + "_se";
   for (const Objective& measure : result.measures) text += ",exact_" + measure.name;
   text += ",dominated,missed";
   if (alpha) text += ",alpha";
-  for (std::size_t i = 0; i < most; ++i)
+  for (std::size_t i = 0; i < most; ++i) {
     for (const char* name : kStationColumns) text += "," + std::string(name) + number(i + 1);
+    if (!setups) continue;
+    for (const char* name : kSetupColumns) text += "," + std::string(name) + number(i + 1);
+  }
   text += "\n";
   for (std::size_t k = 0; k < result.front.size(); ++k) {
     const PlanEntry& e = result.front[k];
@@ -51,9 +58,10 @@ void write_front_csv(const std::filesystem::path& file, const PlanResult& result
     const auto names = station_names(e.stations);
     for (std::size_t i = 0; i < most; ++i) {
       if (i < e.stations.size())
-        text += "," + station_cells(e.stations[i], names[i]);
+        text += "," + station_cells(e.stations[i], names[i]) +
+                (setups ? "," + setup_cells(e.stations[i].setup, result.scanners) : "");
       else
-        text.append(std::size(kStationColumns), ',');
+        text.append(std::size(kStationColumns) + (setups ? std::size(kSetupColumns) : 0), ',');
     }
     text += "\n";
   }

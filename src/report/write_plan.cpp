@@ -26,7 +26,7 @@ std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& re
   write_text(folder / "front.json", front_json(result, simulator));
   write_history_csv(folder / "history.csv", result);
   write_fronts_csv(folder / "fronts.csv", result);
-  write_stations_csv(folder / "stations.csv", entry.stations);
+  write_stations_csv(folder / "stations.csv", entry.stations, simulator.scanners());
   if (entry.confirmed) write_overlap_csv(folder / "overlap.csv", entry.exact_overlap_matrix);
   if (field) write_coverage_ply(folder / "coverage.ply", simulator, *field);
 

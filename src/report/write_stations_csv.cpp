@@ -6,13 +6,18 @@
 #include "vantage/summary.hpp"
 
 namespace vantage {
-void write_stations_csv(const std::filesystem::path& file, std::span<const PlacedStation> stations) {
+void write_stations_csv(const std::filesystem::path& file, std::span<const PlacedStation> stations,
+                        std::span<const Scanner> scanners) {
+  const bool setups = tells_setups(stations);
   const auto names = station_names(stations);
   std::string text = "station";
   for (const char* column : kStationColumns) text += "," + std::string(column);
+  if (setups)
+    for (const char* column : kSetupColumns) text += "," + std::string(column);
   text += "\n";
   for (std::size_t i = 0; i < stations.size(); ++i)
-    text += number(i + 1) + "," + station_cells(stations[i], names[i]) + "\n";
+    text += number(i + 1) + "," + station_cells(stations[i], names[i]) +
+            (setups ? "," + setup_cells(stations[i].setup, scanners) : "") + "\n";
   write_atomically(file, text);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scan/pattern.hpp"
 
+#include <array>
 #include <cmath>
 
 namespace vantage {
@@ -30,6 +31,15 @@ RayPattern make_pattern(const Scanner& scanner) {
   fill(pattern.sin_zenith, pattern.cos_zenith, pattern.first_zenith, pattern.zenith_step, scanner.rows());
   fill(pattern.sin_azimuth, pattern.cos_azimuth, pattern.first_azimuth, pattern.azimuth_step, scanner.columns());
   return pattern;
+}
+
+std::optional<Turn> make_turn(const StationSetup& setup) {
+  if (!setup.turned()) return std::nullopt;
+  const auto rounded = [](const Vec3& row) {
+    return Float3{static_cast<float>(row.x), static_cast<float>(row.y), static_cast<float>(row.z)};
+  };
+  const std::array<Vec3, 3> rows = setup.survey_from_scanner();
+  return Turn{rounded(rows[0]), rounded(rows[1]), rounded(rows[2])};
 }
 
 }  // namespace vantage

@@ -223,7 +223,8 @@ Scanner read_scanner(const Document& document, const std::string& key, std::stri
 
 Scanner load_scanner(const std::string& name, const std::filesystem::path& more) {
   const std::size_t at = name.find('@');
-  const std::string key = lower_case(name.substr(0, at));
+  const std::string said = lower_case(name.substr(0, at));
+  const std::string key = said.substr(0, said.find_last_not_of(' ') + 1);
   const std::string setting = at == std::string::npos ? "" : lower_case(name.substr(at + 1));
   if (at != std::string::npos && setting.empty())
     throw Error(Errc::invalid_argument, "scanner \"" + name + "\": a setting must follow the @, as in rtc360@6mm");
@@ -231,7 +232,10 @@ Scanner load_scanner(const std::string& name, const std::filesystem::path& more)
   std::vector<std::string> keys;
   for (const Document& document : documents(more)) {
     if (document.scanners().contains(key)) return read_scanner(document, key, setting);
-    for (const auto& scanner : document.scanners().items()) keys.push_back(scanner.key());
+    for (const auto& [own, entry] : document.scanners().items()) {
+      if (lower_case(entry.value("name", "")) == key) return read_scanner(document, own, setting);
+      keys.push_back(own);
+    }
     known += (known.empty() ? "" : "; ") + document.file + ": " + names_of(document.scanners());
   }
   throw Error(Errc::invalid_argument, "there is no scanner \"" + key + "\": " + known + did_you_mean(key, keys));

@@ -92,26 +92,35 @@ void check_registration(const std::optional<RegistrationModel>& registration, bo
 }  // namespace
 
 struct Simulator::Impl {
-  Impl(const Scene& s, const Scanner& sc, const SimulatorConfig& c) : scene(s), scanner(sc), config(c) {
-    scanner.check();
+  Impl(const Scene& s, std::span<const Scanner> all, const SimulatorConfig& c)
+      : scene(s), scanners(all.begin(), all.end()), config(c) {
+    if (scanners.empty()) throw Error(Errc::invalid_argument, "no scanner given; a simulator has one at least");
+    for (const Scanner& scanner : scanners) scanner.check();
     grid = build_grid(data(), config);
     goal = grid->voxel_size() * grid->voxel_size() / (config.point_spacing_m * config.point_spacing_m);
-    pattern = registered = std::make_shared<RayPattern>(make_pattern(scanner));
-    noise = config.noise ? make_noise_model(scanner, config.seed) : NoiseModel{.sigma = {}, .seed = config.seed};
-    const LimitModel limits = make_limit_model(data(), scanner, config);
-    limited = limits.enabled();
+    for (const Scanner& scanner : scanners) traced.push_back(trace_scanner(scanner));
+    registered = scanners;
     // Shares the scene's storage for as long as the engine wants it.
     const auto kept = std::make_shared<const Scene>(scene);
     tracer = make_tracer(config.engine, config.device_index,
                          {.scene = {kept, &kept->data()},
                           .grid = grid,
-                          .pattern = pattern,
-                          .noise = std::make_shared<const NoiseModel>(noise),
+                          .scanners = traced,
                           .max_rays_per_dispatch = config.max_rays_per_dispatch,
-                          .validation = config.validation,
-                          .limits = std::make_shared<const LimitModel>(limits)});
+                          .validation = config.validation});
     tracer->set_goal_density(goal);
   }
+
+  TraceScanner trace_scanner(const Scanner& scanner) const {
+    const auto noise =
+        config.noise ? make_noise_model(scanner, config.seed) : NoiseModel{.sigma = {}, .seed = config.seed};
+    return {.pattern = std::make_shared<const RayPattern>(make_pattern(scanner)),
+            .noise = std::make_shared<const NoiseModel>(noise),
+            .limits = std::make_shared<const LimitModel>(make_limit_model(data(), scanner, config))};
+  }
+
+  // Whether points have limits, they have them with every scanner.
+  bool limited() const { return traced.front().limits->enabled(); }
 
   const SceneData& data() const { return scene.data(); }
 
@@ -123,8 +132,18 @@ struct Simulator::Impl {
            << station.position.z << "); a position must be finite";
       throw Error(Errc::invalid_argument, what.str());
     }
+    const StationSetup& setup = station.setup;
+    if (!(std::isfinite(setup.heading.in_radians()) && std::isfinite(setup.tilt.in_radians())))
+      throw Error(Errc::invalid_argument,
+                  "station " + std::to_string(place + 1) + " has a heading or a tilt that is not finite");
+    if (setup.scanner >= scanners.size())
+      throw Error(Errc::invalid_argument, "station " + std::to_string(place + 1) + " has scanner number " +
+                                              std::to_string(setup.scanner) + ", counted from 0, and there are " +
+                                              std::to_string(scanners.size()));
     return {{static_cast<float>(local.x), static_cast<float>(local.y), static_cast<float>(local.z)},
-            static_cast<std::uint32_t>(place)};
+            static_cast<std::uint32_t>(place),
+            setup.scanner,
+            make_turn(setup)};
   }
 
   std::vector<TraceStation> active_stations(const Network& network) const {
@@ -163,33 +182,42 @@ struct Simulator::Impl {
       throw Error(Errc::invalid_argument, what.str());
     }
     if (!patches || patches->patches.size() != ranks.size() || patches->model != model)
-      patches = std::make_shared<Patches>(make_patches(data(), *grid, ranks, *registered, model));
-    if (!range_noise) range_noise = std::make_shared<NoiseModel>(make_noise_model(scanner, config.seed));
-    return {patches, range_noise, groups};
+      patches = std::make_shared<Patches>(make_patches(data(), *grid, ranks, make_pattern(registered.front()), model));
+    if (patch_scanners.empty()) {
+      const auto solid_angle = [](const Scanner& scanner) {
+        return scanner.zenith_step.in_radians() * scanner.azimuth_step.in_radians();
+      };
+      for (const Scanner& scanner : registered)
+        patch_scanners.push_back({std::make_shared<const NoiseModel>(make_noise_model(scanner, config.seed)),
+                                  static_cast<float>(solid_angle(registered.front()) / solid_angle(scanner))});
+    }
+    return {patches, patch_scanners, groups};
   }
 
   Scene scene;
-  Scanner scanner;
+  std::vector<Scanner> scanners;
   SimulatorConfig config;
   std::shared_ptr<const VoxelGrid> grid;
   double goal = 0;
-  std::shared_ptr<const RayPattern> pattern, registered;  // the latter: that of the scans that are registered
-  NoiseModel noise;
-  bool limited = false;
+  std::vector<TraceScanner> traced;  // of the scanners
+  std::vector<Scanner> registered;   // those of the scans that are registered
   std::vector<std::uint32_t> sampled;
   std::shared_ptr<const Patches> patches;
-  std::shared_ptr<const NoiseModel> range_noise;
+  std::vector<PatchScanner> patch_scanners;
   std::unique_ptr<Tracer> tracer;
 };
 
 Simulator::Simulator(const Scene& scene, const Scanner& scanner, const SimulatorConfig& config)
-    : impl_(std::make_unique<Impl>(scene, scanner, config)) {}
+    : impl_(std::make_unique<Impl>(scene, std::span(&scanner, 1), config)) {}
+Simulator::Simulator(const Scene& scene, std::span<const Scanner> scanners, const SimulatorConfig& config)
+    : impl_(std::make_unique<Impl>(scene, scanners, config)) {}
 Simulator::Simulator(Simulator&&) noexcept = default;
 Simulator& Simulator::operator=(Simulator&&) noexcept = default;
 Simulator::~Simulator() = default;
 
 const EngineInfo& Simulator::engine() const noexcept { return impl_->tracer->info(); }
-const Scanner& Simulator::scanner() const noexcept { return impl_->scanner; }
+const Scanner& Simulator::scanner() const noexcept { return impl_->scanners.front(); }
+std::span<const Scanner> Simulator::scanners() const noexcept { return impl_->scanners; }
 const Scene& Simulator::scene() const noexcept { return impl_->scene; }
 const SimulatorConfig& Simulator::config() const noexcept { return impl_->config; }
 Vec3 Simulator::origin() const noexcept { return impl_->data().origin; }
@@ -223,8 +251,8 @@ std::vector<VoxelPatch> Simulator::voxel_patches(std::span<const std::uint32_t> 
 
 std::vector<std::uint32_t> Simulator::sampled_voxels(std::uint64_t voxels) const { return impl_->sample(voxels); }
 
-void Simulator::stand_for(const Scanner& scanner) {
-  impl_->registered = std::make_shared<RayPattern>(make_pattern(scanner));
+void Simulator::stand_for(std::span<const Scanner> scanners) {
+  impl_->registered.assign(scanners.begin(), scanners.end());
 }
 
 ScanSummary Simulator::scan(const Station& station, const ScanOptions& options,
@@ -235,8 +263,10 @@ ScanSummary Simulator::scan(const Station& station, const ScanOptions& options,
   ScanSummary summary;
   if (!station.active) return summary;
   const TraceStation from = impl_->trace_station(station, options.place);
-  const std::uint64_t columns = impl_->pattern->columns(), rays = columns * impl_->pattern->rows();
-  const std::uint64_t rows_at_once = std::max<std::uint64_t>(1, impl_->tracer->preferred_scan_rays() / columns);
+  const Scanner& scanner = impl_->scanners[from.scanner];
+  const std::uint64_t columns = scanner.columns(), rays = scanner.rays();
+  const std::uint64_t rows_at_once =
+      std::max<std::uint64_t>(1, impl_->tracer->preferred_scan_rays(from.scanner) / columns);
   Tracer::RawChunk raw;
   ScanChunk chunk;
   for (std::uint64_t first = 0; first < rays; first += chunk.ray_count) {
@@ -249,7 +279,7 @@ ScanSummary Simulator::scan(const Station& station, const ScanOptions& options,
     const auto start = std::chrono::steady_clock::now();
     impl_->tracer->scan(from, first, chunk.ray_count, raw_outputs(options), raw);
     summary.trace_seconds += seconds_since(start);
-    fill_chunk(chunk, raw, options, impl_->data(), impl_->scanner, summary);
+    fill_chunk(chunk, raw, options, impl_->data(), scanner, station.setup, summary);
     if (sink) sink(chunk);
     progress(static_cast<double>(first + chunk.ray_count) / static_cast<double>(rays));
   }
@@ -267,7 +297,7 @@ NetworkCounts Simulator::evaluate(const Network& network, const EvaluateOptions&
     NetworkCounts counts = nothing_seen(voxel_count(), impl_->grid->total_weight(), network.size(), options.overlap,
                                         options.registration.has_value());
     counts.points_on_surveyed.assign(network.size(), 0);
-    if (impl_->limited) counts.dropped.assign(network.size(), {});
+    if (impl_->limited()) counts.dropped.assign(network.size(), {});
     if (!options.skip) counts.points.assign(network.size(), 0);
     return counts;
   }

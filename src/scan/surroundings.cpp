@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <optional>
+#include <vector>
 
 #include "scene/all_surveyed.hpp"
 #include "vantage/simulator.hpp"
@@ -33,9 +34,10 @@ Simulator surroundings_of(const Simulator& simulator) {
   config.noise = false;
   config.max_incidence = std::nullopt;
 
-  Scanner scanner = simulator.scanner();
-  const double reach = std::min(scanner.max_range_m, extent);
-  if (reach > 0) {
+  std::vector<Scanner> scanners(simulator.scanners().begin(), simulator.scanners().end());
+  for (Scanner& scanner : scanners) {
+    const double reach = std::min(scanner.max_range_m, extent);
+    if (!(reach > 0)) continue;
     const Angle step = Angle::radians(config.user_size_m / 2 / (rays_across * reach));
     // But no scanner of a handful of rays, where the sweep itself is narrow.
     const auto coarser = [&](Angle own, Angle sweep) {
@@ -44,8 +46,8 @@ Simulator surroundings_of(const Simulator& simulator) {
     scanner.azimuth_step = coarser(scanner.azimuth_step, scanner.horizontal_angle);
     scanner.zenith_step = coarser(scanner.zenith_step, Angle::radians(scanner.vertical_angle.in_radians() / 2));
   }
-  Simulator surroundings(scene, scanner, config);
-  surroundings.stand_for(simulator.scanner());
+  Simulator surroundings(scene, scanners, config);
+  surroundings.stand_for(simulator.scanners());
   return surroundings;
 }
 

@@ -53,7 +53,36 @@ constexpr double angle_pad = 0x1p-20;
   return {first, second};
 }
 
+// In the scanner's frame: a box's middle, and the half extent of what holds it there. A turned direction is off by less
+// than 2^−21, of the turn's rounding and its own.
+void turn_box(const Turn& turn, Vec3& middle, Vec3& half) {
+  constexpr double doubt = 0x1p-20;
+  const Vec3 m = middle, h = half;
+  const Vec3 rows[3] = {{turn.x.x, turn.x.y, turn.x.z}, {turn.y.x, turn.y.y, turn.y.z}, {turn.z.x, turn.z.y, turn.z.z}};
+  const auto size = [](const Vec3& v) { return Vec3{std::abs(v.x), std::abs(v.y), std::abs(v.z)}; };
+  const Vec3 reach = size(m) + h;
+  const double pad = doubt * (reach.x + reach.y + reach.z);
+  middle = rows[0] * m.x + rows[1] * m.y + rows[2] * m.z;
+  half = size(rows[0]) * h.x + size(rows[1]) * h.y + size(rows[2]) * h.z + Vec3{pad, pad, pad};
+}
+
 }  // namespace
+
+void turn_back(const Turn& turn, Vec3& low, Vec3& high) {
+  Vec3 middle = (low + high) * 0.5, half = (high - low) * 0.5;
+  turn_box(turn, middle, half);
+  low = middle - half;
+  high = middle + half;
+}
+
+void turn_back(const Turn& turn, BoxBatch& boxes) {
+  for (std::uint32_t i = 0; i < boxes.size; ++i) {
+    Vec3 middle{boxes.x[i], boxes.y[i], boxes.z[i]}, half{boxes.half_x[i], boxes.half_y[i], boxes.half_z[i]};
+    turn_box(turn, middle, half);
+    boxes.x[i] = middle.x, boxes.y[i] = middle.y, boxes.z[i] = middle.z;
+    boxes.half_x[i] = half.x, boxes.half_y[i] = half.y, boxes.half_z[i] = half.z;
+  }
+}
 
 double rounding_pad(double reach) { return 0x1p-20 * reach; }
 

@@ -24,6 +24,10 @@ struct RayRanges {
 // `low` and `high`: corners of the box relative to the head. Bounds are widened by more than the directions' rounding.
 RayRanges rays_of_box(const RayPattern& pattern, const Vec3& low, const Vec3& high);
 
+// For a turned scanner: corners of a box, relative to the head, become those of one in the scanner's own frame that
+// holds it, wide enough for the rounding of turned directions.
+void turn_back(const Turn& turn, Vec3& low, Vec3& high);
+
 // Many boxes from one head, of which most are small and far off: those are done several at once.
 struct BoxBatch {
   static constexpr std::uint32_t capacity = 512;
@@ -36,6 +40,7 @@ struct BoxBatch {
   alignas(64) std::int32_t simple[capacity];
 };
 void rays_of_boxes(const RayPattern& pattern, BoxBatch& boxes);
+void turn_back(const Turn& turn, BoxBatch& boxes);
 
 // How far a box must be widened on each side so that no point that float arithmetic puts into it lies outside: a point
 // is origin + t·d, and its cell the floor of (p − min)·inverse_size, five roundings of at most 2^−24 of `reach`, the

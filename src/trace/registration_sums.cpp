@@ -8,6 +8,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <optional>
 
 #include "trace/embree/range_noise.hpp"
 #include "trace/exact_arithmetic.hpp"
@@ -48,12 +49,24 @@ struct View {
   bool behind = false;
 };
 
+// Where planes are looked at from.
+struct Head {
+  Float3 origin;
+  std::optional<Float3> axis;  // of a turned scanner
+  const RangeNoise* noise = nullptr;
+  float density = 1;
+};
+
 // w = 1/s² of docs/method.md; 0 where the plane is seen too flat, or by too few points.
-View view_of(const RegistrationPatch& patch, const Float3& head, const NoiseModel& noise, const RangeNoise& table) {
-  const float x = head.x - patch.point.x, y = head.y - patch.point.y, z = head.z - patch.point.z;
+View view_of(const RegistrationPatch& patch, const Head& head) {
+  const float x = head.origin.x - patch.point.x, y = head.origin.y - patch.point.y, z = head.origin.z - patch.point.z;
   const float xx = x * x, yy = y * y, zz = z * z;
-  const float level = xx + yy;
+  float level = xx + yy;
   const float square = std::max(level + zz, 1e-6f);
+  if (head.axis) {
+    const float along = x * head.axis->x + y * head.axis->y + z * head.axis->z;
+    level = std::max(square - along * along, 0.0f);
+  }
   const float inverse = exact_inverse_sqrt(square);
   const float nx = patch.normal.x * x, ny = patch.normal.y * y, nz = patch.normal.z * z;
   const float nxy = nx + ny;
@@ -62,14 +75,14 @@ View view_of(const RegistrationPatch& patch, const Float3& head, const NoiseMode
   if (cosine < least_cosine) return {};
   const float inverse_square = inverse * inverse;
   const float flat = std::max(level * inverse_square, least_sin_zenith_squared);
-  const float seen = patch.rays * cosine;
+  const float seen = patch.rays * head.density * cosine;
   const float density = seen * inverse_square;
   const float expected = density * exact_inverse_sqrt(flat);
   if (expected < patch.least) return {};
   float variance = patch.variance;
-  if (noise.enabled()) {
+  if (head.noise->enabled()) {
     const float points = std::max(expected, 1.0f);
-    const float sigma = table.sigma(square * inverse, patch.diffuse * cosine);
+    const float sigma = head.noise->sigma(square * inverse, patch.diffuse * cosine);
     const float along = sigma * cosine;  // of range noise, what is along the normal
     variance = variance + along * along * exact_reciprocal(points);
   }
@@ -88,17 +101,20 @@ void add_products(std::int64_t* sums, const std::int32_t* products, const std::i
 
 class Summer {
  public:
-  Summer(const Patches& patches, const NoiseModel& noise, std::span<const TraceStation> stations, std::uint32_t count,
-         std::span<const std::uint64_t> masks, std::uint32_t groups)
+  Summer(const Patches& patches, std::span<const PatchScanner> scanners, std::span<const TraceStation> stations,
+         std::uint32_t count, std::span<const std::uint64_t> masks, std::uint32_t groups)
       : patches_(patches),
-        noise_(noise),
-        table_(std::shared_ptr<const NoiseModel>(std::shared_ptr<void>(), &noise)),
         heads_(count),
         masks_(masks),
         stations_(count),
         groups_(groups),
         units_(static_cast<float>(patch_weight_units / patches.largest)) {
-    for (const TraceStation& station : stations) heads_[station.place] = station.origin;
+    for (const PatchScanner& scanner : scanners) noise_.emplace_back(scanner.noise);
+    for (const TraceStation& station : stations) {
+      heads_[station.place] = {station.origin, std::nullopt, &noise_[station.scanner],
+                               scanners[station.scanner].density};
+      if (station.turn) heads_[station.place].axis = Float3{station.turn->x.z, station.turn->y.z, station.turn->z.z};
+    }
   }
 
   void add(std::size_t first, std::size_t end, Accumulator<std::int64_t>& sums) const {
@@ -135,7 +151,7 @@ class Summer {
     std::array<float, 2> total{};
     for (; mask != 0; mask &= mask - 1) {
       const auto place = static_cast<std::size_t>(std::countr_zero(mask));
-      const View view = view_of(patch, heads_[place], noise_, table_);
+      const View view = view_of(patch, heads_[place]);
       if (view.weight == 0) continue;
       const std::size_t side = view.behind;
       places[side][many[side]] = static_cast<std::uint8_t>(place);
@@ -168,9 +184,8 @@ class Summer {
   }
 
   const Patches& patches_;
-  const NoiseModel& noise_;
-  RangeNoise table_;
-  std::vector<Float3> heads_;  // by place
+  std::vector<RangeNoise> noise_;  // by scanner
+  std::vector<Head> heads_;        // by place
   std::span<const std::uint64_t> masks_;
   std::size_t stations_, groups_;
   float units_;
@@ -246,10 +261,10 @@ Patches make_patches(const SceneData& scene, const VoxelGrid& grid, std::span<co
                       pattern, model);
 }
 
-std::vector<RegistrationSums> sum_patches(const Patches& patches, const NoiseModel& noise,
+std::vector<RegistrationSums> sum_patches(const Patches& patches, std::span<const PatchScanner> scanners,
                                           std::span<const TraceStation> stations, std::uint32_t station_count,
                                           std::span<const std::uint64_t> masks, std::uint32_t groups) {
-  const Summer summer(patches, noise, stations, station_count, masks, groups);
+  const Summer summer(patches, scanners, stations, station_count, masks, groups);
   const std::size_t sets = std::max<std::size_t>(groups, 1), blocks = (masks.size() + block - 1) / block;
   const auto all = tbb::parallel_reduce(
       tbb::blocked_range<std::size_t>(0, blocks, 1), Accumulator<Wide>(station_count, sets),
@@ -277,7 +292,7 @@ std::vector<RegistrationSums> sum_patches(const Patches& patches, const NoiseMod
 std::vector<RegistrationSums> sum_patches(const RegistrationJob& job, std::span<const TraceStation> stations,
                                           std::uint32_t station_count, std::span<const std::uint64_t> masks,
                                           std::uint32_t groups) {
-  return sum_patches(*job.patches, *job.noise, stations, station_count, masks, job.groups ? groups : 0);
+  return sum_patches(*job.patches, job.scanners, stations, station_count, masks, job.groups ? groups : 0);
 }
 
 void take_registration(NetworkCounts& counts, std::vector<RegistrationSums> sums) {

@@ -43,17 +43,23 @@ Patches make_patches(std::span<const VoxelSurface> surfaces, const PatchFrame& f
 Patches make_patches(const SceneData& scene, const VoxelGrid& grid, std::span<const std::uint32_t> ranks,
                      const RayPattern& pattern, const RegistrationModel& model);
 
+// A scanner as the sums need it.
+struct PatchScanner {
+  std::shared_ptr<const NoiseModel> noise;  // not enabled where ranges are exact
+  float density = 1;                        // of its rays, to those of the scanner that the patches were made for
+};
+
 // What an engine is asked for beside the counts of a sample, with masks: `NetworkCounts::registration`.
 struct RegistrationJob {
-  std::shared_ptr<const Patches> patches;   // of the sample's voxels
-  std::shared_ptr<const NoiseModel> noise;  // not enabled where ranges are exact
-  bool groups = false;                      // those of the sample's groups too
+  std::shared_ptr<const Patches> patches;  // of the sample's voxels
+  std::vector<PatchScanner> scanners;      // one for each that a station names
+  bool groups = false;                     // those of the sample's groups too
 };
 
 // Sums over all patches, then those of each of `groups` interleaved groups. masks: of the stations that saw each
-// patch's voxel, by place. `noise`: disabled where ranges are exact. Exact, so it depends on neither order nor threads.
-// REQUIRES: masks.size() == patches.size(), and no bit that is not a station's.
-std::vector<RegistrationSums> sum_patches(const Patches& patches, const NoiseModel& noise,
+// patch's voxel, by place. `scanners`: one for each that a station names. Exact, so it depends on neither order nor
+// threads. REQUIRES: masks.size() == patches.size(), and no bit that is not a station's.
+std::vector<RegistrationSums> sum_patches(const Patches& patches, std::span<const PatchScanner> scanners,
                                           std::span<const TraceStation> stations, std::uint32_t station_count,
                                           std::span<const std::uint64_t> masks, std::uint32_t groups);
 

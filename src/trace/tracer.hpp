@@ -19,7 +19,7 @@
 
 namespace vantage {
 
-// Directions of all rays, as products of table entries: d(i, j) = (sin_zenith[i]·cos_azimuth[j],
+// Directions of all rays in the scanner's frame, as products of table entries: d(i, j) = (sin_zenith[i]·cos_azimuth[j],
 // sin_zenith[i]·sin_azimuth[j], cos_zenith[i]). The tables are made in double and rounded once, so that no engine's
 // sine matters.
 struct RayPattern {
@@ -61,24 +61,41 @@ struct LimitModel {
   bool enabled() const { return !meshes.empty(); }
 };
 
+// A scanner as an engine sees it.
+struct TraceScanner {
+  std::shared_ptr<const RayPattern> pattern;
+  std::shared_ptr<const NoiseModel> noise;        // null: none
+  std::shared_ptr<const LimitModel> limits = {};  // null: every point counts
+};
+
 struct RegistrationJob;  // trace/registration_sums.hpp
 
 // Everything an engine needs to be built. Borrowed for the constructor only, unless the engine says otherwise.
 struct TraceScene {
   std::shared_ptr<const SceneData> scene;
   std::shared_ptr<const VoxelGrid> grid;
-  std::shared_ptr<const RayPattern> pattern;
-  std::shared_ptr<const NoiseModel> noise;
+  std::vector<TraceScanner> scanners;       // one at least
   std::uint64_t max_rays_per_dispatch = 0;  // 0: the engine's choice
   bool validation = false;
   bool sort_triangles = true;  // for drivers that build on the order given; off only to measure what sorting gains
-  std::shared_ptr<const LimitModel> limits = {};  // null: every point counts
+};
+
+// A rotation as engines apply it to directions: rows rounded once from double, products summed from the left, so that
+// every engine turns a direction into the same bits.
+struct Turn {
+  Float3 x, y, z;
+  Float3 operator()(const Float3& d) const {
+    return {x.x * d.x + x.y * d.y + x.z * d.z, y.x * d.x + y.y * d.y + y.z * d.z, z.x * d.x + z.y * d.y + z.z * d.z};
+  }
 };
 
 // A station as an engine sees it.
 struct TraceStation {
-  Float3 origin;            // head, local frame
-  std::uint32_t place = 0;  // in its network: keys the noise, is its bit in the mask
+  Float3 origin;              // head, local frame
+  std::uint32_t place = 0;    // in its network: keys the noise, is its bit in the mask
+  std::uint32_t scanner = 0;  // of TraceScene::scanners
+  // From the scanner's frame to the local one. None: upright, where directions are the pattern's own bits.
+  std::optional<Turn> turn = std::nullopt;
 };
 
 // One engine on one device. Not thread-safe.
@@ -87,8 +104,9 @@ class Tracer {
   virtual ~Tracer() = default;
   virtual const EngineInfo& info() const = 0;
 
-  // Traces `ray_count` rays from `first_ray` (both multiples of the pattern's columns) and fills the arrays of `chunk`
-  // that `outputs` asks for, but for mesh and colour, which the host derives from `primitive` and `barycentric`.
+  // Traces `ray_count` rays from `first_ray` (both multiples of the columns of the station's pattern) and fills the
+  // arrays of `chunk` that `outputs` asks for, but for mesh and colour, which the host derives from `primitive` and
+  // `barycentric`.
   struct RawChunk {
     std::vector<float> range;              // noisy; +infinity without a hit
     std::vector<Float3> position, normal;  // local frame
@@ -108,7 +126,7 @@ class Tracer {
   };
   virtual void scan(const TraceStation& station, std::uint64_t first_ray, std::uint64_t ray_count,
                     std::uint32_t outputs, RawChunk& chunk) = 0;
-  virtual std::uint64_t preferred_scan_rays() const = 0;  // a good chunk for scan(): whole rows
+  virtual std::uint64_t preferred_scan_rays(std::uint32_t scanner) const = 0;  // a good chunk for scan(): whole rows
 
   // Exact: counts all rays of all stations. Inactive stations are left out by the caller; `station_count` is N_stations
   // with them.

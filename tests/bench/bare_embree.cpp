@@ -111,7 +111,7 @@ void BareEmbreeOptions::add(CLI::App& command) { site.add(command); }
 void run_bare_embree(const BareEmbreeOptions& options) {
   const Scene scene = Scene::load(options.site.scene);
   const TracedSite site = options.site.traced(scene, options.site.stations());
-  const RayPattern& pattern = *site.scene.pattern;
+  const RayPattern& pattern = *site.scene.scanners[0].pattern;
   const auto engine = make_tracer(Engine::embree, std::nullopt, site.scene);
   engine->set_goal_density(site.goal_density);
   const embree::Device device = embree::new_device();

@@ -66,13 +66,13 @@ SimulatorConfig SiteOptions::config() const {
 
 TracedSite SiteOptions::traced(const Scene& site, const Network& network) const {
   const auto grid = std::make_shared<const VoxelGrid>(VoxelGrid::build(site.data(), user_size_m));
-  TracedSite traced{
-      .scene = {.scene = {std::make_shared<const Scene>(site), &site.data()},
-                .grid = grid,
-                .pattern = std::make_shared<const RayPattern>(make_pattern(scanner())),
-                .noise = std::make_shared<const NoiseModel>(noise ? make_noise_model(scanner(), 1) : NoiseModel{})},
-      .stations = {},
-      .goal_density = grid->voxel_size() * grid->voxel_size() / (spacing_m * spacing_m)};
+  TracedSite traced{.scene = {.scene = {std::make_shared<const Scene>(site), &site.data()},
+                              .grid = grid,
+                              .scanners = {{std::make_shared<const RayPattern>(make_pattern(scanner())),
+                                            std::make_shared<const NoiseModel>(noise ? make_noise_model(scanner(), 1)
+                                                                                     : NoiseModel{})}}},
+                    .stations = {},
+                    .goal_density = grid->voxel_size() * grid->voxel_size() / (spacing_m * spacing_m)};
   for (const Station& station : network) {
     const Vec3 p = station.position - site.data().origin;
     traced.stations.push_back({{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)},

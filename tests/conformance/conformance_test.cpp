@@ -13,6 +13,7 @@
 #include <stop_token>
 #include <tuple>
 
+#include "conformance/agreement.hpp"
 #include "conformance/engines_under_test.hpp"
 #include "conformance/sites.hpp"
 #include "core/normal_table.hpp"
@@ -26,13 +27,6 @@ namespace vantage::test {
 namespace {
 
 constexpr double goal_density = 12.5;
-constexpr std::uint32_t all_outputs = Tracer::range | Tracer::position | Tracer::normal | Tracer::reflectivity |
-                                      Tracer::primitive | Tracer::barycentric | Tracer::voxel;
-
-// Nearer than this to an edge or a voxel face, rounding may decide otherwise; such rays are at most one in 100 000.
-constexpr double undecided_m = 1e-4;
-constexpr double undecided_share = 1e-5;
-
 float bits_apart(float a, float b) {
   return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b) ? 0.0f : 1.0f;
 }
@@ -77,39 +71,6 @@ class Conformance : public testing::TestWithParam<EngineUnderTest> {
 
 // Scans.
 
-void compare_with_reference(const TestSite& site, const std::vector<ReferenceHit>& reference,
-                            const Tracer::RawChunk& chunk, std::size_t& undecided) {
-  const SceneData& scene = *site.scene;
-  for (std::size_t k = 0; k < reference.size(); ++k) {
-    const ReferenceHit& expected = reference[k];
-    const bool hit = chunk.primitive[k] != ReferenceHit::none, wanted = expected.triangle != ReferenceHit::none;
-    const auto mesh = [&](std::uint32_t triangle) {
-      return triangle == ReferenceHit::none ? -1 : static_cast<int>(scene.mesh_of(triangle));
-    };
-    ASSERT_EQ(hit, std::isfinite(chunk.range[k])) << "ray " << k;
-    if (mesh(chunk.primitive[k]) != mesh(expected.triangle) || chunk.voxel[k] != expected.voxel) {
-      ++undecided;
-      EXPECT_LT(std::min(expected.edge_distance, expected.face_distance), undecided_m)
-          << "ray " << k << " at range " << chunk.range[k] << ", " << expected.range;
-      continue;
-    }
-    if (!wanted) continue;
-    if (chunk.primitive[k] != expected.triangle) {
-      EXPECT_LT(std::min(expected.edge_distance, expected.gap), undecided_m) << "ray " << k;
-      continue;
-    }
-    EXPECT_NEAR(chunk.range[k], expected.range, 2e-5) << "ray " << k;
-    EXPECT_NEAR(chunk.position[k].x, expected.point.x, 2e-5) << "ray " << k;
-    EXPECT_NEAR(chunk.position[k].y, expected.point.y, 2e-5) << "ray " << k;
-    EXPECT_NEAR(chunk.position[k].z, expected.point.z, 2e-5) << "ray " << k;
-    EXPECT_NEAR(chunk.normal[k].x, expected.normal.x, 1e-5) << "ray " << k;
-    EXPECT_NEAR(chunk.normal[k].y, expected.normal.y, 1e-5) << "ray " << k;
-    EXPECT_NEAR(chunk.normal[k].z, expected.normal.z, 1e-5) << "ray " << k;
-    EXPECT_NEAR(chunk.reflectivity[k], expected.reflectivity, 1e-5) << "ray " << k;
-    if (testing::Test::HasFailure()) return;
-  }
-}
-
 TEST_P(Conformance, ScansMatchADoublePrecisionReference) {
   for (const TestSite& site : sites()) {
     for (const bool noisy : {false, true}) {
@@ -117,7 +78,7 @@ TEST_P(Conformance, ScansMatchADoublePrecisionReference) {
       for (std::size_t s = 0; s < site.stations.size(); ++s) {
         SCOPED_TRACE(site.name + ", station " + std::to_string(s) + (noisy ? ", noise" : ""));
         const std::vector<ReferenceHit>& reference = site.reference(s, noisy);
-        compare_with_reference(site, reference, scan(site, noisy, s), undecided);
+        compare_with_reference(*site.scene, reference, scan(site, noisy, s), undecided);
         rays += reference.size();
         if (HasFailure()) return;
       }
@@ -246,7 +207,7 @@ TEST_P(Conformance, ChunksOfAnySizeGiveTheSameScan) {
     tracer(site, true).scan(site.stations[2], row * columns, n * columns, all_outputs, part);
     expect_same(part, whole, row * columns, n * columns);
   }
-  const std::uint64_t preferred = tracer(site, true).preferred_scan_rays();
+  const std::uint64_t preferred = tracer(site, true).preferred_scan_rays(0);
   EXPECT_GT(preferred, 0u);
   EXPECT_EQ(preferred % columns, 0u);
 }
@@ -592,7 +553,7 @@ TEST_P(Conformance, RegistrationSumsAreThoseOfTheStationMasks) {
         std::make_shared<const Patches>(make_patches(*site.scene, *site.grid, sample, *site.pattern, {}));
     for (const auto& [noisy, groups] : {std::pair{false, false}, {true, false}, {true, true}}) {
       SCOPED_TRACE(site.name + (noisy ? ", noise" : "") + (groups ? ", groups" : ""));
-      const RegistrationJob registration{patches, noisy ? site.noise : site.no_noise, groups};
+      const RegistrationJob registration{patches, {{noisy ? site.noise : site.no_noise}}, groups};
       std::vector<std::vector<std::uint64_t>> masks(networks.size());
       Tracer::SampleJob job{sample, 20, true, 0};
       job.station_masks = [&](std::size_t first, std::span<const std::uint64_t> of) {

@@ -166,7 +166,7 @@ TEST_P(PointLimitsConformance, LimitsThatAllMeetChangeNothing) {
   for (LimitModel::Limits& limits : loose.meshes) limits = {};
   for (const bool noisy : {false, true}) {
     TraceScene scene = site.trace_scene(noisy);
-    scene.limits = std::make_shared<const LimitModel>(loose);
+    scene.scanners[0].limits = std::make_shared<const LimitModel>(loose);
     const auto loosely = make(scene);
     VoxelField got, expected;
     const NetworkCounts counts = loosely->count(site.stations, stations_of(site), {true, true, &got}, {});

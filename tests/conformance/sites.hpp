@@ -21,11 +21,8 @@ struct TestSite {
   std::vector<TraceStation> stations;        // at least four, places 0, 1, …; inside and outside
 
   TraceScene trace_scene(bool noisy, bool limited = false) const {
-    return {.scene = scene,
-            .grid = grid,
-            .pattern = pattern,
-            .noise = noisy ? noise : no_noise,
-            .limits = limited ? limits : nullptr};
+    return {
+        .scene = scene, .grid = grid, .scanners = {{pattern, noisy ? noise : no_noise, limited ? limits : nullptr}}};
   }
   std::uint64_t rays() const { return std::uint64_t{pattern->rows()} * pattern->columns(); }
   // Made once for each station and kind.

@@ -54,6 +54,25 @@ class CandidatesAndBounds(unittest.TestCase):
         with self.assertRaisesRegex(vantage.Error, "At least 1"):
             vantage.bound_capture(rows, 0)
 
+    def test_linked_choices_hang_together(self):
+        links = vantage.links_between(self.simulator, self.found.stations, 0.3, sample_voxels=2000)
+        self.assertTrue(all(a < b < len(self.found) for a, b in links))
+        any_choice = vantage.bound_capture(self.found.rows, 3)
+        linked = vantage.bound_linked_capture(self.found.rows, 3, links, exact_seconds=2)
+        among = [(a, b) for a, b in links if {a, b} <= set(linked.chosen)]
+        self.assertEqual(len(linked.chosen), 3)
+        self.assertGreaterEqual(len(among), 2)  # of three stations: a tree
+        self.assertLessEqual(linked.bound, any_choice.bound + 1e-12)
+        self.assertEqual(self.found.rows.coverage(linked.chosen)[0], linked.reached[0])
+
+    def test_the_exact_network_is_no_worse_than_the_greedy_one(self):
+        exact = vantage.exact_network(
+            self.simulator, self.area, self.clash, 2, candidates=24, sample_voxels=400, max_seconds=5)
+        self.assertEqual(len(exact.stations), 2)
+        self.assertLessEqual(exact.choice.reached[0], exact.choice.bound + 1e-12)
+        rows = vantage.capture_rows(self.simulator, exact.stations, sample_voxels=400)
+        self.assertAlmostEqual(rows.coverage()[0], exact.choice.reached[0], places=12)
+
     def test_greedy_takes_the_best_first(self):
         greedy = vantage.greedy_network(self.simulator, self.area, self.clash, 3, candidates=50, sample_voxels=800)
         self.assertEqual(len(greedy.stations), 3)

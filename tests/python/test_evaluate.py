@@ -67,6 +67,23 @@ class Evaluations(unittest.TestCase):
         told = program_json("evaluate", FOUR_WALLS, *COARSE, *stations, "--registration")["registration"]
         self.assertEqual(error.rms_m * 1e3, told["error_mm"])
 
+    def test_registration_goes_by_all_surfaces_where_asked(self):
+        scene = vantage.Scene.load(FOUR_WALLS, blocking=["wall-south", "wall-east", "wall-west"])
+        scanner = vantage.Scanner(azimuth_step_deg=0.2, zenith_step_deg=0.2, height_m=1.5)
+        simulator = vantage.Simulator(scene, scanner, engine="embree", user_size_m=0.2, point_spacing_m=0.03)
+        inside = [[0, 0, 1.5], [2, 1, 1.5]]
+        surveyed, everything = [
+            simulator.evaluate(inside, registration=vantage.RegistrationOptions(surfaces=surfaces))
+            for surfaces in ("surveyed", "all")]
+        self.assertEqual(surveyed.coverage, everything.coverage)
+        # One wall leaves the stations free along it and upwards, four leave them free upwards alone.
+        self.assertAlmostEqual(everything.registration.rms_m / surveyed.registration.rms_m, np.sqrt(1 / 2), delta=0.05)
+        blocking = [part for name in ("south", "east", "west") for part in ("--blocking", "wall-" + name)]
+        told = program_json("evaluate", FOUR_WALLS, *COARSE, *blocking, "--station", "0,0,1.5", "--station", "2,1,1.5",
+                            "--registration", "--registration-surfaces", "all")["registration"]
+        self.assertEqual(everything.registration.rms_m * 1e3, told["error_mm"])
+        self.assertEqual(everything.registration_estimate, (everything.registration.rms_m, 0))
+
     def test_what_was_not_asked_for_says_so(self):
         found = self.simulator.evaluate(HEADS, overlap=False)
         for name in ("overlap", "overlap_matrix", "shared", "seen"):

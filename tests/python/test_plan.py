@@ -52,6 +52,16 @@ class Plans(unittest.TestCase):
         self.assertGreater(entry.values["own_coverage"].standard_error, 0)
         self.assertEqual(self.simulator.evaluate(entry.heads).coverage, entry.value("coverage"))
 
+    def test_objectives_in_python_may_look_at_registration(self):
+        options = vantage.RegistrationOptions()
+        own = vantage.Objective("own_mm", lambda network: 1e3 * network.evaluation.registration.rms_m, best=0, worst=100,
+                                registration=options)
+        answer = self.plan(vantage.SurveyProblem(objectives=[own, "registration"]), population=4, iterations=2).answer
+        expected = 1e3 * self.simulator.evaluate(answer.heads, registration=options).registration.rms_m
+        self.assertEqual(answer.value("own_mm"), expected)
+        self.assertEqual(answer.value("registration"), expected)
+        self.assertEqual(1e3 * answer.registration.rms_m, expected)
+
     def test_requirements_and_kept_stations_hold(self):
         problem = vantage.SurveyProblem(
             stations_min=3, stations_max=3, kept=[(0, 0, 1.5)], objectives=["overlap"], requirements=["coverage >= 0.6"])

@@ -43,11 +43,11 @@ std::shared_ptr<Tracer> make_tracer(const EngineInfo& engine, const TraceScene& 
 Comparison compare(Tracer& tracer, const TraceScene& scene, const TraceStation& station,
                    std::span<const ReferenceHit> reference) {
   Tracer::RawChunk chunk;
-  tracer.scan(station, 0, all_rays(*scene.pattern),
+  tracer.scan(station, 0, all_rays(*scene.scanners[0].pattern),
               Tracer::range | Tracer::position | Tracer::primitive | Tracer::voxel, chunk);
   Comparison c;
   c.rays = reference.size();
-  const float least = scene.pattern->min_range, most = scene.pattern->max_range;
+  const float least = scene.scanners[0].pattern->min_range, most = scene.scanners[0].pattern->max_range;
   for (std::size_t k = 0; k < reference.size(); ++k) {
     const ReferenceHit& expected = reference[k];
     const bool hit = chunk.primitive[k] != ReferenceHit::none;

@@ -52,9 +52,11 @@ CoplanarFigures measure(const EngineInfo& engine, std::string name, const Plane&
   Scanner scanner;
   scanner.azimuth_step = scanner.zenith_step = Angle::degrees(step);
   const auto pattern = std::make_shared<const RayPattern>(make_pattern(scanner));
-  const TraceScene site{scene,   std::make_shared<const VoxelGrid>(VoxelGrid::build(*scene, 0.1)),
-                        pattern, std::make_shared<const NoiseModel>(),
-                        0,       false};
+  const TraceScene site{scene,
+                        std::make_shared<const VoxelGrid>(VoxelGrid::build(*scene, 0.1)),
+                        {{pattern, std::make_shared<const NoiseModel>()}},
+                        0,
+                        false};
   const Vec3 head = plane.at(1.7, 1.3) + plane.normal() * 2.3;
   const TraceStation station{{static_cast<float>(head.x), static_cast<float>(head.y), static_cast<float>(head.z)}, 0};
   const auto tracer = make_tracer(engine, site);

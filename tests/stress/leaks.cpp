@@ -150,8 +150,11 @@ Leaks count_leaks(const EngineInfo& engine, const ClosedMesh& mesh, std::uint64_
       at_vertex.push_back(vertex);
     }
     const auto tracer = make_tracer(engine.engine, engine.device_index,
-                                    {kept, std::make_shared<const VoxelGrid>(VoxelGrid::build(*kept, 0.5)), pattern,
-                                     std::make_shared<const NoiseModel>(), 0, false});
+                                    {kept,
+                                     std::make_shared<const VoxelGrid>(VoxelGrid::build(*kept, 0.5)),
+                                     {{pattern, std::make_shared<const NoiseModel>()}},
+                                     0,
+                                     false});
     Tracer::RawChunk chunk;
     tracer->scan(station, 0, n, Tracer::primitive, chunk);
     for (std::size_t k = 0; k < n; ++k) {

@@ -37,8 +37,7 @@ TraceScene scene_of(const Triangles& t, std::shared_ptr<const RayPattern> patter
   const auto data = std::make_shared<const SceneData>(scene.data());
   return {data,
           std::make_shared<const VoxelGrid>(VoxelGrid::build(*data, voxel_m)),
-          std::move(pattern),
-          std::make_shared<const NoiseModel>(),
+          {{std::move(pattern), std::make_shared<const NoiseModel>()}},
           0,
           false};
 }

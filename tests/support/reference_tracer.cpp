@@ -26,6 +26,15 @@ double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
   return length(p - (a + ab * along));
 }
 
+Float3 turned(const Turn& turn, const Float3& d) {
+  const auto along = [&](const Float3& row) {
+    const float x = row.x * d.x, y = row.y * d.y, z = row.z * d.z;
+    const float xy = x + y;
+    return xy + z;
+  };
+  return {along(turn.x), along(turn.y), along(turn.z)};
+}
+
 struct Crossing {
   bool inside = false;
   double t = 0, u = 0, v = 0;  // weights of the second and third vertex
@@ -51,11 +60,11 @@ Crossing cross_plane(const std::array<Vec3, 3>& corner, const Vec3& o, const Vec
 class RayTest {
  public:
   RayTest(const TraceScene& scene, const TraceStation& station)
-      : s_(scene), station_(station), origin_(widen(station.origin)) {}
+      : s_(scene), scanner_(scene.scanners[station.scanner]), station_(station), origin_(widen(station.origin)) {}
 
   ReferenceHit trace(std::uint64_t ray, const Vec3& d, const std::vector<std::uint32_t>& candidates) const {
     ReferenceHit hit;
-    const double start = s_.pattern->min_range, end = s_.pattern->max_range;
+    const double start = scanner_.pattern->min_range, end = scanner_.pattern->max_range;
     Crossing best;
     std::vector<std::pair<double, double>> near;  // distance along the ray, boundary distance
     std::vector<double> inside;
@@ -80,11 +89,11 @@ class RayTest {
     }
     hit.t = hit.range = best.t;
     shade(best, d, hit);
-    if (s_.noise && s_.noise->enabled()) {
+    if (scanner_.noise && scanner_.noise->enabled()) {
       const std::uint32_t bits = philox4x32(
-          s_.noise->seed,
+          scanner_.noise->seed,
           {static_cast<std::uint32_t>(ray), static_cast<std::uint32_t>(ray >> 32), station_.place, noise_stream})[0];
-      hit.range += normal_from_bits(bits, normal_table()) * model_sigma(*s_.noise, hit.t, hit.reflectivity);
+      hit.range += normal_from_bits(bits, normal_table()) * model_sigma(*scanner_.noise, hit.t, hit.reflectivity);
     }
     hit.point = origin_ + d * hit.range;
     place(hit);
@@ -125,14 +134,14 @@ class RayTest {
       cell[axis] = inside ? static_cast<std::uint32_t>(scaled) : 0;
     }
     if (inside) hit.voxel = grid.find(morton_encode(cell[0], cell[1], cell[2]));
-    if (hit.voxel == no_voxel || !s_.limits || !s_.limits->enabled()) return;
+    if (hit.voxel == no_voxel || !scanner_.limits || !scanner_.limits->enabled()) return;
     hold_to_limits(hit);
     if (hit.dropped.points > 0) hit.voxel = no_voxel;
   }
 
   // By angle, length and standard deviation themselves.
   void hold_to_limits(ReferenceHit& hit) const {
-    const LimitModel& model = *s_.limits;
+    const LimitModel& model = *scanner_.limits;
     const LimitModel::Limits& limits = model.meshes[s_.scene->mesh_of(hit.triangle)];
     const double cosine = -dot(hit.normal, direction_of(hit)), incidence = std::acos(std::min(cosine, 1.0));
     const double axis = (model.exit_diameter + model.divergence * hit.t) / cosine;
@@ -152,6 +161,7 @@ class RayTest {
   Vec3 direction_of(const ReferenceHit& hit) const { return unit(hit.point - origin_); }
 
   const TraceScene& s_;
+  const TraceScanner& scanner_;
   const TraceStation& station_;
   Vec3 origin_;
 };
@@ -159,7 +169,7 @@ class RayTest {
 }  // namespace
 
 std::vector<ReferenceHit> ReferenceTracer::scan(const TraceStation& station) const {
-  const RayPattern& pattern = *scene_.pattern;
+  const RayPattern& pattern = *scene_.scanners[station.scanner].pattern;
   const SceneData& scene = *scene_.scene;
   const Vec3 origin = widen(station.origin);
   struct Sphere {
@@ -183,9 +193,10 @@ std::vector<ReferenceHit> ReferenceTracer::scan(const TraceStation& station) con
     Vec3 axis;
     for (std::uint32_t i = block / wide * block_side; i < std::min(rows, (block / wide + 1) * block_side); ++i) {
       for (std::uint32_t j = block % wide * block_side; j < std::min(columns, (block % wide + 1) * block_side); ++j) {
-        // The float products are the definition of a direction.
-        const Float3 d{pattern.sin_zenith[i] * pattern.cos_azimuth[j], pattern.sin_zenith[i] * pattern.sin_azimuth[j],
-                       pattern.cos_zenith[i]};
+        // The float products are the definition of a direction, turned or not.
+        Float3 d{pattern.sin_zenith[i] * pattern.cos_azimuth[j], pattern.sin_zenith[i] * pattern.sin_azimuth[j],
+                 pattern.cos_zenith[i]};
+        if (station.turn) d = turned(*station.turn, d);
         rays.emplace_back(std::uint64_t{i} * columns + j, widen(d));
         axis = axis + widen(d);
       }

@@ -5,6 +5,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/tiles.glsl"
+#include "lib/turn.glsl"
 #include "lib/widening.glsl"
 #include "trace/compute_bvh/nodes.glsl"
 
@@ -52,7 +53,9 @@ void main() {
   const uint k = gl_GlobalInvocationID.x;
   if (k >= push.tile_list.at[0]) return;
   const uint tile = push.tile_list.at[1u + k];
-  const Beam beam = beam_of(tile, min(parameters.max_range, push.tile_far.at[tile]));
+  Beam beam = beam_of(tile, min(parameters.max_range, push.tile_far.at[tile]));
+  if (turned)
+    for (uint p = 0u; p < 4u; ++p) beam.planes[p] = turn_direction(push.turn, beam.planes[p]);
   // Twice as wide as the rays' own boxes of nodes, so that what a ray would enter is in the beam.
   const float widening = 4.0 * widening_of(push.origin);
 

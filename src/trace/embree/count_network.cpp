@@ -64,24 +64,27 @@ TileSums count_tile(const StationRays& station_rays, const TraceStation& station
 
 }  // namespace
 
-NetworkCounts count_network(const StationRays& rays, std::span<const TraceStation> stations,
+NetworkCounts count_network(std::span<const StationRays> scanners, std::span<const TraceStation> stations,
                             std::uint32_t station_count, double goal_density, const Tracer::CountOptions& options,
                             VoxelField& scratch, const Progress& progress) {
   const auto begun = std::chrono::steady_clock::now();
+  const VoxelGrid& grid = scanners.front().grid();
+  const bool limited = scanners.front().limited();  // all are or none
   VoxelField& field = options.field ? *options.field : scratch;
-  field.count.assign(rays.grid().size(), 0);
-  field.stations.assign(options.masks ? rays.grid().size() : 0, 0);
+  field.count.assign(grid.size(), 0);
+  field.stations.assign(options.masks ? grid.size() : 0, 0);
 
   // A tenth of a second or so between two looks at the stop token.
   const std::size_t chunk = 1024 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
 
-  PointBuckets points_found(rays.grid().size());
+  PointBuckets points_found(grid.size());
   std::uint64_t traced = 0;
   std::vector<std::uint64_t> points(options.skip ? 0 : station_count), on_surveyed(station_count);
-  std::vector<DroppedPoints> dropped(rays.limited() ? station_count : 0);
+  std::vector<DroppedPoints> dropped(limited ? station_count : 0);
   bool cancelled = false;
   for (std::size_t s = 0; s < stations.size() && !cancelled; ++s) {
     const TraceStation& station = stations[s];
+    const StationRays& rays = scanners[station.scanner];
     const std::vector<PlannedTile> tiles = options.skip ? tiles_with_bricks(rays, station) : all_tiles(rays.pattern());
     TileSums sums;
     for (std::size_t first = 0; first < tiles.size(); first += chunk) {
@@ -107,10 +110,10 @@ NetworkCounts count_network(const StationRays& rays, std::span<const TraceStatio
     traced += sums.rays;
     if (!options.skip) points[station.place] = sums.points;
     on_surveyed[station.place] = sums.points_on_surveyed;
-    if (rays.limited()) dropped[station.place] = sums.dropped;
+    if (limited) dropped[station.place] = sums.dropped;
   }
 
-  NetworkCounts result = reduce_field(field.count, field.stations, station_count, goal_density, rays.grid().weights());
+  NetworkCounts result = reduce_field(field.count, field.stations, station_count, goal_density, grid.weights());
   result.rays = traced;
   result.points = std::move(points);
   result.points_on_surveyed = std::move(on_surveyed);

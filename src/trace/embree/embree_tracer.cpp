@@ -6,6 +6,7 @@
 #include <fstream>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "core/embree.hpp"
 #include "trace/embree/count_network.hpp"
@@ -27,35 +28,38 @@ std::string processor_name() {
 
 class EmbreeTracer final : public Tracer {
  public:
-  explicit EmbreeTracer(const TraceScene& scene) : rays_(scene), info_(embree_engine_info()) {}
+  explicit EmbreeTracer(const TraceScene& scene) : info_(embree_engine_info()) {
+    const auto shared = std::make_shared<const EmbreeScene>(scene);
+    for (const TraceScanner& scanner : scene.scanners) scanners_.emplace_back(shared, scanner);
+  }
 
   const EngineInfo& info() const override { return info_; }
 
   void scan(const TraceStation& station, std::uint64_t first_ray, std::uint64_t ray_count, std::uint32_t outputs,
             RawChunk& chunk) override {
-    scan_station(rays_, station, first_ray, ray_count, outputs, chunk);
+    scan_station(scanners_[station.scanner], station, first_ray, ray_count, outputs, chunk);
   }
 
-  std::uint64_t preferred_scan_rays() const override {
+  std::uint64_t preferred_scan_rays(std::uint32_t scanner) const override {
     constexpr std::uint64_t wanted = std::uint64_t{1} << 20;
-    const std::uint64_t columns = rays_.pattern().columns();
+    const std::uint64_t columns = scanners_[scanner].pattern().columns();
     const std::uint64_t rows = std::max<std::uint64_t>(RayTile::side, wanted / columns / RayTile::side * RayTile::side);
     return rows * columns;
   }
 
   NetworkCounts count(std::span<const TraceStation> stations, std::uint32_t station_count, const CountOptions& options,
                       const Progress& progress) override {
-    return count_network(rays_, stations, station_count, goal_density_, options, field_, progress);
+    return count_network(scanners_, stations, station_count, goal_density_, options, field_, progress);
   }
 
   std::vector<NetworkCounts> count_sampled(std::span<const std::vector<TraceStation>> networks,
                                            std::span<const std::uint32_t> station_counts, const SampleJob& job,
                                            const Progress& progress) override {
-    return sample_networks(rays_, networks, station_counts, goal_density_, job, sample_, progress);
+    return sample_networks(scanners_, networks, station_counts, goal_density_, job, sample_, progress);
   }
 
  private:
-  StationRays rays_;
+  std::vector<StationRays> scanners_;
   EngineInfo info_;
   VoxelField field_;
   std::unique_ptr<SampledVoxels> sample_;  // of the last sampled evaluation

@@ -24,8 +24,7 @@ constexpr std::size_t pairs_at_once = std::size_t{1}
 
 // Nothing in sight has larger coordinates, relative or absolute. A power of two, so that most calls keep the last one's
 // sample.
-double magnitude(const StationRays& rays, std::span<const std::vector<TraceStation>> networks) {
-  const VoxelGrid& grid = rays.grid();
+double magnitude(const VoxelGrid& grid, std::span<const std::vector<TraceStation>> networks) {
   const Vec3 min{grid.min()[0], grid.min()[1], grid.min()[2]};
   double farthest = 0;
   for (const std::vector<TraceStation>& network : networks) {
@@ -40,16 +39,20 @@ double magnitude(const StationRays& rays, std::span<const std::vector<TraceStati
 
 }  // namespace
 
-std::vector<NetworkCounts> sample_networks(const StationRays& rays, std::span<const std::vector<TraceStation>> networks,
+std::vector<NetworkCounts> sample_networks(std::span<const StationRays> scanners,
+                                           std::span<const std::vector<TraceStation>> networks,
                                            std::span<const std::uint32_t> station_counts, double goal_density,
                                            const Tracer::SampleJob& job, std::unique_ptr<SampledVoxels>& kept,
                                            const Progress& progress) {
-  const double size = magnitude(rays, networks), pad = rounding_pad(size);
-  const double reach = static_cast<double>(rays.noise().reach_within(static_cast<float>(size) + rays.noise().reach()));
-  if (!kept || !kept->made_for(job.sample, pad, reach)) {
-    kept = std::make_unique<SampledVoxels>(rays.scene(), rays.grid(), job.sample, pad, reach,
-                                           reach + triangle_margin(pad));
-  }
+  const SceneData& scene = scanners.front().scene();
+  const VoxelGrid& grid = scanners.front().grid();
+  const double size = magnitude(grid, networks), pad = rounding_pad(size);
+  float farthest = 0;
+  for (const StationRays& rays : scanners)
+    farthest = std::max(farthest, rays.noise().reach_within(static_cast<float>(size) + rays.noise().reach()));
+  const double reach = farthest;
+  if (!kept || !kept->made_for(job.sample, pad, reach))
+    kept = std::make_unique<SampledVoxels>(scene, grid, job.sample, pad, reach, reach + triangle_margin(pad));
   const SampledVoxels& voxels = *kept;
 
   const std::size_t n = voxels.size(), blocks = (n + block - 1) / block;
@@ -60,8 +63,8 @@ std::vector<NetworkCounts> sample_networks(const StationRays& rays, std::span<co
   std::vector<std::uint64_t> masks(job.masks ? at_once * n : 0);
 
   std::vector<std::uint8_t> weights;
-  if (!rays.grid().weights().empty())
-    for (const std::uint32_t rank : job.sample) weights.push_back(rays.grid().weights()[rank]);
+  if (!grid.weights().empty())
+    for (const std::uint32_t rank : job.sample) weights.push_back(grid.weights()[rank]);
 
   std::vector<NetworkCounts> results(networks.size());
   bool cancelled = false;
@@ -77,7 +80,7 @@ std::vector<NetworkCounts> sample_networks(const StationRays& rays, std::span<co
         for (std::size_t task = range.begin(); task < range.end(); ++task) {
           const std::size_t network = task / blocks, start = task % blocks * block;
           const std::size_t many = std::min(block, n - start);
-          SampledVoxelCounter counter(rays, voxels, pad);
+          SampledVoxelCounter counter(scanners, voxels, pad);
           counter.count(networks[first + network], start, job.masks ? 0 : job.stop_at,
                         std::span(counts).subspan(network * n + start, many),
                         job.masks ? std::span(masks).subspan(network * n + start, many) : std::span<std::uint64_t>());

@@ -10,8 +10,10 @@
 
 namespace vantage {
 
-// Tracer::count_sampled on the CPU. `kept`: the last call's sample, made anew where this one's is another.
-std::vector<NetworkCounts> sample_networks(const StationRays& rays, std::span<const std::vector<TraceStation>> networks,
+// Tracer::count_sampled on the CPU. `scanners`: what TraceStation::scanner counts. `kept`: the last call's sample, made
+// anew where this one's is another.
+std::vector<NetworkCounts> sample_networks(std::span<const StationRays> scanners,
+                                           std::span<const std::vector<TraceStation>> networks,
                                            std::span<const std::uint32_t> station_counts, double goal_density,
                                            const Tracer::SampleJob& job, std::unique_ptr<SampledVoxels>& kept,
                                            const Progress& progress);

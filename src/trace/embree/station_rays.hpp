@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What all of the CPU engine's ways of tracing share: the pattern's rays, and what becomes of a hit. A ray's point is
-// the same bits whichever of them asks.
+// What all of the CPU engine's ways of tracing share: a scanner's rays, and what becomes of a hit. A ray's point is the
+// same bits whichever of them asks.
 #pragma once
 
 #include <algorithm>
@@ -24,31 +24,48 @@ struct RayTile {
   std::uint32_t row = 0, column = 0, rows = 0, columns = 0;
 };
 
+// What is hit, whichever scanner looks.
+struct EmbreeScene {
+  explicit EmbreeScene(const TraceScene& traced)
+      : scene(traced.scene),
+        grid(traced.grid),
+        planes(std::make_shared<Planes>(scene)),
+        caster(scene, planes),
+        surface(scene, planes),
+        prefixes(*grid) {}
+
+  std::shared_ptr<const SceneData> scene;
+  std::shared_ptr<const VoxelGrid> grid;
+  std::shared_ptr<const Planes> planes;
+  RayCaster caster;
+  Surface surface;
+  BrickPrefixes prefixes;
+};
+
+// Directions of a pattern become those of a turned station.
+inline void turn_all(const Turn& turn, float* __restrict x, float* __restrict y, float* __restrict z, std::size_t n) {
+  for (std::size_t k = 0; k < n; ++k) {
+    const Float3 d = turn({x[k], y[k], z[k]});
+    x[k] = d.x;
+    y[k] = d.y;
+    z[k] = d.z;
+  }
+}
+
+// Of one scanner.
 class StationRays {
  public:
-  explicit StationRays(const TraceScene& scene)
-      : scene_(scene.scene),
-        grid_(scene.grid),
-        pattern_(scene.pattern),
-        noise_(scene.noise),
-        judge_(scene.limits),
-        planes_(std::make_shared<Planes>(scene.scene)),
-        caster_(scene.scene, planes_),
-        surface_(scene.scene, planes_),
-        prefixes_(*scene.grid) {}
+  StationRays(std::shared_ptr<const EmbreeScene> scene, const TraceScanner& scanner)
+      : scene_(std::move(scene)), pattern_(scanner.pattern), noise_(scanner.noise), judge_(scanner.limits) {}
 
-  const SceneData& scene() const { return *scene_; }
-  const VoxelGrid& grid() const { return *grid_; }
+  const SceneData& scene() const { return *scene_->scene; }
+  const VoxelGrid& grid() const { return *scene_->grid; }
   const RayPattern& pattern() const { return *pattern_; }
   const RangeNoise& noise() const { return noise_; }
-  const RayCaster& caster() const { return caster_; }
-  const Surface& surface() const { return surface_; }
-  VoxelLookup voxels() const { return {*grid_, prefixes_}; }
+  const RayCaster& caster() const { return scene_->caster; }
+  const Surface& surface() const { return scene_->surface; }
+  VoxelLookup voxels() const { return {grid(), scene_->prefixes}; }
 
-  Float3 direction(std::uint32_t row, std::uint32_t column) const {
-    const RayPattern& p = *pattern_;
-    return {p.sin_zenith[row] * p.cos_azimuth[column], p.sin_zenith[row] * p.sin_azimuth[column], p.cos_zenith[row]};
-  }
   std::uint64_t ray(std::uint32_t row, std::uint32_t column) const {
     return std::uint64_t{row} * pattern_->columns() + column;
   }
@@ -71,6 +88,7 @@ class StationRays {
         z[j] = cosine;
       }
     }
+    if (station.turn) turn_all(*station.turn, rays.x, rays.y, rays.z, rays.size);
     std::fill_n(rays.end, rays.size, end);
   }
 
@@ -80,7 +98,7 @@ class StationRays {
     if (!noise_.enabled()) return t;
     const std::uint32_t triangle = rays.primitive[slot];
     const Float3 d{rays.x[slot], rays.y[slot], rays.z[slot]};
-    return noise_.displaced(t, surface_.reflectivity(triangle, rays.origin, d, t), ray, place);
+    return noise_.displaced(t, surface().reflectivity(triangle, rays.origin, d, t), ray, place);
   }
 
   bool limited() const { return judge_.enabled(); }
@@ -90,9 +108,9 @@ class StationRays {
     const std::uint32_t triangle = rays.primitive[slot];
     const Float3 d{rays.x[slot], rays.y[slot], rays.z[slot]};
     const float t = rays.t[slot];
-    const std::array<double, 3> normal = surface_.normal_at(triangle, rays.origin, d, t);
+    const std::array<double, 3> normal = surface().normal_at(triangle, rays.origin, d, t);
     const double cosine = normal[0] * d.x + normal[1] * d.y + normal[2] * d.z;
-    return judge_.missed(surface_.mesh(triangle), cosine, t, surface_.reflectivity(triangle, d, normal));
+    return judge_.missed(surface().mesh(triangle), cosine, t, surface().reflectivity(triangle, d, normal));
   }
 
   static Float3 point(const RayBundle& rays, std::uint32_t slot, float range) {
@@ -101,15 +119,10 @@ class StationRays {
   }
 
  private:
-  std::shared_ptr<const SceneData> scene_;
-  std::shared_ptr<const VoxelGrid> grid_;
+  std::shared_ptr<const EmbreeScene> scene_;
   std::shared_ptr<const RayPattern> pattern_;
   RangeNoise noise_;
   PointJudge judge_;
-  std::shared_ptr<const Planes> planes_;
-  RayCaster caster_;
-  Surface surface_;
-  BrickPrefixes prefixes_;
 };
 
 }  // namespace vantage

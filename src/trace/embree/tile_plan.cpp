@@ -60,10 +60,11 @@ std::vector<PlannedTile> tiles_with_bricks(const StationRays& rays, const TraceS
     for (std::size_t k = range.begin(); k < range.end(); ++k) {
       const VoxelBrick& brick = grid.bricks()[k];
       const Vec3 corner = min + Vec3{brick.x * side, brick.y * side, brick.z * side} - head;
-      const Vec3 low = corner - Vec3{pad, pad, pad}, high = corner + Vec3{side + pad, side + pad, side + pad};
+      Vec3 low = corner - Vec3{pad, pad, pad}, high = corner + Vec3{side + pad, side + pad, side + pad};
+      const Vec3 far{std::max(-low.x, high.x), std::max(-low.y, high.y), std::max(-low.z, high.z)};
+      if (station.turn) turn_back(*station.turn, low, high);
       const RayRanges seen = rays_of_box(pattern, low, high);
       if (seen.empty()) continue;
-      const Vec3 far{std::max(-low.x, high.x), std::max(-low.y, high.y), std::max(-low.z, high.z)};
       const auto end = static_cast<float>((std::sqrt(dot(far, far)) + reach) * stretch);
       for (const RayRanges::Range& columns : seen.columns) {
         if (columns.empty()) continue;

@@ -53,8 +53,8 @@ Vec3 relative(const Float3& p, const Vec3& head) { return Vec3{p.x, p.y, p.z} - 
 
 }  // namespace
 
-SampledVoxelCounter::SampledVoxelCounter(const StationRays& rays, const SampledVoxels& voxels, double pad)
-    : rays_(rays), voxels_(voxels), pad_(pad), reach_(static_cast<double>(rays.noise().reach())) {
+SampledVoxelCounter::SampledVoxelCounter(std::span<const StationRays> scanners, const SampledVoxels& voxels, double pad)
+    : scanners_(scanners), voxels_(voxels), pad_(pad) {
   listed_.resize(rays_at_once + Fan::capacity);
   fan_.x.fill(1);
   fan_.y.fill(1);
@@ -68,9 +68,11 @@ void SampledVoxelCounter::count(std::span<const TraceStation> stations, std::siz
   masks_ = masks;
   for (const TraceStation& station : stations) {
     station_ = &station;
+    rays_ = &scanners_[station.scanner];
+    reach_ = static_cast<double>(rays_->noise().reach());
     head_ = {station.origin.x, station.origin.y, station.origin.z};
     bundle_.origin = station.origin;
-    bundle_.start = rays_.pattern().min_range;
+    bundle_.start = rays_->pattern().min_range;
     look_from(first, counts.size());
     for (std::uint32_t i = 0; i < counts.size(); ++i) {
       if (stop_at == 0 || counts[i] < stop_at) list_rays(i, stop_at);
@@ -83,7 +85,7 @@ void SampledVoxelCounter::count(std::span<const TraceStation> stations, std::siz
 VANTAGE_TARGET_CLONES
 void SampledVoxelCounter::look_from(std::size_t first, std::size_t n) {
   const SampledVoxels::Places& places = voxels_.places();
-  const double side = rays_.grid().voxel_size();
+  const double side = rays_->grid().voxel_size();
   const auto along = [&](std::size_t axis, double origin, double* __restrict centre, double* __restrict middle,
                          double* __restrict half) {
     const std::int32_t* const cell = places.cell[axis].data() + first;
@@ -94,20 +96,22 @@ void SampledVoxelCounter::look_from(std::size_t first, std::size_t n) {
       half[i] = static_cast<double>(extent[i]);
     }
   };
-  const std::array<float, 3>& min = rays_.grid().min();
+  const std::array<float, 3>& min = rays_->grid().min();
   along(0, min[0] - head_.x, x_.data(), boxes_.x, boxes_.half_x);
   along(1, min[1] - head_.y, y_.data(), boxes_.y, boxes_.half_y);
   along(2, min[2] - head_.z, z_.data(), boxes_.z, boxes_.half_z);
   for (std::size_t i = 0; i < n; ++i) distance_[i] = std::sqrt(x_[i] * x_[i] + y_[i] * y_[i] + z_[i] * z_[i]);
   boxes_.size = static_cast<std::uint32_t>(n);
-  rays_of_boxes(rays_.pattern(), boxes_);
+  if (station_->turn) turn_back(*station_->turn, boxes_);
+  rays_of_boxes(rays_->pattern(), boxes_);
 }
 
-// Fills fan_.nearest.
+// Turns the fan with its scanner, and fills fan_.nearest.
 VANTAGE_TARGET_CLONES
 void SampledVoxelCounter::fill_nearest(std::span<const SampledVoxels::Plane> planes, const Cube& cube) {
   Fan& fan = fan_;
   const std::uint32_t n = (fan.size + 7) / 8 * 8;  // whole vectors; the surplus is never looked at
+  if (station_->turn) turn_all(*station_->turn, fan.x.data(), fan.y.data(), fan.z.data(), fan.size);
   const auto trusted = static_cast<float>(1 - trust), pad = static_cast<float>(2 * pad_);
   const float cx = cube.centre.x, cy = cube.centre.y, cz = cube.centre.z, half = cube.half + pad,
               nearest_of_all = cube.nearest * trusted, slack = float_doubt * cube.farthest;
@@ -153,13 +157,13 @@ void SampledVoxelCounter::fill_nearest(std::span<const SampledVoxels::Plane> pla
 // Lists the rays that may leave a point in voxel number i of the block.
 VANTAGE_TARGET_CLONES
 void SampledVoxelCounter::list_rays(std::uint32_t i, std::uint32_t stop_at) {
-  const RayPattern& pattern = rays_.pattern();
-  const double half = rays_.grid().voxel_size() / 2 + pad_, corner = half * 1.7320509;
+  const RayPattern& pattern = rays_->pattern();
+  const double half = rays_->grid().voxel_size() / 2 + pad_, corner = half * 1.7320509;
   const double first = (pattern.min_range - reach_) * (1 - trust), last = (pattern.max_range + reach_) * (1 + trust);
   if (distance_[i] + corner < first || distance_[i] - corner > last) return;
   // Hits whose points count lie within the noise's reach of the cube.
   const double reach =
-      reach_ > 0 ? static_cast<double>(rays_.noise().reach_within(static_cast<float>(distance_[i] + corner + reach_)))
+      reach_ > 0 ? static_cast<double>(rays_->noise().reach_within(static_cast<float>(distance_[i] + corner + reach_)))
                  : 0;
   const Cube cube{{static_cast<float>(x_[i]), static_cast<float>(y_[i]), static_cast<float>(z_[i])},
                   static_cast<float>(half + reach + pad_),
@@ -183,7 +187,9 @@ void SampledVoxelCounter::list_rays(std::uint32_t i, std::uint32_t stop_at) {
                          static_cast<std::uint32_t>(boxes_.column_end[i])};
   } else {
     const Vec3 narrow{half, half, half}, centre{x_[i], y_[i], z_[i]};
-    window = rays_of_box(pattern, centre - narrow, centre + narrow);
+    Vec3 low = centre - narrow, high = centre + narrow;
+    if (station_->turn) turn_back(*station_->turn, low, high);
+    window = rays_of_box(pattern, low, high);
   }
   if (window.empty() || (sure && planes.empty())) return;
 
@@ -245,7 +251,7 @@ void SampledVoxelCounter::list_fan(Sight& sight) {
 // Takes from `sight` the rays that a triangle stops for certain, before they come near the voxel.
 void SampledVoxelCounter::drop_hidden(Sight& sight, std::uint32_t by) {
   if (sight.begin == sight.end) return;
-  const SceneData& scene = rays_.scene();
+  const SceneData& scene = rays_->scene();
   const Triangle& t = scene.triangles[by];
   const SeenTriangle triangle(relative(scene.positions[t[0]], head_), relative(scene.positions[t[1]], head_),
                               relative(scene.positions[t[2]], head_));
@@ -274,10 +280,10 @@ void SampledVoxelCounter::settle() {
     probes_.clear();
     for (const Sight& sight : sights_)
       probes_.push_back({listed_[sight.begin].d, std::min(listed_[sight.begin].nearest, sight.farthest)});
-    rays_.caster().any_hits(bundle_.origin, bundle_.start, probes_);
+    rays_->caster().any_hits(bundle_.origin, bundle_.start, probes_);
     traced_ += probes_.size();
     // In passes, so that memory answers for many at once.
-    const SceneData& scene = rays_.scene();
+    const SceneData& scene = rays_->scene();
     for (const Probe& probe : probes_) {
       if (probe.hit != RayBundle::no_hit) __builtin_prefetch(&scene.triangles[probe.hit]);
     }
@@ -326,16 +332,16 @@ void SampledVoxelCounter::cast() {
 }
 
 void SampledVoxelCounter::finish() {
-  const Surface& surface = rays_.surface();
-  rays_.caster().cast(bundle_);
+  const Surface& surface = rays_->surface();
+  rays_->caster().cast(bundle_);
   const std::uint64_t bit = std::uint64_t{1} << station_->place;
   for (std::uint32_t slot = 0; slot < bundle_.size; ++slot) {
     const std::uint32_t triangle = bundle_.primitive[slot], i = cast_voxel_[slot];
     if (triangle == RayBundle::no_hit || !surface.surveyed(triangle)) continue;
     const Ray& ray = listed_[cast_ray_[slot]];
-    const float range = rays_.range(bundle_, slot, rays_.ray(ray.row, ray.column), station_->place);
-    if (!lies_in(rays_.grid(), StationRays::point(bundle_, slot, range), voxels_.cell(first_ + i))) continue;
-    if (rays_.limited() && rays_.dropped(bundle_, slot).points > 0) continue;
+    const float range = rays_->range(bundle_, slot, rays_->ray(ray.row, ray.column), station_->place);
+    if (!lies_in(rays_->grid(), StationRays::point(bundle_, slot, range), voxels_.cell(first_ + i))) continue;
+    if (rays_->limited() && rays_->dropped(bundle_, slot).points > 0) continue;
     if (counts_[i] != std::numeric_limits<std::uint32_t>::max()) ++counts_[i];
     if (!masks_.empty()) masks_[i] |= bit;
   }

@@ -24,8 +24,8 @@ class SampledVoxelCounter {
  public:
   static constexpr std::uint32_t block = BoxBatch::capacity;
 
-  // `pad`: rounding_pad() of everything in sight. Borrows both.
-  SampledVoxelCounter(const StationRays& rays, const SampledVoxels& voxels, double pad);
+  // `scanners`: what TraceStation::scanner counts. `pad`: rounding_pad() of everything in sight. Borrows both.
+  SampledVoxelCounter(std::span<const StationRays> scanners, const SampledVoxels& voxels, double pad);
 
   // Of voxels first, first + 1, …: every station's points (saturating), or, where `stop_at` is not 0, stations' points
   // until there are so many; and a bit for each station that has one there. `masks` is empty or as long as `counts`.
@@ -72,10 +72,12 @@ class SampledVoxelCounter {
   void cast();
   void finish();
 
-  const StationRays& rays_;
+  std::span<const StationRays> scanners_;
   const SampledVoxels& voxels_;
-  double pad_, reach_;
+  double pad_;
   const TraceStation* station_ = nullptr;
+  const StationRays* rays_ = nullptr;  // of its scanner
+  double reach_ = 0;                   // of its noise
   Vec3 head_;
   std::size_t first_ = 0;
   std::span<std::uint32_t> counts_;

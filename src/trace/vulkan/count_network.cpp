@@ -13,39 +13,48 @@ constexpr VkDeviceSize word = sizeof(std::uint32_t), dispatch_bytes = 3 * word; 
 
 }  // namespace
 
-// With skipping, each submission first finds which tiles of directions see a surveyed brick (tiles), lists them for
-// each part (tile_list), lets the engine prepare for them (its tile pass), and then counts over the lists alone.
+// Scanners come one after the other, each with all of its stations. With skipping, each submission first finds which
+// tiles of directions see a surveyed brick (tiles), lists them for each part (tile_list), lets the engine prepare for
+// them (its tile pass), and then counts over the lists alone.
 class VulkanTracer::ExactCount {
  public:
   ExactCount(VulkanTracer& tracer, std::span<const TraceStation> stations, std::uint32_t station_count,
              const CountOptions& options)
       : t_(tracer),
-        stations_(stations),
+        stations_by_scanner_(tracer.scanners_.size()),
         station_counts_{station_count},
         options_(options),
         voxels_(static_cast<std::uint32_t>(tracer.scene_.grid->size())),
         mask_words_(options.masks ? (station_count > 32 ? 2 : 1) : 0),
         stride_(totals_seen + station_count + station_count * (station_count - 1) / 2),
-        plan_(static_cast<std::uint32_t>(stations.size()), tracer.scene_.pattern->rows(),
-              tracer.scene_.pattern->columns(), tracer.rows_per_dispatch()),
         tile_pass_(options.skip ? tracer.traversal_->tile_pass() : std::nullopt),
-        totals_(stride_) {}
+        totals_(stride_) {
+    for (const TraceStation& station : stations) {
+      const RayPattern& pattern = tracer.scanners_[station.scanner].pattern();
+      stations_by_scanner_[station.scanner].push_back(station);
+      all_rays_ += std::uint64_t{pattern.rows()} * pattern.columns();
+    }
+  }
 
   NetworkCounts run(const Progress& progress) {
     ensure_buffers();
     NetworkCounts result;
     double done_rays = 0;
+    std::size_t scanner = std::min(next_scanner(0), stations_by_scanner_.size() - 1);  // any, where none has stations
+    begin_scanner(scanner);
     for (bool first = true, last = false; !last; first = false) {
       result.cancelled = progress.stopped();
       const std::vector<CountPart> parts =
-          result.cancelled ? std::vector<CountPart>() : plan_.next(t_.exact_pace_.rays());
-      last = result.cancelled || plan_.finished();
-      const auto rays = static_cast<double>(plan_.rays_of(parts));
+          result.cancelled ? std::vector<CountPart>() : plan_->next(t_.exact_pace_.rays());
+      const std::size_t next = plan_->finished() ? next_scanner(scanner + 1) : scanner;
+      last = result.cancelled || next == stations_by_scanner_.size();
+      const auto rays = static_cast<double>(plan_->rays_of(parts));
       const double seconds = submit(parts, first, last);
       t_.exact_pace_.saw(rays, seconds);
       result.trace_seconds += seconds;
       done_rays += rays;
-      if (!result.cancelled) progress(done_rays / static_cast<double>(plan_.all_rays()));
+      if (!result.cancelled) progress(done_rays / static_cast<double>(all_rays_));
+      if (!last && next != scanner) begin_scanner(scanner = next);
     }
     t_.read_totals({&result, 1}, station_counts_, totals_, reduction(), stride_);
     read_counters(result);
@@ -54,18 +63,33 @@ class VulkanTracer::ExactCount {
   }
 
  private:
+  // The first from there on that has stations.
+  std::size_t next_scanner(std::size_t scanner) const {
+    while (scanner < stations_by_scanner_.size() && stations_by_scanner_[scanner].empty()) ++scanner;
+    return scanner;
+  }
+
+  void begin_scanner(std::size_t scanner) {
+    scanner_ = &t_.scanners_[scanner];
+    stations_ = stations_by_scanner_[scanner];
+    const RayPattern& pattern = scanner_->pattern();
+    plan_.emplace(static_cast<std::uint32_t>(stations_.size()), pattern.rows(), pattern.columns(),
+                  t_.rows_per_dispatch(pattern));
+    if (!options_.skip) return;
+    t_.ensure(t_.tile_far_, std::uint64_t{plan_->tiles()} * CountPlan::stations_per_submission * word, "tile far");
+    t_.ensure(t_.tile_list_, plan_->list_words() * word, "tile list");
+    if (tile_pass_) t_.ensure(t_.tile_starts_, plan_->list_words() * tile_pass_->bytes_per_tile, "tile starts");
+  }
+
   void ensure_buffers() {
     t_.ensure(t_.counts_, voxels_ * word, "counts");
     if (mask_words_) t_.ensure(t_.masks_, masks_bytes(), "station masks");
     t_.ensure(t_.station_counters_, sizeof counters_, "station counters");
     t_.ensure_totals(1, 1, stride_);
     if (!options_.skip) return;
-    t_.ensure(t_.tile_far_, std::uint64_t{plan_.tiles()} * CountPlan::stations_per_submission * word, "tile far");
-    t_.ensure(t_.tile_list_, plan_.list_words() * word, "tile list");
     t_.ensure(t_.tile_dispatch_, CountPlan::parts_per_submission * dispatch_bytes, "tile dispatch",
               VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
     t_.ensure(t_.tile_rays_, sizeof tile_rays_, "tile rays");
-    if (tile_pass_) t_.ensure(t_.tile_starts_, plan_.list_words() * tile_pass_->bytes_per_tile, "tile starts");
   }
 
   // Submits the parts and waits; the first submission clears the sums, the last brings them back.
@@ -104,32 +128,36 @@ class VulkanTracer::ExactCount {
   }
 
   void record_tiles(const Recorder& r, std::span<const CountPart> parts) {
-    const ComputePipeline& tiles = t_.kernels_.get(Kernel::tiles);
     for (std::size_t k = 0; k < parts.size(); ++k)
       if (k == 0 || parts[k].slot != parts[k - 1].slot)  // once a station
-        r.dispatch(tiles, tile_push(parts[k], k), groups_of(t_.scene_.grid->bricks().size()));
+        r.dispatch(pipeline_of(Kernel::tiles, parts[k]), tile_push(parts[k], k),
+                   groups_of(t_.scene_.grid->bricks().size()));
     r.shader_after_shader();
-    const auto for_each_list = [&](const ComputePipeline& pipeline) {
+    const auto for_each_list = [&](Kernel each) {
       for (std::size_t k = 0; k < parts.size(); ++k)
-        r.dispatch(pipeline, tile_push(parts[k], k), groups_of(plan_.tiles_of(parts[k])));
+        r.dispatch(pipeline_of(each, parts[k]), tile_push(parts[k], k), groups_of(plan_->tiles_of(parts[k])));
       r.shader_after_shader();
     };
-    for_each_list(t_.kernels_.get(Kernel::tile_list));
-    if (tile_pass_) for_each_list(t_.kernels_.get(Kernel::tile_pass));
+    for_each_list(Kernel::tile_list);
+    if (tile_pass_) for_each_list(Kernel::tile_pass);
   }
 
   // Counts are sums, so the parts of a submission need not wait for each other.
   void record_part(const Recorder& r, const CountPart& part, std::size_t k) {
-    if (headroom_.clamp_before(plan_.rays_of({&part, 1}))) record_clamp(r);
-    const ComputePipeline& pipeline =
-        t_.kernels_.get(Kernel::count, {t_.noise(), t_.limits(), options_.masks, options_.skip});
+    if (headroom_.clamp_before(plan_->rays_of({&part, 1}))) record_clamp(r);
+    const BoundPipeline pipeline =
+        pipeline_of(Kernel::count, part, {scanner_->noise(), scanner_->limits(), options_.masks, options_.skip});
     const CountPush push = count_push(part, k);
     if (options_.skip) {
       r.dispatch_indirect(pipeline, push, t_.tile_dispatch_, k * dispatch_bytes);
     } else {
-      r.dispatch(pipeline, push, groups_of(t_.scene_.pattern->columns(), block_columns),
+      r.dispatch(pipeline, push, groups_of(scanner_->pattern().columns(), block_columns),
                  groups_of(part.row_count, block_rows));
     }
+  }
+
+  BoundPipeline pipeline_of(Kernel kernel, const CountPart& part, std::array<bool, 4> constants = {}) const {
+    return t_.kernels_.get(scanner_->set(), stations_[part.station].turn.has_value(), kernel, constants);
   }
 
   void record_clamp(const Recorder& r) {
@@ -143,13 +171,14 @@ class VulkanTracer::ExactCount {
   // `k`: the part's number in its submission.
   TilePush tile_push(const CountPart& part, std::size_t k) const {
     TilePush push{};
-    push.tile_far = t_.tile_far_.address() + std::uint64_t{part.slot} * plan_.tiles() * word;
+    push.tile_far = t_.tile_far_.address() + std::uint64_t{part.slot} * plan_->tiles() * word;
     push.tile_list = t_.tile_list_.address() + part.list * word;
     push.dispatch = t_.tile_dispatch_.address() + k * dispatch_bytes;
     push.rays = t_.tile_rays_.address();
     if (tile_pass_) push.starts = t_.tile_starts_.address() + part.list * tile_pass_->bytes_per_tile;
     const Float3& origin = stations_[part.station].origin;
     push.origin = {origin.x, origin.y, origin.z};
+    set_turn(push.turn, stations_[part.station]);
     push.first_row = part.first_row;
     push.row_count = part.row_count;
     return push;
@@ -162,6 +191,7 @@ class VulkanTracer::ExactCount {
     push.masks = mask_words_ ? t_.masks_.address() + std::uint64_t{station.place / 32} * voxels_ * word : 0;
     push.counters = t_.station_counters_.address();
     push.origin = {station.origin.x, station.origin.y, station.origin.z};
+    set_turn(push.turn, station);
     push.place = station.place;
     push.first_row = part.first_row;
     push.row_count = part.row_count;
@@ -186,16 +216,16 @@ class VulkanTracer::ExactCount {
   void read_counters(NetworkCounts& result) const {
     result.points_on_surveyed.assign(station_counts_[0], 0);
     if (!options_.skip) result.points.assign(station_counts_[0], 0);
-    if (t_.limits()) result.dropped.assign(station_counts_[0], {});
-    for (const TraceStation& each : stations_) {
-      const std::uint64_t* const own = counters_.data() + std::size_t{station_counters} * each.place;
-      if (!options_.skip) result.points[each.place] = own[counter_points];
-      result.points_on_surveyed[each.place] = own[counter_counted];
-      if (t_.limits())
-        result.dropped[each.place] = {own[counter_dropped], own[counter_misses], own[counter_misses + 1],
-                                      own[counter_misses + 2]};
+    if (t_.limited()) result.dropped.assign(station_counts_[0], {});
+    for (std::uint32_t place = 0; place < station_counts_[0]; ++place) {
+      const std::uint64_t* const own = counters_.data() + std::size_t{station_counters} * place;
+      if (!options_.skip) result.points[place] = own[counter_points];
+      result.points_on_surveyed[place] = own[counter_counted];
+      if (t_.limited())
+        result.dropped[place] = {own[counter_dropped], own[counter_misses], own[counter_misses + 1],
+                                 own[counter_misses + 2]};
     }
-    result.rays = options_.skip ? tile_rays_ : plan_.all_rays();
+    result.rays = options_.skip ? tile_rays_ : all_rays_;
   }
 
   void read_field(VoxelField& field) {
@@ -212,11 +242,15 @@ class VulkanTracer::ExactCount {
   VkDeviceSize masks_bytes() const { return std::uint64_t{voxels_} * mask_words_ * word; }
 
   VulkanTracer& t_;
-  std::span<const TraceStation> stations_;
+  std::vector<std::vector<TraceStation>> stations_by_scanner_;
   std::array<std::uint32_t, 1> station_counts_;
   CountOptions options_;
   std::uint32_t voxels_, mask_words_, stride_;
-  CountPlan plan_;
+  std::uint64_t all_rays_ = 0;
+  // Of the scanner at hand.
+  const DeviceScanner* scanner_ = nullptr;
+  std::span<const TraceStation> stations_;
+  std::optional<CountPlan> plan_;
   CountHeadroom headroom_;
   std::optional<Traversal::TilePass> tile_pass_;
   // As they come back from the device.

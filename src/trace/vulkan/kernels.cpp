@@ -39,15 +39,16 @@ Source source_of(Kernel kernel, const Traversal& traversal) {
 
 }  // namespace
 
-const ComputePipeline& Kernels::get(Kernel kernel, std::array<bool, 4> constants) {
-  ComputePipeline& pipeline = pipelines_[{kernel, constants}];
+BoundPipeline Kernels::get(const TraceSet& set, bool turned, Kernel kernel, std::array<bool, 4> constants) {
+  ComputePipeline& pipeline = pipelines_[{kernel, constants, turned}];
   if (!pipeline) {
     const Source source = source_of(kernel, traversal_);
     std::vector<ComputePipeline::Constant> values;
     for (std::uint32_t k = 0; k < source.constants; ++k) values.push_back({k, constants[k]});
+    values.push_back({turned_constant, turned});  // where a kernel has none it changes nothing
     pipeline = ComputePipeline(device_, source.shader, source.push_bytes, values, set_, source.name);
   }
-  return pipeline;
+  return {&pipeline, set.handle()};
 }
 
 }  // namespace vantage::vulkan

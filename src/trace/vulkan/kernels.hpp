@@ -5,7 +5,7 @@
 
 #include <array>
 #include <map>
-#include <utility>
+#include <tuple>
 
 #include "trace/vulkan/device.hpp"
 #include "trace/vulkan/pipeline.hpp"
@@ -30,19 +30,21 @@ enum class Kernel {
 
 class Kernels {
  public:
-  // All arguments must outlive it.
+  // `set`: for kernels that any scanner's set will do for. All arguments must outlive it.
   Kernels(const Device& device, const Traversal& traversal, const TraceSet& set)
       : device_(device), traversal_(traversal), set_(set) {}
 
   // `constants` are the kernel's specialization constants, in the order of their constant_id. REQUIRES: for tile_pass,
   // an engine that has one.
-  const ComputePipeline& get(Kernel kernel, std::array<bool, 4> constants = {});
+  BoundPipeline get(Kernel kernel, std::array<bool, 4> constants = {}) { return get(set_, false, kernel, constants); }
+  // For the scanner whose set it is. `turned`: for stations that are.
+  BoundPipeline get(const TraceSet& set, bool turned, Kernel kernel, std::array<bool, 4> constants = {});
 
  private:
   const Device& device_;
   const Traversal& traversal_;
   const TraceSet& set_;
-  std::map<std::pair<Kernel, std::array<bool, 4>>, ComputePipeline> pipelines_;
+  std::map<std::tuple<Kernel, std::array<bool, 4>, bool>, ComputePipeline> pipelines_;
 };
 
 }  // namespace vantage::vulkan

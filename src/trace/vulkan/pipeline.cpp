@@ -10,7 +10,7 @@ namespace vantage::vulkan {
 
 ComputePipeline::ComputePipeline(const Device& device, Shader shader, std::uint32_t push_bytes,
                                  std::span<const Constant> constants, const TraceSet& set, const char* name)
-    : push_bytes_(push_bytes), set_(set.handle()) {
+    : push_bytes_(push_bytes) {
   VkShaderModuleCreateInfo module_info{};
   module_info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
   module_info.codeSize = shader.size_bytes();
@@ -52,9 +52,10 @@ ComputePipeline::ComputePipeline(const Device& device, Shader shader, std::uint3
   device.name(VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<std::uint64_t>(pipeline), name);
 }
 
-void ComputePipeline::bind(const VolkDeviceTable& vk, VkCommandBuffer commands, const void* push) const {
+void ComputePipeline::bind(const VolkDeviceTable& vk, VkCommandBuffer commands, VkDescriptorSet set,
+                           const void* push) const {
   vk.vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline_.get());
-  vk.vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout_.get(), 0, 1, &set_, 0, nullptr);
+  vk.vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout_.get(), 0, 1, &set, 0, nullptr);
   vk.vkCmdPushConstants(commands, layout_.get(), VK_SHADER_STAGE_COMPUTE_BIT, 0, push_bytes_, push);
 }
 

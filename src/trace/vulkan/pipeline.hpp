@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A compute pipeline: one embedded shader, its specialization constants, a push-constant block, and the descriptor set
-// of all kernels.
+// A compute pipeline: one embedded shader, its specialization constants, a push-constant block, and the layout of the
+// descriptor sets of all kernels.
 #pragma once
 
 #include <cstdint>
@@ -21,16 +21,21 @@ class ComputePipeline {
     std::uint32_t id, value;
   };
   ComputePipeline(const Device& device, Shader shader, std::uint32_t push_bytes, std::span<const Constant> constants,
-                  const TraceSet& set, const char* name);
+                  const TraceSet& set, const char* name);  // `set`: for its layout
 
-  void bind(const VolkDeviceTable& vk, VkCommandBuffer commands, const void* push) const;
+  void bind(const VolkDeviceTable& vk, VkCommandBuffer commands, VkDescriptorSet set, const void* push) const;
   explicit operator bool() const { return static_cast<bool>(pipeline_); }
 
  private:
   std::uint32_t push_bytes_ = 0;
-  VkDescriptorSet set_ = VK_NULL_HANDLE;
   UniquePipelineLayout layout_;
   UniquePipeline pipeline_;
+};
+
+// With the set of a scanner, as it is dispatched.
+struct BoundPipeline {
+  const ComputePipeline* pipeline;
+  VkDescriptorSet set;
 };
 
 }  // namespace vantage::vulkan

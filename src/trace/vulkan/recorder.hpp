@@ -22,13 +22,13 @@ class Recorder {
 
   // Workgroups of a kernel: so many, or what three words at `offset` of `groups` say when it is their turn.
   template <class Push>
-  void dispatch(const ComputePipeline& pipeline, const Push& push, std::uint32_t x, std::uint32_t y = 1,
+  void dispatch(const BoundPipeline& pipeline, const Push& push, std::uint32_t x, std::uint32_t y = 1,
                 std::uint32_t z = 1) const {
     bind(pipeline, push);
     vk_.vkCmdDispatch(commands_, x, y, z);
   }
   template <class Push>
-  void dispatch_indirect(const ComputePipeline& pipeline, const Push& push, const Buffer& groups,
+  void dispatch_indirect(const BoundPipeline& pipeline, const Push& push, const Buffer& groups,
                          VkDeviceSize offset) const {
     bind(pipeline, push);
     vk_.vkCmdDispatchIndirect(commands_, groups.handle(), offset);
@@ -41,9 +41,9 @@ class Recorder {
 
  private:
   template <class Push>
-  void bind(const ComputePipeline& pipeline, const Push& push) const {
+  void bind(const BoundPipeline& pipeline, const Push& push) const {
     static_assert(std::is_trivially_copyable_v<Push> && sizeof(Push) <= 128);  // 128 bytes is what every device has
-    pipeline.bind(vk_, commands_, &push);
+    pipeline.pipeline->bind(vk_, commands_, pipeline.set, &push);
   }
   void barrier(VkPipelineStageFlags from_stage, VkAccessFlags from, VkPipelineStageFlags to_stage,
                VkAccessFlags to) const;

@@ -9,9 +9,10 @@ namespace vantage::vulkan {
 void VulkanTracer::upload_patches(const RegistrationJob& job) {
   if (patches_ != job.patches)
     registration_patches_ = to_device<RegistrationPatch>(job.patches->patches, "registration patches");
-  if (patch_noise_ != job.noise && job.noise->enabled())
-    registration_sigma_ = to_device<float>(job.noise->sigma, "registration sigma table");
-  patches_ = job.patches, patch_noise_ = job.noise;
+  const std::shared_ptr<const NoiseModel>& noise = job.scanners.front().noise;
+  if (patch_noise_ != noise && noise->enabled())
+    registration_sigma_ = to_device<float>(noise->sigma, "registration sigma table");
+  patches_ = job.patches, patch_noise_ = noise;
 }
 
 std::vector<RegistrationSums> VulkanTracer::sum_registration(const RegistrationJob& job, const RegisteredNetworks& of) {
@@ -34,14 +35,14 @@ std::vector<RegistrationSums> VulkanTracer::sum_registration(const RegistrationJ
   push.heads = registration_heads_.address();
   push.station_counts = station_counts_.address();
   push.sums = registration_sums_.address();
-  push.sigma = job.noise->enabled() ? registration_sigma_.address() : 0;
+  push.sigma = patch_noise_->enabled() ? registration_sigma_.address() : 0;
   push.voxel_count = of.voxels;
   push.mask_words = of.mask_words;
   push.heads_stride = most;
   push.sums_stride = stride;
   push.units = static_cast<float>(patch_weight_units / job.patches->largest);
-  push.noise_min_range = job.noise->min_range;
-  push.noise_inverse_span = job.noise->inverse_span;
+  push.noise_min_range = patch_noise_->min_range;
+  push.noise_inverse_span = patch_noise_->inverse_span;
   const auto record = [&](const Recorder& r) {
     r.zero(registration_sums_, 0, sums.size() * sizeof(std::int64_t));
     r.shader_after_transfer();

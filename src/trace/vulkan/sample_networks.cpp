@@ -18,9 +18,11 @@ void VulkanTracer::upload_sample(std::span<const std::uint32_t> sample,
   const SceneData& scene = *scene_.scene;
   // Wider than the slack of cube_of in shaders/lib/sample.glsl for any station within range.
   const Box& bounds = scene.local_bounds;
+  float farthest = 0;
+  for (const DeviceScanner& scanner : scanners_) farthest = std::max(farthest, scanner.pattern().max_range);
   const double largest = std::max({std::abs(bounds.min.x), std::abs(bounds.min.y), std::abs(bounds.min.z),
                                    std::abs(bounds.max.x), std::abs(bounds.max.y), std::abs(bounds.max.z)}) +
-                         static_cast<double>(scene_.pattern->max_range);
+                         static_cast<double>(farthest);
   const double margin = sample_reach(networks) + largest * 0x1p-17;
   if (sample_voxels_ && margin <= sample_margin_ && std::ranges::equal(sample, sample_)) return;
   const VoxelTriangles touching = triangles_touching(scene, grid, sample, margin);
@@ -52,7 +54,7 @@ void VulkanTracer::upload_sample(std::span<const std::uint32_t> sample,
 
 // How far noise may move a point into a voxel, seen from any station of the networks.
 double VulkanTracer::sample_reach(std::span<const std::vector<TraceStation>> networks) const {
-  if (!noise()) return 0;
+  if (std::ranges::none_of(scanners_, [](const DeviceScanner& scanner) { return scanner.noise(); })) return 0;
   const VoxelGrid& grid = *scene_.grid;
   const double side = std::ldexp(grid.voxel_size(), static_cast<int>(grid.depth()));
   double farthest = grid.voxel_size();
@@ -70,13 +72,16 @@ double VulkanTracer::sample_reach(std::span<const std::vector<TraceStation>> net
   }
   // In coarse steps, so that lists made for some networks mostly do for the next.
   farthest = std::exp2(std::ceil(4 * std::log2(farthest)) / 4);
-  return static_cast<double>(
-      reach_within(*scene_.noise, reaches_, static_cast<float>(farthest) + parameters_.noise_reach));
+  float reach = 0;
+  for (const DeviceScanner& scanner : scanners_)
+    reach = std::max(reach, scanner.reach_within(static_cast<float>(farthest) + scanner.noise_reach()));
+  return static_cast<double>(reach);
 }
 
-// The networks go in batches that share counts and masks; a batch goes in chunks whose rays one list can hold, as many
-// a submission as are quick enough together (sample_plan.hpp). With the last chunk of a batch goes its reduction; where
-// some of it must come again, the reduction comes again too.
+// The networks go in batches that share counts and masks; of a batch go the stations of one scanner after the other,
+// upright ones and turned ones apart, so that a dispatch knows which it has. They go in chunks whose rays one list can
+// hold, as many a submission as are quick enough together (sample_plan.hpp). With the last chunk of a batch goes its
+// reduction; where some of it must come again, the reduction comes again too.
 class VulkanTracer::SampledCount {
  public:
   SampledCount(VulkanTracer& tracer, std::span<const std::vector<TraceStation>> networks,
@@ -89,8 +94,7 @@ class VulkanTracer::SampledCount {
         most_stations_(*std::max_element(station_counts.begin(), station_counts.end())),
         mask_words_(job.masks ? (most_stations_ > 32 ? 2 : 1) : 0),
         stride_(totals_seen + most_stations_ + most_stations_ * (most_stations_ - 1) / 2),
-        room_(
-            sample_room(tracer.scene_.pattern->columns(), tracer.info_.software, tracer.scene_.max_rays_per_dispatch)),
+        room_(tracer.room_for_sample()),
         batch_size_(static_cast<std::size_t>(
             std::clamp<std::uint64_t>(entries_per_batch / std::max(voxels_, 1u), 1, networks.size()))),
         totals_(networks.size() * job.groups * stride_),
@@ -118,16 +122,24 @@ class VulkanTracer::SampledCount {
   static constexpr std::uint64_t entries_per_batch = std::uint64_t{1} << 25;  // of counts, and of masks
   static constexpr VkDeviceSize word = sizeof(std::uint32_t);
 
+  // Slots of one scanner, all turned or all upright.
+  struct Run {
+    const DeviceScanner* scanner;
+    bool turned;
+    std::uint32_t first_slot, end_slot;
+  };
   struct Batch {
     std::size_t first, end;
     std::vector<SampleStation> slots = {};
+    std::vector<Run> runs = {};
     std::size_t size() const { return end - first; }
   };
 
   // What one submission does of a batch.
   struct Submission {
-    std::vector<SampleChunk> chunks;
-    bool first, last;  // of the batch
+    const Run* run;
+    std::vector<SampleChunk> chunks;  // of it
+    bool first, last;                 // of the batch
   };
 
   void ensure_buffers() {
@@ -142,27 +154,52 @@ class VulkanTracer::SampledCount {
 
   // Returns whether it came to its end; where not, the caller wants to stop.
   bool count_batch(Batch batch, const Progress& progress) {
-    for (std::size_t n = batch.first; n < batch.end; ++n)
-      for (const TraceStation& s : networks_[n])
-        batch.slots.push_back(
-            {{s.origin.x, s.origin.y, s.origin.z}, s.place, static_cast<std::uint32_t>(n - batch.first)});
+    fill_slots(batch);
     t_.ensure(t_.sample_stations_, batch.slots.size() * sizeof(SampleStation), "sample stations");
-    SamplePlan plan(static_cast<std::uint32_t>(batch.slots.size()), voxels_, t_.scene_.pattern->rows(), room_);
-    for (bool first = true; first || !plan.finished(); first = false) {
-      if (progress.stopped()) return false;
-      Submission submission{plan.next(t_.sampled_pace_.rays(), t_.rays_per_pair_), first, false};
-      submission.last = plan.finished();
-      const auto [wanted, taken] = submit(batch, submission);
-      seconds_ += taken;
-      t_.sampled_pace_.saw(plan.settle(submission.chunks, wanted), taken);
-      learn_rays_per_pair(submission.chunks, wanted);
-      progress((static_cast<double>(batch.first) + static_cast<double>(batch.size()) * plan.done()) /
-               static_cast<double>(networks_.size()));
+    double slots_done = 0;
+    const auto all_slots = static_cast<double>(std::max<std::size_t>(batch.slots.size(), 1));
+    for (const Run& run : batch.runs) {
+      const std::uint32_t slots = run.end_slot - run.first_slot;
+      const bool last_run = &run == &batch.runs.back();
+      SamplePlan plan(slots, voxels_, run.scanner->pattern().rows(), room_);
+      for (bool first = &run == batch.runs.data(), more = true; more; first = false) {
+        if (progress.stopped()) return false;
+        Submission submission{&run, plan.next(t_.sampled_pace_.rays(), t_.rays_per_pair_), first, false};
+        submission.last = last_run && plan.finished();
+        const auto [wanted, taken] = submit(batch, submission);
+        seconds_ += taken;
+        t_.sampled_pace_.saw(plan.settle(submission.chunks, wanted), taken);
+        learn_rays_per_pair(submission.chunks, wanted);
+        const double done = (slots_done + slots * plan.done()) / all_slots;
+        progress((static_cast<double>(batch.first) + static_cast<double>(batch.size()) * done) /
+                 static_cast<double>(networks_.size()));
+        more = !plan.finished();
+      }
+      slots_done += slots;
     }
     if (job_.points) hand_out_points(batch);
     if (job_.station_masks) job_.station_masks(batch.first, masks_of(batch));
     if (job_.registration) register_batch(batch);
     return true;
+  }
+
+  // At least one run, even of no slots: the batch is cleared and reduced all the same.
+  void fill_slots(Batch& batch) const {
+    for (std::uint32_t scanner = 0; scanner < t_.scanners_.size(); ++scanner) {
+      for (const bool turned : {false, true}) {
+        const auto first = static_cast<std::uint32_t>(batch.slots.size());
+        for (std::size_t n = batch.first; n < batch.end; ++n)
+          for (const TraceStation& s : networks_[n]) {
+            if (s.scanner != scanner || s.turn.has_value() != turned) continue;
+            batch.slots.push_back(
+                {{s.origin.x, s.origin.y, s.origin.z}, s.place, static_cast<std::uint32_t>(n - batch.first), {}});
+            set_turn(batch.slots.back().turn, s);
+          }
+        const auto end = static_cast<std::uint32_t>(batch.slots.size());
+        if (end > first) batch.runs.push_back({&t_.scanners_[scanner], turned, first, end});
+      }
+    }
+    if (batch.runs.empty()) batch.runs.push_back({&t_.scanners_.front(), false, 0, 0});
   }
 
   void hand_out_points(const Batch& batch) {
@@ -186,13 +223,15 @@ class VulkanTracer::SampledCount {
     return masks;
   }
 
-  // On the device, but for standard errors, which are asked for the few networks of a front, and for samples whose sums
-  // take more than 64 bits.
+  // On the device, but for standard errors, which are asked for the few networks of a front, for samples whose sums
+  // take more than 64 bits, and for stations that are not set up as usual.
   void register_batch(const Batch& batch) {
     const RegistrationJob& job = *job_.registration;
     const auto networks = networks_.subspan(batch.first, batch.size());
     const auto station_counts = station_counts_.subspan(batch.first, batch.size());
-    if (!job.groups && voxels_ <= patches_in_64_bits) {
+    const Run& run = batch.runs.front();
+    const bool usual = batch.runs.size() == 1 && run.scanner == &t_.scanners_.front() && !run.turned;
+    if (!job.groups && voxels_ <= patches_in_64_bits && usual) {
       auto sums = t_.sum_registration(job, {networks, station_counts, voxels_, mask_words_});
       for (RegistrationSums& one : sums) registration_.push_back({std::move(one)});
       return;
@@ -223,7 +262,8 @@ class VulkanTracer::SampledCount {
         r.zero(t_.totals_, batch.first * of_network, batch.size() * of_network);
       }
       r.shader_after_transfer();
-      for (std::size_t k = 0; k < chunks.size(); ++k) record_chunk(r, push_of(batch, chunks[k], k), chunks[k], k);
+      for (std::size_t k = 0; k < chunks.size(); ++k)
+        record_chunk(r, *submission.run, push_of(batch, *submission.run, chunks[k], k), chunks[k], k);
       if (!submission.last) return;
       r.shader_after_shader();
       t_.record_reduction(r, reduction_, static_cast<std::uint32_t>(batch.first),
@@ -247,24 +287,27 @@ class VulkanTracer::SampledCount {
   }
 
   // Lists and traces one chunk, whose control words are number k of the submission.
-  void record_chunk(const Recorder& r, const SamplePush& push, const SampleChunk& chunk, std::size_t k) {
-    Kernels& kernels = t_.kernels_;
+  void record_chunk(const Recorder& r, const Run& run, const SamplePush& push, const SampleChunk& chunk,
+                    std::size_t k) {
+    const auto pipeline = [&](Kernel kernel, std::array<bool, 4> constants = {}) {
+      return t_.kernels_.get(run.scanner->set(), run.turned, kernel, constants);
+    };
     const VkDeviceSize dispatch = (k * control_words + control_dispatch) * word;
     r.shader_after_shader();  // the chunk before still reads the list
-    r.dispatch(kernels.get(Kernel::sample_list), push, groups_of(chunk.end_voxel - chunk.first_voxel),
+    r.dispatch(pipeline(Kernel::sample_list), push, groups_of(chunk.end_voxel - chunk.first_voxel),
                chunk.end_slot - chunk.first_slot);
     r.shader_after_shader();
-    r.dispatch(kernels.get(Kernel::sample_arguments, {false}), push, 1);
+    r.dispatch(pipeline(Kernel::sample_arguments, {false}), push, 1);
     r.shader_after_shader();
-    r.dispatch_indirect(kernels.get(Kernel::sample_queue), push, t_.sample_control_, dispatch);
+    r.dispatch_indirect(pipeline(Kernel::sample_queue), push, t_.sample_control_, dispatch);
     r.shader_after_shader();
-    r.dispatch(kernels.get(Kernel::sample_arguments, {true}), push, 1);
+    r.dispatch(pipeline(Kernel::sample_arguments, {true}), push, 1);
     r.shader_after_shader();
-    r.dispatch_indirect(kernels.get(Kernel::sample_trace, {t_.noise(), t_.limits(), job_.masks}), push,
+    r.dispatch_indirect(pipeline(Kernel::sample_trace, {run.scanner->noise(), run.scanner->limits(), job_.masks}), push,
                         t_.sample_control_, dispatch);
   }
 
-  SamplePush push_of(const Batch& batch, const SampleChunk& chunk, std::size_t k) const {
+  SamplePush push_of(const Batch& batch, const Run& run, const SampleChunk& chunk, std::size_t k) const {
     SamplePush push{};
     push.voxels = t_.sample_voxels_.address();
     push.triangles = t_.sample_triangles_.address();
@@ -278,7 +321,7 @@ class VulkanTracer::SampledCount {
     push.voxel_count = voxels_;
     push.first_voxel = chunk.first_voxel;
     push.end_voxel = chunk.end_voxel;
-    push.first_slot = chunk.first_slot;
+    push.first_slot = run.first_slot + chunk.first_slot;
     push.first_row = chunk.first_row;
     push.end_row = chunk.end_row;
     push.ray_capacity = room_.rays;

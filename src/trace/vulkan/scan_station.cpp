@@ -9,13 +9,15 @@ namespace vantage::vulkan {
 
 void VulkanTracer::scan(const TraceStation& station, std::uint64_t first_ray, std::uint64_t ray_count,
                         std::uint32_t outputs, RawChunk& chunk) {
-  const std::uint32_t columns = scene_.pattern->columns();
+  const DeviceScanner& scanner = scanners_[station.scanner];
+  const std::uint32_t columns = scanner.pattern().columns();
   if (outputs & (normal | reflectivity | barycentric)) upload_shading();
   const auto rows = static_cast<std::uint32_t>(ray_count / columns);
 
   ScanPush push{};
   push.origin = {station.origin.x, station.origin.y, station.origin.z};
   push.place = station.place;
+  set_turn(push.turn, station);
   std::array<Buffer, 7> buffers;
   std::size_t used = 0;
   struct Copy {
@@ -42,12 +44,14 @@ void VulkanTracer::scan(const TraceStation& station, std::uint64_t first_ray, st
   want(voxel, chunk.voxel, push.voxel, "scan voxel");
 
   // The arrays hold rays from first_ray on; a part's rows are counted from there, so its outputs move along.
-  const ComputePipeline& pipeline = kernels_.get(Kernel::scan, {noise(), limits()});
+  const BoundPipeline pipeline =
+      kernels_.get(scanner.set(), station.turn.has_value(), Kernel::scan, {scanner.noise(), scanner.limits()});
+  const std::uint32_t at_once = rows_per_dispatch(scanner.pattern());
   const auto first_row = static_cast<std::uint32_t>(first_ray / columns);
-  for (std::uint32_t row = 0; row < rows; row += rows_per_dispatch()) {
+  for (std::uint32_t row = 0; row < rows; row += at_once) {
     ScanPush part = push;
     part.first_row = first_row + row;
-    part.row_count = std::min(rows_per_dispatch(), rows - row);
+    part.row_count = std::min(at_once, rows - row);
     const std::uint64_t skip = std::uint64_t{row} * columns;
     for (auto [address, size] : {std::pair{&part.range, sizeof(float)},
                                  {&part.position, sizeof(Float3)},

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one descriptor set of all kernels: the block of parameters, and where rays are queried the acceleration
-// structure.
+// The descriptor set that a scanner has for all kernels: its block of parameters, and where rays are queried the
+// acceleration structure. All have the same layout.
 #pragma once
 
 #include "trace/vulkan/buffer.hpp"

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "core/normal_table.hpp"
-#include "trace/vulkan/sample_plan.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage::vulkan {
@@ -32,20 +31,13 @@ VulkanTracer::VulkanTracer(const VulkanEngine& engine, const EngineInfo& info, s
       device_(std::move(instance), physical, abilities, engine.needs),
       commands_(device_),
       traversal_(build_traversal(engine)),
-      parameters_buffer_(device_, sizeof parameters_, Buffer::Where::device, "trace parameters",
-                         VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT),
-      set_(device_, parameters_buffer_, traversal_->binding().structure),
-      kernels_(device_, *traversal_, set_),
+      scanners_(make_scanners()),
+      kernels_(device_, *traversal_, scanners_.front().set()),
       exact_pace_(seconds_per_exact_submission, static_cast<double>(rays_per_dispatch()),
                   static_cast<double>(rays_per_dispatch()), static_cast<double>(rays_per_dispatch())),
       sampled_pace_(seconds_per_sampled_submission,
                     info.software || scene.max_rays_per_dispatch > 0 ? 0 : first_sampled_rays_on_hardware, 0,
-                    0.5 * sample_room(scene.pattern->columns(), info.software, scene.max_rays_per_dispatch).rays) {
-  if (scene.pattern->rows() > most_groups * block_rows ||
-      std::uint64_t{scene.pattern->rows()} * scene.pattern->columns() >= std::uint64_t{1} << 31)
-    throw Error(Errc::invalid_argument, "the scan pattern has " + std::to_string(scene.pattern->rows()) + " x " +
-                                            std::to_string(scene.pattern->columns()) +
-                                            " rays; this engine takes fewer than 2^31 a station: use larger steps");
+                    0.5 * room_for_sample().rays) {
   std::ranges::copy(traversal_->binding().arrays, parameters_.traversal);
   upload_scene();
 }
@@ -61,27 +53,27 @@ std::unique_ptr<Traversal> VulkanTracer::build_traversal(const VulkanEngine& eng
   return engine.build(device_, commands_, {scene.positions, scene.triangles, ids, scene_.sort_triangles});
 }
 
+std::vector<DeviceScanner> VulkanTracer::make_scanners() {
+  std::vector<DeviceScanner> scanners;
+  for (const TraceScanner& scanner : scene_.scanners)
+    scanners.emplace_back(device_, commands_, traversal_->binding().structure, *scene_.scene, scanner);
+  return scanners;
+}
+
+SampleList VulkanTracer::room_for_sample() const {
+  std::uint32_t columns = 0;
+  for (const DeviceScanner& scanner : scanners_) columns = std::max(columns, scanner.pattern().columns());
+  return sample_room(columns, info_.software, scene_.max_rays_per_dispatch);
+}
+
 void VulkanTracer::upload_scene() {
-  const RayPattern& pattern = *scene_.pattern;
   const VoxelGrid& grid = *scene_.grid;
-  sin_zenith_ = to_device<float>(pattern.sin_zenith, "sin zenith");
-  cos_zenith_ = to_device<float>(pattern.cos_zenith, "cos zenith");
-  sin_azimuth_ = to_device<float>(pattern.sin_azimuth, "sin azimuth");
-  cos_azimuth_ = to_device<float>(pattern.cos_azimuth, "cos azimuth");
   if (!grid.weights().empty()) weights_ = bytes_to_device(grid.weights(), "voxel weights");
   bricks_ = to_device<VoxelBrick>(grid.bricks(), "voxel bricks");
   slots_ = to_device<BrickSlot>(grid.slots(), "brick slots");
   TraceParameters& p = parameters_;
-  p.sin_zenith = sin_zenith_.address();
-  p.cos_zenith = cos_zenith_.address();
-  p.sin_azimuth = sin_azimuth_.address();
-  p.cos_azimuth = cos_azimuth_.address();
   p.bricks = bricks_.address();
   p.slots = slots_.address();
-  p.rows = pattern.rows();
-  p.columns = pattern.columns();
-  p.min_range = pattern.min_range;
-  p.max_range = pattern.max_range;
   p.voxel_min = {grid.min()[0], grid.min()[1], grid.min()[2]};
   p.voxel_inverse_size = grid.inverse_size();
   p.voxel_cells = 1u << grid.depth();
@@ -91,66 +83,22 @@ void VulkanTracer::upload_scene() {
   const Box& bounds = scene_.scene->local_bounds;
   p.bounds_min = {static_cast<float>(bounds.min.x), static_cast<float>(bounds.min.y), static_cast<float>(bounds.min.z)};
   p.bounds_max = {static_cast<float>(bounds.max.x), static_cast<float>(bounds.max.y), static_cast<float>(bounds.max.z)};
-  p.zenith_step = static_cast<float>(pattern.zenith_step);
-  p.azimuth_step = static_cast<float>(pattern.azimuth_step);
-  p.first_zenith = static_cast<float>(pattern.first_zenith);
-  p.first_azimuth = static_cast<float>(pattern.first_azimuth);
   p.has_normals = scene_.scene->normals.empty() ? 0 : 1;
-  if (noise()) upload_noise();
-  if (limits()) upload_limits();
-  if (noise() || limits()) {
+  const auto noisy = [](const DeviceScanner& scanner) { return scanner.noise(); };
+  const auto limited = [](const DeviceScanner& scanner) { return scanner.limits(); };
+  if (std::ranges::any_of(scanners_, noisy)) {
+    normal_table_ = to_device<float>(normal_table(), "normal table");
+    p.normal_table = normal_table_.address();
+  }
+  if (std::ranges::any_of(scanners_, noisy) || std::ranges::any_of(scanners_, limited)) {
     upload_shading();
   } else {
     write_parameters();
   }
 }
 
-void VulkanTracer::upload_sigma(const NoiseModel& model) {
-  sigma_ = to_device<float>(model.sigma, "sigma table");
-  parameters_.sigma = sigma_.address();
-  parameters_.noise_min_range = model.min_range;
-  parameters_.noise_inverse_span = model.inverse_span;
-}
-
-void VulkanTracer::upload_noise() {
-  const NoiseModel& model = *scene_.noise;
-  upload_sigma(model);
-  normal_table_ = to_device<float>(normal_table(), "normal table");
-  reaches_ = noise_reaches(model);
-  noise_reaches_ = to_device<float>(reaches_, "noise reaches");
-  TraceParameters& p = parameters_;
-  p.noise_reaches = noise_reaches_.address();
-  p.normal_table = normal_table_.address();
-  p.noise_reach = model.reach;
-  p.seed_low = static_cast<std::uint32_t>(model.seed);
-  p.seed_high = static_cast<std::uint32_t>(model.seed >> 32);
-}
-
-// Meshes that ask for the same share one entry.
-void VulkanTracer::upload_limits() {
-  const LimitModel& model = *scene_.limits;
-  const SceneData& scene = *scene_.scene;
-  std::vector<LimitModel::Limits> distinct;
-  std::vector<PointLimits> limits;
-  std::vector<std::uint32_t> of_triangle(scene.triangles.size());
-  for (std::size_t m = 0; m < scene.ranges.size(); ++m) {
-    const LimitModel::Limits& own = model.meshes[m];
-    const auto found = std::ranges::find(distinct, own);
-    const auto index = static_cast<std::uint32_t>(found - distinct.begin());
-    if (found == distinct.end()) {
-      distinct.push_back(own);
-      limits.push_back({own.least_cosine_square, own.largest_footprint_square, own.largest_sigma});
-    }
-    std::fill_n(of_triangle.begin() + scene.ranges[m].first_triangle, scene.ranges[m].triangle_count, index);
-  }
-  limits_ = to_device<PointLimits>(limits, "point limits");
-  limits_of_ = to_device<std::uint32_t>(of_triangle, "limits of triangles");
-  if (!noise() && model.noise) upload_sigma(*model.noise);
-  TraceParameters& p = parameters_;
-  p.limits = limits_.address();
-  p.limits_of = limits_of_.address();
-  p.exit_diameter = model.exit_diameter;
-  p.divergence = model.divergence;
+void VulkanTracer::write_parameters() {
+  for (const DeviceScanner& scanner : scanners_) scanner.write(commands_, parameters_);
 }
 
 void VulkanTracer::upload_shading() {

@@ -19,13 +19,14 @@
 #include <vector>
 
 #include "shared/trace_types.h"
-#include "trace/noise_reach.hpp"
 #include "trace/registration_sums.hpp"
 #include "trace/tracer.hpp"
 #include "trace/vulkan/commands.hpp"
+#include "trace/vulkan/device_scanner.hpp"
 #include "trace/vulkan/groups.hpp"
 #include "trace/vulkan/kernels.hpp"
 #include "trace/vulkan/pace.hpp"
+#include "trace/vulkan/sample_plan.hpp"
 #include "trace/vulkan/traversal.hpp"
 
 namespace vantage::vulkan {
@@ -36,13 +37,13 @@ inline constexpr std::uint64_t hardware_rays_per_dispatch = std::uint64_t{1} << 
 
 class VulkanTracer final : public Tracer {
  public:
-  // Throws Error invalid_argument where the pattern has 2^31 rays or more.
+  // Throws Error invalid_argument where a pattern has 2^31 rays or more.
   VulkanTracer(const VulkanEngine& engine, const EngineInfo& info, std::shared_ptr<Instance> instance,
                VkPhysicalDevice physical, const DeviceAbilities& abilities, const TraceScene& scene);
 
   const EngineInfo& info() const override { return info_; }
-  std::uint64_t preferred_scan_rays() const override {
-    const std::uint64_t columns = scene_.pattern->columns();
+  std::uint64_t preferred_scan_rays(std::uint32_t scanner) const override {
+    const std::uint64_t columns = scanners_[scanner].pattern().columns();
     return std::max<std::uint64_t>(std::min(rays_per_dispatch(), std::uint64_t{1} << 22) / columns, 1) * columns;
   }
 
@@ -60,16 +61,14 @@ class VulkanTracer final : public Tracer {
   class SampledCount;
 
   std::unique_ptr<Traversal> build_traversal(const VulkanEngine& engine);
+  std::vector<DeviceScanner> make_scanners();
   void upload_scene();
-  void upload_noise();
-  void upload_sigma(const NoiseModel& model);
-  void upload_limits();
   void upload_shading();
   void upload_sample(std::span<const std::uint32_t> sample, std::span<const std::vector<TraceStation>> networks);
   double sample_reach(std::span<const std::vector<TraceStation>> networks) const;
-  void write_parameters() { commands_.upload(parameters_buffer_, &parameters_, sizeof parameters_); }
-  bool noise() const { return scene_.noise && scene_.noise->enabled(); }
-  bool limits() const { return scene_.limits && scene_.limits->enabled(); }
+  SampleList room_for_sample() const;
+  void write_parameters();
+  bool limited() const { return scanners_.front().limits(); }  // all are or none
   std::uint64_t rays_per_dispatch() const {
     if (scene_.max_rays_per_dispatch > 0) return scene_.max_rays_per_dispatch;
     return info_.software ? software_rays_per_dispatch : hardware_rays_per_dispatch;
@@ -82,10 +81,17 @@ class VulkanTracer final : public Tracer {
     const int bits = 2 * static_cast<int>(std::bit_width(goal_points())) + static_cast<int>(std::bit_width(voxels));
     return static_cast<std::uint32_t>(std::max(0, bits - 62) / 2);
   }
-  std::uint32_t rows_per_dispatch() const {
-    const std::uint64_t rows = rays_per_dispatch() / scene_.pattern->columns() / tile_side * tile_side;
+  std::uint32_t rows_per_dispatch(const RayPattern& pattern) const {
+    const std::uint64_t rows = rays_per_dispatch() / pattern.columns() / tile_side * tile_side;
     return static_cast<std::uint32_t>(
         std::clamp<std::uint64_t>(rows, tile_side, std::uint64_t{most_groups} * block_rows));
+  }
+
+  // Rows as kernels read them; upright stations have none to read.
+  static void set_turn(vec3 (&rows)[3], const TraceStation& station) {
+    if (!station.turn) return;
+    const Float3* const own[3] = {&station.turn->x, &station.turn->y, &station.turn->z};
+    for (std::size_t k = 0; k < 3; ++k) rows[k] = {own[k]->x, own[k]->y, own[k]->z};
   }
 
   // Grows a buffer that is kept from call to call.
@@ -135,21 +141,18 @@ class VulkanTracer final : public Tracer {
   Device device_;
   Commands commands_;
   std::unique_ptr<Traversal> traversal_;
-  TraceParameters parameters_{};
-  Buffer parameters_buffer_;
-  TraceSet set_;
+  std::vector<DeviceScanner> scanners_;
+  TraceParameters parameters_{};  // but for what is a scanner's own
   Kernels kernels_;
-  Buffer sin_zenith_, cos_zenith_, sin_azimuth_, cos_azimuth_, bricks_, slots_;
-  Buffer positions_, normals_, triangles_, diffuse_, sigma_, noise_reaches_, normal_table_;  // filled when first needed
-  Buffer limits_, limits_of_;                                                                // where points have any
-  Buffer weights_;  // of voxels, where they have any
+  Buffer bricks_, slots_;
+  Buffer positions_, normals_, triangles_, diffuse_, normal_table_;  // filled when first needed
+  Buffer weights_;                                                   // of voxels, where they have any
   Buffer counts_, masks_, station_counters_, totals_, station_counts_;
   Buffer tile_far_, tile_list_, tile_dispatch_, tile_rays_, tile_starts_;
   Pace exact_pace_, sampled_pace_;
 
   std::vector<std::uint32_t> sample_;  // what the sample buffers hold
   double sample_margin_ = 0;           // how far from its voxel a triangle is listed there
-  NoiseReaches reaches_{};             // where there is noise
   Buffer sample_voxels_, sample_triangles_, sample_stations_, sample_rays_, sample_items_, sample_control_,
       network_rays_, sample_weights_;
   std::shared_ptr<const Patches> patches_;  // what the next buffers hold

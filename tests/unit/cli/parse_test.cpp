@@ -56,6 +56,11 @@ TEST(Parse, StationsAreHeadsOrUvs) {
   EXPECT_EQ(parse_station("y=3.6, x=5", "--station").xy, (std::array{5.0, 3.6}));
   EXPECT_EQ(parse_station("x=5,y=3.6,z=1.85", "--station").position, (Vec3{5, 3.6, 1.85}));
   EXPECT_EQ(parse_station("x=5,y=3.6,ground=-1", "--station").ground, (Vec3{5, 3.6, -1}));
+  const auto lying = parse_station("x=5,y=3,z=2,heading=30,tilt=90,step=0.2,scanner=rtc360@6mm", "--station");
+  EXPECT_EQ(lying.position, (Vec3{5, 3, 2}));
+  EXPECT_EQ(lying.setup, (StationSetup{.heading = Angle::degrees(30), .tilt = Angle::degrees(90)}));
+  EXPECT_EQ(lying.step, Angle::degrees(0.2));
+  EXPECT_EQ(lying.scanner, "rtc360@6mm");
   for (const char* text :
        {"x=5", "x=5,z=1", "u=1", "u=1,v=2,x=3", "x=1,y=2,z=3,ground=1", "x=1,2", "a=1,b=2", "x=1,x=2"})
     EXPECT_NE(refusal([&] { parse_station(text, "--station"); }), "accepted") << text;

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
+#include <set>
 #include <thread>
 
 #include "program.hpp"
@@ -65,6 +67,43 @@ TEST_F(Plan, EvaluateGivesBackTheSameNumbers) {
   bool found = false;
   for (const auto& entry : front["front"]) found |= entry["exact"]["coverage"] == chosen["coverage"];
   EXPECT_TRUE(found);
+}
+
+TEST_F(Plan, ChoosesAStepForEachStation) {
+  const std::vector<std::string> what{
+      "--objectives", "time,coverage",         "--stations", "3",  "--search-step", "4,2,1",
+      "--keep",       "x=8,y=0,z=1.5,tilt=90", "--rate",     "100"};
+  const auto front = json_of(plan("plan", what));
+  std::set<double> steps;
+  for (const auto& entry : front["front"]) {
+    double minutes = 0;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const auto& station = entry["stations"][k];
+      const double step = station["step"];
+      EXPECT_EQ(station["kept"], k == 0);
+      EXPECT_EQ(station["tilt"], k == 0 ? 90 : 0);
+      if (k == 0) {
+        EXPECT_NEAR(step, 1, 1e-12);
+        continue;
+      }
+      steps.insert(std::round(step));
+      if (station["status"] == "ok") minutes += std::round(360 / step) * std::round(150 / step) / 100 / 60;
+    }
+    EXPECT_NEAR(entry["on_site"]["scan_min"].get<double>(), minutes, 0.01 * minutes) << "as its steps take";
+  }
+  EXPECT_GT(steps.size(), 1u);
+  // Front and configuration say all of it.
+  for (std::size_t k = 0; k < front["front"].size(); ++k) {
+    const auto again = json_of({"evaluate", scene_, "--engine", "embree", "--config", path("plan/config.json"),
+                                "--stations", path("plan/front.json"), "--entry", std::to_string(k + 1)});
+    EXPECT_EQ(again["coverage"], front["front"][k]["exact"]["coverage"]);
+    EXPECT_EQ(again["stations"][0]["tilt"], 90);
+  }
+  EXPECT_NE(read("plan/stations.csv").find(",heading,tilt,scanner,step"), std::string::npos);
+  const auto same = json_of({"plan", scene_, "--engine", "embree", "--config", path("plan/config.json"), "--population",
+                             "6", "--iterations", "3", "--sample", "200", "-o", path("again")});
+  EXPECT_EQ(same["front"], front["front"]);
+  expect_refused(run_program(plan("other", {"--stations", "2", "--search-step", "1,3mm"})), 1, "--scanner PRESET");
 }
 
 TEST_F(Plan, TheSameSeedGivesTheSameFront) {

@@ -142,6 +142,29 @@ TEST_F(Results, StationsComeFromTables) {
   EXPECT_EQ(read_in, typed);
 }
 
+TEST_F(Results, StationsMayLieAndHaveScannersOfTheirOwn) {
+  write("stations.csv", "x,y,z,heading,tilt,scanner,step\n8,0,1.5,0,90,,\n-8,0,1.5,30,,rtc360,2\n0,8,1.5,,,,\n");
+  const auto result = json_of(coarse("evaluate", {"--stations", path("stations.csv")}));
+  const auto& stations = result["stations"];
+  EXPECT_EQ(stations[0]["tilt"], 90);
+  EXPECT_EQ(stations[0]["step"], 1);
+  EXPECT_NEAR(stations[1]["heading"].get<double>(), 30, 1e-12);
+  EXPECT_EQ(stations[1]["scanner"], "Leica RTC360 @6mm");
+  EXPECT_NEAR(stations[1]["step"].get<double>(), 2, 1e-12);
+  EXPECT_FALSE(stations[2].contains("heading")) << "as all stations were";
+  EXPECT_EQ(result["rays"], 2 * 360 * 150 + 180 * 75);
+  // The same, typed.
+  const auto typed =
+      json_of(coarse("evaluate", {"--station", "x=8,y=0,z=1.5,tilt=90", "--station",
+                                  "x=-8,y=0,z=1.5,heading=30,scanner=rtc360,step=2", "--station", "0,8,1.5"}));
+  EXPECT_EQ(typed["coverage"], result["coverage"]);
+  EXPECT_EQ(typed["stations"], stations);
+  // A head that lies sees what is above and below, and not what is at its side.
+  EXPECT_NE(stations[0]["points"], json_of(coarse("evaluate", {"--station", "8,0,1.5"}))["stations"][0]["points"]);
+  expect_refused(run_program(coarse("evaluate", {"--station", "x=8,y=0,z=1.5,scanner=rtc306"})), 1, "rtc360");
+  expect_refused(run_program(coarse("evaluate", {"--station", "x=8,y=0,z=1.5,step=0"})), 1, "azimuth_step");
+}
+
 TEST_F(Results, SurveyorsTablesAreRead) {
   auto plain = json_of(evaluate({}));
   plain.erase("seconds");

@@ -29,6 +29,10 @@ RegistrationOptions weak() {
   return {.model = model, .position_m = 10, .heading = Angle::radians(1), .tilt = Angle::radians(1)};
 }
 
+std::vector<PatchScanner> scanner_with(const NoiseModel& noise) {
+  return {{std::make_shared<const NoiseModel>(noise)}};
+}
+
 // Surfaces, who sees them, and where the heads are.
 struct Made {
   std::vector<VoxelSurface> surfaces = {};
@@ -81,7 +85,7 @@ struct Made {
     NetworkCounts counts;
     counts.stations = static_cast<std::uint32_t>(heads.size());
     counts.voxels = masks.size();
-    counts.registration = sum_patches(patches(), noise, stations(), counts.stations, masks, 0).front();
+    counts.registration = sum_patches(patches(), scanner_with(noise), stations(), counts.stations, masks, 0).front();
     return counts;
   }
   RegistrationError error(const RegistrationOptions& options = weak()) const {
@@ -343,8 +347,8 @@ TEST(RegistrationError, SumsDoNotDependOnGroups) {
   m.room({}, 3, 2, 23, 7);
   for (std::uint64_t& mask : m.masks) mask = random.bits() & 7;
   const Patches patches = m.patches();
-  const auto whole = sum_patches(patches, {}, m.stations(), 3, m.masks, 0);
-  const auto parts = sum_patches(patches, {}, m.stations(), 3, m.masks, 20);
+  const auto whole = sum_patches(patches, scanner_with({}), m.stations(), 3, m.masks, 0);
+  const auto parts = sum_patches(patches, scanner_with({}), m.stations(), 3, m.masks, 20);
   ASSERT_EQ(parts.size(), 21u);
   EXPECT_EQ(parts[0].pairs, whole[0].pairs);
   EXPECT_EQ(parts[0].surface, whole[0].surface);
@@ -404,7 +408,7 @@ TEST(RegistrationError, StandardErrorsHold) {
         some.patches.push_back(all.patches[rank]);
         masks.push_back(m.masks[rank]);
       }
-      const auto sums = sum_patches(some, {}, m.stations(), 6, masks, 20);
+      const auto sums = sum_patches(some, scanner_with({}), m.stations(), 6, masks, 20);
       NetworkCounts counts;
       counts.stations = 6;
       counts.voxels = ranks.size();

@@ -71,6 +71,48 @@ TEST(DecisionSpace, KeepsStationsAndVariesHeights) {
   EXPECT_TRUE(placed[0].kept && !placed[1].kept);
 }
 
+TEST(DecisionSpace, ChoosesScannersInEqualShares) {
+  const Site site = test::toy_site();
+  SurveyProblem config = stations(2, 3);
+  config.heights_m = {1, 2};
+  config.scanners = {4, 0, 7};
+  const DecisionSpace space(site, config);
+  EXPECT_EQ(space.dimension(), 13u);
+  EXPECT_EQ(space.bounds().lower, (std::vector<double>{0, 0, 0, 0, 0, 0, 1, 1, 1, 0, 0, 0, 0}));
+  EXPECT_EQ(space.bounds().upper, (std::vector<double>{1, 1, 1, 1, 1, 1, 2, 2, 2, 1, 1, 1, 1}));
+  EXPECT_EQ(space.blocks()[1], (std::vector<std::size_t>{2, 3, 7, 10}));
+  std::vector<double> x{0.1, 0.1, 0.9, 0.9, 0.2, 0.1, 1.5, 1.5, 1.5, 0.33, 0.34, 1, 1};
+  auto placed = space.decode(x);
+  ASSERT_EQ(placed.size(), 3u);
+  EXPECT_EQ(placed[0].setup.scanner, 4u);
+  EXPECT_EQ(placed[1].setup.scanner, 0u);
+  EXPECT_EQ(placed[2].setup.scanner, 7u) << "1 is the last one too";
+  EXPECT_EQ(space.decode(space.encode(placed)).at(1).setup, placed[1].setup);
+  EXPECT_EQ(space.decode(space.encode(placed)).at(2).setup, placed[2].setup);
+  const std::vector<Vec3> heads{{1, 2, 4.5}};
+  EXPECT_EQ(space.decode(space.encode(heads)).at(0).setup.scanner, 4u) << "the first of them where nobody says";
+  // Of one there is nothing to choose.
+  config.scanners = {2};
+  const DecisionSpace one(site, config);
+  EXPECT_EQ(one.dimension(), 10u);
+  x.resize(10);
+  EXPECT_EQ(one.decode(x)[0].setup.scanner, 2u);
+}
+
+TEST(DecisionSpace, KeptStationsStandAsTheyStood) {
+  const Site site = test::toy_site();
+  SurveyProblem config = stations(1, 1);
+  config.kept = {{5, 5, 9}, {1, 1, 4}};
+  config.kept_setups = {{.tilt = Angle::degrees(90)}, {.scanner = 1}};
+  const auto placed = DecisionSpace(site, config).decode(std::vector<double>{0.1, 0.1});
+  EXPECT_EQ(placed[0].setup, config.kept_setups[0]);
+  EXPECT_EQ(placed[1].setup, config.kept_setups[1]);
+  EXPECT_EQ(placed[2].setup, StationSetup());
+  EXPECT_EQ(to_network(placed)[0].setup, config.kept_setups[0]);
+  config.kept_setups.pop_back();
+  EXPECT_THROW(DecisionSpace(site, config), Error);
+}
+
 TEST(VisibilityParts, CountsWhoSeesWhomWithinRange) {
   const Site site = test::toy_site();  // a wall at y = 5, range 6 m
   const Network network{{{1, 1, 0}, true}, {{6, 1, 0}, true}, {{9, 4, 0}, true}, {{1, 9, 0}, true}, {{9, 9, 0}, true}};

@@ -112,6 +112,21 @@ TEST(OnSite, AddsScansSettingUpAndWalking) {
   EXPECT_EQ(visit.unconnected, 0u);
 }
 
+TEST(OnSite, ScansTakeAsLongAsTheirScanners) {
+  const Yard yard;
+  std::vector<Scanner> scanners{yard.scanner, yard.scanner};
+  scanners[1].azimuth_step = scanners[1].zenith_step = Angle::degrees(0.05);
+  const OnSite on_site(SearchArea::from_mesh(yard.ground), ClashChecker(yard.scene), scanners);
+  EXPECT_NEAR(on_site.minutes_per_scan(1), 4, 1e-12);
+  auto stations = stations_at({{30, 20, 0}, {10, 20, 0}, {20, 20, 0}});
+  EXPECT_NEAR(on_site.visit(stations).scan_min, 3, 1e-12);
+  stations[1].setup.scanner = 1;
+  EXPECT_NEAR(on_site.visit(stations).scan_min, 6, 1e-12);
+  stations[0].setup.scanner = 2;
+  EXPECT_THROW(on_site.visit(stations), std::out_of_range);
+  EXPECT_THROW(OnSite(SearchArea::from_mesh(yard.ground), ClashChecker(yard.scene), std::span<const Scanner>()), Error);
+}
+
 TEST(OnSite, LeavesOutWhatCannotBeUsedAndTellsOfWhatIsNotConnected) {
   const OnSite on_site = Yard().on_site({.detour = 2});
   auto stations = stations_at({{10, 10, 0}, {100, 10, 0}, {20, 10, 0}});

@@ -137,6 +137,31 @@ TEST(E57, KeepsEachStationInItsScannersFrame) {
   EXPECT_NEAR(rotated(file.scans[0], {1, 0, 0}).y, std::sin(Angle::degrees(30).in_radians()), 1e-15);
 }
 
+TEST(E57, PosesOfTurnedHeadsLeadBackToTheSurvey) {
+  const test::TemporaryFolder folder;
+  for (const double own : {0.0, 25.0}) {
+    const Scanner scanner = scanner_of(1, own);
+    const StationSetup setups[] = {{.tilt = Angle::degrees(90)},
+                                   {.heading = Angle::degrees(110)},
+                                   {.heading = Angle::degrees(-70), .tilt = Angle::degrees(33)}};
+    PointCloudWriter writer(folder / "a.e57", kOrigin, kHeld);
+    for (const StationSetup& setup : setups) {
+      writer.begin_station({"S", kOrigin, scanner, setup});
+      writer.write(chunk_of(0, 500), 1);
+    }
+    writer.close();
+    const auto file = read_e57(content(folder / "a.e57"));
+    ASSERT_EQ(file.scans.size(), 3u);
+    for (std::size_t k = 0; k < 3; ++k) {
+      expect_same_points(file.scans[k], chunk_of(0, 500), scanner, 1e-5);
+      const auto rows = setups[k].survey_from_scanner();  // the axis does not feel the scanner's own heading
+      EXPECT_NEAR(rotated(file.scans[k], {0, 0, 1}).x, rows[0].z, 1e-15);
+      EXPECT_NEAR(rotated(file.scans[k], {0, 0, 1}).y, rows[1].z, 1e-15);
+      EXPECT_NEAR(rotated(file.scans[k], {0, 0, 1}).z, rows[2].z, 1e-15);
+    }
+  }
+}
+
 TEST(E57, BoundsAreThoseOfThePoints) {
   const test::TemporaryFolder folder;
   PointCloudWriter writer(folder / "a.e57", kOrigin, kHeld);

@@ -146,6 +146,11 @@ const std::vector<Change<SurveyProblem>> kProblem{
      [](SurveyProblem& p) {
        p.kept = {{1, 2, 3}};
      }},
+    {"kept_setups", [](SurveyProblem& p) { p.kept_setups = {{.tilt = Angle::degrees(90)}}; }},
+    {"scanners",
+     [](SurveyProblem& p) {
+       p.scanners = {0, 1};
+     }},
     {"heights_m",
      [](SurveyProblem& p) {
        p.heights_m = {1, 2};
@@ -157,7 +162,7 @@ const std::vector<Change<SurveyProblem>> kProblem{
     {"fewest", [](SurveyProblem& p) { p.fewest = true; }},
     {"visible", [](SurveyProblem& p) { p.visible = 0.7; }},
     {"on_site", [](SurveyProblem& p) { p.on_site.set_up_min = 5; }}};
-static_assert(member_count<SurveyProblem>() == 12);
+static_assert(member_count<SurveyProblem>() == 14);
 
 const std::vector<Change<SurveyProblem>> kRegistration{
     {"rho_m", [](SurveyProblem& p) { p.registration.model.rho_m = 0.002; }},

@@ -47,6 +47,43 @@ TEST(StationsCsv, ReadsBackToTheSameBits) {
   EXPECT_EQ(rows[2].name, "K1");
 }
 
+TEST(StationsCsv, TellsHowStationsAreSetUpWhereItMatters) {
+  const test::TemporaryFolder folder;
+  std::vector<Scanner> scanners(2);
+  scanners[1] = load_scanner("rtc360@3mm");
+  std::vector<PlacedStation> stations(3);
+  for (PlacedStation& s : stations) s.position = {1, 2, 3};
+  stations[0].setup = {.heading = Angle::degrees(30), .tilt = Angle::degrees(90)};
+  stations[1].setup.scanner = 1;
+  write_stations_csv(folder / "s.csv", stations, scanners);
+  const std::string text = test::content(folder / "s.csv");
+  EXPECT_EQ(text.substr(0, text.find('\n')), "station,name,x,y,z,ground_z,u,v,status,kept,heading,tilt,scanner,step");
+  const auto rows = read_stations_csv(folder / "s.csv");
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_NEAR(rows[0].setup.heading.in_degrees(), 30, 1e-12);
+  EXPECT_NEAR(rows[0].setup.tilt.in_degrees(), 90, 1e-12);
+  EXPECT_EQ(rows[0].scanner, "custom");
+  EXPECT_EQ(rows[1].scanner, scanners[1].name);
+  EXPECT_EQ(load_scanner(rows[1].scanner).azimuth_step, scanners[1].azimuth_step);
+  ASSERT_TRUE(rows[1].step);
+  EXPECT_NEAR(rows[1].step->in_degrees(), scanners[1].azimuth_step.in_degrees(), 1e-12);
+  EXPECT_EQ(rows[2].setup, StationSetup());
+}
+
+TEST(StationsCsv, ReadsHeadingTiltScannerAndStep) {
+  const auto rows = read("x;y;z;Heading [deg];tilt (°);scanner;step\n1;2;3;30,5;-90;rtc360;0,2\n1;2;3;;;;\n");
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[0].setup.heading, Angle::degrees(30.5));
+  EXPECT_EQ(rows[0].setup.tilt, Angle::degrees(-90));
+  EXPECT_EQ(rows[0].scanner, "rtc360");
+  EXPECT_EQ(rows[0].step, Angle::degrees(0.2));
+  EXPECT_EQ(rows[1].setup, StationSetup());
+  EXPECT_EQ(rows[1].scanner, "");
+  EXPECT_FALSE(rows[1].step);
+  EXPECT_NE(refusal("x,y,z,tilt [rad]\n1,2,3,1\n").find("vantage takes degrees"), std::string::npos);
+  EXPECT_NE(refusal("x,y,z,tilt,tilt\n1,2,3,1,1\n").find("both may be the tilt"), std::string::npos);
+}
+
 TEST(StationsCsv, ReadsWhatOthersWrite) {
   const auto plain = read("x,y,z\n1,2,3\n-4.5e1,+6,7\n");
   ASSERT_EQ(plain.size(), 2u);

@@ -235,6 +235,60 @@ TEST(Scan, ColoursByDirectionWhereASourceIsGiven) {
   EXPECT_GT(points, 100u);
 }
 
+TEST(Scan, ColoursTurnedStationsByWhereTheirRaysGo) {
+  Simulator simulator(wall_and_floor().scene(), coarse_scanner(3), config());
+  const Station station{{0, 0, 0}, true, {.heading = Angle::degrees(20), .tilt = Angle::degrees(70)}};
+  const auto tenths = [](Angle zenith, Angle azimuth) {
+    return static_cast<std::uint32_t>(std::lround(zenith.in_degrees() * 10) << 16 |
+                                      std::lround(azimuth.in_degrees() * 10 + 3600));
+  };
+  std::uint64_t points = 0;
+  simulator.scan(station, {.outputs = scan_colour | scan_position, .colour = tenths}, [&](const ScanChunk& chunk) {
+    for (std::size_t k = 0; k < chunk.ray_count; ++k) {
+      const auto& p = chunk.position[k];
+      if (!std::isfinite(p[0])) continue;
+      const Vec3 d = simulator.origin() + Vec3{p[0], p[1], p[2]} - station.position;
+      const auto rounded = [](double degrees) { return std::lround(degrees * 10); };
+      EXPECT_LE(std::abs(rounded(std::atan2(std::hypot(d.x, d.y), d.z) * 180 / M_PI) - (chunk.colour[k] >> 16)), 1);
+      EXPECT_LE(std::abs(rounded(std::atan2(d.y, d.x) * 180 / M_PI) + 3600 - (chunk.colour[k] & 0xFFFF)), 1);
+      ++points;
+    }
+  });
+  EXPECT_GT(points, 100u);
+}
+
+TEST(Simulator, HasScannersThatStationsChooseFrom) {
+  const std::vector<Scanner> scanners{coarse_scanner(3), coarse_scanner(1)};
+  Simulator simulator(wall_and_floor().scene(), scanners, config());
+  EXPECT_EQ(simulator.scanner().azimuth_step, scanners[0].azimuth_step);
+  ASSERT_EQ(simulator.scanners().size(), 2u);
+  EXPECT_EQ(simulator.scanners()[1].azimuth_step, scanners[1].azimuth_step);
+  // Each station is counted as in a simulator that has its scanner alone.
+  const Network network{{{0, 0, 0}}, {{0.3, -0.2, 0.1}, true, {.scanner = 1}}};
+  VoxelField together;
+  const NetworkCounts counts = simulator.evaluate(network, {.field = &together});
+  for (std::size_t k = 0; k < 2; ++k) {
+    Simulator alone(wall_and_floor().scene(), scanners[k], config());
+    VoxelField field;
+    const NetworkCounts own = alone.evaluate({{network[k].position}}, {.field = &field});
+    EXPECT_EQ(own.points_on_surveyed[0], counts.points_on_surveyed[k]);
+    std::size_t differing = 0;
+    for (std::size_t v = 0; v < field.count.size(); ++v)
+      differing += (field.count[v] > 0) != ((together.stations[v] >> k & 1) != 0);
+    EXPECT_EQ(differing, 0u);
+  }
+  const auto refusal = [&](const StationSetup& setup) {
+    return message_of([&] { simulator.evaluate({{{0, 0, 0}, true, setup}}); });
+  };
+  EXPECT_NE(refusal({.scanner = 2}).find("scanner number 2"), std::string::npos);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_NE(refusal({.tilt = Angle::degrees(nan)}).find("not finite"), std::string::npos);
+  EXPECT_NE(message_of([&] {
+              Simulator(wall_and_floor().scene(), std::span<const Scanner>(), config());
+            }).find("no scanner given"),
+            std::string::npos);
+}
+
 TEST(Scan, StopsWhenTold) {
   Simulator simulator(wall_and_floor().scene(), coarse_scanner(0.1), config());
   std::stop_source stop;

@@ -108,7 +108,7 @@ TEST(RandomSites, EveryWayOfCountingAgrees) {
     for (const bool noisy : {false, true}) {
       SCOPED_TRACE("seed " + std::to_string(seed) + (noisy ? ", noise" : ""));
       TraceScene scene = site.scene;
-      if (!noisy) scene.noise = std::make_shared<const NoiseModel>();
+      if (!noisy) scene.scanners[0].noise = std::make_shared<const NoiseModel>();
       const auto tracer = make_embree_tracer(scene);
       tracer->set_goal_density(goal);
       VoxelField all, skipped;

@@ -57,8 +57,8 @@ inline TraceScene trace_scene(std::shared_ptr<const SceneData> scene, const Scan
                               std::uint64_t seed = 1) {
   TraceScene result;
   result.grid = std::make_shared<const VoxelGrid>(VoxelGrid::build(*scene, user_size_m));
-  result.pattern = std::make_shared<const RayPattern>(make_pattern(scanner));
-  result.noise = std::make_shared<const NoiseModel>(make_noise_model(scanner, seed));
+  result.scanners.push_back({std::make_shared<const RayPattern>(make_pattern(scanner)),
+                             std::make_shared<const NoiseModel>(make_noise_model(scanner, seed))});
   result.scene = std::move(scene);
   return result;
 }

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+/// How an instrument is set up at a station: which one, and how it is turned.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "vantage/types.hpp"
+
+namespace vantage {
+
+/// A scanner stands upright unless it is tilted: its axis then leans by `tilt` from straight up towards `heading`, so
+/// that at 90° the head lies, and at 180° it hangs. The heading turns it about up, from +X towards +Y, on top of
+/// `Scanner::heading`, which turns it about its own axis.
+struct StationSetup {
+  Angle heading = Angle::degrees(0);
+  Angle tilt = Angle::degrees(0);
+  std::uint32_t scanner = 0;  ///< Index into `Simulator::scanners()`.
+
+  bool turned() const { return heading != Angle() || tilt != Angle(); }
+  /// Rows of Rz(heading) · Ry(tilt), which takes directions from the scanner's frame to the survey's. Quarter turns are
+  /// exact.
+  std::array<Vec3, 3> survey_from_scanner() const;
+  friend bool operator==(const StationSetup&, const StationSetup&) = default;
+};
+
+}  // namespace vantage

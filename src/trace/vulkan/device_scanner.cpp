@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trace/vulkan/device_scanner.hpp"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "trace/vulkan/groups.hpp"
+#include "vantage/error.hpp"
+
+namespace vantage::vulkan {
+
+DeviceScanner::DeviceScanner(Device& device, Commands& commands, VkAccelerationStructureKHR structure,
+                             const SceneData& scene, const TraceScanner& scanner)
+    : scanner_(scanner),
+      block_(device, sizeof(TraceParameters), Buffer::Where::device, "trace parameters",
+             VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT),
+      set_(device, block_, structure) {
+  const RayPattern& pattern = *scanner.pattern;
+  if (pattern.rows() > most_groups * block_rows || std::uint64_t{pattern.rows()} * pattern.columns() >= std::uint64_t{1}
+                                                                                                            << 31)
+    throw Error(Errc::invalid_argument, "the scan pattern has " + std::to_string(pattern.rows()) + " x " +
+                                            std::to_string(pattern.columns()) +
+                                            " rays; this engine takes fewer than 2^31 a station: use larger steps");
+  const auto to_device = [&](std::span<const float> values, const char* name) {
+    return make_device_buffer<float>(device, commands, values, name);
+  };
+  sin_zenith_ = to_device(pattern.sin_zenith, "sin zenith");
+  cos_zenith_ = to_device(pattern.cos_zenith, "cos zenith");
+  sin_azimuth_ = to_device(pattern.sin_azimuth, "sin azimuth");
+  cos_azimuth_ = to_device(pattern.cos_azimuth, "cos azimuth");
+  if (noise()) {
+    reaches_ = noise_reaches(*scanner.noise);
+    noise_reaches_ = to_device(reaches_, "noise reaches");
+  }
+  if (limits()) upload_limits(device, commands, scene);
+  if (const NoiseModel* const looked_up = sigma_model()) sigma_ = to_device(looked_up->sigma, "sigma table");
+}
+
+// Meshes that ask for the same share one entry.
+void DeviceScanner::upload_limits(Device& device, Commands& commands, const SceneData& scene) {
+  std::vector<LimitModel::Limits> distinct;
+  std::vector<PointLimits> limits;
+  std::vector<std::uint32_t> of_triangle(scene.triangles.size());
+  for (std::size_t m = 0; m < scene.ranges.size(); ++m) {
+    const LimitModel::Limits& own = scanner_.limits->meshes[m];
+    const auto found = std::ranges::find(distinct, own);
+    const auto index = static_cast<std::uint32_t>(found - distinct.begin());
+    if (found == distinct.end()) {
+      distinct.push_back(own);
+      limits.push_back({own.least_cosine_square, own.largest_footprint_square, own.largest_sigma});
+    }
+    std::fill_n(of_triangle.begin() + scene.ranges[m].first_triangle, scene.ranges[m].triangle_count, index);
+  }
+  limits_ = make_device_buffer<PointLimits>(device, commands, limits, "point limits");
+  limits_of_ = make_device_buffer<std::uint32_t>(device, commands, of_triangle, "limits of triangles");
+}
+
+void DeviceScanner::write(Commands& commands, const TraceParameters& shared) const {
+  const RayPattern& pattern = *scanner_.pattern;
+  TraceParameters p = shared;
+  p.sin_zenith = sin_zenith_.address();
+  p.cos_zenith = cos_zenith_.address();
+  p.sin_azimuth = sin_azimuth_.address();
+  p.cos_azimuth = cos_azimuth_.address();
+  p.rows = pattern.rows();
+  p.columns = pattern.columns();
+  p.min_range = pattern.min_range;
+  p.max_range = pattern.max_range;
+  p.zenith_step = static_cast<float>(pattern.zenith_step);
+  p.azimuth_step = static_cast<float>(pattern.azimuth_step);
+  p.first_zenith = static_cast<float>(pattern.first_zenith);
+  p.first_azimuth = static_cast<float>(pattern.first_azimuth);
+  if (noise()) {
+    p.noise_reaches = noise_reaches_.address();
+    p.noise_reach = scanner_.noise->reach;
+    p.seed_low = static_cast<std::uint32_t>(scanner_.noise->seed);
+    p.seed_high = static_cast<std::uint32_t>(scanner_.noise->seed >> 32);
+  }
+  if (limits()) {
+    p.limits = limits_.address();
+    p.limits_of = limits_of_.address();
+    p.exit_diameter = scanner_.limits->exit_diameter;
+    p.divergence = scanner_.limits->divergence;
+  }
+  if (const NoiseModel* const looked_up = sigma_model()) {
+    p.sigma = sigma_.address();
+    p.noise_min_range = looked_up->min_range;
+    p.noise_inverse_span = looked_up->inverse_span;
+  }
+  commands.upload(block_, &p, sizeof p);
+}
+
+}  // namespace vantage::vulkan

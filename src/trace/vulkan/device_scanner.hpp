@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// A scanner on the device: tables of its pattern, noise and limits, and the block of parameters that kernels are told
+// them by.
+#pragma once
+
+#include "shared/trace_types.h"
+#include "trace/noise_reach.hpp"
+#include "trace/tracer.hpp"
+#include "trace/vulkan/buffer.hpp"
+#include "trace/vulkan/commands.hpp"
+#include "trace/vulkan/trace_set.hpp"
+
+namespace vantage::vulkan {
+
+class DeviceScanner {
+ public:
+  // Throws Error invalid_argument where the pattern has 2^31 rays or more. `structure`: what rays are queried in, or
+  // null; it must outlive this.
+  DeviceScanner(Device& device, Commands& commands, VkAccelerationStructureKHR structure, const SceneData& scene,
+                const TraceScanner& scanner);
+
+  const RayPattern& pattern() const { return *scanner_.pattern; }
+  bool noise() const { return scanner_.noise && scanner_.noise->enabled(); }
+  bool limits() const { return scanner_.limits && scanner_.limits->enabled(); }
+  const TraceSet& set() const { return set_; }
+  float noise_reach() const { return noise() ? scanner_.noise->reach : 0; }
+  // No point of a hit nearer than t is moved further than this.
+  float reach_within(float t) const { return noise() ? vantage::reach_within(*scanner_.noise, reaches_, t) : 0; }
+
+  // Writes the block: what all scanners have of scene and voxels, and what is this one's own.
+  void write(Commands& commands, const TraceParameters& shared) const;
+
+ private:
+  // What ranges are displaced by, or judged by where they are exact; null where neither.
+  const NoiseModel* sigma_model() const {
+    return noise() ? scanner_.noise.get() : limits() ? scanner_.limits->noise.get() : nullptr;
+  }
+  void upload_limits(Device& device, Commands& commands, const SceneData& scene);
+
+  TraceScanner scanner_;
+  Buffer block_;
+  TraceSet set_;
+  Buffer sin_zenith_, cos_zenith_, sin_azimuth_, cos_azimuth_, sigma_, noise_reaches_, limits_, limits_of_;
+  NoiseReaches reaches_{};  // where there is noise
+};
+
+}  // namespace vantage::vulkan
