@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "population.hpp"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -30,6 +32,11 @@ std::vector<Network> population_around(const Network& stations, const ClashCheck
     }
   return networks;
 }
+
+// What a search asks of every network.
+struct Kind {
+  bool overlap, registration;
+};
 
 struct Objectives {
   double coverage = 0, overlap = 0, coverage_se = 0, overlap_se = 0;
@@ -61,7 +68,7 @@ void run_population(const PopulationOptions& options) {
   std::printf(
       "engine,sample,overlap,milliseconds_a_candidate,device_milliseconds,rays_a_candidate,coverage_rms,overlap_rms,"
       "coverage_se,overlap_se,"
-      "times_faster_than_exact\n");
+      "times_faster_than_exact,registration\n");
   for (const EngineInfo& info : options.site.engines_here()) {
     SimulatorConfig config = options.site.config();
     config.engine = info.engine;
@@ -85,11 +92,13 @@ void run_population(const PopulationOptions& options) {
       device += counts.trace_seconds * 1e3 / static_cast<double>(compared);
       rays += static_cast<double>(counts.rays) / static_cast<double>(compared);
     }
-    if (compared > 0) std::printf("%s,exact,1,%.3f,%.3f,%.0f,0,0,0,0,1\n", name.c_str(), exact_ms, device, rays);
+    if (compared > 0) std::printf("%s,exact,1,%.3f,%.3f,%.0f,0,0,0,0,1,0\n", name.c_str(), exact_ms, device, rays);
 
     for (const std::uint64_t size : options.sizes)
-      for (const bool overlap : {false, true}) {
-        const SampleOptions sample{.voxels = size, .overlap = overlap, .stop_at_goal = true};
+      for (const auto [overlap, registration] : {Kind{false, false}, {true, false}, {true, true}}) {
+        SampleOptions sample{.voxels = size, .overlap = overlap, .stop_at_goal = true};
+        if (registration) sample.registration = RegistrationModel{};
+        sample.registration_groups = false;  // as in a search
         double best = std::numeric_limits<double>::infinity(), device_ms = 0;
         std::vector<NetworkCounts> counts;
         std::vector<Objectives> objectives(networks.size());
@@ -104,6 +113,11 @@ void run_population(const PopulationOptions& options) {
             const Estimate o = overlap_estimate(counts[k], population);
             objectives[k].overlap = o.value;
             objectives[k].overlap_se = o.standard_error;
+          }
+          if (registration) {
+            std::vector<double> errors(counts.size());
+            tbb::parallel_for(std::size_t{0}, counts.size(),
+                              [&](std::size_t k) { errors[k] = registration_error(counts[k], population).rms_m; });
           }
           const double ms = watch.seconds() * 1e3;
           if (ms < best) {
@@ -122,10 +136,11 @@ void run_population(const PopulationOptions& options) {
           overlap_se.push_back(objectives[k].overlap_se);
         }
         const double n = static_cast<double>(networks.size());
-        std::printf("%s,%llu,%d,%.4f,%.4f,%.0f,%.5f,%.5f,%.5f,%.5f,%.1f\n", name.c_str(),
+        std::printf("%s,%llu,%d,%.4f,%.4f,%.0f,%.5f,%.5f,%.5f,%.5f,%.1f,%d\n", name.c_str(),
                     static_cast<unsigned long long>(size), overlap, best / n, device_ms / n, sampled_rays,
                     compared ? rms(coverage_error) : 0, compared ? rms(overlap_error) : 0,
-                    compared ? rms(coverage_se) : 0, compared ? rms(overlap_se) : 0, exact_ms / (best / n));
+                    compared ? rms(coverage_se) : 0, compared ? rms(overlap_se) : 0, exact_ms / (best / n),
+                    registration);
         std::fflush(stdout);
       }
   }

@@ -22,6 +22,7 @@
 #include "simulated_adjustment.hpp"
 #include "sites/site.hpp"
 #include "vantage/error.hpp"
+#include "vantage/export.hpp"
 #include "vantage/measure.hpp"
 #include "vantage/placement.hpp"
 
@@ -35,6 +36,7 @@ struct Options {
   std::size_t stations = 6, pool = 18, networks = 30, trials = 20, points = 3000;
   std::uint64_t sample = 20'000, seed = 1;
   double step_deg = 0.25, user_size_m = 0.15, connected = 0.02;
+  std::vector<std::string> plans;  // tables of stations: networks that are given
 };
 
 std::vector<double> ranks(const std::vector<double>& values) {
@@ -172,6 +174,25 @@ std::vector<std::size_t> draw_network(const std::vector<Vec3>& heads, std::size_
   return network;
 }
 
+// Networks, as places in a pool of heads.
+struct Pool {
+  std::vector<Vec3> heads = {};
+  std::vector<std::vector<std::size_t>> given = {};
+};
+
+Pool read_plans(const std::vector<std::string>& files) {
+  Pool pool;
+  for (const std::string& file : files) {
+    std::vector<std::size_t>& network = pool.given.emplace_back();
+    for (const StationRow& row : read_stations_csv(file)) {
+      if (!row.position) throw Error(Errc::invalid_argument, file + ": a station without x, y and z");
+      network.push_back(pool.heads.size());
+      pool.heads.push_back(*row.position);
+    }
+  }
+  return pool;
+}
+
 void run(const Options& o) {
   const test::Site site = test::make_site(o.site);
   const auto file = std::filesystem::temp_directory_path() / fmt::format("registration_{}_{}.glb", o.site, o.seed);
@@ -188,7 +209,10 @@ void run(const Options& o) {
       scene, scanner,
       {.engine = Engine::embree, .user_size_m = o.user_size_m, .point_spacing_m = 0.05, .noise = false});
   std::mt19937_64 random(o.seed);
-  const std::vector<Vec3> heads = draw_heads(site, scene, scanner, o.pool, random);
+  Pool pool = read_plans(o.plans);
+  if (pool.given.empty()) pool.heads = draw_heads(site, scene, scanner, o.pool, random);
+  const std::vector<Vec3>& heads = pool.heads;
+  const std::size_t networks = pool.given.empty() ? o.networks : pool.given.size();
   std::vector<ThinnedScan> scans;
   for (const Vec3& head : heads) scans.push_back(thinned_scan(simulator, head));
   std::vector<Neighbours> neighbours(scans.begin(), scans.end());
@@ -214,9 +238,10 @@ void run(const Options& o) {
   const OverlapMatrix of_pairs = overlaps_of(scans);
   std::set<std::vector<std::size_t>> taken;
   std::size_t drawn = 0;
-  for (std::size_t k = 0; k < o.networks; ++k) {
+  for (std::size_t k = 0; k < networks; ++k) {
     std::vector<std::size_t> picked;
-    for (int tries = 0;; ++tries, ++drawn) {
+    if (!pool.given.empty()) picked = pool.given[k];
+    for (int tries = 0; pool.given.empty(); ++tries, ++drawn) {
       if (tries > 100'000) throw Error(Errc::invalid_argument, "too few networks are connected; use more stations");
       picked = draw_network(heads, o.stations, k, random);
       std::sort(picked.begin(), picked.end());
@@ -266,7 +291,11 @@ void run(const Options& o) {
       if (csv) csv << fmt::format(",{:.5f}", figure.values[f]);
     }
     if (csv) csv << std::endl;
+    if (!pool.given.empty())
+      std::printf("%s: true error %.2f mm, predicted %.2f ± %.2f mm, clustering coefficient %.3f\n", o.plans[k].c_str(),
+                  1e3 * e, 1e3 * predicted.value, 1e3 * predicted.standard_error, figure.values.back());
   }
+  if (!pool.given.empty()) return;
   std::printf("%zu connected networks of %zu stations (%zu drawn in all), %zu trials each\n", o.networks, o.stations,
               drawn + o.networks, o.trials);
   std::printf("true error %.2f to %.2f mm, 10 %% to 90 %%: a factor of %.1f\n", quantile(true_mm, 0),
@@ -295,6 +324,8 @@ int main(int argc, char** argv) {
   app.add_option("--user-size", o.user_size_m, "Of voxels, metres");
   app.add_option("--connected", o.connected, "Least overlap of the weakest link of the strongest tree");
   app.add_option("--seed", o.seed, "Of places, networks and trials");
+  app.add_option("--plan", o.plans,
+                 "A table of stations, as stations.csv of a plan: adjust this network, and none drawn");
   app.add_option("--csv", o.csv, "Write a line for each network");
   CLI11_PARSE(app, argc, argv);
   try {
