@@ -55,6 +55,8 @@ struct Keeper {
     for (const auto& [id, placed, locked] : stations)
       rows.push_back({{"position", {placed.position.x, placed.position.y, placed.position.z}},
                       {"uv", {placed.uv.u, placed.uv.v}},
+                      {"heading", placed.setup.heading.in_degrees()},
+                      {"tilt", placed.setup.tilt.in_degrees()},
                       {"locked", locked}});
     write_text(file, nlohmann::json{{"scene", scene}, {"stations", rows}}.dump(2) + "\n");
   }
@@ -75,6 +77,8 @@ struct Keeper {
         const auto& uv = row.at("uv");
         const auto placed = place(site, {{.position = Vec3{p.at(0), p.at(1), p.at(2)}, .uv = Uv{uv.at(0), uv.at(1)}}});
         stations.push_back({.placed = placed.front().placed, .locked = row.at("locked")});
+        stations.back().placed.setup = {.heading = Angle::degrees(row.at("heading")),
+                                        .tilt = Angle::degrees(row.at("tilt"))};
       }
     } catch (const nlohmann::json::exception& error) {
       throw Error(Errc::malformed_file, file.string() + ": is not what the editor keeps: " + error.what());
@@ -111,14 +115,14 @@ int edit(CLI::App& command, EditCommandOptions& options, Program& program) {
       stations.push_back({.placed = station.placed});
     }
   }
-  Simulator simulator(site.scene, site.scanner, site.config);
+  Simulator simulator(site.scene, site.scanners, site.config);
   tell_engine(simulator);
   tell_grid(simulator);
   if (options.link_overlap) options.edit.link_overlap = *options.link_overlap;
   if (options.sample) options.edit.voxels = options.sample->of(simulator.voxel_count());
   const auto save = [&](const std::vector<PlacedStation>& placed, const NetworkCounts& counts, const VoxelField& field,
                         const Progress& progress) {
-    write_stations_csv(folder / "stations.csv", placed);
+    write_stations_csv(folder / "stations.csv", placed, simulator.scanners());
     const auto judged = judge_missed(site, simulator, field, program);
     if (progress.stopped()) return;
     write_reports(std::vector<std::filesystem::path>{folder / "report.html", folder / "report.pdf"},

@@ -134,11 +134,12 @@ void EditSession::change(const json& request) {
   bool dragging = false;
   if (what == "move") {
     if (flag_of(request, "end")) keep_(stations_);  // of the drag so far, should it end off the ground
-    const PlacedStation ground = on_ground(request.value("to", json()));
+    PlacedStation ground = on_ground(request.value("to", json()));
     EditStation& station = with_id(request);
     if (station.locked) throw Error(Errc::invalid_argument, "this station is locked");
     dragging = request.contains("begin") && !flag_of(request, "begin");
     if (!dragging) remember();
+    ground.setup = station.placed.setup;
     station.placed = ground;
   } else if (what == "add") {
     if (stations_.size() >= max_stations)
@@ -218,7 +219,7 @@ void EditSession::measure() {
   for (std::size_t k = 0; k < stations_.size(); ++k) {
     const PlacedStation& placed = stations_[k].placed;
     if (!active(placed) || std::ranges::count(traced_, k, &Traced::place) > 0) continue;
-    Network network(stations_.size(), {.position = placed.position, .active = false});
+    Network network(stations_.size(), {.position = placed.position, .active = false, .setup = placed.setup});
     network[k].active = true;
     alone.push_back(std::move(network));
     fresh.push_back({.place = k, .id = stations_[k].id, .head = placed.position, .points = {}});
@@ -293,13 +294,18 @@ void EditSession::trace_exactly(const Progress& progress, const std::function<vo
 // A short search from where the stations are, for more coverage and no more parts than now.
 void EditSession::improve(const Progress& progress) {
   std::vector<Vec3> kept, start;
-  for (const EditStation& s : stations_) (s.locked ? kept : start).push_back(s.placed.position);
+  std::vector<StationSetup> kept_setups;
+  for (const EditStation& s : stations_) {
+    (s.locked ? kept : start).push_back(s.placed.position);
+    if (s.locked) kept_setups.push_back(s.placed.setup);
+  }
   if (start.empty()) throw Error(Errc::invalid_argument, "all stations are locked");
   const std::size_t parts = connectivity(overlap_matrix(counts_), options_.link_overlap).parts;
   const double before = coverage(counts_, simulator_.goal_density());
   const std::string names[] = {"coverage"};
   SurveyProblem problem = survey_problem(names, start.size(), start.size(), options_.link_overlap);
   problem.kept = kept;
+  problem.kept_setups = kept_setups;
   problem.requirements = {
       make_requirement("parts<=" + std::to_string(std::max<std::size_t>(parts, 1)), problem.settings())};
   const PlanConfig config{.iterations = 1'000'000,
@@ -322,8 +328,12 @@ void EditSession::improve(const Progress& progress) {
   }
   remember();
   std::size_t next = kept.size();  // kept ones come first
-  for (EditStation& s : stations_)
-    if (!s.locked) s.placed = best->stations[next++];
+  for (EditStation& s : stations_) {
+    if (s.locked) continue;
+    PlacedStation placed = best->stations[next++];
+    placed.setup = s.placed.setup;
+    s.placed = placed;
+  }
   measure();
   keep_(stations_);
   message_ = "improved";

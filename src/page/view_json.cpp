@@ -60,7 +60,7 @@ CellColours sampled_colours(const CoverageCells& cells, std::span<const PlacedSt
   std::vector<std::size_t> number;
   for (std::size_t k = 0; k < stations.size(); ++k) {
     if (!active(stations[k])) continue;
-    alone.push_back({{.position = stations[k].position}});
+    alone.push_back({{.position = stations[k].position, .setup = stations[k].setup}});
     number.push_back(k);
   }
   std::vector<std::uint32_t> counts(ranks.size(), 0);
