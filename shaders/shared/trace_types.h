@@ -213,11 +213,11 @@ struct SampleItem {
 };
 VANTAGE_CONST uint sample_part = 64;
 // Control words of one chunk.
-VANTAGE_CONST uint control_rays = 0;   // listed at first, or wanted: more than the capacity means that the chunk must be cut
+VANTAGE_CONST uint control_rays = 0;   // listed at first, or wanted: where there is no room, the chunk must be cut
 VANTAGE_CONST uint control_parts = 1;  // that the sights would have; likewise
 VANTAGE_CONST uint control_sights = 2;
-VANTAGE_CONST uint control_items = 3;      // parts that are looked at
-VANTAGE_CONST uint control_rest = 4;       // rays listed of these
+VANTAGE_CONST uint control_items = 3;     // parts that are looked at
+VANTAGE_CONST uint control_rest = 4;      // rays listed of these
 VANTAGE_CONST uint control_dispatch = 5;  // three words
 VANTAGE_CONST uint control_words = 8;
 struct SamplePush {
