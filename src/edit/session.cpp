@@ -232,17 +232,20 @@ void EditSession::measure() {
                                         }});
   std::ranges::move(fresh, std::back_inserter(traced_));
   std::vector<std::uint32_t> points(sample_.size(), 0);
-  std::vector<std::uint64_t> masks(sample_.size(), 0);
+  std::vector<std::uint64_t> masks(sample_.size() * mask_words(stations_.size()), 0);
+  std::vector<Seer> seen_by(sample_.size(), 0);
   for (const Traced& traced : traced_) {
     if (!active(stations_[traced.place].placed)) continue;
     for (std::size_t i = 0; i < traced.points.size(); ++i) {
       points[i] += traced.points[i];
-      if (traced.points[i] > 0) masks[i] |= std::uint64_t{1} << traced.place;
+      if (traced.points[i] == 0) continue;
+      masks[traced.place / mask_bits * sample_.size() + i] |= std::uint64_t{1} << (traced.place % mask_bits);
+      seen_by[i] = together(seen_by[i], static_cast<Seer>(traced.place + 1));
     }
   }
   counts_ = reduce_sample(points, masks, kGroups, static_cast<std::uint32_t>(stations_.size()),
                           simulator_.goal_density(), weights_);
-  colours_ = cell_colours(cells_, sample_, points, masks, simulator_.goal_density());
+  colours_ = cell_colours(cells_, sample_, points, seen_by, simulator_.goal_density());
 }
 
 void EditSession::start(const std::string& what, std::function<void(const Progress&)> work) {
@@ -275,12 +278,12 @@ void EditSession::trace_exactly(const Progress& progress, const std::function<vo
   NetworkCounts counts = simulator_.evaluate(all, {.field = &field}, progress);
   if (counts.cancelled) return;
   std::vector<std::uint32_t> points;
-  std::vector<std::uint64_t> masks;
+  std::vector<Seer> seen_by;
   for (const std::uint32_t rank : cells_.ranks) {
     points.push_back(field.count[rank]);
-    masks.push_back(field.stations[rank]);
+    seen_by.push_back(seer_of(field, rank));
   }
-  CellColours colours = cell_colours(cells_, cells_.ranks, points, masks, simulator_.goal_density());
+  CellColours colours = cell_colours(cells_, cells_.ranks, points, seen_by, simulator_.goal_density());
   {
     const std::scoped_lock lock(mutex_);
     counts_ = std::move(counts), colours_ = std::move(colours), exact_ = true;

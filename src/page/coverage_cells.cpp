@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <unordered_map>
 
@@ -98,6 +99,15 @@ void spread(const CoverageCells& cells, std::vector<bool> known, Give&& give) {
 }
 
 }  // namespace
+
+Seer seer_of(const VoxelField& field, std::uint32_t rank) {
+  Seer seer = 0;
+  std::size_t first = 1;
+  for (std::size_t at = rank; at < field.stations.size(); at += field.count.size(), first += mask_bits)
+    for (std::uint64_t mask = field.stations[at]; mask != 0; mask &= mask - 1)
+      seer = together(seer, static_cast<Seer>(first + static_cast<std::size_t>(std::countr_zero(mask))));
+  return seer;
+}
 
 CellColours cell_colours(const CoverageCells& cells, std::span<const std::uint32_t> ranks,
                          std::span<const std::uint32_t> counts, std::span<const Seer> seen_by, double goal_density) {

@@ -34,6 +34,8 @@ CoverageCells coverage_cells(const Simulator& simulator, std::uint64_t voxels, s
 using Seer = std::uint16_t;
 inline constexpr Seer several_stations = 0xFFFF;
 constexpr Seer together(Seer a, Seer b) { return a == 0 || a == b ? b : b == 0 ? a : several_stations; }
+// Of a voxel; 0 where the field has no masks.
+Seer seer_of(const VoxelField& field, std::uint32_t rank);
 
 // What a network left in the cells, a byte each.
 struct CellColours {

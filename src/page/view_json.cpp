@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "page/coverage_cells.hpp"
@@ -83,12 +82,7 @@ CellColours exact_colours(const CoverageCells& cells, const VoxelField& field, d
   std::vector<Seer> seen_by;
   for (const std::uint32_t rank : cells.ranks) {
     counts.push_back(field.count[rank]);
-    Seer seer = 0;
-    std::size_t first = 1;
-    for (std::size_t at = rank; at < field.stations.size(); at += field.count.size(), first += mask_bits)
-      for (std::uint64_t mask = field.stations[at]; mask != 0; mask &= mask - 1)
-        seer = together(seer, static_cast<Seer>(first + static_cast<std::size_t>(std::countr_zero(mask))));
-    seen_by.push_back(seer);
+    seen_by.push_back(seer_of(field, rank));
   }
   return cell_colours(cells, cells.ranks, counts, seen_by, goal_density);
 }
