@@ -164,8 +164,8 @@ TEST_F(Results, StationsMayLieAndHaveScannersOfTheirOwn) {
   EXPECT_EQ(typed["stations"], stations);
   // A head that lies sees what is above and below, and not what is at its side.
   EXPECT_NE(stations[0]["points"], json_of(coarse("evaluate", {"--station", "8,0,1.5"}))["stations"][0]["points"]);
-  expect_refused(run_program(coarse("evaluate", {"--station", "x=8,y=0,z=1.5,scanner=rtc306"})), 1, "rtc360");
-  expect_refused(run_program(coarse("evaluate", {"--station", "x=8,y=0,z=1.5,step=0"})), 1, "azimuth_step");
+  expect_refused(run_program(coarse("evaluate", {"--station", "x=8,y=0,z=1.5,scanner=rtc306"})), 2, "rtc360");
+  expect_refused(run_program(coarse("evaluate", {"--station", "x=8,y=0,z=1.5,step=0"})), 2, "azimuth_step");
 }
 
 TEST_F(Results, SurveyorsTablesAreRead) {
