@@ -98,7 +98,8 @@ void main() {
   const SampleStation station = push.stations.at[sight.slot];
   if (push.stop_at > 0u && push.counts.at[station.network * push.voxel_count + sight.voxel] >= push.stop_at) {
     if (push.mask_words == 0u) return;
-    const uint word = (station.network * push.mask_words + ((station.place & 63u) >> 5)) * push.voxel_count + sight.voxel;
+    const uint words = station.network * push.mask_words + ((station.place & 63u) >> 5);
+    const uint word = words * push.voxel_count + sight.voxel;
     if ((push.masks.at[word] >> (station.place & 31u) & 1u) != 0u) return;
   }
   const uint parts = (sight.count - sight.walked + sample_part - 1u) / sample_part;

@@ -294,7 +294,7 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
   if (options.with_registration) summary.registration_mm = 1e3 * registered.value;
   std::optional<Visit> visit;
   if (site.has_area()) {
-    visit = OnSite(site.area(), site.clash(), site.scanner, options.on_site.settle(site)).visit(placed);
+    visit = OnSite(site.area(), site.clash(), simulator.scanners(), options.on_site.settle(site)).visit(placed);
     summary.seconds_on_site = 60 * visit->minutes;
   }
   summary.faults = station_faults(placed, names);

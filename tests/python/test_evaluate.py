@@ -97,7 +97,7 @@ class Evaluations(unittest.TestCase):
         self.assertIsNone(found.to_dict()["overlap"])
 
     def test_bad_stations_are_refused(self):
-        for stations, text in [([[0, 0]], r"stations: .* \(1, 2\)"), ([], "stations"), (np.zeros((65, 3)), "64")]:
+        for stations, text in [([[0, 0]], r"stations: .* \(1, 2\)"), ([], "stations"), (np.zeros((1025, 3)), "1024")]:
             with self.assertRaisesRegex(vantage.Error, text):
                 self.simulator.evaluate(stations)
 

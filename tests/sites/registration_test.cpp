@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "sites/site.hpp"
@@ -19,7 +20,7 @@ struct SurveyedOffice {
     const test::TemporaryFolder folder;
     const test::Site site = test::make_site("office", variant);
     test::write_site(site, variant, folder / "site.glb");
-    scene = Scene::load(folder / "site.glb");
+    scene.emplace(Scene::load(folder / "site.glb"));
     for (const test::Place& place : site.places) {
       const Vec3 ground = site.offset + Vec3{(place.x0 + place.x1) / 2, (place.y0 + place.y1) / 2, place.z};
       if (network.size() < 10 && site.at(ground).surface == test::Surface::floor)
@@ -29,10 +30,10 @@ struct SurveyedOffice {
   Simulator simulator(std::uint64_t seed) const {
     Scanner scanner;
     scanner.azimuth_step = scanner.zenith_step = Angle::degrees(0.25);
-    return Simulator(scene, scanner,
+    return Simulator(*scene, scanner,
                      {.engine = Engine::embree, .user_size_m = 0.1, .point_spacing_m = 0.05, .seed = seed});
   }
-  Scene scene = Scene::from_triangles({}, {});
+  std::optional<Scene> scene;
   Network network;
 };
 

@@ -217,13 +217,13 @@ class VulkanTracer::ExactCount {
     result.points_on_surveyed.assign(station_counts_[0], 0);
     if (!options_.skip) result.points.assign(station_counts_[0], 0);
     if (t_.limited()) result.dropped.assign(station_counts_[0], {});
-    for (const TraceStation& each : stations_) {
-      const std::uint64_t* const own = counters_.data() + std::size_t{station_counters} * each.bit();
-      if (!options_.skip) result.points[each.bit()] = own[counter_points];
-      result.points_on_surveyed[each.bit()] = own[counter_counted];
+    for (std::uint32_t bit = 0; bit < station_counts_[0]; ++bit) {
+      const std::uint64_t* const own = counters_.data() + std::size_t{station_counters} * bit;
+      if (!options_.skip) result.points[bit] = own[counter_points];
+      result.points_on_surveyed[bit] = own[counter_counted];
       if (t_.limited())
-        result.dropped[each.bit()] = {own[counter_dropped], own[counter_misses], own[counter_misses + 1],
-                                      own[counter_misses + 2]};
+        result.dropped[bit] = {own[counter_dropped], own[counter_misses], own[counter_misses + 1],
+                               own[counter_misses + 2]};
     }
     result.rays = options_.skip ? tile_rays_ : all_rays_;
   }

@@ -264,12 +264,13 @@ TEST_F(Results, MemoryIsAsEstimated) {
   const double size = 0.004;
   const MemoryEstimate estimate = estimate_memory(Scene::load(scene_), size);
   ASSERT_GT(estimate.voxels, 8'000'000u);
-  const auto options = {"--user-size", "0.004", "--spacing", "0.002"};
-  std::vector<std::string> more(options.begin(), options.end());
-  more.insert(more.end(), {"--memory", std::to_string(estimate.bytes - 1)});
-  expect_refused(run_program(evaluate(more)), 1, "would fit");
-  more.back() = std::to_string(estimate.bytes);
-  EXPECT_EQ(run_program(evaluate(more)).exit_code, 0);
+  std::vector<std::string> command{"evaluate", scene_};
+  command.insert(command.end(), four_heads.begin(), four_heads.end());
+  command.insert(command.end(), {"--engine", "embree", "--step", "1", "--user-size", "0.004", "--spacing", "0.002",
+                                 "--memory", std::to_string(estimate.bytes - 1)});
+  expect_refused(run_program(command), 1, "would fit");
+  command.back() = std::to_string(estimate.bytes);
+  EXPECT_EQ(run_program(command).exit_code, 0);
   rusage used{};
   getrusage(RUSAGE_CHILDREN, &used);
   EXPECT_NEAR(static_cast<double>(used.ru_maxrss) * 1024 / static_cast<double>(estimate.bytes), 1, 0.2);

@@ -445,7 +445,7 @@ TEST(Registration, SumsOfLargeNetworksAreThoseOfTheSameStationsInASmallOne) {
   const Patches patches = made.patches();
   constexpr std::uint32_t groups = 5, large = 150;
   const std::vector<TraceStation> few = made.stations();
-  const std::vector<RegistrationSums> small = sum_patches(patches, {}, few, 3, made.masks, groups);
+  const std::vector<RegistrationSums> small = sum_patches(patches, scanner_with({}), few, 3, made.masks, groups);
 
   const std::array<std::uint32_t, 3> places{3, 70, 149};
   std::vector<TraceStation> many = few;
@@ -455,7 +455,7 @@ TEST(Registration, SumsOfLargeNetworksAreThoseOfTheSameStationsInASmallOne) {
     for (std::size_t k = 0; k < made.masks.size(); ++k)
       masks[places[s] / 64 * made.masks.size() + k] |= (made.masks[k] >> s & 1) << (places[s] % 64);
   }
-  const std::vector<RegistrationSums> sums = sum_patches(patches, {}, many, large, masks, groups);
+  const std::vector<RegistrationSums> sums = sum_patches(patches, scanner_with({}), many, large, masks, groups);
   ASSERT_EQ(sums.size(), small.size());
   constexpr std::size_t of_pair = RegistrationSums::of_pair, of_station = RegistrationSums::of_station;
   for (std::size_t g = 0; g < sums.size(); ++g) {

@@ -204,7 +204,7 @@ TEST(Bound, SaysWhereNothingHangsTogether) {
   EXPECT_TRUE(none.chosen.empty());
   EXPECT_EQ(none.reached.value, 0);
   EXPECT_THROW(bound_linked_capture(rows, 3, std::vector<RowLink>{{0, 6}}), Error);
-  EXPECT_THROW(bound_linked_capture(rows, 65, {}), Error);
+  EXPECT_THROW(bound_linked_capture(rows, max_stations + 1, {}), Error);
 }
 
 TEST(Bound, RefusesWhatMakesNoSense) {

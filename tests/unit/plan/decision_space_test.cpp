@@ -167,7 +167,7 @@ TEST(DecisionSpace, RefusesWhatCannotBe) {
   refused(stations(0, 0), "at least one");
   refused(stations(5, 4), "5 is above stations_max 4");
   refused(stations(4, 1025), "1025 were asked for");
-  SurveyProblem config = stations(4, 64);
+  SurveyProblem config = stations(4, 1024);
   config.kept = {{1, 1, 1}};
   refused(config, "1025 were asked for");
   config = stations(4, 4);
