@@ -5,20 +5,23 @@
 
 #include <cmath>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "sites/site.hpp"
 #include "support/temporary_folder.hpp"
+#include "vantage/candidates.hpp"
 #include "vantage/measure.hpp"
+#include "vantage/planner.hpp"
 
 namespace vantage {
 namespace {
 
-// An office floor, and a station in the middle of each of its first rooms where one can stand.
-struct SurveyedOffice {
-  explicit SurveyedOffice(const test::Variant& variant) {
+// A place, and a station in the middle of each of its first rooms where one can stand.
+struct Surveyed {
+  explicit Surveyed(const std::string& name, const test::Variant& variant = {}) {
     const test::TemporaryFolder folder;
-    const test::Site site = test::make_site("office", variant);
+    const test::Site site = test::make_site(name, variant);
     test::write_site(site, variant, folder / "site.glb");
     scene.emplace(Scene::load(folder / "site.glb"));
     for (const test::Place& place : site.places) {
@@ -37,29 +40,37 @@ struct SurveyedOffice {
   Network network;
 };
 
-TEST(Registration, OfASampleOf20kIsThatOfTheWholeTo5Percent) {
-  const SurveyedOffice office({});
-  ASSERT_GE(office.network.size(), 6u);
-  Simulator all = office.simulator(1);
+// How far off a sample is depends on how many voxels hold the weakest stations; that it is as far off as it says does
+// not.
+TEST(Registration, OfASampleIsAsFarOffAsItsStandardErrorSays) {
+  Surveyed plant("plant");
+  Simulator all = plant.simulator(1);
   ASSERT_GT(all.voxel_count(), 100'000u);
-  const NetworkCounts exact = all.evaluate(office.network, {.registration = RegistrationModel{}});
+  const ClashChecker clash(*plant.scene);
+  plant.network = to_network(candidate_positions(SearchArea::build(*plant.scene), clash, all.scanner(), 8));
+  const NetworkCounts exact = all.evaluate(plant.network, {.registration = RegistrationModel{}});
   const double truth = registration_error(exact, exact.voxels).rms_m;
-  double squares = 0;
+  double squares = 0, told = 0;
   constexpr int draws = 20;
   for (std::uint64_t seed = 1; seed <= draws; ++seed) {
-    Simulator simulator = office.simulator(seed);
+    Simulator simulator = plant.simulator(seed);
     const NetworkCounts counts =
-        simulator.evaluate_sampled({&office.network, 1}, {.voxels = 20'000, .registration = RegistrationModel{}})[0];
+        simulator.evaluate_sampled({&plant.network, 1}, {.voxels = 20'000, .registration = RegistrationModel{}})[0];
     const Estimate estimate = registration_estimate(counts, exact.voxels);
-    squares += std::pow(estimate.value / truth - 1, 2);
+    squares += std::pow(estimate.value - truth, 2) / draws;
+    told += std::pow(estimate.standard_error, 2) / draws;
   }
-  EXPECT_LT(std::sqrt(squares / draws), 0.05) << truth;
+  RecordProperty("percent_off", std::to_string(100 * std::sqrt(squares) / truth));
+  EXPECT_LT(std::sqrt(squares), 0.2 * truth);
+  // Twenty draws know a variance to a third or so, and the told ones scatter as well.
+  EXPECT_GT(squares, 0.35 * told);
+  EXPECT_LT(squares, 2.8 * told);
 }
 
 TEST(Registration, IsTheSameThousandsOfKilometresFromTheOrigin) {
-  const SurveyedOffice here({}), far({.utm = true});
+  const Surveyed here("office"), far("office", {.utm = true});
   ASSERT_GT(far.network.front().position.y, 5e6);
-  const auto error = [](const SurveyedOffice& office) {
+  const auto error = [](const Surveyed& office) {
     Simulator simulator = office.simulator(1);
     const NetworkCounts counts = simulator.evaluate(office.network, {.registration = RegistrationModel{}});
     return registration_error(counts, counts.voxels);
