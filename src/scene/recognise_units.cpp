@@ -351,10 +351,11 @@ struct UnitChoice {
 
 UnitChoice choose_unit(const SceneEvidence& evidence, const std::array<std::vector<Run>, 3>& runs, int up) {
   constexpr double kAbsurd_m = 3000, kLeast_m = 0.5, kMost_m = 20'000;
+  constexpr double kWide_m = 800, kTall_m = 250;  // at once: mountains, which have no flat faces, but no site
   const Vec3 size = evidence.bounds.size();
   const double extent = std::max({size.x, size.y, size.z});
   const std::string as_metres = rounded(size.x) + " x " + rounded(size.y) + " x " + rounded(size.z) + " m";
-  const bool absurd = extent > kAbsurd_m;
+  const bool absurd = extent > kAbsurd_m || (extent > kWide_m && along(size, up) > kTall_m);
   std::array<Case, kUnits.size()> cases;
   std::size_t best = 0, second = 0;
   for (std::size_t i = 0; i < kUnits.size(); ++i) {
@@ -376,7 +377,7 @@ UnitChoice choose_unit(const SceneEvidence& evidence, const std::array<std::vect
   if (votes == 0 && metre_votes == 0 && like_a_machine(evidence))
     return {Unit::millimetre,
             "lengths are taken as millimetres, as those of a machine are (in metres it would be " + as_metres + ")"};
-  if (absurd) return {Unit::metre, "it is " + as_metres + " large if its lengths are metres, as glTF says"};
+  if (extent > kAbsurd_m) return {Unit::metre, "it is " + as_metres + " large if its lengths are metres, as glTF says"};
   return {};
 }
 

@@ -67,7 +67,7 @@ TEST(RecogniseUnits, FindsTheUnitOfThingsByTheirNames) {
 TEST(RecogniseUnits, OneSignIsEnoughOnlyWhereMetresAreAbsurd) {
   EXPECT_EQ(recognised(bare_room(1000)).unit, Unit::millimetre);  // ten kilometres; a storey is 2.7 m high
   EXPECT_EQ(recognised(bare_room(1 / 0.3048)).unit, Unit::metre);
-  EXPECT_EQ(recognised(bare_room(100)).unit, Unit::metre);
+  EXPECT_EQ(recognised(bare_room(100)).unit, Unit::centimetre);  // a kilometre wide and 300 m high
   EXPECT_EQ(recognised(bare_room(1)).note, "");
 }
 
@@ -88,6 +88,7 @@ TEST(RecogniseUnits, ADrawingsGridTellsInchesFromPartsOfAMetre) {
   EXPECT_EQ(recognised(drawn_on(10, 4096)).unit, Unit::metre) << "tens are of centimetres as well as of millimetres";
   EXPECT_EQ(recognised(drawn_on(7, 4096)).unit, Unit::metre);
   EXPECT_EQ(recognised(drawn_on(8.02, 4096)).unit, Unit::metre);
+  EXPECT_EQ(recognised(drawn_on(8, 1800)).unit, Unit::inch) << "540 m high";
   EXPECT_EQ(recognised(drawn_on(8, 400)).unit, Unit::metre) << "one sign is not enough where metres may be right";
 }
 
