@@ -309,10 +309,10 @@ Case unit_case(const SceneEvidence& evidence, const std::array<std::vector<Run>,
   if (within(storey.height, 2.2, 4.5) && storey.area > 0.25 * size.x * wide) found.add(1, "the height of a storey");
   const DrawingGrid grid = drawing_grid(evidence);
   if (metres == metres_in(Unit::inch) && grid.eights > 0.5 && grid.eights > 2 * grid.tens)
-    found.add(1, "coordinates that are multiples of 8");
+    found.add(1, "a drawing grid of 8");
   if ((metres == metres_in(Unit::centimetre) || metres == metres_in(Unit::millimetre)) && grid.tens > 0.5 &&
       grid.tens > 2 * grid.eights)
-    found.add(0.5, "coordinates that are multiples of 10");
+    found.add(0.5, "a drawing grid of 10");
   return found;
 }
 

@@ -84,7 +84,7 @@ SceneEvidence drawn_on(double grid, double extent) {
 
 TEST(RecogniseUnits, ADrawingsGridTellsInchesFromPartsOfAMetre) {
   EXPECT_EQ(recognised(drawn_on(8, 4096)).unit, Unit::inch);
-  EXPECT_NE(recognised(drawn_on(8, 4096)).note.find("multiples of 8"), std::string::npos);
+  EXPECT_NE(recognised(drawn_on(8, 4096)).note.find("a drawing grid of 8"), std::string::npos);
   EXPECT_EQ(recognised(drawn_on(10, 4096)).unit, Unit::metre) << "tens are of centimetres as well as of millimetres";
   EXPECT_EQ(recognised(drawn_on(7, 4096)).unit, Unit::metre);
   EXPECT_EQ(recognised(drawn_on(8.02, 4096)).unit, Unit::metre);
