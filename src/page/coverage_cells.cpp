@@ -3,9 +3,10 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <unordered_map>
+
+#include "core/station_masks.hpp"
 
 namespace vantage {
 namespace {
@@ -102,10 +103,8 @@ void spread(const CoverageCells& cells, std::vector<bool> known, Give&& give) {
 
 Seer seer_of(const VoxelField& field, std::uint32_t rank) {
   Seer seer = 0;
-  std::size_t first = 1;
-  for (std::size_t at = rank; at < field.stations.size(); at += field.count.size(), first += mask_bits)
-    for (std::uint64_t mask = field.stations[at]; mask != 0; mask &= mask - 1)
-      seer = together(seer, static_cast<Seer>(first + static_cast<std::size_t>(std::countr_zero(mask))));
+  for_each_station(field.stations, field.count.size(), rank,
+                   [&](std::size_t station) { seer = together(seer, static_cast<Seer>(station + 1)); });
   return seer;
 }
 

@@ -3,12 +3,12 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <string>
 #include <vector>
 
 #include "core/atomic_file.hpp"
+#include "core/station_masks.hpp"
 #include "core/text.hpp"
 #include "report/ply_header.hpp"
 #include "report/point_sink.hpp"
@@ -30,22 +30,23 @@ std::vector<float> errors_of(const Simulator& simulator, const VoxelField& field
   tbb::parallel_for(std::size_t{0}, ranks.size(), [&](std::size_t k) {
     const Vec3 place = simulator.voxel_centre(ranks[k]) - simulator.origin();
     double squares = 0;
-    std::uint64_t mask = field.stations[ranks[k]];
-    const int seen = std::popcount(mask);
-    for (; mask != 0; mask &= mask - 1) {
-      const double one = error.at(static_cast<std::size_t>(std::countr_zero(mask)), place);
+    int seen = 0;
+    for_each_station(field.stations, simulator.voxel_count(), ranks[k], [&](std::size_t station) {
+      const double one = error.at(station, place);
       squares += one * one;
-    }
+      ++seen;
+    });
     found[k] = seen > 0 ? static_cast<float>(1000 * std::sqrt(squares / seen)) : -1;
   });
   return found;
 }
 
 void check(const Simulator& simulator, const VoxelField& field) {
-  if (field.stations.size() != simulator.voxel_count())
+  const std::uint64_t voxels = simulator.voxel_count();
+  if (field.stations.size() < voxels || (voxels > 0 && field.stations.size() % voxels != 0))
     throw Error(Errc::invalid_argument, "registration map: the voxel field has stations of " +
                                             std::to_string(field.stations.size()) + " voxels, the scene " +
-                                            std::to_string(simulator.voxel_count()) + " surveyed ones");
+                                            std::to_string(voxels) + " surveyed ones");
 }
 
 double largest(std::span<const float> errors) {
@@ -59,8 +60,11 @@ void write_registration_ply(const std::filesystem::path& file, const Simulator& 
                             const RegistrationError& error) {
   check(simulator, field);
   std::vector<std::uint32_t> ranks;
-  for (std::uint32_t rank = 0; rank < field.stations.size(); ++rank)
-    if (field.stations[rank] != 0) ranks.push_back(rank);
+  for (std::uint32_t rank = 0; rank < simulator.voxel_count(); ++rank) {
+    bool seen = false;
+    for_each_station(field.stations, simulator.voxel_count(), rank, [&](std::size_t) { seen = true; });
+    if (seen) ranks.push_back(rank);
+  }
   const std::vector<float> errors = errors_of(simulator, field, error, ranks);
   const double most = largest(errors);
   AtomicFile out(file);

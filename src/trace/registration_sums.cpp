@@ -6,10 +6,10 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <optional>
 
+#include "core/station_masks.hpp"
 #include "trace/embree/range_noise.hpp"
 #include "trace/exact_arithmetic.hpp"
 #include "trace/target_clones.hpp"
@@ -134,10 +134,8 @@ class Summer {
   // Those that saw a voxel, ascending; how many.
   std::size_t stations_of(std::size_t voxel, std::array<std::uint16_t, max_stations>& seen) const {
     std::size_t many = 0;
-    const std::size_t voxels = patches_.patches.size();
-    for (std::size_t at = voxel, first = 0; first < stations_; at += voxels, first += mask_bits)
-      for (std::uint64_t mask = masks_[at]; mask != 0; mask &= mask - 1)
-        seen[many++] = static_cast<std::uint16_t>(first + static_cast<std::size_t>(std::countr_zero(mask)));
+    for_each_station(masks_, patches_.patches.size(), voxel,
+                     [&](std::size_t station) { seen[many++] = static_cast<std::uint16_t>(station); });
     return many;
   }
 
