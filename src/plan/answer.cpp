@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <tuple>
 
 #include "core/text.hpp"
+#include "plan/limits.hpp"
 #include "vantage/error.hpp"
 #include "vantage/planner.hpp"
 
@@ -27,13 +27,6 @@ double distance(const PlanEntry& entry, const SurveyProblem& problem) {
   double sum = 0;
   for (const double f : scaled_objectives(problem, entry.x, values)) sum += std::isnan(f) ? 1 : f * f;
   return std::sqrt(sum);
-}
-
-std::optional<double> time_limit(const SurveyProblem& problem) {
-  for (const Requirement& requirement : problem.requirements)
-    if (requirement.objective.name == "time" && requirement.bound == Requirement::Bound::at_most)
-      return requirement.limit;
-  return std::nullopt;
 }
 
 }  // namespace
@@ -76,7 +69,7 @@ std::vector<std::string> what_would_help(const PlanResult& result) {
       if (placed >= problem.stations_max)
         help.push_back("more stations than " + std::to_string(problem.stations_max) + " for " + to_string(requirement) +
                        "; these reach " + reached);
-      else if (const auto most = time_limit(problem))
+      else if (const auto most = limit_of(problem, "time", Requirement::Bound::at_most))
         help.push_back("more time than " + number(*most) + " min on site, or a lower " + name + " than " +
                        number(requirement.limit) + "; this reaches " + reached);
       else

@@ -28,11 +28,9 @@ ExactResult exact_network(Simulator& simulator, const SearchArea& area, const Cl
     throw Error(Errc::invalid_argument,
                 "exact: branch and bound is given " + std::to_string(config.max_seconds) + " s, but needs some");
   const Site site = make_site(area, clash, simulator.scanner());
-  std::vector<PlacedStation> stations;
-  for (const Vec3& head : config.fixed) {
-    stations.push_back(site.check_head(head));
-    if (active(stations.back())) stations.back().status = StationStatus::ok;  // rows of others are empty
-  }
+  std::vector<PlacedStation> stations = kept_stations(site, config.fixed, {});
+  for (PlacedStation& one : stations)
+    if (active(one)) one.status = StationStatus::ok;  // rows of others are empty
   const std::size_t kept = stations.size();
   for (const PlacedStation& one : candidate_positions(area, clash, simulator.scanner(), config.candidates))
     stations.push_back(one);

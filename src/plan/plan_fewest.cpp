@@ -14,6 +14,7 @@
 #include "plan/choose_optimiser.hpp"
 #include "plan/drop_networks.hpp"
 #include "plan/fewest_on_rows.hpp"
+#include "plan/limits.hpp"
 #include "plan/spread_positions.hpp"
 
 namespace vantage {
@@ -39,19 +40,8 @@ constexpr std::size_t kRepairs = 3;
 constexpr double kBeyond = 1.25;  // of what was missed, on top
 
 // The limit of an at-least requirement, or 0.
-double limit_of(const SurveyProblem& problem, std::string_view name) {
-  double limit = 0;
-  for (const Requirement& r : problem.requirements)
-    if (r.objective.name == name && r.bound == Requirement::Bound::at_least) limit = std::max(limit, r.limit);
-  return limit;
-}
-
-// How long the survey may take on site; infinite where nothing is said.
-double most_minutes(const SurveyProblem& problem) {
-  double limit = std::numeric_limits<double>::infinity();
-  for (const Requirement& r : problem.requirements)
-    if (r.objective.name == "time" && r.bound == Requirement::Bound::at_most) limit = std::min(limit, r.limit);
-  return limit;
+double least_of(const SurveyProblem& problem, std::string_view name) {
+  return std::max(0.0, limit_of(problem, name, Requirement::Bound::at_least).value_or(0));
 }
 
 class FewestPlan {
@@ -64,11 +54,11 @@ class FewestPlan {
         watch_(watch),
         problem_(run.problem()),
         most_(problem_.stations_max),
-        link_(limit_of(problem_, "link")),
+        link_(least_of(problem_, "link")),
         table_(simulator, link_ > 0 || wants_links() ? &run.surroundings() : nullptr, sample_of(simulator),
-               surroundings_sample(), limit_of(problem_, "apart")) {
+               surroundings_sample(), least_of(problem_, "apart")) {
     const double visible = problem_.visible.value_or(1);
-    coverage_ = std::max(limit_of(problem_, "coverage"), visible * limit_of(problem_, "capture"));
+    coverage_ = std::max(least_of(problem_, "coverage"), visible * least_of(problem_, "capture"));
     coverage_margin_ = kMarginErrors * candidates.visible().standard_error;
   }
 
@@ -82,7 +72,7 @@ class FewestPlan {
     for (std::size_t k = 0; k < kRepairs && best_missed() > 0 && !stopped() && repair(); ++k) {
     }
     const SearchOutcome found = search(stations_of(choice_));
-    take(confirmed(found));
+    take(confirmed(found, choice_.rows.size() - problem_.kept.size()));
     PlanResult result = run_.result(found);
     result.evaluations += traced_;
     result.front = front();
@@ -156,8 +146,9 @@ class FewestPlan {
 
   // Where a round of as many as it takes lasts too long: the most that can be captured by as many as there is time for.
   void fit_time() {
-    const double limit = most_minutes(problem_);
-    if (limit == std::numeric_limits<double>::infinity()) return;
+    const std::optional<double> most = limit_of(problem_, "time", Requirement::Bound::at_most);
+    if (!most) return;
+    const double limit = *most;
     const std::size_t kept = problem_.kept.size();
     const double each = run_.on_site().minutes_per_scan() + run_.on_site().options().set_up_min;
     std::size_t placed = choice_.rows.size() - kept;
@@ -231,20 +222,21 @@ class FewestPlan {
     return found;
   }
 
-  std::vector<PlanEntry> confirmed(const SearchOutcome& found) {
+  // `count`: of the stations that were searched for.
+  std::vector<PlanEntry> confirmed(const SearchOutcome& found, std::size_t count) {
     if (found.front.empty()) return {};
-    const std::size_t each = problem_.heights_m ? 3 : 2;
-    return run_.confirm(found, narrowed(found.front.front().x.size() / each), watch_);
+    return run_.confirm(found, narrowed(count), watch_);
   }
-
+  // A network of which nothing is known yet.
+  std::vector<PlanEntry> confirmed(std::span<const PlacedStation> placed) {
+    SearchOutcome found;
+    found.front.push_back({.x = DecisionSpace(run_.site(), narrowed(placed.size())).encode(placed),
+                           .f = std::vector<double>(problem_.objectives.size(), 2)});
+    return confirmed(found, placed.size());
+  }
   std::vector<PlanEntry> confirmed_choice() {
     const std::vector<PlacedStation> chosen = stations_of(choice_);
-    const SurveyProblem narrow = narrowed(chosen.size() - problem_.kept.size());
-    SearchOutcome found;
-    found.front.push_back(
-        {.x = DecisionSpace(run_.site(), narrow).encode(std::span(chosen).subspan(problem_.kept.size())),
-         .f = std::vector<double>(narrow.objectives.size(), 2)});  // not known
-    return run_.confirm(found, narrow, watch_);
+    return confirmed(std::span(chosen).subspan(problem_.kept.size()));
   }
 
   // Entries of networks that stand where others do already are none.
@@ -271,7 +263,7 @@ class FewestPlan {
     if (!nearest || choice_.missed > 0) return false;
     const auto shortfall = [&](std::string_view name) {
       const auto found = nearest->values.find(std::string(name));
-      const double limit = limit_of(problem_, name);
+      const double limit = least_of(problem_, name);
       return limit > 0 && found != nearest->values.end() ? std::max(0.0, limit - found->second.best_known()) : 0;
     };
     const double coverage = std::max(shortfall("coverage"), shortfall("capture") * problem_.visible.value_or(1));
@@ -327,10 +319,7 @@ class FewestPlan {
     if (one.empty()) one = spread_positions(run_.site(), run_.area().mesh(), run_.site().height_m, 1).stations;
     if (one.empty()) return result;
     one.resize(1);
-    SearchOutcome found;
-    found.front.push_back({.x = DecisionSpace(run_.site(), narrowed(1)).encode(one),
-                           .f = std::vector<double>(problem_.objectives.size(), 2)});
-    result.front = confirmed(found);
+    result.front = confirmed(one);
     result.exact_hypervolume = judge_by_every_ray(result.front, problem_, run_.measures());
     return result;
   }

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/text.hpp"
+#include "plan/limits.hpp"
 
 namespace vantage {
 namespace {
@@ -147,9 +148,7 @@ SurveySummary summary_of(const PlanEntry& entry, const PlanResult& result) {
     if (entry.exact_scan_overlap_matrix.size() == 0) {
       summary.links = summary_links(entry.exact_overlap_matrix, result.problem.link_overlap, used);
     } else {
-      double least = 0;
-      for (const Requirement& requirement : result.problem.requirements)
-        if (requirement.objective.name == "link") least = std::max(least, requirement.limit);
+      const double least = limit_of(result.problem, "link", Requirement::Bound::at_least).value_or(0);
       summary.links = summary_links(entry.exact_scan_overlap_matrix, least, used);
       summary.links->measure = "scan overlap";
     }
