@@ -818,6 +818,7 @@ def plan(
     scheme: Literal["steady-state", "generational"] = "steady-state",
     batch: int = 0,
     sample_voxels: int = 0,
+    sample_from: int = 0,
     start: Sequence[Sequence[float]] = [],
     redraws: int = 8,
     max_seconds: float = 0.0,

@@ -33,7 +33,7 @@ struct PlanOptions {
   bool exact = false, resume = false, force = false, prove = false, no_report = false, json = false;
   double max_seconds = 0, seed_seconds = ExactConfig().max_seconds;
   std::string seed_with;  // nothing, greedy or exact
-  std::optional<SampleSize> sample;
+  std::optional<SampleSize> sample, sample_from;
   std::vector<StationText> start;
   std::optional<std::string> output;
 
@@ -104,6 +104,13 @@ struct PlanOptions {
     add_value(command, "--sample", "N|P%",
               "Search with so many voxels; 20000 for coverage alone, 100000 with overlap otherwise",
               [this](const std::string& text, const std::string& what) { sample = parse_sample(text, what); })
+        ->group("Search")
+        ->excludes(exact_flag);
+    add_value(
+        command, "--sample-from", "N|P%",
+        "Search with so many voxels at first, and with more as networks come to differ less; a front does so from "
+        "a twentieth of the sample where --sample is not given",
+        [this](const std::string& text, const std::string& what) { sample_from = parse_sample(text, what); })
         ->group("Search")
         ->excludes(exact_flag);
     add_text(command, "-o,--output", "DIR", "Folder for the results; the scene's name and -plan otherwise", output)
@@ -402,6 +409,7 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   if (!options.exact)
     config.sample_voxels =
         options.sample ? options.sample->of(simulator.voxel_count()) : default_sample(problem, simulator.voxel_count());
+  if (options.sample_from) config.sample_from = options.sample_from->of(simulator.voxel_count());
   if (!options.seed_with.empty()) {
     if (!options.start.empty())
       throw Error(Errc::invalid_argument, "--seed-with and --start both say where to start: give one");

@@ -78,6 +78,11 @@ void Baseline::tell(std::span<const double> values) {
   common_.settle(members_);
 }
 
+void Baseline::reassess(std::span<const double> values) {
+  common_.reassess(members_, values);
+  common_.settle(members_);
+}
+
 std::vector<ParetoPoint> Baseline::population() const {
   std::vector<ParetoPoint> result;
   for (const Solution& s : members_) result.push_back({s.x, s.f});

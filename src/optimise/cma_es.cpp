@@ -497,6 +497,19 @@ void CmaEs::tell(std::span<const double> values) {
   s.settle();
 }
 
+bool CmaEs::promising(std::span<const double>) const { return true; }
+
+void CmaEs::reassess(std::span<const double> values) {
+  Impl& s = *impl_;
+  s.require_reassessable(values, s.best.x.empty() ? 0 : 1);
+  if (!values.empty()) s.best.f[0] = s.run_best = std::isfinite(values[0]) ? values[0] : kInfinity;
+  // What is at rest is told by differences of values that are not measured alike.
+  s.best_history.clear();
+  s.median_history.clear();
+  s.forget_progress();
+  s.settle();
+}
+
 StopReason CmaEs::stop_reason() const noexcept { return impl_->stop_reason(); }
 const ParetoPoint& CmaEs::best() const noexcept { return impl_->best; }
 std::vector<ParetoPoint> CmaEs::front() const {

@@ -75,6 +75,13 @@ void Common::take(std::span<const double> values) {
   asked_ = 0;
 }
 
+void Common::require_reassessable(std::span<const double> values, std::size_t points) const {
+  require_not_asked("reassess");
+  if (values.size() != points * objectives)
+    fail(name + ": " + std::to_string(values.size()) + " values for a population of " + std::to_string(points) +
+         " points of " + std::to_string(objectives) + " objectives; give all objectives of each");
+}
+
 void Common::judge(StopReason own, std::size_t iterations, const std::function<double()>& hypervolume) {
   const StopReason rule = rules_.judge(config, evaluations, iterations, hypervolume);
   reason_ = own != StopReason::running ? own : rule;

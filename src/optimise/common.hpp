@@ -34,6 +34,9 @@ class Common {
   void require_coordinates(std::span<const std::size_t> coordinates) const;
   // Checks the number of values told and counts them; nothing is asked for then.
   void take(std::span<const double> values);
+  // Of reassess(): checks that no point is asked for and that there is a row for each of `points`.
+  void require_reassessable(std::span<const double> values, std::size_t points) const;
+  void forget_progress() { rules_.begin_anew(); }
 
   // Why the algorithm itself stops, or else which of the rules says so.
   StopReason stop_reason() const { return reason_; }

@@ -480,6 +480,19 @@ void MoCmaEs::tell(std::span<const double> values) {
   s.common.settle(s.members);
 }
 
+bool MoCmaEs::promising(std::span<const double> values) const {
+  const Impl& s = *impl_;
+  if (s.members.empty() || s.common.config.mo.scheme == Scheme::generational) return true;
+  return s.population.admits(values);
+}
+
+void MoCmaEs::reassess(std::span<const double> values) {
+  Impl& s = *impl_;
+  s.common.reassess(s.members, values);
+  s.population.assign(optimise::fitness_of(s.members));
+  s.common.settle(s.members);
+}
+
 StopReason MoCmaEs::stop_reason() const noexcept { return impl_->common.stop_reason(); }
 std::vector<ParetoPoint> MoCmaEs::front() const { return optimise::front_of(optimise::pointers(impl_->members)); }
 std::vector<ParetoPoint> MoCmaEs::population() const {

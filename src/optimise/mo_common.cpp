@@ -63,6 +63,16 @@ std::vector<Solution> MoCommon::take(std::span<const double> values, std::span<c
   return result;
 }
 
+void MoCommon::set_objectives(Solution& solution, std::span<const double> values) {
+  const bool known = std::isfinite(solution.f.front());
+  const double penalty = known ? solution.fitness.front() - solution.f.front() : 0;
+  const bool finite = std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+  for (std::size_t j = 0; j < values.size(); ++j) {
+    solution.f[j] = finite ? values[j] : kInfinity;
+    solution.fitness[j] = solution.f[j] + penalty;
+  }
+}
+
 StopReason MoCommon::judge_population(std::span<const double> values, bool converged) {
   const auto first = values.first(objectives);
   bool equal = !varied_ && std::ranges::equal(first, last_value_);

@@ -30,6 +30,14 @@ class MoCommon : public Common {
   // get +infinity.
   std::vector<Solution> take(std::span<const double> values, std::span<const double> penalties = {});
 
+  // Puts other objectives in the place of the members', and keeps their penalties.
+  template <typename Members>
+  void reassess(Members& members, std::span<const double> values) {
+    require_reassessable(values, members.size());
+    for (std::size_t k = 0; k < members.size(); ++k) set_objectives(members[k], values.subspan(k * objectives, objectives));
+    forget_progress();
+  }
+
   // After every tell(), first: judges the population once an iteration. `converged` tells whether its steps have become
   // too small.
   template <typename Members, typename Converged>
@@ -62,6 +70,7 @@ class MoCommon : public Common {
   Solution load_solution(StateReader& r) const;
 
  private:
+  static void set_objectives(Solution& solution, std::span<const double> values);
   StopReason judge_population(std::span<const double> values, bool converged);
 
   StopReason own_ = StopReason::running;

@@ -18,6 +18,9 @@ class StopRules {
   StopReason judge(const OptimiserConfig& config, std::size_t evaluations, std::size_t iterations,
                    const std::function<double()>& hypervolume);
 
+  // The hypervolumes so far do not compare with those to come.
+  void begin_anew() { steps_.clear(); }
+
   void save(StateWriter& w) const;
   void load(StateReader& r);
 

@@ -18,7 +18,7 @@ namespace vantage {
 namespace {
 
 constexpr std::string_view kMagic = "vantage checkpoint\n";
-constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kVersion = 3;
 
 struct Writer {
   std::string bytes;
@@ -78,6 +78,7 @@ void write_checkpoint(const std::filesystem::path& file, const Checkpoint& check
   const SearchSnapshot& snapshot = checkpoint.snapshot;
   w.put(std::string_view(snapshot.optimiser));
   w.put(snapshot.drawn), w.put(snapshot.redrawn);
+  w.put(snapshot.sample_step), w.put(snapshot.sample_since), w.put(snapshot.sample_error);
   w.put(std::uint64_t{snapshot.history.size()});
   for (const PlanIteration& line : snapshot.history) {
     w.put(std::uint64_t{line.iteration}), w.put(std::uint64_t{line.evaluations}), w.put(line.hypervolume),
@@ -128,6 +129,8 @@ std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& file) {
   SearchSnapshot& snapshot = checkpoint.snapshot;
   snapshot.optimiser = r.text();
   snapshot.drawn = r.get<std::uint64_t>(), snapshot.redrawn = r.get<std::uint64_t>();
+  snapshot.sample_step = r.get<std::uint64_t>(), snapshot.sample_since = r.get<std::uint64_t>();
+  snapshot.sample_error = r.get<double>();
   snapshot.history.resize(r.length(40));
   for (PlanIteration& line : snapshot.history) {
     line.iteration = r.get<std::uint64_t>(), line.evaluations = r.get<std::uint64_t>();

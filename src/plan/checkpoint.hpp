@@ -19,6 +19,8 @@ struct SearchSnapshot {
   std::string optimiser;  // as its save() wrote it; empty: not yet asked
   std::vector<PlanIteration> history;
   std::uint64_t drawn = 0, redrawn = 0;
+  std::uint64_t sample_step = 0, sample_since = 0;  // of GrowingSample
+  double sample_error = 0;
 };
 
 struct Checkpoint {

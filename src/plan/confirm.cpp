@@ -44,8 +44,8 @@ bool comes_before(const PlanEntry& a, const PlanEntry& b, const Measures& measur
 }  // namespace
 
 std::vector<PlanEntry> confirm_front(const SearchOutcome& found, const DecisionSpace& space,
-                                     const SurveyProblem& problem, const Measures& measures, bool sampled,
-                                     NetworkEvaluator& evaluator, const PlanWatch& watch) {
+                                     const SurveyProblem& problem, const Measures& measures,
+                                     std::uint64_t sample_voxels, NetworkEvaluator& evaluator, const PlanWatch& watch) {
   using Clock = std::chrono::steady_clock;
   const auto start = Clock::now();
   std::vector<PlanEntry> entries;
@@ -75,8 +75,10 @@ std::vector<PlanEntry> confirm_front(const SearchOutcome& found, const DecisionS
   };
 
   // A search that samples did not keep its standard errors, nor what is no objective. The same sample is drawn again.
+  const bool sampled = sample_voxels > 0;
   if (sampled && !networks.empty()) {
-    if (const auto estimates = evaluator.estimate(networks, {.report = {}, .stop = watch.abort})) {
+    if (const auto estimates = evaluator.estimate(networks, sample_voxels, NetworkEvaluator::Which::all,
+                                                  {.report = {}, .stop = watch.abort})) {
       for (std::size_t k = 0; k < entries.size(); ++k) {
         for (std::size_t m = 0; m < measures.all.size(); ++m) {
           MeasuredValue& value = entries[k].values.at(measures.all[m].name);

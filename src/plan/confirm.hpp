@@ -10,8 +10,8 @@ namespace vantage {
 
 // The front as entries, best first: what the search saw with its standard errors, and beside it the exact values.
 std::vector<PlanEntry> confirm_front(const SearchOutcome& found, const DecisionSpace& space,
-                                     const SurveyProblem& problem, const Measures& measures, bool sampled,
-                                     NetworkEvaluator& evaluator, const PlanWatch& watch);
+                                     const SurveyProblem& problem, const Measures& measures,
+                                     std::uint64_t sample_voxels, NetworkEvaluator& evaluator, const PlanWatch& watch);
 
 // Says of entries by how much their exact values miss the requirements, and marks those that another's dominate.
 // Returns the hypervolume of the exact values, NaN unless all entries are confirmed.

@@ -30,11 +30,14 @@ class NetworkEvaluator {
   virtual ~NetworkEvaluator() = default;
   // How many networks evaluate() takes best at once; 0: as many as there are.
   virtual std::size_t chunk() const = 0;
-  // Values of the searched measures of each network, in order; empty when stopped half way.
+  // Values of the searched measures of each network, in order, by a sample of so many voxels, 0: by every ray. Empty
+  // when stopped half way.
   virtual std::optional<std::vector<std::vector<double>>> evaluate(std::span<const PlacedNetwork> networks,
-                                                                   const Progress& progress) = 0;
-  // All measures with standard errors, for the few networks of a front.
+                                                                   std::uint64_t voxels, const Progress& progress) = 0;
+  enum class Which { searched, all };
+  // The same values with standard errors, of the searched measures or of all.
   virtual std::optional<std::vector<std::vector<Estimate>>> estimate(std::span<const PlacedNetwork> networks,
+                                                                     std::uint64_t voxels, Which measures,
                                                                      const Progress& progress) = 0;
   // With every ray; empty what was not reached before it was stopped.
   virtual std::vector<std::optional<ConfirmedNetwork>> confirm(std::span<const PlacedNetwork> networks,
@@ -48,12 +51,13 @@ class CachingEvaluator {
   explicit CachingEvaluator(NetworkEvaluator& evaluator) : evaluator_(evaluator) {}
   std::size_t chunk() const { return evaluator_.chunk(); }
   std::optional<std::vector<std::vector<double>>> evaluate(std::span<const PlacedNetwork> networks,
-                                                           const Progress& progress);
+                                                           std::uint64_t voxels, const Progress& progress);
   std::uint64_t simulated() const { return simulated_; }
 
  private:
   NetworkEvaluator& evaluator_;
-  std::unordered_map<std::string, std::vector<double>> known_;
+  std::unordered_map<std::string, std::vector<double>> known_;  // by `voxels_`
+  std::uint64_t voxels_ = 0;
   std::uint64_t simulated_ = 0;
 };
 

@@ -37,7 +37,7 @@ void Run::ask(const SurveyProblem& problem) {
   evaluator_.emplace(
       simulator_, measures_,
       SimulatorEvaluator::Options{
-          .sample_voxels = config_.sample_voxels,
+          .sampled = config_.sample_voxels > 0,
           .kept = problem.kept.size(),
           .visible_parts = [this](const Network& network) { return visibility_parts(site_, network); },
           .surroundings = needs.surroundings ? &surroundings() : nullptr,
@@ -79,7 +79,7 @@ SearchOutcome Run::search(const SurveyProblem& narrowed, const PlanConfig& confi
 
 std::vector<PlanEntry> Run::confirm(const SearchOutcome& found, const SurveyProblem& narrowed, const PlanWatch& watch) {
   const DecisionSpace space(site_, narrowed);
-  return confirm_front(found, space, narrowed, measures_, config_.sample_voxels > 0, *evaluator_, watch);
+  return confirm_front(found, space, narrowed, measures_, config_.sample_voxels, *evaluator_, watch);
 }
 
 PlanResult Run::result(const SearchOutcome& found) const {

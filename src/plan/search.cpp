@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <sstream>
@@ -13,6 +14,7 @@
 #include "core/atomic_file.hpp"
 #include "plan/checkpoint.hpp"
 #include "plan/choose_optimiser.hpp"
+#include "plan/growing_sample.hpp"
 #include "plan/scaled_objectives.hpp"
 #include "vantage/error.hpp"
 
@@ -28,7 +30,8 @@ class Search {
         population_(population_of(setup.problem, config_)),
         budget_(static_cast<std::uint64_t>(config_.iterations) * population_),
         optimiser_(choose_optimiser(space_, setup.problem, config_, setup.batch, setup.start)),
-        evaluator_(setup.evaluator) {}
+        evaluator_(setup.evaluator),
+        sample_(config_) {}
 
   SearchOutcome run() {
     if (!config_.checkpoint.empty()) {
@@ -40,14 +43,20 @@ class Search {
     try {
       while (reason == StopReason::running) {
         reason = reason_to_stop();
-        if (reason != StopReason::running) break;
-        reason = iterate();
+        if (reason == StopReason::running)
+          reason = iterate();
+        else if (says_the_sample(reason) && !sample_.full())
+          reason = grow();
       }
     } catch (...) {
       save();  // hours of work must not go down with a lost device
       throw;
     }
     save();
+    if (!sample_.full() && reason != StopReason::cancelled) {
+      sample_.fill();  // not saved: a search that goes on does so by its own sample
+      assess();
+    }
     return outcome(reason);
   }
 
@@ -74,7 +83,7 @@ class Search {
                                           networks_.begin() + static_cast<std::ptrdiff_t>(values.size() + chunk));
       const Progress progress{.report = [&](double done) { watch(static_cast<double>(chunk) * done); },
                               .stop = setup_.stop};
-      const auto found = evaluator_.evaluate(networks, progress);
+      const auto found = evaluate(networks, xs, values.size(), progress);
       if (!found) return StopReason::cancelled;
       values.insert(values.end(), found->begin(), found->end());
       since_.insert(since_.end(), found->begin(), found->end());
@@ -89,12 +98,120 @@ class Search {
       scale_objectives(setup_.problem, x(k), values[k], missed_by(setup_.problem, setup_.measures, values[k]),
                        std::span(f).subspan(k * m, m));
     optimiser_->tell(f);
-    record();
+    if (record() && !sample_.full()) {
+      if (error_ == 0 && !assess()) return interrupted();
+      if (sample_.outgrown(history_, error_, population_)) return grow();
+    }
     if (checkpoint_due()) {
       take_snapshot();
       save();
     }
     return StopReason::running;
+  }
+
+  // Of networks whose vectors are rows of xs from `first` on. What cannot be kept is not worth the whole sample: those
+  // are looked at with few voxels first that even at their best, by the standard error, would be refused.
+  std::optional<std::vector<std::vector<double>>> evaluate(const std::vector<PlacedNetwork>& networks,
+                                                           std::span<const double> xs, std::size_t first,
+                                                           const Progress& progress) {
+    std::vector<std::vector<double>> values(networks.size());
+    std::vector<std::size_t> open(networks.size());
+    for (std::size_t k = 0; k < open.size(); ++k) open[k] = k;
+    const auto still_open = [&] {
+      std::vector<PlacedNetwork> left;
+      for (const std::size_t k : open) left.push_back(networks[k]);
+      return left;
+    };
+    if (optimiser_->evaluations() > 0 && setup_.problem.objectives.size() > 1) {
+      for (const std::uint64_t voxels : sample_.first_looks()) {
+        const auto seen = setup_.evaluator.estimate(still_open(), voxels, NetworkEvaluator::Which::searched, progress);
+        if (!seen) return std::nullopt;
+        std::vector<std::size_t> promising;
+        for (std::size_t i = 0; i < open.size(); ++i) {
+          const std::size_t k = open[i], n = space_.dimension();
+          values[k].clear();
+          for (const Estimate& estimate : (*seen)[i]) values[k].push_back(estimate.value);
+          if (optimiser_->promising(at_best(xs.subspan((first + k) * n, n), (*seen)[i]))) promising.push_back(k);
+        }
+        open = std::move(promising);
+        if (open.empty()) return values;
+      }
+    }
+    auto found = evaluator_.evaluate(still_open(), sample_.voxels(), progress);
+    if (!found) return std::nullopt;
+    for (std::size_t i = 0; i < open.size(); ++i) values[open[i]] = std::move((*found)[i]);
+    return values;
+  }
+
+  // What the optimiser would be told if every measure were better by its standard error.
+  std::vector<double> at_best(std::span<const double> x, std::span<const Estimate> measured) const {
+    const SurveyProblem& problem = setup_.problem;
+    std::vector<double> values;
+    for (std::size_t m = 0; m < measured.size(); ++m) {
+      const double error = measured[m].standard_error;
+      values.push_back(measured[m].value + (setup_.measures.all[m].maximised() ? error : -error));
+    }
+    double missed = 0;
+    for (std::size_t r = 0; r < problem.requirements.size(); ++r) {
+      const Estimate& bounded = measured[setup_.measures.required[r]];
+      const Requirement& requirement = problem.requirements[r];
+      const bool more = requirement.bound == Requirement::Bound::at_least;
+      missed += requirement.missed_by(bounded.value + (more ? bounded.standard_error : -bounded.standard_error));
+    }
+    std::vector<double> f(problem.objectives.size());
+    scale_objectives(problem, x, values, missed, f);
+    return f;
+  }
+
+  // What a larger sample may see otherwise.
+  static bool says_the_sample(StopReason reason) {
+    return reason == StopReason::target_reached || reason == StopReason::stagnated || reason == StopReason::converged ||
+           reason == StopReason::flat;
+  }
+  StopReason interrupted() const {
+    const StopReason reason = interruption();
+    return reason == StopReason::running ? StopReason::cancelled : reason;
+  }
+
+  StopReason grow() {
+    const GrowingSample before = sample_;
+    sample_.grow(history_.size());
+    if (!assess()) {
+      sample_ = before;
+      return interrupted();
+    }
+    // What is replayed from here on was told to a population of these values.
+    if (!config_.checkpoint.empty()) take_snapshot();
+    if (checkpoint_due()) save();
+    return StopReason::running;
+  }
+
+  // Measures what the optimiser keeps by the sample as it is, and how well that is known. False when stopped half way.
+  bool assess() {
+    const std::vector<ParetoPoint> population = optimiser_->population();
+    std::vector<PlacedNetwork> networks;
+    for (const ParetoPoint& point : population) networks.push_back(space_.decode(point.x));
+    const auto found = setup_.evaluator.estimate(networks, sample_.voxels(), NetworkEvaluator::Which::searched,
+                                                 {.report = {}, .stop = setup_.stop});
+    if (!found) return false;
+    const SurveyProblem& problem = setup_.problem;
+    const std::size_t m = problem.objectives.size();
+    std::vector<double> f(population.size() * m), values;
+    double errors = 0;
+    for (std::size_t k = 0; k < population.size(); ++k) {
+      values.clear();
+      for (const Estimate& estimate : (*found)[k]) values.push_back(estimate.value);
+      scale_objectives(problem, population[k].x, values, missed_by(problem, setup_.measures, values),
+                       std::span(f).subspan(k * m, m));
+      for (std::size_t j = 0; j < m; ++j) {
+        const double scale = std::abs(problem.objectives[j].best - problem.objectives[j].worst);
+        if (scale > 0) errors += (*found)[k][j].standard_error / scale;
+      }
+    }
+    error_ = population.empty() ? 0 : errors / static_cast<double>(f.size());
+    optimiser_->reassess(f);
+    front_ = optimiser_->front();
+    return true;
   }
 
   // Asks for a batch and draws again what stands in holes and clashes. Fills networks_.
@@ -138,16 +255,18 @@ class Search {
     return xs;
   }
 
-  void record() {
+  // Whether an iteration has ended.
+  bool record() {
     const std::uint64_t iteration = optimiser_->iterations();
     const std::uint64_t last = history_.empty() ? 0 : history_.back().iteration;
-    if (iteration == last) return;
+    if (iteration == last) return false;
     PlanIteration& line = history_.emplace_back();
     line.iteration = iteration, line.evaluations = optimiser_->evaluations();
     line.hypervolume = optimiser_->hypervolume();
     front_ = optimiser_->front();
     for (const ParetoPoint& point : front_) line.front.push_back(point.f);
     line.seconds = seconds();
+    return true;
   }
 
   // What ends the search from outside, at any moment.
@@ -194,7 +313,13 @@ class Search {
   void take_snapshot() {
     std::ostringstream state;
     optimiser_->save(state);
-    snapshot_ = {.optimiser = std::move(state).str(), .history = history_, .drawn = drawn_, .redrawn = redrawn_};
+    snapshot_ = {.optimiser = std::move(state).str(),
+                 .history = history_,
+                 .drawn = drawn_,
+                 .redrawn = redrawn_,
+                 .sample_step = sample_.step(),
+                 .sample_since = sample_.since(),
+                 .sample_error = error_};
     since_.clear();
   }
 
@@ -220,6 +345,7 @@ class Search {
     snapshot_ = std::move(checkpoint->snapshot);
     history_ = snapshot_.history;
     drawn_ = snapshot_.drawn, redrawn_ = snapshot_.redrawn;
+    sample_.restore(snapshot_.sample_step, snapshot_.sample_since), error_ = snapshot_.sample_error;
     replay_ = std::move(checkpoint->since);
     resumed_ = evaluated_ = optimiser_->evaluations();
     earlier_seconds_ = checkpoint->seconds, earlier_trace_seconds_ = checkpoint->trace_seconds;
@@ -245,6 +371,8 @@ class Search {
   std::uint64_t budget_;
   std::unique_ptr<Optimiser> optimiser_;
   CachingEvaluator evaluator_;
+  GrowingSample sample_;
+  double error_ = 0;                     // standard error of a scaled objective by it; 0: not known yet
   std::vector<PlacedNetwork> networks_;  // of the open batch
 
   std::vector<PlanIteration> history_;

@@ -22,13 +22,13 @@ std::optional<RegistrationModel> registered_around(const Needs& needs) {
 }  // namespace
 
 std::optional<SimulatorEvaluator::Counted> SimulatorEvaluator::count(std::span<const Network> networks,
-                                                                     const Needs& needs, bool errors,
-                                                                     const Progress& progress) {
+                                                                     std::uint64_t voxels, const Needs& needs,
+                                                                     bool errors, const Progress& progress) {
   Counted counted;
   counted.surveyed.resize(networks.size());
   if (needs.counts) {
     auto counts = count_with(simulator_, networks,
-                             {.voxels = options_.sample_voxels,
+                             {.voxels = voxels,
                               .overlap = needs.pairs,
                               .stop_at_goal = true,
                               .registration = needs.registration,
@@ -39,7 +39,7 @@ std::optional<SimulatorEvaluator::Counted> SimulatorEvaluator::count(std::span<c
   }
   if (needs.surroundings) {
     auto counts = count_with(*options_.surroundings, networks,
-                             {.voxels = options_.surroundings_voxels,
+                             {.voxels = std::min(voxels, options_.surroundings_voxels),
                               .overlap = true,
                               .registration = registered_around(needs),
                               .registration_groups = errors},
@@ -79,10 +79,11 @@ MeasuredNetwork SimulatorEvaluator::measured(const NetworkCounts& counts, const 
 }
 
 std::optional<std::vector<std::vector<double>>> SimulatorEvaluator::evaluate(std::span<const PlacedNetwork> placed,
+                                                                             std::uint64_t voxels,
                                                                              const Progress& progress) {
   const Needs needs = measures_.searched_needs();
   const std::vector<Network> networks = to_networks(placed);
-  const auto counts = count(networks, needs, false, progress);
+  const auto counts = count(networks, voxels, needs, false, progress);
   if (!counts) return std::nullopt;
   const auto measured_at = [&](std::size_t k) {
     return measured(counts->surveyed[k], needs.surroundings ? &counts->surroundings[k] : nullptr, placed[k],
@@ -97,10 +98,13 @@ std::optional<std::vector<std::vector<double>>> SimulatorEvaluator::evaluate(std
 }
 
 std::optional<std::vector<std::vector<Estimate>>> SimulatorEvaluator::estimate(std::span<const PlacedNetwork> placed,
+                                                                               std::uint64_t voxels, Which which,
                                                                                const Progress& progress) {
-  const Needs needs = measures_.all_needs();
+  const bool all = which == Which::all;
+  const Needs needs = all ? measures_.all_needs() : measures_.searched_needs();
+  const auto estimated = std::span(measures_.all).first(all ? measures_.all.size() : measures_.searched);
   const std::vector<Network> networks = to_networks(placed);
-  const auto counts = count(networks, needs, true, progress);
+  const auto counts = count(networks, voxels, needs, true, progress);
   if (!counts) return std::nullopt;
   const auto measured_at = [&](std::size_t k) {
     return measured(counts->surveyed[k], needs.surroundings ? &counts->surroundings[k] : nullptr, placed[k],
@@ -109,7 +113,7 @@ std::optional<std::vector<std::vector<Estimate>>> SimulatorEvaluator::estimate(s
   std::vector<std::vector<Estimate>> estimates(placed.size());
   tbb::parallel_for(std::size_t{0}, placed.size(), [&](std::size_t k) {
     const MeasuredNetwork network = measured_at(k);
-    for (const Objective& objective : measures_.all) estimates[k].push_back(vantage::estimate(objective, network));
+    for (const Objective& objective : estimated) estimates[k].push_back(vantage::estimate(objective, network));
   });
   return estimates;
 }

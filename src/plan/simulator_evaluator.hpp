@@ -13,8 +13,8 @@ namespace vantage {
 class SimulatorEvaluator final : public NetworkEvaluator {
  public:
   struct Options {
-    std::uint64_t sample_voxels = 0;  // 0: every ray
-    std::size_t kept = 0;             // stations at the head of every network that were there before
+    bool sampled = false;  // in the search; of every ray networks come one by one
+    std::size_t kept = 0;  // stations at the head of every network that were there before
     // Connected parts of the visibility graph; needed where a measure needs it.
     std::function<std::size_t(const Network&)> visible_parts = {};
     // Over all surfaces; needed where a measure needs it. With so many sampled voxels, or every ray.
@@ -30,11 +30,12 @@ class SimulatorEvaluator final : public NetworkEvaluator {
 
   // Of every ray as many as there are devices: so it can be stopped, and saved, often.
   std::size_t chunk() const override {
-    return options_.sample_voxels == 0 ? std::max<std::size_t>(simulator_.config().devices.size(), 1) : 0;
+    return options_.sampled ? 0 : std::max<std::size_t>(simulator_.config().devices.size(), 1);
   }
   std::optional<std::vector<std::vector<double>>> evaluate(std::span<const PlacedNetwork> networks,
-                                                           const Progress& progress) override;
+                                                           std::uint64_t voxels, const Progress& progress) override;
   std::optional<std::vector<std::vector<Estimate>>> estimate(std::span<const PlacedNetwork> networks,
+                                                             std::uint64_t voxels, Which measures,
                                                              const Progress& progress) override;
   std::vector<std::optional<ConfirmedNetwork>> confirm(std::span<const PlacedNetwork> networks,
                                                        const Progress& progress) override;
@@ -45,7 +46,7 @@ class SimulatorEvaluator final : public NetworkEvaluator {
     std::vector<NetworkCounts> surveyed, surroundings;  // the latter empty where nothing needs them
   };
   // `errors`: whether standard errors are wanted of them.
-  std::optional<Counted> count(std::span<const Network> networks, const Needs& needs, bool errors,
+  std::optional<Counted> count(std::span<const Network> networks, std::uint64_t voxels, const Needs& needs, bool errors,
                                const Progress& progress);
   // Of no voxels: with every ray.
   std::optional<std::vector<NetworkCounts>> count_with(Simulator& simulator, std::span<const Network> networks,

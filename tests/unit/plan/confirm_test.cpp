@@ -15,7 +15,7 @@ struct Confirmed {
   std::vector<PlanEntry> entries;
 };
 
-Confirmed confirmed(const SurveyProblem& problem, bool sampled, test::ToyEvaluator& evaluator,
+Confirmed confirmed(const SurveyProblem& problem, std::uint64_t sampled, test::ToyEvaluator& evaluator,
                     const PlanWatch& watch = {}) {
   const Site site = test::toy_site();
   const DecisionSpace space(site, problem);
@@ -58,7 +58,7 @@ TEST(ConfirmFront, AnExactSearchHasOneValue) {
 }
 
 TEST(ConfirmFront, AbortLeavesWhatTheSearchSaw) {
-  for (const bool sampled : {false, true}) {
+  for (const std::uint64_t sampled : {0, 100}) {
     test::ToyEvaluator evaluator;
     std::stop_source abort;
     PlanWatch watch{.report =
@@ -89,7 +89,7 @@ TEST(ConfirmFront, NetworksInHolesAreConfirmedToo) {
   SearchOutcome found;
   found.front = {{.x = std::vector<double>(8, 0.5), .f = {1}}};
   test::ToyEvaluator evaluator;
-  const auto entries = confirm_front(found, space, problem, evaluator.measures, false, evaluator, {});
+  const auto entries = confirm_front(found, space, problem, evaluator.measures, 0, evaluator, {});
   ASSERT_EQ(entries.size(), 1u);
   EXPECT_TRUE(entries[0].confirmed);
   EXPECT_EQ(entries[0].stations[0].status, StationStatus::hole);

@@ -100,7 +100,7 @@ class ToyEvaluator final : public NetworkEvaluator {
   }
 
   std::size_t chunk() const override { return at_once; }
-  std::optional<std::vector<std::vector<double>>> evaluate(std::span<const PlacedNetwork> networks,
+  std::optional<std::vector<std::vector<double>>> evaluate(std::span<const PlacedNetwork> networks, std::uint64_t,
                                                            const Progress& progress) override {
     largest_batch = std::max(largest_batch, networks.size());
     std::vector<std::vector<double>> values;
@@ -113,8 +113,8 @@ class ToyEvaluator final : public NetworkEvaluator {
     }
     return values;
   }
-  std::optional<std::vector<std::vector<Estimate>>> estimate(std::span<const PlacedNetwork> networks,
-                                                             const Progress& progress) override {
+  std::optional<std::vector<std::vector<Estimate>>> estimate(std::span<const PlacedNetwork> networks, std::uint64_t,
+                                                             Which, const Progress& progress) override {
     if (progress.stopped()) return std::nullopt;
     std::vector<std::vector<Estimate>> estimates;
     for (const PlacedNetwork& network : networks) {

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plan/growing_sample.hpp"
+
+#include <algorithm>
+
+namespace vantage {
+namespace {
+
+constexpr std::uint64_t kGrowth = 4;
+constexpr std::size_t kFirstLooks = 2;
+// The hypervolume is watched over so many evaluations, and has to gain so much of the standard error.
+constexpr std::size_t kWatched = 600;
+constexpr double kLeastGain = 0.5;
+
+}  // namespace
+
+GrowingSample::GrowingSample(const PlanConfig& config) {
+  if (config.sample_from > 0)
+    for (std::uint64_t size = config.sample_from; size < config.sample_voxels; size *= kGrowth) sizes_.push_back(size);
+  sizes_.push_back(config.sample_voxels);
+}
+
+std::span<const std::uint64_t> GrowingSample::first_looks() const {
+  return std::span(sizes_).subspan(step_ - std::min(step_, kFirstLooks), std::min(step_, kFirstLooks));
+}
+
+bool GrowingSample::outgrown(std::span<const PlanIteration> history, double error, std::size_t population) const {
+  const std::size_t watched = (kWatched + population - 1) / population;
+  if (full() || history.size() <= since_ + watched) return false;
+  const double now = history.back().hypervolume, then = history[history.size() - 1 - watched].hypervolume;
+  return now > 0 && now - then < kLeastGain * error;
+}
+
+void GrowingSample::restore(std::uint64_t step, std::uint64_t since) {
+  step_ = std::min<std::size_t>(step, sizes_.size() - 1);
+  since_ = since;
+}
+
+}  // namespace vantage

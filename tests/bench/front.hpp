@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a searched front is worth by every ray, second by second, and how far that is from what the search saw.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "bench_site.hpp"
+
+namespace vantage::bench {
+
+struct FrontOptions {
+  SiteOptions site;
+  std::string problem = "coverage-overlap-fix", stations = "15";
+  std::size_t population = 250, iterations = 600, batch = 0;
+  std::vector<std::string> samples{"20000", "2000..20000"};  // voxels, or from..to where it grows
+  std::vector<std::uint64_t> seeds{1};
+  double first_s = 1, ratio = 1.5;  // when the front is looked at: the first time, and how much later each time
+  std::string picture;
+  void add(CLI::App& command);
+};
+
+void run_front(const FrontOptions& options);
+
+}  // namespace vantage::bench
