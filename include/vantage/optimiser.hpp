@@ -131,8 +131,8 @@ class Optimiser {
   /// REQUIRES: objectives() values per asked point, row-major, in order. A point with a value that is not finite counts
   /// as dominated by all that have none.
   virtual void tell(std::span<const double> values) = 0;
-  /// Whether a point with these objectives would be kept if it were told now. May say yes of one that would not; never
-  /// no of one that would.
+  /// Whether a point with these objectives would be kept if it alone were told now. May say yes of one that would not;
+  /// never no of one that would.
   virtual bool promising(std::span<const double> values) const = 0;
   /// Between tell() and ask(): puts other objectives in the place of those of the points of population(), row-major, in
   /// its order: they were measured more closely, say. What the search learnt from the old ones stays, and stagnation

@@ -8,6 +8,7 @@
 #include <sstream>
 #include <utility>
 
+#include "core/recent.hpp"
 #include "scan/limit_model.hpp"
 #include "scan/memory_estimate.hpp"
 #include "scan/noise_model.hpp"
@@ -189,15 +190,15 @@ struct Simulator::Impl {
     return sum;
   }
 
-  // Of the size asked for last; the optimiser asks for one size all the time.
+  // A search asks for few sizes all the time.
   const std::vector<std::uint32_t>& sample(std::uint64_t size) {
     if (size == 0) throw Error(Errc::invalid_argument, "a sample must have at least one voxel");
     size = std::min(size, grid->size());
-    if (sampled.size() != size) sampled = voxel_sample(grid->size(), size, config.seed);
-    return sampled;
+    return samples.get([&](const std::vector<std::uint32_t>& ranks) { return ranks.size() == size; },
+                       [&] { return voxel_sample(grid->size(), size, config.seed); });
   }
 
-  // The planes of the sample asked for last, or of all voxels. Range noise is the scanner's, simulated or not.
+  // The planes of a sample, or of all voxels. Range noise is the scanner's, simulated or not.
   RegistrationJob registration_of(std::span<const std::uint32_t> ranks, const RegistrationModel& model, bool groups) {
     if (!(model.rho_m > 0 && std::isfinite(model.rho_m) && model.patch_m > 0 && std::isfinite(model.patch_m))) {
       std::ostringstream what;
@@ -205,8 +206,13 @@ struct Simulator::Impl {
            << " m; both must be above 0";
       throw Error(Errc::invalid_argument, what.str());
     }
-    if (!patches || patches->patches.size() != ranks.size() || patches->model != model)
-      patches = std::make_shared<Patches>(make_patches(data(), *grid, ranks, make_pattern(registered.front()), model));
+    const std::shared_ptr<const Patches>& own = patches.get(
+        [&](const std::shared_ptr<const Patches>& one) {
+          return one->patches.size() == ranks.size() && one->model == model;
+        },
+        [&]() -> std::shared_ptr<const Patches> {
+          return std::make_shared<Patches>(make_patches(data(), *grid, ranks, make_pattern(registered.front()), model));
+        });
     if (patch_scanners.empty()) {
       const auto solid_angle = [](const Scanner& scanner) {
         return scanner.zenith_step.in_radians() * scanner.azimuth_step.in_radians();
@@ -215,7 +221,7 @@ struct Simulator::Impl {
         patch_scanners.push_back({std::make_shared<const NoiseModel>(make_noise_model(scanner, config.seed)),
                                   static_cast<float>(solid_angle(registered.front()) / solid_angle(scanner))});
     }
-    return {patches, patch_scanners, groups};
+    return {own, patch_scanners, groups};
   }
 
   Scene scene;
@@ -225,8 +231,8 @@ struct Simulator::Impl {
   double goal = 0;
   std::vector<TraceScanner> traced;  // of the scanners
   std::vector<Scanner> registered;   // those of the scans that are registered
-  std::vector<std::uint32_t> sampled;
-  std::shared_ptr<const Patches> patches;
+  Recent<std::vector<std::uint32_t>> samples;
+  Recent<std::shared_ptr<const Patches>> patches;
   std::vector<PatchScanner> patch_scanners;
   std::unique_ptr<Tracer> tracer;
 };

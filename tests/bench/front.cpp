@@ -145,7 +145,7 @@ void draw(const std::string& file, const FrontOptions& options, const std::vecto
 void FrontOptions::add(CLI::App& command) {
   site.add(command);
   command.add_option("--problem", problem, "One of the method's problems")->capture_default_str();
-  command.add_option("--stations", stations, "How many: N, or N..M where the number is searched")
+  command.add_option("--number", stations, "Stations: N, or N..M where the number is searched")
       ->capture_default_str();
   command.add_option("--population", population, "Networks of the front")->capture_default_str();
   command.add_option("--iterations", iterations, "Of so many evaluations each")->capture_default_str();

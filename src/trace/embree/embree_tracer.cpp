@@ -55,14 +55,14 @@ class EmbreeTracer final : public Tracer {
   std::vector<NetworkCounts> count_sampled(std::span<const std::vector<TraceStation>> networks,
                                            std::span<const std::uint32_t> station_counts, const SampleJob& job,
                                            const Progress& progress) override {
-    return sample_networks(scanners_, networks, station_counts, goal_density_, job, sample_, progress);
+    return sample_networks(scanners_, networks, station_counts, goal_density_, job, samples_, progress);
   }
 
  private:
   std::vector<StationRays> scanners_;
   EngineInfo info_;
   VoxelField field_;
-  std::unique_ptr<SampledVoxels> sample_;  // of the last sampled evaluation
+  Recent<SampledVoxels> samples_;
 };
 
 }  // namespace

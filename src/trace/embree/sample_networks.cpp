@@ -42,7 +42,7 @@ double magnitude(const VoxelGrid& grid, std::span<const std::vector<TraceStation
 std::vector<NetworkCounts> sample_networks(std::span<const StationRays> scanners,
                                            std::span<const std::vector<TraceStation>> networks,
                                            std::span<const std::uint32_t> station_counts, double goal_density,
-                                           const Tracer::SampleJob& job, std::unique_ptr<SampledVoxels>& kept,
+                                           const Tracer::SampleJob& job, Recent<SampledVoxels>& kept,
                                            const Progress& progress) {
   const SceneData& scene = scanners.front().scene();
   const VoxelGrid& grid = scanners.front().grid();
@@ -51,9 +51,9 @@ std::vector<NetworkCounts> sample_networks(std::span<const StationRays> scanners
   for (const StationRays& rays : scanners)
     farthest = std::max(farthest, rays.noise().reach_within(static_cast<float>(size) + rays.noise().reach()));
   const double reach = farthest;
-  if (!kept || !kept->made_for(job.sample, pad, reach))
-    kept = std::make_unique<SampledVoxels>(scene, grid, job.sample, pad, reach, reach + triangle_margin(pad));
-  const SampledVoxels& voxels = *kept;
+  const SampledVoxels& voxels =
+      kept.get([&](const SampledVoxels& one) { return one.made_for(job.sample, pad, reach); },
+               [&] { return SampledVoxels(scene, grid, job.sample, pad, reach, reach + triangle_margin(pad)); });
 
   const std::size_t n = voxels.size(), blocks = (n + block - 1) / block;
   const std::size_t at_once = std::clamp<std::size_t>(pairs_at_once / std::max<std::size_t>(n, 1), 1,

@@ -5,17 +5,18 @@
 #include <span>
 #include <vector>
 
+#include "core/recent.hpp"
 #include "trace/embree/sampled_voxels.hpp"
 #include "trace/embree/station_rays.hpp"
 
 namespace vantage {
 
-// Tracer::count_sampled on the CPU. `scanners`: what TraceStation::scanner counts. `kept`: the last call's sample, made
-// anew where this one's is another.
+// Tracer::count_sampled on the CPU. `scanners`: what TraceStation::scanner counts. `kept`: the samples of the last
+// calls.
 std::vector<NetworkCounts> sample_networks(std::span<const StationRays> scanners,
                                            std::span<const std::vector<TraceStation>> networks,
                                            std::span<const std::uint32_t> station_counts, double goal_density,
-                                           const Tracer::SampleJob& job, std::unique_ptr<SampledVoxels>& kept,
+                                           const Tracer::SampleJob& job, Recent<SampledVoxels>& kept,
                                            const Progress& progress);
 
 }  // namespace vantage

@@ -12,19 +12,24 @@
 
 namespace vantage::vulkan {
 
-void VulkanTracer::upload_sample(std::span<const std::uint32_t> sample,
-                                 std::span<const std::vector<TraceStation>> networks) {
-  const VoxelGrid& grid = *scene_.grid;
-  const SceneData& scene = *scene_.scene;
+const VulkanTracer::DeviceSample& VulkanTracer::upload_sample(std::span<const std::uint32_t> sample,
+                                                              std::span<const std::vector<TraceStation>> networks) {
   // Wider than the slack of cube_of in shaders/lib/sample.glsl for any station within range.
-  const Box& bounds = scene.local_bounds;
+  const Box& bounds = scene_.scene->local_bounds;
   float farthest = 0;
   for (const DeviceScanner& scanner : scanners_) farthest = std::max(farthest, scanner.pattern().max_range);
   const double largest = std::max({std::abs(bounds.min.x), std::abs(bounds.min.y), std::abs(bounds.min.z),
                                    std::abs(bounds.max.x), std::abs(bounds.max.y), std::abs(bounds.max.z)}) +
                          static_cast<double>(farthest);
   const double margin = sample_reach(networks) + largest * 0x1p-17;
-  if (sample_voxels_ && margin <= sample_margin_ && std::ranges::equal(sample, sample_)) return;
+  return samples_.get(
+      [&](const DeviceSample& one) { return margin <= one.margin && std::ranges::equal(sample, one.ranks); },
+      [&] { return device_sample(sample, margin); });
+}
+
+VulkanTracer::DeviceSample VulkanTracer::device_sample(std::span<const std::uint32_t> sample, double margin) {
+  const VoxelGrid& grid = *scene_.grid;
+  const SceneData& scene = *scene_.scene;
   const VoxelTriangles touching = triangles_touching(scene, grid, sample, margin);
   std::vector<SampleVoxel> voxels(sample.size() + 1);
   std::vector<SampleTriangle> triangles(touching.triangle.size());
@@ -41,15 +46,17 @@ void VulkanTracer::upload_sample(std::span<const std::uint32_t> sample,
               [](const SampleTriangle& one, const SampleTriangle& other) { return one.gap < other.gap; });
   });
   voxels.back() = {0, 0, 0, touching.offset.back()};
+  DeviceSample made{.ranks = {sample.begin(), sample.end()},
+                    .margin = margin,
+                    .voxels = to_device<SampleVoxel>(voxels, "sample voxels"),
+                    .triangles = to_device<SampleTriangle>(triangles, "sample triangles"),
+                    .weights = {}};
   if (weights_) {
     std::vector<std::uint8_t> weights;
     for (const std::uint32_t rank : sample) weights.push_back(grid.weights()[rank]);
-    sample_weights_ = bytes_to_device(weights, "sample weights");
+    made.weights = bytes_to_device(weights, "sample weights");
   }
-  sample_voxels_ = to_device<SampleVoxel>(voxels, "sample voxels");
-  sample_triangles_ = to_device<SampleTriangle>(triangles, "sample triangles");
-  sample_.assign(sample.begin(), sample.end());
-  sample_margin_ = margin;
+  return made;
 }
 
 // How far noise may move a point into a voxel, seen from any station of the networks.
@@ -101,7 +108,7 @@ class VulkanTracer::SampledCount {
         rays_(networks.size()) {}
 
   std::vector<NetworkCounts> run(const Progress& progress) {
-    t_.upload_sample(job_.sample, networks_);
+    sample_ = &t_.upload_sample(job_.sample, networks_);
     ensure_buffers();
     reduction_ = reduction();
     bool cancelled = false;
@@ -317,8 +324,8 @@ class VulkanTracer::SampledCount {
 
   SamplePush push_of(const Batch& batch, const Run& run, const SampleChunk& chunk, std::size_t k) const {
     SamplePush push{};
-    push.voxels = t_.sample_voxels_.address();
-    push.triangles = t_.sample_triangles_.address();
+    push.voxels = sample_->voxels.address();
+    push.triangles = sample_->triangles.address();
     push.stations = t_.sample_stations_.address();
     push.rays = t_.sample_rays_.address();
     push.sights = t_.sample_sights_.address();
@@ -344,7 +351,7 @@ class VulkanTracer::SampledCount {
     Reduction reduction{
         t_.counts_.address(), mask_words_ ? t_.masks_.address() : 0, voxels_, job_.groups, mask_words_, true};
     if (t_.weights_) {
-      reduction.weights = t_.sample_weights_.address();
+      reduction.weights = sample_->weights.address();
       reduction.weight.resize(job_.groups);
       for (std::size_t k = 0; k < job_.sample.size(); ++k)
         reduction.weight[k % job_.groups] += t_.scene_.grid->weight(job_.sample[k]);
@@ -360,6 +367,7 @@ class VulkanTracer::SampledCount {
   }
 
   VulkanTracer& t_;
+  const DeviceSample* sample_ = nullptr;
   std::span<const std::vector<TraceStation>> networks_;
   std::span<const std::uint32_t> station_counts_;
   SampleJob job_;

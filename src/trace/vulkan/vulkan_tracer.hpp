@@ -18,6 +18,7 @@
 #include <span>
 #include <vector>
 
+#include "core/recent.hpp"
 #include "shared/trace_types.h"
 #include "trace/registration_sums.hpp"
 #include "trace/tracer.hpp"
@@ -64,7 +65,15 @@ class VulkanTracer final : public Tracer {
   std::vector<DeviceScanner> make_scanners();
   void upload_scene();
   void upload_shading();
-  void upload_sample(std::span<const std::uint32_t> sample, std::span<const std::vector<TraceStation>> networks);
+  // A sample as the kernels read it.
+  struct DeviceSample {
+    std::vector<std::uint32_t> ranks;
+    double margin = 0;  // how far from its voxel a triangle is listed there
+    Buffer voxels, triangles, weights;
+  };
+  const DeviceSample& upload_sample(std::span<const std::uint32_t> sample,
+                                    std::span<const std::vector<TraceStation>> networks);
+  DeviceSample device_sample(std::span<const std::uint32_t> sample, double margin);
   double sample_reach(std::span<const std::vector<TraceStation>> networks) const;
   SampleList room_for_sample() const;
   void write_parameters();
@@ -151,10 +160,8 @@ class VulkanTracer final : public Tracer {
   Buffer tile_far_, tile_list_, tile_dispatch_, tile_rays_, tile_starts_;
   Pace exact_pace_, sampled_pace_;
 
-  std::vector<std::uint32_t> sample_;  // what the sample buffers hold
-  double sample_margin_ = 0;           // how far from its voxel a triangle is listed there
-  Buffer sample_voxels_, sample_triangles_, sample_stations_, sample_rays_, sample_sights_, sample_items_,
-      sample_control_, network_rays_, sample_weights_;
+  Recent<DeviceSample> samples_;
+  Buffer sample_stations_, sample_rays_, sample_sights_, sample_items_, sample_control_, network_rays_;
   std::shared_ptr<const Patches> patches_;  // what the next buffers hold
   std::shared_ptr<const NoiseModel> patch_noise_;
   Buffer registration_patches_, registration_sigma_, registration_heads_, registration_sums_;

@@ -423,5 +423,21 @@ TEST(CmaEs, ResumesSwapsToTheSameBits) {
   EXPECT_THROW(CmaEs(8, other).load(file), Error);
 }
 
+TEST(CmaEs, TakesAnotherObjectiveOfItsBest) {
+  CmaEs optimiser(3, {.population = 8, .bounds = Bounds::uniform(3, 0, 1)});
+  EXPECT_THROW(optimiser.reassess(std::vector{1.0}), Error);  // there is none yet
+  for (int round = 0; round < 5; ++round) {
+    const auto points = optimiser.ask();
+    std::vector<double> values;
+    for (std::size_t k = 0; k < points.size(); k += 3) values.push_back(points[k] + points[k + 1] * points[k + 2]);
+    optimiser.tell(values);
+  }
+  const ParetoPoint before = optimiser.best();
+  optimiser.reassess(std::vector{before.f[0] + 0.25});
+  EXPECT_EQ(optimiser.best().x, before.x);
+  EXPECT_EQ(optimiser.best().f[0], before.f[0] + 0.25);
+  EXPECT_TRUE(optimiser.promising(std::vector{1e9}));
+}
+
 }  // namespace
 }  // namespace vantage

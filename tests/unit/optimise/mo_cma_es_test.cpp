@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -114,6 +115,68 @@ TEST_P(EveryOptimiser, NearsAKnownFront) {
   }
   EXPECT_EQ(optimiser->population().size(), 20u);
   EXPECT_EQ(optimiser->iterations(), optimiser->evaluations() / 20);
+}
+
+TEST_P(EveryOptimiser, TakesOtherObjectivesOfWhatItKeeps) {
+  const std::size_t n = 4;
+  auto optimiser = make(n, 2, config(n));
+  for (int round = 0; round < 30; ++round) step(*optimiser, n, two_spheres);
+  const auto before = optimiser->population();
+  std::vector<double> values;
+  for (std::size_t k = 0; k < before.size(); ++k) {
+    values.push_back(before[k].f[0] + 0.01 * static_cast<double>(k % 3));
+    values.push_back(k == 5 ? std::numeric_limits<double>::quiet_NaN() : before[k].f[1]);
+  }
+  optimiser->reassess(values);
+  const auto after = optimiser->population();
+  ASSERT_EQ(after.size(), before.size());
+  for (std::size_t k = 0; k < before.size(); ++k) {
+    EXPECT_EQ(after[k].x, before[k].x);
+    if (k == 5)
+      EXPECT_EQ(after[k].f, std::vector<double>(2, std::numeric_limits<double>::infinity()));
+    else
+      EXPECT_EQ(after[k].f, std::vector<double>(values.begin() + 2 * static_cast<std::ptrdiff_t>(k),
+                                                values.begin() + 2 * static_cast<std::ptrdiff_t>(k) + 2));
+  }
+  std::vector<double> all;
+  for (const ParetoPoint& point : after) all.insert(all.end(), point.f.begin(), point.f.end());
+  EXPECT_EQ(optimiser->hypervolume(), hypervolume(all, 2, std::vector{1.0, 1.0}));
+  // And goes on with them, also from a saved state.
+  std::stringstream file;
+  optimiser->save(file);
+  auto other = make(n, 2, config(n));
+  other->load(file);
+  for (int round = 0; round < 10; ++round) step(*optimiser, n, two_spheres), step(*other, n, two_spheres);
+  EXPECT_EQ(optimiser->hypervolume(), other->hypervolume());
+  values.pop_back();
+  EXPECT_THROW(optimiser->reassess(values), Error);
+  values.push_back(1);
+  optimiser->ask();
+  EXPECT_THROW(optimiser->reassess(values), Error);
+}
+
+TEST_P(EveryOptimiser, KeepsNothingThatIsNotPromising) {
+  const std::size_t n = 4;
+  if (GetParam().batch > 1) return;  // those that are told first may change what is kept
+  auto optimiser = make(n, 2, config(n));
+  std::size_t refused = 0;
+  for (int round = 0; round < 400; ++round) {
+    const auto asked = optimiser->ask();
+    const std::vector<double> points(asked.begin(), asked.end());
+    std::vector<double> values;
+    std::vector<std::vector<double>> hopeless;
+    for (std::size_t k = 0; k < points.size(); k += n) {
+      const std::span<const double> x(points.data() + k, n);
+      const auto f = two_spheres(x);
+      values.insert(values.end(), f.begin(), f.end());
+      if (!optimiser->promising(f)) hopeless.emplace_back(x.begin(), x.end());
+    }
+    optimiser->tell(values);
+    for (const ParetoPoint& kept : optimiser->population()) EXPECT_EQ(std::ranges::count(hopeless, kept.x), 0);
+    refused += hopeless.size();
+  }
+  const bool steady = GetParam().algorithm == Algorithm::mo_cma_es && GetParam().scheme == Scheme::steady_state;
+  EXPECT_EQ(refused > 100, steady) << refused;
 }
 
 TEST_P(EveryOptimiser, AsksInsideTheBounds) {

@@ -90,11 +90,11 @@ TEST_P(EveryProblem, FrontIsNonDominatedAndHistoryGrows) {
 }
 
 // Cut after every so many evaluations, also in the middle of a batch, and gone on with.
-TEST_P(EveryProblem, ResumesToTheSameBits) {
+void expect_resumed(const SurveyProblem& problem, PlanConfig config, double noise) {
   const test::TemporaryFolder folder;
-  PlanConfig config = toy_config();
   ToyEvaluator whole;
-  const std::string wanted = bits_of(toy_search(problem_, config, whole));
+  whole.noise = noise;
+  const std::string wanted = bits_of(toy_search(problem, config, whole));
 
   config.checkpoint = folder / "run.checkpoint";
   config.resume = true;
@@ -104,11 +104,12 @@ TEST_P(EveryProblem, ResumesToTheSameBits) {
     ASSERT_LT(cut, 200);
     std::stop_source stop;
     ToyEvaluator evaluator;
+    evaluator.noise = noise;
     std::uint64_t left = 1 + random() % 60;
     evaluator.before_each = [&](const PlacedNetwork&) {
       if (--left == 0) stop.request_stop();
     };
-    const SearchOutcome outcome = toy_search(problem_, config, evaluator, stop.get_token());
+    const SearchOutcome outcome = toy_search(problem, config, evaluator, stop.get_token());
     calls += evaluator.evaluated;
     if (outcome.stop_reason != StopReason::max_iterations) {
       EXPECT_EQ(outcome.stop_reason, StopReason::cancelled);
@@ -119,6 +120,50 @@ TEST_P(EveryProblem, ResumesToTheSameBits) {
     break;
   }
   EXPECT_LE(calls, 600u);  // nothing that was known was evaluated again; fewer where a network came up twice
+}
+
+TEST_P(EveryProblem, ResumesToTheSameBits) { expect_resumed(problem_, toy_config(), 0); }
+
+PlanConfig growing_config() {
+  PlanConfig config = toy_config();
+  config.sample_from = 100, config.sample_voxels = 6400;
+  return config;
+}
+
+TEST_P(EveryProblem, ResumesToTheSameBitsWithAGrowingSample) { expect_resumed(problem_, growing_config(), 0.5); }
+
+TEST_P(EveryProblem, AGrowingSampleLeavesNoLuck) {
+  ToyEvaluator growing, fixed;
+  growing.noise = fixed.noise = 0.5;
+  growing.at_once = fixed.at_once = 0;
+  const SearchOutcome found = toy_search(problem_, growing_config(), growing);
+  PlanConfig config = growing_config();
+  config.sample_from = 0;
+  const SearchOutcome large = toy_search(problem_, config, fixed);
+  EXPECT_LT(growing.voxels, fixed.voxels);
+  const Site site = test::toy_site();
+  const DecisionSpace space(site, problem_);
+  // What is told of the front is what all of the sample says.
+  for (const ParetoPoint& point : found.front) {
+    const std::vector<PlacedNetwork> one{space.decode(point.x)};
+    const std::vector<double> values = growing.evaluate(one, config.sample_voxels, {})->front();
+    EXPECT_EQ(point.f, scaled_objectives(problem_, point.x, values));
+  }
+  EXPECT_NEAR(found.hypervolume, large.hypervolume, 0.1);
+}
+
+// With a sample that says nothing wrong, whom a first look refuses is refused by all of it.
+TEST(Search, LooksCloselyOnlyAtWhatMightBeKept) {
+  const SurveyProblem problem = test::toy_problem("coverage-overlap-fix");
+  ToyEvaluator growing, fixed;
+  PlanConfig config = growing_config();
+  growing.at_once = fixed.at_once = 0;
+  config.iterations = 60;
+  const SearchOutcome found = toy_search(problem, config, growing);
+  config.sample_from = 0;
+  const SearchOutcome same = toy_search(problem, config, fixed);
+  EXPECT_GE(found.hypervolume, same.hypervolume - 0.02);
+  EXPECT_LT(growing.voxels, fixed.voxels / 2);
 }
 
 TEST_P(EveryProblem, ResumesToTheSameBitsAfterKill9) {
@@ -174,6 +219,20 @@ TEST(Search, GoesOnWithMoreIterationsAsIfTheyHadBeenAskedForAtOnce) {
   EXPECT_EQ(outcome.resumed_evaluations, 200u);
   EXPECT_LE(second.evaluated, 400u);
   EXPECT_GE(second.evaluated + first.evaluated, whole.evaluated);
+}
+
+TEST(Search, GoesOnWithMoreIterationsFromTheSampleItHadGrownTo) {
+  const test::TemporaryFolder folder;
+  const SurveyProblem problem = test::toy_problem("coverage-overlap-fix");
+  PlanConfig config = growing_config();
+  ToyEvaluator whole, first, second;
+  whole.noise = first.noise = second.noise = 0.5;
+  const std::string wanted = bits_of(toy_search(problem, config, whole));
+  config.checkpoint = folder / "run.checkpoint";
+  config.iterations = 13;
+  toy_search(problem, config, first);
+  config.iterations = 30, config.resume = true;
+  EXPECT_EQ(bits_of(toy_search(problem, config, second)), wanted);
 }
 
 TEST(Search, RefusesTheCheckpointOfAnotherRun) {

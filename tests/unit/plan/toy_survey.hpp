@@ -51,7 +51,9 @@ class ToyEvaluator final : public NetworkEvaluator {
   Measures measures = measures_of(coverage_overlap_fix(4));
   std::function<void(const PlacedNetwork&)> before_each = {};
   std::size_t at_once = 1;
+  double noise = 0;  // of a sample of one voxel; falls with the root of their number
   std::uint64_t evaluated = 0, confirmed = 0, estimated = 0;
+  std::uint64_t voxels = 0;  // that were counted in all
   std::size_t largest_batch = 0;
 
   static double coverage_of(const PlacedNetwork& network) {
@@ -99,29 +101,43 @@ class ToyEvaluator final : public NetworkEvaluator {
                           .visible_parts = visibility_parts(toy_site(), to_network(network))});
   }
 
+  // One and the same for the same network and sample.
+  double luck_of(const PlacedNetwork& network, std::uint64_t sample, std::size_t measure) const {
+    if (noise == 0 || sample == 0) return 0;
+    double phase = 7 * std::log(static_cast<double>(sample)) + static_cast<double>(measure);
+    for (const PlacedStation& s : network) phase += 1e3 * s.position.x + 1.7e3 * s.position.y;
+    return noise * std::sqrt(2 / static_cast<double>(sample)) * std::sin(phase);
+  }
+
   std::size_t chunk() const override { return at_once; }
-  std::optional<std::vector<std::vector<double>>> evaluate(std::span<const PlacedNetwork> networks, std::uint64_t,
-                                                           const Progress& progress) override {
+  std::optional<std::vector<std::vector<double>>> evaluate(std::span<const PlacedNetwork> networks,
+                                                           std::uint64_t sample, const Progress& progress) override {
     largest_batch = std::max(largest_batch, networks.size());
     std::vector<std::vector<double>> values;
     for (const PlacedNetwork& network : networks) {
       if (before_each) before_each(network);
       if (progress.stopped()) return std::nullopt;
       auto& all = values.emplace_back();
-      for (std::size_t m = 0; m < measures.searched; ++m) all.push_back(value_of(measures.all[m], network));
-      ++evaluated;
+      for (std::size_t m = 0; m < measures.searched; ++m)
+        all.push_back(value_of(measures.all[m], network) + luck_of(network, sample, m));
+      ++evaluated, voxels += sample;
     }
     return values;
   }
-  std::optional<std::vector<std::vector<Estimate>>> estimate(std::span<const PlacedNetwork> networks, std::uint64_t,
-                                                             Which, const Progress& progress) override {
+  std::optional<std::vector<std::vector<Estimate>>> estimate(std::span<const PlacedNetwork> networks,
+                                                             std::uint64_t sample, Which which,
+                                                             const Progress& progress) override {
     if (progress.stopped()) return std::nullopt;
     std::vector<std::vector<Estimate>> estimates;
     for (const PlacedNetwork& network : networks) {
       auto& all = estimates.emplace_back();
-      for (const Objective& measure : measures.all)
-        all.push_back({value_of(measure, network), measure.name == "overlap" ? 0.02 : 0.01});
-      ++estimated;
+      const std::size_t wanted = which == Which::all ? measures.all.size() : measures.searched;
+      for (std::size_t m = 0; m < wanted; ++m)
+        all.push_back({value_of(measures.all[m], network) + luck_of(network, sample, m),
+                       noise > 0                           ? noise / std::sqrt(static_cast<double>(sample))
+                       : measures.all[m].name == "overlap" ? 0.02
+                                                           : 0.01});
+      ++estimated, voxels += sample;
     }
     return estimates;
   }
