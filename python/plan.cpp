@@ -52,8 +52,7 @@ Options<PlanConfig> plan_options() {
       .add("batch", &PlanConfig::batch, "Offspring at once in the steady state; 0: chosen by the engine.")
       .add("sample_voxels", &PlanConfig::sample_voxels, "0: exact search; else sampled with so many voxels.")
       .add("sample_from", &PlanConfig::sample_from,
-           "Where not 0: of so many voxels at first; the sample grows to `sample_voxels` as networks come to differ "
-           "less.")
+           "Where not 0: looked at with so many voxels first; the sample then grows to `sample_voxels` as it has to.")
       .add("start", &PlanConfig::start, "Heads (x, y, z) of an initial network; empty: random.")
       .add("redraws", &PlanConfig::redraws, "How often stations in holes or clashes are drawn again.")
       .add("max_seconds", &PlanConfig::max_seconds, "Of the search; 0: no limit.")

@@ -93,8 +93,9 @@ struct PlanConfig {
   MoCmaEsConfig::Scheme scheme = MoCmaEsConfig::Scheme::steady_state;
   std::size_t batch = 0;            ///< Offspring at once in the steady state; 0: chosen by the engine.
   std::uint64_t sample_voxels = 0;  ///< 0: exact search; else sampled with so many voxels.
-  /// Where not 0: the sample is of so many voxels at first, and grows to `sample_voxels` as networks come to differ
-  /// less. What is kept is then measured anew; newcomers are, as far as they might be kept (docs/method.md).
+  /// Where not 0: a network is looked at with so many voxels first, and with four times as many where it might be
+  /// kept. That sample grows, by four each time, to `sample_voxels` when networks have come to differ by less than it
+  /// can tell; what is kept is then measured anew (docs/method.md).
   std::uint64_t sample_from = 0;
   /// Head positions of an initial network: the first mean of CMA-ES, a first member of MO-CMA-ES; empty: random. Where
   /// the number of stations is searched, the first N of them are a first member for each N that they suffice for.

@@ -143,6 +143,12 @@ std::uint64_t default_sample(const SurveyProblem& problem, std::uint64_t voxels)
   return std::min({overlap ? sample_for_overlap : sample_for_coverage, enough, voxels});
 }
 
+// What a front is looked at with first. On small sites that would be too few to tell anything.
+std::uint64_t default_sample_from(std::uint64_t sample) {
+  constexpr std::uint64_t share = 16, least = 1'000;
+  return sample / share >= least ? sample / share : 0;
+}
+
 std::vector<PlacedStation> heads_of(LoadedSite& site, const std::vector<StationText>& stations,
                                     const std::string& what) {
   std::vector<PlacedStation> heads;

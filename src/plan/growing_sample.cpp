@@ -7,10 +7,9 @@ namespace vantage {
 namespace {
 
 constexpr std::uint64_t kGrowth = 4;
-constexpr std::size_t kFirstLooks = 2;
 // The hypervolume is watched over so many evaluations, and has to gain so much of the standard error.
 constexpr std::size_t kWatched = 600;
-constexpr double kLeastGain = 0.5;
+constexpr double kLeastGain = 0.1;
 
 }  // namespace
 
@@ -18,10 +17,7 @@ GrowingSample::GrowingSample(const PlanConfig& config) {
   if (config.sample_from > 0)
     for (std::uint64_t size = config.sample_from; size < config.sample_voxels; size *= kGrowth) sizes_.push_back(size);
   sizes_.push_back(config.sample_voxels);
-}
-
-std::span<const std::uint64_t> GrowingSample::first_looks() const {
-  return std::span(sizes_).subspan(step_ - std::min(step_, kFirstLooks), std::min(step_, kFirstLooks));
+  step_ = std::min<std::size_t>(1, sizes_.size() - 1);
 }
 
 bool GrowingSample::outgrown(std::span<const PlanIteration> history, double error, std::size_t population) const {

@@ -21,6 +21,9 @@
 namespace vantage {
 namespace {
 
+// By how much of its standard error a network that is looked at first may be better than it seems.
+constexpr double kOptimism = 1;
+
 class Search {
  public:
   explicit Search(const SearchSetup& setup)
@@ -143,12 +146,12 @@ class Search {
     return values;
   }
 
-  // What the optimiser would be told if every measure were better by its standard error.
+  // What the optimiser would be told if every measure were better by a share of its standard error.
   std::vector<double> at_best(std::span<const double> x, std::span<const Estimate> measured) const {
     const SurveyProblem& problem = setup_.problem;
     std::vector<double> values;
     for (std::size_t m = 0; m < measured.size(); ++m) {
-      const double error = measured[m].standard_error;
+      const double error = kOptimism * measured[m].standard_error;
       values.push_back(measured[m].value + (setup_.measures.all[m].maximised() ? error : -error));
     }
     double missed = 0;
@@ -156,7 +159,8 @@ class Search {
       const Estimate& bounded = measured[setup_.measures.required[r]];
       const Requirement& requirement = problem.requirements[r];
       const bool more = requirement.bound == Requirement::Bound::at_least;
-      missed += requirement.missed_by(bounded.value + (more ? bounded.standard_error : -bounded.standard_error));
+      const double error = kOptimism * bounded.standard_error;
+      missed += requirement.missed_by(bounded.value + (more ? error : -error));
     }
     std::vector<double> f(problem.objectives.size());
     scale_objectives(problem, x, values, missed, f);

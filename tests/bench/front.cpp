@@ -145,8 +145,7 @@ void draw(const std::string& file, const FrontOptions& options, const std::vecto
 void FrontOptions::add(CLI::App& command) {
   site.add(command);
   command.add_option("--problem", problem, "One of the method's problems")->capture_default_str();
-  command.add_option("--number", stations, "Stations: N, or N..M where the number is searched")
-      ->capture_default_str();
+  command.add_option("--number", stations, "Stations: N, or N..M where the number is searched")->capture_default_str();
   command.add_option("--population", population, "Networks of the front")->capture_default_str();
   command.add_option("--iterations", iterations, "Of so many evaluations each")->capture_default_str();
   command.add_option("--batch", batch, "Offspring at once; 0: by the engine")->capture_default_str();
@@ -203,6 +202,7 @@ void run_front(const FrontOptions& options) {
                     static_cast<unsigned long long>(seed), look.seconds,
                     static_cast<unsigned long long>(look.evaluations), look.front.size(), look.searched, look.exact,
                     look.searched - look.exact);
+        std::fflush(stdout);
       }
       const auto undominated = std::ranges::count(result.front, false, &PlanEntry::dominated);
       std::printf("%s,%llu,end of search,%.2f,,,,,,\n", sample.c_str(), static_cast<unsigned long long>(seed),
