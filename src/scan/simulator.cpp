@@ -16,6 +16,7 @@
 #include "scan/voxel_sample.hpp"
 #include "trace/passes.hpp"
 #include "trace/registration_sums.hpp"
+#include "trace/shared_tracing.hpp"
 #include "trace/tracer.hpp"
 #include "vantage/error.hpp"
 #include "voxel/voxel_grid.hpp"
@@ -132,6 +133,8 @@ struct Simulator::Impl {
                             .validation = config.validation};
     tracer = config.devices.empty() ? make_tracer(config.engine, config.device_index, shared)
                                     : make_tracer(config.devices, shared, config.warn);
+    if (TracerMaker* const maker = SharedTracing::maker())
+      tracer = maker->make(std::move(tracer), shared, scene.fingerprint());
     tracer->set_goal_density(goal);
   }
 

@@ -11,6 +11,7 @@
 #include "growth.hpp"
 #include "intervals.hpp"
 #include "population.hpp"
+#include "ranks.hpp"
 #include "rates.hpp"
 #include "vantage/error.hpp"
 
@@ -34,6 +35,9 @@ int main(int argc, char** argv) {
   intervals.add(*app.add_subcommand("intervals", "How often a sample's 95 % intervals hold the value of every ray"));
   vantage::bench::DevicesOptions devices;
   devices.add(*app.add_subcommand("devices", "How the rate grows with the devices that share the work"));
+  vantage::bench::RanksOptions ranks;
+  ranks.add(
+      *app.add_subcommand("ranks", "How the rate grows with the ranks of a job, simulated from what is measured here"));
   vantage::bench::GapOptions gap;
   gap.add(*app.add_subcommand("gap", "What stations capture at most, and at best as found, over the candidates"));
   vantage::bench::ChooseOptions choose;
@@ -46,6 +50,7 @@ int main(int argc, char** argv) {
     if (app.got_subcommand("error")) vantage::bench::run_error(error);
     if (app.got_subcommand("intervals")) vantage::bench::run_intervals(intervals);
     if (app.got_subcommand("devices")) vantage::bench::run_devices(devices);
+    if (app.got_subcommand("ranks")) vantage::bench::run_ranks(ranks);
     if (app.got_subcommand("gap")) vantage::bench::run_gap(gap);
     if (app.got_subcommand("choose")) vantage::bench::run_choose(choose);
     if (app.got_subcommand("growth")) vantage::bench::run_growth(growth);
