@@ -192,11 +192,14 @@ struct Simulator::Impl {
     return sum;
   }
 
+  std::vector<std::uint32_t> drawn(std::uint64_t size) const {
+    if (size == 0) throw Error(Errc::invalid_argument, "a sample must have at least one voxel");
+    return voxel_sample(grid->size(), size, config.seed);
+  }
+
   // Of the size asked for last; the optimiser asks for one size all the time.
   const std::vector<std::uint32_t>& sample(std::uint64_t size) {
-    if (size == 0) throw Error(Errc::invalid_argument, "a sample must have at least one voxel");
-    size = std::min(size, grid->size());
-    if (sampled.size() != size) sampled = voxel_sample(grid->size(), size, config.seed);
+    if (size == 0 || sampled.size() != std::min(size, grid->size())) sampled = drawn(size);
     return sampled;
   }
 
@@ -276,7 +279,7 @@ std::vector<VoxelPatch> Simulator::voxel_patches(std::span<const std::uint32_t> 
   return patches;
 }
 
-std::vector<std::uint32_t> Simulator::sampled_voxels(std::uint64_t voxels) const { return impl_->sample(voxels); }
+std::vector<std::uint32_t> Simulator::sampled_voxels(std::uint64_t voxels) const { return impl_->drawn(voxels); }
 
 void Simulator::stand_for(std::span<const Scanner> scanners) {
   impl_->registered.assign(scanners.begin(), scanners.end());
