@@ -148,8 +148,8 @@ TEST_P(Threads, CallbacksThatThrowLeaveTheSimulatorWell) {
     return Progress{[callback](double) { callback(); }, {}};
   };
   EXPECT_GT(
-      throw_at_each([&](const auto& callback) { engine.evaluate(networks[0], {.skip = false}, report(callback)); }), 1);
-  EXPECT_GT(throw_at_each([&](const auto& callback) { engine.evaluate_each(networks, {}, report(callback)); }), 1);
+      throw_at_each([&](const auto& callback) { engine.evaluate(networks[0], {.skip = false}, report(callback)); }), 0);
+  EXPECT_GT(throw_at_each([&](const auto& callback) { engine.evaluate_each(networks, {}, report(callback)); }), 0);
   EXPECT_GT(throw_at_each(
                 [&](const auto& callback) { engine.evaluate_sampled(networks, {.voxels = 150}, report(callback)); }),
             0);
