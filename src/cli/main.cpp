@@ -59,6 +59,7 @@ int run(int argc, char** argv) {
   try {
     ranks = join_ranks();
     program.ranks = ranks.get();
+    if (ranks) interrupts.one_of_several();
     if (ranks && !ranks->first()) spdlog::set_level(spdlog::level::off);
     app.parse(argc, argv);
     if (ranks && program.selected && !app.got_subcommand("plan"))
