@@ -30,7 +30,11 @@ class Rank0 final : public Ranks {
  public:
   explicit Rank0(std::unique_ptr<MpiPost> post)
       : post_(std::move(post)), letters_(std::make_shared<Correspondence>(*post_)) {}
-  ~Rank0() override { letters_->end(); }
+  // The post goes first: until then it may hand over a letter.
+  ~Rank0() override {
+    letters_->end();
+    post_.reset();
+  }
 
   bool first() const override { return true; }
   int size() const override { return post_->size(); }
@@ -50,6 +54,8 @@ class Other final : public Ranks {
  public:
   explicit Other(std::unique_ptr<MpiPost> post)
       : post_(std::move(post)), server_(*post_, host_name(), [this] { post_->leave(0); }) {}
+  // Whatever brought it here: rank 0's end is its own, and until then its post hands over letters.
+  ~Other() override { wait(); }
 
   bool first() const override { return false; }
   int size() const override { return post_->size(); }

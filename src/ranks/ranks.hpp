@@ -13,7 +13,7 @@ namespace vantage::ranks {
 
 class Ranks {
  public:
-  virtual ~Ranks() = default;  // of rank 0: sends the others home
+  virtual ~Ranks() = default;  // of rank 0: sends the others home; of another: waits for that, and does not return
   virtual bool first() const = 0;
   virtual int size() const = 0;
   // While what this returns lives, simulators made on this thread are of all ranks. On rank 0, making one waits for the

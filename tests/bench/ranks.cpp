@@ -212,7 +212,7 @@ double round_trip_seconds(ranks::Correspondence& letters, const ranks::Letter& o
 
 // In a job, with the real letters and the real pulling.
 void hold_against(RanksModel model, const RanksOptions& options, const NetworkCounts& counts) {
-  const std::unique_ptr<ranks::MpiPost> post = ranks::join_job();
+  std::unique_ptr<ranks::MpiPost> post = ranks::join_job();
   const Network given = options.site.stations();
   const TracedSite site = options.site.traced(Scene::load(options.site.scene), given);
   constexpr std::uint64_t nobody_compares = 0;
@@ -248,6 +248,7 @@ void hold_against(RanksModel model, const RanksOptions& options, const NetworkCo
     std::fflush(stdout);
   }
   letters->end();
+  post.reset();  // before what it hands letters to
 }
 
 }  // namespace
