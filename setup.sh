@@ -17,7 +17,7 @@ readonly packages=(
   libjs-three libmeshoptimizer-dev zlib1g-dev libcpp-httplib-dev
 )
 readonly test_packages=(libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev vulkan-validationlayers clang-format proj-bin
-  pybind11-dev python3-dev python3-pip python3-numpy python3-matplotlib)
+  pybind11-dev python3-dev python3-pip python3-numpy python3-matplotlib libopenmpi-dev openmpi-bin)
 
 mode=program
 case "${1-}" in

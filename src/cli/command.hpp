@@ -8,6 +8,7 @@
 #include <string>
 
 #include "cli/console.hpp"
+#include "ranks/ranks.hpp"
 
 namespace vantage::cli {
 
@@ -19,6 +20,7 @@ struct Program {
   Console& console;
   std::stop_token stop, abort;
   std::string command = {};            // as it was typed
+  ranks::Ranks* ranks = nullptr;       // where this process is one of several
   std::function<int()> selected = {};  // set by the command that the user named
 };
 

@@ -16,14 +16,17 @@ namespace {
   _exit(130);
 }
 
-void watch(const std::stop_token& finished, const sigset_t& signals, std::stop_source stop, std::stop_source abort) {
+void watch(const std::stop_token& finished, const sigset_t& signals, std::stop_source stop, std::stop_source abort,
+           const std::atomic<bool>& several) {
   constexpr timespec tick{.tv_sec = 0, .tv_nsec = 50'000'000};
   int ticks_left = 200;
   while (!finished.stop_requested()) {
     if (sigtimedwait(&signals, nullptr, &tick) < 0) {
       if (abort.stop_requested() && --ticks_left == 0) die();
     } else if (stop.request_stop()) {
-      spdlog::warn("stopping in good order; once more to abort");
+      spdlog::warn(several
+                       ? "told to end, by hand or because another rank has died; --resume goes on from the checkpoint"
+                       : "stopping in good order; once more to abort");
     } else if (!abort.request_stop()) {
       die();
     }
@@ -38,8 +41,8 @@ Interrupts::Interrupts() {
   sigaddset(&signals, SIGINT);
   sigaddset(&signals, SIGTERM);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-  watcher_ = std::jthread([signals, stop = stop_, abort = abort_](const std::stop_token& finished) {
-    watch(finished, signals, stop, abort);
+  watcher_ = std::jthread([this, signals, stop = stop_, abort = abort_](const std::stop_token& finished) {
+    watch(finished, signals, stop, abort, several_);
   });
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <stop_token>
 #include <thread>
 
@@ -14,8 +15,11 @@ class Interrupts {
   Interrupts();
   std::stop_token stop() const { return stop_.get_token(); }
   std::stop_token abort() const { return abort_.get_token(); }
+  // Of several, one that dies has the others told to end.
+  void one_of_several() { several_ = true; }
 
  private:
+  std::atomic<bool> several_ = false;
   std::stop_source stop_, abort_;
   std::jthread watcher_;
 };

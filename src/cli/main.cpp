@@ -2,12 +2,14 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <memory>
 #include <new>
 #include <string>
 
 #include "cli/command.hpp"
 #include "cli/console.hpp"
 #include "cli/interrupts.hpp"
+#include "cli/join.hpp"
 #include "cli/mistyped.hpp"
 #include "vantage/vantage.hpp"
 
@@ -39,6 +41,13 @@ int run(int argc, char** argv) {
   CLI::App app{"vantage plans terrestrial LiDAR surveys: where should the scanner stand?", "vantage"};
   app.set_version_flag("--version", std::string("vantage ") + version());
   app.require_subcommand(0, 1);
+  std::unique_ptr<ranks::Ranks> ranks;
+  // Of all ranks, the first speaks.
+  const auto refuse = [&](int exit_code, Errc code, const std::string& why) {
+    if (ranks && !ranks->first()) ranks->fail(code, why);
+    spdlog::error("{}", why);
+    return exit_code;
+  };
   add_info(app, program);
   add_generate(app, program);
   add_scan(app, program);
@@ -48,30 +57,34 @@ int run(int argc, char** argv) {
   add_edit(app, program);
   add_bound(app, program);
   try {
+    ranks = join_ranks();
+    program.ranks = ranks.get();
+    if (ranks) interrupts.one_of_several();
+    if (ranks && !ranks->first()) spdlog::set_level(spdlog::level::off);
     app.parse(argc, argv);
+    if (ranks && program.selected && !app.got_subcommand("plan"))
+      throw Error(Errc::invalid_argument, "several ranks share the work of `vantage plan` alone: start this without");
     if (!program.selected) throw Error(Errc::invalid_argument, "which command? See vantage --help");
     return program.selected();
   } catch (const CLI::Success& help_or_version) {
-    return app.exit(help_or_version);
+    return ranks && !ranks->first() ? exit_ok : app.exit(help_or_version);
   } catch (const CLI::ParseError& error) {
     const auto named = app.get_subcommands();
     const bool leftover = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
     const std::string message = leftover ? explain_leftover(app) : error.what();
-    spdlog::error("{} vantage {}--help", message + (message.ends_with('?') ? " See" : "; see"),
-                  named.empty() ? "" : named.front()->get_name() + " ");
-    return exit_usage;
+    return refuse(exit_usage, Errc::invalid_argument,
+                  message + (message.ends_with('?') ? " See" : "; see") + " vantage " +
+                      (named.empty() ? "" : named.front()->get_name() + " ") + "--help");
   } catch (const Error& error) {
     std::string message = error.what();
     for (const auto& line : error.details()) message += "\n  - " + line;
-    spdlog::error("{}", message);
-    return error.code() == Errc::invalid_argument ? exit_usage : exit_failed;
+    return refuse(error.code() == Errc::invalid_argument ? exit_usage : exit_failed, error.code(), message);
   } catch (const std::bad_alloc&) {
-    spdlog::error(
+    return refuse(
+        exit_failed, Errc::out_of_memory,
         "this machine has not enough memory for it; coarser voxels (--user-size) or a smaller scene need less");
-    return exit_failed;
   } catch (const std::exception& error) {
-    spdlog::error("{}", error.what());
-    return exit_failed;
+    return refuse(exit_failed, Errc::device_failure, error.what());
   }
 }
 

@@ -115,6 +115,11 @@ struct PlanOptions {
         ->excludes(exact_flag);
     add_text(command, "-o,--output", "DIR", "Folder for the results; the scene's name and -plan otherwise", output)
         ->group("Results");
+    add_value(command, "--save-every", "T", "Time between checkpoints, which --resume goes on from; 1min otherwise",
+              [this](const std::string& text, const std::string& what) {
+                config.checkpoint_seconds = parse_duration(text, what);
+              })
+        ->group("Results");
     auto* resumes = command.add_flag("--resume", resume, "Go on from the folder's checkpoint")->group("Results");
     command.add_flag("--force", force, "Overwrite the results of another run")->group("Results")->excludes(resumes);
     command
@@ -409,7 +414,12 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   if (config.iterations == 0 && !problem.fewest) config.iterations = PlanConfig().iterations;
   const SearchArea& area = site.area();
 
+  std::shared_ptr<void> shared;
+  if (program.ranks)
+    shared = program.ranks->share([](const std::string& line) { spdlog::info("{}", line); },
+                                  [](const std::string& line) { spdlog::warn("{}", line); });
   Simulator simulator(site.scene, site.scanners, site.config);
+  if (program.ranks && !program.ranks->first()) program.ranks->serve(simulator);
   tell_engine(simulator);
   tell_grid(simulator);
   if (!options.exact)

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <tbb/task_arena.h>
+
 #include <cmath>
 #include <limits>
 #include <mutex>
@@ -64,13 +66,15 @@ struct SearchArea::Impl {
   }
 
   const PlaneQuadtree& plan() const {
+    // Isolated: a thread that waits for the tree's tasks must not take up one of its caller's that asks for the tree.
     std::call_once(plan_once, [this] {
+      plan_points.clear();  // of a call that threw
       plan_points.reserve(mesh.positions.size());
       for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
         const bool usable = std::isfinite(mesh.uvs[v].u) && std::isfinite(mesh.uvs[v].v);
         plan_points.push_back(usable ? Uv{mesh.positions[v].x, mesh.positions[v].y} : mesh.uvs[v]);
       }
-      in_plan.emplace(plan_points, mesh.triangles);
+      tbb::this_task_arena::isolate([this] { in_plan.emplace(plan_points, mesh.triangles); });
     });
     return *in_plan;
   }

@@ -3,7 +3,10 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <utility>
+
+#include "trace/shared_tracing.hpp"
 
 namespace vantage {
 namespace {
@@ -20,6 +23,14 @@ std::optional<RegistrationModel> registered_around(const Needs& needs) {
 }
 
 }  // namespace
+
+// Of every ray as many as keep all devices busy: so it can be stopped, and saved, often.
+std::size_t SimulatorEvaluator::chunk() const {
+  if (options_.sampled) return 0;
+  const std::size_t devices = std::max<std::size_t>(simulator_.config().devices.size(), 1);
+  const TracerMaker* const shared = SharedTracing::maker();
+  return shared ? devices * shared->networks_at_once() : devices;
+}
 
 std::optional<SimulatorEvaluator::Counted> SimulatorEvaluator::count(std::span<const Network> networks,
                                                                      std::uint64_t voxels, const Needs& needs,

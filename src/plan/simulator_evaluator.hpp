@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
 #include <functional>
 
 #include "plan/measures.hpp"
@@ -28,10 +27,7 @@ class SimulatorEvaluator final : public NetworkEvaluator {
   SimulatorEvaluator(Simulator& simulator, Measures measures, Options options)
       : simulator_(simulator), measures_(std::move(measures)), options_(std::move(options)) {}
 
-  // Of every ray as many as there are devices: so it can be stopped, and saved, often.
-  std::size_t chunk() const override {
-    return options_.sampled ? 0 : std::max<std::size_t>(simulator_.config().devices.size(), 1);
-  }
+  std::size_t chunk() const override;
   std::optional<std::vector<std::vector<double>>> evaluate(std::span<const PlacedNetwork> networks,
                                                            std::uint64_t voxels, const Progress& progress) override;
   std::optional<std::vector<std::vector<Estimate>>> estimate(std::span<const PlacedNetwork> networks,

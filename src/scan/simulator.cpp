@@ -17,6 +17,7 @@
 #include "scan/voxel_sample.hpp"
 #include "trace/passes.hpp"
 #include "trace/registration_sums.hpp"
+#include "trace/shared_tracing.hpp"
 #include "trace/tracer.hpp"
 #include "vantage/error.hpp"
 #include "voxel/voxel_grid.hpp"
@@ -133,6 +134,8 @@ struct Simulator::Impl {
                             .validation = config.validation};
     tracer = config.devices.empty() ? make_tracer(config.engine, config.device_index, shared)
                                     : make_tracer(config.devices, shared, config.warn);
+    if (TracerMaker* const maker = SharedTracing::maker())
+      tracer = maker->make(std::move(tracer), shared, scene.fingerprint());
     tracer->set_goal_density(goal);
   }
 
@@ -190,12 +193,18 @@ struct Simulator::Impl {
     return sum;
   }
 
+  std::vector<std::uint32_t> drawn(std::uint64_t size) const {
+    if (size == 0) throw Error(Errc::invalid_argument, "a sample must have at least one voxel");
+    return voxel_sample(grid->size(), size, config.seed);
+  }
+
   // A search asks for few sizes all the time.
   const std::vector<std::uint32_t>& sample(std::uint64_t size) {
-    if (size == 0) throw Error(Errc::invalid_argument, "a sample must have at least one voxel");
-    size = std::min(size, grid->size());
-    return samples.get([&](const std::vector<std::uint32_t>& ranks) { return ranks.size() == size; },
-                       [&] { return voxel_sample(grid->size(), size, config.seed); });
+    return samples.get(
+        [&](const std::vector<std::uint32_t>& ranks) {
+          return size > 0 && ranks.size() == std::min(size, grid->size());
+        },
+        [&] { return drawn(size); });
   }
 
   // The planes of a sample, or of all voxels. Range noise is the scanner's, simulated or not.
@@ -279,7 +288,7 @@ std::vector<VoxelPatch> Simulator::voxel_patches(std::span<const std::uint32_t> 
   return patches;
 }
 
-std::vector<std::uint32_t> Simulator::sampled_voxels(std::uint64_t voxels) const { return impl_->sample(voxels); }
+std::vector<std::uint32_t> Simulator::sampled_voxels(std::uint64_t voxels) const { return impl_->drawn(voxels); }
 
 void Simulator::stand_for(std::span<const Scanner> scanners) {
   impl_->registered.assign(scanners.begin(), scanners.end());

@@ -12,6 +12,7 @@
 #include "growth.hpp"
 #include "intervals.hpp"
 #include "population.hpp"
+#include "ranks.hpp"
 #include "rates.hpp"
 #include "vantage/error.hpp"
 
@@ -38,6 +39,9 @@ int main(int argc, char** argv) {
   vantage::bench::FrontOptions front;
   front.add(
       *app.add_subcommand("front", "What searched fronts are worth by every ray, over the seconds of the search"));
+  vantage::bench::RanksOptions ranks;
+  ranks.add(
+      *app.add_subcommand("ranks", "How the rate grows with the ranks of a job, simulated from what is measured here"));
   vantage::bench::GapOptions gap;
   gap.add(*app.add_subcommand("gap", "What stations capture at most, and at best as found, over the candidates"));
   vantage::bench::ChooseOptions choose;
@@ -51,6 +55,7 @@ int main(int argc, char** argv) {
     if (app.got_subcommand("intervals")) vantage::bench::run_intervals(intervals);
     if (app.got_subcommand("devices")) vantage::bench::run_devices(devices);
     if (app.got_subcommand("front")) vantage::bench::run_front(front);
+    if (app.got_subcommand("ranks")) vantage::bench::run_ranks(ranks);
     if (app.got_subcommand("gap")) vantage::bench::run_gap(gap);
     if (app.got_subcommand("choose")) vantage::bench::run_choose(choose);
     if (app.got_subcommand("growth")) vantage::bench::run_growth(growth);

@@ -46,8 +46,8 @@ void put(std::vector<T>& whole, const std::vector<T>& part, std::size_t at, std:
 }  // namespace
 
 SpreadTracer::SpreadTracer(std::vector<std::unique_ptr<Tracer>> tracers, const TraceScene& scene, Team::Warn warn,
-                           Split split)
-    : info_(info_of_all(tracers)),
+                           Split split, std::optional<EngineInfo> info)
+    : info_(info ? *std::move(info) : info_of_all(tracers)),
       grid_(scene.grid),
       scanners_(scene.scanners),
       team_(std::move(tracers), std::move(warn)),

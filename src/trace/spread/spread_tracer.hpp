@@ -6,6 +6,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,9 +19,9 @@ class SpreadTracer final : public Tracer {
  public:
   // When one network is split by its stations.
   enum class Split { where_it_pays, always };
-  // The tracers are of one scene. REQUIRES: at least one.
+  // The tracers are of one scene. `info`: what all are known by; their devices otherwise. REQUIRES: at least one.
   SpreadTracer(std::vector<std::unique_ptr<Tracer>> tracers, const TraceScene& scene, Team::Warn warn,
-               Split split = Split::where_it_pays);
+               Split split = Split::where_it_pays, std::optional<EngineInfo> info = std::nullopt);
 
   const EngineInfo& info() const override { return info_; }
   void set_goal_density(double goal) override;

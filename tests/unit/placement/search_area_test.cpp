@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+#include <tbb/partitioner.h>
+#include <tbb/task_arena.h>
 
+#include <atomic>
 #include <cmath>
 #include <memory>
 #include <random>
@@ -53,6 +58,22 @@ TEST(SearchArea, FindsPointsOnTheEdgesOfSlivers) {
   expect_edges_found(test::hills(3, 3, 1e-9), 100'000, 7);
 }
 TEST(SearchArea, FindsPointsOnTheEdgesOfCoarseMeshes) { expect_edges_found(test::hills(1, 1), 20'000, 8); }
+
+// What the first call builds, it builds in tasks of its own; waiting for those, it must not take up another of its
+// caller's, which would wait for it. Many threads, so that some of them help to build.
+TEST(SearchArea, IsAskedForTheFirstTimeFromManyTasks) {
+  const tbb::global_control allowed(tbb::global_control::max_allowed_parallelism, 16);
+  const SearchMesh mesh = test::hills(150, 150);
+  constexpr int calls = 12;  // fewer than threads
+  tbb::task_arena arena(16);
+  for (int round = 0; round < 10; ++round) {
+    const SearchArea area = SearchArea::from_mesh(mesh);
+    std::atomic<int> found = 0;
+    const auto call = [&](int k) { found += area.project(mesh.positions[200 * k]).has_value(); };
+    arena.execute([&] { tbb::parallel_for(0, calls, call, tbb::simple_partitioner()); });
+    EXPECT_EQ(found, calls);
+  }
+}
 
 TEST(SearchArea, BoundsAreInside) {
   const SearchArea area = SearchArea::from_mesh(test::hills(7, 9));

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tracers over all ranks, as each rank makes them.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "ranks/correspondence.hpp"
+#include "ranks/server.hpp"
+#include "trace/shared_tracing.hpp"
+
+namespace vantage::ranks {
+
+// On rank 0: its own tracer and one for each other rank, which pull pieces of the work.
+class FirstRank final : public TracerMaker {
+ public:
+  using Tell = std::function<void(const std::string&)>;
+  FirstRank(std::shared_ptr<Correspondence> post, Tell tell, Tell warn);
+
+  std::unique_ptr<Tracer> make(std::unique_ptr<Tracer> own, const TraceScene& scene,
+                               std::uint64_t fingerprint) override;
+  std::size_t networks_at_once() const override { return static_cast<std::size_t>(post_->ranks()); }
+
+ private:
+  std::vector<Opened> open(const Identity& identity);
+  void greet(const std::vector<Opened>& others, const Identity& identity, const EngineInfo& own);
+
+  std::shared_ptr<Correspondence> post_;
+  Tell tell_, warn_;
+  bool greeted_ = false;
+};
+
+// On the others: a tracer of its own, which is offered to rank 0.
+class OtherRank final : public TracerMaker {
+ public:
+  explicit OtherRank(Server& server) : server_(server) {}
+
+  std::unique_ptr<Tracer> make(std::unique_ptr<Tracer> own, const TraceScene& scene,
+                               std::uint64_t fingerprint) override;
+  std::size_t networks_at_once() const override { return 1; }
+
+ private:
+  Server& server_;
+};
+
+}  // namespace vantage::ranks

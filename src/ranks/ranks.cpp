@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ranks/ranks.hpp"
+
+#include <unistd.h>
+
+#include <array>
+#include <list>
+#include <utility>
+
+#include "ranks/fleet.hpp"
+#include "ranks/mpi_post.hpp"
+
+namespace vantage::ranks {
+namespace {
+
+std::string host_name() {
+  std::array<char, 256> name{};
+  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "a host without a name";
+}
+
+template <class Maker>
+struct Share {
+  template <class... Arguments>
+  explicit Share(Arguments&&... arguments) : maker(std::forward<Arguments>(arguments)...), shared(maker) {}
+  Maker maker;
+  SharedTracing shared;
+};
+
+class Rank0 final : public Ranks {
+ public:
+  explicit Rank0(std::unique_ptr<MpiPost> post)
+      : post_(std::move(post)), letters_(std::make_shared<Correspondence>(*post_)) {}
+  // The post goes first: until then it may hand over a letter.
+  ~Rank0() override {
+    letters_->end();
+    post_.reset();
+  }
+
+  bool first() const override { return true; }
+  int size() const override { return post_->size(); }
+  std::shared_ptr<void> share(std::function<void(const std::string&)> tell,
+                              std::function<void(const std::string&)> warn) override {
+    return std::make_shared<Share<FirstRank>>(letters_, std::move(tell), std::move(warn));
+  }
+  void serve(const Simulator&) override {}
+  void fail(Errc code, const std::string& why) override { throw Error(code, why); }
+
+ private:
+  std::unique_ptr<MpiPost> post_;
+  std::shared_ptr<Correspondence> letters_;
+};
+
+class Other final : public Ranks {
+ public:
+  explicit Other(std::unique_ptr<MpiPost> post)
+      : post_(std::move(post)), server_(*post_, host_name(), [this] { post_->leave(0); }) {}
+  // Whatever brought it here: rank 0's end is its own, and until then its post hands over letters.
+  ~Other() override { wait(); }
+
+  bool first() const override { return false; }
+  int size() const override { return post_->size(); }
+  std::shared_ptr<void> share(std::function<void(const std::string&)>,
+                              std::function<void(const std::string&)>) override {
+    return std::make_shared<Share<OtherRank>>(server_);
+  }
+  // What a plan makes beside its own simulator is made here too, once it is asked for.
+  void serve(const Simulator& simulator) override {
+    std::list<Simulator> more;
+    server_.serve([&] {
+      if (more.empty()) more.push_back(surroundings_of(simulator));
+    });
+    wait();
+  }
+  void fail(Errc code, const std::string& why) override {
+    server_.fail(code, why);
+    wait();
+  }
+
+ private:
+  // For the post's thread to end the process.
+  [[noreturn]] static void wait() {
+    for (;;) pause();
+  }
+
+  std::unique_ptr<MpiPost> post_;
+  Server server_;
+};
+
+}  // namespace
+
+std::unique_ptr<Ranks> join() {
+  if (!started_as_job()) return nullptr;
+  std::unique_ptr<MpiPost> post = join_job();
+  if (post->size() == 1) return nullptr;
+  if (post->rank() == 0) return std::make_unique<Rank0>(std::move(post));
+  return std::make_unique<Other>(std::move(post));
+}
+
+}  // namespace vantage::ranks
