@@ -25,6 +25,7 @@ void VulkanTracer::upload_sample(std::span<const std::uint32_t> sample,
                          static_cast<double>(farthest);
   const double margin = sample_reach(networks) + largest * 0x1p-17;
   if (sample_voxels_ && margin <= sample_margin_ && std::ranges::equal(sample, sample_)) return;
+  sample_voxels_ = Buffer();  // what is left half way is nothing
   const VoxelTriangles touching = triangles_touching(scene, grid, sample, margin);
   std::vector<SampleVoxel> voxels(sample.size() + 1);
   std::vector<SampleTriangle> triangles(touching.triangle.size());
@@ -46,10 +47,10 @@ void VulkanTracer::upload_sample(std::span<const std::uint32_t> sample,
     for (const std::uint32_t rank : sample) weights.push_back(grid.weights()[rank]);
     sample_weights_ = bytes_to_device(weights, "sample weights");
   }
-  sample_voxels_ = to_device<SampleVoxel>(voxels, "sample voxels");
   sample_triangles_ = to_device<SampleTriangle>(triangles, "sample triangles");
   sample_.assign(sample.begin(), sample.end());
   sample_margin_ = margin;
+  sample_voxels_ = to_device<SampleVoxel>(voxels, "sample voxels");
 }
 
 // How far noise may move a point into a voxel, seen from any station of the networks.

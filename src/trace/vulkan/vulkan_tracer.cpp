@@ -104,7 +104,6 @@ void VulkanTracer::write_parameters() {
 void VulkanTracer::upload_shading() {
   if (positions_) return;
   const SceneData& scene = *scene_.scene;
-  positions_ = to_device<Float3>(scene.positions, "positions");
   triangles_ = to_device<Triangle>(scene.triangles, "triangles");
   std::vector<float> diffuse(scene.triangles.size());
   for (std::size_t m = 0; m < scene.ranges.size(); ++m)
@@ -112,6 +111,7 @@ void VulkanTracer::upload_shading() {
                 static_cast<float>(scene.meshes[m].diffuse));
   diffuse_ = to_device<float>(diffuse, "diffuse coefficients");
   if (!scene.normals.empty()) normals_ = to_device<Float3>(scene.normals, "normals");
+  positions_ = to_device<Float3>(scene.positions, "positions");
   parameters_.positions = positions_.address();
   parameters_.triangles = triangles_.address();
   parameters_.diffuse = diffuse_.address();
