@@ -102,8 +102,7 @@ std::vector<DeviceChoice> all_devices(Engine engine) {
 
 std::unique_ptr<Tracer> make_tracer(std::span<const DeviceChoice> devices, const TraceScene& scene,
                                     std::function<void(const std::string&)> warn) {
-  if (devices.size() == 1)
-    return make_tracer(devices.front().engine, devices.front().index, scene, std::move(warn));
+  if (devices.size() == 1) return make_tracer(devices.front().engine, devices.front().index, scene, std::move(warn));
   std::vector<std::future<std::unique_ptr<Tracer>>> building;
   for (const DeviceChoice& device : devices)
     building.push_back(

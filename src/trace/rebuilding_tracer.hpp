@@ -24,7 +24,9 @@ class RebuildingTracer final : public Tracer {
 
   const EngineInfo& info() const override { return info_; }
   void set_goal_density(double goal) override;
-  std::uint64_t preferred_scan_rays(std::uint32_t scanner) const override { return ready().preferred_scan_rays(scanner); }
+  std::uint64_t preferred_scan_rays(std::uint32_t scanner) const override {
+    return ready().preferred_scan_rays(scanner);
+  }
 
   void scan(const TraceStation& station, std::uint64_t first_ray, std::uint64_t ray_count, std::uint32_t outputs,
             RawChunk& chunk) override;

@@ -25,7 +25,7 @@ struct Kind {
   Fault fault;
   const char* name;
 };
-constexpr std::array kinds{Kind{Fault::lost, "device lost"},          Kind{Fault::device_memory, "out of device memory"},
+constexpr std::array kinds{Kind{Fault::lost, "device lost"}, Kind{Fault::device_memory, "out of device memory"},
                            Kind{Fault::host_memory, "out of host memory"}, Kind{Fault::timeout, "wait timed out"},
                            Kind{Fault::late, "answers late"}};
 
@@ -43,9 +43,8 @@ class Trial {
   Trial(Engine engine, const FaultControl& faults)
       : engine_(engine), faults_(faults), plan_(engine, true), quiet_plan_(engine, false) {
     // The first instance of all: later ones share it as long as it lives.
-    const std::map<Outcome::Kind, int> none = befall(plan_, "cannot make an instance", 1, [&](std::uint64_t) {
-      faults_.arm(Fault::host_memory, 0);
-    });
+    const std::map<Outcome::Kind, int> none =
+        befall(plan_, "cannot make an instance", 1, [&](std::uint64_t) { faults_.arm(Fault::host_memory, 0); });
     if (none.contains(Outcome::Kind::saved)) complain("a plan without an instance had a checkpoint");
     keeper_.emplace(kept(engine));
     front_ = reference();
@@ -56,7 +55,8 @@ class Trial {
       reference();
       const std::uint64_t calls = faults_.calls(kind.fault);
       if (calls == 0) complain("nothing that a fault can befall");
-      befall(plan_, kind.name, (calls + every - 1) / every, [&](std::uint64_t k) { faults_.arm(kind.fault, k * every); });
+      befall(plan_, kind.name, (calls + every - 1) / every,
+             [&](std::uint64_t k) { faults_.arm(kind.fault, k * every); });
     }
     too_little_memory();
     slow_device();

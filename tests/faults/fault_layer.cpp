@@ -72,7 +72,8 @@ VkResult strike(void* device, const char* name, unsigned can) {
     return possible && l.calls[static_cast<std::size_t>(fault)]++ == l.call && l.fault == fault;
   };
   const bool lost = meets(Fault::lost, true), late = meets(Fault::late, true);
-  const bool device_memory = meets(Fault::device_memory, can & memory), host_memory = meets(Fault::host_memory, can & memory);
+  const bool device_memory = meets(Fault::device_memory, can & memory),
+             host_memory = meets(Fault::host_memory, can & memory);
   const bool timeout = meets(Fault::timeout, can & wait), hang = meets(Fault::hang, can & wait);
   if (lost || late || device_memory || host_memory || timeout || hang) l.struck = name;
   if (lost) l.lost[device] = true;
@@ -96,32 +97,33 @@ void made(VkResult result, std::int64_t many = 1) {
 }
 
 // Calls of a device that say VkResult.
-#define PASS(name, can, parameters, ...)                                                     \
-  VKAPI_ATTR VkResult VKAPI_CALL name parameters {                                           \
-    const VkResult struck = strike(key_of(self), #name, can);                                \
-    if (struck != VK_SUCCESS) {                                                              \
-      /* a lost device works no more, so that what it worked on may be destroyed */          \
-      if (struck == VK_ERROR_DEVICE_LOST) idle(self);                                        \
-      return struck;                                                                         \
-    }                                                                                        \
-    return next<PFN_##name>(self, #name)(__VA_ARGS__);                                       \
+#define PASS(name, can, parameters, ...)                                            \
+  VKAPI_ATTR VkResult VKAPI_CALL name parameters {                                  \
+    const VkResult struck = strike(key_of(self), #name, can);                       \
+    if (struck != VK_SUCCESS) {                                                     \
+      /* a lost device works no more, so that what it worked on may be destroyed */ \
+      if (struck == VK_ERROR_DEVICE_LOST) idle(self);                               \
+      return struck;                                                                \
+    }                                                                               \
+    return next<PFN_##name>(self, #name)(__VA_ARGS__);                              \
   }
 // And make objects.
-#define MAKE(name, parameters, ...)                                            \
-  VKAPI_ATTR VkResult VKAPI_CALL name parameters {                             \
-    const VkResult struck = strike(key_of(self), #name, memory);               \
-    if (struck != VK_SUCCESS) return struck;                                   \
-    const VkResult result = next<PFN_##name>(self, #name)(__VA_ARGS__);        \
-    made(result);                                                              \
-    return result;                                                             \
+#define MAKE(name, parameters, ...)                                     \
+  VKAPI_ATTR VkResult VKAPI_CALL name parameters {                      \
+    const VkResult struck = strike(key_of(self), #name, memory);        \
+    if (struck != VK_SUCCESS) return struck;                            \
+    const VkResult result = next<PFN_##name>(self, #name)(__VA_ARGS__); \
+    made(result);                                                       \
+    return result;                                                      \
   }
-#define DESTROY(name, Handle)                                                                            \
+#define DESTROY(name, Handle)                                                                             \
   VKAPI_ATTR void VKAPI_CALL name(VkDevice self, Handle handle, const VkAllocationCallbacks* callbacks) { \
-    if (handle) made(VK_SUCCESS, -1);                                                                    \
-    next<PFN_##name>(self, #name)(self, handle, callbacks);                                              \
+    if (handle) made(VK_SUCCESS, -1);                                                                     \
+    next<PFN_##name>(self, #name)(self, handle, callbacks);                                               \
   }
-#define MAKE_ONE(name, Info, Handle)                                                                          \
-  MAKE(name, (VkDevice self, const Info* info, const VkAllocationCallbacks* callbacks, Handle* out), self, info, callbacks, out)
+#define MAKE_ONE(name, Info, Handle)                                                                             \
+  MAKE(name, (VkDevice self, const Info* info, const VkAllocationCallbacks* callbacks, Handle* out), self, info, \
+       callbacks, out)
 
 void idle(VkDevice device) { next<PFN_vkDeviceWaitIdle>(device, "vkDeviceWaitIdle")(device); }
 void idle(VkQueue queue) { next<PFN_vkQueueWaitIdle>(queue, "vkQueueWaitIdle")(queue); }
@@ -153,10 +155,10 @@ DESTROY(vkDestroyAccelerationStructureKHR, VkAccelerationStructureKHR)
 DESTROY(vkDestroyPipeline, VkPipeline)
 
 // Command buffers and sets go with their pools.
-PASS(vkAllocateCommandBuffers, memory,
-     (VkDevice self, const VkCommandBufferAllocateInfo* info, VkCommandBuffer* out), self, info, out)
-PASS(vkAllocateDescriptorSets, memory,
-     (VkDevice self, const VkDescriptorSetAllocateInfo* info, VkDescriptorSet* out), self, info, out)
+PASS(vkAllocateCommandBuffers, memory, (VkDevice self, const VkCommandBufferAllocateInfo* info, VkCommandBuffer* out),
+     self, info, out)
+PASS(vkAllocateDescriptorSets, memory, (VkDevice self, const VkDescriptorSetAllocateInfo* info, VkDescriptorSet* out),
+     self, info, out)
 PASS(vkBindBufferMemory, memory, (VkDevice self, VkBuffer buffer, VkDeviceMemory bound, VkDeviceSize offset), self,
      buffer, bound, offset)
 PASS(vkMapMemory, memory,
@@ -167,8 +169,8 @@ PASS(vkEndCommandBuffer, memory, (VkCommandBuffer self), self)
 PASS(vkQueueSubmit, memory | lose, (VkQueue self, std::uint32_t count, const VkSubmitInfo* infos, VkFence fence), self,
      count, infos, fence)
 PASS(vkWaitForFences, memory | lose | wait,
-     (VkDevice self, std::uint32_t count, const VkFence* fences, VkBool32 all, std::uint64_t timeout), self, count, fences,
-     all, timeout)
+     (VkDevice self, std::uint32_t count, const VkFence* fences, VkBool32 all, std::uint64_t timeout), self, count,
+     fences, all, timeout)
 PASS(vkResetFences, memory, (VkDevice self, std::uint32_t count, const VkFence* fences), self, count, fences)
 PASS(vkDeviceWaitIdle, memory | lose, (VkDevice self), self)
 
@@ -178,7 +180,7 @@ VKAPI_ATTR VkResult VKAPI_CALL vkGetQueryPoolResults(VkDevice self, VkQueryPool 
   const VkResult struck = strike(key_of(self), "vkGetQueryPoolResults", memory | lose);
   if (struck != VK_SUCCESS) return struck;
   const VkResult result = next<PFN_vkGetQueryPoolResults>(self, "vkGetQueryPoolResults")(self, pool, first, count, size,
-                                                                                          data, stride, flags);
+                                                                                         data, stride, flags);
   if (result == VK_SUCCESS && count == 2 && (flags & VK_QUERY_RESULT_64_BIT)) {
     auto* const ticks = static_cast<std::uint64_t*>(data);
     const std::lock_guard lock(layer().mutex);
@@ -278,7 +280,8 @@ VKAPI_ATTR VkResult VKAPI_CALL vkCreateDevice(VkPhysicalDevice self, const VkDev
   return result;
 }
 
-VKAPI_ATTR VkResult VKAPI_CALL vkEnumeratePhysicalDevices(VkInstance self, std::uint32_t* count, VkPhysicalDevice* out) {
+VKAPI_ATTR VkResult VKAPI_CALL vkEnumeratePhysicalDevices(VkInstance self, std::uint32_t* count,
+                                                          VkPhysicalDevice* out) {
   const VkResult struck = strike(nullptr, "vkEnumeratePhysicalDevices", memory);
   if (struck != VK_SUCCESS) return struck;
   PFN_vkGetInstanceProcAddr get;
@@ -289,8 +292,8 @@ VKAPI_ATTR VkResult VKAPI_CALL vkEnumeratePhysicalDevices(VkInstance self, std::
   return reinterpret_cast<PFN_vkEnumeratePhysicalDevices>(get(self, "vkEnumeratePhysicalDevices"))(self, count, out);
 }
 
-VKAPI_ATTR VkResult VKAPI_CALL vkCreateInstance(const VkInstanceCreateInfo* info, const VkAllocationCallbacks* callbacks,
-                                                VkInstance* out) {
+VKAPI_ATTR VkResult VKAPI_CALL vkCreateInstance(const VkInstanceCreateInfo* info,
+                                                const VkAllocationCallbacks* callbacks, VkInstance* out) {
   const VkResult struck = strike(nullptr, "vkCreateInstance", memory);
   if (struck != VK_SUCCESS) return struck;
   auto* const chain = link<VkLayerInstanceCreateInfo>(info->pNext, VK_STRUCTURE_TYPE_LOADER_INSTANCE_CREATE_INFO);
@@ -360,7 +363,8 @@ PFN_vkVoidFunction own(std::string_view name) {
 
 VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_device_function(VkDevice device, const char* name) {
   if (const auto function = own(name)) return function;
-  if (std::string_view(name) == "vkGetDeviceProcAddr") return reinterpret_cast<PFN_vkVoidFunction>(&get_device_function);
+  if (std::string_view(name) == "vkGetDeviceProcAddr")
+    return reinterpret_cast<PFN_vkVoidFunction>(&get_device_function);
   return next<PFN_vkVoidFunction>(device, name);
 }
 
@@ -403,8 +407,7 @@ constexpr FaultControl control{
 
 EXPORTED const FaultControl* vantage_fault_layer() { return &control; }
 
-EXPORTED VKAPI_ATTR VkResult VKAPI_CALL
-vkNegotiateLoaderLayerInterfaceVersion(VkNegotiateLayerInterface* interface) {
+EXPORTED VKAPI_ATTR VkResult VKAPI_CALL vkNegotiateLoaderLayerInterfaceVersion(VkNegotiateLayerInterface* interface) {
   interface->loaderLayerInterfaceVersion = std::min(interface->loaderLayerInterfaceVersion, 2u);
   interface->pfnGetInstanceProcAddr = get_instance_function;
   interface->pfnGetDeviceProcAddr = get_device_function;

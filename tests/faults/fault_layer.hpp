@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a test tells the Vulkan layer beside it, and is told by it (fault_layer.cpp). The layer is loaded by the Vulkan loader; a test
-// opens the same file and asks for `vantage_fault_layer`.
+// What a test tells the Vulkan layer beside it, and is told by it (fault_layer.cpp). The layer is loaded by the Vulkan
+// loader; a test opens the same file and asks for `vantage_fault_layer`.
 #pragma once
 
 #include <cstdint>

@@ -13,13 +13,13 @@ void check(VkResult result, const char* what) {
   switch (result) {
     case VK_ERROR_OUT_OF_HOST_MEMORY:
       throw DeviceFault(Errc::out_of_memory,
-                  "the host ran out of memory" + where + "; use a larger voxel or a smaller scene");
+                        "the host ran out of memory" + where + "; use a larger voxel or a smaller scene");
     case VK_ERROR_OUT_OF_DEVICE_MEMORY:
       throw DeviceFault(Errc::out_of_memory, "the Vulkan device ran out of memory" + where +
-                                           "; use a larger voxel, a smaller scene, or --engine embree");
+                                                 "; use a larger voxel, a smaller scene, or --engine embree");
     case VK_ERROR_DEVICE_LOST:
       throw DeviceFault(Errc::device_failure,
-                  "the Vulkan device was lost" + where + "; its driver reset it or it was unplugged");
+                        "the Vulkan device was lost" + where + "; its driver reset it or it was unplugged");
     default: throw DeviceFault(Errc::device_failure, "the Vulkan device failed" + where);
   }
 }
