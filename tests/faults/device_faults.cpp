@@ -25,8 +25,11 @@ struct Kind {
   Fault fault;
   const char* name;
 };
-constexpr std::array kinds{Kind{Fault::lost, "device lost"}, Kind{Fault::device_memory, "out of device memory"},
-                           Kind{Fault::host_memory, "out of host memory"}, Kind{Fault::timeout, "wait timed out"},
+constexpr std::array kinds{Kind{Fault::lost, "device lost"},
+                           Kind{Fault::gone, "device lost for good"},
+                           Kind{Fault::device_memory, "out of device memory"},
+                           Kind{Fault::host_memory, "out of host memory"},
+                           Kind{Fault::timeout, "wait timed out"},
                            Kind{Fault::late, "answers late"}};
 
 const FaultControl& open_layer() {
@@ -42,12 +45,10 @@ class Trial {
  public:
   Trial(Engine engine, const FaultControl& faults)
       : engine_(engine), faults_(faults), plan_(engine, true), quiet_plan_(engine, false) {
-    // The first instance of all: later ones share it as long as it lives.
-    const std::map<Outcome::Kind, int> none =
-        befall(plan_, "cannot make an instance", 1, [&](std::uint64_t) { faults_.arm(Fault::host_memory, 0); });
-    if (none.contains(Outcome::Kind::saved)) complain("a plan without an instance had a checkpoint");
-    keeper_.emplace(kept(engine));
     front_ = reference();
+    // Later plans share an instance, as long as it lives.
+    befall(plan_, "cannot make an instance", 1, [&](std::uint64_t) { faults_.arm(Fault::host_memory, 0); });
+    keeper_.emplace(kept(engine));
   }
 
   int all(std::uint64_t every) {
@@ -127,7 +128,7 @@ class Trial {
   void too_little_memory() {
     reference();
     const std::uint64_t peak = faults_.peak_bytes();
-    constexpr std::uint64_t steps = 24;
+    constexpr std::uint64_t steps = 16;
     split_ = false;
     befall(plan_, "too little memory", steps, [&](std::uint64_t k) {
       faults_.arm(Fault::none, 0);
@@ -143,7 +144,7 @@ class Trial {
       faults_.arm(Fault::none, 0);
       faults_.slow_down(1e6);
     });
-    if (!outcomes.contains(Outcome::Kind::same)) complain("a slow device was not waited for");
+    if (outcomes.at(Outcome::Kind::same) == 0) complain("a slow device was not waited for");
     if (dispatches_ <= quick) complain("the work of a slow device was not split");
   }
 
@@ -158,7 +159,7 @@ class Trial {
     constexpr std::uint64_t tries = 4;
     const auto outcomes = befall(quiet_plan_, "hangs", tries,
                                  [&](std::uint64_t k) { faults_.arm(Fault::hang, k * (calls - 1) / (tries - 1)); });
-    if (outcomes.contains(Outcome::Kind::same)) complain("a device that hung was waited for");
+    if (outcomes.at(Outcome::Kind::same) > 0) complain("a device that hung was waited for");
   }
 
   static bool mentions(const std::vector<std::string>& lines, const char* what) {

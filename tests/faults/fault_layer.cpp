@@ -26,7 +26,13 @@ constexpr std::size_t faults = static_cast<std::size_t>(Fault::late) + 1;
 
 struct Layer {
   std::mutex mutex;
-  std::map<void*, PFN_vkGetInstanceProcAddr> instances;  // by dispatch key
+  // Asked for when an instance is made: later the loader answers with the top of its chain.
+  struct Instance {
+    PFN_vkGetInstanceProcAddr get;
+    PFN_vkDestroyInstance destroy;
+    PFN_vkEnumeratePhysicalDevices enumerate;
+  };
+  std::map<void*, Instance> instances;  // by dispatch key
   struct Device {
     VkDevice handle;
     PFN_vkGetDeviceProcAddr get;
@@ -37,7 +43,7 @@ struct Layer {
   std::array<std::uint64_t, faults> calls{};
   const char* struck = nullptr;
   std::map<void*, bool> lost;  // devices by dispatch key
-  bool hangs = false;
+  bool hangs = false, gone = false;
   std::uint64_t limit = 0, bytes = 0, peak = 0, dispatches = 0;
   std::map<VkDeviceMemory, std::uint64_t> sizes;
   std::int64_t alive = 0;
@@ -71,19 +77,19 @@ VkResult strike(void* device, const char* name, unsigned can) {
   const auto meets = [&](Fault fault, bool possible) {
     return possible && l.calls[static_cast<std::size_t>(fault)]++ == l.call && l.fault == fault;
   };
-  const bool lost = meets(Fault::lost, true), late = meets(Fault::late, true);
+  const bool gone = meets(Fault::gone, true), lost = meets(Fault::lost, true) || gone, late = meets(Fault::late, true);
   const bool device_memory = meets(Fault::device_memory, can & memory),
              host_memory = meets(Fault::host_memory, can & memory);
   const bool timeout = meets(Fault::timeout, can & wait), hang = meets(Fault::hang, can & wait);
   if (lost || late || device_memory || host_memory || timeout || hang) l.struck = name;
   if (lost) l.lost[device] = true;
-  l.hangs |= hang;
+  l.hangs |= hang, l.gone |= gone;
   if (late) {
     lock.unlock();
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
     return VK_SUCCESS;
   }
-  if ((can & lose) && l.lost.contains(device)) return VK_ERROR_DEVICE_LOST;
+  if ((can & lose) && (l.gone || l.lost.contains(device))) return VK_ERROR_DEVICE_LOST;
   if (timeout || (l.hangs && (can & wait))) return VK_TIMEOUT;
   if (device_memory) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
   if (host_memory) return VK_ERROR_OUT_OF_HOST_MEMORY;
@@ -284,12 +290,12 @@ VKAPI_ATTR VkResult VKAPI_CALL vkEnumeratePhysicalDevices(VkInstance self, std::
                                                           VkPhysicalDevice* out) {
   const VkResult struck = strike(nullptr, "vkEnumeratePhysicalDevices", memory);
   if (struck != VK_SUCCESS) return struck;
-  PFN_vkGetInstanceProcAddr get;
+  PFN_vkEnumeratePhysicalDevices enumerate;
   {
     const std::lock_guard lock(layer().mutex);
-    get = layer().instances.at(key_of(self));
+    enumerate = layer().instances.at(key_of(self)).enumerate;
   }
-  return reinterpret_cast<PFN_vkEnumeratePhysicalDevices>(get(self, "vkEnumeratePhysicalDevices"))(self, count, out);
+  return enumerate(self, count, out);
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL vkCreateInstance(const VkInstanceCreateInfo* info,
@@ -303,20 +309,22 @@ VKAPI_ATTR VkResult VKAPI_CALL vkCreateInstance(const VkInstanceCreateInfo* info
   const VkResult result = create(info, callbacks, out);
   if (result != VK_SUCCESS) return result;
   const std::lock_guard lock(layer().mutex);
-  layer().instances[key_of(*out)] = get;
+  layer().instances[key_of(*out)] = {
+      get, reinterpret_cast<PFN_vkDestroyInstance>(get(*out, "vkDestroyInstance")),
+      reinterpret_cast<PFN_vkEnumeratePhysicalDevices>(get(*out, "vkEnumeratePhysicalDevices"))};
   ++layer().alive;
   return result;
 }
 
 VKAPI_ATTR void VKAPI_CALL vkDestroyInstance(VkInstance self, const VkAllocationCallbacks* callbacks) {
-  PFN_vkGetInstanceProcAddr get;
+  PFN_vkDestroyInstance destroy;
   {
     const std::lock_guard lock(layer().mutex);
-    get = layer().instances.at(key_of(self));
+    destroy = layer().instances.at(key_of(self)).destroy;
     layer().instances.erase(key_of(self));
     --layer().alive;
   }
-  reinterpret_cast<PFN_vkDestroyInstance>(get(self, "vkDestroyInstance"))(self, callbacks);
+  destroy(self, callbacks);
 }
 
 PFN_vkVoidFunction own(std::string_view name) {
@@ -380,7 +388,7 @@ VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_instance_function(VkInstance instan
   if (const auto function = own(name)) return function;
   if (!instance) return nullptr;
   const std::lock_guard lock(layer().mutex);
-  return layer().instances.at(key_of(instance))(instance, text);
+  return layer().instances.at(key_of(instance)).get(instance, text);
 }
 
 void arm(Fault fault, std::uint64_t call) {
@@ -388,7 +396,7 @@ void arm(Fault fault, std::uint64_t call) {
   const std::lock_guard lock(l.mutex);
   l.fault = fault, l.call = call;
   l.calls.fill(0);
-  l.struck = nullptr, l.hangs = false;
+  l.struck = nullptr, l.hangs = l.gone = false;
   l.peak = l.bytes, l.dispatches = 0;
 }
 

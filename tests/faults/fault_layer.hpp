@@ -10,6 +10,7 @@ namespace vantage::test {
 enum class Fault {
   none,
   lost,           // from this call on the device is lost: what may say so does, until it is destroyed
+  gone,           // and so is every device that is made from then on
   device_memory,  // this call says VK_ERROR_OUT_OF_DEVICE_MEMORY
   host_memory,    // this call says VK_ERROR_OUT_OF_HOST_MEMORY
   timeout,        // this wait says VK_TIMEOUT, before the time is over

@@ -43,14 +43,15 @@ std::string SmallPlan::run(const std::filesystem::path& checkpoint, bool resume)
                        .warn = [this](const std::string& line) { warned_.push_back(line); },
                        .user_size_m = 0.5,
                        .point_spacing_m = 0.25,
-                       .validation = validation_});
+                       .validation = validation_,
+                       .max_rays_per_dispatch = 8192});
   const SearchArea area = SearchArea::build(scene);
   const ClashChecker clash(scene);
   const std::vector<std::string> objectives{"coverage", "overlap", "registration"};
-  const PlanConfig config{.population = 6,
-                          .iterations = 2,
+  const PlanConfig config{.population = 8,
+                          .iterations = 1,
                           .scheme = MoCmaEsConfig::Scheme::generational,
-                          .sample_voxels = 40,
+                          .sample_voxels = 400,
                           .seed = 5,
                           .checkpoint = checkpoint,
                           .checkpoint_seconds = 1e-9,
