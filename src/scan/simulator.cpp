@@ -132,7 +132,7 @@ struct Simulator::Impl {
                             .scanners = traced,
                             .max_rays_per_dispatch = config.max_rays_per_dispatch,
                             .validation = config.validation};
-    tracer = config.devices.empty() ? make_tracer(config.engine, config.device_index, shared)
+    tracer = config.devices.empty() ? make_tracer(config.engine, config.device_index, shared, config.warn)
                                     : make_tracer(config.devices, shared, config.warn);
     if (TracerMaker* const maker = SharedTracing::maker())
       tracer = maker->make(std::move(tracer), shared, scene.fingerprint());

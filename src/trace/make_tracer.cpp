@@ -7,7 +7,9 @@
 #include <utility>
 
 #include "trace/choose_engine.hpp"
+#include "trace/device_fault.hpp"
 #include "trace/embree/embree_tracer.hpp"
+#include "trace/rebuilding_tracer.hpp"
 #include "trace/spread/spread_tracer.hpp"
 #include "trace/tracer.hpp"
 #include "trace/vulkan/compute_bvh/compute_bvh.hpp"
@@ -24,6 +26,29 @@ constexpr const vulkan::VulkanEngine* vulkan_engines[] = {
     &vulkan::ray_query_engine,
     &vulkan::compute_bvh_engine,
 };
+
+// What `automatic` comes to.
+DeviceChoice settled(Engine engine, std::optional<std::uint32_t> device_index) {
+  if (engine != Engine::automatic) return {engine, device_index};
+  const auto engines = list_engines();
+  const EngineInfo& chosen = engines[default_engine(engines, device_index)];
+  if (!device_index && chosen.engine != Engine::embree) device_index = chosen.device_index;
+  return {chosen.engine, device_index};
+}
+
+std::unique_ptr<Tracer> make_once(const DeviceChoice& device, const TraceScene& scene) {
+  if (device.engine == Engine::embree) {
+    if (device.index.value_or(0) != 0)
+      throw Error(Errc::no_suitable_device,
+                  "there is no device " + std::to_string(*device.index) + " for embree, which has only device 0");
+    return make_embree_tracer(scene);
+  }
+  const auto chosen = std::find_if(std::begin(vulkan_engines), std::end(vulkan_engines),
+                                   [&](const vulkan::VulkanEngine* each) { return each->engine == device.engine; });
+  if (chosen == std::end(vulkan_engines))
+    throw Error(Errc::invalid_argument, "there is no engine number " + std::to_string(static_cast<int>(device.engine)));
+  return make_vulkan_tracer(**chosen, device.index, scene);
+}
 
 }  // namespace
 
@@ -58,24 +83,11 @@ std::vector<EngineInfo> list_engines() {
   return engines;
 }
 
-std::unique_ptr<Tracer> make_tracer(Engine engine, std::optional<std::uint32_t> device_index, const TraceScene& scene) {
-  if (engine == Engine::automatic) {
-    const auto engines = list_engines();
-    const EngineInfo& chosen = engines[default_engine(engines, device_index)];
-    engine = chosen.engine;
-    if (!device_index && engine != Engine::embree) device_index = chosen.device_index;
-  }
-  if (engine == Engine::embree) {
-    if (device_index.value_or(0) != 0)
-      throw Error(Errc::no_suitable_device,
-                  "there is no device " + std::to_string(*device_index) + " for embree, which has only device 0");
-    return make_embree_tracer(scene);
-  }
-  const auto chosen = std::find_if(std::begin(vulkan_engines), std::end(vulkan_engines),
-                                   [&](const vulkan::VulkanEngine* each) { return each->engine == engine; });
-  if (chosen == std::end(vulkan_engines))
-    throw Error(Errc::invalid_argument, "there is no engine number " + std::to_string(static_cast<int>(engine)));
-  return make_vulkan_tracer(**chosen, device_index, scene);
+std::unique_ptr<Tracer> make_tracer(Engine engine, std::optional<std::uint32_t> device_index, const TraceScene& scene,
+                                    std::function<void(const std::string&)> warn) {
+  const DeviceChoice device = settled(engine, device_index);
+  if (device.engine == Engine::embree) return make_once(device, scene);
+  return std::make_unique<RebuildingTracer>([=] { return make_once(device, scene); }, std::move(warn));
 }
 
 std::vector<DeviceChoice> all_devices(Engine engine) {
@@ -90,12 +102,20 @@ std::vector<DeviceChoice> all_devices(Engine engine) {
 
 std::unique_ptr<Tracer> make_tracer(std::span<const DeviceChoice> devices, const TraceScene& scene,
                                     std::function<void(const std::string&)> warn) {
+  if (devices.size() == 1) return make_tracer(devices.front().engine, devices.front().index, scene, std::move(warn));
   std::vector<std::future<std::unique_ptr<Tracer>>> building;
   for (const DeviceChoice& device : devices)
-    building.push_back(std::async(std::launch::async, [&] { return make_tracer(device.engine, device.index, scene); }));
+    building.push_back(
+        std::async(std::launch::async, [&] { return make_once(settled(device.engine, device.index), scene); }));
   std::vector<std::unique_ptr<Tracer>> tracers;
-  for (auto& each : building) tracers.push_back(each.get());
-  if (tracers.size() == 1) return std::move(tracers.front());
+  std::optional<DeviceFault> fault;
+  for (auto& each : building) try {
+      tracers.push_back(each.get());
+    } catch (const DeviceFault& thrown) {
+      fault = thrown;
+      if (warn) warn(std::string("a device is left out: ") + thrown.what());
+    }
+  if (tracers.empty()) throw *fault;
   return std::make_unique<SpreadTracer>(std::move(tracers), scene, std::move(warn));
 }
 

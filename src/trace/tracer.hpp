@@ -172,9 +172,10 @@ class Tracer {
   double goal_density_ = 1;
 };
 
-// Builds the engine that `engine` names; `automatic` decides as DESIGN says. Throws Error no_suitable_device with every
-// refusal.
-std::unique_ptr<Tracer> make_tracer(Engine engine, std::optional<std::uint32_t> device_index, const TraceScene& scene);
+// Builds the engine that `engine` names; `automatic` decides as DESIGN says. One that fails with its device is set up
+// anew, and `warn` told of it. Throws Error no_suitable_device with every refusal.
+std::unique_ptr<Tracer> make_tracer(Engine engine, std::optional<std::uint32_t> device_index, const TraceScene& scene,
+                                    std::function<void(const std::string&)> warn = {});
 // One tracer over several devices, which tells `warn` of those that it loses. REQUIRES: at least one device.
 std::unique_ptr<Tracer> make_tracer(std::span<const DeviceChoice> devices, const TraceScene& scene,
                                     std::function<void(const std::string&)> warn);

@@ -9,6 +9,7 @@
 
 #include "trace/field_counts.hpp"
 #include "trace/spread/merge_counts.hpp"
+#include "trace/told_once.hpp"
 
 namespace vantage {
 namespace {
@@ -178,35 +179,14 @@ std::vector<NetworkCounts> SpreadTracer::count_sampled(std::span<const std::vect
                                                        const SampleJob& job, const Progress& progress) {
   std::vector<NetworkCounts> all(networks.size());
   // A member that is dropped may have told of networks that another then counts again.
-  std::vector<bool> points_told(job.points ? networks.size() : 0), masks_told(job.station_masks ? networks.size() : 0);
+  ToldOnce told(job, networks.size());
   const std::size_t members = team_.left();
   const bool finished = team_.work(
       networks.size(), samples_, progress,
       [&](Tracer& tracer, const Piece& piece, const Progress& own, const Team::OnCaller& ask) {
-        SampleJob part = job;
-        if (job.points)
-          part.points = [&](std::size_t k, std::span<const std::uint32_t> points) {
-            ask([&] {
-              if (points_told[piece.first + k]) return;
-              job.points(piece.first + k, points);
-              points_told[piece.first + k] = true;
-            });
-          };
-        if (job.station_masks)
-          part.station_masks = [&](std::size_t first, std::span<const std::uint64_t> masks) {
-            ask([&] {
-              const std::size_t voxels = job.sample.size(), end = masks.size() / voxels;
-              for (std::size_t k = 0; k < end;) {
-                std::size_t run = k;
-                while (run < end && !masks_told[piece.first + first + run])
-                  masks_told[piece.first + first + run++] = true;
-                if (run > k) job.station_masks(piece.first + first + k, masks.subspan(k * voxels, (run - k) * voxels));
-                k = run + 1;
-              }
-            });
-          };
-        std::vector<NetworkCounts> counts = tracer.count_sampled(
-            networks.subspan(piece.first, piece.size()), station_counts.subspan(piece.first, piece.size()), part, own);
+        std::vector<NetworkCounts> counts =
+            tracer.count_sampled(networks.subspan(piece.first, piece.size()),
+                                 station_counts.subspan(piece.first, piece.size()), told.piece(piece.first, ask), own);
         const bool done = std::none_of(counts.begin(), counts.end(), [](const auto& c) { return c.cancelled; });
         // Nobody else writes there.
         std::move(counts.begin(), counts.end(), all.begin() + static_cast<std::ptrdiff_t>(piece.first));

@@ -78,16 +78,24 @@ class Team::Shift {
   // Until nothing is left to take, or nobody to take it. Returns whether anything may have been left.
   bool run() {
     std::vector<std::jthread> threads;
-    working_ = team_.left();
-    for (std::size_t k = 0; k < team_.size(); ++k)
-      if (team_.member(k)) threads.emplace_back([this, k] { serve(k); });
+    threads.reserve(team_.size());
+    try {
+      for (std::size_t k = 0; k < team_.size(); ++k) {
+        if (!team_.member(k)) continue;
+        set_working(+1);
+        threads.emplace_back([this, k] { serve(k); });
+      }
+    } catch (...) {  // no more threads: those that there are have to be answered until they stop
+      give_up(std::current_exception());
+      set_working(-1);
+    }
     answer();
     threads.clear();
     if (thrown_) std::rethrow_exception(thrown_);
     for (std::size_t k = 0; k < failures_.size(); ++k) {
       if (!failures_[k]) continue;
-      if (team_.left() == 1) throw *std::exchange(failures_[k], nullptr);
-      team_.drop(k, std::exchange(failures_[k], nullptr)->what());
+      if (team_.left() == 1) throw *std::exchange(failures_[k], std::nullopt);
+      team_.drop(k, std::exchange(failures_[k], std::nullopt)->what());
     }
     return !pieces_.empty() && !stop_.stop_requested();
   }
@@ -101,7 +109,22 @@ class Team::Shift {
   };
   struct QuestionThrew {};
 
+  void set_working(int change) {
+    const std::lock_guard lock(mutex_);
+    working_ += static_cast<std::size_t>(change);
+    wake_.notify_all();
+  }
+
   void serve(std::size_t k) {
+    try {
+      serve_pieces(k);
+    } catch (...) {
+      give_up(std::current_exception());
+    }
+    set_working(-1);
+  }
+
+  void serve_pieces(std::size_t k) {
     try {
       for (std::optional<Piece> piece = next(k); piece; piece = next(k)) {
         const auto start = Clock::now();
@@ -114,12 +137,7 @@ class Team::Shift {
       stop_.request_stop();
     } catch (const Error& error) {
       fail(k, error);
-    } catch (...) {
-      give_up(std::current_exception());
     }
-    const std::lock_guard lock(mutex_);
-    --working_;
-    wake_.notify_all();
   }
 
   std::optional<Piece> next(std::size_t k) {
@@ -161,7 +179,7 @@ class Team::Shift {
   void fail(std::size_t k, const Error& error) {
     if (!of_the_device(error)) return give_up(std::make_exception_ptr(error));
     const std::lock_guard lock(mutex_);
-    failures_[k] = std::make_unique<Error>(error);
+    failures_[k] = error;
     pieces_.give_back(own_piece_[k]);
     under_way_[k] = 0;
   }
@@ -229,7 +247,7 @@ class Team::Shift {
   Pieces pieces_;
   std::vector<Piece> own_piece_ = std::vector<Piece>(team_.size());
   std::vector<double> under_way_;  // items of each member's piece
-  std::vector<std::unique_ptr<Error>> failures_;
+  std::vector<std::optional<Error>> failures_;
   std::deque<Question*> questions_;
   std::exception_ptr thrown_;
   std::size_t working_ = 0, done_ = 0;

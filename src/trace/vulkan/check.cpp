@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "vantage/error.hpp"
+#include "trace/device_fault.hpp"
 
 namespace vantage::vulkan {
 
@@ -12,15 +12,15 @@ void check(VkResult result, const char* what) {
   const std::string where = std::string(" in ") + what + " (VkResult " + std::to_string(result) + ")";
   switch (result) {
     case VK_ERROR_OUT_OF_HOST_MEMORY:
-      throw Error(Errc::out_of_memory,
-                  "the host ran out of memory" + where + "; use a larger voxel or a smaller scene");
+      throw DeviceFault(Errc::out_of_memory,
+                        "the host ran out of memory" + where + "; use a larger voxel or a smaller scene");
     case VK_ERROR_OUT_OF_DEVICE_MEMORY:
-      throw Error(Errc::out_of_memory, "the Vulkan device ran out of memory" + where +
-                                           "; use a larger voxel, a smaller scene, or --engine embree");
+      throw DeviceFault(Errc::out_of_memory, "the Vulkan device ran out of memory" + where +
+                                                 "; use a larger voxel, a smaller scene, or --engine embree");
     case VK_ERROR_DEVICE_LOST:
-      throw Error(Errc::device_failure,
-                  "the Vulkan device was lost" + where + "; its driver reset it or it was unplugged");
-    default: throw Error(Errc::device_failure, "the Vulkan device failed" + where);
+      throw DeviceFault(Errc::device_failure,
+                        "the Vulkan device was lost" + where + "; its driver reset it or it was unplugged");
+    default: throw DeviceFault(Errc::device_failure, "the Vulkan device failed" + where);
   }
 }
 

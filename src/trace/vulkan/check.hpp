@@ -6,7 +6,7 @@
 
 namespace vantage::vulkan {
 
-// Throws Error: out_of_memory, device_failure. `what` names the call for the message.
+// Throws DeviceFault: out_of_memory, device_failure. `what` names the call for the message.
 void check(VkResult result, const char* what);
 
 }  // namespace vantage::vulkan

@@ -5,11 +5,15 @@
 #include <array>
 
 #include "trace/vulkan/check.hpp"
+#include "vantage/error.hpp"
 
 namespace vantage::vulkan {
 namespace {
 
 constexpr VkDeviceSize staging_bytes = VkDeviceSize{32} << 20;
+// Work is paced to a second or so; even a large structure built by a software device takes a minute at most.
+constexpr std::uint64_t wait_ns = 10'000'000'000;
+constexpr int most_waits = 60;
 
 }  // namespace
 
@@ -47,7 +51,12 @@ double Commands::run(const Record& record) {
   vk.vkCmdResetQueryPool(commands_, timestamps_.get(), 0, 2);
   vk.vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, timestamps_.get(), 0);
   const Recorder recorder(vk, commands_);
-  record(recorder);
+  try {
+    record(recorder);
+  } catch (...) {
+    vk.vkResetCommandBuffer(commands_, 0);
+    throw;
+  }
   // What was written must be visible to a host that reads mapped memory, and to the next submission.
   recorder.anyone_after_anyone();
   vk.vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, timestamps_.get(), 1);
@@ -58,8 +67,8 @@ double Commands::run(const Record& record) {
   submit.commandBufferCount = 1;
   submit.pCommandBuffers = &commands_;
   check(vk.vkQueueSubmit(device_.queue(), 1, &submit, fence_.get()), "vkQueueSubmit");
+  wait();
   const VkFence fence = fence_.get();
-  check(vk.vkWaitForFences(device_.handle(), 1, &fence, VK_TRUE, UINT64_MAX), "vkWaitForFences");
   check(vk.vkResetFences(device_.handle(), 1, &fence), "vkResetFences");
   device_.instance().check_validation();
 
@@ -68,6 +77,23 @@ double Commands::run(const Record& record) {
                                  VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
         "vkGetQueryPoolResults");
   return static_cast<double>(ticks[1] - ticks[0]) * device_.timestamp_period_ns() * 1e-9;
+}
+
+void Commands::wait() {
+  const VolkDeviceTable& vk = device_.vk();
+  const VkFence fence = fence_.get();
+  VkResult result = VK_TIMEOUT;
+  for (int k = 0; k < most_waits && result == VK_TIMEOUT; ++k)
+    result = vk.vkWaitForFences(device_.handle(), 1, &fence, VK_TRUE, wait_ns);
+  if (result == VK_TIMEOUT) {
+    device_.give_up();
+    throw Error(Errc::device_failure, "the Vulkan device " + device_.abilities().name +
+                                          " has not finished within ten minutes what takes seconds; it hangs. Start "
+                                          "again on another (--device), or with --engine embree");
+  }
+  // What is under way must be over before its buffers go.
+  if (result != VK_SUCCESS) vk.vkDeviceWaitIdle(device_.handle());
+  check(result, "vkWaitForFences");
 }
 
 double Commands::run_and_download(const Record& record, std::span<const Download> wanted) {

@@ -36,6 +36,8 @@ class Commands {
   void download(const Buffer& from, void* data, VkDeviceSize bytes, VkDeviceSize offset = 0);
 
  private:
+  void wait();
+
   Device& device_;
   UniqueCommandPool pool_;
   UniqueFence fence_;

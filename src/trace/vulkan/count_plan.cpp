@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 #include "trace/vulkan/groups.hpp"
 
@@ -18,11 +19,14 @@ std::vector<CountPart> CountPlan::next(double rays) {
   double planned = 0;
   std::uint64_t list = 0;
   std::uint32_t slots = 0;
+  const double tile_rows = std::floor(rays / (static_cast<double>(columns_) * tile_side));
+  const auto at_once =
+      static_cast<std::uint32_t>(std::clamp(tile_rows * tile_side, double{tile_side}, double{rows_per_part_}));
   while (!finished() && (parts.empty() || planned < rays) && parts.size() < parts_per_submission) {
     const bool same_station = !parts.empty() && parts.back().station == station_;
     if (!same_station && slots == stations_per_submission) break;
     if (!same_station) ++slots;
-    parts.push_back({station_, row_, std::min(rows_per_part_, rows_ - row_), slots - 1, list});
+    parts.push_back({station_, row_, std::min(at_once, rows_ - row_), slots - 1, list});
     list += 1 + tiles_of(parts.back());
     planned += static_cast<double>(parts.back().row_count) * columns_;
     row_ += parts.back().row_count;

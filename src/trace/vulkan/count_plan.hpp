@@ -23,7 +23,8 @@ class CountPlan {
   // REQUIRES: rows_per_part is a multiple of tile_side, so that no tile belongs to two parts.
   CountPlan(std::uint32_t stations, std::uint32_t rows, std::uint32_t columns, std::uint32_t rows_per_part);
 
-  // The parts of the next submission: as many as begin below so many rays; one at least, unless finished.
+  // The parts of the next submission: as many as begin below so many rays; one at least, unless finished. None has more
+  // rays than that, as far as whole tiles allow.
   std::vector<CountPart> next(double rays);
   bool finished() const { return station_ == stations_; }
 

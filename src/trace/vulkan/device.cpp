@@ -53,6 +53,7 @@ Device::Device(std::shared_ptr<Instance> instance, VkPhysicalDevice physical, co
 }
 
 Device::~Device() {
+  if (given_up_) return;
   vk_.vkDeviceWaitIdle(device_);
   vk_.vkDestroyDevice(device_, nullptr);
 }

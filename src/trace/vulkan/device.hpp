@@ -27,6 +27,9 @@ class Device {
   bool has_memory_type(VkMemoryPropertyFlags wanted) const;
   VkDeviceSize scratch_alignment() const { return scratch_alignment_; }
   double timestamp_period_ns() const { return timestamp_period_ns_; }
+  // It hangs: nothing of it can be destroyed any more, and nothing is.
+  void give_up() { given_up_ = true; }
+  bool given_up() const { return given_up_; }
   void name(VkObjectType type, std::uint64_t handle, const char* name) const;  // for debuggers and validation messages
 
  private:
@@ -38,6 +41,7 @@ class Device {
   VkDevice device_ = VK_NULL_HANDLE;
   VolkDeviceTable vk_{};
   VkQueue queue_ = VK_NULL_HANDLE;
+  bool given_up_ = false;
 };
 
 }  // namespace vantage::vulkan

@@ -85,9 +85,10 @@ Instance::Instance(bool validation) {
         "no Vulkan driver on this machine; install one (Debian: mesa-vulkan-drivers >= 24.1) or use --engine embree");
   check(result, "vkCreateInstance");
   vk_ = load_functions(instance_);
-  if (validation)
-    check(vk_.vkCreateDebugUtilsMessengerEXT(instance_, &messenger, nullptr, &messenger_),
-          "vkCreateDebugUtilsMessengerEXT");
+  if (!validation) return;
+  const VkResult told = vk_.vkCreateDebugUtilsMessengerEXT(instance_, &messenger, nullptr, &messenger_);
+  if (told != VK_SUCCESS) vk_.vkDestroyInstance(instance_, nullptr);
+  check(told, "vkCreateDebugUtilsMessengerEXT");
 }
 
 Instance::~Instance() {

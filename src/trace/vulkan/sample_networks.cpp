@@ -172,7 +172,8 @@ class VulkanTracer::SampledCount {
       SamplePlan plan(slots, voxels_, run.scanner->pattern().rows(), room_);
       for (bool first = &run == batch.runs.data(), more = true; more; first = false) {
         if (progress.stopped()) return false;
-        Submission submission{&run, plan.next(t_.sampled_pace_.rays(), t_.rays_per_pair_), first, false};
+        Submission submission{&run, plan.next(t_.sampled_pace_.rays(), t_.rays_per_pair_, t_.sampled_pace_.rays()),
+                              first, false};
         submission.last = last_run && plan.finished();
         const auto [wanted, taken] = submit(batch, submission);
         seconds_ += taken;

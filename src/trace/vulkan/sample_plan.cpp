@@ -36,12 +36,13 @@ SamplePlan::SamplePlan(std::uint32_t slots, std::uint32_t voxels, std::uint32_t 
   if (slots > 0 && voxels > 0) todo_.push_back({0, slots, 0, voxels, 0, rows});
 }
 
-std::vector<SampleChunk> SamplePlan::next(double rays, double rays_per_pair) {
+std::vector<SampleChunk> SamplePlan::next(double rays, double rays_per_pair, double at_once) {
   constexpr double safety = 1.5;
+  const double most = std::min(at_once, static_cast<double>(room_.rays));
   const auto too_large = [&](const SampleChunk& chunk) {
     return chunk.end_slot - chunk.first_slot > most_groups ||
            groups_of(chunk.end_voxel - chunk.first_voxel) > most_groups ||
-           (chunk.pairs() > 1 && static_cast<double>(chunk.pairs()) * rays_per_pair * safety > room_.rays);
+           (chunk.pairs() > 1 && static_cast<double>(chunk.pairs()) * rays_per_pair * safety > most);
   };
   std::vector<SampleChunk> chunks;
   for (double expected = 0; !todo_.empty() && (chunks.empty() || expected < rays);) {

@@ -40,8 +40,8 @@ class SamplePlan {
   SamplePlan(std::uint32_t slots, std::uint32_t voxels, std::uint32_t rows, const SampleList& room);
 
   // The chunks of the next submission, in order: each probably fits, if a pair has so many rays, and all together
-  // probably have `rays`; one at least, unless nothing is left.
-  std::vector<SampleChunk> next(double rays, double rays_per_pair);
+  // probably have `rays`; one at least, unless nothing is left. None has probably more than `at_once`.
+  std::vector<SampleChunk> next(double rays, double rays_per_pair, double at_once);
   bool finished() const { return todo_.empty(); }
 
   // Takes note of what the chunks of a submission wanted to list. Returns how many rays were traced.

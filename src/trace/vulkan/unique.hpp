@@ -21,7 +21,7 @@ class Unique {
     return *this;
   }
   ~Unique() {
-    if (handle_) (device_->vk().*destroy)(device_->handle(), handle_, nullptr);
+    if (handle_ && !device_->given_up()) (device_->vk().*destroy)(device_->handle(), handle_, nullptr);
   }
   Handle get() const { return handle_; }
   explicit operator bool() const { return handle_ != Handle{}; }

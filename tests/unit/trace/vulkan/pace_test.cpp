@@ -15,6 +15,30 @@ TEST(Pace, FollowsTheSpeedSeen) {
   EXPECT_EQ(pace.rays(), 100) << "never fewer than the least";
 }
 
+TEST(Pace, SplitsWhatTakesTooLongAndRecovers) {
+  constexpr double rays_a_second = 1e4, first = 1e6;
+  Pace pace(0.25, first, 1, first);
+  pace.saw(first, first / rays_a_second);
+  EXPECT_LE(pace.rays() / rays_a_second, 0.25) << "one was enough";
+  // Work that is not rays: it takes long, and says nothing of their speed.
+  Pace other(1, first, 1, first);
+  for (int k = 0; k < 3; ++k) other.saw(10, 100);
+  EXPECT_LT(other.rays(), first / 100);
+  for (int k = 0; k < 20; ++k) other.saw(1, 1e-3);
+  EXPECT_EQ(other.rays(), first);
+}
+
+TEST(Pace, GrowsByStepsFromAFewRays) {
+  Pace pace(0.25, 1e6, 1, 1e9);
+  double last = pace.rays();
+  for (int k = 0; k < 4; ++k, last = pace.rays()) {
+    pace.saw(pace.rays(), pace.rays() / 1e10);
+    EXPECT_GT(pace.rays(), last);
+    EXPECT_LE(pace.rays(), 8 * last);
+  }
+  EXPECT_DOUBLE_EQ(pace.rays(), 2.5e9);
+}
+
 TEST(Pace, HeedsNothingThatTellsNothing) {
   Pace pace(1, 1000, 0, 500);
   pace.saw(499, 1e-3);

@@ -34,7 +34,7 @@ TEST(SamplePlan, NothingToDoIsDone) {
   for (const auto& [slots, voxels] : {std::pair{0u, 5u}, {5u, 0u}}) {
     SamplePlan plan(slots, voxels, 10, {100, 100});
     EXPECT_TRUE(plan.finished());
-    EXPECT_TRUE(plan.next(1e9, 8).empty());
+    EXPECT_TRUE(plan.next(1e9, 8, 1e9).empty());
     EXPECT_EQ(plan.done(), 1);
   }
 }
@@ -42,7 +42,7 @@ TEST(SamplePlan, NothingToDoIsDone) {
 TEST(SamplePlan, NoDispatchHasTooManyGroups) {
   SamplePlan plan(200'000, 20'000'000, 10, {1u << 30, 1u << 30});
   for (int k = 0; k < 5; ++k) {
-    const std::vector<SampleChunk> chunks = plan.next(0, 1e-12);
+    const std::vector<SampleChunk> chunks = plan.next(0, 1e-12, 1e9);
     ASSERT_EQ(chunks.size(), 1u);
     EXPECT_LE(chunks[0].end_slot - chunks[0].first_slot, most_groups);
     EXPECT_LE(groups_of(chunks[0].end_voxel - chunks[0].first_voxel), most_groups);
@@ -51,16 +51,23 @@ TEST(SamplePlan, NoDispatchHasTooManyGroups) {
 
 TEST(SamplePlan, WhatOverflowsComesAgainInHalvesAndFirst) {
   SamplePlan plan(4, 10, 8, {100, 10});
-  const std::vector<SampleChunk> chunks = plan.next(1e9, 4);  // 20 pairs a chunk: 80 rays, and half as many to be safe
+  const std::vector<SampleChunk> chunks =
+      plan.next(1e9, 4, 1e9);  // 20 pairs a chunk: 80 rays, and half as many to be safe
   ASSERT_EQ(chunks.size(), 4u);
   EXPECT_TRUE(plan.finished());
   // The first fits; the second has too many rays, the last too many items.
   EXPECT_EQ(plan.settle(chunks, std::vector<SampleList>{{100, 10}, {101, 0}, {7, 0}, {0, 11}}), 107);
   EXPECT_FALSE(plan.finished());
   EXPECT_DOUBLE_EQ(plan.done(), 0.5);
-  const std::vector<SampleChunk> again = plan.next(1e9, 0.1);
+  const std::vector<SampleChunk> again = plan.next(1e9, 0.1, 1e9);
   const auto second = chunks[1].halves(), last = chunks[3].halves();
   EXPECT_EQ(again, (std::vector<SampleChunk>{second[0], second[1], last[0], last[1]}));
+}
+
+TEST(SamplePlan, AChunkIsNoMoreThanTheDeviceDoesInTime) {
+  SamplePlan plan(4, 1000, 8, {1u << 20, 1u << 20});
+  for (const SampleChunk& chunk : plan.next(1e9, 8, 800)) EXPECT_LE(chunk.pairs() * 8, 800u);
+  EXPECT_TRUE(plan.finished());
 }
 
 // Pairs whose numbers of rays nobody foresees: every row of every pair is traced once, whatever is guessed.
@@ -77,7 +84,8 @@ TEST(SamplePlan, EveryRowOfEveryPairIsTracedOnce) {
     double total = 0, done = 0;
     for (int submissions = 0; !plan.finished(); ++submissions) {
       ASSERT_LT(submissions, 10'000) << "it comes to no end";
-      const std::vector<SampleChunk> chunks = plan.next(200 * random.uniform(), 40 * random.uniform());
+      const std::vector<SampleChunk> chunks =
+          plan.next(200 * random.uniform(), 40 * random.uniform(), 100 * random.uniform());
       ASSERT_FALSE(chunks.empty());
       std::vector<SampleList> wanted;
       for (const SampleChunk& chunk : chunks) {

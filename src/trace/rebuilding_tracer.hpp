@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// A tracer on a device that may fail: it is set up anew, once for each piece of work, and the piece done again. Counts
+// are those of a device that never failed.
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "trace/device_fault.hpp"
+#include "trace/tracer.hpp"
+
+namespace vantage {
+
+class RebuildingTracer final : public Tracer {
+ public:
+  using Make = std::function<std::unique_ptr<Tracer>()>;
+  using Warn = std::function<void(const std::string&)>;
+  // `make` is called again where a DeviceFault is thrown, by it or by what it made; `warn` is told of each, on the
+  // calling thread. What fails a second time is thrown.
+  RebuildingTracer(Make make, Warn warn);
+
+  const EngineInfo& info() const override { return info_; }
+  void set_goal_density(double goal) override;
+  std::uint64_t preferred_scan_rays(std::uint32_t scanner) const override {
+    return ready().preferred_scan_rays(scanner);
+  }
+
+  void scan(const TraceStation& station, std::uint64_t first_ray, std::uint64_t ray_count, std::uint32_t outputs,
+            RawChunk& chunk) override;
+  NetworkCounts count(std::span<const TraceStation> stations, std::uint32_t station_count, const CountOptions& options,
+                      const Progress& progress) override;
+  // Where the device's memory is too small for all networks at once, they go in halves from then on.
+  std::vector<NetworkCounts> count_sampled(std::span<const std::vector<TraceStation>> networks,
+                                           std::span<const std::uint32_t> station_counts, const SampleJob& job,
+                                           const Progress& progress) override;
+
+ private:
+  Tracer& ready() const;
+  void set_up_anew(const DeviceFault& fault, const std::string& what_next);
+  // Calls `work` on the tracer, and once more on a new one where that fails.
+  template <class Work>
+  auto twice(const Work& work);
+
+  Make make_;
+  Warn warn_;
+  std::unique_ptr<Tracer> tracer_;  // null: it failed, and could not be set up anew
+  EngineInfo info_;
+  std::size_t networks_at_once_ = std::numeric_limits<std::size_t>::max();
+};
+
+}  // namespace vantage

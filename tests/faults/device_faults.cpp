@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+// Makes calls of a small plan on Vulkan fail, one by one, and says what becomes of it:
+//   vantage-device-faults ENGINE [EVERY]
+// EVERY: each call is tried, or one of so many; docs/reliability.md has the table.
+#include <dlfcn.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "faults/fault_layer.hpp"
+#include "faults/small_plan.hpp"
+
+namespace vantage::test {
+namespace {
+
+constexpr unsigned hang_seconds = 300;  // no attempt takes so long; the alarm ends the program
+
+struct Kind {
+  Fault fault;
+  const char* name;
+};
+constexpr std::array kinds{Kind{Fault::lost, "device lost"},
+                           Kind{Fault::gone, "device lost for good"},
+                           Kind{Fault::device_memory, "out of device memory"},
+                           Kind{Fault::host_memory, "out of host memory"},
+                           Kind{Fault::timeout, "wait timed out"},
+                           Kind{Fault::late, "answers late"}};
+
+const FaultControl& open_layer() {
+  setenv("VK_ADD_LAYER_PATH", VANTAGE_FAULT_LAYER_FOLDER, 1);
+  setenv("VK_INSTANCE_LAYERS", "VK_LAYER_VANTAGE_faults", 1);
+  void* const library = dlopen(VANTAGE_FAULT_LAYER, RTLD_NOW);
+  void* const get = library ? dlsym(library, "vantage_fault_layer") : nullptr;
+  if (!get) std::fprintf(stderr, "no fault layer: %s\n", dlerror()), std::exit(1);
+  return *reinterpret_cast<GetFaultControl>(get)();
+}
+
+class Trial {
+ public:
+  Trial(Engine engine, const FaultControl& faults)
+      : engine_(engine), faults_(faults), plan_(engine, true), quiet_plan_(engine, false) {
+    front_ = reference();
+    // Later plans share an instance, as long as it lives.
+    befall(plan_, "cannot make an instance", 1, [&](std::uint64_t) { faults_.arm(Fault::host_memory, 0); });
+    keeper_.emplace(kept(engine));
+  }
+
+  int all(std::uint64_t every) {
+    for (const Kind& kind : kinds) {
+      reference();
+      const std::uint64_t calls = faults_.calls(kind.fault);
+      if (calls == 0) complain("nothing that a fault can befall");
+      befall(plan_, kind.name, (calls + every - 1) / every,
+             [&](std::uint64_t k) { faults_.arm(kind.fault, k * every); });
+    }
+    too_little_memory();
+    slow_device();
+    hangs();
+    return failed_ ? 1 : 0;
+  }
+
+ private:
+  static Simulator kept(Engine engine) {
+    const TemporaryFolder folder;
+    write_built_in_scene("three-walls", 0, folder / "scene.glb");
+    const Scanner scanner{.azimuth_step = Angle::degrees(30), .zenith_step = Angle::degrees(30)};
+    return {Scene::load(folder / "scene.glb"),
+            scanner,
+            {.engine = engine, .user_size_m = 1, .point_spacing_m = 0.5, .validation = true}};
+  }
+
+  void complain(const std::string& what) {
+    failed_ = true;
+    std::fprintf(stderr, "WRONG: %s\n", what.c_str());
+  }
+
+  // What a plan without a fault finds; leaves its counts with the layer.
+  std::string reference() {
+    const TemporaryFolder folder;
+    faults_.arm(Fault::none, 0);
+    const std::string front = plan_.run(folder / "checkpoint", false);
+    if (front.empty() || (!front_.empty() && front != front_)) complain("plans without a fault differ");
+    return front;
+  }
+
+  // `many` plans, each with the fault that `arm` makes; tells what became of them.
+  template <class Arm>
+  std::map<Outcome::Kind, int> befall(SmallPlan& plan, const char* name, std::uint64_t many, const Arm& arm) {
+    const auto disarm = [&] {
+      struck_ = faults_.struck() ? faults_.struck() : "nothing";
+      dispatches_ = faults_.dispatches();
+      faults_.limit(0), faults_.slow_down(1), faults_.arm(Fault::none, 0);
+    };
+    std::map<Outcome::Kind, int> outcomes;
+    std::map<std::string, int> calls, errors;
+    int warned = 0;
+    for (std::uint64_t k = 0; k < many; ++k) {
+      const std::int64_t before = faults_.alive();
+      alarm(hang_seconds);
+      arm(k);
+      const Outcome outcome = attempt(plan, front_, disarm);
+      alarm(0);
+      ++outcomes[outcome.kind], ++calls[struck_];
+      warned += outcome.kind == Outcome::Kind::same && !plan.warned().empty();
+      split_ |= mentions(plan.warned(), "networks at once");
+      const std::string where = std::string(name) + ", number " + std::to_string(k) + ", " + struck_ + ": ";
+      if (outcome.kind == Outcome::Kind::wrong) complain(where + outcome.text);
+      if (faults_.alive() != before && &plan == &plan_ && keeper_)
+        complain(where + std::to_string(faults_.alive() - before) + " objects left undestroyed");
+      if (outcome.kind != Outcome::Kind::same) ++errors[outcome.text.substr(0, outcome.text.find("; "))];
+    }
+    std::printf("| %s | %s | %llu | %d (%d set up anew) | %d | %d | %d |\n", to_string(engine_).c_str(), name,
+                static_cast<unsigned long long>(many), outcomes[Outcome::Kind::same], warned,
+                outcomes[Outcome::Kind::saved], outcomes[Outcome::Kind::refused], outcomes[Outcome::Kind::wrong]);
+    std::fflush(stdout);
+    for (const auto& [call, times] : calls) std::fprintf(stderr, "  %s: %d\n", call.c_str(), times);
+    for (const auto& [error, times] : errors) std::fprintf(stderr, "  \"%s\": %d\n", error.c_str(), times);
+    return outcomes;
+  }
+
+  // From what all networks at once need, down to nothing.
+  void too_little_memory() {
+    reference();
+    const std::uint64_t peak = faults_.peak_bytes();
+    constexpr std::uint64_t steps = 16;
+    split_ = false;
+    befall(plan_, "too little memory", steps, [&](std::uint64_t k) {
+      faults_.arm(Fault::none, 0);
+      faults_.limit(peak * (steps - 1 - k) / steps + 1);
+    });
+    if (!split_) complain("no population was split where memory was short");
+  }
+
+  void slow_device() {
+    reference();
+    const std::uint64_t quick = faults_.dispatches();
+    const auto outcomes = befall(plan_, "a million times slower", 1, [&](std::uint64_t) {
+      faults_.arm(Fault::none, 0);
+      faults_.slow_down(1e6);
+    });
+    if (outcomes.at(Outcome::Kind::same) == 0) complain("a slow device was not waited for");
+    if (dispatches_ <= quick) complain("the work of a slow device was not split");
+  }
+
+  // Leaves what it worked on for good, so without the validation layer, which would tell.
+  void hangs() {
+    front_ = [&] {
+      const TemporaryFolder folder;
+      faults_.arm(Fault::none, 0);
+      return quiet_plan_.run(folder / "checkpoint", false);
+    }();
+    const std::uint64_t calls = faults_.calls(Fault::hang);
+    constexpr std::uint64_t tries = 4;
+    const auto outcomes = befall(quiet_plan_, "hangs", tries,
+                                 [&](std::uint64_t k) { faults_.arm(Fault::hang, k * (calls - 1) / (tries - 1)); });
+    if (outcomes.at(Outcome::Kind::same) > 0) complain("a device that hung was waited for");
+  }
+
+  static bool mentions(const std::vector<std::string>& lines, const char* what) {
+    return std::ranges::any_of(lines, [&](const std::string& line) { return line.find(what) != std::string::npos; });
+  }
+
+  Engine engine_;
+  const FaultControl& faults_;
+  SmallPlan plan_, quiet_plan_;
+  std::optional<Simulator> keeper_;
+  std::string front_, struck_;
+  std::uint64_t dispatches_ = 0;
+  bool split_ = false, failed_ = false;
+};
+
+}  // namespace
+}  // namespace vantage::test
+
+int main(int argc, char** argv) {
+  using namespace vantage;
+  if (argc < 2) return std::fprintf(stderr, "usage: vantage-device-faults ENGINE [EVERY]\n"), 2;
+  const auto& faults = test::open_layer();
+  const auto every = argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 1;
+  return test::Trial(engine_from_string(argv[1]), faults).all(std::max(every, 1ull));
+}

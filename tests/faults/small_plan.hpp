@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// A plan of milliseconds that goes through all that a plan goes through, to be made to fail anywhere.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "support/temporary_folder.hpp"
+#include "vantage/vantage.hpp"
+
+namespace vantage::test {
+
+class SmallPlan {
+ public:
+  SmallPlan(Engine engine, bool validation);
+
+  // Scene to front, as text with every bit of it.
+  std::string run(const std::filesystem::path& checkpoint, bool resume);
+  const std::vector<std::string>& warned() const { return warned_; }  // since the last run() began
+  bool searching() const { return searching_; }                       // whether it came to a first evaluation
+
+ private:
+  TemporaryFolder folder_;
+  Engine engine_;
+  bool validation_;
+  std::vector<std::string> warned_;
+  bool searching_ = false;
+};
+
+// What became of a plan that met a fault.
+struct Outcome {
+  enum class Kind {
+    same,     // it went on to the front of one that met none
+    refused,  // one clear error, before there was anything to lose
+    saved,    // one clear error, and from the checkpoint it goes on to that front
+    wrong
+  } kind;
+  std::string text;  // the error, or what is wrong
+};
+
+// `disarm` is called before it is tried whether the checkpoint is good.
+Outcome attempt(SmallPlan& plan, const std::string& front, const std::function<void()>& disarm);
+
+}  // namespace vantage::test
