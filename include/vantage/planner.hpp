@@ -105,9 +105,9 @@ struct PlanConfig {
   std::optional<double> target_hypervolume = std::nullopt;
   std::size_t stagnation_iterations = 0;
   std::uint64_t seed = 1;
-  std::filesystem::path checkpoint = {};  ///< File to write every minute and when the search ends; empty: none.
+  std::filesystem::path checkpoint = {};  ///< File to write; the one before stays as FILE.before. Empty: none.
   double checkpoint_seconds = 60;         ///< How often.
-  /// Go on from the checkpoint; from the start where there is none yet. Limits (iterations, seconds, hypervolume,
+  /// Go on from the checkpoint, or the one before; where there is none begin. Limits (iterations, seconds, hypervolume,
   /// stagnation) may differ from the run that wrote it, nothing else.
   bool resume = false;
 };

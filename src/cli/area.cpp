@@ -8,11 +8,12 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
+#include <sstream>
 #include <string_view>
 
 #include "cli/options.hpp"
 #include "cli/parse.hpp"
+#include "core/read_file.hpp"
 
 namespace vantage::cli {
 namespace {
@@ -102,8 +103,7 @@ PlanRegion read_region(const std::string& file) {
       throw Error(Errc::malformed_file, file + ": is not GeoJSON: " + error.what());
     }
   } else {
-    std::ifstream in(file, std::ios::binary);
-    if (!in) throw Error(Errc::io, file + ": cannot be opened");
+    std::istringstream in(read_file(file));
     region = read_corners(in, file);
   }
   if (region.rings.empty()) throw Error(Errc::malformed_file, file + ": holds no Polygon or MultiPolygon");

@@ -43,6 +43,12 @@ void add_evaluate(CLI::App& app, Program& program);
 void add_plan(CLI::App& app, Program& program);
 void add_edit(CLI::App& app, Program& program);
 void add_bound(CLI::App& app, Program& program);
+
+// All of them, with every option.
+void add_commands(CLI::App& app, Program& program);
+
+// The program: reads the command line, runs the command, says what went wrong. Returns the exit code.
+int run(int argc, char** argv);
 void add_panorama(CLI::App& app, Program& program);
 
 }  // namespace vantage::cli

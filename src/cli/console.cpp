@@ -6,8 +6,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
 #include <mutex>
+#include <system_error>
 
 #include "vantage/error.hpp"
 
@@ -58,8 +60,9 @@ bool Console::interactive() const { return sink_->interactive; }
 void Console::set_status(const std::string& line) { sink_->set_status(line); }
 
 void Console::print(const std::string& text) {
-  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
-    throw Error(Errc::io, "cannot write to standard output");
+  if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0) return;
+  if (errno == EPIPE) return;  // who reads has had enough, as `head` does
+  throw Error(Errc::io, "cannot write to standard output: " + std::generic_category().message(errno));
 }
 
 void Console::print(const nlohmann::json& object) {

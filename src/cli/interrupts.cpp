@@ -40,6 +40,12 @@ Interrupts::Interrupts() {
   sigemptyset(&signals);
   sigaddset(&signals, SIGINT);
   sigaddset(&signals, SIGTERM);
+  // A blocked signal arrives even where it is ignored, as by nohup.
+  struct sigaction hang_up {};
+  if (sigaction(SIGHUP, nullptr, &hang_up) == 0 && hang_up.sa_handler != SIG_IGN) sigaddset(&signals, SIGHUP);
+  // A pipe that nobody reads any more and a file that has reached its limit are errors of the write, not of the run.
+  signal(SIGPIPE, SIG_IGN);
+  signal(SIGXFSZ, SIG_IGN);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   watcher_ = std::jthread([this, signals, stop = stop_, abort = abort_](const std::stop_token& finished) {
     watch(finished, signals, stop, abort, several_);

@@ -7,9 +7,9 @@
 
 namespace vantage::cli {
 
-// Turns SIGINT and SIGTERM into requests. The first asks work to end in good order, the second to drop whatever can be
-// dropped; a third, or ten seconds without an end after the second, kills the program. Make it before any other thread:
-// threads inherit the blocked signals.
+// Turns SIGINT, SIGTERM and SIGHUP into requests, SIGPIPE and SIGXFSZ into errors of what was written. The first asks
+// work to end in good order, the second to drop whatever can be dropped; a third, or ten seconds without an end after
+// the second, kills the program. Make it before any other thread: threads inherit the blocked signals.
 class Interrupts {
  public:
   Interrupts();

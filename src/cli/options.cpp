@@ -2,10 +2,10 @@
 #include "cli/options.hpp"
 
 #include <algorithm>
-#include <fstream>
 
 #include "cli/mistyped.hpp"
 #include "core/closest_name.hpp"
+#include "core/read_file.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage::cli {
@@ -142,10 +142,15 @@ nlohmann::json options_of(const Settings& settings) {
 }
 
 nlohmann::json read_json(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw Error(Errc::io, file + ": cannot be opened");
+  const std::string text = read_file(file);
+  // Who reads it walks down by recursion.
+  constexpr int kDeepest = 64;
+  const auto shallow = [&](int depth, nlohmann::json::parse_event_t, const nlohmann::json&) {
+    if (depth > kDeepest) throw Error(Errc::malformed_file, file + ": is nested too deeply");
+    return true;
+  };
   try {
-    auto value = nlohmann::json::parse(stream);
+    auto value = nlohmann::json::parse(text, shallow);
     if (value.is_object()) return value;
   } catch (const nlohmann::json::exception& error) {
     throw Error(Errc::malformed_file, file + ": is not JSON: " + error.what());

@@ -7,6 +7,7 @@
 
 #include "cli/command.hpp"
 #include "cli/deadline.hpp"
+#include "cli/folder_lock.hpp"
 #include "cli/missed.hpp"
 #include "cli/options.hpp"
 #include "cli/problem.hpp"
@@ -16,6 +17,7 @@
 #include "cli/site.hpp"
 #include "cli/station_scanners.hpp"
 #include "cli/stations.hpp"
+#include "core/atomic_file.hpp"
 
 namespace vantage::cli {
 namespace {
@@ -438,15 +440,17 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
                        : exact_start(site, simulator, problem, config, options.seed_seconds, program, deadline.stop());
   }
   const nlohmann::json as_given = as_options(site, options, problem, config);
+  make_folder(folder);  // an hour's search must not end at a folder that cannot be written
+  const FolderLock lock(folder);
+  AtomicFile::remove_leftovers_in(folder);
   const Before before = look_into(folder, as_given);
   if (before.another_run && !options.resume && !options.force)
     throw Error(Errc::invalid_argument, "plan: " + folder.string() +
                                             " holds the results of another run; give another folder with -o, --resume "
                                             "to go on with it, or --force to overwrite it");
-  make_folder(folder);  // an hour's search must not end at a folder that cannot be written
   if (!options.resume) write_text(folder / "config.json", as_given.dump(2) + "\n");
   if (options.resume) {
-    if (std::filesystem::exists(config.checkpoint))
+    if (std::filesystem::exists(config.checkpoint) || std::filesystem::exists(config.checkpoint.string() + ".before"))
       spdlog::info("resuming from {}", config.checkpoint.string());
     else
       spdlog::info("{} holds nothing to resume: beginning", folder.string());
@@ -469,8 +473,9 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
                                          : summary(result, answer(result), folder.string()));
       return result.problem.requirements.empty() || met(result) ? exit_ok : exit_unmet;
     }
-    write_text(folder / "config.json", as_given.dump(2) + "\n");
   }
+  make_folder(folder);  // it may have been removed meanwhile
+  write_text(folder / "config.json", as_given.dump(2) + "\n");
   const auto field = cartography(simulator, result.front[answer(result)], program, deadline.abort());
   if (!field) spdlog::warn("stopped: {} is not written", (folder / "coverage.ply").string());
   spdlog::info("writing {}", folder.string());

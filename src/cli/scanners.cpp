@@ -2,11 +2,12 @@
 #include "cli/scanners.hpp"
 
 #include <algorithm>
-#include <fstream>
 #include <functional>
+#include <sstream>
 #include <vector>
 
 #include "cli/parse.hpp"
+#include "core/read_file.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage::cli {
@@ -29,8 +30,7 @@ NoiseTable load_noise(const std::string& name) {
                   "--noise: the maker of '" + name + "' states no noise table; give a CSV file or off");
     return scanner.noise;
   }
-  std::ifstream stream(name);
-  if (!stream) throw Error(Errc::io, name + ": cannot be opened");
+  std::istringstream stream(read_file(name));
   NoiseTable table;
   std::string line;
   for (std::size_t number = 1; std::getline(stream, line); ++number) {

@@ -2,6 +2,7 @@
 #include "core/atomic_file.hpp"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -22,26 +23,60 @@ std::string temporary_prefix(const std::filesystem::path& file) {
 }
 
 constexpr std::string_view kSuffix = ".partial";
+constexpr std::size_t kBuffer = std::size_t{1} << 20;
+
+// `offset` < 0: where the file stands. False with errno where not all could be written.
+bool write_all(int descriptor, const char* data, std::size_t bytes, off_t offset = -1) {
+  while (bytes > 0) {
+    const ssize_t n = offset < 0 ? ::write(descriptor, data, bytes) : ::pwrite(descriptor, data, bytes, offset);
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) {
+      if (n == 0) errno = ENOSPC;
+      return false;
+    }
+    data += n, bytes -= static_cast<std::size_t>(n);
+    if (offset >= 0) offset += n;
+  }
+  return true;
+}
+
+// Whether nobody has it open any more: who writes one holds a lock on it.
+bool abandoned(const std::filesystem::path& temporary) {
+  const int descriptor = ::open(temporary.c_str(), O_RDWR | O_CLOEXEC);
+  if (descriptor < 0) return false;
+  const bool free = ::flock(descriptor, LOCK_EX | LOCK_NB) == 0;
+  ::close(descriptor);
+  return free;
+}
+
+void remove_temporaries(const std::filesystem::path& folder, const std::string& prefix) {
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with(prefix) && name.ends_with(kSuffix) && abandoned(entry.path()))
+      std::filesystem::remove(entry.path(), ignored);
+  }
+}
 
 }  // namespace
 
 AtomicFile::AtomicFile(std::filesystem::path file) : file_(std::move(file)) {
-  if (!file_.has_filename() || std::filesystem::is_directory(file_))
+  std::error_code unknown;
+  if (!file_.has_filename() || std::filesystem::is_directory(file_, unknown))
     throw Error(Errc::io, "cannot write " + file_.string() + ": it names a folder; give a file name");
   static std::atomic<unsigned> serial{0};
   const std::string name = temporary_prefix(file_) + std::to_string(getpid()) + "-" + std::to_string(serial++);
   temporary_ = file_.parent_path() / (name + std::string(kSuffix));
-  const int descriptor = open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  if (descriptor >= 0) stream_ = fdopen(descriptor, "w+b");
-  if (!stream_)
+  descriptor_ = ::open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (descriptor_ < 0)
     throw Error(Errc::io,
                 "cannot write " + file_.string() + ": " + reason(errno) + " (does its folder exist, is it writable?)");
-  setvbuf(stream_, nullptr, _IOFBF, std::size_t{1} << 20);
+  ::flock(descriptor_, LOCK_EX | LOCK_NB);  // a file system that knows no locks loses only who cleans up
 }
 
 AtomicFile::~AtomicFile() {
-  if (!stream_) return;
-  std::fclose(stream_);
+  if (descriptor_ < 0) return;
+  ::close(descriptor_);
   std::error_code ignored;
   std::filesystem::remove(temporary_, ignored);
 }
@@ -50,20 +85,38 @@ void AtomicFile::fail(const char* what) const {
   throw Error(Errc::io, std::string("cannot ") + what + " " + file_.string() + ": " + reason(errno));
 }
 
+void AtomicFile::flush() {
+  if (!write_all(descriptor_, buffer_.data(), buffer_.size())) fail("write");
+  buffer_.clear();
+}
+
 void AtomicFile::write(const void* data, std::size_t bytes) {
-  if (bytes > 0 && std::fwrite(data, 1, bytes, stream_) != bytes) fail("write");
+  const auto* begin = static_cast<const char*>(data);
+  if (buffer_.size() + bytes > kBuffer) {
+    flush();
+    if (bytes > kBuffer) {
+      if (!write_all(descriptor_, begin, bytes)) fail("write");
+      return;
+    }
+  }
+  buffer_.append(begin, bytes);
 }
 
 void AtomicFile::patch(std::size_t offset, const void* data, std::size_t bytes) {
-  if (fseeko(stream_, static_cast<off_t>(offset), SEEK_SET) != 0) fail("write");
-  write(data, bytes);
-  if (fseeko(stream_, 0, SEEK_END) != 0) fail("write");
+  flush();
+  if (!write_all(descriptor_, static_cast<const char*>(data), bytes, static_cast<off_t>(offset))) fail("write");
+}
+
+void AtomicFile::settle() {
+  flush();
+  if (::fsync(descriptor_) != 0) fail("write");
+  settled_ = true;
 }
 
 void AtomicFile::commit() {
-  if (std::fflush(stream_) != 0 || fsync(fileno(stream_)) != 0) fail("write");
-  const bool closed = std::fclose(std::exchange(stream_, nullptr)) == 0;
-  if (!closed || std::rename(temporary_.c_str(), file_.c_str()) != 0) {
+  if (!settled_) settle();
+  const bool closed = ::close(std::exchange(descriptor_, -1)) == 0;
+  if (!closed || ::rename(temporary_.c_str(), file_.c_str()) != 0) {
     const int error = errno;
     std::error_code ignored;
     std::filesystem::remove(temporary_, ignored);
@@ -73,14 +126,10 @@ void AtomicFile::commit() {
 }
 
 void AtomicFile::remove_leftovers(const std::filesystem::path& file) {
-  const std::string prefix = temporary_prefix(file);
-  std::error_code ignored;
-  const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
-  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
-    const std::string name = entry.path().filename().string();
-    if (name.starts_with(prefix) && name.ends_with(kSuffix)) std::filesystem::remove(entry.path(), ignored);
-  }
+  remove_temporaries(file.has_parent_path() ? file.parent_path() : ".", temporary_prefix(file));
 }
+
+void AtomicFile::remove_leftovers_in(const std::filesystem::path& folder) { remove_temporaries(folder, "."); }
 
 void write_atomically(const std::filesystem::path& file, std::string_view content) {
   AtomicFile out(file);

@@ -3,8 +3,8 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdio>
 #include <filesystem>
+#include <string>
 #include <string_view>
 
 namespace vantage {
@@ -21,17 +21,24 @@ class AtomicFile {
   void write(std::string_view text) { write(text.data(), text.size()); }
   // Overwrites bytes that were written before; the next write() goes on at the end.
   void patch(std::size_t offset, const void* data, std::size_t bytes);
-  // Flushes to the disk and gives the file its name. Throws Error io.
+  // Brings all to the disk: of commit() only the new name is left to do. Throws Error io.
+  void settle();
+  // Brings all to the disk and gives the file its name. Throws Error io.
   void commit();
   const std::filesystem::path& path() const { return file_; }
 
-  // Removes temporaries of `file` that a killed process left behind.
+  // Removes temporaries of `file` that a killed process left behind; those of a process at work are locked, and stay.
   static void remove_leftovers(const std::filesystem::path& file);
+  // The same of all files in a folder.
+  static void remove_leftovers_in(const std::filesystem::path& folder);
 
  private:
   [[noreturn]] void fail(const char* what) const;
+  void flush();
   std::filesystem::path file_, temporary_;
-  std::FILE* stream_ = nullptr;
+  std::string buffer_;
+  int descriptor_ = -1;
+  bool settled_ = false;
 };
 
 // Throws Error io.

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fstream>
-#include <iterator>
-
 #include "core/atomic_file.hpp"
+#include "core/read_file.hpp"
 #include "image/decode.hpp"
 #include "vantage/error.hpp"
 #include "vantage/image.hpp"
@@ -19,12 +17,9 @@
 namespace vantage {
 
 Image read_image(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw Error(Errc::io, "cannot read the image " + file.string());
-  const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  if (in.bad()) throw Error(Errc::io, "cannot read the image " + file.string());
+  const std::string bytes = read_file(file);
   std::string problem;
-  Image image = decode_image(bytes, problem);
+  Image image = decode_image({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, problem);
   if (image.rgba.empty())
     throw Error(Errc::malformed_file, file.string() + " is no PNG or JPEG that can be read: " + problem);
   return image;

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plan/checkpoint.hpp"
 
-#include <cerrno>
 #include <cstring>
-#include <fstream>
-#include <iterator>
+#include <exception>
 #include <sstream>
 #include <string_view>
 #include <system_error>
@@ -12,6 +10,7 @@
 
 #include "core/atomic_file.hpp"
 #include "core/hash.hpp"
+#include "core/read_file.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage {
@@ -71,7 +70,11 @@ std::uint64_t checksum(std::string_view bytes) {
 
 }  // namespace
 
-void write_checkpoint(const std::filesystem::path& file, const Checkpoint& checkpoint) {
+std::filesystem::path checkpoint_before(const std::filesystem::path& file) {
+  return std::filesystem::path(file).concat(".before");
+}
+
+void write_checkpoint(const std::filesystem::path& file, const Checkpoint& checkpoint, bool keep_before) {
   Writer w;
   w.put(std::string_view(checkpoint.identity));
   w.put(checkpoint.seconds), w.put(checkpoint.trace_seconds);
@@ -99,18 +102,16 @@ void write_checkpoint(const std::filesystem::path& file, const Checkpoint& check
   head.put(kVersion), head.put(std::uint64_t{w.bytes.size()}), head.put(checksum(w.bytes));
   AtomicFile out(file);
   out.write(kMagic), out.write(head.bytes), out.write(w.bytes);
+  out.settle();
+  std::error_code ignored;  // one less to fall back on
+  if (keep_before) std::filesystem::rename(file, checkpoint_before(file), ignored);
   out.commit();
 }
 
-std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& file) {
-  std::error_code missing;
-  if (!std::filesystem::exists(file, missing)) return std::nullopt;
-  std::ifstream in(file, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
-  if (!in) throw Error(Errc::io, "cannot read " + file.string() + ": " + std::generic_category().message(errno));
+Checkpoint parse_checkpoint(std::string_view bytes, const std::filesystem::path& file) {
   if (!bytes.starts_with(kMagic)) throw Error(Errc::malformed_file, file.string() + " is no checkpoint of vantage");
 
-  Reader head(std::string_view(bytes).substr(kMagic.size()), file);
+  Reader head(bytes.substr(kMagic.size()), file);
   const auto version = head.get<std::uint32_t>();
   if (version != kVersion)
     throw Error(Errc::malformed_file, "checkpoint " + file.string() + " has format " + std::to_string(version) +
@@ -118,8 +119,7 @@ std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& file) {
                                           "; resume with the vantage that wrote it, or start again");
   const auto size = head.get<std::uint64_t>();
   const auto sum = head.get<std::uint64_t>();
-  const std::string_view body =
-      std::string_view(bytes).substr(kMagic.size() + sizeof version + sizeof size + sizeof sum);
+  const std::string_view body = bytes.substr(kMagic.size() + sizeof version + sizeof size + sizeof sum);
   if (body.size() != size || checksum(body) != sum) head.damaged();
 
   Reader r(body, file);
@@ -148,6 +148,31 @@ std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& file) {
   }
   if (!r.at_end()) r.damaged();
   return checkpoint;
+}
+
+std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& file) {
+  std::error_code missing;
+  if (!std::filesystem::exists(file, missing)) return std::nullopt;
+  return parse_checkpoint(read_file(file), file);
+}
+
+std::optional<FoundCheckpoint> newest_checkpoint(const std::filesystem::path& file) {
+  std::string why = "there is no " + file.string();
+  std::exception_ptr failure;
+  try {
+    if (auto newest = read_checkpoint(file)) return FoundCheckpoint{.checkpoint = *std::move(newest)};
+  } catch (const Error& error) {
+    failure = std::current_exception();
+    why = error.what();
+  }
+  try {
+    if (auto before = read_checkpoint(checkpoint_before(file)))
+      return FoundCheckpoint{.checkpoint = *std::move(before), .is_before = true, .why = std::move(why)};
+  } catch (const Error&) {
+    if (!failure) throw;
+  }
+  if (failure) std::rethrow_exception(failure);
+  return std::nullopt;
 }
 
 void require_same_run(const std::filesystem::path& file, const std::string& found, const std::string& wanted) {

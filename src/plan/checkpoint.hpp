@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "plan/network_evaluator.hpp"
@@ -30,10 +31,23 @@ struct Checkpoint {
   double seconds = 0, trace_seconds = 0;
 };
 
+// Where the checkpoint before `file` is kept.
+std::filesystem::path checkpoint_before(const std::filesystem::path& file);
+// With `keep_before` the file that is there becomes checkpoint_before(file). At any moment one of the two is whole.
 // Throws Error io.
-void write_checkpoint(const std::filesystem::path& file, const Checkpoint& checkpoint);
-// Empty where there is no such file. Throws Error: io, malformed_file (damaged, or of another version).
+void write_checkpoint(const std::filesystem::path& file, const Checkpoint& checkpoint, bool keep_before = false);
+// `file` names it in messages. Throws Error malformed_file (damaged, or of another version).
+Checkpoint parse_checkpoint(std::string_view bytes, const std::filesystem::path& file);
+// Empty where there is no such file. Throws Error: io, malformed_file.
 std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& file);
+
+struct FoundCheckpoint {
+  Checkpoint checkpoint;
+  bool is_before = false;  // the newest is missing or damaged, as `why` says
+  std::string why = {};
+};
+// The newest that is whole; empty where there is none at all. Throws Error: io, malformed_file where both are damaged.
+std::optional<FoundCheckpoint> newest_checkpoint(const std::filesystem::path& file);
 // Throws Error invalid_argument that lists what differs.
 void require_same_run(const std::filesystem::path& file, const std::string& found, const std::string& wanted);
 

@@ -74,6 +74,7 @@ SearchOutcome Run::search(const SurveyProblem& narrowed, const PlanConfig& confi
        .identity = identity(simulator_, site_, area_, clash_, narrowed, config, population_of(narrowed, config), batch),
        .start = start,
        .watch = watch.report,
+       .warn = simulator_.config().warn,
        .stop = watch.stop});
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <exception>
 #include <memory>
 #include <optional>
 #include <sstream>
@@ -52,8 +53,12 @@ class Search {
           reason = grow();
       }
     } catch (...) {
-      save();  // hours of work must not go down with a lost device
-      throw;
+      const auto lost = std::current_exception();
+      try {
+        save();                 // hours of work must not go down with a lost device
+      } catch (const Error&) {  // what ended the search is what matters
+      }
+      std::rethrow_exception(lost);
     }
     save();
     if (!sample_.full() && reason != StopReason::cancelled) {
@@ -332,18 +337,30 @@ class Search {
     // A run that stops while it still replays must not forget what it has not come to.
     std::vector<std::vector<double>> since = since_;
     since.insert(since.end(), replay_.begin() + static_cast<std::ptrdiff_t>(replay_next_), replay_.end());
-    write_checkpoint(config_.checkpoint, {.identity = setup_.identity,
-                                          .snapshot = snapshot_,
-                                          .since = std::move(since),
-                                          .seconds = seconds(),
-                                          .trace_seconds = earlier_trace_seconds_ + setup_.evaluator.trace_seconds()});
     saved_ = Clock::now();
+    try {
+      write_checkpoint(config_.checkpoint,
+                       {.identity = setup_.identity,
+                        .snapshot = snapshot_,
+                        .since = std::move(since),
+                        .seconds = seconds(),
+                        .trace_seconds = earlier_trace_seconds_ + setup_.evaluator.trace_seconds()},
+                       newest_is_ours_);
+      newest_is_ours_ = true;
+    } catch (const Error& error) {
+      if (!setup_.warn) throw;
+      setup_.warn(std::string(error.what()) + "; the search goes on without");
+    }
   }
 
   void resume() {
-    std::optional<Checkpoint> checkpoint = read_checkpoint(config_.checkpoint);
-    if (!checkpoint) return;
-    require_same_run(config_.checkpoint, checkpoint->identity, setup_.identity);
+    std::optional<FoundCheckpoint> found = newest_checkpoint(config_.checkpoint);
+    if (!found) return;
+    const auto file = found->is_before ? checkpoint_before(config_.checkpoint) : config_.checkpoint;
+    if (found->is_before && setup_.warn) setup_.warn(found->why + "; going on from the one before, " + file.string());
+    newest_is_ours_ = !found->is_before;
+    Checkpoint* const checkpoint = &found->checkpoint;
+    require_same_run(file, checkpoint->identity, setup_.identity);
     std::istringstream state(checkpoint->snapshot.optimiser);
     optimiser_->load(state);
     snapshot_ = std::move(checkpoint->snapshot);
@@ -386,6 +403,7 @@ class Search {
   std::vector<std::vector<double>> since_, replay_;
   std::size_t replay_next_ = 0;
   double earlier_seconds_ = 0, earlier_trace_seconds_ = 0;
+  bool newest_is_ours_ = false;  // and whole, so that it may become the one before
   Clock::time_point start_ = Clock::now(), saved_ = start_;
 };
 

@@ -26,6 +26,9 @@ struct SearchSetup {
   // A network to begin with that is evaluated as it stands, so that no front is worse; empty: what `config` says.
   std::vector<double> start = {};
   std::function<void(const PlanProgress&)> watch = {};
+  // Told what the search goes on without: a checkpoint that cannot be written, or is damaged. Where nobody is told, one
+  // that cannot be written is an Error.
+  std::function<void(const std::string&)> warn = {};
   std::stop_token stop = {};
 };
 

@@ -6,10 +6,10 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <iterator>
 #include <optional>
 
+#include "core/read_file.hpp"
 #include "core/text.hpp"
 #include "report/geodetic.hpp"
 #include "vantage/error.hpp"
@@ -143,11 +143,7 @@ std::string checked(const std::string& written, const std::string& source) {
 std::string coordinate_system(const std::string& text) {
   if (text.size() > 5 && (text.starts_with("EPSG:") || text.starts_with("epsg:"))) return of_code(text.substr(5), text);
   if (text.find('[') != std::string::npos) return checked(text, "the coordinate system");
-  if (text.ends_with(".prj") || text.ends_with(".wkt")) {
-    std::ifstream in(text, std::ios::binary);
-    if (!in) throw Error(Errc::io, "cannot read " + text + "; does it exist?");
-    return checked({std::istreambuf_iterator<char>(in), {}}, text);
-  }
+  if (text.ends_with(".prj") || text.ends_with(".wkt")) return checked(read_file(text), text);
   refuse("'" + text +
          "' is no coordinate system: give EPSG:25832 and the like, or a file of well-known text (.prj, .wkt)");
 }

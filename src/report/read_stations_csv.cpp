@@ -4,11 +4,12 @@
 #include <array>
 #include <cctype>
 #include <charconv>
-#include <fstream>
 #include <map>
+#include <sstream>
 #include <string_view>
 
 #include "core/closest_name.hpp"
+#include "core/read_file.hpp"
 #include "vantage/error.hpp"
 #include "vantage/export.hpp"
 
@@ -120,8 +121,7 @@ class Table {
   explicit Table(const std::filesystem::path& file) : file_(file) {}
 
   std::vector<StationRow> read() {
-    std::ifstream in(file_, std::ios::binary);
-    if (!in) throw Error(Errc::io, "cannot read " + file_.string() + "; does it exist?");
+    std::istringstream in(read_file(file_));
     std::vector<StationRow> rows;
     for (std::string line; std::getline(in, line);) {
       ++line_number_;

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "core/closest_name.hpp"
+#include "core/read_file.hpp"
 #include "vantage/error.hpp"
 #include "vantage/scanner.hpp"
 
@@ -140,11 +141,7 @@ struct Document {
   const Json& scanners() const { return json["scanners"]; }
 
  private:
-  static std::string text_of(const std::filesystem::path& path) {
-    std::ifstream in(path);
-    if (!in) throw Error(Errc::io, "cannot read the scanner presets " + path.string());
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
+  static std::string text_of(const std::filesystem::path& path) { return read_file(path); }
 };
 
 // What is built in, and before it what a file adds.

@@ -55,6 +55,19 @@ TEST(AtomicFile, NamesAFolderThatIsMissing) {
   }
 }
 
+TEST(AtomicFile, LeavesTemporariesOfOthersAtWork) {
+  const test::TemporaryFolder folder;
+  AtomicFile out(folder / "a.txt");
+  out.write("x");
+  std::ofstream(folder / ".b.txt.1-2.partial") << "of a process that was killed";
+  AtomicFile::remove_leftovers(folder / "a.txt");
+  EXPECT_EQ(entries(folder.path()), 2u);
+  AtomicFile::remove_leftovers_in(folder.path());
+  EXPECT_EQ(entries(folder.path()), 1u);
+  out.commit();
+  EXPECT_EQ(content(folder / "a.txt"), "x");
+}
+
 TEST(AtomicFile, RemovesOnlyItsOwnLeftovers) {
   const test::TemporaryFolder folder;
   for (const char* name : {".a.ckpt.12-0.partial", ".ab.ckpt.12-0.partial", ".a.ckpt.notes", "a.ckpt"})

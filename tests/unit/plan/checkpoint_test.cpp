@@ -51,26 +51,47 @@ TEST(Checkpoint, ReadsBackWhatWasWritten) {
   EXPECT_EQ(content(folder / "again"), content(folder / "c"));
 }
 
-TEST(Checkpoint, RefusesTruncationsAndFlippedBytes) {
+TEST(Checkpoint, NoticesEveryFlippedBitAndEveryTruncation) {
   const test::TemporaryFolder folder;
   write_checkpoint(folder / "c", sample());
   const std::string whole = content(folder / "c");
-  const auto refused = [&](const std::string& bytes) {
-    std::ofstream(folder / "bad", std::ios::binary | std::ios::trunc) << bytes;
+  EXPECT_NO_THROW(parse_checkpoint(whole, "c"));
+  const auto refused = [](const std::string& bytes) {
     try {
-      read_checkpoint(folder / "bad");
+      parse_checkpoint(bytes, "c");
       return false;
     } catch (const Error& e) {
       return e.code() == Errc::malformed_file;
     }
   };
-  for (std::size_t size = 0; size < whole.size(); size += 5) EXPECT_TRUE(refused(whole.substr(0, size))) << size;
-  for (std::size_t at = 0; at < whole.size(); at += 5) {
+  for (std::size_t size = 0; size < whole.size(); ++size) EXPECT_TRUE(refused(whole.substr(0, size))) << size;
+  for (std::size_t bit = 0; bit < 8 * whole.size(); ++bit) {
     std::string flipped = whole;
-    flipped[at] = static_cast<char>(flipped[at] ^ 0x20);
-    EXPECT_TRUE(refused(flipped)) << at;
+    flipped[bit / 8] = static_cast<char>(flipped[bit / 8] ^ (1 << bit % 8));
+    EXPECT_TRUE(refused(flipped)) << bit;
   }
   EXPECT_TRUE(refused(whole + "x"));
+}
+
+TEST(Checkpoint, KeepsTheOneBefore) {
+  const test::TemporaryFolder folder;
+  const auto file = folder / "c", before = checkpoint_before(file);
+  EXPECT_FALSE(newest_checkpoint(file));
+  Checkpoint checkpoint = sample();
+  for (const double seconds : {1, 2, 3}) {
+    checkpoint.seconds = seconds;
+    write_checkpoint(file, checkpoint, seconds > 1);
+  }
+  EXPECT_EQ(read_checkpoint(before)->seconds, 2);
+  EXPECT_EQ(newest_checkpoint(file)->checkpoint.seconds, 3);
+  EXPECT_FALSE(newest_checkpoint(file)->is_before);
+  std::ofstream(file) << "x";
+  EXPECT_EQ(newest_checkpoint(file)->checkpoint.seconds, 2);
+  EXPECT_TRUE(newest_checkpoint(file)->is_before);
+  std::filesystem::remove(file);
+  EXPECT_EQ(newest_checkpoint(file)->checkpoint.seconds, 2);
+  std::ofstream(before) << "x";
+  EXPECT_THROW(newest_checkpoint(file), Error);
 }
 
 TEST(Checkpoint, NamesWhatDiffers) {
