@@ -84,7 +84,8 @@ ordered_json missed_json(const Report& report) {
   ordered_json reasons = ordered_json::array(), nodes = ordered_json::array();
   for (std::size_t k = 0; k < why_missed_count; ++k) {
     const MissedStyle& style = missed_style(static_cast<WhyMissed>(k));
-    reasons.push_back({{"name", to_string(style.why)}, {"words", style.words}});
+    const auto [r, g, b] = to_bytes(style.colour);
+    reasons.push_back({{"name", to_string(style.why)}, {"words", style.words}, {"rgb", {r, g, b}}});
   }
   for (const MissedShare& share : report.missed) {
     ordered_json shares = ordered_json::array();
