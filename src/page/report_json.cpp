@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "page/report_json.hpp"
 
+#include "page/packed.hpp"
 #include "report/missed_colours.hpp"
 #include "vantage/version.hpp"
 
@@ -32,6 +33,8 @@ ordered_json stations_json(const ReportNetwork& network) {
          {"active", active(s)},
          {"kept", s.kept},
          {"points", k < entry.points_on_surveyed.size() ? ordered_json(entry.points_on_surveyed[k]) : ordered_json()}});
+    if (k < network.pictures.size() && !network.pictures[k].empty())
+      stations.back()["picture"] = base64(network.pictures[k]);
   }
   return stations;
 }

@@ -132,6 +132,47 @@ await second.waitForFunction(() => document.querySelectorAll('#stations tbody tr
 assert.deepEqual(second.troubles, []);
 await second.close();
 
+// By touch: a finger on a name moves the station and nothing else, one in the view turns it, two come closer.
+const phone = await watchedPage(browser, { width: 390, height: 844 }, { hasTouch: true, isMobile: true });
+await phone.goto(url);
+await phone.waitForSelector('html[data-ready]');
+await phone.locator('#above').tap();
+await phone.locator('#canvas').scrollIntoViewIfNeeded();
+const device = await phone.context().newCDPSession(phone);
+const fingers = (type, ...points) => device.send('Input.dispatchTouchEvent', { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) });
+async function slide(froms, by, steps = 6) {
+  await fingers('touchStart', ...froms);
+  for (let k = 1; k <= steps; ++k) await fingers('touchMove', ...froms.map(([x, y], i) => [x + (by[i][0] * k) / steps, y + (by[i][1] * k) / steps]));
+  await fingers('touchEnd');
+}
+const phoneRows = async () => (await phone.locator('#stations tbody tr').allInnerTexts()).map((row) => row.split('\t').map((cell) => cell.trim()));
+const middles = () => phone.locator('.label').evaluateAll((labels) => labels.map((label) => { const b = label.getBoundingClientRect(); return [b.x + b.width / 2, b.y + b.height / 2, b.width, b.height]; }));
+const stood = await phoneRows(), scrolled = await phone.evaluate(() => scrollY), marks = await middles();
+assert.ok(marks.every(([, , w, h]) => w >= 24 && h >= 24), `too small for a finger: ${marks}`);
+await slide([marks[0].slice(0, 2)], [[30, 24]]);
+await phone.waitForFunction((was) => document.querySelector('#stations tbody tr').innerText.split('\t')[1].trim() !== was, stood[0][1]);
+await phone.waitForTimeout(1500);
+const moved = await phoneRows();
+assert.deepEqual(moved[1].slice(0, 5), stood[1].slice(0, 5), 'the other station stays');
+const [to] = await middles();
+assert.ok(Math.hypot(to[0] - marks[0][0] - 30, to[1] - marks[0][1] - 24) < 6, `the station is where the finger left it: ${to} from ${marks[0]}`);
+assert.equal(await phone.evaluate(() => scrollY), scrolled, 'and the page did not scroll away');
+const canvas = await phone.locator('#canvas canvas').boundingBox();
+const [cx, cy] = [canvas.x + canvas.width / 2, canvas.y + canvas.height * 0.8];
+const gap = async () => { const [a, b] = await middles(); return Math.hypot(a[0] - b[0], a[1] - b[1]); };
+const before = await gap();
+await slide([[cx - 30, cy], [cx + 30, cy]], [[-50, 0], [50, 0]]);
+await phone.waitForTimeout(300);
+assert.ok(await gap() > 1.2 * before, `two fingers come closer: ${before} to ${await gap()}`);
+const far = await middles();
+await slide([[cx, cy]], [[90, -40]]);
+await phone.waitForTimeout(300);
+assert.ok((await middles()).some(([x, y], k) => Math.hypot(x - far[k][0], y - far[k][1]) > 10), 'one finger turns the view');
+assert.deepEqual(await phoneRows(), moved, 'neither moves a station');
+if (process.env.VANTAGE_SCREENSHOTS) await phone.screenshot({ path: `${process.env.VANTAGE_SCREENSHOTS}/edit-touch.png`, fullPage: true });
+assert.deepEqual(phone.troubles, []);
+await phone.close();
+
 await changed(() => page.locator('#exact').click());
 await page.waitForFunction(() => document.querySelector('#figures dd small').textContent.includes('every ray'));
 await checkNumbers(['--exact']);
