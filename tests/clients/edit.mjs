@@ -79,7 +79,7 @@ async function checkNumbers(how) {
     (s) => [...s.position, ...s.uv, s.heading ?? '', s.tilt ?? '', s.scanner ?? '', s.step ?? ''].join())].join('\n'));
   const said = JSON.parse(vantage('evaluate', 'walls.glb', ...coarse, ...how, '--stations', 'now.csv', '--json'));
   assert.equal(await coverage(), said.coverage.toFixed(4));
-  assert.deepEqual([said.stations[1].scanner, said.stations[1].step, said.stations[1].tilt], ['Leica RTC360', 0.7, 80]);
+  assert.deepEqual([said.stations[1].scanner, said.stations[1].step, said.stations[1].tilt], ['Leica RTC360 @6mm', 0.7, 80]);
   (await rows()).forEach((row, k) => assert.deepEqual(row.slice(1, 4), said.stations[k].position.map((v) => v.toFixed(3))));
 }
 
