@@ -25,10 +25,27 @@ std::vector<std::array<std::uint32_t, 3>> triangles_of(const py::array& array) {
   return triangles;
 }
 
+namespace {
+
+template <class Each>
+std::vector<Each> all_of(const py::object& stations) {
+  std::vector<Each> all;
+  for (const auto& each : stations) {
+    if (!py::isinstance<Each>(each))
+      throw py::type_error("stations: " + std::string(py::repr(each)) + " is none of the kind that the first one is");
+    all.push_back(each.cast<Each>());
+  }
+  return all;
+}
+
+}  // namespace
+
 Network network_of(const py::object& stations) {
-  if (!py::isinstance<py::array>(stations) && py::isinstance<py::sequence>(stations) && py::len(stations) > 0 &&
-      py::isinstance<PlacedStation>(stations[py::int_(0)]))
-    return to_network(stations.cast<std::vector<PlacedStation>>());
+  if (!py::isinstance<py::array>(stations) && py::isinstance<py::sequence>(stations) && py::len(stations) > 0) {
+    const py::object first = stations[py::int_(0)];
+    if (py::isinstance<PlacedStation>(first)) return to_network(all_of<PlacedStation>(stations));
+    if (py::isinstance<Station>(first)) return all_of<Station>(stations);
+  }
   const auto heads = Doubles::ensure(stations);
   if (!heads) throw py::error_already_set();
   Network network;

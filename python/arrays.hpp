@@ -61,7 +61,8 @@ std::span<const Row> rows_of(const Doubles& array, const char* what) {
 /// Indices of corners. Throws Error invalid_argument: another shape, no integers, or none of 0 to 2³² − 1.
 std::vector<std::array<std::uint32_t, 3>> triangles_of(const py::array& array);
 
-/// Heads of stations as an array of (n, 3) or as `PlacedStation`s, of which those that are not active keep their place.
+/// Heads of stations as an array of (n, 3), or `Station`s or `PlacedStation`s, of which those that are not active keep
+/// their place.
 Network network_of(const py::object& stations);
 
 /// The heads of stations, one row each.

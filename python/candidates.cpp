@@ -194,7 +194,9 @@ void add_greedy(py::module_& m) {
   const auto options = Options<GreedyConfig>("greedy_network")
                            .add("candidates", &GreedyConfig::candidates, "Positions to choose from, even in (u, v).")
                            .add("sample_voxels", &GreedyConfig::sample_voxels, "0: with every ray.")
-                           .add("fixed", &GreedyConfig::fixed, "Heads of stations that are there already.");
+                           .add("fixed", &GreedyConfig::fixed, "Heads of stations that are there already.")
+                           .add("fixed_setups", &GreedyConfig::fixed_setups,
+                                "Their StationSetups, one each; none: upright, with the first scanner.");
   m.def(
       "greedy_network",
       [options](GuardedSimulator& self, const SearchArea& area, const ClashChecker& clash, std::size_t stations,

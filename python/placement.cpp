@@ -56,6 +56,49 @@ Options<WalkableOptions> walkable_options() {
           "Regions: no ground in any of these.");
 }
 
+// (3, 3): rows of a rotation.
+py::array_t<double> rotation_of(const StationSetup& setup) {
+  const auto rows = setup.survey_from_scanner();
+  return adopt(std::vector<Vec3>(rows.begin(), rows.end()));
+}
+
+void add_setups(py::module_& m) {
+  const auto options = Options<StationSetup>("StationSetup")
+                           .add("heading_deg", &StationSetup::heading, "About up, from +X towards +Y.")
+                           .add("tilt_deg", &StationSetup::tilt,
+                                "How far the scanner's axis leans from straight up towards the heading.")
+                           .add("scanner", &StationSetup::scanner, "Index into `Simulator.scanners`.");
+  py::class_<StationSetup> setup(m, "StationSetup",
+                                 ("How a scanner is set up at a station: which one, and how it is turned. At a tilt of "
+                                  "90 degrees the\nhead lies, at 180 it hangs." +
+                                  options.doc())
+                                     .c_str());
+  setup.def(py::init([options](const py::kwargs& given) { return options.read(given); }))
+      .def_property_readonly("turned", &StationSetup::turned, "Whether it does not stand as usual.")
+      .def("survey_from_scanner", &rotation_of,
+           "Rz(heading) Ry(tilt), from the scanner's frame to the survey's: (3, 3). Quarter turns are exact.")
+      .def("__eq__", [](const StationSetup& self, const StationSetup& other) { return self == other; })
+      .def("__repr__", [options](const StationSetup& self) { return options.repr(self); });
+  setup.attr("__hash__") = py::none();
+  options.attributes(setup);
+  py::class_<Station>(m, "Station", "A scanner's head, and how it is set up there.")
+      .def(
+          py::init([](const Vec3& position, const StationSetup& how, bool on) {
+            return Station{.position = position, .active = on, .setup = how};
+          }),
+          py::arg("position"), py::arg("setup") = StationSetup{}, py::arg("active") = true,
+          "position: (x, y, z), survey frame, metres. active: whether it is simulated; one that is not keeps its place "
+          "in a\nnetwork.")
+      .def_readwrite("position", &Station::position, "The head (x, y, z), survey frame, metres.")
+      .def_readwrite("setup", &Station::setup, "How it is set up.")
+      .def_readwrite("active", &Station::active, "Whether it is simulated.")
+      .def("__repr__", [](const Station& s) {
+        return "<vantage.Station at " + std::string(py::repr(py::cast(s.position))) +
+               (s.setup == StationSetup() ? "" : ", " + std::string(py::repr(py::cast(s.setup)))) +
+               (s.active ? "" : ", not active") + ">";
+      });
+}
+
 void add_stations(py::module_& m) {
   py::class_<PlacedStation>(m, "PlacedStation", "A station, and what became of it.")
       .def_readonly("uv", &PlacedStation::uv, "On the search area.")
@@ -65,6 +108,7 @@ void add_stations(py::module_& m) {
           "status", [](const PlacedStation& s) { return to_string(s.status); },
           "'ok', 'hole', 'clash', 'inside', 'off_ground' or 'outside'.")
       .def_readonly("kept", &PlacedStation::kept, "Was there before the plan.")
+      .def_readonly("setup", &PlacedStation::setup, "How it is set up.")
       .def_property_readonly("active", &active, "Whether it adds to what its network measures.")
       .def("__repr__", [](const PlacedStation& s) {
         return "<vantage.PlacedStation at " + std::string(py::repr(py::cast(s.position))) + ", " + to_string(s.status) +
@@ -176,15 +220,16 @@ void add_clash(py::module_& m) {
           "Distance of each point of (n, 3) from the nearest mesh, at most limit_m: (n,), metres.");
   m.def(
       "place_heads",
-      [](const SearchArea& area, const ClashChecker& clash, double height_m, const py::object& heads) {
-        const Doubles rows = doubles_of(heads);
+      [](const SearchArea& area, const ClashChecker& clash, double height_m, const py::object& stations) {
         std::vector<PlacedStation> placed;
-        for (const Vec3& head : rows_of<Vec3>(rows, "heads"))
-          placed.push_back(place_head(&area, clash, height_m, head).station);
+        for (const Station& station : network_of(stations)) {
+          placed.push_back(place_head(&area, clash, height_m, station.position).station);
+          placed.back().setup = station.setup;
+        }
         return placed;
       },
       py::arg("area"), py::arg("clash"), py::arg("height_m"), py::arg("heads"),
-      "Stations by their heads (n, 3), survey frame, metres, checked as those of a search are.");
+      "Stations by their heads (n, 3), survey frame, metres, or `Station`s, checked as those of a search are.");
 }
 
 void add_ground(py::module_& m) {
@@ -204,6 +249,7 @@ void add_ground(py::module_& m) {
 }  // namespace
 
 void add_placement(py::module_& m) {
+  add_setups(m);
   add_stations(m);
   add_search_area(m);
   add_clash(m);

@@ -109,7 +109,7 @@ void add_entries(py::module_& m) {
           [](const Entry& e) {
             return py::array_t<double>(static_cast<py::ssize_t>(e.get().x.size()), e.get().x.data());
           },
-          "Decision vector: u1, v1, ..., uN, vN, then heights and alpha where they are searched.")
+          "Decision vector: u1, v1, ..., uN, vN, then heights, scanners and alpha where they are searched.")
       .def_property_readonly(
           "stations", [](const Entry& e) { return e.get().stations; }, "Its stations.")
       .def_property_readonly(
@@ -191,6 +191,9 @@ void add_results(py::module_& m) {
             return names;
           },
           "Names of all that is told of a network.")
+      .def_property_readonly(
+          "scanners", [](const Plan& plan) { return plan.result.scanners; },
+          "Copies of the scanners that `StationSetup.scanner` counts from 0.")
       .def_property_readonly(
           "history", &history_of,
           "A dict an iteration: iteration, evaluations, hypervolume, seconds, front (k, objectives).")

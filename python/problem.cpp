@@ -153,6 +153,19 @@ Options<SurveyProblem> problem_options() {
           "kept", [](const SurveyProblem& p) { return py::tuple(py::cast(p.kept)); },
           [](SurveyProblem& p, const py::iterable& given) { p.kept = py::list(given).cast<std::vector<Vec3>>(); },
           "Heads (x, y, z) of stations that are there already, survey frame, metres.")
+      .add<py::iterable>(
+          "kept_setups", [](const SurveyProblem& p) { return py::tuple(py::cast(p.kept_setups)); },
+          [](SurveyProblem& p, const py::iterable& given) {
+            p.kept_setups = py::list(given).cast<std::vector<StationSetup>>();
+          },
+          "Their StationSetups, one each; none: upright, with the first scanner.")
+      .add<py::iterable>(
+          "scanners", [](const SurveyProblem& p) { return py::tuple(py::cast(p.scanners)); },
+          [](SurveyProblem& p, const py::iterable& given) {
+            p.scanners = py::list(given).cast<std::vector<std::uint32_t>>();
+          },
+          "Indices into `Simulator.scanners` that each station chooses from, in the order in which they are tried; "
+          "none: the first.")
       .add("heights_m", &SurveyProblem::heights_m, "Lowest and highest head above ground; None: the scanner's.")
       .add("link_overlap", &SurveyProblem::link_overlap, "Pairs of less overlap count as not linked.")
       .add("registration", &SurveyProblem::registration, "What scans register from.")

@@ -75,20 +75,19 @@ py::array_t<std::uint32_t> ray_part(const Scan& scan, const auto& part) {
 
 }  // namespace
 
-Scan scan(GuardedSimulator& self, const Vec3& position, const std::vector<std::string>& outputs, bool grid,
-          std::uint32_t place, py::object progress) {
+Scan scan(GuardedSimulator& self, const Vec3& position, const std::vector<std::string>& outputs,
+          const StationSetup& setup, bool grid, std::uint32_t place, py::object progress) {
   const Simulator& simulator = self.simulator;
-  Scan made{.rows = simulator.scanner().rows(),
-            .columns = simulator.scanner().columns(),
-            .outputs = bits_of(outputs),
-            .grid = grid};
+  Scan made{.outputs = bits_of(outputs), .grid = grid};
   LongCall call(std::move(progress));
   made.summary = call.run([&] {
     const Busy busy(self.mutex);
     return self.simulator.scan(
-        {.position = position}, {.outputs = made.outputs, .place = place},
+        {.position = position, .setup = setup}, {.outputs = made.outputs, .place = place},
         [&](const ScanChunk& chunk) { append(made, chunk, simulator.origin()); }, call.progress());
   });
+  const Scanner& scanner = simulator.scanners()[setup.scanner];  // there is one, or nothing was scanned
+  made.rows = scanner.rows(), made.columns = scanner.columns();
   return made;
 }
 
@@ -136,8 +135,8 @@ void add_scans(py::module_& m) {
           "voxel",
           [](const py::object& self) { return array_of<std::uint32_t>(self, &Scan::voxel, scan_voxel, "voxel"); },
           "Surveyed voxel that the point counts in: (n,); 2^32 - 1 where it does not count.")
-      .def_readonly("rows", &Scan::rows, "Zenith steps of the scanner.")
-      .def_readonly("columns", &Scan::columns, "Azimuth steps of the scanner.")
+      .def_readonly("rows", &Scan::rows, "Zenith steps of its scanner.")
+      .def_readonly("columns", &Scan::columns, "Azimuth steps of its scanner.")
       .def_property_readonly(
           "rays", [](const Scan& scan) { return scan.summary.rays; }, "Rays that were cast.")
       .def_property_readonly(

@@ -13,8 +13,8 @@ struct Scan;
 /// The type `Scan`.
 void add_scans(py::module_& m);
 
-Scan scan(GuardedSimulator& self, const Vec3& position, const std::vector<std::string>& outputs, bool grid,
-          std::uint32_t place, py::object progress);
+Scan scan(GuardedSimulator& self, const Vec3& position, const std::vector<std::string>& outputs,
+          const StationSetup& setup, bool grid, std::uint32_t place, py::object progress);
 
 /// The points of a station, or with `grid` an element a ray. Arrays that were not asked for are empty.
 struct Scan {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulator.hpp"
 
+#include <variant>
+
 #include "evaluation.hpp"
 #include "module.hpp"
 #include "options.hpp"
@@ -117,23 +119,35 @@ void add_simulators(py::module_& m) {
   const auto options = simulator_options();
   py::class_<GuardedSimulator>(
       m, "Simulator",
-      ("Simulates a scanner in a scene. Other Python threads run while it traces; a simulator itself serves one call "
+      ("Simulates a scanner in a scene, or several, of which each station has one (`StationSetup`). Other Python "
+       "threads run while it traces; a simulator itself serves one call "
        "at\n"
        "a time, and a second raises Error. Same inputs, seed and engine: same result, bit for bit.\n\n"
        "`progress` is called, where it is given, with the share done in [0, 1]; where it returns False the call ends\n"
        "early and its result says `cancelled`. Ctrl-C ends a call too, by KeyboardInterrupt." +
        options.doc())
           .c_str())
-      .def(py::init([options](const Scene& scene, const Scanner& scanner, const py::kwargs& given) {
+      .def(py::init([options](const Scene& scene, const std::variant<Scanner, std::vector<Scanner>>& scanner,
+                              const py::kwargs& given) {
              const SimulatorConfig config = options.read(given);
              const py::gil_scoped_release unlocked;
-             return new GuardedSimulator{Simulator(scene, scanner, config)};
+             const auto* several = std::get_if<std::vector<Scanner>>(&scanner);
+             return new GuardedSimulator{several ? Simulator(scene, *several, config)
+                                                 : Simulator(scene, std::get<Scanner>(scanner), config)};
            }),
            py::arg("scene"), py::arg("scanner"))
       .def_property_readonly(
           "engine", [](const GuardedSimulator& self) { return self.simulator.engine(); }, "The engine chosen.")
       .def_property_readonly(
-          "scanner", [](const GuardedSimulator& self) { return self.simulator.scanner(); }, "A copy of its scanner.")
+          "scanner", [](const GuardedSimulator& self) { return self.simulator.scanner(); },
+          "A copy of its scanner, or of the first.")
+      .def_property_readonly(
+          "scanners",
+          [](const GuardedSimulator& self) {
+            const auto scanners = self.simulator.scanners();
+            return std::vector<Scanner>(scanners.begin(), scanners.end());
+          },
+          "Copies of all of them, which `StationSetup.scanner` counts from 0.")
       .def_property_readonly(
           "scene", [](const GuardedSimulator& self) { return self.simulator.scene(); }, "Its scene.")
       .def_property_readonly(
@@ -149,8 +163,10 @@ void add_simulators(py::module_& m) {
       .def("voxel_weights", &voxel_weights, "What each voxel counts in coverage: (N_v,).")
       .def("scan", &scan, py::arg("position"),
            py::arg("outputs") = std::vector<std::string>{"position", "reflectivity"}, py::kw_only(),
-           py::arg("grid") = false, py::arg("place") = 0, py::arg("progress") = py::none(),
-           "The points of one station, whose head is at `position` (x, y, z), survey frame, metres.\n\n"
+           py::arg("setup") = StationSetup{}, py::arg("grid") = false, py::arg("place") = 0,
+           py::arg("progress") = py::none(),
+           "The points of one station, whose head is at `position` (x, y, z), survey frame, metres, set up as `setup` "
+           "says.\n\n"
            "outputs: any of 'position', 'normal', 'reflectivity', 'mesh', 'primitive', 'colour', 'voxel'; row, column\n"
            "and range_m are always there. grid: arrays of shape (rows, columns, ...), an element a ray, instead of\n"
            "(points, ...). place: the station's in its network, which keys the noise.\n"
@@ -158,8 +174,9 @@ void add_simulators(py::module_& m) {
       .def(
           "evaluate", &evaluate, py::arg("stations"), py::kw_only(), py::arg("overlap") = true, py::arg("skip") = true,
           py::arg("field") = false, py::arg("registration") = py::none(), py::arg("progress") = py::none(),
-          "Every ray of every station. stations: heads (n, 3), survey frame, metres, or `PlacedStation`s; n at most\n"
-          "64. overlap: count pairs. skip: leave out rays that can reach no surveyed voxel; counts do not change, but\n"
+          "Every ray of every station. stations: heads (n, 3), survey frame, metres, or `Station`s or\n"
+          "`PlacedStation`s; n at most 1024. overlap: count pairs. skip: leave out rays that can reach no surveyed "
+          "voxel; counts do not change, but\n"
           "`points` is not counted. field: keep the counts of every voxel. registration: RegistrationOptions; predict\n"
           "its error.\n"
           "Raises Error invalid_argument.")

@@ -2,7 +2,8 @@
 /// Equirectangular images around a station: colours for its points, and pictures of what it sees.
 ///
 /// Every image here covers the full sphere as someone at the station sees it: the heading in the middle, azimuth
-/// falling from left to right (what lies to the right is on the right), zenith at the top, nadir at the bottom.
+/// falling from left to right (what lies to the right is on the right), zenith at the top, nadir at the bottom. Where
+/// the station is turned (`StationSetup`), angles are those of the scanner's frame, as its own camera has them.
 #pragma once
 
 #include <cstdint>
@@ -14,6 +15,7 @@
 
 #include "vantage/image.hpp"
 #include "vantage/progress.hpp"
+#include "vantage/station_setup.hpp"
 #include "vantage/types.hpp"
 
 namespace vantage {
@@ -77,9 +79,10 @@ class PanoramaRenderer {
   PanoramaRenderer(PanoramaRenderer&&) noexcept;
   PanoramaRenderer& operator=(PanoramaRenderer&&) noexcept;
   ~PanoramaRenderer();
-  /// The views asked for, in their order, from `position` (survey frame). Empty where `progress` stopped it.
+  /// The views asked for, in their order, from `position` (survey frame), turned as `setup` says; which scanner it
+  /// names has no part. Empty where `progress` stopped it.
   std::vector<PanoramaImage> render(const Vec3& position, std::span<const PanoramaView> views,
-                                    const Progress& progress = {});
+                                    const Progress& progress = {}, const StationSetup& setup = {});
 
  private:
   struct Impl;

@@ -77,8 +77,8 @@ enum ScanOutput : std::uint32_t {
 struct ScanOptions {
   std::uint32_t outputs = scan_position;  ///< `ScanOutput` bits.
   std::uint32_t place = 0;                ///< The station's place in its network: it keys the noise.
-  /// Colour of a point, 0xAABBGGRR, by the direction of its ray, as in the paper: `Panorama::colour`, say. It is called
-  /// from several threads at once. Empty: the colour of the material.
+  /// Colour of a point, 0xAABBGGRR, by its ray's direction in the scanner's frame, as in the paper: that of a picture
+  /// (`Panorama::colour`), say. It is called from several threads at once. Empty: the colour of the material.
   std::function<std::uint32_t(Angle zenith, Angle azimuth)> colour = {};
 };
 

@@ -25,9 +25,10 @@ std::vector<std::string> station_names(std::span<const PlacedStation> stations,
                                        std::span<const std::string> given = {});
 
 /// A header and a line a station: its name, ground and head (survey frame, metres, to the millimetre), what became of
-/// it, and its points on surveyed meshes, where `points` has them.
+/// it, and its points on surveyed meshes, where `points` has them. Where any is turned or has another scanner than the
+/// first also heading and tilt in degrees, its scanner and that one's step; `scanners` is what setups count.
 std::string station_table(std::span<const PlacedStation> stations, std::span<const std::string> names,
-                          std::span<const std::uint64_t> points = {});
+                          std::span<const std::uint64_t> points = {}, std::span<const Scanner> scanners = {});
 
 /// How the stations that count hang together. Stations by their place in the network, from 0.
 struct SummaryLinks {

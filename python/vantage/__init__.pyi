@@ -15,7 +15,7 @@ Path = Union[str, "os.PathLike[str]"]
 Progress = Callable[[float], Any]
 Role = Literal["surveyed", "blocking", "search", "ignore"]
 EngineName = Literal["auto", "ray_query", "compute_bvh", "embree"]
-Stations = Union[npt.ArrayLike, Sequence["PlacedStation"]]
+Stations = Union[npt.ArrayLike, Sequence["Station"], Sequence["PlacedStation"]]
 Rings = Sequence[Sequence[Tuple[float, float]]]
 Floats = npt.NDArray[np.float64]
 
@@ -185,6 +185,21 @@ class Scanner:
 
 def scanners(more: Path = "") -> List[Tuple[str, str]]: ...
 
+class StationSetup:
+    def __init__(self, *, heading_deg: float = 0.0, tilt_deg: float = 0.0, scanner: int = 0) -> None: ...
+    heading_deg: float
+    tilt_deg: float
+    scanner: int
+    @property
+    def turned(self) -> bool: ...
+    def survey_from_scanner(self) -> Floats: ...
+
+class Station:
+    def __init__(self, position: Sequence[float], setup: StationSetup = ..., active: bool = True) -> None: ...
+    position: Vec3
+    setup: StationSetup
+    active: bool
+
 class PlacedStation:
     @property
     def uv(self) -> Uv: ...
@@ -196,6 +211,8 @@ class PlacedStation:
     def status(self) -> Literal["ok", "hole", "clash", "inside", "off_ground", "outside"]: ...
     @property
     def kept(self) -> bool: ...
+    @property
+    def setup(self) -> StationSetup: ...
     @property
     def active(self) -> bool: ...
 
@@ -243,7 +260,7 @@ class ClashChecker:
     def distance(self, points: npt.ArrayLike, limit_m: float) -> Floats: ...
 
 def place_heads(
-    area: SearchArea, clash: ClashChecker, height_m: float, heads: npt.ArrayLike
+    area: SearchArea, clash: ClashChecker, height_m: float, heads: Stations
 ) -> List[PlacedStation]: ...
 
 def weigh_ground(scene: Scene, area: SearchArea) -> Scene: ...
@@ -399,7 +416,7 @@ class Simulator:
     def __init__(
         self,
         scene: Scene,
-        scanner: Scanner,
+        scanner: Union[Scanner, Sequence[Scanner]],
         *,
         engine: EngineName = "auto",
         device_index: Optional[int] = None,
@@ -416,6 +433,8 @@ class Simulator:
     @property
     def scanner(self) -> Scanner: ...
     @property
+    def scanners(self) -> List[Scanner]: ...
+    @property
     def scene(self) -> Scene: ...
     @property
     def voxel_count(self) -> int: ...
@@ -430,6 +449,7 @@ class Simulator:
         position: Sequence[float],
         outputs: Sequence[str] = ["position", "reflectivity"],
         *,
+        setup: StationSetup = ...,
         grid: bool = False,
         place: int = 0,
         progress: Optional[Progress] = None,
@@ -598,6 +618,7 @@ def greedy_network(
     candidates: int = 300,
     sample_voxels: int = 20000,
     fixed: Sequence[Sequence[float]] = [],
+    fixed_setups: Sequence[StationSetup] = [],
 ) -> GreedyResult: ...
 
 class ExactResult:
@@ -685,6 +706,8 @@ class SurveyProblem:
         stations_min: int = 4,
         stations_max: int = 4,
         kept: Iterable[Sequence[float]] = (),
+        kept_setups: Iterable[StationSetup] = (),
+        scanners: Iterable[int] = (),
         heights_m: Optional[Tuple[float, float]] = None,
         link_overlap: float = 0.01,
         registration: RegistrationOptions = ...,
@@ -697,6 +720,8 @@ class SurveyProblem:
     stations_min: int
     stations_max: int
     kept: Tuple[Vec3, ...]
+    kept_setups: Tuple[StationSetup, ...]
+    scanners: Tuple[int, ...]
     heights_m: Optional[Tuple[float, float]]
     link_overlap: float
     registration: RegistrationOptions
@@ -787,6 +812,8 @@ class PlanResult:
     def what_would_help(self) -> List[str]: ...
     @property
     def measures(self) -> List[str]: ...
+    @property
+    def scanners(self) -> List[Scanner]: ...
     @property
     def history(self) -> List[Dict[str, Any]]: ...
     @property

@@ -50,14 +50,12 @@ struct Keeper {
   std::filesystem::path file;
   std::string scene;
 
-  void keep(const std::vector<EditStation>& stations) const {
+  void keep(const std::vector<EditStation>& stations, std::span<const Scanner> scanners) const {
     nlohmann::json rows = nlohmann::json::array();
-    for (const auto& [id, placed, locked] : stations)
-      rows.push_back({{"position", {placed.position.x, placed.position.y, placed.position.z}},
-                      {"uv", {placed.uv.u, placed.uv.v}},
-                      {"heading", placed.setup.heading.in_degrees()},
-                      {"tilt", placed.setup.tilt.in_degrees()},
-                      {"locked", locked}});
+    for (const auto& [id, placed, locked] : stations) {
+      rows.push_back(to_json({.placed = placed, .has_uv = true}, "", scanners));
+      rows.back()["locked"] = locked;
+    }
     write_text(file, nlohmann::json{{"scene", scene}, {"stations", rows}}.dump(2) + "\n");
   }
 
@@ -73,12 +71,9 @@ struct Keeper {
         return {};
       }
       for (const auto& row : json.at("stations")) {
-        const auto& p = row.at("position");
-        const auto& uv = row.at("uv");
-        const auto placed = place(site, {{.position = Vec3{p.at(0), p.at(1), p.at(2)}, .uv = Uv{uv.at(0), uv.at(1)}}});
-        stations.push_back({.placed = placed.front().placed, .locked = row.at("locked")});
-        stations.back().placed.setup = {.heading = Angle::degrees(row.at("heading")),
-                                        .tilt = Angle::degrees(row.at("tilt"))};
+        const StationText text = station_of_json(row);
+        if (!text.position) throw Error(Errc::malformed_file, file.string() + ": a station has no position");
+        stations.push_back({.placed = place(site, {text}).front().placed, .locked = row.at("locked")});
       }
     } catch (const nlohmann::json::exception& error) {
       throw Error(Errc::malformed_file, file.string() + ": is not what the editor keeps: " + error.what());
@@ -135,7 +130,7 @@ int edit(CLI::App& command, EditCommandOptions& options, Program& program) {
   };
   EditSession session(
       simulator, site.area(), site.clash(), stations, options.edit,
-      [&](const std::vector<EditStation>& now) { keeper.keep(now); }, save);
+      [&](const std::vector<EditStation>& now) { keeper.keep(now, simulator.scanners()); }, save);
   serve_editor(
       session, title,
       [&](const std::string& address) {

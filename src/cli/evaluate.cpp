@@ -349,7 +349,8 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
     program.console.print(json);
   } else {
     std::string text =
-        station_table(placed, names, sampled ? std::span<const std::uint64_t>() : std::span(counts.points_on_surveyed));
+        station_table(placed, names, sampled ? std::span<const std::uint64_t>() : std::span(counts.points_on_surveyed),
+                      site.scanners);
     const auto with_error = [&](const Estimate& estimate) {
       return sampled ? fmt::format("{:.4f} ± {:.4f}", estimate.value, estimate.standard_error)
                      : fmt::format("{:.4f}", estimate.value);

@@ -2,6 +2,7 @@
 #include <spdlog/spdlog.h>
 
 #include <filesystem>
+#include <map>
 
 #include "cli/command.hpp"
 #include "cli/options.hpp"
@@ -47,9 +48,6 @@ int panorama(CLI::App& command, PanoramaCommandOptions& options, Program& progra
   const auto names = names_of(stations);
   if (!options.output) throw Error(Errc::invalid_argument, "panorama: say where the pictures go with -o DIR");
   if (options.views.empty()) options.views.assign(panorama_views().begin(), panorama_views().end());
-  options.picture.heading = site.scanner.heading;
-  options.picture.min_range_m = site.scanner.min_range_m;
-  options.picture.max_range_m = site.scanner.max_range_m;
   for (const auto& station : stations)
     if (station.placed.status == StationStatus::hole)
       throw Error(Errc::invalid_argument,
@@ -58,7 +56,14 @@ int panorama(CLI::App& command, PanoramaCommandOptions& options, Program& progra
   const std::filesystem::path folder = *options.output;
   make_folder(folder);
 
-  PanoramaRenderer renderer(site.scene, options.picture, site.config);
+  std::map<std::uint32_t, PanoramaRenderer> renderers;  // a scanner each, by its place
+  const auto renderer_of = [&](std::uint32_t place) -> PanoramaRenderer& {
+    const Scanner& scanner = site.scanners[place];
+    options.picture.heading = scanner.heading;
+    options.picture.min_range_m = scanner.min_range_m;
+    options.picture.max_range_m = scanner.max_range_m;
+    return renderers.try_emplace(place, site.scene, options.picture, site.config).first->second;
+  };
   ProgressLine line(program.console, "panorama");
   nlohmann::json rows = nlohmann::json::array();
   std::string text;
@@ -67,7 +72,9 @@ int panorama(CLI::App& command, PanoramaCommandOptions& options, Program& progra
         .report =
             [&](double done) { line.update((static_cast<double>(k) + done) / static_cast<double>(stations.size())); },
         .stop = program.stop};
-    const auto images = renderer.render(stations[k].placed.position, options.views, progress);
+    const PlacedStation& placed = stations[k].placed;
+    const auto images =
+        renderer_of(placed.setup.scanner).render(placed.position, options.views, progress, placed.setup);
     if (images.empty()) {
       spdlog::error("stopped at station {}; the pictures of those before it are in {}", k + 1, folder.string());
       return exit_failed;

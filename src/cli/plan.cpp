@@ -333,7 +333,9 @@ std::string summary(const PlanResult& result, std::size_t chosen, const std::str
     text += fmt::format(" ({:.4f} by every ray)", result.exact_hypervolume);
   text += fmt::format(", stopped: {}\n", to_string(result.stop_reason));
   const PlanEntry& entry = result.front[chosen];
-  text += "\n" + station_table(entry.stations, station_names(entry.stations), entry.points_on_surveyed) + "\n";
+  text += "\n" +
+          station_table(entry.stations, station_names(entry.stations), entry.points_on_surveyed, result.scanners) +
+          "\n";
   text += summary_text(summary_of(entry, result));
   for (const std::string& help : what_would_help(result)) text += fmt::format("{:<11}{}\n", "would help", help);
   return text + "results in " + folder + "\n";

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/report.hpp"
 
+#include <algorithm>
+
+#include "cli/station_pictures.hpp"
 #include "page/report.hpp"
 
 namespace vantage::cli {
@@ -21,6 +24,9 @@ void write(std::span<const std::filesystem::path> files, Report report, const st
                         .area = sources.site.area(),
                         .field = sources.field,
                         .missed = sources.judged ? &missed : nullptr};
+  ReportNetwork& shown = report.networks[report.answer];
+  if (std::ranges::any_of(files, [](const auto& file) { return file.extension() != ".pdf"; }))
+    shown.pictures = station_pictures(sources.site, shown.entry.stations, stop);
   ProgressLine line(program.console, "report");
   for (const std::filesystem::path& file : files) {
     if (file.extension() == ".pdf")

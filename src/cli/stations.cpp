@@ -30,17 +30,9 @@ std::vector<StationText> read_front(const std::string& file, std::uint64_t entry
                                               std::to_string(entries.size()) + " entries, counted from 1");
     std::vector<StationText> stations;
     for (const auto& station : entries[entry - 1].at("stations")) {
-      StationText text{.position = vec3_of(station.value("position", nlohmann::json())),
-                       .uv = uv_of(station.value("uv", nlohmann::json())),
-                       .name = station.value("name", ""),
-                       .setup = {.heading = Angle::degrees(station.value("heading", 0.0)),
-                                 .tilt = Angle::degrees(station.value("tilt", 0.0))},
-                       .scanner = station.value("scanner", "")};
-      if (station.contains("step")) text.step = Angle::degrees(station["step"].get<double>());
-      if (station.value("status", "ok") == "hole") text.position.reset();
-      if (!text.position && !text.uv)
+      stations.push_back(station_of_json(station));
+      if (!stations.back().position && !stations.back().uv)
         throw Error(Errc::malformed_file, file + ": a station has neither position nor uv");
-      stations.push_back(text);
     }
     return stations;
   } catch (const nlohmann::json::exception& error) {
@@ -188,6 +180,18 @@ nlohmann::json to_json(const SiteStation& station, const std::string& name, std:
     if (scanner.azimuth_step == scanner.zenith_step) json["step"] = scanner.azimuth_step.in_degrees();
   }
   return json;
+}
+
+StationText station_of_json(const nlohmann::json& json) {
+  StationText text{
+      .position = vec3_of(json.value("position", nlohmann::json())),
+      .uv = uv_of(json.value("uv", nlohmann::json())),
+      .name = json.value("name", ""),
+      .setup = {.heading = Angle::degrees(json.value("heading", 0.0)), .tilt = Angle::degrees(json.value("tilt", 0.0))},
+      .scanner = json.value("scanner", "")};
+  if (json.contains("step")) text.step = Angle::degrees(json["step"].get<double>());
+  if (json.value("status", "ok") == "hole") text.position.reset();
+  return text;
 }
 
 std::vector<PlacedStation> placed_of(const std::vector<SiteStation>& stations) {

@@ -43,6 +43,8 @@ std::vector<std::string> names_of(const std::vector<SiteStation>& stations);
 // {name, position, ground, uv, status}; null where there is none. And {heading, tilt, scanner, step} of a station that
 // is not set up as usual. `scanners`: the site's.
 nlohmann::json to_json(const SiteStation& station, const std::string& name, std::span<const Scanner> scanners);
+// The same read again. Throws nlohmann::json::exception for what is of another type.
+StationText station_of_json(const nlohmann::json& json);
 // One warning a station that is not where a scanner could be.
 void warn_of_unusable(const std::vector<SiteStation>& stations);
 

@@ -168,7 +168,7 @@
 
   // A station is dragged over the plane of its own ground.
   function grab(event, k) {
-    if (event.button !== 0 || state.busy) return;
+    if (event.button !== 0 || state.busy || drag) return;  // one station at a time, whatever other fingers do
     const station = state.network.stations[k], label = view.labels[k];
     if (state.locked[k]) return;
     event.preventDefault();
@@ -186,7 +186,8 @@
       return point && inSurvey(point.add(drag.offset));
     };
     const move = (e) => {
-      if (!drag.moved && Math.hypot(e.clientX - event.clientX, e.clientY - event.clientY) < 4) return;
+      const slack = event.pointerType === 'touch' ? 8 : 4;  // a finger trembles
+      if (!drag.moved && Math.hypot(e.clientX - event.clientX, e.clientY - event.clientY) < slack) return;
       const place = to(e);
       if (!place) return;
       send({ do: 'move', id: drag.id, to: place, begin: !drag.moved, end: false });
@@ -231,7 +232,7 @@
     showGround();
   }
   let pressed = null;
-  view.canvas.addEventListener('pointerdown', (event) => { pressed = [event.clientX, event.clientY]; });
+  view.canvas.addEventListener('pointerdown', (event) => { pressed = event.isPrimary ? [event.clientX, event.clientY] : null; });
   view.canvas.addEventListener('pointerup', (event) => {
     if (!adding || !pressed || Math.hypot(event.clientX - pressed[0], event.clientY - pressed[1]) > 5) return;
     const place = surfaceAt(event);

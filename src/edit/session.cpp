@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "page/packed.hpp"
 #include "page/report.hpp"
@@ -325,11 +326,11 @@ void EditSession::improve(const Progress& progress) {
                                  {.report = watch, .stop = progress.stop, .abort = abort.get_token()});
   const std::scoped_lock lock(mutex_);
   const PlanEntry* best = result.front.empty() ? nullptr : &result.front[answer(result)];
-  if (!best || best->missed > 0 || best->value("coverage") <= before) {
+  const auto nothing_better = [&] {
     message_ = "nothing better was found in " + std::to_string(static_cast<int>(options_.improve_seconds)) + " s";
-    return;
-  }
-  remember();
+  };
+  if (!best || best->missed > 0 || best->value("coverage") <= before) return nothing_better();
+  const Stations now = stations_;
   std::size_t next = kept.size();  // kept ones come first
   for (EditStation& s : stations_) {
     if (s.locked) continue;
@@ -338,6 +339,16 @@ void EditSession::improve(const Progress& progress) {
     s.placed = placed;
   }
   measure();
+  // The search had them upright and with the first scanner.
+  const bool better = coverage(counts_, simulator_.goal_density()) > before &&
+                      connectivity(overlap_matrix(counts_), options_.link_overlap).parts <= parts;
+  std::vector<EditStation> found = std::exchange(stations_, now);
+  if (!better) {
+    measure();
+    return nothing_better();
+  }
+  remember();
+  stations_ = std::move(found);
   keep_(stations_);
   message_ = "improved";
 }

@@ -6,7 +6,6 @@
 #include "vantage/error.hpp"
 
 namespace vantage {
-namespace {
 
 std::string base64(std::span<const std::uint8_t> bytes) {
   static constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -19,8 +18,6 @@ std::string base64(std::span<const std::uint8_t> bytes) {
   }
   return text;
 }
-
-}  // namespace
 
 std::string packed(std::span<const std::uint8_t> bytes) {
   uLongf size = compressBound(static_cast<uLong>(bytes.size()));

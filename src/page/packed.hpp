@@ -10,6 +10,8 @@
 
 namespace vantage {
 
+std::string base64(std::span<const std::uint8_t> bytes);
+
 // Throws Error out_of_memory.
 std::string packed(std::span<const std::uint8_t> bytes);
 

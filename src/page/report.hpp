@@ -23,6 +23,8 @@ struct ReportNetwork {
   SurveySummary summary = {};
   // By what two of its stations are linked, as the summary says: equation 11, or the scan overlap. Empty: not measured.
   OverlapMatrix links = {};
+  // What its stations see: a JPEG each, empty where there is none; or none at all.
+  std::vector<std::vector<std::uint8_t>> pictures = {};
 };
 
 struct Report {

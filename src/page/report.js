@@ -6,6 +6,7 @@
   const at = (id) => document.getElementById(id);
   let network = null, current = -1, selected = null, view = null, mark = () => {}, only = null;
 
+  VIEW_COLOURS.reasons = report.missed.reasons.map((r) => `rgb(${r.rgb.join()})`);
   at('title').textContent = report.title;
   at('question').textContent = report.question;
   at('command').textContent = report.command;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "page/report_json.hpp"
 
+#include "page/packed.hpp"
 #include "report/missed_colours.hpp"
 #include "vantage/version.hpp"
 
@@ -32,6 +33,8 @@ ordered_json stations_json(const ReportNetwork& network) {
          {"active", active(s)},
          {"kept", s.kept},
          {"points", k < entry.points_on_surveyed.size() ? ordered_json(entry.points_on_surveyed[k]) : ordered_json()}});
+    if (k < network.pictures.size() && !network.pictures[k].empty())
+      stations.back()["picture"] = base64(network.pictures[k]);
   }
   return stations;
 }
@@ -84,7 +87,8 @@ ordered_json missed_json(const Report& report) {
   ordered_json reasons = ordered_json::array(), nodes = ordered_json::array();
   for (std::size_t k = 0; k < why_missed_count; ++k) {
     const MissedStyle& style = missed_style(static_cast<WhyMissed>(k));
-    reasons.push_back({{"name", to_string(style.why)}, {"words", style.words}});
+    const auto [r, g, b] = to_bytes(style.colour);
+    reasons.push_back({{"name", to_string(style.why)}, {"words", style.words}, {"rgb", {r, g, b}}});
   }
   for (const MissedShare& share : report.missed) {
     ordered_json shares = ordered_json::array();

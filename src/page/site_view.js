@@ -7,7 +7,7 @@ const VIEW_COLOURS = {
   unseen: '#4a4453',  // with stripes
   blocking: '#d6d3cd',
   only: '#f5c400',
-  reasons: ['#8fbfdd', '#4a4453', '#0b7a5b', '#c969a0', '#f0d43a', '#d8570b'],  // by WhyMissed
+  reasons: Array(6).fill('#d6d3cd'),  // by WhyMissed; a report brings its own
   link: '#1d4f91',
   bridge: '#8c2d91',
   station: '#1d4f91',

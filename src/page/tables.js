@@ -146,6 +146,8 @@ function stationCard(holder, network, k, only, { pick, stand }) {
     return;
   }
   const s = network.stations[k], parts = [element('h3', {}, s.name)];
+  if (s.picture)
+    parts.push(element('img', { class: 'sight', src: `data:image/jpeg;base64,${s.picture}`, alt: `What ${s.name} sees all around, towards the middle of the site in the middle` }));
   const facts = element('dl', {});
   const fact = (name, text) => facts.append(element('dt', {}, name), element('dd', {}, text));
   if (s.head) {

@@ -111,7 +111,7 @@ struct PanoramaRenderer::Impl {
   LinearColour ray_colour(PanoramaView view, const RowWindow& window, std::uint32_t row, std::uint32_t column) const {
     const PanoramaRow& rays = window[row];
     const float range = rays.range[column];
-    if (!std::isfinite(range)) return view == PanoramaView::colour ? shading.sky(row) : backdrop;
+    if (!std::isfinite(range)) return view == PanoramaView::colour ? shading.sky(row, column) : backdrop;
     LinearColour colour{0, 0, 0, 1};
     if (view == PanoramaView::reflectivity)
       return reflectivity_colour(
@@ -172,8 +172,9 @@ struct PanoramaRenderer::Impl {
       image.rgba[(std::size_t{y} * image.width + x) * 4 + c] = static_cast<std::uint8_t>(packed >> (8 * c));
   }
 
-  std::vector<PanoramaImage> render(const Vec3& position, std::span<const PanoramaView> views,
-                                    const Progress& progress) {
+  std::vector<PanoramaImage> render(const Vec3& position, std::span<const PanoramaView> views, const Progress& progress,
+                                    const StationSetup& setup) {
+    shading.turn(setup);
     std::vector<PanoramaImage> images;
     for (const PanoramaView view : views) {
       PanoramaImage image{.view = view, .image = {options.width, options.width / 2, {}}};
@@ -221,7 +222,8 @@ struct PanoramaRenderer::Impl {
         draw_what_can_be(window.end());
       }
     };
-    if (simulator.scan({.position = position}, {.outputs = outputs}, sink, progress).cancelled) return {};
+    if (simulator.scan({.position = position, .setup = setup}, {.outputs = outputs}, sink, progress).cancelled)
+      return {};
     for (PanoramaImage& image : images) {
       if (image.view == PanoramaView::range) draw_ranges(image, record);
     }
@@ -241,8 +243,8 @@ PanoramaRenderer& PanoramaRenderer::operator=(PanoramaRenderer&&) noexcept = def
 PanoramaRenderer::~PanoramaRenderer() = default;
 
 std::vector<PanoramaImage> PanoramaRenderer::render(const Vec3& position, std::span<const PanoramaView> views,
-                                                    const Progress& progress) {
-  return impl_->render(position, views, progress);
+                                                    const Progress& progress, const StationSetup& setup) {
+  return impl_->render(position, views, progress, {.heading = setup.heading, .tilt = setup.tilt});
 }
 
 }  // namespace vantage

@@ -45,6 +45,16 @@ PanoramaShading::PanoramaShading(std::uint32_t rows, std::uint32_t columns, std:
   }
 }
 
+void PanoramaShading::turn(const StationSetup& setup) {
+  turned_ = setup.turned();
+  const auto rows = setup.survey_from_scanner();
+  for (int r = 0; r < 3; ++r) {
+    const Vec3& row = rows[static_cast<std::size_t>(r)];
+    const double values[] = {row.x, row.y, row.z};
+    for (int c = 0; c < 3; ++c) survey_from_scanner_[c][r] = static_cast<float>(values[c]);
+  }
+}
+
 float PanoramaShading::light(const RowWindow& window, std::uint32_t row, std::uint32_t column) const {
   const PanoramaRow& here = window[row];
   const float range = here.range[column];
@@ -82,8 +92,8 @@ float PanoramaShading::clearness(float range) const { return 1 - 0.45f * (1 - st
 
 LinearColour PanoramaShading::haze() const { return horizon_sky; }
 
-LinearColour PanoramaShading::sky(std::uint32_t row) const {
-  const float height = cos_zenith_[row];
+LinearColour PanoramaShading::sky(std::uint32_t row, std::uint32_t column) const {
+  const float height = direction(row, column).z;
   const LinearColour& end = height >= 0 ? zenith_sky : below;
   const float share = height >= 0 ? std::pow(height, 0.6f) : std::min(1.0f, -6 * height);
   return horizon_sky + (end - horizon_sky) * share;

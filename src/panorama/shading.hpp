@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "image/srgb.hpp"
+#include "vantage/station_setup.hpp"
 
 namespace vantage {
 
@@ -43,13 +44,15 @@ class PanoramaShading {
   // column looks along `first_azimuth`. `extent_m` of the scene scales the haze.
   PanoramaShading(std::uint32_t rows, std::uint32_t columns, std::uint32_t supersample, double first_azimuth,
                   double extent_m);
+  // How the pattern is turned from now on.
+  void turn(const StationSetup& setup);
   // Rows that must be at hand below and above the one that is shaded.
   std::uint32_t reach() const { return reach_; }
   // Light on a hit, to multiply its colour with. REQUIRES: a hit, with range and normal.
   float light(const RowWindow& window, std::uint32_t row, std::uint32_t column) const;
   // Share of its own colour that a surface keeps at a distance; the rest is sky at the horizon.
   float clearness(float range) const;
-  LinearColour sky(std::uint32_t row) const;
+  LinearColour sky(std::uint32_t row, std::uint32_t column) const;
   LinearColour haze() const;
 
  private:
@@ -58,12 +61,17 @@ class PanoramaShading {
     float across;  // columns at the equator
     float radius;  // in rays
   };
+  // Survey frame.
   glm::vec3 direction(std::uint32_t row, std::uint32_t column) const {
-    return {sin_zenith_[row] * cos_azimuth_[column], sin_zenith_[row] * sin_azimuth_[column], cos_zenith_[row]};
+    const glm::vec3 own{sin_zenith_[row] * cos_azimuth_[column], sin_zenith_[row] * sin_azimuth_[column],
+                        cos_zenith_[row]};
+    return turned_ ? survey_from_scanner_ * own : own;
   }
   std::uint32_t rows_, columns_, reach_ = 0;
   float step_;
   float extent_;
+  bool turned_ = false;
+  glm::mat3 survey_from_scanner_{1};
   std::vector<Tap> taps_;
   std::vector<float> sin_zenith_, cos_zenith_, sin_azimuth_, cos_azimuth_;
 };

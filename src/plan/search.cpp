@@ -35,7 +35,8 @@ class Search {
         budget_(static_cast<std::uint64_t>(config_.iterations) * population_),
         optimiser_(choose_optimiser(space_, setup.problem, config_, setup.batch, setup.start)),
         evaluator_(setup.evaluator),
-        sample_(config_) {}
+        sample_(config_),
+        begins_with_(first_network()) {}
 
   SearchOutcome run() {
     if (!config_.checkpoint.empty()) {
@@ -226,9 +227,8 @@ class Search {
   // Asks for a batch and draws again what stands in holes and clashes. Fills networks_.
   std::vector<double> draw() {
     std::span<const double> asked = optimiser_->ask();
-    if (!setup_.start.empty() && optimiser_->evaluations() == 0) {
-      // MO-CMA-ES has it among its first points; CMA-ES only draws around it.
-      optimiser_->replace(0, setup_.start);
+    if (!begins_with_.empty() && optimiser_->evaluations() == 0) {
+      optimiser_->replace(0, begins_with_);
       asked = optimiser_->ask();
     }
     std::vector<double> xs(asked.begin(), asked.end());
@@ -385,6 +385,12 @@ class Search {
             .trace_seconds = earlier_trace_seconds_ + setup_.evaluator.trace_seconds()};
   }
 
+  // MO-CMA-ES has a start among its first points; CMA-ES only draws around it, and might never come back to it.
+  std::vector<double> first_network() const {
+    if (!setup_.start.empty() || config_.start.empty() || setup_.problem.objectives.size() > 1) return setup_.start;
+    return space_.encode(config_.start);
+  }
+
   const SearchSetup& setup_;
   const PlanConfig& config_;
   const DecisionSpace& space_;
@@ -393,8 +399,9 @@ class Search {
   std::unique_ptr<Optimiser> optimiser_;
   CachingEvaluator evaluator_;
   GrowingSample sample_;
-  double error_ = 0;                     // standard error of a scaled objective by it; 0: not known yet
-  std::vector<PlacedNetwork> networks_;  // of the open batch
+  double error_ = 0;                       // standard error of a scaled objective by it; 0: not known yet
+  const std::vector<double> begins_with_;  // one of the first points; empty: none
+  std::vector<PlacedNetwork> networks_;    // of the open batch
 
   std::vector<PlanIteration> history_;
   std::vector<ParetoPoint> front_;  // as of the last iteration

@@ -15,14 +15,15 @@ struct MissedStyle {
   const char* words;
 };
 
-// What shows last, and so before all others, last: first what nothing helps.
+// What shows last, and so before all others, last: first what nothing helps. Any two are told apart by people who are
+// blind to red, to green or to blue, too.
 inline constexpr std::array<MissedStyle, why_missed_count> kMissedStyles{
-    {{WhyMissed::captured, {0.10, 0.59, 0.25}, "captured"},
-     {WhyMissed::hidden, {0.62, 0.63, 0.66}, "hidden from everywhere"},
-     {WhyMissed::far, {0.16, 0.34, 0.66}, "out of range"},
-     {WhyMissed::flat, {0.49, 0.27, 0.62}, "seen only too flatly"},
-     {WhyMissed::sparse, {0.95, 0.62, 0.15}, "too sparse"},
-     {WhyMissed::not_chosen, {0.84, 0.10, 0.11}, "not with these stations"}}};
+    {{WhyMissed::captured, {0.56, 0.75, 0.87}, "captured"},
+     {WhyMissed::hidden, {0.29, 0.27, 0.33}, "hidden from everywhere"},
+     {WhyMissed::far, {0.04, 0.48, 0.36}, "out of range"},
+     {WhyMissed::flat, {0.79, 0.41, 0.63}, "seen only too flatly"},
+     {WhyMissed::sparse, {0.94, 0.83, 0.23}, "too sparse"},
+     {WhyMissed::not_chosen, {0.85, 0.34, 0.04}, "not with these stations"}}};
 
 constexpr const MissedStyle& missed_style(WhyMissed why) {
   for (const MissedStyle& style : kMissedStyles)

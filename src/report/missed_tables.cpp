@@ -4,8 +4,7 @@
 #include "core/atomic_file.hpp"
 #include "core/text.hpp"
 #include "report/missed_colours.hpp"
-#include "report/ply_header.hpp"
-#include "report/point_sink.hpp"
+#include "report/voxel_ply.hpp"
 #include "vantage/error.hpp"
 #include "vantage/export.hpp"
 
@@ -41,26 +40,12 @@ void write_missed_ply(const std::filesystem::path& file, const Simulator& simula
     throw Error(Errc::invalid_argument, "write_missed_ply: " + std::to_string(ranks.size()) + " voxels, " +
                                             std::to_string(why.size()) + " reasons and " +
                                             std::to_string(points.size()) + " counts");
-  AtomicFile out(file);
-  out.write(PlyHeader({{"double", "x"},
-                       {"double", "y"},
-                       {"double", "z"},
-                       {"uchar", "red"},
-                       {"uchar", "green"},
-                       {"uchar", "blue"},
-                       {"uchar", "why"},
-                       {"uint", "count"}})
-                .text(ranks.size()));
-  std::string bytes;
-  for (std::size_t i = 0; i < ranks.size(); ++i) {
-    const Vec3 centre = simulator.voxel_centre(ranks[i]);
-    append(bytes, centre.x), append(bytes, centre.y), append(bytes, centre.z);
-    for (const std::uint8_t channel : to_bytes(missed_style(why[i]).colour)) append(bytes, channel);
-    append(bytes, static_cast<std::uint8_t>(why[i]));
-    append(bytes, points[i]);
-  }
-  out.write(bytes);
-  out.commit();
+  write_voxel_ply(file, simulator, {{"uchar", "why"}, {"uint", "count"}}, ranks.size(),
+                  [&](std::uint64_t k, std::string& bytes) {
+                    append(bytes, static_cast<std::uint8_t>(why[k]));
+                    append(bytes, points[k]);
+                    return VoxelVertex{ranks[k], missed_style(why[k]).colour};
+                  });
 }
 
 }  // namespace vantage

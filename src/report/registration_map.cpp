@@ -7,12 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "core/atomic_file.hpp"
 #include "core/station_masks.hpp"
 #include "core/text.hpp"
-#include "report/ply_header.hpp"
-#include "report/point_sink.hpp"
 #include "report/voxel_map.hpp"
+#include "report/voxel_ply.hpp"
 #include "vantage/error.hpp"
 #include "vantage/export.hpp"
 
@@ -67,25 +65,10 @@ void write_registration_ply(const std::filesystem::path& file, const Simulator& 
   }
   const std::vector<float> errors = errors_of(simulator, field, error, ranks);
   const double most = largest(errors);
-  AtomicFile out(file);
-  out.write(PlyHeader({{"double", "x"},
-                       {"double", "y"},
-                       {"double", "z"},
-                       {"uchar", "red"},
-                       {"uchar", "green"},
-                       {"uchar", "blue"},
-                       {"float", "error_mm"}})
-                .text(ranks.size()));
-  std::string bytes;
-  for (std::size_t k = 0; k < ranks.size(); ++k) {
-    const Vec3 centre = simulator.voxel_centre(ranks[k]);
-    append(bytes, centre.x), append(bytes, centre.y), append(bytes, centre.z);
-    for (const std::uint8_t channel : to_bytes(ramp(kRisingRamp, static_cast<double>(errors[k]) / most)))
-      append(bytes, channel);
+  write_voxel_ply(file, simulator, {{"float", "error_mm"}}, ranks.size(), [&](std::uint64_t k, std::string& bytes) {
     append(bytes, errors[k]);
-    if (bytes.size() > (1u << 20) || k + 1 == ranks.size()) out.write(bytes), bytes.clear();
-  }
-  out.commit();
+    return VoxelVertex{ranks[k], ramp(kRisingRamp, static_cast<double>(errors[k]) / most)};
+  });
 }
 
 void draw_registration(const std::filesystem::path& file, const Simulator& simulator, const VoxelField& field,

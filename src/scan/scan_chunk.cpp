@@ -63,27 +63,6 @@ void fill(std::vector<To>& to, std::size_t count, Make make) {
                     [&](const tbb::blocked_range<std::size_t>& range) { make(range.begin(), range.end()); });
 }
 
-// Where a station's rays go, in the survey frame.
-class RayAnglesOf {
- public:
-  RayAnglesOf(const Scanner& scanner, const StationSetup& setup)
-      : scanner_(scanner), turned_(setup.turned()), rows_(setup.survey_from_scanner()) {}
-  RayAngles operator()(std::uint64_t ray) const {
-    const RayAngles own = scanner_.angles(ray);
-    if (!turned_) return own;
-    const double sine = std::sin(own.zenith.in_radians());
-    const Vec3 d{sine * std::cos(own.azimuth.in_radians()), sine * std::sin(own.azimuth.in_radians()),
-                 std::cos(own.zenith.in_radians())};
-    const double x = dot(rows_[0], d), y = dot(rows_[1], d), z = dot(rows_[2], d);
-    return {Angle::radians(std::atan2(std::hypot(x, y), z)), Angle::radians(std::atan2(y, x))};
-  }
-
- private:
-  const Scanner& scanner_;
-  bool turned_;
-  std::array<Vec3, 3> rows_;
-};
-
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 constexpr std::array<float, 3> nowhere{nan, nan, nan};
 
@@ -103,7 +82,7 @@ std::uint32_t raw_outputs(const ScanOptions& options) {
 }
 
 void fill_chunk(ScanChunk& chunk, Tracer::RawChunk& raw, const ScanOptions& options, const SceneData& scene,
-                const Scanner& scanner, const StationSetup& setup, ScanSummary& summary) {
+                const Scanner& scanner, ScanSummary& summary) {
   const std::uint32_t outputs = options.outputs;
   const auto count = static_cast<std::size_t>(chunk.ray_count);
   const Sums sums = sum_rays(raw, count, scene);
@@ -130,14 +109,13 @@ void fill_chunk(ScanChunk& chunk, Tracer::RawChunk& raw, const ScanOptions& opti
     });
   }
   if (outputs & scan_colour) {
-    const RayAnglesOf angles_of(scanner, setup);
     fill(chunk.colour, count, [&](std::size_t k, std::size_t end) {
       MeshLookup mesh_of(scene);
       for (; k != end; ++k) {
         if (raw.primitive[k] == no_primitive) {
           chunk.colour[k] = 0;
         } else if (options.colour) {
-          const RayAngles angles = angles_of(chunk.first_ray + k);
+          const RayAngles angles = scanner.angles(chunk.first_ray + k);
           chunk.colour[k] = options.colour(angles.zenith, angles.azimuth);
         } else {
           chunk.colour[k] = surface_colour(scene, mesh_of(raw.primitive[k]), raw.primitive[k], raw.barycentric[k]);

@@ -14,9 +14,9 @@ namespace vantage {
 std::uint32_t raw_outputs(const ScanOptions& options);
 
 // Turns an engine's rays into what the user asked for; mesh and colour are derived here. Adds to `summary`.
-// `scanner` and `setup` are the station's. `chunk.first_ray` and `chunk.ray_count` are set already; its other arrays
-// are overwritten.
+// `scanner` is the station's. `chunk.first_ray` and `chunk.ray_count` are set already; its other arrays are
+// overwritten.
 void fill_chunk(ScanChunk& chunk, Tracer::RawChunk& raw, const ScanOptions& options, const SceneData& scene,
-                const Scanner& scanner, const StationSetup& setup, ScanSummary& summary);
+                const Scanner& scanner, ScanSummary& summary);
 
 }  // namespace vantage

@@ -318,7 +318,7 @@ ScanSummary Simulator::scan(const Station& station, const ScanOptions& options,
     const auto start = std::chrono::steady_clock::now();
     impl_->tracer->scan(from, first, chunk.ray_count, raw_outputs(options), raw);
     summary.trace_seconds += seconds_since(start);
-    fill_chunk(chunk, raw, options, impl_->data(), scanner, station.setup, summary);
+    fill_chunk(chunk, raw, options, impl_->data(), scanner, summary);
     if (sink) sink(chunk);
     progress(static_cast<double>(first + chunk.ray_count) / static_cast<double>(rays));
   }

@@ -6,6 +6,9 @@
 #include "bare_embree.hpp"
 #include "choose.hpp"
 #include "devices.hpp"
+#ifdef VANTAGE_HAS_EDITOR
+#include "drag.hpp"
+#endif
 #include "error.hpp"
 #include "front.hpp"
 #include "gap.hpp"
@@ -46,6 +49,10 @@ int main(int argc, char** argv) {
   gap.add(*app.add_subcommand("gap", "What stations capture at most, and at best as found, over the candidates"));
   vantage::bench::ChooseOptions choose;
   choose.add(*app.add_subcommand("choose", "Choosing many stations on a made-up large site: greedy, swaps and drops"));
+#ifdef VANTAGE_HAS_EDITOR
+  vantage::bench::DragOptions drag;
+  drag.add(*app.add_subcommand("drag", "The editor: from a station that moves to new numbers and colours"));
+#endif
   CLI11_PARSE(app, argc, argv);
   try {
     if (app.got_subcommand("rates")) vantage::bench::run_rates(rates);
@@ -56,6 +63,9 @@ int main(int argc, char** argv) {
     if (app.got_subcommand("devices")) vantage::bench::run_devices(devices);
     if (app.got_subcommand("front")) vantage::bench::run_front(front);
     if (app.got_subcommand("ranks")) vantage::bench::run_ranks(ranks);
+#ifdef VANTAGE_HAS_EDITOR
+    if (app.got_subcommand("drag")) vantage::bench::run_drag(drag);
+#endif
     if (app.got_subcommand("gap")) vantage::bench::run_gap(gap);
     if (app.got_subcommand("choose")) vantage::bench::run_choose(choose);
     if (app.got_subcommand("growth")) vantage::bench::run_growth(growth);

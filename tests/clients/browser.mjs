@@ -13,8 +13,8 @@ const args = ['--use-angle=swiftshader', '--enable-unsafe-swiftshader', ...(proc
 export const launch = () => chromium.launch({ executablePath, args });
 
 // A page whose errors and requests are kept: `troubles` and `requests`.
-export async function watchedPage(browser, viewport) {
-  const page = await browser.newPage({ viewport });
+export async function watchedPage(browser, viewport, more = {}) {
+  const page = await browser.newPage({ viewport, ...more });
   page.troubles = [];
   page.requests = [];
   page.on('console', (message) => { if (['error', 'warning'].includes(message.type())) page.troubles.push(message.text()); });

@@ -64,6 +64,10 @@ for (const [size, viewport] of Object.entries({ phone: { width: 390, height: 844
     await page.keyboard.press('Enter');
     assert.equal(await label.getAttribute('aria-pressed'), 'true');
     assert.equal(await page.locator('#station h3').innerText(), front.front[answer].stations[1].name);
+    const sight = await page.locator('#station img.sight').evaluate(async (img) => { await img.decode(); return [img.naturalWidth, img.naturalHeight]; });
+    assert.deepEqual(sight, [512, 256]);
+    const { colours: seen } = await coloursOf(page, '#station img.sight', () => true);
+    assert.ok(seen > 200, `the station's picture is blank: ${seen} colours`);
     const yellow = (r, g, b) => r > 150 && g > 120 && b < 60;
     const alone = await coloursOf(page, '#canvas', yellow);
     assert.ok(alone.share > 0, 'nothing that the picked station alone sees is shown');

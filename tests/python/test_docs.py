@@ -21,6 +21,7 @@ class Tour(unittest.TestCase):
             os.chdir(here)
         self.assertGreater(len(names["near"]), 0)
         self.assertEqual(names["image"].astype(bool).sum(), len(names["scan"]))
+        self.assertEqual(names["mixed"].stations, 2)
         self.assertEqual(names["several"][1].stations, 2)
         self.assertEqual((names["after"].bounds - names["before"].bounds).tolist(), [[0, 1, 0]] * 2)
         self.assertLessEqual(names["bound"].reached[0], names["bound"].bound)

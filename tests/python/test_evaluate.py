@@ -44,6 +44,31 @@ class Evaluations(unittest.TestCase):
             self.assertEqual(found[key], told[key], key)
         self.assertEqual(found["points"], [station["points"] for station in told["stations"]])
 
+    def test_each_station_is_set_up_as_it_says(self):
+        fine = vantage.Scanner(azimuth_step_deg=0.2, zenith_step_deg=0.2, height_m=1.5)
+        rough = vantage.Scanner(azimuth_step_deg=0.5, zenith_step_deg=0.5, height_m=1.5)
+        simulator = vantage.Simulator(self.simulator.scene, [fine, rough], engine="embree", user_size_m=0.2,
+                                      point_spacing_m=0.03)
+        lying = vantage.StationSetup(heading_deg=30, tilt_deg=90)
+        network = [vantage.Station(HEADS[0]), vantage.Station(HEADS[1], lying),
+                   vantage.Station(HEADS[2], vantage.StationSetup(scanner=1)),
+                   vantage.Station(BEFORE_EACH_WALL[1], lying, active=False)]
+        found = simulator.evaluate(network)
+        told = program_json("evaluate", FOUR_WALLS, *COARSE, "--station", "8,0,1.5", "--station",
+                            "x=9,y=8,z=1.5,heading=30,tilt=90", "--station", "x=0,y=12,z=1.5,step=0.5")
+        self.assertEqual(found.coverage, told["coverage"])
+        self.assertEqual(found.points_on_surveyed.tolist()[3], 0)
+        usual = self.simulator.evaluate(HEADS).points_on_surveyed
+        self.assertEqual([int(found.points_on_surveyed[k]) == int(usual[k]) for k in range(3)], [True, False, False])
+        area, clash = vantage.SearchArea(simulator.scene), vantage.ClashChecker(simulator.scene)
+        placed = vantage.place_heads(area, clash, 1.5, network[:3])
+        self.assertEqual([station.setup for station in placed], [station.setup for station in network[:3]])
+        self.assertEqual(simulator.evaluate(placed).coverage, found.coverage)
+        sampled, = simulator.evaluate_sampled([network], voxels=simulator.voxel_count)
+        self.assertEqual(sampled.coverage, found.coverage)
+        with self.assertRaisesRegex(TypeError, "none of the kind"):
+            simulator.evaluate([network[0], placed[0]])
+
     def test_a_sample_of_all_voxels_is_exact(self):
         exact = self.simulator.evaluate(HEADS)
         all_voxels, some = [

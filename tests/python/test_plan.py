@@ -79,6 +79,28 @@ class Plans(unittest.TestCase):
         with self.assertRaises(AttributeError):
             problem.objectives.append("coverage")
 
+    def test_stations_choose_their_scanner_beside_kept_ones_as_set_up(self):
+        steps = [vantage.Scanner(azimuth_step_deg=step, zenith_step_deg=step, height_m=1.5) for step in (0.2, 0.5)]
+        simulator = vantage.Simulator(self.simulator.scene, steps, engine="embree", user_size_m=0.2,
+                                      point_spacing_m=0.03)
+        lying = vantage.StationSetup(tilt_deg=90)
+        problem = vantage.SurveyProblem(stations_min=3, stations_max=3, kept=[(8, 0, 1.5)], kept_setups=[lying],
+                                        scanners=[0, 1], objectives=["coverage", "time"])
+        self.assertEqual((problem.kept_setups, problem.scanners), ((lying,), (0, 1)))
+        found = vantage.plan(simulator, self.area, self.clash, problem, **SMALL)
+        self.assertEqual([s.azimuth_step_deg for s in found.scanners], [0.2, 0.5])
+        chosen = set()
+        for entry in found.front:
+            self.assertEqual(entry.stations[0].setup, lying)
+            self.assertEqual(len(entry.x), 3 * 3)
+            for station, share in zip(entry.stations[1:], entry.x[6:]):
+                self.assertEqual(station.setup, vantage.StationSetup(scanner=int(2 * share)))
+                chosen.add(station.setup.scanner)
+            self.assertEqual(simulator.evaluate(entry.stations).coverage, entry.value("coverage"))
+        self.assertEqual(chosen, {0, 1})
+        told = found.to_dict()["front"][0]["stations"][0]
+        self.assertEqual((told["tilt"], told["step"]), (90, 0.2))
+
     def test_the_surveyors_question_is_answered(self):
         found = self.plan(vantage.fewest_stations(capture=0.8, stations_max=6), iterations=2)
         self.assertTrue(found.met)

@@ -15,15 +15,20 @@ def scan_of_wall(offset=(0.0, 0.0, 0.0), **options):
     return scanner, vantage.Simulator(scene, scanner, engine="embree").scan(offset, **options)
 
 
+def pattern(scanner):
+    """Directions in the scanner's frame: (rows, columns, 3)."""
+    zenith = np.radians((np.arange(scanner.rows) + 0.5) * scanner.zenith_step_deg)[:, None]
+    azimuth = np.radians(-180 + (np.arange(scanner.columns) + 0.5) * scanner.azimuth_step_deg)[None, :]
+    return np.stack(np.broadcast_arrays(
+        np.sin(zenith) * np.cos(azimuth), np.sin(zenith) * np.sin(azimuth), np.cos(zenith)), axis=-1)
+
+
 class Scans(unittest.TestCase):
     def test_a_wall_has_the_points_of_the_pattern(self):
         """Against the closed form: ray (i, j) hits the plane y = 3 at 3 / (sin zenith sin azimuth)."""
         outputs = ["position", "normal", "reflectivity", "mesh", "primitive", "colour", "voxel"]
         scanner, scan = scan_of_wall(outputs=outputs)
-        zenith = np.radians((np.arange(scanner.rows) + 0.5) * 0.5)[:, None]
-        azimuth = np.radians(-180 + (np.arange(scanner.columns) + 0.5) * 0.5)[None, :]
-        rays = np.stack(np.broadcast_arrays(
-            np.sin(zenith) * np.cos(azimuth), np.sin(zenith) * np.sin(azimuth), np.cos(zenith)), axis=-1)
+        rays = pattern(scanner)
         with np.errstate(divide="ignore"):
             at = 3 / rays[..., 1]
         points = rays * at[..., None]
@@ -53,6 +58,34 @@ class Scans(unittest.TestCase):
         np.testing.assert_array_equal(grid.column[hit], points.column)
         np.testing.assert_array_equal(grid.position[hit], points.position)
         self.assertTrue(np.isnan(grid.position[~hit]).all())
+
+    def test_a_turned_scanner_of_its_own_has_its_pattern_turned(self):
+        """Against the closed form once more, with the rotation made from its definition, Rz(heading) Ry(tilt)."""
+        coarse, fine = vantage.Scanner(), vantage.Scanner(azimuth_step_deg=0.4, zenith_step_deg=0.5)
+        coarse.azimuth_step_deg = coarse.zenith_step_deg = 1
+        scene = vantage.Scene.from_triangles(*wall())
+        simulator = vantage.Simulator(scene, [coarse, fine], engine="embree")
+        self.assertEqual([s.azimuth_step_deg for s in simulator.scanners], [1, 0.4])
+        setup = vantage.StationSetup(heading_deg=25, tilt_deg=70, scanner=1)
+        scan = simulator.scan((0, 0, 0), setup=setup, grid=True)
+        heading, tilt = np.radians([25, 70])
+        about_z = [[np.cos(heading), -np.sin(heading), 0], [np.sin(heading), np.cos(heading), 0], [0, 0, 1]]
+        about_y = [[np.cos(tilt), 0, np.sin(tilt)], [0, 1, 0], [-np.sin(tilt), 0, np.cos(tilt)]]
+        turn = np.array(about_z) @ about_y
+        np.testing.assert_allclose(setup.survey_from_scanner(), turn, atol=1e-12)
+        rays = pattern(fine) @ turn.T
+        self.assertEqual(scan.range_m.shape, rays.shape[:2])
+        with np.errstate(divide="ignore"):
+            at = 3 / rays[..., 1]
+        points = rays * at[..., None]
+        margin = np.maximum(np.abs(points[..., 0]) - 2, np.abs(points[..., 2]) - 1)
+        inside, outside = (at > 0) & (margin < -1e-4), (at < 0) | (margin > 1e-4)
+        self.assertGreater(inside.sum(), 1000)
+        np.testing.assert_allclose(scan.range_m[inside], at[inside], rtol=1e-5)
+        np.testing.assert_allclose(scan.position[inside], points[inside], atol=1e-5)
+        self.assertTrue(np.isinf(scan.range_m[outside]).all())
+        with self.assertRaisesRegex(vantage.Error, "scanner number 2"):
+            simulator.scan((0, 0, 0), setup=vantage.StationSetup(scanner=2))
 
     def test_georeferenced_positions_keep_their_digits(self):
         utm = (389_123.25, 5_820_456.5, 35.0)

@@ -106,6 +106,25 @@ TEST_F(Plan, ChoosesAStepForEachStation) {
   expect_refused(run_program(plan("other", {"--stations", "2", "--search-step", "1,3mm"})), 2, "--scanner PRESET");
 }
 
+TEST_F(Plan, ChoosesAStepForEachStationOfTheFewest) {
+  const auto front =
+      json_of(plan("plan", {"--capture", "0.5", "--link", "0.05", "--stations", "1..6", "--search-step", "1,0.5"}));
+  ASSERT_FALSE(front["front"].empty());
+  for (const auto& entry : front["front"]) {
+    const std::size_t count = entry["stations"].size();
+    EXPECT_EQ(entry["station_count"], count);
+    EXPECT_EQ(entry["x"].size(), 3 * count) << "(u, v) and a step of each";
+    EXPECT_GE(entry["values"]["capture"]["exact"].get<double>(), 0.5);
+    for (const auto& station : entry["stations"]) {
+      const double step = station["step"];
+      EXPECT_TRUE(std::abs(step - 1) < 1e-9 || std::abs(step - 0.5) < 1e-9) << step;
+    }
+  }
+  const auto again = json_of({"evaluate", scene_, "--engine", "embree", "--config", path("plan/config.json"),
+                              "--stations", path("plan/front.json")});
+  EXPECT_EQ(again["coverage"], front["front"][0]["exact"]["coverage"]);
+}
+
 TEST_F(Plan, TheSameSeedGivesTheSameFront) {
   for (const char* problem : {"coverage-fix", "coverage-overlap-min"}) {
     const std::string stations = std::string(problem) == "coverage-fix" ? "2" : "2..4";

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <numeric>
 
+#include "image/encode.hpp"
 #include "support/temporary_folder.hpp"
 #include "vantage/error.hpp"
 #include "vantage/image.hpp"
@@ -26,6 +27,24 @@ TEST(ImageFile, PngRoundTrip) {
   EXPECT_EQ(back.width, 40u);
   EXPECT_EQ(back.height, 20u);
   EXPECT_EQ(back.rgba, image.rgba);
+}
+
+TEST(ImageFile, JpegsAreReadBackNearlyAsTheyWere) {
+  const test::TemporaryFolder folder;
+  Image image{48, 32, {}};
+  for (std::uint32_t y = 0; y < 32; ++y)
+    for (std::uint32_t x = 0; x < 48; ++x)
+      for (const std::uint32_t v : {5 * x, 7 * y, 128u, 255u}) image.rgba.push_back(static_cast<std::uint8_t>(v));
+  const auto bytes = encode_jpeg(image, 95), small = encode_jpeg(image, 10);
+  EXPECT_LT(small.size(), bytes.size());
+  std::ofstream(folder / "a.jpg", std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()), std::ssize(bytes));
+  const Image again = read_image(folder / "a.jpg");
+  ASSERT_EQ(again.width, 48u);
+  ASSERT_EQ(again.rgba.size(), image.rgba.size());
+  for (std::size_t k = 0; k < image.rgba.size(); ++k) ASSERT_NEAR(again.rgba[k], image.rgba[k], 12) << k;
+  EXPECT_THROW(encode_jpeg(Image{2, 2, {}}, 80), Error);
+  EXPECT_THROW(encode_jpeg(image, 0), Error);
 }
 
 TEST(ImageFile, SaysWhatIsWrong) {

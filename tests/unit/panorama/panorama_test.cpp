@@ -143,6 +143,31 @@ TEST(PanoramaRenderer, HasNoSeamAndFollowsTheHeading) {
   }
 }
 
+TEST(PanoramaRenderer, IsTurnedAsTheStationIs) {
+  PanoramaRenderer renderer(coloured_room(), {.width = 64}, embree());
+  const auto views = panorama_views();
+  const auto of = [&](const StationSetup& setup) { return renderer.render({0, 0, 0}, views, {}, setup); };
+  const auto upright = of({}), headed = of({.heading = Angle::degrees(90)}),
+             hanging = of({.tilt = Angle::degrees(180)}), lying = of({.tilt = Angle::degrees(90)});
+  // The middle looks along the heading; one that hangs sees the same upside down and the other way round.
+  std::array<int, 2> differ{};
+  for (std::size_t v = 0; v < views.size(); ++v)
+    for (std::uint32_t y = 0; y < 32; ++y)
+      for (std::uint32_t x = 0; x < 64; ++x)
+        for (std::size_t c = 0; c < 3; ++c) {
+          const auto here = pixel(upright[v].image, x, y);
+          differ[0] += std::abs(here[c] - pixel(headed[v].image, (x + 16) % 64, y)[c]) > 2;
+          differ[1] += std::abs(here[c] - pixel(hanging[v].image, (96 - x - 1) % 64, 31 - y)[c]) > 2;
+        }
+  EXPECT_LT(differ[0], 60) << "of 30720";
+  EXPECT_LT(differ[1], 60);
+  // Its axis along +X, the head of one that lies has the red wall overhead and the sky where −X was, behind.
+  const Image& colour = lying[0].image;
+  for (const std::uint32_t x : {0u, 20u, 40u}) EXPECT_GT(pixel(colour, x, 0)[0], pixel(colour, x, 0)[1] + 60) << x;
+  EXPECT_GT(pixel(colour, 0, 16)[2], pixel(colour, 0, 16)[0] + 30);
+  EXPECT_GT(pixel(colour, 16, 16)[1], pixel(colour, 16, 16)[0] + 60) << "+Y stays on the left";
+}
+
 TEST(PanoramaRenderer, DoesNotDependOnSubsetsOfViews) {
   PanoramaRenderer renderer(coloured_room(), {.width = 32, .supersample = 3}, embree());
   const auto all = renderer.render({1, 0.5, 0.2}, panorama_views());
@@ -169,15 +194,19 @@ TEST(PanoramaRenderer, NothingInSightIsSkyAndBackdrop) {
   EXPECT_EQ(pixel(images[1].image, 3, 8), pixel(images[2].image, 20, 14));
 }
 
-// A scan coloured from a picture of the same place has the picture's colours.
-TEST(Panorama, ColoursAScan) {
+// A scan coloured from a picture of the same place, taken by the same head, has the picture's colours.
+class ColoursAScan : public testing::TestWithParam<StationSetup> {};
+INSTANTIATE_TEST_SUITE_P(Panorama, ColoursAScan,
+                         testing::Values(StationSetup{},
+                                         StationSetup{.heading = Angle::degrees(30), .tilt = Angle::degrees(70)}));
+TEST_P(ColoursAScan, OfTheSameHead) {
   const Scene scene = coloured_room();
   PanoramaRenderer renderer(scene, {.width = 256, .supersample = 1}, embree());
   const PanoramaView views[] = {PanoramaView::normal};
-  const Panorama panorama(renderer.render({0, 0, 0}, views)[0].image);
+  const Panorama panorama(renderer.render({0, 0, 0}, views, {}, GetParam())[0].image);
   Simulator simulator(scene, test::coarse_scanner(2), embree());
   std::uint64_t points = 0, off = 0;
-  simulator.scan({{0, 0, 0}},
+  simulator.scan({{0, 0, 0}, true, GetParam()},
                  {.outputs = scan_colour | scan_normal,
                   .colour = [&](Angle zenith, Angle azimuth) { return panorama.colour(zenith, azimuth); }},
                  [&](const ScanChunk& chunk) {

@@ -96,5 +96,20 @@ TEST(Greedy, SeedsTheSearch) {
   EXPECT_GT(seeded.hypervolume, random.hypervolume);
 }
 
+TEST(Greedy, ASeededSearchIsNoWorseThanItsSeed) {
+  const Site site = test::toy_site();
+  test::ToyEvaluator evaluator;
+  const GreedyResult greedy = choose_greedily(site, evaluator, {.stations = 4, .candidates = 300}, {});
+  PlanConfig config = test::toy_config();
+  config.iterations = 1;
+  config.sigma0 = 1;  // far from the seed
+  for (const PlacedStation& s : greedy.stations) config.start.push_back(s.position);
+  const SearchOutcome seeded = test::toy_search(test::toy_problem("coverage-fix"), config, evaluator);
+  EXPECT_GE(seeded.hypervolume, greedy.coverage.back() - 1e-9);
+  config.start.clear();
+  const SearchOutcome random = test::toy_search(test::toy_problem("coverage-fix"), config, evaluator);
+  EXPECT_LT(random.hypervolume, greedy.coverage.back() - 1e-3) << "or the seed would not tell";
+}
+
 }  // namespace
 }  // namespace vantage

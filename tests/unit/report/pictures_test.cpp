@@ -337,23 +337,31 @@ TEST(Pictures, PlanViewDrawsStandardEllipses) {
   EXPECT_THROW(red("wrong.png", std::span(errors).first(1)), Error);
 }
 
-TEST(Pictures, RegistrationMapsShowTheErrorWhereItIs) {
+// Of two stations, and of two among so many that their bits stand in two words.
+class RegistrationMaps : public testing::TestWithParam<std::size_t> {};
+INSTANTIATE_TEST_SUITE_P(Pictures, RegistrationMaps, testing::Values(2, 67));
+TEST_P(RegistrationMaps, ShowTheErrorWhereItIs) {
+  const std::size_t count = GetParam(), last = count - 1;
   const test::TemporaryFolder folder;
   Simulator simulator(test::wall_and_floor().scene(), test::coarse_scanner(1),
                       {.engine = Engine::embree, .user_size_m = 0.5, .point_spacing_m = 0.2});
   VoxelField field;
   field.count.assign(simulator.voxel_count(), 1);
-  field.stations.assign(simulator.voxel_count(), 0);
-  for (std::size_t k = 1; k < field.stations.size(); ++k) field.stations[k] = k % 2 ? 1 : 3;
+  const std::size_t voxels = simulator.voxel_count();
+  field.stations.assign(voxels * (last / 64 + 1), 0);
+  for (std::size_t k = 1; k < voxels; ++k) {
+    field.stations[k] = 1;
+    if (k % 2 == 0) field.stations[last / 64 * voxels + k] |= std::uint64_t{1} << (last % 64);
+  }
   // Shifts of 1 mm and 7 mm, one sigma along x.
   RegistrationError error;
-  error.stations.resize(2), error.poses.resize(2);
-  error.poses[0][21] = 1e-6, error.poses[1][21] = 49e-6;
+  error.stations.resize(count), error.poses.resize(count);
+  error.poses[0][21] = 1e-6, error.poses[last][21] = 49e-6;
   write_registration_ply(folder / "error.ply", simulator, field, error);
   const std::string ply = test::content(folder / "error.ply");
   std::size_t at = ply.find("end_header\n") + 11;
-  EXPECT_NE(ply.find("element vertex " + std::to_string(simulator.voxel_count() - 1) + "\n"), std::string::npos);
-  for (std::size_t k = 1; k < field.stations.size(); ++k) {
+  EXPECT_NE(ply.find("element vertex " + std::to_string(voxels - 1) + "\n"), std::string::npos);
+  for (std::size_t k = 1; k < voxels; ++k) {
     ASSERT_EQ(test::take<double>(ply, at), simulator.voxel_centre(k).x);
     at += 19;
     ASSERT_FLOAT_EQ(test::take<float>(ply, at), k % 2 ? 1.0f : 5.0f) << k;

@@ -82,6 +82,18 @@ TEST(Summary, TheTableHasGroundAndHeadToTheMillimetre) {
             "S2           -1.000  20.000  1.250   3.100  ok                              345\n");
 }
 
+TEST(Summary, TheTableSaysHowStationsAreSetUpWhereAnyIsNotAsUsual) {
+  std::vector<PlacedStation> stations(2);
+  stations[1].setup = {.heading = Angle::degrees(-30), .tilt = Angle::degrees(90), .scanner = 1};
+  std::vector<Scanner> scanners(2);
+  scanners[0].name = "Größer", scanners[0].azimuth_step = Angle::degrees(0.2);
+  scanners[1].name = "RTC", scanners[1].azimuth_step = scanners[1].zenith_step = Angle::degrees(0.0345);
+  EXPECT_EQ(station_table(stations, station_names(stations), {}, scanners),
+            "station  ground x      y      z  head z  status  heading °  tilt °  scanner  step °\n"
+            "S1          0.000  0.000  0.000   0.000  ok            0.0     0.0  Größer\n"
+            "S2          0.000  0.000  0.000   0.000  ok          -30.0    90.0  RTC      0.0345\n");
+}
+
 TEST(Summary, OfAPlanTellsWhatItMisses) {
   PlanResult result = test::sample_result("coverage-overlap-fix", 3, 3, 1);
   result.problem.requirements = {make_requirement("coverage>=0.99"), make_requirement("coverage>=0.2")};

@@ -235,19 +235,26 @@ TEST(Scan, ColoursByDirectionWhereASourceIsGiven) {
   EXPECT_GT(points, 100u);
 }
 
-TEST(Scan, ColoursTurnedStationsByWhereTheirRaysGo) {
+// A camera turns with the scanner that it is part of.
+TEST(Scan, ColoursTurnedStationsByTheScannersOwnAngles) {
   Simulator simulator(wall_and_floor().scene(), coarse_scanner(3), config());
   const Station station{{0, 0, 0}, true, {.heading = Angle::degrees(20), .tilt = Angle::degrees(70)}};
   const auto tenths = [](Angle zenith, Angle azimuth) {
     return static_cast<std::uint32_t>(std::lround(zenith.in_degrees() * 10) << 16 |
                                       std::lround(azimuth.in_degrees() * 10 + 3600));
   };
+  // Back from the survey's frame: Ry(-70°) · Rz(-20°), written out.
+  const auto own = [](const Vec3& d) {
+    const double h = 20 * M_PI / 180, t = 70 * M_PI / 180;
+    const double x = std::cos(h) * d.x + std::sin(h) * d.y, y = -std::sin(h) * d.x + std::cos(h) * d.y;
+    return Vec3{std::cos(t) * x - std::sin(t) * d.z, y, std::sin(t) * x + std::cos(t) * d.z};
+  };
   std::uint64_t points = 0;
   simulator.scan(station, {.outputs = scan_colour | scan_position, .colour = tenths}, [&](const ScanChunk& chunk) {
     for (std::size_t k = 0; k < chunk.ray_count; ++k) {
       const auto& p = chunk.position[k];
       if (!std::isfinite(p[0])) continue;
-      const Vec3 d = simulator.origin() + Vec3{p[0], p[1], p[2]} - station.position;
+      const Vec3 d = own(simulator.origin() + Vec3{p[0], p[1], p[2]} - station.position);
       const auto rounded = [](double degrees) { return std::lround(degrees * 10); };
       EXPECT_LE(std::abs(rounded(std::atan2(std::hypot(d.x, d.y), d.z) * 180 / M_PI) - (chunk.colour[k] >> 16)), 1);
       EXPECT_LE(std::abs(rounded(std::atan2(d.y, d.x) * 180 / M_PI) + 3600 - (chunk.colour[k] & 0xFFFF)), 1);

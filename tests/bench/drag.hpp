@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// How long the editor takes from a station that moves to new numbers and colours.
+#pragma once
+
+#include <cstdint>
+
+#include "bench_site.hpp"
+
+namespace vantage::bench {
+
+struct DragOptions {
+  SiteOptions site;
+  std::size_t count = 8, moves = 60;
+  std::uint64_t sample = 40'000, seed = 1;
+  void add(CLI::App& command);
+};
+
+void run_drag(const DragOptions& options);
+
+}  // namespace vantage::bench

@@ -1,0 +1,24 @@
+# cmake -DSOURCE=<vantage> -DFOLDER=<folder> -DGENERATOR=<generator> -DCXX=<compiler> -P configure.cmake
+# Configures vantage with what a report or the editor takes hidden or switched off, and looks at what would be compiled.
+file(REMOVE_RECURSE ${FOLDER})
+function(configure name says report edit)
+  execute_process(COMMAND ${CMAKE_COMMAND} -S ${SOURCE} -B ${FOLDER}/${name} -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${CXX}
+                          -DCMAKE_EXPORT_COMPILE_COMMANDS=ON -DVANTAGE_BUILD_TESTS=ON ${ARGN} RESULT_VARIABLE status OUTPUT_VARIABLE output
+                          ERROR_VARIABLE errors)
+  if(NOT status EQUAL 0)
+    message(FATAL_ERROR "${name} does not configure: ${output}${errors}")
+  endif()
+  if(NOT output MATCHES "${says}")
+    message(FATAL_ERROR "${name}: nothing says \"${says}\": ${output}")
+  endif()
+  file(READ ${FOLDER}/${name}/compile_commands.json commands)
+  foreach(source ${report} ${edit})
+    if(NOT commands MATCHES "vantage_cli.dir/${source}")
+      message(FATAL_ERROR "${name} does not compile ${source}")
+    endif()
+  endforeach()
+endfunction()
+configure(no_meshoptimizer "No report: .*libmeshoptimizer-dev" report_none.cpp edit_none.cpp -DCMAKE_DISABLE_FIND_PACKAGE_meshoptimizer=ON)
+configure(no_three "No report: libjs-three" report_none.cpp edit_none.cpp -DVANTAGE_THREE_JS=OFF)
+configure(no_report "No report: VANTAGE_WITH_REPORT is off" report_none.cpp edit_none.cpp -DVANTAGE_WITH_REPORT=OFF)
+configure(no_editor "No editor: VANTAGE_WITH_EDITOR is off" report.cpp edit_none.cpp -DVANTAGE_WITH_EDITOR=OFF)
