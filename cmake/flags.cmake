@@ -12,3 +12,8 @@ if(VANTAGE_SANITIZE)
   target_compile_options(vantage_flags INTERFACE -fsanitize=${VANTAGE_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=undefined)
   target_link_options(vantage_flags INTERFACE -fsanitize=${VANTAGE_SANITIZE})
 endif()
+if(VANTAGE_COVERAGE)
+  # Counts of several threads are added one by one, or some are lost.
+  target_compile_options(vantage_flags INTERFACE --coverage -O0 -fprofile-update=atomic)
+  target_link_options(vantage_flags INTERFACE --coverage)
+endif()

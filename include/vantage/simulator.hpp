@@ -140,7 +140,10 @@ struct VoxelPatch {
 };
 
 /// Owns device, acceleration structure and voxel grid; keeps a share of the scene.
-/// Not thread-safe: one Simulator per thread. Same inputs, seed and engine: same result, bit for bit.
+/// Same inputs, seed and engine: same result, bit for bit. Several simulators work side by side, on threads or in tasks
+/// of a caller's TBB arena, to whose threads the work on the CPU then keeps. Of one, const calls may be made from
+/// several threads at once; any other call goes alone. What a callback throws leaves the call as it is, and the
+/// simulator as it was. A child of fork() has none of the threads, nor the device: it may exec or _exit, and no more.
 class Simulator {
  public:
   /// Throws Error: invalid_argument (goal density below 1, with the smallest user size that works; bad scanner; a
