@@ -17,6 +17,7 @@ find_path(VANTAGE_STB_INCLUDE_DIR stb_image.h PATH_SUFFIXES stb REQUIRED)
 find_program(VANTAGE_GLSLANG NAMES glslangValidator glslang REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(cairo REQUIRED IMPORTED_TARGET cairo)
+pkg_check_modules(turbojpeg REQUIRED IMPORTED_TARGET libturbojpeg)
 pkg_check_modules(cbc REQUIRED IMPORTED_TARGET cbc clp) # linear programs, and their integer solutions
 # The report is a page with three.js in it. It is left out where one of these is missing.
 option(VANTAGE_WITH_REPORT "Write reports where what they take is installed" ON)

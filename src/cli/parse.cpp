@@ -207,7 +207,10 @@ double parse_duration(std::string_view text, const std::string& what) {
     number.remove_suffix(suffix.size());
     break;
   }
-  return unit * parse_number(number, what, positive);
+  constexpr double kLongest_s = 1e9;  // thirty years; clocks count in 64 bits of nanoseconds
+  const double seconds = unit * parse_number(number, what, positive);
+  if (seconds > kLongest_s) refuse(what, text, "must be at most " + number_text(kLongest_s) + " seconds");
+  return seconds;
 }
 
 std::uint64_t parse_bytes(std::string_view text, const std::string& what) {

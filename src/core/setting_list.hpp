@@ -21,9 +21,13 @@ class SettingList {
     bool decides = true;
   };
   template <class Value>
-  SettingList& add(std::string name, const Value& value, Traits traits = {}) {
+  SettingList& add(std::string name, const Value& value, Traits traits) {
     list_.push_back({std::move(name), to_json(value).dump(), std::move(traits.option), traits.decides});
     return *this;
+  }
+  template <class Value>
+  SettingList& add(std::string name, const Value& value) {
+    return add(std::move(name), value, Traits{});
   }
   Settings take() { return std::move(list_); }
 

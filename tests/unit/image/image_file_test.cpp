@@ -29,6 +29,24 @@ TEST(ImageFile, PngRoundTrip) {
   EXPECT_EQ(back.rgba, image.rgba);
 }
 
+// A file may say that a Huffman table has more codes than there can be.
+TEST(ImageFile, RefusesJpegsWithDamagedTables) {
+  const test::TemporaryFolder folder;
+  Image image{16, 16, std::vector<std::uint8_t>(16 * 16 * 4, 200)};
+  const std::vector<std::uint8_t> whole = encode_jpeg(image, 80);
+  std::size_t tables = 0;
+  for (std::size_t at = 0; at + 21 < whole.size(); ++at) {
+    if (whole[at] != 0xff || whole[at + 1] != 0xc4) continue;
+    ++tables;
+    std::vector<std::uint8_t> damaged = whole;
+    for (std::size_t length = 0; length < 16; ++length) damaged[at + 5 + length] = 255;
+    std::ofstream(folder / "damaged.jpg", std::ios::binary)
+        .write(reinterpret_cast<const char*>(damaged.data()), static_cast<std::streamsize>(damaged.size()));
+    EXPECT_THROW(read_image(folder / "damaged.jpg"), Error);
+  }
+  EXPECT_GT(tables, 0u);
+}
+
 TEST(ImageFile, JpegsAreReadBackNearlyAsTheyWere) {
   const test::TemporaryFolder folder;
   Image image{48, 32, {}};

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <turbojpeg.h>
+
+#include <memory>
+
+#include "image/decode.hpp"
+
+namespace vantage {
+
+Image decode_jpeg(std::span<const std::uint8_t> bytes, std::uint32_t largest_side, std::string& problem) {
+  const std::unique_ptr<void, int (*)(tjhandle)> decoder(tjInitDecompress(), tjDestroy);
+  if (!decoder) {
+    problem = "there is not enough memory to decode it";
+    return {};
+  }
+  const auto size = static_cast<unsigned long>(bytes.size());
+  int width = 0, height = 0, subsampling = 0, colours = 0;
+  // Before there is a picture even a warning is damage.
+  if (tjDecompressHeader3(decoder.get(), bytes.data(), size, &width, &height, &subsampling, &colours) != 0) {
+    problem = tjGetErrorStr2(decoder.get());
+    return {};
+  }
+  const auto fits = [&](int side) { return side > 0 && static_cast<std::uint32_t>(side) <= largest_side; };
+  if (!fits(width) || !fits(height)) {
+    problem = "it is " + std::to_string(width) + " × " + std::to_string(height) + " pixels, and at most " +
+              std::to_string(largest_side) + " a side are read";
+    return {};
+  }
+  Image image{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), {}};
+  image.rgba.resize(std::size_t{4} * image.width * image.height);
+  // Alpha is set to 255. Limits on scans: a small file of thousands of them would take minutes.
+  if (tjDecompress2(decoder.get(), bytes.data(), size, image.rgba.data(), width, 0, height, TJPF_RGBA,
+                    TJFLAG_LIMITSCANS) != 0) {
+    problem = tjGetErrorStr2(decoder.get());
+    return {};
+  }
+  return image;
+}
+
+}  // namespace vantage

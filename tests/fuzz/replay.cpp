@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// The same targets without libFuzzer: vantage-fuzz-replay TARGET MUTATIONS FILES… tries each file and so many mutations
+// of each, the same every time.
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <fstream>
+#include <iterator>
+#include <vector>
+
+#include "core/philox.hpp"
+#include "fuzz/target.hpp"
+
+namespace vantage::fuzz {
+namespace {
+
+using Input = std::vector<std::uint8_t>;
+
+// One to eight changes: bits, odd bytes, numbers, runs copied, inserted, taken away, ends cut off.
+Input mutated(const Input& seed, RandomStream& random) {
+  static constexpr const char* kWords[] = {"nan", "inf",  "-0",  "1e308", "1e-320", "0x1p9", "1,5",
+                                           "",    "null", "[[[", "\"\"",  "-1",     "{",     "18446744073709551616"};
+  Input out = seed;
+  const auto below = [&](std::size_t n) { return n > 0 ? random.bits() % n : 0; };
+  for (std::size_t changes = 1 + below(8); changes > 0; --changes) {
+    const std::size_t at = below(out.size() + 1);
+    const auto here = out.begin() + static_cast<std::ptrdiff_t>(at);
+    switch (below(6)) {
+      case 0:
+        if (at < out.size()) out[at] = static_cast<std::uint8_t>(out[at] ^ (1u << below(8)));
+        break;
+      case 1:
+        if (at < out.size()) out[at] = std::array<std::uint8_t, 6>{0, 0xFF, 0x7F, 0x80, '\n', '9'}[below(6)];
+        break;
+      case 2: {
+        const std::string_view word = kWords[below(std::size(kWords))];
+        out.insert(here, word.begin(), word.end());
+        break;
+      }
+      case 3: {
+        const std::size_t from = below(out.size()), n = std::min(out.size() - from, below(32));
+        const Input run(out.begin() + static_cast<std::ptrdiff_t>(from),
+                        out.begin() + static_cast<std::ptrdiff_t>(from + n));
+        out.insert(here, run.begin(), run.end());
+        break;
+      }
+      case 4: out.erase(here, here + static_cast<std::ptrdiff_t>(std::min(out.size() - at, below(32)))); break;
+      default:
+        if (below(4) == 0) out.resize(at);
+    }
+  }
+  return out;
+}
+
+// So that a finding can be looked at: the input that was being tried.
+Input current;
+void keep() {
+  std::ofstream("fuzz-finding", std::ios::binary)
+      .write(reinterpret_cast<const char*>(current.data()), static_cast<std::streamsize>(current.size()));
+  std::fprintf(stderr, "the input is in fuzz-finding\n");
+}
+
+void run(const Target& target, Input input) {
+  current = std::move(input);
+  target.run(current);
+}
+
+}  // namespace
+}  // namespace vantage::fuzz
+
+int main(int argc, char** argv) try {
+  using namespace vantage::fuzz;
+  if (argc < 4) {
+    std::fprintf(stderr, "usage: %s TARGET MUTATIONS FILES...\n", argv[0]);
+    return 2;
+  }
+  std::set_terminate([] {
+    keep();
+    if (const auto lost = std::current_exception()) try {
+        std::rethrow_exception(lost);
+      } catch (const std::exception& error) {
+        std::fprintf(stderr, "%s\n", error.what());
+      } catch (...) {
+      }
+    std::abort();
+  });
+  const Target& target = vantage::fuzz::target(argv[1]);
+  const unsigned long mutations = std::strtoul(argv[2], nullptr, 10);
+  vantage::RandomStream random(1);
+  [&]() noexcept {
+    for (int k = 3; k < argc; ++k) {
+      std::ifstream in(argv[k], std::ios::binary);
+      if (!in) std::fprintf(stderr, "%s cannot be read\n", argv[k]), std::exit(2);
+      const Input seed{std::istreambuf_iterator<char>(in), {}};
+      run(target, seed);
+      for (unsigned long n = 0; n < mutations; ++n) run(target, mutated(seed, random));
+    }
+  }();
+  std::printf("%s: %lu inputs\n", target.name, static_cast<unsigned long>(argc - 3) * (1 + mutations));
+  return 0;
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "%s\n", error.what());
+  return 2;
+}
