@@ -2,6 +2,7 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <new>
 #include <string>
 
@@ -66,9 +67,7 @@ int run(int argc, char** argv) {
     spdlog::error("{}", message);
     return error.code() == Errc::invalid_argument ? exit_usage : exit_failed;
   } catch (const std::bad_alloc&) {
-    spdlog::error(
-        "this machine has not enough memory for it; coarser voxels (--user-size) or a smaller scene need less");
-    return exit_failed;
+    throw;
   } catch (const std::exception& error) {
     spdlog::error("{}", error.what());
     return exit_failed;
@@ -78,4 +77,14 @@ int run(int argc, char** argv) {
 }  // namespace
 }  // namespace vantage::cli
 
-int main(int argc, char** argv) { return vantage::cli::run(argc, argv); }
+int main(int argc, char** argv) {
+  try {
+    return vantage::cli::run(argc, argv);
+  } catch (const std::bad_alloc&) {  // no logger: it would want memory
+    std::fputs(
+        "vantage: error: this machine has not enough memory for it; coarser voxels (--user-size) or a smaller scene "
+        "need less, and a plan goes on from its checkpoint with --resume\n",
+        stderr);
+    return vantage::cli::exit_failed;
+  }
+}
