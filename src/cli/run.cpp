@@ -86,9 +86,8 @@ int run(int argc, char** argv) {
     for (const auto& line : error.details()) message += "\n  - " + line;
     return refuse(error.code() == Errc::invalid_argument ? exit_usage : exit_failed, error.code(), message);
   } catch (const std::bad_alloc&) {
-    return refuse(
-        exit_failed, Errc::out_of_memory,
-        "this machine has not enough memory for it; coarser voxels (--user-size) or a smaller scene need less");
+    if (!ranks) throw;  // for main(), which has no need of any
+    return refuse(exit_failed, Errc::out_of_memory, "this machine has not enough memory for it");
   } catch (const std::exception& error) {
     return refuse(exit_failed, Errc::device_failure, error.what());
   }

@@ -321,6 +321,7 @@ class Search {
   // REQUIRES: no batch is open.
   void take_snapshot() {
     std::ostringstream state;
+    state.exceptions(std::ios::badbit);  // it runs out of memory, not of a disk
     optimiser_->save(state);
     snapshot_ = {.optimiser = std::move(state).str(),
                  .history = history_,

@@ -1,21 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scan/memory_estimate.hpp"
 
+#include <tbb/info.h>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <vector>
 
 #include "core/free_memory.hpp"
 #include "core/glm.hpp"
 #include "core/text.hpp"
+#include "trace/tracer.hpp"
+#include "trace/vulkan/memory_plan.hpp"
 #include "vantage/error.hpp"
 #include "voxel/voxel_bricks.hpp"
 
 namespace vantage {
 namespace {
 
-// By processes measured (docs/benchmarks.md, "How cost grows"). Of a voxel: its count, its share of a brick, and the
-// words of its mask. Of a triangle: vertices, trees and planes.
-constexpr double kProgram = 100 * 1048576.0, kTriangle = 150, kVoxel = 6, kMaskWord = 8;
+// By processes measured (docs/reliability.md). Of a voxel: its count, its share of a brick, and the
+// words of its mask. Of a triangle: vertices and what is built on the way; the tree
+// and planes of the CPU engine.
+constexpr double kMebibyte = 1048576, kProgram = 23 * kMebibyte, kThread = kMebibyte, kTriangle = 75, kTree = 90,
+                 kVoxel = 6, kMaskWord = 8;
+constexpr double kSoftwareDriver = 62 * kMebibyte;  // lavapipe with its compiler
 
 struct Surface {
   double cells_m2 = 0;  // an infinite plane with the normal n meets |nx| + |ny| + |nz| cells for each face of a cell
@@ -45,34 +54,105 @@ double voxel_size(double extent_m, double user_size_m) {
   return extent_m / std::exp2(std::max(0.0, std::ceil(std::log2(extent_m / user_size_m))));
 }
 
-double bytes(double triangles, double voxels, std::size_t stations) {
-  return kProgram + kTriangle * triangles + voxels * (kVoxel + kMaskWord * static_cast<double>(mask_words(stations)));
+// Of voxels so far from each other that each is in a brick of its own there are few; of a surface a brick has some 64.
+constexpr double kVoxelsOfABrick = 64;
+
+double host_bytes(double triangles, double voxels, std::size_t stations) {
+  return kProgram + kThread * tbb::info::default_concurrency() + kTriangle * triangles +
+         voxels * (kVoxel + kMaskWord * static_cast<double>(mask_words(stations)));
 }
+
+std::uint64_t whole(double bytes) { return static_cast<std::uint64_t>(std::min(bytes, 1e18)); }
+
+// What the devices of a configuration are, each once.
+std::vector<ChosenDevice> devices_of(const SimulatorConfig& config) {
+  std::vector<ChosenDevice> devices;
+  if (config.devices.empty()) devices.push_back(choose_device(config.engine, config.device_index));
+  for (const DeviceChoice& choice : config.devices) devices.push_back(choose_device(choice.engine, choice.index));
+  return devices;
+}
+
+class Estimator {
+ public:
+  Estimator(const Scene& scene, std::span<const Scanner> scanners, std::size_t stations)
+      : scene_(scene.data()), surface_(surface_of(scene_)), stations_(stations) {
+    const Scanner* const largest = &*std::ranges::max_element(scanners, {}, &Scanner::rays);
+    const auto noisy = [](const Scanner& scanner) { return !scanner.noise.sigma_m.empty(); };
+    const auto asks = [](const MeshInfo& mesh) { return mesh.detail_m || mesh.accuracy_m; };
+    load_ = {.vertices = static_cast<double>(scene_.positions.size()),
+             .triangles = static_cast<double>(scene_.triangles.size()),
+             .rows = static_cast<std::uint32_t>(largest->rows()),
+             .columns = static_cast<std::uint32_t>(largest->columns()),
+             .stations = static_cast<std::uint32_t>(std::min(stations, mask_bits)),
+             .shaded = std::ranges::any_of(scanners, noisy) || std::ranges::any_of(scene_.meshes, asks),
+             .normals = !scene_.normals.empty()};
+  }
+
+  SimulatorMemory operator()(double user_size_m, const std::vector<ChosenDevice>& devices) const {
+    const double side = voxel_size(surface_.extent_m, user_size_m), voxels = surface_.cells_m2 / (side * side);
+    double host = host_bytes(load_.triangles, voxels, stations_), device = 0;
+    const auto on_cpu = [](const ChosenDevice& each) { return each.engine == Engine::embree; };
+    if (devices.empty() || std::ranges::any_of(devices, on_cpu)) host += kTree * load_.triangles;
+    for (const ChosenDevice& each : devices) {
+      if (each.engine == Engine::embree) continue;
+      vulkan::DeviceLoad load = load_;
+      load.engine = each.engine, load.software = each.software;
+      load.voxels = voxels, load.bricks = voxels / kVoxelsOfABrick;
+      const double own = vulkan::device_bytes(load);
+      device = std::max(device, own);
+      if (each.software) host += own + kSoftwareDriver;
+    }
+    return {.voxels = whole(voxels), .bytes = whole(host), .device_bytes = whole(device)};
+  }
+
+ private:
+  const SceneData& scene_;
+  Surface surface_;
+  std::size_t stations_;
+  vulkan::DeviceLoad load_;
+};
 
 }  // namespace
 
-MemoryEstimate estimate_memory(const Scene& scene, double user_size_m, std::size_t stations) {
-  if (!(user_size_m > 0 && std::isfinite(user_size_m))) return {};
-  const Surface surface = surface_of(scene.data());
-  const double side = voxel_size(surface.extent_m, user_size_m), voxels = surface.cells_m2 / (side * side);
-  return {.voxels = static_cast<std::uint64_t>(std::min(voxels, 1e18)),
-          .bytes = static_cast<std::uint64_t>(
-              std::min(bytes(static_cast<double>(scene.data().triangles.size()), voxels, stations), 1e18))};
+SimulatorMemory simulator_memory(const Scene& scene, std::span<const Scanner> scanners, const SimulatorConfig& config,
+                                 std::size_t stations) {
+  return Estimator(scene, scanners, stations)(config.user_size_m, devices_of(config));
 }
 
-void require_memory(const Scene& scene, const SimulatorConfig& config) {
+MemoryEstimate estimate_memory(const Scene& scene, double user_size_m, std::size_t stations) {
+  if (!(user_size_m > 0 && std::isfinite(user_size_m))) return {};
+  const Scanner any;
+  const SimulatorMemory memory = Estimator(scene, {&any, 1}, stations)(user_size_m, {});
+  return {.voxels = memory.voxels, .bytes = memory.bytes};
+}
+
+void require_memory(const Scene& scene, std::span<const Scanner> scanners, const SimulatorConfig& config) {
+  if (!(config.user_size_m > 0 && std::isfinite(config.user_size_m))) return;  // who builds the grid refuses it
+  const std::vector<ChosenDevice> devices = devices_of(config);
+  const std::uint64_t given = config.max_memory_bytes;
   const auto free = free_memory();
-  if (config.max_memory_bytes == 0 && !free) return;
-  const std::uint64_t budget = config.max_memory_bytes > 0 ? config.max_memory_bytes : *free / 2;
-  const MemoryEstimate wanted = estimate_memory(scene, config.user_size_m, mask_bits);
-  if (wanted.bytes <= budget) return;
-  std::string what =
-      "this takes about " + bytes_text(wanted.bytes) + " of memory, for " + number(scene.data().triangles.size()) +
-      " triangles and some " + number(wanted.voxels) + " surveyed voxels; " +
-      (config.max_memory_bytes > 0 ? "it may take " + bytes_text(budget)
-                                   : "half of what is free is " + bytes_text(budget) + " (max_memory_bytes, --memory)");
+  const std::uint64_t unlimited = std::numeric_limits<std::uint64_t>::max();
+  const std::uint64_t host = given > 0 ? given : free ? *free / 2 : unlimited;
+  std::uint64_t device = given > 0 ? given : unlimited;
+  for (const ChosenDevice& each : devices) device = std::min(device, each.free_bytes.value_or(unlimited));
+  const Estimator estimate(scene, scanners, mask_bits);
+  const auto fits = [&](const SimulatorMemory& wanted) {
+    return wanted.bytes <= host && wanted.device_bytes <= device;
+  };
+  const SimulatorMemory wanted = estimate(config.user_size_m, devices);
+  if (fits(wanted)) return;
+  const bool of_host = wanted.bytes > host;
+  std::string what = "this takes about " + bytes_text(of_host ? wanted.bytes : wanted.device_bytes) + " of " +
+                     (of_host ? "" : "the device's ") + "memory, for " + number(scene.data().triangles.size()) +
+                     " triangles and some " + number(wanted.voxels) + " surveyed voxels; ";
+  if (given > 0)
+    what += "it may take " + bytes_text(given);
+  else if (of_host)
+    what += "half of what is free is " + bytes_text(host) + " (max_memory_bytes, --memory)";
+  else
+    what += bytes_text(device) + " of that is free";
   for (double size = config.user_size_m; size < 1e9; size *= 2)
-    if (estimate_memory(scene, size, mask_bits).bytes <= budget) {
+    if (fits(estimate(size, devices))) {
       what += "; a user size of " + number(size) + " m would fit";
       break;
     }

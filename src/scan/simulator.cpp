@@ -120,7 +120,7 @@ struct Simulator::Impl {
       : scene(s), scanners(all.begin(), all.end()), config(c) {
     if (scanners.empty()) throw Error(Errc::invalid_argument, "no scanner given; a simulator has one at least");
     for (const Scanner& scanner : scanners) scanner.check();
-    require_memory(scene, config);
+    require_memory(scene, scanners, config);
     grid = build_grid(data(), config);
     goal = grid->voxel_size() * grid->voxel_size() / (config.point_spacing_m * config.point_spacing_m);
     for (const Scanner& scanner : scanners) traced.push_back(trace_scanner(scanner));

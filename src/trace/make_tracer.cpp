@@ -83,6 +83,22 @@ std::vector<EngineInfo> list_engines() {
   return engines;
 }
 
+ChosenDevice choose_device(Engine engine, std::optional<std::uint32_t> device_index) {
+  const DeviceChoice chosen = settled(engine, device_index);
+  ChosenDevice device{.engine = chosen.engine};
+  if (chosen.engine == Engine::embree) return device;
+  const std::vector<EngineInfo> listed = list_vulkan_engines(vulkan_engines);
+  const EngineInfo* best = nullptr;
+  for (const EngineInfo& info : listed)
+    if (info.engine == chosen.engine && info.usable && (!chosen.index || *chosen.index == info.device_index) &&
+        (!best || (best->software && !info.software)))
+      best = &info;
+  if (!best) return device;  // who makes it says why not
+  device.software = best->software;
+  if (!best->software) device.free_bytes = free_device_memory(best->device_index);
+  return device;
+}
+
 std::unique_ptr<Tracer> make_tracer(Engine engine, std::optional<std::uint32_t> device_index, const TraceScene& scene,
                                     std::function<void(const std::string&)> warn) {
   const DeviceChoice device = settled(engine, device_index);

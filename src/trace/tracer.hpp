@@ -176,6 +176,14 @@ class Tracer {
 // anew, and `warn` told of it. Throws Error no_suitable_device with every refusal.
 std::unique_ptr<Tracer> make_tracer(Engine engine, std::optional<std::uint32_t> device_index, const TraceScene& scene,
                                     std::function<void(const std::string&)> warn = {});
+// What make_tracer() takes, and what is free of a device's own memory; not known: it has none, or its driver keeps no
+// account.
+struct ChosenDevice {
+  Engine engine;
+  bool software = false;
+  std::optional<std::uint64_t> free_bytes = std::nullopt;
+};
+ChosenDevice choose_device(Engine engine, std::optional<std::uint32_t> device_index);
 // One tracer over several devices, which tells `warn` of those that it loses. REQUIRES: at least one device.
 std::unique_ptr<Tracer> make_tracer(std::span<const DeviceChoice> devices, const TraceScene& scene,
                                     std::function<void(const std::string&)> warn);

@@ -41,17 +41,20 @@ class TriangleCells {
     if (!full_) prepare();
   }
 
-  // Calls visit(cell) once for every cell the triangle touches.
+  // Calls visit(cell) once for every cell the triangle touches; or for those of the part number `part` of so many, of
+  // which each cell is in one.
   template <class Visit>
-  void for_each(Visit&& visit) const {
+  void for_each(Visit&& visit, std::int64_t part = 0, std::int64_t parts = 1) const {
     if (empty_) return;
+    const std::int64_t layers = count_[full_ ? 0 : u_];
+    const std::int64_t first_layer = layers * part / parts, end_layer = layers * (part + 1) / parts;
     if (full_) {
-      for (std::int64_t x = 0; x < count_[0]; ++x)
+      for (std::int64_t x = first_layer; x < end_layer; ++x)
         for (std::int64_t y = 0; y < count_[1]; ++y)
           for (std::int64_t z = 0; z < count_[2]; ++z) visit(Cell{base_[0] + x, base_[1] + y, base_[2] + z});
       return;
     }
-    for (std::int64_t i = 0; i < count_[u_]; ++i) {
+    for (std::int64_t i = first_layer; i < end_layer; ++i) {
       auto [first, last] = row(i);
       for (std::int64_t j = first; j <= last; ++j) {
         if (!inside(uv_, i, j)) continue;

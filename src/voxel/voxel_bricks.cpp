@@ -1,80 +1,98 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "voxel/voxel_bricks.hpp"
 
-#include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <atomic>
 #include <bit>
-#include <cmath>
 #include <string>
 
-#include "core/glm.hpp"
 #include "vantage/error.hpp"
-#include "voxel/triangle_cells.hpp"
+#include "voxel/triangle_walk.hpp"
 #include "voxel/voxel_grid.hpp"
 
 namespace vantage {
 namespace {
 
-constexpr std::size_t compact_at = std::size_t{1} << 22;  // keys a thread collects before it drops its duplicates
+constexpr std::size_t least_compacted = std::size_t{1} << 22;  // keys a thread collects before it drops its duplicates
 
 void sort_unique(std::vector<std::uint64_t>& keys) {
   std::sort(keys.begin(), keys.end());
   keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
 }
 
-// Refuses a grid far beyond what ranks can number before any memory is spent on it. A triangle's area in voxels bounds
-// its cells from below but for slivers; triangles lying on each other are counted more than once, hence the wide
-// margin.
-void check_area(std::span<const Float3> positions, std::span<const std::span<const Triangle>> triangles,
-                const GridTransform& grid) {
-  double area = 0;
-  for (const auto& mesh : triangles)
-    for (const Triangle& triangle : mesh) {
-      const auto c = grid.corners(positions, triangle);
-      const glm::dvec3 a = glm::make_vec3(c[0].data());
-      area += 0.5 * length(cross(glm::make_vec3(c[1].data()) - a, glm::make_vec3(c[2].data()) - a));
-    }
-  if (!(area < 0x1p36))
+// Refuses a grid far beyond what ranks can number before any memory is spent on it; since an area bounds it loosely, by
+// a wide margin.
+void check_area(const TriangleWalk& triangles) {
+  if (!(triangles.area() < 0x1p36))
     throw Error(Errc::invalid_argument,
-                "the surveyed meshes would fill some " + std::to_string(area) +
+                "the surveyed meshes would fill some " + std::to_string(triangles.area()) +
                     " voxels, more than the 4294967294 that can be numbered; use a larger user size");
 }
 
-// Sorted keys of the bricks that a triangle touches. A brick's closed box is the union of its voxels' closed boxes, so
-// these are exactly the bricks that hold a marked voxel.
-std::vector<std::uint64_t> touched_bricks(std::span<const Float3> positions,
-                                          std::span<const std::span<const Triangle>> triangles,
-                                          const GridTransform& grid, std::int64_t bricks_per_side) {
-  tbb::enumerable_thread_specific<std::vector<std::uint64_t>> collected;
-  for (const auto& mesh : triangles)
-    tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(0, mesh.size()), [&](const tbb::blocked_range<std::size_t>& range) {
-          std::vector<std::uint64_t>& keys = collected.local();
-          for (std::size_t t = range.begin(); t != range.end(); ++t)
-            TriangleCells(grid.corners(positions, mesh[t]), bricks_per_side)
-                .for_each([&](const TriangleCells::Cell& cell) {
-                  const std::uint64_t key =
-                      morton_encode(static_cast<std::uint32_t>(cell[0]), static_cast<std::uint32_t>(cell[1]),
-                                    static_cast<std::uint32_t>(cell[2]));
-                  if (keys.empty() || keys.back() != key) keys.push_back(key);
-                });
-          if (keys.size() > compact_at) sort_unique(keys);
-        });
+// Sorted keys of the bricks that a triangle touches; nothing where it was stopped. A brick's closed box is the union of
+// its voxels' closed boxes, so these are exactly the bricks that hold a marked voxel.
+std::optional<std::vector<std::uint64_t>> touched_bricks(const TriangleWalk& triangles, const GridTransform& grid,
+                                                         std::int64_t bricks_per_side, const Progress& progress) {
+  struct Keys {
+    std::vector<std::uint64_t> keys;
+    std::size_t compact_at = least_compacted;
+  };
+  tbb::enumerable_thread_specific<Keys> collected;
+  const bool whole = triangles.for_each(grid, bricks_per_side, progress, [&](std::size_t) {
+    Keys& own = collected.local();
+    if (own.keys.size() > own.compact_at) {
+      sort_unique(own.keys);
+      own.compact_at = std::max(least_compacted, 2 * own.keys.size());
+    }
+    return [&keys = own.keys](const TriangleCells::Cell& cell) {
+      const std::uint64_t key = morton_encode(static_cast<std::uint32_t>(cell[0]), static_cast<std::uint32_t>(cell[1]),
+                                              static_cast<std::uint32_t>(cell[2]));
+      if (keys.empty() || keys.back() != key) keys.push_back(key);
+    };
+  });
+  if (!whole) return std::nullopt;
   std::vector<std::uint64_t> all;
-  for (auto& keys : collected) {
-    sort_unique(keys);
-    all.insert(all.end(), keys.begin(), keys.end());
-    keys = {};
+  for (Keys& own : collected) {
+    sort_unique(own.keys);
+    all.insert(all.end(), own.keys.begin(), own.keys.end());
+    own.keys = {};
   }
   tbb::parallel_sort(all.begin(), all.end());
   all.erase(std::unique(all.begin(), all.end()), all.end());
   return all;
 }
+
+// Sets the bits of the voxels that a triangle touches.
+class MarkVoxels {
+ public:
+  explicit MarkVoxels(VoxelBricks& bricks) : bricks_(bricks) {}
+  void operator()(const TriangleCells::Cell& cell) {
+    constexpr int shift = static_cast<int>(brick_bits);
+    const std::array<std::uint32_t, 3> c{static_cast<std::uint32_t>(cell[0]), static_cast<std::uint32_t>(cell[1]),
+                                         static_cast<std::uint32_t>(cell[2])};
+    const std::array<std::uint32_t, 3> b{c[0] >> shift, c[1] >> shift, c[2] >> shift};
+    if (b != at_) {
+      const std::uint32_t index = find_brick(bricks_.slots, b[0], b[1], b[2]);
+      // Rounding may take a voxel for touched where it does not take its brick for it; it lies 2^-50 beyond the
+      // triangle.
+      brick_ = index == no_brick ? nullptr : &bricks_.bricks[index];
+      at_ = b;
+    }
+    if (!brick_) return;
+    const std::uint32_t bit = brick_bit(c[0], c[1], c[2]);
+    const std::atomic_ref<std::uint32_t> word(brick_->mask[bit / 32]);
+    const std::uint32_t flag = std::uint32_t{1} << (bit % 32);
+    if (!(word.load(std::memory_order_relaxed) & flag)) word.fetch_or(flag, std::memory_order_relaxed);
+  }
+
+ private:
+  VoxelBricks& bricks_;
+  std::array<std::uint32_t, 3> at_{no_voxel, 0, 0};
+  VoxelBrick* brick_ = nullptr;
+};
 
 std::vector<BrickSlot> hash_bricks(std::span<const VoxelBrick> bricks) {
   const std::size_t count = std::bit_ceil(std::max<std::size_t>(2 * bricks.size(), 2));
@@ -114,52 +132,31 @@ std::uint32_t find_brick(std::span<const BrickSlot> slots, std::uint32_t x, std:
   }
 }
 
-VoxelBricks mark_bricks(std::span<const Float3> positions, std::span<const std::span<const Triangle>> triangles,
-                        const GridTransform& grid, int depth) {
-  check_area(positions, triangles, grid);
+std::optional<VoxelBricks> mark_bricks(std::span<const Float3> positions,
+                                       std::span<const std::span<const Triangle>> triangles, const GridTransform& grid,
+                                       int depth, const Progress& progress) {
+  const TriangleWalk walk(positions, triangles, grid);
+  check_area(walk);
   VoxelBricks result;
   const int shift = static_cast<int>(brick_bits);
   const std::int64_t bricks_per_side = depth > shift ? std::int64_t{1} << (depth - shift) : 1;
   {
-    const auto keys = touched_bricks(positions, triangles, grid.coarser(shift), bricks_per_side);
-    if (keys.size() >= empty_slot / 2)
-      throw Error(Errc::invalid_argument, "the surveyed meshes fill " + std::to_string(keys.size()) +
+    const auto keys = touched_bricks(walk, grid.coarser(shift), bricks_per_side, {.report = {}, .stop = progress.stop});
+    if (!keys) return std::nullopt;
+    if (keys->size() >= empty_slot / 2)
+      throw Error(Errc::invalid_argument, "the surveyed meshes fill " + std::to_string(keys->size()) +
                                               " bricks of voxels, more than can be numbered; use a larger user size");
-    result.bricks.resize(keys.size());
-    for (std::size_t b = 0; b < keys.size(); ++b) {
-      const auto [x, y, z] = morton_decode(keys[b]);
+    result.bricks.resize(keys->size());
+    for (std::size_t b = 0; b < keys->size(); ++b) {
+      const auto [x, y, z] = morton_decode((*keys)[b]);
       result.bricks[b].x = x;
       result.bricks[b].y = y;
       result.bricks[b].z = z;
     }
   }
   result.slots = hash_bricks(result.bricks);
-
-  const std::int64_t voxels_per_side = std::int64_t{1} << depth;
-  for (const auto& mesh : triangles)
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mesh.size()), [&](const tbb::blocked_range<std::size_t>&
-                                                                               range) {
-      std::array<std::uint32_t, 3> at{no_voxel, 0, 0};
-      VoxelBrick* brick = nullptr;
-      for (std::size_t t = range.begin(); t != range.end(); ++t)
-        TriangleCells(grid.corners(positions, mesh[t]), voxels_per_side).for_each([&](const TriangleCells::Cell& cell) {
-          const std::array<std::uint32_t, 3> c{static_cast<std::uint32_t>(cell[0]), static_cast<std::uint32_t>(cell[1]),
-                                               static_cast<std::uint32_t>(cell[2])};
-          const std::array<std::uint32_t, 3> b{c[0] >> shift, c[1] >> shift, c[2] >> shift};
-          if (b != at) {
-            const std::uint32_t index = find_brick(result.slots, b[0], b[1], b[2]);
-            // Rounding may take a voxel for touched where it does not take its brick for it; it lies 2^-50 beyond the
-            // triangle.
-            brick = index == no_brick ? nullptr : &result.bricks[index];
-            at = b;
-          }
-          if (!brick) return;
-          const std::uint32_t bit = brick_bit(c[0], c[1], c[2]);
-          const std::atomic_ref<std::uint32_t> word(brick->mask[bit / 32]);
-          const std::uint32_t flag = std::uint32_t{1} << (bit % 32);
-          if (!(word.load(std::memory_order_relaxed) & flag)) word.fetch_or(flag, std::memory_order_relaxed);
-        });
-    });
+  if (!walk.for_each(grid, std::int64_t{1} << depth, progress, [&](std::size_t) { return MarkVoxels(result); }))
+    return std::nullopt;
 
   // A brick whose every voxel fell to the same rounding would be empty; it may stay, ranks pass over it.
   for (VoxelBrick& brick : result.bricks) {

@@ -4,11 +4,13 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "scene/scene_data.hpp"
 #include "shared/voxel_types.h"
+#include "vantage/progress.hpp"
 
 namespace vantage {
 
@@ -33,8 +35,10 @@ struct VoxelBricks {
   std::vector<BrickSlot> slots;
   std::uint64_t voxels = 0;
 };
-VoxelBricks mark_bricks(std::span<const Float3> positions, std::span<const std::span<const Triangle>> triangles,
-                        const GridTransform& grid, int depth);
+// Nothing where it was stopped.
+std::optional<VoxelBricks> mark_bricks(std::span<const Float3> positions,
+                                       std::span<const std::span<const Triangle>> triangles, const GridTransform& grid,
+                                       int depth, const Progress& progress = {});
 
 // Index of the brick with these brick coordinates, or no_brick.
 std::uint32_t find_brick(std::span<const BrickSlot> slots, std::uint32_t x, std::uint32_t y, std::uint32_t z);

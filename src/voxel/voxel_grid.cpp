@@ -20,6 +20,10 @@ std::uint64_t brick_key(const VoxelBrick& brick) {
 }  // namespace
 
 VoxelGrid VoxelGrid::build(const SceneData& scene, double user_size_m) {
+  return *build(scene, user_size_m, Progress{});
+}
+
+std::optional<VoxelGrid> VoxelGrid::build(const SceneData& scene, double user_size_m, const Progress& progress) {
   const auto surveyed = surveyed_triangles(scene);
   const GridFit fit = fit_grid(scene, surveyed, user_size_m);
   VoxelGrid grid;
@@ -27,12 +31,15 @@ VoxelGrid VoxelGrid::build(const SceneData& scene, double user_size_m) {
   grid.inverse_size_ = fit.inverse_size;
   grid.voxel_size_ = 1.0 / fit.inverse_size;
   grid.min_ = fit.min;
-  VoxelBricks marked =
-      mark_bricks(scene.positions, surveyed, {{fit.min[0], fit.min[1], fit.min[2]}, fit.inverse_size}, fit.depth);
-  grid.size_ = marked.voxels;
-  grid.bricks_ = std::move(marked.bricks);
-  grid.slots_ = std::move(marked.slots);
-  grid.weights_ = voxel_weights(scene, grid);
+  std::optional<VoxelBricks> marked = mark_bricks(
+      scene.positions, surveyed, {{fit.min[0], fit.min[1], fit.min[2]}, fit.inverse_size}, fit.depth, progress);
+  if (!marked) return std::nullopt;
+  grid.size_ = marked->voxels;
+  grid.bricks_ = std::move(marked->bricks);
+  grid.slots_ = std::move(marked->slots);
+  auto weights = voxel_weights(scene, grid, {.report = {}, .stop = progress.stop});
+  if (!weights) return std::nullopt;
+  grid.weights_ = std::move(*weights);
   grid.total_weight_ = grid.weights_.empty()
                            ? grid.size_
                            : std::accumulate(grid.weights_.begin(), grid.weights_.end(), std::uint64_t{0});
@@ -91,7 +98,7 @@ std::vector<std::uint64_t> voxelize(std::span<const Float3> positions, std::span
   double inverse = 1 / voxel_size;
   if (1.0 / static_cast<float>(inverse) == voxel_size) inverse = static_cast<float>(inverse);
   const std::array<std::span<const Triangle>, 1> meshes{triangles};
-  const VoxelBricks marked = mark_bricks(positions, meshes, {min, inverse}, depth);
+  const VoxelBricks marked = *mark_bricks(positions, meshes, {min, inverse}, depth);
   std::vector<std::uint64_t> keys;
   keys.reserve(marked.voxels);
   for (const VoxelBrick& brick : marked.bricks)

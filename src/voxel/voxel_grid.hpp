@@ -11,6 +11,7 @@
 
 #include "scene/scene_data.hpp"
 #include "shared/voxel_types.h"
+#include "vantage/progress.hpp"
 
 namespace vantage {
 
@@ -27,6 +28,8 @@ class VoxelGrid {
   // nudged within that margin where a surveyed axis-aligned plane would lie on a voxel face (docs/method.md). Throws
   // Error invalid_argument: user size not positive, or so small that the depth exceeds max_voxel_depth.
   static VoxelGrid build(const SceneData& scene, double user_size_m);
+  // The same, told how far it is; nothing where it was stopped.
+  static std::optional<VoxelGrid> build(const SceneData& scene, double user_size_m, const Progress& progress);
 
   int depth() const { return depth_; }
   double voxel_size() const { return voxel_size_; }

@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "voxel/voxel_weights.hpp"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <atomic>
 
-#include "voxel/triangle_cells.hpp"
-#include "voxel/voxel_bricks.hpp"
+#include "voxel/triangle_walk.hpp"
 
 namespace vantage {
 namespace {
@@ -22,34 +18,36 @@ void raise_to(std::uint8_t& weight, std::uint8_t least) {
 
 }  // namespace
 
-std::vector<std::uint8_t> voxel_weights(const SceneData& scene, const VoxelGrid& grid) {
+std::optional<std::vector<std::uint8_t>> voxel_weights(const SceneData& scene, const VoxelGrid& grid,
+                                                       const Progress& progress) {
   std::uint32_t lowest = 255, highest = 1;
   for (const MeshInfo& mesh : scene.meshes) {
     if (mesh.role != Role::surveyed) continue;
     lowest = std::min(lowest, mesh.weight);
     highest = std::max(highest, mesh.weight);
   }
-  if (lowest >= highest) return {};
+  if (lowest >= highest) return std::vector<std::uint8_t>{};
   // Every surveyed voxel is touched by some surveyed mesh, so it weighs `lowest` at least.
   std::vector<std::uint8_t> weights(grid.size(), static_cast<std::uint8_t>(lowest));
-  const GridTransform transform{{grid.min()[0], grid.min()[1], grid.min()[2]}, grid.inverse_size()};
+  std::vector<std::span<const Triangle>> heavier;
+  std::vector<std::uint8_t> own;
   for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
-    const MeshInfo& mesh = scene.meshes[m];
-    if (mesh.role != Role::surveyed || mesh.weight == lowest) continue;
-    const std::uint32_t first = scene.ranges[m].first_triangle;
-    tbb::parallel_for(
-        tbb::blocked_range<std::uint32_t>(first, first + scene.ranges[m].triangle_count),
-        [&](const tbb::blocked_range<std::uint32_t>& range) {
-          for (std::uint32_t t = range.begin(); t != range.end(); ++t)
-            TriangleCells(transform.corners(scene.positions, scene.triangles[t]), std::int64_t{1} << grid.depth())
-                .for_each([&](const TriangleCells::Cell& c) {
-                  const std::uint32_t rank =
-                      grid.find(morton_encode(static_cast<std::uint32_t>(c[0]), static_cast<std::uint32_t>(c[1]),
-                                              static_cast<std::uint32_t>(c[2])));
-                  if (rank != no_voxel) raise_to(weights[rank], static_cast<std::uint8_t>(mesh.weight));
-                });
-        });
+    if (scene.meshes[m].role != Role::surveyed || scene.meshes[m].weight == lowest) continue;
+    heavier.push_back(
+        std::span(scene.triangles).subspan(scene.ranges[m].first_triangle, scene.ranges[m].triangle_count));
+    own.push_back(static_cast<std::uint8_t>(scene.meshes[m].weight));
   }
+  const GridTransform transform{{grid.min()[0], grid.min()[1], grid.min()[2]}, grid.inverse_size()};
+  const bool whole = TriangleWalk(scene.positions, heavier, transform)
+                         .for_each(transform, std::int64_t{1} << grid.depth(), progress, [&](std::size_t mesh) {
+                           return [&, weight = own[mesh]](const TriangleCells::Cell& c) {
+                             const std::uint32_t rank = grid.find(morton_encode(static_cast<std::uint32_t>(c[0]),
+                                                                                static_cast<std::uint32_t>(c[1]),
+                                                                                static_cast<std::uint32_t>(c[2])));
+                             if (rank != no_voxel) raise_to(weights[rank], weight);
+                           };
+                         });
+  if (!whole) return std::nullopt;
   return weights;
 }
 

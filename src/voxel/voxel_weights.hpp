@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "scene/scene_data.hpp"
@@ -11,7 +12,8 @@
 namespace vantage {
 
 // By rank, the largest weight of the surveyed meshes that touch the voxel. Empty where all surveyed meshes weigh alike:
-// only ratios matter. Parallel; the result does not depend on the number of threads.
-std::vector<std::uint8_t> voxel_weights(const SceneData& scene, const VoxelGrid& grid);
+// only ratios matter. Nothing where it was stopped. Parallel; the result does not depend on the number of threads.
+std::optional<std::vector<std::uint8_t>> voxel_weights(const SceneData& scene, const VoxelGrid& grid,
+                                                       const Progress& progress);
 
 }  // namespace vantage

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Makes calls of a small plan on Vulkan fail, one by one, and says what becomes of it:
-//   vantage-device-faults ENGINE [EVERY]
-// EVERY: each call is tried, or one of so many; docs/reliability.md has the table.
-#include <dlfcn.h>
+//   vantage-device-faults ENGINE [EVERY [FIRST]]
+// EVERY: each call is tried, or one of so many, from number FIRST on, which is 0; docs/reliability.md has the table.
+// With VANTAGE_FAULTS_UNWATCHED set, without the validation layer.
 #include <unistd.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 #include <optional>
 #include <string>
 
-#include "faults/fault_layer.hpp"
+#include "faults/open_layer.hpp"
 #include "faults/small_plan.hpp"
 
 namespace vantage::test {
@@ -32,33 +32,25 @@ constexpr std::array kinds{Kind{Fault::lost, "device lost"},
                            Kind{Fault::timeout, "wait timed out"},
                            Kind{Fault::late, "answers late"}};
 
-const FaultControl& open_layer() {
-  setenv("VK_ADD_LAYER_PATH", VANTAGE_FAULT_LAYER_FOLDER, 1);
-  setenv("VK_INSTANCE_LAYERS", "VK_LAYER_VANTAGE_faults", 1);
-  void* const library = dlopen(VANTAGE_FAULT_LAYER, RTLD_NOW);
-  void* const get = library ? dlsym(library, "vantage_fault_layer") : nullptr;
-  if (!get) std::fprintf(stderr, "no fault layer: %s\n", dlerror()), std::exit(1);
-  return *reinterpret_cast<GetFaultControl>(get)();
-}
-
 class Trial {
  public:
   Trial(Engine engine, const FaultControl& faults)
-      : engine_(engine), faults_(faults), plan_(engine, true), quiet_plan_(engine, false) {
+      : engine_(engine), faults_(faults), plan_(engine, watched()), quiet_plan_(engine, false) {
     front_ = reference();
     // Later plans share an instance, as long as it lives.
     befall(plan_, "cannot make an instance", 1, [&](std::uint64_t) { faults_.arm(Fault::host_memory, 0); });
     keeper_.emplace(kept(engine));
   }
 
-  int all(std::uint64_t every) {
+  int all(std::uint64_t every, std::uint64_t first) {
     for (const Kind& kind : kinds) {
       reference();
       const std::uint64_t calls = faults_.calls(kind.fault);
       if (calls == 0) complain("nothing that a fault can befall");
-      befall(plan_, kind.name, (calls + every - 1) / every,
-             [&](std::uint64_t k) { faults_.arm(kind.fault, k * every); });
+      befall(plan_, kind.name, (calls - std::min(calls, first) + every - 1) / every,
+             [&](std::uint64_t k) { faults_.arm(kind.fault, first + k * every); });
     }
+    if (first > 0) return failed_ ? 1 : 0;  // the rest is for whoever begins
     too_little_memory();
     slow_device();
     hangs();
@@ -66,13 +58,14 @@ class Trial {
   }
 
  private:
+  static bool watched() { return !std::getenv("VANTAGE_FAULTS_UNWATCHED"); }
   static Simulator kept(Engine engine) {
     const TemporaryFolder folder;
     write_built_in_scene("three-walls", 0, folder / "scene.glb");
     const Scanner scanner{.azimuth_step = Angle::degrees(30), .zenith_step = Angle::degrees(30)};
     return {Scene::load(folder / "scene.glb"),
             scanner,
-            {.engine = engine, .user_size_m = 1, .point_spacing_m = 0.5, .validation = true}};
+            {.engine = engine, .user_size_m = 1, .point_spacing_m = 0.5, .validation = watched()}};
   }
 
   void complain(const std::string& what) {
@@ -103,8 +96,8 @@ class Trial {
     for (std::uint64_t k = 0; k < many; ++k) {
       const std::int64_t before = faults_.alive();
       alarm(hang_seconds);
-      arm(k);
-      const Outcome outcome = attempt(plan, front_, disarm);
+      const Outcome outcome = attempt(
+          plan, front_, [&] { arm(k); }, disarm);
       alarm(0);
       ++outcomes[outcome.kind], ++calls[struck_];
       warned += outcome.kind == Outcome::Kind::same && !plan.warned().empty();
@@ -180,8 +173,9 @@ class Trial {
 
 int main(int argc, char** argv) {
   using namespace vantage;
-  if (argc < 2) return std::fprintf(stderr, "usage: vantage-device-faults ENGINE [EVERY]\n"), 2;
+  if (argc < 2) return std::fprintf(stderr, "usage: vantage-device-faults ENGINE [EVERY [FIRST]]\n"), 2;
   const auto& faults = test::open_layer();
   const auto every = argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 1;
-  return test::Trial(engine_from_string(argv[1]), faults).all(std::max(every, 1ull));
+  const auto first = argc > 3 ? std::strtoull(argv[3], nullptr, 10) : 0;
+  return test::Trial(engine_from_string(argv[1]), faults).all(std::max(every, 1ull), first);
 }

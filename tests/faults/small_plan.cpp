@@ -60,12 +60,14 @@ std::string SmallPlan::run(const std::filesystem::path& checkpoint, bool resume)
   return text_of(plan(simulator, area, clash, survey_problem(objectives, 2, 2), config, {.report = report}));
 }
 
-Outcome attempt(SmallPlan& plan, const std::string& front, const std::function<void()>& disarm) {
+Outcome attempt(SmallPlan& plan, const std::string& front, const std::function<void()>& arm,
+                const std::function<void()>& disarm) {
   using Kind = Outcome::Kind;
   const TemporaryFolder folder;
   const std::filesystem::path checkpoint = folder / "checkpoint";
   std::string error;
   try {
+    arm();
     const std::string found = plan.run(checkpoint, false);
     disarm();
     if (found != front) return {Kind::wrong, "another front"};

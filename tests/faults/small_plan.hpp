@@ -40,7 +40,8 @@ struct Outcome {
   std::string text;  // the error, or what is wrong
 };
 
-// `disarm` is called before it is tried whether the checkpoint is good.
-Outcome attempt(SmallPlan& plan, const std::string& front, const std::function<void()>& disarm);
+// `arm` is called just before the plan, and `disarm` just after it, before it is tried whether the checkpoint is good.
+Outcome attempt(SmallPlan& plan, const std::string& front, const std::function<void()>& arm,
+                const std::function<void()>& disarm);
 
 }  // namespace vantage::test

@@ -343,6 +343,8 @@ void File::read_structure() {
     error += problem.what();
   }
   while (!error.empty() && error.back() == '\n') error.pop_back();
+  // tinygltf makes texts of its parser's exceptions.
+  if (!read && error.find(std::bad_alloc().what()) != std::string::npos) throw std::bad_alloc();
   if (!read) throw malformed(error.empty() ? "it is not a glTF" : error);
   // tinygltf leaves out primitives that it cannot read.
   for (std::size_t i = 0; i < model_.meshes.size(); ++i) {

@@ -32,6 +32,8 @@ struct DeviceAbilities {
   // Hardware before software, discrete before integrated, then the most memory.
   bool better_than(const DeviceAbilities& other) const;
 };
+// What is left to this process of its largest device-local heap.
+std::uint64_t free_memory_of(const Instance& instance, VkPhysicalDevice device);
 DeviceAbilities abilities_of(const Instance& instance, VkPhysicalDevice device);
 
 }  // namespace vantage::vulkan

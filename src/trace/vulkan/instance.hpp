@@ -21,6 +21,7 @@ namespace vantage::vulkan {
   use(vkGetPhysicalDeviceProperties2) \
   use(vkGetPhysicalDeviceFeatures2) \
   use(vkGetPhysicalDeviceMemoryProperties) \
+  use(vkGetPhysicalDeviceMemoryProperties2) \
   use(vkGetPhysicalDeviceQueueFamilyProperties) \
   use(vkCreateDevice) \
   use(vkGetDeviceProcAddr) \

@@ -56,6 +56,15 @@ std::vector<EngineInfo> list_vulkan_engines(VulkanEngines engines) {
   return infos;
 }
 
+std::optional<std::uint64_t> free_device_memory(std::uint32_t device) {
+  try {
+    const auto instance = Instance::get(false);
+    return free_memory_of(*instance, instance->physical_devices().at(device));
+  } catch (const std::exception&) {  // whoever wants the device is told
+    return std::nullopt;
+  }
+}
+
 std::unique_ptr<Tracer> make_vulkan_tracer(const VulkanEngine& engine, std::optional<std::uint32_t> device,
                                            const TraceScene& scene) {
   const auto instance = Instance::get(validation_wanted(scene));

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trace/vulkan/memory_plan.hpp"
+
+#include <algorithm>
+#include <bit>
+
+#include "shared/bvh_types.h"
+#include "shared/trace_types.h"
+#include "shared/voxel_types.h"
+#include "trace/vulkan/count_plan.hpp"
+#include "trace/vulkan/sample_plan.hpp"
+
+namespace vantage::vulkan {
+namespace {
+
+constexpr double word = 4, vertex = 12, triangle = 12;
+constexpr double most_staging = 1 << 25;  // commands.cpp
+// Of a triangle, as measured (docs/reliability.md): nodes of the tree, most leaves of which have two; and of the
+// structure that a driver builds, with what it needs meanwhile.
+constexpr double tree_nodes = 0.6, structure = 112, scratch = 64;
+
+double tree(const DeviceLoad& load) {
+  if (load.engine == Engine::compute_bvh) return load.triangles * (tree_nodes * sizeof(BvhNode) + sizeof(BvhTriangle));
+  return load.triangles * (word + structure);
+}
+
+double build_only(const DeviceLoad& load) {
+  if (load.engine == Engine::compute_bvh) return 0;
+  return load.vertices * vertex + load.triangles * (triangle + scratch);
+}
+
+double grid(const DeviceLoad& load) {
+  const auto slots = std::bit_ceil(static_cast<std::uint64_t>(std::max(2 * load.bricks, 2.0)));
+  return load.bricks * sizeof(VoxelBrick) + static_cast<double>(slots) * sizeof(BrickSlot);
+}
+
+double shading(const DeviceLoad& load) {
+  if (!load.shaded) return 0;
+  return load.vertices * vertex * (load.normals ? 2 : 1) + load.triangles * (triangle + 2 * word);
+}
+
+double tiles(const DeviceLoad& load) {
+  if (load.rows == 0 || load.columns == 0) return 0;
+  const CountPlan plan(1, load.rows, load.columns, tile_side);
+  const double starts = load.engine == Engine::compute_bvh ? tile_starts * sizeof(TileStart) : 0;
+  return static_cast<double>(plan.list_words()) * (word + starts) +
+         double{CountPlan::stations_per_submission} * plan.tiles() * word;
+}
+
+double lists(const DeviceLoad& load) {
+  const SampleList room = sample_room(load.columns, load.software, 0);
+  return static_cast<double>(room.rays) * sizeof(SampleRay) + static_cast<double>(room.items) * (sizeof(SampleSight) + sizeof(SampleItem));
+}
+
+}  // namespace
+
+double device_bytes(const DeviceLoad& load) {
+  const double mask_words = load.stations > 32 ? 2 : 1;
+  const double counts = load.voxels * word * (1 + mask_words);
+  const double largest_upload =
+      std::max({load.triangles * sizeof(BvhTriangle), load.vertices * vertex, load.bricks * sizeof(VoxelBrick)});
+  const double kept = tree(load) + std::min(largest_upload, most_staging);
+  return kept + std::max(build_only(load), grid(load) + shading(load) + counts + tiles(load) + lists(load));
+}
+
+}  // namespace vantage::vulkan

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// All cells of a grid that triangles touch, in parallel, in steps between which it is told how far it is and may be
+// stopped.
+#pragma once
+
+#include <tbb/parallel_for.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "vantage/progress.hpp"
+#include "voxel/triangle_cells.hpp"
+#include "voxel/voxel_bricks.hpp"
+
+namespace vantage {
+
+class TriangleWalk {
+ public:
+  // Borrows positions and triangles; `grid` is the finest that they will be walked in.
+  TriangleWalk(std::span<const Float3> positions, std::span<const std::span<const Triangle>> meshes,
+               const GridTransform& grid);
+
+  // Area of all triangles in faces of cells. It bounds the cells from below but for slivers; triangles lying on each
+  // other are counted more than once.
+  double area() const { return area_; }
+
+  // Calls visit(cell) for each cell that a triangle touches, several times where several do. `make_visit(mesh)` makes
+  // one for some triangles of a mesh, on the thread that visits. Reports on the calling thread. Returns false where it
+  // was stopped.
+  template <class MakeVisit>
+  bool for_each(const GridTransform& grid, std::int64_t cells_per_side, const Progress& progress,
+                const MakeVisit& make_visit) const {
+    double done = 0;
+    for (std::size_t first = 0; first < pieces_.size();) {
+      if (progress.stopped()) return false;
+      std::size_t end = first;
+      for (double area = 0; end < pieces_.size() && area < step_; ++end) area += pieces_[end].area;
+      tbb::parallel_for(first, end, [&](std::size_t p) {
+        const Piece& piece = pieces_[p];
+        auto visit = make_visit(piece.mesh);
+        for (std::size_t t = piece.first; t < piece.end; ++t)
+          TriangleCells(grid.corners(positions_, meshes_[piece.mesh][t]), cells_per_side)
+              .for_each(visit, piece.part, piece.parts);
+      });
+      for (; first < end; ++first) done += pieces_[first].area;
+      progress(done / total_);
+    }
+    return true;
+  }
+
+ private:
+  // Consecutive triangles of a mesh, or of one that is large the part number `part` of so many.
+  struct Piece {
+    std::size_t mesh, first, end;
+    double area;
+    std::int64_t part = 0, parts = 1;
+  };
+
+  std::span<const Float3> positions_;
+  std::span<const std::span<const Triangle>> meshes_;
+  std::vector<Piece> pieces_;
+  double area_ = 0;
+  double total_ = 0;  // of the pieces, each triangle with a cell or so for itself
+  double step_ = 0;
+};
+
+}  // namespace vantage
