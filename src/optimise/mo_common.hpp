@@ -34,7 +34,8 @@ class MoCommon : public Common {
   template <typename Members>
   void reassess(Members& members, std::span<const double> values) {
     require_reassessable(values, members.size());
-    for (std::size_t k = 0; k < members.size(); ++k) set_objectives(members[k], values.subspan(k * objectives, objectives));
+    for (std::size_t k = 0; k < members.size(); ++k)
+      set_objectives(members[k], values.subspan(k * objectives, objectives));
     forget_progress();
   }
 
