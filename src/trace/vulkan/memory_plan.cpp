@@ -49,7 +49,8 @@ double tiles(const DeviceLoad& load) {
 
 double lists(const DeviceLoad& load) {
   const SampleList room = sample_room(load.columns, load.software, 0);
-  return static_cast<double>(room.rays) * sizeof(SampleRay) + static_cast<double>(room.items) * (sizeof(SampleSight) + sizeof(SampleItem));
+  return static_cast<double>(room.rays) * sizeof(SampleRay) +
+         static_cast<double>(room.items) * (sizeof(SampleSight) + sizeof(SampleItem));
 }
 
 }  // namespace
