@@ -153,11 +153,13 @@ struct Simulator::Impl {
   const SceneData& data() const { return scene.data(); }
 
   TraceStation trace_station(const Station& station, std::size_t place) const {
+    // Further off floats say nothing of where, and what is kept of rounding would swallow the scene.
+    constexpr double farthest_m = 1e6;
     const Vec3 local = station.position - data().origin;
-    if (!(std::isfinite(local.x) && std::isfinite(local.y) && std::isfinite(local.z))) {
+    if (!(std::abs(local.x) <= farthest_m && std::abs(local.y) <= farthest_m && std::abs(local.z) <= farthest_m)) {
       std::ostringstream what;
       what << "station " << place + 1 << " stands at (" << station.position.x << ", " << station.position.y << ", "
-           << station.position.z << "); a position must be finite";
+           << station.position.z << "); a position must be finite and within 1000 km of the scene";
       throw Error(Errc::invalid_argument, what.str());
     }
     const StationSetup& setup = station.setup;

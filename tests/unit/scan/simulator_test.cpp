@@ -320,7 +320,11 @@ TEST(Scan, InactiveAndImpossibleStations) {
       simulator.scan({{0, 0, 0}, false}, {.outputs = scan_range}, [](const ScanChunk&) { ADD_FAILURE() << "a chunk"; });
   EXPECT_EQ(summary.rays, 0u);
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_NE(message_of([&] { simulator.scan({{0, nan, 0}}, {.place = 3}, {}); }).find("station 4"), std::string::npos);
+  for (const double far : {nan, -1e198, 2e6})
+    EXPECT_NE(message_of([&] {
+                simulator.scan({{0, far, 0}}, {.place = 3}, {});
+              }).find("station 4"),
+              std::string::npos);
 }
 
 TEST(Evaluate, AgreesWithScans) {
