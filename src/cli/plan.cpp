@@ -110,8 +110,8 @@ struct PlanOptions {
         ->excludes(exact_flag);
     add_value(
         command, "--sample-from", "N|P%",
-        "Search with so many voxels at first, and with more as networks come to differ less; a front does so from "
-        "a twentieth of the sample where --sample is not given",
+        "Look at networks with so many voxels first, and with more at those that might be kept; otherwise all are "
+        "measured with the whole sample",
         [this](const std::string& text, const std::string& what) { sample_from = parse_sample(text, what); })
         ->group("Search")
         ->excludes(exact_flag);
@@ -148,12 +148,6 @@ std::uint64_t default_sample(const SurveyProblem& problem, std::uint64_t voxels)
   if (problem.fewest) return std::min(sample_for_fewest, voxels);
   const std::uint64_t enough = std::max<std::uint64_t>(voxels / 4, 5'000);
   return std::min({overlap ? sample_for_overlap : sample_for_coverage, enough, voxels});
-}
-
-// What a front is looked at with first. On small sites that would be too few to tell anything.
-std::uint64_t default_sample_from(std::uint64_t sample) {
-  constexpr std::uint64_t share = 16, least = 1'000;
-  return sample / share >= least ? sample / share : 0;
 }
 
 std::vector<PlacedStation> heads_of(LoadedSite& site, const std::vector<StationText>& stations,

@@ -92,4 +92,12 @@ std::vector<EngineInfo> SiteOptions::engines_here() const {
   return found;
 }
 
+Simulator SiteOptions::simulator(const Scene& site) const {
+  SimulatorConfig own = config();
+  const EngineInfo engine = engines_here().front();
+  own.engine = engine.engine;
+  if (engine.engine != Engine::embree) own.device_index = engine.device_index;
+  return Simulator(site, scanner(), own);
+}
+
 }  // namespace vantage::bench

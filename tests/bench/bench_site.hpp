@@ -40,6 +40,8 @@ struct SiteOptions {
   TracedSite traced(const Scene& site, const Network& network) const;
   // The usable ones among those named.
   std::vector<EngineInfo> engines_here() const;
+  // By the first of these.
+  Simulator simulator(const Scene& site) const;
 };
 
 class Stopwatch {

@@ -160,11 +160,7 @@ void FrontOptions::add(CLI::App& command) {
 
 void run_front(const FrontOptions& options) {
   const Scene scene = Scene::load(options.site.scene);
-  SimulatorConfig config = options.site.config();
-  const EngineInfo engine = options.site.engines_here().front();
-  config.engine = engine.engine;
-  if (engine.engine != Engine::embree) config.device_index = engine.device_index;
-  Simulator simulator(scene, options.site.scanner(), config);
+  Simulator simulator = options.site.simulator(scene);
   const SearchArea area = SearchArea::build(scene);
   const ClashChecker clash(scene);
   const auto [fewest, most] = range_of(options.stations);
