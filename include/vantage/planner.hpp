@@ -97,6 +97,10 @@ struct PlanConfig {
   /// kept. That sample grows, by four each time, to `sample_voxels` when networks have come to differ by less than it
   /// can tell; what is kept is then measured anew (docs/method.md).
   std::uint64_t sample_from = 0;
+  /// Where not 0: every so many iterations other voxels are drawn, and what is kept is measured anew with them; at the
+  /// end with voxels that nothing was chosen by. All that is then kept is confirmed, but for what cannot be on the
+  /// front, and the front is chosen by every ray. 0: one sample for the whole search, and the front that it shows.
+  std::size_t renew_iterations = 0;
   /// Head positions of an initial network: the first mean of CMA-ES, a first member of MO-CMA-ES; empty: random. Where
   /// the number of stations is searched, the first N of them are a first member for each N that they suffice for.
   std::vector<Vec3> start = {};
@@ -173,6 +177,8 @@ struct PlanResult {
   /// scaled value.
   double hypervolume = 0;
   double exact_hypervolume = 0;  ///< The same by every ray; NaN where an abort left entries unconfirmed.
+  /// Networks that were kept to the end and not confirmed: another was better by more than the standard errors allow.
+  std::size_t spared = 0;
   std::uint64_t evaluations = 0;
   std::uint64_t redrawn = 0, drawn = 0;   ///< Stations drawn again out of a hole or a clash, and all drawn.
   std::uint64_t resumed_evaluations = 0;  ///< How many of the evaluations a checkpoint brought.

@@ -120,6 +120,9 @@ struct EvaluateOptions {
 /// What a sampled evaluation draws.
 struct SampleOptions {
   std::uint64_t voxels = 20'000;  ///< Number of surveyed voxels; as many as there are: all of them.
+  /// So many voxels are passed over first, in the order of the draw. Samples from 0, n, 2n, … of n voxels each have
+  /// none in common until all voxels were in one; a smaller one from the same place is part of a larger.
+  std::uint64_t from = 0;
   bool overlap = true;
   bool stop_at_goal = false;  ///< Stop counting a voxel's points at the goal density.
   /// Where wanted: told the points of every network in each voxel of the sample (`Simulator::sampled_voxels`, in that
@@ -172,9 +175,9 @@ class Simulator {
   std::uint32_t voxel_weight(std::uint64_t rank) const;
   /// Their surfaces. REQUIRES: ranks ascending, without duplicates, all below voxel_count().
   std::vector<VoxelPatch> voxel_patches(std::span<const std::uint32_t> ranks) const;
-  /// Ranks of the voxels that `evaluate_sampled` draws for `SampleOptions::voxels`, ascending. Fixed by the seed.
-  /// Throws Error invalid_argument for none.
-  std::vector<std::uint32_t> sampled_voxels(std::uint64_t voxels) const;
+  /// Ranks of the voxels that `evaluate_sampled` draws for `SampleOptions::voxels` and `from`, ascending. Fixed by the
+  /// seed. Throws Error invalid_argument for none.
+  std::vector<std::uint32_t> sampled_voxels(std::uint64_t voxels, std::uint64_t from = 0) const;
 
   /// Scans one station in chunks of rows; `sink` sees them in ray order. An inactive station has no chunks. A cancelled
   /// scan says so in `cancelled`. Throws Error invalid_argument (a position or angle that is not finite, a scanner that

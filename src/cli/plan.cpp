@@ -115,6 +115,14 @@ struct PlanOptions {
         [this](const std::string& text, const std::string& what) { sample_from = parse_sample(text, what); })
         ->group("Search")
         ->excludes(exact_flag);
+    add_value(command, "--renew", "K",
+              "Draw other voxels every K iterations, so that nothing is kept for its luck, and choose the front by "
+              "every ray from all that is kept at the end",
+              [this](const std::string& text, const std::string& what) {
+                config.renew_iterations = parse_count(text, what, 1, 100'000'000);
+              })
+        ->group("Search")
+        ->excludes(exact_flag);
     add_text(command, "-o,--output", "DIR", "Folder for the results; the scene's name and -plan otherwise", output)
         ->group("Results");
     add_value(command, "--save-every", "T", "Time between checkpoints, which --resume goes on from; 1min otherwise",
@@ -325,6 +333,7 @@ std::string summary(const PlanResult& result, std::size_t chosen, const std::str
   text += fmt::format("{} evaluations, hypervolume {:.4f}", result.evaluations, result.hypervolume);
   if (result.config.sample_voxels > 0 && !std::isnan(result.exact_hypervolume))
     text += fmt::format(" ({:.4f} by every ray)", result.exact_hypervolume);
+  if (result.spared > 0) text += fmt::format(", {} networks not worth every ray", result.spared);
   text += fmt::format(", stopped: {}\n", to_string(result.stop_reason));
   const PlanEntry& entry = result.front[chosen];
   text += "\n" +

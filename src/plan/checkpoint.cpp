@@ -17,7 +17,7 @@ namespace vantage {
 namespace {
 
 constexpr std::string_view kMagic = "vantage checkpoint\n";
-constexpr std::uint32_t kVersion = 3;
+constexpr std::uint32_t kVersion = 4;
 
 struct Writer {
   std::string bytes;
@@ -81,7 +81,8 @@ void write_checkpoint(const std::filesystem::path& file, const Checkpoint& check
   const SearchSnapshot& snapshot = checkpoint.snapshot;
   w.put(std::string_view(snapshot.optimiser));
   w.put(snapshot.drawn), w.put(snapshot.redrawn);
-  w.put(snapshot.sample_step), w.put(snapshot.sample_since), w.put(snapshot.sample_error);
+  const GrowingSample::State& sample = snapshot.sample;
+  w.put(sample.step), w.put(sample.since), w.put(sample.from), w.put(sample.renewed), w.put(snapshot.sample_error);
   w.put(std::uint64_t{snapshot.history.size()});
   for (const PlanIteration& line : snapshot.history) {
     w.put(std::uint64_t{line.iteration}), w.put(std::uint64_t{line.evaluations}), w.put(line.hypervolume),
@@ -129,7 +130,9 @@ Checkpoint parse_checkpoint(std::string_view bytes, const std::filesystem::path&
   SearchSnapshot& snapshot = checkpoint.snapshot;
   snapshot.optimiser = r.text();
   snapshot.drawn = r.get<std::uint64_t>(), snapshot.redrawn = r.get<std::uint64_t>();
-  snapshot.sample_step = r.get<std::uint64_t>(), snapshot.sample_since = r.get<std::uint64_t>();
+  GrowingSample::State& sample = snapshot.sample;
+  sample.step = r.get<std::uint64_t>(), sample.since = r.get<std::uint64_t>();
+  sample.from = r.get<std::uint64_t>(), sample.renewed = r.get<std::uint64_t>();
   snapshot.sample_error = r.get<double>();
   snapshot.history.resize(r.length(40));
   for (PlanIteration& line : snapshot.history) {

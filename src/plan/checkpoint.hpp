@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "plan/growing_sample.hpp"
 #include "plan/network_evaluator.hpp"
 #include "vantage/planner.hpp"
 
@@ -20,7 +21,7 @@ struct SearchSnapshot {
   std::string optimiser;  // as its save() wrote it; empty: not yet asked
   std::vector<PlanIteration> history;
   std::uint64_t drawn = 0, redrawn = 0;
-  std::uint64_t sample_step = 0, sample_since = 0;  // of GrowingSample
+  GrowingSample::State sample;
   double sample_error = 0;
 };
 

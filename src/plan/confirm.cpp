@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -13,6 +14,9 @@ namespace vantage {
 namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+// By how many standard errors of the difference one network must be better, so that the other need not be confirmed.
+// That both were counted on the same voxels makes the difference better known than that.
+constexpr double kBeyondDoubt = 3;
 
 // What the optimiser kept of a network: its objectives, and nothing where it breaks a requirement.
 void take_objectives(PlanEntry& entry, const ParetoPoint& point, const SurveyProblem& problem) {
@@ -41,14 +45,50 @@ bool comes_before(const PlanEntry& a, const PlanEntry& b, const Measures& measur
   return a.x < b.x;
 }
 
+// Entries than which another is better in all objectives beyond doubt.
+std::vector<bool> beaten(std::span<const PlanEntry> entries, const SurveyProblem& problem, const Measures& measures) {
+  const std::size_t m = problem.objectives.size();
+  std::vector<double> scaled(entries.size() * m), errors(entries.size() * m);
+  for (std::size_t k = 0; k < entries.size(); ++k) {
+    scale_objectives(problem, entries[k].x, best_known(entries[k], measures), 0, std::span(scaled).subspan(k * m, m));
+    for (std::size_t j = 0; j < m; ++j) {
+      const Objective& objective = problem.objectives[j];
+      const double scale = std::abs(objective.best - objective.worst);
+      if (!objective.by_alpha && scale > 0)
+        errors[k * m + j] = entries[k].values.at(objective.name).standard_error / scale;
+    }
+  }
+  const auto beats = [&](std::size_t a, std::size_t b) {
+    bool better = false;
+    for (std::size_t j = 0; j < m; ++j) {
+      const double ahead = scaled[b * m + j] - scaled[a * m + j];
+      if (!(ahead >= kBeyondDoubt * std::hypot(errors[a * m + j], errors[b * m + j]))) return false;
+      better |= ahead > 0;
+    }
+    return better;
+  };
+  std::vector<bool> found(entries.size());
+  for (std::size_t b = 0; b < entries.size(); ++b)
+    for (std::size_t a = 0; a < entries.size() && !found[b]; ++a) found[b] = beats(a, b);
+  return found;
+}
+
+// Without those for which it is said.
+template <class T>
+void erase_said(std::vector<T>& all, const std::vector<bool>& said) {
+  std::size_t k = 0;
+  std::erase_if(all, [&](const T&) { return said[k++]; });
+}
+
 }  // namespace
 
-std::vector<PlanEntry> confirm_front(const SearchOutcome& found, const DecisionSpace& space,
-                                     const SurveyProblem& problem, const Measures& measures,
-                                     std::uint64_t sample_voxels, NetworkEvaluator& evaluator, const PlanWatch& watch) {
+ConfirmedFront confirm_front(const SearchOutcome& found, const DecisionSpace& space, const SurveyProblem& problem,
+                             const Measures& measures, std::uint64_t sample_voxels, NetworkEvaluator& evaluator,
+                             const PlanWatch& watch) {
   using Clock = std::chrono::steady_clock;
   const auto start = Clock::now();
-  std::vector<PlanEntry> entries;
+  ConfirmedFront front;
+  std::vector<PlanEntry>& entries = front.entries;
   std::vector<PlacedNetwork> networks;
   for (const ParetoPoint& point : found.front) {
     PlanEntry& entry = entries.emplace_back();
@@ -77,13 +117,20 @@ std::vector<PlanEntry> confirm_front(const SearchOutcome& found, const DecisionS
   // A search that samples did not keep its standard errors, nor what is no objective. The same sample is drawn again.
   const bool sampled = sample_voxels > 0;
   if (sampled && !networks.empty()) {
-    if (const auto estimates = evaluator.estimate(networks, sample_voxels, NetworkEvaluator::Which::all,
-                                                  {.report = {}, .stop = watch.abort})) {
+    if (const auto estimates = evaluator.estimate(networks, {sample_voxels, found.sample_from},
+                                                  NetworkEvaluator::Which::all, {.report = {}, .stop = watch.abort})) {
       for (std::size_t k = 0; k < entries.size(); ++k) {
         for (std::size_t m = 0; m < measures.all.size(); ++m) {
           MeasuredValue& value = entries[k].values.at(measures.all[m].name);
           value.searched = (*estimates)[k][m].value, value.standard_error = (*estimates)[k][m].standard_error;
         }
+      }
+      // Requirements may be missed by one voxel that only every ray sees.
+      if (problem.requirements.empty()) {
+        const std::vector<bool> need_not = beaten(entries, problem, measures);
+        erase_said(entries, need_not);
+        erase_said(networks, need_not);
+        front.spared = found.front.size() - entries.size();
       }
     }
   }
@@ -115,7 +162,21 @@ std::vector<PlanEntry> confirm_front(const SearchOutcome& found, const DecisionS
   report(entries.size(), 0);
   std::sort(entries.begin(), entries.end(),
             [&](const PlanEntry& a, const PlanEntry& b) { return comes_before(a, b, measures); });
-  return entries;
+  return front;
+}
+
+void keep_undominated(std::vector<PlanEntry>& entries, const SurveyProblem& problem, const Measures& measures) {
+  const std::size_t m = problem.objectives.size();
+  std::vector<double> scaled(entries.size() * m);
+  for (std::size_t k = 0; k < entries.size(); ++k) {
+    const std::vector<double> values = best_known(entries[k], measures);
+    scale_objectives(problem, entries[k].x, values, missed_by(problem, measures, values),
+                     std::span(scaled).subspan(k * m, m));
+  }
+  const std::vector<std::size_t> ranks = non_dominated_ranks(scaled, m);
+  std::vector<bool> dominated;
+  for (const std::size_t rank : ranks) dominated.push_back(rank > 0);
+  erase_said(entries, dominated);
 }
 
 double judge_by_every_ray(std::vector<PlanEntry>& entries, const SurveyProblem& problem, const Measures& measures) {

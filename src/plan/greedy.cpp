@@ -59,7 +59,7 @@ GreedyResult choose_greedily(const Site& site, NetworkEvaluator& evaluator, cons
   double covered = 0;
   if (!kept.empty()) {
     const std::vector<PlacedNetwork> one{kept};
-    const auto value = evaluator.evaluate(one, config.sample_voxels, {.report = {}, .stop = progress.stop});
+    const auto value = evaluator.evaluate(one, {.voxels = config.sample_voxels}, {.report = {}, .stop = progress.stop});
     ++result.evaluations;
     result.cancelled = !value;
     if (!value) return result;
@@ -103,7 +103,7 @@ GreedyResult choose_greedily(const Site& site, NetworkEvaluator& evaluator, cons
     const std::size_t chunk = evaluator.chunk() == 0 ? networks.size() : evaluator.chunk();
     for (std::size_t at = 0; at < networks.size(); at += chunk) {
       const std::size_t n = std::min(chunk, networks.size() - at);
-      const auto values = evaluator.evaluate(std::span(networks).subspan(at, n), config.sample_voxels,
+      const auto values = evaluator.evaluate(std::span(networks).subspan(at, n), {.voxels = config.sample_voxels},
                                              {.report = {}, .stop = progress.stop});
       if (!values || progress.stopped()) {
         result.cancelled = true;

@@ -13,7 +13,8 @@ constexpr double kLeastGain = 0.1;
 
 }  // namespace
 
-GrowingSample::GrowingSample(const PlanConfig& config) {
+GrowingSample::GrowingSample(const PlanConfig& config)
+    : renew_(config.sample_voxels > 0 ? config.renew_iterations : 0) {
   if (config.sample_from > 0)
     for (std::uint64_t size = config.sample_from; size < config.sample_voxels; size *= kGrowth) sizes_.push_back(size);
   sizes_.push_back(config.sample_voxels);
@@ -27,9 +28,15 @@ bool GrowingSample::outgrown(std::span<const PlanIteration> history, double erro
   return now > 0 && now - then < kLeastGain * error;
 }
 
-void GrowingSample::restore(std::uint64_t step, std::uint64_t since) {
-  step_ = std::min<std::size_t>(step, sizes_.size() - 1);
-  since_ = since;
+std::vector<VoxelWindow> GrowingSample::first_looks() const {
+  std::vector<VoxelWindow> looks;
+  for (std::size_t k = 0; k < step_; ++k) looks.push_back({sizes_[k], from_});
+  return looks;
+}
+
+void GrowingSample::restore(const State& state) {
+  step_ = std::min<std::size_t>(state.step, sizes_.size() - 1);
+  since_ = state.since, from_ = state.from, renewed_ = state.renewed;
 }
 
 }  // namespace vantage

@@ -21,20 +21,20 @@ constexpr std::size_t kMostKnown = 65'536;  // 44 MB at 15 stations
 }  // namespace
 
 std::optional<std::vector<std::vector<double>>> CachingEvaluator::evaluate(std::span<const PlacedNetwork> networks,
-                                                                           std::uint64_t voxels,
+                                                                           const VoxelWindow& sample,
                                                                            const Progress& progress) {
   std::vector<std::string> keys;
   std::vector<PlacedNetwork> fresh;
   std::unordered_map<std::string, std::size_t> fresh_index;
-  if (known_.size() > kMostKnown || voxels != voxels_) known_.clear();
-  voxels_ = voxels;
+  if (known_.size() > kMostKnown || sample != sample_) known_.clear();
+  sample_ = sample;
   for (const PlacedNetwork& network : networks) {
     keys.push_back(key_of(network));
     if (!known_.contains(keys.back()) && fresh_index.try_emplace(keys.back(), fresh.size()).second)
       fresh.push_back(network);
   }
   if (!fresh.empty()) {
-    const auto values = evaluator_.evaluate(fresh, voxels, progress);
+    const auto values = evaluator_.evaluate(fresh, sample, progress);
     if (!values) return std::nullopt;
     simulated_ += fresh.size();
     for (const auto& [key, index] : fresh_index) known_.emplace(key, (*values)[index]);

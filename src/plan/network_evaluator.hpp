@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -15,6 +16,12 @@
 namespace vantage {
 
 using PlacedNetwork = std::vector<PlacedStation>;
+
+// So many voxels, from so far on in the draw. None: every ray.
+struct VoxelWindow {
+  std::uint64_t voxels = 0, from = 0;
+  friend bool operator==(const VoxelWindow&, const VoxelWindow&) = default;
+};
 
 // With every ray.
 struct ConfirmedNetwork {
@@ -30,14 +37,14 @@ class NetworkEvaluator {
   virtual ~NetworkEvaluator() = default;
   // How many networks evaluate() takes best at once; 0: as many as there are.
   virtual std::size_t chunk() const = 0;
-  // Values of the searched measures of each network, in order, by a sample of so many voxels, 0: by every ray. Empty
-  // when stopped half way.
+  // Values of the searched measures of each network, in order. Empty when stopped half way.
   virtual std::optional<std::vector<std::vector<double>>> evaluate(std::span<const PlacedNetwork> networks,
-                                                                   std::uint64_t voxels, const Progress& progress) = 0;
+                                                                   const VoxelWindow& sample,
+                                                                   const Progress& progress) = 0;
   enum class Which { searched, all };
   // The same values with standard errors, of the searched measures or of all.
   virtual std::optional<std::vector<std::vector<Estimate>>> estimate(std::span<const PlacedNetwork> networks,
-                                                                     std::uint64_t voxels, Which measures,
+                                                                     const VoxelWindow& sample, Which measures,
                                                                      const Progress& progress) = 0;
   // With every ray; empty what was not reached before it was stopped.
   virtual std::vector<std::optional<ConfirmedNetwork>> confirm(std::span<const PlacedNetwork> networks,
@@ -51,13 +58,13 @@ class CachingEvaluator {
   explicit CachingEvaluator(NetworkEvaluator& evaluator) : evaluator_(evaluator) {}
   std::size_t chunk() const { return evaluator_.chunk(); }
   std::optional<std::vector<std::vector<double>>> evaluate(std::span<const PlacedNetwork> networks,
-                                                           std::uint64_t voxels, const Progress& progress);
+                                                           const VoxelWindow& sample, const Progress& progress);
   std::uint64_t simulated() const { return simulated_; }
 
  private:
   NetworkEvaluator& evaluator_;
-  std::unordered_map<std::string, std::vector<double>> known_;  // by `voxels_`
-  std::uint64_t voxels_ = 0;
+  std::unordered_map<std::string, std::vector<double>> known_;  // by `sample_`
+  VoxelWindow sample_;
   std::uint64_t simulated_ = 0;
 };
 

@@ -225,7 +225,7 @@ class FewestPlan {
   // `count`: of the stations that were searched for.
   std::vector<PlanEntry> confirmed(const SearchOutcome& found, std::size_t count) {
     if (found.front.empty()) return {};
-    return run_.confirm(found, narrowed(count), watch_);
+    return run_.confirm(found, narrowed(count), watch_).entries;
   }
   // A network of which nothing is known yet.
   std::vector<PlanEntry> confirmed(std::span<const PlacedStation> placed) {

@@ -78,7 +78,7 @@ SearchOutcome Run::search(const SurveyProblem& narrowed, const PlanConfig& confi
        .stop = watch.stop});
 }
 
-std::vector<PlanEntry> Run::confirm(const SearchOutcome& found, const SurveyProblem& narrowed, const PlanWatch& watch) {
+ConfirmedFront Run::confirm(const SearchOutcome& found, const SurveyProblem& narrowed, const PlanWatch& watch) {
   const DecisionSpace space(site_, narrowed);
   return confirm_front(found, space, narrowed, measures_, config_.sample_voxels, *evaluator_, watch);
 }

@@ -33,7 +33,7 @@ class Run {
   // With the asked problem narrowed to so many stations, other limits, or left as it is.
   SearchOutcome search(const SurveyProblem& narrowed, const PlanConfig& config, const std::vector<double>& start,
                        const PlanWatch& watch);
-  std::vector<PlanEntry> confirm(const SearchOutcome& found, const SurveyProblem& narrowed, const PlanWatch& watch);
+  ConfirmedFront confirm(const SearchOutcome& found, const SurveyProblem& narrowed, const PlanWatch& watch);
   // Everything of a result but its front, as found.
   PlanResult result(const SearchOutcome& found) const;
 

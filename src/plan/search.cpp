@@ -62,8 +62,9 @@ class Search {
       std::rethrow_exception(lost);
     }
     save();
-    if (!sample_.full() && reason != StopReason::cancelled) {
+    if ((!sample_.full() || sample_.renews()) && reason != StopReason::cancelled) {
       sample_.fill();  // not saved: a search that goes on does so by its own sample
+      if (sample_.renews()) sample_.renew(history_.size());
       assess();
     }
     return outcome(reason);
@@ -107,9 +108,12 @@ class Search {
       scale_objectives(setup_.problem, x(k), values[k], missed_by(setup_.problem, setup_.measures, values[k]),
                        std::span(f).subspan(k * m, m));
     optimiser_->tell(f);
-    if (record() && !sample_.full()) {
-      if (error_ == 0 && !assess()) return interrupted();
-      if (sample_.outgrown(history_, error_, population_)) return grow();
+    if (record()) {
+      if (!sample_.full()) {
+        if (error_ == 0 && !assess()) return interrupted();
+        if (sample_.outgrown(history_, error_, population_)) return grow();
+      }
+      if (sample_.stale(history_.size())) return renew();
     }
     if (checkpoint_due()) {
       take_snapshot();
@@ -132,8 +136,8 @@ class Search {
       return left;
     };
     if (optimiser_->evaluations() > 0 && setup_.problem.objectives.size() > 1) {
-      for (const std::uint64_t voxels : sample_.first_looks()) {
-        const auto seen = setup_.evaluator.estimate(still_open(), voxels, NetworkEvaluator::Which::searched, progress);
+      for (const VoxelWindow& look : sample_.first_looks()) {
+        const auto seen = setup_.evaluator.estimate(still_open(), look, NetworkEvaluator::Which::searched, progress);
         if (!seen) return std::nullopt;
         std::vector<std::size_t> promising;
         for (std::size_t i = 0; i < open.size(); ++i) {
@@ -146,7 +150,7 @@ class Search {
         if (open.empty()) return values;
       }
     }
-    auto found = evaluator_.evaluate(still_open(), sample_.voxels(), progress);
+    auto found = evaluator_.evaluate(still_open(), sample_.window(), progress);
     if (!found) return std::nullopt;
     for (std::size_t i = 0; i < open.size(); ++i) values[open[i]] = std::move((*found)[i]);
     return values;
@@ -184,8 +188,17 @@ class Search {
   }
 
   StopReason grow() {
-    const GrowingSample before = sample_;
-    sample_.grow(history_.size());
+    GrowingSample grown = sample_;
+    grown.grow(history_.size());
+    return go_by(grown);
+  }
+  StopReason renew() {
+    GrowingSample fresh = sample_;
+    fresh.renew(history_.size());
+    return go_by(fresh);
+  }
+  StopReason go_by(const GrowingSample& sample) {
+    const GrowingSample before = std::exchange(sample_, sample);
     if (!assess()) {
       sample_ = before;
       return interrupted();
@@ -201,7 +214,7 @@ class Search {
     const std::vector<ParetoPoint> population = optimiser_->population();
     std::vector<PlacedNetwork> networks;
     for (const ParetoPoint& point : population) networks.push_back(space_.decode(point.x));
-    const auto found = setup_.evaluator.estimate(networks, sample_.voxels(), NetworkEvaluator::Which::searched,
+    const auto found = setup_.evaluator.estimate(networks, sample_.window(), NetworkEvaluator::Which::searched,
                                                  {.report = {}, .stop = setup_.stop});
     if (!found) return false;
     const SurveyProblem& problem = setup_.problem;
@@ -327,8 +340,7 @@ class Search {
                  .history = history_,
                  .drawn = drawn_,
                  .redrawn = redrawn_,
-                 .sample_step = sample_.step(),
-                 .sample_since = sample_.since(),
+                 .sample = sample_.state(),
                  .sample_error = error_};
     since_.clear();
   }
@@ -367,14 +379,15 @@ class Search {
     snapshot_ = std::move(checkpoint->snapshot);
     history_ = snapshot_.history;
     drawn_ = snapshot_.drawn, redrawn_ = snapshot_.redrawn;
-    sample_.restore(snapshot_.sample_step, snapshot_.sample_since), error_ = snapshot_.sample_error;
+    sample_.restore(snapshot_.sample), error_ = snapshot_.sample_error;
     replay_ = std::move(checkpoint->since);
     resumed_ = evaluated_ = optimiser_->evaluations();
     earlier_seconds_ = checkpoint->seconds, earlier_trace_seconds_ = checkpoint->trace_seconds;
   }
 
   SearchOutcome outcome(StopReason reason) const {
-    return {.front = optimiser_->front(),
+    return {.front = sample_.renews() ? optimiser_->population() : optimiser_->front(),
+            .sample_from = sample_.window().from,
             .history = history_,
             .hypervolume = optimiser_->hypervolume(),
             .evaluations = optimiser_->evaluations(),

@@ -33,7 +33,9 @@ struct SearchSetup {
 };
 
 struct SearchOutcome {
+  // Where the sample is drawn anew all that was kept: the front is chosen from it by every ray.
   std::vector<ParetoPoint> front;
+  std::uint64_t sample_from = 0;  // where the last sample began
   std::vector<PlanIteration> history;
   double hypervolume = 0;
   std::uint64_t evaluations = 0, resumed_evaluations = 0;

@@ -33,13 +33,14 @@ std::size_t SimulatorEvaluator::chunk() const {
 }
 
 std::optional<SimulatorEvaluator::Counted> SimulatorEvaluator::count(std::span<const Network> networks,
-                                                                     std::uint64_t voxels, const Needs& needs,
+                                                                     const VoxelWindow& sample, const Needs& needs,
                                                                      bool errors, const Progress& progress) {
   Counted counted;
   counted.surveyed.resize(networks.size());
   if (needs.counts) {
     auto counts = count_with(simulator_, networks,
-                             {.voxels = voxels,
+                             {.voxels = sample.voxels,
+                              .from = sample.from,
                               .overlap = needs.pairs,
                               .stop_at_goal = true,
                               .registration = needs.registration,
@@ -50,7 +51,8 @@ std::optional<SimulatorEvaluator::Counted> SimulatorEvaluator::count(std::span<c
   }
   if (needs.surroundings) {
     auto counts = count_with(*options_.surroundings, networks,
-                             {.voxels = std::min(voxels, options_.surroundings_voxels),
+                             {.voxels = std::min(sample.voxels, options_.surroundings_voxels),
+                              .from = sample.from,
                               .overlap = true,
                               .registration = registered_around(needs),
                               .registration_groups = errors},
@@ -90,11 +92,11 @@ MeasuredNetwork SimulatorEvaluator::measured(const NetworkCounts& counts, const 
 }
 
 std::optional<std::vector<std::vector<double>>> SimulatorEvaluator::evaluate(std::span<const PlacedNetwork> placed,
-                                                                             std::uint64_t voxels,
+                                                                             const VoxelWindow& sample,
                                                                              const Progress& progress) {
   const Needs needs = measures_.searched_needs();
   const std::vector<Network> networks = to_networks(placed);
-  const auto counts = count(networks, voxels, needs, false, progress);
+  const auto counts = count(networks, sample, needs, false, progress);
   if (!counts) return std::nullopt;
   const auto measured_at = [&](std::size_t k) {
     return measured(counts->surveyed[k], needs.surroundings ? &counts->surroundings[k] : nullptr, placed[k],
@@ -109,13 +111,13 @@ std::optional<std::vector<std::vector<double>>> SimulatorEvaluator::evaluate(std
 }
 
 std::optional<std::vector<std::vector<Estimate>>> SimulatorEvaluator::estimate(std::span<const PlacedNetwork> placed,
-                                                                               std::uint64_t voxels, Which which,
+                                                                               const VoxelWindow& sample, Which which,
                                                                                const Progress& progress) {
   const bool all = which == Which::all;
   const Needs needs = all ? measures_.all_needs() : measures_.searched_needs();
   const auto estimated = std::span(measures_.all).first(all ? measures_.all.size() : measures_.searched);
   const std::vector<Network> networks = to_networks(placed);
-  const auto counts = count(networks, voxels, needs, true, progress);
+  const auto counts = count(networks, sample, needs, true, progress);
   if (!counts) return std::nullopt;
   const auto measured_at = [&](std::size_t k) {
     return measured(counts->surveyed[k], needs.surroundings ? &counts->surroundings[k] : nullptr, placed[k],

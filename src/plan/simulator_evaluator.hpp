@@ -29,9 +29,10 @@ class SimulatorEvaluator final : public NetworkEvaluator {
 
   std::size_t chunk() const override;
   std::optional<std::vector<std::vector<double>>> evaluate(std::span<const PlacedNetwork> networks,
-                                                           std::uint64_t voxels, const Progress& progress) override;
+                                                           const VoxelWindow& sample,
+                                                           const Progress& progress) override;
   std::optional<std::vector<std::vector<Estimate>>> estimate(std::span<const PlacedNetwork> networks,
-                                                             std::uint64_t voxels, Which measures,
+                                                             const VoxelWindow& sample, Which measures,
                                                              const Progress& progress) override;
   std::vector<std::optional<ConfirmedNetwork>> confirm(std::span<const PlacedNetwork> networks,
                                                        const Progress& progress) override;
@@ -42,8 +43,8 @@ class SimulatorEvaluator final : public NetworkEvaluator {
     std::vector<NetworkCounts> surveyed, surroundings;  // the latter empty where nothing needs them
   };
   // `errors`: whether standard errors are wanted of them.
-  std::optional<Counted> count(std::span<const Network> networks, std::uint64_t voxels, const Needs& needs, bool errors,
-                               const Progress& progress);
+  std::optional<Counted> count(std::span<const Network> networks, const VoxelWindow& sample, const Needs& needs,
+                               bool errors, const Progress& progress);
   // Of no voxels: with every ray.
   std::optional<std::vector<NetworkCounts>> count_with(Simulator& simulator, std::span<const Network> networks,
                                                        const SampleOptions& sample, const Progress& progress);

@@ -195,34 +195,40 @@ struct Simulator::Impl {
     return sum;
   }
 
-  std::vector<std::uint32_t> drawn(std::uint64_t size) const {
+  std::vector<std::uint32_t> drawn(std::uint64_t size, std::uint64_t from) const {
     if (size == 0) throw Error(Errc::invalid_argument, "a sample must have at least one voxel");
-    return voxel_sample(grid->size(), size, config.seed);
+    return voxel_sample(grid->size(), size, config.seed, from);
   }
 
-  // A search asks for few sizes all the time.
-  const std::vector<std::uint32_t>& sample(std::uint64_t size) {
-    return samples.get(
-        [&](const std::vector<std::uint32_t>& ranks) {
-          return size > 0 && ranks.size() == std::min(size, grid->size());
-        },
-        [&] { return drawn(size); });
+  struct Sample {
+    std::uint64_t size, from;
+    std::vector<std::uint32_t> ranks;
+  };
+  // A search asks for few of them all the time.
+  const Sample& sample(std::uint64_t size, std::uint64_t from) {
+    if (size >= grid->size()) size = grid->size(), from = 0;
+    return samples.get([&](const Sample& one) { return one.size == size && one.from == from; },
+                       [&] {
+                         return Sample{size, from, drawn(size, from)};
+                       });
   }
 
-  // The planes of a sample, or of all voxels. Range noise is the scanner's, simulated or not.
-  RegistrationJob registration_of(std::span<const std::uint32_t> ranks, const RegistrationModel& model, bool groups) {
+  // The planes of a sample, or of all voxels, which is the one from 0. Range noise is the scanner's, simulated or not.
+  RegistrationJob registration_of(std::span<const std::uint32_t> ranks, std::uint64_t from,
+                                  const RegistrationModel& model, bool groups) {
     if (!(model.rho_m > 0 && std::isfinite(model.rho_m) && model.patch_m > 0 && std::isfinite(model.patch_m))) {
       std::ostringstream what;
       what << "registration: the modelling error is " << model.rho_m << " m over patches of " << model.patch_m
            << " m; both must be above 0";
       throw Error(Errc::invalid_argument, what.str());
     }
-    const std::shared_ptr<const Patches>& own = patches.get(
-        [&](const std::shared_ptr<const Patches>& one) {
-          return one->patches.size() == ranks.size() && one->model == model;
+    const SamplePatches& own = patches.get(
+        [&](const SamplePatches& one) {
+          return one.from == from && one.patches->patches.size() == ranks.size() && one.patches->model == model;
         },
-        [&]() -> std::shared_ptr<const Patches> {
-          return std::make_shared<Patches>(make_patches(data(), *grid, ranks, make_pattern(registered.front()), model));
+        [&] {
+          return SamplePatches{from, std::make_shared<Patches>(
+                                         make_patches(data(), *grid, ranks, make_pattern(registered.front()), model))};
         });
     if (patch_scanners.empty()) {
       const auto solid_angle = [](const Scanner& scanner) {
@@ -232,8 +238,13 @@ struct Simulator::Impl {
         patch_scanners.push_back({std::make_shared<const NoiseModel>(make_noise_model(scanner, config.seed)),
                                   static_cast<float>(solid_angle(registered.front()) / solid_angle(scanner))});
     }
-    return {own, patch_scanners, groups};
+    return {own.patches, patch_scanners, groups};
   }
+
+  struct SamplePatches {
+    std::uint64_t from;
+    std::shared_ptr<const Patches> patches;
+  };
 
   Scene scene;
   std::vector<Scanner> scanners;
@@ -242,8 +253,8 @@ struct Simulator::Impl {
   double goal = 0;
   std::vector<TraceScanner> traced;  // of the scanners
   std::vector<Scanner> registered;   // those of the scans that are registered
-  Recent<std::vector<std::uint32_t>> samples;
-  Recent<std::shared_ptr<const Patches>> patches;
+  Recent<Sample> samples;
+  Recent<SamplePatches> patches;
   std::vector<PatchScanner> patch_scanners;
   std::unique_ptr<Tracer> tracer;
 };
@@ -290,7 +301,9 @@ std::vector<VoxelPatch> Simulator::voxel_patches(std::span<const std::uint32_t> 
   return patches;
 }
 
-std::vector<std::uint32_t> Simulator::sampled_voxels(std::uint64_t voxels) const { return impl_->drawn(voxels); }
+std::vector<std::uint32_t> Simulator::sampled_voxels(std::uint64_t voxels, std::uint64_t from) const {
+  return impl_->drawn(voxels, from);
+}
 
 void Simulator::stand_for(std::span<const Scanner> scanners) {
   impl_->registered.assign(scanners.begin(), scanners.end());
@@ -351,7 +364,7 @@ NetworkCounts Simulator::evaluate(const Network& network, const EvaluateOptions&
   if (options.registration && !counts.cancelled) {
     std::vector<std::uint32_t> ranks(voxel_count());
     std::iota(ranks.begin(), ranks.end(), 0u);
-    const RegistrationJob job = impl_->registration_of(ranks, *options.registration, false);
+    const RegistrationJob job = impl_->registration_of(ranks, 0, *options.registration, false);
     take_registration(counts, sum_patches(job, active, size, field->stations, 0));
   }
   return counts;
@@ -390,7 +403,8 @@ std::vector<NetworkCounts> Simulator::evaluate_sampled(std::span<const Network> 
   check_registration(options.registration, options.overlap);
   const bool large = std::ranges::any_of(networks, [](const Network& n) { return n.size() > mask_bits; });
   if (large && networks.size() > 1) return evaluate_one_by_one(*this, networks, options, progress);
-  const std::vector<std::uint32_t>& sample = impl_->sample(options.voxels);
+  const Simulator::Impl::Sample& drawn = impl_->sample(options.voxels, options.from);
+  const std::vector<std::uint32_t>& sample = drawn.ranks;
   std::vector<NetworkCounts> all(networks.size());
   // Networks without an active station are not the engine's concern.
   std::vector<std::vector<TraceStation>> traced;
@@ -418,7 +432,7 @@ std::vector<NetworkCounts> Simulator::evaluate_sampled(std::span<const Network> 
   };
   std::optional<RegistrationJob> registration;
   if (options.registration)
-    registration = impl_->registration_of(sample, *options.registration, options.registration_groups);
+    registration = impl_->registration_of(sample, drawn.from, *options.registration, options.registration_groups);
   const Tracer::SampleJob job{.sample = sample,
                               .groups = sample_groups,
                               .masks = options.overlap,

@@ -48,7 +48,8 @@ std::uint64_t golden_step(std::uint64_t population) {
 
 }  // namespace
 
-std::vector<std::uint32_t> voxel_sample(std::uint64_t population, std::uint64_t size, std::uint64_t seed) {
+std::vector<std::uint32_t> voxel_sample(std::uint64_t population, std::uint64_t size, std::uint64_t seed,
+                                        std::uint64_t from) {
   assert(population < (std::uint64_t{1} << 32));
   std::vector<std::uint32_t> ranks(std::min(size, population));
   if (size >= population) {
@@ -57,6 +58,7 @@ std::vector<std::uint32_t> voxel_sample(std::uint64_t population, std::uint64_t 
   }
   const std::uint64_t step = golden_step(population);
   auto rank = static_cast<std::uint64_t>(RandomStream(seed, sample_stream).uniform() * static_cast<double>(population));
+  rank = (rank + from % population * step) % population;
   for (std::uint32_t& r : ranks) {
     r = static_cast<std::uint32_t>(rank);
     rank = (rank + step) % population;

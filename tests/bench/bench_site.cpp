@@ -92,11 +92,18 @@ std::vector<EngineInfo> SiteOptions::engines_here() const {
   return found;
 }
 
-Simulator SiteOptions::simulator(const Scene& site) const {
+Simulator SiteOptions::simulator(const Scene& site, std::span<const std::size_t> devices) const {
   SimulatorConfig own = config();
   const EngineInfo engine = engines_here().front();
   own.engine = engine.engine;
-  if (engine.engine != Engine::embree) own.device_index = engine.device_index;
+  const std::vector<DeviceChoice> all = all_devices(engine.engine);
+  for (const std::size_t device : devices) {
+    if (device >= all.size())
+      throw Error(Errc::invalid_argument, "there is no device " + std::to_string(device) + " among " +
+                                              std::to_string(all.size()) + ", counted from 0");
+    own.devices.push_back(all[device]);
+  }
+  if (devices.empty() && engine.engine != Engine::embree) own.device_index = engine.device_index;
   return Simulator(site, scanner(), own);
 }
 

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -40,8 +41,8 @@ struct SiteOptions {
   TracedSite traced(const Scene& site, const Network& network) const;
   // The usable ones among those named.
   std::vector<EngineInfo> engines_here() const;
-  // By the first of these.
-  Simulator simulator(const Scene& site) const;
+  // By the first of these; on those of the devices that have it, counted as they are found, or else on the best one.
+  Simulator simulator(const Scene& site, std::span<const std::size_t> devices = {}) const;
 };
 
 class Stopwatch {

@@ -149,10 +149,15 @@ void FrontOptions::add(CLI::App& command) {
   command.add_option("--population", population, "Networks of the front")->capture_default_str();
   command.add_option("--iterations", iterations, "Of so many evaluations each")->capture_default_str();
   command.add_option("--batch", batch, "Offspring at once; 0: by the engine")->capture_default_str();
-  command.add_option("--samples", samples, "Voxels to search with, or N..M where the sample grows, a curve each")
+  command
+      .add_option("--samples", samples,
+                  "Voxels to search with, N..M where the sample grows, N/R or N..M/R where it is drawn anew every R "
+                  "iterations; a "
+                  "curve each")
       ->delimiter(',')
       ->capture_default_str();
   command.add_option("--seeds", seeds, "A search of each sample with each")->delimiter(',')->capture_default_str();
+  command.add_option("--device", devices, "GPUs to search on, counted from 0; the best one otherwise")->delimiter(',');
   command.add_option("--first", first_s, "Seconds after which the front is first looked at")->capture_default_str();
   command.add_option("--ratio", ratio, "Of the times of two looks")->capture_default_str();
   command.add_option("-o", picture, "Draw it: .png or .svg");
@@ -160,7 +165,7 @@ void FrontOptions::add(CLI::App& command) {
 
 void run_front(const FrontOptions& options) {
   const Scene scene = Scene::load(options.site.scene);
-  Simulator simulator = options.site.simulator(scene);
+  Simulator simulator = options.site.simulator(scene, options.devices);
   const SearchArea area = SearchArea::build(scene);
   const ClashChecker clash(scene);
   const auto [fewest, most] = range_of(options.stations);
@@ -174,9 +179,12 @@ void run_front(const FrontOptions& options) {
   std::vector<Curve> curves;
   for (const std::uint64_t seed : options.seeds)
     for (const std::string& sample : options.samples) {
-      const auto [from, to] = range_of(sample);
+      const auto slash = sample.find('/');
+      const auto [from, to] = range_of(sample.substr(0, slash));
+      const std::size_t renew = slash == std::string::npos ? 0 : range_of(sample.substr(slash + 1)).first;
       PlanConfig search{.population = options.population, .iterations = options.iterations, .batch = options.batch};
       search.sample_voxels = std::min(to, simulator.voxel_count()), search.sample_from = from < to ? from : 0;
+      search.renew_iterations = renew;
       search.seed = seed;
       Curve& curve = curves.emplace_back(Curve{sample, seed, {}});
       const Stopwatch watch;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "unit/plan/toy_survey.hpp"
@@ -20,7 +21,7 @@ Confirmed confirmed(const SurveyProblem& problem, std::uint64_t sampled, test::T
   const Site site = test::toy_site();
   const DecisionSpace space(site, problem);
   Confirmed result{.found = test::toy_search(problem, test::toy_config(), evaluator), .entries = {}};
-  result.entries = confirm_front(result.found, space, problem, evaluator.measures, sampled, evaluator, watch);
+  result.entries = confirm_front(result.found, space, problem, evaluator.measures, sampled, evaluator, watch).entries;
   return result;
 }
 
@@ -89,10 +90,39 @@ TEST(ConfirmFront, NetworksInHolesAreConfirmedToo) {
   SearchOutcome found;
   found.front = {{.x = std::vector<double>(8, 0.5), .f = {1}}};
   test::ToyEvaluator evaluator;
-  const auto entries = confirm_front(found, space, problem, evaluator.measures, 0, evaluator, {});
+  const auto entries = confirm_front(found, space, problem, evaluator.measures, 0, evaluator, {}).entries;
   ASSERT_EQ(entries.size(), 1u);
   EXPECT_TRUE(entries[0].confirmed);
   EXPECT_EQ(entries[0].stations[0].status, StationStatus::hole);
+}
+
+TEST(ConfirmFront, SparesWhatIsBeatenBeyondDoubt) {
+  const Site site = test::toy_site();
+  const SurveyProblem problem = test::toy_problem("coverage-overlap-fix");
+  const DecisionSpace space(site, problem);
+  test::ToyEvaluator evaluator;
+  SearchOutcome found;
+  found.front = test::toy_search(problem, test::toy_config(), evaluator).front;
+  const std::size_t good = found.front.size();
+  // A network in one place, seen by no target, among others that a plan would keep.
+  ParetoPoint bad{.x = std::vector<double>(8, 0.02), .f = {1, 1}};
+  for (std::size_t k = 1; k < 8; k += 2) bad.x[k] = 0.3 * static_cast<double>(k) / 8;
+  found.front.push_back(bad);
+  const double coverage = test::ToyEvaluator::coverage_of(space.decode(bad.x)),
+               overlap = test::ToyEvaluator::overlap_of(space.decode(bad.x));
+  // Standard errors are 0.01 and 0.02, of two networks each.
+  const bool beyond_doubt = std::ranges::any_of(found.front, [&](const ParetoPoint& point) {
+    const auto stations = space.decode(point.x);
+    return test::ToyEvaluator::coverage_of(stations) > coverage + 3 * std::sqrt(2) * 0.01 &&
+           test::ToyEvaluator::overlap_of(stations) > overlap + 3 * std::sqrt(2) * 0.02;
+  });
+  ASSERT_TRUE(beyond_doubt);
+  evaluator.confirmed = 0;
+  const ConfirmedFront front = confirm_front(found, space, problem, evaluator.measures, 100, evaluator, {});
+  EXPECT_EQ(front.spared, 1u);
+  EXPECT_EQ(front.entries.size(), good);
+  EXPECT_EQ(evaluator.confirmed, good);
+  for (const PlanEntry& entry : front.entries) EXPECT_NE(entry.x, bad.x);
 }
 
 // Entries of made-up exact values; what the search saw is the opposite and must not count.

@@ -18,13 +18,13 @@ TEST(CachingEvaluator, SimulatesEachNetworkOnce) {
   CachingEvaluator caching(evaluator);
   const PlacedNetwork a{at(1, 2, 3), at(4, 5, 6)}, b{at(4, 5, 6), at(1, 2, 3)};
   const std::vector<PlacedNetwork> networks{a, b, a, a};
-  const auto values = caching.evaluate(networks, 0, {});
+  const auto values = caching.evaluate(networks, {}, {});
   ASSERT_TRUE(values);
   ASSERT_EQ(values->size(), 4u);
   EXPECT_EQ(evaluator.evaluated, 2u);  // another order is another network: a station's place keys its noise
   EXPECT_EQ((*values)[0][0], test::ToyEvaluator::coverage_of(a));
   EXPECT_EQ((*values)[2][1], test::ToyEvaluator::overlap_of(a));
-  caching.evaluate(networks, 0, {});
+  caching.evaluate(networks, {}, {});
   EXPECT_EQ(evaluator.evaluated, 2u);
   EXPECT_EQ(caching.simulated(), 2u);
 }
@@ -35,7 +35,7 @@ TEST(CachingEvaluator, TellsNetworksApartByAllThatAnObjectiveMaySee) {
   const PlacedNetwork one{at(1, 2, 3)}, clash{at(1, 2, 3), at(9, 9, 9, StationStatus::clash)},
       hole{at(1, 2, 3), at(9, 9, 9, StationStatus::hole)}, elsewhere{at(1, 2, 3), at(8, 9, 9, StationStatus::clash)};
   const std::vector<PlacedNetwork> networks{one, clash, hole, elsewhere};
-  caching.evaluate(networks, 0, {});
+  caching.evaluate(networks, {}, {});
   EXPECT_EQ(evaluator.evaluated, 4u);
 }
 
@@ -45,8 +45,8 @@ TEST(CachingEvaluator, RemembersNothingOfAStoppedBatch) {
   std::stop_source stop;
   stop.request_stop();
   const std::vector<PlacedNetwork> networks{{at(1, 2, 3)}};
-  EXPECT_FALSE(caching.evaluate(networks, 0, {.report = {}, .stop = stop.get_token()}));
-  EXPECT_TRUE(caching.evaluate(networks, 0, {}));
+  EXPECT_FALSE(caching.evaluate(networks, {}, {.report = {}, .stop = stop.get_token()}));
+  EXPECT_TRUE(caching.evaluate(networks, {}, {}));
   EXPECT_EQ(evaluator.evaluated, 1u);
 }
 

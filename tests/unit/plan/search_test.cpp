@@ -146,10 +146,63 @@ TEST_P(EveryProblem, AGrowingSampleLeavesNoLuck) {
   // What is told of the front is what all of the sample says.
   for (const ParetoPoint& point : found.front) {
     const std::vector<PlacedNetwork> one{space.decode(point.x)};
-    const std::vector<double> values = growing.evaluate(one, config.sample_voxels, {})->front();
+    const std::vector<double> values = growing.evaluate(one, {.voxels = config.sample_voxels}, {})->front();
     EXPECT_EQ(point.f, scaled_objectives(problem_, point.x, values));
   }
   EXPECT_NEAR(found.hypervolume, large.hypervolume, 0.1);
+}
+
+PlanConfig renewing_config() {
+  PlanConfig config = toy_config();
+  config.sample_voxels = 400, config.sample_from = 100, config.renew_iterations = 3;
+  return config;
+}
+
+TEST_P(EveryProblem, ResumesToTheSameBitsWithASampleDrawnAnew) { expect_resumed(problem_, renewing_config(), 0.5); }
+
+TEST_P(EveryProblem, EndsWithVoxelsThatNothingWasChosenBy) {
+  ToyEvaluator evaluator;
+  evaluator.noise = 0.5;
+  evaluator.at_once = 0;
+  const PlanConfig config = renewing_config();
+  const SearchOutcome found = toy_search(problem_, config, evaluator);
+  const auto drawn = static_cast<std::uint64_t>(found.history.size()) / config.renew_iterations;
+  EXPECT_EQ(found.sample_from, (drawn + 1) * config.sample_voxels);
+  const Site site = test::toy_site();
+  const DecisionSpace space(site, problem_);
+  for (const ParetoPoint& point : found.front) {
+    const std::vector<PlacedNetwork> one{space.decode(point.x)};
+    const std::vector<double> values = evaluator.evaluate(one, {config.sample_voxels, found.sample_from}, {})->front();
+    EXPECT_EQ(point.f, scaled_objectives(problem_, point.x, values));
+  }
+}
+
+// What is kept of many draws is kept for what it is: by every ray it comes to what the search says, where one draw
+// flatters what was chosen by it.
+TEST(Search, SamplesDrawnAnewDoNotFlatter) {
+  const SurveyProblem problem = test::toy_problem("coverage-overlap-fix");
+  double flattered = 0, left = 0;
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    for (const bool renewed : {false, true}) {
+      ToyEvaluator evaluator;
+      evaluator.noise = 0.5;
+      evaluator.at_once = 0;
+      PlanConfig config = renewing_config();
+      config.seed = seed, config.sample_from = 0, config.iterations = 30;
+      if (!renewed) config.renew_iterations = 0;
+      const SearchOutcome found = toy_search(problem, config, evaluator);
+      const Site site = test::toy_site();
+      const DecisionSpace space(site, problem);
+      std::vector<double> exact;
+      for (const ParetoPoint& point : found.front) {
+        const std::vector<PlacedNetwork> one{space.decode(point.x)};
+        const std::vector<double> f = scaled_objectives(problem, point.x, evaluator.evaluate(one, {}, {})->front());
+        exact.insert(exact.end(), f.begin(), f.end());
+      }
+      (renewed ? left : flattered) += found.hypervolume - hypervolume(exact, 2, std::vector<double>{1, 1});
+    }
+  }
+  EXPECT_LT(std::abs(left), flattered / 2);
 }
 
 // With a sample that says nothing wrong, whom a first look refuses is refused by all of it.

@@ -102,16 +102,18 @@ class ToyEvaluator final : public NetworkEvaluator {
   }
 
   // One and the same for the same network and sample.
-  double luck_of(const PlacedNetwork& network, std::uint64_t sample, std::size_t measure) const {
-    if (noise == 0 || sample == 0) return 0;
-    double phase = 7 * std::log(static_cast<double>(sample)) + static_cast<double>(measure);
+  double luck_of(const PlacedNetwork& network, const VoxelWindow& sample, std::size_t measure) const {
+    if (noise == 0 || sample.voxels == 0) return 0;
+    double phase = 7 * std::log(static_cast<double>(sample.voxels)) + 0.1 * static_cast<double>(sample.from) +
+                   static_cast<double>(measure);
     for (const PlacedStation& s : network) phase += 1e3 * s.position.x + 1.7e3 * s.position.y;
-    return noise * std::sqrt(2 / static_cast<double>(sample)) * std::sin(phase);
+    return noise * std::sqrt(2 / static_cast<double>(sample.voxels)) * std::sin(phase);
   }
 
   std::size_t chunk() const override { return at_once; }
   std::optional<std::vector<std::vector<double>>> evaluate(std::span<const PlacedNetwork> networks,
-                                                           std::uint64_t sample, const Progress& progress) override {
+                                                           const VoxelWindow& sample,
+                                                           const Progress& progress) override {
     largest_batch = std::max(largest_batch, networks.size());
     std::vector<std::vector<double>> values;
     for (const PlacedNetwork& network : networks) {
@@ -120,12 +122,12 @@ class ToyEvaluator final : public NetworkEvaluator {
       auto& all = values.emplace_back();
       for (std::size_t m = 0; m < measures.searched; ++m)
         all.push_back(value_of(measures.all[m], network) + luck_of(network, sample, m));
-      ++evaluated, voxels += sample;
+      ++evaluated, voxels += sample.voxels;
     }
     return values;
   }
   std::optional<std::vector<std::vector<Estimate>>> estimate(std::span<const PlacedNetwork> networks,
-                                                             std::uint64_t sample, Which which,
+                                                             const VoxelWindow& sample, Which which,
                                                              const Progress& progress) override {
     if (progress.stopped()) return std::nullopt;
     std::vector<std::vector<Estimate>> estimates;
@@ -134,10 +136,10 @@ class ToyEvaluator final : public NetworkEvaluator {
       const std::size_t wanted = which == Which::all ? measures.all.size() : measures.searched;
       for (std::size_t m = 0; m < wanted; ++m)
         all.push_back({value_of(measures.all[m], network) + luck_of(network, sample, m),
-                       noise > 0                           ? noise / std::sqrt(static_cast<double>(sample))
+                       noise > 0                           ? noise / std::sqrt(static_cast<double>(sample.voxels))
                        : measures.all[m].name == "overlap" ? 0.02
                                                            : 0.01});
-      ++estimated, voxels += sample;
+      ++estimated, voxels += sample.voxels;
     }
     return estimates;
   }

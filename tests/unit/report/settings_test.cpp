@@ -190,6 +190,7 @@ const std::vector<Change<PlanConfig>> kPlan{
     {"batch", [](PlanConfig& c) { c.batch = 3; }},
     {"sample_voxels", [](PlanConfig& c) { c.sample_voxels = 100; }},
     {"sample_from", [](PlanConfig& c) { c.sample_from = 10; }},
+    {"renew_iterations", [](PlanConfig& c) { c.renew_iterations = 10; }},
     {"start",
      [](PlanConfig& c) {
        c.start = {{1, 2, 3}};

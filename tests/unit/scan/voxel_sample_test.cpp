@@ -73,5 +73,24 @@ TEST(VoxelSample, EstimatesSmoothFieldsWell) {
   EXPECT_LT(std::sqrt(squares), 0.1 * 0.7 / std::sqrt(2000.0));
 }
 
+// Windows of one walk: the first few of each are part of it, and together they are all ranks.
+TEST(VoxelSample, WindowsHaveNothingInCommon) {
+  constexpr std::uint64_t population = 10'007, size = 1000, seed = 4;
+  std::vector<std::uint32_t> all;
+  for (std::uint64_t from = 0; from < population; from += size) {
+    const auto window = voxel_sample(population, std::min(size, population - from), seed, from);
+    all.insert(all.end(), window.begin(), window.end());
+    const auto first = voxel_sample(population, 100, seed, from);
+    if (window.size() >= first.size()) EXPECT_TRUE(std::ranges::includes(window, first)) << from;
+    EXPECT_TRUE(std::ranges::is_sorted(window));
+  }
+  std::ranges::sort(all);
+  std::vector<std::uint32_t> every(population);
+  std::iota(every.begin(), every.end(), 0u);
+  EXPECT_EQ(all, every);
+  // After all of them it begins again.
+  EXPECT_EQ(voxel_sample(population, size, seed, population), voxel_sample(population, size, seed));
+}
+
 }  // namespace
 }  // namespace vantage
