@@ -53,7 +53,7 @@ struct Estimate {
 /// systematic sample needs: s/√n would be too wide. With weights a ratio is estimated, with the jackknife's error over
 /// the interleaved groups.
 Estimate coverage_estimate(const NetworkCounts& counts, double goal_density, std::uint64_t population);
-/// Equation 13 from a sample. Error by the jackknife over the interleaved groups.
+/// Equation 13 from a sample, less its bias of O(1/n). Error and bias by the jackknife over the interleaved groups.
 Estimate overlap_estimate(const NetworkCounts& counts, std::uint64_t population);
 /// Standard errors of `overlap_matrix`, likewise by the jackknife.
 OverlapMatrix overlap_standard_errors(const NetworkCounts& counts, std::uint64_t population);

@@ -131,9 +131,6 @@ class Optimiser {
   /// REQUIRES: objectives() values per asked point, row-major, in order. A point with a value that is not finite counts
   /// as dominated by all that have none.
   virtual void tell(std::span<const double> values) = 0;
-  /// Whether a point with these objectives would be kept if it alone were told now. May say yes of one that would not;
-  /// never no of one that would.
-  virtual bool promising(std::span<const double> values) const = 0;
   /// Between tell() and ask(): puts other objectives in the place of those of the points of population(), row-major, in
   /// its order: they were measured more closely, say. What the search learnt from the old ones stays, and stagnation
   /// counts anew.
@@ -178,7 +175,6 @@ class CmaEs final : public Optimiser {
   void replace(std::size_t index, std::span<const double> x) override;
   std::span<const double> resample(std::size_t index, std::span<const std::size_t> coordinates) override;
   void tell(std::span<const double> values) override;
-  bool promising(std::span<const double> values) const override;  ///< Ranks need every point: true.
   void reassess(std::span<const double> values) override;
   StopReason stop_reason() const noexcept override;
   /// Of all restarts. Its f is +infinity until a finite value was told.
@@ -215,7 +211,6 @@ class MoCmaEs final : public Optimiser {
   void replace(std::size_t index, std::span<const double> x) override;
   std::span<const double> resample(std::size_t index, std::span<const std::size_t> coordinates) override;
   void tell(std::span<const double> values) override;
-  bool promising(std::span<const double> values) const override;  ///< True of all but in the steady state.
   void reassess(std::span<const double> values) override;
   StopReason stop_reason() const noexcept override;
   std::vector<ParetoPoint> front() const override;

@@ -69,6 +69,9 @@ double jackknife_bias(double estimate, const std::vector<double>& values, double
   return values.empty() ? 0 : unsampled * (groups - 1) / groups * sum;
 }
 
+// What is corrected must not be worse known for it.
+double within_error(double bias, double error) { return std::clamp(bias, -error, error); }
+
 }  // namespace
 
 Estimate coverage_estimate(const NetworkCounts& counts, double goal_density, std::uint64_t population) {
@@ -111,7 +114,10 @@ Estimate estimate(const Objective& objective, const MeasuredNetwork& measured) {
                                 .surroundings_voxels = measured.surroundings_voxels,
                                 .minutes_on_site = measured.minutes_on_site});
       };
-      add(jackknife_error(replicates<double>(counts, of), unsampled, scale));
+      const std::vector<double> values = replicates<double>(counts, of);
+      const double own = jackknife_error(values, unsampled, scale);
+      estimate.value -= within_error(jackknife_bias(estimate.value, values, unsampled), own);
+      add(own);
     }
   }
   // Another sample, of other voxels: its error is on top.
@@ -136,7 +142,9 @@ Estimate overlap_estimate(const NetworkCounts& counts, std::uint64_t population)
   const double unsampled = unsampled_share(counts, population);
   if (unsampled == 0 || counts.seen.empty()) return estimate;
   const auto of = [](const NetworkCounts& rest) { return clustering_coefficient(overlap_matrix(rest)); };
-  estimate.standard_error = jackknife_error(replicates<double>(counts, of), unsampled);
+  const std::vector<double> values = replicates<double>(counts, of);
+  estimate.standard_error = jackknife_error(values, unsampled);
+  estimate.value -= within_error(jackknife_bias(estimate.value, values, unsampled), estimate.standard_error);
   return estimate;
 }
 
@@ -150,7 +158,7 @@ Estimate registration_estimate(const NetworkCounts& counts, std::uint64_t voxels
   const auto add = [&](const std::vector<double>& values, double unsampled) {
     // Nothing is further off than where it starts.
     const double own = jackknife_error(values, unsampled, 2 * options.position_m);
-    estimate.value -= std::clamp(jackknife_bias(seen, values, unsampled), -own, own);
+    estimate.value -= within_error(jackknife_bias(seen, values, unsampled), own);
     estimate.standard_error = std::hypot(estimate.standard_error, own);
   };
   if (const double unsampled = unsampled_share(counts, voxels); unsampled > 0)

@@ -16,7 +16,6 @@ class Baseline : public Optimiser {
   void replace(std::size_t index, std::span<const double> x) final;
   std::span<const double> resample(std::size_t index, std::span<const std::size_t> coordinates) final;
   void tell(std::span<const double> values) final;
-  bool promising(std::span<const double>) const final { return true; }
   void reassess(std::span<const double> values) final;
   StopReason stop_reason() const noexcept final { return common_.stop_reason(); }
   std::vector<ParetoPoint> front() const final { return front_of(pointers(members_)); }

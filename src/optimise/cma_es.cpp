@@ -497,8 +497,6 @@ void CmaEs::tell(std::span<const double> values) {
   s.settle();
 }
 
-bool CmaEs::promising(std::span<const double>) const { return true; }
-
 void CmaEs::reassess(std::span<const double> values) {
   Impl& s = *impl_;
   s.require_reassessable(values, s.best.x.empty() ? 0 : 1);

@@ -480,12 +480,6 @@ void MoCmaEs::tell(std::span<const double> values) {
   s.common.settle(s.members);
 }
 
-bool MoCmaEs::promising(std::span<const double> values) const {
-  const Impl& s = *impl_;
-  if (s.members.empty() || s.common.config.mo.scheme == Scheme::generational) return true;
-  return s.population.admits(values);
-}
-
 void MoCmaEs::reassess(std::span<const double> values) {
   Impl& s = *impl_;
   s.common.reassess(s.members, values);

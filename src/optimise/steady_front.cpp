@@ -36,13 +36,6 @@ void SteadyFront::assign(std::span<const double> fitness, std::span<const double
   }
 }
 
-bool SteadyFront::admits(std::span<const double> fitness) const {
-  const std::size_t worst = rank_.empty() ? 0 : *std::max_element(rank_.begin(), rank_.end());
-  for (std::size_t i = 0; i < rank_.size(); ++i)
-    if (rank_[i] == worst && dominates(values_.data() + i * m_, fitness.data(), m_)) return false;
-  return true;
-}
-
 std::vector<double> SteadyFront::reach() const {
   std::vector<double> front;
   for (std::size_t i = 0; i < rank_.size(); ++i)

@@ -28,9 +28,6 @@ class SteadyFront {
   // `parent` is an index, or size().
   Verdict offer(std::span<const double> fitness, std::size_t parent);
 
-  // Whether offer() might keep it: no member of the last front dominates it.
-  bool admits(std::span<const double> fitness) const;
-
   std::size_t size() const { return rank_.size(); }
   std::size_t rank(std::size_t i) const { return rank_[i]; }
   std::span<const double> fitness(std::size_t i) const { return std::span(values_).subspan(i * m_, m_); }

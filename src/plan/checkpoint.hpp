@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -17,12 +18,26 @@
 
 namespace vantage {
 
+// What the whole sample says of a measure less what a first look says: over the networks that are kept.
+struct LookError {
+  double mean = 0, deviation = 0;
+};
+
+// What a network was measured with, by one sample after the other.
+struct Measurements {
+  std::vector<double> sum;  // by measure
+  std::uint64_t count = 0;
+};
+
 struct SearchSnapshot {
   std::string optimiser;  // as its save() wrote it; empty: not yet asked
   std::vector<PlanIteration> history;
   std::uint64_t drawn = 0, redrawn = 0;
   GrowingSample::State sample;
   double sample_error = 0;
+  std::vector<std::vector<LookError>> look_errors;
+  std::map<std::vector<double>, Measurements> known;  // by x, of what is kept
+  std::vector<double> shift;
 };
 
 struct Checkpoint {

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <exception>
+#include <map>
 #include <memory>
 #include <optional>
 #include <sstream>
@@ -22,7 +23,16 @@
 namespace vantage {
 namespace {
 
-// By how much of its standard error a network that is looked at first may be better than it seems.
+bool dominates(std::span<const double> a, std::span<const double> b) {
+  bool better = false;
+  for (std::size_t j = 0; j < a.size(); ++j) {
+    if (!(a[j] <= b[j])) return false;
+    better |= a[j] < b[j];
+  }
+  return better;
+}
+
+// By how much of what a first look is wrong a network may be better than it seems.
 constexpr double kOptimism = 1;
 
 class Search {
@@ -36,6 +46,7 @@ class Search {
         optimiser_(choose_optimiser(space_, setup.problem, config_, setup.batch, setup.start)),
         evaluator_(setup.evaluator),
         sample_(config_),
+        shift_(setup.measures.searched),
         begins_with_(first_network()) {}
 
   SearchOutcome run() {
@@ -63,9 +74,10 @@ class Search {
     }
     save();
     if ((!sample_.full() || sample_.renews()) && reason != StopReason::cancelled) {
+      const GrowingSample before = sample_;
       sample_.fill();  // not saved: a search that goes on does so by its own sample
       if (sample_.renews()) sample_.renew(history_.size());
-      assess();
+      if (!assess(Then::end)) sample_ = before;
     }
     return outcome(reason);
   }
@@ -107,12 +119,13 @@ class Search {
     for (std::size_t k = 0; k < count; ++k)
       scale_objectives(setup_.problem, x(k), values[k], missed_by(setup_.problem, setup_.measures, values[k]),
                        std::span(f).subspan(k * m, m));
+    for (std::size_t k = 0; k < count && sample_.renews(); ++k)
+      known_[{x(k).begin(), x(k).end()}] = {.sum = values[k], .count = 1};
     optimiser_->tell(f);
     if (record()) {
-      if (!sample_.full()) {
-        if (error_ == 0 && !assess()) return interrupted();
-        if (sample_.outgrown(history_, error_, population_)) return grow();
-      }
+      const bool unknown = looks_first() ? look_errors_.empty() : error_ == 0 && !sample_.full();
+      if (unknown && !assess(Then::go_on)) return interrupted();
+      if (!sample_.full() && sample_.outgrown(history_, error_, population_)) return grow();
       if (sample_.stale(history_.size())) return renew();
     }
     if (checkpoint_due()) {
@@ -122,8 +135,10 @@ class Search {
     return StopReason::running;
   }
 
-  // Of networks whose vectors are rows of xs from `first` on. What cannot be kept is not worth the whole sample: those
-  // are looked at with few voxels first that even at their best, by the standard error, would be refused.
+  bool looks_first() const { return setup_.problem.objectives.size() > 1 && !sample_.first_looks().empty(); }
+
+  // Of networks whose vectors are rows of xs from `first` on. What is not on the front is not worth the whole sample:
+  // of a network that is dominated even at its best, few voxels say enough.
   std::optional<std::vector<std::vector<double>>> evaluate(const std::vector<PlacedNetwork>& networks,
                                                            std::span<const double> xs, std::size_t first,
                                                            const Progress& progress) {
@@ -135,16 +150,20 @@ class Search {
       for (const std::size_t k : open) left.push_back(networks[k]);
       return left;
     };
-    if (optimiser_->evaluations() > 0 && setup_.problem.objectives.size() > 1) {
-      for (const VoxelWindow& look : sample_.first_looks()) {
-        const auto seen = setup_.evaluator.estimate(still_open(), look, NetworkEvaluator::Which::searched, progress);
+    if (!look_errors_.empty()) {
+      const std::vector<VoxelWindow> looks = sample_.first_looks();
+      const std::vector<ParetoPoint> front = optimiser_->front();
+      for (std::size_t l = 0; l < looks.size(); ++l) {
+        auto seen = setup_.evaluator.evaluate(still_open(), looks[l], progress);
         if (!seen) return std::nullopt;
         std::vector<std::size_t> promising;
         for (std::size_t i = 0; i < open.size(); ++i) {
           const std::size_t k = open[i], n = space_.dimension();
-          values[k].clear();
-          for (const Estimate& estimate : (*seen)[i]) values[k].push_back(estimate.value);
-          if (optimiser_->promising(at_best(xs.subspan((first + k) * n, n), (*seen)[i]))) promising.push_back(k);
+          values[k] = std::move((*seen)[i]);
+          for (std::size_t m = 0; m < values[k].size(); ++m) values[k][m] += look_errors_[l][m].mean + shift_[m];
+          const std::vector<double> best = at_best(xs.subspan((first + k) * n, n), values[k], look_errors_[l]);
+          if (std::ranges::none_of(front, [&](const ParetoPoint& kept) { return dominates(kept.f, best); }))
+            promising.push_back(k);
         }
         open = std::move(promising);
         if (open.empty()) return values;
@@ -152,25 +171,27 @@ class Search {
     }
     auto found = evaluator_.evaluate(still_open(), sample_.window(), progress);
     if (!found) return std::nullopt;
-    for (std::size_t i = 0; i < open.size(); ++i) values[open[i]] = std::move((*found)[i]);
+    for (std::size_t i = 0; i < open.size(); ++i) {
+      std::vector<double>& own = values[open[i]] = std::move((*found)[i]);
+      for (std::size_t m = 0; m < own.size(); ++m) own[m] += shift_[m];
+    }
     return values;
   }
 
-  // What the optimiser would be told if every measure were better by a share of its standard error.
-  std::vector<double> at_best(std::span<const double> x, std::span<const Estimate> measured) const {
+  // What the optimiser would be told if every measure, of which a first look saw this, came out well by all voxels.
+  std::vector<double> at_best(std::span<const double> x, std::span<const double> seen,
+                              std::span<const LookError> errors) const {
     const SurveyProblem& problem = setup_.problem;
+    const auto best = [&](std::size_t m, bool more) {
+      return seen[m] + (more ? kOptimism : -kOptimism) * errors[m].deviation;
+    };
     std::vector<double> values;
-    for (std::size_t m = 0; m < measured.size(); ++m) {
-      const double error = kOptimism * measured[m].standard_error;
-      values.push_back(measured[m].value + (setup_.measures.all[m].maximised() ? error : -error));
-    }
+    for (std::size_t m = 0; m < seen.size(); ++m) values.push_back(best(m, setup_.measures.all[m].maximised()));
     double missed = 0;
     for (std::size_t r = 0; r < problem.requirements.size(); ++r) {
-      const Estimate& bounded = measured[setup_.measures.required[r]];
       const Requirement& requirement = problem.requirements[r];
-      const bool more = requirement.bound == Requirement::Bound::at_least;
-      const double error = kOptimism * bounded.standard_error;
-      missed += requirement.missed_by(bounded.value + (more ? error : -error));
+      missed +=
+          requirement.missed_by(best(setup_.measures.required[r], requirement.bound == Requirement::Bound::at_least));
     }
     std::vector<double> f(problem.objectives.size());
     scale_objectives(problem, x, values, missed, f);
@@ -199,7 +220,7 @@ class Search {
   }
   StopReason go_by(const GrowingSample& sample) {
     const GrowingSample before = std::exchange(sample_, sample);
-    if (!assess()) {
+    if (!assess(Then::go_on)) {
       sample_ = before;
       return interrupted();
     }
@@ -209,31 +230,94 @@ class Search {
     return StopReason::running;
   }
 
-  // Measures what the optimiser keeps by the sample as it is, and how well that is known. False when stopped half way.
-  bool assess() {
+  enum class Then { go_on, end };
+
+  // Measures what the optimiser keeps by the sample as it is. Where the search goes on, as newcomers are measured, and
+  // how well first looks tell; at its end as well as the sample can, without what samples are wrong by on average.
+  // False when stopped half way.
+  bool assess(Then then) {
     const std::vector<ParetoPoint> population = optimiser_->population();
     std::vector<PlacedNetwork> networks;
     for (const ParetoPoint& point : population) networks.push_back(space_.decode(point.x));
-    const auto found = setup_.evaluator.estimate(networks, sample_.window(), NetworkEvaluator::Which::searched,
-                                                 {.report = {}, .stop = setup_.stop});
-    if (!found) return false;
+    const Progress progress{.report = {}, .stop = setup_.stop};
     const SurveyProblem& problem = setup_.problem;
     const std::size_t m = problem.objectives.size();
-    std::vector<double> f(population.size() * m), values;
+    std::vector<std::vector<double>> values(networks.size());
     double errors = 0;
-    for (std::size_t k = 0; k < population.size(); ++k) {
-      values.clear();
-      for (const Estimate& estimate : (*found)[k]) values.push_back(estimate.value);
-      scale_objectives(problem, population[k].x, values, missed_by(problem, setup_.measures, values),
-                       std::span(f).subspan(k * m, m));
-      for (std::size_t j = 0; j < m; ++j) {
-        const double scale = std::abs(problem.objectives[j].best - problem.objectives[j].worst);
-        if (scale > 0) errors += (*found)[k][j].standard_error / scale;
+    if (then == Then::end || !sample_.full()) {
+      const auto found =
+          setup_.evaluator.estimate(networks, sample_.window(), NetworkEvaluator::Which::searched, progress);
+      if (!found) return false;
+      for (std::size_t k = 0; k < networks.size(); ++k) {
+        for (const Estimate& estimate : (*found)[k]) values[k].push_back(estimate.value);
+        for (std::size_t j = 0; j < m; ++j) {
+          const double scale = std::abs(problem.objectives[j].best - problem.objectives[j].worst);
+          if (scale > 0) errors += (*found)[k][j].standard_error / scale;
+        }
       }
     }
-    error_ = population.empty() ? 0 : errors / static_cast<double>(f.size());
+    if (then == Then::go_on) {
+      auto found = setup_.evaluator.evaluate(networks, sample_.window(), progress);
+      if (!found) return false;
+      values = std::move(*found);
+      if (looks_first() && !measure_looks(networks, values)) return false;
+      if (sample_.renews()) average(population, values);
+    }
+    std::vector<double> f(networks.size() * m);
+    for (std::size_t k = 0; k < networks.size(); ++k)
+      scale_objectives(problem, population[k].x, values[k], missed_by(problem, setup_.measures, values[k]),
+                       std::span(f).subspan(k * m, m));
+    error_ = networks.empty() ? 0 : errors / static_cast<double>(f.size());
     optimiser_->reassess(f);
     front_ = optimiser_->front();
+    return true;
+  }
+
+  // Means over all voxels that a network was measured on, in the place of what the last ones say: so no sample drives
+  // out what earlier ones found good. Newcomers, which these voxels alone have seen, are told as far off as they are
+  // for what is known better.
+  void average(const std::vector<ParetoPoint>& population, std::vector<std::vector<double>>& values) {
+    std::map<std::vector<double>, Measurements> known;
+    std::fill(shift_.begin(), shift_.end(), 0.0);
+    double longer_known = 0;
+    for (std::size_t k = 0; k < population.size(); ++k) {
+      Measurements& own = known[population[k].x];
+      const auto before = known_.find(population[k].x);
+      const bool others = sample_.window().from != measured_from_;  // a larger one holds the smaller
+      own = before != known_.end() && others ? before->second : Measurements{std::vector<double>(shift_.size()), 0};
+      ++own.count;
+      for (std::size_t m = 0; m < shift_.size(); ++m) {
+        own.sum[m] += values[k][m];
+        const double mean = own.sum[m] / static_cast<double>(own.count);
+        if (own.count > 1) shift_[m] += mean - values[k][m];
+        values[k][m] = mean;
+      }
+      longer_known += own.count > 1;
+    }
+    for (double& shift : shift_) shift /= std::max(longer_known, 1.0);
+    known_ = std::move(known);
+    measured_from_ = sample_.window().from;
+  }
+
+  // By how much first looks are wrong, from what the optimiser keeps. As looks and sample see the same voxels, and all
+  // networks do, that is less than their standard errors. False when stopped half way.
+  bool measure_looks(const std::vector<PlacedNetwork>& networks, const std::vector<std::vector<double>>& measured) {
+    std::vector<std::vector<LookError>> errors;
+    for (const VoxelWindow& look : sample_.first_looks()) {
+      const auto seen = setup_.evaluator.evaluate(networks, look, {.report = {}, .stop = setup_.stop});
+      if (!seen) return false;
+      std::vector<LookError>& all = errors.emplace_back();
+      const auto count = static_cast<double>(networks.size());
+      for (std::size_t m = 0; m < setup_.measures.searched; ++m) {
+        LookError& error = all.emplace_back();
+        const auto wrong = [&](std::size_t k) { return measured[k][m] - (*seen)[k][m]; };
+        for (std::size_t k = 0; k < networks.size(); ++k) error.mean += wrong(k) / count;
+        double square = 0;
+        for (std::size_t k = 0; k < networks.size(); ++k) square += (wrong(k) - error.mean) * (wrong(k) - error.mean);
+        error.deviation = count > 1 ? std::sqrt(square / (count - 1)) : 0;
+      }
+    }
+    look_errors_ = std::move(errors);
     return true;
   }
 
@@ -286,9 +370,18 @@ class Search {
     line.iteration = iteration, line.evaluations = optimiser_->evaluations();
     line.hypervolume = optimiser_->hypervolume();
     front_ = optimiser_->front();
+    forget_the_dropped();
     for (const ParetoPoint& point : front_) line.front.push_back(point.f);
     line.seconds = seconds();
     return true;
+  }
+
+  void forget_the_dropped() {
+    if (known_.empty()) return;
+    std::map<std::vector<double>, Measurements> kept;
+    for (const ParetoPoint& point : optimiser_->population())
+      if (const auto found = known_.find(point.x); found != known_.end()) kept.insert(*found);
+    known_ = std::move(kept);
   }
 
   // What ends the search from outside, at any moment.
@@ -341,7 +434,10 @@ class Search {
                  .drawn = drawn_,
                  .redrawn = redrawn_,
                  .sample = sample_.state(),
-                 .sample_error = error_};
+                 .sample_error = error_,
+                 .look_errors = look_errors_,
+                 .known = known_,
+                 .shift = shift_};
     since_.clear();
   }
 
@@ -380,6 +476,9 @@ class Search {
     history_ = snapshot_.history;
     drawn_ = snapshot_.drawn, redrawn_ = snapshot_.redrawn;
     sample_.restore(snapshot_.sample), error_ = snapshot_.sample_error;
+    look_errors_ = snapshot_.look_errors;
+    known_ = snapshot_.known, shift_ = snapshot_.shift;
+    measured_from_ = sample_.window().from;
     replay_ = std::move(checkpoint->since);
     resumed_ = evaluated_ = optimiser_->evaluations();
     earlier_seconds_ = checkpoint->seconds, earlier_trace_seconds_ = checkpoint->trace_seconds;
@@ -413,9 +512,13 @@ class Search {
   std::unique_ptr<Optimiser> optimiser_;
   CachingEvaluator evaluator_;
   GrowingSample sample_;
-  double error_ = 0;                       // standard error of a scaled objective by it; 0: not known yet
-  const std::vector<double> begins_with_;  // one of the first points; empty: none
-  std::vector<PlacedNetwork> networks_;    // of the open batch
+  double error_ = 0;                                   // standard error of a scaled objective by it; 0: not known yet
+  std::map<std::vector<double>, Measurements> known_;  // where the sample is drawn anew: of what is kept, by x
+  std::vector<double> shift_;                          // of values that newcomers are told with, by measure
+  std::uint64_t measured_from_ = 0;                    // where the last of these voxels begin
+  std::vector<std::vector<LookError>> look_errors_;    // of each first look, by measure; empty: not known yet
+  const std::vector<double> begins_with_;              // one of the first points; empty: none
+  std::vector<PlacedNetwork> networks_;                // of the open batch
 
   std::vector<PlanIteration> history_;
   std::vector<ParetoPoint> front_;  // as of the last iteration

@@ -155,30 +155,6 @@ TEST_P(EveryOptimiser, TakesOtherObjectivesOfWhatItKeeps) {
   EXPECT_THROW(optimiser->reassess(values), Error);
 }
 
-TEST_P(EveryOptimiser, KeepsNothingThatIsNotPromising) {
-  const std::size_t n = 4;
-  if (GetParam().batch > 1) return;  // those that are told first may change what is kept
-  auto optimiser = make(n, 2, config(n));
-  std::size_t refused = 0;
-  for (int round = 0; round < 400; ++round) {
-    const auto asked = optimiser->ask();
-    const std::vector<double> points(asked.begin(), asked.end());
-    std::vector<double> values;
-    std::vector<std::vector<double>> hopeless;
-    for (std::size_t k = 0; k < points.size(); k += n) {
-      const std::span<const double> x(points.data() + k, n);
-      const auto f = two_spheres(x);
-      values.insert(values.end(), f.begin(), f.end());
-      if (!optimiser->promising(f)) hopeless.emplace_back(x.begin(), x.end());
-    }
-    optimiser->tell(values);
-    for (const ParetoPoint& kept : optimiser->population()) EXPECT_EQ(std::ranges::count(hopeless, kept.x), 0);
-    refused += hopeless.size();
-  }
-  const bool steady = GetParam().algorithm == Algorithm::mo_cma_es && GetParam().scheme == Scheme::steady_state;
-  EXPECT_EQ(refused > 100, steady) << refused;
-}
-
 TEST_P(EveryOptimiser, AsksInsideTheBounds) {
   EXPECT_TRUE(rc::check([&] {
     const auto n = *rc::gen::inRange<std::size_t>(1, 5);
