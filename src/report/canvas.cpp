@@ -27,6 +27,22 @@ struct ContextDeleter {
 using Surface = std::unique_ptr<cairo_surface_t, SurfaceDeleter>;
 using Context = std::unique_ptr<cairo_t, ContextDeleter>;
 
+// Gives back, at its end, what was taken of a surface since: cairo 1.16 keeps a reference for good to a recording that
+// it wrote as SVG, and with it all that is drawn there.
+class HeldReferences {
+ public:
+  explicit HeldReferences(cairo_surface_t* surface)
+      : surface_(surface), before_(cairo_surface_get_reference_count(surface)) {}
+  HeldReferences(const HeldReferences&) = delete;
+  ~HeldReferences() {
+    while (cairo_surface_get_reference_count(surface_) > before_) cairo_surface_destroy(surface_);
+  }
+
+ private:
+  cairo_surface_t* surface_;
+  unsigned before_;
+};
+
 cairo_status_t append_bytes(void* target, const unsigned char* data, unsigned int length) {
   static_cast<std::string*>(target)->append(reinterpret_cast<const char*>(data), length);
   return CAIRO_STATUS_SUCCESS;
@@ -243,6 +259,7 @@ void Canvas::save(const std::filesystem::path& file) const {
     play(surface.get(), kPixelsPerUnit);
     require(cairo_surface_write_to_png_stream(surface.get(), append_bytes, &bytes), file);
   } else if (extension == ".svg") {
+    const HeldReferences held(impl_->recording.get());
     const Surface surface(cairo_svg_surface_create_for_stream(append_bytes, &bytes, width_, height_));
     cairo_svg_surface_set_document_unit(surface.get(), CAIRO_SVG_UNIT_PX);
     play(surface.get(), 1);

@@ -341,14 +341,14 @@ TEST_P(Conformance, ACancelledCountSaysSoAndLeavesTheEngineWell) {
   const Progress progress{[&](double done) {
                             ascending &= done >= last;
                             last = done;
-                            if (done > 0.4) stop.request_stop();
+                            if (done > 0.1) stop.request_stop();
                           },
                           stop.get_token()};
   const NetworkCounts cut = small->count(many, 40, {true, true, nullptr}, progress);
   EXPECT_TRUE(cut.cancelled);
   EXPECT_TRUE(ascending);
-  EXPECT_GT(last, 0.4);
-  EXPECT_LT(last, 0.9);
+  EXPECT_GT(last, 0.1);
+  EXPECT_LT(last, 0.9);  // far from the stop: several devices go on until this thread, which hears them, gets its turn
   VoxelField again, expected;
   const NetworkCounts after = small->count(site.stations, stations_of(site), {true, false, &again}, {});
   EXPECT_FALSE(after.cancelled);
