@@ -78,7 +78,7 @@ float noisy_range(float t, float reflectivity, uint64_t ray, uint place) {
                             uvec4(uint(ray), uint(ray >> 32), place, noise_stream)).x;
   precise float displacement = sigma_at(t, reflectivity) * normal_from_bits(u);
   precise float moved = t + displacement;
-  return moved;
+  return max(moved, 0.0);  // no scanner measures less
 }
 
 #endif

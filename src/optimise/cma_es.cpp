@@ -334,7 +334,9 @@ void CmaEs::Impl::decompose(bool now) {
 }
 
 StopReason CmaEs::Impl::stall(const std::vector<double>& sorted) const {
-  if (!mean.allFinite() || !covariance.allFinite() || !axis_lengths.allFinite() || !std::isfinite(sigma))
+  const auto moderate = [](const auto& a) { return a.allFinite() && a.cwiseAbs().maxCoeff() <= optimise::kModerate; };
+  if (!moderate(mean) || !moderate(path_c) || !moderate(path_sigma) || !moderate(covariance) ||
+      !moderate(axis_lengths) || !(sigma <= optimise::kModerate))
     return StopReason::diverged;
   if (flat_iterations >= kFlatIterations) return StopReason::flat;
   const double longest = axis_lengths.maxCoeff(), shortest = axis_lengths.minCoeff();
@@ -562,7 +564,7 @@ void CmaEs::load(std::istream& in) {
   s.sigma = r.positive();
   s.run_best = r.real();
   const auto fill = [&](double* out, std::size_t count) {
-    for (const double v : r.finite_reals(count)) *out++ = v;
+    for (const double v : r.moderate_reals(count)) *out++ = v;
   };
   for (VectorXd* v : {&s.mean, &s.path_c, &s.path_sigma, &s.axis_lengths}) fill(v->data(), s.n);
   for (MatrixXd* a : {&s.covariance, &s.axes}) fill(a->data(), s.n * s.n);

@@ -536,13 +536,13 @@ void MoCmaEs::load(std::istream& in) {
     static_cast<Solution&>(member) = next->common.load_solution(r);
     member.id = r.integer();
     member.genotype.resize(static_cast<Index>(n));
-    std::ranges::copy(r.finite_reals(n), member.genotype.data());
+    std::ranges::copy(r.moderate_reals(n), member.genotype.data());
     member.strategy.sigma = r.positive();
     member.strategy.success = r.finite();
     Shape shape = *next->initial_shape;
-    std::ranges::copy(r.finite_reals(n), shape.path.data());
+    std::ranges::copy(r.moderate_reals(n), shape.path.data());
     for (std::size_t j = 0; j < n; ++j) {
-      const auto column = r.finite_reals(n - j);
+      const auto column = r.moderate_reals(n - j);
       std::ranges::copy(column, shape.factor.col(static_cast<Index>(j)).data() + j);
     }
     member.strategy.shape = std::make_shared<const Shape>(std::move(shape));

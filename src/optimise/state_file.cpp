@@ -117,6 +117,7 @@ double StateReader::finite() {
 double StateReader::positive() {
   const double value = finite();
   if (!(value > 0)) malformed("a step of " + std::to_string(value) + " is not positive");
+  if (value > kModerate) malformed("a step is out of all proportion");
   return value;
 }
 
@@ -138,6 +139,13 @@ std::vector<double> StateReader::finite_reals(std::size_t count) {
   auto values = reals(count);
   for (const double v : values)
     if (!std::isfinite(v)) malformed("a number is not finite");
+  return values;
+}
+
+std::vector<double> StateReader::moderate_reals(std::size_t count) {
+  auto values = reals(count);
+  for (const double v : values)
+    if (!(std::abs(v) <= kModerate)) malformed("a number is out of all proportion");
   return values;
 }
 

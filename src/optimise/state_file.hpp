@@ -15,6 +15,9 @@
 
 namespace vantage::optimise {
 
+// No search gets beyond it that has not diverged, and products of what points are drawn by stay finite.
+inline constexpr double kModerate = 1e100;
+
 class StateWriter {
  public:
   void put(std::uint64_t value);
@@ -37,7 +40,7 @@ class StateReader {
   std::size_t size(std::size_t limit);
   double real();
   double finite();
-  double positive();
+  double positive();  // and moderate
   bool flag() { return size(2) == 1; }
   StopReason stop_reason() {
     return static_cast<StopReason>(size(static_cast<std::size_t>(StopReason::cancelled) + 1));
@@ -45,6 +48,8 @@ class StateReader {
   std::vector<double> reals();
   std::vector<double> reals(std::size_t count);  // exactly so many
   std::vector<double> finite_reals(std::size_t count);
+  // What points are drawn by: within ±kModerate.
+  std::vector<double> moderate_reals(std::size_t count);
   // The next integer or real must equal `value`, else the state belongs to another set-up; `what` names it.
   void expect(std::uint64_t value, std::string_view what);
   void expect(double value, std::string_view what);

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // The same targets without libFuzzer: vantage-fuzz-replay TARGET MUTATIONS FILES… tries each file and so many mutations
-// of each, the same every time.
+// of each, the same every time. vantage-fuzz-replay --write-seeds tests/fuzz/seeds makes those of the program's own
+// files anew, after a change of their format.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <fstream>
 #include <iterator>
+#include <stdexcept>
+#include <string_view>
 #include <vector>
 
 #include "core/philox.hpp"
@@ -71,8 +74,16 @@ void run(const Target& target, Input input) {
 
 int main(int argc, char** argv) try {
   using namespace vantage::fuzz;
+  if (argc == 3 && std::string_view(argv[1]) == "--write-seeds") {
+    for (const auto& [name, bytes] : state_seeds()) {
+      std::ofstream out(std::filesystem::path(argv[2]) / name, std::ios::binary);
+      if (!out.write(bytes.data(), static_cast<std::streamsize>(bytes.size())).flush())
+        throw std::runtime_error(std::string(argv[2]) + "/" + name + " cannot be written");
+    }
+    return 0;
+  }
   if (argc < 4) {
-    std::fprintf(stderr, "usage: %s TARGET MUTATIONS FILES...\n", argv[0]);
+    std::fprintf(stderr, "usage: %s TARGET MUTATIONS FILES... | --write-seeds FOLDER\n", argv[0]);
     return 2;
   }
   std::set_terminate([] {

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files that the program keeps for itself. What is behind their checksums is reached with checksums made to fit.
+#include <cmath>
 #include <cstring>
 #include <memory>
 #include <sstream>
 #include <vector>
 
 #include "core/hash.hpp"
+#include "core/read_file.hpp"
 #include "fuzz/target.hpp"
 #include "plan/checkpoint.hpp"
 #include "vantage/optimiser.hpp"
@@ -54,34 +56,77 @@ std::string signed_state(const std::string& head, Bytes payload) {
   return whole;
 }
 
+// So many rounds of asking and telling.
+void go_on(Optimiser& optimiser, int rounds) {
+  for (int round = 0; round < rounds && optimiser.stop_reason() == StopReason::running; ++round) {
+    const auto xs = optimiser.ask();
+    for (const double x : xs) require(x >= 0 && x <= 1, "points keep their bounds");
+    std::vector<double> values;
+    for (std::size_t k = 0; k < xs.size() / 4 * optimiser.objectives(); ++k)
+      values.push_back(0.25 + 0.5 * std::abs(std::sin(static_cast<double>(k) + xs[4 * (k / optimiser.objectives())])));
+    optimiser.tell(values);
+  }
+}
+
 void load_and_go_on(std::size_t kind, const std::string& bytes) {
   const auto optimiser = small_optimiser(kind);
   std::istringstream in(bytes);
   if (!accepts([&] { optimiser->load(in); })) return;
   // A state that was taken must be one to go on from.
-  for (int round = 0; round < 2 && optimiser->stop_reason() == StopReason::running; ++round) {
-    const auto xs = optimiser->ask();
-    for (const double x : xs) require(x >= 0 && x <= 1, "points keep their bounds");
-    std::vector<double> values;
-    for (std::size_t k = 0; k < xs.size() / 4 * optimiser->objectives(); ++k)
-      values.push_back(0.25 + 0.5 * std::abs(std::sin(static_cast<double>(k) + xs[4 * (k / optimiser->objectives())])));
-    optimiser->tell(values);
-  }
+  go_on(*optimiser, 2);
   const std::string again = saved(*optimiser);
   std::istringstream back(again);
   require(accepts([&] { small_optimiser(kind)->load(back); }), "what is saved can be loaded");
 }
 
+std::string checkpoint_file(const Checkpoint& checkpoint) {
+  const auto file = file_of({}, "made.bin");
+  write_checkpoint(file, checkpoint);
+  return read_file(file);
+}
+
+// Magic and version.
+const std::size_t checkpoint_head = std::strlen("vantage checkpoint\n") + 4;
+
+std::string signed_checkpoint(const std::string& body) {
+  static const std::string head = checkpoint_file({}).substr(0, checkpoint_head);
+  Hash hash;
+  hash.add_bytes(body.data(), body.size());
+  std::string whole = head;
+  append(whole, std::uint64_t{body.size()}), append(whole, hash.value());
+  return whole + body;
+}
+
 }  // namespace
+
+std::vector<std::pair<std::string, std::string>> state_seeds() {
+  static constexpr const char* names[] = {"cma_es", "mo_cma_es", "nsga2", "random_search"};
+  std::vector<std::pair<std::string, std::string>> seeds;
+  Checkpoint checkpoint;
+  checkpoint.identity = "seed = 1\nstations = 2\n";
+  checkpoint.seconds = 1.5, checkpoint.trace_seconds = 0.5;
+  for (std::size_t kind = 0; kind < std::size(names); ++kind) {
+    const auto optimiser = small_optimiser(kind);
+    go_on(*optimiser, 2);
+    const std::string state = saved(*optimiser);
+    const std::size_t head = head_of(state).size() + 8, sum = 8;
+    seeds.emplace_back(std::string("optimiser_state/") + names[kind],
+                       static_cast<char>(kind) + state.substr(head, state.size() - head - sum));
+    if (kind == 3) checkpoint.snapshot.optimiser = state;
+  }
+  checkpoint.snapshot.drawn = 12, checkpoint.snapshot.redrawn = 1;
+  checkpoint.snapshot.history = {{1, 6, 0.25, {{0.5, 0.25}}, 0.5}, {2, 12, 0.5, {{0.5, 0.125}, {0.25, 0.75}}, 1}};
+  checkpoint.since = {{0.5, 0.25, 3}, {0.75, 0.125, 4}};
+  const std::string whole = checkpoint_file(checkpoint);
+  seeds.emplace_back("checkpoint/search", whole.substr(checkpoint_head + 16));  // behind length and sum
+  return seeds;
+}
 
 void checkpoint(Bytes bytes) {
   accepts([&] { parse_checkpoint(text_of(bytes), "checkpoint.bin"); });
-  const std::string body = text_of(bytes);
-  Hash hash;
-  hash.add_bytes(body.data(), body.size());
-  std::string whole = "vantage checkpoint\n";
-  append(whole, std::uint32_t{2}), append(whole, std::uint64_t{body.size()}), append(whole, hash.value());
-  whole += body;
+  static const std::string real = checkpoint_file({});
+  require(signed_checkpoint(real.substr(checkpoint_head + 16)) == real, "checkpoints are signed as they are here");
+  const std::string whole = signed_checkpoint(text_of(bytes));
   accepts([&] {
     const Checkpoint found = parse_checkpoint(whole, "checkpoint.bin");
     const auto file = file_of({}, "again.bin");

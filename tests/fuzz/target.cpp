@@ -7,6 +7,7 @@
 #include <bit>
 #include <cstdio>
 #include <cstdlib>
+#include <exception>
 #include <fstream>
 #include <limits>
 #include <stdexcept>
@@ -62,7 +63,7 @@ const Target& target(std::string_view name) {
 
 void broken(const std::string& promise) {
   std::fprintf(stderr, "broken: %s\n", promise.c_str());
-  std::abort();
+  std::terminate();  // whose handler may keep the input
 }
 
 std::filesystem::path file_of(Bytes bytes, const std::string& name) {

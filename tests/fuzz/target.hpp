@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "vantage/error.hpp"
 
@@ -75,6 +76,9 @@ class Source {
  private:
   Bytes left_;
 };
+
+// Files below seeds/ and what they hold: states that nobody writes by hand.
+std::vector<std::pair<std::string, std::string>> state_seeds();
 
 // The targets, a file each kind.
 void gltf(Bytes);

@@ -5,12 +5,13 @@
     cmake -G Ninja -S . -B build/mutation -DCMAKE_BUILD_TYPE=Release -DBUILD_SHARED_LIBS=ON \\
           -DCMAKE_LINK_DEPENDS_NO_SHARED=ON -DCMAKE_CXX_FLAGS=-D_GLIBCXX_ASSERTIONS
     ninja -C build/mutation
-    tests/mutation/mutate.py build/mutation --lines 100 --seed 1 --workers 2 -o build/mutation/found
+    tests/mutation/mutate.py build/mutation --lines 100 --seed 1 -o build/mutation/found
 
 Asks ninja what a changed file makes it run and runs just that, in copies of the tree, one a worker. Tests are those
-that ctest lists; cases that fail before anything is broken are left out, and said. A second run with the same arguments
-goes on where the first one ended. Writes found.json, a record of each line, and found.md, what is to be read. Linux
-only; nothing but Python's standard library.
+that ctest lists, its own module's first, then the quick ones, up to the first that fails; cases that fail before
+anything is broken are left out, and said. A second run with the same arguments goes on where the first one ended.
+Writes, after each line, found.json, a record of all, and found.md, what is to be read. Linux only; nothing but Python's
+standard library.
 """
 import argparse
 import json
@@ -25,6 +26,7 @@ import threading
 import time
 
 from breaks import breaks_of
+from cores import Cores
 from suite import Suite
 from worker import Worker, commands_after_change, commands_to_build
 
@@ -43,7 +45,8 @@ def arguments():
     parser.add_argument("--tests", default=r".", help="a regular expression of ctest's names (default: all)")
     parser.add_argument("--exclude-tests", default="^(lint|mutation|consumer|machine|clients|python|bench)",
                         help="likewise (default: %(default)s)")  # fmt: skip
-    parser.add_argument("--workers", type=int, default=max(1, len(os.sched_getaffinity(0)) // 2))
+    parser.add_argument("--workers", type=int, default=len(os.sched_getaffinity(0)),
+                        help="copies of the tree, each with another line broken (default: that of cores)")  # fmt: skip
     parser.add_argument("--budget-seconds", type=float, default=float("inf"), help="then it ends, to be called again")
     parser.add_argument("--most-commands", type=int, default=80, help="files whose change takes more are left whole")
     parser.add_argument("--environment", nargs="*", default=[], metavar="NAME=VALUE", help="of tests, over ctest's own")
@@ -95,8 +98,10 @@ def table(state, notes):
         noticed = of(broken) - of(alike) - of(slipped)
         rows.append(f"| {name} | {of(broken)} | {noticed} | {of(alike)} | {of(slipped)} |")
     unbuilt = sum(m["outcome"] == "unbuildable" for m in state["mutants"])
-    rows += ["", f"Seed {state['seed']}. Besides, {unbuilt} broken lines did not compile, and {state['left_whole']} were",
-             "left whole, since most of the tree includes their file."]  # fmt: skip
+    rows += ["", f"Seed {state['seed']}. Besides, {unbuilt} broken lines did not compile, and",
+             f"{state['left_whole']} were left whole, since most of the tree includes their file."]  # fmt: skip
+    if state["unfinished"]:
+        rows += ["", f"Of {state['unfinished']} more the time ended before their tests did."]
     if state["failed_before"]:
         rows += ["", "Left out, since they fail before anything is broken: " + ", ".join(state["failed_before"]) + "."]
     for title, group in (("Slipped through", slipped), ("Nothing to notice", alike)):
@@ -124,21 +129,23 @@ class Run:
         self.lock = threading.Lock()
         self.notes = json.loads(NOTES.read_text())
         self.path = args.output.with_suffix(".json")
-        self.state = {"seed": args.seed, "paths": args.paths, "left_whole": 0, "failed_before": [], "mutants": []}
+        self.state = {"seed": args.seed, "paths": args.paths, "left_whole": 0, "unfinished": 0, "failed_before": [],
+                      "mutants": []}
         if self.path.exists():
             self.state = json.loads(self.path.read_text())
             if (self.state["seed"], self.state["paths"]) != (args.seed, args.paths):
                 sys.exit(f"{self.path} is of another seed or other folders; give another -o, or remove it")
         self.done = {key(m) for m in self.state["mutants"]}
-        self.state["left_whole"] = 0
+        self.state["left_whole"] = self.state["unfinished"] = 0
         source = json.loads(args.only.read_text())["mutants"] if args.only else drawn(root, args)
         wanted = (m for m in source if m["outcome"] == "slipped") if args.only else source
         self.coming = ({k: m[k] for k in ("file", "line", "kind", "before", "after")} for m in wanted)
         self.under_way = 0
+        self.rank = 0
         self.commands = {}
 
     def next(self):
-        """The next line with the commands that rebuild what hangs on it; None at the end."""
+        """The next line, the commands that rebuild what hangs on it, and its rank; None at the end."""
         with self.lock:
             broken = sum(m["outcome"] != "unbuildable" for m in self.state["mutants"])
             if time.monotonic() > self.end or broken + self.under_way >= self.args.lines:
@@ -154,20 +161,27 @@ class Run:
                     self.state["left_whole"] += 1
                     continue
                 self.under_way += 1
-                return mutant, commands
+                self.rank += 1
+                return mutant, commands, self.rank
             return None
 
     def tell(self, mutant, outcome):
         with self.lock:
             self.under_way -= 1
             if outcome is None:  # the budget ended first
+                self.state["unfinished"] += 1
                 return
             mutant.update(outcome)
             self.state["mutants"].append(mutant)
-            self.state["failed_before"] = self.suite.failed_before
-            write(self.path, json.dumps(self.state, indent=1, ensure_ascii=False) + "\n")
+            self.write()
             print(f"{mutant['outcome']:12}{mutant['seconds']:6.0f} s  {mutant['file']}:{mutant['line']}",
                   f"{mutant['after'].strip()}   [{mutant.get('by', '')}]", flush=True)  # fmt: skip
+
+
+    def write(self):
+        self.state["failed_before"] = self.suite.failed_before
+        write(self.path, json.dumps(self.state, indent=1, ensure_ascii=False) + "\n")
+        write(self.path.with_suffix(".md"), table(self.state, self.notes))
 
 
 def in_threads(work, workers):
@@ -199,36 +213,23 @@ def main():
         sys.exit(f"{len(left)} commands of {args.build} have not been run; build it first: ninja -C {args.build}")
     run = Run(root, args, suite)
     scratch = (args.scratch or args.build.with_name(args.build.name + ".workers")).resolve()
-    cores = sorted(os.sched_getaffinity(0))
-    own = [cores[k :: args.workers] or cores for k in range(args.workers)]
-    workers = [Worker(scratch / str(k), root, args.build, own[k]) for k in range(args.workers)]
+    cores = Cores(sorted(os.sched_getaffinity(0)))
+    workers = [Worker(scratch / str(k), root, args.build, cores) for k in range(args.workers)]
     in_threads(lambda worker: worker.copy_tree(), workers)
     print(f"{len(suite.programs)} test programs in {len(workers)} copies; trying them unbroken", flush=True)
-    waiting = queue.SimpleQueue()
-    for program in suite.programs:
-        waiting.put(program)
-
-    def try_unbroken(worker):
-        while True:
-            try:
-                suite.try_unbroken(waiting.get_nowait(), worker)
-            except queue.Empty:
-                return
-
-    in_threads(try_unbroken, workers)
-    suite.settle()
+    suite.try_unbroken(workers[0], cores)
     for name in suite.failed_before:
         print(f"left out, since it fails unbroken: {name}", flush=True)
+    print(f"{sum(piece.seconds for piece in suite.pieces):.0f} s of tests in {len(suite.pieces)} pieces", flush=True)
 
     def break_lines(worker):
         while (task := run.next()) is not None:
-            mutant, commands = task
-            run.tell(mutant, worker.try_mutant(mutant, commands, suite, run.end))
+            mutant, commands, rank = task
+            run.tell(mutant, worker.try_mutant(mutant, commands, suite, rank, run.end))
 
     in_threads(break_lines, workers)
-    text = table(run.state, run.notes)
-    write(args.output.with_suffix(".md"), text)
-    print(text)
+    run.write()
+    print(table(run.state, run.notes))
     shutil.rmtree(scratch)
 
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A copy of the tree in which lines are broken, built and tested, one after another, on cores of its own."""
-import concurrent.futures
+"""A copy of the tree in which lines are broken, built and tested, one after another."""
+import contextlib
 import itertools
 import os
 import pathlib
@@ -8,6 +8,7 @@ import re
 import shutil
 import signal
 import subprocess
+import threading
 import time
 
 
@@ -41,10 +42,8 @@ def commands_after_change(path, build, targets):
 
 def stopped(process):
     """Ends it with all that it started."""
-    try:
+    with contextlib.suppress(ProcessLookupError):
         os.killpg(process.pid, signal.SIGKILL)
-    except ProcessLookupError:
-        pass
     process.wait()
 
 
@@ -52,6 +51,8 @@ class Worker:
     def __init__(self, folder, root, build, cores):
         self.folder, self.root, self.build, self.cores = folder, root, build, cores
         self.tree, self.temporary = folder / "tree", folder / "tmp"
+        self.running = set()
+        self.lock = threading.Lock()
 
     def copied(self, path):
         """Where the copy of a path of the tree is. The build folder may lie elsewhere."""
@@ -63,22 +64,22 @@ class Worker:
     def copy_tree(self):
         if self.folder.exists():
             shutil.rmtree(self.folder)
-        self.temporary.mkdir(parents=True)
-        for part in ("include", "src", "shaders", "cmake", "tests", "data"):
-            ignore = shutil.ignore_patterns("node_modules")
-            shutil.copytree(self.root / part, self.tree / part, symlinks=True, ignore=ignore)
-        shutil.copytree(self.build, self.folder / "build", symlinks=True)
+        for made in (self.temporary, self.tree):
+            made.mkdir(parents=True)
+        parts = [self.root / part for part in ("include", "src", "shaders", "cmake", "tests", "data")]
+        subprocess.run(["cp", "-a", *parts, self.tree], check=True)
+        subprocess.run(["cp", "-a", self.build, self.folder / "build"], check=True)
 
     def here(self, command):
         """A command of the tree, for its copy."""
         paths = {str(self.build): str(self.folder / "build"), str(self.root): str(self.tree)}
         return re.sub("|".join(map(re.escape, paths)), lambda match: paths[match.group()], command)
 
-    def run(self, command, seconds, cwd=None, environment=None, limits=None):
+    def run(self, command, seconds, cores, cwd=None, environment=None, limits=None):
         """(exit code, output); the code is None where it took too long."""
 
         def prepare():
-            os.sched_setaffinity(0, self.cores)
+            os.sched_setaffinity(0, cores)
             if limits:
                 limits()
 
@@ -86,25 +87,39 @@ class Worker:
         process = subprocess.Popen(command, shell=isinstance(command, str), cwd=cwd or self.folder / "build",
                                    stdout=subprocess.PIPE, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL,
                                    env=environment, start_new_session=True, preexec_fn=prepare)  # fmt: skip
+        with self.lock:
+            self.running.add(process)
         try:
             output, _ = process.communicate(timeout=seconds)
             return process.returncode, output.decode(errors="replace")
         except subprocess.TimeoutExpired:
             return None, ""
         finally:
-            stopped(process)
+            with self.lock:
+                self.running.remove(process)
+                stopped(process)
 
-    def rebuild(self, commands):
+    def stop(self):
+        """Ends what runs here now; who waits for it gets a signal's exit code."""
+        with self.lock:
+            for process in self.running:
+                with contextlib.suppress(ProcessLookupError):
+                    os.killpg(process.pid, signal.SIGKILL)
+
+    def rebuild(self, commands, rank):
         """What the first one that fails says; None without. Compilations in a row know nothing of each other."""
-        with concurrent.futures.ThreadPoolExecutor(len(self.cores)) as pool:
-            for compiling, row in itertools.groupby(commands, lambda command: bool(re.search(r" -o \S+ -c ", command))):
-                results = (pool.map if compiling else map)(lambda command: self.run(self.here(command), 600), row)
-                for code, output in results:
-                    if code != 0:
-                        return output or "it takes too long"
+        run = lambda command, cores: self.run(self.here(command), 600, cores)  # noqa: E731
+        for compiling, row in itertools.groupby(commands, lambda command: bool(re.search(r" -o \S+ -c ", command))):
+            if compiling:
+                results = [future.result() for future in [self.cores.submit(rank, run, command) for command in row]]
+            else:
+                results = (self.cores.submit(rank, run, command).result() for command in row)
+            for code, output in results:
+                if code != 0:
+                    return output or "it takes too long"
         return None
 
-    def try_mutant(self, mutant, commands, suite, end):
+    def try_mutant(self, mutant, commands, suite, rank, end):
         """What became of it; None where the time ended first."""
         start, started = time.monotonic(), time.time_ns()
         path = self.tree / mutant["file"]
@@ -113,11 +128,11 @@ class Worker:
         lines[mutant["line"] - 1] = mutant["after"]
         path.write_text("\n".join(lines))
         try:
-            if (failure := self.rebuild(commands)) is not None:
+            if (failure := self.rebuild(commands, rank)) is not None:
                 if "error" not in failure:
                     raise RuntimeError(f"{mutant['file']} is not rebuilt: {failure}")
                 return {"outcome": "unbuildable", "seconds": time.monotonic() - start}
-            found = suite.first_failure(mutant["file"], self, end)
+            found = suite.first_failure(mutant["file"], self, rank, end)
             if found is None:
                 return None
             return {**found, "seconds": time.monotonic() - start}

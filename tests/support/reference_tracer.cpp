@@ -94,6 +94,7 @@ class RayTest {
           scanner_.noise->seed,
           {static_cast<std::uint32_t>(ray), static_cast<std::uint32_t>(ray >> 32), station_.place, noise_stream})[0];
       hit.range += normal_from_bits(bits, normal_table()) * model_sigma(*scanner_.noise, hit.t, hit.reflectivity);
+      hit.range = std::max(hit.range, 0.0);
     }
     hit.point = origin_ + d * hit.range;
     place(hit);

@@ -46,11 +46,12 @@ class RangeNoise {
     return upper + (lower - upper) * down;
   }
 
-  // REQUIRES: enabled().
+  // REQUIRES: enabled(). No scanner measures a range below 0: noise larger than the range itself leaves the point at
+  // the head, never behind it, where no list of rays would look for it.
   float displaced(float t, float reflectivity, std::uint64_t ray, std::uint32_t place) const {
     const std::uint32_t bits = philox4x32(
         model_->seed, {static_cast<std::uint32_t>(ray), static_cast<std::uint32_t>(ray >> 32), place, noise_stream})[0];
-    return t + normal_from_bits(bits, rows_) * sigma(t, reflectivity);
+    return std::max(0.0f, t + normal_from_bits(bits, rows_) * sigma(t, reflectivity));
   }
 
  private:
