@@ -38,7 +38,7 @@ export GTEST_FILTER="${GTEST_FILTER--RegistrationError.StandardErrorsHold:NoiseS
 export UBSAN_OPTIONS=print_stacktrace=1
 export LSAN_OPTIONS="suppressions=$here/leaks.txt:print_suppressions=0"
 export TSAN_OPTIONS="suppressions=$here/races.txt:second_deadlock_stack=1"
-under=env
+under="env"
 if [ "$kind" = thread ]; then
   # ThreadSanitizer ends where a library that it suppresses is unloaded, as drivers are with each instance of Vulkan. The
   # validation layer, which does not bear being kept, stays out.
