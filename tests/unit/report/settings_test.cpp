@@ -204,7 +204,7 @@ const std::vector<Change<PlanConfig>> kPlan{
     {"checkpoint", [](PlanConfig& c) { c.checkpoint = "elsewhere"; }, false, false},
     {"checkpoint_seconds", [](PlanConfig& c) { c.checkpoint_seconds = 5; }, false, false},
     {"resume", [](PlanConfig& c) { c.resume = true; }, false, false}};
-static_assert(member_count<PlanConfig>() == 17);
+static_assert(member_count<PlanConfig>() == 18);
 
 SearchMesh ground() {
   return {.positions = {{-5, -5, 0}, {5, -5, 0}, {5, 5, 0}, {-5, 5, 0}},
