@@ -83,8 +83,8 @@ void write_checkpoint(const std::filesystem::path& file, const Checkpoint& check
   w.put(snapshot.drawn), w.put(snapshot.redrawn);
   const GrowingSample::State& sample = snapshot.sample;
   w.put(sample.step), w.put(sample.since), w.put(sample.from), w.put(sample.renewed), w.put(snapshot.sample_error);
-  w.put(std::uint64_t{snapshot.look_errors.size()});
-  for (const auto& errors : snapshot.look_errors) {
+  w.put(std::uint64_t{snapshot.memory.looks.size()});
+  for (const auto& errors : snapshot.memory.looks) {
     w.put(std::uint64_t{errors.size()});
     for (const LookError& error : errors) w.put(error.mean), w.put(error.deviation);
   }
@@ -92,9 +92,9 @@ void write_checkpoint(const std::filesystem::path& file, const Checkpoint& check
     w.put(std::uint64_t{all.size()});
     for (const double value : all) w.put(value);
   };
-  w.put(std::uint64_t{snapshot.known.size()});
-  for (const auto& [x, measured] : snapshot.known) put_all(x), put_all(measured.sum), w.put(measured.count);
-  put_all(snapshot.shift);
+  w.put(std::uint64_t{snapshot.memory.known.size()});
+  for (const auto& [x, measured] : snapshot.memory.known) put_all(x), put_all(measured.sum), w.put(measured.count);
+  put_all(snapshot.memory.shift);
   w.put(std::uint64_t{snapshot.history.size()});
   for (const PlanIteration& line : snapshot.history) {
     w.put(std::uint64_t{line.iteration}), w.put(std::uint64_t{line.evaluations}), w.put(line.hypervolume),
@@ -146,8 +146,8 @@ Checkpoint parse_checkpoint(std::string_view bytes, const std::filesystem::path&
   sample.step = r.get<std::uint64_t>(), sample.since = r.get<std::uint64_t>();
   sample.from = r.get<std::uint64_t>(), sample.renewed = r.get<std::uint64_t>();
   snapshot.sample_error = r.get<double>();
-  snapshot.look_errors.resize(r.length(8));
-  for (auto& errors : snapshot.look_errors) {
+  snapshot.memory.looks.resize(r.length(8));
+  for (auto& errors : snapshot.memory.looks) {
     errors.resize(r.length(16));
     for (LookError& error : errors) error.mean = r.get<double>(), error.deviation = r.get<double>();
   }
@@ -158,10 +158,10 @@ Checkpoint parse_checkpoint(std::string_view bytes, const std::filesystem::path&
   };
   for (std::uint64_t left = r.length(24); left > 0; --left) {
     std::vector<double> x = get_all();
-    Measurements& measured = snapshot.known[std::move(x)];
+    SampleMemory::Measurements& measured = snapshot.memory.known[std::move(x)];
     measured.sum = get_all(), measured.count = r.get<std::uint64_t>();
   }
-  snapshot.shift = get_all();
+  snapshot.memory.shift = get_all();
   snapshot.history.resize(r.length(40));
   for (PlanIteration& line : snapshot.history) {
     line.iteration = r.get<std::uint64_t>(), line.evaluations = r.get<std::uint64_t>();

@@ -6,28 +6,16 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "plan/growing_sample.hpp"
-#include "plan/network_evaluator.hpp"
+#include "plan/sample_memory.hpp"
 #include "vantage/planner.hpp"
 
 namespace vantage {
-
-// What the whole sample says of a measure less what a first look says: over the networks that are kept.
-struct LookError {
-  double mean = 0, deviation = 0;
-};
-
-// What a network was measured with, by one sample after the other.
-struct Measurements {
-  std::vector<double> sum;  // by measure
-  std::uint64_t count = 0;
-};
 
 struct SearchSnapshot {
   std::string optimiser;  // as its save() wrote it; empty: not yet asked
@@ -35,9 +23,7 @@ struct SearchSnapshot {
   std::uint64_t drawn = 0, redrawn = 0;
   GrowingSample::State sample;
   double sample_error = 0;
-  std::vector<std::vector<LookError>> look_errors;
-  std::map<std::vector<double>, Measurements> known;  // by x, of what is kept
-  std::vector<double> shift;
+  SampleMemory::State memory;
 };
 
 struct Checkpoint {

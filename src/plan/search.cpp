@@ -7,30 +7,22 @@
 #include <chrono>
 #include <cmath>
 #include <exception>
-#include <map>
 #include <memory>
 #include <optional>
 #include <sstream>
 #include <utility>
 
 #include "core/atomic_file.hpp"
+#include "optimise/hypervolume.hpp"
 #include "plan/checkpoint.hpp"
 #include "plan/choose_optimiser.hpp"
 #include "plan/growing_sample.hpp"
+#include "plan/sample_memory.hpp"
 #include "plan/scaled_objectives.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage {
 namespace {
-
-bool dominates(std::span<const double> a, std::span<const double> b) {
-  bool better = false;
-  for (std::size_t j = 0; j < a.size(); ++j) {
-    if (!(a[j] <= b[j])) return false;
-    better |= a[j] < b[j];
-  }
-  return better;
-}
 
 // By how much of what a first look is wrong a network may be better than it seems.
 constexpr double kOptimism = 1;
@@ -46,7 +38,7 @@ class Search {
         optimiser_(choose_optimiser(space_, setup.problem, config_, setup.batch, setup.start)),
         evaluator_(setup.evaluator),
         sample_(config_),
-        shift_(setup.measures.searched),
+        memory_(setup.measures.searched),
         begins_with_(first_network()) {}
 
   SearchOutcome run() {
@@ -119,11 +111,10 @@ class Search {
     for (std::size_t k = 0; k < count; ++k)
       scale_objectives(setup_.problem, x(k), values[k], missed_by(setup_.problem, setup_.measures, values[k]),
                        std::span(f).subspan(k * m, m));
-    for (std::size_t k = 0; k < count && sample_.renews(); ++k)
-      known_[{x(k).begin(), x(k).end()}] = {.sum = values[k], .count = 1};
+    for (std::size_t k = 0; k < count && sample_.renews(); ++k) memory_.add(x(k), values[k]);
     optimiser_->tell(f);
     if (record()) {
-      const bool unknown = looks_first() ? look_errors_.empty() : error_ == 0 && !sample_.full();
+      const bool unknown = looks_first() ? !memory_.knows_looks() : error_ == 0 && !sample_.full();
       if (unknown && !assess(Then::go_on)) return interrupted();
       if (!sample_.full() && sample_.outgrown(history_, error_, population_)) return grow();
       if (sample_.stale(history_.size())) return renew();
@@ -150,7 +141,7 @@ class Search {
       for (const std::size_t k : open) left.push_back(networks[k]);
       return left;
     };
-    if (!look_errors_.empty()) {
+    if (memory_.knows_looks()) {
       const std::vector<VoxelWindow> looks = sample_.first_looks();
       const std::vector<ParetoPoint> front = optimiser_->front();
       for (std::size_t l = 0; l < looks.size(); ++l) {
@@ -160,9 +151,9 @@ class Search {
         for (std::size_t i = 0; i < open.size(); ++i) {
           const std::size_t k = open[i], n = space_.dimension();
           values[k] = std::move((*seen)[i]);
-          for (std::size_t m = 0; m < values[k].size(); ++m) values[k][m] += look_errors_[l][m].mean + shift_[m];
-          const std::vector<double> best = at_best(xs.subspan((first + k) * n, n), values[k], look_errors_[l]);
-          if (std::ranges::none_of(front, [&](const ParetoPoint& kept) { return dominates(kept.f, best); }))
+          memory_.correct(values[k], l);
+          const std::vector<double> best = at_best(xs.subspan((first + k) * n, n), values[k], memory_.look(l));
+          if (std::ranges::none_of(front, [&](const ParetoPoint& kept) { return optimise::dominates(kept.f, best); }))
             promising.push_back(k);
         }
         open = std::move(promising);
@@ -172,8 +163,8 @@ class Search {
     auto found = evaluator_.evaluate(still_open(), sample_.window(), progress);
     if (!found) return std::nullopt;
     for (std::size_t i = 0; i < open.size(); ++i) {
-      std::vector<double>& own = values[open[i]] = std::move((*found)[i]);
-      for (std::size_t m = 0; m < own.size(); ++m) own[m] += shift_[m];
+      values[open[i]] = std::move((*found)[i]);
+      memory_.correct(values[open[i]]);
     }
     return values;
   }
@@ -261,7 +252,7 @@ class Search {
       if (!found) return false;
       values = std::move(*found);
       if (looks_first() && !measure_looks(networks, values)) return false;
-      if (sample_.renews()) average(population, values);
+      if (sample_.renews()) memory_.average(population, values, sample_.window().from);
     }
     std::vector<double> f(networks.size() * m);
     for (std::size_t k = 0; k < networks.size(); ++k)
@@ -273,51 +264,16 @@ class Search {
     return true;
   }
 
-  // Means over all voxels that a network was measured on, in the place of what the last ones say: so no sample drives
-  // out what earlier ones found good. Newcomers, which these voxels alone have seen, are told as far off as they are
-  // for what is known better.
-  void average(const std::vector<ParetoPoint>& population, std::vector<std::vector<double>>& values) {
-    std::map<std::vector<double>, Measurements> known;
-    std::fill(shift_.begin(), shift_.end(), 0.0);
-    double longer_known = 0;
-    for (std::size_t k = 0; k < population.size(); ++k) {
-      Measurements& own = known[population[k].x];
-      const auto before = known_.find(population[k].x);
-      const bool others = sample_.window().from != measured_from_;  // a larger one holds the smaller
-      own = before != known_.end() && others ? before->second : Measurements{std::vector<double>(shift_.size()), 0};
-      ++own.count;
-      for (std::size_t m = 0; m < shift_.size(); ++m) {
-        own.sum[m] += values[k][m];
-        const double mean = own.sum[m] / static_cast<double>(own.count);
-        if (own.count > 1) shift_[m] += mean - values[k][m];
-        values[k][m] = mean;
-      }
-      longer_known += own.count > 1;
-    }
-    for (double& shift : shift_) shift /= std::max(longer_known, 1.0);
-    known_ = std::move(known);
-    measured_from_ = sample_.window().from;
-  }
-
-  // By how much first looks are wrong, from what the optimiser keeps. As looks and sample see the same voxels, and all
+  // How far first looks are off, from what the optimiser keeps. As looks and sample see the same voxels, and all
   // networks do, that is less than their standard errors. False when stopped half way.
   bool measure_looks(const std::vector<PlacedNetwork>& networks, const std::vector<std::vector<double>>& measured) {
     std::vector<std::vector<LookError>> errors;
     for (const VoxelWindow& look : sample_.first_looks()) {
-      const auto seen = setup_.evaluator.evaluate(networks, look, {.report = {}, .stop = setup_.stop});
-      if (!seen) return false;
-      std::vector<LookError>& all = errors.emplace_back();
-      const auto count = static_cast<double>(networks.size());
-      for (std::size_t m = 0; m < setup_.measures.searched; ++m) {
-        LookError& error = all.emplace_back();
-        const auto wrong = [&](std::size_t k) { return measured[k][m] - (*seen)[k][m]; };
-        for (std::size_t k = 0; k < networks.size(); ++k) error.mean += wrong(k) / count;
-        double square = 0;
-        for (std::size_t k = 0; k < networks.size(); ++k) square += (wrong(k) - error.mean) * (wrong(k) - error.mean);
-        error.deviation = count > 1 ? std::sqrt(square / (count - 1)) : 0;
-      }
+      const auto looked = setup_.evaluator.evaluate(networks, look, {.report = {}, .stop = setup_.stop});
+      if (!looked) return false;
+      errors.push_back(look_errors(*looked, measured));
     }
-    look_errors_ = std::move(errors);
+    memory_.learn_looks(std::move(errors));
     return true;
   }
 
@@ -370,18 +326,10 @@ class Search {
     line.iteration = iteration, line.evaluations = optimiser_->evaluations();
     line.hypervolume = optimiser_->hypervolume();
     front_ = optimiser_->front();
-    forget_the_dropped();
+    if (sample_.renews()) memory_.keep_only(optimiser_->population());
     for (const ParetoPoint& point : front_) line.front.push_back(point.f);
     line.seconds = seconds();
     return true;
-  }
-
-  void forget_the_dropped() {
-    if (known_.empty()) return;
-    std::map<std::vector<double>, Measurements> kept;
-    for (const ParetoPoint& point : optimiser_->population())
-      if (const auto found = known_.find(point.x); found != known_.end()) kept.insert(*found);
-    known_ = std::move(kept);
   }
 
   // What ends the search from outside, at any moment.
@@ -435,9 +383,7 @@ class Search {
                  .redrawn = redrawn_,
                  .sample = sample_.state(),
                  .sample_error = error_,
-                 .look_errors = look_errors_,
-                 .known = known_,
-                 .shift = shift_};
+                 .memory = memory_.state()};
     since_.clear();
   }
 
@@ -476,9 +422,7 @@ class Search {
     history_ = snapshot_.history;
     drawn_ = snapshot_.drawn, redrawn_ = snapshot_.redrawn;
     sample_.restore(snapshot_.sample), error_ = snapshot_.sample_error;
-    look_errors_ = snapshot_.look_errors;
-    known_ = snapshot_.known, shift_ = snapshot_.shift;
-    measured_from_ = sample_.window().from;
+    memory_.restore(snapshot_.memory, sample_.window().from);
     replay_ = std::move(checkpoint->since);
     resumed_ = evaluated_ = optimiser_->evaluations();
     earlier_seconds_ = checkpoint->seconds, earlier_trace_seconds_ = checkpoint->trace_seconds;
@@ -512,13 +456,10 @@ class Search {
   std::unique_ptr<Optimiser> optimiser_;
   CachingEvaluator evaluator_;
   GrowingSample sample_;
-  double error_ = 0;                                   // standard error of a scaled objective by it; 0: not known yet
-  std::map<std::vector<double>, Measurements> known_;  // where the sample is drawn anew: of what is kept, by x
-  std::vector<double> shift_;                          // of values that newcomers are told with, by measure
-  std::uint64_t measured_from_ = 0;                    // where the last of these voxels begin
-  std::vector<std::vector<LookError>> look_errors_;    // of each first look, by measure; empty: not known yet
-  const std::vector<double> begins_with_;              // one of the first points; empty: none
-  std::vector<PlacedNetwork> networks_;                // of the open batch
+  double error_ = 0;  // standard error of a scaled objective by it; 0: not known yet
+  SampleMemory memory_;
+  const std::vector<double> begins_with_;  // one of the first points; empty: none
+  std::vector<PlacedNetwork> networks_;    // of the open batch
 
   std::vector<PlanIteration> history_;
   std::vector<ParetoPoint> front_;  // as of the last iteration
