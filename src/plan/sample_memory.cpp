@@ -29,8 +29,7 @@ void SampleMemory::correct(std::vector<double>& values) const {
 }
 
 void SampleMemory::correct(std::vector<double>& values, std::size_t look) const {
-  correct(values);
-  for (std::size_t m = 0; m < values.size(); ++m) values[m] += state_.looks[look][m].mean;
+  for (std::size_t m = 0; m < values.size(); ++m) values[m] += state_.looks[look][m].mean + state_.shift[m];
 }
 
 void SampleMemory::add(std::span<const double> x, const std::vector<double>& values) {
@@ -46,17 +45,21 @@ void SampleMemory::keep_only(std::span<const ParetoPoint> population) {
 
 void SampleMemory::average(std::span<const ParetoPoint> population, std::vector<std::vector<double>>& values,
                            std::uint64_t from) {
-  keep_only(population);
   const bool others = from != std::exchange(from_, from);  // else a larger sample, which holds the one before
+  const std::map<std::vector<double>, Measurements> before = std::exchange(state_.known, {});
   std::vector<double>& shift = state_.shift;
   std::ranges::fill(shift, 0.0);
   double longer_known = 0;
   for (std::size_t k = 0; k < population.size(); ++k) {
-    Measurements& own = state_.known[population[k].x];
-    if (!others || own.count == 0) own = {.sum = std::vector<double>(shift.size()), .count = 0};
-    ++own.count;
+    const auto [place, first] = state_.known.try_emplace(population[k].x);
+    Measurements& own = place->second;
+    if (first) {  // the population may have the same network twice
+      const auto found = before.find(population[k].x);
+      own = others && found != before.end() ? found->second : Measurements{std::vector<double>(shift.size()), 0};
+      ++own.count;
+      for (std::size_t m = 0; m < shift.size(); ++m) own.sum[m] += values[k][m];
+    }
     for (std::size_t m = 0; m < shift.size(); ++m) {
-      own.sum[m] += values[k][m];
       const double mean = own.sum[m] / static_cast<double>(own.count);
       if (own.count > 1) shift[m] += mean - values[k][m];
       values[k][m] = mean;

@@ -58,5 +58,16 @@ TEST(SampleMemory, ALargerSampleFromTheSamePlaceTakesThePlaceOfTheSmaller) {
   EXPECT_DOUBLE_EQ(seen[0][0], 0.3);
 }
 
+TEST(SampleMemory, TheSameNetworkTwiceIsMeasuredOnce) {
+  SampleMemory memory(1);
+  const ParetoPoint point{.x = {1}, .f = {0}};
+  const std::vector<ParetoPoint> population{point, point};
+  memory.add(point.x, {0.5});
+  Values seen{{0.25}, {0.25}};
+  memory.average(population, seen, 100);
+  EXPECT_EQ(seen, (Values{{0.375}, {0.375}}));
+  EXPECT_EQ(memory.state().known.at(point.x).count, 2u);
+}
+
 }  // namespace
 }  // namespace vantage
