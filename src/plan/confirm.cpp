@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "plan/scaled_objectives.hpp"
@@ -174,9 +175,13 @@ void keep_undominated(std::vector<PlanEntry>& entries, const SurveyProblem& prob
                      std::span(scaled).subspan(k * m, m));
   }
   const std::vector<std::size_t> ranks = non_dominated_ranks(scaled, m);
-  std::vector<bool> dominated;
-  for (const std::size_t rank : ranks) dominated.push_back(rank > 0);
-  erase_said(entries, dominated);
+  std::vector<bool> needless;
+  std::set<std::vector<double>> kept;
+  for (std::size_t k = 0; k < entries.size(); ++k) {
+    const auto own = std::span<const double>(scaled).subspan(k * m, m);
+    needless.push_back(ranks[k] > 0 || !kept.emplace(own.begin(), own.end()).second);
+  }
+  erase_said(entries, needless);
 }
 
 double judge_by_every_ray(std::vector<PlanEntry>& entries, const SurveyProblem& problem, const Measures& measures) {

@@ -18,7 +18,8 @@ ConfirmedFront confirm_front(const SearchOutcome& found, const DecisionSpace& sp
                              const Measures& measures, std::uint64_t sample_voxels, NetworkEvaluator& evaluator,
                              const PlanWatch& watch);
 
-// Drops those that another's values dominate: exact ones, or where a confirmation was cut short what is known.
+// Drops those that another's values dominate, and all but the first of equals: exact values, or where a confirmation
+// was cut short what is known.
 void keep_undominated(std::vector<PlanEntry>& entries, const SurveyProblem& problem, const Measures& measures);
 
 // Says of entries by how much their exact values miss the requirements, and marks those that another's dominate.

@@ -84,6 +84,10 @@ TEST(CoverageEstimate, IsTheFormula) {
   const Estimate e = coverage_estimate(counts, 4, 20);
   EXPECT_DOUBLE_EQ(e.value, (2 + 3.0 / 4) / 5);
   EXPECT_DOUBLE_EQ(e.standard_error, std::sqrt((1 - 5.0 / 20) * 1.25 / (2 * 5 * 4)));
+  // Two voxels are enough for it.
+  counts.voxels = counts.weight = 2;
+  counts.saturated = 1, counts.partial_points = 0, counts.successive_difference_sum = 1;
+  EXPECT_DOUBLE_EQ(coverage_estimate(counts, 4, 20).standard_error, std::sqrt((1 - 2.0 / 20) / (2 * 2 * 1)));
 }
 
 TEST(OverlapEstimate, IsTheJackknife) {

@@ -139,6 +139,17 @@ std::vector<PlanEntry> made_up(const Measures& measures, std::initializer_list<s
   return entries;
 }
 
+TEST(KeepUndominated, LeavesOneOfEquals) {
+  const SurveyProblem problem = test::toy_problem("coverage-overlap-fix");
+  const Measures measures = measures_of(problem);
+  auto entries = made_up(measures, {{0.9, 0.2}, {0.5, 0.6}, {0.9, 0.2}, {0.4, 0.6}, {0.1, 0.8}});
+  keep_undominated(entries, problem, measures);
+  ASSERT_EQ(entries.size(), 3u);
+  EXPECT_EQ(entries[0].value("coverage"), 0.9);
+  EXPECT_EQ(entries[1].value("coverage"), 0.5);
+  EXPECT_EQ(entries[2].value("coverage"), 0.1);
+}
+
 TEST(JudgeByEveryRay, MarksWhatIsDominatedAndMeasuresTheRest) {
   const SurveyProblem problem = test::toy_problem("coverage-overlap-fix");
   const Measures measures = measures_of(problem);
