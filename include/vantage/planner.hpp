@@ -93,9 +93,9 @@ struct PlanConfig {
   MoCmaEsConfig::Scheme scheme = MoCmaEsConfig::Scheme::steady_state;
   std::size_t batch = 0;            ///< Offspring at once in the steady state; 0: chosen by the engine.
   std::uint64_t sample_voxels = 0;  ///< 0: exact search; else sampled with so many voxels.
-  /// Where not 0: a network is looked at with so many voxels first, and with four times as many where it might be
-  /// kept. That sample grows, by four each time, to `sample_voxels` when networks have come to differ by less than it
-  /// can tell; what is kept is then measured anew (docs/method.md).
+  /// Where not 0: a network is looked at with so many voxels first, and with four times as many where it might be on
+  /// the front. That sample grows, by four each time, to `sample_voxels` when networks have come to differ by less than
+  /// it can tell; what is kept is then measured anew (docs/method.md).
   std::uint64_t sample_from = 0;
   /// Where not 0: every so many iterations other voxels are drawn, and what is kept is measured anew with them; at the
   /// end with voxels that nothing was chosen by. All that is then kept is confirmed, but for what cannot be on the

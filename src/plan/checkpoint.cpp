@@ -28,6 +28,10 @@ struct Writer {
     put(std::uint64_t{text.size()});
     bytes.append(text);
   }
+  void put(const std::vector<double>& values) {
+    put(std::uint64_t{values.size()});
+    for (const double value : values) put(value);
+  }
 };
 
 class Reader {
@@ -38,6 +42,11 @@ class Reader {
     T value;
     std::memcpy(&value, take(sizeof value).data(), sizeof value);
     return value;
+  }
+  std::vector<double> reals() {
+    std::vector<double> values(length(sizeof(double)));
+    for (double& value : values) value = get<double>();
+    return values;
   }
   std::string text() { return std::string(take(get<std::uint64_t>())); }
   // A length that the rest of the file can hold, so that damage cannot ask for all memory.
@@ -88,28 +97,18 @@ void write_checkpoint(const std::filesystem::path& file, const Checkpoint& check
     w.put(std::uint64_t{errors.size()});
     for (const LookError& error : errors) w.put(error.mean), w.put(error.deviation);
   }
-  const auto put_all = [&](const std::vector<double>& all) {
-    w.put(std::uint64_t{all.size()});
-    for (const double value : all) w.put(value);
-  };
   w.put(std::uint64_t{snapshot.memory.known.size()});
-  for (const auto& [x, measured] : snapshot.memory.known) put_all(x), put_all(measured.sum), w.put(measured.count);
-  put_all(snapshot.memory.shift);
+  for (const auto& [x, measured] : snapshot.memory.known) w.put(x), w.put(measured.sum), w.put(measured.count);
+  w.put(snapshot.memory.shift);
   w.put(std::uint64_t{snapshot.history.size()});
   for (const PlanIteration& line : snapshot.history) {
     w.put(std::uint64_t{line.iteration}), w.put(std::uint64_t{line.evaluations}), w.put(line.hypervolume),
         w.put(line.seconds);
     w.put(std::uint64_t{line.front.size()});
-    for (const auto& f : line.front) {
-      w.put(std::uint64_t{f.size()});
-      for (const double value : f) w.put(value);
-    }
+    for (const auto& f : line.front) w.put(f);
   }
   w.put(std::uint64_t{checkpoint.since.size()});
-  for (const auto& values : checkpoint.since) {
-    w.put(std::uint64_t{values.size()});
-    for (const double value : values) w.put(value);
-  }
+  for (const auto& values : checkpoint.since) w.put(values);
 
   Writer head;
   head.put(kVersion), head.put(std::uint64_t{w.bytes.size()}), head.put(checksum(w.bytes));
@@ -151,32 +150,21 @@ Checkpoint parse_checkpoint(std::string_view bytes, const std::filesystem::path&
     errors.resize(r.length(16));
     for (LookError& error : errors) error.mean = r.get<double>(), error.deviation = r.get<double>();
   }
-  const auto get_all = [&] {
-    std::vector<double> all(r.length(8));
-    for (double& value : all) value = r.get<double>();
-    return all;
-  };
   for (std::uint64_t left = r.length(24); left > 0; --left) {
-    std::vector<double> x = get_all();
+    std::vector<double> x = r.reals();
     SampleMemory::Measurements& measured = snapshot.memory.known[std::move(x)];
-    measured.sum = get_all(), measured.count = r.get<std::uint64_t>();
+    measured.sum = r.reals(), measured.count = r.get<std::uint64_t>();
   }
-  snapshot.memory.shift = get_all();
+  snapshot.memory.shift = r.reals();
   snapshot.history.resize(r.length(40));
   for (PlanIteration& line : snapshot.history) {
     line.iteration = r.get<std::uint64_t>(), line.evaluations = r.get<std::uint64_t>();
     line.hypervolume = r.get<double>(), line.seconds = r.get<double>();
     line.front.resize(r.length(8));
-    for (auto& f : line.front) {
-      f.resize(r.length(8));
-      for (double& value : f) value = r.get<double>();
-    }
+    for (auto& f : line.front) f = r.reals();
   }
   checkpoint.since.resize(r.length(8));
-  for (auto& values : checkpoint.since) {
-    values.resize(r.length(8));
-    for (double& value : values) value = r.get<double>();
-  }
+  for (auto& values : checkpoint.since) values = r.reals();
   if (!r.at_end()) r.damaged();
   return checkpoint;
 }

@@ -46,12 +46,25 @@ bool comes_before(const PlanEntry& a, const PlanEntry& b, const Measures& measur
   return a.x < b.x;
 }
 
+// What an optimiser would be told of each by what is best known of it, row-major.
+std::vector<double> scaled_rows(std::span<const PlanEntry> entries, const SurveyProblem& problem,
+                                const Measures& measures) {
+  const std::size_t m = problem.objectives.size();
+  std::vector<double> scaled(entries.size() * m);
+  for (std::size_t k = 0; k < entries.size(); ++k) {
+    const std::vector<double> values = best_known(entries[k], measures);
+    scale_objectives(problem, entries[k].x, values, missed_by(problem, measures, values),
+                     std::span(scaled).subspan(k * m, m));
+  }
+  return scaled;
+}
+
 // Entries than which another is better in all objectives beyond doubt.
 std::vector<bool> beaten(std::span<const PlanEntry> entries, const SurveyProblem& problem, const Measures& measures) {
   const std::size_t m = problem.objectives.size();
-  std::vector<double> scaled(entries.size() * m), errors(entries.size() * m);
+  const std::vector<double> scaled = scaled_rows(entries, problem, measures);
+  std::vector<double> errors(entries.size() * m);
   for (std::size_t k = 0; k < entries.size(); ++k) {
-    scale_objectives(problem, entries[k].x, best_known(entries[k], measures), 0, std::span(scaled).subspan(k * m, m));
     for (std::size_t j = 0; j < m; ++j) {
       const Objective& objective = problem.objectives[j];
       const double scale = std::abs(objective.best - objective.worst);
@@ -168,12 +181,7 @@ ConfirmedFront confirm_front(const SearchOutcome& found, const DecisionSpace& sp
 
 void keep_undominated(std::vector<PlanEntry>& entries, const SurveyProblem& problem, const Measures& measures) {
   const std::size_t m = problem.objectives.size();
-  std::vector<double> scaled(entries.size() * m);
-  for (std::size_t k = 0; k < entries.size(); ++k) {
-    const std::vector<double> values = best_known(entries[k], measures);
-    scale_objectives(problem, entries[k].x, values, missed_by(problem, measures, values),
-                     std::span(scaled).subspan(k * m, m));
-  }
+  const std::vector<double> scaled = scaled_rows(entries, problem, measures);
   const std::vector<std::size_t> ranks = non_dominated_ranks(scaled, m);
   std::vector<bool> needless;
   std::set<std::vector<double>> kept;

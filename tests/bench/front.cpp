@@ -152,8 +152,7 @@ void FrontOptions::add(CLI::App& command) {
   command
       .add_option("--samples", samples,
                   "Voxels to search with, N..M where the sample grows, N/R or N..M/R where it is drawn anew every R "
-                  "iterations; a "
-                  "curve each")
+                  "iterations; a curve each")
       ->delimiter(',')
       ->capture_default_str();
   command.add_option("--seeds", seeds, "A search of each sample with each")->delimiter(',')->capture_default_str();

@@ -39,11 +39,7 @@ std::vector<Network> networks_around(const Network& given, std::size_t many, dou
 // Each by itself, and all at once: what a network takes, and what a call does whatever it holds.
 void measure_networks(RanksModel& model, const RanksOptions& options, NetworkCounts& counts) {
   const Scene scene = Scene::load(options.site.scene);
-  SimulatorConfig config = options.site.config();
-  const EngineInfo engine = options.site.engines_here().front();
-  config.engine = engine.engine;
-  if (engine.engine != Engine::embree) config.device_index = engine.device_index;
-  Simulator simulator(scene, options.site.scanner(), config);
+  Simulator simulator = options.site.simulator(scene);
   const std::vector<Network> networks = networks_around(options.site.stations(), options.networks, options.spread_m);
   const SampleOptions sample{.voxels = options.sample, .overlap = true, .stop_at_goal = true};
   const auto run = [&](std::span<const Network> some) {
@@ -58,7 +54,7 @@ void measure_networks(RanksModel& model, const RanksOptions& options, NetworkCou
   const auto many = static_cast<double>(networks.size());
   model.piece_s = std::max(0.0, (each - all) / (many - 1));
   for (double& seconds : model.network_s) seconds *= all / each;
-  std::printf("# %s on %s\n", to_string(engine.engine).c_str(), engine.device.c_str());
+  std::printf("# %s on %s\n", to_string(simulator.engine().engine).c_str(), simulator.engine().device.c_str());
 }
 
 // What travels for a network, and what rank 0 does for it and for a rank: the best of several, which other work of the
