@@ -115,13 +115,14 @@ if [ ${#missing[@]} -gt 0 ] || [ "$builder_needed" = yes ] || [ "$mesa_needed" =
   fi
 fi
 
+several=(-DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=12) # sources at a time: a third of the time
 case "$mode" in
   program)
-    cmake --preset release -DVANTAGE_BUILD_TESTS=OFF -DVANTAGE_BUILD_EXAMPLES=OFF >/dev/null
+    cmake --preset release "${several[@]}" -DVANTAGE_BUILD_TESTS=OFF -DVANTAGE_BUILD_EXAMPLES=OFF >/dev/null
     cmake --build --preset release
     ;;
   tests)
-    cmake --preset release -DVANTAGE_BUILD_TESTS=ON -DVANTAGE_BUILD_EXAMPLES=ON >/dev/null
+    cmake --preset release "${several[@]}" -DVANTAGE_BUILD_TESTS=ON -DVANTAGE_BUILD_EXAMPLES=ON >/dev/null
     cmake --build --preset release
     if ! [ tests/clients/node_modules/.package-lock.json -nt tests/clients/package-lock.json ]; then
       say "installing the programs that read back what vantage writes (npm ci in tests/clients)"

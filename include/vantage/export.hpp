@@ -115,13 +115,15 @@ void draw_history_fronts(const std::filesystem::path& file, const PlanResult& re
 /// the floor and what is cut through is filled. Several floors stand side by side, and each again on a page of its own,
 /// PLAN-level-1.png and so on, from the lowest. `names`: of the stations, where they have names; "S1", "S2", … and for
 /// kept ones "K1", … otherwise. `errors`: of the stations, where they are predicted: a standard
-/// ellipse (one sigma, of the head in x and y) around each. Returns the files that it wrote.
+/// ellipse (one sigma, of the head in x and y) around each. `overlap_words`: what `overlap` is, in the legend. Returns
+/// the files that it wrote.
 std::vector<std::filesystem::path> draw_plan_view(const std::filesystem::path& file, const Scene& scene,
                                                   const SearchArea& area, std::span<const PlacedStation> stations,
                                                   const OverlapMatrix& overlap, const std::string& title,
                                                   double link_overlap = default_link_overlap,
                                                   std::span<const std::string> names = {},
-                                                  std::span<const StationError> errors = {});
+                                                  std::span<const StationError> errors = {},
+                                                  const std::string& overlap_words = "Overlap of two stations");
 
 /// Writes a whole result folder: front.csv, front.json, history.csv, fronts.csv (every iteration's front), and for the
 /// `answer()` stations.csv, overlap.csv (where it is confirmed), coverage.ply (where `field`, its voxel field,

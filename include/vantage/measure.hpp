@@ -40,6 +40,8 @@ OverlapMatrix overlap_matrix(const NetworkCounts& counts);
 /// Scan overlap of every pair: what two scans share, of the smaller one, |i and j| / min(|i|, |j|); 0/0 is 0. How
 /// practice states the overlap that registration takes. Not equation 11, which is shared over either.
 OverlapMatrix scan_overlap_matrix(const NetworkCounts& counts);
+/// From which scan overlap on two stations count as linked, unless asked otherwise: what practice wants.
+inline constexpr double default_link = 0.3;
 /// Equation 13: average weighted clustering coefficient, in [0, 1]; the maximum is over all pairs. 0/0 is 0, so
 /// networks of one or two stations, or without a shared voxel, have 0.
 double clustering_coefficient(const OverlapMatrix& overlap);

@@ -25,7 +25,7 @@ struct EditCommandOptions {
   EditOptions edit;
   std::optional<SampleSize> sample;
   std::optional<std::string> output;
-  std::optional<double> link_overlap;
+  std::optional<double> link;
   bool no_browser = false;
 
   void add(CLI::App& command) {
@@ -35,9 +35,9 @@ struct EditCommandOptions {
               [this](const std::string& text, const std::string& what) { sample = parse_sample(text, what); })
         ->group("Evaluation");
     add_number(
-        command, "--link-overlap", "W",
-        fmt::format("Overlap from which on two stations count as linked, 0 to 1; {} otherwise", default_link_overlap),
-        link_overlap, {.low = 0, .high = 1})
+        command, "--link", "SHARE",
+        fmt::format("Scan overlap from which on two stations count as linked, 0 to 1; {} otherwise", default_link),
+        link, {.low = 0, .high = 1})
         ->group("Results");
     add_text(command, "-o,--output", "DIR", "Folder for the results; the scene's name and -edit otherwise", output)
         ->group("Results");
@@ -113,19 +113,19 @@ int edit(CLI::App& command, EditCommandOptions& options, Program& program) {
   Simulator simulator(site.scene, site.scanners, site.config);
   tell_engine(simulator);
   tell_grid(simulator);
-  if (options.link_overlap) options.edit.link_overlap = *options.link_overlap;
+  if (options.link) options.edit.link = *options.link;
   if (options.sample) options.edit.voxels = options.sample->of(simulator.voxel_count());
-  const auto save = [&](const std::vector<PlacedStation>& placed, const NetworkCounts& counts, const VoxelField& field,
-                        const Progress& progress) {
-    write_stations_csv(folder / "stations.csv", placed, simulator.scanners());
-    const auto judged = judge_missed(site, simulator, field, program);
+  const auto save = [&](const EditSession::Exact& exact, const Progress& progress) {
+    write_stations_csv(folder / "stations.csv", exact.stations, simulator.scanners());
+    const auto judged = judge_missed(site, simulator, exact.field, program);
     if (progress.stopped()) return;
     write_reports(std::vector<std::filesystem::path>{folder / "report.html", folder / "report.pdf"},
-                  {.stations = placed,
-                   .names = station_names(placed),
-                   .counts = counts,
-                   .link_overlap = options.edit.link_overlap},
-                  title, {site, simulator, &field, judged ? &*judged : nullptr}, program, progress.stop);
+                  {.stations = exact.stations,
+                   .names = station_names(exact.stations),
+                   .counts = exact.counts,
+                   .scan_overlaps = exact.scan_overlaps,
+                   .link = options.edit.link},
+                  title, {site, simulator, &exact.field, judged ? &*judged : nullptr}, program, progress.stop);
     spdlog::info("saved in {}", folder.string());
   };
   EditSession session(

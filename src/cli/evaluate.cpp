@@ -87,10 +87,8 @@ struct EvaluateCommandOptions {
               "Write all of it as a page for a browser, .html, or on paper, .pdf; may be repeated", reports)
         ->group("Results");
     add_number(command, "--link-overlap", "W",
-               fmt::format(
-                   "Overlap (equation 11) from which on the picture and the drawings show a link, 0 to 1; {} otherwise",
-                   default_link_overlap),
-               link_overlap, {.low = 0, .high = 1})
+               "Draw as links overlaps (equation 11) of at least W, 0 to 1, in place of scan overlaps", link_overlap,
+               {.low = 0, .high = 1})
         ->group("Results");
     command.add_flag("--json", json, "Print one JSON object");
   }
@@ -173,7 +171,6 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
   warn_of_unusable(stations);
   const auto placed = placed_of(stations);
   const auto names = names_of(stations);
-  const double link_overlap = options.link_overlap.value_or(default_link_overlap);
   const bool sampled = options.sample || options.error;
   const bool overlap = !options.no_overlap;
   const auto must_end = [](const std::optional<std::string>& file, const char* what, auto... endings) {
@@ -258,15 +255,21 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
     else
       draw_registration(file, simulator, field, error, placed, "Registration error on the surface (predicted)");
   }
+  const OverlapMatrix scan_overlaps = overlap ? scan_overlap_matrix(around.counts) : OverlapMatrix{};
+  const double link = options.link.value_or(default_link);
+  // Pictures and drawings show the links of the summary, unless those of the method are asked for.
+  const OverlapMatrix& drawn = options.link_overlap ? matrix : scan_overlaps;
+  const double least_drawn = options.link_overlap.value_or(link);
   if (options.picture) {
-    draw_plan_view(*options.picture, site.scene, site.area(), placed, matrix,
+    draw_plan_view(*options.picture, site.scene, site.area(), placed, drawn,
                    fmt::format("{} station{}: coverage {:.3f}, overlap {:.3f}", placed.size(),
                                placed.size() == 1 ? "" : "s", covered.value, overlapped.value),
-                   link_overlap, names, error.stations);
+                   least_drawn, names, error.stations,
+                   options.link_overlap ? "Overlap of two stations" : "Scan overlap of two stations");
   }
 
   for (const std::string& file : options.station_files)
-    write_stations(file, {placed, names}, matrix, link_overlap, site.area(), site.crs_text());
+    write_stations(file, {placed, names}, drawn, least_drawn, site.area(), site.crs_text());
   nlohmann::json rows = nlohmann::json::array();
   for (std::size_t k = 0; k < stations.size(); ++k) {
     auto row = to_json(stations[k], names[k], site.scanners);
@@ -279,11 +282,10 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
     rows.push_back(std::move(row));
   }
   SurveySummary summary{.names = names, .captured = covered.value, .captured_error = covered.standard_error};
-  const OverlapMatrix scan_overlaps = overlap ? scan_overlap_matrix(around.counts) : OverlapMatrix{};
   if (overlap) {
     std::vector<bool> used;
     for (const PlacedStation& station : placed) used.push_back(active(station));
-    summary.links = summary_links(scan_overlaps, options.link.value_or(default_link), used);
+    summary.links = summary_links(scan_overlaps, link, used);
     summary.links->measure = "scan overlap";
   }
   std::optional<Estimate> visible;
@@ -303,7 +305,8 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
                   {.stations = placed,
                    .names = names,
                    .counts = counts,
-                   .link_overlap = link_overlap,
+                   .scan_overlaps = scan_overlaps,
+                   .link = link,
                    .registration = options.with_registration ? &error : nullptr},
                   std::filesystem::path(options.site.scene).stem().string(),
                   {site, simulator, sampled ? nullptr : &field, judged ? &*judged : nullptr}, program, program.abort);

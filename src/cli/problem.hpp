@@ -37,6 +37,6 @@ struct ProblemOptions {
 };
 
 // What is exported as an option of its own, as the default question has it.
-inline constexpr double default_capture = 0.9, default_link = 0.3, default_apart_m = 1;
+inline constexpr double default_capture = 0.9, default_apart_m = 1;
 
 }  // namespace vantage::cli

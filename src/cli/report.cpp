@@ -47,8 +47,8 @@ void write_reports(std::span<const std::filesystem::path> files, const PlanResul
 
 void write_reports(std::span<const std::filesystem::path> files, const MeasuredStations& measured,
                    const std::string& title, const ReportSources& sources, Program& program, std::stop_token stop) {
-  ReportNetwork network =
-      measured_network(measured.stations, measured.names, measured.counts, sources.simulator, measured.link_overlap);
+  ReportNetwork network = measured_network(measured.stations, measured.names, measured.counts, sources.simulator,
+                                           measured.scan_overlaps, measured.link);
   if (measured.registration) network.entry.registration = *measured.registration;
   write(files, report_of(std::move(network), sources.simulator), title, sources, program, std::move(stop));
 }

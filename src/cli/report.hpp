@@ -32,7 +32,8 @@ struct MeasuredStations {
   std::span<const PlacedStation> stations;
   const std::vector<std::string>& names;
   const NetworkCounts& counts;
-  double link_overlap = default_link_overlap;
+  const OverlapMatrix& scan_overlaps;               // of all surfaces; empty: not looked at
+  double link = default_link;                       // from which on two stations count as linked
   const RegistrationError* registration = nullptr;  // null: not predicted
 };
 void write_reports(std::span<const std::filesystem::path> files, const MeasuredStations& measured,

@@ -11,7 +11,7 @@ namespace {
 constexpr std::uint32_t kPolynomial = 0x82F63B78;  // bits reversed: the lowest bit is the highest power
 
 // Row k: what a byte that k more bytes follow adds to the remainder.
-constexpr std::array<std::array<std::uint32_t, 256>, 8> make_table() {
+constexpr std::array<std::array<std::uint32_t, 256>, 8> remainders() {
   std::array<std::array<std::uint32_t, 256>, 8> table{};
   for (std::uint32_t byte = 0; byte < 256; ++byte) {
     std::uint32_t remainder = byte;
@@ -23,7 +23,7 @@ constexpr std::array<std::array<std::uint32_t, 256>, 8> make_table() {
       table[k][byte] = (table[k - 1][byte] >> 8) ^ table[0][table[k - 1][byte] & 255];
   return table;
 }
-constexpr auto kTable = make_table();
+constexpr auto kTable = remainders();
 
 }  // namespace
 

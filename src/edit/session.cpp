@@ -8,7 +8,6 @@
 #include "page/packed.hpp"
 #include "page/report.hpp"
 #include "page/report_json.hpp"
-#include "trace/sample_counts.hpp"
 #include "vantage/error.hpp"
 #include "vantage/planner.hpp"
 #include "vantage/summary.hpp"
@@ -20,7 +19,6 @@ using nlohmann::json;
 using nlohmann::ordered_json;
 
 constexpr std::size_t kMostUndo = 200;
-constexpr std::uint32_t kGroups = 20;           // of a sample, as the simulator makes them
 constexpr std::uint64_t kCellVoxels = 200'000;  // that say where cells are
 
 std::vector<std::uint8_t> bytes_of(const std::vector<float>& values) {
@@ -51,12 +49,10 @@ EditSession::EditSession(Simulator& simulator, const SearchArea& area, const Cla
       keep_(std::move(keep)),
       save_(std::move(save)),
       cells_(coverage_cells(simulator, std::max(kCellVoxels, options.voxels), options.cells)),
-      stations_(stations) {
-  if (simulator.voxel_count() > 0)
-    sample_ = simulator.sampled_voxels(std::min(options.voxels, simulator.voxel_count()));
-  for (const std::uint32_t rank : sample_) weights_.push_back(static_cast<std::uint8_t>(simulator.voxel_weight(rank)));
-  // None where all are 1: as the simulator has it.
-  if (std::ranges::count(weights_, 1) == std::ssize(weights_)) weights_.clear();
+      surroundings_(surroundings_of(simulator)),
+      stations_(stations),
+      surveyed_(simulator, options.voxels),
+      around_(surroundings_, options.link_voxels) {
   for (EditStation& station : stations_) station.id = next_id_++;
   measure();
 }
@@ -94,14 +90,14 @@ ordered_json EditSession::state() const {
   }
   const auto stations = placed();
   const ReportNetwork network =
-      measured_network(stations, station_names(stations), counts_, simulator_, options_.link_overlap);
+      measured_network(stations, station_names(stations), counts_, simulator_, scan_overlaps_, options_.link);
   ordered_json json = {{"version", version_.load()},
                        {"network", network_json(network)},
                        {"ids", std::move(ids)},
                        {"locked", std::move(locked)},
                        {"coverage", packed(colours_.coverage)},
                        {"only", packed(colours_.only)},
-                       {"sample", exact_ ? std::uint64_t{0} : sample_.size()},
+                       {"sample", exact_ ? std::uint64_t{0} : surveyed_.sample().size()},
                        {"exact", exact_},
                        {"undo", !undo_.empty()},
                        {"redo", !redo_.empty()},
@@ -129,7 +125,7 @@ void EditSession::change(const json& request) {
   if (what == "save") {
     keep_(stations_);
     return start("saving", [this](const Progress& progress) {
-      trace_exactly(progress, [&](const VoxelField& field) { save_(placed(), counts_, field, progress); });
+      trace_exactly(progress, [&](const Exact& exact) { save_(exact, progress); });
     });
   }
   bool dragging = false;
@@ -207,46 +203,17 @@ void EditSession::step(std::vector<Stations>& from, std::vector<Stations>& to) {
   from.pop_back();
 }
 
-// Points add up, so those stations alone are traced that have moved. Each keeps its place among the others while it is,
-// as its noise goes by that: all numbers are those of `vantage evaluate --sample`.
 void EditSession::measure() {
   exact_ = false;
-  std::erase_if(traced_, [&](const Traced& traced) {
-    return traced.place >= stations_.size() || stations_[traced.place].id != traced.id ||
-           stations_[traced.place].placed.position != traced.head;
-  });
-  std::vector<Network> alone;
-  std::vector<Traced> fresh;
-  for (std::size_t k = 0; k < stations_.size(); ++k) {
-    const PlacedStation& placed = stations_[k].placed;
-    if (!active(placed) || std::ranges::count(traced_, k, &Traced::place) > 0) continue;
-    Network network(stations_.size(), {.position = placed.position, .active = false, .setup = placed.setup});
-    network[k].active = true;
-    alone.push_back(std::move(network));
-    fresh.push_back({.place = k, .id = stations_[k].id, .head = placed.position, .points = {}});
-  }
-  if (!alone.empty() && !sample_.empty())
-    simulator_.evaluate_sampled(alone, {.voxels = sample_.size(),
-                                        .overlap = false,
-                                        .points = [&](std::size_t n, std::span<const std::uint32_t> counted) {
-                                          fresh[n].points.assign(counted.begin(), counted.end());
-                                        }});
-  std::ranges::move(fresh, std::back_inserter(traced_));
-  std::vector<std::uint32_t> points(sample_.size(), 0);
-  std::vector<std::uint64_t> masks(sample_.size() * mask_words(stations_.size()), 0);
-  std::vector<Seer> seen_by(sample_.size(), 0);
-  for (const Traced& traced : traced_) {
-    if (!active(stations_[traced.place].placed)) continue;
-    for (std::size_t i = 0; i < traced.points.size(); ++i) {
-      points[i] += traced.points[i];
-      if (traced.points[i] == 0) continue;
-      masks[traced.place / mask_bits * sample_.size() + i] |= std::uint64_t{1} << (traced.place % mask_bits);
-      seen_by[i] = together(seen_by[i], static_cast<Seer>(traced.place + 1));
-    }
-  }
-  counts_ = reduce_sample(points, masks, kGroups, static_cast<std::uint32_t>(stations_.size()),
-                          simulator_.goal_density(), weights_);
-  colours_ = cell_colours(cells_, sample_, points, seen_by, simulator_.goal_density());
+  std::vector<std::uint32_t> ids;
+  for (const EditStation& station : stations_) ids.push_back(station.id);
+  const Network all = network();
+  surveyed_.follow(all, ids);
+  around_.follow(all, ids);
+  counts_ = surveyed_.counts();
+  scan_overlaps_ = scan_overlap_matrix(around_.counts());
+  colours_ =
+      cell_colours(cells_, surveyed_.sample(), surveyed_.points(), surveyed_.seen_by(), simulator_.goal_density());
 }
 
 void EditSession::start(const std::string& what, std::function<void(const Progress&)> work) {
@@ -272,30 +239,34 @@ void EditSession::start(const std::string& what, std::function<void(const Progre
   });
 }
 
-void EditSession::trace_exactly(const Progress& progress, const std::function<void(const VoxelField&)>& then) {
-  const Network all = network();  // nobody changes it while this is busy
+void EditSession::trace_exactly(const Progress& progress, const std::function<void(const Exact&)>& then) {
+  Exact exact;
+  exact.stations = placed();  // nobody changes them while this is busy
+  const Network all = network();
   if (std::ranges::none_of(all, &Station::active)) throw Error(Errc::invalid_argument, "there is no station to trace");
-  VoxelField field;
-  NetworkCounts counts = simulator_.evaluate(all, {.field = &field}, progress);
-  if (counts.cancelled) return;
+  exact.counts = simulator_.evaluate(all, {.field = &exact.field}, progress);
+  if (exact.counts.cancelled) return;
+  const NetworkCounts around = surroundings_.evaluate(all, {}, {.report = {}, .stop = progress.stop});
+  if (around.cancelled) return;
+  exact.scan_overlaps = scan_overlap_matrix(around);
   std::vector<std::uint32_t> points;
   std::vector<Seer> seen_by;
   for (const std::uint32_t rank : cells_.ranks) {
-    points.push_back(field.count[rank]);
-    seen_by.push_back(seer_of(field, rank));
+    points.push_back(exact.field.count[rank]);
+    seen_by.push_back(seer_of(exact.field, rank));
   }
   CellColours colours = cell_colours(cells_, cells_.ranks, points, seen_by, simulator_.goal_density());
   {
     const std::scoped_lock lock(mutex_);
-    counts_ = std::move(counts), colours_ = std::move(colours), exact_ = true;
+    counts_ = exact.counts, scan_overlaps_ = exact.scan_overlaps, colours_ = std::move(colours), exact_ = true;
   }
   if (!then) return;
-  then(field);
+  then(exact);
   const std::scoped_lock lock(mutex_);
   message_ = "saved";
 }
 
-// A short search from where the stations are, for more coverage and no more parts than now.
+// A short search from where the stations are, for more coverage and links no weaker than now, or than is asked for.
 void EditSession::improve(const Progress& progress) {
   std::vector<Vec3> kept, start;
   std::vector<StationSetup> kept_setups;
@@ -304,17 +275,20 @@ void EditSession::improve(const Progress& progress) {
     if (s.locked) kept_setups.push_back(s.placed.setup);
   }
   if (start.empty()) throw Error(Errc::invalid_argument, "all stations are locked");
-  const std::size_t parts = connectivity(overlap_matrix(counts_), options_.link_overlap).parts;
+  const auto parts_now = [&] { return connectivity(scan_overlaps_, options_.link).parts; };
+  const std::size_t parts = parts_now();
+  const double weakest = connectivity(scan_overlaps_, 0).weakest_overlap;
   const double before = coverage(counts_, simulator_.goal_density());
   const std::string names[] = {"coverage"};
-  SurveyProblem problem = survey_problem(names, start.size(), start.size(), options_.link_overlap);
+  SurveyProblem problem = survey_problem(names, start.size(), start.size());
   problem.kept = kept;
   problem.kept_setups = kept_setups;
-  problem.requirements = {
-      make_requirement("parts<=" + std::to_string(std::max<std::size_t>(parts, 1)), problem.settings())};
+  Requirement linked = make_requirement("link>=0", problem.settings());
+  linked.limit = stations_.size() > 1 ? std::min(weakest, options_.link) : 0;
+  problem.requirements = {std::move(linked)};
   const PlanConfig config{.iterations = 1'000'000,
                           .sigma0 = 0.05,
-                          .sample_voxels = sample_.size(),
+                          .sample_voxels = surveyed_.sample().size(),
                           .start = start,
                           .max_seconds = options_.improve_seconds};
   std::stop_source abort;  // what is found is measured here, on the sample
@@ -340,8 +314,7 @@ void EditSession::improve(const Progress& progress) {
   }
   measure();
   // The search had them upright and with the first scanner.
-  const bool better = coverage(counts_, simulator_.goal_density()) > before &&
-                      connectivity(overlap_matrix(counts_), options_.link_overlap).parts <= parts;
+  const bool better = coverage(counts_, simulator_.goal_density()) > before && parts_now() <= parts;
   std::vector<EditStation> found = std::exchange(stations_, now);
   if (!better) {
     measure();

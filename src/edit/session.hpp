@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "edit/traced_stations.hpp"
 #include "page/coverage_cells.hpp"
 #include "vantage/measure.hpp"
 #include "vantage/placement.hpp"
@@ -25,10 +26,11 @@ struct EditStation {
 };
 
 struct EditOptions {
-  double link_overlap = default_link_overlap;
-  std::uint64_t voxels = 40'000;  // of the sample that every change is measured on
-  std::size_t cells = 20'000;     // of the colours, at most
-  double improve_seconds = 10;    // of one short search
+  double link = default_link;          // scan overlap from which on two stations count as linked
+  std::uint64_t voxels = 40'000;       // of the sample that every change is measured on
+  std::uint64_t link_voxels = 10'000;  // of all surfaces, by which scan overlaps go until every ray is asked for
+  std::size_t cells = 20'000;          // of the colours, at most
+  double improve_seconds = 10;         // of one short search
 };
 
 // Borrows all that it is given. Every call is safe from any thread; what takes long runs on a thread of its own, and
@@ -37,9 +39,15 @@ class EditSession {
  public:
   // Called after every change that is not one of many of a drag, with the stations as they are then.
   using Keep = std::function<void(const std::vector<EditStation>&)>;
-  // Writes the results of these stations, measured by every ray; on the session's own thread.
-  using Save =
-      std::function<void(const std::vector<PlacedStation>&, const NetworkCounts&, const VoxelField&, const Progress&)>;
+  // Of some stations, by every ray.
+  struct Exact {
+    std::vector<PlacedStation> stations;
+    NetworkCounts counts;
+    OverlapMatrix scan_overlaps;  // of all surfaces
+    VoxelField field;
+  };
+  // Writes the results; on the session's own thread.
+  using Save = std::function<void(const Exact&, const Progress&)>;
 
   EditSession(Simulator& simulator, const SearchArea& area, const ClashChecker& clash,
               const std::vector<EditStation>& stations, const EditOptions& options, Keep keep, Save save);
@@ -69,7 +77,7 @@ class EditSession {
   void step(std::vector<Stations>& from, std::vector<Stations>& to);
   void measure();
   void start(const std::string& what, std::function<void(const Progress&)> work);
-  void trace_exactly(const Progress& progress, const std::function<void(const VoxelField&)>& then);
+  void trace_exactly(const Progress& progress, const std::function<void(const Exact&)>& then);
   void improve(const Progress& progress);
 
   Simulator& simulator_;
@@ -79,23 +87,16 @@ class EditSession {
   const Keep keep_;
   const Save save_;
   CoverageCells cells_;
-  std::vector<std::uint32_t> sample_;
-  std::vector<std::uint8_t> weights_;  // of its voxels; empty: all count the same
+  Simulator surroundings_;
 
   mutable std::mutex mutex_;  // of all below
   Stations stations_;
   std::vector<Stations> undo_, redo_;
   std::uint32_t next_id_ = 1;
   std::atomic<std::uint64_t> version_ = 1;
-  // What a station left in each voxel of the sample, where it stood when that was traced.
-  struct Traced {
-    std::size_t place;
-    std::uint32_t id;
-    Vec3 head;
-    std::vector<std::uint32_t> points;
-  };
-  std::vector<Traced> traced_;
+  TracedStations surveyed_, around_;
   NetworkCounts counts_;
+  OverlapMatrix scan_overlaps_;
   CellColours colours_;
   bool exact_ = false;
   std::string busy_, message_;

@@ -10,10 +10,12 @@
 #include <numeric>
 #include <string>
 
+#include "optimise/as_span.hpp"
 #include "optimise/blocks.hpp"
 #include "optimise/common.hpp"
 #include "optimise/conditional.hpp"
 #include "optimise/hypervolume.hpp"
+#include "optimise/infinity.hpp"
 #include "vantage/error.hpp"
 #include "vantage/optimiser.hpp"
 
@@ -23,9 +25,9 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using optimise::Common;
+using optimise::kInfinity;
 using optimise::kMaxPopulation;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kMaxCondition = 1e14;
 constexpr double kMaxGrowth = 1e4;  // of the step along the longest axis, times its share of sigma0
 // Share of what the worse half takes from the covariance that the better half gives back; the old covariance keeps the
@@ -39,11 +41,9 @@ constexpr double kSwapped = 0.1, kSwappedOfMany = 0.25;
 constexpr std::size_t kSwapsFrom = 5;
 // Of a run that begins from the best so far: its step as a share of sigma0, and by when it must have caught up.
 constexpr double kNextStep = 0.5, kLateStep = 0.1;
-constexpr std::string_view kKind = "CMA-ES";
+constexpr std::string_view kCmaEs = "CMA-ES";
 
 std::span<double> as_span(VectorXd& v) { return {v.data(), static_cast<std::size_t>(v.size())}; }
-std::span<const double> as_span(const VectorXd& v) { return {v.data(), static_cast<std::size_t>(v.size())}; }
-std::span<const double> as_span(const MatrixXd& a) { return {a.data(), static_cast<std::size_t>(a.size())}; }
 
 // Learning rates and weights, which depend on n and λ alone.
 struct Strategy {
@@ -166,7 +166,7 @@ struct CmaEs::Impl : Common {
 };
 
 CmaEs::Impl::Impl(std::size_t d, const OptimiserConfig& c)
-    : Common(std::string(kKind), d, 1, c, default_population(d)), n(d), asked_points(config.population) {
+    : Common(std::string(kCmaEs), d, 1, c, default_population(d)), n(d), asked_points(config.population) {
   if (config.population < 2)
     throw Error(Errc::invalid_argument, name + ": a population of " + std::to_string(config.population) +
                                             " cannot be ranked; give 0 or at least 2");
@@ -542,11 +542,11 @@ void CmaEs::save(std::ostream& out) const {
   w.put(s.median_history);
   w.put(s.best.x);
   w.put(s.best.f[0]);
-  w.write(out, kKind);
+  w.write(out, kCmaEs);
 }
 
 void CmaEs::load(std::istream& in) {
-  optimise::StateReader r(in, kKind);
+  optimise::StateReader r(in, kCmaEs);
   auto next = std::make_unique<Impl>(impl_->n, impl_->config);
   Impl& s = *next;
   s.Common::load(r);

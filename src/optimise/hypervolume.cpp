@@ -9,12 +9,11 @@
 #include <numeric>
 #include <queue>
 
+#include "optimise/infinity.hpp"
 #include "optimise/sweep.hpp"
 
 namespace vantage::optimise {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Everything below works on a plain array of points that all lie inside the reference.
 struct Points {

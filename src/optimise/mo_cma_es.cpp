@@ -11,6 +11,7 @@
 #include <memory>
 #include <utility>
 
+#include "optimise/as_span.hpp"
 #include "optimise/blocks.hpp"
 #include "optimise/conditional.hpp"
 #include "optimise/hypervolume.hpp"
@@ -39,9 +40,7 @@ constexpr int kRedraws = 1;        // of a whole point, before what lies outside
 constexpr int kPartialRedraws = 16;
 constexpr double kExtremes = 0.2;        // share of guided parents that are the best in one objective
 constexpr double kNeighbourShare = 0.4;  // of a spread step's variance
-constexpr std::string_view kKind = "MO-CMA-ES";
-
-std::span<const double> as_span(const VectorXd& v) { return {v.data(), static_cast<std::size_t>(v.size())}; }
+constexpr std::string_view kMoCmaEs = "MO-CMA-ES";
 
 struct Member : Solution {
   VectorXd genotype;  // unit coordinates; may lie outside the box, where x is clipped
@@ -519,11 +518,11 @@ void MoCmaEs::save(std::ostream& out) const {
       w.put(std::span(shape.factor.col(j).data() + j, s.common.dimension - static_cast<std::size_t>(j)));
   }
   w.put(s.population.contributions());
-  w.write(out, kKind);
+  w.write(out, kMoCmaEs);
 }
 
 void MoCmaEs::load(std::istream& in) {
-  optimise::StateReader r(in, kKind);
+  optimise::StateReader r(in, kMoCmaEs);
   const MoCommon& mine = impl_->common;
   const std::size_t n = mine.dimension;
   auto next = std::make_unique<Impl>(n, mine.objectives, mine.config);

@@ -8,12 +8,12 @@
 
 #include "optimise/blocks.hpp"
 #include "optimise/hypervolume.hpp"
+#include "optimise/infinity.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage::optimise {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kFlatIterations = 10;
 constexpr std::size_t kPopulation = 100;
 constexpr double kOverreach = 0.1;

@@ -11,11 +11,10 @@
 #include <numeric>
 
 #include "optimise/index_set.hpp"
+#include "optimise/infinity.hpp"
 
 namespace vantage::optimise {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Points sorted by x; rank i + 1 is the i-th of them. Ranks 0 and k + 1 are sentinels that close the staircase.
 struct Sweep {

@@ -2,6 +2,7 @@
 #include "page/report.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "report/front_view.hpp"
 #include "vantage/export.hpp"
@@ -29,7 +30,8 @@ Report report_of(const PlanResult& result, const Simulator& simulator) {
 }
 
 ReportNetwork measured_network(std::span<const PlacedStation> stations, std::vector<std::string> names,
-                               const NetworkCounts& counts, const Simulator& simulator, double link_overlap) {
+                               const NetworkCounts& counts, const Simulator& simulator, OverlapMatrix scan_overlaps,
+                               double link) {
   ReportNetwork network{.names = std::move(names)};
   PlanEntry& entry = network.entry;
   entry.stations.assign(stations.begin(), stations.end());
@@ -45,13 +47,21 @@ ReportNetwork measured_network(std::span<const PlacedStation> stations, std::vec
   network.summary = {.names = network.names, .captured = covered.value, .captured_error = covered.standard_error};
   if (!counts.seen.empty()) {
     entry.values["overlap"] = known(overlap_estimate(counts, simulator.voxel_count()));
-    entry.exact_overlap_matrix = network.links = overlap_matrix(counts);
+    entry.exact_overlap_matrix = overlap_matrix(counts);
+  }
+  if (scan_overlaps.size() > 0) {
     std::vector<bool> used;
     for (const PlacedStation& station : stations) used.push_back(active(station));
-    network.summary.links = summary_links(network.links, link_overlap, used);
+    network.summary.links = summary_links(scan_overlaps, link, used);
+    network.summary.links->measure = "scan overlap";
+    entry.exact_scan_overlap_matrix = network.links = std::move(scan_overlaps);
   }
   network.summary.faults = station_faults(stations, network.names);
   return network;
+}
+
+std::string link_words(const ReportNetwork& network) {
+  return network.summary.links && network.summary.links->measure == "scan overlap" ? "Scan overlap" : "Overlap";
 }
 
 Report report_of(ReportNetwork network, const Simulator& simulator) {

@@ -43,8 +43,10 @@ struct Report {
 Report report_of(const PlanResult& result, const Simulator& simulator);
 
 // Of stations that were measured without a plan: by every ray, or on a sample. `names`: one a station.
+// `scan_overlaps`: of all surfaces, from `link` on two stations count as linked; empty: not looked at.
 ReportNetwork measured_network(std::span<const PlacedStation> stations, std::vector<std::string> names,
-                               const NetworkCounts& counts, const Simulator& simulator, double link_overlap);
+                               const NetworkCounts& counts, const Simulator& simulator, OverlapMatrix scan_overlaps,
+                               double link);
 // With that network alone.
 Report report_of(ReportNetwork network, const Simulator& simulator);
 
@@ -53,6 +55,9 @@ struct ReportMissed {
   std::vector<std::uint32_t> ranks = {};
   std::vector<WhyMissed> why = {};
 };
+
+// "Overlap", or "Scan overlap": what its links are measured by, as the words above a table.
+std::string link_words(const ReportNetwork& network);
 
 // What the view in three dimensions shows besides the networks.
 struct ReportSite {

@@ -114,9 +114,10 @@ Sheet summary_sheet(const Report& report, const ReportSite& site) {
                           .area = site.area,
                           .stations = network.entry.stations,
                           .names = network.names,
-                          .overlap = network.entry.exact_overlap_matrix,
+                          .overlap = network.links,
                           .link_overlap = network.summary.links ? network.summary.links->least : default_link_overlap,
                           .title = "Plan",
+                          .overlap_words = link_words(network) + " of two stations",
                           .errors = errors});
   const Canvas& plan = *pages.front().canvas;
   const double scale = std::min((kWidth - 2 * kMargin) / plan.width(), sheet.left() / plan.height());
@@ -179,7 +180,7 @@ void links_table(Sheet& sheet, const ReportNetwork& network, const std::vector<L
   sheet.heading("Links");
   sheet.words(kMargin,
               "Pairs of stations with " + summary.measure + " of at least " + number(summary.least) +
-                  ", weakest first. A bridge is the only link between two parts.",
+                  ". Bridges, the only link between two parts, come first, then the weakest.",
               {.size = 9, .colour = kFaint});
   sheet.y += 6;
   if (links.empty()) return sheet.words(kMargin, "No two stations are linked.", {.size = 10, .colour = kAlert});

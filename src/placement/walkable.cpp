@@ -106,7 +106,7 @@ double first_height(const Box& bounds, double headroom_m) {
 }
 
 // What becomes of a place, as a kind of piece.
-enum Kind : std::uint8_t { kept = 1, first_left_out };
+enum Reach : std::uint8_t { kept = 1, first_left_out };
 
 std::uint8_t kind_of(LeftOutReason reason) {
   return static_cast<std::uint8_t>(first_left_out + static_cast<std::uint8_t>(reason));

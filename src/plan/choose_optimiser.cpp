@@ -10,7 +10,6 @@ namespace vantage {
 namespace {
 
 void check(const SurveyProblem& problem, const PlanConfig& config) {
-  const auto refuse = [](const std::string& what) { throw Error(Errc::invalid_argument, "plan: " + what); };
   if (config.iterations < 1) refuse("at least one iteration is needed");
   if (problem.objectives.size() > 1 && config.population == 1) refuse("a population of 1 has no front; give 2 or more");
   if (!(config.sigma0 > 0) || !std::isfinite(config.sigma0))

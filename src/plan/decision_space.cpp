@@ -5,12 +5,10 @@
 #include <cmath>
 #include <string>
 
-#include "vantage/error.hpp"
+#include "plan/refuse.hpp"
 
 namespace vantage {
 namespace {
-
-[[noreturn]] void refuse(const std::string& what) { throw Error(Errc::invalid_argument, "plan: " + what); }
 
 void check(const SurveyProblem& problem) {
   const auto count = [](std::size_t n) { return std::to_string(n); };

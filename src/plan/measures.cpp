@@ -4,12 +4,10 @@
 #include <algorithm>
 #include <string>
 
-#include "vantage/error.hpp"
+#include "plan/refuse.hpp"
 
 namespace vantage {
 namespace {
-
-[[noreturn]] void refuse(const std::string& what) { throw Error(Errc::invalid_argument, "plan: " + what); }
 
 void check(const Objective& objective) {
   const auto plain = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; };

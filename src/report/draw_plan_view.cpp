@@ -201,7 +201,8 @@ std::vector<std::filesystem::path> draw_plan_view(const std::filesystem::path& f
                                                   const SearchArea& area, std::span<const PlacedStation> stations,
                                                   const OverlapMatrix& overlap, const std::string& title,
                                                   double link_overlap, std::span<const std::string> names,
-                                                  std::span<const StationError> errors) {
+                                                  std::span<const StationError> errors,
+                                                  const std::string& overlap_words) {
   const PlanView view{.scene = scene,
                       .area = area,
                       .stations = stations,
@@ -209,6 +210,7 @@ std::vector<std::filesystem::path> draw_plan_view(const std::filesystem::path& f
                       .overlap = overlap,
                       .link_overlap = link_overlap,
                       .title = title,
+                      .overlap_words = overlap_words,
                       .errors = errors};
   std::vector<std::filesystem::path> written;
   for (const PlanPage& page : plan_view_pictures(view)) {

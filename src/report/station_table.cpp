@@ -11,7 +11,7 @@ namespace vantage {
 namespace {
 
 // Of a table: its title, and a cell a station.
-struct Column {
+struct TableColumn {
   std::string title;
   std::vector<std::string> cells = {};
   bool words = false;  // to the left, numbers to the right
@@ -27,8 +27,8 @@ std::size_t width_of(const std::string& text) {
   return static_cast<std::size_t>(std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; }));
 }
 
-std::vector<Column> setup_columns(std::span<const PlacedStation> stations, std::span<const Scanner> scanners) {
-  Column heading{"heading °"}, tilt{"tilt °"}, scanner{.title = "scanner", .words = true}, step{"step °"};
+std::vector<TableColumn> setup_columns(std::span<const PlacedStation> stations, std::span<const Scanner> scanners) {
+  TableColumn heading{"heading °"}, tilt{"tilt °"}, scanner{.title = "scanner", .words = true}, step{"step °"};
   for (const PlacedStation& s : stations) {
     heading.cells.push_back(shortened(s.setup.heading.in_degrees(), 1));
     tilt.cells.push_back(shortened(s.setup.tilt.in_degrees(), 1));
@@ -44,7 +44,7 @@ std::vector<Column> setup_columns(std::span<const PlacedStation> stations, std::
 
 std::string station_table(std::span<const PlacedStation> stations, std::span<const std::string> names,
                           std::span<const std::uint64_t> points, std::span<const Scanner> scanners) {
-  Column name{.title = "station", .words = true}, x{"ground x"}, y{"y"}, z{"z"}, head{"head z"},
+  TableColumn name{.title = "station", .words = true}, x{"ground x"}, y{"y"}, z{"z"}, head{"head z"},
       status{.title = "status", .words = true}, counted{"points on surveyed meshes"};
   for (std::size_t k = 0; k < stations.size(); ++k) {
     const PlacedStation& s = stations[k];
@@ -57,12 +57,12 @@ std::string station_table(std::span<const PlacedStation> stations, std::span<con
     status.cells.push_back(to_string(s.status) + (s.kept ? ", kept" : ""));
     counted.cells.push_back(k < points.size() ? number(points[k]) : "");
   }
-  std::vector<Column> columns{name, x, y, z, head, status};
+  std::vector<TableColumn> columns{name, x, y, z, head, status};
   if (!points.empty()) columns.push_back(counted);
   if (tells_setups(stations)) std::ranges::move(setup_columns(stations, scanners), std::back_inserter(columns));
 
   std::vector<std::string> lines(stations.size() + 1);
-  for (const Column& column : columns) {
+  for (const TableColumn& column : columns) {
     std::size_t width = width_of(column.title);
     for (const std::string& cell : column.cells) width = std::max(width, width_of(cell));
     for (std::size_t k = 0; k < lines.size(); ++k) {

@@ -57,20 +57,20 @@ std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& re
   std::span<const StationError> errors;
   if (entry.registration) errors = entry.registration->stations;
   const bool scans = entry.exact_scan_overlap_matrix.size() > 0;
-  for (const PlanPage& page :
-       plan_view_pictures({.scene = simulator.scene(),
-       .area = area,
-       .stations = entry.stations,
-       .names = summary.names,
-       .overlap = scans ? entry.exact_scan_overlap_matrix : entry.exact_overlap_matrix,
-       .link_overlap = scans && summary.links ? summary.links->least : result.problem.link_overlap,
-       .title = title_of(entry, summary),
-       .overlap_words = scans ? "Scan overlap of two stations" : "Overlap of two stations",
-       .errors = errors}))
+  const OverlapMatrix& links = scans ? entry.exact_scan_overlap_matrix : entry.exact_overlap_matrix;
+  const double least = scans && summary.links ? summary.links->least : result.problem.link_overlap;
+  for (const PlanPage& page : plan_view_pictures({.scene = simulator.scene(),
+                              .area = area,
+                              .stations = entry.stations,
+                              .names = summary.names,
+                              .overlap = links,
+                              .link_overlap = least,
+                              .title = title_of(entry, summary),
+                              .overlap_words = scans ? "Scan overlap of two stations" : "Overlap of two stations",
+                              .errors = errors}))
     save("plan" + page.suffix, *page.canvas);
   const auto names = station_names(entry.stations);
-  write_station_files(folder, {entry.stations, names}, entry.exact_overlap_matrix, result.problem.link_overlap, area,
-                      crs);
+  write_station_files(folder, {entry.stations, names}, links, least, area, crs);
   return chosen;
 }
 

@@ -17,14 +17,14 @@ double steps(Angle sweep, Angle step) { return std::floor(sweep.in_radians() / s
 
 Angle zenith_sweep(const Scanner& scanner) { return Angle::radians(scanner.vertical_angle.in_radians() / 2); }
 
-std::string number(double value) {
+std::string ten_digits(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.10g", value);
   return text;
 }
 
 [[noreturn]] void refuse(const std::string& member, double value, const std::string& must) {
-  throw Error(Errc::invalid_argument, "scanner: " + member + " is " + number(value) + ", but must be " + must);
+  throw Error(Errc::invalid_argument, "scanner: " + member + " is " + ten_digits(value) + ", but must be " + must);
 }
 
 void check_step(const std::string& member, Angle step, const char* sweep_name, Angle sweep) {
@@ -32,7 +32,8 @@ void check_step(const std::string& member, Angle step, const char* sweep_name, A
   if (!(std::isfinite(degrees) && degrees > 0)) refuse(member + " in degrees", degrees, "above 0");
   const double count = steps(sweep, step);
   if (count < 1)
-    refuse(member + " in degrees", degrees, std::string("at most ") + sweep_name + ", " + number(sweep.in_degrees()));
+    refuse(member + " in degrees", degrees,
+           std::string("at most ") + sweep_name + ", " + ten_digits(sweep.in_degrees()));
   if (count > max_steps) refuse(member + " in degrees", degrees, "so large that there are at most 2^24 steps");
 }
 
@@ -85,13 +86,13 @@ void Scanner::check() const {
   const double start = zenith_start.in_degrees();
   if (!(start >= 0 && start + vertical / 2 <= 180 + angle_guard_deg))
     refuse("zenith_start in degrees", start,
-           "0 or more, and at most 180 with half of vertical_angle, " + number(vertical / 2));
+           "0 or more, and at most 180 with half of vertical_angle, " + ten_digits(vertical / 2));
   check_step("azimuth_step", azimuth_step, "horizontal_angle", horizontal_angle);
   check_step("zenith_step", zenith_step, "half of vertical_angle", zenith_sweep(*this));
   if (!(std::isfinite(height_m) && height_m >= 0)) refuse("height_m", height_m, "0 or more");
   if (!(std::isfinite(min_range_m) && min_range_m >= 0)) refuse("min_range_m", min_range_m, "0 or more");
   if (!(std::isfinite(max_range_m) && max_range_m > min_range_m))
-    refuse("max_range_m", max_range_m, "finite and above min_range_m, " + number(min_range_m));
+    refuse("max_range_m", max_range_m, "finite and above min_range_m, " + ten_digits(min_range_m));
   const double divergence = beam_divergence.in_radians() * 1e3;
   if (!(divergence >= 0 && divergence < 100)) refuse("beam_divergence in mrad", divergence, "in [0, 100)");
   if (!(std::isfinite(exit_diameter_m) && exit_diameter_m >= 0))

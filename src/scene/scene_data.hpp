@@ -20,6 +20,7 @@ struct Float3 {
   float x = 0, y = 0, z = 0;
   friend bool operator==(const Float3&, const Float3&) = default;
 };
+inline Vec3 widen(const Float3& p) { return {p.x, p.y, p.z}; }
 using Triangle = std::array<std::uint32_t, 3>;  // indices into SceneData::positions
 
 // Base colour only: what a point's colour needs.

@@ -18,7 +18,7 @@ namespace vantage {
 namespace {
 
 constexpr std::size_t of_pair = RegistrationSums::of_pair, of_station = RegistrationSums::of_station;
-constexpr std::size_t block = patches_in_64_bits / 2;
+constexpr std::size_t patches_a_block = patches_in_64_bits / 2;
 static_assert(of_pair == pair_sums && of_station == station_sums);
 constexpr double least_share = 0.5;       // of a voxel's surface that one plane must have
 constexpr double least_area = 1e-3;       // of a face: what is less is a corner that no scan resolves
@@ -307,13 +307,13 @@ std::vector<RegistrationSums> sum_patches(const Patches& patches, std::span<cons
                                           std::span<const std::uint64_t> masks, std::uint32_t groups) {
   const Summer summer(patches, scanners, stations, station_count, masks, groups);
   const std::size_t sets = std::max<std::size_t>(groups, 1), voxels = patches.patches.size(),
-                    blocks = (voxels + block - 1) / block;
+                    blocks = (voxels + patches_a_block - 1) / patches_a_block;
   const auto all = tbb::parallel_reduce(
       tbb::blocked_range<std::size_t>(0, blocks, 1), Accumulator<Wide>(station_count, summer.pairs(), sets),
       [&](const tbb::blocked_range<std::size_t>& range, Accumulator<Wide> sums) {
         for (std::size_t b = range.begin(); b != range.end(); ++b) {
           Accumulator<std::int64_t> here(station_count, summer.pairs(), sets);
-          summer.add(b * block, std::min(voxels, (b + 1) * block), here);
+          summer.add(b * patches_a_block, std::min(voxels, (b + 1) * patches_a_block), here);
           sums.add(here);
         }
         return sums;

@@ -54,7 +54,7 @@ void run_drag(const DragOptions& options) {
       stations.push_back({.placed = place_head(&area, clash, scanner.height_m, station.position).station});
     EditSession session(
         simulator, area, clash, stations, {.voxels = options.sample}, [](const auto&) {},
-        [](const auto&, const auto&, const auto&, const auto&) {});
+        [](const auto&, const auto&) {});
     const Vec3 middle = stations.front().placed.ground;
     std::vector<double> wall, cpu;
     std::size_t off_ground = 0;

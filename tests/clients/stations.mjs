@@ -90,14 +90,14 @@ for (const [code, place] of [[31467, [3_550_000.5, 5_400_000.25, 480]], [25832, 
   const out = vantage('evaluate', 'site.glb', '--station', at3(8, 0, 1.5), '--station', at3(8, 3, 1.5), '--station',
                       at3(5.3, 0, 1.5), '--station', 'u=5,v=5', '--engine', 'embree', '--step', '1', '--crs',
                       `EPSG:${code}`, '--json', ...files.flatMap((file) => ['--write-stations', file]));
-  const { stations, overlap_matrix: overlap } = JSON.parse(out);
+  const { stations, scan_overlap_matrix: overlap } = JSON.parse(out);
   assert.equal(stations.length, 4);
   assert.equal(stations.filter((s) => !s.ground).length, 1);
   checkMap(read('stations.geojson').toString(), read('stations.kml').toString(), code, stations);
   const links = [];
   stations.forEach((a, i) =>
     stations.forEach((b, j) => {
-      if (i < j && overlap[i][j] >= 0.01) links.push([a, b]);
+      if (i < j && overlap[i][j] >= 0.3) links.push([a, b]);
     }));
   assert.ok(links.length > 0);
   const areas = checkDrawing(read('stations.dxf').toString(), stations, links);

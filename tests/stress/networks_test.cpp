@@ -32,7 +32,7 @@ Network ring_of(const Network& all, std::size_t stations) {
   return {all.begin(), all.begin() + static_cast<std::ptrdiff_t>(stations)};
 }
 
-Simulator simulator(const EngineInfo& engine) {
+Simulator simulator_of_wall(const EngineInfo& engine) {
   Scanner scanner;
   scanner.azimuth_step = scanner.zenith_step = Angle::degrees(3);
   return {yard({}),
@@ -41,7 +41,7 @@ Simulator simulator(const EngineInfo& engine) {
 }
 
 TEST_P(Networks, OfAnySizeAddUpTheirStations) {
-  Simulator engine = simulator(GetParam());
+  Simulator engine = simulator_of_wall(GetParam());
   const Network all = ring(150);
   VoxelField sum;
   sum.count.assign(engine.voxel_count(), 0);
@@ -88,7 +88,7 @@ TEST_P(Networks, OfAnySizeAddUpTheirStations) {
 }
 
 TEST_P(Networks, WithoutAnActiveStationOrACommonVoxelHaveNoOverlap) {
-  Simulator engine = simulator(GetParam());
+  Simulator engine = simulator_of_wall(GetParam());
   for (const std::size_t n : {1u, 2u, 64u}) {
     Network holes = ring(n);
     for (Station& station : holes) station.active = false;

@@ -11,7 +11,7 @@ namespace {
 
 using std::numbers::pi;
 
-struct Triangles {
+struct OddTriangles {
   std::vector<Vec3> positions;
   std::vector<Triangle> triangles;
   void quad(const Vec3& corner, const Vec3& along, const Vec3& up) {
@@ -32,7 +32,7 @@ struct Triangles {
   }
 };
 
-TraceScene scene_of(const Triangles& t, std::shared_ptr<const RayPattern> pattern, double voxel_m) {
+TraceScene scene_of(const OddTriangles& t, std::shared_ptr<const RayPattern> pattern, double voxel_m) {
   const Scene scene = Scene::from_triangles(t.positions, t.triangles);
   const auto data = std::make_shared<const SceneData>(scene.data());
   return {data,
@@ -57,8 +57,8 @@ TraceStation at(double x, double y, double z) {
 }
 
 // A room with a box on its floor, a tank's worth of facets beside it.
-Triangles furnished_room() {
-  Triangles t;
+OddTriangles furnished_room() {
+  OddTriangles t;
   t.box({-4, -3, 0}, {4, 3, 3});
   t.box({1.1, 0.7, 0.2}, {2.3, 1.9, 1.7});
   const int sides = 24;
@@ -74,7 +74,7 @@ Triangles furnished_room() {
 
 std::vector<OddRays> odd_rays(double step) {
   std::vector<OddRays> all;
-  const Triangles room = furnished_room();
+  const OddTriangles room = furnished_room();
   all.push_back({"station inside a box, inside a tank",
                  scene_of(room, pattern_of(step, 0.1, 60), 0.1),
                  {at(1.7, 1.3, 0.9), at(-2, 0.02, 1)}});
@@ -88,7 +88,7 @@ std::vector<OddRays> odd_rays(double step) {
   all.push_back({"station 1e-6 m off a surface, d_min 0", scene_of(room, pattern_of(step, 0, 60), 0.1), off, true});
 
   // A sphere's worth of rays at a wall 2 m off: the ring where the range begins, and where it ends, lies on the wall.
-  Triangles wall;
+  OddTriangles wall;
   wall.quad({2, -6, -6}, {0, 12, 0}, {0, 0, 12});
   all.push_back({"d_min and d_max across a wall", scene_of(wall, pattern_of(step, 2.5, 5), 0.1), {at(0, 0, 0)}});
   // Straight at the wall the hit is at exactly d_min, or d_max.
@@ -109,7 +109,7 @@ std::vector<OddRays> odd_rays(double step) {
   }
 
   // Ground seen under 80° to 89.99° from its normal: 8594 m out at the last.
-  Triangles ground;
+  OddTriangles ground;
   for (int i = 0; i < 20; ++i)
     for (int j = 0; j < 20; ++j)
       ground.quad({-10'000 + 1000.0 * i, -10'000 + 1000.0 * j, 0}, {1000, 0, 0}, {0, 1000, 0});

@@ -3,6 +3,8 @@
 
 #include <fstream>
 
+#include "support/temporary_folder.hpp"
+
 namespace vantage::test {
 
 int GlbBuilder::view(const void* data, std::size_t bytes, int stride) {
@@ -108,6 +110,12 @@ std::string base64(const std::vector<std::uint8_t>& bytes) {
     for (std::size_t k = 0; k < 4; ++k) out += i + k > bytes.size() ? '=' : kDigits[group >> (18 - 6 * k) & 63];
   }
   return out;
+}
+
+Scene load(const GlbBuilder& builder, const SceneOptions& options) {
+  const TemporaryFolder folder;
+  builder.write_glb(folder / "scene.glb");
+  return Scene::load(folder / "scene.glb", options);
 }
 
 }  // namespace vantage::test

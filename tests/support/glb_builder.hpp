@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "vantage/scene.hpp"
+
 namespace vantage::test {
 
 // Builds small glTF files by hand, right or wrong: `json` is the whole document and may be changed at will before
@@ -49,5 +51,8 @@ class GlbBuilder {
 
 void write_bytes(const std::filesystem::path& file, const std::string& bytes);
 std::string base64(const std::vector<std::uint8_t>& bytes);
+
+// As a file that is written, read and removed.
+Scene load(const GlbBuilder& builder, const SceneOptions& options = {});
 
 }  // namespace vantage::test

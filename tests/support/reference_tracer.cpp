@@ -16,7 +16,6 @@ namespace {
 
 constexpr std::uint32_t block_side = 8;
 
-Vec3 widen(const Float3& p) { return {p.x, p.y, p.z}; }
 double length(const Vec3& v) { return std::sqrt(dot(v, v)); }
 Vec3 unit(const Vec3& v) { return v * (1 / length(v)); }
 

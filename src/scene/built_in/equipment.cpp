@@ -3,15 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "scene/built_in/piping.hpp"
 
 namespace vantage::built_in {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr dvec3 kUp{0, 0, 1}, kEast{1, 0, 0}, kSouth{0, -1, 0};
+constexpr dvec3 kEast{1, 0, 0}, kSouth{0, -1, 0};
 
 // How far a branch must reach back into a cylinder so that its whole rim lies inside.
 double burial(double vessel_radius, double branch_radius) {

@@ -3,12 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace vantage::built_in {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 // What interrupts a straight run, at a distance from its start.
 struct Fitting {

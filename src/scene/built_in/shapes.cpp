@@ -3,12 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace vantage::built_in {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr int kMostSides = 4096;
 
 dvec3 rotated(const dvec3& v, const dvec3& axis, double angle) {  // Rodrigues' formula; axis of unit length

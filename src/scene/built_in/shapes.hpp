@@ -4,12 +4,16 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 #include <span>
 #include <vector>
 
 #include "scene/built_in/model.hpp"
 
 namespace vantage::built_in {
+
+inline constexpr double kPi = std::numbers::pi;
+inline constexpr dvec3 kUp{0, 0, 1};
 
 // A rectangle from `corner` over the edges `across` and `up`, in columns × rows cells of two triangles; its normal is
 // across × up.

@@ -3,17 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "scene/built_in/piping.hpp"
 
 namespace vantage::built_in {
-namespace {
-
-constexpr double kPi = std::numbers::pi;
-constexpr dvec3 kUp{0, 0, 1};
-
-}  // namespace
+namespace {}  // namespace
 
 void add_column(Shaper& shaper, const dvec3& foot, double height, double width) {
   constexpr double kPlate = 0.025;

@@ -8,11 +8,6 @@
 #include <utility>
 
 namespace vantage {
-namespace {
-
-Vec3 widen(const Float3& p) { return {p.x, p.y, p.z}; }
-
-}  // namespace
 
 Planes::Planes(std::shared_ptr<const SceneData> scene) : scene_(std::move(scene)) {
   const SceneData& s = *scene_;

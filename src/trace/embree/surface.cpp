@@ -8,11 +8,6 @@
 #include "vantage/types.hpp"
 
 namespace vantage {
-namespace {
-
-Vec3 widen(const Float3& p) { return {p.x, p.y, p.z}; }
-
-}  // namespace
 
 Surface::Surface(std::shared_ptr<const SceneData> scene, std::shared_ptr<const Planes> planes)
     : scene_(std::move(scene)), planes_(std::move(planes)) {

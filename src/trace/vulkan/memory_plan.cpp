@@ -13,7 +13,7 @@
 namespace vantage::vulkan {
 namespace {
 
-constexpr double word = 4, vertex = 12, triangle = 12;
+constexpr double word_bytes = 4, vertex = 12, triangle = 12;
 constexpr double most_staging = 1 << 25;  // commands.cpp
 // Of a triangle, as measured (docs/reliability.md): nodes of the tree, most leaves of which have two; and of the
 // structure that a driver builds, with what it needs meanwhile.
@@ -21,7 +21,7 @@ constexpr double tree_nodes = 0.6, structure = 112, scratch = 64;
 
 double tree(const DeviceLoad& load) {
   if (load.engine == Engine::compute_bvh) return load.triangles * (tree_nodes * sizeof(BvhNode) + sizeof(BvhTriangle));
-  return load.triangles * (word + structure);
+  return load.triangles * (word_bytes + structure);
 }
 
 double build_only(const DeviceLoad& load) {
@@ -36,15 +36,15 @@ double grid(const DeviceLoad& load) {
 
 double shading(const DeviceLoad& load) {
   if (!load.shaded) return 0;
-  return load.vertices * vertex * (load.normals ? 2 : 1) + load.triangles * (triangle + 2 * word);
+  return load.vertices * vertex * (load.normals ? 2 : 1) + load.triangles * (triangle + 2 * word_bytes);
 }
 
 double tiles(const DeviceLoad& load) {
   if (load.rows == 0 || load.columns == 0) return 0;
   const CountPlan plan(1, load.rows, load.columns, tile_side);
   const double starts = load.engine == Engine::compute_bvh ? tile_starts * sizeof(TileStart) : 0;
-  return static_cast<double>(plan.list_words()) * (word + starts) +
-         double{CountPlan::stations_per_submission} * plan.tiles() * word;
+  return static_cast<double>(plan.list_words()) * (word_bytes + starts) +
+         double{CountPlan::stations_per_submission} * plan.tiles() * word_bytes;
 }
 
 double lists(const DeviceLoad& load) {
@@ -57,7 +57,7 @@ double lists(const DeviceLoad& load) {
 
 double device_bytes(const DeviceLoad& load) {
   const double mask_words = load.stations > 32 ? 2 : 1;
-  const double counts = load.voxels * word * (1 + mask_words);
+  const double counts = load.voxels * word_bytes * (1 + mask_words);
   const double largest_upload =
       std::max({load.triangles * sizeof(BvhTriangle), load.vertices * vertex, load.bricks * sizeof(VoxelBrick)});
   const double kept = tree(load) + std::min(largest_upload, most_staging);

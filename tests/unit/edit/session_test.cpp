@@ -46,8 +46,9 @@ struct Bench {
                       {},
                       options,
                       [this](const std::vector<EditStation>& stations) { ++kept, last_kept = stations; },
-                      [this](const std::vector<PlacedStation>& stations, const NetworkCounts& counts, const VoxelField&,
-                             const Progress&) { saved = stations, saved_voxels = counts.voxels; }};
+                      [this](const EditSession::Exact& exact, const Progress&) {
+                        saved = exact.stations, saved_voxels = exact.counts.voxels;
+                      }};
 
   State add(double x, double y) {
     session.change({{"do", "add"}, {"to", {1000 + x, 2000 + y, 50 - 1.5}}});
@@ -92,8 +93,12 @@ TEST(EditSession, ShowsTheNumbersOfTheProgram) {
     EXPECT_EQ(state["network"]["values"]["coverage"]["error"], covered.standard_error);
     EXPECT_EQ(state["network"]["values"]["overlap"]["value"], overlap.value);
     EXPECT_EQ(state["network"]["values"]["overlap"]["error"], overlap.standard_error);
-    const OverlapMatrix matrix = overlap_matrix(counts);
-    for (const auto& link : state["network"]["links"]) EXPECT_EQ(link["value"], matrix(link["a"], link["b"]));
+    Simulator all = surroundings_of(bench.simulator);
+    const OverlapMatrix links = scan_overlap_matrix(
+        all.evaluate_sampled({&network, 1}, {.voxels = std::min(bench.options.link_voxels, all.voxel_count())})
+            .front());
+    EXPECT_GT(state["network"]["links"].size(), 0u);
+    for (const auto& link : state["network"]["links"]) EXPECT_EQ(link["value"], links(link["a"], link["b"]));
   }
   bench.session.change({{"do", "exact"}});
   const State state = bench.finished();
@@ -102,6 +107,9 @@ TEST(EditSession, ShowsTheNumbersOfTheProgram) {
   EXPECT_EQ(state["network"]["values"]["coverage"]["value"],
             coverage(bench.simulator.evaluate(network), bench.simulator.goal_density()));
   EXPECT_EQ(state["network"]["values"]["coverage"]["error"], 0);
+  const OverlapMatrix links = scan_overlap_matrix(surroundings_of(bench.simulator).evaluate(network));
+  EXPECT_GT(state["network"]["links"].size(), 0u);
+  for (const auto& link : state["network"]["links"]) EXPECT_EQ(link["value"], links(link["a"], link["b"]));
 }
 
 TEST(EditSession, GoesBackAndForth) {

@@ -11,6 +11,7 @@
 #include "vantage/optimiser.hpp"
 
 namespace vantage {
+namespace cma_es_tests {  // of one objective, as other files have their own of several
 namespace {
 
 using Objective = std::function<double(std::span<const double>)>;
@@ -439,4 +440,5 @@ TEST(CmaEs, TakesAnotherObjectiveOfItsBest) {
 }
 
 }  // namespace
+}  // namespace cma_es_tests
 }  // namespace vantage

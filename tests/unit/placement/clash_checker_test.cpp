@@ -11,7 +11,7 @@
 namespace vantage {
 namespace {
 
-const Vec3 origin{1000, 2000, 30};  // of the scenes that Builder makes
+using test::origin;
 
 Scene wall_and_ground() {
   return test::Builder().floor(-10, -10, 10, 10, 0).quad({2, -5, 0}, {2, 5, 0}, {2, 5, 3}, {2, -5, 3}).scene();

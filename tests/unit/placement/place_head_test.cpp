@@ -7,7 +7,7 @@
 namespace vantage {
 namespace {
 
-const Vec3 origin{1000, 2000, 30};  // of the scenes that Builder makes
+using test::origin;
 
 // A floor of which only the left half is marked for standing, with a tank and a pillar on it.
 class PlaceHead : public testing::Test {

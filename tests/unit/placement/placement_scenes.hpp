@@ -35,6 +35,8 @@ inline SearchMesh hills(int columns, int rows, double squeeze = 1, unsigned seed
   return mesh;
 }
 
+inline const Vec3 origin{1000, 2000, 30};  // of the scenes that Builder makes
+
 // Collects patches and boxes into one surveyed mesh. Z up; normals by the right-hand rule.
 class Builder {
  public:
@@ -58,7 +60,7 @@ class Builder {
   }
   SceneData data() const {
     SceneData scene;
-    scene.origin = {1000, 2000, 30};
+    scene.origin = origin;
     for (const Vec3& p : positions_) {
       scene.positions.push_back({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
       scene.local_bounds.extend(p);

@@ -14,6 +14,8 @@
 namespace vantage {
 namespace {
 
+using test::origin;
+
 double true_area(const SearchMesh& mesh) {
   double sum = 0;
   for (const auto& t : mesh.triangles) {
@@ -34,8 +36,6 @@ std::vector<Vec3> random_places(const SearchArea& area, int count) {
       places.push_back(*p);
   return places;
 }
-
-const Vec3 origin{1000, 2000, 30};  // of the scenes that Builder makes
 
 // What was left out for one reason, m².
 double left_out(const SearchArea& area, LeftOutReason reason) {

@@ -21,7 +21,7 @@ using test::content;
 using test::read_e57;
 
 constexpr std::uint32_t kHeld = scan_position | scan_normal | scan_reflectivity | scan_colour;
-const Vec3 kOrigin{500'123.25, 4'500'321.5, 101.75};
+const Vec3 kSurveyOrigin{500'123.25, 4'500'321.5, 101.75};
 
 Scanner scanner_of(double step_deg, double heading_deg, double max_range_m = 130) {
   Scanner scanner;
@@ -74,7 +74,7 @@ void expect_same_points(const test::E57ReadScan& scan, const ScanChunk& chunk, c
   for (std::size_t k = 0; k < chunk.ray_count; ++k) {
     const auto& p = chunk.position[k];
     if (!std::isfinite(p[0])) continue;
-    const Vec3 survey = kOrigin + Vec3{p[0], p[1], p[2]};
+    const Vec3 survey = kSurveyOrigin + Vec3{p[0], p[1], p[2]};
     const Vec3 read = rotated(scan, {field("cartesianX", r), field("cartesianY", r), field("cartesianZ", r)});
     EXPECT_NEAR(read.x + translation.x, survey.x, tolerance_m);
     EXPECT_NEAR(read.y + translation.y, survey.y, tolerance_m);
@@ -97,8 +97,8 @@ void expect_same_points(const test::E57ReadScan& scan, const ScanChunk& chunk, c
 TEST(E57, KeepsEachStationInItsScannersFrame) {
   const test::TemporaryFolder folder;
   const Scanner scanner = scanner_of(1, 30);
-  const Vec3 heads[] = {kOrigin + Vec3{3, -4, 1.5}, kOrigin + Vec3{-20, 11, 2}};
-  PointCloudWriter writer(folder / "a.e57", kOrigin, kHeld);
+  const Vec3 heads[] = {kSurveyOrigin + Vec3{3, -4, 1.5}, kSurveyOrigin + Vec3{-20, 11, 2}};
+  PointCloudWriter writer(folder / "a.e57", kSurveyOrigin, kHeld);
   ScanChunk first = chunk_of(0, 10'000);
   writer.begin_station({"S1", heads[0], scanner});
   writer.write(chunk_of(0, 7'200), 1);
@@ -144,9 +144,9 @@ TEST(E57, PosesOfTurnedHeadsLeadBackToTheSurvey) {
     const StationSetup setups[] = {{.tilt = Angle::degrees(90)},
                                    {.heading = Angle::degrees(110)},
                                    {.heading = Angle::degrees(-70), .tilt = Angle::degrees(33)}};
-    PointCloudWriter writer(folder / "a.e57", kOrigin, kHeld);
+    PointCloudWriter writer(folder / "a.e57", kSurveyOrigin, kHeld);
     for (const StationSetup& setup : setups) {
-      writer.begin_station({"S", kOrigin, scanner, setup});
+      writer.begin_station({"S", kSurveyOrigin, scanner, setup});
       writer.write(chunk_of(0, 500), 1);
     }
     writer.close();
@@ -164,8 +164,8 @@ TEST(E57, PosesOfTurnedHeadsLeadBackToTheSurvey) {
 
 TEST(E57, BoundsAreThoseOfThePoints) {
   const test::TemporaryFolder folder;
-  PointCloudWriter writer(folder / "a.e57", kOrigin, kHeld);
-  writer.begin_station({"S1", kOrigin, scanner_of(1, 77)});
+  PointCloudWriter writer(folder / "a.e57", kSurveyOrigin, kHeld);
+  writer.begin_station({"S1", kSurveyOrigin, scanner_of(1, 77)});
   writer.write(chunk_of(720, 4'000), 1);
   writer.close();
   const auto scan = read_e57(content(folder / "a.e57")).scans.at(0);
@@ -191,8 +191,8 @@ TEST(E57, BoundsAreThoseOfThePoints) {
 
 TEST(E57, HoldsJustWhatWasAskedFor) {
   const test::TemporaryFolder folder;
-  PointCloudWriter writer(folder / "a.e57", kOrigin, scan_position);
-  writer.begin_station({"S1", kOrigin, scanner_of(1, 0)});
+  PointCloudWriter writer(folder / "a.e57", kSurveyOrigin, scan_position);
+  writer.begin_station({"S1", kSurveyOrigin, scanner_of(1, 0)});
   writer.write(chunk_of(0, 3), 1);
   writer.close();
   const auto scan = read_e57(content(folder / "a.e57")).scans.at(0);
@@ -206,8 +206,8 @@ TEST(E57, IsDoubleWhereSinglesAreTooCoarse) {
   const test::TemporaryFolder folder;
   for (const auto& [range, tolerance] : {std::pair{256.0, 1e-5}, {1000.0, 1e-9}}) {
     const Scanner scanner = scanner_of(1, 123, range);
-    PointCloudWriter writer(folder / "a.e57", kOrigin, kHeld);
-    writer.begin_station({"S1", kOrigin, scanner});
+    PointCloudWriter writer(folder / "a.e57", kSurveyOrigin, kHeld);
+    writer.begin_station({"S1", kSurveyOrigin, scanner});
     writer.write(chunk_of(0, 100), 1);
     writer.close();
     expect_same_points(read_e57(content(folder / "a.e57")).scans.at(0), chunk_of(0, 100), scanner, tolerance);
@@ -217,8 +217,8 @@ TEST(E57, IsDoubleWhereSinglesAreTooCoarse) {
 TEST(E57, HasRoomForEveryColumn) {
   const test::TemporaryFolder folder;
   const Scanner scanner = scanner_of(360.0 / 70'000, 0);
-  PointCloudWriter writer(folder / "a.e57", kOrigin, kHeld);
-  writer.begin_station({"S1", kOrigin, scanner});
+  PointCloudWriter writer(folder / "a.e57", kSurveyOrigin, kHeld);
+  writer.begin_station({"S1", kSurveyOrigin, scanner});
   const ScanChunk chunk = chunk_of(69'990, 20);
   writer.write(chunk, 1);
   writer.close();
@@ -227,15 +227,15 @@ TEST(E57, HasRoomForEveryColumn) {
 
 TEST(E57, MayHoldNothing) {
   const test::TemporaryFolder folder;
-  PointCloudWriter none(folder / "none.e57", kOrigin, kHeld);
+  PointCloudWriter none(folder / "none.e57", kSurveyOrigin, kHeld);
   none.close();
   EXPECT_TRUE(read_e57(content(folder / "none.e57")).scans.empty());
 
-  PointCloudWriter writer(folder / "a.e57", kOrigin, kHeld);
+  PointCloudWriter writer(folder / "a.e57", kSurveyOrigin, kHeld);
   const Scanner scanner = scanner_of(1, 0);
   ScanChunk misses = chunk_of(2, 1);
   for (const char* name : {"S1", "S2", "S3"}) {
-    writer.begin_station({name, kOrigin, scanner});
+    writer.begin_station({name, kSurveyOrigin, scanner});
     writer.write(name == std::string("S2") ? chunk_of(0, 2) : misses, 1);
   }
   writer.close();
@@ -251,8 +251,8 @@ TEST(E57, MayHoldNothing) {
 TEST(E57, EqualScansGiveEqualFilesAndOthersOtherGuids) {
   const test::TemporaryFolder folder;
   const auto written = [&](double heading, std::size_t rays) {
-    PointCloudWriter writer(folder / "a.e57", kOrigin, kHeld);
-    writer.begin_station({"S1", kOrigin, scanner_of(1, heading)});
+    PointCloudWriter writer(folder / "a.e57", kSurveyOrigin, kHeld);
+    writer.begin_station({"S1", kSurveyOrigin, scanner_of(1, heading)});
     writer.write(chunk_of(0, rays), 1);
     writer.close();
     return content(folder / "a.e57");
@@ -274,8 +274,8 @@ TEST(E57, EqualScansGiveEqualFilesAndOthersOtherGuids) {
 
 TEST(E57, ChecksumsCoverEveryByte) {
   const test::TemporaryFolder folder;
-  PointCloudWriter writer(folder / "a.e57", kOrigin, kHeld);
-  writer.begin_station({"S1", kOrigin, scanner_of(1, 0)});
+  PointCloudWriter writer(folder / "a.e57", kSurveyOrigin, kHeld);
+  writer.begin_station({"S1", kSurveyOrigin, scanner_of(1, 0)});
   writer.write(chunk_of(0, 200), 1);
   writer.close();
   const std::string bytes = content(folder / "a.e57");
@@ -348,8 +348,8 @@ TEST(E57, LeavesNothingWhereTheDiskIsFull) {
   const auto handler = std::signal(SIGXFSZ, SIG_IGN);
   ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &little), 0);
   try {
-    PointCloudWriter writer(folder / "a.e57", kOrigin, kHeld);
-    writer.begin_station({"S1", kOrigin, scanner_of(1, 0)});
+    PointCloudWriter writer(folder / "a.e57", kSurveyOrigin, kHeld);
+    writer.begin_station({"S1", kSurveyOrigin, scanner_of(1, 0)});
     for (std::uint64_t first = 0; first < 200'000; first += 10'000) writer.write(chunk_of(first, 10'000), 1);
     writer.close();
     ADD_FAILURE() << "wrote more than there is room for";

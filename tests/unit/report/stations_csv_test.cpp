@@ -14,7 +14,7 @@ std::vector<StationRow> read(const std::string& text) {
   return read_stations_csv(folder / "s.csv");
 }
 
-std::string refusal(const std::string& text) {
+std::string why_refused(const std::string& text) {
   try {
     read(text);
   } catch (const Error& e) {
@@ -80,8 +80,8 @@ TEST(StationsCsv, ReadsHeadingTiltScannerAndStep) {
   EXPECT_EQ(rows[1].setup, StationSetup());
   EXPECT_EQ(rows[1].scanner, "");
   EXPECT_FALSE(rows[1].step);
-  EXPECT_NE(refusal("x,y,z,tilt [rad]\n1,2,3,1\n").find("vantage takes degrees"), std::string::npos);
-  EXPECT_NE(refusal("x,y,z,tilt,tilt\n1,2,3,1,1\n").find("both may be the tilt"), std::string::npos);
+  EXPECT_NE(why_refused("x,y,z,tilt [rad]\n1,2,3,1\n").find("vantage takes degrees"), std::string::npos);
+  EXPECT_NE(why_refused("x,y,z,tilt,tilt\n1,2,3,1,1\n").find("both may be the tilt"), std::string::npos);
 }
 
 TEST(StationsCsv, ReadsWhatOthersWrite) {
@@ -128,40 +128,41 @@ TEST(StationsCsv, ReadsSurveyorsColumns) {
 }
 
 TEST(StationsCsv, RefusesWhatCanBeReadInTwoWays) {
-  EXPECT_NE(refusal("x,Easting,y,z\n").find(":1: \"x\" and \"Easting\" both may be the easting"), std::string::npos);
-  EXPECT_NE(refusal("E,N,Z,Height\n")
+  EXPECT_NE(why_refused("x,Easting,y,z\n").find(":1: \"x\" and \"Easting\" both may be the easting"),
+            std::string::npos);
+  EXPECT_NE(why_refused("E,N,Z,Height\n")
                 .find("\"Z\" and \"Height\" both may be the height of the scanner's head: call "
                       "it head_z, and that of the ground ground_z"),
             std::string::npos);
-  EXPECT_NE(refusal("x,y,z\n1,5,2,5,3,0\n")
+  EXPECT_NE(why_refused("x,y,z\n1,5,2,5,3,0\n")
                 .find(":2: the line has 6 cells, the header 3; numbers with decimal commas "
                       "need ; between the cells"),
             std::string::npos);
-  EXPECT_NE(refusal("x;y;z\n1.234,5;2;3\n").find("\"1.234,5\" is no number for x"), std::string::npos);
-  EXPECT_NE(refusal("x;y;z\n1,234,567;2;3\n").find("marks between the thousands"), std::string::npos);
-  EXPECT_NE(refusal("Easting [mm],Northing [mm],Height\n").find("is in mm"), std::string::npos);
-  EXPECT_NE(refusal("lat,lon,z\n").find("\"lat\" is an angle"), std::string::npos);
-  EXPECT_NE(refusal("1,2,3\n4,5,6\n").find("the first line holds numbers"), std::string::npos);
-  EXPECT_NE(refusal("E,N,Heigth\n1,2,3\n").find("is \"Heigth\" height?"), std::string::npos)
+  EXPECT_NE(why_refused("x;y;z\n1.234,5;2;3\n").find("\"1.234,5\" is no number for x"), std::string::npos);
+  EXPECT_NE(why_refused("x;y;z\n1,234,567;2;3\n").find("marks between the thousands"), std::string::npos);
+  EXPECT_NE(why_refused("Easting [mm],Northing [mm],Height\n").find("is in mm"), std::string::npos);
+  EXPECT_NE(why_refused("lat,lon,z\n").find("\"lat\" is an angle"), std::string::npos);
+  EXPECT_NE(why_refused("1,2,3\n4,5,6\n").find("the first line holds numbers"), std::string::npos);
+  EXPECT_NE(why_refused("E,N,Heigth\n1,2,3\n").find("is \"Heigth\" height?"), std::string::npos)
       << "else it would be passed over";
-  EXPECT_NE(refusal(std::string("glTF\2\0\0\0x,y,z\n", 14)).find("no table"), std::string::npos);
+  EXPECT_NE(why_refused(std::string("glTF\2\0\0\0x,y,z\n", 14)).find("no table"), std::string::npos);
   EXPECT_EQ(read("Punkt;Rechtswert;Hochwert;H\xC3\xB6he\nP1;5,0;3,6;1,85\n")[0].position, (Vec3{5, 3.6, 1.85}));
-  EXPECT_NE(refusal("Eastng,Northing,Height\n").find("is \"Eastng\" easting?"), std::string::npos);
-  EXPECT_NE(refusal(std::string("\xFF\xFEx\0,\0", 7)).find("UTF-16"), std::string::npos);
+  EXPECT_NE(why_refused("Eastng,Northing,Height\n").find("is \"Eastng\" easting?"), std::string::npos);
+  EXPECT_NE(why_refused(std::string("\xFF\xFEx\0,\0", 7)).find("UTF-16"), std::string::npos);
 }
 
 TEST(StationsCsv, NamesTheLineThatIsWrong) {
-  EXPECT_NE(refusal("x,y,z\n1,2,3\n1,2\n").find("s.csv:3: the line has 2 cells"), std::string::npos);
-  EXPECT_NE(refusal("x,y,z\n1,two,3\n").find(":2: \"two\" is no number for y"), std::string::npos);
-  EXPECT_NE(refusal("x,y,z\n1,2,nan\n").find("\"nan\""), std::string::npos);
-  EXPECT_NE(refusal("x,y,z\n1,2,inf\n").find("\"inf\""), std::string::npos);
-  EXPECT_NE(refusal("x,y,z\n1,2,3m\n").find("\"3m\""), std::string::npos);
-  EXPECT_NE(refusal("x,y,z\n1,,3\n").find("some are empty"), std::string::npos);
-  EXPECT_NE(refusal("x,y,z,u,v\n,,,,\n").find("neither"), std::string::npos);
-  EXPECT_NE(refusal("x,z\n1,2\n").find(":1: the header is \"x,z\"; it must name x,y,z"), std::string::npos);
-  EXPECT_NE(refusal("u,v,x\n1,2,3\n").find("the header"), std::string::npos);
-  EXPECT_NE(refusal("u,u,v\n").find("twice"), std::string::npos);
-  EXPECT_NE(refusal("").find("is empty"), std::string::npos);
+  EXPECT_NE(why_refused("x,y,z\n1,2,3\n1,2\n").find("s.csv:3: the line has 2 cells"), std::string::npos);
+  EXPECT_NE(why_refused("x,y,z\n1,two,3\n").find(":2: \"two\" is no number for y"), std::string::npos);
+  EXPECT_NE(why_refused("x,y,z\n1,2,nan\n").find("\"nan\""), std::string::npos);
+  EXPECT_NE(why_refused("x,y,z\n1,2,inf\n").find("\"inf\""), std::string::npos);
+  EXPECT_NE(why_refused("x,y,z\n1,2,3m\n").find("\"3m\""), std::string::npos);
+  EXPECT_NE(why_refused("x,y,z\n1,,3\n").find("some are empty"), std::string::npos);
+  EXPECT_NE(why_refused("x,y,z,u,v\n,,,,\n").find("neither"), std::string::npos);
+  EXPECT_NE(why_refused("x,z\n1,2\n").find(":1: the header is \"x,z\"; it must name x,y,z"), std::string::npos);
+  EXPECT_NE(why_refused("u,v,x\n1,2,3\n").find("the header"), std::string::npos);
+  EXPECT_NE(why_refused("u,u,v\n").find("twice"), std::string::npos);
+  EXPECT_NE(why_refused("").find("is empty"), std::string::npos);
   EXPECT_THROW(read_stations_csv("/nonexistent/stations.csv"), Error);
 }
 

@@ -23,7 +23,7 @@ test::QuadScene wall(double detail_m, double accuracy_m) {
   return scene;
 }
 
-Scanner rtc360() {
+Scanner rtc360_scanner() {
   Scanner scanner = test::coarse_scanner(0.5);
   scanner.noise = rtc360_noise();
   scanner.beam_divergence = Angle::radians(5e-4);
@@ -54,7 +54,7 @@ std::uint64_t expected(const Scanner& scanner, const Counts& counts) {
 
 TEST(LimitModel, OfAWallSquareOnAnIncidenceLeavesADisc) {
   const test::QuadScene scene = wall(0, 0);
-  const Scanner scanner = rtc360();
+  const Scanner scanner = rtc360_scanner();
   const std::uint64_t all = expected(scanner, [](double) { return true; });
   EXPECT_TRUE(count(scene, scanner, {}).dropped.empty());
   EXPECT_EQ(count(scene, scanner, {}).points_on_surveyed[0], all);
@@ -70,7 +70,7 @@ TEST(LimitModel, OfAWallSquareOnAnIncidenceLeavesADisc) {
 }
 
 TEST(LimitModel, AFootprintGrowsWithRangeAndSlant) {
-  const Scanner scanner = rtc360();
+  const Scanner scanner = rtc360_scanner();
   for (const double detail : {0.0091, 0.0113, 0.0157}) {
     const NetworkCounts counts = count(wall(detail, 0), scanner, {.max_incidence = Angle::degrees(90)});
     EXPECT_EQ(counts.points_on_surveyed[0],
@@ -83,7 +83,7 @@ TEST(LimitModel, AFootprintGrowsWithRangeAndSlant) {
 }
 
 TEST(LimitModel, NoiseIsJudgedWhetherItIsAppliedOrNot) {
-  const Scanner scanner = rtc360();
+  const Scanner scanner = rtc360_scanner();
   const NoiseModel model = make_noise_model(scanner, 1);
   const double limit = 0.00041;
   const auto good = [&](double cosine) { return model_sigma(model, 5 / cosine, 0.8 * cosine) <= limit; };
@@ -97,7 +97,7 @@ TEST(LimitModel, OnlySurveyedMeshesHaveLimits) {
   test::QuadScene scene = wall(0.02, 0);
   scene.quad({-5, -10, -10}, {0, 20, 0}, {0, 0, 20}, Role::blocking);
   scene.data().meshes[1].accuracy_m = 1e-6;
-  Scanner scanner = rtc360();
+  Scanner scanner = rtc360_scanner();
   scanner.noise = {};  // a blocking mesh needs none
   const LimitModel model = make_limit_model(scene.data(), scanner, {});
   ASSERT_EQ(model.meshes.size(), 2u);
@@ -108,7 +108,7 @@ TEST(LimitModel, OnlySurveyedMeshesHaveLimits) {
 }
 
 TEST(LimitModel, IsOffWhereNothingAsksForIt) {
-  EXPECT_FALSE(make_limit_model(wall(0, 0).data(), rtc360(), {}).enabled());
+  EXPECT_FALSE(make_limit_model(wall(0, 0).data(), rtc360_scanner(), {}).enabled());
   EXPECT_EQ(incidence_limit(wall(0, 0).data(), {}), std::nullopt);
   EXPECT_EQ(incidence_limit(wall(0, 0.001).data(), {}), default_max_incidence);
 }
@@ -128,7 +128,7 @@ TEST(LimitModel, SaysWhatTheScannerLacks) {
   EXPECT_NE(refusal(wall(0, 0.01), bare).find("has no noise table"), std::string::npos);
   EXPECT_NE(refusal(wall(0, 0), bare, {.max_incidence = Angle::degrees(0)}).find("above 0°"), std::string::npos);
   EXPECT_NE(refusal(wall(0, 0), bare, {.max_incidence = Angle::degrees(91)}).find("at most 90°"), std::string::npos);
-  EXPECT_EQ(refusal(wall(0.01, 0.01), rtc360()), "");
+  EXPECT_EQ(refusal(wall(0.01, 0.01), rtc360_scanner()), "");
 }
 
 }  // namespace

@@ -16,14 +16,9 @@ namespace {
 
 using nlohmann::json;
 using test::GlbBuilder;
+using test::load;
 
 constexpr int kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123, kUnsignedInt = 5125;
-
-Scene load(const GlbBuilder& builder, const SceneOptions& options = {}) {
-  const test::TemporaryFolder folder;
-  builder.write_glb(folder / "scene.glb");
-  return Scene::load(folder / "scene.glb", options);
-}
 
 // Corners of triangle t, survey frame.
 std::array<Vec3, 3> corners(const Scene& scene, std::size_t t) {

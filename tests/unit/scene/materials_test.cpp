@@ -53,7 +53,7 @@ GlbBuilder textured() {
   return builder;
 }
 
-Scene load(const GlbBuilder& builder) {
+Scene load_with_picture(const GlbBuilder& builder) {
   const test::TemporaryFolder folder;
   const auto bytes = png();
   test::write_bytes(folder / "with space.png", {bytes.begin(), bytes.end()});
@@ -73,7 +73,7 @@ TEST(Materials, TexturesFromABufferADataUriAndAFile) {
   for (const json& image : images) {
     GlbBuilder builder = embedded;
     builder.json["images"] = {image};
-    const Scene scene = load(builder);
+    const Scene scene = load_with_picture(builder);
     ASSERT_EQ(scene.data().images.size(), 1u) << image;
     EXPECT_EQ(material(scene).image, 0);
     EXPECT_EQ(scene.data().images[0].width, 2u);
@@ -90,7 +90,7 @@ TEST(Materials, ATextureThatCannotBeReadCostsOnlyColour) {
                             json{{"bufferView", 99}}, json{{"name", "nothing"}}}) {
     GlbBuilder builder = textured();
     builder.json["images"] = {image};
-    const Scene scene = load(builder);
+    const Scene scene = load_with_picture(builder);
     EXPECT_EQ(material(scene).image, -1);
     EXPECT_EQ(material(scene).base_colour[0], 0.25F);
     ASSERT_EQ(scene.notes().size(), 1u) << image;
@@ -105,14 +105,14 @@ TEST(Materials, TextureSetTransformAndWrapping) {
   builder.json["textures"][0]["sampler"] = 0;
   auto& texture = builder.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"];
   texture["texCoord"] = 1;
-  const Scene second_set = load(builder);
+  const Scene second_set = load_with_picture(builder);
   EXPECT_EQ(second_set.data().texcoords, (std::vector<Float2>{{1, 0}, {0, 1}, {0, 0}}));
   EXPECT_FALSE(material(second_set).repeat_u);
   EXPECT_TRUE(material(second_set).repeat_v);
   // The lower left quadrant of the image, turned clockwise by 90°: the example of the extension's text.
   texture["extensions"]["KHR_texture_transform"] = {
       {"offset", {0, 1}}, {"rotation", std::numbers::pi / 2}, {"scale", {0.5, 0.5}}, {"texCoord", 0}};
-  const Scene transformed = load(builder);
+  const Scene transformed = load_with_picture(builder);
   const std::vector<Float2> expected{{0, 1}, {0, 0.5F}, {0.5F, 1}};
   for (std::size_t v = 0; v < 3; ++v) {
     EXPECT_NEAR(transformed.data().texcoords[v].x, expected[v].x, 1e-6);
@@ -125,7 +125,7 @@ TEST(Materials, VertexColoursOfEveryType) {
     builder.triangle("plain");
     builder.json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = accessor;
     builder.triangle("without");
-    return load(builder).data().colours;
+    return load_with_picture(builder).data().colours;
   };
   GlbBuilder floats, bytes, shorts;
   const auto from_floats =

@@ -13,6 +13,7 @@ namespace vantage {
 namespace {
 
 using test::GlbBuilder;
+using test::load;
 
 // A thing of `size` whose lower corner lies at `low`, in the file's axes.
 NamedBox thing(const std::string& name, const Vec3& low, const Vec3& size) { return {name, {low, low + size}}; }
@@ -184,12 +185,6 @@ GlbBuilder room_in_millimetres() {
   box("chair", {1000, 0, 1000}, {450, 900, 450});
   box("desk", {2000, 0, 1000}, {1600, 740, 800});
   return glb;
-}
-
-Scene load(const GlbBuilder& builder, const SceneOptions& options = {}) {
-  const test::TemporaryFolder folder;
-  builder.write_glb(folder / "scene.glb");
-  return Scene::load(folder / "scene.glb", options);
 }
 
 TEST(RecogniseUnits, LoadsMetres) {

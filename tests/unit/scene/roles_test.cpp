@@ -17,12 +17,7 @@ namespace {
 
 using nlohmann::json;
 using test::GlbBuilder;
-
-Scene load(const GlbBuilder& builder, const SceneOptions& options = {}) {
-  const test::TemporaryFolder folder;
-  builder.write_glb(folder / "scene.glb");
-  return Scene::load(folder / "scene.glb", options);
-}
+using test::load;
 
 std::map<std::string, Role> roles(const Scene& scene) {
   std::map<std::string, Role> out;

@@ -11,8 +11,6 @@
 namespace vantage {
 namespace {
 
-Vec3 widen(const Float3& p) { return {p.x, p.y, p.z}; }
-
 // The one thing that counts: where these tests are certain, Embree says the same.
 TEST(SeenTriangle, MustHitIsNeverWrong) {
   RandomStream random(77);

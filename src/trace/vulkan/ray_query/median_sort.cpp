@@ -12,16 +12,16 @@
 namespace vantage {
 namespace {
 
-struct Item {
+struct Placed {
   std::array<float, 3> min, max;
   std::uint32_t triangle;
 };
 
-float half_area(std::span<const Item> items) {
+float half_area(std::span<const Placed> items) {
   std::array<float, 3> low, high;
   low.fill(std::numeric_limits<float>::infinity());
   high.fill(-std::numeric_limits<float>::infinity());
-  for (const Item& item : items)
+  for (const Placed& item : items)
     for (std::size_t k = 0; k < 3; ++k) {
       low[k] = std::min(low[k], item.min[k]);
       high[k] = std::max(high[k], item.max[k]);
@@ -30,12 +30,12 @@ float half_area(std::span<const Item> items) {
   return x * y + y * z + z * x;
 }
 
-void sort_items(std::span<Item> items) {
+void sort_items(std::span<Placed> items) {
   if (items.size() <= 2) return;
   const std::size_t half = (items.size() + 1) / 2;
   const auto halve = [&](std::size_t axis) {
     std::nth_element(items.begin(), items.begin() + static_cast<std::ptrdiff_t>(half), items.end(),
-                     [axis](const Item& a, const Item& b) {
+                     [axis](const Placed& a, const Placed& b) {
                        const float x = a.min[axis] + a.max[axis], y = b.min[axis] + b.max[axis];
                        return x != y ? x < y : a.triangle < b.triangle;
                      });
@@ -65,9 +65,9 @@ void sort_items(std::span<Item> items) {
 }  // namespace
 
 std::vector<std::uint32_t> median_sort(std::span<const Float3> positions, std::span<const Triangle> triangles) {
-  std::vector<Item> items(triangles.size());
+  std::vector<Placed> items(triangles.size());
   tbb::parallel_for(std::size_t{0}, items.size(), [&](std::size_t t) {
-    Item& item = items[t];
+    Placed& item = items[t];
     item.min.fill(std::numeric_limits<float>::infinity());
     item.max.fill(-std::numeric_limits<float>::infinity());
     for (const std::uint32_t vertex : triangles[t]) {
@@ -82,7 +82,7 @@ std::vector<std::uint32_t> median_sort(std::span<const Float3> positions, std::s
   });
   sort_items(items);
   std::vector<std::uint32_t> order(items.size());
-  std::transform(items.begin(), items.end(), order.begin(), [](const Item& item) { return item.triangle; });
+  std::transform(items.begin(), items.end(), order.begin(), [](const Placed& item) { return item.triangle; });
   return order;
 }
 

@@ -17,7 +17,7 @@
 namespace vantage {
 namespace {
 
-constexpr double goal = 40;
+constexpr double wanted = 40;
 constexpr std::uint32_t all_outputs = Tracer::range | Tracer::position | Tracer::normal | Tracer::reflectivity |
                                       Tracer::primitive | Tracer::barycentric | Tracer::voxel;
 
@@ -91,7 +91,7 @@ struct Site {
   }
   std::unique_ptr<Tracer> one() const {
     auto tracer = make_embree_tracer(scene);
-    tracer->set_goal_density(goal);
+    tracer->set_goal_density(wanted);
     return tracer;
   }
   std::unique_ptr<SpreadTracer> several(const std::vector<Frail::Manner>& manners, Team::Warn warn = {},
@@ -100,7 +100,7 @@ struct Site {
     for (const Frail::Manner& manner : manners)
       tracers.push_back(std::make_unique<Frail>(make_embree_tracer(scene), manner));
     auto tracer = std::make_unique<SpreadTracer>(std::move(tracers), scene, std::move(warn), split);
-    tracer->set_goal_density(goal);
+    tracer->set_goal_density(wanted);
     return tracer;
   }
   std::uint64_t rays() const {

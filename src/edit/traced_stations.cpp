@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "edit/traced_stations.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+#include "trace/sample_counts.hpp"
+#include "vantage/trace.hpp"
+
+namespace vantage {
+namespace {
+
+constexpr std::uint32_t kGroups = 20;  // of a sample, as the simulator makes them
+
+}  // namespace
+
+TracedStations::TracedStations(Simulator& simulator, std::uint64_t voxels) : simulator_(simulator) {
+  if (simulator.voxel_count() > 0) sample_ = simulator.sampled_voxels(std::min(voxels, simulator.voxel_count()));
+  for (const std::uint32_t rank : sample_) weights_.push_back(static_cast<std::uint8_t>(simulator.voxel_weight(rank)));
+  // None where all are 1: as the simulator has it.
+  if (std::ranges::count(weights_, 1) == std::ssize(weights_)) weights_.clear();
+}
+
+void TracedStations::follow(const Network& network, std::span<const std::uint32_t> ids) {
+  std::erase_if(traced_, [&](const Traced& traced) {
+    if (traced.place >= network.size() || ids[traced.place] != traced.id) return true;
+    const Station& now = network[traced.place];
+    return !now.active || now.position != traced.head || !(now.setup == traced.setup);
+  });
+  trace(network, ids);
+  add_up(network.size());
+}
+
+void TracedStations::trace(const Network& network, std::span<const std::uint32_t> ids) {
+  std::vector<Network> alone;
+  std::vector<Traced> fresh;
+  for (std::size_t k = 0; k < network.size(); ++k) {
+    if (!network[k].active || std::ranges::count(traced_, k, &Traced::place) > 0) continue;
+    Network one = network;
+    for (std::size_t other = 0; other < one.size(); ++other) one[other].active = other == k;
+    alone.push_back(std::move(one));
+    fresh.push_back({.place = k, .id = ids[k], .head = network[k].position, .setup = network[k].setup, .points = {}});
+  }
+  if (alone.empty() || sample_.empty()) return;
+  simulator_.evaluate_sampled(alone, {.voxels = sample_.size(),
+                                      .overlap = false,
+                                      .points = [&](std::size_t n, std::span<const std::uint32_t> counted) {
+                                        fresh[n].points.assign(counted.begin(), counted.end());
+                                      }});
+  std::ranges::move(fresh, std::back_inserter(traced_));
+}
+
+void TracedStations::add_up(std::size_t stations) {
+  points_.assign(sample_.size(), 0);
+  seen_by_.assign(sample_.size(), 0);
+  std::vector<std::uint64_t> masks(sample_.size() * mask_words(stations), 0);
+  for (const Traced& traced : traced_)
+    for (std::size_t i = 0; i < traced.points.size(); ++i) {
+      points_[i] += traced.points[i];
+      if (traced.points[i] == 0) continue;
+      masks[traced.place / mask_bits * sample_.size() + i] |= std::uint64_t{1} << (traced.place % mask_bits);
+      seen_by_[i] = together(seen_by_[i], static_cast<Seer>(traced.place + 1));
+    }
+  counts_ =
+      reduce_sample(points_, masks, kGroups, static_cast<std::uint32_t>(stations), simulator_.goal_density(), weights_);
+}
+
+}  // namespace vantage

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is worse than any value: optimisers minimise.
+#pragma once
+
+#include <limits>
+
+namespace vantage::optimise {
+
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+}  // namespace vantage::optimise

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+// How a plan turns down what it cannot do.
+#pragma once
+
+#include <string>
+
+#include "vantage/error.hpp"
+
+namespace vantage {
+
+[[noreturn]] inline void refuse(const std::string& what) { throw Error(Errc::invalid_argument, "plan: " + what); }
+
+}  // namespace vantage
