@@ -10,7 +10,6 @@ namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json to_json(const Vec3& v) { return {v.x, v.y, v.z}; }
 ordered_json known(double value) { return value == value ? ordered_json(value) : ordered_json(); }
 
 ordered_json measure_json(const Objective& measure) {
@@ -26,8 +25,8 @@ ordered_json stations_json(const ReportNetwork& network) {
     const bool placed = s.status != StationStatus::hole;
     stations.push_back(
         {{"name", network.names[k]},
-         {"head", placed ? to_json(s.position) : ordered_json()},
-         {"ground", placed ? to_json(s.ground) : ordered_json()},
+         {"head", placed ? point_json(s.position) : ordered_json()},
+         {"ground", placed ? point_json(s.ground) : ordered_json()},
          {"status", to_string(s.status)},
          {"fault", explain(s.status)},
          {"active", active(s)},

@@ -8,6 +8,8 @@
 
 namespace vantage {
 
+inline nlohmann::ordered_json point_json(const Vec3& v) { return {v.x, v.y, v.z}; }
+
 // All that the page tells in words, tables and charts. Stations are counted from 0 here, as arrays are.
 nlohmann::ordered_json report_json(const Report& report);
 

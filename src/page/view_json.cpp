@@ -20,8 +20,6 @@ constexpr std::uint64_t kVoxels = 1'000'000;     // that cells stand for
 constexpr std::uint64_t kSampled = 400'000;      // voxels traced for all networks together, at most
 constexpr std::uint64_t kLeastSampled = 10'000;  // and for each, at least
 
-ordered_json to_json(const Vec3& v) { return {v.x, v.y, v.z}; }
-
 ordered_json mesh_json(const SurfaceMesh& mesh) {
   // Neighbours differ little: each coordinate as what it adds to the one before, modulo 2^16.
   std::vector<std::uint16_t> steps;
@@ -39,10 +37,10 @@ ordered_json mesh_json(const SurfaceMesh& mesh) {
     back.push_back(fresh - index);
     if (index == fresh) ++fresh;
   }
-  return {{"low", to_json(mesh.box.min)},
-          {"high", to_json(mesh.box.max)},
-          {"surveyed_low", to_json(mesh.surveyed.min)},
-          {"surveyed_high", to_json(mesh.surveyed.max)},
+  return {{"low", point_json(mesh.box.min)},
+          {"high", point_json(mesh.box.max)},
+          {"surveyed_low", point_json(mesh.surveyed.min)},
+          {"surveyed_high", point_json(mesh.surveyed.max)},
           {"vertices", mesh.positions.size()},
           {"triangles", mesh.triangles.size() / 3},
           {"error_m", mesh.error_m},
@@ -158,7 +156,7 @@ ordered_json levels_json(const Simulator& simulator, const SearchArea& area, std
 
 ordered_json site_json(const Simulator& simulator, const SearchArea& area, std::span<const PlacedStation> stations,
                        const CoverageCells& cells) {
-  ordered_json json = {{"origin", to_json(simulator.origin())},
+  ordered_json json = {{"origin", point_json(simulator.origin())},
                        {"mesh", mesh_json(surface_mesh(simulator.scene().data(), kTriangles))},
                        {"levels", levels_json(simulator, area, stations)},
                        {"voxel_m", simulator.voxel_size_m()},
@@ -167,7 +165,7 @@ ordered_json site_json(const Simulator& simulator, const SearchArea& area, std::
   if (cells.keys.empty()) return json;
   std::vector<std::uint32_t> steps;
   for (std::size_t c = 0; c < cells.keys.size(); ++c) steps.push_back(cells.keys[c] - (c > 0 ? cells.keys[c - 1] : 0));
-  json["cells"] = {{"corner", to_json(cells.corner)},
+  json["cells"] = {{"corner", point_json(cells.corner)},
                    {"size_m", cells.size_m},
                    {"count", cells.keys.size()},
                    {"keys", packed(byte_planes<std::uint32_t>(steps))},
