@@ -74,6 +74,10 @@ struct MoCmaEsConfig {
   double spread = 0.25;  ///< Share of steps that also follow the differences to the parent's neighbours on the front.
   double recombined = 0.15;  ///< Share of offspring by crossover and mutation, as in NSGA-II. Needs bounds.
   double swapped = 0.4;  ///< Share of offspring that have one of the parent's `blocks` from elsewhere. Needs bounds.
+  /// Where values are noisy, and reassess() tells others from time to time: those that were there at the last time and
+  /// had to go since stay in population(), behind the members, and reassess() chooses the members among all of them. So
+  /// who was only lucky does not drive out who is better for good. In the steady state.
+  bool recalls = false;
 };
 
 /// Settings of every optimiser; each passes over what it has no use for.
@@ -133,7 +137,7 @@ class Optimiser {
   virtual void tell(std::span<const double> values) = 0;
   /// Between tell() and ask(): puts other objectives in the place of those of the points of population(), row-major, in
   /// its order: they were measured more closely, say. What the search learnt from the old ones stays, and stagnation
-  /// counts anew.
+  /// counts anew. What population() is afterwards may be another order, and fewer (`MoCmaEsConfig::recalls`).
   virtual void reassess(std::span<const double> values) = 0;
   /// Where several hold: what the search itself says, then the limits, the target, stagnation.
   virtual StopReason stop_reason() const noexcept = 0;

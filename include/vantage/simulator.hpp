@@ -155,6 +155,10 @@ class Simulator {
   /// With several scanners, which stations choose from by `StationSetup::scanner`: other models, or one with other
   /// steps. Throws as above, and Error invalid_argument for none.
   Simulator(const Scene& scene, std::span<const Scanner> scanners, const SimulatorConfig& config = {});
+  /// The same, but tells how far the voxels are, of which a large site has many millions, and is empty where it was
+  /// stopped meanwhile.
+  static std::optional<Simulator> build(const Scene& scene, std::span<const Scanner> scanners,
+                                        const SimulatorConfig& config, const Progress& progress);
   Simulator(Simulator&&) noexcept;
   Simulator& operator=(Simulator&&) noexcept;
   ~Simulator();
@@ -202,6 +206,7 @@ class Simulator {
   // Registration goes by the scans of these scanners, for whose rays fewer stand here. One for each of `scanners()`.
   void stand_for(std::span<const Scanner> scanners);
   struct Impl;
+  explicit Simulator(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
 

@@ -107,7 +107,7 @@ int bound(CLI::App& command, BoundOptions& options, Program& program) {
   weigh_ground(site);
   if (options.stations.empty() && options.captures.empty())
     throw Error(Errc::invalid_argument, "bound: of what? Give --stations N, --capture C or both");
-  Simulator simulator(site.scene, site.scanner, site.config);
+  Simulator simulator = build_simulator(site, {&site.scanner, 1}, program);
   tell_engine(simulator);
   tell_grid(simulator);
   if (options.sample) options.candidates.sample_voxels = options.sample->of(simulator.voxel_count());

@@ -24,6 +24,9 @@ struct Program {
   std::function<int()> selected = {};  // set by the command that the user named
 };
 
+// Thrown where a command was stopped before it had anything to show.
+struct Stopped {};
+
 // A subcommand whose options live as long as the program; `run` is called after parsing and returns the exit code.
 template <class Options>
 void add_command(CLI::App& app, Program& program, const char* name, const char* help,

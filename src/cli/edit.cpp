@@ -110,7 +110,7 @@ int edit(CLI::App& command, EditCommandOptions& options, Program& program) {
       stations.push_back({.placed = station.placed});
     }
   }
-  Simulator simulator(site.scene, site.scanners, site.config);
+  Simulator simulator = build_simulator(site, site.scanners, program);
   tell_engine(simulator);
   tell_grid(simulator);
   if (options.link) options.edit.link = *options.link;

@@ -132,11 +132,6 @@ Surroundings surroundings(const Simulator& simulator, const Network& network,
       all.voxel_count()};
 }
 
-int stopped_early() {
-  spdlog::error("stopped before the end; nothing was written");
-  return exit_failed;
-}
-
 // Millimetres; axes of the standard ellipsoid of each head, longest first, in the survey frame.
 nlohmann::json registration_json(const RegistrationError& error, const Estimate& whole) {
   const auto mm = [](const Vec3& v) { return nlohmann::json{1e3 * v.x, 1e3 * v.y, 1e3 * v.z}; };
@@ -205,7 +200,7 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
   if (options.with_registration && !overlap)
     throw Error(Errc::invalid_argument, "--registration: looks at what scans share, which --no-overlap leaves out");
 
-  Simulator simulator(site.scene, site.scanners, site.config);
+  Simulator simulator = build_simulator(site, site.scanners, program);
   tell_engine(simulator);
   tell_grid(simulator);
   const Network network = to_network(stations);
@@ -221,13 +216,13 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
                                                              .field = with_field ? &field : nullptr,
                                                              .registration = options.model()},
                                                             progress);
-  if (counts.cancelled) return stopped_early();
+  if (counts.cancelled) throw Stopped{};
   const RegistrationOptions registration = options.registration.settle();
   const bool by_all = options.with_registration && registration.surfaces == RegistrationSurfaces::all;
   Surroundings around;
   if (overlap)
     around = surroundings(simulator, network, by_all ? std::optional(registration.model) : std::nullopt, program.stop);
-  if (around.counts.cancelled) return stopped_early();
+  if (around.counts.cancelled) throw Stopped{};
   const std::uint64_t voxels = simulator.voxel_count();
   Estimate registered;
   RegistrationError error;

@@ -425,7 +425,7 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   if (program.ranks)
     shared = program.ranks->share([](const std::string& line) { spdlog::info("{}", line); },
                                   [](const std::string& line) { spdlog::warn("{}", line); });
-  Simulator simulator(site.scene, site.scanners, site.config);
+  Simulator simulator = build_simulator(site, site.scanners, program);
   if (program.ranks && !program.ranks->first()) program.ranks->serve(simulator);
   tell_engine(simulator);
   tell_grid(simulator);

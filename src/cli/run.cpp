@@ -85,6 +85,8 @@ int run(int argc, char** argv) {
     std::string message = error.what();
     for (const auto& line : error.details()) message += "\n  - " + line;
     return refuse(error.code() == Errc::invalid_argument ? exit_usage : exit_failed, error.code(), message);
+  } catch (const Stopped&) {
+    return refuse(exit_failed, Errc::io, "stopped before the end; nothing was written");
   } catch (const std::bad_alloc&) {
     if (!ranks) throw;  // for main(), which has no need of any
     return refuse(exit_failed, Errc::out_of_memory, "this machine has not enough memory for it");

@@ -75,7 +75,7 @@ int scan(CLI::App& command, ScanCommandOptions& options, Program& program) {
       spdlog::warn("the station at {:.6g},{:.6g},{:.6g} {}", station.placed.position.x, station.placed.position.y,
                    station.placed.position.z, explain(station.placed.status));
 
-  Simulator simulator(site.scene, site.scanners, site.config);
+  Simulator simulator = build_simulator(site, site.scanners, program);
   tell_engine(simulator);
   tell_grid(simulator);
 

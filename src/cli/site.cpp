@@ -8,6 +8,8 @@
 #include <filesystem>
 #include <set>
 
+#include "cli/command.hpp"
+#include "cli/console.hpp"
 #include "cli/options.hpp"
 #include "cli/parse.hpp"
 #include "cli/scanners.hpp"
@@ -387,6 +389,16 @@ LoadedSite open_site(CLI::App& command, SiteOptions& options) {
   static_cast<void>(site.crs_text());  // an error now, not behind an hour's work
   if (scale != 1) tell_scaled(options, site, scale);
   return site;
+}
+
+Simulator build_simulator(const LoadedSite& site, std::span<const Scanner> scanners, Program& program) {
+  ProgressLine line(program.console, "voxels");
+  // Ranks stop together, between pieces of the search.
+  const std::stop_token stop = program.ranks ? std::stop_token() : program.stop;
+  auto simulator = Simulator::build(site.scene, scanners, site.config,
+                                    {.report = [&](double done) { line.update(done); }, .stop = stop});
+  if (!simulator) throw Stopped{};
+  return std::move(*simulator);
 }
 
 }  // namespace vantage::cli

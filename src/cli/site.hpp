@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,8 @@
 #include "vantage/vantage.hpp"
 
 namespace vantage::cli {
+
+struct Program;
 
 // The options as given; empty where nothing was said. add() registers them with a command; the object must outlive the
 // parsing.
@@ -75,6 +78,9 @@ struct LoadedSite {
 
 // Applies the layers below the command line to all options of `command`, loads the scene and checks every value.
 LoadedSite open_site(CLI::App& command, SiteOptions& options);
+
+// A simulator of it, with a line for as long as its voxels take. Throws Stopped.
+Simulator build_simulator(const LoadedSite& site, std::span<const Scanner> scanners, Program& program);
 
 // Where nothing says what is surveyed: gives all but the ground so much weight that ground has a third of coverage at
 // most, and says so. For commands that measure coverage.

@@ -46,6 +46,7 @@ struct Member : Solution {
   VectorXd genotype;  // unit coordinates; may lie outside the box, where x is clipped
   StepStrategy strategy;
   std::uint64_t id = 0;
+  bool reassessed = false;
 };
 
 struct Offspring {
@@ -101,7 +102,8 @@ struct MoCmaEs::Impl {
   MoCommon common;
   std::shared_ptr<const Shape> initial_shape;
   std::vector<Member> members;
-  SteadyFront population;  // of the members, in the steady state
+  SteadyFront population;          // of the members, in the steady state
+  std::vector<Member> recallable;  // members when values were last reassessed that had to go since
   std::uint64_t next_id = 0;
   std::size_t restarts = 0;
   std::vector<Offspring> pending;
@@ -344,7 +346,10 @@ void MoCmaEs::Impl::tell_one(Solution solution, const Offspring& offspring) {
       population.offer(solution.fitness, static_cast<std::size_t>(parent - members.begin()));
   const bool succeeded = removed != mu && rank <= parent_rank;
   if (!orphan && !offspring.recombined) parent->strategy.adapt_sigma(succeeded);
-  if (removed != mu) members[removed] = make_member(std::move(solution), offspring, succeeded);
+  if (removed == mu) return;
+  Member newcomer = make_member(std::move(solution), offspring, succeeded);
+  if (members[removed].reassessed) recallable.push_back(std::move(members[removed]));
+  members[removed] = std::move(newcomer);
 }
 
 bool MoCmaEs::Impl::converged() const {
@@ -481,7 +486,20 @@ void MoCmaEs::tell(std::span<const double> values) {
 
 void MoCmaEs::reassess(std::span<const double> values) {
   Impl& s = *impl_;
+  const std::size_t mu = s.members.size();
+  s.common.require_reassessable(values, mu + s.recallable.size());
+  std::ranges::move(s.recallable, std::back_inserter(s.members));
+  s.recallable.clear();
   s.common.reassess(s.members, values);
+  if (s.members.size() > mu) {
+    const auto selected = optimise::select(optimise::fitness_of(s.members), s.common.reference, mu);
+    std::vector<Member> kept;
+    kept.reserve(mu);
+    for (std::size_t i = 0; i < s.members.size(); ++i)
+      if (selected[i]) kept.push_back(std::move(s.members[i]));
+    s.members = std::move(kept);
+  }
+  for (Member& member : s.members) member.reassessed = s.common.config.mo.recalls;
   s.population.assign(optimise::fitness_of(s.members));
   s.common.settle(s.members);
 }
@@ -490,13 +508,52 @@ StopReason MoCmaEs::stop_reason() const noexcept { return impl_->common.stop_rea
 std::vector<ParetoPoint> MoCmaEs::front() const { return optimise::front_of(optimise::pointers(impl_->members)); }
 std::vector<ParetoPoint> MoCmaEs::population() const {
   std::vector<ParetoPoint> result;
-  for (const Member& member : impl_->members) result.push_back({member.x, member.f});
+  for (const auto* members : {&impl_->members, &impl_->recallable})
+    for (const Member& member : *members) result.push_back({member.x, member.f});
   return result;
 }
 double MoCmaEs::hypervolume() const { return impl_->common.hypervolume(impl_->members); }
 std::size_t MoCmaEs::evaluations() const noexcept { return impl_->common.evaluations; }
 std::size_t MoCmaEs::restarts() const noexcept { return impl_->restarts; }
 std::size_t MoCmaEs::iterations() const noexcept { return impl_->common.iterations(); }
+
+namespace {
+
+void save_member(optimise::StateWriter& w, const Member& member) {
+  MoCommon::save(w, member);
+  const Shape& shape = *member.strategy.shape;
+  const Index n = shape.factor.cols();
+  w.put(member.id);
+  w.put(std::uint64_t{member.reassessed});
+  w.put(as_span(member.genotype));
+  w.put(member.strategy.sigma);
+  w.put(member.strategy.success);
+  w.put(as_span(shape.path));
+  for (Index j = 0; j < n; ++j) w.put(std::span(shape.factor.col(j).data() + j, static_cast<std::size_t>(n - j)));
+}
+
+// `initial`: a shape of as many coordinates.
+Member load_member(optimise::StateReader& r, const MoCommon& common, const Shape& initial) {
+  const std::size_t n = common.dimension;
+  Member member;
+  static_cast<Solution&>(member) = common.load_solution(r);
+  member.id = r.integer();
+  member.reassessed = r.size(2) == 1;
+  member.genotype.resize(static_cast<Index>(n));
+  std::ranges::copy(r.moderate_reals(n), member.genotype.data());
+  member.strategy.sigma = r.positive();
+  member.strategy.success = r.finite();
+  Shape shape = initial;
+  std::ranges::copy(r.moderate_reals(n), shape.path.data());
+  for (std::size_t j = 0; j < n; ++j) {
+    const auto column = r.moderate_reals(n - j);
+    std::ranges::copy(column, shape.factor.col(static_cast<Index>(j)).data() + j);
+  }
+  member.strategy.shape = std::make_shared<const Shape>(std::move(shape));
+  return member;
+}
+
+}  // namespace
 
 void MoCmaEs::save(std::ostream& out) const {
   const Impl& s = *impl_;
@@ -505,17 +562,9 @@ void MoCmaEs::save(std::ostream& out) const {
   s.common.save(w);
   w.put(s.next_id);
   w.put(std::uint64_t{s.restarts});
-  w.put(std::uint64_t{s.members.size()});
-  for (const Member& member : s.members) {
-    MoCommon::save(w, member);
-    const Shape& shape = *member.strategy.shape;
-    w.put(member.id);
-    w.put(as_span(member.genotype));
-    w.put(member.strategy.sigma);
-    w.put(member.strategy.success);
-    w.put(as_span(shape.path));
-    for (Index j = 0; j < shape.factor.cols(); ++j)
-      w.put(std::span(shape.factor.col(j).data() + j, s.common.dimension - static_cast<std::size_t>(j)));
+  for (const auto* members : {&s.members, &s.recallable}) {
+    w.put(std::uint64_t{members->size()});
+    for (const Member& member : *members) save_member(w, member);
   }
   w.put(s.population.contributions());
   w.write(out, kMoCmaEs);
@@ -530,23 +579,9 @@ void MoCmaEs::load(std::istream& in) {
   next->next_id = r.integer();
   next->restarts = r.size(std::size_t{1} << 62);
   const std::size_t count = r.size(mine.config.population + 1);
-  for (std::size_t i = 0; i < count; ++i) {
-    Member member;
-    static_cast<Solution&>(member) = next->common.load_solution(r);
-    member.id = r.integer();
-    member.genotype.resize(static_cast<Index>(n));
-    std::ranges::copy(r.moderate_reals(n), member.genotype.data());
-    member.strategy.sigma = r.positive();
-    member.strategy.success = r.finite();
-    Shape shape = *next->initial_shape;
-    std::ranges::copy(r.moderate_reals(n), shape.path.data());
-    for (std::size_t j = 0; j < n; ++j) {
-      const auto column = r.moderate_reals(n - j);
-      std::ranges::copy(column, shape.factor.col(static_cast<Index>(j)).data() + j);
-    }
-    member.strategy.shape = std::make_shared<const Shape>(std::move(shape));
-    next->members.push_back(std::move(member));
-  }
+  for (std::size_t i = 0; i < count; ++i) next->members.push_back(load_member(r, next->common, *next->initial_shape));
+  for (std::size_t left = r.size(mine.config.population + 1); left > 0; --left)
+    next->recallable.push_back(load_member(r, next->common, *next->initial_shape));
   const std::vector<double> contributions = r.finite_reals(count);
   if (count != 0) next->population.assign(optimise::fitness_of(next->members), contributions);
   r.end();

@@ -131,12 +131,15 @@ ConfirmedFront confirm_front(const SearchOutcome& found, const DecisionSpace& sp
   // A search that samples did not keep its standard errors, nor what is no objective. The same sample is drawn again.
   const bool sampled = sample_voxels > 0;
   if (sampled && !networks.empty()) {
-    if (const auto estimates = evaluator.estimate(networks, {sample_voxels, found.sample_from},
-                                                  NetworkEvaluator::Which::all, {.report = {}, .stop = watch.abort})) {
+    if (const auto estimates =
+            evaluator.estimate(networks, found.sample.voxels > 0 ? found.sample : VoxelWindow{sample_voxels},
+                               NetworkEvaluator::Which::all, {.report = {}, .stop = watch.abort})) {
       for (std::size_t k = 0; k < entries.size(); ++k) {
         for (std::size_t m = 0; m < measures.all.size(); ++m) {
           MeasuredValue& value = entries[k].values.at(measures.all[m].name);
-          value.searched = (*estimates)[k][m].value, value.standard_error = (*estimates)[k][m].standard_error;
+          const bool pooled = k < found.estimates.size() && m < measures.searched;
+          const Estimate& estimate = pooled ? found.estimates[k][m] : (*estimates)[k][m];
+          value.searched = estimate.value, value.standard_error = estimate.standard_error;
         }
       }
       // Requirements may be missed by one voxel that only every ray sees.

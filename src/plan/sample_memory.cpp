@@ -32,10 +32,6 @@ void SampleMemory::correct(std::vector<double>& values, std::size_t look) const 
   for (std::size_t m = 0; m < values.size(); ++m) values[m] += state_.looks[look][m].mean + state_.shift[m];
 }
 
-void SampleMemory::add(std::span<const double> x, const std::vector<double>& values) {
-  state_.known[{x.begin(), x.end()}] = {.sum = values, .count = 1};
-}
-
 void SampleMemory::keep_only(std::span<const ParetoPoint> population) {
   std::map<std::vector<double>, Measurements> kept;
   for (const ParetoPoint& point : population)
@@ -67,6 +63,32 @@ void SampleMemory::average(std::span<const ParetoPoint> population, std::vector<
     longer_known += own.count > 1;
   }
   for (double& one : shift) one /= std::max(longer_known, 1.0);
+}
+
+std::vector<std::vector<Estimate>> SampleMemory::pooled(std::span<const ParetoPoint> population,
+                                                        std::vector<std::vector<Estimate>> last,
+                                                        double times_as_large) const {
+  std::vector<double> off(state_.shift.size(), 0);
+  double known = 0;
+  for (std::size_t k = 0; k < population.size(); ++k) {
+    const auto found = state_.known.find(population[k].x);
+    if (found == state_.known.end()) continue;
+    for (std::size_t m = 0; m < off.size(); ++m)
+      off[m] += last[k][m].value - found->second.sum[m] / static_cast<double>(found->second.count);
+    ++known;
+  }
+  for (double& one : off) one /= std::max(known, 1.0);
+  for (std::size_t k = 0; k < population.size(); ++k) {
+    const auto found = state_.known.find(population[k].x);
+    if (found == state_.known.end()) continue;
+    const auto count = static_cast<double>(found->second.count);
+    for (std::size_t m = 0; m < off.size(); ++m) {
+      double& value = last[k][m].value;
+      const double all = (found->second.sum[m] + count * off[m] + times_as_large * value) / (count + times_as_large);
+      if (std::isfinite(all)) value = all;
+    }
+  }
+  return last;
 }
 
 }  // namespace vantage

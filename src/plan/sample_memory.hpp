@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "vantage/measure.hpp"
 #include "vantage/optimiser.hpp"
 
 namespace vantage {
@@ -48,12 +49,17 @@ class SampleMemory {
   void correct(std::vector<double>& values) const;
   void correct(std::vector<double>& values, std::size_t look) const;
 
-  void add(std::span<const double> x, const std::vector<double>& values);
   void keep_only(std::span<const ParetoPoint> population);
-  // Puts means over all samples in the place of what the one from `from` on says of the population, rows in its order:
-  // so no sample drives out what earlier ones found good. Newcomers, which this one alone has seen, are corrected from
-  // now on by as much as it is off for what is known better.
+  // Puts means over samples in the place of what the one from `from` on says of the population, rows in its order: so
+  // no sample drives out what earlier ones found good. The sample that a network was taken in by does not count for it:
+  // of many it was the one that it flattered. Newcomers are corrected from now on by as much as the present sample is
+  // off for what is known better.
   void average(std::span<const ParetoPoint> population, std::vector<std::vector<double>>& values, std::uint64_t from);
+  // What all samples together say: a last one, by which nothing was chosen, so many times as large, and those that a
+  // network was measured by before. As much as these are off from it on average is taken off, so the level is that of
+  // the last one, and so are its standard errors; how networks compare is known by all.
+  std::vector<std::vector<Estimate>> pooled(std::span<const ParetoPoint> population,
+                                            std::vector<std::vector<Estimate>> last, double times_as_large) const;
 
  private:
   State state_;

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <exception>
+#include <map>
 #include <memory>
 #include <optional>
 #include <sstream>
@@ -26,6 +27,8 @@ namespace {
 
 // By how much of what a first look is wrong a network may be better than it seems.
 constexpr double kOptimism = 1;
+// Where voxels are drawn anew, the last ones are so many times as many: they say how good the front is.
+constexpr std::uint64_t kLastSample = 4;
 
 class Search {
  public:
@@ -69,7 +72,7 @@ class Search {
       const GrowingSample before = sample_;
       sample_.fill();  // not saved: a search that goes on does so by its own sample
       if (sample_.renews()) sample_.renew(history_.size());
-      if (!assess(Then::end)) sample_ = before;
+      if (!assess(Then::end)) sample_ = before, reason = interrupted();
     }
     return outcome(reason);
   }
@@ -111,7 +114,6 @@ class Search {
     for (std::size_t k = 0; k < count; ++k)
       scale_objectives(setup_.problem, x(k), values[k], missed_by(setup_.problem, setup_.measures, values[k]),
                        std::span(f).subspan(k * m, m));
-    for (std::size_t k = 0; k < count && sample_.renews(); ++k) memory_.add(x(k), values[k]);
     optimiser_->tell(f);
     if (record()) {
       const bool unknown = looks_first() ? !memory_.knows_looks() : error_ == 0 && !sample_.full();
@@ -223,6 +225,12 @@ class Search {
 
   enum class Then { go_on, end };
 
+  // What the front is told by.
+  VoxelWindow last_window() const {
+    const VoxelWindow window = sample_.window();
+    return {sample_.renews() ? kLastSample * window.voxels : window.voxels, window.from};
+  }
+
   // Measures what the optimiser keeps by the sample as it is. Where the search goes on, as newcomers are measured, and
   // how well first looks tell; at its end as well as the sample can, without what samples are wrong by on average.
   // False when stopped half way.
@@ -236,9 +244,13 @@ class Search {
     std::vector<std::vector<double>> values(networks.size());
     double errors = 0;
     if (then == Then::end || !sample_.full()) {
-      const auto found =
-          setup_.evaluator.estimate(networks, sample_.window(), NetworkEvaluator::Which::searched, progress);
+      const VoxelWindow window = then == Then::end ? last_window() : sample_.window();
+      auto found = setup_.evaluator.estimate(networks, window, NetworkEvaluator::Which::searched, progress);
       if (!found) return false;
+      if (then == Then::end && sample_.renews()) {
+        found = memory_.pooled(population, std::move(*found), kLastSample);
+        for (std::size_t k = 0; k < networks.size(); ++k) pooled_[population[k].x] = (*found)[k];
+      }
       for (std::size_t k = 0; k < networks.size(); ++k) {
         for (const Estimate& estimate : (*found)[k]) values[k].push_back(estimate.value);
         for (std::size_t j = 0; j < m; ++j) {
@@ -429,8 +441,13 @@ class Search {
   }
 
   SearchOutcome outcome(StopReason reason) const {
-    return {.front = sample_.renews() ? optimiser_->population() : optimiser_->front(),
-            .sample_from = sample_.window().from,
+    std::vector<ParetoPoint> kept = sample_.renews() ? optimiser_->population() : optimiser_->front();
+    std::vector<std::vector<Estimate>> estimates;
+    if (!pooled_.empty())
+      for (const ParetoPoint& point : kept) estimates.push_back(pooled_.at(point.x));
+    return {.front = std::move(kept),
+            .estimates = std::move(estimates),
+            .sample = last_window(),
             .history = history_,
             .hypervolume = optimiser_->hypervolume(),
             .evaluations = optimiser_->evaluations(),
@@ -458,8 +475,9 @@ class Search {
   GrowingSample sample_;
   double error_ = 0;  // standard error of a scaled objective by it; 0: not known yet
   SampleMemory memory_;
-  const std::vector<double> begins_with_;  // one of the first points; empty: none
-  std::vector<PlacedNetwork> networks_;    // of the open batch
+  std::map<std::vector<double>, std::vector<Estimate>> pooled_;  // of what is kept, at the end
+  const std::vector<double> begins_with_;                        // one of the first points; empty: none
+  std::vector<PlacedNetwork> networks_;                          // of the open batch
 
   std::vector<PlanIteration> history_;
   std::vector<ParetoPoint> front_;  // as of the last iteration

@@ -35,7 +35,9 @@ struct SearchSetup {
 struct SearchOutcome {
   // Where the sample is drawn anew all that was kept: the front is chosen from it by every ray.
   std::vector<ParetoPoint> front;
-  std::uint64_t sample_from = 0;  // where the last sample began
+  // Of each, of the measures that were searched, by all its samples together; empty where there was one.
+  std::vector<std::vector<Estimate>> estimates = {};
+  VoxelWindow sample = {};  // by which it is told; no voxels: every ray
   std::vector<PlanIteration> history;
   double hypervolume = 0;
   std::uint64_t evaluations = 0, resumed_evaluations = 0;

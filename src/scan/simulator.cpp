@@ -52,17 +52,19 @@ std::string rounded_up(double metres) {
   throw Error(Errc::invalid_argument, what.str());
 }
 
-std::shared_ptr<const VoxelGrid> build_grid(const SceneData& scene, const SimulatorConfig& config) {
+// Null where it was stopped.
+std::shared_ptr<const VoxelGrid> build_grid(const SceneData& scene, const SimulatorConfig& config,
+                                            const Progress& progress) {
   if (!(std::isfinite(config.point_spacing_m) && config.point_spacing_m > 0)) {
     throw Error(Errc::invalid_argument,
                 "the point spacing is " + std::to_string(config.point_spacing_m) + " m, but must be above 0");
   }
   // A user size below the spacing cannot work. The grid is then built for the spacing, to say what would.
   const bool too_small = config.user_size_m > 0 && config.user_size_m < config.point_spacing_m;
-  auto grid =
-      std::make_shared<VoxelGrid>(VoxelGrid::build(scene, too_small ? config.point_spacing_m : config.user_size_m));
+  auto grid = VoxelGrid::build(scene, too_small ? config.point_spacing_m : config.user_size_m, progress);
+  if (!grid) return nullptr;
   if (too_small || grid->voxel_size() < config.point_spacing_m) refuse_goal_density(*grid, config);
-  return grid;
+  return std::make_shared<VoxelGrid>(std::move(*grid));
 }
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -116,12 +118,14 @@ void check_registration(const std::optional<RegistrationModel>& registration, bo
 }  // namespace
 
 struct Simulator::Impl {
-  Impl(const Scene& s, std::span<const Scanner> all, const SimulatorConfig& c)
+  // Without a grid, and of no use, where it was stopped.
+  Impl(const Scene& s, std::span<const Scanner> all, const SimulatorConfig& c, const Progress& progress)
       : scene(s), scanners(all.begin(), all.end()), config(c) {
     if (scanners.empty()) throw Error(Errc::invalid_argument, "no scanner given; a simulator has one at least");
     for (const Scanner& scanner : scanners) scanner.check();
     require_memory(scene, scanners, config);
-    grid = build_grid(data(), config);
+    grid = build_grid(data(), config, progress);
+    if (!grid) return;
     goal = grid->voxel_size() * grid->voxel_size() / (config.point_spacing_m * config.point_spacing_m);
     for (const Scanner& scanner : scanners) traced.push_back(trace_scanner(scanner));
     registered = scanners;
@@ -260,9 +264,16 @@ struct Simulator::Impl {
 };
 
 Simulator::Simulator(const Scene& scene, const Scanner& scanner, const SimulatorConfig& config)
-    : impl_(std::make_unique<Impl>(scene, std::span(&scanner, 1), config)) {}
+    : impl_(std::make_unique<Impl>(scene, std::span(&scanner, 1), config, Progress{})) {}
 Simulator::Simulator(const Scene& scene, std::span<const Scanner> scanners, const SimulatorConfig& config)
-    : impl_(std::make_unique<Impl>(scene, scanners, config)) {}
+    : impl_(std::make_unique<Impl>(scene, scanners, config, Progress{})) {}
+Simulator::Simulator(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+std::optional<Simulator> Simulator::build(const Scene& scene, std::span<const Scanner> scanners,
+                                          const SimulatorConfig& config, const Progress& progress) {
+  auto impl = std::make_unique<Impl>(scene, scanners, config, progress);
+  if (!impl->grid) return std::nullopt;
+  return Simulator(std::move(impl));
+}
 Simulator::Simulator(Simulator&&) noexcept = default;
 Simulator& Simulator::operator=(Simulator&&) noexcept = default;
 Simulator::~Simulator() = default;

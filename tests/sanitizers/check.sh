@@ -43,10 +43,12 @@ if [ "$kind" = thread ]; then
   # ThreadSanitizer ends where a library that it suppresses is unloaded, as drivers are with each instance of Vulkan. The
   # validation layer, which does not bear being kept, stays out.
   under="env LD_PRELOAD=libvulkan_lvp.so"
-  # That of GCC 12 knows nothing of kernels that place memory at random by more than 28 bits.
-  if [ "$(cat /proc/sys/vm/mmap_rnd_bits 2>/dev/null || echo 0)" -gt 28 ]; then under="setarch -R $under"; fi
 else
   export VANTAGE_VALIDATION=1
+fi
+# Those of GCC 12 know nothing of kernels that place memory at random by more than 28 bits.
+if [ "$(cat /proc/sys/vm/mmap_rnd_bits 2>/dev/null || echo 0)" -gt 28 ] && setarch -R true 2>/dev/null; then
+  under="setarch -R $under"
 fi
 export build under
 # shellcheck disable=SC2016 # for the inner shell

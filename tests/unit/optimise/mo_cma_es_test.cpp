@@ -155,6 +155,46 @@ TEST_P(EveryOptimiser, TakesOtherObjectivesOfWhatItKeeps) {
   EXPECT_THROW(optimiser->reassess(values), Error);
 }
 
+// Newcomers of which a later sample thinks nothing do not outlive those whom they drove out.
+TEST(MoCmaEs, RecallsWhoHadToGoForSomebodyLucky) {
+  const std::size_t n = 4, mu = 10;
+  OptimiserConfig config{.population = mu, .bounds = Bounds::uniform(n, -1, 2), .mo = {.batch = 5, .recalls = true}};
+  MoCmaEs optimiser(n, 2, config);
+  for (int round = 0; round < 8; ++round) step(optimiser, n, two_spheres);
+  EXPECT_EQ(optimiser.population().size(), mu) << "nothing was reassessed yet";
+  const auto told = [](const std::vector<ParetoPoint>& points, const auto& f) {
+    std::vector<double> values;
+    for (const ParetoPoint& point : points)
+      for (const double value : f(point)) values.push_back(value);
+    return values;
+  };
+  const auto same = [](const ParetoPoint& point) { return point.f; };
+  optimiser.reassess(told(optimiser.population(), same));
+  std::vector<std::vector<double>> known;
+  for (const ParetoPoint& point : optimiser.population()) known.push_back(point.x);
+  const auto is_known = [&](const ParetoPoint& point) { return std::ranges::count(known, point.x) > 0; };
+
+  for (int round = 0; round < 20; ++round) step(optimiser, n, two_spheres);
+  std::stringstream file;
+  optimiser.save(file);
+  MoCmaEs other(n, 2, config);
+  other.load(file);
+  for (MoCmaEs* one : {&optimiser, &other}) {
+    const auto kept = one->population();
+    ASSERT_GT(kept.size(), mu);
+    EXPECT_EQ(std::ranges::count_if(kept, is_known), static_cast<std::ptrdiff_t>(mu)) << "none is lost";
+    one->reassess(told(kept, [&](const ParetoPoint& point) {
+      return is_known(point) ? point.f : std::vector<double>{5, 5};
+    }));
+    const auto chosen = one->population();
+    EXPECT_EQ(chosen.size(), mu);
+    EXPECT_TRUE(std::ranges::all_of(chosen, is_known));
+    for (int round = 0; round < 10; ++round) step(*one, n, two_spheres);
+  }
+  EXPECT_EQ(optimiser.hypervolume(), other.hypervolume());
+  EXPECT_THROW(optimiser.reassess(std::vector<double>(2 * mu)), Error) << "all of population() are wanted";
+}
+
 TEST_P(EveryOptimiser, AsksInsideTheBounds) {
   EXPECT_TRUE(rc::check([&] {
     const auto n = *rc::gen::inRange<std::size_t>(1, 5);

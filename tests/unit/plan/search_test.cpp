@@ -170,12 +170,15 @@ TEST_P(EveryProblem, EndsWithVoxelsThatNothingWasChosenBy) {
   const PlanConfig config = renewing_config();
   const SearchOutcome found = toy_search(problem_, config, evaluator);
   const auto drawn = static_cast<std::uint64_t>(found.history.size()) / config.renew_iterations;
-  EXPECT_EQ(found.sample_from, (drawn + 1) * config.sample_voxels);
+  EXPECT_EQ(found.sample.from, (drawn + 1) * config.sample_voxels);
+  EXPECT_EQ(found.sample.voxels, 4 * config.sample_voxels);
+  ASSERT_EQ(found.estimates.size(), found.front.size());
   const Site site = test::toy_site();
   const DecisionSpace space(site, problem_);
-  for (const ParetoPoint& point : found.front) {
-    const std::vector<PlacedNetwork> one{space.decode(point.x)};
-    const std::vector<double> values = evaluator.evaluate(one, {config.sample_voxels, found.sample_from}, {})->front();
+  for (std::size_t k = 0; k < found.front.size(); ++k) {
+    const ParetoPoint& point = found.front[k];
+    std::vector<double> values;
+    for (const Estimate& estimate : found.estimates[k]) values.push_back(estimate.value);
     EXPECT_EQ(point.f, scaled_objectives(problem_, point.x, values));
   }
 }

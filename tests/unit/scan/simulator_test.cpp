@@ -86,6 +86,26 @@ TEST(Simulator, DescribesItself) {
   }
 }
 
+// What takes minutes of a large site.
+TEST(Simulator, IsBuiltWithProgressAndNotWhereItIsStopped) {
+  const Scene scene = wall_and_floor().scene();
+  const Scanner scanner = coarse_scanner();
+  SimulatorConfig fine = config();
+  fine.user_size_m = 0.05, fine.point_spacing_m = 0.02;
+  std::vector<double> told;
+  const auto report = [&](double done) { told.push_back(done); };
+  const auto built = Simulator::build(scene, {&scanner, 1}, fine, {.report = report, .stop = {}});
+  ASSERT_TRUE(built);
+  EXPECT_EQ(built->voxel_count(), Simulator(scene, scanner, fine).voxel_count());
+  ASSERT_FALSE(told.empty());
+  EXPECT_TRUE(std::ranges::is_sorted(told));
+  EXPECT_GE(told.front(), 0);
+  EXPECT_LE(told.back(), 1);
+  std::stop_source stop;
+  stop.request_stop();
+  EXPECT_FALSE(Simulator::build(scene, {&scanner, 1}, fine, {.report = {}, .stop = stop.get_token()}));
+}
+
 TEST(Simulator, RefusesGoalDensitiesBelowOneAndNamesWhatWorks) {
   const Scene scene = wall_and_floor().scene();
   for (const double user_size : {0.3, 0.09, 0.001}) {
