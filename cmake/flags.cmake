@@ -7,6 +7,9 @@ target_compile_options(
             -ffp-contract=off
             # GCC 12 sees overlapping copies in "literal" + std::string (its bug 105651).
             $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict>
+            # Of several sources at a time, what is unnamed in one is no longer a file's own.
+            $<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${CMAKE_UNITY_BUILD}>>:-Wno-shadow>
+            $<$<AND:$<COMPILE_LANG_AND_ID:CXX,GNU>,$<BOOL:${CMAKE_UNITY_BUILD}>>:-Wno-subobject-linkage>
             $<$<BOOL:${VANTAGE_WARNINGS_AS_ERRORS}>:-Werror>)
 if(VANTAGE_SANITIZE)
   target_compile_options(vantage_flags INTERFACE -fsanitize=${VANTAGE_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=undefined)

@@ -20,8 +20,8 @@ std::vector<CountPart> CountPlan::next(double rays) {
   std::uint64_t list = 0;
   std::uint32_t slots = 0;
   const double tile_rows = std::floor(rays / (static_cast<double>(columns_) * tile_side));
-  const auto at_once =
-      static_cast<std::uint32_t>(std::clamp(tile_rows * tile_side, double{tile_side}, double{rows_per_part_}));
+  const auto at_once = static_cast<std::uint32_t>(
+      std::clamp(tile_rows * tile_side, double{tile_side}, static_cast<double>(rows_per_part_)));
   while (!finished() && (parts.empty() || planned < rays) && parts.size() < parts_per_submission) {
     const bool same_station = !parts.empty() && parts.back().station == station_;
     if (!same_station && slots == stations_per_submission) break;

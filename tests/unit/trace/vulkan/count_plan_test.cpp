@@ -37,7 +37,7 @@ TEST_P(CountPlans, EveryRowOfEveryStationComesOnceAndInOrder) {
       EXPECT_EQ(part.first_row % tile_side, 0u) << "a tile belongs to one part";
       ASSERT_GE(part.row_count, 1u);
       EXPECT_LE(part.row_count, shape.rows_per_part);
-      EXPECT_TRUE(part.row_count <= tile_side || double{part.row_count} * shape.columns <= shape.rays)
+      EXPECT_TRUE(part.row_count <= tile_side || static_cast<double>(part.row_count) * shape.columns <= shape.rays)
           << "no part is more than was asked for";
       row += part.row_count;
       if (row == shape.rows) {
