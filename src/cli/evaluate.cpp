@@ -302,7 +302,8 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
                    .counts = counts,
                    .scan_overlaps = scan_overlaps,
                    .link = link,
-                   .registration = options.with_registration ? &error : nullptr},
+                   .registration = options.with_registration ? &error : nullptr,
+                   .summary = &summary},
                   std::filesystem::path(options.site.scene).stem().string(),
                   {site, simulator, sampled ? nullptr : &field, judged ? &*judged : nullptr}, program, program.abort);
   }

@@ -50,6 +50,7 @@ void write_reports(std::span<const std::filesystem::path> files, const MeasuredS
   ReportNetwork network = measured_network(measured.stations, measured.names, measured.counts, sources.simulator,
                                            measured.scan_overlaps, measured.link);
   if (measured.registration) network.entry.registration = *measured.registration;
+  if (measured.summary) network.summary = *measured.summary;
   write(files, report_of(std::move(network), sources.simulator), title, sources, program, std::move(stop));
 }
 

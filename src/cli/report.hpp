@@ -35,6 +35,7 @@ struct MeasuredStations {
   const OverlapMatrix& scan_overlaps;               // of all surfaces; empty: not looked at
   double link = default_link;                       // from which on two stations count as linked
   const RegistrationError* registration = nullptr;  // null: not predicted
+  const SurveySummary* summary = nullptr;           // as the command tells it; null: of these numbers alone
 };
 void write_reports(std::span<const std::filesystem::path> files, const MeasuredStations& measured,
                    const std::string& title, const ReportSources& sources, Program& program, std::stop_token stop);
