@@ -26,11 +26,11 @@ struct EditStation {
 };
 
 struct EditOptions {
-  double link = default_link;          // scan overlap from which on two stations count as linked
-  std::uint64_t voxels = 40'000;       // of the sample that every change is measured on
-  std::uint64_t link_voxels = 10'000;  // of all surfaces, by which scan overlaps go until every ray is asked for
-  std::size_t cells = 20'000;          // of the colours, at most
-  double improve_seconds = 10;         // of one short search
+  double link = default_link;         // scan overlap from which on two stations count as linked
+  std::uint64_t voxels = 40'000;      // of the sample that every change is measured on
+  std::uint64_t link_voxels = 4'000;  // of all surfaces, by which scan overlaps go until every ray is asked for
+  std::size_t cells = 20'000;         // of the colours, at most
+  double improve_seconds = 10;        // of one short search
 };
 
 // Borrows all that it is given. Every call is safe from any thread; what takes long runs on a thread of its own, and
