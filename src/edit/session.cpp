@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include "page/packed.hpp"
@@ -270,9 +271,13 @@ void EditSession::trace_exactly(const Progress& progress, const std::function<vo
 void EditSession::improve(const Progress& progress) {
   std::vector<Vec3> kept, start;
   std::vector<StationSetup> kept_setups;
+  std::set<std::uint32_t> scanners;  // of those that may move
   for (const EditStation& s : stations_) {
     (s.locked ? kept : start).push_back(s.placed.position);
-    if (s.locked) kept_setups.push_back(s.placed.setup);
+    if (s.locked)
+      kept_setups.push_back(s.placed.setup);
+    else
+      scanners.insert(s.placed.setup.scanner);
   }
   if (start.empty()) throw Error(Errc::invalid_argument, "all stations are locked");
   const auto parts_now = [&] { return connectivity(scan_overlaps_, options_.link).parts; };
@@ -283,6 +288,7 @@ void EditSession::improve(const Progress& progress) {
   SurveyProblem problem = survey_problem(names, start.size(), start.size());
   problem.kept = kept;
   problem.kept_setups = kept_setups;
+  if (scanners.size() == 1) problem.scanners = {*scanners.begin()};
   Requirement linked = make_requirement("link>=0", problem.settings());
   linked.limit = stations_.size() > 1 ? std::min(weakest, options_.link) : 0;
   problem.requirements = {std::move(linked)};
@@ -313,7 +319,7 @@ void EditSession::improve(const Progress& progress) {
     s.placed = placed;
   }
   measure();
-  // The search had them upright and with the first scanner.
+  // The search had them upright, and where they have several scanners with the first.
   const bool better = coverage(counts_, simulator_.goal_density()) > before && parts_now() <= parts;
   std::vector<EditStation> found = std::exchange(stations_, now);
   if (!better) {

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <map>
+#include <span>
 #include <utility>
 
 #include "core/text.hpp"
@@ -45,6 +46,7 @@ struct Curve {
   std::string sample;
   std::uint64_t seed = 0;
   std::vector<Look> looks;
+  Look confirmed = {};  // what the search answers in the end
 };
 
 // Objectives by every ray, each network once.
@@ -105,10 +107,11 @@ void draw(const std::string& file, const FrontOptions& options, const std::vecto
   Canvas canvas(kWidth, kHeight);
   double low = 1, high = 0, first = 1e9, last = 0;
   for (const Curve& curve : curves)
-    for (const Look& look : curve.looks) {
-      low = std::min({low, look.exact, look.searched}), high = std::max({high, look.exact, look.searched});
-      first = std::min(first, look.seconds), last = std::max(last, look.seconds);
-    }
+    for (const auto& looks : {std::span(curve.looks), std::span(&curve.confirmed, 1)})
+      for (const Look& look : looks) {
+        low = std::min({low, look.exact, look.searched}), high = std::max({high, look.exact, look.searched});
+        first = std::min(first, look.seconds), last = std::max(last, look.seconds);
+      }
   const Axis x{.label = "Seconds of search", .low = first / 1.1, .high = last * 1.1, .logarithmic = true};
   const Axis y = axis_over("Hypervolume", low, high, 0, 1);
   const Chart chart(canvas, {86, 72, kWidth - 86 - 220, kHeight - 72 - 70}, x, y, "What the front is worth",
@@ -127,6 +130,9 @@ void draw(const std::string& file, const FrontOptions& options, const std::vecto
       canvas.path(searched, {.colour = colour, .width = 1, .dashes = {4, 4}});
       canvas.path(exact, {.colour = colour, .width = 2});
       for (const Point& p : exact) canvas.disc(p, 3, colour);
+      const Point answer = chart.at(curve.confirmed.seconds, curve.confirmed.exact);
+      canvas.disc(answer, 6, colour);
+      canvas.disc(answer, 3.5, Colour{1, 1, 1});
     }
     canvas.text(at, options.samples[s] + " voxels", {.size = 13.5, .bold = true, .colour = colour});
     at.y += 24;
@@ -137,6 +143,10 @@ void draw(const std::string& file, const FrontOptions& options, const std::vecto
   at.y += 22;
   canvas.path(std::vector<Point>{at, {at.x + 26, at.y}}, {.colour = style::ink, .width = 1, .dashes = {4, 4}});
   canvas.text({at.x + 34, at.y}, "as searched", {.size = 12.5});
+  at.y += 22;
+  canvas.disc({at.x + 13, at.y}, 6, style::ink);
+  canvas.disc({at.x + 13, at.y}, 3.5, Colour{1, 1, 1});
+  canvas.text({at.x + 34, at.y}, "confirmed", {.size = 12.5});
   canvas.save(file);
 }
 
@@ -207,6 +217,10 @@ void run_front(const FrontOptions& options) {
                     look.searched - look.exact);
         std::fflush(stdout);
       }
+      curve.confirmed = {.seconds = seconds,
+                         .evaluations = result.evaluations,
+                         .searched = result.hypervolume,
+                         .exact = result.exact_hypervolume};
       const auto undominated = std::ranges::count(result.front, false, &PlanEntry::dominated);
       std::printf("%s,%llu,end of search,%.2f,,,,,,\n", sample.c_str(), static_cast<unsigned long long>(seed),
                   searched);

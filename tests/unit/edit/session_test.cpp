@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <thread>
 
 #include "support/quad_scene.hpp"
 #include "vantage/error.hpp"
@@ -181,6 +182,32 @@ TEST(EditSession, ImprovesTheOthersAndKeepsLockedOnes) {
   EXPECT_LE(after["network"]["parts"], before["network"]["parts"]);
   bench.session.change({{"do", "undo"}});
   EXPECT_EQ(bench.session.state()["network"], before["network"]);
+}
+
+// The first scanner sees nothing from anywhere.
+TEST(EditSession, ImprovesAStationWithItsOwnScanner) {
+  Bench bench;
+  const Scanner scanners[] = {[] {
+                                Scanner blind = noisy_scanner();
+                                blind.min_range_m = 100;
+                                return blind;
+                              }(),
+                              noisy_scanner()};
+  Simulator simulator(bench.scene, scanners, {.engine = Engine::embree, .user_size_m = 0.2, .point_spacing_m = 0.1});
+  const Uv ground = bench.area.project({1009, 2009, 48.5}).value();
+  const double pair[] = {ground.u, ground.v};
+  PlacedStation far = place_stations(bench.area, bench.clash, 1.5, pair).front();
+  far.setup.scanner = 1;
+  std::vector<EditStation> kept;
+  EditSession session(simulator, bench.area, bench.clash, {{.id = 1, .placed = far}}, bench.options,
+                      [&](const std::vector<EditStation>& stations) { kept = stations; }, {});
+  const double before = session.state()["network"]["captured"];
+  session.change({{"do", "improve"}});
+  while (!session.state()["busy"].is_null()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  EXPECT_EQ(session.state()["message"], "improved");
+  EXPECT_GT(session.state()["network"]["captured"], before);
+  ASSERT_EQ(kept.size(), 1u);
+  EXPECT_EQ(kept[0].placed.setup, far.setup);
 }
 
 TEST(EditSession, SavesWhatEveryRaySays) {
