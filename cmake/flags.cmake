@@ -17,6 +17,6 @@ if(VANTAGE_SANITIZE)
 endif()
 if(VANTAGE_COVERAGE)
   # Counts of several threads are added one by one, or some are lost.
-  target_compile_options(vantage_flags INTERFACE --coverage -O0 -fprofile-update=atomic)
+  target_compile_options(vantage_flags INTERFACE --coverage -Og -fprofile-update=atomic)
   target_link_options(vantage_flags INTERFACE --coverage)
 endif()

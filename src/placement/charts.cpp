@@ -163,8 +163,8 @@ class Neighbours {
 
 using WeldedTriangle = std::array<std::uint32_t, 3>;
 
-Chart chart_of(const SurfacePieces& pieces, std::vector<std::uint32_t> members) {
-  Chart chart;
+GroundChart chart_of(const SurfacePieces& pieces, std::vector<std::uint32_t> members) {
+  GroundChart chart;
   std::sort(members.begin(), members.end());
   double volume = 0;
   for (const std::uint32_t m : members) {
@@ -181,7 +181,7 @@ Chart chart_of(const SurfacePieces& pieces, std::vector<std::uint32_t> members) 
 
 }  // namespace
 
-std::vector<Chart> make_charts(const SurfacePieces& pieces, double weld_m) {
+std::vector<GroundChart> make_charts(const SurfacePieces& pieces, double weld_m) {
   const auto count = static_cast<std::uint32_t>(pieces.triangles.size());
   std::vector<char> used(pieces.points.size(), 0);
   for (const Triangle& t : pieces.triangles)
@@ -222,7 +222,7 @@ std::vector<Chart> make_charts(const SurfacePieces& pieces, double weld_m) {
     if (repeated[i]) kept[i] = {0, 0, 0};  // no area, so no candidate
   const Graph overlaps = find_overlaps(pieces, kept, part);
 
-  std::vector<Chart> charts;
+  std::vector<GroundChart> charts;
   std::vector<std::uint32_t> chart_number(count, nobody), looked_at(count, nobody);
   std::uint32_t number = 0;
   for (std::size_t begin = 0, end = 0; begin < members.size(); begin = end) {
@@ -256,11 +256,12 @@ std::vector<Chart> make_charts(const SurfacePieces& pieces, double weld_m) {
       ++number;
     }
   }
-  std::stable_sort(charts.begin(), charts.end(), [](const Chart& a, const Chart& b) { return a.area > b.area; });
+  std::stable_sort(charts.begin(), charts.end(),
+                   [](const GroundChart& a, const GroundChart& b) { return a.area > b.area; });
   return charts;
 }
 
-bool holds_disc(const SurfacePieces& pieces, const Chart& chart, double radius_m) {
+bool holds_disc(const SurfacePieces& pieces, const GroundChart& chart, double radius_m) {
   std::vector<Uv> plan;
   std::vector<Triangle> triangles;
   for (const std::uint32_t piece : chart.pieces) {
@@ -292,7 +293,7 @@ bool holds_disc(const SurfacePieces& pieces, const Chart& chart, double radius_m
   return false;
 }
 
-SearchMesh unfold(const SurfacePieces& pieces, const std::vector<Chart>& charts, const Vec3& origin) {
+SearchMesh unfold(const SurfacePieces& pieces, const std::vector<GroundChart>& charts, const Vec3& origin) {
   struct Frame {
     Rectangle rectangle;
     double scale;
@@ -300,7 +301,7 @@ SearchMesh unfold(const SurfacePieces& pieces, const std::vector<Chart>& charts,
   std::vector<Frame> frames;
   std::vector<Uv> sizes;
   double total = 0;
-  for (const Chart& chart : charts) {
+  for (const GroundChart& chart : charts) {
     std::vector<Uv> plan;
     for (const std::uint32_t piece : chart.pieces)
       for (const std::uint32_t v : pieces.triangles[piece]) plan.push_back({pieces.points[v].x, pieces.points[v].y});

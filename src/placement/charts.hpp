@@ -12,7 +12,7 @@
 namespace vantage {
 
 // Pieces that lie beside each other seen from above.
-struct Chart {
+struct GroundChart {
   std::vector<std::uint32_t> pieces;
   double area = 0;       // true
   double plan_area = 0;  // seen from above
@@ -21,15 +21,15 @@ struct Chart {
 
 // Connected parts (by vertices at the same place, to `weld_m`), parts that overlap themselves in plan view cut into
 // several. Pieces that another one repeats are left out. Largest first.
-std::vector<Chart> make_charts(const SurfacePieces& pieces, double weld_m);
+std::vector<GroundChart> make_charts(const SurfacePieces& pieces, double weld_m);
 
 // Whether a disc of this radius, seen from above, fits in the chart somewhere; tried at the middles of its pieces and
 // of their edges.
-bool holds_disc(const SurfacePieces& pieces, const Chart& chart, double radius_m);
+bool holds_disc(const SurfacePieces& pieces, const GroundChart& chart, double radius_m);
 
 // Lays the charts side by side. Every chart is turned to its smallest rectangle and scaled so that its (u, v) area is
 // in proportion to its true area; all share one scale. v spans [0, 1], u starts at 0. Positions are moved by `origin`.
-SearchMesh unfold(const SurfacePieces& pieces, const std::vector<Chart>& charts, const Vec3& origin);
+SearchMesh unfold(const SurfacePieces& pieces, const std::vector<GroundChart>& charts, const Vec3& origin);
 
 // Area of the convex hull of the points seen from above.
 double plan_hull_area(const std::vector<glm::dvec3>& points);

@@ -53,9 +53,9 @@ std::string charts_text(std::size_t count, double area) {
   return std::to_string(count) + (count == 1 ? " chart, " : " charts, ") + square_metres(area);
 }
 
-double total_area(const std::vector<Chart>& charts) {
+double total_area(const std::vector<GroundChart>& charts) {
   double sum = 0;
-  for (const Chart& c : charts) sum += c.area;
+  for (const GroundChart& c : charts) sum += c.area;
   return sum;
 }
 
@@ -125,7 +125,7 @@ LeftOutReason reason_of(Access access) {
 
 // What the pieces of each kind but `kept` come to, and the charts that are too small.
 std::vector<LeftOut> gather_left_out(const SurfacePieces& pieces, const SurfacePieces& clear,
-                                     const std::vector<Chart>& small, const Vec3& origin) {
+                                     const std::vector<GroundChart>& small, const Vec3& origin) {
   std::vector<LeftOut> all;
   const auto add = [&](LeftOut& to, const SurfacePieces& from, std::uint32_t piece) {
     const auto first = static_cast<std::uint32_t>(to.positions.size());
@@ -141,7 +141,7 @@ std::vector<LeftOut> gather_left_out(const SurfacePieces& pieces, const SurfaceP
     if (!out.triangles.empty()) all.push_back(std::move(out));
   }
   LeftOut out{.reason = LeftOutReason::small};
-  for (const Chart& chart : small)
+  for (const GroundChart& chart : small)
     for (const std::uint32_t piece : chart.pieces) add(out, clear, piece);
   if (!out.triangles.empty()) all.push_back(std::move(out));
   std::stable_sort(all.begin(), all.end(), [](const LeftOut& a, const LeftOut& b) { return a.area_m2 > b.area_m2; });
@@ -149,16 +149,16 @@ std::vector<LeftOut> gather_left_out(const SurfacePieces& pieces, const SurfaceP
 }
 
 // Charts of at least the smallest area that are not mere strips; the others go to `small`.
-std::vector<Chart> wide_charts(const SurfacePieces& pieces, std::vector<Chart> charts, const WalkableOptions& options,
-                               std::vector<Chart>& small) {
+std::vector<GroundChart> wide_charts(const SurfacePieces& pieces, std::vector<GroundChart> charts,
+                                     const WalkableOptions& options, std::vector<GroundChart>& small) {
   std::vector<char> fit(charts.size());
   tbb::parallel_for(std::size_t{0}, charts.size(), [&](std::size_t i) {
-    const Chart& c = charts[i];
+    const GroundChart& c = charts[i];
     fit[i] = c.plan_area > 0 && c.area >= options.min_area_m2 &&
              (c.area >= surely_wide * options.min_area_m2 ||
               holds_disc(pieces, c, disc_share * std::sqrt(options.min_area_m2)));
   });
-  std::vector<Chart> wide;
+  std::vector<GroundChart> wide;
   for (std::size_t i = 0; i < charts.size(); ++i) (fit[i] ? wide : small).push_back(std::move(charts[i]));
   return wide;
 }
@@ -195,8 +195,8 @@ WalkableSurface derive_from(const SceneData& scene, const MeshTree& tree, const 
     return kept;
   });
   const SurfacePieces clear = pieces_of_kind(pieces, kept);
-  std::vector<Chart> small;
-  const std::vector<Chart> charts = wide_charts(clear, make_charts(clear, weld_share * extent), options, small);
+  std::vector<GroundChart> small;
+  const std::vector<GroundChart> charts = wide_charts(clear, make_charts(clear, weld_share * extent), options, small);
   WalkableSurface surface;
   surface.left_out = gather_left_out(pieces, clear, small, scene.origin);
   if (charts.empty()) {
