@@ -47,6 +47,9 @@ struct SummaryLinks {
 };
 /// `used`: whether a station counts, one each; what is not said is used.
 SummaryLinks summary_links(const OverlapMatrix& overlap, double least, const std::vector<bool>& used = {});
+/// Of the stations that are active, by scan overlap (`scan_overlap_matrix`).
+SummaryLinks scan_links(const OverlapMatrix& scan_overlaps, double least, std::span<const PlacedStation> stations);
+inline constexpr const char* scan_overlap_measure = "scan overlap";  ///< `SummaryLinks::measure` of these.
 
 /// Something that is not as it was asked, or as it should be, and what to do about it.
 struct SummaryFault {

@@ -277,12 +277,7 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
     rows.push_back(std::move(row));
   }
   SurveySummary summary{.names = names, .captured = covered.value, .captured_error = covered.standard_error};
-  if (overlap) {
-    std::vector<bool> used;
-    for (const PlacedStation& station : placed) used.push_back(active(station));
-    summary.links = summary_links(scan_overlaps, link, used);
-    summary.links->measure = "scan overlap";
-  }
+  if (overlap) summary.links = scan_links(scan_overlaps, link, placed);
   std::optional<Estimate> visible;
   if (options.visible) {
     visible = visible_share(site, simulator, sampled ? counts.voxels : visible_sample, program);

@@ -50,10 +50,7 @@ ReportNetwork measured_network(std::span<const PlacedStation> stations, std::vec
     entry.exact_overlap_matrix = overlap_matrix(counts);
   }
   if (scan_overlaps.size() > 0) {
-    std::vector<bool> used;
-    for (const PlacedStation& station : stations) used.push_back(active(station));
-    network.summary.links = summary_links(scan_overlaps, link, used);
-    network.summary.links->measure = "scan overlap";
+    network.summary.links = scan_links(scan_overlaps, link, stations);
     entry.exact_scan_overlap_matrix = network.links = std::move(scan_overlaps);
   }
   network.summary.faults = station_faults(stations, network.names);
@@ -61,7 +58,7 @@ ReportNetwork measured_network(std::span<const PlacedStation> stations, std::vec
 }
 
 std::string link_words(const ReportNetwork& network) {
-  return network.summary.links && network.summary.links->measure == "scan overlap" ? "Scan overlap" : "Overlap";
+  return network.summary.links && network.summary.links->measure == scan_overlap_measure ? "Scan overlap" : "Overlap";
 }
 
 Report report_of(ReportNetwork network, const Simulator& simulator) {

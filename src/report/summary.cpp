@@ -11,6 +11,12 @@
 namespace vantage {
 namespace {
 
+std::vector<bool> used(std::span<const PlacedStation> stations) {
+  std::vector<bool> all;
+  for (const PlacedStation& station : stations) all.push_back(active(station));
+  return all;
+}
+
 std::string percent(double share) { return fixed(100 * share, 1) + " %"; }
 
 // "S1, S2 and S5"
@@ -121,6 +127,12 @@ SummaryLinks summary_links(const OverlapMatrix& overlap, double least, const std
   return links;
 }
 
+SummaryLinks scan_links(const OverlapMatrix& scan_overlaps, double least, std::span<const PlacedStation> stations) {
+  SummaryLinks links = summary_links(scan_overlaps, least, used(stations));
+  links.measure = scan_overlap_measure;
+  return links;
+}
+
 std::vector<SummaryFault> station_faults(std::span<const PlacedStation> stations, std::span<const std::string> names) {
   std::vector<SummaryFault> faults;
   for (std::size_t k = 0; k < stations.size(); ++k) {
@@ -142,16 +154,11 @@ SurveySummary summary_of(const PlanEntry& entry, const PlanResult& result) {
   if (const auto error = entry.values.find("registration"); error != entry.values.end())
     summary.registration_mm = error->second.best_known();
   if (entry.visit) summary.seconds_on_site = 60 * entry.visit->minutes;
-  if (entry.confirmed) {
-    std::vector<bool> used;
-    for (const PlacedStation& station : entry.stations) used.push_back(active(station));
-    if (entry.exact_scan_overlap_matrix.size() == 0) {
-      summary.links = summary_links(entry.exact_overlap_matrix, result.problem.link_overlap, used);
-    } else {
-      const double least = limit_of(result.problem, "link", Requirement::Bound::at_least).value_or(0);
-      summary.links = summary_links(entry.exact_scan_overlap_matrix, least, used);
-      summary.links->measure = "scan overlap";
-    }
+  if (entry.confirmed && entry.exact_scan_overlap_matrix.size() == 0) {
+    summary.links = summary_links(entry.exact_overlap_matrix, result.problem.link_overlap, used(entry.stations));
+  } else if (entry.confirmed) {
+    const double least = limit_of(result.problem, "link", Requirement::Bound::at_least).value_or(0);
+    summary.links = scan_links(entry.exact_scan_overlap_matrix, least, entry.stations);
   }
   summary.faults = station_faults(entry.stations, summary.names);
   for (const Requirement& requirement : result.problem.requirements) {
