@@ -109,7 +109,7 @@
     const tile = at('figures').querySelector('dd small');
     const { value, error } = network.values.coverage;
     tile.textContent = state.exact ? `coverage ${value.toFixed(4)}, by every ray` : `coverage ${value.toFixed(4)} ± ${error.toFixed(4)}, from a sample`;
-    words(at('words'), network, '');
+    words(at('words'), network, null);
     stationTable(at('stations'), network, pick);
     linkTable(at('links'), at('links-words'), network);
     card();

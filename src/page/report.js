@@ -47,7 +47,7 @@
     at('which').textContent = `Network ${k + 1} of ${report.networks.length}`;
     at('to-answer').disabled = k === report.answer;
     figures(at('figures'), network);
-    words(at('words'), network, k === report.answer && report.missed.nodes.length ? missedWords(report.missed) : '');
+    words(at('words'), network, k === report.answer && report.missed.nodes.length ? report.missed : null);
     stationTable(at('stations'), network, pick);
     linkTable(at('links'), at('links-words'), network);
     valuesTable(at('values'), report, network);

@@ -37,7 +37,7 @@ function figures(holder, network) {
   const tiles = [
     network.of_visible !== null
       ? tile('Captured', percent(network.of_visible), `of what can be seen; ${percent(network.captured)} of the site`)
-      : tile('Captured', percent(network.captured), 'of the site’s surfaces, at the wanted density'),
+      : tile('Captured', percent(network.captured), 'of the site’s surfaces; where points are too few, in part'),
     tile('Stations', String(used), kept ? `${kept} there already, ${used - kept} new` : 'all new'),
   ];
   if (network.parts !== null)
@@ -55,9 +55,11 @@ function missedWords(missed) {
     .map(([s, text]) => `${percent(s)} ${text}`).join(', ');
 }
 
+// `missed`: of this network, or null. What is captured in part is in both lines, so the second says what it divides.
 function words(holder, network, missed) {
   const lines = [...network.summary];
-  if (missed) lines.splice(1, 0, { heading: 'missed', text: missed });
+  const told = missed ? missedWords(missed) : '';
+  if (told) lines.splice(1, 0, { heading: 'missed', text: `${percent(1 - missed.nodes[0].shares[0])} in part or all: ${told}` });
   holder.replaceChildren(...lines.flatMap(({ heading, text }, k) => {
     const repeated = k > 0 && lines[k - 1].heading === heading;
     const name = heading[0].toUpperCase() + heading.slice(1);
