@@ -38,7 +38,7 @@ std::pair<std::uint64_t, std::uint64_t> range_of(const std::string& text) {
 struct Look {
   double seconds = 0;
   std::uint64_t evaluations = 0;
-  std::vector<ParetoPoint> front;
+  std::vector<ParetoPoint> front = {};
   double searched = 0, exact = 0;  // hypervolumes
 };
 
@@ -117,6 +117,10 @@ void draw(const std::string& file, const FrontOptions& options, const std::vecto
   const Chart chart(canvas, {86, 72, kWidth - 86 - 220, kHeight - 72 - 70}, x, y, "What the front is worth",
                     std::filesystem::path(options.site.scene).stem().string() + ", " + options.problem + ", " +
                         options.stations + " stations, seeds side by side");
+  const auto ring = [&](Point middle, Colour colour) {
+    canvas.disc(middle, 6, colour);
+    canvas.disc(middle, 3.5, {1, 1, 1});
+  };
   Point at{kWidth - 196, 96};
   for (std::size_t s = 0; s < options.samples.size(); ++s) {
     const Colour colour = kColours[s % kColours.size()];
@@ -130,9 +134,7 @@ void draw(const std::string& file, const FrontOptions& options, const std::vecto
       canvas.path(searched, {.colour = colour, .width = 1, .dashes = {4, 4}});
       canvas.path(exact, {.colour = colour, .width = 2});
       for (const Point& p : exact) canvas.disc(p, 3, colour);
-      const Point answer = chart.at(curve.confirmed.seconds, curve.confirmed.exact);
-      canvas.disc(answer, 6, colour);
-      canvas.disc(answer, 3.5, Colour{1, 1, 1});
+      ring(chart.at(curve.confirmed.seconds, curve.confirmed.exact), colour);
     }
     canvas.text(at, options.samples[s] + " voxels", {.size = 13.5, .bold = true, .colour = colour});
     at.y += 24;
@@ -144,8 +146,7 @@ void draw(const std::string& file, const FrontOptions& options, const std::vecto
   canvas.path(std::vector<Point>{at, {at.x + 26, at.y}}, {.colour = style::ink, .width = 1, .dashes = {4, 4}});
   canvas.text({at.x + 34, at.y}, "as searched", {.size = 12.5});
   at.y += 22;
-  canvas.disc({at.x + 13, at.y}, 6, style::ink);
-  canvas.disc({at.x + 13, at.y}, 3.5, Colour{1, 1, 1});
+  ring({at.x + 13, at.y}, style::ink);
   canvas.text({at.x + 34, at.y}, "confirmed", {.size = 12.5});
   canvas.save(file);
 }

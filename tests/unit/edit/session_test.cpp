@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
-#include <thread>
 
 #include "support/quad_scene.hpp"
 #include "vantage/error.hpp"
@@ -29,6 +28,14 @@ Scanner noisy_scanner() {
   scanner.azimuth_step = scanner.zenith_step = Angle::degrees(0.5);
   scanner.height_m = 1.5;
   return scanner;
+}
+
+// The state once nothing is under way, or after two minutes.
+State finished(const EditSession& session) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(2);
+  State state = session.state();
+  while (!state["busy"].is_null() && std::chrono::steady_clock::now() < end) state = session.state();
+  return state;
 }
 
 struct Bench {
@@ -65,12 +72,7 @@ struct Bench {
       stations.push_back({.position = {s["head"][0], s["head"][1], s["head"][2]}, .active = s["active"]});
     return stations;
   }
-  State finished() const {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(2);
-    State state = session.state();
-    while (!state["busy"].is_null() && std::chrono::steady_clock::now() < end) state = session.state();
-    return state;
-  }
+  State finished() const { return vantage::finished(session); }
 };
 
 // What `vantage evaluate --sample` and `--exact` say of the same stations, to the last bit.
@@ -187,12 +189,8 @@ TEST(EditSession, ImprovesTheOthersAndKeepsLockedOnes) {
 // The first scanner sees nothing from anywhere.
 TEST(EditSession, ImprovesAStationWithItsOwnScanner) {
   Bench bench;
-  const Scanner scanners[] = {[] {
-                                Scanner blind = noisy_scanner();
-                                blind.min_range_m = 100;
-                                return blind;
-                              }(),
-                              noisy_scanner()};
+  Scanner scanners[] = {noisy_scanner(), noisy_scanner()};
+  scanners[0].min_range_m = 100;
   Simulator simulator(bench.scene, scanners, {.engine = Engine::embree, .user_size_m = 0.2, .point_spacing_m = 0.1});
   const Uv ground = bench.area.project({1009, 2009, 48.5}).value();
   const double pair[] = {ground.u, ground.v};
@@ -203,9 +201,9 @@ TEST(EditSession, ImprovesAStationWithItsOwnScanner) {
                       [&](const std::vector<EditStation>& stations) { kept = stations; }, {});
   const double before = session.state()["network"]["captured"];
   session.change({{"do", "improve"}});
-  while (!session.state()["busy"].is_null()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  EXPECT_EQ(session.state()["message"], "improved");
-  EXPECT_GT(session.state()["network"]["captured"], before);
+  const State after = finished(session);
+  EXPECT_EQ(after["message"], "improved");
+  EXPECT_GT(after["network"]["captured"], before);
   ASSERT_EQ(kept.size(), 1u);
   EXPECT_EQ(kept[0].placed.setup, far.setup);
 }
