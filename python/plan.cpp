@@ -92,6 +92,8 @@ void add_progress(py::module_& m) {
       .def_readonly("evaluations_per_second", &Watched::evaluations_per_second, "How fast.")
       .def_readonly("hypervolume", &Watched::hypervolume, "Of the front as it is now.")
       .def_readonly("seconds_left", &Watched::seconds_left, "Below 0: not known yet.")
+      .def_readonly("whole_seconds_left", &Watched::whole_seconds_left,
+                    "What all the rest will take, told once by searches for the fewest stations; else None.")
       .def_readonly("visible", &Watched::visible, "What can be seen, told once, when it is known; else None.")
       .def_property_readonly("front", &scaled_front,
                              "What the optimiser minimises of each network of the front, 0 best: (k, objectives).");

@@ -199,6 +199,9 @@ struct PlanProgress {
   /// Told once, when it is known: the coverage that a head on every one of `evaluations` places all over the ground
   /// would reach together.
   std::optional<double> visible = std::nullopt;
+  /// Told once where the fewest stations are asked for, when their number is about known: what all the rest will take,
+  /// from what these parts of it took so far.
+  std::optional<double> whole_seconds_left = std::nullopt;
 };
 
 /// As `Progress`, for a search.

@@ -2,6 +2,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 
@@ -378,16 +379,21 @@ std::string told(const PlanProgress& now) {
 
 PlanResult run_plan(LoadedSite& site, Simulator& simulator, const SurveyProblem& problem, const PlanConfig& config,
                     Program& program, const Deadline& deadline) {
+  using Clock = std::chrono::steady_clock;
+  constexpr std::chrono::seconds soon{3};  // before that, what a part of it takes is a guess
   ProgressLine line(program.console, "search");
-  std::string phase;
+  std::string phase, told_phase;
+  Clock::time_point begun;
   const auto report = [&](const PlanProgress& now) {
     line.set_label(now.phase);
+    if (now.phase != phase) phase = now.phase, begun = Clock::now();
     if (now.visible)
       spdlog::info("{:.1f} % of the site can be seen from {} places all over the ground together", 100 * *now.visible,
                    now.evaluations);
-    // What it will take is told as each part of it begins to be known.
-    if (now.phase != phase && now.seconds_left > 0) {
-      phase = now.phase;
+    // What it will take is told as soon as it is known, of the whole, and of each part that takes long.
+    if (now.whole_seconds_left) spdlog::info("about {} more, in all", duration_text(*now.whole_seconds_left));
+    if (phase != told_phase && now.seconds_left > 1 && Clock::now() - begun > soon) {
+      told_phase = phase;
       spdlog::info("{}: about {}", phase, duration_text(now.seconds_left));
     }
     const double done =

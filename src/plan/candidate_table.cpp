@@ -9,7 +9,7 @@ namespace vantage {
 
 CandidateTable::CandidateTable(Simulator& simulator, Simulator* surroundings, std::uint64_t sample_voxels,
                                std::uint64_t surroundings_voxels, double nearest_m)
-    : simulator_(simulator),
+    : simulator_(&simulator),
       surroundings_(surroundings),
       sample_voxels_(sample_voxels),
       surroundings_voxels_(surroundings_voxels),
@@ -18,7 +18,7 @@ CandidateTable::CandidateTable(Simulator& simulator, Simulator* surroundings, st
       around_(surroundings ? CaptureRows(*surroundings, surroundings_voxels) : CaptureRows()) {}
 
 bool CandidateTable::add(std::span<const PlacedStation> stations, const Progress& progress) {
-  const CaptureRows fresh = capture_rows(simulator_, stations, sample_voxels_, progress);
+  const CaptureRows fresh = capture_rows(*simulator_, stations, sample_voxels_, progress);
   const bool whole = add(stations.first(std::min(stations.size(), fresh.size())), fresh, progress);
   return whole && !fresh.cancelled();
 }

@@ -30,7 +30,7 @@ class CandidateTable {
   const PairTable& pairs() const { return pairs_; }
 
  private:
-  Simulator& simulator_;
+  Simulator* simulator_;
   Simulator* surroundings_;
   std::uint64_t sample_voxels_, surroundings_voxels_;
   double nearest_m_;

@@ -2,6 +2,7 @@
 #include "plan/choose_on_rows.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <queue>
 
 namespace vantage {
@@ -49,6 +50,31 @@ double RowCover::value() const {
   double sum = 0;
   for (std::size_t v = 0; v < points_.size(); ++v) sum += rows_.weights()[v] * filled(points_[v]);
   return rows_.total_weight() > 0 ? sum / rows_.total_weight() : 0;
+}
+
+RowColumns::RowColumns(const CaptureRows& rows) : rows_(rows), offsets_(rows.voxels().size() + 1, 0) {
+  for (std::size_t row = 0; row < rows.size(); ++row)
+    for (const CapturedVoxel& seen : rows.row(row)) ++offsets_[seen.voxel + 1];
+  std::partial_sum(offsets_.begin(), offsets_.end(), offsets_.begin());
+  entries_.resize(offsets_.back());
+  std::vector<std::size_t> next(offsets_.begin(), offsets_.end() - 1);
+  for (std::size_t row = 0; row < rows.size(); ++row)
+    for (const CapturedVoxel& seen : rows.row(row))
+      entries_[next[seen.voxel]++] = {static_cast<std::uint32_t>(row), seen.points};
+}
+
+void RowColumns::add_gains_without(std::size_t leaving, const RowCover& cover, std::span<double> gains) const {
+  if (rows_.total_weight() <= 0) return;
+  for (const CapturedVoxel& seen : rows_.row(leaving)) {
+    const std::uint64_t has = cover.points(seen.voxel), left = has - seen.points;
+    if (static_cast<double>(left) >= rows_.goal_density()) continue;  // full without it, too
+    const double share = rows_.weights()[seen.voxel] / rows_.total_weight();
+    const double lost = cover.filled(has) - cover.filled(left);
+    for (std::size_t k = offsets_[seen.voxel]; k < offsets_[seen.voxel + 1]; ++k) {
+      const Seen& other = entries_[k];
+      gains[other.row] += share * (lost - (cover.filled(has + other.points) - cover.filled(left + other.points)));
+    }
+  }
 }
 
 std::vector<std::size_t> choose_greedily(const CaptureRows& rows, std::size_t count, std::span<const std::size_t> fixed,

@@ -25,12 +25,31 @@ class RowCover {
   double loss(std::size_t row) const;    // F(S) − F(S − row). REQUIRES: added before
   double value() const;                  // F(S), summed anew
   double fill(std::size_t voxel) const;  // min(points / goal, 1)
+  double filled(std::uint64_t points) const;
   std::uint64_t points(std::size_t voxel) const { return points_[voxel]; }
 
  private:
-  double filled(std::uint64_t points) const;
   const CaptureRows& rows_;
   std::vector<std::uint64_t> points_;
+};
+
+// The same table by voxel: which rows see it, and how often. What a swap changes is then read where the station that
+// leaves is needed, instead of all over every row.
+class RowColumns {
+ public:
+  // Keeps a reference to `rows`.
+  explicit RowColumns(const CaptureRows& rows);
+  // To what each row gains with `leaving` there, F(S + row) − F(S), adds what makes it F(S − leaving + row) −
+  // F(S − leaving). REQUIRES: S has `leaving`, gains.size() == rows.size().
+  void add_gains_without(std::size_t leaving, const RowCover& cover, std::span<double> gains) const;
+
+ private:
+  struct Seen {
+    std::uint32_t row, points;
+  };
+  const CaptureRows& rows_;
+  std::vector<std::size_t> offsets_;
+  std::vector<Seen> entries_;
 };
 
 // Whether a row may be taken besides the ones that are; empty: always, once.

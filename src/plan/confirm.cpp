@@ -100,7 +100,7 @@ ConfirmedFront confirm_front(const SearchOutcome& found, const DecisionSpace& sp
                              const Measures& measures, std::uint64_t sample_voxels, NetworkEvaluator& evaluator,
                              const PlanWatch& watch) {
   using Clock = std::chrono::steady_clock;
-  const auto start = Clock::now();
+  Clock::time_point start;
   ConfirmedFront front;
   std::vector<PlanEntry>& entries = front.entries;
   std::vector<PlacedNetwork> networks;
@@ -151,6 +151,7 @@ ConfirmedFront confirm_front(const SearchOutcome& found, const DecisionSpace& sp
       }
     }
   }
+  start = Clock::now();
   report(0, 0);
   const Progress progress{.report =
                               [&](double share) {

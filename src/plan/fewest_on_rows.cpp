@@ -8,6 +8,7 @@
 #include <bitset>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -83,6 +84,15 @@ double weakest_of(const PairTable& pairs, std::span<const std::size_t> rows) {
   return weakest;
 }
 
+// A station that leaves for another one, and the network after it.
+struct Swap {
+  double missed = std::numeric_limits<double>::infinity(), coverage = -1;
+  std::size_t out = 0, in = 0;
+  bool better_than(const Swap& other) const {
+    return missed < other.missed || (missed == other.missed && coverage > other.coverage);
+  }
+};
+
 class Chooser {
  public:
   Chooser(const RowQuestion& question, std::stop_token stop)
@@ -97,7 +107,8 @@ class Chooser {
     return missed(coverage, wanted_link > 0 ? parts_of(pairs_, chosen, wanted_link).count : 1, wanted_link);
   }
 
-  std::vector<std::size_t> greedy();
+  // What is chosen, and further rows until it is enough.
+  std::vector<std::size_t> grown(std::vector<std::size_t> chosen);
   std::vector<std::size_t> swapped(std::vector<std::size_t> chosen, double wanted_link);
   // Without the station that is missed least; with `nth`, the one after so many.
   std::vector<std::size_t> without_one(const std::vector<std::size_t>& chosen, std::size_t nth);
@@ -127,6 +138,7 @@ class Chooser {
   const PairTable& pairs_;
   std::stop_token stop_;
   std::optional<RowCover> cover_;
+  std::optional<RowColumns> columns_;
 };
 
 // Of the part of all candidates that hangs together and captures most, the row that captures most.
@@ -233,9 +245,7 @@ std::vector<std::size_t> Chooser::way_between_parts(const std::vector<std::size_
   return {};
 }
 
-std::vector<std::size_t> Chooser::greedy() {
-  std::vector<std::size_t> chosen(q_.fixed);
-  for (std::size_t k = 0; k < q_.fixed; ++k) chosen[k] = k;
+std::vector<std::size_t> Chooser::grown(std::vector<std::size_t> chosen) {
   const std::size_t most = std::min(q_.fixed + q_.most, rows_.size());
   const auto add = [&](std::span<const std::size_t> way) {
     for (const std::size_t row : way)
@@ -302,45 +312,47 @@ std::vector<std::size_t> Chooser::without_one(const std::vector<std::size_t>& ch
 // Swaps one station for another, the best swap each time though it be for the worse, and keeps the best network met.
 std::vector<std::size_t> Chooser::swapped(std::vector<std::size_t> chosen, double wanted_link) {
   reset(chosen);
-  std::vector<std::size_t> best = chosen, others;
+  if (!columns_) columns_.emplace(rows_);
+  std::vector<std::size_t> best = chosen;
   double best_coverage = cover_->value(), best_missed = missed_by(chosen, best_coverage, wanted_link);
   std::vector<std::size_t> barred_until(rows_.size(), 0);  // neither out nor in again before that swap
   std::vector<double> gain(rows_.size(), 0);
+  std::vector<Swap> swaps(chosen.size());
   std::size_t idle = 0;
   for (std::size_t swap = 1; best_missed > 0 && idle < kPatience && !stopped(); ++swap, ++idle) {
     const double whole = cover_->value();
-    for (std::size_t row = q_.fixed; row < rows_.size(); ++row) gain[row] = cover_->gain(row);
-    double least = std::numeric_limits<double>::infinity(), most = -1;
-    std::size_t out = chosen.size(), in = rows_.size();
-    for (std::size_t at = q_.fixed; at < chosen.size(); ++at) {
+    tbb::parallel_for(q_.fixed, rows_.size(), [&](std::size_t row) { gain[row] = cover_->gain(row); });
+    const auto best_swap_of = [&](std::size_t at) {
       const std::size_t leaving = chosen[at];
       const bool may_leave = barred_until[leaving] <= swap;
-      others = chosen;
+      std::vector<std::size_t> others = chosen;
       others.erase(others.begin() + static_cast<std::ptrdiff_t>(at));
       const Parts parts = wanted_link > 0 ? parts_of(pairs_, others, wanted_link) : Parts{};
-      const double lost = cover_->loss(leaving), left = whole - lost;
-      cover_->remove(leaving);
+      const double left = whole - cover_->loss(leaving);
+      std::vector<double> without = gain;
+      columns_->add_gains_without(leaving, *cover_, without);
+      Swap least;
       for (std::size_t row = q_.fixed; row < rows_.size(); ++row) {
         if (row == leaving || !allowed(row, others)) continue;
         const std::size_t count = wanted_link > 0 ? parts_with(pairs_, others, parts, row, wanted_link) : 1;
-        // What a row gains without the one that left is at most what it gains with it and what that one takes along.
-        const double bound = missed(left + std::min(1.0, gain[row] + lost), count, wanted_link);
-        if (bound > least) continue;
-        const double coverage = left + cover_->gain(row);
-        const double now = missed(coverage, count, wanted_link);
-        if ((!may_leave || barred_until[row] > swap) && now >= best_missed) continue;
-        if (now < least || (now == least && coverage > most)) least = now, most = coverage, out = at, in = row;
+        const Swap now{missed(left + without[row], count, wanted_link), left + without[row], at, row};
+        if ((!may_leave || barred_until[row] > swap) && now.missed >= best_missed) continue;
+        if (now.better_than(least)) least = now;
       }
-      cover_->add(leaving);
-    }
-    if (in == rows_.size()) break;
-    const std::size_t leaving = chosen[out];
-    cover_->remove(leaving), cover_->add(in);
-    chosen[out] = in;
-    barred_until[leaving] = swap + kTabu + 1, barred_until[in] = swap + kTabu / 2 + 1;
-    if (least < best_missed || (least == best_missed && most > best_coverage)) {
-      if (least < best_missed) idle = 0;
-      best = chosen, best_missed = least, best_coverage = most;
+      return least;
+    };
+    tbb::parallel_for(q_.fixed, chosen.size(), [&](std::size_t at) { swaps[at] = best_swap_of(at); });
+    Swap least;
+    for (std::size_t at = q_.fixed; at < chosen.size(); ++at)
+      if (swaps[at].better_than(least)) least = swaps[at];
+    if (least.missed == std::numeric_limits<double>::infinity()) break;
+    const std::size_t leaving = chosen[least.out];
+    cover_->remove(leaving), cover_->add(least.in);
+    chosen[least.out] = least.in;
+    barred_until[leaving] = swap + kTabu + 1, barred_until[least.in] = swap + kTabu / 2 + 1;
+    if (least.missed < best_missed || (least.missed == best_missed && least.coverage > best_coverage)) {
+      if (least.missed < best_missed) idle = 0;
+      best = chosen, best_missed = least.missed, best_coverage = least.coverage;
     }
   }
   return best;
@@ -386,9 +398,18 @@ RowAnswer judge_rows(const RowQuestion& question, std::vector<std::size_t> rows)
 RowAnswer fewest_on_rows(const RowQuestion& question, std::stop_token stop, std::optional<RowAnswer> from,
                          std::optional<RowAnswer>* nearly) {
   Chooser chooser(question, stop);
-  RowAnswer best = from ? std::move(*from) : judge_rows(question, chooser.greedy());
+  std::vector<std::size_t> fixed(question.fixed);
+  std::iota(fixed.begin(), fixed.end(), std::size_t{0});
+  RowAnswer best = from ? std::move(*from) : judge_rows(question, chooser.grown(std::move(fixed)));
   const auto placed = [&](const RowAnswer& answer) { return answer.rows.size() - question.fixed; };
-  if (best.missed > 0 && !chooser.stopped()) best = judge_rows(question, chooser.swapped(best.rows, question.link));
+  const auto swap = [&] {
+    if (best.missed > 0 && !chooser.stopped()) best = judge_rows(question, chooser.swapped(best.rows, question.link));
+  };
+  swap();
+  if (from && best.missed > 0 && placed(best) < question.most && !chooser.stopped()) {
+    best = judge_rows(question, chooser.grown(std::move(best.rows)));
+    swap();
+  }
   // With as many as are allowed and yet not enough, or with enough: one fewer, for as long as that is no worse.
   while (placed(best) > std::max<std::size_t>(question.fewest, 1) && !chooser.stopped()) {
     std::optional<RowAnswer> fewer;

@@ -53,10 +53,11 @@ struct RowAnswer {
 // What a network of rows is worth to a question.
 RowAnswer judge_rows(const RowQuestion& question, std::vector<std::size_t> rows);
 
-// From `from`, or without it from a greedy choice along links: for as long as it succeeds one station fewer, by a tabu
-// search over swaps (Glover: Tabu Search, Part I, 1989). Where the requirements cannot be kept, the nearest network of
-// at most `most`. `nearly`: the best network of one station fewer, which does not do, if one was looked for.
-// Deterministic unless stopped; once stopped it gives what it has, a greedy network at least.
+// From `from`, with further rows where it is not enough, or without it from a greedy choice along links: for as long as
+// it succeeds one station fewer, by a tabu search over swaps (Glover: Tabu Search, Part I, 1989). Where the
+// requirements cannot be kept, the nearest network of at most `most`. `nearly`: the best network of one station fewer,
+// which does not do, if one was looked for. Deterministic unless stopped; once stopped it gives what it has, a greedy
+// network at least.
 RowAnswer fewest_on_rows(const RowQuestion& question, std::stop_token stop = {}, std::optional<RowAnswer> from = {},
                          std::optional<RowAnswer>* nearly = nullptr);
 

@@ -60,6 +60,7 @@ PlanResult plan(Simulator& simulator, const SearchArea& area, const ClashChecker
   if (problem.heights_m) heights.assign(problem.heights_m->begin(), problem.heights_m->end());
   require_somewhere_to_stand(area, clash, heights);
   std::shared_ptr<const Candidates> candidates;
+  double candidates_seconds = 0;
   const bool limit_wanted = !problem.visible && asks_for(problem, "capture");
   if (problem.fewest || limit_wanted) {
     const auto report = [&](double done) {
@@ -70,6 +71,7 @@ PlanResult plan(Simulator& simulator, const SearchArea& area, const ClashChecker
     candidates = std::make_shared<const Candidates>(
         find_candidates(simulator, area, clash, {.most = kMostCandidates, .sample_voxels = config.sample_voxels},
                         {.report = report, .stop = watch.stop}));
+    candidates_seconds = since(start);
     if (watch.report)
       watch.report({.evaluations = candidates->stations().size(),
                     .seconds_left = -1,
@@ -83,7 +85,7 @@ PlanResult plan(Simulator& simulator, const SearchArea& area, const ClashChecker
   run.ask(problem);
   PlanResult result;
   if (problem.fewest) {
-    result = plan_fewest(run, simulator, candidates, config, watch);
+    result = plan_fewest(run, simulator, candidates, candidates_seconds, config, watch);
     result.seconds = since(start);
     result.trace_seconds = run.evaluator().trace_seconds();
   } else {

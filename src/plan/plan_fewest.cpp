@@ -7,10 +7,13 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "plan/candidate_table.hpp"
+#include "plan/choose_on_rows.hpp"
 #include "plan/choose_optimiser.hpp"
 #include "plan/drop_networks.hpp"
 #include "plan/fewest_on_rows.hpp"
@@ -29,13 +32,18 @@ constexpr double kMarginErrors = 1;
 // between candidates, halved each round.
 constexpr std::size_t kRounds = 3, kAround = 8;
 constexpr double kAroundRadius = 0.8;
+// What is good by the sample is looked at again on one so many times as large: for each station chosen so many that may
+// stand there instead, and so many that may stand there too.
+constexpr std::uint64_t kCloser = 5;
+constexpr std::size_t kInsteadClosely = 8, kMoreClosely = 64;
 constexpr std::size_t kLateCandidates = 96;
 // The search after that may trace so many stations for each candidate that was looked at.
 constexpr double kSearchShare = 2;
 constexpr std::size_t kLeastIterations = 10, kMostIterations = 100;
 // First steps of that search: about the distance between candidates, not the size of the site.
 constexpr double kRefiningSigma = 0.03;
-// Choices made anew with larger margins, where every ray shows that a requirement is missed after all.
+// Choices made anew with other margins, where every ray shows that a requirement is missed after all, or that fewer
+// stations may do.
 constexpr std::size_t kRepairs = 3;
 constexpr double kBeyond = 1.25;  // of what was missed, on top
 
@@ -46,30 +54,36 @@ double least_of(const SurveyProblem& problem, std::string_view name) {
 
 class FewestPlan {
  public:
-  FewestPlan(Run& run, Simulator& simulator, const Candidates& candidates, const PlanConfig& config,
-             const PlanWatch& watch)
+  FewestPlan(Run& run, Simulator& simulator, const Candidates& candidates, double candidates_seconds,
+             const PlanConfig& config, const PlanWatch& watch)
       : run_(run),
+        simulator_(simulator),
         candidates_(candidates),
         config_(config),
         watch_(watch),
         problem_(run.problem()),
         most_(problem_.stations_max),
         link_(least_of(problem_, "link")),
-        table_(simulator, link_ > 0 || wants_links() ? &run.surroundings() : nullptr, sample_of(simulator),
-               surroundings_sample(), least_of(problem_, "apart")) {
+        sample_(config.sample_voxels > 0 ? config.sample_voxels : simulator.voxel_count()),
+        table_(make_table(sample_)) {
     const double visible = problem_.visible.value_or(1);
     coverage_ = std::max(least_of(problem_, "coverage"), visible * least_of(problem_, "capture"));
     coverage_margin_ = kMarginErrors * candidates.visible().standard_error;
+    station_seconds_ = candidates_seconds / static_cast<double>(std::max<std::size_t>(candidates.stations().size(), 1));
   }
 
   PlanResult run() {
     look_at_links();
     if (table_.stations().size() <= problem_.kept.size()) return nothing_known();
     choose();
+    tell_expected();
     for (std::size_t round = 0; round < kRounds && !stopped(); ++round) choose_around(round);
+    look_closer();
     // The search begins where every ray says that it is enough.
-    take(confirmed_choice());
+    confirm_choice();
     for (std::size_t k = 0; k < kRepairs && best_missed() > 0 && !stopped() && repair(); ++k) {
+    }
+    for (std::size_t k = 0; k < kRepairs && best_missed() == 0 && !stopped() && spare_one(); ++k) {
     }
     const SearchOutcome found = search(stations_of(choice_));
     take(confirmed(found, choice_.rows.size() - problem_.kept.size()));
@@ -82,11 +96,12 @@ class FewestPlan {
 
  private:
   bool stopped() const { return watch_.stop.stop_requested() || watch_.abort.stop_requested(); }
+  CandidateTable make_table(std::uint64_t sample_voxels) {
+    return {simulator_, link_ > 0 || wants_links() ? &run_.surroundings() : nullptr, sample_voxels,
+            surroundings_sample(), least_of(problem_, "apart")};
+  }
   bool wants_links() const {
     return std::ranges::any_of(problem_.objectives, [](const Objective& o) { return o.name == "link"; });
-  }
-  std::uint64_t sample_of(const Simulator& simulator) const {
-    return config_.sample_voxels > 0 ? config_.sample_voxels : simulator.voxel_count();
   }
   std::uint64_t surroundings_sample() {
     const std::uint64_t sample = run_.surroundings_voxels();
@@ -97,6 +112,32 @@ class FewestPlan {
   }
   void tell(const char* phase, double seconds_left) {
     if (watch_.report) watch_.report({.evaluations = traced_, .seconds_left = seconds_left, .phase = phase});
+  }
+
+  // Seconds that `work` took.
+  template <class Work>
+  static double timed(Work work) {
+    const auto begun = Clock::now();
+    work();
+    return std::chrono::duration<double>(Clock::now() - begun).count();
+  }
+
+  // What is still to come is so many choices, so many stations by the sample, and the choice and the end of the search
+  // by every ray.
+  void tell_expected() {
+    if (!watch_.report || stopped() || choice_.rows.size() <= problem_.kept.size()) return;
+    const auto count = static_cast<double>(choice_.rows.size());
+    const double around =
+        static_cast<double>(kRounds * kAround) * 2 * (count - static_cast<double>(problem_.kept.size()));
+    const SurveyProblem narrow = narrowed(choice_.rows.size() - problem_.kept.size());
+    const double networks =
+        static_cast<double>(search_config(narrow).iterations * population_of(narrow, search_config(narrow)));
+    const Network first = to_network(std::span(&table_.stations()[choice_.rows.back()], 1));
+    double every_ray = timed([&] { simulator_.evaluate(first, {}, {.report = {}, .stop = watch_.abort}); });
+    if (run_.measures().all_needs().surroundings) every_ray *= 2;
+    const double seconds =
+        kRounds * choose_seconds_ + (around + networks * count) * station_seconds_ + 2 * count * every_ray;
+    watch_.report({.evaluations = traced_, .seconds_left = -1, .phase = "choose", .whole_seconds_left = seconds});
   }
 
   void look_at_links() {
@@ -112,7 +153,8 @@ class FewestPlan {
       table_.add(all.first(std::min(all.size(), kLateCandidates)), candidates_.rows(),
                  {.report = {}, .stop = watch_.abort});
     else
-      table_.add(all, candidates_.rows(), progress("look"));
+      station_seconds_ += timed([&] { table_.add(all, candidates_.rows(), progress("look")); }) /
+                          static_cast<double>(std::max<std::size_t>(all.size(), 1));
     traced_ += table_.stations().size();
   }
 
@@ -134,7 +176,7 @@ class FewestPlan {
 
   void choose() {
     tell("choose", -1);
-    choice_ = fewest_on_rows(question(), watch_.stop, {}, &nearly_);
+    choose_seconds_ = timed([&] { choice_ = fewest_on_rows(question(), watch_.stop, {}, &nearly_); });
     fit_time();
     choice_ = better_on_rows(question(), std::move(choice_), watch_.stop);
   }
@@ -188,36 +230,96 @@ class FewestPlan {
     choice_ = better_on_rows(question(), std::move(choice_), watch_.stop);
   }
 
+  // Rows that may be worth having in a network like the one chosen: it, the best one of a station fewer, for each of
+  // its stations those that would replace it best, and those that would add most to it.
+  std::vector<std::size_t> short_list() const {
+    const CaptureRows& rows = table_.rows();
+    const RowColumns columns(rows);
+    const RowCover cover(rows, choice_.rows);
+    std::vector<double> gains(rows.size());
+    std::vector<char> listed(rows.size(), 0);
+    std::vector<std::size_t> order(rows.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    const auto list_best = [&](std::span<const double> by, std::size_t count) {
+      std::ranges::stable_sort(order, std::ranges::greater(), [&](std::size_t row) { return by[row]; });
+      for (std::size_t k = 0; k < std::min(count, order.size()); ++k) listed[order[k]] = 1;
+    };
+    for (std::size_t row = 0; row < rows.size(); ++row) gains[row] = cover.gain(row);
+    list_best(gains, kMoreClosely);
+    for (std::size_t at = problem_.kept.size(); at < choice_.rows.size(); ++at) {
+      std::vector<double> without = gains;
+      columns.add_gains_without(choice_.rows[at], cover, without);
+      list_best(without, kInsteadClosely);
+    }
+    for (const std::size_t row : choice_.rows) listed[row] = 1;
+    if (nearly_)
+      for (const std::size_t row : nearly_->rows) listed[row] = 1;
+    std::vector<std::size_t> list;
+    for (std::size_t row = problem_.kept.size(); row < rows.size(); ++row)
+      if (listed[row]) list.push_back(row);
+    return list;
+  }
+
+  // What was chosen among thousands by a sample is what the sample flatters. So what is good by it is looked at with
+  // more voxels, and chosen from anew.
+  void look_closer() {
+    const std::uint64_t closer = std::min(kCloser * sample_, simulator_.voxel_count());
+    if (closer <= sample_ || stopped()) return;
+    const std::span<const PlacedStation> known = table_.stations();
+    const std::span<const PlacedStation> kept = known.first(problem_.kept.size());
+    std::vector<PlacedStation> listed;
+    std::vector<std::size_t> row_of(known.size(), known.size());
+    for (std::size_t row = 0; row < kept.size(); ++row) row_of[row] = row;
+    for (const std::size_t row : short_list()) row_of[row] = kept.size() + listed.size(), listed.push_back(known[row]);
+    CandidateTable table = make_table(closer);
+    if (!kept.empty() && !table.add(kept, {.report = {}, .stop = watch_.abort})) return;
+    if (!table.add(listed, progress("choose"))) return;
+    traced_ += listed.size();
+    for (std::size_t& row : choice_.rows) row = row_of[row];
+    coverage_margin_ *= std::sqrt(static_cast<double>(sample_) / static_cast<double>(closer));
+    table_ = std::move(table);
+    nearly_.reset();
+    choice_ = fewest_on_rows(question(), watch_.stop, judge_rows(question(), choice_.rows), &nearly_);
+    choice_ = better_on_rows(question(), std::move(choice_), watch_.stop);
+  }
+
   SurveyProblem narrowed(std::size_t stations) const {
     SurveyProblem narrowed = problem_;
     narrowed.stations_min = narrowed.stations_max = stations;
-    for (Requirement& requirement : narrowed.requirements) {
-      if (requirement.bound != Requirement::Bound::at_least) continue;
-      if (requirement.objective.name == "capture")
-        requirement.limit = std::min(1.0, requirement.limit + coverage_margin_ / problem_.visible.value_or(1));
-      if (requirement.objective.name == "coverage")
-        requirement.limit = std::min(1.0, requirement.limit + coverage_margin_);
-      if (requirement.objective.name == "link") requirement.limit += link_margin_;
-    }
     for (Objective& objective : narrowed.objectives)
       if (objective.by_alpha) objective.best = objective.worst = static_cast<double>(problem_.kept.size() + stations);
     return narrowed;
   }
 
-  SearchOutcome search(const std::vector<PlacedStation>& chosen) {
-    const std::size_t count = chosen.size() - problem_.kept.size();
-    SearchOutcome found;
-    const SurveyProblem narrow = narrowed(count);
-    const DecisionSpace space(run_.site(), narrow);
-    const std::vector<double> start = space.encode(std::span(chosen).subspan(problem_.kept.size()));
+  // Further from the limits, by what the sample that it searches with is known to flatter.
+  SurveyProblem with_margins(SurveyProblem narrowed) const {
+    for (Requirement& requirement : narrowed.requirements) {
+      if (requirement.bound != Requirement::Bound::at_least) continue;
+      if (requirement.objective.name == "capture")
+        requirement.limit = std::min(1.0, requirement.limit + sample_off_ / problem_.visible.value_or(1));
+      if (requirement.objective.name == "coverage") requirement.limit = std::min(1.0, requirement.limit + sample_off_);
+      if (requirement.objective.name == "link") requirement.limit += link_margin_;
+    }
+    return narrowed;
+  }
+
+  PlanConfig search_config(const SurveyProblem& narrow) const {
     PlanConfig config = config_;
     config.sigma0 = std::min(config.sigma0, kRefiningSigma);
     if (config.iterations == 0) {
       const double stations = kSearchShare * static_cast<double>(candidates_.stations().size());
-      const auto each = static_cast<double>(population_of(narrow, config) * count);
+      const auto each = static_cast<double>(population_of(narrow, config) * narrow.stations_max);
       config.iterations = std::clamp(static_cast<std::size_t>(stations / each), kLeastIterations, kMostIterations);
     }
-    if (!stopped()) found = run_.search(narrow, config, start, watch_);
+    return config;
+  }
+
+  SearchOutcome search(const std::vector<PlacedStation>& chosen) {
+    SearchOutcome found;
+    const SurveyProblem narrow = with_margins(narrowed(chosen.size() - problem_.kept.size()));
+    const DecisionSpace space(run_.site(), narrow);
+    const std::vector<double> start = space.encode(std::span(chosen).subspan(problem_.kept.size()));
+    if (!stopped()) found = run_.search(narrow, search_config(narrow), start, watch_);
     if (stopped() && found.stop_reason == StopReason::running) found.stop_reason = StopReason::cancelled;
     return found;
   }
@@ -234,9 +336,17 @@ class FewestPlan {
                            .f = std::vector<double>(problem_.objectives.size(), 2)});
     return confirmed(found, placed.size());
   }
-  std::vector<PlanEntry> confirmed_choice() {
-    const std::vector<PlacedStation> chosen = stations_of(choice_);
+  std::vector<PlanEntry> confirmed(const RowAnswer& answer) {
+    const std::vector<PlacedStation> chosen = stations_of(answer);
     return confirmed(std::span(chosen).subspan(problem_.kept.size()));
+  }
+
+  void confirm_choice() {
+    take(confirmed(choice_));
+    sample_off_ = coverage_margin_;
+    if (entries_.empty() || !entries_.back().confirmed) return;
+    if (const auto coverage = entries_.back().values.find("coverage"); coverage != entries_.back().values.end())
+      sample_off_ = coverage->second.searched - coverage->second.exact;
   }
 
   // Entries of networks that stand where others do already are none.
@@ -274,10 +384,34 @@ class FewestPlan {
     // From where it is, at this number, or else by what one more allows.
     choice_ = judge_rows(question(), choice_.rows);
     RowAnswer same = better_on_rows(question(), choice_, watch_.stop);
-    choice_ = same.missed == 0 ? std::move(same) : fewest_on_rows(question(), watch_.stop, {}, &nearly_);
+    choice_ = same.missed == 0 ? std::move(same) : fewest_on_rows(question(), watch_.stop, std::move(same), &nearly_);
     choice_ = better_on_rows(question(), std::move(choice_), watch_.stop);
-    take(confirmed_choice());
+    confirm_choice();
     return true;
+  }
+
+  // What every ray told of the choice says what the sample is off; as that is known now, one station fewer may do.
+  // False where it does not.
+  bool spare_one() {
+    const auto exact = entries_.back().values.find("coverage");
+    if (exact == entries_.back().values.end() || !nearly_ || choice_.missed > 0) return false;
+    const double off = choice_.coverage - exact->second.best_known();
+    if (off >= coverage_margin_) return false;
+    const double margin = std::exchange(coverage_margin_, off);
+    std::optional<RowAnswer> next;
+    RowAnswer fewer = fewest_on_rows(question(), watch_.stop, *nearly_, &next);
+    if (fewer.missed == 0) {
+      const RowAnswer before = std::exchange(choice_, better_on_rows(question(), std::move(fewer), watch_.stop));
+      const double before_off = sample_off_;
+      confirm_choice();
+      if (entries_.back().confirmed && entries_.back().missed == 0) {
+        nearly_ = std::move(next);
+        return true;
+      }
+      choice_ = before, sample_off_ = before_off;
+    }
+    coverage_margin_ = margin;
+    return false;
   }
 
   // Of all networks that were confirmed, or of all where none was: those of fewest stations that keep what is required,
@@ -325,13 +459,17 @@ class FewestPlan {
   }
 
   Run& run_;
-
+  Simulator& simulator_;
   const Candidates& candidates_;
   const PlanConfig& config_;
   const PlanWatch& watch_;
   const SurveyProblem problem_;
   std::size_t most_;  // stations
   double link_, coverage_ = 0, coverage_margin_ = 0, link_margin_ = 0;
+  double sample_off_ = 0;       // what the sample of the search says too much of the choice's coverage
+  double station_seconds_ = 0;  // that one takes by the sample, links and all
+  double choose_seconds_ = 0;   // that the first choice took
+  std::uint64_t sample_;        // voxels
   CandidateTable table_;
   RowAnswer choice_;
   std::optional<RowAnswer> nearly_;
@@ -342,8 +480,8 @@ class FewestPlan {
 }  // namespace
 
 PlanResult plan_fewest(Run& run, Simulator& simulator, std::shared_ptr<const Candidates> candidates,
-                       const PlanConfig& config, const PlanWatch& watch) {
-  return FewestPlan(run, simulator, *candidates, config, watch).run();
+                       double candidates_seconds, const PlanConfig& config, const PlanWatch& watch) {
+  return FewestPlan(run, simulator, *candidates, candidates_seconds, config, watch).run();
 }
 
 }  // namespace vantage

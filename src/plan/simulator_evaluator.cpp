@@ -140,12 +140,18 @@ std::vector<std::optional<ConfirmedNetwork>> SimulatorEvaluator::confirm(std::sp
     for (const NetworkCounts& c : counts) trace_seconds_ += c.trace_seconds;
     return counts;
   };
+  // Surroundings take about as long again.
+  const double first = needs.surroundings ? 0.5 : 1;
+  const auto part = [&](double from, double share) {
+    return Progress{.report = [&progress, from, share](double done) { progress(from + share * done); },
+                    .stop = progress.stop};
+  };
   std::vector<NetworkCounts> counts =
-      count(simulator_, {.overlap = true, .registration = needs.registration}, progress);
+      count(simulator_, {.overlap = true, .registration = needs.registration}, part(0, first));
   std::vector<NetworkCounts> around;
   if (needs.surroundings)
     around = count(*options_.surroundings, {.overlap = true, .registration = registered_around(needs)},
-                   {.report = {}, .stop = progress.stop});
+                   part(first, 1 - first));
 
   std::vector<std::optional<ConfirmedNetwork>> all(placed.size());
   for (std::size_t k = 0; k < placed.size(); ++k) {

@@ -16,7 +16,7 @@
 #include "core/text.hpp"
 #include "networks.hpp"
 #include "support/temporary_folder.hpp"
-#include "trace/vulkan/device.hpp"
+#include "trace/vulkan/abilities.hpp"
 #include "vantage/error.hpp"
 #include "vantage/export.hpp"
 #include "vantage/objective.hpp"
@@ -83,26 +83,8 @@ double process_mib(const std::string& key) {
 double device_mib(const EngineInfo& info) {
   if (info.engine == Engine::embree || info.software) return 0;
   const auto instance = vulkan::Instance::get(false);
-  VkPhysicalDevice device = instance->physical_devices().at(info.device_index);
-  std::uint32_t count = 0;
-  vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr);
-  std::vector<VkExtensionProperties> extensions(count);
-  vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data());
-  const bool accounted = std::any_of(extensions.begin(), extensions.end(), [](const VkExtensionProperties& e) {
-    return std::string(e.extensionName) == VK_EXT_MEMORY_BUDGET_EXTENSION_NAME;
-  });
-  if (!accounted) return 0;
-  VkPhysicalDeviceMemoryBudgetPropertiesEXT budget{};
-  budget.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MEMORY_BUDGET_PROPERTIES_EXT;
-  VkPhysicalDeviceMemoryProperties2 properties{};
-  properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MEMORY_PROPERTIES_2;
-  properties.pNext = &budget;
-  vkGetPhysicalDeviceMemoryProperties2(device, &properties);
-  double bytes = 0;
-  for (std::uint32_t heap = 0; heap < properties.memoryProperties.memoryHeapCount; ++heap)
-    if (properties.memoryProperties.memoryHeaps[heap].flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT)
-      bytes += static_cast<double>(budget.heapUsage[heap]);
-  return bytes / (1024 * 1024);
+  const auto used = vulkan::memory_of(*instance, instance->physical_devices().at(info.device_index)).used;
+  return static_cast<double>(used) / (1024 * 1024);
 }
 
 struct Cost {

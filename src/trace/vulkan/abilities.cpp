@@ -55,7 +55,7 @@ bool DeviceAbilities::better_than(const DeviceAbilities& other) const {
   return rank(*this) != rank(other) ? rank(*this) > rank(other) : memory_bytes > other.memory_bytes;
 }
 
-std::uint64_t free_memory_of(const Instance& instance, VkPhysicalDevice device) {
+DeviceMemory memory_of(const Instance& instance, VkPhysicalDevice device) {
   const InstanceFunctions& vk = instance.vk();
   const auto extensions = extensions_of(vk, device);
   const bool accounted = std::ranges::find(extensions, VK_EXT_MEMORY_BUDGET_EXTENSION_NAME) != extensions.end();
@@ -65,14 +65,15 @@ std::uint64_t free_memory_of(const Instance& instance, VkPhysicalDevice device) 
   properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MEMORY_PROPERTIES_2;
   properties.pNext = accounted ? &budget : nullptr;
   vk.vkGetPhysicalDeviceMemoryProperties2(device, &properties);
-  std::uint64_t free = 0;
+  DeviceMemory memory;
   for (std::uint32_t h = 0; h < properties.memoryProperties.memoryHeapCount; ++h) {
     const VkMemoryHeap& heap = properties.memoryProperties.memoryHeaps[h];
     if (!(heap.flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT)) continue;
     const std::uint64_t may = accounted ? budget.heapBudget[h] : heap.size, has = accounted ? budget.heapUsage[h] : 0;
-    free = std::max<std::uint64_t>(free, may > has ? may - has : 0);
+    memory.used += has;
+    memory.free = std::max<std::uint64_t>(memory.free, may > has ? may - has : 0);
   }
-  return free;
+  return memory;
 }
 
 DeviceAbilities abilities_of(const Instance& instance, VkPhysicalDevice device) {

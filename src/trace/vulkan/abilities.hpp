@@ -32,8 +32,12 @@ struct DeviceAbilities {
   // Hardware before software, discrete before integrated, then the most memory.
   bool better_than(const DeviceAbilities& other) const;
 };
-// What is left to this process of its largest device-local heap.
-std::uint64_t free_memory_of(const Instance& instance, VkPhysicalDevice device);
+// Of this process, bytes; where the driver keeps no account (VK_EXT_memory_budget), nothing is used and all is free.
+struct DeviceMemory {
+  std::uint64_t used = 0;  // of all device-local heaps
+  std::uint64_t free = 0;  // of the device-local heap with most of it
+};
+DeviceMemory memory_of(const Instance& instance, VkPhysicalDevice device);
 DeviceAbilities abilities_of(const Instance& instance, VkPhysicalDevice device);
 
 }  // namespace vantage::vulkan

@@ -59,7 +59,7 @@ std::vector<EngineInfo> list_vulkan_engines(VulkanEngines engines) {
 std::optional<std::uint64_t> free_device_memory(std::uint32_t device) {
   try {
     const auto instance = Instance::get(false);
-    return free_memory_of(*instance, instance->physical_devices().at(device));
+    return memory_of(*instance, instance->physical_devices().at(device)).free;
   } catch (const std::exception&) {  // whoever wants the device is told
     return std::nullopt;
   }

@@ -54,6 +54,26 @@ TEST(ChooseOnRows, CoverKeepsEquation8) {
   EXPECT_NEAR(cover.value(), captured(rows, {3, 1, 3}), 1e-12);
 }
 
+TEST(ChooseOnRows, ColumnsKnowWhatRowsGainWithoutOneThatLeaves) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    SCOPED_TRACE(seed);
+    const CaptureRows rows = random_rows(20, 90, seed, 0.3, 3);
+    const Rows chosen{2, 11, 7, 2, 19};  // one of them twice
+    const RowCover cover(rows, chosen);
+    const RowColumns columns(rows);
+    for (std::size_t at = 0; at < chosen.size(); ++at) {
+      Rows others = chosen;
+      others.erase(others.begin() + static_cast<std::ptrdiff_t>(at));
+      const RowCover without(rows, others);
+      std::vector<double> gains(rows.size());
+      for (std::size_t row = 0; row < rows.size(); ++row) gains[row] = cover.gain(row);
+      columns.add_gains_without(chosen[at], cover, gains);
+      for (std::size_t row = 0; row < rows.size(); ++row)
+        EXPECT_NEAR(gains[row], without.gain(row), 1e-12) << row << " without " << chosen[at];
+    }
+  }
+}
+
 TEST(ChooseOnRows, LazyGreedyIsGreedy) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE(seed);

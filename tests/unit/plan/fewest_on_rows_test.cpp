@@ -153,5 +153,23 @@ TEST(PairTable, CountsWhatBothSee) {
   EXPECT_FALSE(PairTable(rows, stations, 1).too_near(0, 1));
 }
 
+TEST(FewestOnRows, GrowsFromWhereItIsNotEnough) {
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    SCOPED_TRACE(seed);
+    const Table table = random_table(13, seed);
+    RowQuestion question{
+        .rows = table.rows, .pairs = table.pairs, .coverage = 0.4, .link = 0.3, .fewest = 1, .most = 13};
+    const RowAnswer few = fewest_on_rows(question);
+    ASSERT_EQ(few.missed, 0);
+    question.coverage = 0.8;  // more is wanted now
+    const RowAnswer more = fewest_on_rows(question, {}, judge_rows(question, few.rows));
+    EXPECT_EQ(more.missed, 0);
+    EXPECT_GT(more.rows.size(), few.rows.size());
+    EXPECT_LE(more.rows.size(), fewest_on_rows(question).rows.size() + 1);
+    question.most = few.rows.size();  // but no more stations are allowed
+    EXPECT_EQ(fewest_on_rows(question, {}, judge_rows(question, few.rows)).rows.size(), few.rows.size());
+  }
+}
+
 }  // namespace
 }  // namespace vantage
