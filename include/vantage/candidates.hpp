@@ -99,6 +99,7 @@ struct CandidateConfig {
   std::size_t most = 2048;  ///< And no more than this.
   double change = 0.005;    ///< Enough once doubling them changes what all capture together by less, as a share of it.
   std::uint64_t sample_voxels = 20'000;  ///< 0: every voxel.
+  std::uint32_t scanner = 0;             ///< Which of the simulator's scanners stands on each.
   double max_seconds = 0;  ///< Stop growing after so long; 0: no limit. What is found then depends on the machine.
 };
 

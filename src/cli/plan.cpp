@@ -391,7 +391,10 @@ PlanResult run_plan(LoadedSite& site, Simulator& simulator, const SurveyProblem&
       spdlog::info("{:.1f} % of the site can be seen from {} places all over the ground together", 100 * *now.visible,
                    now.evaluations);
     // What it will take is told as soon as it is known, of the whole, and of each part that takes long.
-    if (now.whole_seconds_left) spdlog::info("about {} more, in all", duration_text(*now.whole_seconds_left));
+    if (now.whole_seconds_left) {
+      const double limit = deadline.seconds_to_search(), left = *now.whole_seconds_left;
+      spdlog::info("about {} more, in all", duration_text(limit > 0 ? std::min(limit, left) : left));
+    }
     if (phase != told_phase && now.seconds_left > 1 && Clock::now() - begun > soon) {
       told_phase = phase;
       spdlog::info("{}: about {}", phase, duration_text(now.seconds_left));

@@ -59,7 +59,8 @@ std::vector<PlacedStation> positions_around(const Site& site, std::span<const Pl
       const double away = radius_m * std::sqrt(share), turn = golden * static_cast<double>(k);
       const auto uv = site.project(station.ground + Vec3{away * std::cos(turn), away * std::sin(turn), 0});
       if (!uv) continue;
-      const PlacedStation placed = place_station(site, *uv, site.height_m);
+      PlacedStation placed = place_station(site, *uv, site.height_m);
+      placed.setup = station.setup;
       // Not the floor below, where a station would see all else.
       if (placed.status == StationStatus::ok && std::abs(placed.ground.z - station.ground.z) <= radius_m)
         found.push_back(placed);

@@ -28,7 +28,11 @@ SpreadPositions spread_or_refuse(const SearchArea& area, const ClashChecker& cla
   return spread;
 }
 
-void check(const CandidateConfig& config) {
+void check(const CandidateConfig& config, std::size_t scanners) {
+  if (config.scanner >= scanners)
+    throw Error(Errc::invalid_argument, "candidates: scanner " + std::to_string(config.scanner) +
+                                            " is asked for; the simulator has " + std::to_string(scanners) +
+                                            ", counted from 0");
   if (config.first < 1 || config.most < config.first)
     throw Error(Errc::invalid_argument, "candidates: from " + std::to_string(config.first) + " to " +
                                             std::to_string(config.most) + " are asked for; at least 1 is needed");
@@ -44,6 +48,7 @@ Settings settings(const CandidateConfig& config) {
       .add("candidates_most", config.most)
       .add("candidates_change", config.change)
       .add("candidates_sample_voxels", config.sample_voxels)
+      .add("candidates_scanner", config.scanner)
       .add("candidates_max_seconds", config.max_seconds)
       .take();
 }
@@ -55,13 +60,14 @@ std::vector<PlacedStation> candidate_positions(const SearchArea& area, const Cla
 
 Candidates find_candidates(Simulator& simulator, const SearchArea& area, const ClashChecker& clash,
                            const CandidateConfig& config, const Progress& progress) {
-  check(config);
+  check(config, simulator.scanners().size());
   const auto begun = std::chrono::steady_clock::now();
   const auto out_of_time = [&] {
     return config.max_seconds > 0 &&
            std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count() >= config.max_seconds;
   };
-  const SpreadPositions spread = spread_or_refuse(area, clash, simulator.scanner(), config.most);
+  SpreadPositions spread = spread_or_refuse(area, clash, simulator.scanner(), config.most);
+  for (PlacedStation& station : spread.stations) station.setup.scanner = config.scanner;
 
   const std::uint64_t sample = config.sample_voxels == 0 ? simulator.voxel_count() : config.sample_voxels;
   Candidates found;

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <chrono>
+#include <string>
 #include <utility>
 
 #include "plan/drop_networks.hpp"
 #include "plan/plan_fewest.hpp"
 #include "plan/run.hpp"
 #include "plan/somewhere_to_stand.hpp"
+#include "vantage/error.hpp"
 #include "vantage/planner.hpp"
 
 namespace vantage {
@@ -31,6 +33,17 @@ SurveyProblem settled(SurveyProblem problem) {
     for (Requirement& requirement : problem.requirements)
       if (requirement.objective.name == "capture") settle(requirement.objective);
   return problem;
+}
+
+// Of the scanners to choose among the one that sees most: what it cannot capture, none can.
+std::uint32_t finest(const Simulator& simulator, std::span<const std::uint32_t> scanners) {
+  if (scanners.empty()) return 0;
+  for (const std::uint32_t k : scanners)
+    if (k >= simulator.scanners().size())
+      throw Error(Errc::invalid_argument, "plan: scanner " + std::to_string(k) + " is among those to choose, and the " +
+                                              "simulator has " + std::to_string(simulator.scanners().size()) +
+                                              ", counted from 0");
+  return *std::ranges::max_element(scanners, {}, [&](std::uint32_t k) { return simulator.scanners()[k].rays(); });
 }
 
 // More are tried where it pays: around the stations that are chosen.
@@ -68,9 +81,11 @@ PlanResult plan(Simulator& simulator, const SearchArea& area, const ClashChecker
       const double seconds = since(start);
       watch.report({.seconds_left = done > 0 ? seconds / done - seconds : -1, .phase = "look"});
     };
-    candidates = std::make_shared<const Candidates>(
-        find_candidates(simulator, area, clash, {.most = kMostCandidates, .sample_voxels = config.sample_voxels},
-                        {.report = report, .stop = watch.stop}));
+    candidates = std::make_shared<const Candidates>(find_candidates(simulator, area, clash,
+                                                                    {.most = kMostCandidates,
+                                                                     .sample_voxels = config.sample_voxels,
+                                                                     .scanner = finest(simulator, problem.scanners)},
+                                                                    {.report = report, .stop = watch.stop}));
     candidates_seconds = since(start);
     if (watch.report)
       watch.report({.evaluations = candidates->stations().size(),

@@ -35,7 +35,10 @@ void print(const std::string& engine, std::uint64_t size, const char* objective,
 
 void IntervalsOptions::add(CLI::App& command) {
   site.add(command);
-  command.add_option("--networks", networks, "Random networks")->check(CLI::PositiveNumber)->capture_default_str();
+  command.add_option("--front", front, "A plan's front.json: its networks, over and over, in place of random ones");
+  command.add_option("--networks", networks, "Random networks, or how often one of the front's is measured")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   command.add_option("--most", stations, "Stations of a network at most; at least three")
       ->check(CLI::Range(fewest_stations, 64u))
       ->capture_default_str();
@@ -48,10 +51,17 @@ void IntervalsOptions::add(CLI::App& command) {
 void run_intervals(const IntervalsOptions& options) {
   const Scene scene = Scene::load(options.site.scene);
   const Scanner scanner = options.site.scanner();
-  std::vector<Network> networks =
-      networks_on_search_area(scene, options.networks, options.stations, scanner.height_m, 1);
-  for (std::size_t k = 0; k < networks.size(); ++k)
-    networks[k].resize(fewest_stations + k % (options.stations - fewest_stations + 1));
+  std::vector<Network> networks;
+  if (options.front.empty()) {
+    networks = networks_on_search_area(scene, options.networks, options.stations, scanner.height_m, 1);
+    for (std::size_t k = 0; k < networks.size(); ++k)
+      networks[k].resize(fewest_stations + k % (options.stations - fewest_stations + 1));
+  } else {
+    const std::vector<Network> front = networks_of_front(options.front, fewest_stations);
+    // Neighbours of the front in turn within each draw, of which each begins one further.
+    for (std::uint32_t k = 0; k < options.networks; ++k)
+      networks.push_back(front[(k / options.draws + k % options.draws) % front.size()]);
+  }
   const double n = static_cast<double>(networks.size());
   std::printf("engine,sample,objective,held,rms_error,rms_standard_error\n");
   for (const EngineInfo& info : options.site.engines_here()) {

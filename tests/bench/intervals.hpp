@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "bench_site.hpp"
@@ -11,6 +12,7 @@ namespace vantage::bench {
 
 struct IntervalsOptions {
   SiteOptions site;
+  std::string front;  // a plan's front.json, whose networks take turns; empty: random ones
   std::uint32_t networks = 200;
   std::uint32_t stations = 15;  // at most; at least three
   std::uint32_t draws = 40;     // samples drawn; the networks take turns

@@ -2,9 +2,12 @@
 #include "networks.hpp"
 
 #include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "core/philox.hpp"
+#include "core/read_file.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage::bench {
@@ -56,6 +59,27 @@ std::vector<Network> networks_like(const Network& stations, const ClashChecker& 
       }
     networks.push_back(std::move(network));
   }
+  return networks;
+}
+
+std::vector<Network> networks_of_front(const std::filesystem::path& file, std::size_t least_stations) {
+  std::vector<Network> networks;
+  try {
+    const auto plan = nlohmann::json::parse(read_file(file));
+    for (const auto& entry : plan.at("front")) {
+      Network network;
+      for (const auto& station : entry.at("stations")) {
+        const auto at = station.at("position").get<std::array<double, 3>>();
+        network.push_back({.position = {at[0], at[1], at[2]}});
+      }
+      if (network.size() >= least_stations) networks.push_back(std::move(network));
+    }
+  } catch (const nlohmann::json::exception& error) {
+    throw Error(Errc::malformed_file, file.string() + ": is not a plan's front.json: " + error.what());
+  }
+  if (networks.empty())
+    throw Error(Errc::malformed_file,
+                file.string() + ": has no network of " + std::to_string(least_stations) + " stations or more");
   return networks;
 }
 

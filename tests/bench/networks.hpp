@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <vector>
 
 #include "vantage/measure.hpp"
@@ -22,5 +23,9 @@ std::vector<Network> networks_on_search_area(const Scene& scene, std::size_t cou
 // kept clear of every mesh.
 std::vector<Network> networks_like(const Network& stations, const ClashChecker& checker, std::size_t count,
                                    double spread_m, std::uint64_t seed);
+
+// Those of a plan's front.json, of at least so many stations, each where it stands upright. Throws Error io,
+// malformed_file.
+std::vector<Network> networks_of_front(const std::filesystem::path& file, std::size_t least_stations);
 
 }  // namespace vantage::bench

@@ -6,6 +6,7 @@
 #include <array>
 #include <vector>
 
+#include "vantage/error.hpp"
 #include "vantage/planner.hpp"
 #include "vantage/scene_builder.hpp"
 
@@ -112,6 +113,24 @@ TEST(SearchStep, IsCoarseWhereSurfacesAreNearAndFineWhereTheyAreFar) {
     EXPECT_NEAR(entry.value("coverage"), fine[0] ? dear : fine[1] ? wise : cheap, 0.1);
   }
   EXPECT_TRUE(found) << "the front lacks the fine step in the hall alone";
+}
+
+TEST(SearchStep, TheFewestStationsAreChosenByTheStepThatSeesMost) {
+  const Scene scene = closet_and_hall();
+  const std::vector<Scanner> both = scanners();
+  Simulator simulator(scene, both, {.engine = Engine::embree, .user_size_m = 0.5, .point_spacing_m = 0.2});
+  const ClashChecker clash(scene, {.radius_m = 0});
+  SurveyProblem problem = fewest_stations(0.9, 0, 1, 8, 0);
+  problem.scanners = {0, 1};
+  const PlanConfig config{.population = 6, .iterations = 4, .sample_voxels = 500, .seed = 4};
+  const PlanResult result = plan(simulator, middles(), clash, problem, config);
+  ASSERT_FALSE(result.front.empty());
+  EXPECT_EQ(result.front.front().missed, 0) << "the coarse step, the first of the list, cannot capture as much";
+  ASSERT_TRUE(result.candidates);
+  for (const PlacedStation& candidate : result.candidates->stations()) EXPECT_EQ(candidate.setup.scanner, 1u);
+
+  problem.scanners = {0, 2};
+  EXPECT_THROW(plan(simulator, middles(), clash, problem, config), Error);
 }
 
 }  // namespace
