@@ -35,7 +35,7 @@ constexpr double kAroundRadius = 0.8;
 // What is good by the sample is looked at again on one so many times as large: for each station chosen so many that may
 // stand there instead, and so many that may stand there too.
 constexpr std::uint64_t kCloser = 5;
-constexpr std::size_t kInsteadClosely = 8, kMoreClosely = 64;
+constexpr std::size_t kInsteadClosely = 8, kMoreClosely = 64, kLongerList = 4;
 constexpr std::size_t kLateCandidates = 96;
 // The search after that may trace so many stations for each candidate that was looked at.
 constexpr double kSearchShare = 2;
@@ -122,21 +122,23 @@ class FewestPlan {
     return std::chrono::duration<double>(Clock::now() - begun).count();
   }
 
-  // What is still to come is so many choices, so many stations by the sample, and the choice and the end of the search
-  // by every ray.
+  // What is still to come is so many choices, so many stations by the sample and of the short list by a larger one, and
+  // by every ray the choice, one like it with other margins, and the end of the search.
   void tell_expected() {
     if (!watch_.report || stopped() || choice_.rows.size() <= problem_.kept.size()) return;
     const auto count = static_cast<double>(choice_.rows.size());
-    const double around =
-        static_cast<double>(kRounds * kAround) * 2 * (count - static_cast<double>(problem_.kept.size()));
+    const double placed = count - static_cast<double>(problem_.kept.size());
+    const double around = static_cast<double>(kRounds * kAround) * 2 * placed;
+    const double listed = kCloser * (kMoreClosely + kInsteadClosely * placed) / 2;  // the same may stand for several
     const SurveyProblem narrow = narrowed(choice_.rows.size() - problem_.kept.size());
     const double networks =
         static_cast<double>(search_config(narrow).iterations * population_of(narrow, search_config(narrow)));
     const Network first = to_network(std::span(&table_.stations()[choice_.rows.back()], 1));
-    double every_ray = timed([&] { simulator_.evaluate(first, {}, {.report = {}, .stop = watch_.abort}); });
+    double every_ray = timed([&] { simulator_.evaluate(first, {}, {.report = {}, .stop = watch_.stop}); });
+    if (stopped()) return;
     if (run_.measures().all_needs().surroundings) every_ray *= 2;
-    const double seconds =
-        kRounds * choose_seconds_ + (around + networks * count) * station_seconds_ + 2 * count * every_ray;
+    const double seconds = (kRounds + 2) * choose_seconds_ + (around + listed + networks * count) * station_seconds_ +
+                           3 * count * every_ray;
     watch_.report({.evaluations = traced_, .seconds_left = -1, .phase = "choose", .whole_seconds_left = seconds});
   }
 
@@ -158,16 +160,16 @@ class FewestPlan {
     traced_ += table_.stations().size();
   }
 
-  RowQuestion question(std::size_t fewest, std::size_t most) const {
-    return {.rows = table_.rows(),
-            .pairs = table_.pairs(),
-            .coverage = coverage_ + (coverage_ > 0 ? coverage_margin_ : 0),
+  RowQuestion question(const CandidateTable& table, double coverage_margin) const {
+    return {.rows = table.rows(),
+            .pairs = table.pairs(),
+            .coverage = coverage_ + (coverage_ > 0 ? coverage_margin : 0),
             .link = link_ > 0 ? link_ + link_margin_ : 0,
             .fixed = problem_.kept.size(),
-            .fewest = fewest,
-            .most = most};
+            .fewest = problem_.stations_min,
+            .most = most_};
   }
-  RowQuestion question() const { return question(problem_.stations_min, most_); }
+  RowQuestion question() const { return question(table_, coverage_margin_); }
   std::vector<PlacedStation> stations_of(const RowAnswer& answer) const {
     std::vector<PlacedStation> stations;
     for (const std::size_t row : answer.rows) stations.push_back(table_.stations()[row]);
@@ -231,8 +233,9 @@ class FewestPlan {
   }
 
   // Rows that may be worth having in a network like the one chosen: it, the best one of a station fewer, for each of
-  // its stations those that would replace it best, and those that would add most to it.
-  std::vector<std::size_t> short_list() const {
+  // its stations those that would replace it best, and those that would add most to it; `times` as many of the latter
+  // two.
+  std::vector<std::size_t> short_list(std::size_t times) const {
     const CaptureRows& rows = table_.rows();
     const RowColumns columns(rows);
     const RowCover cover(rows, choice_.rows);
@@ -244,14 +247,18 @@ class FewestPlan {
       std::ranges::stable_sort(order, std::ranges::greater(), [&](std::size_t row) { return by[row]; });
       for (std::size_t k = 0; k < std::min(count, order.size()); ++k) listed[order[k]] = 1;
     };
+    // One after the other: those that add most at first are near each other.
+    const PairTable& pairs = table_.pairs();
+    const auto apart = [&](std::size_t row, std::span<const std::size_t> taken) {
+      return std::ranges::none_of(taken, [&](std::size_t other) { return pairs.too_near(other, row); });
+    };
+    for (const std::size_t row : choose_greedily(rows, times * kMoreClosely, choice_.rows, 1, apart)) listed[row] = 1;
     for (std::size_t row = 0; row < rows.size(); ++row) gains[row] = cover.gain(row);
-    list_best(gains, kMoreClosely);
     for (std::size_t at = problem_.kept.size(); at < choice_.rows.size(); ++at) {
       std::vector<double> without = gains;
       columns.add_gains_without(choice_.rows[at], cover, without);
-      list_best(without, kInsteadClosely);
+      list_best(without, times * kInsteadClosely);
     }
-    for (const std::size_t row : choice_.rows) listed[row] = 1;
     if (nearly_)
       for (const std::size_t row : nearly_->rows) listed[row] = 1;
     std::vector<std::size_t> list;
@@ -261,26 +268,38 @@ class FewestPlan {
   }
 
   // What was chosen among thousands by a sample is what the sample flatters. So what is good by it is looked at with
-  // more voxels, and chosen from anew.
+  // more voxels, and chosen from anew; where it does not reach what it did by the sample, what is less good too.
   void look_closer() {
     const std::uint64_t closer = std::min(kCloser * sample_, simulator_.voxel_count());
-    if (closer <= sample_ || stopped()) return;
-    const std::span<const PlacedStation> known = table_.stations();
-    const std::span<const PlacedStation> kept = known.first(problem_.kept.size());
-    std::vector<PlacedStation> listed;
-    std::vector<std::size_t> row_of(known.size(), known.size());
-    for (std::size_t row = 0; row < kept.size(); ++row) row_of[row] = row;
-    for (const std::size_t row : short_list()) row_of[row] = kept.size() + listed.size(), listed.push_back(known[row]);
+    if (closer <= sample_) return;
+    const double margin = coverage_margin_ * std::sqrt(static_cast<double>(sample_) / static_cast<double>(closer));
+    const std::size_t kept = problem_.kept.size(), all = table_.stations().size();
     CandidateTable table = make_table(closer);
-    if (!kept.empty() && !table.add(kept, {.report = {}, .stop = watch_.abort})) return;
-    if (!table.add(listed, progress("choose"))) return;
-    traced_ += listed.size();
-    for (std::size_t& row : choice_.rows) row = row_of[row];
-    coverage_margin_ *= std::sqrt(static_cast<double>(sample_) / static_cast<double>(closer));
-    table_ = std::move(table);
-    nearly_.reset();
-    choice_ = fewest_on_rows(question(), watch_.stop, judge_rows(question(), choice_.rows), &nearly_);
-    choice_ = better_on_rows(question(), std::move(choice_), watch_.stop);
+    if (kept > 0 && !table.add(std::span(table_.stations()).first(kept), {.report = {}, .stop = watch_.abort})) return;
+    std::vector<std::size_t> row_of(all, all);
+    std::iota(row_of.begin(), row_of.begin() + static_cast<std::ptrdiff_t>(kept), std::size_t{0});
+    for (const std::size_t times : {std::size_t{1}, kLongerList}) {
+      if (stopped()) return;
+      std::vector<PlacedStation> listed;
+      for (const std::size_t row : short_list(times)) {
+        if (row_of[row] < all) continue;
+        row_of[row] = table.stations().size() + listed.size();
+        listed.push_back(table_.stations()[row]);
+      }
+      if (!table.add(listed, progress("choose"))) return;
+      traced_ += listed.size();
+      std::vector<std::size_t> rows;
+      for (const std::size_t row : choice_.rows) rows.push_back(row_of[row]);
+      const RowQuestion asked = question(table, margin);
+      std::optional<RowAnswer> nearly;
+      RowAnswer found = fewest_on_rows(asked, watch_.stop, judge_rows(asked, std::move(rows)), &nearly);
+      if (found.missed > choice_.missed && times < kLongerList && !stopped()) continue;
+      table_ = std::move(table);
+      coverage_margin_ = margin;
+      nearly_ = std::move(nearly);
+      choice_ = better_on_rows(question(), std::move(found), watch_.stop);
+      return;
+    }
   }
 
   SurveyProblem narrowed(std::size_t stations) const {
