@@ -78,6 +78,7 @@ void add_finding(py::module_& m) {
           .add("most", &CandidateConfig::most, "And no more than this.")
           .add("change", &CandidateConfig::change, "Enough once doubling changes what all capture by less, as a share.")
           .add("sample_voxels", &CandidateConfig::sample_voxels, "0: every voxel.")
+          .add("scanner", &CandidateConfig::scanner, "Which of the simulator's scanners stands on each.")
           .add("max_seconds", &CandidateConfig::max_seconds, "Stop growing after so long; 0: no limit.");
   m.def(
       "find_candidates",

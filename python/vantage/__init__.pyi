@@ -520,6 +520,7 @@ def find_candidates(
     most: int = 2048,
     change: float = 0.005,
     sample_voxels: int = 20000,
+    scanner: int = 0,
     max_seconds: float = 0.0,
 ) -> Candidates: ...
 
@@ -763,6 +764,8 @@ class PlanProgress:
     def hypervolume(self) -> float: ...
     @property
     def seconds_left(self) -> float: ...
+    @property
+    def whole_seconds_left(self) -> Optional[float]: ...
     @property
     def visible(self) -> Optional[float]: ...
     @property
