@@ -99,8 +99,6 @@ void erase_said(std::vector<T>& all, const std::vector<bool>& said) {
 ConfirmedFront confirm_front(const SearchOutcome& found, const DecisionSpace& space, const SurveyProblem& problem,
                              const Measures& measures, std::uint64_t sample_voxels, NetworkEvaluator& evaluator,
                              const PlanWatch& watch) {
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point start;
   ConfirmedFront front;
   std::vector<PlanEntry>& entries = front.entries;
   std::vector<PlacedNetwork> networks;
@@ -115,18 +113,6 @@ ConfirmedFront confirm_front(const SearchOutcome& found, const DecisionSpace& sp
     take_objectives(entry, point, problem);
     networks.push_back(entry.stations);
   }
-  const auto report = [&](std::size_t done, double part) {
-    if (!watch.report) return;
-    const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
-    const double rate = seconds > 0 ? (static_cast<double>(done) + part) / seconds : 0;
-    watch.report({.iteration = done,
-                  .iterations = entries.size(),
-                  .evaluations = found.evaluations,
-                  .hypervolume = found.hypervolume,
-                  .evaluations_per_second = rate,
-                  .seconds_left = rate > 0 ? (static_cast<double>(entries.size() - done) - part) / rate : -1,
-                  .phase = "confirm"});
-  };
 
   // A search that samples did not keep its standard errors, nor what is no objective. The same sample is drawn again.
   const bool sampled = sample_voxels > 0;
@@ -151,7 +137,21 @@ ConfirmedFront confirm_front(const SearchOutcome& found, const DecisionSpace& sp
       }
     }
   }
-  start = Clock::now();
+
+  using Clock = std::chrono::steady_clock;
+  const auto start = Clock::now();
+  const auto report = [&](std::size_t done, double part) {
+    if (!watch.report) return;
+    const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    const double rate = seconds > 0 ? (static_cast<double>(done) + part) / seconds : 0;
+    watch.report({.iteration = done,
+                  .iterations = entries.size(),
+                  .evaluations = found.evaluations,
+                  .hypervolume = found.hypervolume,
+                  .evaluations_per_second = rate,
+                  .seconds_left = rate > 0 ? (static_cast<double>(entries.size() - done) - part) / rate : -1,
+                  .phase = "confirm"});
+  };
   report(0, 0);
   const Progress progress{.report =
                               [&](double share) {

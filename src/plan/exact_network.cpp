@@ -3,6 +3,7 @@
 #include <numeric>
 #include <string>
 
+#include "core/part_of.hpp"
 #include "plan/fewest_on_rows.hpp"
 #include "plan/site.hpp"
 #include "vantage/error.hpp"
@@ -38,18 +39,15 @@ ExactResult exact_network(Simulator& simulator, const SearchArea& area, const Cl
   std::iota(fixed.begin(), fixed.end(), 0u);
 
   ExactResult result;
-  const auto half = [&](double from) {
-    return Progress{[&progress, from](double done) { progress(from + 0.5 * done); }, progress.stop};
-  };
   const std::uint64_t sample = config.sample_voxels > 0 ? config.sample_voxels : simulator.voxel_count();
-  const CaptureRows rows = capture_rows(simulator, stations, sample, half(0));
+  const CaptureRows rows = capture_rows(simulator, stations, sample, part_of(progress, 0, 2));
   const BoundConfig bound{.max_seconds = config.max_seconds, .exact_seconds = config.max_seconds};
   if (config.link > 0 && !rows.cancelled()) {
     Simulator surroundings = surroundings_of(simulator);
     const auto links = links_between(surroundings, stations, config.link, 10'000, {{}, progress.stop});
-    result.choice = bound_linked_capture(rows, config.stations, links, fixed, bound, half(0.5));
+    result.choice = bound_linked_capture(rows, config.stations, links, fixed, bound, part_of(progress, 1, 2));
   } else if (!rows.cancelled()) {
-    result.choice = bound_capture(rows, config.stations, fixed, bound, half(0.5));
+    result.choice = bound_capture(rows, config.stations, fixed, bound, part_of(progress, 1, 2));
   }
   result.cancelled = rows.cancelled() || progress.stopped();
   for (std::size_t k = kept; k < result.choice.chosen.size(); ++k)

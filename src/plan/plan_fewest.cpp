@@ -83,7 +83,7 @@ class FewestPlan {
     confirm_choice();
     for (std::size_t k = 0; k < kRepairs && best_missed() > 0 && !stopped() && repair(); ++k) {
     }
-    for (std::size_t k = 0; k < kRepairs && best_missed() == 0 && !stopped() && spare_one(); ++k) {
+    for (std::size_t k = 0; k < kRepairs && best_missed() == 0 && !stopped() && choose_again(); ++k) {
     }
     const SearchOutcome found = search(stations_of(choice_));
     take(confirmed(found, choice_.rows.size() - problem_.kept.size()));
@@ -131,8 +131,8 @@ class FewestPlan {
     const double around = static_cast<double>(kRounds * kAround) * 2 * placed;
     const double listed = kCloser * (kMoreClosely + kInsteadClosely * placed) / 2;  // the same may stand for several
     const SurveyProblem narrow = narrowed(choice_.rows.size() - problem_.kept.size());
-    const double networks =
-        static_cast<double>(search_config(narrow).iterations * population_of(narrow, search_config(narrow)));
+    const PlanConfig config = search_config(narrow);
+    const auto networks = static_cast<double>(config.iterations * population_of(narrow, config));
     const Network first = to_network(std::span(&table_.stations()[choice_.rows.back()], 1));
     const auto trace = [&] { simulator_.evaluate(first, {}, {.report = {}, .stop = watch_.stop}); };
     const double warm_up = timed(trace);  // the first call sets up what later ones use again
@@ -411,18 +411,18 @@ class FewestPlan {
     return true;
   }
 
-  // What every ray told of the choice says what the sample is off; as that is known now, one station fewer may do.
-  // False where it does not.
-  bool spare_one() {
+  // What every ray told of the choice says what the sample is off. As that is known now, a station fewer may do, or as
+  // many may be linked better. False where neither is so.
+  bool choose_again() {
     const auto exact = entries_.back().values.find("coverage");
     if (exact == entries_.back().values.end() || !nearly_ || choice_.missed > 0) return false;
     const double off = choice_.coverage - exact->second.best_known();
     if (off >= coverage_margin_) return false;
     const double margin = std::exchange(coverage_margin_, off);
     std::optional<RowAnswer> next;
-    RowAnswer fewer = fewest_on_rows(question(), watch_.stop, *nearly_, &next);
-    if (fewer.missed == 0) {
-      const RowAnswer before = std::exchange(choice_, better_on_rows(question(), std::move(fewer), watch_.stop));
+    RowAnswer found = fewest_on_rows(question(), watch_.stop, *nearly_, &next);
+    if (found.missed == 0 && found.rows.size() <= choice_.rows.size()) {
+      const RowAnswer before = std::exchange(choice_, better_on_rows(question(), std::move(found), watch_.stop));
       const double before_off = sample_off_;
       confirm_choice();
       if (entries_.back().confirmed && entries_.back().missed == 0) {

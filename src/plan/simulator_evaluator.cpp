@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/part_of.hpp"
 #include "trace/shared_tracing.hpp"
 
 namespace vantage {
@@ -140,18 +141,13 @@ std::vector<std::optional<ConfirmedNetwork>> SimulatorEvaluator::confirm(std::sp
     for (const NetworkCounts& c : counts) trace_seconds_ += c.trace_seconds;
     return counts;
   };
-  // Surroundings take about as long again.
-  const double first = needs.surroundings ? 0.5 : 1;
-  const auto part = [&](double from, double share) {
-    return Progress{.report = [&progress, from, share](double done) { progress(from + share * done); },
-                    .stop = progress.stop};
-  };
+  const std::size_t parts = needs.surroundings ? 2 : 1;
   std::vector<NetworkCounts> counts =
-      count(simulator_, {.overlap = true, .registration = needs.registration}, part(0, first));
+      count(simulator_, {.overlap = true, .registration = needs.registration}, part_of(progress, 0, parts));
   std::vector<NetworkCounts> around;
   if (needs.surroundings)
     around = count(*options_.surroundings, {.overlap = true, .registration = registered_around(needs)},
-                   part(first, 1 - first));
+                   part_of(progress, 1, parts));
 
   std::vector<std::optional<ConfirmedNetwork>> all(placed.size());
   for (std::size_t k = 0; k < placed.size(); ++k) {

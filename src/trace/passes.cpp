@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/part_of.hpp"
 #include "trace/field_counts.hpp"
 #include "trace/registration_sums.hpp"
 #include "trace/sample_counts.hpp"
@@ -45,12 +46,6 @@ void place(std::vector<Figure>& all, const std::vector<Figure>& own, const Pass&
   std::ranges::copy(own, all.begin() + static_cast<std::ptrdiff_t>(pass.word * mask_bits));
 }
 
-Progress share_of(const Progress& progress, std::size_t pass, std::size_t passes) {
-  return {.report = [&progress, pass, passes](
-                        double done) { progress((static_cast<double>(pass) + done) / static_cast<double>(passes)); },
-          .stop = progress.stop};
-}
-
 }  // namespace
 
 NetworkCounts count_in_passes(Tracer& tracer, std::span<const TraceStation> stations, std::uint32_t station_count,
@@ -67,7 +62,7 @@ NetworkCounts count_in_passes(Tracer& tracer, std::span<const TraceStation> stat
     const Pass& pass = passes[k];
     const NetworkCounts counts =
         tracer.count(pass.stations, pass.size, {.masks = options.masks, .skip = options.skip, .field = &part},
-                     share_of(progress, k, passes.size()));
+                     part_of(progress, k, passes.size()));
     told.rays += counts.rays;
     told.trace_seconds += counts.trace_seconds;
     place(told.points, counts.points, pass, station_count);
