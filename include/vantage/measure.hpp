@@ -55,9 +55,10 @@ struct Estimate {
 /// systematic sample needs: s/√n would be too wide. With weights a ratio is estimated, with the jackknife's error over
 /// the interleaved groups.
 Estimate coverage_estimate(const NetworkCounts& counts, double goal_density, std::uint64_t population);
-/// Equation 13 from a sample, less its bias of O(1/n). Error and bias by the jackknife over the interleaved groups.
+/// Equation 13 from a sample, less its bias: what half of the sample gives more than all of it. The error is the
+/// jackknife's over the interleaved groups and that bias, added in squares (docs/method.md).
 Estimate overlap_estimate(const NetworkCounts& counts, std::uint64_t population);
-/// Standard errors of `overlap_matrix`, likewise by the jackknife.
+/// Standard errors of `overlap_matrix`, by the jackknife over the same groups.
 OverlapMatrix overlap_standard_errors(const NetworkCounts& counts, std::uint64_t population);
 
 /// How many voxels `evaluate_sampled` needs so that no standard error, of coverage and, with `overlap`, of overlap,

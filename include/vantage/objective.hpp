@@ -67,7 +67,7 @@ struct Objective {
   Needs needs = {};
   /// Of what was measured. Called from several threads at once. Must give the same for the same.
   std::function<double(const MeasuredNetwork&)> value = {};
-  /// Standard error of `value` where a sample was counted; empty: by the jackknife over the sample's groups.
+  /// Standard error of `value` where a sample was counted; empty: as docs/method.md has it, from the sample's groups.
   std::function<double(const MeasuredNetwork&)> standard_error = {};
   /// For the number of stations alone: where it is searched, the search minimises the decision variable α of equation 7
   /// in its place, which has no steps.

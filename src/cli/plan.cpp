@@ -381,6 +381,7 @@ PlanResult run_plan(LoadedSite& site, Simulator& simulator, const SurveyProblem&
                     Program& program, const Deadline& deadline) {
   using Clock = std::chrono::steady_clock;
   constexpr std::chrono::seconds soon{3};  // before that, what a part of it takes is a guess
+  constexpr double kWithResults = 1.1;     // what is missed and the files take about a tenth of the search
   ProgressLine line(program.console, "search");
   std::string phase, told_phase;
   Clock::time_point begun;
@@ -392,7 +393,7 @@ PlanResult run_plan(LoadedSite& site, Simulator& simulator, const SurveyProblem&
                    now.evaluations);
     // What it will take is told as soon as it is known, of the whole, and of each part that takes long.
     if (now.whole_seconds_left) {
-      const double limit = deadline.seconds_to_search(), left = *now.whole_seconds_left;
+      const double limit = deadline.seconds_to_search(), left = kWithResults * *now.whole_seconds_left;
       spdlog::info("about {} more, in all", duration_text(limit > 0 ? std::min(limit, left) : left));
     }
     if (phase != told_phase && now.seconds_left > 1 && Clock::now() - begun > soon) {

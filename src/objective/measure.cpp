@@ -4,6 +4,7 @@
 #include "vantage/measure.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -39,6 +40,29 @@ OverlapMatrix scan_overlap_matrix(const NetworkCounts& counts) {
   return overlap;
 }
 
+namespace {
+
+// Larger networks than the objectives of a search have. Their sums are taken in lanes, which is several times as fast.
+constexpr std::size_t kNarrow = 64;
+
+struct LinkSums {
+  double any = 0, linked = 0;
+};
+// Σ a_k and Σ a_k b_k over first <= k < last.
+template <std::size_t lanes>
+LinkSums sums(const double* a, const double* b, std::size_t first, std::size_t last) {
+  std::array<LinkSums, lanes> lane;
+  std::size_t k = first;
+  for (; k + lanes <= last; k += lanes)
+    for (std::size_t l = 0; l < lanes; ++l) lane[l].any += a[k + l], lane[l].linked += a[k + l] * b[k + l];
+  LinkSums all;
+  for (; k < last; ++k) all.any += a[k], all.linked += a[k] * b[k];
+  for (const LinkSums& one : lane) all.any += one.any, all.linked += one.linked;
+  return all;
+}
+
+}  // namespace
+
 double clustering_coefficient(const OverlapMatrix& overlap) {
   const std::size_t n = overlap.size();
   double largest = 0;
@@ -60,11 +84,7 @@ double clustering_coefficient(const OverlapMatrix& overlap) {
     for (std::size_t j = 0; j < n; ++j) {
       if (wi[j] == 0) continue;
       const double* wj = w.data() + j * n;
-      double linked = 0, any = 0;
-      for (std::size_t k = j + 1; k < n; ++k) {
-        any += wi[k];
-        linked += wi[k] * wj[k];
-      }
+      const auto [any, linked] = n > kNarrow ? sums<8>(wi, wj, j + 1, n) : sums<1>(wi, wj, j + 1, n);
       pairs += wi[j] * any;
       triangles += wi[j] * linked;
     }

@@ -3,6 +3,7 @@
 // samples, chapter 4 for the jackknife), with the finite-population correction 1 − n/N.
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <vector>
 
@@ -18,34 +19,40 @@ double unsampled_share(const NetworkCounts& counts, std::uint64_t population) {
   return 1.0 - static_cast<double>(counts.voxels) / static_cast<double>(population);
 }
 
-// What the sample holds without one of its groups.
-NetworkCounts without_group(const NetworkCounts& all, const NetworkCounts& group) {
+// What the sample holds, without its groups.
+NetworkCounts without_groups(const NetworkCounts& all) {
   NetworkCounts rest;
   rest.stations = all.stations;
-  rest.voxels = all.voxels - group.voxels;
-  rest.weight = all.weight - group.weight;
-  rest.saturated = all.saturated - group.saturated;
-  rest.partial_points = all.partial_points - group.partial_points;
-  rest.seen.resize(all.seen.size());
-  rest.shared.resize(all.shared.size());
-  std::transform(all.seen.begin(), all.seen.end(), group.seen.begin(), rest.seen.begin(), std::minus<>());
-  std::transform(all.shared.begin(), all.shared.end(), group.shared.begin(), rest.shared.begin(), std::minus<>());
-  // Differences of sums that are exact but for their last place.
+  rest.voxels = all.voxels, rest.weight = all.weight;
+  rest.saturated = all.saturated, rest.partial_points = all.partial_points;
+  rest.seen = all.seen, rest.shared = all.shared;
   rest.registration = all.registration;
-  const auto take_off = [](std::vector<double>& sums, const std::vector<double>& some) {
+  return rest;
+}
+
+void take_off(NetworkCounts& rest, const NetworkCounts& group) {
+  rest.voxels -= group.voxels, rest.weight -= group.weight;
+  rest.saturated -= group.saturated, rest.partial_points -= group.partial_points;
+  const auto subtract = [](auto& sums, const auto& some) {
     for (std::size_t k = 0; k < some.size(); ++k) sums[k] -= some[k];
   };
-  take_off(rest.registration.pairs, group.registration.pairs);
-  take_off(rest.registration.surface, group.registration.surface);
-  return rest;
+  subtract(rest.seen, group.seen);
+  subtract(rest.shared, group.shared);
+  // Differences of sums that are exact but for their last place.
+  subtract(rest.registration.pairs, group.registration.pairs);
+  subtract(rest.registration.surface, group.registration.surface);
 }
 
 // `of` each delete-one-group replicate; empty where there are fewer than two groups.
 template <class Value>
 std::vector<Value> replicates(const NetworkCounts& counts, const std::function<Value(const NetworkCounts&)>& of) {
   std::vector<Value> found;
+  const NetworkCounts all = without_groups(counts);
   for (const NetworkCounts& group : counts.groups) {
-    if (group.voxels > 0) found.push_back(of(without_group(counts, group)));
+    if (group.voxels == 0) continue;
+    NetworkCounts rest = all;
+    take_off(rest, group);
+    found.push_back(of(rest));
   }
   if (found.size() < 2) found.clear();
   return found;
@@ -71,6 +78,47 @@ double jackknife_bias(double estimate, const std::vector<double>& values, double
 
 // What is corrected must not be worse known for it.
 double within_error(double bias, double error) { return std::clamp(bias, -error, error); }
+
+// Whether group g of 20 is in the r-th half of them, r < 19: the rows of Paley's Hadamard matrix of order 20, by the
+// squares modulo 19. Each group is in as many halves as any other, and with each other one as often (McCarthy:
+// Pseudo-replication: Half samples, 1969).
+constexpr std::size_t kHalvedGroups = 20;
+bool in_half(std::size_t r, std::size_t g) {
+  constexpr std::size_t q = kHalvedGroups - 1;
+  constexpr std::uint32_t squares = [] {
+    std::uint32_t bits = 0;
+    for (std::size_t k = 1; k < q; ++k) bits |= 1u << (k * k % q);
+    return bits;
+  }();
+  return g == q || (squares >> ((g + q - r) % q) & 1) == 1;
+}
+
+// By how much half a sample gives more than all of it, in the mean over balanced halves and their complements. Unlike
+// leaving out a twentieth, that sees what is lost where a link rests on a few voxels.
+double halving_bias(double estimate, const NetworkCounts& counts, double unsampled,
+                    const std::function<double(const NetworkCounts&)>& of) {
+  constexpr std::size_t halvings = kHalvedGroups - 1;
+  const NetworkCounts all = without_groups(counts);
+  double sum = 0;
+  for (std::size_t r = 0; r < halvings; ++r) {
+    NetworkCounts half = all, other = all;
+    for (std::size_t g = 0; g < kHalvedGroups; ++g) take_off(in_half(r, g) ? half : other, counts.groups[g]);
+    sum += (of(half) - estimate) + (of(other) - estimate);
+  }
+  return unsampled * sum / (2.0 * halvings);
+}
+
+// Of what station masks say of pairs: links may rest on a few voxels, of which a sample holds one or none. What is
+// taken off for it is itself known no better than it is large.
+Estimate of_pairs(double seen, const NetworkCounts& counts, double unsampled, double scale,
+                  const std::function<double(const NetworkCounts&)>& of) {
+  const std::vector<double> values = replicates<double>(counts, of);
+  const double error = jackknife_error(values, unsampled, scale);
+  if (values.size() != kHalvedGroups)
+    return {seen - within_error(jackknife_bias(seen, values, unsampled), error), error};
+  const double bias = halving_bias(seen, counts, unsampled, of);
+  return {seen - bias, std::min(std::hypot(error, bias), largest_error * scale)};
+}
 
 }  // namespace
 
@@ -114,10 +162,16 @@ Estimate estimate(const Objective& objective, const MeasuredNetwork& measured) {
                                 .surroundings_voxels = measured.surroundings_voxels,
                                 .minutes_on_site = measured.minutes_on_site});
       };
-      const std::vector<double> values = replicates<double>(counts, of);
-      const double own = jackknife_error(values, unsampled, scale);
-      estimate.value -= within_error(jackknife_bias(estimate.value, values, unsampled), own);
-      add(own);
+      if (objective.needs.pairs && !objective.needs.registration) {
+        const Estimate own = of_pairs(estimate.value, counts, unsampled, scale, of);
+        estimate.value = own.value;
+        add(own.standard_error);
+      } else {
+        const std::vector<double> values = replicates<double>(counts, of);
+        const double own = jackknife_error(values, unsampled, scale);
+        estimate.value -= within_error(jackknife_bias(estimate.value, values, unsampled), own);
+        add(own);
+      }
     }
   }
   // Another sample, of other voxels: its error is on top.
@@ -142,10 +196,7 @@ Estimate overlap_estimate(const NetworkCounts& counts, std::uint64_t population)
   const double unsampled = unsampled_share(counts, population);
   if (unsampled == 0 || counts.seen.empty()) return estimate;
   const auto of = [](const NetworkCounts& rest) { return clustering_coefficient(overlap_matrix(rest)); };
-  const std::vector<double> values = replicates<double>(counts, of);
-  estimate.standard_error = jackknife_error(values, unsampled);
-  estimate.value -= within_error(jackknife_bias(estimate.value, values, unsampled), estimate.standard_error);
-  return estimate;
+  return of_pairs(estimate.value, counts, unsampled, 1, of);
 }
 
 Estimate registration_estimate(const NetworkCounts& counts, std::uint64_t voxels, const RegistrationOptions& options,

@@ -46,6 +46,11 @@ constexpr double kRefiningSigma = 0.03;
 // stations may do.
 constexpr std::size_t kRepairs = 3;
 constexpr double kBeyond = 1.25;  // of what was missed, on top
+// What all the rest will take goes by so many networks as a search evaluates them, and by every ray of so many
+// stations; and by what was seen on the sites of docs/examples.md: rounds become longer, so many of the listed
+// stations are not listed twice, and so many choices are made that every ray is asked about.
+constexpr std::size_t kTimedNetworks = 2, kTimedStations = 4;
+constexpr double kLaterRounds = 1.1, kListedShare = 0.7, kEveryRay = 4.5;
 
 // The limit of an at-least requirement, or 0.
 double least_of(const SurveyProblem& problem, std::string_view name) {
@@ -69,15 +74,19 @@ class FewestPlan {
     const double visible = problem_.visible.value_or(1);
     coverage_ = std::max(least_of(problem_, "coverage"), visible * least_of(problem_, "capture"));
     coverage_margin_ = kMarginErrors * candidates.visible().standard_error;
-    station_seconds_ = candidates_seconds / static_cast<double>(std::max<std::size_t>(candidates.stations().size(), 1));
+    look_seconds_ = candidates_seconds / static_cast<double>(std::max<std::size_t>(candidates.stations().size(), 1));
+    station_seconds_ = look_seconds_;
   }
 
   PlanResult run() {
     look_at_links();
     if (table_.stations().size() <= problem_.kept.size()) return nothing_known();
     choose();
-    tell_expected();
-    for (std::size_t round = 0; round < kRounds && !stopped(); ++round) choose_around(round);
+    for (std::size_t round = 0; round < kRounds && !stopped(); ++round) {
+      const std::uint64_t before = traced_;
+      const double seconds = timed([&] { choose_around(round); });
+      if (round == 0) tell_expected(seconds, traced_ - before);
+    }
     look_closer();
     // The search begins where every ray says that it is enough.
     confirm_choice();
@@ -122,25 +131,37 @@ class FewestPlan {
     return std::chrono::duration<double>(Clock::now() - begun).count();
   }
 
-  // What is still to come is so many choices, so many stations by the sample and of the short list by a larger one, and
-  // by every ray the choice, one like it with other margins, and the end of the search.
-  void tell_expected() {
+  // What is still to come, once the first round of further candidates was tried: the others, the short list by a larger
+  // sample, the end of the search, and by every ray the choice, others with other margins, and what is found.
+  void tell_expected(double round_seconds, std::size_t tried) {
     if (!watch_.report || stopped() || choice_.rows.size() <= problem_.kept.size()) return;
-    const auto count = static_cast<double>(choice_.rows.size());
-    const double placed = count - static_cast<double>(problem_.kept.size());
-    const double around = static_cast<double>(kRounds * kAround) * 2 * placed;
-    const double listed = kCloser * (kMoreClosely + kInsteadClosely * placed) / 2;  // the same may stand for several
-    const SurveyProblem narrow = narrowed(choice_.rows.size() - problem_.kept.size());
+    const std::vector<PlacedStation> chosen = stations_of(choice_);
+    const auto count = static_cast<double>(chosen.size()), kept = static_cast<double>(problem_.kept.size());
+    const Progress silent{.report = {}, .stop = watch_.stop};
+    // The first call sets up what later ones use again, so that it may take longer.
+    const auto sampled = [&](std::size_t copies) {
+      const std::vector<PlacedNetwork> some(copies, chosen);
+      const auto evaluate = [&] { run_.evaluator().evaluate(some, {.voxels = config_.sample_voxels}, silent); };
+      return timed(evaluate) / static_cast<double>(copies);
+    };
+    const auto every_ray_of = [&](std::size_t stations) {
+      const std::vector<PlacedNetwork> first(1,
+                                             {chosen.begin(), chosen.begin() + static_cast<std::ptrdiff_t>(stations)});
+      return timed([&] { run_.evaluator().confirm(first, silent); });
+    };
+    const double network = std::min(sampled(1), sampled(kTimedNetworks));
+    const std::size_t few = std::min(kTimedStations, chosen.size());
+    const double one = std::min(every_ray_of(1), every_ray_of(1));
+    const double each = few > 1 ? (every_ray_of(few) - one) / static_cast<double>(few - 1) : one;
+    if (stopped()) return;
+    const SurveyProblem narrow = narrowed(chosen.size() - problem_.kept.size());
     const PlanConfig config = search_config(narrow);
     const auto networks = static_cast<double>(config.iterations * population_of(narrow, config));
-    const Network first = to_network(std::span(&table_.stations()[choice_.rows.back()], 1));
-    const auto trace = [&] { simulator_.evaluate(first, {}, {.report = {}, .stop = watch_.stop}); };
-    const double warm_up = timed(trace);  // the first call sets up what later ones use again
-    double every_ray = std::min(warm_up, timed(trace));
-    if (stopped()) return;
-    if (run_.measures().all_needs().surroundings) every_ray *= 2;
-    const double seconds = (kRounds + 2) * choose_seconds_ + (around + listed + networks * count) * station_seconds_ +
-                           3 * count * every_ray;
+    const double listed = kMoreClosely + kListedShare * kInsteadClosely * (count - kept);
+    const double choosing = std::max(0.0, round_seconds - static_cast<double>(tried) * station_seconds_);
+    const double closely = listed * (station_seconds_ + (kCloser - 1) * look_seconds_) + choosing;
+    const double seconds = (kRounds - 1) * kLaterRounds * round_seconds + closely + networks * network +
+                           kEveryRay * (one + (count - 1) * std::max(each, 0.0));
     watch_.report({.evaluations = traced_, .seconds_left = -1, .phase = "choose", .whole_seconds_left = seconds});
   }
 
@@ -180,7 +201,7 @@ class FewestPlan {
 
   void choose() {
     tell("choose", -1);
-    choose_seconds_ = timed([&] { choice_ = fewest_on_rows(question(), watch_.stop, {}, &nearly_); });
+    choice_ = fewest_on_rows(question(), watch_.stop, {}, &nearly_);
     fit_time();
     choice_ = better_on_rows(question(), std::move(choice_), watch_.stop);
   }
@@ -487,10 +508,9 @@ class FewestPlan {
   const SurveyProblem problem_;
   std::size_t most_;  // stations
   double link_, coverage_ = 0, coverage_margin_ = 0, link_margin_ = 0;
-  double sample_off_ = 0;       // what the sample of the search says too much of the choice's coverage
-  double station_seconds_ = 0;  // that one takes by the sample, links and all
-  double choose_seconds_ = 0;   // that the first choice took
-  std::uint64_t sample_;        // voxels
+  double sample_off_ = 0;  // what the sample of the search says too much of the choice's coverage
+  double look_seconds_ = 0, station_seconds_ = 0;  // that one takes by the sample: what it captures, and links and all
+  std::uint64_t sample_;                           // voxels
   CandidateTable table_;
   RowAnswer choice_;
   std::optional<RowAnswer> nearly_;
