@@ -228,6 +228,7 @@ void add_exact(py::module_& m) {
           .add("candidates", &ExactConfig::candidates, "Positions to choose from, spread evenly over the ground.")
           .add("sample_voxels", &ExactConfig::sample_voxels, "0: every voxel.")
           .add("link", &ExactConfig::link, "Least scan overlap along some spanning tree; 0: any.")
+          .add("apart_m", &ExactConfig::apart_m, "Least distance between heads.")
           .add("max_seconds", &ExactConfig::max_seconds, "Of branch and bound.")
           .add("fixed", &ExactConfig::fixed, "Heads of stations that are there already.");
   m.def(

@@ -21,6 +21,9 @@ struct BoundConfig {
   double tolerance = 0.001;  ///< How exactly the linear relaxation is solved, in coverage.
   double max_seconds = 120;  ///< For each relaxation; one that is cut short still bounds, less tightly. 0: no limit.
   double exact_seconds = 0;  ///< For branch and bound, towards the best choice itself; 0: greedy and swaps only.
+  /// Rows of which a choice has one of the two at most: positions too near to each other, say. Like links they enter
+  /// the branch and bound; without time for it `bound` is that of any choice. `bound_stations` passes over them.
+  std::vector<RowLink> exclude = {};
 };
 
 Settings settings(const BoundConfig& config);

@@ -264,6 +264,7 @@ struct ExactConfig {
   std::size_t candidates = 256;          ///< Positions to choose from, spread evenly over the ground.
   std::uint64_t sample_voxels = 20'000;  ///< 0: every voxel.
   double link = 0;               ///< Least scan overlap along some spanning tree; 0: stations need not hang together.
+  double apart_m = 0;            ///< Least distance between heads.
   double max_seconds = 60;       ///< Of branch and bound. What is found when they are over depends on the machine.
   std::vector<Vec3> fixed = {};  ///< Stations that are there already; neither counted nor returned.
 };

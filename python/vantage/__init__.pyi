@@ -640,6 +640,7 @@ def exact_network(
     candidates: int = 256,
     sample_voxels: int = 20000,
     link: float = 0.0,
+    apart_m: float = 0.0,
     max_seconds: float = 60.0,
     fixed: Sequence[Sequence[float]] = [],
 ) -> ExactResult: ...

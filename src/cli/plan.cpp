@@ -246,16 +246,21 @@ std::vector<Vec3> greedy_start(LoadedSite& site, Simulator& simulator, const Sur
 // Heads of the best choice for the largest network that was found in time; empty where none was.
 std::vector<Vec3> exact_start(LoadedSite& site, Simulator& simulator, const SurveyProblem& problem,
                               const PlanConfig& config, double seconds, Program& program, std::stop_token stop) {
-  double link = 0;
-  for (const Requirement& requirement : problem.requirements)
-    if (requirement.objective.name == "link" && requirement.bound == Requirement::Bound::at_least)
-      link = requirement.limit;
+  const auto least = [&](std::string_view name) {
+    double limit = 0;
+    for (const Requirement& requirement : problem.requirements)
+      if (requirement.objective.name == name && requirement.bound == Requirement::Bound::at_least)
+        limit = requirement.limit;
+    return limit;
+  };
+  const double link = least("link");
   ProgressLine line(program.console, "exact");
   const ExactResult exact =
       exact_network(simulator, site.area(), site.clash(),
                     {.stations = problem.stations_max,
                      .sample_voxels = std::min<std::uint64_t>(config.sample_voxels, sample_for_coverage),
                      .link = link,
+                     .apart_m = least("apart"),
                      .max_seconds = seconds,
                      .fixed = problem.kept},
                     {.report = [&](double done) { line.update(done); }, .stop = std::move(stop)});

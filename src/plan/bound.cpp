@@ -39,19 +39,29 @@ std::vector<double> as_shares(const Rows& chosen, std::size_t candidates) {
 // A choice that comes as near to its bound is the best: branch and bound has tolerances.
 constexpr double closed = 1e-5;
 
-// Whether a row besides the taken ones leaves the network whole.
-MayTake keeping_together(const RowGraph* graph) {
-  if (!graph) return {};
-  return [graph](std::size_t row, std::span<const std::size_t> taken) {
+// Whether a row may stand beside the taken ones and, with `graph`, leaves the network whole.
+MayTake allowed_by(const RowGraph* graph, const ExcludedRows& excluded) {
+  if (!graph && excluded.empty()) return {};
+  return [graph, &excluded](std::size_t row, std::span<const std::size_t> taken) {
+    if (std::ranges::any_of(taken, [&](std::size_t other) { return excluded.exclude(row, other); })) return false;
+    if (!graph) return true;
     Rows all(taken.begin(), taken.end());
     all.push_back(row);
     return graph->connected(all);
   };
 }
 
+ExcludedRows excluded_rows(const CaptureRows& rows, const BoundConfig& config) {
+  for (const auto& [a, b] : config.exclude)
+    if (a >= rows.size() || b >= rows.size())
+      throw Error(Errc::invalid_argument, "bound: rows " + std::to_string(a) + " and " + std::to_string(b) +
+                                              " exclude each other, of " + std::to_string(rows.size()));
+  return {rows.size(), config.exclude};
+}
+
 // A good network of so many rows at most that hangs together; empty where none is met.
 Rows choose_linked(const CaptureRows& rows, std::size_t stations, std::span<const std::size_t> fixed,
-                   const RowGraph& graph, const Progress& progress) {
+                   const RowGraph& graph, const ExcludedRows& excluded, const Progress& progress) {
   // Arrays of numbers for a choice that knows fixed rows by standing first.
   Rows order(fixed.begin(), fixed.end());
   for (std::size_t k = 0; k < rows.size(); ++k)
@@ -59,13 +69,17 @@ Rows choose_linked(const CaptureRows& rows, std::size_t stations, std::span<cons
   CaptureRows sorted(rows.weights(), rows.goal_density());
   std::vector<std::uint32_t> points;
   std::vector<float> overlaps(order.size() * order.size());
+  std::vector<char> near(order.size() * order.size());
   for (std::size_t k = 0; k < order.size(); ++k) {
     points.assign(rows.voxels().size(), 0);
     for (const CapturedVoxel& seen : rows.row(order[k])) points[seen.voxel] = seen.points;
     sorted.add(points);
-    for (std::size_t l = 0; l < order.size(); ++l) overlaps[k * order.size() + l] = graph.linked(order[k], order[l]);
+    for (std::size_t l = 0; l < order.size(); ++l) {
+      overlaps[k * order.size() + l] = graph.linked(order[k], order[l]);
+      near[k * order.size() + l] = excluded.exclude(order[k], order[l]);
+    }
   }
-  const PairTable pairs(order.size(), std::move(overlaps));
+  const PairTable pairs(order.size(), std::move(overlaps), std::move(near));
   const RowAnswer answer = fewest_on_rows({.rows = sorted,
                                            .pairs = pairs,
                                            .coverage = 1,
@@ -77,21 +91,21 @@ Rows choose_linked(const CaptureRows& rows, std::size_t stations, std::span<cons
   Rows chosen;
   for (const std::size_t k : answer.rows) chosen.push_back(order[k]);
   if (!graph.connected(chosen)) return {};
-  return improve_by_swaps(rows, std::move(chosen), fixed.size(), 1e-9, keeping_together(&graph), progress);
+  return improve_by_swaps(rows, std::move(chosen), fixed.size(), 1e-9, allowed_by(&graph, excluded), progress);
 }
 
 // Branch and bound over the cuts, which are added where its choices turn out to hold less than the cuts say, until the
 // choice holds what the bound allows.
 void branch(CaptureMaster& master, const CaptureRows& rows, std::span<const std::size_t> fixed, const RowGraph* graph,
-            double seconds, CaptureBound& result, const Progress& progress) {
+            const ExcludedRows& excluded, double seconds, CaptureBound& result, const Progress& progress) {
   using Clock = std::chrono::steady_clock;
   const auto begun = Clock::now();
-  const MayTake may_take = keeping_together(graph);
+  const MayTake may_take = allowed_by(graph, excluded);
   double reached = result.chosen.empty() ? -1 : RowCover(rows, result.chosen).value();
   while (!progress.stopped() && result.bound - reached > closed) {
     const double left = seconds - std::chrono::duration<double>(Clock::now() - begun).count();
     if (left <= 0) break;
-    const CaptureMaster::Choice choice = master.choose(result.stations, left, std::max(reached, 0.0), graph);
+    const CaptureMaster::Choice choice = master.choose(result.stations, left, std::max(reached, 0.0), graph, excluded);
     result.bound = std::min(result.bound, choice.bound);
     if (choice.rows.empty()) break;
     Rows chosen(fixed.begin(), fixed.end());
@@ -114,8 +128,11 @@ CaptureBound bound_of(const CaptureRows& rows, std::size_t stations, std::span<c
   CaptureBound result;
   result.stations = stations;
   const Progress silent{{}, progress.stop};
-  result.chosen =
-      graph ? choose_linked(rows, stations, fixed, *graph, silent) : choose_rows(rows, stations, fixed, silent);
+  const ExcludedRows excluded = excluded_rows(rows, config);
+  const MayTake may_take = allowed_by(nullptr, excluded);
+  result.chosen = graph ? choose_linked(rows, stations, fixed, *graph, excluded, silent)
+                        : improve_by_swaps(rows, choose_greedily(rows, stations, fixed, 1, may_take), fixed.size(),
+                                           1e-9, may_take, silent);
   const Rows free(result.chosen.begin() + static_cast<std::ptrdiff_t>(std::min(fixed.size(), result.chosen.size())),
                   result.chosen.end());
   const auto solve = [&](CaptureMaster& master, std::size_t candidates, double from) {
@@ -132,7 +149,7 @@ CaptureBound bound_of(const CaptureRows& rows, std::size_t stations, std::span<c
   result.complete = before.complete && after.complete;
   result.half_bound = before.bound;
   result.spacing_term = std::max(after.bound - before.bound, 0.0);
-  if (config.exact_seconds > 0) branch(master, rows, fixed, graph, config.exact_seconds, result, progress);
+  if (config.exact_seconds > 0) branch(master, rows, fixed, graph, excluded, config.exact_seconds, result, progress);
   result.reached = rows.coverage(result.chosen);
   progress(1);
   return result;

@@ -145,6 +145,7 @@ struct CaptureMaster::Impl {
   // Further columns and rows under which the taken rows hang together: at one of them a unit for each enters, each
   // keeps one and hands the others on along links to taken rows. Returns the columns that have to be whole.
   std::vector<int> add_flow(ClpSimplex& lp, std::size_t stations, const RowGraph& graph) const;
+  void add_exclusions(ClpSimplex& lp, std::size_t stations, const ExcludedRows& excluded) const;
 
   Relaxed solve(bool fewest, double limit, double tolerance, double seconds, const Progress& progress);
 
@@ -318,10 +319,7 @@ std::vector<int> CaptureMaster::Impl::add_flow(ClpSimplex& lp, std::size_t stati
   for (std::size_t k = 0; k < candidates; ++k) {
     const int y = static_cast<int>(k);
     const double there = is_fixed(k) ? 1 : 0;
-    if (there > 0)
-      lp.setColumnUpper(y, 0);  // it cannot be taken again
-    else
-      in[k].add(y, -all), net[k].add(y, -1);
+    if (there == 0) in[k].add(y, -all), net[k].add(y, -1);
     lp.addRow(static_cast<int>(in[k].index.size()), in[k].index.data(), in[k].value.data(), -COIN_DBL_MAX, there * all);
     lp.addRow(static_cast<int>(net[k].index.size()), net[k].index.data(), net[k].value.data(), there, there);
     // A fraction of a flow reaches far; so each taken row needs a taken neighbour, too.
@@ -340,8 +338,26 @@ std::vector<int> CaptureMaster::Impl::add_flow(ClpSimplex& lp, std::size_t stati
   return whole;
 }
 
-CaptureMaster::Choice CaptureMaster::choose(std::size_t stations, double seconds, double known,
-                                            const RowGraph* graph) const {
+// At most one of two that exclude each other: none of those beside a row that is taken, one line of the program for
+// all.
+void CaptureMaster::Impl::add_exclusions(ClpSimplex& lp, std::size_t stations, const ExcludedRows& excluded) const {
+  for (const std::size_t k : fixed)
+    for (const std::size_t other : excluded.beside(k))
+      if (other < candidates) lp.setColumnUpper(static_cast<int>(other), 0);
+  for (std::size_t k = 0; k < candidates; ++k) {
+    std::vector<int> index;
+    for (const std::size_t other : excluded.beside(k))
+      if (other < candidates) index.push_back(static_cast<int>(other));
+    if (index.empty()) continue;
+    const auto most = static_cast<double>(std::min(index.size(), stations));
+    std::vector<double> value(index.size(), 1);
+    index.push_back(static_cast<int>(k)), value.push_back(most);
+    lp.addRow(static_cast<int>(index.size()), index.data(), value.data(), -COIN_DBL_MAX, most);
+  }
+}
+
+CaptureMaster::Choice CaptureMaster::choose(std::size_t stations, double seconds, double known, const RowGraph* graph,
+                                            const ExcludedRows& excluded) const {
   const Impl& m = *impl_;
   ClpSimplex lp;
   m.load(lp);
@@ -350,7 +366,10 @@ CaptureMaster::Choice CaptureMaster::choose(std::size_t stations, double seconds
   lp.setRowUpper(Impl::number, static_cast<double>(stations));
   lp.setRowLower(Impl::capture, known - known_slack);
   std::vector<int> whole;
+  for (const std::size_t k : m.fixed)
+    if (k < m.candidates) lp.setColumnUpper(static_cast<int>(k), 0);  // it cannot be taken again
   if (graph) whole = m.add_flow(lp, stations, *graph);
+  m.add_exclusions(lp, stations, excluded);
   OsiClpSolverInterface solver(&lp);
   solver.messageHandler()->setLogLevel(0);
   for (const int column : whole) solver.setInteger(column);

@@ -49,12 +49,14 @@ class CaptureMaster {
 
   // The best integer y of so many stations at most, by branch and bound over the cuts so far; empty where none was
   // found in time. `bound` is an upper bound for any choice of so many candidates. `known`: what some choice is known
-  // to have; worse ones are not looked at. With `graph`, of choices that hang together with the fixed rows.
+  // to have; worse ones are not looked at. With `graph`, of choices that hang together with the fixed rows; in all
+  // cases of rows that `excluded` lets stand beside each other and the fixed ones, if it is of any.
   struct Choice {
     std::vector<std::size_t> rows;
     double bound = 1;
   };
-  Choice choose(std::size_t stations, double seconds, double known = 0, const RowGraph* graph = nullptr) const;
+  Choice choose(std::size_t stations, double seconds, double known, const RowGraph* graph,
+                const ExcludedRows& excluded) const;
 
  private:
   struct Impl;

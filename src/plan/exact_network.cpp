@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <string>
 
@@ -25,6 +26,9 @@ std::vector<RowLink> links_between(Simulator& surroundings, std::span<const Plac
 ExactResult exact_network(Simulator& simulator, const SearchArea& area, const ClashChecker& clash,
                           const ExactConfig& config, const Progress& progress) {
   if (config.candidates < 1) throw Error(Errc::invalid_argument, "exact: at least one candidate is needed");
+  if (!(config.apart_m >= 0 && std::isfinite(config.apart_m)))
+    throw Error(Errc::invalid_argument,
+                "exact: heads are to be " + std::to_string(config.apart_m) + " m apart; give 0 or more");
   if (!(config.max_seconds > 0))
     throw Error(Errc::invalid_argument,
                 "exact: branch and bound is given " + std::to_string(config.max_seconds) + " s, but needs some");
@@ -41,7 +45,12 @@ ExactResult exact_network(Simulator& simulator, const SearchArea& area, const Cl
   ExactResult result;
   const std::uint64_t sample = config.sample_voxels > 0 ? config.sample_voxels : simulator.voxel_count();
   const CaptureRows rows = capture_rows(simulator, stations, sample, part_of(progress, 0, 2));
-  const BoundConfig bound{.max_seconds = config.max_seconds, .exact_seconds = config.max_seconds};
+  BoundConfig bound{.max_seconds = config.max_seconds, .exact_seconds = config.max_seconds};
+  for (std::size_t i = 0; i < stations.size(); ++i)
+    for (std::size_t j = std::max(i + 1, kept); j < stations.size(); ++j)
+      if (const Vec3 apart = stations[i].position - stations[j].position;
+          dot(apart, apart) < config.apart_m * config.apart_m)
+        bound.exclude.push_back({i, j});
   if (config.link > 0 && !rows.cancelled()) {
     Simulator surroundings = surroundings_of(simulator);
     const auto links = links_between(surroundings, stations, config.link, 10'000, {{}, progress.stop});

@@ -129,6 +129,12 @@ class Chooser {
   bool linked(std::size_t a, std::size_t b) const {
     return a != b && (q_.link <= 0 || static_cast<double>(pairs_.overlap(a, b)) >= q_.link);
   }
+  // Whether `row` may stand with all on the way back from `at`; `from` is `size()` where a way begins.
+  bool along_way(std::size_t row, std::size_t at, std::span<const std::size_t> from) const {
+    for (; from[at] < rows_.size(); at = from[at])
+      if (at == row || pairs_.too_near(at, row)) return false;
+    return true;
+  }
   std::vector<std::size_t> next_way(const std::vector<std::size_t>& chosen) const;
   std::vector<std::size_t> way_between_parts(const std::vector<std::size_t>& chosen) const;
   std::optional<std::size_t> first_row() const;
@@ -186,7 +192,9 @@ std::vector<std::size_t> Chooser::next_way(const std::vector<std::size_t>& chose
     for (std::size_t row = q_.fixed; row < rows_.size(); ++row) {
       if (hops[row] < none || !allowed(row, chosen)) continue;
       for (const std::size_t before : now)
-        if (linked(before, row) && (from[row] == none || gain[before] > gain[from[row]])) from[row] = before;
+        if (linked(before, row) && (from[row] == none || gain[before] > gain[from[row]]) &&
+            along_way(row, before, from))
+          from[row] = before;
       if (from[row] < none) next.push_back(row);
     }
     for (const std::size_t row : next) {
@@ -232,6 +240,7 @@ std::vector<std::size_t> Chooser::way_between_parts(const std::vector<std::size_
     const std::size_t at = open[k];
     for (std::size_t row = 0; row < rows_.size(); ++row) {
       if (seen[row] || !linked(at, row) || (!other[row] && (row < q_.fixed || !allowed(row, chosen)))) continue;
+      if (!along_way(row, at, from)) continue;
       from[row] = at, seen[row] = 1;
       if (!other[row]) {
         open.push_back(row);
@@ -384,7 +393,8 @@ PairTable::PairTable(const CaptureRows& surroundings, std::span<const PlacedStat
   });
 }
 
-PairTable::PairTable(std::size_t size, std::vector<float> overlaps) : size_(size), overlap_(std::move(overlaps)) {}
+PairTable::PairTable(std::size_t size, std::vector<float> overlaps, std::vector<char> near)
+    : size_(size), overlap_(std::move(overlaps)), near_(std::move(near)) {}
 
 RowAnswer judge_rows(const RowQuestion& question, std::vector<std::size_t> rows) {
   RowAnswer answer{.rows = std::move(rows)};

@@ -21,8 +21,8 @@ class PairTable {
   // Scan overlap from rows over the surroundings, by counts of voxels that both see, 0 where there are no rows;
   // `nearest_m`: what stations have to stand apart.
   PairTable(const CaptureRows& surroundings, std::span<const PlacedStation> stations, double nearest_m);
-  // Of numbers, row-major; all may stand together.
-  PairTable(std::size_t size, std::vector<float> overlaps);
+  // Of numbers, row-major. `near`: whether two may not stand together; empty: all may.
+  PairTable(std::size_t size, std::vector<float> overlaps, std::vector<char> near = {});
 
   std::size_t size() const { return size_; }
   float overlap(std::size_t i, std::size_t j) const { return overlap_[i * size_ + j]; }

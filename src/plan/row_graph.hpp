@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which rows may be neighbours in a network, and whether a choice of them hangs together.
+// Which rows may be neighbours in a network, which exclude each other, and whether a choice of them hangs together.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -41,6 +42,25 @@ class RowGraph {
  private:
   std::size_t size_;
   std::vector<char> linked_;
+};
+
+// For each row those that no network has beside it.
+class ExcludedRows {
+ public:
+  ExcludedRows() = default;
+  // REQUIRES: no pair beyond `size`.
+  ExcludedRows(std::size_t size, std::span<const RowLink> pairs) : beside_(size) {
+    for (const auto& [a, b] : pairs)
+      if (a != b) beside_[a].push_back(b), beside_[b].push_back(a);
+  }
+  bool empty() const {
+    return std::ranges::all_of(beside_, [](const auto& rows) { return rows.empty(); });
+  }
+  std::span<const std::size_t> beside(std::size_t row) const { return beside_[row]; }
+  bool exclude(std::size_t a, std::size_t b) const { return std::ranges::find(beside_[a], b) != beside_[a].end(); }
+
+ private:
+  std::vector<std::vector<std::size_t>> beside_;
 };
 
 }  // namespace vantage

@@ -110,7 +110,8 @@ std::map<std::pair<std::uint32_t, std::uint32_t>, int> rim_of(const Welded& mesh
   for (const std::uint32_t id : ends) lattice.add(mesh.points[id], id);
 
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> parts;
-  for (const auto& [edge, times] : edges) {
+  for (const auto& [between, times] : edges) {
+    const auto& edge = between;  // Clang 14 captures no structured binding
     const Vec3 a = mesh.points[edge.first], along = mesh.points[edge.second] - a;
     const double size = length(along);
     std::vector<std::pair<double, std::uint32_t>> on{{0, edge.first}, {1, edge.second}};

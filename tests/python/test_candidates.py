@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
+import math
 import unittest
 
 import numpy as np
@@ -64,6 +65,20 @@ class CandidatesAndBounds(unittest.TestCase):
         self.assertGreaterEqual(len(among), 2)  # of three stations: a tree
         self.assertLessEqual(linked.bound, any_choice.bound + 1e-12)
         self.assertEqual(self.found.rows.coverage(linked.chosen)[0], linked.reached[0])
+
+    def test_the_exact_network_keeps_apart(self):
+        def exact(apart_m):
+            found = vantage.exact_network(
+                self.simulator, self.area, self.clash, 3, candidates=24, sample_voxels=400, max_seconds=20, apart_m=apart_m)
+            heads = [s.position for s in found.stations]
+            return found, min(math.dist(a, b) for i, a in enumerate(heads) for b in heads[:i])
+
+        anyhow, near = exact(0)
+        apart, far = exact(1.5 * near)
+        self.assertGreaterEqual(far, 1.5 * near)
+        self.assertLessEqual(apart.choice.reached[0], anyhow.choice.bound + 1e-12)
+        with self.assertRaises(vantage.Error):
+            exact(-1)
 
     def test_the_exact_network_is_no_worse_than_the_greedy_one(self):
         exact = vantage.exact_network(

@@ -198,6 +198,48 @@ TEST(Bound, FindsTheBestThatHangsTogether) {
   }
 }
 
+TEST(Bound, TakesNoTwoThatExcludeEachOther) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    SCOPED_TRACE(seed);
+    const CaptureRows rows = random_rows(12, 150, seed, 0.15, 2);
+    RandomStream random(seed + 200);
+    std::vector<RowLink> links, exclude;
+    for (std::size_t a = 0; a < rows.size(); ++a)
+      for (std::size_t b = a + 1; b < rows.size(); ++b) {
+        if (random.uniform() < 0.5) links.push_back({a, b});
+        if (random.uniform() < 0.4) exclude.push_back({a, b});
+      }
+    const auto stands = [&](const Rows& chosen) {
+      return std::ranges::none_of(exclude, [&](const RowLink& pair) {
+        return std::ranges::count(chosen, pair[0]) > 0 && std::ranges::count(chosen, pair[1]) > 0;
+      });
+    };
+    const BoundConfig config{.tolerance = 1e-6, .exact_seconds = 60, .exclude = exclude};
+    for (const Rows& fixed : {Rows{}, Rows{3}}) {
+      double best = 0, best_linked = 0;
+      for (const std::size_t count : {1u, 2u, 3u})  // fewer may be all that stand together
+        each_choice(rows.size(), count, [&](Rows chosen) {
+          if (fixed.size() == 1 && std::ranges::count(chosen, 3u) > 0) return;
+          chosen.insert(chosen.end(), fixed.begin(), fixed.end());
+          if (!stands(chosen)) return;
+          const double value = rows.coverage(chosen).value;
+          best = std::max(best, value);
+          if (hangs_together(chosen, links)) best_linked = std::max(best_linked, value);
+        });
+      const CaptureBound found = bound_capture(rows, 3, fixed, config);
+      EXPECT_TRUE(stands(found.chosen));
+      EXPECT_NEAR(found.reached.value, best, 1e-9);
+      EXPECT_NEAR(found.bound, best, 2e-5);
+      const CaptureBound linked = bound_linked_capture(rows, 3, links, fixed, config);
+      EXPECT_TRUE(stands(linked.chosen) && hangs_together(linked.chosen, links));
+      EXPECT_NEAR(linked.reached.value, best_linked, 1e-9);
+      EXPECT_NEAR(linked.bound, best_linked, 2e-5);
+    }
+  }
+  const CaptureRows rows = random_rows(5, 50, 1);
+  EXPECT_THROW(bound_capture(rows, 2, {}, {.exclude = {{0, 5}}}), Error);
+}
+
 TEST(Bound, SaysWhereNothingHangsTogether) {
   const CaptureRows rows = random_rows(6, 80, 4, 0.3);
   const CaptureBound none = bound_linked_capture(rows, 3, {}, Rows{0, 1}, {.exact_seconds = 10});
