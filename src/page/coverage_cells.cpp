@@ -26,7 +26,7 @@ std::uint32_t fitting_side(const std::vector<Place>& places, std::size_t most) {
     for (const Place& p : places)
       keys.push_back(std::uint64_t{p[0] / side} << 42 | std::uint64_t{p[1] / side} << 21 | p[2] / side);
     std::ranges::sort(keys);
-    return static_cast<std::size_t>(std::ranges::unique(keys).begin() - keys.begin()) <= most;
+    return static_cast<std::size_t>(std::unique(keys.begin(), keys.end()) - keys.begin()) <= most;
   };
   std::uint32_t high = 1;
   while (!fits(high)) high *= 2;

@@ -91,7 +91,7 @@ std::vector<std::size_t> coloured_networks(const Report& report) {
   std::vector<std::size_t> chosen{report.answer};
   for (std::size_t k = 0; k < some; ++k) chosen.push_back(some > 1 ? k * (all - 1) / (some - 1) : 0);
   std::ranges::sort(chosen);
-  chosen.erase(std::ranges::unique(chosen).begin(), chosen.end());
+  chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
   return chosen;
 }
 

@@ -106,7 +106,7 @@ std::size_t count_surveyed(std::span<const CoplanarPair> pairs) {
   std::vector<std::uint32_t> surveyed;
   for (const CoplanarPair& pair : pairs) surveyed.push_back(pair.surveyed);
   std::ranges::sort(surveyed);
-  return static_cast<std::size_t>(std::ranges::unique(surveyed).begin() - surveyed.begin());
+  return static_cast<std::size_t>(std::unique(surveyed.begin(), surveyed.end()) - surveyed.begin());
 }
 
 }  // namespace
