@@ -2,7 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <iterator>
 #include <numeric>
+#include <string>
+#include <string_view>
 
 #include "image/encode.hpp"
 #include "support/temporary_folder.hpp"
@@ -63,6 +66,26 @@ TEST(ImageFile, JpegsAreReadBackNearlyAsTheyWere) {
   for (std::size_t k = 0; k < image.rgba.size(); ++k) ASSERT_NEAR(again.rgba[k], image.rgba[k], 12) << k;
   EXPECT_THROW(encode_jpeg(Image{2, 2, {}}, 80), Error);
   EXPECT_THROW(encode_jpeg(image, 0), Error);
+}
+
+// A chunk that claims a gigabyte: the decoder would make room for it before it looks.
+TEST(ImageFile, RefusesPngsWhoseChunksClaimMoreThanThereIs) {
+  const test::TemporaryFolder folder;
+  write_png(folder / "a.png", counting_image(40, 20));
+  std::ifstream file(folder / "a.png", std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  const std::size_t type = bytes.find("IDAT");
+  ASSERT_NE(type, std::string::npos);
+  for (const std::string_view length : {"\x41\x54\x01\x1a", "\xff\xff\xff\xff"}) {
+    bytes.replace(type - 4, 4, length);
+    std::ofstream(folder / "b.png", std::ios::binary) << bytes;
+    try {
+      read_image(folder / "b.png");
+      FAIL() << "it was read";
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find("claims more bytes"), std::string::npos) << error.what();
+    }
+  }
 }
 
 TEST(ImageFile, SaysWhatIsWrong) {
