@@ -196,7 +196,6 @@ void SampledVoxelCounter::list_rays(std::uint32_t i) {
 
   Sight sight{i, listed_size_, 0, std::min(cube.farthest * static_cast<float>(1 + trust), pattern.max_range)};
   const float *const cosines = pattern.cos_azimuth.data(), *const sines = pattern.sin_azimuth.data();
-  const std::uint32_t last_step = pattern.columns() - std::min(pattern.columns(), Fan::step);
   for (const RayRanges::Range columns : window.columns) {
     for (std::uint32_t row = window.rows.begin; row < window.rows.end; ++row) {
       const float sine = pattern.sin_zenith[row], cosine = pattern.cos_zenith[row];
@@ -210,7 +209,7 @@ void SampledVoxelCounter::list_rays(std::uint32_t i) {
           fan_.column[size + k] = column + k;
         };
         std::uint32_t n = std::min({columns.end - column, Fan::capacity - size, Fan::step});
-        if (column <= last_step) {
+        if (column + Fan::step <= pattern.columns()) {
           for (std::uint32_t k = 0; k < Fan::step; ++k) put(k);
         } else {
           n = 1;
