@@ -79,6 +79,11 @@ double jackknife_bias(double estimate, const std::vector<double>& values, double
 // What is corrected must not be worse known for it.
 double within_error(double bias, double error) { return std::clamp(bias, -error, error); }
 
+Estimate jackknifed(double seen, const std::vector<double>& values, double unsampled, double scale) {
+  const double error = jackknife_error(values, unsampled, scale);
+  return {seen - within_error(jackknife_bias(seen, values, unsampled), error), error};
+}
+
 // Whether group g of 20 is in the r-th half of them, r < 19: the rows of Paley's Hadamard matrix of order 20, by the
 // squares modulo 19. Each group is in as many halves as any other, and with each other one as often (McCarthy:
 // Pseudo-replication: Half samples, 1969).
@@ -113,9 +118,8 @@ double halving_bias(double estimate, const NetworkCounts& counts, double unsampl
 Estimate of_pairs(double seen, const NetworkCounts& counts, double unsampled, double scale,
                   const std::function<double(const NetworkCounts&)>& of) {
   const std::vector<double> values = replicates<double>(counts, of);
+  if (values.size() != kHalvedGroups) return jackknifed(seen, values, unsampled, scale);
   const double error = jackknife_error(values, unsampled, scale);
-  if (values.size() != kHalvedGroups)
-    return {seen - within_error(jackknife_bias(seen, values, unsampled), error), error};
   const double bias = halving_bias(seen, counts, unsampled, of);
   return {seen - bias, std::min(std::hypot(error, bias), largest_error * scale)};
 }
@@ -162,16 +166,11 @@ Estimate estimate(const Objective& objective, const MeasuredNetwork& measured) {
                                 .surroundings_voxels = measured.surroundings_voxels,
                                 .minutes_on_site = measured.minutes_on_site});
       };
-      if (objective.needs.pairs && !objective.needs.registration) {
-        const Estimate own = of_pairs(estimate.value, counts, unsampled, scale, of);
-        estimate.value = own.value;
-        add(own.standard_error);
-      } else {
-        const std::vector<double> values = replicates<double>(counts, of);
-        const double own = jackknife_error(values, unsampled, scale);
-        estimate.value -= within_error(jackknife_bias(estimate.value, values, unsampled), own);
-        add(own);
-      }
+      const Estimate own = objective.needs.pairs && !objective.needs.registration
+                               ? of_pairs(estimate.value, counts, unsampled, scale, of)
+                               : jackknifed(estimate.value, replicates<double>(counts, of), unsampled, scale);
+      estimate.value = own.value;
+      add(own.standard_error);
     }
   }
   // Another sample, of other voxels: its error is on top.

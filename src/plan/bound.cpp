@@ -51,6 +51,12 @@ MayTake allowed_by(const RowGraph* graph, const ExcludedRows& excluded) {
   };
 }
 
+Rows choose_allowed(const CaptureRows& rows, std::size_t stations, std::span<const std::size_t> fixed,
+                    const MayTake& may_take, const Progress& progress) {
+  return improve_by_swaps(rows, choose_greedily(rows, stations, fixed, 1, may_take), fixed.size(), 1e-9, may_take,
+                          progress);
+}
+
 ExcludedRows excluded_rows(const CaptureRows& rows, const BoundConfig& config) {
   for (const auto& [a, b] : config.exclude)
     if (a >= rows.size() || b >= rows.size())
@@ -131,8 +137,7 @@ CaptureBound bound_of(const CaptureRows& rows, std::size_t stations, std::span<c
   const ExcludedRows excluded = excluded_rows(rows, config);
   const MayTake may_take = allowed_by(nullptr, excluded);
   result.chosen = graph ? choose_linked(rows, stations, fixed, *graph, excluded, silent)
-                        : improve_by_swaps(rows, choose_greedily(rows, stations, fixed, 1, may_take), fixed.size(),
-                                           1e-9, may_take, silent);
+                        : choose_allowed(rows, stations, fixed, may_take, silent);
   const Rows free(result.chosen.begin() + static_cast<std::ptrdiff_t>(std::min(fixed.size(), result.chosen.size())),
                   result.chosen.end());
   const auto solve = [&](CaptureMaster& master, std::size_t candidates, double from) {
@@ -168,7 +173,7 @@ Settings settings(const BoundConfig& config) {
 Rows choose_rows(const CaptureRows& rows, std::size_t stations, std::span<const std::size_t> fixed,
                  const Progress& progress) {
   check(rows, fixed);
-  return improve_by_swaps(rows, choose_greedily(rows, stations, fixed), fixed.size(), 1e-9, {}, progress);
+  return choose_allowed(rows, stations, fixed, {}, progress);
 }
 
 CaptureBound bound_capture(const CaptureRows& rows, std::size_t stations, std::span<const std::size_t> fixed,
