@@ -18,6 +18,8 @@ Options<SimulatorConfig> simulator_options() {
       .add("user_size_m", &SimulatorConfig::user_size_m, "Upper bound of the voxel size (equation 2), metres.")
       .add("point_spacing_m", &SimulatorConfig::point_spacing_m,
            "Wanted spacing n of points, metres; goal density = voxel_size^2 / n^2.")
+      .add("spacing_by_detail", &SimulatorConfig::spacing_by_detail,
+           "Of a mesh that asks for a detail that is the wanted spacing.")
       .add("max_incidence_deg", &SimulatorConfig::max_incidence,
            "Largest angle from the normal at which points count; None: 60 where meshes have limits, else any.")
       .add("noise", &SimulatorConfig::noise, "Apply the scanner's noise table, if it has one.")
@@ -92,6 +94,13 @@ py::array_t<std::uint32_t> voxel_weights(const GuardedSimulator& self) {
   return adopt<std::uint32_t>(std::move(weights), {count});
 }
 
+py::array_t<double> goal_densities(const GuardedSimulator& self) {
+  std::vector<double> goals(self.simulator.voxel_count());
+  for (std::uint64_t rank = 0; rank < goals.size(); ++rank) goals[rank] = self.simulator.goal_density(rank);
+  const auto count = static_cast<py::ssize_t>(goals.size());
+  return adopt<double>(std::move(goals), {count});
+}
+
 void add_engines(py::module_& m) {
   py::class_<EngineInfo>(m, "EngineInfo", "An engine on a device.")
       .def_property_readonly(
@@ -158,9 +167,10 @@ void add_simulators(py::module_& m) {
           "Side of a voxel, metres.")
       .def_property_readonly(
           "goal_density", [](const GuardedSimulator& self) { return self.simulator.goal_density(); },
-          "Points wanted in a voxel.")
+          "Points wanted in a voxel: where goals differ, the densest of them.")
       .def("voxel_centres", &voxel_centres, "Centres of the surveyed voxels, survey frame: (N_v, 3), metres.")
       .def("voxel_weights", &voxel_weights, "What each voxel counts in coverage: (N_v,).")
+      .def("goal_densities", &goal_densities, "Points wanted in each voxel: (N_v,).")
       .def("scan", &scan, py::arg("position"),
            py::arg("outputs") = std::vector<std::string>{"position", "reflectivity"}, py::kw_only(),
            py::arg("setup") = StationSetup{}, py::arg("grid") = false, py::arg("place") = 0,

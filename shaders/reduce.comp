@@ -31,6 +31,10 @@ uvec2 pair_of(uint p, uint n) {
   return uvec2(i, i + 1u + p);
 }
 
+uint64_t worth_of(uint voxel, uint count) {
+  return count == 0u || uint64_t(push.worths) == 0ul ? uint64_t(count) : uint64_t(count) * push.worths.at[voxel];
+}
+
 // Adds to a 64-bit sum of the workgroup.
 void add(uint at, uint64_t value) {
   if (value == 0ul) return;
@@ -90,17 +94,18 @@ void main() {
     const uint voxel = group + push.groups * ((gl_WorkGroupID.x * reduce_rounds + round) * reduce_voxels + thread);
     const bool inside = voxel < push.voxel_count;
     const uint count = counts_of[round];
-    const bool full = count >= push.goal;
+    const uint64_t worth = worth_of(voxel, count);
+    const bool full = worth >= push.goal;
     const uint weight = !weighted ? 1u : inside ? push.weights.at[voxel / 4u] >> (voxel % 4u * 8u) & 0xFFu : 0u;
     if (inside && full) {
       saturated += weight;
     } else {
-      partial += uint64_t(count) * weight;
+      partial += worth * weight;
     }
     if (push.with_differences != 0u && inside && voxel > 0u) {
-      const uint before = push.counts.at[counts + voxel - 1u];
+      const uint64_t before = worth_of(voxel - 1u, push.counts.at[counts + voxel - 1u]);
       const bool full_before = before >= push.goal;
-      const uint c = count >> push.difference_shift, d = before >> push.difference_shift;
+      const uint c = uint(worth >> push.difference_shift), d = uint(before >> push.difference_shift);
       if (full != full_before) {
         const uint partly = full ? d : c;
         ++edges;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -18,7 +19,8 @@
 
 namespace vantage {
 
-/// Points of one station in one sampled voxel.
+/// Points of one station in one sampled voxel; where the goals of voxels differ, what those are worth
+/// (`Simulator::point_worth`), and no more than what fills the voxel.
 struct CapturedVoxel {
   std::uint32_t voxel = 0;   ///< Its place in the sample, from 0.
   std::uint32_t points = 0;  ///< At least 1.
@@ -46,15 +48,16 @@ class CaptureRows {
   /// What each sampled voxel counts in coverage.
   const std::vector<std::uint32_t>& weights() const noexcept { return weights_; }
   double total_weight() const noexcept { return total_weight_; }           ///< Of the sample.
-  double goal_density() const noexcept { return goal_density_; }           ///< Points wanted in a voxel.
+  double goal_density() const noexcept { return goal_density_; }           ///< Points, or worth, wanted in a voxel.
   std::uint64_t population() const noexcept { return population_; }        ///< Number of surveyed voxels.
   std::uint64_t sample_voxels() const noexcept { return sample_voxels_; }  ///< As asked for.
   bool cancelled() const noexcept { return cancelled_; }                   ///< The last stations have no rows.
 
   /// Appends a row from the points of each sampled voxel. REQUIRES: points.size() == voxels().size().
   void add(std::span<const std::uint32_t> points);
-  /// Appends the rows of another table over the same sample. Throws Error invalid_argument where it is not the same.
-  void append(const CaptureRows& rows);
+  /// Appends the rows of another table over the same sample, or the first `most` of them. Throws Error invalid_argument
+  /// where it is not the same.
+  void append(const CaptureRows& rows, std::size_t most = std::numeric_limits<std::size_t>::max());
 
   /// Equation 8 of a network of these rows, with its standard error.
   Estimate coverage(std::span<const std::size_t> rows) const;
@@ -64,8 +67,10 @@ class CaptureRows {
  private:
   friend CaptureRows capture_rows(Simulator&, std::span<const PlacedStation>, std::uint64_t, const Progress&);
   Estimate coverage_of(std::span<const std::uint32_t> points) const;
+  CapturedVoxel captured(std::uint32_t voxel, std::uint32_t points) const;
 
   std::vector<std::uint32_t> voxels_, weights_;
+  std::vector<std::uint32_t> worths_;  // of a point in each voxel; empty: 1
   double total_weight_ = 0, goal_density_ = 1;
   std::uint64_t population_ = 0, sample_voxels_ = 0;
   std::vector<std::size_t> offsets_{0};

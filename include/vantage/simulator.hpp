@@ -31,7 +31,10 @@ struct SimulatorConfig {
   std::function<void(const std::string&)> warn = {};
   double user_size_m = 0.1;       ///< Upper bound of the voxel size (equation 2).
   double point_spacing_m = 0.01;  ///< Wanted spacing n of points; goal density = voxel_size² / n².
-  bool noise = true;              ///< Apply the scanner's noise table, if it has one.
+  /// Of a mesh that asks for a detail (`MeshInfo::detail_m`) that is the wanted spacing: where meshes differ, so do the
+  /// goals of their voxels. A voxel of several goes by the finest, and none wants less than a point.
+  bool spacing_by_detail = false;
+  bool noise = true;  ///< Apply the scanner's noise table, if it has one.
   /// Largest angle between a ray and the normal of the surface at which its point counts, above 0° and at most 90°.
   /// Empty: `default_max_incidence` where any surveyed mesh has a detail or accuracy (`MeshInfo`), otherwise none.
   std::optional<Angle> max_incidence = std::nullopt;
@@ -149,7 +152,7 @@ struct VoxelPatch {
 /// simulator as it was. A child of fork() has none of the threads, nor the device: it may exec or _exit, and no more.
 class Simulator {
  public:
-  /// Throws Error: invalid_argument (goal density below 1, with the smallest user size that works; bad scanner; a
+  /// Throws Error: invalid_argument (densest goal below 1, with the smallest user size that works; bad scanner; a
   /// detail or accuracy without the scanner's beam or noise table; a bad incidence), no_suitable_device, out_of_memory.
   Simulator(const Scene& scene, const Scanner& scanner, const SimulatorConfig& config = {});
   /// With several scanners, which stations choose from by `StationSetup::scanner`: other models, or one with other
@@ -171,12 +174,16 @@ class Simulator {
   Vec3 origin() const noexcept;                ///< Local origin; survey = local + origin.
   std::uint64_t voxel_count() const noexcept;  ///< N_v of equation 8.
   double voxel_size_m() const noexcept;
-  double goal_density() const noexcept;  ///< Points wanted in a voxel.
+  double goal_density() const noexcept;  ///< Points wanted in a voxel: where goals differ, the densest of them.
+  /// Points wanted in that voxel (`SimulatorConfig::spacing_by_detail`). REQUIRES: rank < voxel_count().
+  double goal_density(std::uint64_t rank) const;
   /// What `max_incidence` comes to; empty: points have no limits of any kind, and all on surveyed voxels count.
   std::optional<Angle> max_incidence() const noexcept;
   Vec3 voxel_centre(std::uint64_t rank) const;  ///< Survey frame. REQUIRES: rank < voxel_count().
   /// What a voxel counts in coverage (`MeshInfo::weight`). REQUIRES: rank < voxel_count().
   std::uint32_t voxel_weight(std::uint64_t rank) const;
+  /// What a point in it is worth: as in `NetworkCounts::point_worth`. REQUIRES: rank < voxel_count().
+  std::uint32_t point_worth(std::uint64_t rank) const;
   /// Their surfaces. REQUIRES: ranks ascending, without duplicates, all below voxel_count().
   std::vector<VoxelPatch> voxel_patches(std::span<const std::uint32_t> ranks) const;
   /// Ranks of the voxels that `evaluate_sampled` draws for `SampleOptions::voxels` and `from`, ascending. Fixed by the

@@ -96,8 +96,12 @@ struct NetworkCounts {
   std::uint64_t voxels = 0;  ///< N_v, or the size of the sample.
   /// Sum of the voxels' weights (`MeshInfo::weight`): `voxels` where all surveyed meshes weigh the same.
   std::uint64_t weight = 0;
-  std::uint64_t saturated = 0;        ///< Weight of the voxels that reached the goal density.
-  std::uint64_t partial_points = 0;   ///< Points in all other voxels together, each times its voxel's weight.
+  std::uint64_t saturated = 0;  ///< Weight of the voxels that reached the goal density.
+  /// Points in all other voxels together, each times its voxel's weight and what a point is worth there.
+  std::uint64_t partial_points = 0;
+  /// What a point is worth in a voxel of the densest goal. More than 1 only where goals differ, and a point is worth
+  /// more where fewer will do.
+  std::uint32_t point_worth = 1;
   std::uint64_t rays = 0;             ///< Rays that were traced.
   std::uint32_t stations = 0;         ///< N_stations, skipped ones included.
   std::vector<std::uint64_t> points;  ///< Per station, all meshes; empty where not counted (rays were skipped).

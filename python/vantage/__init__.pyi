@@ -422,6 +422,7 @@ class Simulator:
         device_index: Optional[int] = None,
         user_size_m: float = 0.1,
         point_spacing_m: float = 0.01,
+        spacing_by_detail: bool = False,
         max_incidence_deg: Optional[float] = None,
         noise: bool = True,
         seed: int = 1,
@@ -444,6 +445,7 @@ class Simulator:
     def goal_density(self) -> float: ...
     def voxel_centres(self) -> Floats: ...
     def voxel_weights(self) -> npt.NDArray[np.uint32]: ...
+    def goal_densities(self) -> Floats: ...
     def scan(
         self,
         position: Sequence[float],

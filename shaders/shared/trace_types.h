@@ -150,11 +150,11 @@ struct ClampPush {
 };
 
 // Reduction of counts and masks, of one network or many, in interleaved groups: voxel k is in group k % groups. Totals
-// of group g of network n start at word (n · groups + g) · totals_stride: weight of the saturated voxels (64 bits);
-// points of the others, each times its voxel's weight (64 bits); three sums over successive voxels, from which the host
-// makes Σ (r(k) − r(k−1))² of r = min(count / goal, 1) without rounding; then seen[stations]; then shared[pairs]. With
-// c = count >> difference_shift where the voxel is not saturated: squares (64 bits) adds (c(k) − c(k−1))² where neither
-// voxel is saturated and c² where one is; edge_points (64 bits) adds c where one is; edges counts those.
+// of group g of network n start at word (n · groups + g) · totals_stride: weight of the saturated voxels (64 bits); what
+// the points of the others are worth, each times its voxel's weight (64 bits); three sums over successive voxels, from
+// which the host makes Σ (r(k) − r(k−1))² of r = min(worth / goal, 1) without rounding; then seen[stations]; then
+// shared[pairs]. With c = worth >> difference_shift where the voxel is not saturated: squares (64 bits) adds
+// (c(k) − c(k−1))² where neither voxel is saturated and c² where one is; edge_points (64 bits) adds c where one is; edges counts those.
 VANTAGE_CONST uint reduce_voxels = 256;  // voxels of a workgroup at a time
 VANTAGE_CONST uint reduce_rounds = 16;   // at most 32
 VANTAGE_CONST uint totals_saturated = 0;
@@ -169,14 +169,16 @@ struct ReducePush {
   VANTAGE_ADDRESS(Uints) totals;
   VANTAGE_ADDRESS(Uints) station_counts;  // per network
   VANTAGE_ADDRESS(Uints) weights;         // of voxels, a byte each; 0: all weigh 1
+  VANTAGE_ADDRESS(Uints) worths;          // of a point in each voxel; 0: all are worth 1
+  uint64_t goal;                          // what points are worth that saturate a voxel
   uint voxel_count;
-  uint goal;              // points that saturate a voxel
   uint difference_shift;  // keeps the sum of squares within 64 bits
   uint mask_words;        // 0, 1 or 2
   uint groups;
   uint totals_stride;
   uint first_network;
   uint with_differences;
+  uint padding;
 };
 
 // Sampled evaluation. A slot is one station of one network; a pair is a slot and a sampled voxel.

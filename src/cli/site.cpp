@@ -250,6 +250,10 @@ void SiteOptions::add(CLI::App& command) {
       ->group("Measure");
   add_number(command, "--spacing", "M", "Wanted distance between points; sets the goal density", spacing, positive)
       ->group("Measure");
+  command
+      .add_flag("--spacing-by-detail", spacing_by_detail,
+                "On nodes with a --detail that is the spacing; so without --spacing where details differ")
+      ->group("Measure");
 
   area.add(command, roles);
 
@@ -375,10 +379,14 @@ LoadedSite open_site(CLI::App& command, SiteOptions& options) {
   site.config.validation = options.validation;
   site.config.max_memory_bytes = options.memory;
   site.config.user_size_m = options.user_size.value_or(site.config.user_size_m * scale);
-  if (!options.spacing && !common_detail(site.scene) && asks_for_detail(site.scene))
-    spdlog::info("the surveyed meshes do not all ask for the same detail: the spacing of points is the usual one");
   site.config.point_spacing_m =
       options.spacing.value_or(common_detail(site.scene).value_or(usual_spacing(site.scanner, site.config, scale)));
+  const bool details_differ = asks_for_detail(site.scene) && !common_detail(site.scene);
+  site.config.spacing_by_detail = options.spacing_by_detail || (details_differ && !options.spacing);
+  if (details_differ && site.config.spacing_by_detail)
+    spdlog::info(
+        "surveyed nodes are wanted as densely as the detail that they ask for, others with a point every {:.3g} m",
+        site.config.point_spacing_m);
   if (options.incidence) site.config.max_incidence = Angle::degrees(*options.incidence);
   site.config.noise = !site.scanner.noise.empty();
   site.security = options.area.volume(small);

@@ -36,6 +36,7 @@ struct SiteOptions {
   std::optional<double> rate;
 
   std::optional<double> user_size, spacing, incidence;
+  bool spacing_by_detail = false;
   AreaOptions area;
 
   Engine engine = Engine::automatic;

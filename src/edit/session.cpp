@@ -213,8 +213,7 @@ void EditSession::measure() {
   around_.follow(all, ids);
   counts_ = surveyed_.counts();
   scan_overlaps_ = scan_overlap_matrix(around_.counts());
-  colours_ =
-      cell_colours(cells_, surveyed_.sample(), surveyed_.points(), surveyed_.seen_by(), simulator_.goal_density());
+  colours_ = cell_colours(cells_, surveyed_.sample(), surveyed_.points(), surveyed_.seen_by(), simulator_);
 }
 
 void EditSession::start(const std::string& what, std::function<void(const Progress&)> work) {
@@ -256,7 +255,7 @@ void EditSession::trace_exactly(const Progress& progress, const std::function<vo
     points.push_back(exact.field.count[rank]);
     seen_by.push_back(seer_of(exact.field, rank));
   }
-  CellColours colours = cell_colours(cells_, cells_.ranks, points, seen_by, simulator_.goal_density());
+  CellColours colours = cell_colours(cells_, cells_.ranks, points, seen_by, simulator_);
   {
     const std::scoped_lock lock(mutex_);
     counts_ = exact.counts, scan_overlaps_ = exact.scan_overlaps, colours_ = std::move(colours), exact_ = true;

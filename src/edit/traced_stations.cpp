@@ -16,9 +16,16 @@ constexpr std::uint32_t kGroups = 20;  // of a sample, as the simulator makes th
 
 TracedStations::TracedStations(Simulator& simulator, std::uint64_t voxels) : simulator_(simulator) {
   if (simulator.voxel_count() > 0) sample_ = simulator.sampled_voxels(std::min(voxels, simulator.voxel_count()));
-  for (const std::uint32_t rank : sample_) weights_.push_back(static_cast<std::uint8_t>(simulator.voxel_weight(rank)));
+  for (const std::uint32_t rank : sample_) {
+    demands_.weights.push_back(static_cast<std::uint8_t>(simulator.voxel_weight(rank)));
+    demands_.worths.push_back(simulator.point_worth(rank));
+  }
   // None where all are 1: as the simulator has it.
-  if (std::ranges::count(weights_, 1) == std::ssize(weights_)) weights_.clear();
+  const auto clear_ones = [](auto& of_voxels) {
+    if (std::ranges::count(of_voxels, 1u) == std::ssize(of_voxels)) of_voxels.clear();
+  };
+  clear_ones(demands_.weights);
+  clear_ones(demands_.worths);
 }
 
 void TracedStations::follow(const Network& network, std::span<const std::uint32_t> ids) {
@@ -62,7 +69,7 @@ void TracedStations::add_up(std::size_t stations) {
       seen_by_[i] = together(seen_by_[i], static_cast<Seer>(traced.place + 1));
     }
   counts_ =
-      reduce_sample(points_, masks, kGroups, static_cast<std::uint32_t>(stations), simulator_.goal_density(), weights_);
+      reduce_sample(points_, masks, kGroups, static_cast<std::uint32_t>(stations), simulator_.goal_density(), demands_);
 }
 
 }  // namespace vantage

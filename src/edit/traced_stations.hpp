@@ -8,6 +8,7 @@
 
 #include "page/coverage_cells.hpp"
 #include "vantage/simulator.hpp"
+#include "voxel/voxel_demands.hpp"
 
 namespace vantage {
 
@@ -40,8 +41,8 @@ class TracedStations {
 
   Simulator& simulator_;
   std::vector<std::uint32_t> sample_;
-  std::vector<std::uint8_t> weights_;  // empty: all count the same
-  std::vector<Traced> traced_;         // active ones
+  VoxelDemands demands_;        // of the sample
+  std::vector<Traced> traced_;  // active ones
   NetworkCounts counts_;
   std::vector<std::uint32_t> points_;
   std::vector<Seer> seen_by_;

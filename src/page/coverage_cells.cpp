@@ -109,13 +109,14 @@ Seer seer_of(const VoxelField& field, std::uint32_t rank) {
 }
 
 CellColours cell_colours(const CoverageCells& cells, std::span<const std::uint32_t> ranks,
-                         std::span<const std::uint32_t> counts, std::span<const Seer> seen_by, double goal_density) {
+                         std::span<const std::uint32_t> counts, std::span<const Seer> seen_by,
+                         const Simulator& simulator) {
   std::vector<double> sum(cells.keys.size(), 0.0);
   std::vector<std::uint32_t> voxels(cells.keys.size(), 0);
   std::vector<Seer> seen(cells.keys.size(), 0);
   for (std::size_t i = 0; i < ranks.size(); ++i) {
     const std::uint32_t cell = cells.cell_of[cells.place_of(ranks[i])];
-    sum[cell] += std::min(counts[i] / goal_density, 1.0);
+    sum[cell] += std::min(counts[i] / simulator.goal_density(ranks[i]), 1.0);
     seen[cell] = together(seen[cell], seen_by[i]);
     ++voxels[cell];
   }

@@ -46,7 +46,8 @@ struct CellColours {
 // Of `ranks`, all of them in the sample: points and who left them. Cells without one of them are as the nearest
 // is that has one.
 CellColours cell_colours(const CoverageCells& cells, std::span<const std::uint32_t> ranks,
-                         std::span<const std::uint32_t> counts, std::span<const Seer> seen_by, double goal_density);
+                         std::span<const std::uint32_t> counts, std::span<const Seer> seen_by,
+                         const Simulator& simulator);
 
 // The commonest reason around each cell, by `WhyMissed`, likewise. REQUIRES: ranks is not empty.
 std::vector<std::uint8_t> cell_reasons(const CoverageCells& cells, std::span<const std::uint32_t> ranks,

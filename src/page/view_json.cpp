@@ -72,17 +72,17 @@ CellColours sampled_colours(const CoverageCells& cells, std::span<const PlacedSt
     for (const NetworkCounts& done : simulator.evaluate_sampled(
              alone, {.voxels = ranks.size(), .overlap = false, .points = add}, {.report = {}, .stop = std::move(stop)}))
       cancelled = cancelled || done.cancelled;
-  return cell_colours(cells, ranks, counts, seen_by, simulator.goal_density());
+  return cell_colours(cells, ranks, counts, seen_by, simulator);
 }
 
-CellColours exact_colours(const CoverageCells& cells, const VoxelField& field, double goal_density) {
+CellColours exact_colours(const CoverageCells& cells, const VoxelField& field, const Simulator& simulator) {
   std::vector<std::uint32_t> counts;
   std::vector<Seer> seen_by;
   for (const std::uint32_t rank : cells.ranks) {
     counts.push_back(field.count[rank]);
     seen_by.push_back(seer_of(field, rank));
   }
-  return cell_colours(cells, cells.ranks, counts, seen_by, goal_density);
+  return cell_colours(cells, cells.ranks, counts, seen_by, simulator);
 }
 
 // The answer, and others spread evenly over the front.
@@ -108,7 +108,7 @@ ordered_json colours_json(const Report& report, const ReportSite& site, const Co
   for (const std::size_t k : chosen) {
     const bool exact = k == report.answer && site.field;
     bool cancelled = false;
-    const CellColours network = exact ? exact_colours(cells, *site.field, site.simulator.goal_density())
+    const CellColours network = exact ? exact_colours(cells, *site.field, site.simulator)
                                       : sampled_colours(cells, report.networks[k].entry.stations, ranks, site.simulator,
                                                         progress.stop, cancelled);
     if (!cancelled)

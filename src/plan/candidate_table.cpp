@@ -31,17 +31,7 @@ bool CandidateTable::add(std::span<const PlacedStation> stations, const CaptureR
     around_.append(fresh);
     count = std::min(count, fresh.size());
   }
-  if (count == known.size()) {
-    rows_.append(known);
-  } else {
-    // The first ones only: rows of both kinds must be of the same stations.
-    std::vector<std::uint32_t> points;
-    for (std::size_t k = 0; k < count; ++k) {
-      points.assign(rows_.voxels().size(), 0);
-      for (const CapturedVoxel& one : known.row(k)) points[one.voxel] = one.points;
-      rows_.add(points);
-    }
-  }
+  rows_.append(known, count);  // rows of both kinds must be of the same stations
   stations_.insert(stations_.end(), stations.begin(), stations.begin() + static_cast<std::ptrdiff_t>(count));
   pairs_ = surroundings_ ? PairTable(around_, stations_, nearest_m_) : PairTable(CaptureRows(), stations_, nearest_m_);
   return count == stations.size();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cassert>
+#include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "trace/sample_counts.hpp"
@@ -16,14 +18,24 @@ constexpr std::size_t stations_at_once = 64;
 // Of a sample, for the jackknife of weighted coverage; as many as the simulator makes.
 constexpr std::uint32_t sample_groups = 20;
 
+void add_saturating(std::uint32_t& sum, std::uint32_t points) {
+  sum = points > std::numeric_limits<std::uint32_t>::max() - sum ? std::numeric_limits<std::uint32_t>::max()
+                                                                 : sum + points;
+}
+
 }  // namespace
 
 CaptureRows::CaptureRows(const Simulator& simulator, std::uint64_t sample_voxels)
     : voxels_(simulator.sampled_voxels(sample_voxels)),
-      goal_density_(simulator.goal_density()),
       population_(simulator.voxel_count()),
       sample_voxels_(sample_voxels) {
-  for (const std::uint32_t rank : voxels_) weights_.push_back(simulator.voxel_weight(rank));
+  for (const std::uint32_t rank : voxels_) {
+    weights_.push_back(simulator.voxel_weight(rank));
+    worths_.push_back(simulator.point_worth(rank));
+  }
+  // All are 1, or none is.
+  if (!worths_.empty() && worths_.front() == 1) worths_.clear();
+  goal_density_ = simulator.goal_density() * (worths_.empty() ? 1 : densest_worth);
   total_weight_ = std::accumulate(weights_.begin(), weights_.end(), 0.0);
 }
 
@@ -37,41 +49,48 @@ CaptureRows::CaptureRows(std::vector<std::uint32_t> weights, double goal_density
   total_weight_ = std::accumulate(weights_.begin(), weights_.end(), 0.0);
 }
 
+CapturedVoxel CaptureRows::captured(std::uint32_t voxel, std::uint32_t points) const {
+  if (worths_.empty()) return {voxel, points};
+  const double full = std::min(std::ceil(goal_density_), 4294967295.0);
+  return {voxel, static_cast<std::uint32_t>(std::min(static_cast<double>(points) * worths_[voxel], full))};
+}
+
 void CaptureRows::add(std::span<const std::uint32_t> points) {
   assert(points.size() == voxels_.size());
   for (std::uint32_t i = 0; i < points.size(); ++i)
-    if (points[i] > 0) entries_.push_back({i, points[i]});
+    if (points[i] > 0) entries_.push_back(captured(i, points[i]));
   offsets_.push_back(entries_.size());
 }
 
-void CaptureRows::append(const CaptureRows& rows) {
-  if (rows.voxels_ != voxels_ || rows.goal_density_ != goal_density_)
+void CaptureRows::append(const CaptureRows& rows, std::size_t most) {
+  if (rows.voxels_ != voxels_ || rows.goal_density_ != goal_density_ || rows.worths_ != worths_)
     throw Error(Errc::invalid_argument, "capture rows of two samples cannot be joined");
-  const std::size_t before = entries_.size();
-  entries_.insert(entries_.end(), rows.entries_.begin(), rows.entries_.end());
-  for (std::size_t k = 1; k < rows.offsets_.size(); ++k) offsets_.push_back(before + rows.offsets_[k]);
+  const std::size_t before = entries_.size(), count = std::min(most, rows.size());
+  entries_.insert(entries_.end(), rows.entries_.begin(),
+                  rows.entries_.begin() + static_cast<std::ptrdiff_t>(rows.offsets_[count]));
+  for (std::size_t k = 1; k <= count; ++k) offsets_.push_back(before + rows.offsets_[k]);
   cancelled_ = cancelled_ || rows.cancelled_;
 }
 
 Estimate CaptureRows::coverage_of(std::span<const std::uint32_t> points) const {
   // The engines' weights are bytes, and a coverage does not change where all of them are 1.
-  std::vector<std::uint8_t> weights;
+  VoxelDemands demands;
   if (std::any_of(weights_.begin(), weights_.end(), [](std::uint32_t w) { return w != 1; }))
-    weights.assign(weights_.begin(), weights_.end());
-  const NetworkCounts counts = reduce_sample(points, {}, sample_groups, 1, goal_density_, weights);
+    demands.weights.assign(weights_.begin(), weights_.end());
+  const NetworkCounts counts = reduce_sample(points, {}, sample_groups, 1, goal_density_, demands);
   return coverage_estimate(counts, goal_density_, population_);
 }
 
 Estimate CaptureRows::coverage(std::span<const std::size_t> rows) const {
   std::vector<std::uint32_t> points(voxels_.size());
   for (const std::size_t k : rows)
-    for (const CapturedVoxel& seen : row(k)) points[seen.voxel] += seen.points;
+    for (const CapturedVoxel& seen : row(k)) add_saturating(points[seen.voxel], seen.points);
   return coverage_of(points);
 }
 
 Estimate CaptureRows::coverage() const {
   std::vector<std::uint32_t> points(voxels_.size());
-  for (const CapturedVoxel& seen : entries_) points[seen.voxel] += seen.points;
+  for (const CapturedVoxel& seen : entries_) add_saturating(points[seen.voxel], seen.points);
   return coverage_of(points);
 }
 
@@ -89,7 +108,7 @@ CaptureRows capture_rows(Simulator& simulator, std::span<const PlacedStation> st
     std::size_t told = 0;
     options.points = [&](std::size_t k, std::span<const std::uint32_t> points) {
       for (std::uint32_t i = 0; i < points.size(); ++i)
-        if (points[i] > 0) seen[k].push_back({i, points[i]});
+        if (points[i] > 0) seen[k].push_back(rows.captured(i, points[i]));
       ++told;
     };
     const auto share = [&](double done) {

@@ -81,7 +81,7 @@ class Judge {
       if (!in_field_of_view(scanner, way, range)) continue;
       const double across = std::sqrt(std::max(way.x * way.x + way.y * way.y, 1e-12)) / range;  // sin zenith
       expected += patch.area_m2 * incidence / (range * range) * per_steradian_ / across;
-      if (expected >= simulator_.goal_density()) return WhyMissed::not_chosen;
+      if (expected >= simulator_.goal_density(rank)) return WhyMissed::not_chosen;
     }
     return !free_line ? WhyMissed::hidden : !in_range ? WhyMissed::far : !steep ? WhyMissed::flat : WhyMissed::sparse;
   }
@@ -131,7 +131,7 @@ std::vector<WhyMissed> why_missed(const Simulator& simulator, const ClashChecker
   std::vector<WhyMissed> why(ranks.size(), WhyMissed::captured);
   std::vector<std::size_t> missed;
   for (std::size_t i = 0; i < ranks.size(); ++i)
-    if (points[i] < simulator.goal_density()) missed.push_back(i);
+    if (points[i] < simulator.goal_density(ranks[i])) missed.push_back(i);
   for (std::size_t first = 0; first < missed.size(); first += voxels_at_once) {
     if (progress.stopped()) return {};
     const std::span<const std::size_t> here =

@@ -23,7 +23,7 @@ void write_coverage_ply(const std::filesystem::path& file, const Simulator& simu
     more.push_back({"uint", "stations" + of + "_low"}), more.push_back({"uint", "stations" + of + "_high"});
   }
   write_voxel_ply(file, simulator, more, voxels, [&](std::uint64_t rank, std::string& bytes) {
-    const double ratio = std::min(field.count[rank] / simulator.goal_density(), 1.0);
+    const double ratio = std::min(field.count[rank] / simulator.goal_density(rank), 1.0);
     append(bytes, static_cast<float>(ratio));
     append(bytes, field.count[rank]);
     for (std::size_t w = 0; w < words; ++w) {

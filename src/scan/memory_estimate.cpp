@@ -74,8 +74,11 @@ std::vector<ChosenDevice> devices_of(const SimulatorConfig& config) {
 
 class Estimator {
  public:
-  Estimator(const Scene& scene, std::span<const Scanner> scanners, std::size_t stations)
-      : scene_(scene.data()), surface_(surface_of(scene_)), stations_(stations) {
+  Estimator(const Scene& scene, std::span<const Scanner> scanners, std::size_t stations, bool goals_differ = false)
+      : scene_(scene.data()),
+        surface_(surface_of(scene_)),
+        stations_(stations),
+        demands_(goals_differ ? sizeof(std::uint32_t) : 0) {
     const Scanner* const largest = &*std::ranges::max_element(scanners, {}, &Scanner::rays);
     const auto noisy = [](const Scanner& scanner) { return !scanner.noise.sigma_m.empty(); };
     const auto asks = [](const MeshInfo& mesh) { return mesh.detail_m || mesh.accuracy_m; };
@@ -90,7 +93,7 @@ class Estimator {
 
   SimulatorMemory operator()(double user_size_m, const std::vector<ChosenDevice>& devices) const {
     const double side = voxel_size(surface_.extent_m, user_size_m), voxels = surface_.cells_m2 / (side * side);
-    double host = host_bytes(load_.triangles, voxels, stations_), device = 0;
+    double host = host_bytes(load_.triangles, voxels, stations_) + demands_ * voxels, device = 0;
     const auto on_cpu = [](const ChosenDevice& each) { return each.engine == Engine::embree; };
     if (devices.empty() || std::ranges::any_of(devices, on_cpu)) host += kTree * load_.triangles;
     for (const ChosenDevice& each : devices) {
@@ -98,7 +101,7 @@ class Estimator {
       vulkan::DeviceLoad load = load_;
       load.engine = each.engine, load.software = each.software;
       load.voxels = voxels, load.bricks = voxels / kVoxelsOfABrick;
-      const double own = vulkan::device_bytes(load);
+      const double own = vulkan::device_bytes(load) + demands_ * voxels;
       device = std::max(device, own);
       if (each.software) host += own + kSoftwareDriver;
     }
@@ -109,6 +112,7 @@ class Estimator {
   const SceneData& scene_;
   Surface surface_;
   std::size_t stations_;
+  double demands_;  // bytes a voxel, of what points in it are worth
   vulkan::DeviceLoad load_;
 };
 
@@ -116,7 +120,7 @@ class Estimator {
 
 SimulatorMemory simulator_memory(const Scene& scene, std::span<const Scanner> scanners, const SimulatorConfig& config,
                                  std::size_t stations) {
-  return Estimator(scene, scanners, stations)(config.user_size_m, devices_of(config));
+  return Estimator(scene, scanners, stations, config.spacing_by_detail)(config.user_size_m, devices_of(config));
 }
 
 MemoryEstimate estimate_memory(const Scene& scene, double user_size_m, std::size_t stations) {
@@ -135,7 +139,7 @@ void require_memory(const Scene& scene, std::span<const Scanner> scanners, const
   const std::uint64_t host = given > 0 ? given : free ? *free / 2 : unlimited;
   std::uint64_t device = given > 0 ? given : unlimited;
   for (const ChosenDevice& each : devices) device = std::min(device, each.free_bytes.value_or(unlimited));
-  const Estimator estimate(scene, scanners, mask_bits);
+  const Estimator estimate(scene, scanners, mask_bits, config.spacing_by_detail);
   const auto fits = [&](const SimulatorMemory& wanted) {
     return wanted.bytes <= host && wanted.device_bytes <= device;
   };

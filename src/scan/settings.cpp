@@ -38,6 +38,7 @@ Settings settings(const SimulatorConfig& config) {
       .add("devices", devices, {.decides = false})
       .add("user_size_m", config.user_size_m, {"user-size"})
       .add("point_spacing_m", config.point_spacing_m, {"spacing"})
+      .add("spacing_by_detail", config.spacing_by_detail, {config.spacing_by_detail ? "spacing-by-detail" : ""})
       .add("max_incidence_deg", config.max_incidence, {"incidence"})
       .add("noise", config.noise)
       .add("seed", config.seed, {"seed"})

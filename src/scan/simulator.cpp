@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <sstream>
 #include <utility>
@@ -39,8 +40,22 @@ std::string rounded_up(double metres) {
   return text.str();
 }
 
-[[noreturn]] void refuse_goal_density(const VoxelGrid& grid, const SimulatorConfig& config) {
-  const double spacing = config.point_spacing_m;
+// Wanted spacing of points on each mesh, metres.
+std::vector<double> spacings_of(const SceneData& scene, const SimulatorConfig& config) {
+  std::vector<double> spacings;
+  for (const MeshInfo& mesh : scene.meshes)
+    spacings.push_back(config.spacing_by_detail && mesh.detail_m > 0 ? mesh.detail_m : config.point_spacing_m);
+  return spacings;
+}
+
+double finest_of(std::span<const double> spacings_m, const SceneData& scene) {
+  double finest = std::numeric_limits<double>::infinity();
+  for (std::size_t m = 0; m < scene.meshes.size(); ++m)
+    if (scene.meshes[m].role == Role::surveyed) finest = std::min(finest, spacings_m[m]);
+  return finest;
+}
+
+[[noreturn]] void refuse_goal_density(const VoxelGrid& grid, const SimulatorConfig& config, double spacing) {
   const double smallest = grid.voxel_size() >= spacing ? grid.voxel_size() : 2 * grid.voxel_size();
   std::ostringstream what;
   what << "a user size of " << config.user_size_m << " m makes voxels smaller than the point spacing of " << spacing
@@ -54,16 +69,20 @@ std::string rounded_up(double metres) {
 
 // Null where it was stopped.
 std::shared_ptr<const VoxelGrid> build_grid(const SceneData& scene, const SimulatorConfig& config,
-                                            const Progress& progress) {
+                                            std::span<const double> spacings_m, const Progress& progress) {
   if (!(std::isfinite(config.point_spacing_m) && config.point_spacing_m > 0)) {
     throw Error(Errc::invalid_argument,
                 "the point spacing is " + std::to_string(config.point_spacing_m) + " m, but must be above 0");
   }
   // A user size below the spacing cannot work. The grid is then built for the spacing, to say what would.
-  const bool too_small = config.user_size_m > 0 && config.user_size_m < config.point_spacing_m;
-  auto grid = VoxelGrid::build(scene, too_small ? config.point_spacing_m : config.user_size_m, progress);
+  const double finest = finest_of(spacings_m, scene);
+  const bool too_small = config.user_size_m > 0 && config.user_size_m < finest;
+  auto grid = VoxelGrid::build(scene, too_small ? finest : config.user_size_m, progress);
   if (!grid) return nullptr;
-  if (too_small || grid->voxel_size() < config.point_spacing_m) refuse_goal_density(*grid, config);
+  if (too_small || grid->voxel_size() < finest) refuse_goal_density(*grid, config, finest);
+  auto worths = point_worths(scene, *grid, spacings_m, {.report = {}, .stop = progress.stop});
+  if (!worths) return nullptr;
+  grid->set_worths(std::move(*worths));
   return std::make_shared<VoxelGrid>(std::move(*grid));
 }
 
@@ -72,11 +91,12 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 }
 
 // What a network without an active station leaves: the voxels, and zeros.
-NetworkCounts nothing_seen(std::uint64_t voxels, std::uint64_t weight, std::size_t stations, bool overlap,
-                           bool registration) {
+NetworkCounts nothing_seen(std::uint64_t voxels, std::uint64_t weight, std::uint32_t point_worth, std::size_t stations,
+                           bool overlap, bool registration) {
   NetworkCounts counts;
   counts.voxels = voxels;
   counts.weight = weight;
+  counts.point_worth = point_worth;
   counts.stations = static_cast<std::uint32_t>(stations);
   if (overlap) {
     counts.seen.assign(stations, 0);
@@ -124,9 +144,11 @@ struct Simulator::Impl {
     if (scanners.empty()) throw Error(Errc::invalid_argument, "no scanner given; a simulator has one at least");
     for (const Scanner& scanner : scanners) scanner.check();
     require_memory(scene, scanners, config);
-    grid = build_grid(data(), config, progress);
+    const std::vector<double> spacings = spacings_of(data(), config);
+    grid = build_grid(data(), config, spacings, progress);
     if (!grid) return;
-    goal = grid->voxel_size() * grid->voxel_size() / (config.point_spacing_m * config.point_spacing_m);
+    const double wide = grid->voxel_size() / finest_of(spacings, data());
+    goal = wide * wide;
     for (const Scanner& scanner : scanners) traced.push_back(trace_scanner(scanner));
     registered = scanners;
     // Shares the scene's storage for as long as the engine wants it.
@@ -195,7 +217,7 @@ struct Simulator::Impl {
   // Of every `step`-th voxel of a sample.
   std::uint64_t weight_of(std::span<const std::uint32_t> ranks, std::size_t first, std::size_t step) const {
     std::uint64_t sum = 0;
-    for (std::size_t i = first; i < ranks.size(); i += step) sum += grid->weight(ranks[i]);
+    for (std::size_t i = first; i < ranks.size(); i += step) sum += grid->demands().weight(ranks[i]);
     return sum;
   }
 
@@ -287,6 +309,10 @@ Vec3 Simulator::origin() const noexcept { return impl_->data().origin; }
 std::uint64_t Simulator::voxel_count() const noexcept { return impl_->grid->size(); }
 double Simulator::voxel_size_m() const noexcept { return impl_->grid->voxel_size(); }
 double Simulator::goal_density() const noexcept { return impl_->goal; }
+double Simulator::goal_density(std::uint64_t rank) const {
+  const VoxelDemands& demands = impl_->grid->demands();
+  return impl_->goal * demands.least_worth() / demands.worth(rank);
+}
 std::optional<Angle> Simulator::max_incidence() const noexcept { return incidence_limit(impl_->data(), impl_->config); }
 
 Vec3 Simulator::voxel_centre(std::uint64_t rank) const {
@@ -297,7 +323,8 @@ Vec3 Simulator::voxel_centre(std::uint64_t rank) const {
                          static_cast<double>(min[2]) + (z + 0.5) * size};
 }
 
-std::uint32_t Simulator::voxel_weight(std::uint64_t rank) const { return impl_->grid->weight(rank); }
+std::uint32_t Simulator::point_worth(std::uint64_t rank) const { return impl_->grid->demands().worth(rank); }
+std::uint32_t Simulator::voxel_weight(std::uint64_t rank) const { return impl_->grid->demands().weight(rank); }
 
 std::vector<VoxelPatch> Simulator::voxel_patches(std::span<const std::uint32_t> ranks) const {
   std::vector<VoxelPatch> patches;
@@ -355,12 +382,13 @@ NetworkCounts Simulator::evaluate(const Network& network, const EvaluateOptions&
   check_registration(options.registration, options.overlap);
   const std::vector<TraceStation> active = impl_->active_stations(network);
   if (active.empty()) {
+    const std::uint32_t point_worth = impl_->grid->demands().least_worth();
     if (options.field) {
       options.field->count.assign(voxel_count(), 0);
       options.field->stations.assign(voxel_count() * mask_words(network.size()), 0);
     }
-    NetworkCounts counts = nothing_seen(voxel_count(), impl_->grid->total_weight(), network.size(), options.overlap,
-                                        options.registration.has_value());
+    NetworkCounts counts = nothing_seen(voxel_count(), impl_->grid->total_weight(), point_worth, network.size(),
+                                        options.overlap, options.registration.has_value());
     counts.points_on_surveyed.assign(network.size(), 0);
     if (impl_->limited()) counts.dropped.assign(network.size(), {});
     if (!options.skip) counts.points.assign(network.size(), 0);
@@ -424,12 +452,13 @@ std::vector<NetworkCounts> Simulator::evaluate_sampled(std::span<const Network> 
   for (std::size_t k = 0; k < networks.size(); ++k) {
     std::vector<TraceStation> active = impl_->active_stations(networks[k]);
     if (active.empty() || sample.empty()) {
-      all[k] = nothing_seen(sample.size(), impl_->weight_of(sample, 0, 1), networks[k].size(), options.overlap,
-                            options.registration.has_value());
+      const std::uint32_t point_worth = impl_->grid->demands().least_worth();
+      all[k] = nothing_seen(sample.size(), impl_->weight_of(sample, 0, 1), point_worth, networks[k].size(),
+                            options.overlap, options.registration.has_value());
       for (std::uint32_t g = 0; g < sample_groups; ++g)
         all[k].groups.push_back(nothing_seen((sample.size() + sample_groups - 1 - g) / sample_groups,
-                                             impl_->weight_of(sample, g, sample_groups), networks[k].size(),
-                                             options.overlap, options.registration.has_value()));
+                                             impl_->weight_of(sample, g, sample_groups), point_worth,
+                                             networks[k].size(), options.overlap, options.registration.has_value()));
       if (options.points) options.points(k, std::vector<std::uint32_t>(sample.size()));
       continue;
     }

@@ -12,7 +12,7 @@
 #include <cmath>
 #include <vector>
 
-#include "trace/target_clones.hpp"
+#include "core/target_clones.hpp"
 
 namespace vantage {
 namespace {
@@ -102,12 +102,12 @@ void add_many_pairs(const std::uint64_t* masks, std::size_t size, std::size_t n,
 }  // namespace
 
 NetworkCounts reduce_field(std::span<const std::uint32_t> counts, std::span<const std::uint64_t> masks,
-                           std::uint32_t stations, double goal_density, std::span<const std::uint8_t> weights) {
+                           std::uint32_t stations, double goal_density, const VoxelDemands& demands) {
   const std::size_t pairs = masks.empty() ? 0 : std::size_t{stations} * (stations - 1) / 2;
   Sums zero;
   zero.seen.resize(masks.empty() ? 0 : stations);
   zero.shared.resize(pairs);
-  const double goal = std::ceil(goal_density);
+  const double goal = std::ceil(goal_density * demands.least_worth());
 
   constexpr std::size_t grain = 1024;  // blocks
   const std::size_t blocks = (counts.size() + block - 1) / block;
@@ -116,12 +116,12 @@ NetworkCounts reduce_field(std::span<const std::uint32_t> counts, std::span<cons
       [&](const tbb::blocked_range<std::size_t>& range, Sums part) {
         const std::size_t first = range.begin() * block, end = std::min(counts.size(), range.end() * block);
         for (std::size_t k = first; k < end; ++k) {
-          const std::uint64_t weight = weights.empty() ? 1 : weights[k];
+          const std::uint64_t weight = demands.weight(k), worth = std::uint64_t{counts[k]} * demands.worth(k);
           part.weight += weight;
-          if (counts[k] >= goal) {
+          if (static_cast<double>(worth) >= goal) {
             part.saturated += weight;
           } else {
-            part.partial_points += weight * counts[k];
+            part.partial_points += weight * worth;
           }
         }
         if (!masks.empty() && stations > mask_bits)
@@ -140,6 +140,7 @@ NetworkCounts reduce_field(std::span<const std::uint32_t> counts, std::span<cons
   result.voxels = counts.size();
   result.stations = stations;
   result.weight = sums.weight;
+  result.point_worth = demands.least_worth();
   result.saturated = sums.saturated;
   result.partial_points = sums.partial_points;
   result.seen = sums.seen;

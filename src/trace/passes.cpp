@@ -76,7 +76,7 @@ NetworkCounts count_in_passes(Tracer& tracer, std::span<const TraceStation> stat
     if (options.masks)
       std::ranges::copy(part.stations, field.stations.begin() + static_cast<std::ptrdiff_t>(pass.word * grid.size()));
   }
-  NetworkCounts all = reduce_field(field.count, field.stations, station_count, goal_density, grid.weights());
+  NetworkCounts all = reduce_field(field.count, field.stations, station_count, goal_density, grid.demands());
   all.rays = told.rays, all.trace_seconds = told.trace_seconds, all.cancelled = told.cancelled;
   all.points = std::move(told.points);
   all.points_on_surveyed = std::move(told.points_on_surveyed);
@@ -105,10 +105,8 @@ NetworkCounts count_sampled_in_passes(Tracer& tracer, std::span<const TraceStati
     };
   const std::vector<NetworkCounts> parts = tracer.count_sampled(networks, sizes, one, progress);
 
-  std::vector<std::uint8_t> weights;
-  if (!grid.weights().empty())
-    for (const std::uint32_t rank : job.sample) weights.push_back(grid.weights()[rank]);
-  NetworkCounts all = reduce_sample(counts, masks, job.groups, station_count, goal_density, weights);
+  NetworkCounts all =
+      reduce_sample(counts, masks, job.groups, station_count, goal_density, grid.demands().of(job.sample));
   for (const NetworkCounts& part : parts) {
     all.rays += part.rays;
     all.trace_seconds += part.trace_seconds;

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "trace/target_clones.hpp"
+#include "core/target_clones.hpp"
 
 namespace vantage {
 namespace {

@@ -10,9 +10,9 @@
 #include <optional>
 
 #include "core/station_masks.hpp"
+#include "core/target_clones.hpp"
 #include "trace/embree/range_noise.hpp"
 #include "trace/exact_arithmetic.hpp"
-#include "trace/target_clones.hpp"
 
 namespace vantage {
 namespace {

@@ -10,31 +10,34 @@ namespace vantage {
 
 NetworkCounts reduce_sample(std::span<const std::uint32_t> counts, std::span<const std::uint64_t> masks,
                             std::uint32_t groups, std::uint32_t stations, double goal_density,
-                            std::span<const std::uint8_t> weights) {
-  NetworkCounts all = reduce_field(counts, masks, stations, goal_density, weights);
+                            const VoxelDemands& demands) {
+  NetworkCounts all = reduce_field(counts, masks, stations, goal_density, demands);
   std::vector<std::uint32_t> group_counts;
   std::vector<std::uint64_t> group_masks;
-  std::vector<std::uint8_t> group_weights;
+  VoxelDemands group_demands;
   for (std::uint32_t g = 0; g < groups; ++g) {
     group_counts.clear();
     group_masks.clear();
-    group_weights.clear();
+    group_demands = {};
     for (std::size_t i = g; i < counts.size(); i += groups) {
       group_counts.push_back(counts[i]);
-      if (!weights.empty()) group_weights.push_back(weights[i]);
+      if (!demands.weights.empty()) group_demands.weights.push_back(demands.weights[i]);
+      if (!demands.worths.empty()) group_demands.worths.push_back(demands.worths[i]);
     }
     for (std::size_t w = 0; w * counts.size() < masks.size(); ++w)
       for (std::size_t i = g; i < counts.size(); i += groups) group_masks.push_back(masks[w * counts.size() + i]);
-    all.groups.push_back(reduce_field(group_counts, group_masks, stations, goal_density, group_weights));
+    all.groups.push_back(reduce_field(group_counts, group_masks, stations, goal_density, group_demands));
     // A group without voxels still has its stations' zeros.
     if (!masks.empty() && all.groups.back().seen.empty()) {
       all.groups.back().seen.resize(all.seen.size());
       all.groups.back().shared.resize(all.shared.size());
     }
   }
-  const auto filled = [&](std::uint32_t count) { return std::min(count / goal_density, 1.0); };
+  const auto filled = [&, goal = goal_density * demands.least_worth()](std::size_t i) {
+    return std::min(static_cast<double>(std::uint64_t{counts[i]} * demands.worth(i)) / goal, 1.0);
+  };
   for (std::size_t i = 1; i < counts.size(); ++i) {
-    const double step = filled(counts[i]) - filled(counts[i - 1]);
+    const double step = filled(i) - filled(i - 1);
     all.successive_difference_sum += step * step;
   }
   return all;

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "vantage/trace.hpp"
+#include "voxel/voxel_demands.hpp"
 
 namespace vantage {
 
@@ -12,6 +13,6 @@ namespace vantage {
 // and the successive differences (unweighted) that standard errors need.
 NetworkCounts reduce_sample(std::span<const std::uint32_t> counts, std::span<const std::uint64_t> masks,
                             std::uint32_t groups, std::uint32_t stations, double goal_density,
-                            std::span<const std::uint8_t> weights = {});
+                            const VoxelDemands& demands = {});
 
 }  // namespace vantage

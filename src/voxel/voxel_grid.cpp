@@ -8,7 +8,6 @@
 
 #include "voxel/grid_fit.hpp"
 #include "voxel/voxel_bricks.hpp"
-#include "voxel/voxel_weights.hpp"
 
 namespace vantage {
 namespace {
@@ -39,10 +38,9 @@ std::optional<VoxelGrid> VoxelGrid::build(const SceneData& scene, double user_si
   grid.slots_ = std::move(marked->slots);
   auto weights = voxel_weights(scene, grid, {.report = {}, .stop = progress.stop});
   if (!weights) return std::nullopt;
-  grid.weights_ = std::move(*weights);
-  grid.total_weight_ = grid.weights_.empty()
-                           ? grid.size_
-                           : std::accumulate(grid.weights_.begin(), grid.weights_.end(), std::uint64_t{0});
+  grid.total_weight_ =
+      weights->empty() ? grid.size_ : std::accumulate(weights->begin(), weights->end(), std::uint64_t{0});
+  grid.demands_.weights = std::move(*weights);
   return grid;
 }
 

@@ -7,11 +7,13 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "scene/scene_data.hpp"
 #include "shared/voxel_types.h"
 #include "vantage/progress.hpp"
+#include "voxel/voxel_demands.hpp"
 
 namespace vantage {
 
@@ -47,10 +49,10 @@ class VoxelGrid {
   std::span<const VoxelBrick> bricks() const { return bricks_; }
   std::span<const BrickSlot> slots() const { return slots_; }  // a power of two of them
   float inverse_size() const { return inverse_size_; }
-  // What each voxel counts in coverage, by rank (voxel_weights.hpp); empty: 1 each.
-  std::span<const std::uint8_t> weights() const { return weights_; }
-  std::uint32_t weight(std::uint64_t rank) const { return weights_.empty() ? 1 : weights_[rank]; }
+  // What coverage asks of each voxel, by rank: of the scene its weights, and what points are worth once it was told.
+  const VoxelDemands& demands() const { return demands_; }
   std::uint64_t total_weight() const { return total_weight_; }
+  void set_worths(std::vector<std::uint32_t> worths) { demands_.worths = std::move(worths); }
 
  private:
   int depth_ = 0;
@@ -60,7 +62,7 @@ class VoxelGrid {
   std::uint64_t size_ = 0;
   std::vector<VoxelBrick> bricks_;
   std::vector<BrickSlot> slots_;
-  std::vector<std::uint8_t> weights_;
+  VoxelDemands demands_;
   std::uint64_t total_weight_ = 0;
 };
 

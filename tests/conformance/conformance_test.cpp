@@ -264,7 +264,7 @@ TEST_P(Conformance, CountsAreThePointsOfTheScans) {
         EXPECT_EQ(counts.points_on_surveyed, on_surveyed);
         EXPECT_EQ(counts.rays, site.rays() * site.stations.size());
         EXPECT_FALSE(counts.cancelled);
-        expect_equal_counts(counts, reference_counts(field, stations_of(site), goal_density, site.grid->weights()));
+        expect_equal_counts(counts, reference_counts(field, stations_of(site), goal_density, site.grid->demands()));
       }
     }
   }
@@ -290,7 +290,7 @@ TEST_P(Conformance, TotalsMatchTheReference) {
     EXPECT_NEAR(total(counts.points), points, 1e-4 * points);
     EXPECT_NEAR(total(counts.points_on_surveyed), on_surveyed, 1e-4 * on_surveyed);
     const double reached =
-        coverage(reference_counts(expected, stations_of(site), goal_density, site.grid->weights()), goal_density);
+        coverage(reference_counts(expected, stations_of(site), goal_density, site.grid->demands()), goal_density);
     EXPECT_NEAR(coverage(counts, goal_density), reached, 1e-4 * reached);
   }
 }
@@ -410,21 +410,24 @@ NetworkCounts sampled_slowly(const TestSite& site, const VoxelField& field, cons
   VoxelField sample;
   const auto pick = [&](std::size_t first, std::size_t step) {
     sample = {};
-    std::vector<std::uint8_t> weights;
+    std::vector<std::uint32_t> ranks;
     for (std::size_t i = first; i < job.sample.size(); i += step) {
       sample.count.push_back(field.count[job.sample[i]]);
       if (job.masks) sample.stations.push_back(field.stations[job.sample[i]]);
-      weights.push_back(static_cast<std::uint8_t>(site.grid->weight(job.sample[i])));
+      ranks.push_back(job.sample[i]);
     }
-    return reference_counts(sample, stations, goal_density, weights);
+    return reference_counts(sample, stations, goal_density, site.grid->demands().of(ranks));
   };
   std::vector<NetworkCounts> groups;
   for (std::uint32_t g = 0; g < job.groups; ++g) groups.push_back(pick(g, job.groups));
   NetworkCounts counts = pick(0, 1);
   counts.groups = std::move(groups);
+  const VoxelDemands& demands = site.grid->demands();
+  const auto filled = [&](std::size_t i) {
+    return std::min(1.0 * sample.count[i] * demands.worth(job.sample[i]) / (goal_density * counts.point_worth), 1.0);
+  };
   for (std::size_t i = 1; i < sample.count.size(); ++i) {
-    const double step =
-        std::min(sample.count[i] / goal_density, 1.0) - std::min(sample.count[i - 1] / goal_density, 1.0);
+    const double step = filled(i) - filled(i - 1);
     counts.successive_difference_sum += step * step;
   }
   return counts;

@@ -89,7 +89,7 @@ TEST_P(PointLimitsConformance, ScansAndCountsMatchADoublePrecisionReference) {
       EXPECT_LE(static_cast<double>(undecided), std::ceil(undecided_share * static_cast<double>(rays)));
       EXPECT_EQ(field.count, expected.count);
       EXPECT_EQ(field.stations, expected.stations);
-      expect_equal_counts(counts, reference_counts(field, stations_of(site), goal_density, site.grid->weights()));
+      expect_equal_counts(counts, reference_counts(field, stations_of(site), goal_density, site.grid->demands()));
       // The sites are such that each limit tells.
       EXPECT_GT(all.incidence, 100u);
       EXPECT_GT(all.footprint, 100u);
@@ -151,8 +151,10 @@ TEST_P(PointLimitsConformance, ASampleOfAllVoxelsIsTheExactEvaluation) {
       for (std::size_t v = 0; v < everything.size(); ++v) {
         const NetworkCounts& voxel = sampled[0].groups[v];
         const std::uint32_t count = field.count[v];
-        const std::uint64_t partial = count >= goal_density ? 0 : std::uint64_t{count} * site.grid->weight(v);
-        differing += voxel.partial_points != partial || (voxel.saturated > 0) != (count >= goal_density);
+        const VoxelDemands& demands = site.grid->demands();
+        const std::uint64_t worth = std::uint64_t{count} * demands.worth(v);
+        const bool full = static_cast<double>(worth) >= goal_density * demands.least_worth();
+        differing += voxel.partial_points != (full ? 0 : worth * demands.weight(v)) || (voxel.saturated > 0) != full;
       }
       EXPECT_EQ(differing, 0u);
     }

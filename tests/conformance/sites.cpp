@@ -82,7 +82,8 @@ class Builder {
   RawScene raw_;
 };
 
-// A tank, a boiler, a tilted pipe and a cabinet, which weighs most, on uneven ground, behind a blocking fence.
+// A tank, of which fewer points are wanted, a boiler, a tilted pipe and a cabinet, which weighs most, on uneven ground,
+// behind a blocking fence.
 std::shared_ptr<const SceneData> boiler_house() {
   Builder b;
   b.sheet("ground", Role::blocking, 0.3, 24, 24, [](double u, double v) {
@@ -129,7 +130,11 @@ TestSite make_site(const std::string& name, std::shared_ptr<const SceneData> sce
   TestSite site;
   site.name = name;
   site.scene = std::move(scene);
-  site.grid = std::make_shared<const VoxelGrid>(VoxelGrid::build(*site.scene, user_size_m));
+  VoxelGrid grid = VoxelGrid::build(*site.scene, user_size_m);
+  std::vector<double> spacings_m;
+  for (const MeshInfo& mesh : site.scene->meshes) spacings_m.push_back(mesh.name == "tank" ? 0.031 : 0.01);
+  grid.set_worths(*point_worths(*site.scene, grid, spacings_m, {}));
+  site.grid = std::make_shared<const VoxelGrid>(std::move(grid));
   Scanner scanner;
   scanner.azimuth_step = scanner.zenith_step = Angle::degrees(step_degrees);
   scanner.heading = Angle::degrees(17);

@@ -107,7 +107,7 @@ BruteForce brute_force_objectives(const VoxelGrid& grid, double goal_density,
   BruteForce result;
   double weights = 0;
   for (std::uint32_t v = 0; v < points.size(); ++v) {
-    const auto weight = static_cast<double>(grid.weight(v));
+    const auto weight = static_cast<double>(grid.demands().weight(v));
     result.coverage += weight * std::min(points[v] / goal_density, 1.0);
     weights += weight;
   }

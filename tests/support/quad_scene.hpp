@@ -55,6 +55,14 @@ inline QuadScene wall_and_floor(const Vec3& origin = {}) {
   return scene;
 }
 
+// Beside that wall, which asks for 0.08 m, another that asks for 0.2 m.
+inline QuadScene walls_of_two_details() {
+  QuadScene scene = wall_and_floor();
+  scene.quad({-6, -3, -1.5f}, {0, 6, 0}, {0, 0, 4});
+  scene.data().meshes[0].detail_m = 0.08, scene.data().meshes[2].detail_m = 0.2;
+  return scene;
+}
+
 inline Scanner coarse_scanner(double step_deg = 1) {
   Scanner scanner;
   scanner.azimuth_step = scanner.zenith_step = Angle::degrees(step_deg);

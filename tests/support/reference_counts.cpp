@@ -4,17 +4,18 @@
 namespace vantage::test {
 
 NetworkCounts reference_counts(const VoxelField& field, std::uint32_t stations, double goal_density,
-                               std::span<const std::uint8_t> weights) {
+                               const VoxelDemands& demands) {
   NetworkCounts counts;
   counts.voxels = field.count.size();
   counts.stations = stations;
+  counts.point_worth = demands.least_worth();
   for (std::size_t k = 0; k < field.count.size(); ++k) {
-    const std::uint32_t n = field.count[k], weight = weights.empty() ? 1 : weights[k];
+    const std::uint32_t n = field.count[k], weight = demands.weight(k), worth = demands.worth(k);
     counts.weight += weight;
-    if (n >= goal_density) {
+    if (static_cast<double>(n) * worth >= goal_density * counts.point_worth) {
       counts.saturated += weight;
     } else {
-      counts.partial_points += std::uint64_t{n} * weight;
+      counts.partial_points += std::uint64_t{n} * worth * weight;
     }
   }
   if (field.stations.empty()) return counts;

@@ -3,16 +3,16 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 
 #include "vantage/objective.hpp"
 #include "vantage/simulator.hpp"
+#include "voxel/voxel_demands.hpp"
 
 namespace vantage::test {
 
-// Equations 8 and 11 from a voxel field. Without station masks in it nothing is seen or shared; without weights every
-// voxel counts once.
+// Equations 8 and 11 from a voxel field. Without station masks in it nothing is seen or shared; without demands every
+// voxel counts once and has the same goal.
 NetworkCounts reference_counts(const VoxelField& field, std::uint32_t stations, double goal_density,
-                               std::span<const std::uint8_t> weights = {});
+                               const VoxelDemands& demands = {});
 
 }  // namespace vantage::test

@@ -8,10 +8,10 @@
 #include <chrono>
 #include <functional>
 
+#include "core/target_clones.hpp"
 #include "trace/embree/point_buckets.hpp"
 #include "trace/embree/tile_plan.hpp"
 #include "trace/field_counts.hpp"
-#include "trace/target_clones.hpp"
 
 namespace vantage {
 namespace {
@@ -113,7 +113,7 @@ NetworkCounts count_network(std::span<const StationRays> scanners, std::span<con
     if (limited) dropped[station.bit()] = sums.dropped;
   }
 
-  NetworkCounts result = reduce_field(field.count, field.stations, station_count, goal_density, grid.weights());
+  NetworkCounts result = reduce_field(field.count, field.stations, station_count, goal_density, grid.demands());
   result.rays = traced;
   result.points = std::move(points);
   result.points_on_surveyed = std::move(on_surveyed);

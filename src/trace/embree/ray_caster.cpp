@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "trace/target_clones.hpp"
+#include "core/target_clones.hpp"
 
 namespace vantage {
 namespace {

@@ -62,9 +62,7 @@ std::vector<NetworkCounts> sample_networks(std::span<const StationRays> scanners
   std::vector<std::uint32_t> counts(at_once * n);
   std::vector<std::uint64_t> masks(job.masks ? at_once * n : 0);
 
-  std::vector<std::uint8_t> weights;
-  if (!grid.weights().empty())
-    for (const std::uint32_t rank : job.sample) weights.push_back(grid.weights()[rank]);
+  const VoxelDemands demands = grid.demands().of(job.sample);
 
   std::vector<NetworkCounts> results(networks.size());
   bool cancelled = false;
@@ -95,7 +93,7 @@ std::vector<NetworkCounts> sample_networks(std::span<const StationRays> scanners
       const std::span<const std::uint32_t> own_counts(counts.data() + k * n, n);
       const std::span<const std::uint64_t> own_masks(masks.data() + (job.masks ? k * n : 0), job.masks ? n : 0);
       results[first + k] =
-          reduce_sample(own_counts, own_masks, job.groups, station_counts[first + k], goal_density, weights);
+          reduce_sample(own_counts, own_masks, job.groups, station_counts[first + k], goal_density, demands);
       results[first + k].rays = traced[k];
       if (job.points && !cancelled) job.points(first + k, own_counts);
     }

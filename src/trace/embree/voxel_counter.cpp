@@ -15,8 +15,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/target_clones.hpp"
 #include "trace/embree/seen_triangle.hpp"
-#include "trace/target_clones.hpp"
 
 namespace vantage {
 namespace {

@@ -147,7 +147,7 @@ NetworkCounts SpreadTracer::count_by_station(std::span<const TraceStation> stati
   const bool finished = team_.work(stations.size(), stations_, progress, one);
   field.count.resize(grid_->size());
   field.stations.resize(options.masks ? grid_->size() : 0);
-  NetworkCounts counts = reduce_field(field.count, field.stations, station_count, goal_density_, grid_->weights());
+  NetworkCounts counts = reduce_field(field.count, field.stations, station_count, goal_density_, grid_->demands());
   add_station_sums(counts, sums);
   counts.cancelled = !finished;
   counts.trace_seconds = tracing / static_cast<double>(members);

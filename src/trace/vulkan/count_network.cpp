@@ -205,11 +205,9 @@ class VulkanTracer::ExactCount {
   }
 
   Reduction reduction() const {
-    Reduction reduction{t_.counts_.address(), mask_words_ ? t_.masks_.address() : 0, voxels_, 1, mask_words_, false};
-    if (t_.weights_) {
-      reduction.weights = t_.weights_.address();
-      reduction.weight = {t_.scene_.grid->total_weight()};
-    }
+    Reduction reduction{t_.counts_.address(),   mask_words_ ? t_.masks_.address() : 0, voxels_, 1, mask_words_, false,
+                        t_.demands_.addresses()};
+    if (t_.demands_.weights) reduction.weight = {t_.scene_.grid->total_weight()};
     return reduction;
   }
 

@@ -46,17 +46,11 @@ VulkanTracer::DeviceSample VulkanTracer::device_sample(std::span<const std::uint
               [](const SampleTriangle& one, const SampleTriangle& other) { return one.gap < other.gap; });
   });
   voxels.back() = {0, 0, 0, touching.offset.back()};
-  DeviceSample made{.ranks = {sample.begin(), sample.end()},
-                    .margin = margin,
-                    .voxels = to_device<SampleVoxel>(voxels, "sample voxels"),
-                    .triangles = to_device<SampleTriangle>(triangles, "sample triangles"),
-                    .weights = {}};
-  if (weights_) {
-    std::vector<std::uint8_t> weights;
-    for (const std::uint32_t rank : sample) weights.push_back(grid.weights()[rank]);
-    made.weights = bytes_to_device(weights, "sample weights");
-  }
-  return made;
+  return {.ranks = {sample.begin(), sample.end()},
+          .margin = margin,
+          .voxels = to_device<SampleVoxel>(voxels, "sample voxels"),
+          .triangles = to_device<SampleTriangle>(triangles, "sample triangles"),
+          .demands = to_device(grid.demands().of(sample))};
 }
 
 // How far noise may move a point into a voxel, seen from any station of the networks.
@@ -350,12 +344,12 @@ class VulkanTracer::SampledCount {
 
   Reduction reduction() const {
     Reduction reduction{
-        t_.counts_.address(), mask_words_ ? t_.masks_.address() : 0, voxels_, job_.groups, mask_words_, true};
-    if (t_.weights_) {
-      reduction.weights = sample_->weights.address();
+        t_.counts_.address(),        mask_words_ ? t_.masks_.address() : 0, voxels_, job_.groups, mask_words_, true,
+        sample_->demands.addresses()};
+    if (reduction.demands.weights) {
       reduction.weight.resize(job_.groups);
       for (std::size_t k = 0; k < job_.sample.size(); ++k)
-        reduction.weight[k % job_.groups] += t_.scene_.grid->weight(job_.sample[k]);
+        reduction.weight[k % job_.groups] += t_.scene_.grid->demands().weight(job_.sample[k]);
     }
     return reduction;
   }

@@ -67,7 +67,7 @@ SampleList VulkanTracer::room_for_sample() const {
 
 void VulkanTracer::upload_scene() {
   const VoxelGrid& grid = *scene_.grid;
-  if (!grid.weights().empty()) weights_ = bytes_to_device(grid.weights(), "voxel weights");
+  demands_ = to_device(grid.demands());
   bricks_ = to_device<VoxelBrick>(grid.bricks(), "voxel bricks");
   slots_ = to_device<BrickSlot>(grid.slots(), "brick slots");
   TraceParameters& p = parameters_;

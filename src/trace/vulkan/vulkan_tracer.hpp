@@ -65,11 +65,20 @@ class VulkanTracer final : public Tracer {
   std::vector<DeviceScanner> make_scanners();
   void upload_scene();
   void upload_shading();
+  // What coverage asks of voxels: of all, or of a sample. Without memory where all are alike.
+  struct DemandAddresses {
+    std::uint64_t weights = 0, worths = 0;
+  };
+  struct DeviceDemands {
+    Buffer weights, worths;
+    DemandAddresses addresses() const { return {weights ? weights.address() : 0, worths ? worths.address() : 0}; }
+  };
   // A sample as the kernels read it.
   struct DeviceSample {
     std::vector<std::uint32_t> ranks;
     double margin = 0;  // how far from its voxel a triangle is listed there
-    Buffer voxels, triangles, weights;
+    Buffer voxels, triangles;
+    DeviceDemands demands;
   };
   const DeviceSample& upload_sample(std::span<const std::uint32_t> sample,
                                     std::span<const std::vector<TraceStation>> networks);
@@ -82,12 +91,14 @@ class VulkanTracer final : public Tracer {
     if (scene_.max_rays_per_dispatch > 0) return scene_.max_rays_per_dispatch;
     return info_.software ? software_rays_per_dispatch : hardware_rays_per_dispatch;
   }
-  std::uint32_t goal_points() const {
-    return static_cast<std::uint32_t>(std::min(std::ceil(goal_density_), static_cast<double>(count_limit)));
+  // What points are worth that fill a voxel.
+  std::uint64_t goal_worth() const {
+    const double least = scene_.grid->demands().least_worth();
+    return static_cast<std::uint64_t>(std::min(std::ceil(goal_density_ * least), count_limit * least));
   }
   // So that even `voxels` squares of almost the goal fit in 64 bits: 0 for every goal that scanners reach.
   std::uint32_t difference_shift(std::uint32_t voxels) const {
-    const int bits = 2 * static_cast<int>(std::bit_width(goal_points())) + static_cast<int>(std::bit_width(voxels));
+    const int bits = 2 * static_cast<int>(std::bit_width(goal_worth())) + static_cast<int>(std::bit_width(voxels));
     return static_cast<std::uint32_t>(std::max(0, bits - 62) / 2);
   }
   std::uint32_t rows_per_dispatch(const RayPattern& pattern) const {
@@ -114,11 +125,12 @@ class VulkanTracer final : public Tracer {
   Buffer to_device(std::span<const T> values, const char* name) {
     return make_device_buffer<T>(device_, commands_, values, name);
   }
-  // In whole words, as shaders read them.
-  Buffer bytes_to_device(std::span<const std::uint8_t> bytes, const char* name) {
-    std::vector<std::uint8_t> padded(bytes.begin(), bytes.end());
-    padded.resize((bytes.size() + 3) / 4 * 4);
-    return to_device<std::uint8_t>(padded, name);
+  DeviceDemands to_device(VoxelDemands demands) {
+    DeviceDemands made;
+    demands.weights.resize((demands.weights.size() + 3) / 4 * 4);  // whole words, as shaders read them
+    if (!demands.weights.empty()) made.weights = to_device<std::uint8_t>(demands.weights, "voxel weights");
+    if (!demands.worths.empty()) made.worths = to_device<std::uint32_t>(demands.worths, "worths of points");
+    return made;
   }
 
   // Records the reduction of `networks` blocks of counts and masks, and reads totals back into counts.
@@ -126,8 +138,8 @@ class VulkanTracer final : public Tracer {
     std::uint64_t counts, masks;  // addresses
     std::uint32_t voxels, groups, mask_words;
     bool differences;
-    std::uint64_t weights = 0;               // address, where voxels have any
-    std::vector<std::uint64_t> weight = {};  // of each group then
+    DemandAddresses demands = {};
+    std::vector<std::uint64_t> weight = {};  // of each group, where voxels have any
   };
   void record_reduction(const Recorder& r, const Reduction& reduction, std::uint32_t first_network,
                         std::uint32_t networks, std::uint32_t stride);
@@ -155,7 +167,7 @@ class VulkanTracer final : public Tracer {
   Kernels kernels_;
   Buffer bricks_, slots_;
   Buffer positions_, normals_, triangles_, diffuse_, normal_table_;  // filled when first needed
-  Buffer weights_;                                                   // of voxels, where they have any
+  DeviceDemands demands_;                                            // of all voxels
   Buffer counts_, masks_, station_counters_, totals_, station_counts_;
   Buffer tile_far_, tile_list_, tile_dispatch_, tile_rays_, tile_starts_;
   Pace exact_pace_, sampled_pace_;

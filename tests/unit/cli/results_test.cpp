@@ -105,6 +105,31 @@ TEST_F(Results, PointsThatAreNotGoodEnoughAreToldByLimit) {
   EXPECT_TRUE(sampled["dropped"].is_null());
 }
 
+TEST_F(Results, NodesAreWantedAsDenselyAsTheirDetail) {
+  const auto with = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> all{"evaluate",    scene_,   "--engine", "embree",      "--step",
+                                 "1",           "--beam", "0.5,6",    "--incidence", "90",
+                                 "--user-size", "0.5",    "--detail", "wall-*=300"};
+    all.insert(all.end(), four_heads.begin(), four_heads.end());
+    all.insert(all.end(), more.begin(), more.end());
+    return json_of(all);
+  };
+  const auto goal = [](const nlohmann::json& json, double detail_m) {
+    return std::pow(json["voxel_size"].get<double>() / detail_m, 2);
+  };
+  // The scene brings a spacing of its own, which is that of all nodes unless it is said otherwise.
+  const auto all = with({"--spacing", "0.1"}), one = with({"--spacing-by-detail"}),
+             both = with({"--detail", "wall-south=100", "--spacing-by-detail"});
+  EXPECT_NEAR(all["goal_density"], goal(all, 0.1), 1e-9);
+  EXPECT_NEAR(one["goal_density"], goal(one, 0.3), 1e-9);
+  EXPECT_NEAR(both["goal_density"], goal(both, 0.1), 1e-9);
+  EXPECT_EQ(both["options"]["spacing-by-detail"], true);
+  EXPECT_FALSE(all["options"].contains("spacing-by-detail"));
+  // A wall of four is wanted more densely, then all.
+  EXPECT_GT(one["coverage"], both["coverage"]);
+  EXPECT_GT(both["coverage"], all["coverage"]);
+}
+
 TEST_F(Results, RegistrationMayGoByAllSurfaces) {
   // Two stations before one wall, which leaves their places along it free; the ground and other walls do not.
   const std::vector<std::string> heads{"--station", "8,0,1.5", "--station", "6,2,1.5", "--registration"};

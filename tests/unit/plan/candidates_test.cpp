@@ -19,6 +19,7 @@ namespace {
 using test::coarse_scanner;
 using test::QuadScene;
 using test::wall_and_floor;
+using test::walls_of_two_details;
 
 SimulatorConfig config() {
   SimulatorConfig c;
@@ -85,6 +86,25 @@ TEST(CaptureRows, SumToNetworks) {
   EXPECT_DOUBLE_EQ(rows.coverage(all).standard_error, expected.standard_error);
   EXPECT_EQ(rows.coverage().value, rows.coverage(all).value);
   EXPECT_GT(expected.standard_error, 0);
+}
+
+TEST(CaptureRows, GoByTheGoalOfEachVoxel) {
+  Scanner scanner = coarse_scanner(2);
+  scanner.beam_divergence = Angle::radians(1e-4), scanner.exit_diameter_m = 0.005;
+  SimulatorConfig by_detail = config();
+  by_detail.spacing_by_detail = true;
+  Simulator simulator(walls_of_two_details().scene(), scanner, by_detail);
+  const std::vector<PlacedStation> stations{at({0, 0, 0}), at({3, 2, 0}), at({-3, -2, 0.5})};
+  const CaptureRows rows = capture_rows(simulator, stations, simulator.voxel_count());
+  const double covered = coverage(simulator.evaluate(to_network(stations)), simulator.goal_density());
+  const std::vector<std::size_t> all{0, 1, 2};
+  EXPECT_NEAR(rows.coverage(all).value, covered, 1e-12);
+  EXPECT_GT(covered, 0.3);
+  EXPECT_LT(covered, 0.9);
+  CaptureRows first(simulator, simulator.voxel_count());
+  first.append(rows, 2);
+  EXPECT_EQ(first.size(), 2u);
+  EXPECT_EQ(first.coverage().value, rows.coverage(std::vector<std::size_t>{0, 1}).value);
 }
 
 TEST(CaptureRows, StopWhereTold) {

@@ -108,6 +108,7 @@ const std::vector<Change<SimulatorConfig>> kSimulation{
     {"warn", [](SimulatorConfig& c) { c.warn = [](const std::string&) {}; }, false, false},
     {"user_size_m", [](SimulatorConfig& c) { c.user_size_m = 0.4; }},
     {"point_spacing_m", [](SimulatorConfig& c) { c.point_spacing_m = 0.1; }},
+    {"spacing_by_detail", [](SimulatorConfig& c) { c.spacing_by_detail = true; }},
     {"max_incidence", [](SimulatorConfig& c) { c.max_incidence = Angle::degrees(70); }},
     {"noise", [](SimulatorConfig& c) { c.noise = false; }},
     {"seed", [](SimulatorConfig& c) { c.seed = 2; }},
@@ -115,7 +116,7 @@ const std::vector<Change<SimulatorConfig>> kSimulation{
     {"max_rays_per_dispatch", [](SimulatorConfig& c) { c.max_rays_per_dispatch = 1000; }, false},
     // What a machine has to spare is no part of what is computed on it.
     {"max_memory_bytes", [](SimulatorConfig& c) { c.max_memory_bytes = std::uint64_t{1} << 40; }, false, false}};
-static_assert(member_count<SimulatorConfig>() == 12);
+static_assert(member_count<SimulatorConfig>() == 13);
 
 const std::vector<Change<WalkableOptions>> kWalkable{
     {"max_slope", [](WalkableOptions& o) { o.max_slope = Angle::degrees(5); }},

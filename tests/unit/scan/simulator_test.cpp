@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -20,6 +21,7 @@ namespace {
 using test::coarse_scanner;
 using test::QuadScene;
 using test::wall_and_floor;
+using test::walls_of_two_details;
 
 constexpr std::uint32_t everything =
     scan_range | scan_position | scan_normal | scan_reflectivity | scan_ids | scan_colour | scan_voxel;
@@ -426,6 +428,40 @@ TEST(Evaluate, NetworksWithoutAnActiveStationSeeNothing) {
   EXPECT_EQ(coverage_estimate(sampled[0], simulator.goal_density(), simulator.voxel_count()).standard_error, 0.0);
   EXPECT_EQ(overlap_estimate(sampled[2], simulator.voxel_count()).standard_error, 0.0);
   EXPECT_EQ(simulator.evaluate_sampled(std::vector<Network>{none}, {.voxels = 50})[0].voxels, 50u);
+}
+
+TEST(Evaluate, GoesByTheGoalOfEachVoxel) {
+  Scanner scanner = coarse_scanner(2);
+  scanner.beam_divergence = Angle::radians(1e-4), scanner.exit_diameter_m = 0.005;
+  SimulatorConfig by_detail = config(0.5, 0.2);
+  by_detail.spacing_by_detail = true;
+  Simulator simulator(walls_of_two_details().scene(), scanner, by_detail);
+  EXPECT_DOUBLE_EQ(simulator.goal_density(), std::pow(simulator.voxel_size_m() / 0.08, 2));
+  const Network network{{{0, 0, 0}}, {{1, -2, 0.5}}};
+  VoxelField field;
+  const NetworkCounts counts = simulator.evaluate(network, {.field = &field});
+  double sum = 0;
+  std::array<int, 2> voxels{}, full{};
+  for (std::uint64_t rank = 0; rank < simulator.voxel_count(); ++rank) {
+    const bool coarse = simulator.voxel_centre(rank).x < 0;
+    const double goal = std::pow(simulator.voxel_size_m() / (coarse ? 0.2 : 0.08), 2);
+    EXPECT_NEAR(simulator.goal_density(rank), goal, goal / 4096);
+    sum += std::min(field.count[rank] / simulator.goal_density(rank), 1.0);
+    ++voxels[coarse];
+    full[coarse] += field.count[rank] >= goal;
+  }
+  EXPECT_NEAR(coverage(counts, simulator.goal_density()), sum / static_cast<double>(simulator.voxel_count()), 1e-12);
+  // The same points fill one wall and not the other.
+  EXPECT_LT(full[0], voxels[0] / 2);
+  EXPECT_GT(full[1], voxels[1] / 2);
+  EXPECT_EQ(counts.saturated, static_cast<std::uint64_t>(full[0] + full[1]));
+  const NetworkCounts sampled =
+      simulator.evaluate_sampled({&network, 1}, {.voxels = simulator.voxel_count(), .stop_at_goal = true})[0];
+  EXPECT_EQ(sampled.saturated, counts.saturated);
+  EXPECT_EQ(coverage(sampled, simulator.goal_density()), coverage(counts, simulator.goal_density()));
+  by_detail.spacing_by_detail = false;
+  EXPECT_DOUBLE_EQ(Simulator(walls_of_two_details().scene(), scanner, by_detail).goal_density(3),
+                   std::pow(simulator.voxel_size_m() / 0.2, 2));
 }
 
 TEST(EvaluateSampled, AllVoxelsAreExact) {

@@ -45,13 +45,20 @@ TEST(FieldCounts, EqualTheBookForAnySizeAndNumberOfStations) {
   }
 }
 
-TEST(FieldCounts, WeightsCountInCoverageAlone) {
+TEST(FieldCounts, WeightsAndGoalsCountInCoverageAlone) {
   const VoxelField field = random_field(70'001, 15, 3);
   RandomStream random(8);
-  std::vector<std::uint8_t> weights(field.count.size());
-  for (std::uint8_t& weight : weights) weight = static_cast<std::uint8_t>(1 + random.bits() % 255);
-  const NetworkCounts weighted = reduce_field(field.count, field.stations, 15, 37.3, weights);
-  test::expect_equal_counts(weighted, test::reference_counts(field, 15, 37.3, weights));
+  VoxelDemands demands;
+  for (std::size_t k = 0; k < field.count.size(); ++k)
+    demands.weights.push_back(static_cast<std::uint8_t>(1 + random.bits() % 255));
+  const NetworkCounts weighted = reduce_field(field.count, field.stations, 15, 37.3, demands);
+  test::expect_equal_counts(weighted, test::reference_counts(field, 15, 37.3, demands));
+  for (std::size_t k = 0; k < field.count.size(); ++k)
+    demands.worths.push_back(densest_worth + static_cast<std::uint32_t>(random.bits() % (1u << 20)));
+  const NetworkCounts valued = reduce_field(field.count, field.stations, 15, 370.3, demands);
+  test::expect_equal_counts(valued, test::reference_counts(field, 15, 370.3, demands));
+  EXPECT_GT(valued.saturated, 0u);
+  EXPECT_LT(valued.saturated, valued.weight);
   EXPECT_EQ(weighted.shared, reduce_field(field.count, field.stations, 15, 37.3).shared);
   EXPECT_GT(weighted.weight, 2 * weighted.voxels);
 }
