@@ -39,14 +39,14 @@ TEST(CoverageCells, HoldEverySampledVoxelInItsCube) {
 TEST(CoverageCells, ColoursAreMeansOfTheirVoxels) {
   Site site;
   const CoverageCells cells = coverage_cells(site.simulator, 100'000, 60);
-  std::vector<std::uint32_t> counts;
+  const double goal = site.simulator.goal_density();
+  std::vector<std::uint32_t> counts;  // up to nearly twice the goal
   std::vector<Seer> seen_by;
   for (std::size_t i = 0; i < cells.ranks.size(); ++i) {
-    counts.push_back(static_cast<std::uint32_t>(i * 7 % 11));
+    counts.push_back(static_cast<std::uint32_t>(static_cast<double>(i * 7 % 11) / 6 * goal));
     seen_by.push_back(counts.back() == 0 ? 0 : i % 5 == 0 ? several_stations : 3);
   }
-  const double goal = 6;
-  const CellColours colours = cell_colours(cells, cells.ranks, counts, seen_by, goal);
+  const CellColours colours = cell_colours(cells, cells.ranks, counts, seen_by, site.simulator);
   ASSERT_EQ(colours.coverage.size(), cells.keys.size());
   for (std::uint32_t c = 0; c < cells.keys.size(); ++c) {
     double sum = 0, voxels = 0;
@@ -78,11 +78,11 @@ TEST(CoverageCells, AreAsTheNearestWhereNothingWasCounted) {
   std::vector<Seer> seen_by;
   for (const std::uint32_t rank : cells.ranks) {
     if (site.simulator.voxel_centre(rank).y > 1998) continue;
-    ranks.push_back(rank), counts.push_back(9), seen_by.push_back(1);
+    ranks.push_back(rank), counts.push_back(1'000'000), seen_by.push_back(1);
   }
   ASSERT_GT(ranks.size(), 0u);
   ASSERT_LT(ranks.size(), cells.ranks.size());
-  const CellColours colours = cell_colours(cells, ranks, counts, seen_by, 6);
+  const CellColours colours = cell_colours(cells, ranks, counts, seen_by, site.simulator);
   EXPECT_EQ(std::ranges::count(colours.coverage, 254), std::ssize(colours.coverage));
   EXPECT_EQ(std::ranges::count(colours.only, 1), std::ssize(colours.only));
 }
