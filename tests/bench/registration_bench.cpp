@@ -14,6 +14,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <numeric>
 #include <random>
 #include <set>
@@ -34,7 +35,7 @@ using Eigen::MatrixXd;
 struct Options {
   std::string site = "office", csv;
   std::size_t stations = 6, pool = 18, networks = 30, trials = 20, points = 3000;
-  std::uint64_t sample = 20'000, seed = 1;
+  std::uint64_t sample = std::numeric_limits<std::uint64_t>::max(), seed = 1;
   double step_deg = 0.25, user_size_m = 0.15, connected = 0.02;
   std::vector<std::string> plans;  // tables of stations: networks that are given
 };
@@ -319,7 +320,7 @@ int main(int argc, char** argv) {
   app.add_option("--pool", o.pool, "Stations that networks are drawn from");
   app.add_option("--networks", o.networks, "How many");
   app.add_option("--trials", o.trials, "Adjustments of each");
-  app.add_option("--sample", o.sample, "Voxels that predictions are made from");
+  app.add_option("--sample", o.sample, "Voxels that predictions are made from; all of them if absent");
   app.add_option("--step", o.step_deg, "Of the scanner, degrees");
   app.add_option("--user-size", o.user_size_m, "Of voxels, metres");
   app.add_option("--connected", o.connected, "Least overlap of the weakest link of the strongest tree");
