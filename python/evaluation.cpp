@@ -62,7 +62,8 @@ void add_registration(py::module_& m) {
             "Modelling error along the normal, one sigma, one and the same over a patch; metres.")
         .add<double>(
             "patch_m", [](const RegistrationOptions& o) { return o.model.patch_m; },
-            [](RegistrationOptions& o, double value) { o.model.patch_m = value; }, "Side of such a patch, metres.")
+            [](RegistrationOptions& o, double value) { o.model.patch_m = value; },
+            "Side of such a patch, metres; planes count where surface is flat over half of it.")
         .add("position_m", &RegistrationOptions::position_m, "Sigma of a head before registration, in each axis.")
         .add("heading_deg", &RegistrationOptions::heading, "Sigma of the heading before registration.")
         .add("tilt_deg", &RegistrationOptions::tilt, "Sigma of each tilt; 0: exactly level.")

@@ -58,7 +58,7 @@ constexpr std::size_t mask_words(std::size_t stations) { return (stations + mask
 /// over a patch of side L, so that a huge wall is not a million independent measurements.
 struct RegistrationModel {
   double rho_m = 0.0015;  ///< ρ, one standard deviation along the surface's normal; above 0.
-  double patch_m = 0.5;   ///< L, above 0.
+  double patch_m = 0.5;   ///< L, above 0. A plane counts where surface is flat over half of it.
   friend bool operator==(const RegistrationModel&, const RegistrationModel&) = default;
 };
 

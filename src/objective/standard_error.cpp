@@ -12,7 +12,8 @@
 namespace vantage {
 namespace {
 
-constexpr double largest_error = 0.5;  // of the scale: the standard deviation of a value in {0, 1}
+constexpr double largest_error = 0.5;   // of the scale: the standard deviation of a value in {0, 1}
+constexpr double least_unbiased = 0.5;  // of a sample's registration error, after its bias is taken off
 
 double unsampled_share(const NetworkCounts& counts, std::uint64_t population) {
   if (counts.voxels >= population) return 0;
@@ -217,7 +218,9 @@ Estimate registration_estimate(const NetworkCounts& counts, std::uint64_t voxels
     if (const double unsampled = unsampled_share(*surroundings, surroundings_voxels); unsampled > 0)
       add(replicates<double>(*surroundings, [&](const NetworkCounts& rest) { return error(counts, &rest); }),
           unsampled);
-  estimate.value = std::max(estimate.value, 0.0);
+  // Where a bias seems larger than that, the weakest link rests on voxels of one group, and how large it is cannot be
+  // told from the sample; but nothing registers without error.
+  estimate.value = std::max(estimate.value, least_unbiased * seen);
   return estimate;
 }
 

@@ -20,9 +20,13 @@ namespace {
 constexpr std::size_t of_pair = RegistrationSums::of_pair, of_station = RegistrationSums::of_station;
 constexpr std::size_t patches_a_block = patches_in_64_bits / 2;
 static_assert(of_pair == pair_sums && of_station == station_sums);
-constexpr double least_share = 0.5;       // of a voxel's surface that one plane must have
+constexpr double least_share = 0.5;       // of a voxel's surface, and of that around it, that one plane must have
 constexpr double least_area = 1e-3;       // of a face: what is less is a corner that no scan resolves
 constexpr double points_of_a_plane = 10;  // within a patch: fewer, and a scan has no normal there to register by
+// Of a patch's side, how far around it a surface must be flat. A scan's normal is fitted to points around it, within
+// the patch over which its error is the same: on a pipe thinner than that none is found, be voxels ever so fine.
+constexpr double flat_part = 0.5;
+constexpr double widest_fit_m = 1;  // no normal is fitted to more, be patches ever so large
 
 constexpr double largest_section = 1.5;  // in faces: no plane has more than 3√3/4 within a cube
 
@@ -298,8 +302,8 @@ Patches make_patches(const SceneData& scene, const VoxelGrid& grid, std::span<co
                      const RayPattern& pattern, const RegistrationModel& model) {
   const double side = std::ldexp(grid.voxel_size(), grid.depth());
   const auto middle = [&](int axis) { return grid.min()[static_cast<std::size_t>(axis)] + side / 2; };
-  return make_patches(voxel_surfaces(scene, grid, ranks), {{middle(0), middle(1), middle(2)}, side, grid.voxel_size()},
-                      pattern, model);
+  return make_patches(voxel_surfaces(scene, grid, ranks, std::min(flat_part * model.patch_m, widest_fit_m)),
+                      {{middle(0), middle(1), middle(2)}, side, grid.voxel_size()}, pattern, model);
 }
 
 std::vector<RegistrationSums> sum_patches(const Patches& patches, std::span<const PatchScanner> scanners,

@@ -10,75 +10,34 @@
 #include <utility>
 
 #include "core/glm.hpp"
+#include "voxel/clipped_polygon.hpp"
+#include "voxel/flat_windows.hpp"
 #include "voxel/voxel_bricks.hpp"
 #include "voxel/voxel_triangles.hpp"
 
 namespace vantage {
 namespace {
 
-using Point = glm::dvec3;
+using Point = ClippedPolygon::Point;
 
-// Normals closer than this, some 26°, are one plane: as far as scans of a curved surface still match each other.
-constexpr double one_plane = 0.9;
 // Sheets of a plane further apart than this share of a voxel are two, else one that is wound both ways.
 constexpr double one_sheet = 0.01;
 
-// A convex polygon in grid units. Each of a cube's six half-spaces adds a corner at most.
-class Polygon {
- public:
-  void add(const Point& p) { corners_[size_++] = p; }
-  bool empty() const { return size_ < 3; }
-
-  // Keeps what lies where side · p[axis] <= side · bound.
-  void clip(int axis, double bound, double side) {
-    Polygon kept;
-    for (std::size_t i = 0; i < size_; ++i) {
-      const Point &a = corners_[i], &b = corners_[i + 1 == size_ ? 0 : i + 1];
-      const double da = side * (a[axis] - bound), db = side * (b[axis] - bound);
-      if (da <= 0) kept.add(a);
-      if ((da < 0 && db > 0) || (da > 0 && db < 0)) kept.add(a + (b - a) * (da / (da - db)));
-    }
-    *this = kept;
+void clip_to_unit_cube(ClippedPolygon& polygon) {
+  for (int axis = 0; axis < 3 && !polygon.empty(); ++axis) {
+    polygon.clip(axis, 0, -1);
+    polygon.clip(axis, 1, 1);
   }
-
-  void clip_to_unit_cube() {
-    for (int axis = 0; axis < 3 && !empty(); ++axis) {
-      clip(axis, 0, -1);
-      clip(axis, 1, 1);
-    }
-  }
-
-  // Area along the normal that the winding gives.
-  Point area() const {
-    Point sum(0);
-    for (std::size_t i = 1; i + 1 < size_; ++i) sum += cross(corners_[i] - corners_[0], corners_[i + 1] - corners_[0]);
-    return 0.5 * sum;
-  }
-
-  Point centroid() const {
-    Point sum(0);
-    double weight = 0;
-    for (std::size_t i = 1; i + 1 < size_; ++i) {
-      const double part = length(cross(corners_[i] - corners_[0], corners_[i + 1] - corners_[0]));
-      sum += part * (corners_[0] + corners_[i] + corners_[i + 1]) / 3.0;
-      weight += part;
-    }
-    return weight > 0 ? sum / weight : corners_[0];
-  }
-
- private:
-  std::array<Point, 10> corners_{};
-  std::size_t size_ = 0;
-};
+}
 
 // m² over (voxel size)² that the unit cube cuts from a plane.
 double section(const Point& point, const Point& normal) {
   const Point other = std::abs(normal.x) < 0.6 ? Point(1, 0, 0) : Point(0, 1, 0);
   const Point u = normalize(cross(normal, other)) * 4.0, v = cross(normal, u);  // beyond every corner of the cube
-  Polygon square;
+  ClippedPolygon square;
   for (const auto& [s, t] : {std::array{-1.0, -1.0}, {1.0, -1.0}, {1.0, 1.0}, {-1.0, 1.0}})
     square.add(point + u * s + v * t);
-  square.clip_to_unit_cube();
+  clip_to_unit_cube(square);
   return square.empty() ? 0 : length(square.area());
 }
 
@@ -113,10 +72,10 @@ std::vector<Part> parts_of(const SceneData& scene, const GridTransform& transfor
                            std::span<const std::uint32_t> triangles) {
   std::vector<Part> parts;
   for (const std::uint32_t t : triangles) {
-    Polygon polygon;
+    ClippedPolygon polygon;
     for (const auto& corner : transform.corners(scene.positions, scene.triangles[t]))
       polygon.add(Point(corner[0], corner[1], corner[2]) - low);
-    polygon.clip_to_unit_cube();
+    clip_to_unit_cube(polygon);
     if (polygon.empty()) continue;
     const Point along = polygon.area();
     const double area = length(along);
@@ -189,7 +148,7 @@ VoxelSurface surface_of(std::span<const Part> parts, const GridTransform& transf
 }  // namespace
 
 std::vector<VoxelSurface> voxel_surfaces(const SceneData& scene, const VoxelGrid& grid,
-                                         std::span<const std::uint32_t> ranks) {
+                                         std::span<const std::uint32_t> ranks, double window_m) {
   const VoxelTriangles touching = triangles_touching(scene, grid, ranks, 0);
   const GridTransform transform{{grid.min()[0], grid.min()[1], grid.min()[2]}, grid.inverse_size()};
   std::vector<VoxelSurface> surfaces(ranks.size());
@@ -204,6 +163,10 @@ std::vector<VoxelSurface> voxel_surfaces(const SceneData& scene, const VoxelGrid
           if (surfaces[i].extent == 0 && !triangles.empty()) surfaces[i].mesh = scene.mesh_of(triangles.front());
         }
       });
+  if (window_m > grid.voxel_size()) {
+    const std::vector<float> shares = flat_shares(scene, grid, ranks, surfaces, window_m);
+    for (std::size_t i = 0; i < ranks.size(); ++i) surfaces[i].share = std::min(surfaces[i].share, shares[i]);
+  }
   return surfaces;
 }
 

@@ -5,11 +5,11 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <atomic>
-#include <string>
+#include <array>
+#include <optional>
 
-#include "vantage/error.hpp"
 #include "voxel/triangle_cells.hpp"
+#include "voxel/triangle_lists.hpp"
 #include "voxel/voxel_bricks.hpp"
 
 namespace vantage {
@@ -51,15 +51,7 @@ class Finder {
   // Calls found(number, triangle) once a pair, from several threads at once.
   template <class Found>
   void for_each(const Found& found) const {
-    for (std::size_t m = 0; m < scene_.ranges.size(); ++m) {
-      if (scene_.meshes[m].role != Role::surveyed) continue;
-      const std::uint32_t begin = scene_.ranges[m].first_triangle, end = begin + scene_.ranges[m].triangle_count;
-      tbb::parallel_for(tbb::blocked_range<std::uint32_t>(begin, end),
-                        [&](const tbb::blocked_range<std::uint32_t>& range) {
-                          for (std::uint32_t t = range.begin(); t != range.end(); ++t)
-                            dense_ ? by_voxels(t, found) : by_bricks(t, found);
-                        });
-    }
+    for_each_surveyed(scene_, [&](std::uint32_t t) { dense_ ? by_voxels(t, found) : by_bricks(t, found); });
   }
 
  private:
@@ -77,15 +69,28 @@ class Finder {
   void by_bricks(std::uint32_t t, const Found& found) const {
     constexpr int shift = static_cast<int>(brick_bits);
     const std::int64_t voxels = std::int64_t{1} << grid_.depth(), bricks = std::max<std::int64_t>(voxels >> shift, 1);
-    const auto corners = fine_.coarser(shift).corners(scene_.positions, scene_.triangles[t]);
+    const auto corners = fine_.corners(scene_.positions, scene_.triangles[t]);
+    auto coarse = corners;
+    for (auto& corner : coarse)
+      for (double& x : corner) x *= 1.0 / (1 << shift);
+    // Most voxels asked for in a brick lie beside a small triangle: its extent tells, before any more is made of it.
+    std::array<double, 3> low, high;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto [first, last] = std::minmax({corners[0][axis], corners[1][axis], corners[2][axis]});
+      low[axis] = first - margin_ - 1, high[axis] = last + margin_;
+    }
     std::optional<TriangleCells> exact;
-    TriangleCells(corners, bricks, margin_ / (1 << shift)).for_each([&](const TriangleCells::Cell& c) {
+    TriangleCells(coarse, bricks, margin_ / (1 << shift)).for_each([&](const TriangleCells::Cell& c) {
       const std::uint32_t brick = find_brick(grid_.slots(), static_cast<std::uint32_t>(c[0]),
                                              static_cast<std::uint32_t>(c[1]), static_cast<std::uint32_t>(c[2]));
       if (brick == no_brick) return;
       for (std::uint32_t i = first_[brick]; i < first_[brick + 1]; ++i) {
-        if (!exact) exact.emplace(fine_.corners(scene_.positions, scene_.triangles[t]), voxels, margin_);
-        if (exact->touches({cells_[i][0], cells_[i][1], cells_[i][2]})) found(i, t);
+        const std::array<std::uint32_t, 3>& cell = cells_[i];
+        if (cell[0] < low[0] || cell[0] > high[0] || cell[1] < low[1] || cell[1] > high[1] || cell[2] < low[2] ||
+            cell[2] > high[2])
+          continue;
+        if (!exact) exact.emplace(corners, voxels, margin_);
+        if (exact->touches({cell[0], cell[1], cell[2]})) found(i, t);
       }
     });
   }
@@ -105,33 +110,7 @@ class Finder {
 
 VoxelTriangles triangles_touching(const SceneData& scene, const VoxelGrid& grid, std::span<const std::uint32_t> ranks,
                                   double margin_m) {
-  const Finder finder(scene, grid, ranks, margin_m);
-  VoxelTriangles result;
-  result.offset.assign(ranks.size() + 1, 0);
-  finder.for_each([&](std::uint32_t number, std::uint32_t) {
-    std::atomic_ref<std::uint32_t>(result.offset[number + 1]).fetch_add(1, std::memory_order_relaxed);
-  });
-  std::uint64_t total = 0;
-  for (std::uint32_t& count : result.offset) {
-    total += count;
-    count = static_cast<std::uint32_t>(total);
-  }
-  if (total > 0xFFFFFFFFu)
-    throw Error(Errc::out_of_memory,
-                "the sampled voxels touch " + std::to_string(total) +
-                    " triangles in all, more than can be listed; use a smaller sample or smaller voxels");
-
-  result.triangle.resize(total);
-  std::vector<std::uint32_t> next(result.offset.begin(), result.offset.end() - 1);
-  finder.for_each([&](std::uint32_t number, std::uint32_t triangle) {
-    result.triangle[std::atomic_ref<std::uint32_t>(next[number]).fetch_add(1, std::memory_order_relaxed)] = triangle;
-  });
-  tbb::parallel_for(
-      tbb::blocked_range<std::size_t>(0, ranks.size()), [&](const tbb::blocked_range<std::size_t>& range) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i)
-          std::sort(result.triangle.begin() + result.offset[i], result.triangle.begin() + result.offset[i + 1]);
-      });
-  return result;
+  return triangle_lists(Finder(scene, grid, ranks, margin_m), ranks.size());
 }
 
 }  // namespace vantage

@@ -14,6 +14,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <numeric>
 #include <random>
 #include <set>
@@ -33,8 +34,8 @@ using Eigen::MatrixXd;
 
 struct Options {
   std::string site = "office", csv;
-  std::size_t stations = 6, pool = 18, networks = 30, trials = 20, points = 3000;
-  std::uint64_t sample = 20'000, seed = 1;
+  std::size_t stations = 6, pool = 18, networks = 30, trials = 20, points = 3000, samples = 0;
+  std::uint64_t sample = std::numeric_limits<std::uint64_t>::max(), seed = 1;
   double step_deg = 0.25, user_size_m = 0.15, connected = 0.02;
   std::vector<std::string> plans;  // tables of stations: networks that are given
 };
@@ -193,6 +194,43 @@ Pool read_plans(const std::vector<std::string>& files) {
   return pool;
 }
 
+// How far samples are off the prediction from every voxel, network by network.
+class Samples {
+ public:
+  void add(Simulator& simulator, const Network& network, std::uint64_t voxels, std::size_t draws) {
+    const auto counts = [&](std::uint64_t many, std::uint64_t from) {
+      return simulator
+          .evaluate_sampled({&network, 1}, {.voxels = many, .from = from, .registration = RegistrationModel{}})
+          .front();
+    };
+    const std::uint64_t all = simulator.voxel_count();
+    const double truth = registration_estimate(counts(all, 0), all).value;
+    double squares = 0;
+    std::vector<double> told;
+    for (std::size_t k = 0; k < draws; ++k) {
+      const Estimate e = registration_estimate(counts(voxels, voxels * k % all), all);
+      squares += (e.value / truth - 1) * (e.value / truth - 1) / static_cast<double>(draws);
+      told.push_back(e.standard_error / truth);
+      held_ += std::abs(e.value - truth) <= 1.959964 * e.standard_error;
+    }
+    drawn_ += draws;
+    off_.push_back(std::sqrt(squares));
+    told_.push_back(quantile(told, 0.5));
+  }
+  void print() const {
+    std::printf(
+        "samples are off by %.3f of the error (median; half of the networks %.3f to %.3f), at most 0.05 for %zu of "
+        "%zu networks\nstandard errors told: median %.3f; 95 %% intervals held in %.3f\n",
+        quantile(off_, 0.5), quantile(off_, 0.25), quantile(off_, 0.75),
+        static_cast<std::size_t>(std::count_if(off_.begin(), off_.end(), [](double e) { return e <= 0.05; })),
+        off_.size(), quantile(told_, 0.5), static_cast<double>(held_) / static_cast<double>(drawn_));
+  }
+
+ private:
+  std::vector<double> off_, told_;
+  std::size_t held_ = 0, drawn_ = 0;
+};
+
 void run(const Options& o) {
   const test::Site site = test::make_site(o.site);
   const auto file = std::filesystem::temp_directory_path() / fmt::format("registration_{}_{}.glb", o.site, o.seed);
@@ -238,6 +276,7 @@ void run(const Options& o) {
   const OverlapMatrix of_pairs = overlaps_of(scans);
   std::set<std::vector<std::size_t>> taken;
   std::size_t drawn = 0;
+  Samples samples;
   for (std::size_t k = 0; k < networks; ++k) {
     std::vector<std::size_t> picked;
     if (!pool.given.empty()) picked = pool.given[k];
@@ -249,6 +288,10 @@ void run(const Options& o) {
     }
     Network network;
     for (const std::size_t p : picked) network.push_back({heads[p]});
+    if (o.samples > 0) {
+      samples.add(simulator, network, o.sample, o.samples);
+      continue;
+    }
     const NetworkCounts counts =
         simulator.evaluate_sampled({&network, 1}, {.voxels = o.sample, .registration = RegistrationModel{}}).front();
     const Figures figure = figures(counts);
@@ -295,7 +338,8 @@ void run(const Options& o) {
       std::printf("%s: true error %.2f mm, predicted %.2f ± %.2f mm, clustering coefficient %.3f\n", o.plans[k].c_str(),
                   1e3 * e, 1e3 * predicted.value, 1e3 * predicted.standard_error, figure.values.back());
   }
-  if (!pool.given.empty()) return;
+  if (o.samples > 0) samples.print();
+  if (o.samples > 0 || !pool.given.empty()) return;
   std::printf("%zu connected networks of %zu stations (%zu drawn in all), %zu trials each\n", o.networks, o.stations,
               drawn + o.networks, o.trials);
   std::printf("true error %.2f to %.2f mm, 10 %% to 90 %%: a factor of %.1f\n", quantile(true_mm, 0),
@@ -319,7 +363,8 @@ int main(int argc, char** argv) {
   app.add_option("--pool", o.pool, "Stations that networks are drawn from");
   app.add_option("--networks", o.networks, "How many");
   app.add_option("--trials", o.trials, "Adjustments of each");
-  app.add_option("--sample", o.sample, "Voxels that predictions are made from");
+  app.add_option("--sample", o.sample, "Voxels that predictions are made from; all of them if absent");
+  app.add_option("--samples", o.samples, "Tell how far so many of these are off every voxel, and adjust nothing");
   app.add_option("--step", o.step_deg, "Of the scanner, degrees");
   app.add_option("--user-size", o.user_size_m, "Of voxels, metres");
   app.add_option("--connected", o.connected, "Least overlap of the weakest link of the strongest tree");

@@ -3,6 +3,7 @@
 // Earth the place lies.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -50,7 +51,8 @@ TEST(Registration, OfASampleIsAsFarOffAsItsStandardErrorSays) {
   plant.network = to_network(candidate_positions(SearchArea::build(*plant.scene), clash, all.scanner(), 8));
   const NetworkCounts exact = all.evaluate(plant.network, {.registration = RegistrationModel{}});
   const double truth = registration_error(exact, exact.voxels).rms_m;
-  double squares = 0, told = 0;
+  double squares = 0;
+  std::vector<double> off;  // in standard errors
   constexpr int draws = 20;
   for (std::uint64_t seed = 1; seed <= draws; ++seed) {
     Simulator simulator = plant.simulator(seed);
@@ -58,13 +60,16 @@ TEST(Registration, OfASampleIsAsFarOffAsItsStandardErrorSays) {
         simulator.evaluate_sampled({&plant.network, 1}, {.voxels = 20'000, .registration = RegistrationModel{}})[0];
     const Estimate estimate = registration_estimate(counts, exact.voxels);
     squares += std::pow(estimate.value - truth, 2) / draws;
-    told += std::pow(estimate.standard_error, 2) / draws;
+    off.push_back(std::abs(estimate.value - truth) / estimate.standard_error);
   }
   RecordProperty("percent_off", std::to_string(100 * std::sqrt(squares) / truth));
   EXPECT_LT(std::sqrt(squares), 0.2 * truth);
-  // Twenty draws know a variance to a third or so, and the told ones scatter as well.
-  EXPECT_GT(squares, 0.35 * told);
-  EXPECT_LT(squares, 2.8 * told);
+  // Of twenty, 19 would lie within 1.96 and the middle one at 0.67, known to some 0.2. Variances tell less: where the
+  // weakest link rests on voxels of one group, a draw's is as large as those of all others together.
+  std::ranges::sort(off);
+  EXPECT_LT(off[16], 1.96);
+  EXPECT_GT(off[10], 0.25);
+  EXPECT_LT(off[9], 1.2);
 }
 
 TEST(Registration, IsTheSameThousandsOfKilometresFromTheOrigin) {

@@ -437,6 +437,24 @@ TEST(RegistrationError, StandardErrorsHold) {
   }
 }
 
+// Leaving out the only group that holds a link says that the error might be anything, not that there is none.
+TEST(Registration, OfALinkInOneGroupIsNotFreeOfError) {
+  Made m{.heads = {{0.5, 0, 0}, {-0.5, 0, 0}}};
+  m.room({}, 3, 2, 20, 3);
+  NetworkCounts counts = m.counts();
+  for (int g = 0; g < 20; ++g) {
+    NetworkCounts group = counts;
+    group.voxels /= 20;
+    for (double& sum : group.registration.pairs) sum *= g == 0 ? 1 : 0;
+    for (double& sum : group.registration.surface) sum /= 20;
+    counts.groups.push_back(group);
+  }
+  const double seen = registration_error(counts, 20 * counts.voxels).rms_m;
+  const Estimate estimate = registration_estimate(counts, 20 * counts.voxels);
+  EXPECT_GT(estimate.standard_error, seen);
+  EXPECT_DOUBLE_EQ(estimate.value, seen / 2);
+}
+
 TEST(Registration, SumsOfLargeNetworksAreThoseOfTheSameStationsInASmallOne) {
   Made made;
   made.heads = {{0.1, 0, 0}, {-0.4, 0.3, 0.2}, {0.5, -0.2, -0.3}};

@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "voxel/flat_windows.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <unordered_map>
+
+#include "core/glm.hpp"
+#include "voxel/clipped_polygon.hpp"
+#include "voxel/triangle_cells.hpp"
+#include "voxel/triangle_lists.hpp"
+#include "voxel/voxel_bricks.hpp"
+#include "voxel/voxel_surfaces.hpp"
+
+namespace vantage {
+namespace {
+
+using glm::dvec3;
+using Corners = std::array<dvec3, 3>;
+using Cell = std::array<std::int64_t, 3>;
+
+// A surface that bends by the 26° of one plane within half a window leaves the plane by so much of that half, tan 13°;
+// what is parallel and further off is another sheet.
+constexpr double other_sheet = 0.25;
+// Triangles that are no larger than this share of a window, along any axis, are in it or not as their middle is.
+constexpr double small_share = 1.0 / 4;
+
+dvec3 point_of(const Float3& p) { return {p.x, p.y, p.z}; }
+
+// Local frame.
+Corners corners_of(const SceneData& scene, std::uint32_t t) {
+  const Triangle& corner = scene.triangles[t];
+  return {point_of(scene.positions[corner[0]]), point_of(scene.positions[corner[1]]),
+          point_of(scene.positions[corner[2]])};
+}
+
+bool is_small(const Corners& c, double at_most) {
+  const dvec3 extent = max(c[0], max(c[1], c[2])) - min(c[0], min(c[1], c[2]));
+  return std::max({extent.x, extent.y, extent.z}) <= at_most;
+}
+
+// Cells of 2^shift voxels a side, as the lists of triangles have them.
+struct Cells {
+  Cells(const VoxelGrid& grid, int bits)
+      : transform(GridTransform{{grid.min()[0], grid.min()[1], grid.min()[2]}, grid.inverse_size()}.coarser(bits)),
+        shift(bits),
+        a_side(std::int64_t{1} << (grid.depth() - bits)) {}
+
+  // In units of cells.
+  dvec3 place(const dvec3& p) const {
+    return (p - dvec3(transform.min[0], transform.min[1], transform.min[2])) * transform.inverse_size;
+  }
+  Cell holding(const dvec3& p) const {
+    const dvec3 q = place(p);
+    Cell cell;
+    for (int axis = 0; axis < 3; ++axis)
+      cell[axis] = std::clamp<std::int64_t>(static_cast<std::int64_t>(std::floor(q[axis])), 0, a_side - 1);
+    return cell;
+  }
+  static std::uint64_t key(const Cell& c) {
+    return morton_encode(static_cast<std::uint32_t>(c[0]), static_cast<std::uint32_t>(c[1]),
+                         static_cast<std::uint32_t>(c[2]));
+  }
+
+  GridTransform transform;
+  int shift;
+  std::int64_t a_side;
+};
+
+// Cells about as wide as `wanted_m`, at least voxels and at most the grid.
+Cells cells_of(const VoxelGrid& grid, double wanted_m) {
+  const int shift = static_cast<int>(std::ceil(std::log2(wanted_m / grid.voxel_size())));
+  return {grid, std::clamp(shift, 0, grid.depth())};
+}
+
+// Ranks are in Morton order, so those within a cell follow each other.
+struct Runs {
+  Runs(const VoxelGrid& grid, std::span<const std::uint32_t> ranks, int shift) {
+    for (std::size_t i = 0; i < ranks.size(); ++i)
+      if (const std::uint64_t cell = grid.key(ranks[i]) >> 3 * shift; cells.empty() || cell != cells.back()) {
+        cells.push_back(cell);
+        first.push_back(static_cast<std::uint32_t>(i));
+      }
+    first.push_back(static_cast<std::uint32_t>(ranks.size()));
+  }
+
+  // Calls visit(number of the cell) for each, in parallel.
+  template <class Visit>
+  void for_each(const Visit& visit) const {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, cells.size()),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                        for (std::size_t c = range.begin(); c != range.end(); ++c) visit(c);
+                      });
+  }
+
+  std::vector<std::uint64_t> cells;  // Morton keys
+  std::vector<std::uint32_t> first;  // of cell number c, ranks[first[c]] … ranks[first[c + 1] − 1]
+};
+
+using Numbers = std::unordered_map<std::uint64_t, std::uint32_t>;
+
+// Surface around one point.
+struct Window {
+  dvec3 point, normal;
+  double half;  // metres
+  double within = 0, other = 0;
+
+  bool holds(const dvec3& p) const {
+    return std::abs(p.x - point.x) <= half && std::abs(p.y - point.y) <= half && std::abs(p.z - point.z) <= half;
+  }
+  void add(const dvec3& middle, const dvec3& along, double area) {
+    if (!(std::abs(dot(along, normal)) > one_plane))
+      other += area;
+    else if (std::abs(dot(middle - point, normal)) <= other_sheet * half)
+      within += area;
+  }
+  float share() const { return within + other > 0 ? static_cast<float>(within / (within + other)) : 1; }
+};
+
+// A triangle of any size, local frame.
+struct Large {
+  Corners corners;
+  dvec3 low, high, along;
+  double area;
+};
+
+void add_clipped(Window& window, const Large& large) {
+  const dvec3 low = window.point - window.half, high = window.point + window.half;
+  for (int axis = 0; axis < 3; ++axis)
+    if (large.low[axis] > high[axis] || large.high[axis] < low[axis]) return;
+  // What no face of the window cuts is all within it.
+  ClippedPolygon polygon;
+  for (const dvec3& corner : large.corners) polygon.add(corner - window.point);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (large.low[axis] < low[axis]) polygon.clip(axis, -window.half, -1);
+    if (large.high[axis] > high[axis]) polygon.clip(axis, window.half, 1);
+  }
+  if (!polygon.empty()) window.add(window.point + polygon.centroid(), large.along, length(polygon.area()));
+}
+
+// Pairs of a cell that holds a rank and a large triangle that a window from within it may reach.
+class LargeFinder {
+ public:
+  LargeFinder(const SceneData& scene, const Cells& cells, const Runs& runs, double half_m)
+      : scene_(scene), cells_(cells), margin_(half_m * cells.transform.inverse_size), small_(2 * half_m * small_share) {
+    for (std::size_t c = 0; c < runs.cells.size(); ++c) number_.emplace(runs.cells[c], static_cast<std::uint32_t>(c));
+  }
+  template <class Found>
+  void for_each(const Found& found) const {
+    for_each_surveyed(scene_, [&](std::uint32_t t) {
+      if (is_small(corners_of(scene_, t), small_)) return;
+      TriangleCells(cells_.transform.corners(scene_.positions, scene_.triangles[t]), cells_.a_side, margin_)
+          .for_each([&](const Cell& c) {
+            if (const auto cell = number_.find(Cells::key(c)); cell != number_.end()) found(cell->second, t);
+          });
+    });
+  }
+
+ private:
+  const SceneData& scene_;
+  const Cells& cells_;
+  double margin_;  // in cells
+  double small_;   // metres
+  Numbers number_;
+};
+
+void add_large(std::span<Window> windows, const SceneData& scene, const VoxelGrid& grid,
+               std::span<const std::uint32_t> ranks, double window_m) {
+  // Narrower cells would list almost the same triangles many times, wider ones many that no window of theirs holds.
+  const Cells cells = cells_of(grid, 0.7 * window_m);
+  const Runs runs(grid, ranks, cells.shift);
+  const VoxelTriangles lists = triangle_lists(LargeFinder(scene, cells, runs, window_m / 2), runs.cells.size());
+  runs.for_each([&](std::size_t c) {
+    std::vector<Large> larges;
+    for (std::uint32_t k = lists.offset[c]; k < lists.offset[c + 1]; ++k) {
+      const Corners p = corners_of(scene, lists.triangle[k]);
+      const dvec3 twice = cross(p[1] - p[0], p[2] - p[0]);
+      const double area = 0.5 * length(twice);
+      if (area > 0)
+        larges.push_back({p, min(p[0], min(p[1], p[2])), max(p[0], max(p[1], p[2])), twice / (2 * area), area});
+    }
+    for (std::uint32_t i = runs.first[c]; i < runs.first[c + 1]; ++i)
+      for (const Large& large : larges) add_clipped(windows[i], large);
+  });
+}
+
+// A small triangle, local frame.
+struct Small {
+  Float3 middle, along;
+  float area;
+};
+
+// Each small triangle, with the cell that its middle lies in.
+class SmallFinder {
+ public:
+  SmallFinder(const SceneData& scene, const Cells& cells, const Numbers& number, double small_m)
+      : scene_(scene), cells_(cells), number_(number), small_(small_m) {}
+  template <class Found>
+  void for_each(const Found& found) const {
+    for_each_surveyed(scene_, [&](std::uint32_t t) {
+      const Corners p = corners_of(scene_, t);
+      if (!is_small(p, small_)) return;
+      const auto cell = number_.find(Cells::key(cells_.holding((p[0] + p[1] + p[2]) / 3.0)));
+      if (cell != number_.end()) found(cell->second, t);
+    });
+  }
+
+ private:
+  const SceneData& scene_;
+  const Cells& cells_;
+  const Numbers& number_;
+  double small_;
+};
+
+void add_small(std::span<Window> windows, const SceneData& scene, const VoxelGrid& grid,
+               std::span<const std::uint32_t> ranks, double window_m) {
+  const Cells cells = cells_of(grid, window_m / 4);
+  const Runs runs(grid, ranks, cells.shift);
+  // Neighbours that a window from within a cell reaches, by their place in a cube of them.
+  const auto reach = static_cast<std::int64_t>(std::ceil(window_m / 2 * cells.transform.inverse_size));
+  const auto neighbours = [&](std::size_t run, const auto& visit) {
+    const auto [x, y, z] = morton_decode(runs.cells[run]);
+    std::size_t place = 0;
+    for (std::int64_t i = -reach; i <= reach; ++i)
+      for (std::int64_t j = -reach; j <= reach; ++j)
+        for (std::int64_t k = -reach; k <= reach; ++k, ++place) {
+          const Cell cell{x + i, y + j, z + k};
+          if (std::ranges::all_of(cell, [&](std::int64_t c) { return c >= 0 && c < cells.a_side; }))
+            visit(place, Cells::key(cell));
+        }
+  };
+  Numbers number;
+  for (std::size_t run = 0; run < runs.cells.size(); ++run)
+    neighbours(run,
+               [&](std::size_t, std::uint64_t key) { number.emplace(key, static_cast<std::uint32_t>(number.size())); });
+  const VoxelTriangles lists = triangle_lists(SmallFinder(scene, cells, number, window_m * small_share), number.size());
+  if (lists.triangle.empty()) return;
+  std::vector<Small> smalls(lists.triangle.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, smalls.size()),
+                    [&](const tbb::blocked_range<std::size_t>& range) {
+                      const auto rounded = [](const dvec3& p) {
+                        return Float3{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
+                      };
+                      for (std::size_t k = range.begin(); k != range.end(); ++k) {
+                        const Corners p = corners_of(scene, lists.triangle[k]);
+                        const dvec3 twice = cross(p[1] - p[0], p[2] - p[0]);
+                        const double area = 0.5 * length(twice);
+                        smalls[k] = {rounded((p[0] + p[1] + p[2]) / 3.0),
+                                     area > 0 ? rounded(twice / (2 * area)) : Float3{}, static_cast<float>(area)};
+                      }
+                    });
+  const std::int64_t side = 2 * reach + 1;
+  runs.for_each([&](std::size_t run) {
+    std::vector<std::span<const Small>> around(static_cast<std::size_t>(side * side * side));
+    neighbours(run, [&](std::size_t place, std::uint64_t key) {
+      const std::uint32_t n = number.at(key);
+      around[place] = std::span(smalls).subspan(lists.offset[n], lists.offset[n + 1] - lists.offset[n]);
+    });
+    const auto [x, y, z] = morton_decode(runs.cells[run]);
+    const Cell base{x - reach, y - reach, z - reach};
+    for (std::uint32_t i = runs.first[run]; i < runs.first[run + 1]; ++i) {
+      Window& window = windows[i];
+      const dvec3 low = cells.place(window.point - window.half), high = cells.place(window.point + window.half);
+      Cell from, to;
+      for (int axis = 0; axis < 3; ++axis) {
+        const auto within = [&](double at) {
+          return std::clamp<std::int64_t>(static_cast<std::int64_t>(std::floor(at)) - base[axis], 0, side - 1);
+        };
+        from[axis] = within(low[axis]), to[axis] = within(high[axis]);
+      }
+      for (std::int64_t a = from[0]; a <= to[0]; ++a)
+        for (std::int64_t b = from[1]; b <= to[1]; ++b)
+          for (std::int64_t c = from[2]; c <= to[2]; ++c)
+            for (const Small& small : around[static_cast<std::size_t>((a * side + b) * side + c)])
+              if (const dvec3 middle = point_of(small.middle); window.holds(middle))
+                window.add(middle, point_of(small.along), static_cast<double>(small.area));
+    }
+  });
+}
+
+}  // namespace
+
+std::vector<float> flat_shares(const SceneData& scene, const VoxelGrid& grid, std::span<const std::uint32_t> ranks,
+                               std::span<const VoxelSurface> surfaces, double window_m) {
+  std::vector<Window> windows;
+  windows.reserve(ranks.size());
+  for (const VoxelSurface& surface : surfaces)
+    windows.push_back({point_of(surface.point), point_of(surface.normal), window_m / 2});
+  add_large(windows, scene, grid, ranks, window_m);
+  add_small(windows, scene, grid, ranks, window_m);
+  std::vector<float> shares;
+  shares.reserve(ranks.size());
+  for (std::size_t i = 0; i < ranks.size(); ++i) shares.push_back(surfaces[i].area > 0 ? windows[i].share() : 1);
+  return shares;
+}
+
+}  // namespace vantage
