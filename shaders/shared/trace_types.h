@@ -150,11 +150,12 @@ struct ClampPush {
 };
 
 // Reduction of counts and masks, of one network or many, in interleaved groups: voxel k is in group k % groups. Totals
-// of group g of network n start at word (n · groups + g) · totals_stride: weight of the saturated voxels (64 bits); what
-// the points of the others are worth, each times its voxel's weight (64 bits); three sums over successive voxels, from
-// which the host makes Σ (r(k) − r(k−1))² of r = min(worth / goal, 1) without rounding; then seen[stations]; then
+// of group g of network n start at word (n · groups + g) · totals_stride: weight of the saturated voxels (64 bits);
+// what the points of the others are worth, each times its voxel's weight (64 bits); three sums over successive voxels,
+// from which the host makes Σ (r(k) − r(k−1))² of r = min(worth / goal, 1) without rounding; then seen[stations]; then
 // shared[pairs]. With c = worth >> difference_shift where the voxel is not saturated: squares (64 bits) adds
-// (c(k) − c(k−1))² where neither voxel is saturated and c² where one is; edge_points (64 bits) adds c where one is; edges counts those.
+// (c(k) − c(k−1))² where neither voxel is saturated and c² where one is; edge_points (64 bits) adds c where one is;
+// edges counts those.
 VANTAGE_CONST uint reduce_voxels = 256;  // voxels of a workgroup at a time
 VANTAGE_CONST uint reduce_rounds = 16;   // at most 32
 VANTAGE_CONST uint totals_saturated = 0;

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <iterator>
 
-#include "trace/sample_counts.hpp"
 #include "vantage/trace.hpp"
 
 namespace vantage {

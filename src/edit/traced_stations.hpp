@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "page/coverage_cells.hpp"
+#include "trace/sample_counts.hpp"
 #include "vantage/simulator.hpp"
-#include "voxel/voxel_demands.hpp"
 
 namespace vantage {
 

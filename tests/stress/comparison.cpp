@@ -108,7 +108,9 @@ BruteForce brute_force_objectives(const VoxelGrid& grid, double goal_density,
   double weights = 0;
   for (std::uint32_t v = 0; v < points.size(); ++v) {
     const auto weight = static_cast<double>(grid.demands().weight(v));
-    result.coverage += weight * std::min(points[v] / goal_density, 1.0);
+    const VoxelDemands& demands = grid.demands();
+    const double goal = goal_density * demands.least_worth() / demands.worth(v);
+    result.coverage += weight * std::min(points[v] / goal, 1.0);
     weights += weight;
   }
   result.coverage /= weights;
