@@ -22,8 +22,11 @@ void tell_engine(const Simulator& simulator) {
 }
 
 void tell_grid(const Simulator& simulator) {
-  spdlog::info("{} surveyed voxels of {:.4g} m, goal {:.1f} points each; {} rays a station", simulator.voxel_count(),
-               simulator.voxel_size_m(), simulator.goal_density(), simulator.scanner().rays());
+  const char* const goal =
+      simulator.config().spacing_by_detail ? "goals up to {:.1f} points" : "goal {:.1f} points each";
+  spdlog::info("{} surveyed voxels of {:.4g} m, {}; {} rays a station", simulator.voxel_count(),
+               simulator.voxel_size_m(), fmt::format(fmt::runtime(goal), simulator.goal_density()),
+               simulator.scanner().rays());
 }
 
 void make_folder(const std::filesystem::path& folder) {
