@@ -28,6 +28,8 @@ using Cell = std::array<std::int64_t, 3>;
 constexpr double other_sheet = 0.25;
 // Triangles that are no larger than this share of a window, along any axis, are in it or not as their middle is.
 constexpr double small_share = 1.0 / 4;
+// A window is larger than all else that is kept of a voxel.
+constexpr std::size_t windows_at_once = std::size_t{1} << 19;
 
 dvec3 point_of(const Float3& p) { return {p.x, p.y, p.z}; }
 
@@ -286,15 +288,19 @@ void add_small(std::span<Window> windows, const SceneData& scene, const VoxelGri
 
 std::vector<float> flat_shares(const SceneData& scene, const VoxelGrid& grid, std::span<const std::uint32_t> ranks,
                                std::span<const VoxelSurface> surfaces, double window_m) {
-  std::vector<Window> windows;
-  windows.reserve(ranks.size());
-  for (const VoxelSurface& surface : surfaces)
-    windows.push_back({point_of(surface.point), point_of(surface.normal), window_m / 2});
-  add_large(windows, scene, grid, ranks, window_m);
-  add_small(windows, scene, grid, ranks, window_m);
   std::vector<float> shares;
   shares.reserve(ranks.size());
-  for (std::size_t i = 0; i < ranks.size(); ++i) shares.push_back(surfaces[i].area > 0 ? windows[i].share() : 1);
+  std::vector<Window> windows;
+  for (std::size_t first = 0; first < ranks.size(); first += windows_at_once) {
+    const std::size_t some = std::min(windows_at_once, ranks.size() - first);
+    const std::span<const std::uint32_t> here = ranks.subspan(first, some);
+    windows.clear();
+    for (const VoxelSurface& surface : surfaces.subspan(first, some))
+      windows.push_back({point_of(surface.point), point_of(surface.normal), window_m / 2});
+    add_large(windows, scene, grid, here, window_m);
+    add_small(windows, scene, grid, here, window_m);
+    for (std::size_t i = 0; i < some; ++i) shares.push_back(surfaces[first + i].area > 0 ? windows[i].share() : 1);
+  }
   return shares;
 }
 
