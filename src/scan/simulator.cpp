@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <sstream>
 #include <utility>
@@ -48,13 +47,6 @@ std::vector<double> spacings_of(const SceneData& scene, const SimulatorConfig& c
   return spacings;
 }
 
-double finest_of(std::span<const double> spacings_m, const SceneData& scene) {
-  double finest = std::numeric_limits<double>::infinity();
-  for (std::size_t m = 0; m < scene.meshes.size(); ++m)
-    if (scene.meshes[m].role == Role::surveyed) finest = std::min(finest, spacings_m[m]);
-  return finest;
-}
-
 [[noreturn]] void refuse_goal_density(const VoxelGrid& grid, const SimulatorConfig& config, double spacing) {
   const double smallest = grid.voxel_size() >= spacing ? grid.voxel_size() : 2 * grid.voxel_size();
   std::ostringstream what;
@@ -75,7 +67,7 @@ std::shared_ptr<const VoxelGrid> build_grid(const SceneData& scene, const Simula
                 "the point spacing is " + std::to_string(config.point_spacing_m) + " m, but must be above 0");
   }
   // A user size below the spacing cannot work. The grid is then built for the spacing, to say what would.
-  const double finest = finest_of(spacings_m, scene);
+  const double finest = finest_spacing(scene, spacings_m);
   const bool too_small = config.user_size_m > 0 && config.user_size_m < finest;
   auto grid = VoxelGrid::build(scene, too_small ? finest : config.user_size_m, progress);
   if (!grid) return nullptr;
@@ -147,7 +139,7 @@ struct Simulator::Impl {
     const std::vector<double> spacings = spacings_of(data(), config);
     grid = build_grid(data(), config, spacings, progress);
     if (!grid) return;
-    const double wide = grid->voxel_size() / finest_of(spacings, data());
+    const double wide = grid->voxel_size() / finest_spacing(data(), spacings);
     goal = wide * wide;
     for (const Scanner& scanner : scanners) traced.push_back(trace_scanner(scanner));
     registered = scanners;

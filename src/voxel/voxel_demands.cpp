@@ -78,11 +78,16 @@ std::optional<std::vector<std::uint8_t>> voxel_weights(const SceneData& scene, c
   return foremost(scene, grid, all, last_of(scene, all, std::greater<>()), std::greater<>(), progress);
 }
 
-std::optional<std::vector<std::uint32_t>> point_worths(const SceneData& scene, const VoxelGrid& grid,
-                                                       std::span<const double> spacings_m, const Progress& progress) {
+double finest_spacing(const SceneData& scene, std::span<const double> spacings_m) {
   double finest = std::numeric_limits<double>::infinity();
   for (std::size_t m = 0; m < scene.meshes.size(); ++m)
     if (scene.meshes[m].role == Role::surveyed) finest = std::min(finest, spacings_m[m]);
+  return finest;
+}
+
+std::optional<std::vector<std::uint32_t>> point_worths(const SceneData& scene, const VoxelGrid& grid,
+                                                       std::span<const double> spacings_m, const Progress& progress) {
+  const double finest = finest_spacing(scene, spacings_m);
   std::vector<std::uint32_t> of_mesh;
   for (const double spacing : spacings_m) {
     const double wide = std::min(spacing, grid.voxel_size()) / finest;

@@ -37,9 +37,12 @@ inline constexpr std::uint32_t densest_worth = 4096;
 std::optional<std::vector<std::uint8_t>> voxel_weights(const SceneData& scene, const VoxelGrid& grid,
                                                        const Progress& progress);
 
-// By rank, what a point is worth where surveyed meshes want spacings of their own, metres, one for each mesh of the
-// scene: of those that touch the voxel the finest holds. No voxel wants less than one point. Empty where all want the
-// same; nothing where it was stopped. Parallel; the result does not depend on the number of threads.
+// Of what surveyed meshes want, metres, one spacing for each mesh of the scene. REQUIRES: one is surveyed.
+double finest_spacing(const SceneData& scene, std::span<const double> spacings_m);
+
+// By rank, what a point is worth where surveyed meshes want spacings of their own: of those that touch the voxel the
+// finest holds. No voxel wants less than one point. Empty where all want the same; nothing where it was stopped.
+// Parallel; the result does not depend on the number of threads.
 std::optional<std::vector<std::uint32_t>> point_worths(const SceneData& scene, const VoxelGrid& grid,
                                                        std::span<const double> spacings_m, const Progress& progress);
 
