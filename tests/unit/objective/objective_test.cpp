@@ -140,6 +140,15 @@ TEST(Objective, TimeIsWhatTheRoundTakes) {
   EXPECT_EQ(time.scaled(120), 0.5) << "of an hour a station";
 }
 
+TEST(Objective, ThoseOfASearchNeedWhatAnyNeeds) {
+  const std::vector<Objective> all{make_objective("link"), make_objective("coverage")};
+  EXPECT_FALSE(needs_of({}).counts);
+  EXPECT_FALSE(needs_of(std::span(all).first(1)).counts);
+  EXPECT_TRUE(needs_of(std::span(all).first(1)).surroundings);
+  EXPECT_TRUE(needs_of(all).counts);
+  EXPECT_TRUE(needs_of(all).surroundings);
+}
+
 TEST(Objective, FitnessIsEquation1) {
   const auto fitness = [](std::size_t stations, double covered, std::size_t parts) {
     NetworkCounts counts;
