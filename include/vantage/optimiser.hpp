@@ -74,6 +74,9 @@ struct MoCmaEsConfig {
   double spread = 0.25;  ///< Share of steps that also follow the differences to the parent's neighbours on the front.
   double recombined = 0.15;  ///< Share of offspring by crossover and mutation, as in NSGA-II. Needs bounds.
   double swapped = 0.4;  ///< Share of offspring that have one of the parent's `blocks` from elsewhere. Needs bounds.
+  /// Where points have more coordinates than so many, and `blocks`: each block has a covariance of its own, and what is
+  /// in no block a variance, in place of one covariance for all, which takes n² doubles a member.
+  std::size_t full_covariance = 160;
   /// Where values are noisy, and reassess() tells others from time to time: those that were there at the last time and
   /// had to go since stay in population(), behind the members, and reassess() chooses the members among all of them. So
   /// who was only lucky does not drive out who is better for good. In the steady state.

@@ -295,7 +295,7 @@ struct ListFront {
 // Whether each point is dominated, or equal to one before it. Such points contribute nothing.
 std::vector<char> is_redundant(const PointSet& points) {
   const auto rank = ranks(points);
-  std::vector<char> result(points.size(), 0);
+  std::vector<char> result(points.size());
   std::vector<std::size_t> best;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (rank[i] == 0) best.push_back(i);

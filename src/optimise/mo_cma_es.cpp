@@ -27,6 +27,7 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+using optimise::Group;
 using optimise::MoCommon;
 using optimise::Shape;
 using optimise::Solution;
@@ -110,13 +111,12 @@ struct MoCmaEs::Impl {
 };
 
 MoCmaEs::Impl::Impl(std::size_t dimension, std::size_t objectives, const OptimiserConfig& config)
-    : common("MO-CMA-ES", dimension, objectives, config),
-      initial_shape(Shape::identity(dimension)),
-      population(objectives, common.reference) {
+    : common("MO-CMA-ES", dimension, objectives, config), population(objectives, common.reference) {
   for (const double share : {config.mo.guided, config.mo.spread, config.mo.recombined, config.mo.swapped})
     if (!(share >= 0 && share <= 1))
       throw Error(Errc::invalid_argument, "MO-CMA-ES: a share of " + std::to_string(share) + " is not in 0 to 1");
   optimise::require_blocks(config.blocks, common.box, dimension);
+  initial_shape = Shape::identity(optimise::groups_of(dimension, config.blocks, config.mo.full_covariance));
 }
 
 VectorXd MoCmaEs::Impl::to_unit(std::span<const double> x) const {
@@ -188,9 +188,7 @@ void MoCmaEs::Impl::express(std::size_t k, VectorXd genotype) {
 
 void MoCmaEs::Impl::draw_step(const Member& parent, const Front* front, std::size_t k) {
   begin_offspring(parent, k);
-  const auto n = static_cast<Index>(common.dimension);
-  const MatrixXd& factor = parent.strategy.shape->factor;
-  VectorXd centre = parent.genotype, genotype, normals(n);
+  VectorXd centre = parent.genotype, genotype, normals(static_cast<Index>(common.dimension));
   double scale = parent.strategy.sigma;
   if (front != nullptr && common.config.mo.spread > 0 && common.random.uniform() < common.config.mo.spread) {
     centre += std::sqrt(kNeighbourShare) * neighbour_step(parent, *front);
@@ -200,7 +198,7 @@ void MoCmaEs::Impl::draw_step(const Member& parent, const Front* front, std::siz
   for (int redraw = 0; redraw <= kRedraws; ++redraw) {
     common.random.fill_normal({normals.data(), common.dimension});
     genotype = centre;
-    for (Index i = 0; i < n; ++i) genotype.tail(n - i) += (scale * normals[i]) * factor.col(i).tail(n - i);
+    parent.strategy.shape->add_step(genotype, scale, normals);
     if (within(genotype)) break;
   }
   express(k, std::move(genotype));
@@ -281,13 +279,13 @@ void MoCmaEs::Impl::swap_block(const Member& parent, const Front& front, std::si
   }
   const Member& source = way == 1 ? parent : members[front.members[random.index(front.members.size())]];
   const bool beside = source.id == parent.id && in_use > 1;
+  const VectorXd deviations = beside ? parent.strategy.shape->deviations() : VectorXd();
   const std::size_t taken =
       beside ? (own + 1 + random.index(in_use - 1)) % in_use : random.index(blocks_in_use(source));
   for (std::size_t d = 0; d < blocks[own].size(); ++d) {
     const auto from = static_cast<Index>(blocks[taken][d]), to = static_cast<Index>(blocks[own][d]);
     o.origin[to] = genotype[to] = source.genotype[from];
-    if (beside)
-      genotype[to] += parent.strategy.sigma * parent.strategy.shape->factor.row(from).norm() * random.normal();
+    if (beside) genotype[to] += parent.strategy.sigma * deviations[from] * random.normal();
   }
   express(k, std::move(genotype));
 }
@@ -436,7 +434,6 @@ std::span<const double> MoCmaEs::resample(std::size_t index, std::span<const std
     return c.point(index);
   }
   const auto n = static_cast<Index>(c.dimension), k = static_cast<Index>(coordinates.size());
-  const auto lower = o.strategy.shape->factor.triangularView<Eigen::Lower>();
   MatrixXd columns = MatrixXd::Zero(n, k);
   VectorXd step = (o.genotype - o.origin) / o.strategy.sigma;
   // Of a mixed offspring the other coordinates tell nothing about these.
@@ -446,8 +443,8 @@ std::span<const double> MoCmaEs::resample(std::size_t index, std::span<const std
     columns(axis, j) = 1;
     step[axis] = 0;
   }
-  lower.solveInPlace(columns);
-  const VectorXd rest = lower.solve(step);
+  columns = o.strategy.shape->whitened(columns);
+  const VectorXd rest = o.strategy.shape->whitened(step);
   VectorXd genotype = o.genotype;
   for (int redraw = 0; redraw <= kPartialRedraws; ++redraw) {
     const VectorXd drawn = optimise::draw_conditional(columns, rest, c.random);
@@ -522,17 +519,20 @@ namespace {
 void save_member(optimise::StateWriter& w, const Member& member) {
   MoCommon::save(w, member);
   const Shape& shape = *member.strategy.shape;
-  const Index n = shape.factor.cols();
   w.put(member.id);
   w.put(std::uint64_t{member.reassessed});
   w.put(as_span(member.genotype));
   w.put(member.strategy.sigma);
   w.put(member.strategy.success);
   w.put(as_span(shape.path));
-  for (Index j = 0; j < n; ++j) w.put(std::span(shape.factor.col(j).data() + j, static_cast<std::size_t>(n - j)));
+  for (const Group& group : *shape.groups) {
+    const auto factor = shape.factor(group);
+    for (Index j = 0; j < group.size(); ++j)
+      w.put(std::span(factor.col(j).data() + j, static_cast<std::size_t>(group.size() - j)));
+  }
 }
 
-// `initial`: a shape of as many coordinates.
+// `initial`: a shape of the same groups.
 Member load_member(optimise::StateReader& r, const MoCommon& common, const Shape& initial) {
   const std::size_t n = common.dimension;
   Member member;
@@ -545,9 +545,10 @@ Member load_member(optimise::StateReader& r, const MoCommon& common, const Shape
   member.strategy.success = r.finite();
   Shape shape = initial;
   std::ranges::copy(r.moderate_reals(n), shape.path.data());
-  for (std::size_t j = 0; j < n; ++j) {
-    const auto column = r.moderate_reals(n - j);
-    std::ranges::copy(column, shape.factor.col(static_cast<Index>(j)).data() + j);
+  for (const Group& group : *shape.groups) {
+    auto factor = shape.factor(group);
+    for (Index j = 0; j < group.size(); ++j)
+      std::ranges::copy(r.moderate_reals(static_cast<std::size_t>(group.size() - j)), factor.col(j).data() + j);
   }
   member.strategy.shape = std::make_shared<const Shape>(std::move(shape));
   return member;
@@ -560,6 +561,7 @@ void MoCmaEs::save(std::ostream& out) const {
   s.common.require_not_asked("save");
   optimise::StateWriter w;
   s.common.save(w);
+  w.put(std::uint64_t{s.initial_shape->groups->size()});
   w.put(s.next_id);
   w.put(std::uint64_t{s.restarts});
   for (const auto* members : {&s.members, &s.recallable}) {
@@ -576,6 +578,7 @@ void MoCmaEs::load(std::istream& in) {
   const std::size_t n = mine.dimension;
   auto next = std::make_unique<Impl>(n, mine.objectives, mine.config);
   next->common.load(r);
+  r.expect(std::uint64_t{next->initial_shape->groups->size()}, "number of covariances");
   next->next_id = r.integer();
   next->restarts = r.size(std::size_t{1} << 62);
   const std::size_t count = r.size(mine.config.population + 1);

@@ -11,7 +11,7 @@ namespace vantage::optimise {
 namespace {
 
 constexpr std::string_view kMagic = "vantage optimiser\n";
-constexpr std::uint64_t kVersion = 6;
+constexpr std::uint64_t kVersion = 7;
 constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 32;
 
 void append(std::string& bytes, std::uint64_t value) {

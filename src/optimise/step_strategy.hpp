@@ -1,19 +1,47 @@
 // SPDX-License-Identifier: Apache-2.0
-// The (1+1)-CMA-ES strategy that each member of MO-CMA-ES carries: step size by success, covariance by a triangular
-// factor. Igel, Hansen, Roth: Covariance Matrix Adaptation for Multi-objective Optimization, 2007, algorithms 2 and 3.
+// The (1+1)-CMA-ES strategy that each member of MO-CMA-ES carries: step size by success, covariance by triangular
+// factors. Igel, Hansen, Roth: Covariance Matrix Adaptation for Multi-objective Optimization, 2007, algorithms 2 and 3.
 #pragma once
 
 #include <Eigen/Dense>
 #include <memory>
+#include <vector>
+
+#include "optimise/blocks.hpp"
 
 namespace vantage::optimise {
 
-// C = factor · factorᵀ and its evolution path. Never changed once made, so that parents and offspring share it.
+// Coordinates that vary together, and those of other groups independently of them.
+struct Group {
+  std::vector<Eigen::Index> coordinates;
+  Eigen::Index offset = 0;  // of its factor in Shape::factors
+
+  Eigen::Index size() const { return static_cast<Eigen::Index>(coordinates.size()); }
+};
+
+// All coordinates in one group; or, of more than `most`, each block in one of its own and so each coordinate that is in
+// no block. Without blocks they stay together.
+std::vector<Group> groups_of(std::size_t dimension, const Blocks& blocks, std::size_t most);
+
+// C = A Aᵀ with a lower triangular A for each group, and the evolution path. Never changed once made, so that parents
+// and offspring share it.
 struct Shape {
-  Eigen::MatrixXd factor;  // lower triangular
+  using Factor = Eigen::Map<Eigen::MatrixXd>;
+  using ConstFactor = Eigen::Map<const Eigen::MatrixXd>;
+
+  std::shared_ptr<const std::vector<Group>> groups;
+  std::vector<double> factors;  // column-major, one group after the other
   Eigen::VectorXd path;
 
-  static std::shared_ptr<const Shape> identity(std::size_t dimension);
+  static std::shared_ptr<const Shape> identity(std::vector<Group> groups);
+  Factor factor(const Group& group) { return {factors.data() + group.offset, group.size(), group.size()}; }
+  ConstFactor factor(const Group& group) const { return {factors.data() + group.offset, group.size(), group.size()}; }
+
+  // point += scale · A · normals.
+  void add_step(Eigen::VectorXd& point, double scale, const Eigen::VectorXd& normals) const;
+  // A⁻¹ · columns.
+  Eigen::MatrixXd whitened(const Eigen::MatrixXd& columns) const;
+  Eigen::VectorXd deviations() const;  // standard deviation along each coordinate
 };
 
 struct StepStrategy {
@@ -29,11 +57,11 @@ struct StepStrategy {
   // begins anew.
   void adapt_shape(const Eigen::VectorXd& step);
   // The longest standard deviation along a coordinate.
-  double reach() const { return sigma * shape->factor.rowwise().norm().maxCoeff(); }
+  double reach() const { return sigma * shape->deviations().maxCoeff(); }
 };
 
 // factor · factorᵀ becomes decay · factor · factorᵀ + gain · v vᵀ in O(n²) (Krause, Igel: A More Efficient Rank-one
 // Covariance Matrix Update for Evolution Strategies, 2015, algorithm 3.1). False if rounding broke it.
-bool update_factor(Eigen::MatrixXd& factor, double decay, double gain, Eigen::VectorXd v);
+bool update_factor(Shape::Factor factor, double decay, double gain, Eigen::VectorXd v);
 
 }  // namespace vantage::optimise

@@ -240,6 +240,61 @@ void print_station(const Options& options) {
   }
 }
 
+// Milliseconds a candidate of the optimiser's own, in the steady state.
+double own_ms(std::size_t stations, const Options& options, std::size_t full_covariance) {
+  const std::size_t n = 2 * stations, batch = 50;
+  OptimiserConfig config = options.search;
+  config.bounds = Bounds::uniform(n, 0, 1);
+  config.mo.batch = batch;
+  config.mo.full_covariance = full_covariance;
+  for (std::size_t i = 0; i < n; i += 2) config.blocks.push_back({i, i + 1});
+  MoCmaEs optimiser(n, 2, config);
+  std::chrono::steady_clock::duration own{};
+  std::size_t candidates = 0;
+  std::vector<double> values;
+  while (candidates < config.population + 4 * batch) {
+    const auto begin = std::chrono::steady_clock::now();
+    const auto points = optimiser.ask();
+    const auto asked = std::chrono::steady_clock::now();
+    values.clear();
+    for (std::size_t k = 0; k < points.size(); k += n) {
+      double low = 0, high = 0;
+      for (const double x : points.subspan(k, n)) low += x * x, high += (1 - x) * (1 - x);
+      values.insert(values.end(), {low / static_cast<double>(n), high / static_cast<double>(n)});
+    }
+    const auto evaluated = std::chrono::steady_clock::now();
+    optimiser.tell(values);
+    if (candidates >= config.population) own += (asked - begin) + (std::chrono::steady_clock::now() - evaluated);
+    candidates += points.size() / n;
+  }
+  return std::chrono::duration<double, std::milli>(own).count() / static_cast<double>(4 * batch);
+}
+
+// One covariance for all coordinates of a network, and one for each of its stations.
+void print_covariances(const Options& options) {
+  if (!options.wants("covariances", "YARD")) return;
+  constexpr std::size_t all = std::numeric_limits<std::size_t>::max();
+  std::printf(
+      "\nHypervolume on YARD after %zu evaluations, and ms a candidate of the optimiser's own\n%-9s %17s %17s %17s "
+      "%17s\n",
+      options.evaluations, "stations", "one covariance", "a station each", "ms", "ms");
+  for (const std::size_t stations : {8, 16, 32, 64, 256, 1024}) {
+    std::printf("%-9zu", stations);
+    for (const std::size_t full : {all, std::size_t{0}}) {
+      if (stations > 64) {
+        std::printf(" %17s", "");
+        continue;
+      }
+      Options set = options;
+      set.search.mo.full_covariance = full;
+      const Summary s = front_over_seeds("YARD", 2 * stations, set, Scheme::steady_state, 1, options.evaluations);
+      std::printf(" %8.4f %8.4f", s.mean, s.lowest);
+    }
+    std::printf(" %17.3f %17.3f\n", own_ms(stations, options, all), own_ms(stations, options, 0));
+    std::fflush(stdout);
+  }
+}
+
 // One objective, CMA-ES set as the planner sets it.
 double run_survey(const MoProblem& problem, const Options& options, std::uint64_t seed) {
   return run(problem, options, Algorithm::cma_es,
@@ -342,7 +397,7 @@ int main(int argc, char** argv) {
   app.add_option("--first-seed", options.first_seed);
   app.add_option("--problem", options.problems, "Only these problems");
   app.add_option("--part", options.parts, "Only these tables")
-      ->check(CLI::IsMember({"hypervolume", "budget", "station", "survey", "cma-es", "overhead"}));
+      ->check(CLI::IsMember({"hypervolume", "budget", "station", "covariances", "survey", "cma-es", "overhead"}));
   app.add_option("--evaluations", options.evaluations, "Of each run");
   app.add_option("--scheme", options.scheme, "Only this one")->check(CLI::IsMember({"steady", "generational"}));
   app.add_option("--algorithm", options.algorithm);
@@ -354,6 +409,7 @@ int main(int argc, char** argv) {
   app.add_option("--spread", options.search.mo.spread);
   app.add_option("--recombined", options.search.mo.recombined);
   app.add_option("--swapped", options.search.mo.swapped);
+  app.add_option("--full-covariance", options.search.mo.full_covariance, "Coordinates that have one for all");
   app.add_flag("!--no-blocks", options.blocks, "Do not tell which coordinates belong together");
   app.add_option("--references", options.references, "Figures of the other libraries");
   CLI11_PARSE(app, argc, argv);
@@ -362,6 +418,7 @@ int main(int argc, char** argv) {
     print_fronts(references, options);
     print_budget(options);
     print_station(options);
+    print_covariances(options);
     print_survey(options);
     print_single(references, options);
     print_overhead(options);

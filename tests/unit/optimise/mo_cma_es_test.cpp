@@ -61,6 +61,7 @@ struct Variant {
   std::size_t batch;
   bool published = false;  // neither guided parents nor spread steps nor recombination
   bool blocks = false;     // pairs of coordinates, the last block never in use
+  bool apart = false;      // each with a covariance of its own
 };
 
 class EveryOptimiser : public testing::TestWithParam<Variant> {
@@ -76,6 +77,7 @@ class EveryOptimiser : public testing::TestWithParam<Variant> {
       for (std::size_t i = 0; i + 1 < n; i += 2) c.blocks.push_back({i, i + 1});
       c.blocks_in_use = [n](std::span<const double>) { return n / 2 - 1; };  // none of two: then one
     }
+    if (GetParam().apart) c.mo.full_covariance = 0;
     return c;
   }
   std::unique_ptr<Optimiser> make(std::size_t n, std::size_t m, const OptimiserConfig& c) const {
@@ -88,6 +90,8 @@ INSTANTIATE_TEST_SUITE_P(, EveryOptimiser,
                                          Variant{Algorithm::mo_cma_es, Scheme::steady_state, 1, true},
                                          Variant{Algorithm::mo_cma_es, Scheme::steady_state, 7},
                                          Variant{Algorithm::mo_cma_es, Scheme::steady_state, 3, false, true},
+                                         Variant{Algorithm::mo_cma_es, Scheme::steady_state, 3, false, true, true},
+                                         Variant{Algorithm::mo_cma_es, Scheme::generational, 1, false, true, true},
                                          Variant{Algorithm::nsga2, Scheme::generational, 1},
                                          Variant{Algorithm::random_search, Scheme::generational, 1}),
                          [](const auto& test) {
@@ -95,7 +99,8 @@ INSTANTIATE_TEST_SUITE_P(, EveryOptimiser,
                                   (test.param.scheme == Scheme::generational
                                        ? ""
                                        : "_steady" + std::to_string(test.param.batch)) +
-                                  (test.param.published ? "_published" : "") + (test.param.blocks ? "_blocks" : "");
+                                  (test.param.published ? "_published" : "") + (test.param.blocks ? "_blocks" : "") +
+                                  (test.param.apart ? "_apart" : "");
                          });
 
 TEST_P(EveryOptimiser, NearsAKnownFront) {
@@ -571,6 +576,38 @@ TEST(MoCmaEs, DrawsABlockFromAnywhereAgainFromAnywhere) {
   }
   EXPECT_GT(elsewhere, 8u);  // a third of 64
   EXPECT_LT(elsewhere, 40u);
+}
+
+// Each pair of coordinates has its own scales, which a covariance of its own can learn.
+TEST(MoCmaEs, NearsAFrontWithACovarianceForEachBlock) {
+  const std::size_t n = 40;
+  const auto reached = [&](std::size_t full) {
+    OptimiserConfig c{
+        .population = 20, .bounds = Bounds::uniform(n, -1, 2), .seed = 3, .mo = {.full_covariance = full}};
+    for (std::size_t i = 0; i < n; i += 2) c.blocks.push_back({i, i + 1});
+    c.max_evaluations = 4000;
+    MoCmaEs optimiser(n, 2, c);
+    while (optimiser.stop_reason() == StopReason::running) step(optimiser, n, two_spheres);
+    std::stringstream file;
+    optimiser.save(file);
+    return std::pair{optimiser.hypervolume(), file.str()};
+  };
+  const auto [apart, small] = reached(n - 1);
+  const auto [together, large] = reached(n);
+  EXPECT_GT(apart, 0.95 * together);
+  EXPECT_LT(small.size(), large.size() / 3);
+
+  OptimiserConfig other{.population = 20, .bounds = Bounds::uniform(n, -1, 2), .seed = 3};
+  for (std::size_t i = 0; i < n; i += 2) other.blocks.push_back({i, i + 1});
+  other.max_evaluations = 4000;
+  std::istringstream file(small);
+  MoCmaEs full(n, 2, other);
+  try {
+    full.load(file);
+    FAIL() << "a state with a covariance for each block was taken";
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("number of covariances"), std::string::npos) << e.what();
+  }
 }
 
 TEST(MoCmaEs, RefusesBlocksThatDoNotChangePlaces) {
