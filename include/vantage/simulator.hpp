@@ -132,9 +132,9 @@ struct SampleOptions {
   /// order), once for each network that was counted to its end, in any order, on the calling thread. A voxel at the
   /// goal may have fewer than it got where `stop_at_goal`.
   std::function<void(std::size_t network, std::span<const std::uint32_t> points)> points = {};
-  /// Where given, `NetworkCounts::registration` is filled, of the groups too if `registration_groups`. Needs `overlap`.
+  /// Where given, `NetworkCounts::registration` is filled. Needs `overlap`.
   std::optional<RegistrationModel> registration = std::nullopt;
-  bool registration_groups = true;  ///< For standard errors; a search can do without.
+  bool groups = true;  ///< Fill `NetworkCounts::groups`, which standard errors need; a search can do without.
 };
 
 /// The surface in a voxel, as the plane that most of it lies in.

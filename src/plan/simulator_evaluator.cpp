@@ -45,7 +45,7 @@ std::optional<SimulatorEvaluator::Counted> SimulatorEvaluator::count(std::span<c
                               .overlap = needs.pairs,
                               .stop_at_goal = true,
                               .registration = needs.registration,
-                              .registration_groups = errors},
+                              .groups = errors},
                              progress);
     if (!counts) return std::nullopt;
     counted.surveyed = std::move(*counts);
@@ -56,7 +56,7 @@ std::optional<SimulatorEvaluator::Counted> SimulatorEvaluator::count(std::span<c
                               .from = sample.from,
                               .overlap = true,
                               .registration = registered_around(needs),
-                              .registration_groups = errors},
+                              .groups = errors},
                              {.report = {}, .stop = progress.stop});
     if (!counts) return std::nullopt;
     counted.surroundings = std::move(*counts);

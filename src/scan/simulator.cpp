@@ -145,11 +145,13 @@ struct Simulator::Impl {
     registered = scanners;
     // Shares the scene's storage for as long as the engine wants it.
     const auto kept = std::make_shared<const Scene>(scene);
-    const TraceScene shared{.scene = {kept, &kept->data()},
+    const std::shared_ptr<const SceneData> shared_scene(kept, &kept->data());
+    const TraceScene shared{.scene = shared_scene,
                             .grid = grid,
                             .scanners = traced,
                             .max_rays_per_dispatch = config.max_rays_per_dispatch,
-                            .validation = config.validation};
+                            .validation = config.validation,
+                            .sample_triangles = std::make_shared<SampleTriangles>(shared_scene, grid)};
     tracer = config.devices.empty() ? make_tracer(config.engine, config.device_index, shared, config.warn)
                                     : make_tracer(config.devices, shared, config.warn);
     if (TracerMaker* const maker = SharedTracing::maker())
@@ -447,7 +449,7 @@ std::vector<NetworkCounts> Simulator::evaluate_sampled(std::span<const Network> 
       const std::uint32_t point_worth = impl_->grid->demands().least_worth();
       all[k] = nothing_seen(sample.size(), impl_->weight_of(sample, 0, 1), point_worth, networks[k].size(),
                             options.overlap, options.registration.has_value());
-      for (std::uint32_t g = 0; g < sample_groups; ++g)
+      for (std::uint32_t g = 0; options.groups && g < sample_groups; ++g)
         all[k].groups.push_back(nothing_seen((sample.size() + sample_groups - 1 - g) / sample_groups,
                                              impl_->weight_of(sample, g, sample_groups), point_worth,
                                              networks[k].size(), options.overlap, options.registration.has_value()));
@@ -464,9 +466,9 @@ std::vector<NetworkCounts> Simulator::evaluate_sampled(std::span<const Network> 
   };
   std::optional<RegistrationJob> registration;
   if (options.registration)
-    registration = impl_->registration_of(sample, drawn.from, *options.registration, options.registration_groups);
+    registration = impl_->registration_of(sample, drawn.from, *options.registration, options.groups);
   const Tracer::SampleJob job{.sample = sample,
-                              .groups = sample_groups,
+                              .groups = options.groups ? sample_groups : 0,
                               .masks = options.overlap,
                               .stop_at = options.stop_at_goal ? static_cast<std::uint32_t>(std::ceil(impl_->goal)) : 0,
                               .points = options.points ? decltype(options.points)(points) : nullptr,

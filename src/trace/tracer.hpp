@@ -16,6 +16,7 @@
 #include "vantage/progress.hpp"
 #include "vantage/trace.hpp"
 #include "voxel/voxel_grid.hpp"
+#include "voxel/voxel_triangles.hpp"
 
 namespace vantage {
 
@@ -77,6 +78,8 @@ struct TraceScene {
   std::vector<TraceScanner> scanners;       // one at least
   std::uint64_t max_rays_per_dispatch = 0;  // 0: the engine's choice
   bool validation = false;
+  // What is drawn in each sampled voxel, shared among devices. Null: each engine finds out alone.
+  std::shared_ptr<SampleTriangles> sample_triangles = nullptr;
   bool sort_triangles = true;  // for drivers that build on the order given; off only to measure what sorting gains
 };
 
@@ -151,7 +154,8 @@ class Tracer {
   // networks[k] lists the active stations of network k; station_counts[k] is its N_stations.
   struct SampleJob {
     std::span<const std::uint32_t> sample;
-    std::uint32_t groups = 20;  // interleaved: voxel number i of the sample is in group i % groups
+    // Interleaved: voxel number i of the sample is in group i % groups. 0: without `NetworkCounts::groups`.
+    std::uint32_t groups = 20;
     bool masks = true;
     std::uint32_t stop_at = 0;  // goal rounded up: a voxel's points need not be counted beyond; or 0
     // Where wanted: told the points in each voxel of the sample, once for every network that was counted to its end, in

@@ -30,9 +30,16 @@ void for_each_surveyed(const SceneData& scene, const Visit& visit) {
   }
 }
 
+// Throws Error out_of_memory where lists would hold more pairs than their offsets can tell.
+inline void require_listable(std::uint64_t pairs) {
+  if (pairs > 0xFFFFFFFFu)
+    throw Error(Errc::out_of_memory,
+                "the sampled voxels touch " + std::to_string(pairs) +
+                    " triangles in all, more than can be listed; use a smaller sample or smaller voxels");
+}
+
 // So many lists of what finder.for_each(found) finds, which calls found(number of the list, triangle) once a pair, from
-// several threads at once, and the same pairs each time. Each list ascends. Throws Error out_of_memory where there are
-// more than 2^32 − 1 pairs.
+// several threads at once, and the same pairs each time. Each list ascends. Throws as `require_listable`.
 template <class Finder>
 VoxelTriangles triangle_lists(const Finder& finder, std::size_t lists) {
   VoxelTriangles result;
@@ -45,11 +52,7 @@ VoxelTriangles triangle_lists(const Finder& finder, std::size_t lists) {
     total += count;
     count = static_cast<std::uint32_t>(total);
   }
-  if (total > 0xFFFFFFFFu)
-    throw Error(Errc::out_of_memory,
-                "the sampled voxels touch " + std::to_string(total) +
-                    " triangles in all, more than can be listed; use a smaller sample or smaller voxels");
-
+  require_listable(total);
   result.triangle.resize(total);
   std::vector<std::uint32_t> next(result.offset.begin(), result.offset.end() - 1);
   finder.for_each([&](std::uint32_t number, std::uint32_t triangle) {

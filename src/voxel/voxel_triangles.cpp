@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <utility>
 
 #include "voxel/triangle_cells.hpp"
 #include "voxel/triangle_lists.hpp"
@@ -19,6 +20,78 @@ namespace {
 // walking its bricks and testing the voxels asked for in each.
 constexpr std::uint64_t dense_share = 32;
 
+bool is_dense(std::span<const std::uint32_t> ranks, const VoxelGrid& grid) {
+  return ranks.size() >= grid.size() / dense_share;
+}
+
+constexpr int brick_shift = static_cast<int>(brick_bits);
+std::int64_t voxels_a_side(const VoxelGrid& grid) { return std::int64_t{1} << grid.depth(); }
+GridTransform transform_of(const VoxelGrid& grid) {
+  return {{grid.min()[0], grid.min()[1], grid.min()[2]}, grid.inverse_size()};
+}
+
+// Which voxels one triangle touches, widened by a margin in voxels. Most of those asked for lie beside a small
+// triangle: its extent tells, before any more is made of it.
+class TriangleReach {
+ public:
+  TriangleReach(const std::array<std::array<double, 3>, 3>& corners, std::int64_t voxels, double margin)
+      : corners_(corners), voxels_(voxels), margin_(margin) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto [first, last] = std::minmax({corners[0][axis], corners[1][axis], corners[2][axis]});
+      low_[axis] = first - margin - 1, high_[axis] = last + margin;
+    }
+  }
+  bool touches(const std::array<std::uint32_t, 3>& cell) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (cell[axis] < low_[axis] || cell[axis] > high_[axis]) return false;
+    if (!exact_) exact_.emplace(corners_, voxels_, margin_);
+    return exact_->touches({cell[0], cell[1], cell[2]});
+  }
+
+ private:
+  std::array<std::array<double, 3>, 3> corners_;
+  std::int64_t voxels_;
+  double margin_;
+  std::array<double, 3> low_, high_;
+  std::optional<TriangleCells> exact_;
+};
+
+// Calls visit(brick) for each brick of the grid that a triangle touches, widened by a margin in voxels.
+template <class Visit>
+void for_each_brick(const VoxelGrid& grid, const std::array<std::array<double, 3>, 3>& corners, double margin,
+                    const Visit& visit) {
+  const std::int64_t bricks = std::max<std::int64_t>(voxels_a_side(grid) >> brick_shift, 1);
+  auto coarse = corners;
+  for (auto& corner : coarse)
+    for (double& x : corner) x *= 1.0 / (1 << brick_shift);
+  TriangleCells(coarse, bricks, margin / (1 << brick_shift)).for_each([&](const TriangleCells::Cell& c) {
+    const std::uint32_t brick = find_brick(grid.slots(), static_cast<std::uint32_t>(c[0]),
+                                           static_cast<std::uint32_t>(c[1]), static_cast<std::uint32_t>(c[2]));
+    if (brick != no_brick) visit(brick);
+  });
+}
+
+// Finds every (triangle, brick) pair.
+class BrickFinder {
+ public:
+  BrickFinder(const SceneData& scene, const VoxelGrid& grid, double margin_m)
+      : scene_(scene), grid_(grid), fine_(transform_of(grid)), margin_(margin_m / grid.voxel_size()) {}
+
+  template <class Found>
+  void for_each(const Found& found) const {
+    for_each_surveyed(scene_, [&](std::uint32_t t) {
+      for_each_brick(grid_, fine_.corners(scene_.positions, scene_.triangles[t]), margin_,
+                     [&](std::uint32_t brick) { found(brick, t); });
+    });
+  }
+
+ private:
+  const SceneData& scene_;
+  const VoxelGrid& grid_;
+  GridTransform fine_;
+  double margin_;
+};
+
 // Finds every (triangle, voxel number) pair.
 class Finder {
  public:
@@ -26,9 +99,9 @@ class Finder {
       : scene_(scene),
         grid_(grid),
         ranks_(ranks),
-        fine_{{grid.min()[0], grid.min()[1], grid.min()[2]}, grid.inverse_size()},
+        fine_(transform_of(grid)),
         margin_(margin_m / grid.voxel_size()),
-        dense_(ranks.size() >= grid.size() / dense_share) {
+        dense_(is_dense(ranks, grid)) {
     if (dense_) {
       number_.assign(grid.size(), no_voxel);
       for (std::size_t i = 0; i < ranks.size(); ++i) number_[ranks[i]] = static_cast<std::uint32_t>(i);
@@ -58,7 +131,7 @@ class Finder {
   template <class Found>
   void by_voxels(std::uint32_t t, const Found& found) const {
     const auto corners = fine_.corners(scene_.positions, scene_.triangles[t]);
-    TriangleCells(corners, std::int64_t{1} << grid_.depth(), margin_).for_each([&](const TriangleCells::Cell& c) {
+    TriangleCells(corners, voxels_a_side(grid_), margin_).for_each([&](const TriangleCells::Cell& c) {
       const std::uint32_t rank = grid_.find(morton_encode(
           static_cast<std::uint32_t>(c[0]), static_cast<std::uint32_t>(c[1]), static_cast<std::uint32_t>(c[2])));
       if (rank != no_voxel && number_[rank] != no_voxel) found(number_[rank], t);
@@ -67,31 +140,11 @@ class Finder {
 
   template <class Found>
   void by_bricks(std::uint32_t t, const Found& found) const {
-    constexpr int shift = static_cast<int>(brick_bits);
-    const std::int64_t voxels = std::int64_t{1} << grid_.depth(), bricks = std::max<std::int64_t>(voxels >> shift, 1);
     const auto corners = fine_.corners(scene_.positions, scene_.triangles[t]);
-    auto coarse = corners;
-    for (auto& corner : coarse)
-      for (double& x : corner) x *= 1.0 / (1 << shift);
-    // Most voxels asked for in a brick lie beside a small triangle: its extent tells, before any more is made of it.
-    std::array<double, 3> low, high;
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto [first, last] = std::minmax({corners[0][axis], corners[1][axis], corners[2][axis]});
-      low[axis] = first - margin_ - 1, high[axis] = last + margin_;
-    }
-    std::optional<TriangleCells> exact;
-    TriangleCells(coarse, bricks, margin_ / (1 << shift)).for_each([&](const TriangleCells::Cell& c) {
-      const std::uint32_t brick = find_brick(grid_.slots(), static_cast<std::uint32_t>(c[0]),
-                                             static_cast<std::uint32_t>(c[1]), static_cast<std::uint32_t>(c[2]));
-      if (brick == no_brick) return;
-      for (std::uint32_t i = first_[brick]; i < first_[brick + 1]; ++i) {
-        const std::array<std::uint32_t, 3>& cell = cells_[i];
-        if (cell[0] < low[0] || cell[0] > high[0] || cell[1] < low[1] || cell[1] > high[1] || cell[2] < low[2] ||
-            cell[2] > high[2])
-          continue;
-        if (!exact) exact.emplace(corners, voxels, margin_);
-        if (exact->touches({cell[0], cell[1], cell[2]})) found(i, t);
-      }
+    TriangleReach reach(corners, voxels_a_side(grid_), margin_);
+    for_each_brick(grid_, corners, margin_, [&](std::uint32_t brick) {
+      for (std::uint32_t i = first_[brick]; i < first_[brick + 1]; ++i)
+        if (reach.touches(cells_[i])) found(i, t);
     });
   }
 
@@ -111,6 +164,56 @@ class Finder {
 VoxelTriangles triangles_touching(const SceneData& scene, const VoxelGrid& grid, std::span<const std::uint32_t> ranks,
                                   double margin_m) {
   return triangle_lists(Finder(scene, grid, ranks, margin_m), ranks.size());
+}
+
+SampleTriangles::SampleTriangles(std::shared_ptr<const SceneData> scene, std::shared_ptr<const VoxelGrid> grid)
+    : scene_(std::move(scene)), grid_(std::move(grid)) {}
+
+VoxelTriangles SampleTriangles::touching(std::span<const std::uint32_t> ranks, double margin_m) {
+  if (is_dense(ranks, *grid_)) return triangles_touching(*scene_, *grid_, ranks, margin_m);
+  const std::shared_ptr<const Bricks> bricks = bricks_for(ranks, margin_m);
+  return bricks ? by_bricks(*bricks, ranks, margin_m) : triangles_touching(*scene_, *grid_, ranks, margin_m);
+}
+
+std::shared_ptr<const SampleTriangles::Bricks> SampleTriangles::bricks_for(std::span<const std::uint32_t> ranks,
+                                                                           double margin_m) {
+  constexpr double to_spare = 1.5;  // of the margin, which grows as stations are farther off
+  const std::lock_guard lock(mutex_);
+  if (first_.empty()) first_.assign(ranks.begin(), ranks.end());
+  if (std::ranges::equal(first_, ranks)) return nullptr;
+  if (!bricks_ || bricks_->margin_m < margin_m) {
+    const double margin = to_spare * margin_m;
+    bricks_ = std::make_shared<const Bricks>(
+        margin, triangle_lists(BrickFinder(*scene_, *grid_, margin), grid_->bricks().size()));
+  }
+  return bricks_;
+}
+
+VoxelTriangles SampleTriangles::by_bricks(const Bricks& bricks, std::span<const std::uint32_t> ranks,
+                                          double margin_m) const {
+  const GridTransform fine = transform_of(*grid_);
+  const double margin = margin_m / grid_->voxel_size();
+  std::vector<std::vector<std::uint32_t>> found(ranks.size());
+  tbb::parallel_for(std::size_t{0}, ranks.size(), [&](std::size_t i) {
+    const auto cell = morton_decode(grid_->key(ranks[i]));
+    const std::uint32_t brick =
+        find_brick(grid_->slots(), cell[0] >> brick_shift, cell[1] >> brick_shift, cell[2] >> brick_shift);
+    for (std::uint32_t k = bricks.triangles.offset[brick]; k < bricks.triangles.offset[brick + 1]; ++k) {
+      const std::uint32_t t = bricks.triangles.triangle[k];
+      TriangleReach reach(fine.corners(scene_->positions, scene_->triangles[t]), voxels_a_side(*grid_), margin);
+      if (reach.touches(cell)) found[i].push_back(t);
+    }
+  });
+  std::uint64_t pairs = 0;
+  for (const auto& own : found) pairs += own.size();
+  require_listable(pairs);
+  VoxelTriangles lists;
+  lists.offset.push_back(0);
+  for (const auto& own : found) {
+    lists.triangle.insert(lists.triangle.end(), own.begin(), own.end());
+    lists.offset.push_back(static_cast<std::uint32_t>(lists.triangle.size()));
+  }
+  return lists;
 }
 
 }  // namespace vantage

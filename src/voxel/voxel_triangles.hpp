@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <mutex>
 #include <span>
 #include <vector>
 
@@ -23,5 +25,28 @@ struct VoxelTriangles {
 // Throws Error out_of_memory where the lists would hold more than 2^32 − 1 triangles.
 VoxelTriangles triangles_touching(const SceneData& scene, const VoxelGrid& grid, std::span<const std::uint32_t> ranks,
                                   double margin_m);
+
+// The same for one sample after another. From the second on it goes by lists of each brick's triangles, made then: so a
+// sample takes the time of what it touches, not of the whole scene. From several threads at once.
+class SampleTriangles {
+ public:
+  SampleTriangles(std::shared_ptr<const SceneData> scene, std::shared_ptr<const VoxelGrid> grid);
+  VoxelTriangles touching(std::span<const std::uint32_t> ranks, double margin_m);
+
+ private:
+  struct Bricks {
+    double margin_m;
+    VoxelTriangles triangles;  // a list a brick
+  };
+  // Null while a walk over the scene is as good.
+  std::shared_ptr<const Bricks> bricks_for(std::span<const std::uint32_t> ranks, double margin_m);
+  VoxelTriangles by_bricks(const Bricks& bricks, std::span<const std::uint32_t> ranks, double margin_m) const;
+
+  std::shared_ptr<const SceneData> scene_;
+  std::shared_ptr<const VoxelGrid> grid_;
+  std::mutex mutex_;
+  std::vector<std::uint32_t> first_;  // the first sample that was asked for
+  std::shared_ptr<const Bricks> bricks_;
+};
 
 }  // namespace vantage

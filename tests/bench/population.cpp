@@ -98,27 +98,25 @@ void run_population(const PopulationOptions& options) {
       for (const auto [overlap, registration] : {Kind{false, false}, {true, false}, {true, true}}) {
         SampleOptions sample{.voxels = size, .overlap = overlap, .stop_at_goal = true};
         if (registration) sample.registration = RegistrationModel{};
-        sample.registration_groups = false;  // as in a search
         double best = std::numeric_limits<double>::infinity(), device_ms = 0;
         std::vector<NetworkCounts> counts;
         std::vector<Objectives> objectives(networks.size());
-        simulator.evaluate_sampled({networks.data(), 1}, sample);
+        const auto estimates = simulator.evaluate_sampled(networks, sample);
+        for (std::size_t k = 0; k < networks.size(); ++k) {
+          objectives[k].coverage_se = coverage_estimate(estimates[k], goal, population).standard_error;
+          if (overlap) objectives[k].overlap_se = overlap_estimate(estimates[k], population).standard_error;
+        }
+        // From stations to objectives, as in a search, which asks for no standard errors.
+        sample.groups = false;
         for (std::uint32_t round = 0; round < options.site.repeats; ++round) {
           const Stopwatch watch;
           counts = simulator.evaluate_sampled(networks, sample);
-          for (std::size_t k = 0; k < counts.size(); ++k) {
-            const Estimate c = coverage_estimate(counts[k], goal, population);
-            objectives[k] = {c.value, 0, c.standard_error, 0};
-            if (!overlap) continue;
-            const Estimate o = overlap_estimate(counts[k], population);
-            objectives[k].overlap = o.value;
-            objectives[k].overlap_se = o.standard_error;
-          }
-          if (registration) {
-            std::vector<double> errors(counts.size());
-            tbb::parallel_for(std::size_t{0}, counts.size(),
-                              [&](std::size_t k) { errors[k] = registration_error(counts[k], population).rms_m; });
-          }
+          std::vector<double> errors(counts.size());
+          tbb::parallel_for(std::size_t{0}, counts.size(), [&](std::size_t k) {
+            objectives[k].coverage = coverage(counts[k], goal);
+            if (overlap) objectives[k].overlap = clustering_coefficient(overlap_matrix(counts[k]));
+            if (registration) errors[k] = registration_error(counts[k], population).rms_m;
+          });
           const double ms = watch.seconds() * 1e3;
           if (ms < best) {
             best = ms;

@@ -51,9 +51,11 @@ std::vector<NetworkCounts> sample_networks(std::span<const StationRays> scanners
   for (const StationRays& rays : scanners)
     farthest = std::max(farthest, rays.noise().reach_within(static_cast<float>(size) + rays.noise().reach()));
   const double reach = farthest;
-  const SampledVoxels& voxels =
-      kept.get([&](const SampledVoxels& one) { return one.made_for(job.sample, pad, reach); },
-               [&] { return SampledVoxels(scene, grid, job.sample, pad, reach, reach + triangle_margin(pad)); });
+  const SampledVoxels& voxels = kept.get([&](const SampledVoxels& one) { return one.made_for(job.sample, pad, reach); },
+                                         [&] {
+                                           return SampledVoxels(scene, grid, scanners.front().sample_triangles(),
+                                                                job.sample, pad, reach, reach + triangle_margin(pad));
+                                         });
 
   const std::size_t n = voxels.size(), blocks = (n + block - 1) / block;
   const std::size_t at_once = std::clamp<std::size_t>(pairs_at_once / std::max<std::size_t>(n, 1), 1,

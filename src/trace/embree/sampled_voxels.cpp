@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "trace/embree/seen_triangle.hpp"
-#include "voxel/voxel_triangles.hpp"
 
 namespace vantage {
 namespace {
@@ -75,10 +74,10 @@ bool extend(Box& box, const ExactPlane& plane, double half) {
 
 }  // namespace
 
-SampledVoxels::SampledVoxels(const SceneData& scene, const VoxelGrid& grid, std::span<const std::uint32_t> ranks,
-                             double pad, double reach, double margin)
+SampledVoxels::SampledVoxels(const SceneData& scene, const VoxelGrid& grid, SampleTriangles& triangles,
+                             std::span<const std::uint32_t> ranks, double pad, double reach, double margin)
     : pad_(pad), reach_(reach), ranks_(ranks.begin(), ranks.end()), offset_(ranks.size() + 1), crossing_(ranks.size()) {
-  const VoxelTriangles lists = triangles_touching(scene, grid, ranks, margin);
+  const VoxelTriangles lists = triangles.touching(ranks, margin);
   const std::size_t n = ranks.size();
   pieces_.resize(lists.triangle.size());
   std::vector<Plane> planes(lists.triangle.size());

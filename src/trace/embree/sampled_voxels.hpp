@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "voxel/voxel_grid.hpp"
+#include "voxel/voxel_triangles.hpp"
 
 namespace vantage {
 
@@ -40,8 +41,8 @@ class SampledVoxels {
 
   // `pad`: rounding_pad() of everything in sight. `reach`: how far noise moves a point. `margin`: how far outside its
   // voxel's cube a triangle may be hit whose point still counts in it. Metres.
-  SampledVoxels(const SceneData& scene, const VoxelGrid& grid, std::span<const std::uint32_t> ranks, double pad,
-                double reach, double margin);
+  SampledVoxels(const SceneData& scene, const VoxelGrid& grid, SampleTriangles& triangles,
+                std::span<const std::uint32_t> ranks, double pad, double reach, double margin);
 
   bool made_for(std::span<const std::uint32_t> ranks, double pad, double reach) const;
   std::size_t size() const { return ranks_.size(); }

@@ -29,6 +29,8 @@ struct EmbreeScene {
   explicit EmbreeScene(const TraceScene& traced)
       : scene(traced.scene),
         grid(traced.grid),
+        sample_triangles(traced.sample_triangles ? traced.sample_triangles
+                                                 : std::make_shared<SampleTriangles>(scene, grid)),
         planes(std::make_shared<Planes>(scene)),
         caster(scene, planes),
         surface(scene, planes),
@@ -36,6 +38,7 @@ struct EmbreeScene {
 
   std::shared_ptr<const SceneData> scene;
   std::shared_ptr<const VoxelGrid> grid;
+  std::shared_ptr<SampleTriangles> sample_triangles;
   std::shared_ptr<const Planes> planes;
   RayCaster caster;
   Surface surface;
@@ -60,6 +63,7 @@ class StationRays {
 
   const SceneData& scene() const { return *scene_->scene; }
   const VoxelGrid& grid() const { return *scene_->grid; }
+  SampleTriangles& sample_triangles() const { return *scene_->sample_triangles; }
   const RayPattern& pattern() const { return *pattern_; }
   const RangeNoise& noise() const { return noise_; }
   const RayCaster& caster() const { return scene_->caster; }

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <tbb/parallel_for.h>
+
 #include <cmath>
 #include <utility>
 
@@ -42,7 +44,7 @@ void VulkanTracer::read_totals(std::span<NetworkCounts> counts, std::span<const 
                                std::span<const std::uint32_t> totals, const Reduction& reduction,
                                std::uint32_t stride) const {
   const std::uint32_t point_worth = scene_.grid->demands().least_worth();
-  for (std::size_t n = 0; n < counts.size(); ++n) {
+  tbb::parallel_for(std::size_t{0}, counts.size(), [&](std::size_t n) {
     NetworkCounts& sum = counts[n];
     const std::uint32_t stations = station_counts[n], pairs = stations * (stations - 1) / 2;
     sum.voxels = reduction.voxels;
@@ -81,7 +83,7 @@ void VulkanTracer::read_totals(std::span<NetworkCounts> counts, std::span<const 
         std::ldexp(1.0, static_cast<int>(difference_shift(reduction.voxels))) / (goal_density_ * point_worth);
     sum.successive_difference_sum = static_cast<double>(squares) * unit * unit -
                                     2 * static_cast<double>(edge_points) * unit + static_cast<double>(edges);
-  }
+  });
 }
 
 }  // namespace vantage::vulkan

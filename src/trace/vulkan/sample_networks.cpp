@@ -8,7 +8,6 @@
 #include "trace/triangle_gap.hpp"
 #include "trace/vulkan/sample_plan.hpp"
 #include "trace/vulkan/vulkan_tracer.hpp"
-#include "voxel/voxel_triangles.hpp"
 
 namespace vantage::vulkan {
 
@@ -30,7 +29,7 @@ const VulkanTracer::DeviceSample& VulkanTracer::upload_sample(std::span<const st
 VulkanTracer::DeviceSample VulkanTracer::device_sample(std::span<const std::uint32_t> sample, double margin) {
   const VoxelGrid& grid = *scene_.grid;
   const SceneData& scene = *scene_.scene;
-  const VoxelTriangles touching = triangles_touching(scene, grid, sample, margin);
+  const VoxelTriangles touching = scene_.sample_triangles->touching(sample, margin);
   std::vector<SampleVoxel> voxels(sample.size() + 1);
   std::vector<SampleTriangle> triangles(touching.triangle.size());
   const auto corner = [](const Float3& p) { return vec3{p.x, p.y, p.z}; };
@@ -98,7 +97,8 @@ class VulkanTracer::SampledCount {
         room_(tracer.room_for_sample()),
         batch_size_(static_cast<std::size_t>(
             std::clamp<std::uint64_t>(entries_per_batch / std::max(voxels_, 1u), 1, networks.size()))),
-        totals_(networks.size() * job.groups * stride_),
+        groups_(std::max(job.groups, 1u)),
+        totals_(networks.size() * groups_ * stride_),
         rays_(networks.size()) {}
 
   std::vector<NetworkCounts> run(const Progress& progress) {
@@ -151,7 +151,7 @@ class VulkanTracer::SampledCount {
     t_.ensure(t_.counts_, entries * word, "counts");
     if (mask_words_) t_.ensure(t_.masks_, entries * mask_words_ * word, "station masks");
     t_.ensure(t_.network_rays_, networks_.size() * sizeof(std::uint64_t), "network rays");
-    t_.ensure_totals(networks_.size(), job_.groups, stride_);
+    t_.ensure_totals(networks_.size(), groups_, stride_);
   }
 
   // Returns whether it came to its end; where not, the caller wants to stop.
@@ -261,7 +261,7 @@ class VulkanTracer::SampledCount {
       if (submission.first) record_start(r, batch);
       r.zero(t_.sample_control_);
       if (submission.last) {
-        const VkDeviceSize of_network = std::uint64_t{job_.groups} * stride_ * word;
+        const VkDeviceSize of_network = std::uint64_t{groups_} * stride_ * word;
         r.zero(t_.totals_, batch.first * of_network, batch.size() * of_network);
       }
       r.shader_after_transfer();
@@ -344,12 +344,12 @@ class VulkanTracer::SampledCount {
 
   Reduction reduction() const {
     Reduction reduction{
-        t_.counts_.address(),        mask_words_ ? t_.masks_.address() : 0, voxels_, job_.groups, mask_words_, true,
+        t_.counts_.address(),        mask_words_ ? t_.masks_.address() : 0, voxels_, groups_, mask_words_, true,
         sample_->demands.addresses()};
     if (reduction.demands.weights) {
-      reduction.weight.resize(job_.groups);
+      reduction.weight.resize(groups_);
       for (std::size_t k = 0; k < job_.sample.size(); ++k)
-        reduction.weight[k % job_.groups] += t_.scene_.grid->demands().weight(job_.sample[k]);
+        reduction.weight[k % groups_] += t_.scene_.grid->demands().weight(job_.sample[k]);
     }
     return reduction;
   }
@@ -369,6 +369,7 @@ class VulkanTracer::SampledCount {
   std::uint32_t voxels_, most_stations_, mask_words_, stride_;
   SampleList room_;
   std::size_t batch_size_;
+  std::uint32_t groups_;  // that sums are made of, one at least
   Reduction reduction_{};
   double seconds_ = 0;
   // As they come back from the device.

@@ -37,6 +37,7 @@ VulkanTracer::VulkanTracer(const VulkanEngine& engine, const EngineInfo& info, s
       exact_pace_(seconds_per_exact_submission, first_share * static_cast<double>(rays_per_dispatch()), 1,
                   static_cast<double>(rays_per_dispatch())),
       sampled_pace_(seconds_per_sampled_submission, room_for_sample().rays, 1, 0.5 * room_for_sample().rays) {
+  if (!scene_.sample_triangles) scene_.sample_triangles = std::make_shared<SampleTriangles>(scene_.scene, scene_.grid);
   std::ranges::copy(traversal_->binding().arrays, parameters_.traversal);
   upload_scene();
 }

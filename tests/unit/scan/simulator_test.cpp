@@ -2,6 +2,7 @@
 #include "vantage/simulator.hpp"
 
 #include <gtest/gtest.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <array>
@@ -336,6 +337,30 @@ TEST(Scan, StopsWhenTold) {
   EXPECT_NEAR(done, static_cast<double>(summary.rays) / static_cast<double>(simulator.scanner().rays()), 1e-12);
 }
 
+// A station is looked at in pieces, between which it may be stopped.
+TEST(Evaluate, TellsHowFarItIsWithinAStation) {
+  tbb::task_arena(1).execute([] {
+    Simulator simulator(wall_and_floor().scene(), coarse_scanner(0.1), config());
+    std::vector<double> told;
+    const Network network{{{0, 0, 0}}};
+    simulator.evaluate(network, {.skip = false}, {.report = [&](double done) { told.push_back(done); }, .stop = {}});
+    EXPECT_GT(told.size(), 5u);
+    EXPECT_TRUE(std::ranges::is_sorted(told));
+    EXPECT_LT(told.front(), 0.3);
+    EXPECT_EQ(told.back(), 1);
+  });
+}
+
+TEST(Evaluate, StoppedLargeNetworksAreAllSaidToBe) {
+  Simulator simulator(wall_and_floor().scene(), coarse_scanner(), config());
+  const std::vector<Network> networks(3, Network(mask_bits + 1, Station{{0, 0, 0}}));
+  std::stop_source stop;
+  stop.request_stop();
+  const auto counts = simulator.evaluate_sampled(networks, {.voxels = 20}, {.report = {}, .stop = stop.get_token()});
+  ASSERT_EQ(counts.size(), networks.size());
+  for (const NetworkCounts& one : counts) EXPECT_TRUE(one.cancelled);
+}
+
 TEST(Scan, InactiveAndImpossibleStations) {
   Simulator simulator(wall_and_floor().scene(), coarse_scanner(), config());
   const ScanSummary summary =
@@ -509,9 +534,11 @@ TEST(Registration, OfAllVoxelsIsExactAndOfASampleNear) {
   EXPECT_NEAR(estimate.value, whole, 5 * estimate.standard_error);
 
   const NetworkCounts search = simulator.evaluate_sampled(
-      {&network, 1}, {.voxels = simulator.voxel_count() / 2, .registration = model, .registration_groups = false})[0];
+      {&network, 1}, {.voxels = simulator.voxel_count() / 2, .registration = model, .groups = false})[0];
   EXPECT_EQ(search.registration.pairs, some.registration.pairs);
-  EXPECT_TRUE(search.groups[0].registration.pairs.empty());
+  EXPECT_EQ(search.saturated, some.saturated);
+  EXPECT_EQ(search.shared, some.shared);
+  EXPECT_TRUE(search.groups.empty());
   EXPECT_TRUE(simulator.evaluate(network).registration.heads.empty());
   EXPECT_NE(message_of([&] { simulator.evaluate(network, {.overlap = false, .registration = model}); }).find("overlap"),
             std::string::npos);

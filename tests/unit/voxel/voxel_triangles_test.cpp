@@ -87,6 +87,24 @@ TEST(VoxelTriangles, SparseListsEqualThoseOfAllVoxels) {
   }
 }
 
+// Sample after sample, the second and later ones by lists of bricks, with margins that fit these and one that does not.
+TEST(VoxelTriangles, OneSampleAfterAnotherFindsTheSame) {
+  const auto scene = std::make_shared<const SceneData>(scene_with_blocking());
+  for (const double size : {0.02, 0.1}) {
+    const auto grid = std::make_shared<const VoxelGrid>(VoxelGrid::build(*scene, size));
+    SampleTriangles triangles(scene, grid);
+    for (const double margin : {0.004, 0.005, 0.0, 0.25, 0.01})
+      for (std::uint32_t first : {3u, 3u, 40u, 117u}) {
+        std::vector<std::uint32_t> ranks;
+        for (std::uint32_t r = first; r < grid->size(); r += 211) ranks.push_back(r);
+        const VoxelTriangles found = triangles.touching(ranks, margin);
+        const VoxelTriangles expected = triangles_touching(*scene, *grid, ranks, margin);
+        ASSERT_EQ(found.offset, expected.offset) << size << ' ' << margin << ' ' << first;
+        ASSERT_EQ(found.triangle, expected.triangle) << size << ' ' << margin << ' ' << first;
+      }
+  }
+}
+
 TEST(VoxelTriangles, NoVoxelsGiveNoLists) {
   const SceneData scene = scene_with_blocking();
   const VoxelTriangles none = triangles_touching(scene, VoxelGrid::build(scene, 0.1), {}, 0.0);
