@@ -103,7 +103,26 @@ ClosedMesh sliver_prism() {
   return mesh;
 }
 
-std::vector<ClosedMesh> closed_meshes() { return {cube(), bumpy_sphere(), sliver_prism()}; }
+ClosedMesh shaft() {
+  ClosedMesh mesh{"shaft 80 × 1 × 1 m", {}, {}, 0.3};
+  constexpr std::uint32_t storeys = 80;
+  const Vec3 corners[] = {{-0.5, -0.5, 0}, {0.5, -0.5, 0}, {0.5, 0.5, 0}, {-0.5, 0.5, 0}};
+  for (std::uint32_t z = 0; z <= storeys; ++z)
+    for (const Vec3& corner : corners) mesh.positions.push_back({corner.x, corner.y, z - 0.5 * storeys});
+  for (std::uint32_t z = 0; z < storeys; ++z)
+    for (std::uint32_t k = 0; k < 4; ++k) {
+      const std::uint32_t low = 4 * z + k, next = 4 * z + (k + 1) % 4;
+      mesh.triangles.push_back({low, next, next + 4});
+      mesh.triangles.push_back({low, next + 4, low + 4});
+    }
+  constexpr std::uint32_t top = 4 * storeys;
+  for (const Triangle& t :
+       {Triangle{0, 2, 1}, Triangle{0, 3, 2}, Triangle{top, top + 1, top + 2}, Triangle{top, top + 2, top + 3}})
+    mesh.triangles.push_back(t);
+  return mesh;
+}
+
+std::vector<ClosedMesh> closed_meshes() { return {cube(), bumpy_sphere(), sliver_prism(), shaft()}; }
 
 Leaks count_leaks(const EngineInfo& engine, const ClosedMesh& mesh, std::uint64_t rays) {
   constexpr std::uint64_t most_at_once = 1'000'000;  // columns of one row

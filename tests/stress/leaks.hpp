@@ -21,6 +21,7 @@ struct ClosedMesh {
 ClosedMesh cube();          // 12 triangles
 ClosedMesh bumpy_sphere();  // 8192 triangles
 ClosedMesh sliver_prism();  // 2 m high; 64 of its 160 triangles are 1 : 10⁶
+ClosedMesh shaft();         // 644 triangles; far longer along one axis, whose rounding must do for all three
 std::vector<ClosedMesh> closed_meshes();
 
 struct Leaks {

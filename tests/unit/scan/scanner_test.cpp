@@ -57,6 +57,8 @@ TEST(Scanner, DefaultAndPaperScannersPass) {
   scanner.horizontal_angle = Angle::radians(2 * 3.141592653589793);
   scanner.vertical_angle = Angle::degrees(200);
   scanner.zenith_start = Angle::degrees(30);
+  scanner.noise.reflectivities.front() = 0;
+  scanner.noise.reflectivities.back() = 1;
   EXPECT_NO_THROW(scanner.check());
 }
 
