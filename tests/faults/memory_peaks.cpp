@@ -68,7 +68,8 @@ int run(Engine engine, std::size_t triangles, double user_size_m, double step) {
   const SimulatorMemory estimate = simulator_memory(scene, {&scanner, 1}, config, many);
   Simulator simulator(scene, scanner, config);
   const Network network = stations(scene, many);
-  simulator.evaluate(network);
+  VoxelField field;  // as a plan has it that writes what is covered
+  simulator.evaluate(network, {.field = &field});
   const std::vector<Network> population(8, network);
   simulator.evaluate_sampled(population, {.voxels = 20'000});
   const double process = process_peak(), device = static_cast<double>(layer.peak_bytes());
