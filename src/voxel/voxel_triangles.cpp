@@ -3,6 +3,7 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <array>
@@ -183,8 +184,11 @@ std::shared_ptr<const SampleTriangles::Bricks> SampleTriangles::bricks_for(std::
   if (std::ranges::equal(first_, ranks)) return nullptr;
   if (!bricks_ || bricks_->margin_m < margin_m) {
     const double margin = to_spare * margin_m;
-    bricks_ = std::make_shared<const Bricks>(
-        margin, triangle_lists(BrickFinder(*scene_, *grid_, margin), grid_->bricks().size()));
+    // A thread that waits for this must not take up other work, which might come here too.
+    tbb::this_task_arena::isolate([&] {
+      bricks_ = std::make_shared<const Bricks>(
+          margin, triangle_lists(BrickFinder(*scene_, *grid_, margin), grid_->bricks().size()));
+    });
   }
   return bricks_;
 }
