@@ -578,7 +578,7 @@ TEST(MoCmaEs, DrawsABlockFromAnywhereAgainFromAnywhere) {
   EXPECT_LT(elsewhere, 40u);
 }
 
-// Each pair of coordinates has its own scales, which a covariance of its own can learn.
+// It nears the front as one covariance for all does, in a fraction of the state; and neither takes the other's state.
 TEST(MoCmaEs, NearsAFrontWithACovarianceForEachBlock) {
   const std::size_t n = 40;
   const auto reached = [&](std::size_t full) {
