@@ -36,9 +36,9 @@ function(vantage_shader target symbol source)
 endfunction()
 
 # vantage_engine_shaders(<target> <engine> <folder>): the kernels that trace, with the trace() of <folder>/trace.glsl, as count_<engine>,
-# scan_<engine> and sample_trace_<engine>.
+# scan_<engine>, sample_probe_<engine> and sample_trace_<engine>.
 function(vantage_engine_shaders target engine folder)
-  foreach(kernel count scan sample_trace)
+  foreach(kernel count scan sample_probe sample_trace)
     vantage_shader(${target} ${kernel}_${engine} ${kernel}.comp INCLUDES ${folder})
   endforeach()
 endfunction()

@@ -1,163 +1,98 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lists the rays of the real pattern that may put a point into a sampled voxel, of pairs of slot and voxel. How many
-// rays pass a cube differs much from pair to pair, so the threads of a subgroup share out all rays of their pairs
-// evenly.
+// Lists the rays of open pairs that may put a point into the voxel: all that pass its cube and are not known to be
+// stopped before. How many these are differs much from pair to pair, so the threads of a subgroup share out the walks
+// of their pairs evenly.
 //
-// A pair with very many rays is a sight: just a part of them, spread out over the cube, is listed at first. When that
-// has been traced, the same code with SIGHTS defined queues the parts of those sights that are still open, a thread a
-// sight; with QUEUE defined it works through the queue.
+// Of a long walk just the first part is listed. When that has been traced, the same code with SIGHTS defined queues the
+// other parts of walks whose pairs are still open, a thread a pair; with QUEUE defined it works through the queue.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/parameters.glsl"
-#include "lib/sample.glsl"
-#include "lib/sheared_triangle.glsl"
 
 layout(local_size_x = group_size) in;
 layout(push_constant, scalar) uniform Push { SamplePush push; };
+#include "lib/blocker.glsl"
+#include "lib/sample.glsl"
 
-// Whether the ray passes near enough to the triangle that any engine might report a hit. The tolerance is 2^-16 of the
-// largest coordinate, tens of times the rounding of the engines' own tests.
-bool may_hit(Shear shear, vec3 origin, SampleTriangle triangle) {
-  const ShearedTriangle t = sheared(shear, origin, triangle.a, triangle.b, triangle.c);
-  const vec3 edges = edge_functions(t);
-  const vec3 a = abs(t.a), b = abs(t.b), c = abs(t.c);
-  // Shears are at most 1, so no coordinate was larger than this before.
-  const float reach = max(max(max(a.x, a.y) + a.z, max(b.x, b.y) + b.z), max(c.x, c.y) + c.z) * (1.0 / 65536.0);
-  const vec3 sums = vec3(a.x + a.y, b.x + b.y, c.x + c.y);
-  const vec3 slack = reach * (sums.yxx + sums.zzy + reach);
-  return all(greaterThanEqual(edges, -slack)) || all(lessThanEqual(edges, slack));
+RayWindow window_of(SamplePair pair) {
+  return RayWindow(pair.window[0], pair.window[1], pair.window[2], pair.window[3], pair.window[4], pair.window[5]);
 }
 
-// No point of a hit nearer than t is moved further than this.
-float reach_within(float t) {
-  if (parameters.noise_reach == 0.0) return 0.0;
-  return parameters.noise_reaches.at[reach_column(t, parameters.noise_min_range, parameters.noise_inverse_span)];
-}
-
-// One past the triangles that a point in the cube may come from: noise is small near the station, and the lists are
-// made for any distance.
-uint end_of_triangles(Cube cube, uint first_triangle, uint end_triangle) {
-  const float farthest = length(max(abs(cube.low), abs(cube.high)));
-  const float limit = reach_within(farthest + parameters.noise_reach) + 4.0 * cube.slack;
-  uint end = first_triangle;
-  while (end < end_triangle && push.triangles.at[end].gap <= limit) ++end;
-  return end;
-}
-
-bool is_candidate(Cube cube, vec3 origin, vec3 d, uint first_triangle, uint end_triangle) {
-  const vec2 range = passage(cube, d);
-  if (range.x > range.y || range.y + parameters.noise_reach < parameters.min_range ||
-      range.x - parameters.noise_reach > parameters.max_range)
-    return false;
-  const Shear shear = shear_along(d);
-  for (uint t = first_triangle; t < end_triangle; ++t)
-    if (may_hit(shear, origin, push.triangles.at[t])) return true;
-  return false;
-}
-
-// The step of a walk that comes by all of `count` rays, none twice, and spreads the first of them out.
-uint step_of(uint count) {
-  if (count <= sample_part) return 1u;
-  uint step = uint(0.618034 * float(count));
-  for (;; ++step) {
-    uint a = count, b = step;
-    while (b != 0u) {
-      const uint rest = a % b;
-      a = b;
-      b = rest;
-    }
-    if (a == 1u) return step;
-  }
-}
-
-// What the threads of a workgroup tell each other of their pairs.
-shared Cube cubes[group_size];
-shared uint slots[group_size];
-shared RayWindow windows[group_size];
-shared uvec4 walks[group_size];  // columns, rays of the window, step and start
-shared uvec2 triangles[group_size];
-shared uint ends[group_size];  // of the thread's rays among those of the subgroup
-shared uvec2 founds[group_size];  // a bit a ray
-
-uvec2 ray_of(uint thread, uint k) {
-  const uvec4 walk = walks[thread];
-  uint at = walk.w + k;
-  if (walk.y > sample_part) {
-    const bool short_walk = walk.y < 1u << 25;  // 32 bits hold any place of it
-    at = short_walk ? (k * walk.z + walk.w) % walk.y : uint((uint64_t(k) * walk.z + walk.w) % walk.y);
-  }
-  return ray_in_window(windows[thread], int(walk.x), int(at));
+// The parts of a walk that come later: from x to y, empty where x >= y. Where every point is wanted, that is all of a
+// long walk.
+uvec2 later_parts(uint length) {
+  if (length <= sample_part) return uvec2(0u);
+  return uvec2(max(push.first_part, push.stop_at > 0u ? 1u : 0u), min(push.end_part, length / sample_part));
 }
 
 #ifdef SIGHTS
-// A sight is closed when the voxel is full and its station is known to see it.
 void main() {
   const uint k = thread_of_rows();
   if (k >= push.control.at[control_sights]) return;
-  const SampleSight sight = push.sights.at[k];
-  const SampleStation station = push.stations.at[sight.slot];
-  if (push.stop_at > 0u && push.counts.at[station.network * push.voxel_count + sight.voxel] >= push.stop_at) {
-    if (push.mask_words == 0u) return;
-    const uint words = station.network * push.mask_words + ((station.place & 63u) >> 5);
-    const uint word = words * push.voxel_count + sight.voxel;
-    if ((push.masks.at[word] >> (station.place & 31u) & 1u) != 0u) return;
-  }
-  const uint parts = (sight.count - sight.walked + sample_part - 1u) / sample_part;
-  const uint at = atomicAdd(push.control.at[control_items], parts);
-  for (uint p = 0u; p < parts; ++p) push.items.at[at + p] = SampleItem(k, p);
+  const uint of_pair = push.sights.at[k];
+  const SamplePair pair = push.pairs.at[of_pair];
+  if (is_closed(push.stations.at[pair.slot], pair.voxel)) return;
+  const uvec2 parts = later_parts(walk_length(rays_of(window_of(pair))));
+  const uint at = atomicAdd(push.control.at[control_items], parts.y - parts.x);
+  for (uint p = parts.x; p < parts.y; ++p) push.items.at[at + p - parts.x] = SampleItem(of_pair, p);
 }
 #else
+// What the threads of a workgroup tell each other of their pairs.
+struct Walk {
+  RayWindow window;
+  uint columns, rays, steps;
+  uint first;  // step
+};
+shared Cube cubes[group_size];
+shared uint slots[group_size];
+shared Walk walks[group_size];
+shared uint probes[group_size];
+shared bool blocked[group_size];
+shared Blocker blockers[group_size];
+shared uint ends[group_size];  // of the thread's steps among those of the subgroup
+shared uvec2 founds[group_size];  // a bit a step
+
+// The ray at step k of a thread; whether there is one.
+bool ray_at(uint thread, uint k, out uvec2 ray) {
+  const Walk walk = walks[thread];
+  const uint place = place_in_walk(walk.first + k, walk.steps);
+  ray = ray_in_window(walk.window, int(walk.columns), int(place));
+  return place < walk.rays;
+}
+
 void main() {
-#ifdef QUEUE
   const uint k = thread_of_rows();
+#ifdef QUEUE
   const bool alive = k < push.control.at[control_items];
   SampleItem item = SampleItem(0u, 0u);
   if (alive) item = push.items.at[k];
-  const SampleSight sight = push.sights.at[item.sight];
-  const uint of_voxel = sight.voxel, slot = sight.slot;
 #else
-  const uint thread_voxel = push.first_voxel + gl_WorkGroupID.x * group_size + gl_LocalInvocationIndex;
-  const bool alive = thread_voxel < push.end_voxel;
-  const uint of_voxel = alive ? thread_voxel : push.first_voxel, slot = push.first_slot + gl_WorkGroupID.y;
+  const bool alive = k < push.control.at[control_pairs];
+  const SampleItem item = SampleItem(alive ? k : 0u, 0u);
 #endif
-  const SampleVoxel voxel = push.voxels.at[of_voxel];
-  const SampleStation station = push.stations.at[slot];
-  const vec3 origin = station.origin;
-  const Cube cube = cube_of(voxel, origin);
-  const uint end_triangle = end_of_triangles(cube, voxel.first_triangle, push.voxels.at[of_voxel + 1u].first_triangle);
-
+  const SamplePair pair = push.pairs.at[item.pair];
+  const SampleStation station = push.stations.at[pair.slot];
   const uint self = gl_LocalInvocationIndex;
-  uint mine = 0u;  // rays to look at
-  if (alive && end_triangle > voxel.first_triangle) {
-    vec3 low = cube.low, high = cube.high;
-    if (turned) turn_back(station.turn, low, high);
-    RayWindow window = rays_of_box(low, high);
-    window.row0 = max(window.row0, int(push.first_row));
-    window.row1 = min(window.row1, int(push.end_row) - 1);
-    // 64 bits would be needed only for patterns of over 2^31 rays, which the host refuses.
-    const int rows = row_count_of(window), columns = column_count_of(window);
-    const uint count = uint(rows * columns), step = step_of(count);
-    uint start = count <= sample_part ? 0u : uint(rows / 2 * columns + columns / 2);
-#ifdef QUEUE
-    const uint from = sight.walked + item.part * sample_part;
-    mine = min(sample_part, count - from);
-    start = uint((uint64_t(from) * step + start) % count);
-#else
-    mine = count;
-    if (count > sample_part) {
-      // Where all are wanted, none first.
-      mine = push.stop_at > 0u ? sample_part : 0u;
-      const uint parts = (count - mine + sample_part - 1u) / sample_part;
-      const uint known = atomicAdd(push.control.at[control_parts], parts);
-      if (known + parts <= push.item_capacity)
-        push.sights.at[atomicAdd(push.control.at[control_sights], 1u)] = SampleSight(of_voxel, slot, mine, count);
+  uint mine = 0u;  // steps
+  if (alive && !is_closed(station, pair.voxel)) {
+    const RayWindow window = window_of(pair);
+    const uint rays = rays_of(window), length = walk_length(rays);
+    mine = min(length, sample_part);
+#ifndef QUEUE
+    const uvec2 later = later_parts(length);
+    if (later.x < later.y) {
+      const uint parts = later.y - later.x, earlier = atomicAdd(push.control.at[control_parts], parts);
+      if (earlier + parts <= push.item_capacity)
+        push.sights.at[atomicAdd(push.control.at[control_sights], 1u)] = item.pair;
     }
+    if (push.first_traced != 0u || push.first_part > 0u || (length > sample_part && push.stop_at == 0u)) mine = 0u;
 #endif
-    cubes[self] = cube;
-    slots[self] = slot;
-    windows[self] = window;
-    walks[self] = uvec4(columns, count, step, start);
-    triangles[self] = uvec2(voxel.first_triangle, end_triangle);
+    cubes[self] = cube_of(push.voxels.at[pair.voxel], station.origin);
+    slots[self] = pair.slot;
+    walks[self] = Walk(window, uint(column_count_of(window)), rays, length, item.part * sample_part);
+    probes[self] = pair.probe;
+    blocked[self] = pair.blocker != not_blocked;
+    if (blocked[self]) blockers[self] = blocker_of(corners_of(pair.blocker, station.origin));
   }
   const uint first = subgroupMin(self), threads = subgroupAdd(1u), rank = subgroupExclusiveAdd(1u);  // of the subgroup
   const uint end = subgroupInclusiveAdd(mine), all = subgroupMax(end);
@@ -165,7 +100,7 @@ void main() {
   founds[self] = uvec2(0u);
   subgroupBarrier();
   for (uint j = rank; j < all; j += threads) {
-    // The first thread whose rays end behind j.
+    // The first thread whose steps end behind j.
     uint low = first, high = first + threads - 1u;
     while (low < high) {
       const uint middle = (low + high) / 2u;
@@ -173,10 +108,10 @@ void main() {
       else low = middle + 1u;
     }
     const uint k = j - (low == first ? 0u : ends[low - 1u]);
-    const uvec2 ray = ray_of(low, k);
-    const SampleStation from = push.stations.at[slots[low]];
-    const vec3 direction = ray_direction(ray.x, ray.y, from.turn);
-    if (!is_candidate(cubes[low], from.origin, direction, triangles[low].x, triangles[low].y)) continue;
+    uvec2 ray;
+    if (!ray_at(low, k, ray) || number_of(ray) == probes[low]) continue;
+    const vec3 direction = ray_direction(ray.x, ray.y, push.stations.at[slots[low]].turn);
+    if (!may_see(passage(cubes[low], direction)) || (blocked[low] && stops(blockers[low], direction))) continue;
     if (k < 32u) atomicOr(founds[low].x, 1u << k);
     else atomicOr(founds[low].y, 1u << (k - 32u));
   }
@@ -193,8 +128,9 @@ void main() {
     const int bit = found.x != 0u ? findLSB(found.x) : 32 + findLSB(found.y);
     if (bit < 32) found.x &= found.x - 1u;
     else found.y &= found.y - 1u;
-    const uvec2 ray = ray_of(self, uint(bit));
-    if (at < push.ray_capacity) push.rays.at[at] = SampleRay(of_voxel, slot, ray.x * parameters.columns + ray.y);
+    uvec2 ray;
+    ray_at(self, uint(bit), ray);
+    if (at < push.ray_capacity) push.rays.at[at] = SampleRay(item.pair, number_of(ray));
     ++at;
   }
 }

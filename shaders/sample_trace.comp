@@ -4,14 +4,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/parameters.glsl"
-#include "lib/sample.glsl"
-#include "lib/voxel.glsl"
 #include "trace.glsl"
-#include "lib/point.glsl"
 
 layout(local_size_x = group_size) in;
-layout(constant_id = 2) const bool with_masks = true;
 layout(push_constant, scalar) uniform Push { SamplePush push; };
+#include "lib/sampled_point.glsl"
 
 void main() {
   const uint k = thread_of_rows();
@@ -20,43 +17,18 @@ void main() {
   bool traced = false;
   if (listed <= push.ray_capacity && k < listed) {
     const SampleRay job = push.rays.at[k];
-    const SampleStation station = push.stations.at[job.slot];
-    const SampleVoxel voxel = push.voxels.at[job.voxel];
+    const uint of_voxel = push.pairs.at[job.pair].voxel;
+    const SampleStation station = push.stations.at[push.pairs.at[job.pair].slot];
     network = station.network;
-    const uint entry = network * push.voxel_count + job.voxel;
-    const uint word = (network * push.mask_words + ((station.place & 63u) >> 5)) * push.voxel_count + job.voxel;
-    const uint bit = 1u << (station.place & 31u);
     // Since it was listed others may have filled the voxel, and shown that the station sees it.
-    traced = push.stop_at == 0u || push.counts.at[entry] < push.stop_at ||
-             (with_masks && (push.masks.at[word] & bit) == 0u);
+    traced = !is_closed(station, of_voxel);
     if (traced) {
-      const uint row = job.ray / parameters.columns, column = job.ray % parameters.columns;
-      const vec3 direction = ray_direction(row, column, station.turn);
+      const SampleVoxel voxel = push.voxels.at[of_voxel];
+      const vec3 direction = ray_direction(job.ray / parameters.columns, job.ray % parameters.columns, station.turn);
       const Cube cube = cube_of(voxel, station.origin);
-      const vec2 range = passage(cube, direction);
-      const float reach = parameters.noise_reach + cube.slack;
-      const Hit hit = trace(station.origin, direction, parameters.min_range,
-                            min(parameters.max_range, range.y + reach), range.x - reach, from_the_root);
-      if (hit.id != no_primitive && (hit.id & surveyed_bit) != 0u) {
-        Look look = unseen;
-        if (with_look) look = look_of(hit, direction);
-        const vec3 point = point_of(hit, look, station.origin, direction, uint64_t(job.ray), station.place);
-        uvec3 cell;
-        if (cell_of(point, cell) && cell == uvec3(voxel.x, voxel.y, voxel.z) && misses_of(hit, look, direction) == 0u) {
-          atomicAdd(push.counts.at[entry], 1u);
-          if (with_masks) {
-            if ((push.masks.at[word] & bit) == 0u) atomicOr(push.masks.at[word], bit);
-          }
-        }
-      }
+      const Hit hit = trace_into(cube, passage(cube, direction), station.origin, direction);
+      if (is_point_of(voxel, station, hit, direction, job.ray)) count_point(station, of_voxel);
     }
   }
-  // Neighbouring rays mostly belong to one network: one addition a subgroup then.
-  const uint lowest = subgroupMin(traced ? network : 0xFFFFFFFFu), highest = subgroupMax(traced ? network : 0u);
-  const uint rays = subgroupAdd(traced ? 1u : 0u);
-  if (lowest == highest) {
-    if (subgroupElect()) add64(push.network_rays, 2u * lowest, rays);
-  } else if (traced) {
-    add64(push.network_rays, 2u * network, 1u);
-  }
+  add_rays(traced, network);
 }

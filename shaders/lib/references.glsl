@@ -19,10 +19,9 @@ layout(buffer_reference) buffer BrickQuarters;
 layout(buffer_reference) buffer Slots;
 layout(buffer_reference) buffer Limits;
 layout(buffer_reference) buffer SampleVoxels;
-layout(buffer_reference) buffer SampleTriangles;
 layout(buffer_reference) buffer SampleStations;
 layout(buffer_reference) buffer SampleRays;
-layout(buffer_reference) buffer SampleSights;
+layout(buffer_reference) buffer SamplePairs;
 layout(buffer_reference) buffer SampleItems;
 
 #include "shared/trace_types.h"
@@ -30,11 +29,10 @@ layout(buffer_reference) buffer SampleItems;
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer BrickQuarters { uvec4 at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer Slots { BrickSlot at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Limits { PointLimits at[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer SampleVoxels { SampleVoxel at[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer SampleTriangles { SampleTriangle at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer SampleVoxels { SampleVoxel at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer SampleStations { SampleStation at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SampleRays { SampleRay at[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SampleSights { SampleSight at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SamplePairs { SamplePair at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SampleItems { SampleItem at[]; };
 
 const uint brick_quarters = 5u;  // 16 bytes each, of a VoxelBrick

@@ -1,32 +1,60 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the kernels of sampled evaluation share: the cube of a sampled voxel as a station sees it.
+// What the kernels of sampled evaluation share: the cube of a sampled voxel as a station sees it, and the rays that
+// pass it. To be included where `push` is known.
 #ifndef VANTAGE_LIB_SAMPLE
 #define VANTAGE_LIB_SAMPLE
+#include "lib/cube.glsl"
 #include "lib/pattern.glsl"
 #include "lib/rays_of_box.glsl"
 
-// The cube relative to the origin, widened by more than the rounding on the way from a hit to its cell, so that no ray
-// that has a point in the cell is missed.
-struct Cube {
-  vec3 low, high;
-  float slack;
-};
-
-Cube cube_of(SampleVoxel voxel, vec3 origin) {
-  const float size = 1.0 / parameters.voxel_inverse_size;
-  const vec3 corner = parameters.voxel_min + vec3(voxel.x, voxel.y, voxel.z) * size;
-  const vec3 largest = max(abs(corner), abs(origin)) + size;
-  const float slack = max(max(largest.x, largest.y), largest.z) * (1.0 / 262144.0);
-  return Cube(corner - origin - slack, corner - origin + (size + slack), slack);
+// Where a station's bit of a voxel is.
+uint mask_word(SampleStation station, uint voxel) {
+  return (station.network * push.mask_words + ((station.place & 63u) >> 5)) * push.voxel_count + voxel;
+}
+uint mask_bit(SampleStation station) { return 1u << (station.place & 31u); }
+bool is_seen(SampleStation station, uint voxel) {
+  return (push.masks.at[mask_word(station, voxel)] & mask_bit(station)) != 0u;
 }
 
-// Where the ray is inside the cube: from x to y, empty where x > y.
-vec2 passage(Cube cube, vec3 direction) {
-  const vec3 safe = vec3(abs(direction.x) < 1e-12 ? 1e-12 : direction.x, abs(direction.y) < 1e-12 ? 1e-12 : direction.y,
-                         abs(direction.z) < 1e-12 ? 1e-12 : direction.z);
-  const vec3 a = cube.low / safe, b = cube.high / safe;
-  const vec3 near = min(a, b), far = max(a, b);
-  return vec2(max(max(near.x, near.y), near.z), min(min(far.x, far.y), far.z));
+// Where the voxel is full, and its station known to see it, no ray of the pair changes anything.
+bool is_closed(SampleStation station, uint voxel) {
+  return push.stop_at > 0u && push.counts.at[station.network * push.voxel_count + voxel] >= push.stop_at &&
+         (push.mask_words == 0u || is_seen(station, voxel));
+}
+
+// Whether the ray may put a point into a cube that it is in from range.x to range.y.
+bool may_see(vec2 range) {
+  return range.x <= range.y && range.y + parameters.noise_reach >= parameters.min_range &&
+         range.x - parameters.noise_reach <= parameters.max_range;
+}
+
+// All rays that may meet the cube, and few others.
+RayWindow window_of(Cube cube, SampleStation station) {
+  vec3 low = cube.low, high = cube.high;
+  if (turned) turn_back(station.turn, low, high);
+  return rays_of_box(low, high);
+}
+// The host refuses patterns of over 2^31 rays.
+uint rays_of(RayWindow window) { return uint(row_count_of(window) * column_count_of(window)); }
+uint number_of(uvec2 ray) { return ray.x * parameters.columns + ray.y; }
+
+// A walk comes by all rays of a window, none twice. A long one goes by the golden ratio through a power of two, so that
+// its first steps are spread out; some places of it hold no ray.
+uint walk_length(uint rays) { return rays <= sample_part ? rays : 2u << findMSB(rays - 1u); }
+uint place_in_walk(uint step, uint length) {
+  return length <= sample_part ? step : step * (uint(0.618034 * float(length)) | 1u) & (length - 1u);
+}
+
+// Adds the traced rays of a subgroup to their networks, which are few: one addition for each.
+void add_rays(bool traced, uint network) {
+  while (traced) {
+    const uint first = subgroupBroadcastFirst(network);
+    if (network == first) {
+      const uint rays = subgroupAdd(1u);
+      if (subgroupElect()) add64(push.network_rays, 2u * first, rays);
+      traced = false;
+    }
+  }
 }
 
 #endif

@@ -21,12 +21,5 @@ VANTAGE_CONST uint normal_rows = normal_octaves * normal_segments + 1;
 // u = philox4x32-10(key = seed, counter = {ray low, ray high, place, noise_stream})[0]
 VANTAGE_CONST uint noise_stream = 0x6e6f6973u;
 
-// Which column of a table that grows with distance holds for every hit nearer than t.
-VANTAGE_INLINE uint reach_column(float t, float min_range, float inverse_span) {
-  const float last = float(noise_table_side - 1u);
-  const float column = (t - min_range) * inverse_span * last + 1.01f;
-  return uint(column > last ? last : column > 0.0f ? column : 0.0f);
-}
-
 VANTAGE_SHARED_END
 #endif

@@ -58,7 +58,6 @@ struct TraceParameters {
   VANTAGE_ADDRESS(Uints) triangles;  // three vertex numbers each
   VANTAGE_ADDRESS(Floats) diffuse;   // per scene triangle
   VANTAGE_ADDRESS(Floats) sigma;
-  VANTAGE_ADDRESS(Floats) noise_reaches;  // by column of sigma: no hit up to there is moved further
   VANTAGE_ADDRESS(Vec4s) normal_table;
   VANTAGE_ADDRESS(Uints) limits_of;  // per scene triangle: which of `limits`
   VANTAGE_ADDRESS(Limits) limits;
@@ -184,12 +183,7 @@ struct ReducePush {
 
 // Sampled evaluation. A slot is one station of one network; a pair is a slot and a sampled voxel.
 struct SampleVoxel {
-  uint x, y, z;         // voxel coordinates
-  uint first_triangle;  // of those that touch the cube; up to the next voxel's first
-};
-struct SampleTriangle {
-  vec3 a, b, c;  // local frame
-  float gap;     // it is at least so far outside the cube; a voxel's triangles stand in its order
+  uint x, y, z;  // voxel coordinates
 };
 struct SampleStation {
   vec3 origin;
@@ -197,39 +191,42 @@ struct SampleStation {
   uint network;  // within the batch
   vec3 turn[3];
 };
-struct SampleRay {
+// A pair of slot and voxel of which one ray has been traced and others may still matter.
+struct SamplePair {
   uint voxel;  // within the sample
   uint slot;
+  uint probe;     // the traced ray; no_ray: none was worth it
+  uint blocker;   // the triangle that stopped it before the voxel; not_blocked: none did
+  int window[6];  // RayWindow, in its order
+};
+VANTAGE_CONST uint no_ray = 0xFFFFFFFFu;
+VANTAGE_CONST uint not_blocked = 0xFFFFFFFFu;
+struct SampleRay {
+  uint pair;
   uint ray;
 };
-// A pair with more than sample_part rays: some of them are traced before the rest is listed, which may not be needed.
-struct SampleSight {
-  uint voxel;
-  uint slot;
-  uint walked;  // rays of its window looked at
-  uint count;   // rays of its window
-};
-// Part of the rest of a sight.
+// Part of a pair's walk. Of a long walk the first part is traced before the others are listed, which may not be needed.
 struct SampleItem {
-  uint sight;
+  uint pair;
   uint part;
 };
-VANTAGE_CONST uint sample_part = 64;
+VANTAGE_CONST uint sample_part = 64;  // steps
 // Control words of one chunk.
-VANTAGE_CONST uint control_rays = 0;   // listed at first, or wanted: where there is no room, the chunk must be cut
-VANTAGE_CONST uint control_parts = 1;  // that the sights would have; likewise
-VANTAGE_CONST uint control_sights = 2;
-VANTAGE_CONST uint control_items = 3;     // parts that are looked at
-VANTAGE_CONST uint control_rest = 4;      // rays listed of these
-VANTAGE_CONST uint control_dispatch = 5;  // three words
-VANTAGE_CONST uint control_words = 8;
-struct SamplePush {
+VANTAGE_CONST uint control_pairs = 0;     // that are open when each has been probed
+VANTAGE_CONST uint control_probed = 1;    // rays traced for that
+VANTAGE_CONST uint control_rays = 2;      // listed at first, or wanted: where there is no room, the chunk must be cut
+VANTAGE_CONST uint control_parts = 3;     // that come later; likewise
+VANTAGE_CONST uint control_sights = 4;    // pairs with such parts
+VANTAGE_CONST uint control_items = 5;     // parts that are looked at
+VANTAGE_CONST uint control_rest = 6;      // rays listed of these; where there is no room, they must come again
+VANTAGE_CONST uint control_dispatch = 7;  // three words
+VANTAGE_CONST uint control_words = 10;
+
+// The first of a chunk's kernels.
+struct SampleProbePush {
   VANTAGE_ADDRESS(SampleVoxels) voxels;
-  VANTAGE_ADDRESS(SampleTriangles) triangles;
   VANTAGE_ADDRESS(SampleStations) stations;
-  VANTAGE_ADDRESS(SampleRays) rays;
-  VANTAGE_ADDRESS(SampleSights) sights;  // as many as items
-  VANTAGE_ADDRESS(SampleItems) items;
+  VANTAGE_ADDRESS(SamplePairs) pairs;  // open ones are listed here
   VANTAGE_ADDRESS(Uints) control;
   VANTAGE_ADDRESS(Uints) counts;        // [network][voxel]
   VANTAGE_ADDRESS(Uints) masks;         // [network][word][voxel]
@@ -238,13 +235,36 @@ struct SamplePush {
   uint first_voxel;
   uint end_voxel;
   uint first_slot;
-  uint first_row;
-  uint end_row;
+  uint end_slot;
+  uint mask_words;
+  uint stop_at;  // points at which a voxel needs no more; 0: never
+  uint probed;   // 1: these pairs have been probed before, so that what is found has been counted
+  // Voxel k of the chunks' order is k · voxel_step % voxel_count: every chunk has voxels from all over the site, so
+  // that one has about as many rays as another.
+  uint voxel_step;
+};
+// All others.
+struct SamplePush {
+  VANTAGE_ADDRESS(SampleVoxels) voxels;
+  VANTAGE_ADDRESS(SampleStations) stations;
+  VANTAGE_ADDRESS(SamplePairs) pairs;
+  VANTAGE_ADDRESS(SampleRays) rays;
+  VANTAGE_ADDRESS(Uints) sights;  // pairs whose walks have more parts; as many as items
+  VANTAGE_ADDRESS(SampleItems) items;
+  VANTAGE_ADDRESS(Uints) control;
+  VANTAGE_ADDRESS(Uints) counts;        // [network][voxel]
+  VANTAGE_ADDRESS(Uints) masks;         // [network][word][voxel]
+  VANTAGE_ADDRESS(Uints) network_rays;  // 64 bits a network
+  uint voxel_count;                     // of the sample
+  uint first_part;                      // of walks, those of the chunk
+  uint end_part;
   uint ray_capacity;
   uint item_capacity;
   uint mask_words;
-  uint stop_at;  // points at which a voxel needs no more; 0: never
-  uint list;     // control_rays or control_rest
+  uint stop_at;       // points at which a voxel needs no more; 0: never
+  uint list;          // control_rays or control_rest
+  uint first_traced;  // 1: all that is listed at first has been traced before
+  uint padding;
 };
 
 // Sizes a dispatch over what control word `over` counts.

@@ -28,7 +28,9 @@ inline NoiseReaches noise_reaches(const NoiseModel& model) {
 
 // No point of a hit nearer than t is moved further than this.
 inline float reach_within(const NoiseModel& model, const NoiseReaches& reaches, float t) {
-  return reaches[reach_column(t, model.min_range, model.inverse_span)];
+  constexpr auto last = static_cast<float>(NoiseModel::side - 1);
+  const float column = (t - model.min_range) * model.inverse_span * last + 1.01f;
+  return reaches[static_cast<std::size_t>(std::clamp(column, 0.0f, last))];
 }
 
 }  // namespace vantage

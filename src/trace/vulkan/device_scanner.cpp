@@ -29,10 +29,6 @@ DeviceScanner::DeviceScanner(Device& device, Commands& commands, VkAccelerationS
   cos_zenith_ = to_device(pattern.cos_zenith, "cos zenith");
   sin_azimuth_ = to_device(pattern.sin_azimuth, "sin azimuth");
   cos_azimuth_ = to_device(pattern.cos_azimuth, "cos azimuth");
-  if (noise()) {
-    reaches_ = noise_reaches(*scanner.noise);
-    noise_reaches_ = to_device(reaches_, "noise reaches");
-  }
   if (limits()) upload_limits(device, commands, scene);
   if (const NoiseModel* const looked_up = sigma_model()) sigma_ = to_device(looked_up->sigma, "sigma table");
 }
@@ -72,7 +68,6 @@ void DeviceScanner::write(Commands& commands, const TraceParameters& shared) con
   p.first_zenith = static_cast<float>(pattern.first_zenith);
   p.first_azimuth = static_cast<float>(pattern.first_azimuth);
   if (noise()) {
-    p.noise_reaches = noise_reaches_.address();
     p.noise_reach = scanner_.noise->reach;
     p.seed_low = static_cast<std::uint32_t>(scanner_.noise->seed);
     p.seed_high = static_cast<std::uint32_t>(scanner_.noise->seed >> 32);

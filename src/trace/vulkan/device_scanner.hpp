@@ -4,7 +4,6 @@
 #pragma once
 
 #include "shared/trace_types.h"
-#include "trace/noise_reach.hpp"
 #include "trace/tracer.hpp"
 #include "trace/vulkan/buffer.hpp"
 #include "trace/vulkan/commands.hpp"
@@ -23,9 +22,6 @@ class DeviceScanner {
   bool noise() const { return scanner_.noise && scanner_.noise->enabled(); }
   bool limits() const { return scanner_.limits && scanner_.limits->enabled(); }
   const TraceSet& set() const { return set_; }
-  float noise_reach() const { return noise() ? scanner_.noise->reach : 0; }
-  // No point of a hit nearer than t is moved further than this.
-  float reach_within(float t) const { return noise() ? vantage::reach_within(*scanner_.noise, reaches_, t) : 0; }
 
   // Writes the block: what all scanners have of scene and voxels, and what is this one's own.
   void write(Commands& commands, const TraceParameters& shared) const;
@@ -40,8 +36,7 @@ class DeviceScanner {
   TraceScanner scanner_;
   Buffer block_;
   TraceSet set_;
-  Buffer sin_zenith_, cos_zenith_, sin_azimuth_, cos_azimuth_, sigma_, noise_reaches_, limits_, limits_of_;
-  NoiseReaches reaches_{};  // where there is noise
+  Buffer sin_zenith_, cos_zenith_, sin_azimuth_, cos_azimuth_, sigma_, limits_, limits_of_;
 };
 
 }  // namespace vantage::vulkan

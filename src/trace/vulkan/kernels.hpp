@@ -21,6 +21,7 @@ enum class Kernel {
   tile_pass,
   clamp,
   reduce,
+  sample_probe,
   sample_list,
   sample_sights,
   sample_queue,

@@ -34,9 +34,11 @@ double grid(const DeviceLoad& load) {
   return load.bricks * sizeof(VoxelBrick) + static_cast<double>(slots) * sizeof(BrickSlot);
 }
 
-double shading(const DeviceLoad& load) {
-  if (!load.shaded) return 0;
-  return load.vertices * vertex * (load.normals ? 2 : 1) + load.triangles * (triangle + 2 * word_bytes);
+// Corners for a sample, and where points depend on what was hit the rest.
+double surfaces(const DeviceLoad& load) {
+  const double corners = load.vertices * vertex + load.triangles * triangle;
+  if (!load.shaded) return corners;
+  return corners + load.vertices * (load.normals ? vertex : 0) + load.triangles * 2 * word_bytes;
 }
 
 double tiles(const DeviceLoad& load) {
@@ -48,9 +50,9 @@ double tiles(const DeviceLoad& load) {
 }
 
 double lists(const DeviceLoad& load) {
-  const SampleList room = sample_room(load.columns, load.software, 0);
-  return static_cast<double>(room.rays) * sizeof(SampleRay) +
-         static_cast<double>(room.items) * (sizeof(SampleSight) + sizeof(SampleItem));
+  const SampleRoom room = sample_room(load.software, 0);
+  return static_cast<double>(room.pairs) * sizeof(SamplePair) + static_cast<double>(room.rays) * sizeof(SampleRay) +
+         static_cast<double>(room.parts) * (word_bytes + sizeof(SampleItem));
 }
 
 }  // namespace
@@ -61,7 +63,7 @@ double device_bytes(const DeviceLoad& load) {
   const double largest_upload =
       std::max({load.triangles * sizeof(BvhTriangle), load.vertices * vertex, load.bricks * sizeof(VoxelBrick)});
   const double kept = tree(load) + std::min(largest_upload, most_staging);
-  return kept + std::max(build_only(load), grid(load) + shading(load) + counts + tiles(load) + lists(load));
+  return kept + std::max(build_only(load), grid(load) + surfaces(load) + counts + tiles(load) + lists(load));
 }
 
 }  // namespace vantage::vulkan

@@ -3,79 +3,29 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <bit>
+#include <numeric>
 
-#include "trace/triangle_gap.hpp"
 #include "trace/vulkan/sample_plan.hpp"
 #include "trace/vulkan/vulkan_tracer.hpp"
 
 namespace vantage::vulkan {
 
-const VulkanTracer::DeviceSample& VulkanTracer::upload_sample(std::span<const std::uint32_t> sample,
-                                                              std::span<const std::vector<TraceStation>> networks) {
-  // Wider than the slack of cube_of in shaders/lib/sample.glsl for any station within range.
-  const Box& bounds = scene_.scene->local_bounds;
-  float farthest = 0;
-  for (const DeviceScanner& scanner : scanners_) farthest = std::max(farthest, scanner.pattern().max_range);
-  const double largest = std::max({std::abs(bounds.min.x), std::abs(bounds.min.y), std::abs(bounds.min.z),
-                                   std::abs(bounds.max.x), std::abs(bounds.max.y), std::abs(bounds.max.z)}) +
-                         static_cast<double>(farthest);
-  const double margin = sample_reach(networks) + largest * 0x1p-17;
-  return samples_.get(
-      [&](const DeviceSample& one) { return margin <= one.margin && std::ranges::equal(sample, one.ranks); },
-      [&] { return device_sample(sample, margin); });
+const VulkanTracer::DeviceSample& VulkanTracer::upload_sample(std::span<const std::uint32_t> sample) {
+  return samples_.get([&](const DeviceSample& one) { return std::ranges::equal(sample, one.ranks); },
+                      [&] { return device_sample(sample); });
 }
 
-VulkanTracer::DeviceSample VulkanTracer::device_sample(std::span<const std::uint32_t> sample, double margin) {
+VulkanTracer::DeviceSample VulkanTracer::device_sample(std::span<const std::uint32_t> sample) {
   const VoxelGrid& grid = *scene_.grid;
-  const SceneData& scene = *scene_.scene;
-  const VoxelTriangles touching = scene_.sample_triangles->touching(sample, margin);
-  std::vector<SampleVoxel> voxels(sample.size() + 1);
-  std::vector<SampleTriangle> triangles(touching.triangle.size());
-  const auto corner = [](const Float3& p) { return vec3{p.x, p.y, p.z}; };
+  std::vector<SampleVoxel> voxels(sample.size());
   tbb::parallel_for(std::size_t{0}, sample.size(), [&](std::size_t k) {
     const auto cell = morton_decode(grid.key(sample[k]));
-    voxels[k] = {cell[0], cell[1], cell[2], touching.offset[k]};
-    for (std::uint32_t i = touching.offset[k]; i < touching.offset[k + 1]; ++i) {
-      const Triangle& t = scene.triangles[touching.triangle[i]];
-      const Float3 &a = scene.positions[t[0]], &b = scene.positions[t[1]], &c = scene.positions[t[2]];
-      triangles[i] = {corner(a), corner(b), corner(c), triangle_gap(a, b, c, grid, cell)};
-    }
-    std::sort(triangles.begin() + touching.offset[k], triangles.begin() + touching.offset[k + 1],
-              [](const SampleTriangle& one, const SampleTriangle& other) { return one.gap < other.gap; });
+    voxels[k] = {cell[0], cell[1], cell[2]};
   });
-  voxels.back() = {0, 0, 0, touching.offset.back()};
   return {.ranks = {sample.begin(), sample.end()},
-          .margin = margin,
           .voxels = to_device<SampleVoxel>(voxels, "sample voxels"),
-          .triangles = to_device<SampleTriangle>(triangles, "sample triangles"),
           .demands = to_device(grid.demands().of(sample))};
-}
-
-// How far noise may move a point into a voxel, seen from any station of the networks.
-double VulkanTracer::sample_reach(std::span<const std::vector<TraceStation>> networks) const {
-  if (std::ranges::none_of(scanners_, [](const DeviceScanner& scanner) { return scanner.noise(); })) return 0;
-  const VoxelGrid& grid = *scene_.grid;
-  const double side = std::ldexp(grid.voxel_size(), static_cast<int>(grid.depth()));
-  double farthest = grid.voxel_size();
-  for (const auto& network : networks) {
-    for (const TraceStation& station : network) {
-      const double head[3] = {station.origin.x, station.origin.y, station.origin.z};
-      double square = 0;
-      for (int axis = 0; axis < 3; ++axis) {
-        const double from_low = head[axis] - grid.min()[axis];
-        const double most = std::max(std::abs(from_low), std::abs(from_low - side));
-        square += most * most;
-      }
-      farthest = std::max(farthest, std::sqrt(square));
-    }
-  }
-  // In coarse steps, so that lists made for some networks mostly do for the next.
-  farthest = std::exp2(std::ceil(4 * std::log2(farthest)) / 4);
-  float reach = 0;
-  for (const DeviceScanner& scanner : scanners_)
-    reach = std::max(reach, scanner.reach_within(static_cast<float>(farthest) + scanner.noise_reach()));
-  return static_cast<double>(reach);
 }
 
 // The networks go in batches that share counts and masks; of a batch go the stations of one scanner after the other,
@@ -91,6 +41,7 @@ class VulkanTracer::SampledCount {
         station_counts_(station_counts),
         job_(job),
         voxels_(static_cast<std::uint32_t>(job.sample.size())),
+        voxel_step_(golden_step(voxels_)),
         most_stations_(*std::max_element(station_counts.begin(), station_counts.end())),
         mask_words_(job.masks ? (most_stations_ > 32 ? 2 : 1) : 0),
         stride_(totals_seen + most_stations_ + most_stations_ * (most_stations_ - 1) / 2),
@@ -102,7 +53,8 @@ class VulkanTracer::SampledCount {
         rays_(networks.size()) {}
 
   std::vector<NetworkCounts> run(const Progress& progress) {
-    sample_ = &t_.upload_sample(job_.sample, networks_);
+    t_.upload_triangles();
+    sample_ = &t_.upload_sample(job_.sample);
     ensure_buffers();
     reduction_ = reduction();
     bool cancelled = false;
@@ -145,9 +97,10 @@ class VulkanTracer::SampledCount {
 
   void ensure_buffers() {
     const std::uint64_t entries = std::uint64_t{voxels_} * batch_size_;
+    t_.ensure(t_.sample_pairs_, std::uint64_t{room_.pairs} * sizeof(SamplePair), "sample pairs");
     t_.ensure(t_.sample_rays_, std::uint64_t{room_.rays} * sizeof(SampleRay), "sample rays");
-    t_.ensure(t_.sample_sights_, std::uint64_t{room_.items} * sizeof(SampleSight), "sample sights");
-    t_.ensure(t_.sample_items_, std::uint64_t{room_.items} * sizeof(SampleItem), "sample items");
+    t_.ensure(t_.sample_sights_, room_.parts * word, "sample sights");
+    t_.ensure(t_.sample_items_, std::uint64_t{room_.parts} * sizeof(SampleItem), "sample items");
     t_.ensure(t_.counts_, entries * word, "counts");
     if (mask_words_) t_.ensure(t_.masks_, entries * mask_words_ * word, "station masks");
     t_.ensure(t_.network_rays_, networks_.size() * sizeof(std::uint64_t), "network rays");
@@ -163,16 +116,16 @@ class VulkanTracer::SampledCount {
     for (const Run& run : batch.runs) {
       const std::uint32_t slots = run.end_slot - run.first_slot;
       const bool last_run = &run == &batch.runs.back();
-      SamplePlan plan(slots, voxels_, run.scanner->pattern().rows(), room_);
+      SamplePlan plan(slots, voxels_, most_parts(run.scanner->pattern()), room_);
       for (bool first = &run == batch.runs.data(), more = true; more; first = false) {
         if (progress.stopped()) return false;
         Submission submission{&run, plan.next(t_.sampled_pace_.rays(), t_.rays_per_pair_, t_.sampled_pace_.rays()),
                               first, false};
         submission.last = last_run && plan.finished();
-        const auto [wanted, taken] = submit(batch, submission);
+        const auto [tallies, taken] = submit(batch, submission);
         seconds_ += taken;
-        t_.sampled_pace_.saw(plan.settle(submission.chunks, wanted), taken);
-        learn_rays_per_pair(submission.chunks, wanted);
+        t_.sampled_pace_.saw(plan.settle(submission.chunks, tallies), taken);
+        learn_rays_per_pair(submission.chunks, tallies);
         const double done = (slots_done + slots * plan.done()) / all_slots;
         progress((static_cast<double>(batch.first) + static_cast<double>(batch.size()) * done) /
                  static_cast<double>(networks_.size()));
@@ -188,6 +141,7 @@ class VulkanTracer::SampledCount {
 
   // At least one run, even of no slots: the batch is cleared and reduced all the same.
   void fill_slots(Batch& batch) const {
+    const auto place = [&](const SampleStation& slot) { return place_along_curve(slot.origin); };
     for (std::uint32_t scanner = 0; scanner < t_.scanners_.size(); ++scanner) {
       for (const bool turned : {false, true}) {
         const auto first = static_cast<std::uint32_t>(batch.slots.size());
@@ -199,10 +153,35 @@ class VulkanTracer::SampledCount {
             set_turn(batch.slots.back().turn, s);
           }
         const auto end = static_cast<std::uint32_t>(batch.slots.size());
+        std::ranges::stable_sort(std::span(batch.slots).subspan(first), {}, place);
         if (end > first) batch.runs.push_back({&t_.scanners_[scanner], turned, first, end});
       }
     }
     if (batch.runs.empty()) batch.runs.push_back({&t_.scanners_.front(), false, 0, 0});
+  }
+
+  // Stations that follow one another stand close together.
+  std::uint64_t place_along_curve(const vec3& head) const {
+    const Box& bounds = t_.scene_.scene->local_bounds;
+    const auto cell = [](float at, double low, double high) {
+      constexpr double last = (1 << 16) - 1;
+      return high > low ? static_cast<std::uint32_t>(std::clamp((at - low) / (high - low), 0.0, 1.0) * last) : 0;
+    };
+    return morton_encode(cell(head.x, bounds.min.x, bounds.max.x), cell(head.y, bounds.min.y, bounds.max.y),
+                         cell(head.z, bounds.min.z, bounds.max.z));
+  }
+
+  // Comes by all of `count`, none twice, successive ones far apart.
+  static std::uint32_t golden_step(std::uint32_t count) {
+    auto step = static_cast<std::uint32_t>(0.618034 * count);
+    while (std::gcd(step, count) > 1) ++step;
+    return step;
+  }
+
+  // Of the longest walk, which a cube around the station has.
+  static std::uint32_t most_parts(const RayPattern& pattern) {
+    const std::uint64_t rays = std::uint64_t{pattern.rows()} * pattern.columns();
+    return static_cast<std::uint32_t>(std::max<std::uint64_t>(std::bit_ceil(rays) / sample_part, 1));
   }
 
   void hand_out_points(const Batch& batch) {
@@ -247,8 +226,8 @@ class VulkanTracer::SampledCount {
     });
   }
 
-  // Returns what each chunk wanted to list, and the seconds that the device took.
-  std::pair<std::vector<SampleList>, double> submit(const Batch& batch, const Submission& submission) {
+  // Returns what became of each chunk, and the seconds that the device took.
+  std::pair<std::vector<SampleTally>, double> submit(const Batch& batch, const Submission& submission) {
     const std::vector<SampleChunk>& chunks = submission.chunks;
     std::vector<std::uint32_t> control(std::max<std::size_t>(chunks.size(), 1) * control_words);
     t_.ensure(t_.sample_control_, control.size() * word, "sample control", VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
@@ -265,19 +244,22 @@ class VulkanTracer::SampledCount {
         r.zero(t_.totals_, batch.first * of_network, batch.size() * of_network);
       }
       r.shader_after_transfer();
-      for (std::size_t k = 0; k < chunks.size(); ++k)
-        record_chunk(r, *submission.run, push_of(batch, *submission.run, chunks[k], k), chunks[k], k);
+      for (std::size_t k = 0; k < chunks.size(); ++k) record_chunk(r, batch, *submission.run, chunks[k], k);
       if (!submission.last) return;
       r.shader_after_shader();
       t_.record_reduction(r, reduction_, static_cast<std::uint32_t>(batch.first),
                           static_cast<std::uint32_t>(batch.size()), stride_);
     };
     const double taken = t_.commands_.run_and_download(record, wanted);
-    std::vector<SampleList> lists;
-    for (std::size_t k = 0; k < chunks.size(); ++k)
-      lists.push_back({control[k * control_words + control_rays], control[k * control_words + control_parts],
-                       control[k * control_words + control_rest]});
-    return {std::move(lists), taken};
+    std::vector<SampleTally> tallies;
+    for (std::size_t k = 0; k < chunks.size(); ++k) {
+      const std::uint32_t* of_chunk = control.data() + k * control_words;
+      tallies.push_back({.probed = of_chunk[control_probed],
+                         .rays = of_chunk[control_rays],
+                         .parts = of_chunk[control_parts],
+                         .rest = of_chunk[control_rest]});
+    }
+    return {std::move(tallies), taken};
   }
 
   void record_start(const Recorder& r, const Batch& batch) {
@@ -290,14 +272,17 @@ class VulkanTracer::SampledCount {
     if (mask_words_) r.zero(t_.masks_);
   }
 
-  // Lists and traces one chunk, whose control words are number k of the submission.
-  void record_chunk(const Recorder& r, const Run& run, SamplePush push, const SampleChunk& chunk, std::size_t k) {
+  // Probes, lists and traces one chunk, whose control words are number k of the submission.
+  void record_chunk(const Recorder& r, const Batch& batch, const Run& run, const SampleChunk& chunk,
+                    std::size_t k) const {
     const auto pipeline = [&](Kernel kernel, std::array<bool, 4> constants = {}) {
       return t_.kernels_.get(run.scanner->set(), run.turned, kernel, constants);
     };
+    const auto tracing = [&](Kernel kernel) {
+      return pipeline(kernel, {run.scanner->noise(), run.scanner->limits(), job_.masks});
+    };
     const VkDeviceSize dispatch = (k * control_words + control_dispatch) * word;
-    const BoundPipeline trace =
-        pipeline(Kernel::sample_trace, {run.scanner->noise(), run.scanner->limits(), job_.masks});
+    SamplePush push = push_of(batch, chunk, k);
     // A thread for each that the control word counts by then.
     const auto over = [&](std::uint32_t control, const BoundPipeline& kernel) {
       const SampleArgumentsPush arguments{push.control, control, push.ray_capacity, push.item_capacity, 0};
@@ -306,22 +291,24 @@ class VulkanTracer::SampledCount {
       r.shader_after_shader();
       r.dispatch_indirect(kernel, push, t_.sample_control_, dispatch);
     };
+    const std::uint32_t groups = groups_of(chunk.pairs());
+    r.shader_after_shader();  // the chunk before still reads the lists
+    r.dispatch(tracing(Kernel::sample_probe), probe_push_of(push, run, chunk), std::min(groups, groups_in_row),
+               groups_of(groups, groups_in_row));
     push.list = control_rays;
-    r.shader_after_shader();  // the chunk before still reads the list
-    r.dispatch(pipeline(Kernel::sample_list), push, groups_of(chunk.end_voxel - chunk.first_voxel),
-               chunk.end_slot - chunk.first_slot);
-    over(control_rays, trace);
+    over(control_pairs, pipeline(Kernel::sample_list));
+    over(control_rays, tracing(Kernel::sample_trace));
     push.list = control_rest;
     over(control_sights, pipeline(Kernel::sample_sights));
     over(control_items, pipeline(Kernel::sample_queue));
-    over(control_rest, trace);
+    over(control_rest, tracing(Kernel::sample_trace));
   }
 
-  SamplePush push_of(const Batch& batch, const Run& run, const SampleChunk& chunk, std::size_t k) const {
+  SamplePush push_of(const Batch& batch, const SampleChunk& chunk, std::size_t k) const {
     SamplePush push{};
     push.voxels = sample_->voxels.address();
-    push.triangles = sample_->triangles.address();
     push.stations = t_.sample_stations_.address();
+    push.pairs = t_.sample_pairs_.address();
     push.rays = t_.sample_rays_.address();
     push.sights = t_.sample_sights_.address();
     push.items = t_.sample_items_.address();
@@ -330,16 +317,33 @@ class VulkanTracer::SampledCount {
     push.masks = mask_words_ ? t_.masks_.address() : 0;
     push.network_rays = t_.network_rays_.address() + batch.first * sizeof(std::uint64_t);
     push.voxel_count = voxels_;
-    push.first_voxel = chunk.first_voxel;
-    push.end_voxel = chunk.end_voxel;
-    push.first_slot = run.first_slot + chunk.first_slot;
-    push.first_row = chunk.first_row;
-    push.end_row = chunk.end_row;
+    push.first_part = chunk.first_part;
+    push.end_part = chunk.end_part;
     push.ray_capacity = room_.rays;
-    push.item_capacity = room_.items;
+    push.item_capacity = room_.parts;
     push.mask_words = mask_words_;
     push.stop_at = job_.stop_at;
+    push.first_traced = chunk.first_traced;
     return push;
+  }
+
+  SampleProbePush probe_push_of(const SamplePush& push, const Run& run, const SampleChunk& chunk) const {
+    return {.voxels = push.voxels,
+            .stations = push.stations,
+            .pairs = push.pairs,
+            .control = push.control,
+            .counts = push.counts,
+            .masks = push.masks,
+            .network_rays = push.network_rays,
+            .voxel_count = push.voxel_count,
+            .first_voxel = chunk.first_voxel,
+            .end_voxel = chunk.end_voxel,
+            .first_slot = run.first_slot + chunk.first_slot,
+            .end_slot = run.first_slot + chunk.end_slot,
+            .mask_words = push.mask_words,
+            .stop_at = push.stop_at,
+            .probed = chunk.probed,
+            .voxel_step = voxel_step_};
   }
 
   Reduction reduction() const {
@@ -354,11 +358,12 @@ class VulkanTracer::SampledCount {
     return reduction;
   }
 
-  void learn_rays_per_pair(std::span<const SampleChunk> chunks, std::span<const SampleList> wanted) {
+  void learn_rays_per_pair(std::span<const SampleChunk> chunks, std::span<const SampleTally> tallies) {
     constexpr std::uint64_t telling = 1000;  // fewer pairs say little about the rest
     for (std::size_t k = chunks.size(); k-- > 0;)
       if (chunks[k].pairs() > telling)
-        t_.rays_per_pair_ = 0.5 * (t_.rays_per_pair_ + wanted[k].rays / static_cast<double>(chunks[k].pairs()));
+        t_.rays_per_pair_ = 0.5 * (t_.rays_per_pair_ + (static_cast<double>(tallies[k].probed) + tallies[k].rays) /
+                                                           static_cast<double>(chunks[k].pairs()));
   }
 
   VulkanTracer& t_;
@@ -366,8 +371,8 @@ class VulkanTracer::SampledCount {
   std::span<const std::vector<TraceStation>> networks_;
   std::span<const std::uint32_t> station_counts_;
   SampleJob job_;
-  std::uint32_t voxels_, most_stations_, mask_words_, stride_;
-  SampleList room_;
+  std::uint32_t voxels_, voxel_step_, most_stations_, mask_words_, stride_;
+  SampleRoom room_;
   std::size_t batch_size_;
   std::uint32_t groups_;  // that sums are made of, one at least
   Reduction reduction_{};

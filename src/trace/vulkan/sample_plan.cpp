@@ -3,55 +3,67 @@
 
 #include <algorithm>
 #include <cassert>
+#include <ranges>
 
 #include "shared/trace_types.h"
-#include "trace/vulkan/groups.hpp"
 
 namespace vantage::vulkan {
 
 std::array<SampleChunk, 2> SampleChunk::halves() const {
   SampleChunk a = *this, b = *this;
-  if (end_slot - first_slot > 1) {
-    a.end_slot = b.first_slot = first_slot + (end_slot - first_slot) / 2;
-  } else if (end_voxel - first_voxel > 1) {
+  if (end_voxel - first_voxel > 1) {
     a.end_voxel = b.first_voxel = first_voxel + (end_voxel - first_voxel) / 2;
+  } else if (end_slot - first_slot > 1) {
+    a.end_slot = b.first_slot = first_slot + (end_slot - first_slot) / 2;
   } else {
-    assert(end_row - first_row > 1);
-    a.end_row = b.first_row = first_row + (end_row - first_row) / 2;
+    assert(end_part - first_part > 1);
+    a.end_part = b.first_part = first_part + (end_part - first_part) / 2;
   }
   return {a, b};
 }
 
-SampleList sample_room(std::uint32_t columns, bool software, std::uint64_t max_rays_per_dispatch) {
-  std::uint64_t rays = software ? 1u << 20 : 1u << 24;
-  if (max_rays_per_dispatch > 0) rays = std::min(rays, max_rays_per_dispatch);
-  // Whatever comes of the items has room where they have.
-  const auto room =
-      static_cast<std::uint32_t>(std::max<std::uint64_t>({rays, std::uint64_t{2} * columns, sample_part}));
-  return {room, room / sample_part};
+std::array<SampleChunk, 2> SampleChunk::cut(std::uint64_t most_pairs) const {
+  const std::uint32_t slots = end_slot - first_slot, voxels = end_voxel - first_voxel;
+  const auto even_piece = [](std::uint64_t all, std::uint64_t most) {
+    const std::uint64_t pieces = (all + most - 1) / most;
+    return static_cast<std::uint32_t>((all + pieces - 1) / pieces);
+  };
+  SampleChunk a = *this, b = *this;
+  if (slots > most_pairs && voxels == 1)
+    a.end_slot = b.first_slot = first_slot + even_piece(slots, most_pairs);
+  else
+    a.end_voxel = b.first_voxel = first_voxel + even_piece(voxels, std::max<std::uint64_t>(most_pairs / slots, 1));
+  return {a, b};
 }
 
-SamplePlan::SamplePlan(std::uint32_t slots, std::uint32_t voxels, std::uint32_t rows, const SampleList& room)
-    : room_(room), rows_(rows), all_pairs_(static_cast<double>(slots) * voxels) {
-  if (slots > 0 && voxels > 0) todo_.push_back({0, slots, 0, voxels, 0, rows});
+SampleRoom sample_room(bool software, std::uint64_t max_rays_per_dispatch) {
+  // Each kernel of a chunk ends with threads that wait for the last one: on a GPU, whose threads are many, chunks are
+  // large.
+  std::uint64_t rays = software ? 1u << 20 : 1u << 25;
+  if (max_rays_per_dispatch > 0) rays = std::min(rays, max_rays_per_dispatch);
+  // Most parts have a few rays, or none that are not known to be stopped.
+  const auto room = static_cast<std::uint32_t>(std::max<std::uint64_t>(rays, sample_part));
+  constexpr std::uint32_t rays_of_pair = 8, rays_of_part = 8;
+  return {room / rays_of_pair, room, room / rays_of_part};
+}
+
+SamplePlan::SamplePlan(std::uint32_t slots, std::uint32_t voxels, std::uint32_t parts, const SampleRoom& room)
+    : room_(room), parts_(parts), all_pairs_(static_cast<double>(slots) * voxels) {
+  if (slots > 0 && voxels > 0) todo_.push_back({0, slots, 0, voxels, 0, parts});
 }
 
 std::vector<SampleChunk> SamplePlan::next(double rays, double rays_per_pair, double at_once) {
-  constexpr double safety = 1.5;
-  const double most = std::min(at_once, static_cast<double>(room_.rays));
-  const auto too_large = [&](const SampleChunk& chunk) {
-    return chunk.end_slot - chunk.first_slot > most_groups ||
-           groups_of(chunk.end_voxel - chunk.first_voxel) > most_groups ||
-           (chunk.pairs() > 1 && static_cast<double>(chunk.pairs()) * rays_per_pair * safety > most);
-  };
+  constexpr double safety = 1.25;
+  const double most = std::min(at_once, static_cast<double>(room_.rays)) / (rays_per_pair * safety);
+  const auto most_pairs = static_cast<std::uint64_t>(std::clamp(most, 1.0, static_cast<double>(room_.pairs)));
   std::vector<SampleChunk> chunks;
   for (double expected = 0; !todo_.empty() && (chunks.empty() || expected < rays);) {
     SampleChunk chunk = todo_.front();
     todo_.pop_front();
-    while (too_large(chunk)) {
-      const auto [a, b] = chunk.halves();
-      todo_.push_front(b);
-      chunk = a;
+    while (chunk.pairs() > most_pairs) {
+      const auto [piece, rest] = chunk.cut(most_pairs);
+      todo_.push_front(rest);
+      chunk = piece;
     }
     expected += static_cast<double>(chunk.pairs()) * rays_per_pair;
     chunks.push_back(chunk);
@@ -59,16 +71,23 @@ std::vector<SampleChunk> SamplePlan::next(double rays, double rays_per_pair, dou
   return chunks;
 }
 
-double SamplePlan::settle(std::span<const SampleChunk> chunks, std::span<const SampleList> wanted) {
+double SamplePlan::settle(std::span<const SampleChunk> chunks, std::span<const SampleTally> tallies) {
   double traced = 0;
   for (std::size_t k = chunks.size(); k-- > 0;) {
-    if (fits(wanted[k])) {
-      done_pairs_ += static_cast<double>(chunks[k].pairs()) * (chunks[k].end_row - chunks[k].first_row) / rows_;
-      traced += static_cast<double>(wanted[k].rays) + wanted[k].rest;
-    } else {
-      const auto [a, b] = chunks[k].halves();
-      todo_.push_front(b);
-      todo_.push_front(a);
+    const SampleTally& tally = tallies[k];
+    traced += static_cast<double>(tally.probed);
+    const bool first_traced = tally.rays <= room_.rays && tally.parts <= room_.parts;
+    const bool all_traced = first_traced && tally.rest <= room_.rays;
+    if (first_traced) traced += static_cast<double>(tally.rays);
+    if (all_traced) {
+      done_pairs_ += static_cast<double>(chunks[k].pairs()) * (chunks[k].end_part - chunks[k].first_part) / parts_;
+      traced += static_cast<double>(tally.rest);
+      continue;
+    }
+    for (SampleChunk half : chunks[k].halves() | std::views::reverse) {
+      half.probed = true;
+      half.first_traced = half.first_traced || first_traced;
+      todo_.push_front(half);
     }
   }
   return traced;

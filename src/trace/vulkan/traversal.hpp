@@ -31,9 +31,9 @@ class Traversal {
   Traversal(const Traversal&) = delete;
   Traversal& operator=(const Traversal&) = delete;
 
-  // count.comp, scan.comp and sample_trace.comp, compiled with the engine's own trace.glsl.
+  // count.comp, scan.comp, sample_probe.comp and sample_trace.comp, compiled with the engine's own trace.glsl.
   struct TraceShaders {
-    Shader count, scan, sample_trace;
+    Shader count, scan, sample_probe, sample_trace;
   };
   virtual TraceShaders shaders() const = 0;
 

@@ -37,7 +37,6 @@ VulkanTracer::VulkanTracer(const VulkanEngine& engine, const EngineInfo& info, s
       exact_pace_(seconds_per_exact_submission, first_share * static_cast<double>(rays_per_dispatch()), 1,
                   static_cast<double>(rays_per_dispatch())),
       sampled_pace_(seconds_per_sampled_submission, room_for_sample().rays, 1, 0.5 * room_for_sample().rays) {
-  if (!scene_.sample_triangles) scene_.sample_triangles = std::make_shared<SampleTriangles>(scene_.scene, scene_.grid);
   std::ranges::copy(traversal_->binding().arrays, parameters_.traversal);
   upload_scene();
 }
@@ -58,12 +57,6 @@ std::vector<DeviceScanner> VulkanTracer::make_scanners() {
   for (const TraceScanner& scanner : scene_.scanners)
     scanners.emplace_back(device_, commands_, traversal_->binding().structure, *scene_.scene, scanner);
   return scanners;
-}
-
-SampleList VulkanTracer::room_for_sample() const {
-  std::uint32_t columns = 0;
-  for (const DeviceScanner& scanner : scanners_) columns = std::max(columns, scanner.pattern().columns());
-  return sample_room(columns, info_.software, scene_.max_rays_per_dispatch);
 }
 
 void VulkanTracer::upload_scene() {
@@ -101,19 +94,25 @@ void VulkanTracer::write_parameters() {
   for (const DeviceScanner& scanner : scanners_) scanner.write(commands_, parameters_);
 }
 
-void VulkanTracer::upload_shading() {
+void VulkanTracer::upload_triangles() {
   if (positions_) return;
+  triangles_ = to_device<Triangle>(scene_.scene->triangles, "triangles");
+  positions_ = to_device<Float3>(scene_.scene->positions, "positions");
+  parameters_.positions = positions_.address();
+  parameters_.triangles = triangles_.address();
+  write_parameters();
+}
+
+void VulkanTracer::upload_shading() {
+  if (diffuse_) return;
+  upload_triangles();
   const SceneData& scene = *scene_.scene;
-  triangles_ = to_device<Triangle>(scene.triangles, "triangles");
   std::vector<float> diffuse(scene.triangles.size());
   for (std::size_t m = 0; m < scene.ranges.size(); ++m)
     std::fill_n(diffuse.begin() + scene.ranges[m].first_triangle, scene.ranges[m].triangle_count,
                 static_cast<float>(scene.meshes[m].diffuse));
   diffuse_ = to_device<float>(diffuse, "diffuse coefficients");
   if (!scene.normals.empty()) normals_ = to_device<Float3>(scene.normals, "normals");
-  positions_ = to_device<Float3>(scene.positions, "positions");
-  parameters_.positions = positions_.address();
-  parameters_.triangles = triangles_.address();
   parameters_.diffuse = diffuse_.address();
   parameters_.normals = scene.normals.empty() ? 0 : normals_.address();
   write_parameters();

@@ -64,6 +64,7 @@ class VulkanTracer final : public Tracer {
   std::unique_ptr<Traversal> build_traversal(const VulkanEngine& engine);
   std::vector<DeviceScanner> make_scanners();
   void upload_scene();
+  void upload_triangles();
   void upload_shading();
   // What coverage asks of voxels: of all, or of a sample. Without memory where all are alike.
   struct DemandAddresses {
@@ -76,15 +77,12 @@ class VulkanTracer final : public Tracer {
   // A sample as the kernels read it.
   struct DeviceSample {
     std::vector<std::uint32_t> ranks;
-    double margin = 0;  // how far from its voxel a triangle is listed there
-    Buffer voxels, triangles;
+    Buffer voxels;
     DeviceDemands demands;
   };
-  const DeviceSample& upload_sample(std::span<const std::uint32_t> sample,
-                                    std::span<const std::vector<TraceStation>> networks);
-  DeviceSample device_sample(std::span<const std::uint32_t> sample, double margin);
-  double sample_reach(std::span<const std::vector<TraceStation>> networks) const;
-  SampleList room_for_sample() const;
+  const DeviceSample& upload_sample(std::span<const std::uint32_t> sample);
+  DeviceSample device_sample(std::span<const std::uint32_t> sample);
+  SampleRoom room_for_sample() const { return sample_room(info_.software, scene_.max_rays_per_dispatch); }
   void write_parameters();
   bool limited() const { return scanners_.front().limits(); }  // all are or none
   std::uint64_t rays_per_dispatch() const {
@@ -173,7 +171,7 @@ class VulkanTracer final : public Tracer {
   Pace exact_pace_, sampled_pace_;
 
   Recent<DeviceSample> samples_;
-  Buffer sample_stations_, sample_rays_, sample_sights_, sample_items_, sample_control_, network_rays_;
+  Buffer sample_stations_, sample_pairs_, sample_rays_, sample_sights_, sample_items_, sample_control_, network_rays_;
   std::shared_ptr<const Patches> patches_;  // what the next buffers hold
   std::shared_ptr<const NoiseModel> patch_noise_;
   Buffer registration_patches_, registration_sigma_, registration_heads_, registration_sums_;

@@ -43,7 +43,8 @@ class BruteForce final : public Traversal {
   }
 
   TraceShaders shaders() const override {
-    return {shaders::count_brute_force, shaders::scan_brute_force, shaders::sample_trace_brute_force};
+    return {shaders::count_brute_force, shaders::scan_brute_force, shaders::sample_probe_brute_force,
+            shaders::sample_trace_brute_force};
   }
   Binding binding() const override { return {{corners_.address(), boxes_.address(), ids_.address()}, VK_NULL_HANDLE}; }
 

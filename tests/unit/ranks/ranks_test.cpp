@@ -9,8 +9,8 @@
 #include "ranks/fleet.hpp"
 #include "ranks/remote_tracer.hpp"
 #include "support/expect_counts.hpp"
+#include "support/trace_scenes.hpp"
 #include "trace/embree/embree_tracer.hpp"
-#include "unit/trace/trace_scenes.hpp"
 
 namespace vantage::ranks {
 namespace {

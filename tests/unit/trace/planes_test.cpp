@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "trace_scenes.hpp"
+#include "support/trace_scenes.hpp"
 
 namespace vantage {
 namespace {

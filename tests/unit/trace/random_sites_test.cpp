@@ -1,152 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Exact with and without skipping, and a sample of all voxels, on sites made to be awkward: every voxel must be counted
-// alike.
+#include "support/random_sites.hpp"
+
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <cstdio>
-#include <cstdlib>
-#include <numeric>
-
 #include "trace/embree/embree_tracer.hpp"
-#include "trace_scenes.hpp"
 
 namespace vantage {
 namespace {
 
-constexpr double goal = 6.5;
-
-// VANTAGE_SEEDS=first..last looks further than the default.
-std::pair<std::uint64_t, std::uint64_t> seeds() {
-  const char* text = std::getenv("VANTAGE_SEEDS");
-  unsigned long long first = 1, last = 7;
-  if (text && std::sscanf(text, "%llu..%llu", &first, &last) != 2)
-    ADD_FAILURE() << "VANTAGE_SEEDS must be first..last: " << text;
-  return {first, last};
-}
-
-struct RandomSite {
-  TraceScene scene;
-  std::vector<TraceStation> stations;
-};
-
-// Clouds of triangles of all sizes, slivers, walls, coincident walls of both roles, grazing planes; heads anywhere, on
-// surfaces too.
-RandomSite random_site(std::uint64_t seed) {
-  RandomStream random(seed, 1);
-  const double scale = std::pow(10.0, 2 * random.uniform() - 1), offset = random.bits() % 3 == 0 ? 100 * scale : 0;
-  const auto place = [&](double extent) {
-    return static_cast<float>(offset + scale * extent * (2 * random.uniform() - 1));
-  };
-  std::vector<Float3> surveyed, blocking;
-  const auto soup = [&](std::vector<Float3>& to, int n, double size) {
-    for (int k = 0; k < n; ++k) {
-      const Float3 c{place(2), place(2), place(1)};
-      const auto near = [&](double s) {
-        return Float3{c.x + test::between(random, -s, s), c.y + test::between(random, -s, s),
-                      c.z + test::between(random, -s, s)};
-      };
-      to.push_back(near(size * scale));
-      to.push_back(near(size * scale));
-      to.push_back(k % 5 == 0 ? Float3{c.x, c.y, std::nextafter(c.z, 1e9f)} : near(size * scale));
-    }
-  };
-  soup(surveyed, 150, 0.3);
-  soup(surveyed, 300, 0.04);
-  soup(blocking, 100, 0.3);
-  const float s = static_cast<float>(scale);
-  for (int k = 0; k < 4; ++k) {
-    // A wall, sometimes along the axes, and a piece of the other role on the very same plane.
-    const Float3 corner{place(1.5), place(1.5), place(0.8)};
-    const Float3 u = k % 2 ? Float3{s, 0, 0} : Float3{s * 0.7f, s * 0.6f, s * 0.1f}, v{0, 0, s * 0.9f};
-    const auto wall = test::quad(corner, u, v),
-               piece = test::quad(corner, {u.x * 0.5f, u.y * 0.5f, u.z * 0.5f}, {0, 0, s * 0.9f * 0.5f});
-    surveyed.insert(surveyed.end(), wall.begin(), wall.end());
-    blocking.insert(blocking.end(), piece.begin(), piece.end());
-  }
-
-  test::SceneBuilder builder;
-  if (seed % 2) builder.mesh(Role::blocking, blocking, 0.7);
-  builder.mesh(Role::surveyed, surveyed, 0.4);
-  if (seed % 2 == 0) builder.mesh(Role::blocking, blocking, 0.7);
-  const auto scene = builder.finish();
-
-  Scanner scanner;
-  scanner.azimuth_step = Angle::degrees(0.8 + random.uniform());
-  scanner.zenith_step = Angle::degrees(0.8 + random.uniform());
-  scanner.horizontal_angle = Angle::degrees(seed % 3 == 0 ? 230 : 360);
-  scanner.vertical_angle = Angle::degrees(seed % 4 == 0 ? 360 : 300);
-  scanner.heading = Angle::degrees(360 * random.uniform());
-  scanner.min_range_m = 0.1 * scale;
-  scanner.max_range_m = seed % 5 == 0 ? 2 * scale : 40 * scale;
-  scanner.noise = rtc360_noise();
-  for (double& d : scanner.noise.distances_m) d *= scale / 10;
-  for (double& d : scanner.noise.sigma_m)
-    d *= scale * (seed % 7 == 0 ? 20 : 1);  // a reach beyond the nearest range, too
-  RandomSite site;
-  site.scene = test::trace_scene(scene, scanner, (0.08 + 0.15 * random.uniform()) * scale, seed);
-  for (std::uint32_t k = 0; k < 7; ++k) {
-    Float3 head{place(2.2), place(2.2), place(1.2)};
-    if (k == 4) head = surveyed[random.bits() % surveyed.size()];  // at a corner
-    if (k == 5) {                                                  // in the plane of a triangle
-      const std::size_t t = random.bits() % (surveyed.size() / 3) * 3;
-      head = {2 * surveyed[t].x - surveyed[t + 1].x, 2 * surveyed[t].y - surveyed[t + 1].y,
-              2 * surveyed[t].z - surveyed[t + 1].z};
-    }
-    site.stations.push_back({head, k});
-  }
-  return site;
-}
-
 TEST(RandomSites, EveryWayOfCountingAgrees) {
-  const auto [first, last] = seeds();
-  std::uint64_t points = 0, skipped_rays = 0, all_rays = 0, sampled_rays = 0;
-  for (std::uint64_t seed = first; seed <= last; ++seed) {
-    RandomSite site = random_site(seed);
-    std::vector<std::uint32_t> everything(site.scene.grid->size());
-    std::iota(everything.begin(), everything.end(), 0u);
-    for (const bool noisy : {false, true}) {
-      SCOPED_TRACE("seed " + std::to_string(seed) + (noisy ? ", noise" : ""));
-      TraceScene scene = site.scene;
-      if (!noisy) scene.scanners[0].noise = std::make_shared<const NoiseModel>();
-      const auto tracer = make_embree_tracer(scene);
-      tracer->set_goal_density(goal);
-      VoxelField all, skipped;
-      const NetworkCounts exact = tracer->count(site.stations, 7, {true, false, &all}, {});
-      const NetworkCounts part = tracer->count(site.stations, 7, {true, true, &skipped}, {});
-      EXPECT_EQ(all.count, skipped.count);
-      EXPECT_EQ(all.stations, skipped.stations);
-      EXPECT_EQ(exact.points_on_surveyed, part.points_on_surveyed);
-
-      // Each voxel its own group: then groups are voxels.
-      const std::vector<std::vector<TraceStation>> networks{site.stations};
-      const std::vector<std::uint32_t> sizes{7};
-      const NetworkCounts sampled = tracer->count_sampled(
-          networks, sizes, {everything, static_cast<std::uint32_t>(everything.size()), true, 0}, {})[0];
-      EXPECT_EQ(sampled.seen, exact.seen);
-      EXPECT_EQ(sampled.shared, exact.shared);
-      std::size_t differing = 0;
-      for (std::size_t k = 0; k < everything.size(); ++k) {
-        const NetworkCounts& voxel = sampled.groups[k];
-        std::uint64_t mask = 0;
-        for (std::uint32_t i = 0; i < 7; ++i) mask |= voxel.seen[i] << i;
-        const bool full = all.count[k] >= goal;
-        if (voxel.saturated != full || voxel.partial_points != (full ? 0 : all.count[k]) || mask != all.stations[k])
-          ++differing;
-      }
-      EXPECT_EQ(differing, 0u) << "of " << everything.size();
-      points += std::accumulate(exact.points_on_surveyed.begin(), exact.points_on_surveyed.end(), std::uint64_t{0});
-      all_rays += exact.rays;
-      skipped_rays += part.rays;
-      sampled_rays += sampled.rays;
-    }
-    if (HasFailure()) break;
-  }
-  EXPECT_GT(points, 1000u);
-  EXPECT_LT(skipped_rays, all_rays);
-  RecordProperty("points", std::to_string(points));
-  RecordProperty("rays", std::to_string(all_rays) + " exact, " + std::to_string(skipped_rays) + " with skipping, " +
-                             std::to_string(sampled_rays) + " sampled");
+  test::expect_every_way_agrees([](const TraceScene& scene) { return make_embree_tracer(scene); }, 1, 7);
 }
 
 }  // namespace

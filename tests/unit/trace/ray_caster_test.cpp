@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "cast_one.hpp"
-#include "trace_scenes.hpp"
+#include "support/trace_scenes.hpp"
 
 namespace vantage {
 namespace {

@@ -8,7 +8,7 @@
 #include <limits>
 #include <memory>
 
-#include "trace_scenes.hpp"
+#include "support/trace_scenes.hpp"
 
 namespace vantage {
 namespace {

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "unit/trace/trace_scenes.hpp"
+#include "support/trace_scenes.hpp"
 
 namespace vantage {
 namespace {

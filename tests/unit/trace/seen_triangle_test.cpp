@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "cast_one.hpp"
-#include "trace_scenes.hpp"
+#include "support/trace_scenes.hpp"
 
 namespace vantage {
 namespace {

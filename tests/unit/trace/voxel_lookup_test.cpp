@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "trace_scenes.hpp"
+#include "support/trace_scenes.hpp"
 
 namespace vantage {
 namespace {

@@ -16,7 +16,8 @@ class ComputeBvh final : public Traversal {
   }
 
   TraceShaders shaders() const override {
-    return {shaders::count_compute_bvh, shaders::scan_compute_bvh, shaders::sample_trace_compute_bvh};
+    return {shaders::count_compute_bvh, shaders::scan_compute_bvh, shaders::sample_probe_compute_bvh,
+            shaders::sample_trace_compute_bvh};
   }
   Binding binding() const override {
     Binding binding;

@@ -14,7 +14,8 @@ class RayQuery final : public Traversal {
       : structure_(device, commands, scene.positions, scene.triangles, scene.ids, scene.sort) {}
 
   TraceShaders shaders() const override {
-    return {shaders::count_ray_query, shaders::scan_ray_query, shaders::sample_trace_ray_query};
+    return {shaders::count_ray_query, shaders::scan_ray_query, shaders::sample_probe_ray_query,
+            shaders::sample_trace_ray_query};
   }
   Binding binding() const override {
     Binding binding;

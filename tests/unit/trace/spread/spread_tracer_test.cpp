@@ -10,8 +10,8 @@
 #include <thread>
 
 #include "support/expect_counts.hpp"
+#include "support/trace_scenes.hpp"
 #include "trace/embree/embree_tracer.hpp"
-#include "unit/trace/trace_scenes.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage {

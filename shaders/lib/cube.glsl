@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// A voxel as a station sees it.
+#ifndef VANTAGE_LIB_CUBE
+#define VANTAGE_LIB_CUBE
+#include "lib/parameters.glsl"
+
+// Relative to the origin, widened by more than the rounding on the way from a hit to its cell, so that no ray that has
+// a point in the cell is missed.
+struct Cube {
+  vec3 low, high;
+  float slack;
+};
+
+Cube cube_of(SampleVoxel voxel, vec3 origin) {
+  const float size = 1.0 / parameters.voxel_inverse_size;
+  const vec3 corner = parameters.voxel_min + vec3(voxel.x, voxel.y, voxel.z) * size;
+  const vec3 largest = max(abs(corner), abs(origin)) + size;
+  const float slack = max(max(largest.x, largest.y), largest.z) * (1.0 / 262144.0);
+  return Cube(corner - origin - slack, corner - origin + (size + slack), slack);
+}
+
+// Where the ray is inside the cube: from x to y, empty where x > y.
+vec2 passage(Cube cube, vec3 direction) {
+  const vec3 safe = vec3(abs(direction.x) < 1e-12 ? 1e-12 : direction.x, abs(direction.y) < 1e-12 ? 1e-12 : direction.y,
+                         abs(direction.z) < 1e-12 ? 1e-12 : direction.z);
+  const vec3 a = cube.low / safe, b = cube.high / safe;
+  const vec3 near = min(a, b), far = max(a, b);
+  return vec2(max(max(near.x, near.y), near.z), min(min(far.x, far.y), far.z));
+}
+
+// A point in the cube, or in front of a ray's passage by more than this, is told from one that is not, noise and all.
+float reach_of(Cube cube) { return parameters.noise_reach + cube.slack; }
+
+#endif

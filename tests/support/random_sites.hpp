@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sites made to be awkward, on which every way of counting must agree in every voxel.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+
+#include "trace/tracer.hpp"
+
+namespace vantage::test {
+
+// Exact with and without skipping, and a sample of all voxels, stopped at the goal and not, by the engine that `make`
+// makes, with noise and without; seeds `first` to `last`, or those of VANTAGE_SEEDS=first..last.
+void expect_every_way_agrees(const std::function<std::unique_ptr<Tracer>(const TraceScene&)>& make, std::uint64_t first,
+                             std::uint64_t last);
+
+}  // namespace vantage::test
