@@ -8,6 +8,7 @@
 #include "trace.glsl"
 
 layout(local_size_x = group_size) in;
+layout(constant_id = 3) const bool watertight = false;  // whether the engine is
 layout(push_constant, scalar) uniform Push { SampleProbePush push; };
 #include "lib/blocker.glsl"
 #include "lib/sampled_point.glsl"
@@ -41,7 +42,7 @@ void main() {
           const Corners corners = corners_of(hit.id & ~surveyed_bit, station.origin);
           if (open && is_before(corners, cube)) {
             blocker = hit.id & ~surveyed_bit;
-            open = !covers(blocker_of(corners), cube);
+            open = watertight ? !patch_covers(blocker, station.origin, cube) : !covers(blocker_of(corners), cube);
           }
         } else if (push.probed == 0u && is_point_of(voxel, station, hit, direction, probe)) {
           const uint points = count_point(station, of_voxel);

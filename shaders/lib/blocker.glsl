@@ -41,14 +41,24 @@ bool stops(Blocker blocker, vec3 direction) {
   return all(greaterThan(at, blocker.doubts)) || all(lessThan(at, -blocker.doubts));
 }
 
+// Where a cube is from the planes of a blocker: inside of one where `at` is beyond `wide`, outside where it is beyond
+// −wide, and cut by it elsewhere.
+struct Place {
+  vec3 at, wide;
+};
+
+Place place_of(Cube cube, Blocker blocker, float facing) {
+  const vec3 centre = 0.5 * (cube.low + cube.high), half_size = 0.5 * (cube.high - cube.low);
+  return Place(facing * products_of(blocker, centre),
+               vec3(dot(abs(blocker.sides[0]), half_size), dot(abs(blocker.sides[1]), half_size),
+                    dot(abs(blocker.sides[2]), half_size)) +
+                   (length(centre) + length(half_size)) * blocker.doubts);
+}
+
 // Whether all rays through the cube meet the triangle.
 bool covers(Blocker blocker, Cube cube) {
-  const vec3 centre = 0.5 * (cube.low + cube.high), half_size = 0.5 * (cube.high - cube.low);
-  const vec3 at = products_of(blocker, centre);
-  const vec3 wide = vec3(dot(abs(blocker.sides[0]), half_size), dot(abs(blocker.sides[1]), half_size),
-                         dot(abs(blocker.sides[2]), half_size)) +
-                    (length(centre) + length(half_size)) * blocker.doubts;
-  return all(greaterThan(at, wide)) || all(lessThan(at, -wide));
+  const Place place = place_of(cube, blocker, 1.0);
+  return all(greaterThan(place.at, place.wide)) || all(lessThan(place.at, -place.wide));
 }
 
 // Whether the hits of rays that go on through the cube are too far before it for their points to be in it, and not
@@ -67,6 +77,50 @@ bool is_before(Corners t, Cube cube) {
   const float least = middle - wide, most = middle + wide;
   return least > 0.0 && nearest * (abs(plane) + plane_doubt) <= (nearest - reach_of(cube)) * least &&
          nearest * (abs(plane) - plane_doubt) >= (parameters.min_range + cube.slack) * most;
+}
+
+// The corner of triangle `other` that is not on its edge to `triangle`.
+vec3 corner_beyond(uint other, uint triangle, vec3 origin) {
+  uint corner = 2u;
+  for (uint k = 0u; k < 3u; ++k)
+    if (parameters.neighbours.at[3u * other + k] == triangle) corner = (k + 2u) % 3u;
+  return parameters.positions.at[parameters.triangles.at[3u * other + corner]] - origin;
+}
+
+// Whether all rays through the cube meet the triangle or others that hang together with it, for engines that let no ray
+// pass between two triangles with an edge in common. The patch grows over every edge whose plane cuts the cube. It has
+// no hole where all of these edges have a triangle on either side, as the station sees it, and no end before it has
+// grown over all.
+bool patch_covers(uint triangle, vec3 origin, Cube cube) {
+  const uint most = 8u;
+  uint members[most];
+  uint count = 1u;
+  members[0] = triangle;
+  for (uint m = 0u; m < count; ++m) {
+    const uint member = members[m];
+    const Corners corners = corners_of(member, origin);
+    const Blocker blocker = blocker_of(corners);
+    const float facing = dot(blocker.sides[0], corners.c) < 0.0 ? -1.0 : 1.0;
+    const Place place = place_of(cube, blocker, facing);
+    if (any(lessThan(place.at, -place.wide))) {  // it is not in the way
+      if (m == 0u) return false;
+      continue;
+    }
+    if (!is_before(corners, cube)) return false;
+    for (uint k = 0u; k < 3u; ++k) {
+      if (place.at[k] > place.wide[k]) continue;
+      const uint other = parameters.neighbours.at[3u * member + k];
+      if (other == no_primitive) return false;
+      const vec3 beyond = corner_beyond(other, member, origin);
+      if (facing * dot(blocker.sides[k], beyond) >= -blocker.doubts[k] * length(beyond)) return false;  // folded back
+      bool known = false;
+      for (uint i = 0u; i < count; ++i) known = known || members[i] == other;
+      if (known) continue;
+      if (count == most) return false;
+      members[count++] = other;
+    }
+  }
+  return true;
 }
 
 #endif

@@ -54,9 +54,10 @@ struct TraceParameters {
   uint64_t traversal[traversal_arrays];  // addresses of what the engine's own trace() reads; it knows what they are
   // For normals, reflectivity, noise and limits only; 0 where the run needs none.
   VANTAGE_ADDRESS(Vec3s) positions;
-  VANTAGE_ADDRESS(Vec3s) normals;    // 0: geometric normals
-  VANTAGE_ADDRESS(Uints) triangles;  // three vertex numbers each
-  VANTAGE_ADDRESS(Floats) diffuse;   // per scene triangle
+  VANTAGE_ADDRESS(Vec3s) normals;     // 0: geometric normals
+  VANTAGE_ADDRESS(Uints) triangles;   // three vertex numbers each
+  VANTAGE_ADDRESS(Uints) neighbours;  // three of each, as triangle_neighbours() has them; for watertight engines
+  VANTAGE_ADDRESS(Floats) diffuse;    // per scene triangle
   VANTAGE_ADDRESS(Floats) sigma;
   VANTAGE_ADDRESS(Vec4s) normal_table;
   VANTAGE_ADDRESS(Uints) limits_of;  // per scene triangle: which of `limits`

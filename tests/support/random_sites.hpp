@@ -10,9 +10,14 @@
 
 namespace vantage::test {
 
+// What was traced of exact evaluations.
+struct RaysTraced {
+  std::uint64_t all = 0, skipping = 0;
+};
+
 // Exact with and without skipping, and a sample of all voxels, stopped at the goal and not, by the engine that `make`
 // makes, with noise and without; seeds `first` to `last`, or those of VANTAGE_SEEDS=first..last.
-void expect_every_way_agrees(const std::function<std::unique_ptr<Tracer>(const TraceScene&)>& make, std::uint64_t first,
-                             std::uint64_t last);
+RaysTraced expect_every_way_agrees(const std::function<std::unique_ptr<Tracer>(const TraceScene&)>& make,
+                                   std::uint64_t first, std::uint64_t last);
 
 }  // namespace vantage::test

@@ -22,7 +22,7 @@ Source source_of(Kernel kernel, const Traversal& traversal) {
   switch (kernel) {
     case Kernel::count: return {"count", traversal.shaders().count, sizeof(CountPush), 4};
     case Kernel::scan: return {"scan", traversal.shaders().scan, sizeof(ScanPush), 2};
-    case Kernel::sample_probe: return {"sample probe", traversal.shaders().sample_probe, sizeof(SampleProbePush), 3};
+    case Kernel::sample_probe: return {"sample probe", traversal.shaders().sample_probe, sizeof(SampleProbePush), 4};
     case Kernel::sample_trace: return {"sample trace", traversal.shaders().sample_trace, sizeof(SamplePush), 3};
     case Kernel::tile_pass: return {"tile pass", traversal.tile_pass().value().shader, sizeof(TilePush), 0};
     case Kernel::tiles: return {"tiles", shaders::tiles, sizeof(TilePush), 0};

@@ -36,7 +36,8 @@ double grid(const DeviceLoad& load) {
 
 // Corners for a sample, and where points depend on what was hit the rest.
 double surfaces(const DeviceLoad& load) {
-  const double corners = load.vertices * vertex + load.triangles * triangle;
+  const double neighbours = load.engine == Engine::compute_bvh ? 3 * word_bytes : 0;
+  const double corners = load.vertices * vertex + load.triangles * (triangle + neighbours);
   if (!load.shaded) return corners;
   return corners + load.vertices * (load.normals ? vertex : 0) + load.triangles * 2 * word_bytes;
 }

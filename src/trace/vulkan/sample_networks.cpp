@@ -279,7 +279,8 @@ class VulkanTracer::SampledCount {
       return t_.kernels_.get(run.scanner->set(), run.turned, kernel, constants);
     };
     const auto tracing = [&](Kernel kernel) {
-      return pipeline(kernel, {run.scanner->noise(), run.scanner->limits(), job_.masks});
+      return pipeline(kernel,
+                      {run.scanner->noise(), run.scanner->limits(), job_.masks, t_.traversal_->is_watertight()});
     };
     const VkDeviceSize dispatch = (k * control_words + control_dispatch) * word;
     SamplePush push = push_of(batch, chunk, k);

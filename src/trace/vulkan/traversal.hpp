@@ -44,6 +44,9 @@ class Traversal {
   };
   virtual Binding binding() const = 0;
 
+  // Whether no ray passes between two triangles that share an edge, on any device.
+  virtual bool is_watertight() const { return false; }
+
   // A kernel that goes before an exact count with skipping: a thread a listed tile, told a TilePush. It leaves so many
   // bytes a tile at TilePush::starts, where trace() finds them again as Starts.
   struct TilePass {

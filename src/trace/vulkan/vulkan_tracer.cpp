@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/normal_table.hpp"
+#include "trace/triangle_neighbours.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage::vulkan {
@@ -100,6 +101,11 @@ void VulkanTracer::upload_triangles() {
   positions_ = to_device<Float3>(scene_.scene->positions, "positions");
   parameters_.positions = positions_.address();
   parameters_.triangles = triangles_.address();
+  if (traversal_->is_watertight()) {
+    neighbours_ = to_device<std::uint32_t>(triangle_neighbours(scene_.scene->positions, scene_.scene->triangles),
+                                           "triangle neighbours");
+    parameters_.neighbours = neighbours_.address();
+  }
   write_parameters();
 }
 

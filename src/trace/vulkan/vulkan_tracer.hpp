@@ -164,8 +164,8 @@ class VulkanTracer final : public Tracer {
   TraceParameters parameters_{};  // but for what is a scanner's own
   Kernels kernels_;
   Buffer bricks_, slots_;
-  Buffer positions_, normals_, triangles_, diffuse_, normal_table_;  // filled when first needed
-  DeviceDemands demands_;                                            // of all voxels
+  Buffer positions_, normals_, triangles_, neighbours_, diffuse_, normal_table_;  // filled when first needed
+  DeviceDemands demands_;                                                         // of all voxels
   Buffer counts_, masks_, station_counters_, totals_, station_counts_;
   Buffer tile_far_, tile_list_, tile_dispatch_, tile_rays_, tile_starts_;
   Pace exact_pace_, sampled_pace_;

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trace/triangle_neighbours.hpp"
+
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <numeric>
+#include <tuple>
+
+#include "shared/trace_types.h"
+
+namespace vantage {
+namespace {
+
+// The first vertex of those that are at the same place.
+std::vector<std::uint32_t> first_at_its_place(std::span<const Float3> positions) {
+  const auto place = [&](std::uint32_t v) {
+    const Float3& p = positions[v];
+    return std::array{std::bit_cast<std::uint32_t>(p.x), std::bit_cast<std::uint32_t>(p.y),
+                      std::bit_cast<std::uint32_t>(p.z)};
+  };
+  std::vector<std::uint32_t> order(positions.size());
+  std::iota(order.begin(), order.end(), 0u);
+  tbb::parallel_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return std::tuple(place(a), a) < std::tuple(place(b), b);
+  });
+  std::vector<std::uint32_t> first(positions.size());
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const bool same = k > 0 && place(order[k]) == place(order[k - 1]);
+    first[order[k]] = same ? first[order[k - 1]] : order[k];
+  }
+  return first;
+}
+
+struct Edge {
+  std::uint32_t a, b;  // corners, the lower number first
+  std::uint32_t at;    // 3 t + k
+};
+
+}  // namespace
+
+std::vector<std::uint32_t> triangle_neighbours(std::span<const Float3> positions, std::span<const Triangle> triangles) {
+  const std::vector<std::uint32_t> first = first_at_its_place(positions);
+  std::vector<Edge> edges(3 * triangles.size());
+  tbb::parallel_for(std::size_t{0}, triangles.size(), [&](std::size_t t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = first[triangles[t][k]], b = first[triangles[t][(k + 1) % 3]];
+      edges[3 * t + k] = {std::min(a, b), std::max(a, b), static_cast<std::uint32_t>(3 * t + k)};
+    }
+  });
+  tbb::parallel_sort(edges.begin(), edges.end(), [](const Edge& one, const Edge& other) {
+    return std::tie(one.a, one.b, one.at) < std::tie(other.a, other.b, other.at);
+  });
+  std::vector<std::uint32_t> neighbours(edges.size(), no_primitive);
+  for (std::size_t k = 0, end = 0; k < edges.size(); k = end) {
+    for (end = k + 1; end < edges.size() && edges[end].a == edges[k].a && edges[end].b == edges[k].b;) ++end;
+    if (end - k != 2 || edges[k].at / 3 == edges[k + 1].at / 3) continue;
+    neighbours[edges[k].at] = edges[k + 1].at / 3;
+    neighbours[edges[k + 1].at] = edges[k].at / 3;
+  }
+  return neighbours;
+}
+
+}  // namespace vantage
