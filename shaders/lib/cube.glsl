@@ -28,7 +28,7 @@ vec2 passage(Cube cube, vec3 direction) {
   return vec2(max(max(near.x, near.y), near.z), min(min(far.x, far.y), far.z));
 }
 
-// A point in the cube, or in front of a ray's passage by more than this, is told from one that is not, noise and all.
+// A hit that is so far before a ray's passage through the cube puts no point there, noise and rounding and all.
 float reach_of(Cube cube) { return parameters.noise_reach + cube.slack; }
 
 #endif

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <numeric>
 
+#include "core/golden_step.hpp"
 #include "trace/vulkan/sample_plan.hpp"
 #include "trace/vulkan/vulkan_tracer.hpp"
 
@@ -24,6 +24,7 @@ VulkanTracer::DeviceSample VulkanTracer::device_sample(std::span<const std::uint
     voxels[k] = {cell[0], cell[1], cell[2]};
   });
   return {.ranks = {sample.begin(), sample.end()},
+          .step = static_cast<std::uint32_t>(golden_step(sample.size())),
           .voxels = to_device<SampleVoxel>(voxels, "sample voxels"),
           .demands = to_device(grid.demands().of(sample))};
 }
@@ -41,7 +42,6 @@ class VulkanTracer::SampledCount {
         station_counts_(station_counts),
         job_(job),
         voxels_(static_cast<std::uint32_t>(job.sample.size())),
-        voxel_step_(golden_step(voxels_)),
         most_stations_(*std::max_element(station_counts.begin(), station_counts.end())),
         mask_words_(job.masks ? (most_stations_ > 32 ? 2 : 1) : 0),
         stride_(totals_seen + most_stations_ + most_stations_ * (most_stations_ - 1) / 2),
@@ -169,13 +169,6 @@ class VulkanTracer::SampledCount {
     };
     return morton_encode(cell(head.x, bounds.min.x, bounds.max.x), cell(head.y, bounds.min.y, bounds.max.y),
                          cell(head.z, bounds.min.z, bounds.max.z));
-  }
-
-  // Comes by all of `count`, none twice, successive ones far apart.
-  static std::uint32_t golden_step(std::uint32_t count) {
-    auto step = static_cast<std::uint32_t>(0.618034 * count);
-    while (std::gcd(step, count) > 1) ++step;
-    return step;
   }
 
   // Of the longest walk, which a cube around the station has.
@@ -344,7 +337,7 @@ class VulkanTracer::SampledCount {
             .mask_words = push.mask_words,
             .stop_at = push.stop_at,
             .probed = chunk.probed,
-            .voxel_step = voxel_step_};
+            .voxel_step = sample_->step};
   }
 
   Reduction reduction() const {
@@ -372,7 +365,7 @@ class VulkanTracer::SampledCount {
   std::span<const std::vector<TraceStation>> networks_;
   std::span<const std::uint32_t> station_counts_;
   SampleJob job_;
-  std::uint32_t voxels_, voxel_step_, most_stations_, mask_words_, stride_;
+  std::uint32_t voxels_, most_stations_, mask_words_, stride_;
   SampleRoom room_;
   std::size_t batch_size_;
   std::uint32_t groups_;  // that sums are made of, one at least

@@ -77,6 +77,7 @@ class VulkanTracer final : public Tracer {
   // A sample as the kernels read it.
   struct DeviceSample {
     std::vector<std::uint32_t> ranks;
+    std::uint32_t step = 0;  // in which chunks come by its voxels
     Buffer voxels;
     DeviceDemands demands;
   };

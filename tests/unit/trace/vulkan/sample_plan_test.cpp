@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "core/philox.hpp"
+#include "shared/trace_types.h"
 
 namespace vantage::vulkan {
 namespace {
