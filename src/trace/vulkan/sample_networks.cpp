@@ -54,6 +54,7 @@ class VulkanTracer::SampledCount {
 
   std::vector<NetworkCounts> run(const Progress& progress) {
     t_.upload_triangles();
+    t_.upload_neighbours();
     sample_ = &t_.upload_sample(job_.sample);
     ensure_buffers();
     reduction_ = reduction();

@@ -101,11 +101,14 @@ void VulkanTracer::upload_triangles() {
   positions_ = to_device<Float3>(scene_.scene->positions, "positions");
   parameters_.positions = positions_.address();
   parameters_.triangles = triangles_.address();
-  if (traversal_->is_watertight()) {
-    neighbours_ = to_device<std::uint32_t>(triangle_neighbours(scene_.scene->positions, scene_.scene->triangles),
-                                           "triangle neighbours");
-    parameters_.neighbours = neighbours_.address();
-  }
+  write_parameters();
+}
+
+void VulkanTracer::upload_neighbours() {
+  if (neighbours_ || !traversal_->is_watertight()) return;
+  neighbours_ = to_device<std::uint32_t>(triangle_neighbours(scene_.scene->positions, scene_.scene->triangles),
+                                         "triangle neighbours");
+  parameters_.neighbours = neighbours_.address();
   write_parameters();
 }
 

@@ -65,6 +65,7 @@ class VulkanTracer final : public Tracer {
   std::vector<DeviceScanner> make_scanners();
   void upload_scene();
   void upload_triangles();
+  void upload_neighbours();
   void upload_shading();
   // What coverage asks of voxels: of all, or of a sample. Without memory where all are alike.
   struct DemandAddresses {
