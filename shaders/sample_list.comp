@@ -39,15 +39,14 @@ void main() {
 #else
 // What the threads of a workgroup tell each other of their pairs.
 struct Walk {
-  RayWindow window;
-  uint columns, rays, steps;
+  int row0, column0, column1, wrapped0, columns;  // of its window
+  uint rays;
   uint first;  // step
 };
 shared Cube cubes[group_size];
 shared uint slots[group_size];
 shared Walk walks[group_size];
 shared uint probes[group_size];
-shared bool blocked[group_size];
 shared Blocker blockers[group_size];
 shared uint ends[group_size];  // of the thread's steps among those of the subgroup
 shared uvec2 founds[group_size];  // a bit a step
@@ -55,8 +54,9 @@ shared uvec2 founds[group_size];  // a bit a step
 // The ray at step k of a thread; whether there is one.
 bool ray_at(uint thread, uint k, out uvec2 ray) {
   const Walk walk = walks[thread];
-  const uint place = place_in_walk(walk.first + k, walk.steps);
-  ray = ray_in_window(walk.window, int(walk.columns), int(place));
+  const uint place = place_in_walk(walk.first + k, walk_length(walk.rays));
+  const RayWindow window = RayWindow(walk.row0, walk.row0, walk.column0, walk.column1, walk.wrapped0, walk.wrapped0);
+  ray = ray_in_window(window, walk.columns, int(place));
   return place < walk.rays;
 }
 
@@ -89,10 +89,10 @@ void main() {
 #endif
     cubes[self] = cube_of(push.voxels.at[pair.voxel], station.origin);
     slots[self] = pair.slot;
-    walks[self] = Walk(window, uint(column_count_of(window)), rays, length, item.part * sample_part);
+    walks[self] = Walk(window.row0, window.column0, window.column1, window.wrapped0, column_count_of(window), rays,
+                       item.part * sample_part);
     probes[self] = pair.probe;
-    blocked[self] = pair.blocker != not_blocked;
-    if (blocked[self]) blockers[self] = blocker_of(corners_of(pair.blocker, station.origin));
+    blockers[self] = pair.blocker == not_blocked ? no_blocker : blocker_of(corners_of(pair.blocker, station.origin));
   }
   const uint first = subgroupMin(self), threads = subgroupAdd(1u), rank = subgroupExclusiveAdd(1u);  // of the subgroup
   const uint end = subgroupInclusiveAdd(mine), all = subgroupMax(end);
@@ -111,7 +111,7 @@ void main() {
     uvec2 ray;
     if (!ray_at(low, k, ray) || number_of(ray) == probes[low]) continue;
     const vec3 direction = ray_direction(ray.x, ray.y, push.stations.at[slots[low]].turn);
-    if (!may_see(passage(cubes[low], direction)) || (blocked[low] && stops(blockers[low], direction))) continue;
+    if (!may_see(cubes[low], passage(cubes[low], direction)) || stops(blockers[low], direction)) continue;
     if (k < 32u) atomicOr(founds[low].x, 1u << k);
     else atomicOr(founds[low].y, 1u << (k - 32u));
   }

@@ -17,8 +17,8 @@ void main() {
   const uint k = thread_of_rows(), slots = push.end_slot - push.first_slot;
   const bool alive = k / slots < push.end_voxel - push.first_voxel;
   const uint at_voxel = push.first_voxel + (alive ? k / slots : 0u), slot = push.first_slot + (alive ? k % slots : 0u);
-  const uint of_voxel = uint(uint64_t(at_voxel) * push.voxel_step % push.voxel_count);
-  const SampleVoxel voxel = push.voxels.at[of_voxel];
+  const SampleVoxel voxel = push.voxels.at[at_voxel];
+  const uint of_voxel = voxel.index;
   const SampleStation station = push.stations.at[slot];
   const Cube cube = cube_of(voxel, station.origin);
   bool open = false, traced = false;
@@ -34,7 +34,7 @@ void main() {
       const vec3 direction = ray_direction(ray.x, ray.y, station.turn);
       const vec2 range = passage(cube, direction);
       open = rays > 1u;
-      traced = may_see(range);
+      traced = may_see(cube, range);
       if (traced) {
         probe = number_of(ray);
         const Hit hit = trace_into(cube, range, station.origin, direction);
@@ -63,5 +63,6 @@ void main() {
     push.pairs.at[at] = SamplePair(of_voxel, slot, probe, blocker,
                                    int[6](window.row0, window.row1, window.column0, window.column1, window.wrapped0,
                                           window.wrapped1));
-  add_rays(traced && push.probed == 0u, station.network);
+  // Threads of a subgroup have slots side by side, and networks are many: no sum of theirs would save an addition.
+  if (traced && push.probed == 0u) add64(push.slot_rays, 2u * slot, 1u);
 }

@@ -13,13 +13,13 @@ layout(push_constant, scalar) uniform Push { SamplePush push; };
 void main() {
   const uint k = thread_of_rows();
   const uint listed = push.control.at[push.list];
-  uint network = 0u;
+  uint slot = 0u;
   bool traced = false;
   if (listed <= push.ray_capacity && k < listed) {
     const SampleRay job = push.rays.at[k];
     const uint of_voxel = push.pairs.at[job.pair].voxel;
-    const SampleStation station = push.stations.at[push.pairs.at[job.pair].slot];
-    network = station.network;
+    slot = push.pairs.at[job.pair].slot;
+    const SampleStation station = push.stations.at[slot];
     // Since it was listed others may have filled the voxel, and shown that the station sees it.
     traced = !is_closed(station, of_voxel);
     if (traced) {
@@ -30,5 +30,5 @@ void main() {
       if (is_point_of(voxel, station, hit, direction, job.ray)) count_point(station, of_voxel);
     }
   }
-  add_rays(traced, network);
+  add_rays(traced, slot);
 }

@@ -5,11 +5,13 @@
 #define VANTAGE_LIB_BLOCKER
 #include "lib/cube.glsl"
 
-// A triangle as its station sees it: normals of the planes through the station and an edge.
+// A triangle as its station sees it: normals of the planes through the station and an edge, so long that no engine's
+// rounding matters where a unit vector's product with them is beyond ±1. That of an edge without length is 0.
 struct Blocker {
   vec3 sides[3];
-  vec3 doubts;  // of a unit vector's products with them
 };
+
+const Blocker no_blocker = Blocker(vec3[3](vec3(0), vec3(0), vec3(0)));
 
 struct Corners {
   vec3 a, b, c;  // relative to the station
@@ -27,8 +29,8 @@ float size_of(vec3 v) { return abs(v.x) + abs(v.y) + abs(v.z); }
 Blocker blocker_of(Corners t) {
   const vec3 ab = t.b - t.a, bc = t.c - t.b, ca = t.a - t.c;
   const vec3 far = vec3(size_of(t.a), size_of(t.b), size_of(t.c));
-  return Blocker(vec3[3](cross(t.a, ab), cross(t.b, bc), cross(t.c, ca)),
-                 max(far, far.yzx) * vec3(size_of(ab), size_of(bc), size_of(ca)) * (1.0 / 65536.0));
+  const vec3 lengths = 65536.0 / max(max(far, far.yzx) * vec3(size_of(ab), size_of(bc), size_of(ca)), 1e-30);
+  return Blocker(vec3[3](cross(t.a, ab) * lengths.x, cross(t.b, bc) * lengths.y, cross(t.c, ca) * lengths.z));
 }
 
 vec3 products_of(Blocker blocker, vec3 v) {
@@ -38,7 +40,7 @@ vec3 products_of(Blocker blocker, vec3 v) {
 // Whether the ray meets the triangle. `direction`: a unit vector.
 bool stops(Blocker blocker, vec3 direction) {
   const vec3 at = products_of(blocker, direction);
-  return all(greaterThan(at, blocker.doubts)) || all(lessThan(at, -blocker.doubts));
+  return all(greaterThan(at, vec3(1))) || all(lessThan(at, vec3(-1)));
 }
 
 // Where a cube is from the planes of a blocker: inside of one where `at` is beyond `wide`, outside where it is beyond
@@ -48,11 +50,9 @@ struct Place {
 };
 
 Place place_of(Cube cube, Blocker blocker, float facing) {
-  const vec3 centre = 0.5 * (cube.low + cube.high), half_size = 0.5 * (cube.high - cube.low);
-  return Place(facing * products_of(blocker, centre),
-               vec3(dot(abs(blocker.sides[0]), half_size), dot(abs(blocker.sides[1]), half_size),
-                    dot(abs(blocker.sides[2]), half_size)) +
-                   (length(centre) + length(half_size)) * blocker.doubts);
+  return Place(facing * products_of(blocker, centre_of(cube)),
+               0.5 * cube.side * vec3(size_of(blocker.sides[0]), size_of(blocker.sides[1]), size_of(blocker.sides[2])) +
+                   farthest_of(cube));
 }
 
 // Whether all rays through the cube meet the triangle.
@@ -65,15 +65,14 @@ bool covers(Blocker blocker, Cube cube) {
 // nearer to the station than a scanner sees. Products with the normal n of the triangle's plane tell: a ray that
 // comes to q in the cube meets the plane at (n·a / n·q) of the way.
 bool is_before(Corners t, Cube cube) {
-  const vec3 centre = 0.5 * (cube.low + cube.high), half_size = 0.5 * (cube.high - cube.low);
-  const float farthest = length(centre) + length(half_size), nearest = length(max(max(cube.low, -cube.high), vec3(0)));
+  const float nearest = length(max(max(cube.low, -high_of(cube)), vec3(0)));
   const vec3 ab = t.b - t.a, ca = t.a - t.c, normal = cross(ab, ca);
   // Of the normal's products with unit vectors; it holds what slender triangles and grazing rays do to a hit's
   // distance.
   const float doubt = size_of(ab) * size_of(ca) * (1.0 / 262144.0);
   const float plane = dot(normal, t.a), plane_doubt = doubt * max(max(size_of(t.a), size_of(t.b)), size_of(t.c));
-  const float middle = dot(normal, centre) * (plane < 0.0 ? -1.0 : 1.0);
-  const float wide = dot(abs(normal), half_size) + farthest * doubt;
+  const float middle = dot(normal, centre_of(cube)) * (plane < 0.0 ? -1.0 : 1.0);
+  const float wide = 0.5 * cube.side * size_of(normal) + farthest_of(cube) * doubt;
   const float least = middle - wide, most = middle + wide;
   return least > 0.0 && nearest * (abs(plane) + plane_doubt) <= (nearest - reach_of(cube)) * least &&
          nearest * (abs(plane) - plane_doubt) >= (parameters.min_range + cube.slack) * most;
@@ -92,7 +91,7 @@ vec3 corner_beyond(uint other, uint triangle, vec3 origin) {
 // no hole where all of these edges have a triangle on either side, as the station sees it, and no end before it has
 // grown over all.
 bool patch_covers(uint triangle, vec3 origin, Cube cube) {
-  const uint most = 8u;
+  const uint most = 16u;
   uint members[most];
   uint count = 1u;
   members[0] = triangle;
@@ -112,7 +111,7 @@ bool patch_covers(uint triangle, vec3 origin, Cube cube) {
       const uint other = parameters.neighbours.at[3u * member + k];
       if (other == no_primitive) return false;
       const vec3 beyond = corner_beyond(other, member, origin);
-      if (facing * dot(blocker.sides[k], beyond) >= -blocker.doubts[k] * length(beyond)) return false;  // folded back
+      if (facing * dot(blocker.sides[k], beyond) >= -length(beyond)) return false;  // folded back
       bool known = false;
       for (uint i = 0u; i < count; ++i) known = known || members[i] == other;
       if (known) continue;

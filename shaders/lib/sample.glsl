@@ -23,14 +23,14 @@ bool is_closed(SampleStation station, uint voxel) {
 }
 
 // Whether the ray may put a point into a cube that it is in from range.x to range.y.
-bool may_see(vec2 range) {
-  return range.x <= range.y && range.y + parameters.noise_reach >= parameters.min_range &&
-         range.x - parameters.noise_reach <= parameters.max_range;
+bool may_see(Cube cube, vec2 range) {
+  return range.x <= range.y && range.y + cube.noise >= parameters.min_range &&
+         range.x - cube.noise <= parameters.max_range;
 }
 
 // All rays that may meet the cube, and few others.
 RayWindow window_of(Cube cube, SampleStation station) {
-  vec3 low = cube.low, high = cube.high;
+  vec3 low = cube.low, high = high_of(cube);
   if (turned) turn_back(station.turn, low, high);
   return rays_of_box(low, high);
 }
@@ -45,13 +45,13 @@ uint place_in_walk(uint step, uint length) {
   return length <= sample_part ? step : step * (uint(0.618034 * float(length)) | 1u) & (length - 1u);
 }
 
-// Adds the traced rays of a subgroup to their networks, which are few: one addition for each.
-void add_rays(bool traced, uint network) {
+// Adds the traced rays of a subgroup to their slots, which are few: one addition for each.
+void add_rays(bool traced, uint slot) {
   while (traced) {
-    const uint first = subgroupBroadcastFirst(network);
-    if (network == first) {
+    const uint first = subgroupBroadcastFirst(slot);
+    if (slot == first) {
       const uint rays = subgroupAdd(1u);
-      if (subgroupElect()) add64(push.network_rays, 2u * first, rays);
+      if (subgroupElect()) add64(push.slot_rays, 2u * first, rays);
       traced = false;
     }
   }

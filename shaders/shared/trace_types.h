@@ -59,6 +59,7 @@ struct TraceParameters {
   VANTAGE_ADDRESS(Uints) neighbours;  // three of each, as triangle_neighbours() has them; for watertight engines
   VANTAGE_ADDRESS(Floats) diffuse;    // per scene triangle
   VANTAGE_ADDRESS(Floats) sigma;
+  VANTAGE_ADDRESS(Floats) reaches;  // of noise, as noise_reaches() has them; 0: no noise moves points
   VANTAGE_ADDRESS(Vec4s) normal_table;
   VANTAGE_ADDRESS(Uints) limits_of;  // per scene triangle: which of `limits`
   VANTAGE_ADDRESS(Limits) limits;
@@ -185,6 +186,7 @@ struct ReducePush {
 // Sampled evaluation. A slot is one station of one network; a pair is a slot and a sampled voxel.
 struct SampleVoxel {
   uint x, y, z;  // voxel coordinates
+  uint index;    // within the sample
 };
 struct SampleStation {
   vec3 origin;
@@ -229,10 +231,10 @@ struct SampleProbePush {
   VANTAGE_ADDRESS(SampleStations) stations;
   VANTAGE_ADDRESS(SamplePairs) pairs;  // open ones are listed here
   VANTAGE_ADDRESS(Uints) control;
-  VANTAGE_ADDRESS(Uints) counts;        // [network][voxel]
-  VANTAGE_ADDRESS(Uints) masks;         // [network][word][voxel]
-  VANTAGE_ADDRESS(Uints) network_rays;  // 64 bits a network
-  uint voxel_count;                     // of the sample
+  VANTAGE_ADDRESS(Uints) counts;     // [network][voxel]
+  VANTAGE_ADDRESS(Uints) masks;      // [network][word][voxel]
+  VANTAGE_ADDRESS(Uints) slot_rays;  // 64 bits a slot
+  uint voxel_count;                  // of the sample
   uint first_voxel;
   uint end_voxel;
   uint first_slot;
@@ -240,9 +242,6 @@ struct SampleProbePush {
   uint mask_words;
   uint stop_at;  // points at which a voxel needs no more; 0: never
   uint probed;   // 1: these pairs have been probed before, so that what is found has been counted
-  // Voxel k of the chunks' order is k · voxel_step % voxel_count: every chunk has voxels from all over the site, so
-  // that one has about as many rays as another.
-  uint voxel_step;
 };
 // All others.
 struct SamplePush {
@@ -253,11 +252,11 @@ struct SamplePush {
   VANTAGE_ADDRESS(Uints) sights;  // pairs whose walks have more parts; as many as items
   VANTAGE_ADDRESS(SampleItems) items;
   VANTAGE_ADDRESS(Uints) control;
-  VANTAGE_ADDRESS(Uints) counts;        // [network][voxel]
-  VANTAGE_ADDRESS(Uints) masks;         // [network][word][voxel]
-  VANTAGE_ADDRESS(Uints) network_rays;  // 64 bits a network
-  uint voxel_count;                     // of the sample
-  uint first_part;                      // of walks, those of the chunk
+  VANTAGE_ADDRESS(Uints) counts;     // [network][voxel]
+  VANTAGE_ADDRESS(Uints) masks;      // [network][word][voxel]
+  VANTAGE_ADDRESS(Uints) slot_rays;  // 64 bits a slot
+  uint voxel_count;                  // of the sample
+  uint first_part;                   // of walks, those of the chunk
   uint end_part;
   uint ray_capacity;
   uint item_capacity;

@@ -26,8 +26,7 @@ Hit trace(vec3 origin, vec3 direction, float t_min, float t_max, float enough, S
   const vec3 inverse = inverse_of(direction);
   const NodeRay node_ray = NodeRay(inverse, abs(inverse), origin * inverse, 2.0 * widening);
 
-  uint stack[bvh_stack_size];
-  float enters[bvh_stack_size];  // where the ray enters what is on the stack
+  uvec2 stack[bvh_stack_size];  // what is still to visit, and where the ray enters it
   uint depth = 0;
   uint current = 0;  // the root is always a node
   uint started = tile_starts;
@@ -36,8 +35,28 @@ Hit trace(vec3 origin, vec3 direction, float t_min, float t_max, float enough, S
     current = TileStarts(starts.list).at[first_start].node;
     started = 1u;
   }
+  // First down to a leaf, then its triangles: threads of a subgroup wait for each other at the leaves rather than take
+  // turns between nodes and triangles.
+  bool up = false;  // what comes next is on the stack
   for (;;) {
-    if ((current & bvh_leaf_bit) == 0u) {
+    for (;;) {
+      if (up) {
+        bool found = false;
+        while (depth > 0u && !found) {
+          --depth;
+          const uvec2 top = stack[depth];
+          found = uintBitsToFloat(top.y) <= best.t;
+          current = top.x;
+        }
+        if (!found) {
+          if (started == tile_starts) return best;
+          const TileStart start = TileStarts(starts.list).at[first_start + started];
+          if (start.near > best.t) return best;
+          current = start.node;
+          ++started;
+        }
+      }
+      if ((current & bvh_leaf_bit) != 0u) break;
       const uvec4 word0 = bvh_nodes.at[4u * current], word1 = bvh_nodes.at[4u * current + 1u],
                   word2 = bvh_nodes.at[4u * current + 2u], word3 = bvh_nodes.at[4u * current + 3u];
       const uint child0 = word0.w, child1 = word1.w;
@@ -46,43 +65,23 @@ Hit trace(vec3 origin, vec3 direction, float t_min, float t_max, float enough, S
       const float enter0 = max(way0.x, t_min), enter1 = max(way1.x, t_min);
       const bool hit0 = enter0 <= min(way0.y, best.t), hit1 = enter1 <= min(way1.y, best.t);
       const bool first0 = hit0 && (!hit1 || enter0 <= enter1);
-      if (hit0 || hit1) {
-        if (hit0 && hit1) {
-          stack[depth] = first0 ? child1 : child0;
-          enters[depth] = first0 ? enter1 : enter0;
-          ++depth;
-          current = first0 ? child0 : child1;
-        } else {
-          current = hit0 ? child0 : child1;
-        }
-        continue;
+      up = !hit0 && !hit1;
+      if (hit0 && hit1) {
+        stack[depth] = uvec2(first0 ? child1 : child0, floatBitsToUint(first0 ? enter1 : enter0));
+        ++depth;
       }
-    } else {
-      const uint first = current & bvh_leaf_first_mask;
-      const uint end = first + ((current >> bvh_leaf_count_shift) & 7u);
-      for (uint i = first; i <= end; ++i) {
-        const uvec4 word_a = bvh_corners.at[3u * i], word_b = bvh_corners.at[3u * i + 1u],
-                    word_c = bvh_corners.at[3u * i + 2u];
-        const vec3 corner_a = uintBitsToFloat(word_a.xyz), corner_b = uintBitsToFloat(word_b.xyz),
-                   corner_c = uintBitsToFloat(word_c.xyz);
-        meet_triangle(best, t_min, shear, origin, inverse, widening, corner_a, corner_b, corner_c, word_a.w);
-      }
+      current = first0 ? child0 : child1;
     }
-    if (best.t < enough) break;
-    bool found = false;
-    while (depth > 0u && !found) {
-      --depth;
-      found = enters[depth] <= best.t;
+    const uint first = current & bvh_leaf_first_mask;
+    const uint end = first + ((current >> bvh_leaf_count_shift) & 7u);
+    for (uint i = first; i <= end; ++i) {
+      const uvec4 word_a = bvh_corners.at[3u * i], word_b = bvh_corners.at[3u * i + 1u],
+                  word_c = bvh_corners.at[3u * i + 2u];
+      const vec3 corner_a = uintBitsToFloat(word_a.xyz), corner_b = uintBitsToFloat(word_b.xyz),
+                 corner_c = uintBitsToFloat(word_c.xyz);
+      meet_triangle(best, t_min, shear, origin, inverse, widening, corner_a, corner_b, corner_c, word_a.w);
     }
-    if (found) {
-      current = stack[depth];
-    } else {
-      if (started == tile_starts) break;
-      const TileStart start = TileStarts(starts.list).at[first_start + started];
-      if (start.near > best.t) break;
-      current = start.node;
-      ++started;
-    }
+    if (best.t < enough) return best;
+    up = true;
   }
-  return best;
 }

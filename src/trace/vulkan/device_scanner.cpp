@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "trace/noise_reach.hpp"
 #include "trace/vulkan/groups.hpp"
 #include "vantage/error.hpp"
 
@@ -31,6 +32,7 @@ DeviceScanner::DeviceScanner(Device& device, Commands& commands, VkAccelerationS
   cos_azimuth_ = to_device(pattern.cos_azimuth, "cos azimuth");
   if (limits()) upload_limits(device, commands, scene);
   if (const NoiseModel* const looked_up = sigma_model()) sigma_ = to_device(looked_up->sigma, "sigma table");
+  if (noise()) reaches_ = to_device(noise_reaches(*scanner_.noise), "reaches of noise");
 }
 
 // Meshes that ask for the same share one entry.
@@ -69,6 +71,7 @@ void DeviceScanner::write(Commands& commands, const TraceParameters& shared) con
   p.first_azimuth = static_cast<float>(pattern.first_azimuth);
   if (noise()) {
     p.noise_reach = scanner_.noise->reach;
+    p.reaches = reaches_.address();
     p.seed_low = static_cast<std::uint32_t>(scanner_.noise->seed);
     p.seed_high = static_cast<std::uint32_t>(scanner_.noise->seed >> 32);
   }

@@ -36,7 +36,7 @@ class DeviceScanner {
   TraceScanner scanner_;
   Buffer block_;
   TraceSet set_;
-  Buffer sin_zenith_, cos_zenith_, sin_azimuth_, cos_azimuth_, sigma_, limits_, limits_of_;
+  Buffer sin_zenith_, cos_zenith_, sin_azimuth_, cos_azimuth_, sigma_, reaches_, limits_, limits_of_;
 };
 
 }  // namespace vantage::vulkan

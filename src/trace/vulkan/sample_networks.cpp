@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <iterator>
+#include <ranges>
 
 #include "core/golden_step.hpp"
 #include "trace/vulkan/sample_plan.hpp"
@@ -16,16 +18,30 @@ const VulkanTracer::DeviceSample& VulkanTracer::upload_sample(std::span<const st
                       [&] { return device_sample(sample); });
 }
 
+// Runs of voxels that lie close together, whose rays share what they visit; the runs come from all over the site in
+// turn, so that one chunk has about as many rays as another.
+static std::vector<SampleVoxel> in_order_of_chunks(std::span<const SampleVoxel> voxels) {
+  constexpr std::size_t run = 32;
+  const std::size_t runs = (voxels.size() + run - 1) / run, step = golden_step(runs);
+  std::vector<SampleVoxel> ordered;
+  ordered.reserve(voxels.size());
+  for (std::size_t k = 0; k < runs; ++k) {
+    const auto from = voxels.subspan(k * step % runs * run);
+    std::ranges::copy(from.first(std::min(run, from.size())), std::back_inserter(ordered));
+  }
+  return ordered;
+}
+
 VulkanTracer::DeviceSample VulkanTracer::device_sample(std::span<const std::uint32_t> sample) {
   const VoxelGrid& grid = *scene_.grid;
   std::vector<SampleVoxel> voxels(sample.size());
   tbb::parallel_for(std::size_t{0}, sample.size(), [&](std::size_t k) {
     const auto cell = morton_decode(grid.key(sample[k]));
-    voxels[k] = {cell[0], cell[1], cell[2]};
+    voxels[k] = {cell[0], cell[1], cell[2], static_cast<std::uint32_t>(k)};
   });
   return {.ranks = {sample.begin(), sample.end()},
-          .step = static_cast<std::uint32_t>(golden_step(sample.size())),
           .voxels = to_device<SampleVoxel>(voxels, "sample voxels"),
+          .in_order_of_chunks = to_device<SampleVoxel>(in_order_of_chunks(voxels), "voxels of chunks"),
           .demands = to_device(grid.demands().of(sample))};
 }
 
@@ -49,8 +65,8 @@ class VulkanTracer::SampledCount {
         batch_size_(static_cast<std::size_t>(
             std::clamp<std::uint64_t>(entries_per_batch / std::max(voxels_, 1u), 1, networks.size()))),
         groups_(std::max(job.groups, 1u)),
-        totals_(networks.size() * groups_ * stride_),
-        rays_(networks.size()) {}
+        rays_(networks.size()),
+        totals_(networks.size() * groups_ * stride_) {}
 
   std::vector<NetworkCounts> run(const Progress& progress) {
     t_.upload_triangles();
@@ -104,7 +120,6 @@ class VulkanTracer::SampledCount {
     t_.ensure(t_.sample_items_, std::uint64_t{room_.parts} * sizeof(SampleItem), "sample items");
     t_.ensure(t_.counts_, entries * word, "counts");
     if (mask_words_) t_.ensure(t_.masks_, entries * mask_words_ * word, "station masks");
-    t_.ensure(t_.network_rays_, networks_.size() * sizeof(std::uint64_t), "network rays");
     t_.ensure_totals(networks_.size(), groups_, stride_);
   }
 
@@ -112,6 +127,8 @@ class VulkanTracer::SampledCount {
   bool count_batch(Batch batch, const Progress& progress) {
     fill_slots(batch);
     t_.ensure(t_.sample_stations_, batch.slots.size() * sizeof(SampleStation), "sample stations");
+    t_.ensure(t_.slot_rays_, batch.slots.size() * sizeof(std::uint64_t), "slot rays");
+    slot_rays_.resize(batch.slots.size());
     double slots_done = 0;
     const auto all_slots = static_cast<double>(std::max<std::size_t>(batch.slots.size(), 1));
     for (const Run& run : batch.runs) {
@@ -134,6 +151,7 @@ class VulkanTracer::SampledCount {
       }
       slots_done += slots;
     }
+    for (std::size_t k = 0; k < batch.slots.size(); ++k) rays_[batch.first + batch.slots[k].network] += slot_rays_[k];
     if (job_.points) hand_out_points(batch);
     if (job_.station_masks) job_.station_masks(batch.first, masks_of(batch));
     if (job_.registration) register_batch(batch);
@@ -226,10 +244,9 @@ class VulkanTracer::SampledCount {
     std::vector<std::uint32_t> control(std::max<std::size_t>(chunks.size(), 1) * control_words);
     t_.ensure(t_.sample_control_, control.size() * word, "sample control", VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
     std::vector<Commands::Download> wanted{{t_.sample_control_, control.data(), control.size() * word}};
-    if (submission.last && batch.end == networks_.size()) {
+    if (submission.last) wanted.push_back({t_.slot_rays_, slot_rays_.data(), slot_rays_.size() * sizeof slot_rays_[0]});
+    if (submission.last && batch.end == networks_.size())
       wanted.push_back({t_.totals_, totals_.data(), totals_.size() * word});
-      wanted.push_back({t_.network_rays_, rays_.data(), rays_.size() * sizeof rays_[0]});
-    }
     const auto record = [&](const Recorder& r) {
       if (submission.first) record_start(r, batch);
       r.zero(t_.sample_control_);
@@ -238,7 +255,7 @@ class VulkanTracer::SampledCount {
         r.zero(t_.totals_, batch.first * of_network, batch.size() * of_network);
       }
       r.shader_after_transfer();
-      for (std::size_t k = 0; k < chunks.size(); ++k) record_chunk(r, batch, *submission.run, chunks[k], k);
+      for (std::size_t k = 0; k < chunks.size(); ++k) record_chunk(r, *submission.run, chunks[k], k);
       if (!submission.last) return;
       r.shader_after_shader();
       t_.record_reduction(r, reduction_, static_cast<std::uint32_t>(batch.first),
@@ -257,18 +274,15 @@ class VulkanTracer::SampledCount {
   }
 
   void record_start(const Recorder& r, const Batch& batch) {
-    if (batch.first == 0) {
-      r.update(t_.station_counts_, station_counts_.data(), station_counts_.size_bytes());
-      r.zero(t_.network_rays_);
-    }
+    if (batch.first == 0) r.update(t_.station_counts_, station_counts_.data(), station_counts_.size_bytes());
     r.update(t_.sample_stations_, batch.slots.data(), batch.slots.size() * sizeof(SampleStation));
+    r.zero(t_.slot_rays_);
     r.zero(t_.counts_);
     if (mask_words_) r.zero(t_.masks_);
   }
 
   // Probes, lists and traces one chunk, whose control words are number k of the submission.
-  void record_chunk(const Recorder& r, const Batch& batch, const Run& run, const SampleChunk& chunk,
-                    std::size_t k) const {
+  void record_chunk(const Recorder& r, const Run& run, const SampleChunk& chunk, std::size_t k) const {
     const auto pipeline = [&](Kernel kernel, std::array<bool, 4> constants = {}) {
       return t_.kernels_.get(run.scanner->set(), run.turned, kernel, constants);
     };
@@ -277,7 +291,7 @@ class VulkanTracer::SampledCount {
                       {run.scanner->noise(), run.scanner->limits(), job_.masks, t_.traversal_->is_watertight()});
     };
     const VkDeviceSize dispatch = (k * control_words + control_dispatch) * word;
-    SamplePush push = push_of(batch, chunk, k);
+    SamplePush push = push_of(chunk, k);
     // A thread for each that the control word counts by then.
     const auto over = [&](std::uint32_t control, const BoundPipeline& kernel) {
       const SampleArgumentsPush arguments{push.control, control, push.ray_capacity, push.item_capacity, 0};
@@ -299,7 +313,7 @@ class VulkanTracer::SampledCount {
     over(control_rest, tracing(Kernel::sample_trace));
   }
 
-  SamplePush push_of(const Batch& batch, const SampleChunk& chunk, std::size_t k) const {
+  SamplePush push_of(const SampleChunk& chunk, std::size_t k) const {
     SamplePush push{};
     push.voxels = sample_->voxels.address();
     push.stations = t_.sample_stations_.address();
@@ -310,7 +324,7 @@ class VulkanTracer::SampledCount {
     push.control = t_.sample_control_.address() + k * control_words * word;
     push.counts = t_.counts_.address();
     push.masks = mask_words_ ? t_.masks_.address() : 0;
-    push.network_rays = t_.network_rays_.address() + batch.first * sizeof(std::uint64_t);
+    push.slot_rays = t_.slot_rays_.address();
     push.voxel_count = voxels_;
     push.first_part = chunk.first_part;
     push.end_part = chunk.end_part;
@@ -323,13 +337,13 @@ class VulkanTracer::SampledCount {
   }
 
   SampleProbePush probe_push_of(const SamplePush& push, const Run& run, const SampleChunk& chunk) const {
-    return {.voxels = push.voxels,
+    return {.voxels = sample_->in_order_of_chunks.address(),
             .stations = push.stations,
             .pairs = push.pairs,
             .control = push.control,
             .counts = push.counts,
             .masks = push.masks,
-            .network_rays = push.network_rays,
+            .slot_rays = push.slot_rays,
             .voxel_count = push.voxel_count,
             .first_voxel = chunk.first_voxel,
             .end_voxel = chunk.end_voxel,
@@ -337,8 +351,7 @@ class VulkanTracer::SampledCount {
             .end_slot = run.first_slot + chunk.end_slot,
             .mask_words = push.mask_words,
             .stop_at = push.stop_at,
-            .probed = chunk.probed,
-            .voxel_step = sample_->step};
+            .probed = chunk.probed};
   }
 
   Reduction reduction() const {
@@ -372,9 +385,10 @@ class VulkanTracer::SampledCount {
   std::uint32_t groups_;  // that sums are made of, one at least
   Reduction reduction_{};
   double seconds_ = 0;
+  std::vector<std::uint64_t> rays_;  // of networks
   // As they come back from the device.
   std::vector<std::uint32_t> totals_;
-  std::vector<std::uint64_t> rays_;
+  std::vector<std::uint64_t> slot_rays_;                     // of a batch
   std::vector<std::vector<RegistrationSums>> registration_;  // of networks, where asked for
 };
 

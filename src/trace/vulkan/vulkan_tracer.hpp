@@ -78,8 +78,7 @@ class VulkanTracer final : public Tracer {
   // A sample as the kernels read it.
   struct DeviceSample {
     std::vector<std::uint32_t> ranks;
-    std::uint32_t step = 0;  // in which chunks come by its voxels
-    Buffer voxels;
+    Buffer voxels, in_order_of_chunks;
     DeviceDemands demands;
   };
   const DeviceSample& upload_sample(std::span<const std::uint32_t> sample);
@@ -173,7 +172,7 @@ class VulkanTracer final : public Tracer {
   Pace exact_pace_, sampled_pace_;
 
   Recent<DeviceSample> samples_;
-  Buffer sample_stations_, sample_pairs_, sample_rays_, sample_sights_, sample_items_, sample_control_, network_rays_;
+  Buffer sample_stations_, sample_pairs_, sample_rays_, sample_sights_, sample_items_, sample_control_, slot_rays_;
   std::shared_ptr<const Patches> patches_;  // what the next buffers hold
   std::shared_ptr<const NoiseModel> patch_noise_;
   Buffer registration_patches_, registration_sigma_, registration_heads_, registration_sums_;
