@@ -12,11 +12,20 @@ Piece Pieces::take(double share, bool known) {
     returned_.pop_back();
     return piece;
   }
-  // Of what is left, so much that a surprise can be made good by the others; never so little that handing out costs.
-  constexpr double of_rest = 0.75, least = 1.0 / 16;
-  const double smallest = least * share * static_cast<double>(items_),
-               fair = known ? of_rest * share * static_cast<double>(items_ - next_) : 0;
-  const auto wanted = static_cast<std::size_t>(std::ceil(std::max({smallest, fair, 1.0})));
+  // In rounds that leave some, so that a surprise can be made good by the others (factoring: Hummel, Schonberg, Flynn,
+  // 1992); never so little that handing out costs.
+  constexpr double of_rest = 0.9, least = 1.0 / 16;
+  const auto share_of = [&](std::size_t items, double part) {
+    return static_cast<std::size_t>(std::ceil(part * share * static_cast<double>(items)));
+  };
+  std::size_t wanted = std::max<std::size_t>(share_of(items_, least), 1);
+  if (known) {
+    if (next_ >= round_end_) {
+      round_ = items_ - next_;
+      round_end_ = next_ + static_cast<std::size_t>(std::ceil(of_rest * static_cast<double>(round_)));
+    }
+    wanted = std::max(wanted, std::min(share_of(round_, of_rest), round_end_ - next_));
+  }
   const Piece piece{next_, std::min(items_, next_ + wanted)};
   next_ = piece.end;
   return piece;

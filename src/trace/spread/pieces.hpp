@@ -26,6 +26,7 @@ class Pieces {
 
  private:
   std::size_t items_, next_ = 0;
+  std::size_t round_ = 0, round_end_ = 0;  // how much was left when it began, and where it ends
   std::vector<Piece> returned_;
 };
 

@@ -30,9 +30,17 @@ TEST(Pieces, AreAllItemsOnce) {
 
 TEST(Pieces, FollowTheShare) {
   Pieces pieces(1000);
-  EXPECT_EQ(pieces.take(0.9, true).size(), 675u);        // three quarters of what would be fair
-  EXPECT_EQ(pieces.take(0.1, true).size(), 25u);         // of what is left
+  EXPECT_EQ(pieces.take(0.75, true).size(), 675u);       // nine tenths of what would be fair
+  EXPECT_EQ(pieces.take(0.25, true).size(), 225u);       // whoever comes first
+  EXPECT_EQ(pieces.take(0.75, true).size(), 68u);        // of what is left by then
   EXPECT_EQ(Pieces(1000).take(0.5, false).size(), 32u);  // a sixteenth of its half, to see how long that takes
+}
+
+TEST(Pieces, AreFewForThoseWhoAreEquallyFast) {
+  Pieces pieces(250);
+  std::size_t handed_out = 0;
+  for (; !pieces.empty(); ++handed_out) pieces.take(0.5, true);
+  EXPECT_EQ(handed_out, 5u);  // 113, 112, 12, 11 and what is left
 }
 
 TEST(Pieces, WhatIsGivenBackIsTakenAgain) {
