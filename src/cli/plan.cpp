@@ -26,6 +26,10 @@ namespace {
 // What a sampled search needs for errors of .002 in coverage, and of .007 in overlap, on large sites
 // (docs/benchmarks.md).
 constexpr std::uint64_t sample_for_coverage = 20'000, sample_for_overlap = 100'000;
+// A front is searched with fewer, others after every so many iterations: so nothing is kept for its luck, which no
+// fixed sample keeps out, and every ray judges what is kept (docs/cases.md).
+constexpr std::uint64_t sample_drawn_anew = 5'000;
+constexpr std::size_t iterations_of_a_sample = 20;
 // Where every candidate is looked at: errors of .004, which the choice keeps as a margin and every ray then judges.
 constexpr std::uint64_t sample_for_fewest = 5'000;
 
@@ -104,9 +108,11 @@ struct PlanOptions {
         ->group("Search");
     auto* exact_flag =
         command.add_flag("--exact", exact, "Search with every ray instead of a sample of voxels")->group("Search");
-    add_value(command, "--sample", "N|P%",
-              "Search with so many voxels; 20000 for coverage alone, 100000 with overlap otherwise",
-              [this](const std::string& text, const std::string& what) { sample = parse_sample(text, what); })
+    add_value(
+        command, "--sample", "N|P%",
+        "Search with so many voxels all along; otherwise 20000 for coverage alone, 100000 with overlap, and for a "
+        "front 5000, others every 20 iterations",
+        [this](const std::string& text, const std::string& what) { sample = parse_sample(text, what); })
         ->group("Search")
         ->excludes(exact_flag);
     add_value(
@@ -150,11 +156,12 @@ struct PlanOptions {
 };
 
 // On small sites a quarter of the voxels does; but some thousands it should be.
-std::uint64_t default_sample(const SurveyProblem& problem, std::uint64_t voxels) {
+std::uint64_t default_sample(const SurveyProblem& problem, bool drawn_anew, std::uint64_t voxels) {
   const auto pairs = [](const Objective& objective) { return objective.needs.pairs; };
   const bool overlap = std::ranges::any_of(problem.objectives, pairs) ||
                        std::ranges::any_of(problem.requirements, pairs, &Requirement::objective);
   if (problem.fewest) return std::min(sample_for_fewest, voxels);
+  if (drawn_anew) return std::min(sample_drawn_anew, voxels);
   const std::uint64_t enough = std::max<std::uint64_t>(voxels / 4, 5'000);
   return std::min({overlap ? sample_for_overlap : sample_for_coverage, enough, voxels});
 }
@@ -444,9 +451,14 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   if (program.ranks && !program.ranks->first()) program.ranks->serve(simulator);
   tell_engine(simulator);
   tell_grid(simulator);
-  if (!options.exact)
-    config.sample_voxels =
-        options.sample ? options.sample->of(simulator.voxel_count()) : default_sample(problem, simulator.voxel_count());
+  if (!options.exact) {
+    const bool front = problem.objectives.size() > 1 && !problem.fewest && config.algorithm == Algorithm::mo_cma_es;
+    if (front && !options.sample && !options.sample_from && config.renew_iterations == 0)
+      config.renew_iterations = iterations_of_a_sample;
+    config.sample_voxels = options.sample
+                               ? options.sample->of(simulator.voxel_count())
+                               : default_sample(problem, config.renew_iterations > 0, simulator.voxel_count());
+  }
   if (options.sample_from) config.sample_from = options.sample_from->of(simulator.voxel_count());
   if (!options.seed_with.empty()) {
     if (!options.start.empty())
