@@ -19,7 +19,7 @@ vec3 centre_of(Cube cube) { return cube.low + 0.5 * cube.side; }
 // Of no point of the cube is the station further away.
 float farthest_of(Cube cube) { return length(max(abs(cube.low), abs(high_of(cube)))); }
 
-// No point of a hit nearer than t is moved further than this.
+// No point of a hit nearer than t is moved further than this: noise_reach.hpp's, on the device.
 float reach_within(float t) {
   if (!GIVEN(parameters.reaches)) return 0.0;
   const float last = float(noise_table_side - 1u);

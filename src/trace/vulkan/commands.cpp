@@ -111,12 +111,14 @@ double Commands::run_and_download(const Record& record, std::span<const Download
     r.shader_after_shader();
     VkDeviceSize at = 0;
     for (const Download& d : wanted) {
+      if (d.bytes == 0) continue;
       r.copy(d.from, staging_down_, {0, at, d.bytes});
       at += d.bytes;
     }
   });
   VkDeviceSize at = 0;
   for (const Download& d : wanted) {
+    if (d.bytes == 0) continue;
     std::memcpy(d.to, staging_down_.mapped<std::byte>() + at, d.bytes);
     at += d.bytes;
   }

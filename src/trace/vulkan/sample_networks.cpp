@@ -5,7 +5,6 @@
 #include <array>
 #include <bit>
 #include <iterator>
-#include <ranges>
 
 #include "core/golden_step.hpp"
 #include "trace/vulkan/sample_plan.hpp"
@@ -244,8 +243,7 @@ class VulkanTracer::SampledCount {
     std::vector<std::uint32_t> control(std::max<std::size_t>(chunks.size(), 1) * control_words);
     t_.ensure(t_.sample_control_, control.size() * word, "sample control", VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
     std::vector<Commands::Download> wanted{{t_.sample_control_, control.data(), control.size() * word}};
-    if (submission.last && !slot_rays_.empty())
-      wanted.push_back({t_.slot_rays_, slot_rays_.data(), slot_rays_.size() * sizeof slot_rays_[0]});
+    if (submission.last) wanted.push_back({t_.slot_rays_, slot_rays_.data(), slot_rays_.size() * sizeof slot_rays_[0]});
     if (submission.last && batch.end == networks_.size())
       wanted.push_back({t_.totals_, totals_.data(), totals_.size() * word});
     const auto record = [&](const Recorder& r) {
