@@ -21,6 +21,9 @@ struct Float3 {
   friend bool operator==(const Float3&, const Float3&) = default;
 };
 inline Vec3 widen(const Float3& p) { return {p.x, p.y, p.z}; }
+inline Float3 narrow(const Vec3& p) {
+  return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
+}
 using Triangle = std::array<std::uint32_t, 3>;  // indices into SceneData::positions
 
 // Base colour only: what a point's colour needs.

@@ -36,7 +36,7 @@ TileSums count_tile(const StationRays& station_rays, const TraceStation& station
   const bool limited = station_rays.limited();
   TileSums sums;
   sums.rays = rays.size;
-  voxels.clear();
+  Hits hits;
   std::uint32_t slot = 0;
   for (std::uint32_t row = tile.row; row < tile.row + tile.rows; ++row) {
     const std::uint64_t first = station_rays.ray(row, tile.column);
@@ -44,15 +44,18 @@ TileSums count_tile(const StationRays& station_rays, const TraceStation& station
       const std::uint32_t triangle = rays.primitive[slot];
       if (triangle == RayBundle::no_hit) continue;
       ++sums.points;
-      if (!surface.surveyed(triangle)) continue;
-      const float range = station_rays.range(rays, slot, first + column, station.place);
-      const Float3 point = StationRays::point(rays, slot, range);
-      const DroppedPoints dropped = limited ? station_rays.dropped(rays, slot) : DroppedPoints{};
-      if (dropped.points == 0) {
-        voxels.add(point);
-      } else if (station_rays.grid().rank_of(point) != no_voxel) {
-        sums.dropped = sums.dropped + dropped;
-      }
+      if (surface.surveyed(triangle)) hits.add(rays, slot, first + column);
+    }
+  }
+  station_rays.find_ranges(station, hits);
+  voxels.clear();
+  for (std::uint32_t k = 0; k < hits.size; ++k) {
+    const Float3 point = hits.point(rays.origin, k);
+    const DroppedPoints dropped = limited ? station_rays.dropped(rays, hits.slot[k]) : DroppedPoints{};
+    if (dropped.points == 0) {
+      voxels.add(point);
+    } else if (station_rays.grid().rank_of(point) != no_voxel) {
+      sums.dropped = sums.dropped + dropped;
     }
   }
   voxels.each_rank([&](std::uint32_t rank) {

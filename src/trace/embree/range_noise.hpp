@@ -46,12 +46,23 @@ class RangeNoise {
     return upper + (lower - upper) * down;
   }
 
+  // The random bits of n rays, by the halves of their numbers. REQUIRES: enabled().
+  template <unsigned n>
+  [[gnu::always_inline]] void draw(const std::uint32_t* low, const std::uint32_t* high, std::uint32_t place,
+                                   std::uint32_t* __restrict bits) const {
+    const std::uint64_t seed = model_->seed;
+    for (unsigned k = 0; k < n; ++k) bits[k] = philox4x32(seed, {low[k], high[k], place, noise_stream})[0];
+  }
   // REQUIRES: enabled(). No scanner measures a range below 0: noise larger than the range itself leaves the point at
   // the head, never behind it, where no list of rays would look for it.
-  float displaced(float t, float reflectivity, std::uint64_t ray, std::uint32_t place) const {
-    const std::uint32_t bits = philox4x32(
-        model_->seed, {static_cast<std::uint32_t>(ray), static_cast<std::uint32_t>(ray >> 32), place, noise_stream})[0];
+  float displaced(float t, float reflectivity, std::uint32_t bits) const {
     return std::max(0.0f, t + normal_from_bits(bits, rows_) * sigma(t, reflectivity));
+  }
+  float displaced(float t, float reflectivity, std::uint64_t ray, std::uint32_t place) const {
+    const std::uint32_t low = static_cast<std::uint32_t>(ray), high = static_cast<std::uint32_t>(ray >> 32);
+    std::uint32_t bits;
+    draw<1>(&low, &high, place, &bits);
+    return displaced(t, reflectivity, bits);
   }
 
  private:

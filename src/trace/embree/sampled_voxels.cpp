@@ -13,7 +13,6 @@ namespace {
 
 using Corners = std::array<Vec3, 3>;
 
-Float3 narrow(const Vec3& p) { return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)}; }
 double length(const Vec3& v) { return std::sqrt(dot(v, v)); }
 double largest(const Vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 

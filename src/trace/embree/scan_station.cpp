@@ -7,10 +7,6 @@
 namespace vantage {
 namespace {
 
-Float3 narrow(const std::array<double, 3>& v) {
-  return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
-}
-
 // Fills the elements of one tile. `first_ray` is the chunk's.
 void scan_tile(const StationRays& station_rays, const TraceStation& station, const RayTile& tile,
                std::uint64_t first_ray, std::uint32_t outputs, Tracer::RawChunk& chunk) {
@@ -19,9 +15,7 @@ void scan_tile(const StationRays& station_rays, const TraceStation& station, con
   station_rays.caster().cast(rays);
   const Surface& surface = station_rays.surface();
   const RangeNoise& noise = station_rays.noise();
-  const bool need_weights =
-      (outputs & (Tracer::normal | Tracer::barycentric | Tracer::reflectivity)) != 0 || noise.enabled();
-  const bool need_normal = (outputs & (Tracer::normal | Tracer::reflectivity)) != 0 || noise.enabled();
+  const bool shaded = (outputs & (Tracer::normal | Tracer::barycentric | Tracer::reflectivity)) != 0 || noise.enabled();
 
   for (std::uint32_t slot = 0; slot < rays.size; ++slot) {
     const std::uint64_t ray = station_rays.ray(tile.row + slot / tile.columns, tile.column + slot % tile.columns);
@@ -34,14 +28,15 @@ void scan_tile(const StationRays& station_rays, const TraceStation& station, con
     if (hit) {
       const Float3 d{rays.x[slot], rays.y[slot], rays.z[slot]};
       range = rays.t[slot];
-      if (need_weights) weights = surface.barycentric(triangle, rays.origin, d, range);
-      if (need_normal) {
-        const std::array<double, 3> unit = surface.normal(triangle, d, weights);
+      if (shaded) {
+        const Facet facet = surface.facet(triangle);
+        weights = facet.weights(rays.origin, d, range);
+        const Vec3 unit = facet.normal(d, weights);
         normal = narrow(unit);
-        reflectivity = surface.reflectivity(triangle, d, unit);
+        reflectivity = facet.reflectivity(d, unit);
       }
       if (noise.enabled()) range = noise.displaced(range, reflectivity, ray, station.place);
-      point = StationRays::point(rays, slot, range);
+      point = {rays.origin.x + range * d.x, rays.origin.y + range * d.y, rays.origin.z + range * d.z};
     }
     if (outputs & Tracer::range) chunk.range[k] = range;
     if (outputs & Tracer::position) chunk.position[k] = point;

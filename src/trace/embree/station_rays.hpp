@@ -8,6 +8,7 @@
 #include <limits>
 #include <memory>
 
+#include "trace/embree/hits.hpp"
 #include "trace/embree/point_judge.hpp"
 #include "trace/embree/range_noise.hpp"
 #include "trace/embree/ray_caster.hpp"
@@ -96,13 +97,9 @@ class StationRays {
     std::fill_n(rays.end, rays.size, end);
   }
 
-  // Distance of the point, noise included. REQUIRES: rays.primitive[slot] is a hit; `ray` and `place` key the noise.
-  float range(const RayBundle& rays, std::uint32_t slot, std::uint64_t ray, std::uint32_t place) const {
-    const float t = rays.t[slot];
-    if (!noise_.enabled()) return t;
-    const std::uint32_t triangle = rays.primitive[slot];
-    const Float3 d{rays.x[slot], rays.y[slot], rays.z[slot]};
-    return noise_.displaced(t, surface().reflectivity(triangle, rays.origin, d, t), ray, place);
+  // Fills hits.range, noise included.
+  void find_ranges(const TraceStation& station, Hits& hits) const {
+    vantage::find_ranges(surface(), noise_, station.origin, station.place, hits);
   }
 
   bool limited() const { return judge_.enabled(); }
@@ -112,14 +109,9 @@ class StationRays {
     const std::uint32_t triangle = rays.primitive[slot];
     const Float3 d{rays.x[slot], rays.y[slot], rays.z[slot]};
     const float t = rays.t[slot];
-    const std::array<double, 3> normal = surface().normal_at(triangle, rays.origin, d, t);
-    const double cosine = normal[0] * d.x + normal[1] * d.y + normal[2] * d.z;
-    return judge_.missed(surface().mesh(triangle), cosine, t, surface().reflectivity(triangle, d, normal));
-  }
-
-  static Float3 point(const RayBundle& rays, std::uint32_t slot, float range) {
-    return {rays.origin.x + range * rays.x[slot], rays.origin.y + range * rays.y[slot],
-            rays.origin.z + range * rays.z[slot]};
+    const Facet facet = surface().facet(triangle);
+    const Vec3 normal = facet.normal(d, facet.weights(rays.origin, d, t));
+    return judge_.missed(surface().mesh(triangle), dot(normal, widen(d)), t, facet.reflectivity(d, normal));
   }
 
  private:

@@ -2,7 +2,9 @@
 // What a hit means: its normal, reflectivity, and whether it counts.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -12,6 +14,46 @@
 
 namespace vantage {
 
+// A triangle as its hits ask it: what is the same for all of them. Its functions have no branch that depends on the
+// hit, so that a loop over hits becomes vectors.
+struct Facet {
+  Vec3 corner, first, second;  // a corner, and the edges that leave it
+  Vec3 across;                 // first × second
+  double area = 0;             // across·across
+  bool smooth = false;         // has `normals`, of its corners
+  std::array<Vec3, 3> normals;
+  Vec3 plane;  // unit normal
+  double diffuse = 0;
+
+  // Weights of the second and third corner at distance t.
+  [[gnu::always_inline]] std::array<double, 2> weights(const Float3& o, const Float3& d, float t) const {
+    const Vec3 p = widen(o) + widen(d) * t - corner;
+    const double u = std::min(std::max(dot(cross(p, second), across) / area, 0.0), 1.0);
+    const double v = std::min(std::max(dot(cross(first, p), across) / area, 0.0), 1.0 - u);
+    return {area > 0 ? u : 0.0, area > 0 ? v : 0.0};
+  }
+  // Unit normal turned against d: of the corners, interpolated, or of the plane where they have none or cancel out.
+  template <bool smooth>
+  [[gnu::always_inline]] Vec3 normal(const Float3& d, const std::array<double, 2>& weights) const {
+    Vec3 n = plane;
+    if constexpr (smooth) {
+      const Vec3 sum = normals[0] * (1 - weights[0] - weights[1]) + normals[1] * weights[0] + normals[2] * weights[1];
+      const double length = std::sqrt(dot(sum, sum)), scale = 1 / length;
+      const bool some = length > 0;
+      n = {some ? sum.x * scale : plane.x, some ? sum.y * scale : plane.y, some ? sum.z * scale : plane.z};
+    }
+    return n * (dot(n, widen(d)) > 0 ? -1.0 : 1.0);
+  }
+  Vec3 normal(const Float3& d, const std::array<double, 2>& weights) const {
+    return smooth ? normal<true>(d, weights) : normal<false>(d, weights);
+  }
+  // R·(I·(−N)), never below 0.
+  [[gnu::always_inline]] float reflectivity(const Float3& d, const Vec3& normal) const {
+    const double value = diffuse * -dot(normal, widen(d));
+    return static_cast<float>(std::min(std::max(value, 0.0), 1.0));
+  }
+};
+
 // Tables over the triangles of a scene. Immutable; safe to use from any thread.
 class Surface {
  public:
@@ -20,19 +62,7 @@ class Surface {
   std::uint32_t mesh(std::uint32_t triangle) const { return mesh_[triangle]; }
   bool surveyed(std::uint32_t triangle) const { return (surveyed_[triangle / 64] >> (triangle % 64) & 1) != 0; }
 
-  // Weights of the triangle's second and third vertex at distance t.
-  std::array<double, 2> barycentric(std::uint32_t triangle, const Float3& o, const Float3& d, float t) const;
-  // Unit normal turned against d: of the vertices, interpolated, or of the plane where they have none or cancel out.
-  std::array<double, 3> normal(std::uint32_t triangle, const Float3& d, const std::array<double, 2>& weights) const;
-  // The same at distance t.
-  std::array<double, 3> normal_at(std::uint32_t triangle, const Float3& o, const Float3& d, float t) const;
-  // R·(I·(−N)), never below 0.
-  float reflectivity(std::uint32_t triangle, const Float3& d, const std::array<double, 3>& normal) const {
-    const double facing = -(normal[0] * d.x + normal[1] * d.y + normal[2] * d.z);
-    const double value = diffuse_[mesh_[triangle]] * facing;
-    return static_cast<float>(value < 0 ? 0 : value > 1 ? 1 : value);
-  }
-  float reflectivity(std::uint32_t triangle, const Float3& o, const Float3& d, float t) const;
+  Facet facet(std::uint32_t triangle) const;
 
  private:
   std::shared_ptr<const SceneData> scene_;

@@ -348,12 +348,17 @@ void SampledVoxelCounter::finish() {
   const Surface& surface = rays_->surface();
   rays_->caster().cast(bundle_);
   const std::uint64_t bit = std::uint64_t{1} << station_->bit();
+  hits_.size = 0;
   for (std::uint32_t slot = 0; slot < bundle_.size; ++slot) {
-    const std::uint32_t triangle = bundle_.primitive[slot], i = cast_voxel_[slot];
+    const std::uint32_t triangle = bundle_.primitive[slot];
     if (triangle == RayBundle::no_hit || !surface.surveyed(triangle)) continue;
     const Ray& ray = listed_[cast_ray_[slot]];
-    const float range = rays_->range(bundle_, slot, rays_->ray(ray.row, ray.column), station_->place);
-    if (!lies_in(rays_->grid(), StationRays::point(bundle_, slot, range), voxels_.cell(first_ + i))) continue;
+    hits_.add(bundle_, slot, rays_->ray(ray.row, ray.column));
+  }
+  rays_->find_ranges(*station_, hits_);
+  for (std::uint32_t k = 0; k < hits_.size; ++k) {
+    const std::uint32_t slot = hits_.slot[k], i = cast_voxel_[slot];
+    if (!lies_in(rays_->grid(), hits_.point(bundle_.origin, k), voxels_.cell(first_ + i))) continue;
     if (rays_->limited() && rays_->dropped(bundle_, slot).points > 0) continue;
     if (counts_[i] != std::numeric_limits<std::uint32_t>::max()) ++counts_[i];
     if (!masks_.empty()) masks_[i] |= bit;

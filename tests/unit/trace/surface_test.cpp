@@ -16,16 +16,16 @@ TEST(Surface, NormalsFaceTheScannerAndFallBackToThePlane) {
   const Float3 d{0, 1, 0};
   {
     const Surface surface = surface_over(std::make_shared<const SceneData>(scene));
-    const auto n = surface.normal(0, d, {0.3, 0.3});
-    EXPECT_EQ(n[1], -1);
-    EXPECT_NEAR(surface.reflectivity(0, {0, 0, 0}, d, 3), 0.8, 1e-7);
+    const Vec3 n = surface.facet(0).normal(d, {0.3, 0.3});
+    EXPECT_EQ(n.y, -1);
+    EXPECT_NEAR(surface.facet(0).reflectivity(d, n), 0.8, 1e-7);
   }
   scene.normals.assign(scene.positions.size(), Float3{});
-  EXPECT_EQ(surface_over(std::make_shared<const SceneData>(scene)).normal(0, d, {0.3, 0.3})[1], -1);
+  EXPECT_EQ(surface_over(std::make_shared<const SceneData>(scene)).facet(0).normal(d, {0.3, 0.3}).y, -1);
   scene.normals.assign(scene.positions.size(), Float3{0.6f, 0.8f, 0});
-  const auto n = surface_over(std::make_shared<const SceneData>(scene)).normal(0, d, {0.3, 0.3});
-  EXPECT_NEAR(n[0], -0.6, 1e-7);
-  EXPECT_NEAR(n[1], -0.8, 1e-7);
+  const Vec3 n = surface_over(std::make_shared<const SceneData>(scene)).facet(0).normal(d, {0.3, 0.3});
+  EXPECT_NEAR(n.x, -0.6, 1e-7);
+  EXPECT_NEAR(n.y, -0.8, 1e-7);
 }
 
 TEST(Surface, KnowsWhatIsSurveyed) {

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trace/embree/hits.hpp"
+
+#include <algorithm>
+#include <array>
+#include <type_traits>
+
+#include "core/target_clones.hpp"
+
+namespace vantage {
+namespace {
+
+constexpr std::uint32_t lanes = Hits::lanes;
+
+// Of so many hits of one triangle.
+template <bool smooth>
+[[gnu::always_inline]] inline void shade(const Facet& facet, const Float3& o, const float* x, const float* y,
+                                         const float* z, const float* t, float* __restrict reflectivity) {
+  for (std::size_t k = 0; k < lanes; ++k) {
+    const Float3 d{x[k], y[k], z[k]};
+    std::array<double, 2> weights{};
+    if constexpr (smooth) weights = facet.weights(o, d, t[k]);
+    reflectivity[k] = facet.reflectivity(d, facet.normal<smooth>(d, weights));
+  }
+}
+
+VANTAGE_TARGET_CLONES
+void add_noise(const Surface& surface, const RangeNoise& noise, const Float3& origin, std::uint32_t place, Hits& hits) {
+  alignas(64) float reflectivity[Hits::capacity];
+  alignas(64) std::uint32_t bits[Hits::capacity];
+  for (std::uint32_t first = 0; first < hits.size;) {
+    std::uint32_t end = first + 1;
+    while (end < hits.size && hits.primitive[end] == hits.primitive[first]) ++end;
+    const Facet facet = surface.facet(hits.primitive[first]);
+    // What the last vector has beyond the triangle's hits is overwritten.
+    const auto go = [&]<bool smooth>(std::bool_constant<smooth>) {
+      for (std::size_t k = first; k < end; k += lanes)
+        shade<smooth>(facet, origin, hits.x + k, hits.y + k, hits.z + k, hits.t + k, reflectivity + k);
+    };
+    if (facet.smooth) {
+      go(std::true_type());
+    } else {
+      go(std::false_type());
+    }
+    first = end;
+  }
+  for (std::uint32_t first = 0; first < hits.size; first += lanes)
+    noise.draw<lanes>(hits.ray_low + first, hits.ray_high + first, place, bits + first);
+  for (std::uint32_t k = 0; k < hits.size; ++k) hits.range[k] = noise.displaced(hits.t[k], reflectivity[k], bits[k]);
+}
+
+}  // namespace
+
+void find_ranges(const Surface& surface, const RangeNoise& noise, const Float3& origin, std::uint32_t place,
+                 Hits& hits) {
+  if (!noise.enabled()) {
+    std::copy_n(hits.t, hits.size, hits.range);
+    return;
+  }
+  // What the last vector has beyond the last hit is computed and never looked at.
+  for (float* values : {hits.x, hits.y, hits.z, hits.t}) std::fill_n(values + hits.size, std::size_t{lanes}, 1.0f);
+  for (std::uint32_t* values : {hits.ray_low, hits.ray_high}) std::fill_n(values + hits.size, std::size_t{lanes}, 0u);
+  add_noise(surface, noise, origin, place, hits);
+}
+
+}  // namespace vantage

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// Hits whose points are asked for, side by side, so that algorithm 1 works on many at once.
+#pragma once
+
+#include <cstdint>
+
+#include "trace/embree/range_noise.hpp"
+#include "trace/embree/ray_caster.hpp"
+#include "trace/embree/surface.hpp"
+
+namespace vantage {
+
+struct Hits {
+  static constexpr std::uint32_t lanes = 8;
+  static constexpr std::uint32_t capacity = RayBundle::capacity + lanes;  // whole vectors
+
+  std::uint32_t size = 0;
+  alignas(64) float x[capacity], y[capacity], z[capacity];  // directions
+  alignas(64) float t[capacity];                            // distances
+  alignas(64) std::uint32_t primitive[capacity];
+  alignas(64) std::uint32_t ray_low[capacity], ray_high[capacity];  // halves of the ray's number, which keys the noise
+  std::uint32_t slot[capacity];                                     // in the bundle
+  alignas(64) float range[capacity];                                // out: of find_ranges
+
+  // REQUIRES: the slot has a hit; no more than RayBundle::capacity since the size was 0.
+  void add(const RayBundle& rays, std::uint32_t from, std::uint64_t ray) {
+    x[size] = rays.x[from];
+    y[size] = rays.y[from];
+    z[size] = rays.z[from];
+    t[size] = rays.t[from];
+    primitive[size] = rays.primitive[from];
+    ray_low[size] = static_cast<std::uint32_t>(ray);
+    ray_high[size] = static_cast<std::uint32_t>(ray >> 32);
+    slot[size++] = from;
+  }
+  Float3 point(const Float3& origin, std::uint32_t k) const {
+    return {origin.x + range[k] * x[k], origin.y + range[k] * y[k], origin.z + range[k] * z[k]};
+  }
+};
+
+// Fills `range`: the distances of the points, noise included. `place` keys the noise, too.
+void find_ranges(const Surface& surface, const RangeNoise& noise, const Float3& origin, std::uint32_t place,
+                 Hits& hits);
+
+}  // namespace vantage

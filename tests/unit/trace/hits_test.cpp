@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trace/embree/hits.hpp"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+
+#include "support/trace_scenes.hpp"
+
+namespace vantage {
+namespace {
+
+// Triangles of the hits in a row, some alone and some in runs that end anywhere in a vector.
+std::vector<std::uint32_t> in_runs(RandomStream& random, std::uint32_t size, std::uint32_t triangles) {
+  std::vector<std::uint32_t> of;
+  while (of.size() < size) {
+    const std::uint32_t run = 1 + random.bits() % 20, triangle = random.bits() % triangles;
+    for (std::uint32_t k = 0; k < run && of.size() < size; ++k) of.push_back(triangle);
+  }
+  return of;
+}
+
+void expect_ranges_as_one_by_one(const SceneData& made) {
+  const auto scene = std::make_shared<const SceneData>(made);
+  const Surface surface(scene, std::make_shared<Planes>(scene));
+  Scanner scanner;
+  scanner.noise = rtc360_noise();
+  const RangeNoise noise(std::make_shared<const NoiseModel>(make_noise_model(scanner, 3)));
+  const Float3 origin{0.3f, -2, 1};
+  RandomStream random(5);
+  const auto hits = std::make_unique<Hits>();
+  const auto rays = std::make_unique<RayBundle>();
+  for (const std::uint32_t size : {0u, 1u, 7u, 8u, 9u, 100u, RayBundle::capacity}) {
+    hits->size = 0;
+    const std::vector<std::uint32_t> triangles =
+        in_runs(random, size, static_cast<std::uint32_t>(scene->triangles.size()));
+    const std::uint64_t first = std::uint64_t{random.bits()} << 4;  // beyond 32 bits
+    for (std::uint32_t k = 0; k < size; ++k) {
+      const Vec3 d{test::between(random, -1, 1), test::between(random, 0.1, 1), test::between(random, -1, 1)};
+      const Float3 unit = narrow(d * (1 / std::sqrt(dot(d, d))));
+      rays->x[k] = unit.x;
+      rays->y[k] = unit.y;
+      rays->z[k] = unit.z;
+      rays->t[k] = test::between(random, 0.5, 40);
+      rays->primitive[k] = triangles[k];
+      hits->add(*rays, k, first + k);
+    }
+    find_ranges(surface, noise, origin, 4, *hits);
+    for (std::uint32_t k = 0; k < size; ++k) {
+      const Facet facet = surface.facet(triangles[k]);
+      const Float3 d{rays->x[k], rays->y[k], rays->z[k]};
+      const Vec3 normal = facet.normal(d, facet.weights(origin, d, rays->t[k]));
+      const float expected = noise.displaced(rays->t[k], facet.reflectivity(d, normal), first + k, 4);
+      ASSERT_EQ(std::bit_cast<std::uint32_t>(hits->range[k]), std::bit_cast<std::uint32_t>(expected))
+          << k << " of " << size;
+    }
+  }
+}
+
+TEST(Hits, RangesOfManyAreThoseOfEach) {
+  SceneData scene = *test::SceneBuilder()
+                         .mesh(Role::surveyed, test::quad({-1, 3, -1}, {2, 0, 0}, {0, 0, 2}), 0.8)
+                         .mesh(Role::surveyed, test::quad({-4, 1, -1}, {1, 3, 0.2f}, {0, 0.4f, 3}), 0.3)
+                         .mesh(Role::surveyed, test::quad({2, 2, 0}, {0.1f, 0, 0}, {0, 1e-3f, 1}), 1.0)
+                         .finish();
+  expect_ranges_as_one_by_one(scene);
+  RandomStream random(6);
+  for (std::size_t k = 0; k < scene.positions.size(); ++k)
+    scene.normals.push_back({test::between(random, -1, 1), test::between(random, -1, 1), test::between(random, -1, 1)});
+  expect_ranges_as_one_by_one(scene);
+  scene.normals.assign(scene.positions.size(), Float3{});  // as of a file that has some: those of the planes
+  expect_ranges_as_one_by_one(scene);
+}
+
+TEST(Hits, WithoutNoiseARangeIsTheDistance) {
+  const auto scene = test::SceneBuilder().mesh(Role::surveyed, test::quad({-1, 3, -1}, {2, 0, 0}, {0, 0, 2})).finish();
+  const auto rays = std::make_unique<RayBundle>();
+  const auto hits = std::make_unique<Hits>();
+  rays->x[0] = rays->z[0] = 0;
+  rays->y[0] = 1;
+  rays->t[0] = 3;
+  rays->primitive[0] = 0;
+  hits->add(*rays, 0, 17);
+  find_ranges(Surface(scene, std::make_shared<Planes>(scene)), RangeNoise(nullptr), {1, 0, 0}, 0, *hits);
+  EXPECT_EQ(hits->range[0], 3);
+  EXPECT_EQ(hits->point({1, 0, 0}, 0), (Float3{1, 3, 0}));
+}
+
+}  // namespace
+}  // namespace vantage
