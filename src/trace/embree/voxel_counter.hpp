@@ -99,7 +99,7 @@ class SampledVoxelCounter {
   std::vector<Sight> sights_, visible_;
   std::vector<Probe> probes_;
   RayBundle bundle_;
-  Hits hits_;  // of the bundle
+  Hits hits_;                                                             // of the bundle
   std::array<std::uint32_t, RayBundle::capacity> cast_ray_, cast_voxel_;  // of the bundle
 };
 
