@@ -2,8 +2,6 @@
 #include "trace/embree/hits.hpp"
 
 #include <algorithm>
-#include <array>
-#include <type_traits>
 
 #include "core/target_clones.hpp"
 
@@ -12,15 +10,19 @@ namespace {
 
 constexpr std::uint32_t lanes = Hits::lanes;
 
-// Of so many hits of one triangle.
-template <bool smooth>
+// Of so many hits of one triangle. A loop for each kind of normal: one with a choice in it does not become vectors.
 [[gnu::always_inline]] inline void shade(const Facet& facet, const Float3& o, const float* x, const float* y,
                                          const float* z, const float* t, float* __restrict reflectivity) {
-  for (std::size_t k = 0; k < lanes; ++k) {
-    const Float3 d{x[k], y[k], z[k]};
-    std::array<double, 2> weights{};
-    if constexpr (smooth) weights = facet.weights(o, d, t[k]);
-    reflectivity[k] = facet.reflectivity(d, facet.normal<smooth>(d, weights));
+  if (facet.smooth) {
+    for (std::size_t k = 0; k < lanes; ++k) {
+      const Float3 d{x[k], y[k], z[k]};
+      reflectivity[k] = facet.reflectivity(d, facet.smooth_normal(d, facet.weights(o, d, t[k])));
+    }
+  } else {
+    for (std::size_t k = 0; k < lanes; ++k) {
+      const Float3 d{x[k], y[k], z[k]};
+      reflectivity[k] = facet.reflectivity(d, facet.flat_normal(d));
+    }
   }
 }
 
@@ -33,15 +35,8 @@ void add_noise(const Surface& surface, const RangeNoise& noise, const Float3& or
     while (end < hits.size && hits.primitive[end] == hits.primitive[first]) ++end;
     const Facet facet = surface.facet(hits.primitive[first]);
     // What the last vector has beyond the triangle's hits is overwritten.
-    const auto go = [&]<bool smooth>(std::bool_constant<smooth>) {
-      for (std::size_t k = first; k < end; k += lanes)
-        shade<smooth>(facet, origin, hits.x + k, hits.y + k, hits.z + k, hits.t + k, reflectivity + k);
-    };
-    if (facet.smooth) {
-      go(std::true_type());
-    } else {
-      go(std::false_type());
-    }
+    for (std::size_t k = first; k < end; k += lanes)
+      shade(facet, origin, hits.x + k, hits.y + k, hits.z + k, hits.t + k, reflectivity + k);
     first = end;
   }
   for (std::uint32_t first = 0; first < hits.size; first += lanes)

@@ -10,6 +10,10 @@
 
 namespace vantage {
 
+inline Float3 point_at(const Float3& origin, const Float3& d, float range) {
+  return {origin.x + range * d.x, origin.y + range * d.y, origin.z + range * d.z};
+}
+
 struct Hits {
   static constexpr std::uint32_t lanes = 8;
   static constexpr std::uint32_t capacity = RayBundle::capacity + lanes;  // whole vectors
@@ -33,9 +37,7 @@ struct Hits {
     ray_high[size] = static_cast<std::uint32_t>(ray >> 32);
     slot[size++] = from;
   }
-  Float3 point(const Float3& origin, std::uint32_t k) const {
-    return {origin.x + range[k] * x[k], origin.y + range[k] * y[k], origin.z + range[k] * z[k]};
-  }
+  Float3 point(const Float3& origin, std::uint32_t k) const { return point_at(origin, {x[k], y[k], z[k]}, range[k]); }
 };
 
 // Fills `range`: the distances of the points, noise included. `place` keys the noise, too.

@@ -15,7 +15,8 @@ void scan_tile(const StationRays& station_rays, const TraceStation& station, con
   station_rays.caster().cast(rays);
   const Surface& surface = station_rays.surface();
   const RangeNoise& noise = station_rays.noise();
-  const bool shaded = (outputs & (Tracer::normal | Tracer::barycentric | Tracer::reflectivity)) != 0 || noise.enabled();
+  const bool need_normal = (outputs & (Tracer::normal | Tracer::reflectivity)) != 0 || noise.enabled();
+  const bool need_weights = need_normal || (outputs & Tracer::barycentric) != 0;
 
   for (std::uint32_t slot = 0; slot < rays.size; ++slot) {
     const std::uint64_t ray = station_rays.ray(tile.row + slot / tile.columns, tile.column + slot % tile.columns);
@@ -28,15 +29,17 @@ void scan_tile(const StationRays& station_rays, const TraceStation& station, con
     if (hit) {
       const Float3 d{rays.x[slot], rays.y[slot], rays.z[slot]};
       range = rays.t[slot];
-      if (shaded) {
+      if (need_weights) {
         const Facet facet = surface.facet(triangle);
         weights = facet.weights(rays.origin, d, range);
-        const Vec3 unit = facet.normal(d, weights);
-        normal = narrow(unit);
-        reflectivity = facet.reflectivity(d, unit);
+        if (need_normal) {
+          const Vec3 unit = facet.normal(d, weights);
+          normal = narrow(unit);
+          reflectivity = facet.reflectivity(d, unit);
+        }
       }
       if (noise.enabled()) range = noise.displaced(range, reflectivity, ray, station.place);
-      point = {rays.origin.x + range * d.x, rays.origin.y + range * d.y, rays.origin.z + range * d.z};
+      point = point_at(rays.origin, d, range);
     }
     if (outputs & Tracer::range) chunk.range[k] = range;
     if (outputs & Tracer::position) chunk.position[k] = point;

@@ -110,7 +110,7 @@ class StationRays {
     const Float3 d{rays.x[slot], rays.y[slot], rays.z[slot]};
     const float t = rays.t[slot];
     const Facet facet = surface().facet(triangle);
-    const Vec3 normal = facet.normal(d, facet.weights(rays.origin, d, t));
+    const Vec3 normal = facet.smooth ? facet.smooth_normal(d, facet.weights(rays.origin, d, t)) : facet.flat_normal(d);
     return judge_.missed(surface().mesh(triangle), dot(normal, widen(d)), t, facet.reflectivity(d, normal));
   }
 

@@ -14,8 +14,8 @@
 
 namespace vantage {
 
-// A triangle as its hits ask it: what is the same for all of them. Its functions have no branch that depends on the
-// hit, so that a loop over hits becomes vectors.
+// A triangle as its hits ask it: what is the same for all of them. No function but normal() has a branch, so that loops
+// over hits become vectors.
 struct Facet {
   Vec3 corner, first, second;  // a corner, and the edges that leave it
   Vec3 across;                 // first × second
@@ -33,24 +33,26 @@ struct Facet {
     return {area > 0 ? u : 0.0, area > 0 ? v : 0.0};
   }
   // Unit normal turned against d: of the corners, interpolated, or of the plane where they have none or cancel out.
-  template <bool smooth>
-  [[gnu::always_inline]] Vec3 normal(const Float3& d, const std::array<double, 2>& weights) const {
-    Vec3 n = plane;
-    if constexpr (smooth) {
-      const Vec3 sum = normals[0] * (1 - weights[0] - weights[1]) + normals[1] * weights[0] + normals[2] * weights[1];
-      const double length = std::sqrt(dot(sum, sum)), scale = 1 / length;
-      const bool some = length > 0;
-      n = {some ? sum.x * scale : plane.x, some ? sum.y * scale : plane.y, some ? sum.z * scale : plane.z};
-    }
-    return n * (dot(n, widen(d)) > 0 ? -1.0 : 1.0);
-  }
   Vec3 normal(const Float3& d, const std::array<double, 2>& weights) const {
-    return smooth ? normal<true>(d, weights) : normal<false>(d, weights);
+    return smooth ? smooth_normal(d, weights) : flat_normal(d);
+  }
+  [[gnu::always_inline]] Vec3 flat_normal(const Float3& d) const { return against(d, plane); }
+  // REQUIRES: smooth.
+  [[gnu::always_inline]] Vec3 smooth_normal(const Float3& d, const std::array<double, 2>& weights) const {
+    const Vec3 n = normals[0] * (1 - weights[0] - weights[1]) + normals[1] * weights[0] + normals[2] * weights[1];
+    const double length = std::sqrt(dot(n, n)), scale = 1 / length;
+    const bool some = length > 0;
+    return against(d, {some ? n.x * scale : plane.x, some ? n.y * scale : plane.y, some ? n.z * scale : plane.z});
   }
   // R·(I·(−N)), never below 0.
   [[gnu::always_inline]] float reflectivity(const Float3& d, const Vec3& normal) const {
     const double value = diffuse * -dot(normal, widen(d));
     return static_cast<float>(std::min(std::max(value, 0.0), 1.0));
+  }
+
+ private:
+  [[gnu::always_inline]] static Vec3 against(const Float3& d, const Vec3& n) {
+    return n * (dot(n, widen(d)) > 0 ? -1.0 : 1.0);
   }
 };
 
