@@ -310,23 +310,31 @@ TEST(RegistrationError, GoesByAllSurfacesWhereAsked) {
   EXPECT_THROW(registration_error(counts, counts.voxels, options, &held, held.voxels), Error);
 }
 
-// A station that sees nothing surveyed hands on the poses of its neighbours.
+// A station that sees nothing surveyed hands on the poses of its neighbours, and one that sees nothing at all nothing.
 TEST(RegistrationError, HandsPosesOnByStationsThatSeeNothingSurveyed) {
-  Made around{.heads = {{0, 0, 0}, {0.001, 0, 0}, {0.002, 0, 0}}}, surveyed{.heads = around.heads};
-  around.room({}, 3, 2, 20, 3);
-  around.room({}, 3, 2, 20, 6);
-  surveyed.room({}, 3, 2, 20, 1);
-  surveyed.room({}, 3, 2, 20, 4);
-  RegistrationOptions options = weak();
-  options.surfaces = RegistrationSurfaces::all;
-  const NetworkCounts counts = surveyed.counts(), held = around.counts();
-  const RegistrationError error = registration_error(counts, counts.voxels, options, &held, held.voxels);
-  const Room room(3, 2, 20);
-  // Two links in a row, and half of the difference to each end: a quarter of its variance.
-  const double expected = std::sqrt(2 * (3 * room.shift + 2 * room.turn * room.radius_squared) / 4);
-  EXPECT_NEAR(error.rms_m, expected, 1e-3 * expected);
-  EXPECT_EQ(error.stations[1].rms_m, 0);
-  EXPECT_GT(dot(error.stations[1].axes[0], error.stations[1].axes[0]), 0) << "its head is not where it should be, too";
+  for (const std::size_t blind : {0u, 1u}) {  // so many before the others
+    Made around{.heads = {{0, 0, 0}, {0.001, 0, 0}, {0.002, 0, 0}}};
+    around.heads.insert(around.heads.begin(), blind, {5, 0, 0});
+    Made surveyed{.heads = around.heads};
+    around.room({}, 3, 2, 20, 3u << blind);
+    around.room({}, 3, 2, 20, 6u << blind);
+    surveyed.room({}, 3, 2, 20, 1u << blind);
+    surveyed.room({}, 3, 2, 20, 4u << blind);
+    RegistrationOptions options = weak();
+    options.surfaces = RegistrationSurfaces::all;
+    const NetworkCounts counts = surveyed.counts(), held = around.counts();
+    const RegistrationError error = registration_error(counts, counts.voxels, options, &held, held.voxels);
+    const Room room(3, 2, 20);
+    // Two links in a row, and half of the difference to each end: a quarter of its variance.
+    const double expected = std::sqrt(2 * (3 * room.shift + 2 * room.turn * room.radius_squared) / 4);
+    EXPECT_NEAR(error.rms_m, expected, 1e-3 * expected);
+    const StationError& between = error.stations[blind + 1];
+    EXPECT_EQ(between.rms_m, 0);
+    EXPECT_GT(dot(between.axes[0], between.axes[0]), 0) << "its head is not where it should be, too";
+    if (blind > 0) {
+      EXPECT_EQ(dot(error.stations[0].axes[0], error.stations[0].axes[0]), 0);
+    }
+  }
 }
 
 TEST(RegistrationError, CountsRangeNoiseByTheRaysOfAFreeView) {

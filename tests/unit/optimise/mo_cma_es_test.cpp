@@ -544,6 +544,50 @@ TEST(MoCmaEs, SwappedBlocksLeaveLocalFronts) {
   EXPECT_GT(reached(0.4), reached(0) + 0.03);
 }
 
+// A front on the diagonal, whose members have next to no steps of their own.
+OptimiserConfig at_rest(std::vector<double> along) {
+  OptimiserConfig c;
+  c.population = along.size();
+  c.sigma0 = 1e-6;
+  c.bounds = Bounds::uniform(3, 0, 1);
+  for (const double t : along) c.start.push_back(std::vector<double>(3, t));
+  c.mo = {.batch = 256, .guided = 0, .spread = 0, .recombined = 0, .swapped = 0};
+  return c;
+}
+
+TEST(MoCmaEs, StepsAlongTheFrontFollowItsMembers) {
+  const std::vector<double> along{0.2, 0.4, 0.6, 0.8};
+  OptimiserConfig c = at_rest(along);
+  c.mo.spread = 1;
+  MoCmaEs optimiser(3, 2, c);
+  step(optimiser, 3, two_spheres);
+  const auto points = optimiser.ask();
+  std::size_t between = 0;
+  for (std::size_t k = 0; k < points.size(); k += 3) {
+    EXPECT_NEAR(points[k], points[k + 1], 1e-4);
+    EXPECT_NEAR(points[k], points[k + 2], 1e-4);
+    between += std::ranges::none_of(along, [&](double t) { return std::abs(points[k] - t) < 1e-3; });
+  }
+  EXPECT_GT(between, points.size() / 3 * 9 / 10);
+}
+
+// Whoever adds nothing to the front, as one of two in one place, is nobody's parent but where it is an extreme.
+TEST(MoCmaEs, GuidedParentsAreDrawnByWhatTheyAddToTheFront) {
+  OptimiserConfig c = at_rest({0.5, 0.5, 0.1, 0.9, 0.3});
+  c.mo.guided = 1;
+  MoCmaEs optimiser(3, 2, c);
+  step(optimiser, 3, two_spheres);
+  const auto points = optimiser.ask();
+  const auto near = [&](double t) {
+    std::size_t many = 0;
+    for (std::size_t k = 0; k < points.size(); k += 3) many += std::abs(points[k] - t) < 1e-3;
+    return many;
+  };
+  EXPECT_EQ(near(0.5), 0u);
+  EXPECT_GT(near(0.3), 10u);
+  EXPECT_EQ(near(0.1) + near(0.3) + near(0.9), points.size() / 3);
+}
+
 TEST(MoCmaEs, DrawsABlockFromAnywhereAgainFromAnywhere) {
   OptimiserConfig c;
   c.population = 4;

@@ -24,6 +24,9 @@ TEST(Pace, SplitsWhatTakesTooLongAndRecovers) {
   Pace other(1, first, 1, first);
   for (int k = 0; k < 3; ++k) other.saw(10, 100);
   EXPECT_LT(other.rays(), first / 100);
+  const double slow = other.rays();
+  other.saw(1, 0.5);  // in time, but not so quick that more could be asked for
+  EXPECT_EQ(other.rays(), slow);
   for (int k = 0; k < 20; ++k) other.saw(1, 1e-3);
   EXPECT_EQ(other.rays(), first);
 }
