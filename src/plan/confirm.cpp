@@ -144,12 +144,15 @@ ConfirmedFront confirm_front(const SearchOutcome& found, const DecisionSpace& sp
     if (!watch.report) return;
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
     const double rate = seconds > 0 ? (static_cast<double>(done) + part) / seconds : 0;
+    // The first station of a network takes longer than the others, which find voxels that are full: a part of the first
+    // network would have all of them take several times as long as they do.
+    const bool telling = rate > 0 && (done > 0 || entries.size() == 1);
     watch.report({.iteration = done,
                   .iterations = entries.size(),
                   .evaluations = found.evaluations,
                   .hypervolume = found.hypervolume,
                   .evaluations_per_second = rate,
-                  .seconds_left = rate > 0 ? (static_cast<double>(entries.size() - done) - part) / rate : -1,
+                  .seconds_left = telling ? (static_cast<double>(entries.size() - done) - part) / rate : -1,
                   .phase = "confirm"});
   };
   report(0, 0);

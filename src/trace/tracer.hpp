@@ -145,7 +145,8 @@ class Tracer {
                               const CountOptions& options, const Progress& progress) = 0;
 
   // Each network as count() does it; networks[k] lists the active stations of network k, station_counts[k] is its
-  // N_stations. Where cancelled, those that were not reached say so. REQUIRES: no field.
+  // N_stations. Where cancelled, those that were not reached say so. An engine may go through them in another order,
+  // and trace a station that several have once; `rays` are what each would take alone. REQUIRES: no field.
   virtual std::vector<NetworkCounts> count_each(std::span<const std::vector<TraceStation>> networks,
                                                 std::span<const std::uint32_t> station_counts,
                                                 const CountOptions& options, const Progress& progress);

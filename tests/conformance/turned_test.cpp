@@ -14,6 +14,7 @@
 #include "core/philox.hpp"
 #include "scan/noise_model.hpp"
 #include "scan/pattern.hpp"
+#include "support/expect_counts.hpp"
 #include "vantage/scene.hpp"
 
 namespace vantage::test {
@@ -223,6 +224,34 @@ TEST_P(TurnedConformance, ASampleOfAllVoxelsIsTheExactEvaluation) {
 // Closed forms.
 
 // A full circle of rays is its own image under a quarter turn, to the bit where its columns divide by four.
+// Networks of one front have stations in common, which need not be traced again for each.
+TEST_P(TurnedConformance, NetworksWithStationsInCommonAreCountedAsEachAlone) {
+  const TestSite& site = sites()[1];
+  const std::vector<TraceStation> all = stations_of(site);
+  std::vector<TraceStation> others = all, moved = all, upright = all;
+  for (TraceStation& station : others) station.place = (station.place + 1) % 4;
+  moved[2].origin.x += 0.25f;
+  upright[0].turn.reset();
+  const std::vector<std::vector<TraceStation>> networks{all, others, moved, {all[0], all[3]}, upright, all};
+  const std::vector<std::uint32_t> sizes(networks.size(), 4);
+  for (const bool noisy : {false, true}) {
+    const auto tracer = make(site, noisy);
+    for (const Tracer::CountOptions options : {Tracer::CountOptions{true, true, nullptr}, {false, false, nullptr}}) {
+      const std::vector<NetworkCounts> each = tracer->count_each(networks, sizes, options, {});
+      ASSERT_EQ(each.size(), networks.size());
+      for (std::size_t k = 0; k < networks.size(); ++k) {
+        SCOPED_TRACE(k);
+        const NetworkCounts alone = tracer->count(networks[k], sizes[k], options, {});
+        expect_equal_counts(each[k], alone);
+        EXPECT_EQ(each[k].points, alone.points);
+        EXPECT_EQ(each[k].points_on_surveyed, alone.points_on_surveyed);
+        EXPECT_EQ(each[k].dropped, alone.dropped);
+        EXPECT_FALSE(each[k].cancelled);
+      }
+    }
+  }
+}
+
 TEST_P(TurnedConformance, AQuarterTurnOfAFullCircleChangesNoCount) {
   const TestSite& site = sites()[2];
   ASSERT_EQ(site.pattern->columns() % 4, 0u);

@@ -52,6 +52,12 @@ class EmbreeTracer final : public Tracer {
     return count_network(scanners_, stations, station_count, goal_density_, options, field_, progress);
   }
 
+  std::vector<NetworkCounts> count_each(std::span<const std::vector<TraceStation>> networks,
+                                        std::span<const std::uint32_t> station_counts, const CountOptions& options,
+                                        const Progress& progress) override {
+    return count_networks(scanners_, networks, station_counts, goal_density_, options, field_, progress);
+  }
+
   std::vector<NetworkCounts> count_sampled(std::span<const std::vector<TraceStation>> networks,
                                            std::span<const std::uint32_t> station_counts, const SampleJob& job,
                                            const Progress& progress) override {

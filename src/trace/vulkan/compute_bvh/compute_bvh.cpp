@@ -25,8 +25,8 @@ class ComputeBvh final : public Traversal {
     binding.arrays[bvh_triangles_array] = triangles_.address();
     return binding;
   }
-  // What a tile of rays decides alike on its way down the tree is decided once for all of them.
   bool is_watertight() const override { return true; }  // lib/triangle_hit.glsl
+  // What a tile of rays decides alike on its way down the tree is decided once for all of them.
   std::optional<TilePass> tile_pass() const override {
     return TilePass{shaders::tile_starts, tile_starts * sizeof(TileStart)};
   }

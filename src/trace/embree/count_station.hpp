@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// The rays of one station, counted.
+#pragma once
+
+#include <cstdint>
+
+#include "trace/embree/point_buckets.hpp"
+#include "trace/embree/station_rays.hpp"
+
+namespace vantage {
+
+struct StationTotals {
+  std::uint64_t rays = 0, points = 0, points_on_surveyed = 0;
+  DroppedPoints dropped = {};
+  friend StationTotals operator+(const StationTotals& a, const StationTotals& b) {
+    return {a.rays + b.rays, a.points + b.points, a.points_on_surveyed + b.points_on_surveyed, a.dropped + b.dropped};
+  }
+};
+
+// Adds the station's points to the field, through `points`, and what they sum to to `totals`. `skip`: as
+// Tracer::CountOptions says. Whether it came to the end before it was stopped.
+bool count_station(const StationRays& rays, const TraceStation& station, bool skip, VoxelField& field,
+                   PointBuckets& points, StationTotals& totals, const Progress& progress);
+
+}  // namespace vantage

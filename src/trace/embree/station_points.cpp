@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trace/embree/station_points.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+
+namespace vantage {
+
+// f(number, first word, end of words)
+template <class F>
+void StationPoints::each_chunk(const F& f) const {
+  constexpr std::size_t words = chunk / word;
+  tbb::parallel_for(std::size_t{0}, (seen_.size() + words - 1) / words,
+                    [&](std::size_t c) { f(c, c * words, std::min(seen_.size(), (c + 1) * words)); });
+}
+
+StationPoints::StationPoints(std::span<const std::uint32_t> counts, const StationTotals& totals)
+    : totals_(totals), seen_((counts.size() + word - 1) / word), first_((counts.size() + chunk - 1) / chunk) {
+  each_chunk([&](std::size_t c, std::size_t begin, std::size_t end) {
+    for (std::size_t w = begin; w < end; ++w) {
+      const std::span<const std::uint32_t> own = counts.subspan(w * word, std::min(word, counts.size() - w * word));
+      for (std::size_t k = 0; k < own.size(); ++k) seen_[w] |= std::uint64_t{own[k] > 0} << k;
+      first_[c] += static_cast<std::size_t>(std::popcount(seen_[w]));
+    }
+  });
+  std::size_t sum = 0;
+  for (std::size_t& first : first_) sum += std::exchange(first, sum);
+  few_.resize(sum);
+  each_chunk([&](std::size_t c, std::size_t begin, std::size_t end) {
+    std::uint8_t* few = few_.data() + first_[c];
+    for (std::size_t rank = begin * word; rank < std::min(end * word, counts.size()); ++rank)
+      if (counts[rank] > 0) *few++ = static_cast<std::uint8_t>(std::min<std::uint32_t>(counts[rank], more));
+  });
+  if (std::find(few_.begin(), few_.end(), more) == few_.end()) return;
+  for (std::uint32_t rank = 0; rank < counts.size(); ++rank)
+    if (counts[rank] >= more) many_.emplace_back(rank, counts[rank]);
+}
+
+std::uint32_t StationPoints::count_of(std::uint32_t rank) const {
+  return std::lower_bound(many_.begin(), many_.end(), std::pair{rank, 0u})->second;
+}
+
+void StationPoints::add_to(VoxelField& field, std::uint64_t bit) const {
+  const bool masks = !field.stations.empty();
+  each_chunk([&](std::size_t c, std::size_t begin, std::size_t end) {
+    const std::uint8_t* few = few_.data() + first_[c];
+    for (std::size_t w = begin; w < end; ++w) {
+      for (std::uint64_t left = seen_[w]; left != 0; left &= left - 1, ++few) {
+        const std::size_t rank = w * word + static_cast<std::size_t>(std::countr_zero(left));
+        const std::uint32_t points = *few == more ? count_of(static_cast<std::uint32_t>(rank)) : *few;
+        std::uint32_t& n = field.count[rank];
+        n = points > std::numeric_limits<std::uint32_t>::max() - n ? std::numeric_limits<std::uint32_t>::max()
+                                                                   : n + points;
+        if (masks) field.stations[rank] |= bit;
+      }
+    }
+  });
+}
+
+}  // namespace vantage
