@@ -15,6 +15,7 @@
 #include <numeric>
 #include <utility>
 
+#include "core/seconds_since.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage {
@@ -33,8 +34,6 @@ constexpr double bound_slack = 1e-6;
 constexpr double known_slack = 1e-7;
 // A cut must be broken by this share of all weight.
 constexpr double broken = 1e-9;
-
-double seconds_since(Clock::time_point begun) { return std::chrono::duration<double>(Clock::now() - begun).count(); }
 
 }  // namespace
 

@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
+#include "core/add_saturating.hpp"
 #include "trace/sample_counts.hpp"
 #include "vantage/candidates.hpp"
 #include "vantage/error.hpp"
@@ -17,11 +17,6 @@ namespace {
 constexpr std::size_t stations_at_once = 64;
 // Of a sample, for the jackknife of weighted coverage; as many as the simulator makes.
 constexpr std::uint32_t sample_groups = 20;
-
-void add_saturating(std::uint32_t& sum, std::uint32_t points) {
-  sum = points > std::numeric_limits<std::uint32_t>::max() - sum ? std::numeric_limits<std::uint32_t>::max()
-                                                                 : sum + points;
-}
 
 }  // namespace
 

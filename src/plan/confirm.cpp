@@ -144,8 +144,8 @@ ConfirmedFront confirm_front(const SearchOutcome& found, const DecisionSpace& sp
     if (!watch.report) return;
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
     const double rate = seconds > 0 ? (static_cast<double>(done) + part) / seconds : 0;
-    // The first station of a network takes longer than the others, which find voxels that are full: a part of the first
-    // network would have all of them take several times as long as they do.
+    // Stations differ several times in what they take, and an engine may trace those of the first network for others,
+    // too: a part of it tells nothing yet of all.
     const bool telling = rate > 0 && (done > 0 || entries.size() == 1);
     watch.report({.iteration = done,
                   .iterations = entries.size(),

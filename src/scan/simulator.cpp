@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/recent.hpp"
+#include "core/seconds_since.hpp"
 #include "scan/limit_model.hpp"
 #include "scan/memory_estimate.hpp"
 #include "scan/noise_model.hpp"
@@ -76,10 +77,6 @@ std::shared_ptr<const VoxelGrid> build_grid(const SceneData& scene, const Simula
   if (!worths) return nullptr;
   grid->set_worths(std::move(*worths));
   return std::make_shared<VoxelGrid>(std::move(*grid));
-}
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 // What a network without an active station leaves: the voxels, and zeros.

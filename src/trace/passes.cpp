@@ -2,8 +2,8 @@
 #include "trace/passes.hpp"
 
 #include <algorithm>
-#include <limits>
 
+#include "core/add_saturating.hpp"
 #include "core/part_of.hpp"
 #include "trace/field_counts.hpp"
 #include "trace/registration_sums.hpp"
@@ -34,8 +34,7 @@ std::vector<Pass> passes_of(std::span<const TraceStation> stations, std::uint32_
 }
 
 void add(std::vector<std::uint32_t>& counts, std::span<const std::uint32_t> more) {
-  constexpr std::uint32_t most = std::numeric_limits<std::uint32_t>::max();
-  for (std::size_t k = 0; k < counts.size(); ++k) counts[k] = more[k] > most - counts[k] ? most : counts[k] + more[k];
+  for (std::size_t k = 0; k < counts.size(); ++k) add_saturating(counts[k], more[k]);
 }
 
 // A pass's figures of its own stations, among those of all.

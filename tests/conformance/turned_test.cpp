@@ -221,9 +221,6 @@ TEST_P(TurnedConformance, ASampleOfAllVoxelsIsTheExactEvaluation) {
   }
 }
 
-// Closed forms.
-
-// A full circle of rays is its own image under a quarter turn, to the bit where its columns divide by four.
 // Networks of one front have stations in common, which need not be traced again for each.
 TEST_P(TurnedConformance, NetworksWithStationsInCommonAreCountedAsEachAlone) {
   const TestSite& site = sites()[1];
@@ -252,6 +249,9 @@ TEST_P(TurnedConformance, NetworksWithStationsInCommonAreCountedAsEachAlone) {
   }
 }
 
+// Closed forms.
+
+// A full circle of rays is its own image under a quarter turn, to the bit where its columns divide by four.
 TEST_P(TurnedConformance, AQuarterTurnOfAFullCircleChangesNoCount) {
   const TestSite& site = sites()[2];
   ASSERT_EQ(site.pattern->columns() % 4, 0u);

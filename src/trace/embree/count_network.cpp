@@ -5,16 +5,13 @@
 #include <utility>
 
 #include "core/part_of.hpp"
+#include "core/seconds_since.hpp"
 #include "trace/embree/count_station.hpp"
 #include "trace/embree/shared_stations.hpp"
 #include "trace/field_counts.hpp"
 
 namespace vantage {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point begun) { return std::chrono::duration<double>(Clock::now() - begun).count(); }
 
 // A network on its way to its counts.
 class Tally {
@@ -49,7 +46,7 @@ class Tally {
   }
 
  private:
-  const Clock::time_point begun_ = Clock::now();
+  const std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
   VoxelField& field_;
   const VoxelGrid& grid_;
   std::uint32_t stations_;

@@ -10,7 +10,7 @@
 namespace vantage {
 namespace {
 
-// Equal where all rays of two stations give the same points. The place keys the noise.
+// Equal where all rays of two stations give the same points. The place keys the noise; no turn is all zeros.
 using Key = std::array<std::uint32_t, 14>;
 
 Key key_of(const TraceStation& station, bool noisy) {
@@ -33,13 +33,12 @@ Key key_of(const TraceStation& station, bool noisy) {
 SharedStations::SharedStations(std::span<const StationRays> scanners,
                                std::span<const std::vector<TraceStation>> networks, std::size_t most_bytes)
     : most_bytes_(most_bytes) {
-  std::map<std::pair<bool, Key>, std::size_t> known;
-  for (std::size_t n = 0; n < networks.size(); ++n) {
+  std::map<Key, std::size_t> known;
+  for (const std::vector<TraceStation>& network : networks) {
     std::vector<std::size_t>& ids = ids_.emplace_back();
-    for (const TraceStation& station : networks[n]) {
+    for (const TraceStation& station : network) {
       const Key key = key_of(station, scanners[station.scanner].noise().enabled());
-      const std::size_t id = known.try_emplace({station.turn.has_value(), key}, known.size()).first->second;
-      ids.push_back(id);
+      ids.push_back(known.try_emplace(key, known.size()).first->second);
     }
   }
   uses_.resize(known.size());

@@ -5,7 +5,8 @@
 
 #include <algorithm>
 #include <bit>
-#include <limits>
+
+#include "core/add_saturating.hpp"
 
 namespace vantage {
 
@@ -51,9 +52,7 @@ void StationPoints::add_to(VoxelField& field, std::uint64_t bit) const {
       for (std::uint64_t left = seen_[w]; left != 0; left &= left - 1, ++few) {
         const std::size_t rank = w * word + static_cast<std::size_t>(std::countr_zero(left));
         const std::uint32_t points = *few == more ? count_of(static_cast<std::uint32_t>(rank)) : *few;
-        std::uint32_t& n = field.count[rank];
-        n = points > std::numeric_limits<std::uint32_t>::max() - n ? std::numeric_limits<std::uint32_t>::max()
-                                                                   : n + points;
+        add_saturating(field.count[rank], points);
         if (masks) field.stations[rank] |= bit;
       }
     }

@@ -14,14 +14,13 @@
 #include <thread>
 #include <utility>
 
+#include "core/seconds_since.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 // Failures that another device may not have.
 bool of_the_device(const Error& error) {

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+namespace vantage {
+
+// Counts of points stay at the most that they can hold.
+inline void add_saturating(std::uint32_t& sum, std::uint32_t points) {
+  constexpr std::uint32_t most = std::numeric_limits<std::uint32_t>::max();
+  sum = points > most - sum ? most : sum + points;
+}
+
+}  // namespace vantage
