@@ -10,9 +10,9 @@ layout(push_constant, scalar) uniform Push { SampleArgumentsPush push; };
 void main() {
   const uint wanted = push.control.at[push.over];
   // What does not fit is not begun: the host cuts the chunk and comes back.
-  const bool fits = push.control.at[control_rays] <= push.ray_capacity &&
-                    push.control.at[control_parts] <= push.item_capacity &&
-                    push.control.at[control_rest] <= push.ray_capacity;
+  const bool fits =
+      push.control.at[control_pairs] <= push.pair_capacity && push.control.at[control_rays] <= push.ray_capacity &&
+      push.control.at[control_parts] <= push.item_capacity && push.control.at[control_rest] <= push.ray_capacity;
   const uint groups = fits ? (wanted + (group_size - 1u)) / group_size : 0u;
   push.control.at[control_dispatch] = min(groups, groups_in_row);
   push.control.at[control_dispatch + 1u] = (groups + groups_in_row - 1u) / groups_in_row;

@@ -59,10 +59,10 @@ void main() {
     if (probed > 0u) atomicAdd(push.control.at[control_probed], probed);
   }
   const uint at = subgroupBroadcastFirst(base) + before;
-  if (open)
-    push.pairs.at[at] = SamplePair(of_voxel, slot, probe, blocker,
-                                   int[6](window.row0, window.row1, window.column0, window.column1, window.wrapped0,
-                                          window.wrapped1));
+  if (open && at < push.pair_capacity)
+    push.pairs.at[at] =
+        SamplePair(of_voxel, slot, probe, blocker,
+                   int[6](window.row0, window.row1, window.column0, window.column1, window.wrapped0, window.wrapped1));
   // Threads of a subgroup have slots side by side, and networks are many: no sum of theirs would save an addition.
   if (traced && push.probed == 0u) add64(push.slot_rays, 2u * slot, 1u);
 }

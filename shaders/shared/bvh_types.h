@@ -12,10 +12,11 @@ VANTAGE_CONST uint bvh_triangles_array = 1;  // BvhTriangle
 
 // A binary BVH node: the boxes of both children, by centre and half size, which takes a ray fewer minima and maxima
 // than two corners do. A child is a node's index, or a leaf: bit 31, triangle count − 1 in bits 28–30, first triangle
-// in the rest.
+// in the rest. Boxes are larger by `widening` on all sides than what they hold.
 VANTAGE_CONST uint bvh_leaf_bit = 0x80000000u;
 VANTAGE_CONST uint bvh_leaf_count_shift = 28;
 VANTAGE_CONST uint bvh_leaf_first_mask = 0x0FFFFFFFu;
+VANTAGE_CONST uint bvh_end = 0xFFFFFFFFu;  // no leaf
 VANTAGE_CONST uint bvh_stack_size = 64;
 struct BvhNode {
   vec3 centre0;
@@ -23,9 +24,9 @@ struct BvhNode {
   vec3 half0;
   uint child1;
   vec3 centre1;
-  uint unused0;
+  float widening;
   vec3 half1;
-  uint unused1;
+  uint unused;
 };
 
 // A triangle in leaf order; id is the scene's number with the surveyed bit.

@@ -215,9 +215,9 @@ struct SampleItem {
 };
 VANTAGE_CONST uint sample_part = 64;  // steps
 // Control words of one chunk.
-VANTAGE_CONST uint control_pairs = 0;     // that are open when each has been probed
+VANTAGE_CONST uint control_pairs = 0;     // open when probed: where there is no room, the chunk must be cut
 VANTAGE_CONST uint control_probed = 1;    // rays traced for that
-VANTAGE_CONST uint control_rays = 2;      // listed at first, or wanted: where there is no room, the chunk must be cut
+VANTAGE_CONST uint control_rays = 2;      // listed at first, or wanted; likewise
 VANTAGE_CONST uint control_parts = 3;     // that come later; likewise
 VANTAGE_CONST uint control_sights = 4;    // pairs with such parts
 VANTAGE_CONST uint control_items = 5;     // parts that are looked at
@@ -242,6 +242,7 @@ struct SampleProbePush {
   uint mask_words;
   uint stop_at;  // points at which a voxel needs no more; 0: never
   uint probed;   // 1: these pairs have been probed before, so that what is found has been counted
+  uint pair_capacity;
 };
 // All others.
 struct SamplePush {
@@ -271,9 +272,9 @@ struct SamplePush {
 struct SampleArgumentsPush {
   VANTAGE_ADDRESS(Uints) control;
   uint over;
+  uint pair_capacity;
   uint ray_capacity;
   uint item_capacity;
-  uint padding;
 };
 
 VANTAGE_SHARED_END

@@ -187,7 +187,7 @@ std::shared_ptr<const SampleTriangles::Bricks> SampleTriangles::bricks_for(std::
     // A thread that waits for this must not take up other work, which might come here too.
     tbb::this_task_arena::isolate([&] {
       bricks_ = std::make_shared<const Bricks>(
-          margin, triangle_lists(BrickFinder(*scene_, *grid_, margin), grid_->bricks().size()));
+          Bricks{margin, triangle_lists(BrickFinder(*scene_, *grid_, margin), grid_->bricks().size())});
     });
   }
   return bricks_;

@@ -88,6 +88,30 @@ TEST_P(Conformance, ScansMatchADoublePrecisionReference) {
   }
 }
 
+// Several times as far off as the site is large: rounding is larger there than anywhere on the site.
+TEST_P(Conformance, StationsFarOffAreNoLessExact) {
+  const TestSite& site = sites()[2];
+  const std::vector<TraceStation> far{{{41, 3, 2}, 0}, {{-5, -44, 9}, 1}};
+  static const std::vector<std::vector<ReferenceHit>> references = [&] {
+    const ReferenceTracer reference(site.trace_scene(false));
+    return std::vector{reference.scan(far[0]), reference.scan(far[1])};
+  }();
+  for (std::size_t s = 0; s < far.size(); ++s) {
+    SCOPED_TRACE("station " + std::to_string(s));
+    Tracer::RawChunk chunk;
+    tracer(site, false).scan(far[s], 0, site.rays(), all_outputs, chunk);
+    EXPECT_GT(std::ranges::count_if(chunk.range, [](float range) { return std::isfinite(range); }), 100);
+    std::size_t undecided = 0;
+    compare_with_reference(*site.scene, references[s], chunk, undecided);
+    EXPECT_LE(undecided, 2u);
+  }
+  VoxelField all, skipping;
+  tracer(site, false).count(far, 2, {true, false, &all}, {});
+  tracer(site, false).count(far, 2, {true, true, &skipping}, {});
+  EXPECT_EQ(skipping.count, all.count);
+  EXPECT_EQ(skipping.stations, all.stations);
+}
+
 TEST_P(Conformance, BarycentricWeightsGiveThePoint) {
   const TestSite& site = sites()[2];
   const Tracer::RawChunk chunk = scan(site, false, 0);
@@ -670,6 +694,28 @@ TEST_P(Conformance, SamplesDoNotDependOnOrderOrDispatches) {
     const auto alone = tracer(site, true).count_sampled({&networks[n], 1}, {&sizes[n], 1}, job, {});
     expect_equal_samples(alone[0], all[n]);
   }
+}
+
+// After many stations that see nothing, more pairs are open at once than a device has room for.
+TEST_P(Conformance, SamplesDoNotDependOnWhatWasCountedBefore) {
+  const TestSite& site = sites()[2];
+  std::vector<std::uint32_t> sample;
+  for (std::uint32_t rank = 3; rank < site.grid->size(); rank += 7) sample.push_back(rank);
+  std::vector<TraceStation> far = site.stations;
+  for (TraceStation& station : far) station.origin.x += 1000;
+  const std::vector<std::vector<TraceStation>> near_ones{site.stations}, far_ones{far};
+  const std::vector<std::uint32_t> sizes{4};
+  const Tracer::SampleJob job{sample, 20, true, 0};
+  const auto small = make(site, true, 5000);
+  for (int k = 0; k < 10; ++k) {
+    const auto nothing = small->count_sampled(far_ones, sizes, job, {});
+    EXPECT_EQ(nothing[0].saturated + nothing[0].partial_points, 0u);
+  }
+  const auto after = small->count_sampled(near_ones, sizes, job, {});
+  const auto usual = tracer(site, true).count_sampled(near_ones, sizes, job, {});
+  EXPECT_GT(usual[0].saturated + usual[0].partial_points, 0u);
+  expect_equal_samples(after[0], usual[0]);
+  EXPECT_EQ(after[0].rays, usual[0].rays);
 }
 
 // Seen by the reports: a device tells of every submission, and the first has one dispatch of rays where these are

@@ -91,9 +91,9 @@ TEST(ShaderLayout, EveryShaderPlacesSharedMembersAsTheHostDoes) {
         {"half0", 16},
         {"child1", 28},
         {"centre1", 32},
-        {"unused0", 44},
+        {"widening", 44},
         {"half1", 48},
-        {"unused1", 60}}},
+        {"unused", 60}}},
       {"BvhTriangle", {{"a", 0}, {"id", 12}, {"b", 16}, {"unused0", 28}, {"c", 32}, {"unused1", 44}}},
       {"VoxelBrick", {{"x", 0}, {"y", 4}, {"z", 8}, {"first", 12}, {"mask", 16}}}};
   for (const auto& [name, members] : by_quarters) {

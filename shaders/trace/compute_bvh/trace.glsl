@@ -7,71 +7,68 @@
 // A ray as nodes' boxes are tested against, where a last bit more or less does no harm: contraction is welcome.
 struct NodeRay {
   vec3 inverse;
-  vec3 size;   // of the inverse
   vec3 moved;  // origin · inverse
-  float widening;
+  vec3 size;   // of the inverse, times how much larger than they are boxes must be taken
 };
 
-vec2 passage_of(NodeRay ray, vec3 centre, vec3 half_size) {
-  const vec3 middle = centre * ray.inverse - ray.moved, wide = half_size + ray.widening;
-  const vec3 near = middle - wide * ray.size, far = middle + wide * ray.size;
-  return vec2(max(max(near.x, near.y), near.z), min(min(far.x, far.y), far.z));
+NodeRay node_ray(vec3 origin, vec3 inverse, float widening) {
+  const float larger = max(2.0 * widening / node_widening(0u), 1.0);
+  return NodeRay(inverse, origin * inverse, abs(inverse) * larger);
+}
+
+// The ray's way through a box, from x to y, up to t_max. Floats that are not negative are ordered as their bits are,
+// and of whole numbers a GPU may take the largest of three at once. What is negative becomes just any negative number:
+// it begins before t_min, or ends before it.
+ivec2 passage_of(NodeRay ray, vec3 centre, vec3 half_size, int t_min, int t_max) {
+  const vec3 middle = centre * ray.inverse - ray.moved;
+  const ivec3 near = floatBitsToInt(middle - half_size * ray.size), far = floatBitsToInt(middle + half_size * ray.size);
+  return ivec2(max(max(max(near.x, near.y), near.z), t_min), min(min(min(far.x, far.y), far.z), t_max));
+}
+
+// Where the ray goes on when nothing is left of the node that it started at.
+uint next_start(Starts starts, inout uint started, inout uint depth, float nearest) {
+  if (starts.list == 0ul || started == tile_starts) return bvh_end;
+  const TileStart start = TileStarts(starts.list).at[starts.tile * tile_starts + started];
+  if (start.near > nearest) return bvh_end;
+  ++started;
+  depth = 1u;
+  return start.node;
 }
 
 Hit trace(vec3 origin, vec3 direction, float t_min, float t_max, float enough, Starts starts) {
   Hit best = Hit(t_max, no_primitive, vec2(0));
   const Shear shear = shear_along(direction);
-
   const float widening = widening_of(origin);
   const vec3 inverse = inverse_of(direction);
-  const NodeRay node_ray = NodeRay(inverse, abs(inverse), origin * inverse, 2.0 * widening);
+  const NodeRay ray = node_ray(origin, inverse, widening);
 
-  uvec2 stack[bvh_stack_size];  // what is still to visit, and where the ray enters it
-  uint depth = 0;
-  uint current = 0;  // the root is always a node
-  uint started = tile_starts;
-  const uint first_start = starts.tile * tile_starts;
-  if (starts.list != 0ul) {
-    current = TileStarts(starts.list).at[first_start].node;
-    started = 1u;
-  }
+  uint stack[bvh_stack_size];  // what is still to visit, above a mark for the end of it
+  stack[0] = bvh_end;
+  uint depth = 1u;
+  uint current = 0u;  // the root is always a node
+  uint started = 1u;
+  if (starts.list != 0ul) current = TileStarts(starts.list).at[starts.tile * tile_starts].node;
   // First down to a leaf, then its triangles: threads of a subgroup wait for each other at the leaves rather than take
-  // turns between nodes and triangles.
-  bool up = false;  // what comes next is on the stack
+  // turns between nodes and triangles. All the time goes into the loop over nodes, and there into its instructions.
   for (;;) {
-    for (;;) {
-      if (up) {
-        bool found = false;
-        while (depth > 0u && !found) {
-          --depth;
-          const uvec2 top = stack[depth];
-          found = uintBitsToFloat(top.y) <= best.t;
-          current = top.x;
-        }
-        if (!found) {
-          if (started == tile_starts) return best;
-          const TileStart start = TileStarts(starts.list).at[first_start + started];
-          if (start.near > best.t) return best;
-          current = start.node;
-          ++started;
-        }
-      }
-      if ((current & bvh_leaf_bit) != 0u) break;
+    while ((current & bvh_leaf_bit) == 0u) {
       const uvec4 word0 = bvh_nodes.at[4u * current], word1 = bvh_nodes.at[4u * current + 1u],
                   word2 = bvh_nodes.at[4u * current + 2u], word3 = bvh_nodes.at[4u * current + 3u];
       const uint child0 = word0.w, child1 = word1.w;
-      const vec2 way0 = passage_of(node_ray, uintBitsToFloat(word0.xyz), uintBitsToFloat(word1.xyz)),
-                 way1 = passage_of(node_ray, uintBitsToFloat(word2.xyz), uintBitsToFloat(word3.xyz));
-      const float enter0 = max(way0.x, t_min), enter1 = max(way1.x, t_min);
-      const bool hit0 = enter0 <= min(way0.y, best.t), hit1 = enter1 <= min(way1.y, best.t);
-      const bool first0 = hit0 && (!hit1 || enter0 <= enter1);
-      up = !hit0 && !hit1;
-      if (hit0 && hit1) {
-        stack[depth] = uvec2(first0 ? child1 : child0, floatBitsToUint(first0 ? enter1 : enter0));
-        ++depth;
-      }
+      const int first_t = floatBitsToInt(t_min), last_t = floatBitsToInt(best.t);
+      const ivec2 way0 = passage_of(ray, uintBitsToFloat(word0.xyz), uintBitsToFloat(word1.xyz), first_t, last_t),
+                  way1 = passage_of(ray, uintBitsToFloat(word2.xyz), uintBitsToFloat(word3.xyz), first_t, last_t);
+      const bool hit0 = way0.x <= way0.y, hit1 = way1.x <= way1.y;
+      const bool first0 = hit0 && (!hit1 || way0.x <= way1.x);
+      stack[depth] = first0 ? child1 : child0;  // stays where both are hit
       current = first0 ? child0 : child1;
+      if (hit0 && hit1) ++depth;
+      if (!hit0 && !hit1) {
+        current = stack[--depth];
+        if (current == bvh_end) current = next_start(starts, started, depth, best.t);
+      }
     }
+    if (current == bvh_end) return best;
     const uint first = current & bvh_leaf_first_mask;
     const uint end = first + ((current >> bvh_leaf_count_shift) & 7u);
     for (uint i = first; i <= end; ++i) {
@@ -82,6 +79,7 @@ Hit trace(vec3 origin, vec3 direction, float t_min, float t_max, float enough, S
       meet_triangle(best, t_min, shear, origin, inverse, widening, corner_a, corner_b, corner_c, word_a.w);
     }
     if (best.t < enough) return best;
-    up = true;
+    current = stack[--depth];
+    if (current == bvh_end) current = next_start(starts, started, depth, best.t);
   }
 }

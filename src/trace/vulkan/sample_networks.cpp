@@ -136,13 +136,13 @@ class VulkanTracer::SampledCount {
       SamplePlan plan(slots, voxels_, most_parts(run.scanner->pattern()), room_);
       for (bool first = &run == batch.runs.data(), more = true; more; first = false) {
         if (progress.stopped()) return false;
-        Submission submission{&run, plan.next(t_.sampled_pace_.rays(), t_.rays_per_pair_, t_.sampled_pace_.rays()),
-                              first, false};
+        Submission submission{&run, plan.next(t_.sampled_pace_.rays(), t_.pairs_seen_, t_.sampled_pace_.rays()), first,
+                              false};
         submission.last = last_run && plan.finished();
         const auto [tallies, taken] = submit(batch, submission);
         seconds_ += taken;
         t_.sampled_pace_.saw(plan.settle(submission.chunks, tallies), taken);
-        learn_rays_per_pair(submission.chunks, tallies);
+        learn_of_pairs(submission.chunks, tallies);
         const double done = (slots_done + slots * plan.done()) / all_slots;
         progress((static_cast<double>(batch.first) + static_cast<double>(batch.size()) * done) /
                  static_cast<double>(networks_.size()));
@@ -264,7 +264,8 @@ class VulkanTracer::SampledCount {
     std::vector<SampleTally> tallies;
     for (std::size_t k = 0; k < chunks.size(); ++k) {
       const std::uint32_t* of_chunk = control.data() + k * control_words;
-      tallies.push_back({.probed = of_chunk[control_probed],
+      tallies.push_back({.pairs = of_chunk[control_pairs],
+                         .probed = of_chunk[control_probed],
                          .rays = of_chunk[control_rays],
                          .parts = of_chunk[control_parts],
                          .rest = of_chunk[control_rest]});
@@ -293,7 +294,7 @@ class VulkanTracer::SampledCount {
     SamplePush push = push_of(chunk, k);
     // A thread for each that the control word counts by then.
     const auto over = [&](std::uint32_t control, const BoundPipeline& kernel) {
-      const SampleArgumentsPush arguments{push.control, control, push.ray_capacity, push.item_capacity, 0};
+      const SampleArgumentsPush arguments{push.control, control, room_.pairs, push.ray_capacity, push.item_capacity};
       r.shader_after_shader();
       r.dispatch(pipeline(Kernel::sample_arguments), arguments, 1);
       r.shader_after_shader();
@@ -350,7 +351,8 @@ class VulkanTracer::SampledCount {
             .end_slot = run.first_slot + chunk.end_slot,
             .mask_words = push.mask_words,
             .stop_at = push.stop_at,
-            .probed = chunk.probed};
+            .probed = chunk.probed,
+            .pair_capacity = room_.pairs};
   }
 
   Reduction reduction() const {
@@ -365,12 +367,17 @@ class VulkanTracer::SampledCount {
     return reduction;
   }
 
-  void learn_rays_per_pair(std::span<const SampleChunk> chunks, std::span<const SampleTally> tallies) {
+  void learn_of_pairs(std::span<const SampleChunk> chunks, std::span<const SampleTally> tallies) {
     constexpr std::uint64_t telling = 1000;  // fewer pairs say little about the rest
-    for (std::size_t k = chunks.size(); k-- > 0;)
-      if (chunks[k].pairs() > telling)
-        t_.rays_per_pair_ = 0.5 * (t_.rays_per_pair_ + (static_cast<double>(tallies[k].probed) + tallies[k].rays) /
-                                                           static_cast<double>(chunks[k].pairs()));
+    const auto learn = [](double& seen, double now) { seen = 0.5 * (seen + now); };
+    for (std::size_t k = chunks.size(); k-- > 0;) {
+      const auto pairs = static_cast<double>(chunks[k].pairs());
+      const SampleTally& tally = tallies[k];
+      if (chunks[k].pairs() <= telling) continue;
+      learn(t_.pairs_seen_.open, tally.pairs / pairs);
+      if (tally.pairs <= room_.pairs)
+        learn(t_.pairs_seen_.rays, (static_cast<double>(tally.probed) + tally.rays) / pairs);
+    }
   }
 
   VulkanTracer& t_;

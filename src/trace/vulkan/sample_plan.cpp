@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <ranges>
 
 #include "shared/trace_types.h"
 
@@ -52,10 +51,12 @@ SamplePlan::SamplePlan(std::uint32_t slots, std::uint32_t voxels, std::uint32_t 
   if (slots > 0 && voxels > 0) todo_.push_back({0, slots, 0, voxels, 0, parts});
 }
 
-std::vector<SampleChunk> SamplePlan::next(double rays, double rays_per_pair, double at_once) {
+std::vector<SampleChunk> SamplePlan::next(double rays, const PairsSeen& seen, double at_once) {
   constexpr double safety = 1.25;
-  const double most = std::min(at_once, static_cast<double>(room_.rays)) / (rays_per_pair * safety);
-  const auto most_pairs = static_cast<std::uint64_t>(std::clamp(most, 1.0, static_cast<double>(room_.pairs)));
+  const double most_rays = std::min(at_once, static_cast<double>(room_.rays));
+  const double most = std::min(most_rays / (seen.rays * safety), room_.pairs / (seen.open * safety));
+  // Each may be probed, and no dispatch traces more than there is room for.
+  const auto most_pairs = static_cast<std::uint64_t>(std::clamp(most, 1.0, static_cast<double>(room_.rays)));
   std::vector<SampleChunk> chunks;
   for (double expected = 0; !todo_.empty() && (chunks.empty() || expected < rays);) {
     SampleChunk chunk = todo_.front();
@@ -65,7 +66,7 @@ std::vector<SampleChunk> SamplePlan::next(double rays, double rays_per_pair, dou
       todo_.push_front(rest);
       chunk = piece;
     }
-    expected += static_cast<double>(chunk.pairs()) * rays_per_pair;
+    expected += static_cast<double>(chunk.pairs()) * seen.rays;
     chunks.push_back(chunk);
   }
   return chunks;
@@ -76,7 +77,7 @@ double SamplePlan::settle(std::span<const SampleChunk> chunks, std::span<const S
   for (std::size_t k = chunks.size(); k-- > 0;) {
     const SampleTally& tally = tallies[k];
     traced += static_cast<double>(tally.probed);
-    const bool first_traced = tally.rays <= room_.rays && tally.parts <= room_.parts;
+    const bool first_traced = tally.pairs <= room_.pairs && tally.rays <= room_.rays && tally.parts <= room_.parts;
     const bool all_traced = first_traced && tally.rest <= room_.rays;
     if (first_traced) traced += static_cast<double>(tally.rays);
     if (all_traced) {
@@ -84,11 +85,12 @@ double SamplePlan::settle(std::span<const SampleChunk> chunks, std::span<const S
       traced += static_cast<double>(tally.rest);
       continue;
     }
-    for (SampleChunk half : chunks[k].halves() | std::views::reverse) {
+    auto halves = chunks[k].halves();
+    for (SampleChunk& half : halves) {
       half.probed = true;
       half.first_traced = half.first_traced || first_traced;
-      todo_.push_front(half);
     }
+    todo_.insert(todo_.begin(), halves.begin(), halves.end());
   }
   return traced;
 }

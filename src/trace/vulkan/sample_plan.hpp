@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which pairs of station and sampled voxel one set of lists takes, and what becomes of those that overflow it.
 //
-// Lists have room for so many rays and parts of walks and no more. How many a pair has is known only once they are
-// listed; so chunks of pairs are as large as the lists will probably hold, and one that turns out larger comes again in
-// halves, with what has been traced of it by then left out.
+// Lists have room for so many open pairs, rays and parts of walks and no more. How many there are is known only once
+// they are listed; so chunks of pairs are as large as the lists will probably hold, and one that turns out larger comes
+// again in halves, with what has been traced of it by then left out.
 #pragma once
 
 #include <array>
@@ -29,9 +29,14 @@ struct SampleChunk {
   bool operator==(const SampleChunk&) const = default;
 };
 
-// What lists have room for: sample_part rays, all of one part, at least.
+// What lists have room for: sample_part rays, all of one part, at least. `pairs`: that are open.
 struct SampleRoom {
   std::uint32_t pairs, rays, parts;
+};
+
+// What pairs are thought to have, in the mean.
+struct PairsSeen {
+  double rays, open;
 };
 
 // Room for the lists of an engine; no dispatch traces more rays than `max_rays_per_dispatch`, where that is not 0.
@@ -39,6 +44,7 @@ SampleRoom sample_room(bool software, std::uint64_t max_rays_per_dispatch);
 
 // What a chunk's kernels traced and listed, or wanted to.
 struct SampleTally {
+  std::uint32_t pairs = 0;   // that are open
   std::uint32_t probed = 0;  // rays
   std::uint32_t rays = 0;    // listed
   std::uint32_t parts = 0;   // that come later
@@ -51,9 +57,9 @@ class SamplePlan {
   // `parts`: of a pair's walk, at most.
   SamplePlan(std::uint32_t slots, std::uint32_t voxels, std::uint32_t parts, const SampleRoom& room);
 
-  // The chunks of the next submission, in order: each probably fits, if a pair has so many rays, and all together
+  // The chunks of the next submission, in order: each probably fits, if pairs are as has been seen, and all together
   // probably have `rays`; one at least, unless nothing is left. None has probably more than `at_once`.
-  std::vector<SampleChunk> next(double rays, double rays_per_pair, double at_once);
+  std::vector<SampleChunk> next(double rays, const PairsSeen& seen, double at_once);
   bool finished() const { return todo_.empty(); }
 
   // Takes note of what became of the chunks of a submission. Returns how many rays were traced.

@@ -176,7 +176,7 @@ class VulkanTracer final : public Tracer {
   std::shared_ptr<const Patches> patches_;  // what the next buffers hold
   std::shared_ptr<const NoiseModel> patch_noise_;
   Buffer registration_patches_, registration_sigma_, registration_heads_, registration_sums_;
-  double rays_per_pair_ = 8;  // as seen so far; it sizes chunks, not the results
+  PairsSeen pairs_seen_{.rays = 8, .open = 1};  // they size chunks, not the results
 };
 
 }  // namespace vantage::vulkan

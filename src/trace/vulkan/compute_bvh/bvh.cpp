@@ -21,9 +21,9 @@ constexpr int bins = 32;
 constexpr std::uint32_t max_sah_depth = 34;
 // Halving n items takes bit_width(n − 1) − 1 steps until each part is a leaf of two, and fewer than bvh_leaf_first_mask
 // items are ever taken. So an inner node has less than max_sah_depth + most_halvings above it. A traversal leaves one
-// child on its stack for each of these at most, and one of the node's own.
+// child on its stack for each of these at most, one of the node's own, and a mark for the end.
 constexpr std::uint32_t most_halvings = std::bit_width(bvh_leaf_first_mask) - 1;
-static_assert(max_leaf == 2 && max_sah_depth + most_halvings <= bvh_stack_size);
+static_assert(max_leaf == 2 && max_sah_depth + most_halvings < bvh_stack_size);
 constexpr std::size_t parallel_grain = 8192;
 
 struct Bounds3 {
@@ -45,9 +45,9 @@ struct Bounds3 {
       max[k] = std::max(max[k], v[k]);
     }
   }
-  // [centre − half_size, centre + half_size] holds the box, whatever the rounding.
+  // [centre − half_size, centre + half_size] holds the box and so much on all sides of it, whatever the rounding.
   vec3 centre() const { return {middle(0), middle(1), middle(2)}; }
-  vec3 half_size() const { return {half(0), half(1), half(2)}; }
+  vec3 half_size(float widening) const { return {half(0, widening), half(1, widening), half(2, widening)}; }
   float half_area() const {
     const float x = max[0] - min[0], y = max[1] - min[1], z = max[2] - min[2];
     return x < 0 ? 0.0f : x * y + y * z + z * x;
@@ -55,15 +55,30 @@ struct Bounds3 {
 
  private:
   float middle(std::size_t axis) const { return empty() ? 0.0f : 0.5f * (min[axis] + max[axis]); }
-  float half(std::size_t axis) const {
+  float half(std::size_t axis, float widening) const {
     constexpr float infinity = std::numeric_limits<float>::infinity();
-    return empty() ? -infinity : std::nextafter(std::max(max[axis] - middle(axis), middle(axis) - min[axis]), infinity);
+    const float half = std::nextafter(std::max(max[axis] - middle(axis), middle(axis) - min[axis]), infinity);
+    return empty() ? -infinity : std::nextafter(half + widening, infinity);
   }
   bool empty() const { return min[0] > max[0]; }
 };
 
-BvhNode node_of(const Bounds3& a, std::uint32_t child0, const Bounds3& b, std::uint32_t child1) {
-  return {a.centre(), child0, a.half_size(), child1, b.centre(), 0, b.half_size(), 0};
+// Twice what shaders/lib/widening.glsl says of rays from as far off as twice the largest coordinate: whoever stands
+// further off takes larger boxes.
+float widening_of(const Bounds3& all) {
+  float largest = 1e-3f;
+  for (std::size_t k = 0; k < 3; ++k) largest = std::max({largest, std::abs(all.min[k]), std::abs(all.max[k])});
+  return 2 * largest / 262144;
+}
+
+struct Children {
+  Bounds3 box0, box1;
+  std::uint32_t child0, child1;
+};
+
+BvhNode node_of(const Children& c, float widening) {
+  return {c.box0.centre(), c.child0, c.box0.half_size(widening), c.child1,
+          c.box1.centre(), widening, c.box1.half_size(widening), 0};
 }
 
 struct Item {
@@ -75,7 +90,7 @@ struct Item {
 // A subtree over items [begin, end) may use node slots [slot, slot + end − begin), which no other subtree touches.
 class Builder {
  public:
-  explicit Builder(std::vector<Item>& items) : items_(items), nodes_(items.size()) {}
+  Builder(std::vector<Item>& items, float widening) : items_(items), widening_(widening), nodes_(items.size()) {}
 
   // Builds the subtree and returns its child word.
   std::uint32_t build(std::size_t begin, std::size_t end, std::uint32_t slot, std::uint32_t depth) {
@@ -103,7 +118,7 @@ class Builder {
       build_left();
       build_right();
     }
-    nodes_[slot] = node_of(left, left_word, right, right_word);
+    nodes_[slot] = node_of({left, right, left_word, right_word}, widening_);
     return slot;
   }
 
@@ -195,6 +210,7 @@ class Builder {
   std::vector<Item>::iterator at(std::size_t i) { return items_.begin() + static_cast<std::ptrdiff_t>(i); }
 
   std::vector<Item>& items_;
+  float widening_;
   std::vector<BvhNode> nodes_;
 };
 
@@ -229,14 +245,15 @@ Bvh build_bvh(std::span<const Float3> positions, std::span<const Triangle> trian
     items[k].triangle = static_cast<std::uint32_t>(k);
   });
 
+  Bounds3 all;
+  for (const auto& item : items) all.extend(item.box);
+
   Bvh bvh;
-  Builder builder(items);
+  Builder builder(items, widening_of(all));
   if (items.size() <= max_leaf) {
     // The root must be a node: one child holds everything, the other box is empty, which no ray enters.
-    Bounds3 all;
-    for (const auto& item : items) all.extend(item.box);
     const std::uint32_t leaf = bvh_leaf_bit | static_cast<std::uint32_t>(items.size() - 1) << bvh_leaf_count_shift;
-    bvh.nodes = {node_of(all, leaf, Bounds3(), leaf)};
+    bvh.nodes = {node_of({all, Bounds3(), leaf, leaf}, widening_of(all))};
   } else {
     const std::uint32_t root = builder.build(0, items.size(), 0, 0);
     bvh.nodes = compact(builder.nodes(), root);

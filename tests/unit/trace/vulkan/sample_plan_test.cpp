@@ -57,31 +57,40 @@ TEST(SamplePlan, NothingToDoIsDone) {
   for (const auto& [slots, voxels] : {std::pair{0u, 5u}, {5u, 0u}}) {
     SamplePlan plan(slots, voxels, 10, {100, 100, 100});
     EXPECT_TRUE(plan.finished());
-    EXPECT_TRUE(plan.next(1e9, 8, 1e9).empty());
+    EXPECT_TRUE(plan.next(1e9, {8, 1}, 1e9).empty());
     EXPECT_EQ(plan.done(), 1);
   }
 }
 
 TEST(SamplePlan, NoChunkHasMorePairsThanThereIsRoomFor) {
-  SamplePlan plan(200'000, 20'000'000, 10, {1000, 1u << 30, 1u << 30});
-  for (int k = 0; k < 5; ++k) {
-    const std::vector<SampleChunk> chunks = plan.next(0, 1e-12, 1e9);
-    ASSERT_EQ(chunks.size(), 1u);
-    EXPECT_LE(chunks[0].pairs(), 1000u);
-  }
+  const auto most_pairs = [](const SampleRoom& room, double open) {
+    SamplePlan plan(200'000, 20'000'000, 10, room);
+    std::uint64_t most = 0;
+    for (int k = 0; k < 5; ++k) {
+      const std::vector<SampleChunk> chunks = plan.next(0, {1e-12, open}, 1e9);
+      EXPECT_EQ(chunks.size(), 1u);
+      for (const SampleChunk& chunk : chunks) most = std::max(most, chunk.pairs());
+    }
+    return most;
+  };
+  EXPECT_EQ(most_pairs({1000, 1u << 30, 1u << 30}, 1), 800u) << "a quarter more to be safe";
+  EXPECT_EQ(most_pairs({1000, 1u << 30, 1u << 30}, 0.5), 1600u);
+  const std::uint64_t probes = most_pairs({1000, 3000, 1u << 30}, 0);
+  EXPECT_GT(probes, 2900u);
+  EXPECT_LE(probes, 3000u) << "each may be probed";
 }
 
 TEST(SamplePlan, WhatOverflowsComesAgainInHalvesAndFirst) {
   SamplePlan plan(4, 15, 8, {1000, 100, 10});
   const std::vector<SampleChunk> chunks =
-      plan.next(1e9, 4, 1e9);  // 20 pairs at most: 80 rays, and a quarter more to be safe
+      plan.next(1e9, {4, 1}, 1e9);  // 20 pairs at most: 80 rays, and a quarter more to be safe
   ASSERT_EQ(chunks.size(), 3u);
   EXPECT_TRUE(plan.finished());
   // The first fits; the second has too many rays, the last too many parts. What was probed is traced anyway.
-  EXPECT_EQ(plan.settle(chunks, std::vector<SampleTally>{{20, 100, 10, 3}, {20, 101}, {20, 0, 11}}), 163);
+  EXPECT_EQ(plan.settle(chunks, std::vector<SampleTally>{{20, 20, 100, 10, 3}, {20, 20, 101}, {20, 20, 0, 11}}), 163);
   EXPECT_FALSE(plan.finished());
   EXPECT_DOUBLE_EQ(plan.done(), 1.0 / 3);
-  const std::vector<SampleChunk> again = plan.next(1e9, 0.1, 1e9);
+  const std::vector<SampleChunk> again = plan.next(1e9, {0.1, 1}, 1e9);
   std::array<SampleChunk, 2> second = chunks[1].halves(), last = chunks[2].halves();
   for (SampleChunk* half : {&second[0], &second[1], &last[0], &last[1]}) half->probed = true;
   EXPECT_EQ(again, (std::vector<SampleChunk>{second[0], second[1], last[0], last[1]}));
@@ -89,8 +98,18 @@ TEST(SamplePlan, WhatOverflowsComesAgainInHalvesAndFirst) {
 
 TEST(SamplePlan, AChunkIsNoMoreThanTheDeviceDoesInTime) {
   SamplePlan plan(4, 1000, 8, {1u << 20, 1u << 20, 1u << 20});
-  for (const SampleChunk& chunk : plan.next(1e9, 8, 800)) EXPECT_LE(chunk.pairs() * 8, 800u);
+  for (const SampleChunk& chunk : plan.next(1e9, {8, 1}, 800)) EXPECT_LE(chunk.pairs() * 8, 800u);
   EXPECT_TRUE(plan.finished());
+}
+
+TEST(SamplePlan, MoreOpenPairsThanThereIsRoomForComeAgainWithAllTheirRays) {
+  SamplePlan plan(1, 100, 8, {10, 1000, 100});
+  const std::vector<SampleChunk> chunks = plan.next(1e9, {1, 0.1}, 1e9);
+  ASSERT_EQ(chunks.size(), 2u);
+  EXPECT_EQ(plan.settle(chunks, std::vector<SampleTally>{{11, 50}, {10, 50, 7}}), 107);
+  std::array<SampleChunk, 2> halves = chunks[0].halves();
+  for (SampleChunk& half : halves) half.probed = true;
+  EXPECT_EQ(plan.next(1e9, {1, 0.1}, 1e9), (std::vector<SampleChunk>{halves[0], halves[1]}));
 }
 
 // Pairs whose numbers of rays nobody foresees: every part of every pair is traced once, whatever is guessed, and every
@@ -102,14 +121,14 @@ TEST(SamplePlan, EveryPartOfEveryPairIsTracedOnce) {
     RandomStream random(seed);
     std::vector<std::uint32_t> rays(slots * voxels * parts);
     for (std::uint32_t& each : rays) each = static_cast<std::uint32_t>(most * std::pow(random.uniform(), 8));
-    const SampleRoom room{50, 2 * most, 4};
+    const SampleRoom room{5, 2 * most, 4};
     SamplePlan plan(slots, voxels, parts, room);
     std::vector<int> traced(rays.size()), probed(slots * voxels);
     double total = 0, done = 0;
     for (int submissions = 0; !plan.finished(); ++submissions) {
       ASSERT_LT(submissions, 10'000) << "it comes to no end";
       const std::vector<SampleChunk> chunks =
-          plan.next(200 * random.uniform(), 40 * random.uniform(), 100 * random.uniform());
+          plan.next(200 * random.uniform(), {40 * random.uniform(), random.uniform()}, 100 * random.uniform());
       ASSERT_FALSE(chunks.empty());
       std::vector<SampleTally> wanted;
       for (const SampleChunk& chunk : chunks) {
@@ -126,6 +145,11 @@ TEST(SamplePlan, EveryPartOfEveryPairIsTracedOnce) {
           const bool at_first = k / parts % 4 == 0 && k % parts == 0;
           if (at_first && !chunk.first_traced) list.rays += rays[k];
           if (!at_first) list.rest += rays[k];
+        }
+        list.pairs = static_cast<std::uint32_t>(chunk.pairs() - random.bits() % (chunk.pairs() / 2 + 1));
+        if (list.pairs > room.pairs) {  // nothing more is done
+          wanted.push_back({.pairs = list.pairs});
+          continue;
         }
         list.parts = chunk.pairs() > 3 ? static_cast<std::uint32_t>(random.bits() % 7) : 0;
         wanted.push_back(list);
