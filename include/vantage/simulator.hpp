@@ -134,7 +134,8 @@ struct SampleOptions {
   std::function<void(std::size_t network, std::span<const std::uint32_t> points)> points = {};
   /// Where given, `NetworkCounts::registration` is filled. Needs `overlap`.
   std::optional<RegistrationModel> registration = std::nullopt;
-  bool groups = true;  ///< Fill `NetworkCounts::groups`, which standard errors need; a search can do without.
+  /// Fill `NetworkCounts::groups` and `successive_difference_sum`, which standard errors need; a search can do without.
+  bool groups = true;
 };
 
 /// The surface in a voxel, as the plane that most of it lies in.

@@ -114,7 +114,7 @@ struct NetworkCounts {
   /// The same counts for each of G interleaved groups of a sample, for standard errors; empty when exact.
   std::vector<NetworkCounts> groups;
   /// Sum over successive sampled voxels of the squared difference of min(count/goal, 1); for the standard error of
-  /// coverage.
+  /// coverage. Infinite for a sample without groups.
   double successive_difference_sum = 0;
   double trace_seconds = 0;
   bool cancelled = false;

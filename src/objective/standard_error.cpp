@@ -141,7 +141,8 @@ Estimate coverage_estimate(const NetworkCounts& counts, double goal_density, std
     return estimate;
   }
   const double n = static_cast<double>(counts.voxels);
-  estimate.standard_error = std::sqrt(unsampled * counts.successive_difference_sum / (2 * n * (n - 1)));
+  estimate.standard_error =
+      std::min(std::sqrt(unsampled * counts.successive_difference_sum / (2 * n * (n - 1))), largest_error);
   return estimate;
 }
 

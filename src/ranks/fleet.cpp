@@ -64,7 +64,7 @@ std::unique_ptr<Tracer> FirstRank::make(std::unique_ptr<Tracer> own, const Trace
     all.push_back(std::make_unique<RemoteTracer>(post_, static_cast<int>(k) + 1, others[k].tracer, there, scan_rays));
   }
   // What is written says nothing of who helped, so that it is the same whoever did.
-  return std::make_unique<SpreadTracer>(std::move(all), scene, warn_, SpreadTracer::Split::where_it_pays, info);
+  return std::make_unique<SpreadTracer>(std::move(all), scene, warn_, SpreadTracer::Options{.info = info});
 }
 
 std::unique_ptr<Tracer> OtherRank::make(std::unique_ptr<Tracer> own, const TraceScene& scene,

@@ -132,7 +132,11 @@ std::unique_ptr<Tracer> make_tracer(std::span<const DeviceChoice> devices, const
       if (warn) warn(std::string("a device is left out: ") + thrown.what());
     }
   if (tracers.empty()) throw *fault;
-  return std::make_unique<SpreadTracer>(std::move(tracers), scene, std::move(warn));
+  const bool gpus = std::ranges::none_of(tracers, [](const auto& t) { return t->info().engine == Engine::embree; });
+  return std::make_unique<SpreadTracer>(
+      std::move(tracers), scene, std::move(warn),
+      SpreadTracer::Options{.population =
+                                gpus ? SpreadTracer::Population::by_voxels : SpreadTracer::Population::by_networks});
 }
 
 }  // namespace vantage

@@ -2,6 +2,7 @@
 #include "trace/sample_counts.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <vector>
 
 #include "trace/field_counts.hpp"
@@ -32,6 +33,10 @@ NetworkCounts reduce_sample(std::span<const std::uint32_t> counts, std::span<con
       all.groups.back().seen.resize(all.seen.size());
       all.groups.back().shared.resize(all.shared.size());
     }
+  }
+  if (groups == 0) {
+    all.successive_difference_sum = std::numeric_limits<double>::infinity();
+    return all;
   }
   const auto filled = [&, goal = goal_density * demands.least_worth()](std::size_t i) {
     return std::min(static_cast<double>(std::uint64_t{counts[i]} * demands.worth(i)) / goal, 1.0);

@@ -155,7 +155,8 @@ class Tracer {
   // networks[k] lists the active stations of network k; station_counts[k] is its N_stations.
   struct SampleJob {
     std::span<const std::uint32_t> sample;
-    // Interleaved: voxel number i of the sample is in group i % groups. 0: without `NetworkCounts::groups`.
+    // Interleaved: voxel number i of the sample is in group i % groups. 0: without what standard errors need,
+    // `NetworkCounts::groups` and `successive_difference_sum`.
     std::uint32_t groups = 20;
     bool masks = true;
     std::uint32_t stop_at = 0;  // goal rounded up: a voxel's points need not be counted beyond; or 0

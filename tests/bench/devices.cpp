@@ -51,8 +51,9 @@ std::vector<Task> tasks_of(const DevicesOptions& options) {
     tasks.push_back({"sampled population of " + std::to_string(population), population,
                      [networks = networks_around(given, population, given.size(), options.spread_m),
                       voxels = options.sample](Simulator& simulator) {
-                       return simulator.evaluate_sampled(networks,
-                                                         {.voxels = voxels, .overlap = true, .stop_at_goal = true});
+                       // As a search asks.
+                       return simulator.evaluate_sampled(
+                           networks, {.voxels = voxels, .overlap = true, .stop_at_goal = true, .groups = false});
                      }});
   for (const std::size_t size : options.sizes)
     for (const std::size_t many : {options.exact, std::size_t{1}})

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <map>
 #include <memory>
 #include <numeric>
@@ -446,6 +447,10 @@ NetworkCounts sampled_slowly(const TestSite& site, const VoxelField& field, cons
   for (std::uint32_t g = 0; g < job.groups; ++g) groups.push_back(pick(g, job.groups));
   NetworkCounts counts = pick(0, 1);
   counts.groups = std::move(groups);
+  if (job.groups == 0) {
+    counts.successive_difference_sum = std::numeric_limits<double>::infinity();
+    return counts;
+  }
   const VoxelDemands& demands = site.grid->demands();
   const auto filled = [&](std::size_t i) {
     return std::min(1.0 * sample.count[i] * demands.worth(job.sample[i]) / (goal_density * counts.point_worth), 1.0);
@@ -459,8 +464,12 @@ NetworkCounts sampled_slowly(const TestSite& site, const VoxelField& field, cons
 
 void expect_equal_samples(const NetworkCounts& got, const NetworkCounts& expected) {
   expect_equal_counts(got, expected);
-  EXPECT_NEAR(got.successive_difference_sum, expected.successive_difference_sum,
-              1e-9 * (1 + expected.successive_difference_sum));
+  if (std::isinf(expected.successive_difference_sum)) {
+    EXPECT_EQ(got.successive_difference_sum, expected.successive_difference_sum);
+  } else {
+    EXPECT_NEAR(got.successive_difference_sum, expected.successive_difference_sum,
+                1e-9 * (1 + expected.successive_difference_sum));
+  }
   ASSERT_EQ(got.groups.size(), expected.groups.size());
   for (std::size_t g = 0; g < got.groups.size(); ++g) {
     SCOPED_TRACE("group " + std::to_string(g));
@@ -649,9 +658,12 @@ TEST_P(Conformance, WhatAStoppedSampleLeavesOutDoesNotShow) {
         for (const bool masks : {false, true}) {
           const auto whole = engine.count_sampled(networks, sizes, {sample, 20, masks, 0}, {});
           const auto stopped = engine.count_sampled(networks, sizes, {sample, 20, masks, stop_at}, {});
+          const auto searched = engine.count_sampled(networks, sizes, {sample, 0, masks, stop_at}, {});
           for (std::size_t n = 0; n < networks.size(); ++n) {
             SCOPED_TRACE("network " + std::to_string(n));
             expect_equal_samples(stopped[n], whole[n]);
+            expect_equal_counts(searched[n], whole[n]);
+            EXPECT_TRUE(searched[n].groups.empty() && std::isinf(searched[n].successive_difference_sum));
             // More may be asked at once of what is hidden, but not many more.
             EXPECT_LE(static_cast<double>(stopped[n].rays), 1.1 * static_cast<double>(whole[n].rays));
           }

@@ -20,14 +20,18 @@ std::vector<EngineUnderTest> engines_under_test() {
     engines.push_back({name_of(info),
                        [info](const TraceScene& scene) { return make_tracer(info.engine, info.device_index, scene); }});
   // And several devices together, software ones where there are no others. A network is always split, or one so small
-  // never would be.
+  // never would be; of a population, GPUs take voxels and processors networks.
   const auto together = [&](const std::string& name, const DeviceChoice& device, std::size_t many) {
     engines.push_back({name, [device, many](const TraceScene& scene) {
                          std::vector<std::unique_ptr<Tracer>> tracers;
                          for (std::size_t k = 0; k < many; ++k)
                            tracers.push_back(make_tracer(device.engine, device.index, scene));
-                         return std::make_unique<SpreadTracer>(std::move(tracers), scene, Team::Warn(),
-                                                               SpreadTracer::Split::always);
+                         const bool gpus = device.engine != Engine::embree;
+                         return std::make_unique<SpreadTracer>(
+                             std::move(tracers), scene, Team::Warn(),
+                             SpreadTracer::Options{.split = SpreadTracer::Split::always,
+                                                   .population = gpus ? SpreadTracer::Population::by_voxels
+                                                                      : SpreadTracer::Population::by_networks});
                        }});
   };
   together("two_compute_bvh", {.engine = Engine::compute_bvh}, 2);

@@ -4,7 +4,8 @@
 
     cmake -G Ninja -S . -B build/coverage -DVANTAGE_COVERAGE=ON && ninja -C build/coverage
     find build/coverage/tests/{unit,golden,conformance,stress} -name '*_test' -type f -exec {} \\;
-    tests/coverage/coverage.py build/coverage            a table; --lines MODULE lists the lines that nothing ran
+    tests/coverage/coverage.py build/coverage            a table; --lines MODULE lists the lines that nothing ran,
+                                                         --files REGEX has a row for each file of that name
 
 Reads what gcov says of every object. Of branches, those that only an exception takes are left out: every call has one.
 """
@@ -12,6 +13,7 @@ import argparse
 import collections
 import json
 import pathlib
+import re
 import subprocess
 
 
@@ -60,6 +62,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", type=pathlib.Path)
     parser.add_argument("--lines", metavar="MODULE", help="list what was not run there")
+    parser.add_argument("--files", metavar="REGEX", help="a row a file, of those whose names it is found in")
     args = parser.parse_args()
     root = pathlib.Path(__file__).resolve().parents[2]
     lines, branches = counted_lines(args.build.resolve(), root)
@@ -69,11 +72,14 @@ def main():
             if missed:
                 print(f"{name}: {', '.join(map(str, missed))}")
         return
-    print("| module | lines run | branches taken |\n| --- | --- | --- |")
-    modules = sorted({module_of(name) for name in lines})
-    for module in modules + ["all"]:
-        of = lambda counts: [c for n in counts if module in ("all", module_of(n)) for c in counts[n].values()]  # noqa: E731, B023
-        print(f"| {module} | {share(of(lines))} | {share(of(branches))} |")
+    row_of = module_of
+    if args.files:
+        lines = {name: counts for name, counts in lines.items() if re.search(args.files, name)}
+        row_of = str
+    print(f"| {'file' if args.files else 'module'} | lines run | branches taken |\n| --- | --- | --- |")
+    for row in sorted({row_of(name) for name in lines}) + ["all"]:
+        of = lambda counts: [c for n in lines if row in ("all", row_of(n)) for c in counts[n].values()]  # noqa: E731, B023
+        print(f"| {row} | {share(of(lines))} | {share(of(branches))} |")
 
 
 if __name__ == "__main__":

@@ -42,4 +42,18 @@ void add_station_sums(NetworkCounts& counts, const NetworkCounts& part) {
   add_each(counts.dropped, part.dropped);
 }
 
+void add_voxels(NetworkCounts& counts, const NetworkCounts& part) {
+  counts.stations = part.stations;
+  counts.point_worth = part.point_worth;
+  counts.voxels += part.voxels;
+  counts.weight += part.weight;
+  counts.saturated += part.saturated;
+  counts.partial_points += part.partial_points;
+  counts.successive_difference_sum += part.successive_difference_sum;
+  counts.trace_seconds += part.trace_seconds;
+  add_each(counts.seen, part.seen);
+  add_each(counts.shared, part.shared);
+  add_station_sums(counts, part);
+}
+
 }  // namespace vantage

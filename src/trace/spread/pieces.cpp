@@ -12,9 +12,7 @@ Piece Pieces::take(double share, bool known) {
     returned_.pop_back();
     return piece;
   }
-  // In rounds that leave some, so that a surprise can be made good by the others (factoring: Hummel, Schonberg, Flynn,
-  // 1992); never so little that handing out costs.
-  constexpr double of_rest = 0.9, least = 1.0 / 16;
+  constexpr double least = 1.0 / 16;  // never so little that handing out costs
   const auto share_of = [&](std::size_t items, double part) {
     return static_cast<std::size_t>(std::ceil(part * share * static_cast<double>(items)));
   };
@@ -22,9 +20,9 @@ Piece Pieces::take(double share, bool known) {
   if (known) {
     if (next_ >= round_end_) {
       round_ = items_ - next_;
-      round_end_ = next_ + static_cast<std::size_t>(std::ceil(of_rest * static_cast<double>(round_)));
+      round_end_ = next_ + static_cast<std::size_t>(std::ceil(of_rest_ * static_cast<double>(round_)));
     }
-    wanted = std::max(wanted, std::min(share_of(round_, of_rest), round_end_ - next_));
+    wanted = std::max(wanted, std::min(share_of(round_, of_rest_), round_end_ - next_));
   }
   const Piece piece{next_, std::min(items_, next_ + wanted)};
   next_ = piece.end;

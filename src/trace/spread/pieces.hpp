@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Work in a row of items, handed out in pieces: large ones first, then smaller, so that all who work on it end together
 // however fast each is. Not thread-safe.
+//
+// In rounds, each of `of_rest` of what is left, so that a surprise can be made good by the others (factoring: Hummel,
+// Schonberg, Flynn, 1992).
 #pragma once
 
 #include <cstddef>
@@ -15,7 +18,8 @@ struct Piece {
 
 class Pieces {
  public:
-  explicit Pieces(std::size_t items) : items_(items) {}
+  static constexpr double factored = 0.9;
+  explicit Pieces(std::size_t items, double of_rest = factored) : items_(items), of_rest_(of_rest) {}
 
   bool empty() const { return next_ == items_ && returned_.empty(); }
   // For one that does the part `share` of all that is done. `known`: whether by experience; where not, a small piece
@@ -25,7 +29,9 @@ class Pieces {
   void give_back(const Piece& piece) { returned_.push_back(piece); }
 
  private:
-  std::size_t items_, next_ = 0;
+  std::size_t items_;
+  double of_rest_;
+  std::size_t next_ = 0;
   std::size_t round_ = 0, round_end_ = 0;  // how much was left when it began, and where it ends
   std::vector<Piece> returned_;
 };

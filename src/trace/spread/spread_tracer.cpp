@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "trace/field_counts.hpp"
+#include "trace/sample_runs.hpp"
 #include "trace/spread/merge_counts.hpp"
 #include "trace/told_once.hpp"
 
@@ -47,12 +48,13 @@ void put(std::vector<T>& whole, const std::vector<T>& part, std::size_t at, std:
 }  // namespace
 
 SpreadTracer::SpreadTracer(std::vector<std::unique_ptr<Tracer>> tracers, const TraceScene& scene, Team::Warn warn,
-                           Split split, std::optional<EngineInfo> info)
-    : info_(info ? *std::move(info) : info_of_all(tracers)),
+                           Options options)
+    : info_(options.info ? *std::move(options.info) : info_of_all(tracers)),
       grid_(scene.grid),
       scanners_(scene.scanners),
       team_(std::move(tracers), std::move(warn)),
-      split_(split),
+      split_(options.split),
+      population_(options.population),
       merge_seconds_a_voxel_(first_merge_seconds_a_voxel) {}
 
 void SpreadTracer::set_goal_density(double goal) {
@@ -177,6 +179,41 @@ std::vector<NetworkCounts> SpreadTracer::count_each(std::span<const std::vector<
 std::vector<NetworkCounts> SpreadTracer::count_sampled(std::span<const std::vector<TraceStation>> networks,
                                                        std::span<const std::uint32_t> station_counts,
                                                        const SampleJob& job, const Progress& progress) {
+  // What a search asks for. The rest needs a network's voxels together.
+  const bool sums_alone = job.groups == 0 && !job.points && !job.station_masks && !job.registration;
+  return population_ == Population::by_voxels && sums_alone && !job.sample.empty() && team_.left() > 1
+             ? count_by_voxels(networks, station_counts, job, progress)
+             : count_by_networks(networks, station_counts, job, progress);
+}
+
+std::vector<NetworkCounts> SpreadTracer::count_by_voxels(std::span<const std::vector<TraceStation>> networks,
+                                                         std::span<const std::uint32_t> station_counts,
+                                                         const SampleJob& job, const Progress& progress) {
+  std::mutex mutex;
+  std::vector<NetworkCounts> all(networks.size());
+  const SampleRuns runs(job.sample.size());
+  const std::size_t members = team_.left();
+  const bool finished = team_.work(
+      runs.size(), runs_, progress, [&](Tracer& tracer, const Piece& piece, const Progress& own, const auto&) {
+        const std::vector<std::uint32_t> voxels = runs.runs(job.sample, piece.first, piece.end);
+        SampleJob part = job;
+        part.sample = voxels;
+        const std::vector<NetworkCounts> counts = tracer.count_sampled(networks, station_counts, part, own);
+        if (std::any_of(counts.begin(), counts.end(), [](const auto& c) { return c.cancelled; })) return false;
+        const std::lock_guard lock(mutex);
+        for (std::size_t n = 0; n < counts.size(); ++n) add_voxels(all[n], counts[n]);
+        return true;
+      });
+  for (NetworkCounts& counts : all) {
+    counts.cancelled = !finished;
+    counts.trace_seconds /= static_cast<double>(members);
+  }
+  return all;
+}
+
+std::vector<NetworkCounts> SpreadTracer::count_by_networks(std::span<const std::vector<TraceStation>> networks,
+                                                           std::span<const std::uint32_t> station_counts,
+                                                           const SampleJob& job, const Progress& progress) {
   std::vector<NetworkCounts> all(networks.size());
   // A member that is dropped may have told of networks that another then counts again.
   ToldOnce told(job, networks.size());

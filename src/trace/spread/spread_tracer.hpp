@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// One tracer made of several, each on a device of its own: sampled networks, networks of every ray and rows of a scan
-// are pulled in pieces, and a single network of every ray is split by its stations where merging costs less than that
-// gains. All counts are integers, so who counted what does not show.
+// One tracer made of several, each on a device of its own: sampled populations, networks of every ray and rows of a
+// scan are pulled in pieces, and a single network of every ray is split by its stations where merging costs less than
+// that gains. A piece of a population is some of its networks, or some of the sample's voxels. All counts are integers,
+// so who counted what does not show.
 #pragma once
 
 #include <functional>
@@ -19,9 +20,17 @@ class SpreadTracer final : public Tracer {
  public:
   // When one network is split by its stations.
   enum class Split { where_it_pays, always };
-  // The tracers are of one scene. `info`: what all are known by; their devices otherwise. REQUIRES: at least one.
-  SpreadTracer(std::vector<std::unique_ptr<Tracer>> tracers, const TraceScene& scene, Team::Warn warn,
-               Split split = Split::where_it_pays, std::optional<EngineInfo> info = std::nullopt);
+  // What a piece of a sampled population is. By voxels each member sees all stations: on a GPU, where rays to one voxel
+  // share their way if they come from stations that stand close together, half the stations are not half the work. By
+  // networks each member hears of some stations and answers for some networks only: for members that are far away.
+  enum class Population { by_networks, by_voxels };
+  struct Options {
+    Split split = Split::where_it_pays;
+    Population population = Population::by_networks;
+    std::optional<EngineInfo> info = std::nullopt;  // what all are known by; their devices otherwise
+  };
+  // The tracers are of one scene. REQUIRES: at least one.
+  SpreadTracer(std::vector<std::unique_ptr<Tracer>> tracers, const TraceScene& scene, Team::Warn warn, Options options);
 
   const EngineInfo& info() const override { return info_; }
   void set_goal_density(double goal) override;
@@ -44,13 +53,21 @@ class SpreadTracer final : public Tracer {
   NetworkCounts count_by_station(std::span<const TraceStation> stations, std::uint32_t station_count,
                                  const CountOptions& options, const Progress& progress);
   bool split_pays(std::size_t stations) const;
+  std::vector<NetworkCounts> count_by_voxels(std::span<const std::vector<TraceStation>> networks,
+                                             std::span<const std::uint32_t> station_counts, const SampleJob& job,
+                                             const Progress& progress);
+  std::vector<NetworkCounts> count_by_networks(std::span<const std::vector<TraceStation>> networks,
+                                               std::span<const std::uint32_t> station_counts, const SampleJob& job,
+                                               const Progress& progress);
 
   EngineInfo info_;
   std::shared_ptr<const VoxelGrid> grid_;
   std::vector<TraceScanner> scanners_;
   Team team_;
   Split split_;
+  Population population_;
   TeamRates rows_, networks_, samples_, stations_;
+  TeamRates runs_{.items_a_second = {}, .of_rest = 1};
   double seconds_a_station_ = 0;  // of networks counted whole, as seen last; 0: not yet
   double merge_seconds_a_voxel_;
 };

@@ -69,7 +69,7 @@ class Team::Shift {
         rates_(rates),
         progress_(progress),
         items_(items),
-        pieces_(items),
+        pieces_(items, rates.of_rest),
         under_way_(team.size(), 0),
         failures_(team.size()),
         outside_(progress.stop, [this] { stop_.request_stop(); }) {}

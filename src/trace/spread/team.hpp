@@ -17,6 +17,8 @@ namespace vantage {
 // What a kind of work has shown of how fast each member is; it sizes pieces, never results.
 struct TeamRates {
   std::vector<double> items_a_second;  // of each member; 0: not seen yet
+  // Of what is left, handed out in one round: all of it where items take alike, so that rates seen hold good.
+  double of_rest = Pieces::factored;
 };
 
 class Team {

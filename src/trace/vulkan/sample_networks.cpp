@@ -5,8 +5,10 @@
 #include <array>
 #include <bit>
 #include <iterator>
+#include <limits>
+#include <utility>
 
-#include "core/golden_step.hpp"
+#include "trace/sample_runs.hpp"
 #include "trace/vulkan/sample_plan.hpp"
 #include "trace/vulkan/vulkan_tracer.hpp"
 
@@ -17,17 +19,12 @@ const VulkanTracer::DeviceSample& VulkanTracer::upload_sample(std::span<const st
                       [&] { return device_sample(sample); });
 }
 
-// Runs of voxels that lie close together, whose rays share what they visit; the runs come from all over the site in
-// turn, so that one chunk has about as many rays as another.
+// Run by run, so that one chunk has about as many rays as another.
 static std::vector<SampleVoxel> in_order_of_chunks(std::span<const SampleVoxel> voxels) {
-  constexpr std::size_t run = 32;
-  const std::size_t runs = (voxels.size() + run - 1) / run, step = golden_step(runs);
+  const SampleRuns runs(voxels.size());
   std::vector<SampleVoxel> ordered;
   ordered.reserve(voxels.size());
-  for (std::size_t k = 0; k < runs; ++k) {
-    const auto from = voxels.subspan(k * step % runs * run);
-    std::ranges::copy(from.first(std::min(run, from.size())), std::back_inserter(ordered));
-  }
+  for (std::size_t k = 0; k < runs.size(); ++k) std::ranges::copy(runs.run(voxels, k), std::back_inserter(ordered));
   return ordered;
 }
 
@@ -81,6 +78,7 @@ class VulkanTracer::SampledCount {
     for (std::size_t n = 0; n < registration_.size(); ++n) take_registration(results[n], std::move(registration_[n]));
     for (std::size_t n = 0; n < results.size(); ++n) {
       results[n].rays = rays_[n];
+      if (!job_.groups) results[n].successive_difference_sum = std::numeric_limits<double>::infinity();
       results[n].cancelled = cancelled;
       results[n].trace_seconds = seconds_ / static_cast<double>(results.size());
     }
@@ -159,19 +157,22 @@ class VulkanTracer::SampledCount {
 
   // At least one run, even of no slots: the batch is cleared and reduced all the same.
   void fill_slots(Batch& batch) const {
-    const auto place = [&](const SampleStation& slot) { return place_along_curve(slot.origin); };
+    std::vector<std::pair<std::uint64_t, SampleStation>> placed;
     for (std::uint32_t scanner = 0; scanner < t_.scanners_.size(); ++scanner) {
       for (const bool turned : {false, true}) {
-        const auto first = static_cast<std::uint32_t>(batch.slots.size());
+        placed.clear();
         for (std::size_t n = batch.first; n < batch.end; ++n)
           for (const TraceStation& s : networks_[n]) {
             if (s.scanner != scanner || s.turn.has_value() != turned) continue;
-            batch.slots.push_back(
-                {{s.origin.x, s.origin.y, s.origin.z}, s.place, static_cast<std::uint32_t>(n - batch.first), {}});
-            set_turn(batch.slots.back().turn, s);
+            SampleStation slot{
+                {s.origin.x, s.origin.y, s.origin.z}, s.place, static_cast<std::uint32_t>(n - batch.first), {}};
+            set_turn(slot.turn, s);
+            placed.emplace_back(place_along_curve(slot.origin), slot);
           }
+        std::ranges::stable_sort(placed, {}, [](const auto& one) { return one.first; });
+        const auto first = static_cast<std::uint32_t>(batch.slots.size());
+        for (const auto& one : placed) batch.slots.push_back(one.second);
         const auto end = static_cast<std::uint32_t>(batch.slots.size());
-        std::ranges::stable_sort(std::span(batch.slots).subspan(first), {}, place);
         if (end > first) batch.runs.push_back({&t_.scanners_[scanner], turned, first, end});
       }
     }
@@ -356,9 +357,8 @@ class VulkanTracer::SampledCount {
   }
 
   Reduction reduction() const {
-    Reduction reduction{
-        t_.counts_.address(),        mask_words_ ? t_.masks_.address() : 0, voxels_, groups_, mask_words_, true,
-        sample_->demands.addresses()};
+    Reduction reduction{t_.counts_.address(), mask_words_ ? t_.masks_.address() : 0, voxels_, groups_, mask_words_,
+                        job_.groups > 0,      sample_->demands.addresses()};
     if (reduction.demands.weights) {
       reduction.weight.resize(groups_);
       for (std::size_t k = 0; k < job_.sample.size(); ++k)

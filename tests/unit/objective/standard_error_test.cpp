@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "core/philox.hpp"
@@ -88,6 +89,15 @@ TEST(CoverageEstimate, IsTheFormula) {
   counts.voxels = counts.weight = 2;
   counts.saturated = 1, counts.partial_points = 0, counts.successive_difference_sum = 1;
   EXPECT_DOUBLE_EQ(coverage_estimate(counts, 4, 20).standard_error, std::sqrt((1 - 2.0 / 20) / (2 * 2 * 1)));
+}
+
+TEST(CoverageEstimate, WithoutDifferencesKnowsNothing) {
+  NetworkCounts counts;
+  counts.voxels = counts.weight = 5;
+  counts.saturated = 2;
+  counts.successive_difference_sum = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(coverage_estimate(counts, 4, 20).standard_error, 0.5);  // of something in [0, 1], at most
+  EXPECT_EQ(coverage_estimate(counts, 4, 5).standard_error, 0.0);   // every voxel
 }
 
 TEST(OverlapEstimate, IsTheJackknife) {

@@ -23,8 +23,10 @@ TEST(Pieces, AreAllItemsOnce) {
   for (const std::size_t items : {1u, 2u, 3u, 17u, 250u, 1000u})
     for (const std::vector<double>& shares : {std::vector{0.5, 0.5}, {0.999, 0.001}, {0.25, 0.25, 0.25, 0.25}})
       for (const bool known : {false, true}) {
-        Pieces pieces(items);
-        EXPECT_EQ(taken(pieces, items, shares, known), std::vector<int>(items, 1)) << items;
+        for (const double of_rest : {Pieces::factored, 1.0}) {
+          Pieces pieces(items, of_rest);
+          EXPECT_EQ(taken(pieces, items, shares, known), std::vector<int>(items, 1)) << items;
+        }
       }
 }
 
@@ -41,6 +43,13 @@ TEST(Pieces, AreFewForThoseWhoAreEquallyFast) {
   std::size_t handed_out = 0;
   for (; !pieces.empty(); ++handed_out) pieces.take(0.5, true);
   EXPECT_EQ(handed_out, 5u);  // 113, 112, 12, 11 and what is left
+}
+
+TEST(Pieces, AreAPieceForEachWhereAllIsHandedOutAtOnce) {
+  Pieces pieces(157, 1);
+  EXPECT_EQ(pieces.take(0.501, true).size(), 79u);
+  EXPECT_EQ(pieces.take(0.499, true).size(), 78u);
+  EXPECT_TRUE(pieces.empty());
 }
 
 TEST(Pieces, WhatIsGivenBackIsTakenAgain) {

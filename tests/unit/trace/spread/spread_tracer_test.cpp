@@ -22,7 +22,7 @@ constexpr std::uint32_t all_outputs = Tracer::range | Tracer::position | Tracer:
                                       Tracer::primitive | Tracer::barycentric | Tracer::voxel;
 
 // Fails for good at its n-th call, behind the work: what the call told on its way has been told. Takes its time.
-class Frail final : public Tracer {
+class Frail : public Tracer {
  public:
   struct Manner {
     int fails_at = 0;  // 0: never
@@ -66,6 +66,24 @@ class Frail final : public Tracer {
   int calls_ = 0;
 };
 
+// Networks and voxels of each sampled count.
+using Asked = std::vector<std::pair<std::size_t, std::size_t>>;
+
+// Keeps what it is asked for.
+class Attentive final : public Frail {
+ public:
+  Attentive(std::unique_ptr<Tracer> tracer, Asked& asked) : Frail(std::move(tracer), {}), asked_(asked) {}
+  std::vector<NetworkCounts> count_sampled(std::span<const std::vector<TraceStation>> networks,
+                                           std::span<const std::uint32_t> station_counts, const SampleJob& job,
+                                           const Progress& progress) override {
+    asked_.emplace_back(networks.size(), job.sample.size());
+    return Frail::count_sampled(networks, station_counts, job, progress);
+  }
+
+ private:
+  Asked& asked_;
+};
+
 // Two walls at a corner, a screen before them, and heads here and there.
 struct Site {
   TraceScene scene = test::trace_scene(
@@ -95,11 +113,13 @@ struct Site {
     return tracer;
   }
   std::unique_ptr<SpreadTracer> several(const std::vector<Frail::Manner>& manners, Team::Warn warn = {},
-                                        SpreadTracer::Split split = SpreadTracer::Split::always) const {
+                                        SpreadTracer::Options options = {
+                                            .split = SpreadTracer::Split::always,
+                                            .population = SpreadTracer::Population::by_voxels}) const {
     std::vector<std::unique_ptr<Tracer>> tracers;
     for (const Frail::Manner& manner : manners)
       tracers.push_back(std::make_unique<Frail>(make_embree_tracer(scene), manner));
-    auto tracer = std::make_unique<SpreadTracer>(std::move(tracers), scene, std::move(warn), split);
+    auto tracer = std::make_unique<SpreadTracer>(std::move(tracers), scene, std::move(warn), std::move(options));
     tracer->set_goal_density(wanted);
     return tracer;
   }
@@ -125,7 +145,7 @@ struct Answers {
   Tracer::RawChunk scan;
   NetworkCounts exact;
   VoxelField field;
-  std::vector<NetworkCounts> each, sampled;
+  std::vector<NetworkCounts> each, sampled, searched;
   std::vector<std::vector<std::uint32_t>> points;
   std::vector<std::vector<std::uint64_t>> masks;
 };
@@ -163,6 +183,9 @@ Answers ask(Tracer& tracer, const Site& site) {
                           .stop = {}};
   answers.sampled = tracer.count_sampled(site.networks, site.sizes, job, progress);
   EXPECT_DOUBLE_EQ(told, 1);
+  told = 0;
+  answers.searched = tracer.count_sampled(site.networks, site.sizes, {site.sample, 0, true, 0}, progress);
+  EXPECT_DOUBLE_EQ(told, 1);
   return answers;
 }
 
@@ -186,12 +209,19 @@ void expect_same_answers(const Answers& got, const Answers& expected) {
     SCOPED_TRACE("network " + std::to_string(n));
     expect_all_equal(got.each[n], expected.each[n]);
     expect_all_equal(got.sampled[n], expected.sampled[n]);
+    // Not the rays: which voxels are asked together may cost some, and change no count.
+    test::expect_equal_counts(got.searched[n], expected.searched[n]);
+    EXPECT_FALSE(got.searched[n].cancelled);
+    EXPECT_TRUE(got.searched[n].groups.empty());
+    EXPECT_EQ(got.searched[n].successive_difference_sum, expected.searched[n].successive_difference_sum);
     EXPECT_EQ(got.points[n], expected.points[n]);
     EXPECT_EQ(got.masks[n], expected.masks[n]);
   }
 }
 
-TEST(SpreadTracer, GivesWhatOneDeviceGives) {
+class Populations : public testing::TestWithParam<SpreadTracer::Population> {};
+
+TEST_P(Populations, AreGivenAsByOneDevice) {
   const Site site;
   const Answers expected = ask(*site.one(), site);
   EXPECT_GT(expected.exact.saturated, 0u);
@@ -202,15 +232,40 @@ TEST(SpreadTracer, GivesWhatOneDeviceGives) {
                                                     {{.delay_ms = 0}, {.delay_ms = 40}},
                                                     {{.delay_ms = 15}, {}, {.delay_ms = 3}}}) {
     SCOPED_TRACE(std::to_string(manners.size()) + " devices");
-    const auto tracer = site.several(manners);
+    const auto tracer = site.several(manners, {}, {.split = SpreadTracer::Split::always, .population = GetParam()});
     expect_same_answers(ask(*tracer, site), expected);
     expect_same_answers(ask(*tracer, site), expected);  // now that it knows how fast each is
   }
 }
 
+INSTANTIATE_TEST_SUITE_P(SpreadTracer, Populations,
+                         testing::Values(SpreadTracer::Population::by_networks, SpreadTracer::Population::by_voxels),
+                         [](const auto& of) {
+                           return of.param == SpreadTracer::Population::by_voxels ? "ByVoxels" : "ByNetworks";
+                         });
+
+// Each member has some of the voxels and all networks, or all voxels and some of the networks.
+TEST(SpreadTracer, SplitsAPopulationAsItIsTold) {
+  const Site site;
+  for (const auto population : {SpreadTracer::Population::by_networks, SpreadTracer::Population::by_voxels}) {
+    std::vector<std::unique_ptr<Tracer>> tracers;
+    std::vector<Asked> asked(2);
+    for (Asked& own : asked) tracers.push_back(std::make_unique<Attentive>(make_embree_tracer(site.scene), own));
+    SpreadTracer tracer(std::move(tracers), site.scene, {}, {.population = population});
+    tracer.count_sampled(site.networks, site.sizes, {site.sample, 0, true, 0}, {});
+    const bool by_voxels = population == SpreadTracer::Population::by_voxels;
+    for (const Asked& own : asked)
+      for (const auto& [networks, voxels] : own) {
+        EXPECT_EQ(networks == site.networks.size(), by_voxels);
+        EXPECT_EQ(voxels == site.sample.size(), !by_voxels);
+      }
+    EXPECT_FALSE(asked[0].empty() && asked[1].empty());
+  }
+}
+
 TEST(SpreadTracer, ANetworkIsSplitOnlyWhereThatPays) {
   const Site site;
-  const auto tracer = site.several(std::vector<Frail::Manner>(2), {}, SpreadTracer::Split::where_it_pays);
+  const auto tracer = site.several(std::vector<Frail::Manner>(2), {}, {.split = SpreadTracer::Split::where_it_pays});
   const Answers expected = ask(*site.one(), site);
   for (int round = 0; round < 3; ++round) expect_same_answers(ask(*tracer, site), expected);
 }
