@@ -3,6 +3,7 @@
 
 #include <limits>
 #include <memory>
+#include <vector>
 
 #define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_STATIC
@@ -17,21 +18,41 @@
 namespace vantage {
 namespace {
 
-// Whether a PNG's chunks lie within its bytes: stb_image makes room for what a chunk claims before it looks for it.
-bool chunks_fit(std::span<const std::uint8_t> bytes) {
-  constexpr std::size_t signature = 8, frame = 12;  // length, type and checksum of a chunk
+constexpr std::size_t chunk_frame = 12;  // length, name and checksum
+
+// Of a PNG: where each chunk begins that lies within the bytes, up to the image's end, and its length and name. Returns
+// whether none claims more than there is; whatever is missing is told by the decoder.
+template <class Tell>
+bool walk_chunks(std::span<const std::uint8_t> bytes, const Tell& tell) {
   const auto word = [&](std::size_t at) {
     return std::size_t{bytes[at]} << 24 | std::size_t{bytes[at + 1]} << 16 | std::size_t{bytes[at + 2]} << 8 |
            std::size_t{bytes[at + 3]};
   };
-  constexpr std::size_t end = 0x49454e44;  // "IEND": what follows is not looked at
-  for (std::size_t at = signature; at + frame <= bytes.size();) {
-    const std::size_t length = word(at);
-    if (word(at + 4) == end) return true;
-    if (length > bytes.size() - at - frame) return false;
-    at += frame + length;
+  constexpr std::size_t signature = 8, end = 0x49454e44;  // "IEND": what follows is not looked at
+  for (std::size_t at = signature; at + chunk_frame <= bytes.size();) {
+    const std::size_t length = word(at), name = word(at + 4);
+    if (name == end) return true;
+    if (length > bytes.size() - at - chunk_frame) return false;
+    tell(at, length, name);
+    at += chunk_frame + length;
   }
-  return true;  // whatever is missing is told by the decoder
+  return true;
+}
+
+// REQUIRES: `empty` ascends.
+std::vector<std::uint8_t> without_chunks(std::span<const std::uint8_t> bytes, std::span<const std::size_t> empty) {
+  std::vector<std::uint8_t> rest;
+  std::size_t from = 0;
+  const auto keep_to = [&](std::size_t end) {
+    const auto kept = bytes.subspan(from, end - from);
+    rest.insert(rest.end(), kept.begin(), kept.end());
+  };
+  for (const std::size_t at : empty) {
+    keep_to(at);
+    from = at + chunk_frame;
+  }
+  keep_to(bytes.size());
+  return rest;
 }
 
 }  // namespace
@@ -43,10 +64,19 @@ Image decode_image(std::span<const std::uint8_t> bytes, std::string& problem) {
   }
   if (bytes.size() >= 2 && bytes[0] == 0xff && bytes[1] == 0xd8)
     return decode_jpeg(bytes, STBI_MAX_DIMENSIONS, problem);
-  if (!chunks_fit(bytes)) {
+  // stb_image makes room for what a chunk claims before it looks for it; and it copies nothing to nowhere where the
+  // first of the image's data are none, as they may be.
+  constexpr std::size_t data = 0x49444154;  // "IDAT"
+  std::vector<std::size_t> empty;
+  const bool fit = walk_chunks(bytes, [&](std::size_t at, std::size_t length, std::size_t name) {
+    if (name == data && length == 0) empty.push_back(at);
+  });
+  if (!fit) {
     problem = "it is cut short, or damaged: a part of it claims more bytes than there are";
     return {};
   }
+  const std::vector<std::uint8_t> mended = empty.empty() ? std::vector<std::uint8_t>() : without_chunks(bytes, empty);
+  if (!empty.empty()) bytes = mended;
   int width = 0, height = 0, channels = 0;
   const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
       stbi_load_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height, &channels, 4),

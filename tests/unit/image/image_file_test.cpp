@@ -88,6 +88,23 @@ TEST(ImageFile, RefusesPngsWhoseChunksClaimMoreThanThereIs) {
   }
 }
 
+// As the format allows, at the beginning above all.
+TEST(ImageFile, PngsMayHaveChunksWithoutData) {
+  const test::TemporaryFolder folder;
+  const Image image = counting_image(40, 20);
+  write_png(folder / "a.png", image);
+  std::ifstream file(folder / "a.png", std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  const std::string nothing("\0\0\0\0IDAT\x35\xaf\x06\x1e", 12);
+  const std::size_t data = bytes.find("IDAT"), end = bytes.find("IEND");
+  ASSERT_NE(data, std::string::npos);
+  ASSERT_NE(end, std::string::npos);
+  bytes.insert(end - 4, nothing);
+  bytes.insert(data - 4, nothing + nothing);
+  std::ofstream(folder / "b.png", std::ios::binary) << bytes;
+  EXPECT_EQ(read_image(folder / "b.png").rgba, image.rgba);
+}
+
 TEST(ImageFile, SaysWhatIsWrong) {
   const test::TemporaryFolder folder;
   EXPECT_THROW(read_image(folder / "none.png"), Error);
