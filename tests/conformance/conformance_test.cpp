@@ -421,6 +421,8 @@ TEST_P(Conformance, SkippingChangesNoVoxel) {
       EXPECT_EQ(skipped.stations, all.stations);
       EXPECT_EQ(counts.points_on_surveyed, expected.points_on_surveyed);
       EXPECT_TRUE(counts.points.empty());
+      // Each point that counts was some ray's.
+      EXPECT_GE(counts.rays, std::reduce(counts.points_on_surveyed.begin(), counts.points_on_surveyed.end()));
       EXPECT_LT(counts.rays, expected.rays);
       expect_equal_counts(counts, expected);
     }

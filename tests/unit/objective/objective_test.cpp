@@ -173,6 +173,8 @@ TEST(Objective, ScalesBetweenBestAndWorst) {
   EXPECT_EQ(error.unscaled(0.25), 2.5);
   const Objective stations = make_objective("stations", {.stations_min = 4, .stations_max = 12});
   EXPECT_EQ(stations.unscaled(1.0 / 16), 5);  // by equation 7
+  for (const char* name : {"registration", "registration_worst"})
+    EXPECT_EQ(make_objective(name).scaled(10), 1) << name;  // mm
   EXPECT_EQ((Objective{.best = 3, .worst = 3}).scaled(7), 0);
 }
 
