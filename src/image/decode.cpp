@@ -39,7 +39,7 @@ bool walk_chunks(std::span<const std::uint8_t> bytes, const Tell& tell) {
   return true;
 }
 
-// REQUIRES: `empty` ascends.
+// All but the chunks without data that begin at `empty`, in ascending order.
 std::vector<std::uint8_t> without_chunks(std::span<const std::uint8_t> bytes, std::span<const std::size_t> empty) {
   std::vector<std::uint8_t> rest;
   std::size_t from = 0;
@@ -75,8 +75,8 @@ Image decode_image(std::span<const std::uint8_t> bytes, std::string& problem) {
     problem = "it is cut short, or damaged: a part of it claims more bytes than there are";
     return {};
   }
-  const std::vector<std::uint8_t> mended = empty.empty() ? std::vector<std::uint8_t>() : without_chunks(bytes, empty);
-  if (!empty.empty()) bytes = mended;
+  std::vector<std::uint8_t> rest;
+  if (!empty.empty()) bytes = rest = without_chunks(bytes, empty);
   int width = 0, height = 0, channels = 0;
   const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
       stbi_load_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height, &channels, 4),

@@ -45,6 +45,18 @@ void put(std::vector<T>& whole, const std::vector<T>& part, std::size_t at, std:
   std::copy(part.begin(), part.end(), whole.begin() + static_cast<std::ptrdiff_t>(at));
 }
 
+bool came_to_end(const std::vector<NetworkCounts>& counts) {
+  return std::none_of(counts.begin(), counts.end(), [](const auto& c) { return c.cancelled; });
+}
+
+// What members have summed, as of one that has all of them.
+void settle(std::vector<NetworkCounts>& all, bool finished, std::size_t members) {
+  for (NetworkCounts& counts : all) {
+    counts.cancelled = !finished;
+    counts.trace_seconds /= static_cast<double>(members);
+  }
+}
+
 }  // namespace
 
 SpreadTracer::SpreadTracer(std::vector<std::unique_ptr<Tracer>> tracers, const TraceScene& scene, Team::Warn warn,
@@ -171,7 +183,7 @@ std::vector<NetworkCounts> SpreadTracer::count_each(std::span<const std::vector<
                                      station_counts.subspan(piece.first, piece.size()), options, own);
                // Nobody else writes there.
                std::copy(counts.begin(), counts.end(), all.begin() + static_cast<std::ptrdiff_t>(piece.first));
-               return std::none_of(counts.begin(), counts.end(), [](const auto& c) { return c.cancelled; });
+               return came_to_end(counts);
              });
   return all;
 }
@@ -199,15 +211,12 @@ std::vector<NetworkCounts> SpreadTracer::count_by_voxels(std::span<const std::ve
         SampleJob part = job;
         part.sample = voxels;
         const std::vector<NetworkCounts> counts = tracer.count_sampled(networks, station_counts, part, own);
-        if (std::any_of(counts.begin(), counts.end(), [](const auto& c) { return c.cancelled; })) return false;
+        if (!came_to_end(counts)) return false;
         const std::lock_guard lock(mutex);
         for (std::size_t n = 0; n < counts.size(); ++n) add_voxels(all[n], counts[n]);
         return true;
       });
-  for (NetworkCounts& counts : all) {
-    counts.cancelled = !finished;
-    counts.trace_seconds /= static_cast<double>(members);
-  }
+  settle(all, finished, members);
   return all;
 }
 
@@ -218,21 +227,18 @@ std::vector<NetworkCounts> SpreadTracer::count_by_networks(std::span<const std::
   // A member that is dropped may have told of networks that another then counts again.
   ToldOnce told(job, networks.size());
   const std::size_t members = team_.left();
-  const bool finished = team_.work(
-      networks.size(), samples_, progress,
-      [&](Tracer& tracer, const Piece& piece, const Progress& own, const Team::OnCaller& ask) {
-        std::vector<NetworkCounts> counts =
-            tracer.count_sampled(networks.subspan(piece.first, piece.size()),
-                                 station_counts.subspan(piece.first, piece.size()), told.piece(piece.first, ask), own);
-        const bool done = std::none_of(counts.begin(), counts.end(), [](const auto& c) { return c.cancelled; });
-        // Nobody else writes there.
-        std::move(counts.begin(), counts.end(), all.begin() + static_cast<std::ptrdiff_t>(piece.first));
-        return done;
-      });
-  for (NetworkCounts& counts : all) {
-    counts.cancelled = !finished;
-    counts.trace_seconds /= static_cast<double>(members);
-  }
+  const bool finished =
+      team_.work(networks.size(), samples_, progress,
+                 [&](Tracer& tracer, const Piece& piece, const Progress& own, const Team::OnCaller& ask) {
+                   std::vector<NetworkCounts> counts = tracer.count_sampled(
+                       networks.subspan(piece.first, piece.size()), station_counts.subspan(piece.first, piece.size()),
+                       told.piece(piece.first, ask), own);
+                   const bool done = came_to_end(counts);
+                   // Nobody else writes there.
+                   std::move(counts.begin(), counts.end(), all.begin() + static_cast<std::ptrdiff_t>(piece.first));
+                   return done;
+                 });
+  settle(all, finished, members);
   return all;
 }
 
