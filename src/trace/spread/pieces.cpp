@@ -3,8 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace vantage {
+
+double fair_share(double own, std::span<const double> rates) {
+  constexpr double alike = 1.1;
+  const auto [least, most] = std::minmax_element(rates.begin(), rates.end());
+  if (!(*least > 0) || *most <= alike * *least) return 1 / static_cast<double>(rates.size());
+  return own / std::accumulate(rates.begin(), rates.end(), 0.0);
+}
 
 Piece Pieces::take(double share, bool known) {
   if (!returned_.empty()) {

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Work in a row of items, handed out in pieces: large ones first, then smaller, so that all who work on it end together
-// however fast each is. Not thread-safe.
-//
-// In rounds, each of `of_rest` of what is left, so that a surprise can be made good by the others (factoring: Hummel,
-// Schonberg, Flynn, 1992).
+// Work in a row of items, cut into pieces for several who work on it.
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 namespace vantage {
@@ -16,6 +13,16 @@ struct Piece {
   std::size_t size() const { return end - first; }
 };
 
+// The part of all work for one that does `own` items a second, beside all who do `rates`, itself among them. Devices of
+// one kind differ by less than a rate does from one time to the next: where all are nearly as fast, or one is not known,
+// shares are equal, so that the next work of this kind is cut into the same pieces.
+double fair_share(double own, std::span<const double> rates);
+
+// All items, handed out in pieces: large ones first, then smaller, so that all who work on it end together
+// however fast each is. Not thread-safe.
+//
+// In rounds, each of `of_rest` of what is left, so that a surprise can be made good by the others (factoring: Hummel,
+// Schonberg, Flynn, 1992).
 class Pieces {
  public:
   static constexpr double factored = 0.9;

@@ -142,16 +142,11 @@ class Team::Shift {
   std::optional<Piece> next(std::size_t k) {
     const std::lock_guard lock(mutex_);
     if (pieces_.empty() || stop_.stop_requested()) return std::nullopt;
-    double all = 0;
-    bool known = true;
-    std::size_t members = 0;
-    for (std::size_t i = 0; i < team_.size(); ++i) {
-      if (!team_.member(i) || failures_[i]) continue;
-      ++members;
-      all += rates_.items_a_second[i];
-      known &= rates_.items_a_second[i] > 0;
-    }
-    own_piece_[k] = pieces_.take(known ? rates_.items_a_second[k] / all : 1.0 / static_cast<double>(members), known);
+    std::vector<double> rates;
+    for (std::size_t i = 0; i < team_.size(); ++i)
+      if (team_.member(i) && !failures_[i]) rates.push_back(rates_.items_a_second[i]);
+    const bool known = *std::min_element(rates.begin(), rates.end()) > 0;
+    own_piece_[k] = pieces_.take(fair_share(rates_.items_a_second[k], rates), known);
     return own_piece_[k];
   }
 

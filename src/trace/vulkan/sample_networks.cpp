@@ -157,21 +157,26 @@ class VulkanTracer::SampledCount {
 
   // At least one run, even of no slots: the batch is cleared and reduced all the same.
   void fill_slots(Batch& batch) const {
-    std::vector<std::pair<std::uint64_t, SampleStation>> placed;
+    struct Placed {
+      std::uint64_t place;
+      const TraceStation* station;
+      std::uint32_t network;
+    };
+    std::vector<Placed> placed;
     for (std::uint32_t scanner = 0; scanner < t_.scanners_.size(); ++scanner) {
       for (const bool turned : {false, true}) {
         placed.clear();
         for (std::size_t n = batch.first; n < batch.end; ++n)
-          for (const TraceStation& s : networks_[n]) {
-            if (s.scanner != scanner || s.turn.has_value() != turned) continue;
-            SampleStation slot{
-                {s.origin.x, s.origin.y, s.origin.z}, s.place, static_cast<std::uint32_t>(n - batch.first), {}};
-            set_turn(slot.turn, s);
-            placed.emplace_back(place_along_curve(slot.origin), slot);
-          }
-        std::ranges::stable_sort(placed, {}, [](const auto& one) { return one.first; });
+          for (const TraceStation& s : networks_[n])
+            if (s.scanner == scanner && s.turn.has_value() == turned)
+              placed.push_back({place_along_curve(s.origin), &s, static_cast<std::uint32_t>(n - batch.first)});
+        std::ranges::stable_sort(placed, {}, &Placed::place);
         const auto first = static_cast<std::uint32_t>(batch.slots.size());
-        for (const auto& one : placed) batch.slots.push_back(one.second);
+        for (const auto& [place, s, network] : placed) {
+          SampleStation& slot =
+              batch.slots.emplace_back(SampleStation{{s->origin.x, s->origin.y, s->origin.z}, s->place, network, {}});
+          set_turn(slot.turn, *s);
+        }
         const auto end = static_cast<std::uint32_t>(batch.slots.size());
         if (end > first) batch.runs.push_back({&t_.scanners_[scanner], turned, first, end});
       }
@@ -180,7 +185,7 @@ class VulkanTracer::SampledCount {
   }
 
   // Stations that follow one another stand close together.
-  std::uint64_t place_along_curve(const vec3& head) const {
+  std::uint64_t place_along_curve(const Float3& head) const {
     const Box& bounds = t_.scene_.scene->local_bounds;
     const auto cell = [](float at, double low, double high) {
       constexpr double last = (1 << 16) - 1;

@@ -38,6 +38,15 @@ TEST(Pieces, FollowTheShare) {
   EXPECT_EQ(Pieces(1000).take(0.5, false).size(), 32u);  // a sixteenth of its half, to see how long that takes
 }
 
+TEST(Pieces, SharesAreByRatesButOfDevicesOfOneKindEqual) {
+  EXPECT_EQ(fair_share(3, std::vector{3.0, 1.0}), 0.75);
+  EXPECT_EQ(fair_share(1, std::vector{3.0, 1.0}), 0.25);
+  EXPECT_EQ(fair_share(1.04, std::vector{1.04, 0.96}), 0.5) << "no faster than it was slower before";
+  EXPECT_EQ(fair_share(1, std::vector{1.0, 1.05, 1.05, 1.0}), 0.25);
+  EXPECT_EQ(fair_share(1, std::vector{1.0, 0.0}), 0.5) << "not seen yet";
+  EXPECT_EQ(fair_share(7, std::vector{7.0}), 1);
+}
+
 TEST(Pieces, AreFewForThoseWhoAreEquallyFast) {
   Pieces pieces(250);
   std::size_t handed_out = 0;
