@@ -27,12 +27,6 @@ bool of_the_device(const Error& error) {
   return error.code() == Errc::device_failure || error.code() == Errc::out_of_memory;
 }
 
-void learn(double& items_a_second, std::size_t items, double seconds) {
-  if (!(seconds > 0)) return;
-  const double seen = static_cast<double>(items) / seconds;
-  items_a_second = items_a_second > 0 ? 0.5 * (items_a_second + seen) : seen;
-}
-
 }  // namespace
 
 Team::Team(std::vector<std::unique_ptr<Tracer>> tracers, Warn warn)
@@ -51,7 +45,9 @@ std::size_t Team::left() const {
 std::size_t Team::fastest(const TeamRates& rates) const {
   std::size_t best = tracers_.size();
   for (std::size_t k = 0; k < tracers_.size(); ++k)
-    if (tracers_[k] && (best == tracers_.size() || rates.items_a_second[k] > rates.items_a_second[best])) best = k;
+    if (tracers_[k] && (best == tracers_.size() ||
+                        rates.of_members[k].items_a_second() > rates.of_members[best].items_a_second()))
+      best = k;
   return best;
 }
 
@@ -144,9 +140,9 @@ class Team::Shift {
     if (pieces_.empty() || stop_.stop_requested()) return std::nullopt;
     std::vector<double> rates;
     for (std::size_t i = 0; i < team_.size(); ++i)
-      if (team_.member(i) && !failures_[i]) rates.push_back(rates_.items_a_second[i]);
+      if (team_.member(i) && !failures_[i]) rates.push_back(rates_.of_members[i].items_a_second());
     const bool known = *std::min_element(rates.begin(), rates.end()) > 0;
-    own_piece_[k] = pieces_.take(fair_share(rates_.items_a_second[k], rates), known);
+    own_piece_[k] = pieces_.take(fair_share(rates_.of_members[k].items_a_second(), rates), known);
     return own_piece_[k];
   }
 
@@ -162,7 +158,7 @@ class Team::Shift {
     under_way_[k] = 0;
     if (done) {
       done_ += piece.size();
-      learn(rates_.items_a_second[k], piece.size(), seconds);
+      rates_.of_members[k].learn(piece.size(), seconds);
     } else {
       cut_ = true;
     }
@@ -252,7 +248,7 @@ class Team::Shift {
 };
 
 bool Team::work(std::size_t items, TeamRates& rates, const Progress& progress, const Do& job) {
-  rates.items_a_second.resize(size());
+  rates.of_members.resize(size());
   if (items == 0) return true;
   if (items == 1 || left() == 1) return work_alone(items, rates, progress, job);
   Shift shift(*this, items, rates, progress, job);
@@ -268,7 +264,7 @@ bool Team::work_alone(std::size_t items, TeamRates& rates, const Progress& progr
     try {
       const auto start = Clock::now();
       const bool done = job(*tracers_[k], {0, items}, progress, [](const std::function<void()>& what) { what(); });
-      if (done) learn(rates.items_a_second[k], items, seconds_since(start));
+      if (done) rates.of_members[k].learn(items, seconds_since(start));
       return done;
     } catch (const Error& error) {
       if (!of_the_device(error) || left() == 1) throw;

@@ -10,13 +10,14 @@
 #include <vector>
 
 #include "trace/spread/pieces.hpp"
+#include "trace/spread/rate.hpp"
 #include "trace/tracer.hpp"
 
 namespace vantage {
 
 // What a kind of work has shown of how fast each member is; it sizes pieces, never results.
 struct TeamRates {
-  std::vector<double> items_a_second;  // of each member; 0: not seen yet
+  std::vector<Rate> of_members;
   // Of what is left, handed out in one round: all of it where items take alike, so that rates seen hold good.
   double of_rest = Pieces::factored;
 };

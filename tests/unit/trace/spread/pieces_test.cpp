@@ -5,6 +5,8 @@
 
 #include <vector>
 
+#include "trace/spread/rate.hpp"
+
 namespace vantage {
 namespace {
 
@@ -45,6 +47,23 @@ TEST(Pieces, SharesAreByRatesButOfDevicesOfOneKindEqual) {
   EXPECT_EQ(fair_share(1, std::vector{1.0, 1.05, 1.05, 1.0}), 0.25);
   EXPECT_EQ(fair_share(1, std::vector{1.0, 0.0}), 0.5) << "not seen yet";
   EXPECT_EQ(fair_share(7, std::vector{7.0}), 1);
+}
+
+TEST(Rate, IsThatOfTheLargePieces) {
+  Rate rate;
+  EXPECT_EQ(rate.items_a_second(), 0);
+  rate.learn(20, 0);  // too short to be timed
+  EXPECT_EQ(rate.items_a_second(), 0);
+  rate.learn(20, 0.2);  // while the device still warms up
+  EXPECT_EQ(rate.items_a_second(), 100);
+  rate.learn(300, 0.03);
+  EXPECT_EQ(rate.items_a_second(), 10'000) << "a small piece says nothing beside a large one";
+  rate.learn(300, 0.025);
+  EXPECT_EQ(rate.items_a_second(), 11'000);
+  rate.learn(3, 0.003);
+  EXPECT_NEAR(rate.items_a_second(), 10'950, 1);
+  for (int k = 0; k < 2000; ++k) rate.learn(3, 0.001);
+  EXPECT_NEAR(rate.items_a_second(), 3000, 1) << "where no large ones come any more";
 }
 
 TEST(Pieces, AreFewForThoseWhoAreEquallyFast) {
