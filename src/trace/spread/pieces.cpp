@@ -7,11 +7,14 @@
 
 namespace vantage {
 
-double fair_share(double own, std::span<const double> rates) {
-  constexpr double alike = 1.1;
-  const auto [least, most] = std::minmax_element(rates.begin(), rates.end());
-  if (!(*least > 0) || *most <= alike * *least) return 1 / static_cast<double>(rates.size());
-  return own / std::accumulate(rates.begin(), rates.end(), 0.0);
+void follow_rates(std::vector<double>& shares, std::span<const double> rates) {
+  constexpr double nearly = 0.02;
+  shares.resize(rates.size());
+  const double all = std::accumulate(rates.begin(), rates.end(), 0.0);
+  const auto fair = [&](std::size_t k) { return rates[k] / all; };
+  bool right = true;
+  for (std::size_t k = 0; k < rates.size(); ++k) right &= std::abs(shares[k] - fair(k)) <= nearly * fair(k);
+  for (std::size_t k = 0; k < rates.size() && !right; ++k) shares[k] = fair(k);
 }
 
 Piece Pieces::take(double share, bool known) {

@@ -13,10 +13,10 @@ struct Piece {
   std::size_t size() const { return end - first; }
 };
 
-// The part of all work for one that does `own` items a second, beside all who do `rates`, itself among them. Devices of
-// one kind differ by less than a rate does from one time to the next: where all are nearly as fast, or one is not known,
-// shares are equal, so that the next work of this kind is cut into the same pieces.
-double fair_share(double own, std::span<const double> rates);
+// Makes `shares` of all work those of members who are as fast as `rates` say; one who takes no part has the rate 0.
+// Shares that are nearly right stay as they are, so that the next work of this kind is cut into the same pieces: a rate
+// is not quite the same from one time to the next.
+void follow_rates(std::vector<double>& shares, std::span<const double> rates);
 
 // All items, handed out in pieces: large ones first, then smaller, so that all who work on it end together
 // however fast each is. Not thread-safe.

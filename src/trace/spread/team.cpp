@@ -138,11 +138,17 @@ class Team::Shift {
   std::optional<Piece> next(std::size_t k) {
     const std::lock_guard lock(mutex_);
     if (pieces_.empty() || stop_.stop_requested()) return std::nullopt;
-    std::vector<double> rates;
-    for (std::size_t i = 0; i < team_.size(); ++i)
-      if (team_.member(i) && !failures_[i]) rates.push_back(rates_.of_members[i].items_a_second());
-    const bool known = *std::min_element(rates.begin(), rates.end()) > 0;
-    own_piece_[k] = pieces_.take(fair_share(rates_.of_members[k].items_a_second(), rates), known);
+    std::vector<double> rates(team_.size(), 0);
+    std::size_t members = 0;
+    bool known = true;
+    for (std::size_t i = 0; i < team_.size(); ++i) {
+      if (!team_.member(i) || failures_[i]) continue;
+      ++members;
+      rates[i] = rates_.of_members[i].items_a_second();
+      known &= rates[i] > 0;
+    }
+    if (known) follow_rates(rates_.shares, rates);
+    own_piece_[k] = pieces_.take(known ? rates_.shares[k] : 1.0 / static_cast<double>(members), known);
     return own_piece_[k];
   }
 

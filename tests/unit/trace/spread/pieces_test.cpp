@@ -40,13 +40,16 @@ TEST(Pieces, FollowTheShare) {
   EXPECT_EQ(Pieces(1000).take(0.5, false).size(), 32u);  // a sixteenth of its half, to see how long that takes
 }
 
-TEST(Pieces, SharesAreByRatesButOfDevicesOfOneKindEqual) {
-  EXPECT_EQ(fair_share(3, std::vector{3.0, 1.0}), 0.75);
-  EXPECT_EQ(fair_share(1, std::vector{3.0, 1.0}), 0.25);
-  EXPECT_EQ(fair_share(1.04, std::vector{1.04, 0.96}), 0.5) << "no faster than it was slower before";
-  EXPECT_EQ(fair_share(1, std::vector{1.0, 1.05, 1.05, 1.0}), 0.25);
-  EXPECT_EQ(fair_share(1, std::vector{1.0, 0.0}), 0.5) << "not seen yet";
-  EXPECT_EQ(fair_share(7, std::vector{7.0}), 1);
+TEST(Pieces, SharesFollowRatesButNotEachOfTheirSteps) {
+  std::vector<double> shares;
+  follow_rates(shares, std::vector{3.0, 1.0});
+  EXPECT_EQ(shares, (std::vector{0.75, 0.25}));
+  follow_rates(shares, std::vector{3.04, 1.0});
+  EXPECT_EQ(shares, (std::vector{0.75, 0.25})) << "as good as right";
+  follow_rates(shares, std::vector{2.0, 2.0});
+  EXPECT_EQ(shares, (std::vector{0.5, 0.5}));
+  follow_rates(shares, std::vector{2.0, 0.0});  // the other was dropped
+  EXPECT_EQ(shares, (std::vector{1.0, 0.0}));
 }
 
 TEST(Rate, IsThatOfTheLargePieces) {
