@@ -7,9 +7,22 @@
 
 namespace vantage::fuzz {
 
+// Every other file is marked by patterns of names besides what it says itself.
+static SceneOptions options_for(Bytes bytes) {
+  SceneOptions options;
+  if (bytes.size() % 2 == 0) return options;
+  options.surveyed = {"wall*"};
+  options.blocking = {"*"};
+  options.weights = {{"*", 3}};
+  options.details_mm = {{"*", 4}};
+  options.accuracies_mm = {{"w*", 5}, {"*", 6}};
+  options.doors = {"*"};
+  return options;
+}
+
 void gltf(Bytes bytes) {
   accepts([&] {
-    const Scene scene = load_gltf(bytes);
+    const Scene scene = load_gltf(bytes, options_for(bytes));
     const SceneData& data = scene.data();
     for (const auto& triangle : data.triangles)
       for (const std::uint32_t corner : triangle) require(corner < data.positions.size(), "corners exist");
@@ -24,7 +37,7 @@ void gltf(Bytes bytes) {
     require(triangles == scene.triangle_count(), "meshes have all triangles");
     const Vec3 size = scene.bounds().size();
     require(std::isfinite(size.x) && std::isfinite(size.y) && std::isfinite(size.z), "bounds are finite");
-    require(load_gltf(bytes).fingerprint() == scene.fingerprint(), "the same bytes are the same scene");
+    require(load_gltf(bytes, options_for(bytes)).fingerprint() == scene.fingerprint(), "the same bytes are the same scene");
   });
 }
 
