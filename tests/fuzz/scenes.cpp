@@ -37,7 +37,8 @@ void gltf(Bytes bytes) {
     require(triangles == scene.triangle_count(), "meshes have all triangles");
     const Vec3 size = scene.bounds().size();
     require(std::isfinite(size.x) && std::isfinite(size.y) && std::isfinite(size.z), "bounds are finite");
-    require(load_gltf(bytes, options_for(bytes)).fingerprint() == scene.fingerprint(), "the same bytes are the same scene");
+    require(load_gltf(bytes, options_for(bytes)).fingerprint() == scene.fingerprint(),
+            "the same bytes are the same scene");
   });
 }
 

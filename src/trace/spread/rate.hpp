@@ -10,8 +10,8 @@ class Rate {
  public:
   double items_a_second() const { return rate_; }  // 0: not seen yet
 
-  // Large pieces tell more than small ones, of which most of the time may be what any piece takes: one of twice the size
-  // that was learned from tells all, one of the same size half.
+  // Large pieces tell more than small ones, of which most of the time may be what any piece takes: one of twice the
+  // size that was learned from tells all, one of the same size half.
   void learn(std::size_t items, double seconds) {
     if (!(seconds > 0)) return;
     const auto size = static_cast<double>(items);

@@ -45,8 +45,8 @@ std::size_t Team::left() const {
 std::size_t Team::fastest(const TeamRates& rates) const {
   std::size_t best = tracers_.size();
   for (std::size_t k = 0; k < tracers_.size(); ++k)
-    if (tracers_[k] && (best == tracers_.size() ||
-                        rates.of_members[k].items_a_second() > rates.of_members[best].items_a_second()))
+    if (tracers_[k] &&
+        (best == tracers_.size() || rates.of_members[k].items_a_second() > rates.of_members[best].items_a_second()))
       best = k;
   return best;
 }
