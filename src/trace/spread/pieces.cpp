@@ -14,7 +14,8 @@ void follow_rates(std::vector<double>& shares, std::span<const double> rates) {
   const auto fair = [&](std::size_t k) { return rates[k] / all; };
   bool right = true;
   for (std::size_t k = 0; k < rates.size(); ++k) right &= std::abs(shares[k] - fair(k)) <= nearly * fair(k);
-  for (std::size_t k = 0; k < rates.size() && !right; ++k) shares[k] = fair(k);
+  if (right) return;
+  for (std::size_t k = 0; k < rates.size(); ++k) shares[k] = fair(k);
 }
 
 Piece Pieces::take(double share, bool known) {

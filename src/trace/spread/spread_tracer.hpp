@@ -67,7 +67,7 @@ class SpreadTracer final : public Tracer {
   Split split_;
   Population population_;
   TeamRates rows_, networks_, samples_, stations_;
-  TeamRates runs_{.of_members = {}, .shares = {}, .of_rest = 1};
+  TeamRates runs_{.of_rest = 1};
   double seconds_a_station_ = 0;  // of networks counted whole, as seen last; 0: not yet
   double merge_seconds_a_voxel_;
 };

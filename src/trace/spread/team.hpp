@@ -17,8 +17,8 @@ namespace vantage {
 
 // What a kind of work has shown of how fast each member is; it sizes pieces, never results.
 struct TeamRates {
-  std::vector<Rate> of_members;
-  std::vector<double> shares;  // of all work, by these rates
+  std::vector<Rate> of_members = {};
+  std::vector<double> shares = {};  // of all work, by these rates
   // Of what is left, handed out in one round: all of it where items take alike, so that rates seen hold good.
   double of_rest = Pieces::factored;
 };
