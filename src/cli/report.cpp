@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "cli/station_pictures.hpp"
-#include "page/report.hpp"
+#include "report/report.hpp"
 
 namespace vantage::cli {
 

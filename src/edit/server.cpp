@@ -9,8 +9,8 @@
 #include <thread>
 
 #include "edit/edit_files.hpp"
-#include "page/page.hpp"
-#include "page/page_files.hpp"
+#include "report/page.hpp"
+#include "report/page_files.hpp"
 #include "vantage/error.hpp"
 #include "vantage/version.hpp"
 

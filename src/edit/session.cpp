@@ -6,9 +6,9 @@
 #include <set>
 #include <utility>
 
-#include "page/packed.hpp"
-#include "page/report.hpp"
-#include "page/report_json.hpp"
+#include "report/packed.hpp"
+#include "report/report.hpp"
+#include "report/report_json.hpp"
 #include "vantage/error.hpp"
 #include "vantage/planner.hpp"
 #include "vantage/summary.hpp"

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "edit/traced_stations.hpp"
-#include "page/coverage_cells.hpp"
+#include "report/coverage_cells.hpp"
 #include "vantage/measure.hpp"
 #include "vantage/placement.hpp"
 #include "vantage/simulator.hpp"

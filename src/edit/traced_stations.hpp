@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "page/coverage_cells.hpp"
+#include "report/coverage_cells.hpp"
 #include "trace/sample_counts.hpp"
 #include "vantage/simulator.hpp"
 

@@ -8,8 +8,8 @@
 #include <optional>
 
 #include "core/text.hpp"
-#include "report/chart.hpp"
-#include "report/front_view.hpp"
+#include "export/chart.hpp"
+#include "export/front_view.hpp"
 
 namespace vantage::bench {
 namespace {

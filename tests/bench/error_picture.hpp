@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "report/canvas.hpp"
+#include "export/canvas.hpp"
 
 namespace vantage::bench {
 

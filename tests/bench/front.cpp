@@ -12,9 +12,9 @@
 #include <utility>
 
 #include "core/text.hpp"
+#include "export/chart.hpp"
 #include "plan/decision_space.hpp"
 #include "plan/site.hpp"
-#include "report/chart.hpp"
 #include "vantage/error.hpp"
 #include "vantage/planner.hpp"
 

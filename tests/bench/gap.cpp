@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "core/text.hpp"
-#include "report/chart.hpp"
+#include "export/chart.hpp"
 #include "vantage/bound.hpp"
 #include "vantage/placement.hpp"
 

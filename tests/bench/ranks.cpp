@@ -13,10 +13,10 @@
 
 #include "core/philox.hpp"
 #include "core/text.hpp"
+#include "export/chart.hpp"
 #include "ranks/fleet.hpp"
 #include "ranks/mpi_post.hpp"
 #include "ranks_model.hpp"
-#include "report/chart.hpp"
 #include "vantage/error.hpp"
 #include "vantage/optimiser.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "unit/report/files.hpp"
+#include "unit/export/files.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage {

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// A page to draw on, in pixels from the top left; kept as a recording, so that PNG and SVG come from the same strokes.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "export/colour.hpp"
+
+namespace vantage {
+
+struct Point {
+  double x = 0, y = 0;
+};
+
+struct Rect {
+  double x = 0, y = 0, width = 0, height = 0;
+  double right() const { return x + width; }
+  double bottom() const { return y + height; }
+  bool overlaps(const Rect& o) const { return x < o.right() && o.x < right() && y < o.bottom() && o.y < bottom(); }
+};
+
+struct Pen {
+  Colour colour = {0.15, 0.15, 0.17};
+  double width = 1, opacity = 1;
+  std::vector<double> dashes = {};
+};
+
+enum class Align { start, middle, end };
+
+struct TextStyle {
+  double size = 13;
+  bool bold = false;
+  Colour colour = {0.15, 0.15, 0.17};
+  Align across = Align::start;  // of x
+  Align down = Align::middle;   // of y; start: the text hangs below it
+  double turn = 0;              // radians, clockwise
+  double halo = 0;              // width of a white rim, for text on pictures
+};
+
+class Canvas {
+ public:
+  Canvas(double width, double height);
+  ~Canvas();
+  Canvas(const Canvas&) = delete;
+  Canvas& operator=(const Canvas&) = delete;
+  double width() const { return width_; }
+  double height() const { return height_; }
+  // What lies below goes. REQUIRES: height <= height().
+  void cut_to(double height) { height_ = height; }
+
+  void line(Point a, Point b, const Pen& pen);
+  void path(std::span<const Point> points, const Pen& pen);
+  void polygon(std::span<const Point> points, const Colour& fill, double opacity = 1);
+  void rectangle(const Rect& r, const Pen& pen);
+  void fill(const Rect& r, const Colour& colour, double opacity = 1);
+  void disc(Point centre, double radius, const Colour& fill, double opacity = 1);
+  void circle(Point centre, double radius, const Pen& pen);
+  void text(Point at, const std::string& text, const TextStyle& style = {});
+  double text_width(const std::string& text, const TextStyle& style = {}) const;
+  // Rows of 0xAARRGGBB from the top, premultiplied, stretched over the rectangle.
+  void image(const Rect& r, std::span<const std::uint32_t> pixels, std::size_t columns);
+  // Another page, shrunk or stretched to the rectangle.
+  void page(const Rect& r, const Canvas& other);
+  // Everything until the matching unclip() is cut off outside.
+  void clip(const Rect& r);
+  void unclip();
+
+  // .png (two device pixels a unit) or .svg by extension. Throws Error: io, invalid_argument.
+  void save(const std::filesystem::path& file) const;
+  // A .pdf of these pages, a point a unit. Throws Error: io.
+  static void save_pages(const std::filesystem::path& file, std::span<const std::unique_ptr<Canvas>> pages,
+                         const std::string& title);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+  double width_, height_;
+};
+
+}  // namespace vantage

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// A framed x-y chart with sensible ticks.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "export/canvas.hpp"
+
+namespace vantage {
+
+// Ticks at multiples of 1, 2 or 5 times a power of ten inside [low, high], about `wanted` of them.
+std::vector<double> nice_ticks(double low, double high, int wanted);
+// The text of ticks that belong together: as many digits after the point as the step needs.
+std::vector<std::string> tick_labels(const std::vector<double>& ticks);
+// Powers of ten inside [low, high], and where these are few their double and fivefold too. REQUIRES: low > 0.
+std::vector<double> logarithmic_ticks(double low, double high);
+// Each with the digits that it needs itself.
+std::vector<std::string> logarithmic_labels(const std::vector<double>& ticks);
+
+struct Axis {
+  std::string label;
+  double low = 0, high = 1;
+  std::vector<double> ticks = {};  // empty: nice ones
+  int wanted_ticks = 6;
+  bool logarithmic = false;  // low > 0
+};
+
+// Widens [low, high] by a margin, within [least, most] but where the data lie outside.
+Axis axis_over(std::string label, double low, double high, double least, double most);
+
+class Chart {
+ public:
+  // Draws title, frame, grid, ticks and labels. `area`: where the frame stands.
+  Chart(Canvas& canvas, const Rect& area, Axis x, Axis y, const std::string& title, const std::string& subtitle = {});
+  Point at(double x, double y) const;
+  const Rect& area() const { return area_; }
+
+ private:
+  Rect area_;
+  Axis x_, y_;
+};
+
+// Where a label of this width and height may stand beside `at`: the free place nearest to it, else the first tried.
+// `taken` grows by the place.
+Rect place_label(Point at, double gap, double width, double height, const Rect& inside, std::vector<Rect>& taken);
+
+namespace style {
+inline constexpr Colour ink{0.15, 0.15, 0.17}, faint{0.45, 0.45, 0.48}, grid{0.90, 0.90, 0.91};
+inline constexpr Colour blue{0.11, 0.31, 0.58}, orange{0.84, 0.37, 0.05}, pale{0.62, 0.70, 0.80};
+}  // namespace style
+
+}  // namespace vantage

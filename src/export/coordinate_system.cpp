@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+// Coordinate reference systems as LAS 1.4 wants them: well-known text after OGC 01-009 (Coordinate Transformation
+// Services, 2001). Written here from the definitions of the EPSG registry for the UTM zones, which follow a rule;
+// anything else comes from PROJ, where it is there, or as text.
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <iterator>
+#include <optional>
+
+#include "core/read_file.hpp"
+#include "core/text.hpp"
+#include "export/geodetic.hpp"
+#include "vantage/error.hpp"
+#include "vantage/export.hpp"
+
+namespace vantage {
+namespace {
+
+// Codes first … last are the zones first_zone … of a Transverse Mercator projection on one datum.
+struct UtmFamily {
+  int first, last, first_zone;
+  bool south;
+  const char *name, *geographic, *datum;
+  int geographic_code, datum_code;
+  bool wgs84;  // its ellipsoid; else GRS 1980
+};
+constexpr std::array<UtmFamily, 6> kFamilies{
+    {{32601, 32660, 1, false, "WGS 84 / UTM zone", "WGS 84", "WGS_1984", 4326, 6326, true},
+     {32701, 32760, 1, true, "WGS 84 / UTM zone", "WGS 84", "WGS_1984", 4326, 6326, true},
+     {25828, 25837, 28, false, "ETRS89 / UTM zone", "ETRS89", "European_Terrestrial_Reference_System_1989", 4258, 6258,
+      false},
+     {26901, 26923, 1, false, "NAD83 / UTM zone", "NAD83", "North_American_Datum_1983", 4269, 6269, false},
+     {28348, 28358, 48, true, "GDA94 / MGA zone", "GDA94", "Geocentric_Datum_of_Australia_1994", 4283, 6283, false},
+     {7846, 7859, 46, true, "GDA2020 / MGA zone", "GDA2020", "Geocentric_Datum_of_Australia_2020", 7844, 1168, false}}};
+
+std::string authority(int code) { return ",AUTHORITY[\"EPSG\",\"" + std::to_string(code) + "\"]"; }
+
+std::string utm_text(const UtmFamily& f, int code) {
+  const int zone = f.first_zone + code - f.first;
+  const bool australian = std::string(f.name).find("MGA") != std::string::npos;
+  std::string text = "PROJCS[\"" + std::string(f.name) + " " + std::to_string(zone);
+  if (!australian) text += f.south ? "S" : "N";
+  text += "\",GEOGCS[\"" + std::string(f.geographic) + "\",DATUM[\"" + f.datum + "\",";
+  text += f.wgs84 ? "SPHEROID[\"WGS 84\",6378137,298.257223563" + authority(7030)
+                  : "SPHEROID[\"GRS 1980\",6378137,298.257222101" + authority(7019);
+  text += "]" + authority(f.datum_code) + "],PRIMEM[\"Greenwich\",0" + authority(8901) +
+          "],UNIT[\"degree\",0.0174532925199433" + authority(9122) + "]" + authority(f.geographic_code) + "]";
+  text += ",PROJECTION[\"Transverse_Mercator\"],PARAMETER[\"latitude_of_origin\",0],PARAMETER[\"central_meridian\"," +
+          std::to_string(6 * zone - 183) + "],PARAMETER[\"scale_factor\",0.9996],PARAMETER[\"false_easting\",500000]" +
+          ",PARAMETER[\"false_northing\"," + (f.south ? "10000000" : "0") + "],UNIT[\"metre\",1" + authority(9001) +
+          "],AXIS[\"Easting\",EAST],AXIS[\"Northing\",NORTH]" + authority(code) + "]";
+  return text;
+}
+
+[[noreturn]] void refuse(const std::string& why) { throw Error(Errc::invalid_argument, why); }
+
+std::string checked(const std::string& written, const std::string& source);
+
+std::string of_code(std::string_view digits, const std::string& asked) {
+  int code = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), code);
+  if (digits.empty() || error != std::errc() || end != digits.data() + digits.size())
+    refuse("'" + asked + "' is no coordinate system: give EPSG and its number, as EPSG:25832");
+  for (const UtmFamily& family : kFamilies)
+    if (code >= family.first && code <= family.last) return utm_text(family, code);
+  if (const std::string text = epsg_text(code); !text.empty()) return checked(text, asked);
+  std::string known;
+  for (const UtmFamily& f : kFamilies)
+    known += (known.empty() ? "" : ", ") + std::to_string(f.first) + " to " + std::to_string(f.last);
+  refuse("the definition of " + asked + " is not built in, only those of UTM zones (EPSG " + known +
+         "); give the file of its well-known text, as SITE.prj or SITE.wkt");
+}
+
+// The factor of the UNIT that stands directly in a PROJCS, LOCAL_CS or GEOCCS.
+std::optional<double> unit_of(const std::string& text) {
+  int depth = 0, system = -1;
+  bool quoted = false;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    const char c = text[at];
+    if (c == '"') quoted = !quoted;
+    if (quoted) continue;
+    for (const char* begin : {"PROJCS[", "LOCAL_CS[", "GEOCCS["})
+      if (system < 0 && text.compare(at, std::string_view(begin).size(), begin) == 0) system = depth + 1;
+    if (depth == system && text.compare(at, 5, "UNIT[") == 0) {
+      const std::size_t comma = text.find(',', text.find('"', text.find('"', at) + 1));
+      double factor = 0;
+      if (comma == std::string::npos) return std::nullopt;
+      std::size_t first = comma + 1;
+      while (first < text.size() && text[first] == ' ') ++first;
+      if (std::from_chars(text.data() + first, text.data() + text.size(), factor).ec != std::errc())
+        return std::nullopt;
+      return factor;
+    }
+    depth += c == '[' ? 1 : c == ']' ? -1 : 0;
+  }
+  return std::nullopt;
+}
+
+// One line, outside of quotes without blanks around its brackets and commas: line ends are no part of the text.
+std::string one_line(const std::string& text) {
+  std::string line;
+  bool quoted = false, blank = false;
+  for (const char c : text) {
+    if (c == '\0') break;
+    if (c == '"') quoted = !quoted;
+    if (!quoted && (c == ' ' || c == '\n' || c == '\r' || c == '\t')) {
+      blank = true;
+      continue;
+    }
+    if (blank && !line.empty() && line.back() != ',' && line.back() != '[' && c != ']' && c != ',' && c != '[')
+      line += ' ';
+    blank = false;
+    line += c;
+  }
+  return line;
+}
+
+std::string checked(const std::string& written, const std::string& source) {
+  const std::string text = one_line(written);
+  const auto begins = [&](std::initializer_list<const char*> words) {
+    return std::any_of(words.begin(), words.end(), [&](const char* word) { return text.starts_with(word); });
+  };
+  if (begins({"GEOGCS", "GEOGCRS", "GEODCRS"}))
+    refuse(source + ": longitude and latitude are angles; vantage's points are in metres: give a projected system");
+  if (begins({"PROJCRS", "PROJECTEDCRS", "COMPOUNDCRS", "ENGCRS", "BOUNDCRS"}))
+    refuse(source + ": is well-known text 2, and LAS 1.4 takes version 1 (OGC 01-009), which begins with PROJCS");
+  if (!begins({"PROJCS[", "COMPD_CS[", "LOCAL_CS[", "GEOCCS["}))
+    refuse(source + ": is no well-known text of a coordinate system; that begins with PROJCS[, COMPD_CS[, LOCAL_CS[ " +
+           "or GEOCCS[");
+  if (std::count(text.begin(), text.end(), '[') != std::count(text.begin(), text.end(), ']') || text.back() != ']')
+    refuse(source + ": the well-known text does not end: its brackets do not match");
+  if (text.size() > 65'534) refuse(source + ": the well-known text is longer than LAS can hold");
+  const auto unit = unit_of(text);
+  if (unit && std::abs(*unit - 1) > 1e-9)
+    refuse(source + ": its unit is " + number(*unit) + " m; vantage's points are in metres");
+  return text;
+}
+
+}  // namespace
+
+std::string coordinate_system(const std::string& text) {
+  if (text.size() > 5 && (text.starts_with("EPSG:") || text.starts_with("epsg:"))) return of_code(text.substr(5), text);
+  if (text.find('[') != std::string::npos) return checked(text, "the coordinate system");
+  if (text.ends_with(".prj") || text.ends_with(".wkt")) return checked(read_file(text), text);
+  refuse("'" + text +
+         "' is no coordinate system: give EPSG:25832 and the like, or a file of well-known text (.prj, .wkt)");
+}
+
+}  // namespace vantage

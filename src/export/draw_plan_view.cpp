@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: Apache-2.0
+// The pages of a plan view: the maps, what their marks mean, and a scale bar.
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "core/text.hpp"
+#include "export/chart.hpp"
+#include "export/left_out_hatch.hpp"
+#include "export/pictures.hpp"
+#include "export/plan_map.hpp"
+#include "export/relief.hpp"
+#include "export/search_tint.hpp"
+#include "vantage/error.hpp"
+#include "vantage/export.hpp"
+#include "vantage/summary.hpp"
+
+namespace vantage {
+namespace {
+
+constexpr double kPanel = 224, kTop = 68, kBottom = 64, kGap = 26;
+
+// A bar of a round length, at most `widest` wide.
+void draw_scale_bar(Canvas& canvas, Point at, double widest, double metre) {
+  double length = std::pow(10.0, std::floor(std::log10(widest / metre)));
+  for (const double factor : {5.0, 2.0})
+    if (factor * length * metre <= widest) {
+      length *= factor;
+      break;
+    }
+  const double width = length * metre;
+  canvas.line(at, {at.x + width, at.y}, {.width = 2});
+  for (const double end : {at.x, at.x + width}) canvas.line({end, at.y - 4}, {end, at.y + 4}, {.width = 2});
+  canvas.text({at.x + width / 2, at.y - 14}, number(length) + " m", {.size = 12.5, .across = Align::middle});
+}
+
+// Draws what the marks mean below each other and returns where it ends.
+double draw_plan_legend(Canvas& canvas, Point at, const PlanView& view, const PlanMapContent& content) {
+  constexpr TextStyle text{.size = 12.5}, faint{.size = 12.5, .colour = style::faint};
+  const auto words = [&](const std::string& what) { canvas.text({at.x + 34, at.y}, what, text); };
+  const auto swatch = [&](const Colour& colour, const std::string& what) {
+    canvas.fill({at.x, at.y - 7, 24, 14}, colour);
+    words(what);
+    at.y += 24;
+  };
+  const auto any = [&](auto wanted) { return std::ranges::any_of(view.stations, wanted); };
+  swatch(kSurveyedTint, "surveyed");
+  if (std::ranges::any_of(view.scene.meshes(), [](const MeshInfo& m) { return m.role == Role::blocking; }))
+    swatch(kBlockingTint, "not surveyed");
+  if (content.cut) swatch(kCutTint, "cut through");
+  canvas.fill({at.x, at.y - 7, 24, 14}, kBlockingTint);
+  canvas.fill({at.x, at.y - 7, 24, 14}, kSearchTint, kSearchOpacity);
+  canvas.rectangle({at.x + 0.5, at.y - 6.5, 23, 13}, {.colour = kSearchTint, .width = 1, .opacity = kSearchRim});
+  words("search area");
+  at.y += 28;
+  if (content.left_out) {
+    canvas.fill({at.x, at.y - 7, 24, 14}, kBlockingTint);
+    canvas.clip({at.x, at.y - 7, 24, 14});
+    for (double x = at.x - 14; x < at.x + 24; x += 5.5)
+      canvas.line({x, at.y + 7}, {x + 14, at.y - 7}, {.colour = kLeftOutTint, .width = 1.4, .opacity = 0.6});
+    canvas.unclip();
+    words("walkable, but left out");
+    at.y += 28;
+  }
+  const auto station = [&](const std::string& name, const PlacedStation& example, const std::string& what) {
+    draw_station(canvas, {at.x + 12, at.y}, name, example);
+    words(what);
+    at.y += 28;
+  };
+  PlacedStation example;
+  station("S1", example, "station, z of its ground");
+  if (any([](const PlacedStation& s) { return s.kept; })) {
+    example.kept = true;
+    station("K1", example, "kept: there before");
+  }
+  if (any([](const PlacedStation& s) { return s.status != StationStatus::hole && !active(s); })) {
+    example.kept = false, example.status = StationStatus::clash;
+    station("S2", example, "skipped: no place to stand");
+  }
+  if (content.elsewhere) {
+    draw_elsewhere(canvas, {at.x + 12, at.y}, "S3");
+    words("on another floor");
+    at.y += 28;
+  }
+  if (content.moved) {
+    canvas.line({at.x + 3, at.y}, {at.x + 22, at.y}, {.width = 1.5});
+    canvas.disc({at.x + 3, at.y}, 3.4, style::ink);
+    words("true spot of a disc beside it");
+    at.y += 28;
+  }
+  if (const double scale = view.ellipse_scale(); scale > 0) {
+    canvas.circle({at.x + 12, at.y}, 8, {.colour = {0.72, 0.12, 0.12}, .width = 1.3});
+    words("standard ellipse of a head:");
+    canvas.text({at.x + 34, at.y + 17}, "the widest " + fixed(1000 * kWidestEllipse / scale, 2) + " mm", text);
+    at.y += 45;
+  }
+  const auto holes = std::ranges::count(view.stations, StationStatus::hole, &PlacedStation::status);
+  if (holes > 0) {
+    canvas.text(at, std::to_string(holes) + (holes == 1 ? " station in a hole," : " stations in holes,"), text);
+    canvas.text({at.x, at.y + 17}, "not shown", text);
+    at.y += 45;
+  }
+  if (content.largest > 0) {
+    at.y += 6;
+    canvas.text(at, view.overlap_words, {.size = 12.5, .bold = true});
+    at.y += 22;
+    for (const double overlap : kLinkSamples) {
+      draw_link(canvas, {at.x, at.y}, {at.x + 24, at.y}, overlap, false, false);
+      words(number(overlap) + (overlap == std::end(kLinkSamples)[-1] ? " and more" : ""));
+      at.y += 22;
+    }
+    if (content.bridge) {
+      draw_link(canvas, {at.x, at.y}, {at.x + 24, at.y}, 0.2, true, false);
+      words("the only link of two parts");
+      at.y += 22;
+    }
+    canvas.text(at, "largest " + fixed(content.largest, 3), faint);
+    canvas.text({at.x, at.y + 17}, "below " + number(view.link_overlap) + " not drawn", faint);
+    at.y += 34;
+    if (content.hidden_links > 0) {
+      canvas.text(at, "strongest tree, two of each station;", faint);
+      canvas.text({at.x, at.y + 17}, number(static_cast<double>(content.hidden_links)) + " further links not drawn",
+                  faint);
+      at.y += 34;
+    }
+  } else if (view.stations.size() > 1 && view.overlap.size() == view.stations.size()) {
+    canvas.text({at.x, at.y + 6}, "no overlap above " + number(view.link_overlap), faint);
+    at.y += 24;
+  }
+  return at.y;
+}
+
+std::string level_words(const std::vector<PlanLevel>& levels, std::size_t k) {
+  return "Level " + std::to_string(k + 1) + " of " + std::to_string(levels.size()) +
+         ", floor at z = " + fixed(levels[k].floor, 2) + " m";
+}
+
+// A page with one map for each of these levels side by side; `levels` null: one map of the whole site.
+std::unique_ptr<Canvas> draw_page(const PlanView& view, const Box& window, const std::vector<PlanLevel>& levels,
+                                  std::size_t first, std::size_t count) {
+  const bool floors = levels.size() > 1;
+  const double room = count > 1 ? 460 : 700;
+  const double metre = std::min(room / window.size().x, (count > 1 ? 520 : 640) / window.size().y);
+  const double width = std::max(1.0, std::floor(window.size().x * metre)),
+               height = std::max(1.0, std::floor(window.size().y * metre));
+  Canvas scratch(1, 1);
+  double labels = 0;
+  for (const auto& label :
+       tick_labels(nice_ticks(window.min.y, window.max.y, std::max(2, static_cast<int>(height / 95)))))
+    labels = std::max(labels, scratch.text_width(label, {.size = 12.5}));
+  const double left = std::max(86.0, labels + 46);
+  const auto map_at = [&](std::size_t k) {
+    return Rect{left + static_cast<double>(k) * (width + left + 10), kTop, width, height};
+  };
+  const double right = map_at(count - 1).right();
+
+  const auto draw = [&](Canvas& canvas) {
+    PlanMapContent content;
+    for (std::size_t k = 0; k < count; ++k) {
+      std::string subtitle = floors ? level_words(levels, first + k) : "";
+      content = content | draw_plan_map(canvas, map_at(k), view, window, floors ? &levels[first + k] : nullptr,
+                                        k == 0 ? view.title : "", subtitle);
+    }
+    const double end = draw_plan_legend(canvas, {right + 24, kTop + 8}, view, content);
+    const double bar = std::max(kTop + height - 6, end + 30);
+    draw_scale_bar(canvas, {right + 25, bar}, kPanel - 40, metre);
+    return bar;
+  };
+  const double title = scratch.text_width(view.title, {.size = 17, .bold = true});
+  const double subtitle =
+      scratch.text_width("Level 10 of 10, floor at z = 1000.00 m, cut at z = 1000.00 m", {.size = 12.5});
+  const double page_width = std::max({right + kGap + kPanel, left + title + 20, map_at(count - 1).x + subtitle + 20});
+  constexpr double kLongestLegend = 700;
+  auto page = std::make_unique<Canvas>(page_width, kTop + height + kBottom + kLongestLegend);
+  const double bar = draw(*page);
+  page->cut_to(std::max(kTop + height + kBottom, bar + 24));
+  return page;
+}
+
+}  // namespace
+
+std::vector<PlanPage> plan_view_pictures(const PlanView& view) {
+  if (view.overlap.size() != view.stations.size() && view.overlap.size() != 0)
+    throw Error(Errc::invalid_argument, "draw_plan_view: " + std::to_string(view.stations.size()) +
+                                            " stations, but an overlap matrix of " +
+                                            std::to_string(view.overlap.size()));
+  if (view.errors.size() != view.stations.size() && !view.errors.empty())
+    throw Error(Errc::invalid_argument, "draw_plan_view: " + std::to_string(view.stations.size()) + " stations, but " +
+                                            std::to_string(view.errors.size()) + " errors");
+  const Box window = plan_window(view);
+  const std::vector<PlanLevel> levels = plan_levels(view.area.mesh());
+  std::vector<PlanPage> pages;
+  pages.push_back({"", draw_page(view, window, levels, 0, levels.size())});
+  if (levels.size() > 1)
+    for (std::size_t k = 0; k < levels.size(); ++k)
+      pages.push_back({"-level-" + std::to_string(k + 1), draw_page(view, window, levels, k, 1)});
+  return pages;
+}
+
+std::vector<std::filesystem::path> draw_plan_view(const std::filesystem::path& file, const Scene& scene,
+                                                  const SearchArea& area, std::span<const PlacedStation> stations,
+                                                  const OverlapMatrix& overlap, const std::string& title,
+                                                  double link_overlap, std::span<const std::string> names,
+                                                  std::span<const StationError> errors,
+                                                  const std::string& overlap_words) {
+  const PlanView view{.scene = scene,
+                      .area = area,
+                      .stations = stations,
+                      .names = station_names(stations, names),
+                      .overlap = overlap,
+                      .link_overlap = link_overlap,
+                      .title = title,
+                      .overlap_words = overlap_words,
+                      .errors = errors};
+  std::vector<std::filesystem::path> written;
+  for (const PlanPage& page : plan_view_pictures(view)) {
+    const std::filesystem::path one =
+        file.parent_path() / (file.stem().string() + page.suffix + file.extension().string());
+    page.canvas->save(one);
+    written.push_back(one);
+  }
+  return written;
+}
+
+}  // namespace vantage

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "export/left_out_hatch.hpp"
+
+#include <array>
+#include <cmath>
+
+namespace vantage {
+namespace {
+
+constexpr std::size_t kPeriod = 22, kStripe = 4;  // pixels, along a row
+constexpr double kHidden_m = 0.3;                 // so far below what is seen from above it does not show
+
+}  // namespace
+
+bool hatch_left_out(std::vector<std::uint32_t>& pixels, const HeightBuffer& heights, double origin_z,
+                    std::span<const LeftOut> left_out, const PlanLevel* level) {
+  const MapWindow& window = heights.window;
+  std::vector<std::uint8_t> shows(pixels.size(), 0);
+  for (const LeftOut& part : left_out) {
+    for (const auto& t : part.triangles) {
+      std::array<MapPoint, 3> c;
+      for (std::size_t k = 0; k < 3; ++k) c[k] = window.at(part.positions[t[k]]);
+      const double middle = (part.positions[t[0]].z + part.positions[t[1]].z + part.positions[t[2]].z) / 3;
+      if (level && !level->holds(middle)) continue;
+      for_each_pixel(window, c, [&](std::size_t pixel, const std::array<double, 3>& weights) {
+        double z = -origin_z;
+        for (std::size_t k = 0; k < 3; ++k) z += weights[k] * part.positions[t[k]].z;
+        if (std::abs(double{heights.z[pixel]} - z) <= kHidden_m) shows[pixel] = 1;
+      });
+    }
+  }
+  bool any = false;
+  for (std::size_t k = 0; k < pixels.size(); ++k) {
+    if (!shows[k]) continue;
+    any = true;
+    if ((k % window.columns + k / window.columns) % kPeriod < kStripe)
+      pixels[k] = laid_over(pixels[k], kLeftOutTint, kLeftOutOpacity);
+  }
+  return any;
+}
+
+}  // namespace vantage

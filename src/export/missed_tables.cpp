@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <string>
+
+#include "core/atomic_file.hpp"
+#include "core/text.hpp"
+#include "export/missed_colours.hpp"
+#include "export/voxel_ply.hpp"
+#include "vantage/error.hpp"
+#include "vantage/export.hpp"
+
+namespace vantage {
+namespace {
+
+// A name may hold what separates fields (RFC 4180).
+std::string field(const std::string& text) {
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+}  // namespace
+
+void write_missed_csv(const std::filesystem::path& file, std::span<const MissedShare> shares) {
+  std::string text = "node,voxels";
+  for (const MissedStyle& style : kMissedStyles) text += "," + to_string(style.why);
+  text += "\n";
+  for (const MissedShare& share : shares) {
+    text += field(&share == &shares.front() ? "(all)" : share.node) + "," + number(share.voxels);
+    for (const MissedStyle& style : kMissedStyles) text += "," + fixed(share.share(style.why), 4);
+    text += "\n";
+  }
+  write_atomically(file, text);
+}
+
+void write_missed_ply(const std::filesystem::path& file, const Simulator& simulator,
+                      std::span<const std::uint32_t> ranks, std::span<const WhyMissed> why,
+                      std::span<const std::uint32_t> points) {
+  if (ranks.size() != why.size() || ranks.size() != points.size())
+    throw Error(Errc::invalid_argument, "write_missed_ply: " + std::to_string(ranks.size()) + " voxels, " +
+                                            std::to_string(why.size()) + " reasons and " +
+                                            std::to_string(points.size()) + " counts");
+  write_voxel_ply(file, simulator, {{"uchar", "why"}, {"uint", "count"}}, ranks.size(),
+                  [&](std::uint64_t k, std::string& bytes) {
+                    append(bytes, static_cast<std::uint8_t>(why[k]));
+                    append(bytes, points[k]);
+                    return VoxelVertex{ranks[k], missed_style(why[k]).colour};
+                  });
+}
+
+}  // namespace vantage

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// The pictures before they are files: drawn once, saved as PNG and as SVG.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "export/canvas.hpp"
+#include "export/plan_map.hpp"
+#include "vantage/placement.hpp"
+#include "vantage/planner.hpp"
+#include "vantage/scene.hpp"
+
+namespace vantage {
+
+std::unique_ptr<Canvas> front_picture(const PlanResult& result);
+std::unique_ptr<Canvas> hypervolume_picture(const PlanResult& result);
+std::unique_ptr<Canvas> history_picture(const PlanResult& result);
+
+// A page of a plan view: all floors, and where there are several one more for each.
+struct PlanPage {
+  std::string suffix;  // of the file's name: "" or "-level-2"
+  std::unique_ptr<Canvas> canvas;
+};
+// Throws Error invalid_argument where there is nothing to show, or the matrix is not the stations'.
+std::vector<PlanPage> plan_view_pictures(const PlanView& view);
+
+}  // namespace vantage

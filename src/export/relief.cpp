@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "export/relief.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace vantage {
+namespace {
+
+constexpr std::uint32_t kNothing = 0xFFFFFFFFu;
+// Surfaces steeper than this show no area from above; they are drawn as lines, or walls without thickness would vanish.
+constexpr double kSteep = 0.1;
+// Width of such a line in pixels of the buffer: big walls stand out, small parts keep their shape.
+double line_width(double length) { return std::clamp(0.15 * length, 3.0, 14.0); }
+
+class Painter {
+ public:
+  Painter(HeightBuffer& target, double z_cut) : target_(target), z_cut_(z_cut) {}
+
+  void triangle(const std::array<MapPoint, 3>& c, const std::array<double, 3>& z, std::uint32_t id) {
+    for_each_pixel(target_.window, c, [&](std::size_t pixel, const std::array<double, 3>& weights) {
+      put(pixel, weights[0] * z[0] + weights[1] * z[1] + weights[2] * z[2], id);
+    });
+  }
+
+  void line(const MapPoint& a, const MapPoint& b, double z_a, double z_b, std::uint32_t id) {
+    const double dx = b.x - a.x, dy = b.y - a.y, length = std::max(std::abs(dx), std::abs(dy));
+    const double half = line_width(length) / 2;
+    const int steps = static_cast<int>(std::ceil(length)) + 1;
+    for (int s = 0; s <= steps; ++s) {
+      const double t = static_cast<double>(s) / steps, x = a.x + t * dx, y = a.y + t * dy;
+      const auto [x0, x1] = pixels_between(x - half, x + half, target_.window.columns);
+      const auto [y0, y1] = pixels_between(y - half, y + half, target_.window.rows);
+      for (std::size_t j = y0; j < y1; ++j)
+        for (std::size_t i = x0; i < x1; ++i) put(j * target_.window.columns + i, z_a + t * (z_b - z_a), id);
+    }
+  }
+
+ private:
+  void put(std::size_t k, double z, std::uint32_t id) {
+    if (z > z_cut_) return;
+    if (static_cast<float>(z) <= target_.z[k]) return;
+    target_.z[k] = static_cast<float>(z), target_.triangle[k] = id;
+  }
+
+  HeightBuffer& target_;
+  double z_cut_;  // local frame
+};
+
+std::array<Float3, 3> corners_of(const SceneData& scene, std::uint32_t triangle) {
+  const Triangle& t = scene.triangles[triangle];
+  return {scene.positions[t[0]], scene.positions[t[1]], scene.positions[t[2]]};
+}
+
+// Unit normal, upwards.
+std::array<double, 3> normal_of(const SceneData& scene, std::uint32_t triangle) {
+  const auto p = corners_of(scene, triangle);
+  const double ax = double{p[1].x} - p[0].x, ay = double{p[1].y} - p[0].y, az = double{p[1].z} - p[0].z;
+  const double bx = double{p[2].x} - p[0].x, by = double{p[2].y} - p[0].y, bz = double{p[2].z} - p[0].z;
+  std::array<double, 3> n{ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx};
+  const double length = std::hypot(n[0], n[1], n[2]);
+  const double sign = n[2] < 0 ? -1 : 1;
+  for (double& c : n) c = length > 0 ? sign * c / length : 0;
+  return n;
+}
+
+// Mean of z over a square of 2r + 1 pixels, by running sums; where there is nothing, `floor` stands in.
+std::vector<float> box_mean(const HeightBuffer& heights, std::size_t r, float floor) {
+  const std::size_t w = heights.window.columns, h = heights.window.rows;
+  std::vector<double> sums((w + 1) * (h + 1), 0.0);
+  for (std::size_t y = 0; y < h; ++y) {
+    double row = 0;
+    for (std::size_t x = 0; x < w; ++x) {
+      row += std::max(heights.z[y * w + x], floor);
+      sums[(y + 1) * (w + 1) + x + 1] = sums[y * (w + 1) + x + 1] + row;
+    }
+  }
+  std::vector<float> mean(w * h);
+  tbb::parallel_for(std::size_t{0}, h, [&](std::size_t y) {
+    const std::size_t y0 = y > r ? y - r : 0, y1 = std::min(h, y + r + 1);
+    for (std::size_t x = 0; x < w; ++x) {
+      const std::size_t x0 = x > r ? x - r : 0, x1 = std::min(w, x + r + 1);
+      const double sum =
+          sums[y1 * (w + 1) + x1] - sums[y0 * (w + 1) + x1] - sums[y1 * (w + 1) + x0] + sums[y0 * (w + 1) + x0];
+      mean[y * w + x] = static_cast<float>(sum / static_cast<double>((y1 - y0) * (x1 - x0)));
+    }
+  });
+  return mean;
+}
+
+}  // namespace
+
+HeightBuffer look_from_above(const SceneData& scene, const MapWindow& window, double z_cut) {
+  HeightBuffer heights{window, {}, {}};
+  heights.z.assign(window.columns * window.rows, -std::numeric_limits<float>::infinity());
+  heights.triangle.assign(window.columns * window.rows, kNothing);
+  Painter painter(heights, z_cut - scene.origin.z);
+  for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
+    std::array<MapPoint, 3> c;
+    std::array<double, 3> z;
+    const auto p = corners_of(scene, t);
+    for (std::size_t k = 0; k < 3; ++k) {
+      c[k] = window.at(scene.origin + Vec3{p[k].x, p[k].y, p[k].z});
+      z[k] = p[k].z;
+    }
+    painter.triangle(c, z, t);
+    // What is cut through shows as its section.
+    const bool below = z_cut - scene.origin.z >= std::max({z[0], z[1], z[2]});
+    if (below && normal_of(scene, t)[2] < kSteep)
+      for (std::size_t k = 0; k < 3; ++k) painter.line(c[k], c[(k + 1) % 3], z[k], z[(k + 1) % 3], t);
+  }
+  return heights;
+}
+
+std::vector<std::uint32_t> shade(const SceneData& scene, const HeightBuffer& heights) {
+  const std::size_t w = heights.window.columns, h = heights.window.rows;
+  float low = std::numeric_limits<float>::max(), high = std::numeric_limits<float>::lowest();
+  for (const float z : heights.z)
+    if (std::isfinite(z)) low = std::min(low, z), high = std::max(high, z);
+  std::vector<std::uint32_t> pixels(w * h, 0);
+  if (low > high) return pixels;
+
+  // Two scales of "lower than the surroundings": pipes among themselves, and tanks over the ground.
+  const double extent = static_cast<double>(std::max(w, h));
+  const auto near = box_mean(heights, static_cast<std::size_t>(extent * 0.004) + 1, low);
+  const auto far = box_mean(heights, static_cast<std::size_t>(extent * 0.02) + 1, low);
+  const double near_scale = extent * 0.010 * heights.window.pixel_m,
+               far_scale = extent * 0.045 * heights.window.pixel_m;
+  constexpr double kLight[3] = {-0.5, 0.5, 0.7071067811865476};  // from the north-west, 45° high
+
+  tbb::parallel_for(std::size_t{0}, h, [&](std::size_t y) {
+    for (std::size_t x = 0; x < w; ++x) {
+      const std::size_t k = y * w + x;
+      const std::uint32_t t = heights.triangle[k];
+      if (t == kNothing) continue;
+      const auto n = normal_of(scene, t);
+      const double lit = std::max(0.0, n[0] * kLight[0] + n[1] * kLight[1] + n[2] * kLight[2]);
+      double light = 0.58 + 0.52 * lit;
+      if (n[2] < kSteep) light = 0.62;
+      light *= 1 - 0.38 * std::clamp((double{near[k]} - heights.z[k]) / near_scale, 0.0, 1.0);
+      light *= 1 - 0.38 * std::clamp((double{far[k]} - heights.z[k]) / far_scale, 0.0, 1.0);
+      const bool surveyed = scene.meshes[scene.mesh_of(t)].role == Role::surveyed;
+      const Colour base = surveyed ? kSurveyedTint : kBlockingTint;
+      const auto c = to_bytes({base.r * light, base.g * light, base.b * light});
+      pixels[k] = 0xFF000000u | std::uint32_t{c[0]} << 16 | std::uint32_t{c[1]} << 8 | c[2];
+    }
+  });
+  return pixels;
+}
+
+std::vector<std::uint32_t> halve(const std::vector<std::uint32_t>& pixels, std::size_t columns) {
+  const std::size_t w = columns / 2, h = pixels.size() / columns / 2;
+  std::vector<std::uint32_t> half(w * h);
+  for (std::size_t y = 0; y < h; ++y) {
+    for (std::size_t x = 0; x < w; ++x) {
+      std::uint32_t mean = 0;
+      for (int shift = 0; shift < 32; shift += 8) {
+        std::uint32_t sum = 2;
+        for (const std::size_t k : {2 * y * columns + 2 * x, 2 * y * columns + 2 * x + 1, (2 * y + 1) * columns + 2 * x,
+                                    (2 * y + 1) * columns + 2 * x + 1})
+          sum += pixels[k] >> shift & 255u;
+        mean |= sum / 4 << shift;
+      }
+      half[y * w + x] = mean;
+    }
+  }
+  return half;
+}
+
+std::uint32_t laid_over(std::uint32_t pixel, const Colour& colour, double opacity) {
+  const auto bytes = to_bytes(colour);
+  const std::uint32_t paper = 255 - (pixel >> 24);
+  std::uint32_t mixed = 0xFF000000u;
+  for (int k = 0; k < 3; ++k) {
+    const int shift = 16 - 8 * k;
+    const double below = (pixel >> shift & 255u) + paper;
+    mixed |= static_cast<std::uint32_t>(std::lround(below + opacity * (bytes[static_cast<std::size_t>(k)] - below)))
+             << shift;
+  }
+  return mixed;
+}
+
+}  // namespace vantage

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// A site from straight above: what a map shows of it.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "export/colour.hpp"
+#include "scene/scene_data.hpp"
+
+namespace vantage {
+
+inline constexpr Colour kSurveyedTint{0.93, 0.78, 0.52}, kBlockingTint{0.87, 0.88, 0.89};
+
+// A window of the survey frame's x-y plane, cut into square pixels; row 0 is the northernmost (largest y).
+struct MapPoint {
+  double x = 0, y = 0;  // in pixels from the north-western corner
+};
+struct MapWindow {
+  double x_min = 0, y_max = 0;
+  double pixel_m = 1;
+  std::size_t columns = 0, rows = 0;
+
+  MapPoint at(const Vec3& p) const { return {(p.x - x_min) / pixel_m, (y_max - p.y) / pixel_m}; }
+};
+
+// Pixels of an axis of `size` whose centres lie between low and high.
+inline std::pair<std::size_t, std::size_t> pixels_between(double low, double high, std::size_t size) {
+  const double first = std::clamp(std::ceil(low - 0.5), 0.0, static_cast<double>(size));
+  const double past = std::clamp(std::floor(high - 0.5) + 1, first, static_cast<double>(size));
+  return {static_cast<std::size_t>(first), static_cast<std::size_t>(past)};
+}
+
+// Calls put(pixel, weights of the corners) for each pixel of the window whose centre lies in the triangle.
+template <class Put>
+void for_each_pixel(const MapWindow& window, const std::array<MapPoint, 3>& c, Put&& put) {
+  const double area = (c[1].x - c[0].x) * (c[2].y - c[0].y) - (c[2].x - c[0].x) * (c[1].y - c[0].y);
+  if (area == 0) return;
+  const auto [x0, x1] =
+      pixels_between(std::min({c[0].x, c[1].x, c[2].x}), std::max({c[0].x, c[1].x, c[2].x}), window.columns);
+  const auto [y0, y1] =
+      pixels_between(std::min({c[0].y, c[1].y, c[2].y}), std::max({c[0].y, c[1].y, c[2].y}), window.rows);
+  for (std::size_t y = y0; y < y1; ++y) {
+    for (std::size_t x = x0; x < x1; ++x) {
+      const double px = static_cast<double>(x) + 0.5, py = static_cast<double>(y) + 0.5;
+      const double a = ((c[1].x - px) * (c[2].y - py) - (c[2].x - px) * (c[1].y - py)) / area;
+      const double b = ((c[2].x - px) * (c[0].y - py) - (c[0].x - px) * (c[2].y - py)) / area;
+      if (a >= 0 && b >= 0 && a + b <= 1) put(y * window.columns + x, std::array{a, b, 1 - a - b});
+    }
+  }
+}
+
+// The topmost surface below `z_cut` (survey frame) under each pixel's centre. Steep surfaces, which cover no area, are
+// lines along their edges; but for those that the cut goes through, which section.hpp draws.
+struct HeightBuffer {
+  MapWindow window;
+  std::vector<float> z;                 // local frame; −infinity where there is nothing
+  std::vector<std::uint32_t> triangle;  // of the scene; 2^32 − 1 where there is nothing
+};
+
+HeightBuffer look_from_above(const SceneData& scene, const MapWindow& window, double z_cut);
+
+// Shaded relief, light from the north-west, surveyed meshes tinted. 0xAARRGGBB, premultiplied; transparent where there
+// is nothing.
+std::vector<std::uint32_t> shade(const SceneData& scene, const HeightBuffer& heights);
+
+// A colour over an opaque pixel, or over white paper.
+std::uint32_t laid_over(std::uint32_t pixel, const Colour& colour, double opacity);
+
+// Halves both sides by averaging two by two. REQUIRES: even numbers of columns and rows.
+std::vector<std::uint32_t> halve(const std::vector<std::uint32_t>& pixels, std::size_t columns);
+
+}  // namespace vantage

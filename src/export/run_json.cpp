@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "export/run_json.hpp"
+
+#include <cstdio>
+
+#include "export/station_cells.hpp"
+#include "vantage/export.hpp"
+#include "vantage/summary.hpp"
+#include "vantage/version.hpp"
+
+namespace vantage {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json to_json(const Vec3& v) { return {v.x, v.y, v.z}; }
+
+ordered_json to_json(const Settings& settings) {
+  ordered_json json = ordered_json::object();
+  for (const Setting& setting : settings) json[setting.name] = ordered_json::parse(setting.json);
+  return json;
+}
+
+ordered_json scene_json(const Scene& scene) {
+  char fingerprint[17];
+  std::snprintf(fingerprint, sizeof fingerprint, "%016llx", static_cast<unsigned long long>(scene.fingerprint()));
+  std::size_t surveyed = 0;
+  for (const MeshInfo& mesh : scene.meshes()) surveyed += mesh.role == Role::surveyed ? 1 : 0;
+  const Box box = scene.bounds();
+  return {{"fingerprint", fingerprint},
+          {"triangles", scene.triangle_count()},
+          {"meshes", scene.meshes().size()},
+          {"surveyed_meshes", surveyed},
+          {"bounds", {to_json(box.min), to_json(box.max)}},
+          {"options", to_json(settings(scene.options()))}};
+}
+
+ordered_json scanner_json(const Scanner& scanner) {
+  ordered_json json = to_json(settings(scanner));
+  json["rays"] = scanner.rays();
+  return json;
+}
+
+ordered_json plan_json(const PlanResult& result) {
+  ordered_json json = to_json(settings(result.problem));
+  json.update(to_json(settings(result.config)));
+  json["population_used"] = result.population, json["batch_used"] = result.batch;
+  return json;
+}
+
+// What registration will hang by. Stations are numbered from 1, as in the tables and pictures.
+ordered_json links_json(const OverlapMatrix& overlap, double min_overlap) {
+  const Connectivity graph = connectivity(overlap, min_overlap);
+  ordered_json bridges = ordered_json::array();
+  for (const auto& [i, j] : graph.bridges) bridges.push_back({i + 1, j + 1});
+  ordered_json json = {
+      {"min_overlap", min_overlap}, {"parts", graph.parts}, {"bridges", std::move(bridges)}, {"weakest", nullptr}};
+  if (graph.parts == 1 && overlap.size() > 1)
+    json["weakest"] = {{"stations", {graph.weakest_link.first + 1, graph.weakest_link.second + 1}},
+                       {"overlap", graph.weakest_overlap}};
+  return json;
+}
+
+// Stations are numbered from 1, in the order of visiting.
+ordered_json visit_json(const Visit& visit, std::size_t kept) {
+  ordered_json order = ordered_json::array();
+  for (const std::size_t station : visit.order) order.push_back(kept + station + 1);
+  return {{"order", std::move(order)},       {"minutes", visit.minutes},   {"scan_min", visit.scan_min},
+          {"set_up_min", visit.set_up_min},  {"walk_min", visit.walk_min}, {"walk_m", visit.walk_m},
+          {"unconnected", visit.unconnected}};
+}
+
+// NaN has no JSON; what is not known is null.
+ordered_json known(double value) { return value == value ? ordered_json(value) : ordered_json(); }
+
+ordered_json to_json(const std::vector<SummaryLine>& lines) {
+  ordered_json json = ordered_json::array();
+  for (const auto& [heading, text] : lines) json.push_back({{"heading", heading}, {"text", text}});
+  return json;
+}
+
+// As the columns of stations.csv.
+void add_setup(ordered_json& station, const StationSetup& setup, std::span<const Scanner> scanners) {
+  const Scanner& scanner = scanners[setup.scanner];
+  station["heading"] = setup.heading.in_degrees();
+  station["tilt"] = setup.tilt.in_degrees();
+  station["scanner"] = scanner.name;
+  if (scanner.azimuth_step == scanner.zenith_step) station["step"] = scanner.azimuth_step.in_degrees();
+}
+
+// `number`: of the entry, from 1.
+ordered_json entry_json(const PlanEntry& entry, std::size_t number, const PlanResult& result,
+                        std::span<const Scanner> scanners) {
+  ordered_json stations = ordered_json::array();
+  const auto names = station_names(entry.stations);
+  const bool setups = tells_setups(entry.stations) || !result.problem.scanners.empty();
+  for (std::size_t i = 0; i < entry.stations.size(); ++i) {
+    const PlacedStation& s = entry.stations[i];
+    ordered_json station = {{"name", names[i]},       {"position", nullptr},           {"ground", nullptr},
+                            {"uv", {s.uv.u, s.uv.v}}, {"status", to_string(s.status)}, {"kept", s.kept}};
+    if (s.status != StationStatus::hole) {
+      station["position"] = to_json(s.position);
+      station["ground"] = to_json(s.ground);
+    }
+    if (setups) add_setup(station, s.setup, scanners);
+    if (entry.confirmed && i < entry.points_on_surveyed.size())
+      station["points_on_surveyed"] = entry.points_on_surveyed[i];
+    stations.push_back(std::move(station));
+  }
+  ordered_json json{{"entry", number}}, exact, values;
+  for (const Objective& measure : result.measures) {
+    const MeasuredValue& value = entry.values.at(measure.name);
+    values[measure.name] = {
+        {"searched", known(value.searched)}, {"standard_error", value.standard_error}, {"exact", known(value.exact)}};
+  }
+  for (const char* always : {"coverage", "overlap"}) {
+    const MeasuredValue& value = entry.values.at(always);
+    json[always] = known(value.searched);
+    json[std::string(always) + "_se"] = value.standard_error;
+    exact[always] = known(value.exact);
+  }
+  exact["dominated"] = entry.dominated;
+  json["station_count"] = entry.stations.size();
+  json["values"] = std::move(values);
+  json["missed"] = known(entry.missed);
+  json["exact"] = entry.confirmed ? std::move(exact) : ordered_json();
+  json["stations"] = std::move(stations);
+  json["x"] = entry.x;
+  if (entry.confirmed) json["links"] = links_json(entry.exact_overlap_matrix, result.problem.link_overlap);
+  if (entry.exact_scan_overlap_matrix.size() > 0) json["scan_links"] = links_json(entry.exact_scan_overlap_matrix, 0);
+  if (entry.visit) json["on_site"] = visit_json(*entry.visit, result.problem.kept.size());
+  return json;
+}
+
+}  // namespace
+
+ordered_json run_parameters(const Simulator& simulator, const PlanResult* result) {
+  ordered_json json = {{"version", version()},
+                       {"engine", to_string(simulator.engine().engine)},
+                       {"device", simulator.engine().device},
+                       {"driver", simulator.engine().driver},
+                       {"scene", scene_json(simulator.scene())},
+                       {"scanner", scanner_json(simulator.scanner())},
+                       {"simulation", to_json(settings(simulator.config()))},
+                       {"voxels", simulator.voxel_count()},
+                       {"voxel_size_m", simulator.voxel_size_m()},
+                       {"goal_density", simulator.goal_density()}};
+  if (simulator.scanners().size() > 1)
+    for (const Scanner& scanner : simulator.scanners()) json["scanners"].push_back(scanner_json(scanner));
+  if (!result) return json;
+  json["walkable"] = to_json(settings(result->walkable));
+  json["security"] = to_json(settings(result->security));
+  json["plan"] = plan_json(*result);
+  return json;
+}
+
+std::string run_parameters_json(const Simulator& simulator, const PlanResult* result) {
+  return run_parameters(simulator, result).dump(2);
+}
+
+std::string front_json(const PlanResult& result, const Simulator& simulator) {
+  ordered_json front = ordered_json::array(), objectives = front;
+  for (const PlanEntry& entry : result.front)
+    front.push_back(entry_json(entry, front.size() + 1, result, simulator.scanners()));
+  for (const Objective& objective : result.problem.objectives) objectives.push_back(objective.name);
+  ordered_json json = {{"problem", result.problem.name},     {"objectives", std::move(objectives)},
+                       {"hypervolume", result.hypervolume},  {"exact_hypervolume", known(result.exact_hypervolume)},
+                       {"evaluations", result.evaluations},  {"stations_drawn", result.drawn},
+                       {"stations_redrawn", result.redrawn}, {"stop_reason", to_string(result.stop_reason)}};
+  if (!result.front.empty()) {
+    const std::size_t chosen = answer(result);
+    json["answer"] = chosen + 1;
+    json["met"] = met(result);
+    json["what_would_help"] = what_would_help(result);
+    json["summary"] = to_json(summary_lines(summary_of(result.front[chosen], result)));
+  }
+  if (result.candidates)
+    json["visible"] = {{"coverage", result.candidates->visible().value},
+                       {"standard_error", result.candidates->visible().standard_error},
+                       {"candidates", result.candidates->stations().size()}};
+  json["front"] = std::move(front);
+  json["seconds"] = {{"total", result.seconds}, {"trace", result.trace_seconds}};
+  json["engine"] = to_string(simulator.engine().engine);
+  json["device"] = simulator.engine().device;
+  json["seed"] = result.config.seed;
+  json["version"] = version();
+  json["parameters"] = run_parameters(simulator, &result);
+  return json.dump(2) + "\n";
+}
+
+}  // namespace vantage

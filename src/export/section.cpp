@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "export/section.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+namespace vantage {
+namespace {
+
+// Points that are one share a number, whatever face they belong to.
+std::vector<std::uint32_t> welded(const SceneData& scene) {
+  std::vector<std::uint32_t> order(scene.positions.size()), number(scene.positions.size());
+  std::iota(order.begin(), order.end(), 0u);
+  const auto key = [&](std::uint32_t v) {
+    const Float3& p = scene.positions[v];
+    return std::array{p.x, p.y, p.z};
+  };
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+  for (std::size_t k = 0; k < order.size(); ++k)
+    number[order[k]] = k > 0 && key(order[k]) == key(order[k - 1]) ? number[order[k - 1]] : order[k];
+  return number;
+}
+
+// Which surface each point belongs to: those that triangles connect.
+std::vector<std::uint32_t> surfaces_of(const SceneData& scene) {
+  std::vector<std::uint32_t> parent = welded(scene);
+  const auto root = [&](std::uint32_t v) {
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+  };
+  for (const Triangle& t : scene.triangles)
+    for (const std::size_t k : {1u, 2u}) {
+      const std::uint32_t a = root(t[0]), b = root(t[k]);
+      parent[std::max(a, b)] = std::min(a, b);
+    }
+  for (std::uint32_t v = 0; v < parent.size(); ++v) parent[v] = root(v);
+  return parent;
+}
+
+// A segment of the cut with what is solid to its left, seen from above.
+struct Cut {
+  MapPoint from, to;
+  std::uint32_t surface;
+};
+
+std::vector<Cut> cuts_at(const SceneData& scene, const MapWindow& window, double z) {
+  const std::vector<std::uint32_t> surface = surfaces_of(scene);
+  std::vector<Cut> cuts;
+  for (const Triangle& t : scene.triangles) {
+    std::array<Vec3, 3> p;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Float3& q = scene.positions[t[k]];
+      p[k] = Vec3{q.x, q.y, q.z} + scene.origin;
+    }
+    // a corner in the plane counts as above: each surface is crossed evenly
+    std::vector<Vec3> ends;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3 &a = p[k], &b = p[(k + 1) % 3];
+      if ((a.z >= z) == (b.z >= z)) continue;
+      // from the lower end, so that both triangles at an edge find the same point
+      const Vec3 &low = a.z < b.z ? a : b, &high = a.z < b.z ? b : a;
+      ends.push_back(low + (high - low) * ((z - low.z) / (high.z - low.z)));
+    }
+    if (ends.size() != 2) continue;
+    const Vec3 n = cross(p[1] - p[0], p[2] - p[0]);
+    // up × n runs along the cut with the inside to its left
+    const bool along = (ends[1].x - ends[0].x) * -n.y + (ends[1].y - ends[0].y) * n.x >= 0;
+    const MapPoint a = window.at(ends[0]), b = window.at(ends[1]);
+    cuts.push_back({along ? a : b, along ? b : a, surface[t[0]]});
+  }
+  return cuts;
+}
+
+struct Crossing {
+  std::uint32_t surface;
+  double column;
+  int winding;  // what it adds to the right of it
+};
+
+// Fills a row of pixels by the crossings of its middle line.
+void fill_row(std::vector<Crossing>& row, std::uint8_t* solid, std::size_t columns) {
+  std::sort(row.begin(), row.end(), [](const Crossing& a, const Crossing& b) {
+    return a.surface != b.surface ? a.surface < b.surface : a.column < b.column;
+  });
+  // surfaces that do not close along this row are left out
+  std::size_t kept = 0;
+  for (std::size_t first = 0; first < row.size();) {
+    std::size_t last = first;
+    int sum = 0;
+    while (last < row.size() && row[last].surface == row[first].surface) sum += row[last++].winding;
+    if (sum == 0)
+      for (std::size_t k = first; k < last; ++k) row[kept++] = row[k];
+    first = last;
+  }
+  row.resize(kept);
+  std::sort(row.begin(), row.end(), [](const Crossing& a, const Crossing& b) { return a.column < b.column; });
+  int winding = 0;
+  for (std::size_t k = 0; k + 1 < row.size(); ++k) {
+    winding += row[k].winding;
+    if (winding <= 0) continue;
+    const auto [x0, x1] = pixels_between(row[k].column, row[k + 1].column, columns);
+    for (std::size_t x = x0; x < x1; ++x) solid[x] = 1;
+  }
+}
+
+}  // namespace
+
+Section section_at(const SceneData& scene, const MapWindow& window, double z) {
+  Section section;
+  section.solid.assign(window.columns * window.rows, 0);
+  std::vector<std::vector<Crossing>> rows(window.rows);
+  for (const Cut& cut : cuts_at(scene, window, z)) {
+    section.outlines.push_back({cut.from, cut.to});
+    // Rows count downward: what is solid lies to the left of the cut, so to the right of one that runs downward.
+    const double top = std::min(cut.from.y, cut.to.y), bottom = std::max(cut.from.y, cut.to.y);
+    const auto first =
+        static_cast<std::size_t>(std::clamp(std::ceil(top - 0.5), 0.0, static_cast<double>(window.rows)));
+    for (std::size_t y = first; y < window.rows && static_cast<double>(y) + 0.5 < bottom; ++y) {
+      const double share = (static_cast<double>(y) + 0.5 - cut.from.y) / (cut.to.y - cut.from.y);
+      rows[y].push_back({cut.surface, cut.from.x + share * (cut.to.x - cut.from.x), cut.to.y > cut.from.y ? 1 : -1});
+    }
+  }
+  for (std::size_t y = 0; y < window.rows; ++y)
+    fill_row(rows[y], section.solid.data() + y * window.columns, window.columns);
+  return section;
+}
+
+}  // namespace vantage

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// Voxels as a binary PLY: centre (survey frame) and colour of each, then what else a cloud tells of it.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "export/colour.hpp"
+#include "export/ply_header.hpp"
+#include "export/point_sink.hpp"
+#include "vantage/simulator.hpp"
+
+namespace vantage {
+
+// `vertex`: the k-th voxel's colour; it appends what `more` names, in that order. Throws Error io.
+struct VoxelVertex {
+  std::uint32_t rank;
+  Colour colour;
+};
+void write_voxel_ply(const std::filesystem::path& file, const Simulator& simulator,
+                     const std::vector<PlyProperty>& more, std::uint64_t voxels,
+                     const std::function<VoxelVertex(std::uint64_t k, std::string& bytes)>& vertex);
+
+}  // namespace vantage

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <system_error>
+
+#include "core/text.hpp"
+#include "export/pictures.hpp"
+#include "export/tables.hpp"
+#include "vantage/error.hpp"
+#include "vantage/export.hpp"
+#include "vantage/station_files.hpp"
+#include "vantage/summary.hpp"
+
+namespace vantage {
+namespace {
+
+std::string title_of(const PlanEntry& entry, const SurveySummary& summary) {
+  std::string title = std::to_string(entry.stations.size()) + (entry.stations.size() == 1 ? " station" : " stations");
+  if (summary.of_visible)
+    return title + ": " + fixed(100 * summary.captured, 1) + " % of the site captured, " +
+           fixed(100 * *summary.of_visible, 1) + " % of what can be seen";
+  return title + ": coverage " + fixed(entry.value("coverage"), 3) + ", overlap " + fixed(entry.value("overlap"), 3);
+}
+
+}  // namespace
+
+std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& result, const Simulator& simulator,
+                       const SearchArea& area, const VoxelField* field, const std::string& crs) {
+  if (result.front.empty())
+    throw Error(Errc::invalid_argument,
+                "there is nothing to write: the search ended before its first networks were evaluated");
+  std::error_code failed;
+  std::filesystem::create_directories(folder, failed);
+  if (failed) throw Error(Errc::io, "cannot make the folder " + folder.string() + ": " + failed.message());
+  const std::size_t chosen = answer(result);
+  const PlanEntry& entry = result.front[chosen];
+
+  write_front_csv(folder / "front.csv", result);
+  write_text(folder / "front.json", front_json(result, simulator));
+  write_history_csv(folder / "history.csv", result);
+  write_fronts_csv(folder / "fronts.csv", result);
+  write_stations_csv(folder / "stations.csv", entry.stations, simulator.scanners());
+  if (entry.confirmed) write_overlap_csv(folder / "overlap.csv", entry.exact_overlap_matrix);
+  if (field) write_coverage_ply(folder / "coverage.ply", simulator, *field);
+
+  if (field && entry.registration)
+    write_registration_ply(folder / "registration.ply", simulator, *field, *entry.registration);
+  const SurveySummary summary = summary_of(entry, result);
+  const auto save = [&](const std::string& name, const Canvas& picture) {
+    for (const char* extension : {".png", ".svg"}) picture.save(folder / (name + extension));
+  };
+  save("front", *front_picture(result));
+  save("hypervolume", *hypervolume_picture(result));
+  if (result.problem.objectives.size() > 1) save("history", *history_picture(result));
+  if (field && entry.registration)
+    for (const char* extension : {".png", ".svg"})
+      draw_registration(folder / (std::string("registration") + extension), simulator, *field, *entry.registration,
+                        entry.stations, "Registration error on the surface (predicted)");
+  std::span<const StationError> errors;
+  if (entry.registration) errors = entry.registration->stations;
+  const bool scans = entry.exact_scan_overlap_matrix.size() > 0;
+  const OverlapMatrix& links = scans ? entry.exact_scan_overlap_matrix : entry.exact_overlap_matrix;
+  const double least = scans && summary.links ? summary.links->least : result.problem.link_overlap;
+  for (const PlanPage& page : plan_view_pictures({.scene = simulator.scene(),
+                              .area = area,
+                              .stations = entry.stations,
+                              .names = summary.names,
+                              .overlap = links,
+                              .link_overlap = least,
+                              .title = title_of(entry, summary),
+                              .overlap_words = scans ? "Scan overlap of two stations" : "Overlap of two stations",
+                              .errors = errors}))
+    save("plan" + page.suffix, *page.canvas);
+  const auto names = station_names(entry.stations);
+  write_station_files(folder, {entry.stations, names}, links, least, area, crs);
+  return chosen;
+}
+
+}  // namespace vantage

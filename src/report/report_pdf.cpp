@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <memory>
+
+#include "core/text.hpp"
+#include "export/chart.hpp"
+#include "export/missed_colours.hpp"
+#include "export/pictures.hpp"
+#include "report/report.hpp"
+#include "vantage/version.hpp"
+
+namespace vantage {
+namespace {
+
+constexpr double kWidth = 595, kHeight = 842, kMargin = 48, kLine = 15;  // A4, in points
+constexpr Colour kFaint{0.36, 0.38, 0.42}, kRule{0.80, 0.81, 0.83}, kAlert{0.72, 0.12, 0.12};
+
+std::string percent(double share) { return fixed(100 * share, 1) + " %"; }
+
+// A sheet that is written from the top.
+struct Sheet {
+  std::unique_ptr<Canvas> canvas = std::make_unique<Canvas>(kWidth, kHeight);
+  double y = kMargin;
+
+  double left() const { return kHeight - kMargin - y; }
+  void heading(const std::string& text) {
+    canvas->text({kMargin, y + 10}, text, {.size = 13, .bold = true});
+    y += 28;
+  }
+  // In lines no wider than the sheet.
+  void words(double x, const std::string& text, const TextStyle& style) {
+    std::string line;
+    const auto put = [&] {
+      canvas->text({x, y}, line, style);
+      y += kLine;
+      line.clear();
+    };
+    for (std::size_t at = 0; at < text.size();) {
+      const std::size_t end = std::min(text.find(' ', at), text.size());
+      const std::string word = text.substr(at, end - at), longer = line.empty() ? word : line + " " + word;
+      if (!line.empty() && canvas->text_width(longer, style) > kWidth - kMargin - x)
+        put(), line = word;
+      else
+        line = longer;
+      at = end + 1;
+    }
+    if (!line.empty()) put();
+  }
+  void rule() { canvas->line({kMargin, y - 8}, {kWidth - kMargin, y - 8}, {.colour = kRule, .width = 0.6}); }
+};
+
+// Text shortened to a width, with an ellipsis.
+std::string fitted(const Canvas& canvas, std::string text, double width, const TextStyle& style) {
+  if (canvas.text_width(text, style) <= width) return text;
+  while (!text.empty() && canvas.text_width(text + "…", style) > width) {
+    while (text.size() > 1 && (static_cast<unsigned char>(text.back()) & 0xC0) == 0x80) text.pop_back();
+    text.pop_back();
+  }
+  return text + "…";
+}
+
+struct Column {
+  std::string title;
+  double width;
+  Align across = Align::end;
+};
+
+// As many rows as there is room for; a line says how many more there are, and where.
+void table(Sheet& sheet, const std::vector<Column>& columns, std::size_t rows, const std::string& where,
+           const std::function<std::vector<std::string>(std::size_t)>& cells) {
+  const auto line = [&](const std::vector<std::string>& texts, TextStyle style) {
+    double x = kMargin;
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      style.across = columns[c].across;
+      const double at = columns[c].across == Align::end ? x + columns[c].width - 8 : x;
+      sheet.canvas->text({at, sheet.y}, fitted(*sheet.canvas, texts[c], columns[c].width - 8, style), style);
+      x += columns[c].width;
+    }
+    sheet.y += kLine;
+  };
+  std::vector<std::string> titles;
+  for (const Column& column : columns) titles.push_back(column.title);
+  line(titles, {.size = 8.5, .bold = true, .colour = kFaint});
+  sheet.rule();
+  const auto room = static_cast<std::size_t>(std::max(0.0, sheet.left() / kLine - 1));
+  for (std::size_t k = 0; k < std::min(rows, room); ++k) line(cells(k), {.size = 9});
+  if (rows > room)
+    sheet.words(kMargin, "and " + std::to_string(rows - room) + " more: " + where, {.size = 9, .colour = kFaint});
+  sheet.y += 14;
+}
+
+Sheet summary_sheet(const Report& report, const ReportSite& site) {
+  const ReportNetwork& network = report.networks[report.answer];
+  Sheet sheet;
+  sheet.canvas->text({kMargin, sheet.y + 8},
+                     fitted(*sheet.canvas, report.title, kWidth - 2 * kMargin, {.size = 22, .bold = true}),
+                     {.size = 22, .bold = true});
+  sheet.y += 32;
+  sheet.words(kMargin, "Laser scanning survey plan: " + report.question, {.size = 10, .colour = kFaint});
+  sheet.y += 14;
+  for (const auto& [heading, text] : summary_lines(network.summary)) {
+    sheet.canvas->text({kMargin, sheet.y}, heading,
+                       {.size = 10, .bold = true, .colour = heading == "to do" ? kAlert : Colour{0.15, 0.15, 0.17}});
+    sheet.words(kMargin + 68, text, {.size = 10});
+    sheet.y += 2;
+  }
+  sheet.y += 10;
+  std::span<const StationError> errors;
+  if (network.entry.registration) errors = network.entry.registration->stations;
+  const auto pages =
+      plan_view_pictures({.scene = site.simulator.scene(),
+                          .area = site.area,
+                          .stations = network.entry.stations,
+                          .names = network.names,
+                          .overlap = network.links,
+                          .link_overlap = network.summary.links ? network.summary.links->least : default_link_overlap,
+                          .title = "Plan",
+                          .overlap_words = link_words(network) + " of two stations",
+                          .errors = errors});
+  const Canvas& plan = *pages.front().canvas;
+  const double scale = std::min((kWidth - 2 * kMargin) / plan.width(), sheet.left() / plan.height());
+  sheet.canvas->page({kMargin, sheet.y, plan.width() * scale, plan.height() * scale}, plan);
+  sheet.y += plan.height() * scale + 24;
+  return sheet;
+}
+
+void stations_table(Sheet& sheet, const ReportNetwork& network) {
+  const PlanEntry& entry = network.entry;
+  sheet.heading("Stations");
+  sheet.words(kMargin, "Survey frame, metres. The head is the scanner's; the ground is where the tripod stands.",
+              {.size = 9, .colour = kFaint});
+  sheet.y += 6;
+  table(sheet,
+        {{"Name", 66, Align::start},
+         {"x (m)", 74},
+         {"y (m)", 74},
+         {"head z (m)", 74},
+         {"ground z (m)", 82},
+         {"points on site", 86},
+         {"", 43, Align::start}},
+        entry.stations.size(), "stations.csv has all", [&](std::size_t k) -> std::vector<std::string> {
+          const PlacedStation& s = entry.stations[k];
+          const std::string note = s.kept ? "kept" : active(s) ? "" : "left out";
+          if (s.status == StationStatus::hole) return {network.names[k], "", "", "", "", "", "no ground"};
+          return {network.names[k],
+                  fixed(s.position.x, 3),
+                  fixed(s.position.y, 3),
+                  fixed(s.position.z, 3),
+                  fixed(s.ground.z, 3),
+                  k < entry.points_on_surveyed.size() ? grouped(entry.points_on_surveyed[k]) : "",
+                  note};
+        });
+}
+
+struct Link {
+  std::size_t a, b;
+  double value;
+  bool bridge;
+};
+
+// Those that matter most first: bridges, then the weakest.
+std::vector<Link> links_of(const ReportNetwork& network) {
+  std::vector<Link> links;
+  if (!network.summary.links) return links;
+  const double least = network.summary.links->least;
+  const Connectivity graph = connectivity(network.links, least);
+  for (std::size_t i = 0; i < network.links.size(); ++i)
+    for (std::size_t j = i + 1; j < network.links.size(); ++j)
+      if (const double value = network.links(i, j); value > 0 && value >= least)
+        links.push_back({i, j, value, std::ranges::count(graph.bridges, std::pair(i, j)) > 0});
+  std::ranges::stable_sort(
+      links, [](const Link& l, const Link& r) { return l.bridge != r.bridge ? l.bridge : l.value < r.value; });
+  return links;
+}
+
+void links_table(Sheet& sheet, const ReportNetwork& network, const std::vector<Link>& links) {
+  const SummaryLinks& summary = *network.summary.links;
+  sheet.heading("Links");
+  sheet.words(kMargin,
+              "Pairs of stations with " + summary.measure + " of at least " + number(summary.least) +
+                  ". Bridges, the only link between two parts, come first, then the weakest.",
+              {.size = 9, .colour = kFaint});
+  sheet.y += 6;
+  if (links.empty()) return sheet.words(kMargin, "No two stations are linked.", {.size = 10, .colour = kAlert});
+  table(sheet, {{"From", 90, Align::start}, {"To", 90, Align::start}, {summary.measure, 90}, {"", 200, Align::start}},
+        links.size(), "report.html has all", [&](std::size_t k) -> std::vector<std::string> {
+          const Link& link = links[k];
+          std::string note = link.bridge ? "bridge" : "";
+          if (summary.weakest == std::pair(link.a, link.b))
+            note += std::string(note.empty() ? "" : ", ") + "weakest that all hang by";
+          return {network.names[link.a], network.names[link.b], percent(link.value), note};
+        });
+}
+
+void missed_table(Sheet& sheet, const Report& report) {
+  sheet.heading("What is missed, and why");
+  const MissedShare& all = report.missed.front();
+  double at = kMargin;
+  const double width = kWidth - 2 * kMargin;
+  for (const MissedStyle& style : kMissedStyles) {
+    const double part = width * all.share(style.why);
+    sheet.canvas->fill({at, sheet.y, part, 16}, style.colour);
+    at += part;
+  }
+  sheet.y += 30;
+  at = kMargin;
+  for (const MissedStyle& style : kMissedStyles) {
+    const std::string text = std::string(style.words) + " " + percent(all.share(style.why));
+    const double room = 22 + sheet.canvas->text_width(text, {.size = 9});
+    if (at + room > kWidth - kMargin) at = kMargin, sheet.y += kLine;
+    sheet.canvas->fill({at, sheet.y - 5, 10, 10}, style.colour);
+    sheet.canvas->text({at + 14, sheet.y}, text, {.size = 9});
+    at += room + 10;
+  }
+  sheet.y += 26;
+  std::vector<const MissedShare*> nodes;
+  for (std::size_t k = 1; k < report.missed.size(); ++k) nodes.push_back(&report.missed[k]);
+  std::ranges::stable_sort(nodes, std::ranges::greater{}, [](const MissedShare* s) {
+    return static_cast<double>(s->voxels) * (1 - s->share(WhyMissed::captured));
+  });
+  const auto share = [](const MissedShare& s, WhyMissed why) { return fixed(100 * s.share(why), 1); };
+  table(sheet,
+        {{"Mesh, shares in %", 143, Align::start},
+         {"captured", 58},
+         {"not chosen", 72},
+         {"hidden", 50},
+         {"too far", 50},
+         {"too flat", 50},
+         {"too sparse", 60}},
+        nodes.size(), "missed.csv has all", [&](std::size_t k) -> std::vector<std::string> {
+          const MissedShare& s = *nodes[k];
+          return {s.node,
+                  share(s, WhyMissed::captured),
+                  share(s, WhyMissed::not_chosen),
+                  share(s, WhyMissed::hidden),
+                  share(s, WhyMissed::far),
+                  share(s, WhyMissed::flat),
+                  share(s, WhyMissed::sparse)};
+        });
+}
+
+}  // namespace
+
+void write_report_pdf(const std::filesystem::path& file, const Report& report, const ReportSite& site) {
+  const ReportNetwork& network = report.networks[report.answer];
+  std::vector<Sheet> sheets;
+  sheets.push_back(summary_sheet(report, site));
+  // On the sheet before, where there is room for all of it.
+  const auto sheet_for = [&](std::size_t rows) -> Sheet& {
+    if (sheets.back().left() < 90 + kLine * static_cast<double>(rows)) sheets.emplace_back();
+    return sheets.back();
+  };
+  stations_table(sheet_for(network.entry.stations.size()), network);
+  const std::vector<Link> links = links_of(network);
+  if (network.summary.links) links_table(sheet_for(links.size()), network, links);
+  if (!report.missed.empty()) {
+    Sheet missed;
+    missed_table(missed, report);
+    sheets.push_back(std::move(missed));
+  }
+  std::vector<std::unique_ptr<Canvas>> pages;
+  for (Sheet& sheet : sheets) {
+    const double y = kHeight - 26;
+    const TextStyle style{.size = 8, .colour = kFaint};
+    const std::string page = "vantage " + std::string(version()) + "   " + std::to_string(pages.size() + 1) + " / " +
+                             std::to_string(sheets.size());
+    const double room = kWidth - 2 * kMargin - sheet.canvas->text_width(page, style) - 20;
+    sheet.canvas->text({kMargin, y}, fitted(*sheet.canvas, report.command, room, style), style);
+    sheet.canvas->text({kWidth - kMargin, y}, page, {.size = 8, .colour = kFaint, .across = Align::end});
+    pages.push_back(std::move(sheet.canvas));
+  }
+  Canvas::save_pages(file, pages, report.title);
+}
+
+}  // namespace vantage

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "export/section.hpp"
+
+#include <gtest/gtest.h>
+
+namespace vantage {
+namespace {
+
+// Boxes and sheets far from the world's origin, a point for each face's corner, as files have them.
+class Builder {
+ public:
+  // Faces outward, or inward as a room that was modelled from inside.
+  void box(double x0, double y0, double z0, double x1, double y1, double z1, bool inward = false) {
+    const auto p = [&](int k) { return Vec3{k & 1 ? x1 : x0, k & 2 ? y1 : y0, k & 4 ? z1 : z0}; };
+    for (const auto& [a, b, c, d] : std::vector<std::array<int, 4>>{
+             {0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}})
+      inward ? quad(p(d), p(c), p(b), p(a)) : quad(p(a), p(b), p(c), p(d));
+  }
+  void quad(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
+    const auto n = static_cast<std::uint32_t>(positions.size());
+    for (const Vec3& v : {a, b, c, d}) positions.push_back(v + kPlace);
+    triangles.insert(triangles.end(), {{n, n + 1, n + 2}, {n, n + 2, n + 3}});
+  }
+  // Whether (x, y) is solid at height z.
+  bool solid(double x, double y, double z) const {
+    const Scene scene = Scene::from_triangles(positions, triangles);
+    const Section section = section_at(scene.data(), kWindow, z + kPlace.z);
+    const MapPoint at = kWindow.at(Vec3{x, y, 0} + kPlace);
+    return section.solid[static_cast<std::size_t>(at.y) * kWindow.columns + static_cast<std::size_t>(at.x)] != 0;
+  }
+  std::size_t outlines(double z) const {
+    return section_at(Scene::from_triangles(positions, triangles).data(), kWindow, z + kPlace.z).outlines.size();
+  }
+
+ private:
+  static constexpr Vec3 kPlace{500'000, 4'500'000, 100};
+  static constexpr MapWindow kWindow{
+      .x_min = 500'000 - 6, .y_max = 4'500'000 + 6, .pixel_m = 0.05, .columns = 240, .rows = 240};
+  std::vector<Vec3> positions;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+TEST(Section, BoxesAreSolidAtTheirOwnHeights) {
+  Builder site;
+  site.box(-1, -1, 0, 1, 1, 2);
+  EXPECT_TRUE(site.solid(0, 0, 1.2));
+  EXPECT_TRUE(site.solid(-0.97, 0.97, 1.2));
+  EXPECT_FALSE(site.solid(1.05, 0, 1.2));
+  EXPECT_FALSE(site.solid(0, -1.05, 1.2));
+  EXPECT_FALSE(site.solid(0, 0, 2.5));
+  EXPECT_EQ(site.outlines(1.2), 8u);  // two triangles a side
+  EXPECT_EQ(site.outlines(2.5), 0u);
+}
+
+TEST(Section, OverlappingBoxesStaySolid) {
+  Builder site;
+  site.box(-3, -0.1, 0, 3, 0.1, 3), site.box(-0.1, -3, 0, 0.1, 3, 3);
+  EXPECT_TRUE(site.solid(0, 0, 1.2));
+  EXPECT_TRUE(site.solid(0, 2, 1.2));
+  EXPECT_TRUE(site.solid(-2, 0, 1.2));
+  EXPECT_FALSE(site.solid(1, 1, 1.2));
+}
+
+TEST(Section, BetweenTwoSkinsIsWallAndTheRoomIsFree) {
+  Builder site;
+  site.box(-4, -4, 0, 4, 4, 3), site.box(-3.7, -3.7, 0.1, 3.7, 3.7, 2.9, true);
+  site.box(0, 0, 0.1, 0.5, 0.5, 2);  // a cupboard in it
+  EXPECT_TRUE(site.solid(-3.85, 0, 1.2));
+  EXPECT_TRUE(site.solid(0, 3.85, 1.2));
+  EXPECT_FALSE(site.solid(-2, 0, 1.2));
+  EXPECT_TRUE(site.solid(0.25, 0.25, 1.2));
+  Builder room;
+  room.box(-4, -4, 0, 4, 4, 3, true);  // without an outside
+  EXPECT_FALSE(room.solid(0, 0, 1.2));
+  EXPECT_FALSE(room.solid(-5, 0, 1.2));
+}
+
+TEST(Section, SheetsAreOutlinesAndSpoilNothing) {
+  Builder site;
+  site.quad({-5, -3, 0}, {-5, 3, 0}, {-5, 3, 3}, {-5, -3, 3});
+  EXPECT_FALSE(site.solid(0, 0, 1.2));
+  site.box(-1, -1, 0, 1, 1, 2);
+  site.quad({3, 3, 0}, {3, -3, 0}, {3, -3, 3}, {3, 3, 3});
+  EXPECT_TRUE(site.solid(0, 0, 1.2));
+  EXPECT_FALSE(site.solid(-3, 0, 1.2));
+  EXPECT_FALSE(site.solid(2, 0, 1.2));
+  EXPECT_FALSE(site.solid(5, 0, 1.2));
+}
+
+}  // namespace
+}  // namespace vantage
