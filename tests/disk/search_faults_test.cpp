@@ -32,7 +32,7 @@ class SearchOnABadDisk : public testing::Test {
   std::string run(const PlanConfig& config) {
     ToyEvaluator evaluator;
     const SurveyProblem problem = toy_problem(kProblem);
-    const Site site = toy_site();
+    const PlacementOracle site = toy_site();
     const DecisionSpace space(site, problem);
     evaluator.measures = measures_of(problem);
     return bits_of(search({.space = space,

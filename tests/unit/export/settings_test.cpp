@@ -225,7 +225,7 @@ Told told(const PlanRun& run) {
   const SearchArea area = SearchArea::build(scene, run.walkable);
   const ClashChecker clash(scene, run.security);
   const Simulator simulator(scene, run.scanner, run.simulation);
-  const Site site = make_site(area, clash, run.scanner);
+  const PlacementOracle site = make_placement_oracle(area, clash, run.scanner);
   PlanResult result;
   result.problem = run.problem, result.config = run.config;
   result.walkable = area.options(), result.security = clash.volume();
