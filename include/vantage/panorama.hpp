@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Equirectangular images around a station: colours for its points, and pictures of what it sees.
-/// .
+///
 /// Every image covers the full sphere as someone at the station sees it: heading in the middle, azimuth falling from
 /// left to right (what lies to the right is on the right), zenith at the top, nadir at the bottom. If the station is
 /// turned (`StationSetup`), angles are in the scanner's frame, as with its own camera.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Station masks to the sums behind the registration error (docs/method.md, "Registration error").
-// .
+//
 // A voxel that several stations see from one side of its plane ties them together along the plane's normal. A pair's
 // share is quantised to whole numbers before it is summed, so the order of summing does not matter. The vectors J are
 // quantised rather than their products, so that directions which a surface leaves free stay exactly free.

@@ -19,7 +19,7 @@ void follow_rates(std::vector<double>& shares, std::span<const double> rates);
 
 // Hands out all items in pieces, large ones first, so that all workers finish together, however fast each is. Not
 // thread-safe.
-// .
+//
 // It works in rounds, each of `of_rest` of the remaining items; the others can thus make up for a slow piece
 // (factoring: Hummel, Schonberg, Flynn, 1992).
 class Pieces {
