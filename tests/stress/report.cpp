@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// vantage-stress: prints the tables of docs/stability.md, each under the command that makes it.
+// vantage-stress: prints the tables of docs/stability.md, each under its command.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -161,7 +161,7 @@ int run(int argc, char** argv) {
   const std::vector<std::pair<std::string, Part>> parts{
       {"moved", moved},       {"turned", turned}, {"baked", baked}, {"sweep", sweep},         {"leaks", leaks},
       {"coplanar", coplanar}, {"odd", odd},       {"edges", edges}, {"reference", reference}, {"many", many}};
-  const std::string costly = "many";  // minutes on a graphics card: only where asked for
+  const std::string costly = "many";  // minutes on a graphics card: only on request
   std::vector<std::string> wanted, wanted_engines;
   double size = 1;
   for (int i = 1; i < argc; ++i) {
