@@ -13,7 +13,7 @@ std::optional<std::uint64_t> number_in(const char* file) {
   std::ifstream in(file);
   std::uint64_t bytes = 0;
   if (in >> bytes) return bytes;
-  return std::nullopt;  // not there, or "max"
+  return std::nullopt;  // missing, or "max"
 }
 
 std::optional<std::uint64_t> available() {

@@ -7,8 +7,8 @@
 
 namespace vantage {
 
-// Bytes that this process can still take without swapping: what the system calls available, and no more than its
-// control group leaves. Empty where neither can be read.
+// Bytes that this process can still allocate without swapping: the system's available memory, limited by the control
+// group. Empty if neither can be read.
 std::optional<std::uint64_t> free_memory();
 
 // "850 MiB", "12.3 GiB"

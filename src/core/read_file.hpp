@@ -6,7 +6,7 @@
 
 namespace vantage {
 
-// All bytes of a file. Throws Error io where it is a folder, or cannot be opened or read.
+// Returns all bytes of a file. Throws Error io if it is a folder, or cannot be opened or read.
 std::string read_file(const std::filesystem::path& file);
 
 }  // namespace vantage

@@ -21,7 +21,7 @@ struct Soup {
   std::span<const Float3> positions;
   std::span<const Triangle> triangles;
   std::vector<std::uint32_t> chosen;
-  double slack = 0;  // metres; planes no farther apart are one
+  double slack = 0;  // metres; planes no farther apart count as one
 
   Corners corners(std::size_t k) const {
     Corners corners;
@@ -47,7 +47,7 @@ void bounds_of(const RTCBoundsFunctionArguments* args) {
 
 embree::Scene tree_over(RTCDevice device, Soup& soup) {
   embree::Scene tree(rtcNewScene(device));
-  rtcSetSceneBuildQuality(tree.get(), RTC_BUILD_QUALITY_LOW);  // looked through once: building is what takes time
+  rtcSetSceneBuildQuality(tree.get(), RTC_BUILD_QUALITY_LOW);  // searched only once, so building dominates
   const embree::Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER));
   rtcSetGeometryUserPrimitiveCount(geometry.get(), static_cast<unsigned>(soup.chosen.size()));
   rtcSetGeometryUserData(geometry.get(), &soup);
@@ -65,7 +65,7 @@ bool lies_in_plane(const Corners& t, const Corners& other, const glm::dvec3& nor
   return std::ranges::all_of(t, [&](const glm::dvec3& p) { return std::abs(dot(normal, p - other[0])) <= slack; });
 }
 
-// Whether an edge of `a`, seen along `normal`, has all of `b` beyond it, or nearer to it than `slack`.
+// Whether, seen along `normal`, all of `b` lies beyond an edge of `a`, or closer to it than `slack`.
 bool edge_parts(const Corners& a, const Corners& b, const glm::dvec3& normal, double slack) {
   for (std::size_t k = 0; k < 3; ++k) {
     const glm::dvec3 edge = a[(k + 1) % 3] - a[k];
@@ -118,8 +118,8 @@ Coplanar find_coplanar(std::span<const Float3> positions, std::span<const Triang
   double reach = 0;
   for (const double c : {box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z})
     reach = std::max(reach, std::abs(c));
-  surveyed.slack = blocking.slack = 0x1p-20 * reach;  // as far as an engine's distances may be off
-  // Only what is near the others' bounds can meet them.
+  surveyed.slack = blocking.slack = 0x1p-20 * reach;  // bound on the error of an engine's distances
+  // Only triangles near the others' bounds can meet them.
   const auto keep_near = [](Soup& soup, const Box& others) {
     std::vector<std::uint32_t> near;
     Box bounds;
@@ -145,7 +145,7 @@ Coplanar find_coplanar(std::span<const Float3> positions, std::span<const Triang
   Search search{surveyed, blocking, {}, {}};
   rtcCollide(surveyed_tree.get(), blocking_tree.get(), compare_pairs, &search);
   embree::check(device.get(), "looking for surfaces in one plane");
-  std::ranges::sort(search.found);  // threads found them
+  std::ranges::sort(search.found);  // threads found them in any order
   return {surveyed.slack, std::move(search.found)};
 }
 

@@ -20,13 +20,13 @@ namespace {
 
 using Weights = std::array<double, 3>;  // of a triangle's corners
 
-// A blocking triangle and those in its plane that cover some of it.
+// A blocking triangle, and the triangles in its plane that cover part of it.
 struct Covered {
   std::uint32_t blocking = 0;
   std::span<const CoplanarPair> by;
 };
 
-// Coordinates in a triangle's plane; counter-clockwise there is the triangle's own sense.
+// Coordinates in a triangle's plane; the triangle is counter-clockwise there.
 class Frame {
  public:
   Frame(const std::vector<Float3>& positions, const Triangle& triangle) {
@@ -74,7 +74,7 @@ Float3 mixed_normal(const std::vector<Float3>& normals, const Triangle& t, const
   return size > 0 ? to_float3(n / size) : Float3{};
 }
 
-// Appends a vertex of triangle `t` at `p`, and returns its number.
+// Appends a vertex of triangle `t` at `p` and returns its number.
 std::uint32_t add_vertex(RawScene& raw, std::vector<Float3>& positions, const Frame& frame, const Triangle& t,
                          const PlanePoint& p) {
   const Weights w = frame.weights(p);
@@ -92,7 +92,7 @@ std::uint32_t add_vertex(RawScene& raw, std::vector<Float3>& positions, const Fr
   return static_cast<std::uint32_t>(positions.size() - 1);
 }
 
-// The runs of pairs with the same blocking triangle.
+// Runs of pairs with the same blocking triangle.
 std::vector<Covered> by_blocking(std::span<const CoplanarPair> pairs) {
   std::vector<Covered> runs;
   for (std::size_t begin = 0, end = 0; begin < pairs.size(); begin = end) {
@@ -128,7 +128,7 @@ CoplanarCut cut_coplanar(RawScene& raw, std::vector<Float3>& positions) {
   });
 
   std::vector<Triangle> triangles;
-  std::size_t next = 0;  // of `covered`
+  std::size_t next = 0;  // index into `covered`
   for (MeshRange& range : raw.ranges) {
     const std::uint32_t first = range.first_triangle, end = first + range.triangle_count;
     range.first_triangle = static_cast<std::uint32_t>(triangles.size());

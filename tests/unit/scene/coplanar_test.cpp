@@ -29,7 +29,7 @@ struct Meshes {
   std::size_t count() const { return pairs().size(); }
 };
 
-// A plane of random place and tilt, or square to an axis.
+// A plane with a random place and tilt, or perpendicular to an axis.
 struct Plane {
   Vec3 corner, along, up, normal;
   explicit Plane(std::mt19937& rng, bool square) {

@@ -21,7 +21,7 @@ double area(const ConvexPolygon& polygon) {
   for (std::size_t k = 2; k < polygon.size(); ++k) twice += twice_area(polygon[0], polygon[k - 1], polygon[k]);
   return twice / 2;
 }
-// Left of every edge by more than `margin`, which may be negative.
+// Whether p is left of every edge by more than `margin`, which may be negative.
 bool inside(const ConvexPolygon& polygon, const PlanePoint& p, double margin) {
   for (std::size_t k = 0; k < polygon.size(); ++k) {
     const PlanePoint &a = polygon[k], &b = polygon[(k + 1) % polygon.size()];
@@ -98,7 +98,7 @@ TEST(CutPolygon, AMeshWithAnOutlineLeavesTheRestInFewParts) {
     }
   const std::vector<ConvexPolygon> left = cut_away({{0, 0}, {4, 0}, {4, 3}, {0, 3}}, mesh, kSlack);
   EXPECT_NEAR(area(left), 12 - 1, 1e-3);
-  EXPECT_LT(left.size(), 40u * n);  // of 2 n² triangles
+  EXPECT_LT(left.size(), 40u * n);  // out of 2 n² triangles
 }
 
 TEST(CutPolygon, ManyHolesOnOneAnotherEnd) {
