@@ -78,6 +78,9 @@ struct SceneOptions {
   /// stairs and storeys say otherwise, which a note then tells. A file with any `vantage` extras is never asked.
   std::optional<Unit> unit = std::nullopt;
   std::optional<UpAxis> up = std::nullopt;  ///< Which axis points up. Empty: Y, as glTF says, or as with `unit`.
+  /// Memory that the process may take while the scene is loaded, in bytes; what takes more is refused before it is
+  /// read. 0: half of what is free.
+  std::uint64_t max_memory_bytes = 0;
 };
 
 /// None decides by itself what a run finds: the scene's fingerprint does.
@@ -90,7 +93,8 @@ class Scene {
   /// Buffers and images are read from the file itself and from regular files below its folder, links followed; from
   /// elsewhere only if `allow_outside`.
   /// Throws Error: io, malformed_file (bad reference, unknown required extension, nothing to survey), invalid_argument
-  /// (a pattern that matches nothing, a scene index, weight or coefficient out of range), out_of_memory.
+  /// (a pattern that matches nothing, a scene index, weight or coefficient out of range), out_of_memory (estimated to
+  /// take more than `max_memory_bytes`).
   static Scene load(const std::filesystem::path& file, const SceneOptions& options = {});
 
   /// One surveyed mesh from an indexed triangle list in the survey frame. Throws Error: invalid_argument (an index or

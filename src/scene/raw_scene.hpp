@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -28,6 +29,8 @@ struct RawScene {
   // Coarsest spacing, in metres, of the float32 values from which positions were read, at those positions; 0 where they
   // were exact.
   double coarsest_input_spacing_m = 0;
+  // Memory that cleaning may take beyond what these arrays make it take.
+  std::uint64_t spare_bytes = std::numeric_limits<std::uint64_t>::max();
   std::vector<std::string> notes;
   std::string defaults_json = "{}";
   SceneOptions options = {};
@@ -36,7 +39,8 @@ struct RawScene {
 // Drops triangles that no ray can meet soundly (not finite, absurdly far, without area, exact duplicates), takes off
 // the local origin in double, rounds to float, cuts blocking triangles back where surveyed ones lie in their plane and
 // removes unused vertices. What was dropped is said in the notes.
-// Throws Error malformed_file, prefixed with `source`, where no surveyed triangle is left.
+// Throws Error: malformed_file, prefixed with `source`, where no surveyed triangle is left; out_of_memory where more
+// blocking triangles lie in one plane with surveyed ones than can be cut.
 std::shared_ptr<const SceneData> finish_scene(RawScene&& raw, const std::string& source);
 
 // Meshes left without triangles go. Of the others the counts become those of their ranges.
