@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Text in cells of CSV files (RFC 4180). A spreadsheet takes a cell that begins with =, +, - or @ for a formula and runs
-// it; names come from scenes of other people. An apostrophe before it makes it text, and our own reader takes that off.
+// Text in cells of CSV files (RFC 4180). A spreadsheet takes a cell that begins with =, +, - or @ for a formula and
+// runs it; names come from scenes of other people. An apostrophe before it makes it text, and our own reader takes that
+// off.
 #pragma once
 
 #include <string>

@@ -109,8 +109,7 @@ void compare_pairs(void* user, RTCCollision* pairs, unsigned count) {
 }  // namespace
 
 Coplanar find_coplanar(std::span<const Float3> positions, std::span<const Triangle> triangles,
-                       std::span<const MeshRange> ranges, std::span<const MeshInfo> meshes,
-                       std::uint64_t most_pairs) {
+                       std::span<const MeshRange> ranges, std::span<const MeshInfo> meshes, std::uint64_t most_pairs) {
   Soup surveyed{positions, triangles, {}}, blocking{positions, triangles, {}};
   for (std::size_t m = 0; m < ranges.size(); ++m) {
     std::vector<std::uint32_t>& chosen = (meshes[m].role == Role::surveyed ? surveyed : blocking).chosen;

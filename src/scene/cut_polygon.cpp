@@ -161,7 +161,8 @@ class Cut {
   }
 
   static void spend(std::atomic<std::int64_t>& left, std::size_t amount) {
-    if (left.fetch_sub(static_cast<std::int64_t>(amount), std::memory_order_relaxed) < static_cast<std::int64_t>(amount))
+    if (left.fetch_sub(static_cast<std::int64_t>(amount), std::memory_order_relaxed) <
+        static_cast<std::int64_t>(amount))
       throw Error(Errc::out_of_memory,
                   "surveyed surfaces lie in one plane with blocking ones and cut these into too many parts; leave "
                   "either of them out");
@@ -175,8 +176,8 @@ class Cut {
 
 }  // namespace
 
-std::vector<ConvexPolygon> cut_away(const ConvexPolygon& polygon, const std::vector<ConvexPolygon>& holes,
-                                    double slack, CutAllowance& allowance) {
+std::vector<ConvexPolygon> cut_away(const ConvexPolygon& polygon, const std::vector<ConvexPolygon>& holes, double slack,
+                                    CutAllowance& allowance) {
   return Cut(holes, slack, allowance).from(polygon);
 }
 

@@ -186,13 +186,13 @@ class Loader {
     }
     const double vertex = kVertex + (normals ? sizeof(Float3) : 0) + (texcoords ? sizeof(Float2) : 0) +
                           (colours ? sizeof(std::uint32_t) : 0);
-    const bool both = roles[static_cast<std::size_t>(Role::surveyed)] && roles[static_cast<std::size_t>(Role::blocking)];
+    const bool both =
+        roles[static_cast<std::size_t>(Role::surveyed)] && roles[static_cast<std::size_t>(Role::blocking)];
     const double bytes = vertex * vertices + (kTriangle + (both ? kCoplanar : 0)) * triangles +
                          kSearchVertex * search_vertices + kSearchTriangle * search_triangles;
     const auto whole = [](double value) { return static_cast<std::uint64_t>(std::min(value, 1e18)); };
-    const std::string what =
-        number(whole(triangles + search_triangles)) + " triangles on " + number(whole(vertices + search_vertices)) +
-        " vertices, instances counted,";
+    const std::string what = number(whole(triangles + search_triangles)) + " triangles on " +
+                             number(whole(vertices + search_vertices)) + " vertices, instances counted,";
     budget_.keep(whole(bytes), what);
     budget_.require(kTriangleRead * largest, what);
     raw_.positions.reserve(whole(vertices));

@@ -44,7 +44,7 @@ class MaterialTable {
   LoadBudget& budget_;
   std::vector<std::string>& notes_;
   std::map<int, MaterialInfo> read_;
-  std::map<int, std::int32_t> read_images_;  // by glTF image; -1: cannot be read
+  std::map<int, std::int32_t> read_images_;                                         // by glTF image; -1: cannot be read
   std::map<std::pair<const std::uint8_t*, std::size_t>, std::int32_t> read_bytes_;  // those of buffer views, likewise
 };
 
