@@ -345,6 +345,7 @@ LoadedSite open_site(CLI::App& command, SiteOptions& options) {
     options.roles.scene_index = parse_count(*options.scene_index, "--scene-index", 0, 0xFFFFFFFF);
   if (options.diffuse) options.roles.default_diffuse = *options.diffuse;
 
+  options.roles.max_memory_bytes = options.memory;
   Scene scene = Scene::load(options.scene, options.roles);
   for (const auto& note : scene.notes()) spdlog::info("{}: {}", options.scene, note);
   const bool own_preset = options.scanner.has_value(), own_noise = options.noise.has_value(),
