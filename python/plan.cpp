@@ -73,7 +73,6 @@ std::shared_ptr<Plan> plan_survey(GuardedSimulator& guarded, const SearchArea& a
   const PlanConfig config = options.read(given);
   LongCall call(std::move(progress));
   PlanResult result = call.run([&] {
-    const Busy busy(guarded.mutex);
     return plan(guarded.simulator, area, clash, problem, config,
                 {.report = [&](const PlanProgress& now) { call.report([&] { return Watched(now); }); },
                  .stop = call.stop(),
