@@ -663,16 +663,24 @@ class MeasuredNetwork:
     @property
     def surroundings(self) -> Optional[Evaluation]: ...
 
+class Scale:
+    @property
+    def best(self) -> float: ...
+    @property
+    def worst(self) -> float: ...
+
+def minimise(best: float, worst: float) -> Scale: ...
+def maximise(best: float, worst: float) -> Scale: ...
+
 class Objective:
     def __init__(
         self,
         name: str,
         value: Callable[[MeasuredNetwork], float],
+        scale: Scale,
         *,
         label: str = "",
         unit: str = "",
-        best: float = 1.0,
-        worst: float = 0.0,
         counts: bool = True,
         pairs: bool = False,
         visibility: bool = False,
@@ -689,9 +697,7 @@ class Objective:
     @property
     def unit(self) -> str: ...
     @property
-    def best(self) -> float: ...
-    @property
-    def worst(self) -> float: ...
+    def scale(self) -> Scale: ...
 
 class Requirement:
     def __init__(self, objective: Objective, bound: Literal[">=", "<="], limit: float) -> None: ...

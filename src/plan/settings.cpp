@@ -11,8 +11,8 @@ nlohmann::ordered_json to_json(const Objective& objective) {
   return {{"name", objective.name},
           {"label", objective.label},
           {"unit", objective.unit},
-          {"best", objective.best},
-          {"worst", objective.worst},
+          {"best", objective.scale.best},
+          {"worst", objective.scale.worst},
           {"by_alpha", objective.by_alpha},
           {"parameters", objective.parameters}};
 }

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "plan/choose_optimiser.hpp"
 #include "plan/measures.hpp"
@@ -85,8 +86,16 @@ TEST(Measures, AreToldOnceByName) {
   EXPECT_NE(refusal([&] { measures_of(problem); }).find("two objectives are named coverage"), std::string::npos);
   problem.objectives.back().name = "My own";
   EXPECT_NE(refusal([&] { measures_of(problem); }).find("not \"My own\""), std::string::npos);
-  problem.objectives.back().name = "own", problem.objectives.back().value = nullptr;
+  const auto value = std::exchange(problem.objectives.back().value, nullptr);
+  problem.objectives.back().name = "own";
   EXPECT_NE(refusal([&] { measures_of(problem); }).find("own has no value"), std::string::npos);
+  // Metres, say, must not be maximised because nobody said otherwise.
+  problem.objectives.back() = {.name = "walk", .unit = "m", .value = value};
+  EXPECT_NE(
+      refusal([&] { measures_of(problem); }).find("the objective walk has no scale; give it minimise(best, worst)"),
+      std::string::npos);
+  problem.objectives.back().scale = minimise(0, 100);
+  EXPECT_EQ(measures_of(problem).all.back().name, "overlap");
 }
 
 TEST(ChooseOptimiser, RefusesWhatCannotBe) {
