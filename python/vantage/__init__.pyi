@@ -91,9 +91,13 @@ class SceneBuilder:
         role: Optional[Role] = None,
         diffuse: float = 0.5,
         weight: int = 1,
-        colour: Sequence[float] = (1, 1, 1, 1),
+        door: bool = False,
+        station_area: bool = False,
+        detail_m: float = 0.0,
+        accuracy_m: float = 0.0,
+        colour: Sequence[float] = [1, 1, 1, 1],
         translation: Sequence[float] = (0, 0, 0),
-        rotation: Sequence[float] = (0, 0, 0, 1),
+        rotation: Sequence[float] = [0, 0, 0, 1],
     ) -> int: ...
     def replace(
         self,
@@ -105,9 +109,13 @@ class SceneBuilder:
         role: Optional[Role] = None,
         diffuse: float = 0.5,
         weight: int = 1,
-        colour: Sequence[float] = (1, 1, 1, 1),
+        door: bool = False,
+        station_area: bool = False,
+        detail_m: float = 0.0,
+        accuracy_m: float = 0.0,
+        colour: Sequence[float] = [1, 1, 1, 1],
         translation: Sequence[float] = (0, 0, 0),
-        rotation: Sequence[float] = (0, 0, 0, 1),
+        rotation: Sequence[float] = [0, 0, 0, 1],
     ) -> None: ...
     def move(
         self, mesh: int, translation: Sequence[float] = (0, 0, 0), rotation: Sequence[float] = (0, 0, 0, 1)
