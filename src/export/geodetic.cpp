@@ -30,8 +30,6 @@ Context make_context() {
 
 }  // namespace
 
-bool has_projections() noexcept { return true; }
-
 std::string epsg_text(int code) {
   const Context context = make_context();
   const Operation system(
@@ -44,7 +42,7 @@ std::string epsg_text(int code) {
 std::vector<GeodeticPoint> to_wgs84(const std::string& crs, std::span<const Vec3> points) {
   if (crs.empty())
     throw Error(Errc::invalid_argument,
-                "longitude and latitude need the coordinate system of the site: give --crs, as EPSG:25832");
+                "longitude and latitude need the coordinate system of the site, as EPSG:25832");
   const Context context = make_context();
   const auto refuse = [&] {
     const int error = proj_context_errno(context.get());
