@@ -861,7 +861,6 @@ def plan(
     population: int = 0,
     iterations: int = 100,
     sigma0: float = 0.2,
-    algorithm: Literal["mo_cma_es", "nsga2", "random_search"] = "mo_cma_es",
     scheme: Literal["steady-state", "generational"] = "steady-state",
     batch: int = 0,
     sample_voxels: int = 0,

@@ -114,6 +114,28 @@ TEST(ChooseOptimiser, RefusesWhatCannotBe) {
   EXPECT_EQ(population_of(coverage_min(4, 8), {}), 100u);
 }
 
+TEST(ChooseOptimiser, TakesOneOfTheCallersOwnForSeveralObjectives) {
+  const PlacementOracle site = test::toy_site();
+  const Optimiser* made = nullptr;
+  PlanConfig config{.population = 6, .iterations = 3, .seed = 9};
+  config.optimiser = [&](std::size_t dimension, std::size_t objectives, const OptimiserConfig& asked) {
+    EXPECT_EQ(dimension, 8u);
+    EXPECT_EQ(objectives, 2u);
+    EXPECT_EQ(asked.population, 6u);
+    EXPECT_EQ(asked.max_iterations, 3u);
+    EXPECT_EQ(asked.seed, 9u);
+    auto own = std::make_unique<MoCmaEs>(dimension, objectives, asked);
+    made = own.get();
+    return own;
+  };
+  const DecisionSpace two(site, coverage_overlap_fix(4)), one(site, coverage_fix(4));
+  EXPECT_EQ(choose_optimiser(two, coverage_overlap_fix(4), config, 1).get(), made);
+  EXPECT_NE(made, nullptr);
+  made = nullptr;
+  EXPECT_EQ(choose_optimiser(one, coverage_fix(4), config, 1)->objectives(), 1u);
+  EXPECT_EQ(made, nullptr);
+}
+
 TEST(SurveyProblem, TheSurveyorsQuestionAsksForFewStations) {
   const SurveyProblem problem = fewest_stations(0.95, 0.2, 2, 9, 0);
   EXPECT_TRUE(problem.fewest);
