@@ -39,6 +39,7 @@ int main(int argc, char** argv) try {
   problem.name = "custom";
   problem.objectives.push_back({.name = "neighbour",
                                 .label = "What the loneliest scan shares with its neighbour",
+                                .scale = maximise(1, 0),
                                 .needs = {.pairs = true},
                                 .value = loneliest});
   problem.requirements = {make_requirement("coverage >= 0.5")};

@@ -52,10 +52,7 @@ void add_rows(py::module_& m) {
       [](GuardedSimulator& self, const std::vector<PlacedStation>& stations, std::uint64_t sample_voxels,
          py::object progress) {
         LongCall call(std::move(progress));
-        return call.run([&] {
-          const Busy busy(self.mutex);
-          return capture_rows(self.simulator, stations, sample_voxels, call.progress());
-        });
+        return call.run([&] { return capture_rows(self.simulator, stations, sample_voxels, call.progress()); });
       },
       py::arg("simulator"), py::arg("stations"), py::kw_only(), py::arg("sample_voxels") = 20'000,
       py::arg("progress") = py::none(), "A row for each station; those that are not 'ok' have empty ones.");
@@ -86,10 +83,7 @@ void add_finding(py::module_& m) {
                 const py::kwargs& given) {
         const CandidateConfig config = options.read(given);
         LongCall call(std::move(progress));
-        return call.run([&] {
-          const Busy busy(self.mutex);
-          return find_candidates(self.simulator, area, clash, config, call.progress());
-        });
+        return call.run([&] { return find_candidates(self.simulator, area, clash, config, call.progress()); });
       },
       py::arg("simulator"), py::arg("area"), py::arg("clash"), py::kw_only(), py::arg("progress") = py::none(),
       ("Allowed positions at the scanner's height, spread evenly, doubled in number until what all of them capture\n"
@@ -168,10 +162,8 @@ void add_bounds(py::module_& m) {
       [](GuardedSimulator& self, const std::vector<PlacedStation>& stations, double least, std::uint64_t sample_voxels,
          py::object progress) {
         LongCall call(std::move(progress));
-        return call.run([&] {
-          const Busy busy(self.mutex);
-          return links_between(self.surroundings(), stations, least, sample_voxels, call.progress());
-        });
+        return call.run(
+            [&] { return links_between(self.surroundings(), stations, least, sample_voxels, call.progress()); });
       },
       py::arg("simulator"), py::arg("stations"), py::arg("least"), py::kw_only(), py::arg("sample_voxels") = 10'000,
       py::arg("progress") = py::none(),
@@ -205,10 +197,7 @@ void add_greedy(py::module_& m) {
         GreedyConfig config = options.read(given);
         config.stations = stations;
         LongCall call(std::move(progress));
-        return call.run([&] {
-          const Busy busy(self.mutex);
-          return greedy_network(self.simulator, area, clash, config, call.progress());
-        });
+        return call.run([&] { return greedy_network(self.simulator, area, clash, config, call.progress()); });
       },
       py::arg("simulator"), py::arg("area"), py::arg("clash"), py::arg("stations"), py::kw_only(),
       py::arg("progress") = py::none(),
@@ -238,10 +227,7 @@ void add_exact(py::module_& m) {
         ExactConfig config = options.read(given);
         config.stations = stations;
         LongCall call(std::move(progress));
-        return call.run([&] {
-          const Busy busy(self.mutex);
-          return exact_network(self.simulator, area, clash, config, call.progress());
-        });
+        return call.run([&] { return exact_network(self.simulator, area, clash, config, call.progress()); });
       },
       py::arg("simulator"), py::arg("area"), py::arg("clash"), py::arg("stations"), py::kw_only(),
       py::arg("progress") = py::none(),

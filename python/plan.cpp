@@ -47,7 +47,6 @@ Options<PlanConfig> plan_options() {
            "0: 10 with one objective, 20 where the number is searched, else 100.")
       .add("iterations", &PlanConfig::iterations, "Of `population` evaluations each.")
       .add("sigma0", &PlanConfig::sigma0, "Initial step, as a share of the range.")
-      .add("algorithm", &PlanConfig::algorithm, "'mo_cma_es', 'nsga2' or 'random_search', for several objectives.")
       .add("scheme", &PlanConfig::scheme, "'steady-state' or 'generational'.")
       .add("batch", &PlanConfig::batch, "Offspring at once in the steady state; 0: chosen by the engine.")
       .add("sample_voxels", &PlanConfig::sample_voxels, "0: exact search; else sampled with so many voxels.")
@@ -73,7 +72,6 @@ std::shared_ptr<Plan> plan_survey(GuardedSimulator& guarded, const SearchArea& a
   const PlanConfig config = options.read(given);
   LongCall call(std::move(progress));
   PlanResult result = call.run([&] {
-    const Busy busy(guarded.mutex);
     return plan(guarded.simulator, area, clash, problem, config,
                 {.report = [&](const PlanProgress& now) { call.report([&] { return Watched(now); }); },
                  .stop = call.stop(),

@@ -40,7 +40,6 @@ Evaluation evaluate(GuardedSimulator& self, const py::object& stations, bool ove
   const bool by_all = registration && registration->surfaces == RegistrationSurfaces::all;
   LongCall call(std::move(progress));
   made.counts = call.run([&] {
-    const Busy busy(self.mutex);
     NetworkCounts counts = self.simulator.evaluate(network, options, call.progress(0, by_all ? 0.5 : 1));
     if (by_all && !counts.cancelled) {
       made.surroundings =
@@ -62,7 +61,6 @@ std::vector<Evaluation> evaluate_sampled(GuardedSimulator& self, const py::seque
   const bool by_all = registration && registration->surfaces == RegistrationSurfaces::all;
   LongCall call(std::move(progress));
   return call.run([&] {
-    const Busy busy(self.mutex);
     std::vector<NetworkCounts> counts =
                                    self.simulator.evaluate_sampled(all, options, call.progress(0, by_all ? 0.5 : 1)),
                                around;
@@ -129,9 +127,9 @@ void add_simulators(py::module_& m) {
   py::class_<GuardedSimulator>(
       m, "Simulator",
       ("Simulates a scanner in a scene, or several, of which each station has one (`StationSetup`). Other Python "
-       "threads run while it traces; a simulator itself serves one call "
-       "at\n"
-       "a time, and a second raises Error. Same inputs, seed and engine: same result, bit for bit.\n\n"
+       "threads run while it traces; calls from several of them are done one after another, and a callback that calls "
+       "the\n"
+       "simulator that called it gets an Error. Same inputs, seed and engine: same result, bit for bit.\n\n"
        "`progress` is called, where it is given, with the share done in [0, 1]; where it returns False the call ends\n"
        "early and its result says `cancelled`. Ctrl-C ends a call too, by KeyboardInterrupt." +
        options.doc())

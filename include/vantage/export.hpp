@@ -22,9 +22,8 @@
 namespace vantage {
 
 /// Well-known text (version 1, OGC 01-009, which LAS 1.4 asks for) of the coordinate system that a scene's survey frame
-/// stands in. `text`: "EPSG:25832" and the like (UTM zones on WGS 84, ETRS89, NAD83, GDA94 and GDA2020; with PROJ any),
-/// the name of a .prj or .wkt file, or such a text. Throws Error: io, invalid_argument (a code that is not known,
-/// angles, a unit other than metres, version 2).
+/// stands in. `text`: "EPSG:25832" and the like, the name of a .prj or .wkt file, or such a text. Throws Error: io,
+/// invalid_argument (a code that is not known, angles, a unit other than metres, version 2).
 std::string coordinate_system(const std::string& text);
 
 /// What a file that keeps stations apart (E57) says of one.
@@ -129,7 +128,7 @@ std::vector<std::filesystem::path> draw_plan_view(const std::filesystem::path& f
 /// `answer()` stations.csv, overlap.csv (where it is confirmed), coverage.ply (where `field`, its voxel field,
 /// is given), and the pictures front.png, hypervolume.png, history.png (with several objectives), plan.png (each also
 /// as .svg), of several floors also plan-level-1.png and so on; and for the crew stations.dxf, and where `crs`, the
-/// `coordinate_system()` of the survey frame, is given and this build has PROJ stations.geojson and stations.kml. Where
+/// `coordinate_system()` of the survey frame, is given stations.geojson and stations.kml. Where
 /// the registration error is known, plan.png has its ellipses, and with `field` there are registration.ply, .png and
 /// .svg. Makes the folder where there is none. Returns the index of the chosen entry.
 std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& result, const Simulator& simulator,

@@ -89,7 +89,9 @@ struct PlanConfig {
   /// traces about twice as many stations as looking at what can be seen did.
   std::size_t iterations = 100;
   double sigma0 = 0.2;
-  Algorithm algorithm = Algorithm::mo_cma_es;  ///< Of problems with several objectives.
+  /// Makes the optimiser of problems with several objectives; empty: MO-CMA-ES. A checkpoint is resumed only with the
+  /// same.
+  OptimiserMaker optimiser = {};
   MoCmaEsConfig::Scheme scheme = MoCmaEsConfig::Scheme::steady_state;
   std::size_t batch = 0;            ///< Offspring at once in the steady state; 0: chosen by the engine.
   std::uint64_t sample_voxels = 0;  ///< 0: exact search; else sampled with so many voxels.
@@ -116,7 +118,8 @@ struct PlanConfig {
   bool resume = false;
 };
 
-/// All but where the checkpoint is and how it is used, which no result depends on.
+/// All but an optimiser of the caller's own, and where the checkpoint is and how it is used, which no result depends
+/// on.
 Settings settings(const PlanConfig& config);
 
 /// What became known of one measure of a network.

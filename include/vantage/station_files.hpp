@@ -20,16 +20,13 @@ struct NamedStations {
   std::span<const std::string> names;  ///< As `station_names()` gives them.
 };
 
-/// Whether this build can turn the survey frame into longitude and latitude: it was made with PROJ.
-bool has_projections() noexcept;
-
 /// A point of the survey frame on WGS 84, in degrees, and its height: z as it is.
 struct GeodeticPoint {
   double longitude_deg = 0, latitude_deg = 0, height_m = 0;
 };
 /// `points` of the frame whose well-known text or "EPSG:N" is `crs` on WGS 84 (EPSG:4326), by PROJ's best operation
-/// that needs no network. Throws Error invalid_argument: no PROJ in this build, a `crs` that is empty or unknown to
-/// PROJ, a point that it has no place for.
+/// that needs no network. Throws Error invalid_argument: a `crs` that is empty or unknown to PROJ, a point that it has
+/// no place for.
 std::vector<GeodeticPoint> to_wgs84(const std::string& crs, std::span<const Vec3> points);
 
 /// GeoJSON (RFC 7946): a FeatureCollection with a Point a station where its tripod stands, [longitude, latitude, z]
@@ -52,7 +49,7 @@ void write_stations_dxf(const std::filesystem::path& file, const NamedStations& 
 void write_stations(const std::filesystem::path& file, const NamedStations& stations, const OverlapMatrix& overlap,
                     double link_overlap, const SearchArea& area, const std::string& crs);
 
-/// stations.dxf, and where `crs` is given and this build has PROJ, stations.geojson and stations.kml.
+/// stations.dxf, and where `crs` is given stations.geojson and stations.kml.
 void write_station_files(const std::filesystem::path& folder, const NamedStations& stations,
                          const OverlapMatrix& overlap, double link_overlap, const SearchArea& area,
                          const std::string& crs);

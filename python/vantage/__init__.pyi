@@ -91,9 +91,13 @@ class SceneBuilder:
         role: Optional[Role] = None,
         diffuse: float = 0.5,
         weight: int = 1,
-        colour: Sequence[float] = (1, 1, 1, 1),
+        door: bool = False,
+        station_area: bool = False,
+        detail_m: float = 0.0,
+        accuracy_m: float = 0.0,
+        colour: Sequence[float] = [1, 1, 1, 1],
         translation: Sequence[float] = (0, 0, 0),
-        rotation: Sequence[float] = (0, 0, 0, 1),
+        rotation: Sequence[float] = [0, 0, 0, 1],
     ) -> int: ...
     def replace(
         self,
@@ -105,9 +109,13 @@ class SceneBuilder:
         role: Optional[Role] = None,
         diffuse: float = 0.5,
         weight: int = 1,
-        colour: Sequence[float] = (1, 1, 1, 1),
+        door: bool = False,
+        station_area: bool = False,
+        detail_m: float = 0.0,
+        accuracy_m: float = 0.0,
+        colour: Sequence[float] = [1, 1, 1, 1],
         translation: Sequence[float] = (0, 0, 0),
-        rotation: Sequence[float] = (0, 0, 0, 1),
+        rotation: Sequence[float] = [0, 0, 0, 1],
     ) -> None: ...
     def move(
         self, mesh: int, translation: Sequence[float] = (0, 0, 0), rotation: Sequence[float] = (0, 0, 0, 1)
@@ -663,16 +671,24 @@ class MeasuredNetwork:
     @property
     def surroundings(self) -> Optional[Evaluation]: ...
 
+class Scale:
+    @property
+    def best(self) -> float: ...
+    @property
+    def worst(self) -> float: ...
+
+def minimise(best: float, worst: float) -> Scale: ...
+def maximise(best: float, worst: float) -> Scale: ...
+
 class Objective:
     def __init__(
         self,
         name: str,
         value: Callable[[MeasuredNetwork], float],
+        scale: Scale,
         *,
         label: str = "",
         unit: str = "",
-        best: float = 1.0,
-        worst: float = 0.0,
         counts: bool = True,
         pairs: bool = False,
         visibility: bool = False,
@@ -689,9 +705,7 @@ class Objective:
     @property
     def unit(self) -> str: ...
     @property
-    def best(self) -> float: ...
-    @property
-    def worst(self) -> float: ...
+    def scale(self) -> Scale: ...
 
 class Requirement:
     def __init__(self, objective: Objective, bound: Literal[">=", "<="], limit: float) -> None: ...
@@ -847,7 +861,6 @@ def plan(
     population: int = 0,
     iterations: int = 100,
     sigma0: float = 0.2,
-    algorithm: Literal["mo_cma_es", "nsga2", "random_search"] = "mo_cma_es",
     scheme: Literal["steady-state", "generational"] = "steady-state",
     batch: int = 0,
     sample_voxels: int = 0,

@@ -49,16 +49,6 @@ struct PlanOptions {
   void add(CLI::App& command) {
     site.add(command);
     problem.add(command);
-    add_value(command, "--algorithm", "NAME",
-              "Optimiser of several objectives: mo_cma_es, or a baseline: nsga2, random_search",
-              [this](const std::string& text, const std::string& what) {
-                try {
-                  config.algorithm = algorithm_from_string(text);
-                } catch (const Error& error) {
-                  throw Error(error.code(), what + ": " + error.what());
-                }
-              })
-        ->group("Search");
     add_size(command, "--population", "M",
              "Networks per iteration; with one objective 10, or 20 where it searches the number; else 100",
              config.population, 2, 100'000);
@@ -452,7 +442,7 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   tell_engine(simulator);
   tell_grid(simulator);
   if (!options.exact) {
-    const bool front = problem.objectives.size() > 1 && !problem.fewest && config.algorithm == Algorithm::mo_cma_es;
+    const bool front = problem.objectives.size() > 1 && !problem.fewest;
     if (front && !options.sample && !options.sample_from && config.renew_iterations == 0)
       config.renew_iterations = iterations_of_a_sample;
     config.sample_voxels = options.sample

@@ -23,7 +23,7 @@ void write_station_files(const std::filesystem::path& folder, const NamedStation
                          const OverlapMatrix& overlap, double link_overlap, const SearchArea& area,
                          const std::string& crs) {
   write_stations_dxf(folder / "stations.dxf", stations, overlap, link_overlap, area);
-  if (crs.empty() || !has_projections()) return;
+  if (crs.empty()) return;
   write_stations_geojson(folder / "stations.geojson", stations, crs);
   write_stations_kml(folder / "stations.kml", stations, crs);
 }

@@ -148,7 +148,7 @@ Estimate coverage_estimate(const NetworkCounts& counts, double goal_density, std
 
 Estimate estimate(const Objective& objective, const MeasuredNetwork& measured) {
   Estimate estimate{objective.value(measured), 0};
-  const double scale = std::abs(objective.best - objective.worst);
+  const double scale = objective.scale.width();
   const NetworkCounts& counts = measured.counts;
   double variance = 0;
   const auto add = [&](double error) { variance += error * error; };

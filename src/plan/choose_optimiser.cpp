@@ -55,14 +55,15 @@ std::unique_ptr<Optimiser> choose_optimiser(const DecisionSpace& space, const Su
       chosen.start = {start};
     else if (!config.start.empty())
       chosen.start = {space.encode(config.start)};
-    return make_optimiser(Algorithm::cma_es, space.dimension(), 1, chosen);
+    return std::make_unique<CmaEs>(space.dimension(), chosen);
   }
   if (!start.empty())
     chosen.start = {start};
   else if (!config.start.empty())
     chosen.start = space.encode_each(config.start);
   if (chosen.start.size() > chosen.population) chosen.start.resize(chosen.population);
-  return make_optimiser(config.algorithm, space.dimension(), problem.objectives.size(), chosen);
+  if (config.optimiser) return config.optimiser(space.dimension(), problem.objectives.size(), chosen);
+  return std::make_unique<MoCmaEs>(space.dimension(), problem.objectives.size(), chosen);
 }
 
 }  // namespace vantage

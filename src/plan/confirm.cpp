@@ -67,7 +67,7 @@ std::vector<bool> beaten(std::span<const PlanEntry> entries, const SurveyProblem
   for (std::size_t k = 0; k < entries.size(); ++k) {
     for (std::size_t j = 0; j < m; ++j) {
       const Objective& objective = problem.objectives[j];
-      const double scale = std::abs(objective.best - objective.worst);
+      const double scale = objective.scale.width();
       if (!objective.by_alpha && scale > 0)
         errors[k * m + j] = entries[k].values.at(objective.name).standard_error / scale;
     }

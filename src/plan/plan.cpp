@@ -25,8 +25,8 @@ SurveyProblem settled(SurveyProblem problem) {
   const auto settle = [&](Objective& objective) {
     if (objective.name == "capture") objective = make_objective("capture", problem.settings());
     if (!objective.by_alpha) return;
-    objective.best = static_cast<double>(problem.kept.size() + problem.stations_min);
-    objective.worst = static_cast<double>(problem.kept.size() + problem.stations_max);
+    objective.scale = {static_cast<double>(problem.kept.size() + problem.stations_min),
+                       static_cast<double>(problem.kept.size() + problem.stations_max)};
   };
   for (Objective& objective : problem.objectives) settle(objective);
   if (problem.visible)

@@ -328,8 +328,9 @@ class FewestPlan {
   SurveyProblem narrowed(std::size_t stations) const {
     SurveyProblem narrowed = problem_;
     narrowed.stations_min = narrowed.stations_max = stations;
+    const auto all = static_cast<double>(problem_.kept.size() + stations);
     for (Objective& objective : narrowed.objectives)
-      if (objective.by_alpha) objective.best = objective.worst = static_cast<double>(problem_.kept.size() + stations);
+      if (objective.by_alpha) objective.scale = minimise(all, all);
     return narrowed;
   }
 

@@ -254,7 +254,7 @@ class Search {
       for (std::size_t k = 0; k < networks.size(); ++k) {
         for (const Estimate& estimate : (*found)[k]) values[k].push_back(estimate.value);
         for (std::size_t j = 0; j < m; ++j) {
-          const double scale = std::abs(problem.objectives[j].best - problem.objectives[j].worst);
+          const double scale = problem.objectives[j].scale.width();
           if (scale > 0) errors += (*found)[k][j].standard_error / scale;
         }
       }

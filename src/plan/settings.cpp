@@ -11,8 +11,8 @@ nlohmann::ordered_json to_json(const Objective& objective) {
   return {{"name", objective.name},
           {"label", objective.label},
           {"unit", objective.unit},
-          {"best", objective.best},
-          {"worst", objective.worst},
+          {"best", objective.scale.best},
+          {"worst", objective.scale.worst},
           {"by_alpha", objective.by_alpha},
           {"parameters", objective.parameters}};
 }
@@ -76,7 +76,6 @@ Settings settings(const PlanConfig& config) {
       .add("population", config.population, {unless(config.population == 0, "population")})
       .add("iterations", config.iterations, {unless(config.iterations == 0, "iterations"), false})
       .add("sigma0", config.sigma0, {"sigma"})
-      .add("algorithm", to_string(config.algorithm), {"algorithm"})
       .add("scheme", generational ? "generational" : "steady-state", {"scheme"})
       .add("batch", config.batch, {unless(config.batch == 0, "batch")})
       .add("sample_voxels", config.sample_voxels, {unless(config.sample_voxels == 0, "sample")})

@@ -13,8 +13,12 @@ using nlohmann::ordered_json;
 ordered_json known(double value) { return value == value ? ordered_json(value) : ordered_json(); }
 
 ordered_json measure_json(const Objective& measure) {
-  return {{"name", measure.name},        {"label", measure.label},        {"unit", measure.unit},
-          {"best", known(measure.best)}, {"worst", known(measure.worst)}, {"count", measure.by_alpha}};
+  return {{"name", measure.name},
+          {"label", measure.label},
+          {"unit", measure.unit},
+          {"best", known(measure.scale.best)},
+          {"worst", known(measure.scale.worst)},
+          {"count", measure.by_alpha}};
 }
 
 ordered_json stations_json(const ReportNetwork& network) {

@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
+import concurrent.futures
 import sys
 import threading
 import time
@@ -181,7 +182,14 @@ class LongCalls(unittest.TestCase):
             thread.join()
         self.assertGreater(after, before)
 
-    def test_a_simulator_serves_one_call_at_a_time(self):
+    def test_a_simulator_serves_threads_one_after_another(self):
+        simulator = four_walls()
+        alone = [simulator.evaluate([head]).coverage for head in HEADS]
+        with concurrent.futures.ThreadPoolExecutor(4) as threads:
+            together = list(threads.map(lambda head: simulator.evaluate([head]).coverage, HEADS * 4))
+        self.assertEqual(together, alone * 4)
+
+    def test_a_callback_cannot_call_its_own_simulator(self):
         simulator = four_walls()
         raised = []
 
@@ -192,7 +200,7 @@ class LongCalls(unittest.TestCase):
                 raised.append(error)
 
         self.assertFalse(simulator.evaluate(HEADS, progress=again).cancelled)
-        self.assertRegex(str(raised[0]), "in use by another call: make one for each thread")
+        self.assertRegex(str(raised[0]), "a callback of a simulator's call")
 
 
 if __name__ == "__main__":

@@ -187,7 +187,13 @@ const std::vector<Change<PlanConfig>> kPlan{
     {"population", [](PlanConfig& c) { c.population = 7; }},
     {"iterations", [](PlanConfig& c) { c.iterations = 7; }, false},
     {"sigma0", [](PlanConfig& c) { c.sigma0 = 0.3; }},
-    {"algorithm", [](PlanConfig& c) { c.algorithm = Algorithm::nsga2; }},
+    {"optimiser",  // a saved state tells which it is of
+     [](PlanConfig& c) {
+       c.optimiser = [](std::size_t n, std::size_t m, const OptimiserConfig& o) {
+         return std::make_unique<MoCmaEs>(n, m, o);
+       };
+     },
+     false, false},
     {"scheme", [](PlanConfig& c) { c.scheme = MoCmaEsConfig::Scheme::generational; }},
     {"batch", [](PlanConfig& c) { c.batch = 3; }},
     {"sample_voxels", [](PlanConfig& c) { c.sample_voxels = 100; }},

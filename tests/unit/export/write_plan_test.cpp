@@ -222,8 +222,7 @@ TEST(Plan, SearchesForAnObjectiveOfTheCallersOwn) {
   problem.objectives.push_back({.name = "walk",
                                 .label = "Way between the stations",
                                 .unit = "m",
-                                .best = 0,
-                                .worst = 14,
+                                .scale = minimise(0, 14),
                                 .needs = {.counts = false},
                                 .value = [](const MeasuredNetwork& m) {
                                   const Vec3 way = m.stations[1].position - m.stations[0].position;

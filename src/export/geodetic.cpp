@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The survey frame on WGS 84 by PROJ (PROJ contributors: PROJ coordinate transformation software library, 2022).
+#include "export/geodetic.hpp"
+
 #include <proj.h>
 
 #include <cmath>
 #include <memory>
 
 #include "core/text.hpp"
-#include "export/geodetic.hpp"
 #include "vantage/error.hpp"
 #include "vantage/station_files.hpp"
 
@@ -30,8 +31,6 @@ Context make_context() {
 
 }  // namespace
 
-bool has_projections() noexcept { return true; }
-
 std::string epsg_text(int code) {
   const Context context = make_context();
   const Operation system(
@@ -43,8 +42,7 @@ std::string epsg_text(int code) {
 
 std::vector<GeodeticPoint> to_wgs84(const std::string& crs, std::span<const Vec3> points) {
   if (crs.empty())
-    throw Error(Errc::invalid_argument,
-                "longitude and latitude need the coordinate system of the site: give --crs, as EPSG:25832");
+    throw Error(Errc::invalid_argument, "longitude and latitude need the coordinate system of the site, as EPSG:25832");
   const Context context = make_context();
   const auto refuse = [&] {
     const int error = proj_context_errno(context.get());

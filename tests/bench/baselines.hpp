@@ -1,10 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// Baselines for MO-CMA-ES behind the same interface: NSGA-II and random search.
+// Baselines for the library's optimisers behind the same interface: NSGA-II and random search. Both need bounds.
 #pragma once
+
+#include <memory>
+#include <string>
 
 #include "optimise/mo_common.hpp"
 
-namespace vantage::optimise {
+namespace vantage::bench {
+
+enum class Algorithm { cma_es, mo_cma_es, nsga2, random_search };
+std::string to_string(Algorithm algorithm);
+Algorithm algorithm_from_string(const std::string& name);  // throws Error invalid_argument
+std::unique_ptr<Optimiser> make_optimiser(Algorithm algorithm, std::size_t dimension, std::size_t objectives,
+                                          const OptimiserConfig& config);
 
 class Baseline : public Optimiser {
  public:
@@ -18,7 +27,7 @@ class Baseline : public Optimiser {
   void tell(std::span<const double> values) final;
   void reassess(std::span<const double> values) final;
   StopReason stop_reason() const noexcept final { return common_.stop_reason(); }
-  std::vector<ParetoPoint> front() const final { return front_of(pointers(members_)); }
+  std::vector<ParetoPoint> front() const final { return optimise::front_of(optimise::pointers(members_)); }
   std::vector<ParetoPoint> population() const final;
   double hypervolume() const final { return common_.hypervolume(members_); }
   std::size_t evaluations() const noexcept final { return common_.evaluations; }
@@ -33,8 +42,8 @@ class Baseline : public Optimiser {
   virtual std::vector<char> choose(std::span<const double> fitness) const = 0;
   virtual void before_offspring() {}
 
-  MoCommon common_;
-  std::vector<Solution> members_;
+  optimise::MoCommon common_;
+  std::vector<optimise::Solution> members_;
 };
 
 // Deb, Pratap, Agarwal, Meyarivan: A Fast and Elitist Multiobjective Genetic Algorithm: NSGA-II, 2002.
@@ -62,12 +71,8 @@ class RandomSearch final : public Baseline {
  private:
   std::vector<double> make_point() override { return common_.random_point(); }
   std::vector<char> choose(std::span<const double> fitness) const override {
-    return select(fitness, common_.reference, common_.config.population);
+    return optimise::select(fitness, common_.reference, common_.config.population);
   }
 };
 
-// Crowding distance within each rank; the ends of a front are infinitely far from their neighbours.
-std::vector<double> crowding_distances(std::span<const double> fitness, std::size_t objectives,
-                                       std::span<const std::size_t> rank);
-
-}  // namespace vantage::optimise
+}  // namespace vantage::bench

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "optimise/baselines.hpp"
+#include "bench/baselines.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -10,8 +11,15 @@
 #include "optimise/variation.hpp"
 #include "vantage/error.hpp"
 
-namespace vantage::optimise {
+namespace vantage::bench {
+namespace {
 
+using optimise::MoCommon;
+using optimise::Solution;
+using optimise::StateReader;
+using optimise::StateWriter;
+
+// Crowding distance within each rank; the ends of a front are infinitely far from their neighbours.
 std::vector<double> crowding_distances(std::span<const double> fitness, std::size_t m,
                                        std::span<const std::size_t> rank) {
   const std::size_t k = rank.size();
@@ -33,6 +41,40 @@ std::vector<double> crowding_distances(std::span<const double> fitness, std::siz
     }
   }
   return distance;
+}
+
+constexpr std::array kAlgorithms{Algorithm::cma_es, Algorithm::mo_cma_es, Algorithm::nsga2, Algorithm::random_search};
+
+}  // namespace
+
+std::string to_string(Algorithm algorithm) {
+  switch (algorithm) {
+    case Algorithm::cma_es: return "cma_es";
+    case Algorithm::mo_cma_es: return "mo_cma_es";
+    case Algorithm::nsga2: return "nsga2";
+    case Algorithm::random_search: return "random_search";
+  }
+  return "unknown";
+}
+
+Algorithm algorithm_from_string(const std::string& name) {
+  for (const Algorithm algorithm : kAlgorithms)
+    if (name == to_string(algorithm)) return algorithm;
+  throw Error(Errc::invalid_argument,
+              "there is no optimiser \"" + name + "\"; take cma_es, mo_cma_es, nsga2 or random_search");
+}
+
+std::unique_ptr<Optimiser> make_optimiser(Algorithm algorithm, std::size_t dimension, std::size_t objectives,
+                                          const OptimiserConfig& config) {
+  switch (algorithm) {
+    case Algorithm::cma_es:
+      if (objectives != 1) throw Error(Errc::invalid_argument, "cma_es takes one objective");
+      return std::make_unique<CmaEs>(dimension, config);
+    case Algorithm::nsga2: return std::make_unique<Nsga2>(dimension, objectives, config);
+    case Algorithm::random_search: return std::make_unique<RandomSearch>(dimension, objectives, config);
+    case Algorithm::mo_cma_es: break;
+  }
+  return std::make_unique<MoCmaEs>(dimension, objectives, config);
 }
 
 Baseline::Baseline(std::string name, std::size_t dimension, std::size_t objectives, const OptimiserConfig& config)
@@ -70,7 +112,7 @@ void Baseline::tell(std::span<const double> values) {
   auto solutions = common_.take(values);
   std::move(solutions.begin(), solutions.end(), std::back_inserter(members_));
   if (members_.size() > common_.config.population) {
-    const auto keep = choose(fitness_of(members_));
+    const auto keep = choose(optimise::fitness_of(members_));
     std::size_t i = 0;
     std::erase_if(members_, [&](const Solution&) { return !keep[i++]; });
   }
@@ -111,8 +153,8 @@ void Baseline::load(std::istream& in) {
 }
 
 void Nsga2::before_offspring() {
-  const auto fitness = fitness_of(members_);
-  rank_ = ranks({fitness, common_.objectives});
+  const auto fitness = optimise::fitness_of(members_);
+  rank_ = optimise::ranks({fitness, common_.objectives});
   crowding_ = crowding_distances(fitness, common_.objectives, rank_);
 }
 
@@ -129,13 +171,13 @@ std::vector<double> Nsga2::make_point() {
     return t;
   };
   const auto first = unit(members_[tournament()]), second = unit(members_[tournament()]);
-  auto child = make_child(first, second, {}, common_.random);
+  auto child = optimise::make_child(first, second, {}, common_.random);
   for (std::size_t i = 0; i < child.size(); ++i) child[i] = common_.box.from_unit(child[i], i);
   return child;
 }
 
 std::vector<char> Nsga2::choose(std::span<const double> fitness) const {
-  const auto rank = ranks({fitness, common_.objectives});
+  const auto rank = optimise::ranks({fitness, common_.objectives});
   const auto crowding = crowding_distances(fitness, common_.objectives, rank);
   std::vector<std::size_t> order(rank.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -147,4 +189,4 @@ std::vector<char> Nsga2::choose(std::span<const double> fitness) const {
   return keep;
 }
 
-}  // namespace vantage::optimise
+}  // namespace vantage::bench
