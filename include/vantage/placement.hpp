@@ -21,8 +21,13 @@ namespace vantage {
 /// A region seen from above, survey frame: what an odd number of its rings goes around.
 struct PlanRegion {
   std::vector<std::vector<std::array<double, 2>>> rings;  ///< Corners (x, y); closed whether or not the first returns.
+  std::string file = {};                                  ///< Where it was read from, if it was.
   bool holds(double x, double y) const;
 };
+
+/// A region in survey coordinates: the Polygons and MultiPolygons of a GeoJSON file (.json, .geojson), or the corners
+/// of one polygon, x,y a line, of any other. Throws Error: io, malformed_file.
+PlanRegion read_region(const std::string& file);
 
 /// How a search area is derived where the scene marks none: upward, gentle and clear surfaces that a person with a
 /// tripod gets to from where one enters.

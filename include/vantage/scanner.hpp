@@ -65,6 +65,10 @@ Settings settings(const Scanner& scanner);
 /// Table 1 of the method: Leica RTC360, single measurement.
 NoiseTable rtc360_noise();
 
+/// Range noise by "off", a scanner's name, or a CSV file with a header `reflectivity,<distance in metres>,…` and a line
+/// of standard deviations in metres for each reflectivity. Throws Error: io, malformed_file, invalid_argument.
+NoiseTable load_noise(const std::string& name);
+
 /// One scanner of the presets.
 struct ScannerPreset {
   std::string key;      ///< "rtc360"

@@ -112,7 +112,7 @@ PlanResult plan(Simulator& simulator, const SearchArea& area, const ClashChecker
     result.front = std::move(confirmed.entries), result.spared = confirmed.spared;
     drop_networks(result.front, problem);
     result.exact_hypervolume = judge_by_every_ray(result.front, problem, run.measures());
-    if (config.renew_iterations > 0) keep_undominated(result.front, problem, run.measures());
+    if (config.renew_iterations.value_or(0) > 0) keep_undominated(result.front, problem, run.measures());
     result.seconds = found.seconds + since(searched);
     result.trace_seconds = found.trace_seconds + run.evaluator().trace_seconds() - searched_trace;
   }
