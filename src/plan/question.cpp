@@ -208,8 +208,7 @@ PlanConfig settled(const PlanConfig& config, const SurveyProblem& problem, std::
 
 PlanResult plan(Site& site, const SurveyProblem& problem, const PlanConfig& config, const PlanWatch& watch) {
   Simulator& simulator = site.simulator();
-  return plan(simulator, site.area(), site.clash(), problem,
-              settled(config, problem, simulator.voxel_count(), site.simulator_config().seed), watch);
+  return plan(simulator, site.area(), site.clash(), problem, config, watch);
 }
 
 PlanResult plan(Site& site, const SurveyQuestion& question, const PlanConfig& config, const PlanWatch& watch) {
