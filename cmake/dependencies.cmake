@@ -34,16 +34,16 @@ elseif(VANTAGE_THREE_JS AND VANTAGE_ORBIT_JS AND meshoptimizer_FOUND AND ZLIB_FO
 elseif(VANTAGE_BUILD_CLI)
   message(STATUS "No report: libjs-three, libmeshoptimizer-dev or zlib1g-dev is not installed")
 endif()
-# The editor serves its page by cpp-httplib.
+# The editor serves its page by Boost.Beast: headers alone.
 option(VANTAGE_WITH_EDITOR "Build the editor where what it takes is installed" ON)
-pkg_check_modules(httplib QUIET IMPORTED_TARGET cpp-httplib)
+find_path(VANTAGE_BEAST_INCLUDE_DIR boost/beast/http.hpp)
 set(VANTAGE_HAVE_EDITOR FALSE)
 if(NOT VANTAGE_WITH_EDITOR)
   message(STATUS "No editor: VANTAGE_WITH_EDITOR is off")
-elseif(VANTAGE_HAVE_REPORT AND httplib_FOUND)
+elseif(VANTAGE_HAVE_REPORT AND VANTAGE_BEAST_INCLUDE_DIR)
   set(VANTAGE_HAVE_EDITOR TRUE)
 elseif(VANTAGE_BUILD_CLI)
-  message(STATUS "No editor: libcpp-httplib-dev is not installed, or what the report takes")
+  message(STATUS "No editor: libboost-dev is not installed, or what the report takes")
 endif()
 # Longitude and latitude of stations; without it those formats are refused.
 option(VANTAGE_WITH_PROJ "Use PROJ where it is installed" ON)

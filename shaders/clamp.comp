@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keeps the counts of all voxels from wrapping; run between dispatches where their rays could add up to 2^32.
+// Keeps the counts of all voxels from wrapping; runs between dispatches whose rays could add up to 2^32.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/references.glsl"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Counts one station's points in the surveyed voxels (equations 8 and 9): a thread a ray.
+// Counts one station's points in the surveyed voxels (equations 8 and 9): one thread per ray.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/parameters.glsl"
@@ -51,14 +51,14 @@ void main() {
         atomicAdd(push.counts.at[rank], 1u);
         if (with_masks) {
           const uint bit = 1u << (push.place & 31u);
-          // Reading first spares most of the atomics; a stale read only costs one.
+          // Reading first avoids most atomics; a stale read only costs one.
           if ((push.masks.at[rank] & bit) == 0u) atomicOr(push.masks.at[rank], bit);
         }
       }
     }
   }
   const uint points = subgroupAdd(is_point ? 1u : 0u), counted_points = subgroupAdd(counted ? 1u : 0u);
-  const uint first_word = 2u * station_counters * (push.place & 63u);  // its bit
+  const uint first_word = 2u * station_counters * (push.place & 63u);  // of its bit
   if (subgroupElect()) {
     if (points > 0u) add64(push.counters, first_word + 2u * counter_points, points);
     if (counted_points > 0u) add64(push.counters, first_word + 2u * counter_counted, counted_points);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reduces counts and masks of all voxels to the sums that coverage (equation 8) and overlap (equation 11) are made of.
-// Integers only, so the order does not matter.
+// Reduces counts and masks of all voxels to the sums behind coverage (equation 8) and overlap (equation 11). Integers
+// only, so the order does not matter.
 //
-// Masks of reduce_voxels voxels are turned into one bit string a station; pairs are then counted 32 voxels at a time.
+// Masks of reduce_voxels voxels are turned into one bit string per station; pairs are then counted 32 voxels at a time.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -12,12 +12,12 @@ layout(local_size_x = reduce_voxels) in;
 layout(push_constant, scalar) uniform Push { ReducePush push; };
 
 const uint words = reduce_voxels / 32u;
-// A word of padding after each 32, so that equal places of the words lie in different banks.
+// One word of padding after each 32, so that equal positions of the words lie in different banks.
 shared uint low[reduce_voxels + words];
 shared uint high[reduce_voxels + words];
 shared uint seen[64 * words];
 shared uint any_seen[reduce_voxels];  // per subgroup
-// Weight of saturated voxels, and edges; then sums of 64 bits, low word first.
+// Weight of saturated voxels, and edges; then 64-bit sums, low word first.
 shared uint flags[2];
 shared uint sums[6];
 
@@ -43,7 +43,7 @@ void add(uint at, uint64_t value) {
   if (high > 0u) atomicAdd(sums[at + 1u], high);
 }
 
-// Adds it to the totals.
+// Adds a workgroup's sum to the totals.
 void publish(uint at, uint sum) {
   add64(push.totals, at, sums[sum]);
   if (sums[sum + 1u] > 0u) atomicAdd(push.totals.at[at + 1u], sums[sum + 1u]);
@@ -61,7 +61,7 @@ void main() {
   const bool weighted = uint64_t(push.weights) != 0ul;
   uint saturated = 0u, edges = 0u;
   uint64_t partial = 0ul, squares = 0ul, edge_points = 0ul;
-  // Of pair thread + reduce_voxels · k; 64 stations have 2016 pairs.
+  // Counts of pair thread + reduce_voxels · k; 64 stations have 2016 pairs.
   uint shared_counts[8];
   uint pair_stations[8];
   for (uint k = 0u; k < 8u; ++k) {
@@ -74,22 +74,22 @@ void main() {
   if (thread < 2u) flags[thread] = 0u;
   if (thread < 6u) sums[thread] = 0u;
 
-  // All loads first, so that they wait together.
+  // All loads come first, so that they are in flight together.
   uint counts_of[reduce_rounds];
-  uint some = 0u;  // a bit a round
+  uint some = 0u;  // one bit per round
   [[unroll]] for (uint round = 0u; round < reduce_rounds; ++round) {
     const uint voxel = group + push.groups * ((gl_WorkGroupID.x * reduce_rounds + round) * reduce_voxels + thread);
     counts_of[round] = voxel < push.voxel_count ? push.counts.at[counts + voxel] : 0u;
     if (counts_of[round] > 0u) some |= 1u << round;
   }
-  // Long stretches of voxels are often out of sight, and where there is no point there is no station.
+  // Long stretches of voxels are often unseen, and a voxel without points has no stations.
   const uint some_of_subgroup = subgroupOr(some);
   if (subgroupElect()) any_seen[gl_SubgroupID] = some_of_subgroup;
   barrier();
   uint some_of_all = 0u;
   for (uint g = 0u; g < gl_NumSubgroups; ++g) some_of_all |= any_seen[g];
 
-  // The same rounds for all threads, so the barriers are met by all.
+  // All threads do the same rounds, so all reach the barriers.
   [[dont_unroll]] for (uint round = 0u; round < reduce_rounds; ++round) {
     const uint voxel = group + push.groups * ((gl_WorkGroupID.x * reduce_rounds + round) * reduce_voxels + thread);
     const bool inside = voxel < push.voxel_count;

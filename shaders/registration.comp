@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reduces station masks to the sums that the registration error is made of, as src/trace/registration_sums.cpp does:
-// the same roundings in the same order up to whole numbers, which add up to the same in any.
+// Reduces station masks to the sums behind the registration error, as src/trace/registration_sums.cpp does: the same
+// roundings in the same order up to whole numbers, whose sum does not depend on the order.
 //
-// A workgroup looks at register_voxels voxels of one network at a time. First its threads weigh each station at each
-// voxel; then each thread adds up one pair of stations over them, in its own registers.
+// A workgroup processes register_voxels voxels of one network at a time. First its threads compute the weight of each
+// station at each voxel; then each thread sums one pair of stations over them, in its own registers.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/references.glsl"
@@ -22,13 +22,13 @@ layout(push_constant, scalar) uniform Push { RegisterPush push; };
 const uint stations_at_most = 64u;
 
 shared uint masks[2u * register_voxels];
-shared float weights[register_voxels * stations_at_most];  // 1/s²; below 0 where the plane is seen from behind
-shared float scales[2u * register_voxels];                 // units / Σ w of each side
+shared float weights[register_voxels * stations_at_most];  // 1/s²; below 0 if the plane is seen from behind
+shared float scales[2u * register_voxels];  // units / Σ w of each side
 shared int products[register_voxels * pair_sums];
-shared int surface[register_voxels * 4u];  // weight, place
+shared int surface[register_voxels * 4u];  // weight and place
 shared uint any_seen;
 
-// 1/s² of docs/method.md; 0 where the plane is seen too flat, or by too few points.
+// 1/s² of docs/method.md; 0 if the plane is seen too obliquely, or with too few points.
 float weight_of(RegistrationPatch plane, vec3 head) {
   precise float x = head.x - plane.point.x;
   precise float y = head.y - plane.point.y;
@@ -88,7 +88,7 @@ void main() {
   const uint first_pair = gl_WorkGroupID.y * register_pairs;
   if (first_pair >= pairs && gl_WorkGroupID.y > 0u) return;
   const uint pairs_here = min(pairs - first_pair, register_pairs);
-  // Where there are fewer pairs than threads, several share a pair's voxels.
+  // With fewer pairs than threads, several threads share a pair's voxels.
   const uint pair = pairs_here > 0u ? first_pair + thread % pairs_here : 0u;
   const uint pair_slices = pairs_here > 0u ? register_pairs / pairs_here : 0u;
   const uint pair_slice = pairs_here > 0u ? thread / pairs_here : 0u;
@@ -106,7 +106,7 @@ void main() {
   const uint base = gl_WorkGroupID.z * push.voxel_count * push.mask_words;
   for (uint round = 0u; round < register_rounds; ++round) {
     const uint first = (gl_WorkGroupID.x * register_rounds + round) * register_voxels;
-    if (first >= push.voxel_count) break;  // for all threads alike
+    if (first >= push.voxel_count) break;  // uniform over all threads
     barrier();
     if (thread == 0u) any_seen = 0u;
     barrier();
@@ -131,7 +131,7 @@ void main() {
       }
     }
     barrier();
-    if (any_seen == 0u) continue;  // likewise
+    if (any_seen == 0u) continue;  // uniform, too
     for (uint task = thread; task < register_voxels * n; task += register_pairs) {
       const uint v = task / n, s = task % n;
       float weight = 0.0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sizes the next indirect dispatch of a chunk, over what a control word counts. One thread.
+// Sizes the next indirect dispatch of a chunk from a control word. One thread.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/references.glsl"
@@ -9,7 +9,7 @@ layout(push_constant, scalar) uniform Push { SampleArgumentsPush push; };
 
 void main() {
   const uint wanted = push.control.at[push.over];
-  // What does not fit is not begun: the host cuts the chunk and comes back.
+  // Work that does not fit is not begun: the host cuts the chunk and repeats it.
   const bool fits =
       push.control.at[control_pairs] <= push.pair_capacity && push.control.at[control_rays] <= push.ray_capacity &&
       push.control.at[control_parts] <= push.item_capacity && push.control.at[control_rest] <= push.ray_capacity;

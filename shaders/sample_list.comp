@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lists the rays of open pairs that may put a point into the voxel: all that pass its cube and are not known to be
-// stopped before. How many these are differs much from pair to pair, so the threads of a subgroup share out the walks
-// of their pairs evenly.
+// stopped before. Their number varies greatly between pairs, so the threads of a subgroup share the walks of their
+// pairs evenly.
 //
-// Of a long walk just the first part is listed. When that has been traced, the same code with SIGHTS defined queues the
-// other parts of walks whose pairs are still open, a thread a pair; with QUEUE defined it works through the queue.
+// Only the first part of a long walk is listed. Once it has been traced, the same code with SIGHTS defined queues the
+// other parts of walks whose pairs are still open, one thread per pair. With QUEUE defined it works through the queue.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/parameters.glsl"
@@ -18,8 +18,7 @@ RayWindow window_of(SamplePair pair) {
   return RayWindow(pair.window[0], pair.window[1], pair.window[2], pair.window[3], pair.window[4], pair.window[5]);
 }
 
-// The parts of a walk that come later: from x to y, empty where x >= y. Where every point is wanted, that is all of a
-// long walk.
+// Later parts of a walk: from x to y, empty if x >= y. If every point is wanted, that is all of a long walk.
 uvec2 later_parts(uint length) {
   if (length <= sample_part) return uvec2(0u);
   return uvec2(max(push.first_part, push.stop_at > 0u ? 1u : 0u), min(push.end_part, length / sample_part));
@@ -37,21 +36,21 @@ void main() {
   for (uint p = parts.x; p < parts.y; ++p) push.items.at[at + p - parts.x] = SampleItem(of_pair, p);
 }
 #else
-// What the threads of a workgroup tell each other of their pairs.
+// Pair data that a workgroup's threads share.
 struct Walk {
   int row0, column0, column1, wrapped0, columns;  // of its window
   uint rays;
-  uint first;  // step
+  uint first;  // first step
 };
 shared Cube cubes[group_size];
 shared uint slots[group_size];
 shared Walk walks[group_size];
 shared uint probes[group_size];
 shared Blocker blockers[group_size];
-shared uint ends[group_size];  // of the thread's steps among those of the subgroup
-shared uvec2 founds[group_size];  // a bit a step
+shared uint ends[group_size];  // end of the thread's steps among those of the subgroup
+shared uvec2 founds[group_size];  // one bit per step
 
-// The ray at step k of a thread; whether there is one.
+// Finds the ray at step k of a thread; returns whether there is one.
 bool ray_at(uint thread, uint k, out uvec2 ray) {
   const Walk walk = walks[thread];
   const uint place = place_in_walk(walk.first + k, walk_length(walk.rays));
@@ -73,7 +72,7 @@ void main() {
   const SamplePair pair = push.pairs.at[item.pair];
   const SampleStation station = push.stations.at[pair.slot];
   const uint self = gl_LocalInvocationIndex;
-  uint mine = 0u;  // steps
+  uint mine = 0u;  // number of own steps
   if (alive && !is_closed(station, pair.voxel)) {
     const RayWindow window = window_of(pair);
     const uint rays = rays_of(window), length = walk_length(rays);
@@ -94,13 +93,14 @@ void main() {
     probes[self] = pair.probe;
     blockers[self] = pair.blocker == not_blocked ? no_blocker : blocker_of(corners_of(pair.blocker, station.origin));
   }
-  const uint first = subgroupMin(self), threads = subgroupAdd(1u), rank = subgroupExclusiveAdd(1u);  // of the subgroup
+  // within the subgroup
+  const uint first = subgroupMin(self), threads = subgroupAdd(1u), rank = subgroupExclusiveAdd(1u);
   const uint end = subgroupInclusiveAdd(mine), all = subgroupMax(end);
   ends[self] = end;
   founds[self] = uvec2(0u);
   subgroupBarrier();
   for (uint j = rank; j < all; j += threads) {
-    // The first thread whose steps end behind j.
+    // The first thread whose steps end after j.
     uint low = first, high = first + threads - 1u;
     while (low < high) {
       const uint middle = (low + high) / 2u;
@@ -117,7 +117,7 @@ void main() {
   }
   subgroupBarrier();
 
-  // One atomic a subgroup.
+  // One atomic per subgroup.
   uvec2 found = founds[self];
   const uint wanted = uint(bitCount(found.x) + bitCount(found.y));
   const uint before = subgroupExclusiveAdd(wanted), sum = subgroupAdd(wanted);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Traces the listed rays up to the far side of their voxel's cube and counts the points that land in it: a thread a
-// ray.
+// Traces the listed rays up to the far side of their voxel's cube and counts the points inside: one thread per ray.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/parameters.glsl"
@@ -20,7 +19,7 @@ void main() {
     const uint of_voxel = push.pairs.at[job.pair].voxel;
     slot = push.pairs.at[job.pair].slot;
     const SampleStation station = push.stations.at[slot];
-    // Since it was listed others may have filled the voxel, and shown that the station sees it.
+    // Since listing, other rays may have filled the voxel and shown that the station sees it.
     traced = !is_closed(station, of_voxel);
     if (traced) {
       const SampleVoxel voxel = push.voxels.at[of_voxel];

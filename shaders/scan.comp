@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scans rows of one station into the arrays that are wanted: a thread a ray.
+// Scans rows of one station into the requested arrays: one thread per ray.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/parameters.glsl"

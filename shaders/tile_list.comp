@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lists the tiles of some rows that see a surveyed brick, and sizes the dispatch over them: a thread a tile.
+// Lists the tiles of some rows that see a surveyed brick, and sizes the dispatch over them: one thread per tile.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/tiles.glsl"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Projects the surveyed bricks on the sphere of directions around a station: a thread a brick. Every tile of rays that
-// may see a brick learns how far the farthest one reaches; the rest see nothing that counts. Bricks are widened by the
-// noise's reach and by more than all rounding, so nothing that counts is lost.
+// Projects the surveyed bricks onto the sphere of directions around a station: one thread per brick. Every tile of rays
+// that may see a brick gets the distance of the farthest one; the other tiles see nothing that counts. Bricks are
+// widened by the noise's reach and by more than all rounding, so nothing that counts is lost.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/rays_of_box.glsl"
@@ -16,7 +16,7 @@ void mark(int row0, int row1, int column0, int column1, uint far) {
   for (uint r = uint(row0) / tile_side; r <= uint(row1) / tile_side; ++r)
     for (uint c = uint(column0) / tile_side; c <= uint(column1) / tile_side; ++c) {
       const uint tile = r * tiles_in_row() + c;
-      // Reading first spares most atomics; values only grow.
+      // Reading first avoids most atomics; values only grow.
       if (push.tile_far.at[tile] < far) atomicMax(push.tile_far.at[tile], far);
     }
 }

@@ -10,18 +10,18 @@
 
 namespace vantage {
 
-/// What kind of failure an `Error` reports.
+/// Kind of failure that an `Error` reports.
 enum class Errc {
-  invalid_argument,    ///< A value that the caller gave is out of its range.
+  invalid_argument,    ///< A value from the caller is out of its range.
   io,                  ///< A file cannot be read or written.
-  malformed_file,      ///< A file was read, but its content is not what it must be.
-  no_suitable_device,  ///< No device, or none that can do what was asked; `details()` lists why each was refused.
+  malformed_file,      ///< A file was read, but its content is not valid.
+  no_suitable_device,  ///< No device, or none with what was asked; `details()` lists why each was refused.
   out_of_memory,       ///< The host or the device has not enough memory.
   device_failure,      ///< The device failed or was lost; the object that threw is unusable afterwards.
 };
 
-/// Every error that vantage raises. The message says what, where and what to do.
-/// Expected outcomes (no ground under a (u, v), a clash, a cancelled run) are values, never errors.
+/// Every error that vantage raises. The message says what, where and what to do. Expected outcomes (no ground under a
+/// (u, v), a clash, a cancelled run) are values, never errors.
 class Error : public std::runtime_error {
  public:
   Error(Errc code, const std::string& what, std::vector<std::string> details = {})

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Measures of a network from its counts: coverage (equation 8), overlap (equations 11 and 13), their standard errors,
-/// and how stations hang together.
+/// registration and connectivity.
 #pragma once
 
 #include <array>
@@ -32,118 +32,120 @@ class OverlapMatrix {
   std::vector<double> values_;
 };
 
-/// Equation 8, in [0, 1]; where meshes have weights, the mean over voxels is weighted by them. 0 for a scene without
-/// surveyed voxels. REQUIRES: goal_density > 0.
+/// Equation 8, in [0, 1]: a mean over voxels, weighted by the weights of meshes. 0 for a scene without surveyed voxels.
+/// REQUIRES: goal_density > 0.
 double coverage(const NetworkCounts& counts, double goal_density);
 /// Equation 11 for every pair; 0/0 is 0.
 OverlapMatrix overlap_matrix(const NetworkCounts& counts);
-/// Scan overlap of every pair: what two scans share, of the smaller one, |i and j| / min(|i|, |j|); 0/0 is 0. How
-/// practice states the overlap that registration takes. Not equation 11, which is shared over either.
+/// Scan overlap of every pair, the measure that practice states for registration: the share of the smaller scan that
+/// both see, |i and j| / min(|i|, |j|); 0/0 is 0. Equation 11 divides by the union instead.
 OverlapMatrix scan_overlap_matrix(const NetworkCounts& counts);
-/// From which scan overlap on two stations count as linked, unless asked otherwise: what practice wants.
+/// Smallest scan overlap at which two stations count as linked, by default; usual in practice.
 inline constexpr double default_link = 0.3;
 /// Equation 13: average weighted clustering coefficient, in [0, 1]; the maximum is over all pairs. 0/0 is 0, so
 /// networks of one or two stations, or without a shared voxel, have 0.
 double clustering_coefficient(const OverlapMatrix& overlap);
 
-/// An estimate and its standard error. The error is 0 when all of the population was counted, and 0.5, the largest that
-/// a value in [0, 1] can have, where the sample is too small to tell (one voxel).
+/// An estimate and its standard error. The error is 0 when the whole population was counted. It is 0.5, the largest
+/// possible for a value in [0, 1], if the sample is too small to tell (one voxel).
 struct Estimate {
   double value = 0, standard_error = 0;
 };
-/// Equation 8 from a sample of `population` voxels. Error by successive differences along the Morton order, which a
-/// systematic sample needs: s/√n would be too wide. With weights a ratio is estimated, with the jackknife's error over
-/// the interleaved groups.
+/// Equation 8 from a sample of `population` voxels. The error uses successive differences along the Morton order, as a
+/// systematic sample needs: s/√n would be too wide. With weights it is a ratio estimate, with the jackknife's error
+/// over the interleaved groups.
 Estimate coverage_estimate(const NetworkCounts& counts, double goal_density, std::uint64_t population);
-/// Equation 13 from a sample, less its bias: what half of the sample gives more than all of it. The error is the
+/// Equation 13 from a sample, less its bias: the excess of half of the sample over all of it. The error combines the
 /// jackknife's over the interleaved groups and that bias, added in squares (docs/method.md).
 Estimate overlap_estimate(const NetworkCounts& counts, std::uint64_t population);
 /// Standard errors of `overlap_matrix`, by the jackknife over the same groups.
 OverlapMatrix overlap_standard_errors(const NetworkCounts& counts, std::uint64_t population);
 
-/// How many voxels `evaluate_sampled` needs so that no standard error, of coverage and, with `overlap`, of overlap,
-/// exceeds `wanted` on any of `networks`. Found on pilot samples that grow until one holds; at most
-/// `simulator.voxel_count()`, then the error is 0. Throws Error invalid_argument unless wanted > 0.
+/// Number of voxels that `evaluate_sampled` needs so that no standard error exceeds `wanted` on any of `networks`: of
+/// coverage and, with `overlap`, of overlap. Found on growing pilot samples; at most `simulator.voxel_count()`, whose
+/// error is 0. Throws Error invalid_argument unless wanted > 0.
 std::uint64_t voxels_for_standard_error(Simulator& simulator, std::span<const Network> networks, double wanted,
                                         bool overlap = true, const Progress& progress = {});
 
-/// Whose surfaces hold scans together.
+/// Surfaces by which scans are registered.
 enum class RegistrationSurfaces {
-  surveyed,  ///< Those that are surveyed and no others: on the safe side.
-  all,       ///< Those that nobody surveys too, as ground and neighbours: by the voxels of `surroundings_of()`.
+  surveyed,  ///< Surveyed surfaces only: conservative.
+  all,       ///< All surfaces, e.g. ground and neighbours too, as voxels of `surroundings_of()`.
 };
 std::string to_string(RegistrationSurfaces);
 
-/// What registration starts from: one standard deviation of what site and instrument say of a station's pose before
-/// scans are matched, and how well scans have the surface. Reasons and sources: docs/method.md.
+/// Prior of registration: one standard deviation of each station's pose before scans are matched, and how accurately
+/// scans have the surface. Reasons and sources: docs/method.md.
 struct RegistrationOptions {
   RegistrationModel model = {};
-  double position_m = 0.03;             ///< Of the head, in each axis; above 0.
+  double position_m = 0.03;             ///< Head's position, in each axis; above 0.
   Angle heading = Angle::degrees(0.2);  ///< Above 0.
-  /// Of each of the two tilts: a dual-axis compensator's. 0: exactly level, so 4 unknowns a station instead of 6; some
+  /// Each of the two tilts, as by a dual-axis compensator. 0: exactly level, so 4 unknowns a station instead of 6; some
   /// degrees: not levelled at all.
   Angle tilt = Angle::degrees(15.0 / 3600);
-  RegistrationSurfaces surfaces = RegistrationSurfaces::surveyed;  ///< The error is that of surveyed ones either way.
+  RegistrationSurfaces surfaces = RegistrationSurfaces::surveyed;  ///< The error is that of surveyed surfaces either
+                                                                   ///< way.
 };
 
 Settings settings(const RegistrationOptions& options);
 /// Throws Error invalid_argument with the member and its value.
 void check(const RegistrationOptions& options);
 
-/// What the error of one station's pose does.
+/// Effect of the error of one station's pose.
 struct StationError {
-  double rms_m = 0;  ///< Root mean square over the surface that it sees; 0 where it sees none.
-  /// Covariance of its head, m², survey frame: row-major, x, y, z.
+  double rms_m = 0;  ///< Root mean square over the surface that it sees; 0 if it sees none.
+  /// Covariance of the head, m², survey frame: row-major, x, y, z.
   std::array<double, 9> covariance{};
-  /// Axes of the standard ellipsoid (one sigma) of that, metres: longest first.
+  /// Axes of its standard ellipsoid (one sigma), metres: longest first.
   std::array<Vec3, 3> axes{};
 };
 
 /// Predicted error of a registered network, metres.
 struct RegistrationError {
-  double rms_m = 0;    ///< Over the covered surface: root mean square of the displacement of its points.
+  double rms_m = 0;    ///< Root mean square displacement of the points of the covered surface.
   double worst_m = 0;  ///< `rms_m` of the worst station.
   std::size_t worst_station = 0;
   std::vector<StationError> stations;
-  /// Per station, what gives the displacement anywhere: covariance of [turn · scale_m, shift], 6 × 6 row-major, of the
-  /// displacement shift + turn × (p − centre).
+  /// Per station: covariance of [turn · scale_m, shift], 6 × 6 row-major. The displacement at p is shift + turn × (p −
+  /// centre).
   std::vector<std::array<double, 36>> poses;
   Vec3 centre;  ///< Local frame, as `RegistrationSums::centre`.
   double scale_m = 1;
 
-  /// Root mean square of the displacement that station `station` gives a point of the local frame.
+  /// Root mean square displacement of a point of the local frame by station `station`.
   double at(std::size_t station, const Vec3& local) const;
 };
 
-/// The covariance of a least-squares adjustment of all scans, planes against planes (Gelfand et al. 2003; Censi 2007),
-/// less the best-fitting motion of the whole: that is the survey's own frame, and no error of the registration. Of a
-/// sample of a site of `voxels` voxels what the whole site would give. Parts that share nothing have the error that
-/// they start from. Where nothing is covered, the error of a position. `surroundings`: the same network's counts by
-/// `surroundings_of()`, of a site of `surroundings_voxels`; looked at where `options.surfaces` are all. Throws Error
-/// invalid_argument unless `registration` was filled in all counts that are looked at. REQUIRES: with `options.model`.
+/// Covariance of a least-squares adjustment of all scans, planes against planes (Gelfand et al. 2003; Censi 2007),
+/// without the best-fitting motion of the whole. That motion is the survey's own frame and no error of the
+/// registration. A sample of a site of `voxels` voxels gives the error that the whole site would give. Components that
+/// share nothing keep their prior error. If nothing is covered, the result is the error of a position.
+/// `surroundings` are the same network's counts by `surroundings_of()`, of a site of `surroundings_voxels`; used if
+/// `options.surfaces` is `all`. Throws Error invalid_argument unless `registration` was filled in all counts used.
+/// REQUIRES: with `options.model`.
 RegistrationError registration_error(const NetworkCounts& counts, std::uint64_t voxels,
                                      const RegistrationOptions& options = {},
                                      const NetworkCounts* surroundings = nullptr,
                                      std::uint64_t surroundings_voxels = 0);
-/// `registration_error(…).rms_m`, of a sample less its bias, and the standard error, by the jackknife over its groups.
+/// `registration_error(…).rms_m`, less its bias for a sample, and the standard error, by the jackknife over its groups.
 Estimate registration_estimate(const NetworkCounts& counts, std::uint64_t voxels,
                                const RegistrationOptions& options = {}, const NetworkCounts* surroundings = nullptr,
                                std::uint64_t surroundings_voxels = 0);
 
-/// The overlap graph as registration sees it: which stations hang together, and by what.
+/// Connectivity of the overlap graph, for registration.
 struct Connectivity {
-  std::size_t parts = 0;                                     ///< Connected parts.
-  std::vector<std::size_t> part;                             ///< Per station, the part it is in, from 0.
-  std::vector<std::pair<std::size_t, std::size_t>> bridges;  ///< Links without which a part falls in two, i < j.
-  /// Where there is one part: the weakest link of the strongest spanning tree, and its overlap. What the registration
-  /// hangs by.
+  std::size_t parts = 0;                                     ///< Connected components.
+  std::vector<std::size_t> part;                             ///< Per station, its component, from 0.
+  std::vector<std::pair<std::size_t, std::size_t>> bridges;  ///< Links without which a component falls in two, i < j.
+  /// The weakest link of the strongest spanning tree, and its overlap, if there is one component. The whole
+  /// registration depends on it.
   std::pair<std::size_t, std::size_t> weakest_link{0, 0};
   double weakest_overlap = 0;
 };
 /// Links are the pairs whose overlap is above 0 and at least `min_overlap`.
 Connectivity connectivity(const OverlapMatrix& overlap, double min_overlap);
-/// Stations of less overlap count as not linked, unless asked otherwise: figure 12 of the method draws links from 0.01
-/// on; its figure 16 those above 0.05.
+/// Smallest overlap (equation 11) at which stations count as linked, by default. Figure 12 of the method draws links
+/// from 0.01 on; its figure 16 those above 0.05.
 inline constexpr double default_link_overlap = 0.01;
 
 }  // namespace vantage

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Equirectangular images around a station: colours for its points, and pictures of what it sees.
 ///
-/// Every image here covers the full sphere as someone at the station sees it: the heading in the middle, azimuth
-/// falling from left to right (what lies to the right is on the right), zenith at the top, nadir at the bottom. Where
-/// the station is turned (`StationSetup`), angles are those of the scanner's frame, as its own camera has them.
+/// Every image covers the full sphere as someone at the station sees it: heading in the middle, azimuth falling from
+/// left to right (what lies to the right is on the right), zenith at the top, nadir at the bottom. If the station is
+/// turned (`StationSetup`), angles are in the scanner's frame, as with its own camera.
 #pragma once
 
 #include <cstdint>
@@ -51,36 +51,36 @@ enum class PanoramaView {
 std::string to_string(PanoramaView);
 /// Throws Error invalid_argument and lists the views.
 PanoramaView panorama_view_from_string(const std::string&);
-/// All of them.
+/// All views.
 std::span<const PanoramaView> panorama_views() noexcept;
 
 struct PanoramaOptions {
   std::uint32_t width = 2048;     ///< Pixels; even. The height is half of it.
-  std::uint32_t supersample = 2;  ///< Rays a pixel and direction, 1 to 8: edges get smooth.
+  std::uint32_t supersample = 2;  ///< Rays per pixel and direction, 1 to 8, to smooth edges.
   Angle heading = {};             ///< Azimuth of the image's middle.
-  double min_range_m = 0.1;       ///< What is nearer is not seen.
-  double max_range_m = 1000;      ///< What is farther is sky.
+  double min_range_m = 0.1;       ///< Anything nearer is not seen.
+  double max_range_m = 1000;      ///< Anything farther is sky.
 };
 
 /// A rendered view and the scale of its colours.
 struct PanoramaImage {
   PanoramaView view = PanoramaView::colour;
   Image image;
-  double scale_low = 0, scale_high = 0;  ///< range: metres at the scale's ends; reflectivity: 0 and the largest.
+  double scale_low = 0, scale_high = 0;  ///< `range`: metres at the ends of the scale. `reflectivity`: 0 and the
+                                         ///< largest value.
 };
 
-/// Renders panoramas of a scene. Not thread-safe. Memory grows with the image, not with supersampling (2 bytes a ray
-/// for `range` apart).
+/// Renders panoramas of a scene. Not thread-safe. Memory grows with the image, not with supersampling (except 2 bytes a
+/// ray for `range`).
 class PanoramaRenderer {
  public:
-  /// Takes engine and device from `config`; the rest of it has no part. Throws Error: invalid_argument,
-  /// no_suitable_device.
+  /// Uses only engine and device of `config`. Throws Error: invalid_argument, no_suitable_device.
   PanoramaRenderer(const Scene& scene, const PanoramaOptions& options, const SimulatorConfig& config);
   PanoramaRenderer(PanoramaRenderer&&) noexcept;
   PanoramaRenderer& operator=(PanoramaRenderer&&) noexcept;
   ~PanoramaRenderer();
-  /// The views asked for, in their order, from `position` (survey frame), turned as `setup` says; which scanner it
-  /// names has no part. Empty where `progress` stopped it.
+  /// Returns the views in the order asked for, from `position` (survey frame), turned by `setup`; its scanner is
+  /// ignored. Empty if `progress` stopped it.
   std::vector<PanoramaImage> render(const Vec3& position, std::span<const PanoramaView> views,
                                     const Progress& progress = {}, const StationSetup& setup = {});
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// How long work reports how far it is, and how it is told to stop.
+/// Progress reports of long work, and how to stop it.
 #pragma once
 
 #include <functional>
@@ -7,12 +7,12 @@
 
 namespace vantage {
 
-/// Passed by value into every call that may take long. Both members may be left empty.
+/// Passed by value to every call that may take long. Both members may be empty.
 struct Progress {
-  /// Called between chunks of work, on the calling thread, with the share done in [0, 1]. May throw: that ends the
-  /// call, and leaves it as it is.
+  /// Called between chunks of work, on the calling thread, with the share done in [0, 1]. An exception from it ends the
+  /// call and is passed on.
   std::function<void(double done)> report;
-  /// Checked between chunks of work. A call that was stopped says so in its result.
+  /// Checked between chunks of work. A stopped call says so in its result.
   std::stop_token stop;
 
   void operator()(double done) const {

@@ -13,7 +13,8 @@
 
 namespace vantage {
 
-/// Range noise as a maker states it: one standard deviation per (reflectivity, distance). Table 1 of the method is one.
+/// Range noise as the maker states it: one standard deviation per (reflectivity, distance), as in table 1 of the
+/// method.
 struct NoiseTable {
   std::vector<double> distances_m = {};     ///< Columns, ascending.
   std::vector<double> reflectivities = {};  ///< Rows, ascending, in [0, 1].
@@ -27,29 +28,29 @@ struct RayAngles {
   Angle azimuth;  ///< From +X towards +Y; grows from heading − H/2 without wrapping.
 };
 
-/// A terrestrial laser scanner (section 3.2). Rays: floor(H/Δh) azimuths times floor(V/2/Δv) zeniths; both floors
-/// guarded by 1e-9. Ray (i, j): zenith θ₀ + (i + ½)·Δv, azimuth heading − H/2 + (j + ½)·Δh, direction (sin θ cos φ, sin
-/// θ sin φ, cos θ); its index is i·columns + j everywhere.
+/// A terrestrial laser scanner (section 3.2). Rays: floor(H/Δh) azimuths times floor(V/2/Δv) zeniths; 1e-9 guards both
+/// floors. Ray (i, j) has zenith θ₀ + (i + ½)·Δv, azimuth heading − H/2 + (j + ½)·Δh and direction (sin θ cos φ, sin θ
+/// sin φ, cos θ). Its index is i·columns + j everywhere.
 struct Scanner {
   std::string name = "custom";
   Angle heading = Angle::degrees(0);             ///< Azimuth of the middle of the horizontal sweep, from +X towards +Y.
   Angle horizontal_angle = Angle::degrees(360);  ///< H, (0°, 360°].
-  /// V, (0°, 360°]: the mirror's sweep over both sides, so zeniths θ₀..θ₀ + V/2.
+  /// V, (0°, 360°]: the mirror's sweep over both sides, so zeniths are θ₀..θ₀ + V/2.
   Angle vertical_angle = Angle::degrees(300);
-  /// θ₀; with V/2 at most 180°. Above 0° for scanners that cannot look straight up.
+  /// θ₀; θ₀ + V/2 is at most 180°. Above 0° for scanners that cannot look straight up.
   Angle zenith_start = Angle::degrees(0);
   Angle azimuth_step = Angle::degrees(0.1);  ///< Δh.
   Angle zenith_step = Angle::degrees(0.1);   ///< Δv.
-  double height_m = 1.85;                    ///< Of the scanner's head above the search area.
+  double height_m = 1.85;                    ///< Height of the scanner's head above the search area.
   double min_range_m = 0.1;                  ///< d_min.
   double max_range_m = 130.0;                ///< d_max.
   NoiseTable noise = {};                     ///< Empty: exact ranges.
-  /// Full angle by which the beam widens, and its diameter where it leaves the scanner, both to 1/e² of the intensity
-  /// on the axis. Both 0: not known.
+  /// Full angle by which the beam widens, and its diameter at the exit, both to 1/e² of the intensity on the axis. Both
+  /// 0: unknown.
   Angle beam_divergence = Angle::radians(0);
   double exit_diameter_m = 0;
-  /// How fast rays are measured, for the time on site. The figure that no preset gives is an assumption of ours: what
-  /// phase and time-of-flight scanners of the last ten years have reached.
+  /// Measurement rate, for the time on site. The default is our assumption, for presets that state none: typical of
+  /// phase and time-of-flight scanners of the last ten years.
   double points_per_second = 1'000'000;
 
   std::uint32_t rows() const;     ///< Zenith steps.
@@ -65,24 +66,25 @@ Settings settings(const Scanner& scanner);
 /// Table 1 of the method: Leica RTC360, single measurement.
 NoiseTable rtc360_noise();
 
-/// Range noise by "off", a scanner's name, or a CSV file with a header `reflectivity,<distance in metres>,…` and a line
-/// of standard deviations in metres for each reflectivity. Throws Error: io, malformed_file, invalid_argument.
+/// Returns the range noise named "off", that of a preset, or that of a CSV file: a header `reflectivity,<distance in
+/// metres>,…`, then a line of standard deviations in metres for each reflectivity. Throws Error: io, malformed_file,
+/// invalid_argument.
 NoiseTable load_noise(const std::string& name);
 
-/// One scanner of the presets.
+/// One preset scanner.
 struct ScannerPreset {
   std::string key;      ///< "rtc360"
   std::string summary;  ///< One line for `vantage info`.
 };
 
-/// A scanner by "key" or "key@setting", e.g. "rtc360@6mm", or by its name in full; upper or lower case. The presets
-/// (data/scanners.json) are part of the library; a file `more` of that form adds to them, and goes before them where a
-/// key is in both. Throws Error: io, malformed_file, invalid_argument (lists what exists).
+/// Returns a scanner by "key" or "key@setting", e.g. "rtc360@6mm", or by its full name; case is ignored. The presets
+/// (data/scanners.json) are part of the library. A file `more` of the same form adds presets; its keys take precedence.
+/// Throws Error: io, malformed_file, invalid_argument (lists what exists).
 Scanner load_scanner(const std::string& name, const std::filesystem::path& more = {});
-/// All of them, those of `more` first. Throws Error: io, malformed_file.
+/// Returns all presets, those of `more` first. Throws Error: io, malformed_file.
 std::vector<ScannerPreset> list_scanners(const std::filesystem::path& more = {});
 
-/// scanners.json in the folder that the environment variable VANTAGE_DATA names; empty where it names none.
+/// Path of scanners.json in the folder named by the environment variable VANTAGE_DATA; empty if it is not set.
 std::filesystem::path own_presets_file();
 
 }  // namespace vantage

@@ -16,7 +16,7 @@
 
 namespace vantage {
 
-/// Where a mesh stands: its points are rotated, then moved.
+/// Placement of a mesh: its points are rotated, then moved.
 struct Pose {
   Vec3 translation = {};                          ///< Metres, survey frame.
   std::array<double, 4> rotation = {0, 0, 0, 1};  ///< Quaternion x, y, z, w, of any length but 0.
@@ -25,22 +25,23 @@ struct Pose {
 /// A mesh as arrays. `Role::search` makes it part of the search area, `Role::ignore` leaves it out.
 struct SceneMesh {
   std::string name = "mesh";
-  std::vector<Vec3> positions = {};  ///< Metres, Z up; the survey frame where `pose` is as it begins.
+  std::vector<Vec3> positions = {};  ///< Metres, Z up; in the survey frame under the default `pose`.
   std::vector<std::array<std::uint32_t, 3>> triangles =
       {};                                      ///< Indices into `positions`, counter-clockwise from outside.
   std::optional<Role> role = std::nullopt;     ///< Empty: surveyed, or blocking once any mesh is marked surveyed.
   double diffuse = 0.5;                        ///< Diffuse reflection coefficient R, in [0, 1].
-  std::uint32_t weight = 1;                    ///< What a voxel of it counts in coverage, 1 to 255.
+  std::uint32_t weight = 1;                    ///< Weight of its voxels in coverage, 1 to 255.
   std::array<float, 4> colour = {1, 1, 1, 1};  ///< Linear red, green, blue and alpha, in [0, 1].
   Pose pose = {};
 };
 
-/// Collects meshes and makes scenes of them, each immutable and on its own. After the first, `build` makes anew only
-/// the meshes that were moved or replaced, where that provably gives the same scene as building everything does;
-/// `rebuilt_all` says whether it did. Everything is built where roles change, search meshes change, bounds come to
-/// need another local origin, or triangles are dropped, repeat each other or lie in one plane with those of another
-/// role near the changed mesh. A `Simulator` is made for one scene, and is made again for the next.
-/// One thread at a time; scenes that were made may be read by any.
+/// Collects meshes and builds immutable, independent scenes from them. One thread at a time; finished scenes may be
+/// read from any thread.
+/// After the first call, `build` remakes only moved or replaced meshes if that provably gives the same scene as a full
+/// build; `rebuilt_all` says whether it made all of them. A full build is needed if roles change, search meshes change,
+/// or the bounds need another local origin; also if, near the changed mesh, triangles are dropped, repeat each other or
+/// lie in one plane with those of another role.
+/// A `Simulator` serves one scene; make another for the next scene.
 class SceneBuilder {
  public:
   SceneBuilder();
@@ -48,25 +49,25 @@ class SceneBuilder {
   SceneBuilder(SceneBuilder&&) noexcept;
   SceneBuilder& operator=(SceneBuilder&&) noexcept;
 
-  /// Adds a mesh and gives its number, from 0. Throws Error invalid_argument: an index or a value out of range.
+  /// Adds a mesh and returns its number, from 0. Throws Error invalid_argument: an index or a value out of range.
   std::size_t add(SceneMesh mesh);
-  /// Puts a mesh elsewhere. Throws Error invalid_argument: no such mesh, or a pose that is not finite.
+  /// Moves a mesh to a pose. Throws Error invalid_argument: no such mesh, or a pose that is not finite.
   void move(std::size_t mesh, const Pose& pose);
-  /// Puts another mesh in the place of one. Throws Error invalid_argument, as above.
+  /// Replaces a mesh. Throws Error invalid_argument, as above.
   void replace(std::size_t mesh, SceneMesh with);
   std::size_t size() const noexcept;  ///< Meshes added.
 
-  /// The scene as it stands now. Throws Error malformed_file where nothing is to be surveyed, as `Scene::load` does.
+  /// Returns the scene as it stands now. Throws Error malformed_file if nothing is surveyed, as `Scene::load` does.
   Scene build();
-  bool rebuilt_all() const noexcept;  ///< Whether the last `build` made every mesh anew.
+  bool rebuilt_all() const noexcept;  ///< Whether the last `build` remade every mesh.
 
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
 
-/// Loads a scene from the bytes of a .glb or .gltf file, as `Scene::load` does; data URIs are read, other files are
-/// not. `name` opens messages. Throws Error as `Scene::load`, and malformed_file where it names another file.
+/// Loads a scene from the bytes of a .glb or .gltf file, as `Scene::load` does. Data URIs are read, other files are
+/// not. Messages begin with `name`. Throws Error as `Scene::load`, and malformed_file if it refers to another file.
 Scene load_gltf(std::span<const std::uint8_t> bytes, const SceneOptions& options = {},
                 const std::string& name = "glTF in memory");
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// How an instrument is set up at a station: which one, and how it is turned.
+/// How an instrument is set up at a station: which scanner, and how it is turned.
 #pragma once
 
 #include <array>
@@ -9,9 +9,9 @@
 
 namespace vantage {
 
-/// A scanner stands upright unless it is tilted: its axis then leans by `tilt` from straight up towards `heading`, so
-/// that at 90° the head lies, and at 180° it hangs. The heading turns it about up, from +X towards +Y, on top of
-/// `Scanner::heading`, which turns it about its own axis.
+/// Scanners stand upright unless tilted. The axis then leans by `tilt` from straight up towards `heading`: at 90° the
+/// head lies, at 180° it hangs. The heading turns the scanner about up, from +X towards +Y. It adds to
+/// `Scanner::heading`, which turns the scanner about its own axis.
 struct StationSetup {
   Angle heading = Angle::degrees(0);
   Angle tilt = Angle::degrees(0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What tracing works with and what it returns: engines and their devices, counts of a network, counts of each voxel.
+/// Tracing's public types: engines and their devices, counts of a network, counts of each voxel.
 #pragma once
 
 #include <cstddef>
@@ -12,39 +12,40 @@
 
 namespace vantage {
 
-/// How rays are traced. Counts do not depend on the choice but for ray-triangle rounding at edges.
+/// How rays are traced. Counts do not depend on the choice, except for ray-triangle rounding at edges.
 enum class Engine {
   automatic,    ///< The best hardware GPU; else `embree`.
   ray_query,    ///< Vulkan compute shaders with VK_KHR_ray_query.
-  compute_bvh,  ///< Vulkan compute shaders with a BVH of our own.
+  compute_bvh,  ///< Vulkan compute shaders with our own BVH.
   embree,       ///< CPU.
 };
 std::string to_string(Engine);
 /// Throws Error invalid_argument and lists the engines.
 Engine engine_from_string(const std::string&);
 
-/// An engine on a device as `list_engines` finds it.
+/// An engine on a device, as `list_engines` finds it.
 struct EngineInfo {
   Engine engine = Engine::embree;
   std::string device;  ///< "llvmpipe (LLVM 15.0.6, 256 bits)"
-  std::string driver;  ///< Driver or library with version.
+  std::string driver;  ///< Driver or library, with its version.
   std::uint32_t device_index = 0;
   bool usable = false;
   bool software = false;  ///< A CPU behind a GPU interface.
   bool chosen_by_default = false;
   std::string reason;  ///< Why it was taken or refused.
 };
-/// All engines on all devices of this machine, usable or not. Never throws for want of a device.
+/// All engines on all devices of this machine, usable or not. Having no device is no error.
 std::vector<EngineInfo> list_engines();
 
-/// An engine on a device, as it is asked for.
+/// An engine on a device, as requested.
 struct DeviceChoice {
   Engine engine = Engine::automatic;
-  std::optional<std::uint32_t> index = std::nullopt;  ///< `EngineInfo::device_index`; empty: the best that has it.
+  std::optional<std::uint32_t> index = std::nullopt;  ///< `EngineInfo::device_index`; empty: the best device that has
+                                                      ///< the engine.
   friend bool operator==(const DeviceChoice&, const DeviceChoice&) = default;
 };
-/// Every hardware device that has the engine; of `automatic`, the engine of the best. Where there is none, what
-/// `engine` alone stands for.
+/// Every hardware device that has the engine; for `automatic`, the engine of the best. Without such a device, the
+/// single choice that `engine` stands for.
 std::vector<DeviceChoice> all_devices(Engine engine = Engine::automatic);
 
 /// Most stations of a network.
@@ -54,66 +55,66 @@ inline constexpr std::size_t mask_bits = 64;
 /// Words of such a mask.
 constexpr std::size_t mask_words(std::size_t stations) { return (stations + mask_bits - 1) / mask_bits; }
 
-/// How well one scan has a surface, apart from the noise of its ranges: a modelling error ρ that is one and the same
-/// over a patch of side L, so that a huge wall is not a million independent measurements.
+/// How accurately one scan has a surface, apart from range noise: a modelling error ρ that is constant over a patch of
+/// side L. So a huge wall does not count as a million independent measurements.
 struct RegistrationModel {
   double rho_m = 0.0015;  ///< ρ, one standard deviation along the surface's normal; above 0.
-  double patch_m = 0.5;   ///< L, above 0. A plane counts where surface is flat over half of it.
+  double patch_m = 0.5;   ///< L, above 0. A plane counts if the surface is flat over half of it.
   friend bool operator==(const RegistrationModel&, const RegistrationModel&) = default;
 };
 
-/// What the stations' masks say of how scans register: sums over voxels of point-to-plane information (docs/method.md).
-/// Exact, but for one rounding of each sum to double.
+/// Registration information in the station masks: sums over voxels of point-to-plane information (docs/method.md).
+/// Exact, except for one rounding of each sum to double.
 struct RegistrationSums {
   static constexpr std::size_t of_pair = 21, of_station = 10;
-  Vec3 centre;              ///< Local frame: what places and rotations are relative to.
-  double radius_m = 1;      ///< Places are in units of it, rotations of 1 / it.
-  std::vector<Vec3> heads;  ///< Per station, metres from the centre; empty where sums were not asked for.
+  Vec3 centre;              ///< Local frame; places and rotations are relative to it.
+  double radius_m = 1;      ///< Unit of places; rotations are in units of 1 / it.
+  std::vector<Vec3> heads;  ///< Per station, metres from the centre; empty unless sums were asked for.
   /// Per pair, in the order of `NetworkCounts::shared`: the upper triangle, row by row, of Σ w_i w_j / Σ_k w_k · J Jᵀ
-  /// in 1/m², J = [place × normal, normal].
+  /// in 1/m², with J = [place × normal, normal].
   std::vector<double> pairs;
-  /// Per station: moments 1, x, y, z, xx, xy, xz, yy, yz, zz of the places of the surface it sees, in faces of a voxel;
-  /// what k stations see counts 1/k for each.
+  /// Per station: moments 1, x, y, z, xx, xy, xz, yy, yz, zz of the places of the surface it sees, in voxel faces.
+  /// Surface seen by k stations counts 1/k for each.
   std::vector<double> surface;
 };
 
-/// Points of one station that lie in surveyed voxels and do not count, because they are not good enough
-/// (`SimulatorConfig::max_incidence`, `MeshInfo::detail_m`, `MeshInfo::accuracy_m`). One may miss several limits.
+/// Points of one station in surveyed voxels that do not count because they miss a limit
+/// (`SimulatorConfig::max_incidence`, `MeshInfo::detail_m`, `MeshInfo::accuracy_m`). A point may miss several.
 struct DroppedPoints {
-  std::uint64_t points = 0;     ///< That miss some limit.
-  std::uint64_t incidence = 0;  ///< Too far from square on.
-  std::uint64_t footprint = 0;  ///< The beam too wide on the surface.
-  std::uint64_t noise = 0;      ///< The range too noisy.
+  std::uint64_t points = 0;     ///< Points that miss any limit.
+  std::uint64_t incidence = 0;  ///< Incidence too oblique.
+  std::uint64_t footprint = 0;  ///< Beam footprint too wide.
+  std::uint64_t noise = 0;      ///< Range too noisy.
   friend bool operator==(const DroppedPoints&, const DroppedPoints&) = default;
   friend DroppedPoints operator+(const DroppedPoints& a, const DroppedPoints& b) {
     return {a.points + b.points, a.incidence + b.incidence, a.footprint + b.footprint, a.noise + b.noise};
   }
 };
 
-/// What a simulated network left in the surveyed voxels, reduced to integers. Exact, so independent of engine, order
-/// and chunking.
+/// A simulated network's result in the surveyed voxels, reduced to integers. Exact, so independent of engine, order and
+/// chunking.
 struct NetworkCounts {
   std::uint64_t voxels = 0;  ///< N_v, or the size of the sample.
-  /// Sum of the voxels' weights (`MeshInfo::weight`): `voxels` where all surveyed meshes weigh the same.
+  /// Sum of the voxels' weights (`MeshInfo::weight`); equals `voxels` if all surveyed meshes weigh the same.
   std::uint64_t weight = 0;
   std::uint64_t saturated = 0;  ///< Weight of the voxels that reached the goal density.
-  /// Points in all other voxels together, each times its voxel's weight and what a point is worth there.
+  /// Points in all other voxels together, each times its voxel's weight and its point weight.
   std::uint64_t partial_points = 0;
-  /// What a point is worth in a voxel of the densest goal. More than 1 only where goals differ, and a point is worth
-  /// more where fewer will do.
+  /// Point weight in a voxel of the densest goal. Above 1 only if goals differ: a point weighs more in a voxel that
+  /// needs fewer.
   std::uint32_t point_worth = 1;
-  std::uint64_t rays = 0;             ///< Rays that were traced.
+  std::uint64_t rays = 0;             ///< Rays traced.
   std::uint32_t stations = 0;         ///< N_stations, skipped ones included.
-  std::vector<std::uint64_t> points;  ///< Per station, all meshes; empty where not counted (rays were skipped).
-  std::vector<std::uint64_t> points_on_surveyed;  ///< Per station, those that count.
-  std::vector<DroppedPoints> dropped;             ///< Per station; empty where points have no limits, or of a sample.
+  std::vector<std::uint64_t> points;  ///< Per station, on all meshes; empty if not counted (rays were skipped).
+  std::vector<std::uint64_t> points_on_surveyed;  ///< Per station, points that count.
+  std::vector<DroppedPoints> dropped;             ///< Per station; empty if points have no limits, or for a sample.
   std::vector<std::uint64_t> seen;                ///< Per station: voxels with a point of it. Empty without overlap.
   /// Voxels seen by both i and j, i < j, in the order (0,1), (0,2), …, (1,2), …; empty without overlap.
   std::vector<std::uint64_t> shared;
-  RegistrationSums registration;  ///< Where asked for.
+  RegistrationSums registration;  ///< If asked for.
   /// The same counts for each of G interleaved groups of a sample, for standard errors; empty when exact.
   std::vector<NetworkCounts> groups;
-  /// Sum over successive sampled voxels of the squared difference of min(count/goal, 1); for the standard error of
+  /// Sum over successive sampled voxels of the squared difference of min(count/goal, 1), for the standard error of
   /// coverage. Infinite for a sample without groups.
   double successive_difference_sum = 0;
   double trace_seconds = 0;
@@ -122,11 +123,11 @@ struct NetworkCounts {
   std::uint64_t shared_by(std::size_t i, std::size_t j) const;  ///< REQUIRES: i != j, both < stations.
 };
 
-/// A voxel field: the cartography of coverage. Element k belongs to the k-th surveyed voxel in Morton order.
+/// Voxel field: the map of coverage. Element k belongs to the k-th surveyed voxel in Morton order.
 struct VoxelField {
   std::vector<std::uint32_t> count;  ///< Points, saturating.
-  /// Word w of voxel k at w · count.size() + k, `mask_words()` words in all; bit b of it: station 64 w + b has a point
-  /// in the voxel. Empty without overlap.
+  /// Word w of voxel k is at w · count.size() + k, with `mask_words()` words in all. Bit b of it means that station 64
+  /// w + b has a point in the voxel. Empty without overlap.
   std::vector<std::uint64_t> stations;
 };
 

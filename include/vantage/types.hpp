@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Plain values that every part of vantage speaks: points, boxes, angles.
+/// Plain values used everywhere: points, boxes, angles.
 #pragma once
 
 #include <compare>
@@ -40,7 +40,7 @@ struct Box {
   constexpr Vec3 centre() const { return (min + max) * 0.5; }
 };
 
-/// An angle. There is no implicit conversion from a number, so degrees and radians cannot be confused.
+/// An angle. Numbers do not convert implicitly, so degrees and radians cannot be confused.
 class Angle {
  public:
   constexpr Angle() = default;

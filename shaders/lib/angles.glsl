@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Angles to a known accuracy: Vulkan allows 4096 ulp in atan, which is several rays of a fine pattern.
+// Angles of known accuracy: Vulkan allows 4096 ulp in atan, which is several rays of a fine pattern.
 #ifndef VANTAGE_LIB_ANGLES
 #define VANTAGE_LIB_ANGLES
 
 const float pi = 3.14159265358979;
-const float angle_slack = 1e-5;  // bounds the error of angle_of, and of turning angles into rays, with room to spare
+const float angle_slack = 1e-5;  // bounds the error of angle_of, and of turning angles into rays, generously
 
-// atan2 within 1e-6: atan(x) / x on [0, 1] as a polynomial of degree 9 in x², by interpolation at Chebyshev nodes
-// (error below 1e-7).
+// atan2 within 1e-6. atan(x) / x on [0, 1] is a polynomial of degree 9 in x², interpolated at Chebyshev nodes (error
+// below 1e-7).
 float angle_of(float y, float x) {
   const float ax = abs(x), ay = abs(y);
   const float larger = max(ax, ay);

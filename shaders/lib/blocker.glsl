@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a triangle in front of a cube hides of it, with more to spare than any engine's rounding: what is said to be
-// hidden is hidden on every engine, and what is not said to be may be hidden all the same.
+// Occlusion of a cube by a triangle in front of it, with margins above any engine's rounding. A part reported as hidden
+// is hidden on every engine; other parts may be hidden, too.
 #ifndef VANTAGE_LIB_BLOCKER
 #define VANTAGE_LIB_BLOCKER
 #include "lib/cube.glsl"
 
-// A triangle as its station sees it: normals of the planes through the station and an edge, so long that no engine's
-// rounding matters where a unit vector's product with them is beyond ±1. That of an edge without length is 0.
+// A triangle as its station sees it: normals of the planes through the station and an edge. They are scaled so that no
+// engine's rounding matters if a unit vector's product with them is beyond ±1. The normal of an edge without length is
+// 0.
 struct Blocker {
   vec3 sides[3];
 };
@@ -43,8 +44,8 @@ bool stops(Blocker blocker, vec3 direction) {
   return all(greaterThan(at, vec3(1))) || all(lessThan(at, vec3(-1)));
 }
 
-// Where a cube is from the planes of a blocker: inside of one where `at` is beyond `wide`, outside where it is beyond
-// −wide, and cut by it elsewhere.
+// Position of a cube relative to the planes of a blocker: inside a plane if `at` is above `wide`, outside if it is
+// below −wide, else cut by it.
 struct Place {
   vec3 at, wide;
 };
@@ -61,14 +62,14 @@ bool covers(Blocker blocker, Cube cube) {
   return all(greaterThan(place.at, place.wide)) || all(lessThan(place.at, -place.wide));
 }
 
-// Whether the hits of rays that go on through the cube are too far before it for their points to be in it, and not
-// nearer to the station than a scanner sees. Products with the normal n of the triangle's plane tell: a ray that
-// comes to q in the cube meets the plane at (n·a / n·q) of the way.
+// Whether rays through the cube hit the triangle beyond the scanner's least range, yet too far before the cube for points
+// in it. Computed from products with the normal n of the triangle's plane: a ray to q in the cube meets the plane at
+// (n·a / n·q) of the way.
 bool is_before(Corners t, Cube cube) {
   const float nearest = length(max(max(cube.low, -high_of(cube)), vec3(0)));
   const vec3 ab = t.b - t.a, ca = t.a - t.c, normal = cross(ab, ca);
-  // Of the normal's products with unit vectors; it holds what slender triangles and grazing rays do to a hit's
-  // distance.
+  // Error of the normal's products with unit vectors; it covers the effect of slender triangles and grazing rays on a
+  // hit's distance.
   const float doubt = size_of(ab) * size_of(ca) * (1.0 / 262144.0);
   const float plane = dot(normal, t.a), plane_doubt = doubt * max(max(size_of(t.a), size_of(t.b)), size_of(t.c));
   const float middle = dot(normal, centre_of(cube)) * (plane < 0.0 ? -1.0 : 1.0);
@@ -78,7 +79,7 @@ bool is_before(Corners t, Cube cube) {
          nearest * (abs(plane) - plane_doubt) >= (parameters.min_range + cube.slack) * most;
 }
 
-// The corner of triangle `other` that is not on its edge to `triangle`.
+// The corner of triangle `other` that is not on its common edge with `triangle`.
 vec3 corner_beyond(uint other, uint triangle, vec3 origin) {
   uint corner = 2u;
   for (uint k = 0u; k < 3u; ++k)
@@ -86,10 +87,10 @@ vec3 corner_beyond(uint other, uint triangle, vec3 origin) {
   return parameters.positions.at[parameters.triangles.at[3u * other + corner]] - origin;
 }
 
-// Whether all rays through the cube meet the triangle or others that hang together with it, for engines that let no ray
-// pass between two triangles with an edge in common. The patch grows over every edge whose plane cuts the cube. It has
-// no hole where all of these edges have a triangle on either side, as the station sees it, and no end before it has
-// grown over all.
+// Whether all rays through the cube meet the triangle or others connected to it, for engines that let no ray pass
+// between two triangles with a common edge. The patch grows over every edge whose plane cuts the cube. It has no hole
+// if each of these edges has a triangle on either side, as the station sees it; it ends once it has grown over all of
+// them.
 bool patch_covers(uint triangle, vec3 origin, Cube cube) {
   const uint most = 16u;
   uint members[most];
@@ -101,7 +102,7 @@ bool patch_covers(uint triangle, vec3 origin, Cube cube) {
     const Blocker blocker = blocker_of(corners);
     const float facing = dot(blocker.sides[0], corners.c) < 0.0 ? -1.0 : 1.0;
     const Place place = place_of(cube, blocker, facing);
-    if (any(lessThan(place.at, -place.wide))) {  // it is not in the way
+    if (any(lessThan(place.at, -place.wide))) {  // not in the way
       if (m == 0u) return false;
       continue;
     }

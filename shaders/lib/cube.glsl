@@ -5,21 +5,21 @@
 #include "lib/parameters.glsl"
 #include "shared/noise_types.h"
 
-// Relative to the origin, widened by more than the rounding on the way from a hit to its cell, so that no ray that has
-// a point in the cell is missed.
+// Relative to the origin, widened by more than the rounding between a hit and its cell, so that no ray with a point in
+// the cell is missed.
 struct Cube {
   vec3 low;
   float side;
   float slack;
-  float noise;  // no point of a hit that may come to lie in the cube is moved further along its ray
+  float noise;  // noise moves no hit that may end up in the cube further along its ray
 };
 
 vec3 high_of(Cube cube) { return cube.low + cube.side; }
 vec3 centre_of(Cube cube) { return cube.low + 0.5 * cube.side; }
-// Of no point of the cube is the station further away.
+// Upper bound on the distance from the station to points of the cube.
 float farthest_of(Cube cube) { return length(max(abs(cube.low), abs(high_of(cube)))); }
 
-// No point of a hit nearer than t is moved further than this: noise_reach.hpp's, on the device.
+// Upper bound on how far noise moves a hit nearer than t; counterpart of noise_reach.hpp.
 float reach_within(float t) {
   if (!GIVEN(parameters.reaches)) return 0.0;
   const float last = float(noise_table_side - 1u);
@@ -37,7 +37,7 @@ Cube cube_of(SampleVoxel voxel, vec3 origin) {
   return cube;
 }
 
-// Where the ray is inside the cube: from x to y, empty where x > y.
+// Interval of the ray inside the cube: from x to y, empty if x > y.
 vec2 passage(Cube cube, vec3 direction) {
   const vec3 safe = vec3(abs(direction.x) < 1e-12 ? 1e-12 : direction.x, abs(direction.y) < 1e-12 ? 1e-12 : direction.y,
                          abs(direction.z) < 1e-12 ? 1e-12 : direction.z);
@@ -46,7 +46,7 @@ vec2 passage(Cube cube, vec3 direction) {
   return vec2(max(max(near.x, near.y), near.z), min(min(far.x, far.y), far.z));
 }
 
-// A hit that is so far before a ray's passage through the cube puts no point there, noise and rounding and all.
+// A hit further than this before a ray's passage through the cube puts no point there, including noise and rounding.
 float reach_of(Cube cube) { return cube.noise + cube.slack; }
 
 #endif

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arithmetic that every device rounds alike: Vulkan allows slack in division and square root, but none in + and ×.
+// Arithmetic that every device rounds alike. Vulkan allows slack in division and square root, but none in + and ×.
 #ifndef VANTAGE_LIB_EXACT
 #define VANTAGE_LIB_EXACT
 
@@ -14,7 +14,7 @@ float exact_reciprocal(float x) {
   return y;
 }
 
-// 1 / √x likewise. REQUIRES: 2^-100 < x < 2^100.
+// 1 / √x, by the same method. REQUIRES: 2^-100 < x < 2^100.
 float exact_inverse_sqrt(float x) {
   precise float y = uintBitsToFloat(0x5F375A86u - (floatBitsToUint(x) >> 1));
   precise float half_x = 0.5 * x;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a point is worth having: by angle of incidence, footprint of the beam and range noise (docs/method.md). By
-// additions, multiplications and comparisons alone, so that every device decides alike.
+// Limits of a point: angle of incidence, footprint of the beam and range noise (docs/method.md). Only additions,
+// multiplications and comparisons, so that every device decides alike.
 #ifndef VANTAGE_LIB_LIMITS
 #define VANTAGE_LIB_LIMITS
 #include "lib/exact.glsl"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What all kernels are told about scene, pattern, voxels and noise. A uniform block, because drivers keep those at
-// hand: an array's address read from memory before every element would cost as much as the element.
+// Parameters of scene, pattern, voxels and noise, common to all kernels. A uniform block, which drivers keep at hand;
+// reading an array's address from memory before every element would cost as much as the element.
 #ifndef VANTAGE_LIB_PARAMETERS
 #define VANTAGE_LIB_PARAMETERS
 #include "lib/references.glsl"

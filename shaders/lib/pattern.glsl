@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Directions of the scan pattern, from tables that the host made in double.
+// Directions of the scan pattern, from tables that the host computed in double.
 #ifndef VANTAGE_LIB_PATTERN
 #define VANTAGE_LIB_PATTERN
 #include "lib/parameters.glsl"
 #include "lib/turn.glsl"
 
-// `turn`: the station's, read where it is turned.
+// `turn`: the station's; read if it is turned.
 vec3 ray_direction(uint row, uint column, vec3 turn[3]) {
   const float s = parameters.sin_zenith.at[row];
   precise vec3 d = vec3(s * parameters.cos_azimuth.at[column], s * parameters.sin_azimuth.at[column],
@@ -23,7 +23,7 @@ vec3 point_on_ray(vec3 origin, vec3 direction, float t) {
   return p;
 }
 
-// Places the rays of a workgroup in a block of 16 × 8 so that 8 in sequence form 4 × 2, 32 form 8 × 4: a subgroup's
+// Places a workgroup's rays in a block of 16 × 8: 8 in sequence form 4 × 2, and 32 form 8 × 4, so that a subgroup's
 // rays stay together.
 uvec2 place_in_block(uint i) {
   const uint column = (i & 3u) | ((i >> 3) & 1u) << 2 | ((i >> 5) & 1u) << 3;

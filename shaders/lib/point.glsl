@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a hit to the point that the scanner reports for it.
+// Turns a hit into the point that the scanner reports.
 #ifndef VANTAGE_LIB_POINT
 #define VANTAGE_LIB_POINT
 #include "lib/limits.glsl"
@@ -11,7 +11,7 @@ layout(constant_id = 0) const bool with_noise = false;
 layout(constant_id = 1) const bool with_limits = false;
 const bool with_look = with_noise || with_limits;
 
-// What a hit looks like from where the ray comes from.
+// Appearance of a hit as seen from the ray's origin.
 struct Look {
   vec3 normal;
   float reflectivity;
@@ -24,7 +24,7 @@ Look look_of(Hit hit, vec3 direction) {
   return Look(normal, reflectivity_of(triangle, normal, direction));
 }
 
-// The range that is measured. `look` is read where there is noise.
+// The measured range. `look` is read if there is noise.
 float range_of(Hit hit, Look look, uint64_t ray, uint place) {
   return with_noise ? noisy_range(hit.t, look.reflectivity, ray, place) : hit.t;
 }
@@ -33,8 +33,8 @@ vec3 point_of(Hit hit, Look look, vec3 origin, vec3 direction, uint64_t ray, uin
   return point_on_ray(origin, direction, range_of(hit, look, ray, place));
 }
 
-// The limits that a hit on a surveyed mesh misses, a bit each; its point counts where there are none. `look` is read
-// where there are limits.
+// Limits missed by a hit on a surveyed mesh, one bit each; its point counts if there are none. `look` is read if there
+// are limits.
 uint misses_of(Hit hit, Look look, vec3 direction) {
   return with_limits ? limits_missed(hit.id & ~surveyed_bit, look.normal, look.reflectivity, direction, hit.t) : 0u;
 }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which rays of the pattern pass a box: the inverse of the scan pattern.
+// Rays of the pattern that pass a box: the inverse of the scan pattern.
 #ifndef VANTAGE_LIB_RAYS_OF_BOX
 #define VANTAGE_LIB_RAYS_OF_BOX
 #include "lib/angles.glsl"
 #include "lib/parameters.glsl"
 
-// Rows [row0, row1] and up to two runs of columns: the second holds what lies beyond a full turn. Empty runs have
-// end < begin.
+// Rows [row0, row1] and up to two runs of columns; the second holds columns beyond a full turn. Empty runs have end <
+// begin.
 struct RayWindow {
   int row0, row1;
   int column0, column1;
@@ -39,7 +39,7 @@ RayWindow rays_of_box(vec3 low, vec3 high) {
 
   float start = 0.0, width = 2.0 * pi;
   if (least > 0.0) {
-    // Corners as seen from the direction of the nearest point, from where they all lie within a right angle.
+    // Corners relative to the direction of the nearest point, from which they all lie within a right angle.
     const vec2 axis = nearest;
     float lowest = pi, highest = -pi;
     for (int k = 0; k < 4; ++k) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arrays in device memory, reached by address.
+// Arrays in device memory, accessed by address.
 #ifndef VANTAGE_LIB_REFERENCES
 #define VANTAGE_LIB_REFERENCES
 #extension GL_EXT_buffer_reference : require
@@ -37,15 +37,15 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SampleItems 
 
 const uint brick_quarters = 5u;  // 16 bytes each, of a VoxelBrick
 
-// Whether an array is there at all; a macro, since glslang cannot overload on reference types.
+// Whether an array exists; a macro, since glslang cannot overload on reference types.
 #define GIVEN(array) (uint64_t(array) != 0ul)
 
-// The number of this thread in a dispatch whose groups lie in rows of groups_in_row.
+// Index of this thread in a dispatch whose groups lie in rows of groups_in_row.
 uint thread_of_rows() {
   return (gl_WorkGroupID.y * groups_in_row + gl_WorkGroupID.x) * group_size + gl_LocalInvocationIndex;
 }
 
-// Adds to a 64-bit sum kept as two words, low first. Commutes, so the sum does not depend on the order of the adders.
+// Adds to a 64-bit sum of two words, low first. Additions commute, so their order does not matter.
 void add64(Uints sums, uint low, uint value) {
   const uint before = atomicAdd(sums.at[low], value);
   if (before + value < before) atomicAdd(sums.at[low + 1], 1);

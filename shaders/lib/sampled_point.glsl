@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Traces a ray for a sampled voxel and counts its point. For kernels that have an engine's trace(), and `push`.
+// Traces a ray for a sampled voxel and counts its point. For kernels with an engine's trace() and `push`.
 #ifndef VANTAGE_LIB_SAMPLED_POINT
 #define VANTAGE_LIB_SAMPLED_POINT
 #include "lib/point.glsl"
@@ -8,14 +8,14 @@
 
 layout(constant_id = 2) const bool with_masks = true;
 
-// Up to the far side of the cube that the ray is in from range.x to range.y.
+// Traces up to the far side of the cube that the ray crosses from range.x to range.y.
 Hit trace_into(Cube cube, vec2 range, vec3 origin, vec3 direction) {
   const float reach = reach_of(cube);
   return trace(origin, direction, parameters.min_range, min(parameters.max_range, range.y + reach), range.x - reach,
                from_the_root);
 }
 
-// Whether the hit's point is in the voxel, and counts.
+// Whether the hit's point lies in the voxel and counts.
 bool is_point_of(SampleVoxel voxel, SampleStation station, Hit hit, vec3 direction, uint ray) {
   if (hit.id == no_primitive || (hit.id & surveyed_bit) == 0u) return false;
   Look look = unseen;
@@ -25,7 +25,7 @@ bool is_point_of(SampleVoxel voxel, SampleStation station, Hit hit, vec3 directi
   return cell_of(point, cell) && cell == uvec3(voxel.x, voxel.y, voxel.z) && misses_of(hit, look, direction) == 0u;
 }
 
-// Returns how many points the voxel has then, or a few more.
+// Returns the voxel's number of points after that, or a few more.
 uint count_point(SampleStation station, uint voxel) {
   const uint before = atomicAdd(push.counts.at[station.network * push.voxel_count + voxel], 1u);
   if (with_masks && !is_seen(station, voxel)) atomicOr(push.masks.at[mask_word(station, voxel)], mask_bit(station));

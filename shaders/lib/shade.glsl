@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a hit looks like to the scanner: normal, Lambertian reflectivity, and the noise that both lead to (Algorithm 1).
+// Appearance of a hit to the scanner: normal, Lambertian reflectivity, and the resulting noise (Algorithm 1).
 #ifndef VANTAGE_LIB_SHADE
 #define VANTAGE_LIB_SHADE
 #include "lib/exact.glsl"
@@ -14,7 +14,7 @@ vec3 unit_or(vec3 v, vec3 otherwise) {
   return n;
 }
 
-// Interpolated vertex normal, the triangle's own where the file has none; turned towards the scanner.
+// Interpolated vertex normal, or the triangle's own if the file has none; turned towards the scanner.
 vec3 oriented_normal(uint triangle, vec2 barycentric, vec3 direction) {
   const uint i = parameters.triangles.at[3u * triangle], j = parameters.triangles.at[3u * triangle + 1u],
              k = parameters.triangles.at[3u * triangle + 2u];
@@ -72,7 +72,7 @@ float sigma_at(float t, float reflectivity) {
   return sigma_in(parameters.sigma, parameters.noise_min_range, parameters.noise_inverse_span, t, reflectivity);
 }
 
-// Range with noise. Depends on nothing but seed, station, ray and hit.
+// Range with noise. Depends only on seed, station, ray and hit.
 float noisy_range(float t, float reflectivity, uint64_t ray, uint place) {
   const uint u = philox4x32(uvec2(parameters.seed_low, parameters.seed_high),
                             uvec4(uint(ray), uint(ray >> 32), place, noise_stream)).x;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The noise table's standard deviation of a range (Algorithm 1).
+// Standard deviation of a range, from the noise table (Algorithm 1).
 #ifndef VANTAGE_LIB_SIGMA
 #define VANTAGE_LIB_SIGMA
 #include "lib/references.glsl"

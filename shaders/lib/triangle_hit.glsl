@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a ray hits a triangle, and where, for engines that decide it themselves.
+// Ray-triangle intersection, for engines that decide it themselves.
 //
-// Hits depend on nothing but ray and triangles, to the bit, on every device and in every order of traversal:
-// - A triangle is hit when the ray passes inside or on its projection, in sheared coordinates
-//   (lib/sheared_triangle.glsl). Each vertex is sheared by itself, so neighbours agree about it; an edge test compares
-//   two rounded products, whose order is the exact one unless they are equal, and equal counts as inside for both. So
-//   no ray passes between two triangles that share an edge or a vertex.
+// Hits depend only on ray and triangles, to the bit, on every device and in every order of traversal:
+// - A ray hits a triangle if it passes inside or on its projection, in sheared coordinates (lib/sheared_triangle.glsl).
+//   Each vertex is sheared by itself, so neighbours agree about it. An edge test compares two rounded products, whose
+//   order is exact unless they are equal; equal counts as inside for both. So no ray passes between two triangles that
+//   share an edge or a vertex.
 // - Only +, − and × are used, uncontracted, so all devices round alike.
-// - The hit's t is clamped to what the triangle's own box, widened by more than all rounding, allows. Every box above
-//   holds that box and is widened more, so no box is culled that may hold the nearest hit; of equal hits the lower
-//   triangle number wins.
+// - The hit's t is clamped to the triangle's own box, widened by more than all rounding. Every box above contains that
+//   box and is widened more, so no box is culled that may hold the nearest hit. Among equal hits the lower triangle
+//   number wins.
 #ifndef VANTAGE_LIB_TRIANGLE_HIT
 #define VANTAGE_LIB_TRIANGLE_HIT
 #include "lib/sheared_triangle.glsl"
 #include "lib/widening.glsl"
 #include "trace/hit.glsl"
 
-// 1 / direction, with a small number for no component at all.
+// 1 / direction, with a small number in place of a component of 0.
 vec3 inverse_of(vec3 direction) {
   const vec3 size = abs(direction);
   precise vec3 safe = vec3(size.x < 1e-12 ? 1e-12 : direction.x, size.y < 1e-12 ? 1e-12 : direction.y,
@@ -38,7 +38,7 @@ SlabRay slab_ray(vec3 origin, vec3 inverse, float widening) {
   return SlabRay(inverse, low, high);
 }
 
-// The ray's way through the box [low, high]: from x to y.
+// Interval of the ray inside the box [low, high]: from x to y.
 vec2 passage_of(SlabRay ray, vec3 low, vec3 high) {
   precise vec3 a = low * ray.inverse - ray.low;
   precise vec3 b = high * ray.inverse - ray.high;
@@ -46,7 +46,7 @@ vec2 passage_of(SlabRay ray, vec3 low, vec3 high) {
   return vec2(max(max(near.x, near.y), near.z), min(min(far.x, far.y), far.z));
 }
 
-// Makes the triangle's hit the best one if it is. `inverse` of the direction that the shear is along; `widening` of the
+// Replaces the best hit by the triangle's, if that is better. `inverse`: of the shear's direction; `widening`: of the
 // origin.
 void meet_triangle(inout Hit best, float t_min, Shear shear, vec3 origin, vec3 inverse, float widening, vec3 a, vec3 b,
                    vec3 c, uint id) {
@@ -60,7 +60,7 @@ void meet_triangle(inout Hit best, float t_min, Shear shear, vec3 origin, vec3 i
     precise float t = z * shear.z;
     const vec2 way = passage_of(slab_ray(origin, inverse, widening), min(min(a, b), c), max(max(a, b), c));
     t = min(max(t, way.x), way.y);
-    // Of equal hits the lower triangle number wins; the surveyed bit is no part of the number.
+    // Among equal hits the lower triangle number wins; the surveyed bit is not part of the number.
     if (t >= t_min && (t < best.t || (t == best.t && (id & ~surveyed_bit) < (best.id & ~surveyed_bit))))
       best = Hit(t, id, weights.yz);
   }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stations whose scanner does not stand upright: directions of the pattern are turned, by the same products and sums on
-// every device.
+// Turned scanners: turns the pattern's directions by the same products and sums on every device.
 #ifndef VANTAGE_LIB_TURN
 #define VANTAGE_LIB_TURN
 #include "lib/exact.glsl"
@@ -11,8 +10,8 @@ vec3 turn_direction(vec3 turn[3], vec3 d) {
   return vec3(exact_dot(turn[0], d), exact_dot(turn[1], d), exact_dot(turn[2], d));
 }
 
-// Corners of a box around the scanner become those of one in its own frame that holds it, wider by more than a turned
-// direction is rounded by.
+// Replaces a box around the scanner by one in its own frame that contains it, wider by more than the rounding of a
+// turned direction.
 void turn_back(vec3 turn[3], inout vec3 low, inout vec3 high) {
   const vec3 middle = 0.5 * (low + high), half_size = 0.5 * (high - low);
   const vec3 reach = abs(middle) + half_size;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a point to the rank of its surveyed voxel: cell, brick by hash, bit in the brick's mask.
+// Finds the index of a point's surveyed voxel: cell, brick by hash, bit in the brick's mask.
 #ifndef VANTAGE_LIB_VOXEL
 #define VANTAGE_LIB_VOXEL
 #include "lib/parameters.glsl"
@@ -27,11 +27,11 @@ uint rank_of_cell(uvec3 cell) {
     }
     slot = (slot + 1u) & parameters.slot_mask;
   }
-  // Morton code within the brick: 3 bits a side.
+  // Morton code within the brick: 3 bits per side.
   const uvec3 m = cell & 7u;
   const uvec3 spread = (m & 1u) | (m & 2u) << 2 | (m & 4u) << 4;
   const uint code = spread.x | spread.y << 1 | spread.z << 2;
-  // The brick's 16 bytes of place and first rank, then four quarters of its mask.
+  // The brick's 16 bytes of position and first index, then four quarters of its mask.
   const uint brick = brick_quarters * slot, quarter = code >> 7, word = code >> 5 & 3u;
   const uvec4 bits = parameters.bricks.at[brick + 1u + quarter];
   const uint one = 1u << (code & 31u);

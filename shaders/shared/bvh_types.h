@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the engine compute_bvh keeps on the device.
+// Data of the engine compute_bvh on the device.
 #ifndef VANTAGE_SHARED_BVH_TYPES_H
 #define VANTAGE_SHARED_BVH_TYPES_H
 #include "host.h"
 
 VANTAGE_SHARED_BEGIN
 
-// Places in TraceParameters::traversal.
+// Indices into TraceParameters::traversal.
 VANTAGE_CONST uint bvh_nodes_array = 0;      // BvhNode
 VANTAGE_CONST uint bvh_triangles_array = 1;  // BvhTriangle
 
-// A binary BVH node: the boxes of both children, by centre and half size, which takes a ray fewer minima and maxima
-// than two corners do. A child is a node's index, or a leaf: bit 31, triangle count − 1 in bits 28–30, first triangle
-// in the rest. Boxes are larger by `widening` on all sides than what they hold.
+// A binary BVH node: boxes of both children, as centre and half size, which needs fewer minima and maxima per ray than
+// two corners. A child is a node's index, or a leaf: bit 31, triangle count − 1 in bits 28–30, first triangle in the
+// rest. Boxes are larger by `widening` on all sides than their contents.
 VANTAGE_CONST uint bvh_leaf_bit = 0x80000000u;
 VANTAGE_CONST uint bvh_leaf_count_shift = 28;
 VANTAGE_CONST uint bvh_leaf_first_mask = 0x0FFFFFFFu;
@@ -39,12 +39,12 @@ struct BvhTriangle {
   uint unused1;
 };
 
-// A node at which the rays of a tile may start, and how near its box is: infinity where there is none.
+// A node at which rays of a tile may start, and the distance of its box; infinity if there is none.
 struct TileStart {
   uint node;
   float near;
 };
-VANTAGE_CONST uint tile_starts = 24;  // of every tile, nearest first
+VANTAGE_CONST uint tile_starts = 24;  // per tile, nearest first
 
 VANTAGE_SHARED_END
 #endif

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lets C++ read the structs that the shaders use. Scalar layout: every member at its C++ offset, vec3 four-byte
-// aligned.
+// Lets C++ read the shaders' structs. Scalar layout: every member at its C++ offset, vec3 four-byte aligned.
 #ifndef VANTAGE_SHARED_HOST_H
 #define VANTAGE_SHARED_HOST_H
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Range noise on the device: the normal transform's table and the σ table (Algorithm 1).
+// Range noise on the device: table of the normal transform and σ table (Algorithm 1).
 #ifndef VANTAGE_SHARED_NOISE_TYPES_H
 #define VANTAGE_SHARED_NOISE_TYPES_H
 #include "host.h"

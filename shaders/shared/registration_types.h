@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the sums of the registration error are made of (docs/method.md, "Registration error").
+// Data for the sums behind the registration error (docs/method.md, "Registration error").
 #ifndef VANTAGE_SHARED_REGISTRATION_TYPES_H
 #define VANTAGE_SHARED_REGISTRATION_TYPES_H
 #include "trace_types.h"
 
 VANTAGE_SHARED_BEGIN
 
-// One voxel's plane.
+// Plane of one voxel.
 struct RegistrationPatch {
   vec3 point;  // local frame
   vec3 normal;
-  float rays;      // area / (Δh·Δv): rays of a free view, but for distance and obliquity
-  float least;     // so many of them, or the station has too few points to tell a plane from
-  float variance;  // m² of the modelling error, ρ²L²/A; 0: no plane to hold anything together by
+  float rays;      // area / (Δh·Δv): rays of a free view, before distance and obliquity
+  float least;     // fewest of them for a station that is to recognise a plane
+  float variance;  // m² of the modelling error, ρ²L²/A; 0: no plane to register by
   float diffuse;
   float extent;     // surface of the voxel as a share of a face, times 2^15
   int jacobian[6];  // [(p − c)/R × n, n] · patch_unit
@@ -20,14 +20,14 @@ struct RegistrationPatch {
 };
 VANTAGE_CONST uint pair_sums = 21;         // the upper triangle, row by row, of J Jᵀ
 VANTAGE_CONST uint station_sums = 10;      // moments 1, x, y, z, xx, xy, xz, yy, yz, zz
-VANTAGE_CONST float least_cosine = 0.01f;  // flatter, and it is open which side is seen
-// Above and below the head rays are no denser than at 3°.
+VANTAGE_CONST float least_cosine = 0.01f;  // below it, the visible side is uncertain
+// Above and below the head, rays are no denser than at 3°.
 VANTAGE_CONST float least_sin_zenith_squared = 0.0025f;
 
-VANTAGE_CONST uint register_voxels = 64;  // of a workgroup at a time
+VANTAGE_CONST uint register_voxels = 64;  // per workgroup at a time
 VANTAGE_CONST uint register_rounds = 64;
-VANTAGE_CONST uint register_pairs = 128;  // of a workgroup
-// Sums of many networks: 64 bits each, [network][sum], those of pairs first.
+VANTAGE_CONST uint register_pairs = 128;  // per workgroup
+// Sums of many networks: 64 bits each, [network][sum], pairs first.
 struct RegisterPush {
   VANTAGE_ADDRESS(RegistrationPatches) patches;
   VANTAGE_ADDRESS(Uints) masks;  // [network][word][voxel]
@@ -38,9 +38,9 @@ struct RegisterPush {
   uint voxel_count;
   uint mask_words;  // 1 or 2
   uint heads_stride;
-  uint sums_stride;    // sums a network
-  uint first_network;  // of masks' first
-  float units;         // of the scale that weights are rounded on
+  uint sums_stride;    // sums per network
+  uint first_network;  // first network of the masks
+  float units;         // units in which weights are rounded
   float noise_min_range;
   float noise_inverse_span;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the tracing kernels are told: one block of parameters for a scene, and a push-constant block for each kernel.
-// Shaders reach every array by its address. Scalar layout; addresses come first, so that C++ and GLSL pad alike.
+// Input of the tracing kernels: one parameter block per scene, and a push-constant block per kernel. Shaders access
+// every array by its address. Scalar layout; addresses come first, so that C++ and GLSL pad alike.
 #ifndef VANTAGE_SHARED_TRACE_TYPES_H
 #define VANTAGE_SHARED_TRACE_TYPES_H
 #include "host.h"
@@ -15,14 +15,14 @@
 
 VANTAGE_SHARED_BEGIN
 
-VANTAGE_CONST uint surveyed_bit = 0x80000000u;  // of a scene triangle's number: its mesh is surveyed
+VANTAGE_CONST uint surveyed_bit = 0x80000000u;  // bit of a scene triangle's number: its mesh is surveyed
 VANTAGE_CONST uint no_primitive = 0xFFFFFFFFu;
 VANTAGE_CONST uint no_rank = 0xFFFFFFFFu;
 
-VANTAGE_CONST uint group_size = 128;       // threads of a workgroup, but where a kernel says otherwise
+VANTAGE_CONST uint group_size = 128;       // threads of a workgroup, unless a kernel says otherwise
 VANTAGE_CONST uint groups_in_row = 32768;  // of a dispatch with many groups; the rest goes to y
 
-// A workgroup traces a block of neighbouring rays, a tile is a square of blocks.
+// A workgroup traces a block of neighbouring rays; a tile is a square of blocks.
 VANTAGE_CONST uint block_columns = 16;
 VANTAGE_CONST uint block_rows = 8;
 VANTAGE_CONST uint tile_side = 32;
@@ -33,13 +33,13 @@ VANTAGE_CONST uint traversal_arrays = 3;
 
 VANTAGE_CONST uint turned_constant = 4;  // constant_id of `turned` in lib/turn.glsl
 
-// What a point must be to count; 0: no limit. A mesh has one of these, those that ask for the same share it.
+// Limits that a point must meet to count; 0: no limit. Each mesh has one entry; equal ones are shared.
 struct PointLimits {
-  float least_cosine_square;       // of the angle between ray and normal
-  float largest_footprint_square;  // of the major axis of the beam on the surface, in metres squared
-  float largest_sigma;             // of the range, in metres
+  float least_cosine_square;       // angle between ray and normal
+  float largest_footprint_square;  // major axis of the beam on the surface, in metres squared
+  float largest_sigma;             // range, in metres
 };
-// A bit for each limit that a point misses.
+// One bit for each limit that a point misses.
 VANTAGE_CONST uint misses_incidence = 1;
 VANTAGE_CONST uint misses_footprint = 2;
 VANTAGE_CONST uint misses_noise = 4;
@@ -51,17 +51,17 @@ struct TraceParameters {
   VANTAGE_ADDRESS(Floats) cos_azimuth;
   VANTAGE_ADDRESS(BrickQuarters) bricks;  // VoxelBrick, 16 bytes at a time
   VANTAGE_ADDRESS(Slots) slots;
-  uint64_t traversal[traversal_arrays];  // addresses of what the engine's own trace() reads; it knows what they are
-  // For normals, reflectivity, noise and limits only; 0 where the run needs none.
+  uint64_t traversal[traversal_arrays];  // addresses of the inputs of the engine's own trace()
+  // For normals, reflectivity, noise and limits only; 0 if unused.
   VANTAGE_ADDRESS(Vec3s) positions;
   VANTAGE_ADDRESS(Vec3s) normals;     // 0: geometric normals
   VANTAGE_ADDRESS(Uints) triangles;   // three vertex numbers each
-  VANTAGE_ADDRESS(Uints) neighbours;  // three of each, as triangle_neighbours() has them; for watertight engines
+  VANTAGE_ADDRESS(Uints) neighbours;  // three per triangle, by triangle_neighbours(); for watertight engines
   VANTAGE_ADDRESS(Floats) diffuse;    // per scene triangle
   VANTAGE_ADDRESS(Floats) sigma;
-  VANTAGE_ADDRESS(Floats) reaches;  // of noise, as noise_reaches() has them; 0: no noise moves points
+  VANTAGE_ADDRESS(Floats) reaches;  // reach of noise, by noise_reaches(); 0: noise moves no points
   VANTAGE_ADDRESS(Vec4s) normal_table;
-  VANTAGE_ADDRESS(Uints) limits_of;  // per scene triangle: which of `limits`
+  VANTAGE_ADDRESS(Uints) limits_of;  // per scene triangle: index into `limits`
   VANTAGE_ADDRESS(Limits) limits;
   uint rows;
   uint columns;
@@ -89,8 +89,8 @@ struct TraceParameters {
   float divergence;     // full angle, in radians
 };
 
-// What is summed for each station, 64 bits each: points, those that count, and where points have limits those in a
-// surveyed voxel that miss some, and that miss each.
+// Sums per station, 64 bits each: all points; points that count; and, if points have limits, those in a surveyed voxel
+// that miss any limit, then those that miss each limit.
 VANTAGE_CONST uint counter_points = 0;
 VANTAGE_CONST uint counter_counted = 1;
 VANTAGE_CONST uint counter_dropped = 2;
@@ -104,22 +104,23 @@ struct CountPush {
   VANTAGE_ADDRESS(Uints) counters;  // [station][counter]
   VANTAGE_ADDRESS(Floats) tile_far;
   VANTAGE_ADDRESS(Uints) tile_list;  // number of tiles, then the tiles
-  uint64_t starts;                   // what the engine's pass left for each listed tile; 0: it has none
+  uint64_t starts;                   // output of the engine's pass for each listed tile; 0: no such pass
   vec3 origin;
   uint place;
   uint first_row;
   uint row_count;
-  vec3 turn[3];  // rows of the rotation from the scanner's frame; read where the station is turned
+  vec3 turn[3];  // rows of the rotation from the scanner's frame; read if the station is turned
   uint padding;
 };
 
-// Which tiles of directions see a surveyed brick, and how far the last one reaches.
+// Finds the tiles of directions that see a surveyed brick, and the distance of the farthest.
 struct TilePush {
-  VANTAGE_ADDRESS(Uints) tile_far;  // bits of a non-negative float, which order as the float does; 0: nothing to see
+  VANTAGE_ADDRESS(Uints) tile_far;  // bits of a non-negative float, which have the same order as the float; 0: nothing
+                                    // to see
   VANTAGE_ADDRESS(Uints) tile_list;
   VANTAGE_ADDRESS(Uints) dispatch;  // three words: an indirect dispatch
-  VANTAGE_ADDRESS(Uints) rays;      // rays of the listed tiles are added here, 64 bits
-  uint64_t starts;                  // room for what the engine's own pass leaves for each listed tile
+  VANTAGE_ADDRESS(Uints) rays;      // receives the rays of the listed tiles, 64 bits
+  uint64_t starts;                  // room for the output of the engine's own pass for each listed tile
   vec3 origin;
   uint first_row;
   uint row_count;
@@ -142,7 +143,8 @@ struct ScanPush {
   uint padding;
 };
 
-// Keeps counts from wrapping: no count exceeds count_limit after it, and a dispatch adds less than the rest.
+// Keeps counts from wrapping: afterwards no count exceeds count_limit, and a dispatch adds less than the remaining
+// range.
 VANTAGE_CONST uint count_limit = 0x80000000u;
 struct ClampPush {
   VANTAGE_ADDRESS(Uints) counts;
@@ -151,12 +153,14 @@ struct ClampPush {
 };
 
 // Reduction of counts and masks, of one network or many, in interleaved groups: voxel k is in group k % groups. Totals
-// of group g of network n start at word (n · groups + g) · totals_stride: weight of the saturated voxels (64 bits);
-// what the points of the others are worth, each times its voxel's weight (64 bits); three sums over successive voxels,
-// from which the host makes Σ (r(k) − r(k−1))² of r = min(worth / goal, 1) without rounding; then seen[stations]; then
-// shared[pairs]. With c = worth >> difference_shift where the voxel is not saturated: squares (64 bits) adds
-// (c(k) − c(k−1))² where neither voxel is saturated and c² where one is; edge_points (64 bits) adds c where one is;
-// edges counts those.
+// of group g of network n start at word (n · groups + g) · totals_stride:
+// - weight of the saturated voxels (64 bits);
+// - points of the others, each times its voxel's weight and point weight (64 bits);
+// - three sums over successive voxels, from which the host computes Σ (r(k) − r(k−1))² of r = min(worth / goal, 1)
+//   without rounding;
+// - seen[stations], then shared[pairs].
+// With c = worth >> difference_shift for a voxel that is not saturated: squares (64 bits) adds (c(k) − c(k−1))² if
+// neither voxel is saturated and c² if one is; edge_points (64 bits) adds c if one is; edges counts those.
 VANTAGE_CONST uint reduce_voxels = 256;  // voxels of a workgroup at a time
 VANTAGE_CONST uint reduce_rounds = 16;   // at most 32
 VANTAGE_CONST uint totals_saturated = 0;
@@ -170,9 +174,9 @@ struct ReducePush {
   VANTAGE_ADDRESS(Uints) masks;   // [network][word][voxel]
   VANTAGE_ADDRESS(Uints) totals;
   VANTAGE_ADDRESS(Uints) station_counts;  // per network
-  VANTAGE_ADDRESS(Uints) weights;         // of voxels, a byte each; 0: all weigh 1
-  VANTAGE_ADDRESS(Uints) worths;          // of a point in each voxel; 0: all are worth 1
-  uint64_t goal;                          // what points are worth that saturate a voxel
+  VANTAGE_ADDRESS(Uints) weights;         // of voxels, one byte each; 0: all weigh 1
+  VANTAGE_ADDRESS(Uints) worths;          // point weight in each voxel; 0: all are 1
+  uint64_t goal;                          // sum of point weights that saturates a voxel
   uint voxel_count;
   uint difference_shift;  // keeps the sum of squares within 64 bits
   uint mask_words;        // 0, 1 or 2
@@ -194,11 +198,11 @@ struct SampleStation {
   uint network;  // within the batch
   vec3 turn[3];
 };
-// A pair of slot and voxel of which one ray has been traced and others may still matter.
+// A pair of slot and voxel that is still open after its first ray was traced.
 struct SamplePair {
   uint voxel;  // within the sample
   uint slot;
-  uint probe;     // the traced ray; no_ray: none was worth it
+  uint probe;     // the traced ray; no_ray: none was worth tracing
   uint blocker;   // the triangle that stopped it before the voxel; not_blocked: none did
   int window[6];  // RayWindow, in its order
 };
@@ -208,20 +212,21 @@ struct SampleRay {
   uint pair;
   uint ray;
 };
-// Part of a pair's walk. Of a long walk the first part is traced before the others are listed, which may not be needed.
+// Part of a pair's walk. The first part of a long walk is traced before the others are listed, since they may not be
+// needed.
 struct SampleItem {
   uint pair;
   uint part;
 };
 VANTAGE_CONST uint sample_part = 64;  // steps
 // Control words of one chunk.
-VANTAGE_CONST uint control_pairs = 0;     // open when probed: where there is no room, the chunk must be cut
-VANTAGE_CONST uint control_probed = 1;    // rays traced for that
-VANTAGE_CONST uint control_rays = 2;      // listed at first, or wanted; likewise
-VANTAGE_CONST uint control_parts = 3;     // that come later; likewise
+VANTAGE_CONST uint control_pairs = 0;     // open after the probe; if there is no room, the chunk must be cut
+VANTAGE_CONST uint control_probed = 1;    // rays traced by the probe
+VANTAGE_CONST uint control_rays = 2;      // listed at first, or wanted; cut if there is no room
+VANTAGE_CONST uint control_parts = 3;     // to be listed later; cut if there is no room
 VANTAGE_CONST uint control_sights = 4;    // pairs with such parts
-VANTAGE_CONST uint control_items = 5;     // parts that are looked at
-VANTAGE_CONST uint control_rest = 6;      // rays listed of these; where there is no room, they must come again
+VANTAGE_CONST uint control_items = 5;     // parts in work
+VANTAGE_CONST uint control_rest = 6;      // rays listed for them; if there is no room, they must be repeated
 VANTAGE_CONST uint control_dispatch = 7;  // three words
 VANTAGE_CONST uint control_words = 10;
 
@@ -229,11 +234,11 @@ VANTAGE_CONST uint control_words = 10;
 struct SampleProbePush {
   VANTAGE_ADDRESS(SampleVoxels) voxels;
   VANTAGE_ADDRESS(SampleStations) stations;
-  VANTAGE_ADDRESS(SamplePairs) pairs;  // open ones are listed here
+  VANTAGE_ADDRESS(SamplePairs) pairs;  // receives the open pairs
   VANTAGE_ADDRESS(Uints) control;
   VANTAGE_ADDRESS(Uints) counts;     // [network][voxel]
   VANTAGE_ADDRESS(Uints) masks;      // [network][word][voxel]
-  VANTAGE_ADDRESS(Uints) slot_rays;  // 64 bits a slot
+  VANTAGE_ADDRESS(Uints) slot_rays;  // 64 bits per slot
   uint voxel_count;                  // of the sample
   uint first_voxel;
   uint end_voxel;
@@ -241,10 +246,10 @@ struct SampleProbePush {
   uint end_slot;
   uint mask_words;
   uint stop_at;  // points at which a voxel needs no more; 0: never
-  uint probed;   // 1: these pairs have been probed before, so that what is found has been counted
+  uint probed;   // 1: these pairs were probed before, so their results are already counted
   uint pair_capacity;
 };
-// All others.
+// The other kernels of a chunk.
 struct SamplePush {
   VANTAGE_ADDRESS(SampleVoxels) voxels;
   VANTAGE_ADDRESS(SampleStations) stations;
@@ -255,20 +260,20 @@ struct SamplePush {
   VANTAGE_ADDRESS(Uints) control;
   VANTAGE_ADDRESS(Uints) counts;     // [network][voxel]
   VANTAGE_ADDRESS(Uints) masks;      // [network][word][voxel]
-  VANTAGE_ADDRESS(Uints) slot_rays;  // 64 bits a slot
+  VANTAGE_ADDRESS(Uints) slot_rays;  // 64 bits per slot
   uint voxel_count;                  // of the sample
-  uint first_part;                   // of walks, those of the chunk
+  uint first_part;                   // part of walks covered by the chunk
   uint end_part;
   uint ray_capacity;
   uint item_capacity;
   uint mask_words;
   uint stop_at;       // points at which a voxel needs no more; 0: never
   uint list;          // control_rays or control_rest
-  uint first_traced;  // 1: all that is listed at first has been traced before
+  uint first_traced;  // 1: everything listed at first was traced before
   uint padding;
 };
 
-// Sizes a dispatch over what control word `over` counts.
+// Sizes a dispatch from control word `over`.
 struct SampleArgumentsPush {
   VANTAGE_ADDRESS(Uints) control;
   uint over;

@@ -6,19 +6,19 @@
 
 VANTAGE_SHARED_BEGIN
 
-VANTAGE_CONST uint brick_bits = 3;            // a brick is 2^3 voxels a side
+VANTAGE_CONST uint brick_bits = 3;            // a brick has 2^3 voxels per side
 VANTAGE_CONST uint brick_mask_words = 16;     // 512 bits
 VANTAGE_CONST uint empty_slot = 0xFFFFFFFFu;  // BrickSlot::brick of an empty slot
 
-// Bit m of the mask (word m / 32, bit m % 32) is the voxel whose Morton code within the brick is m.
-// Rank of a voxel = first + number of set bits below it; a voxel's rank is its place in Morton order.
+// Bit m of the mask (word m / 32, bit m % 32) is the voxel whose Morton code within the brick is m. Index of a voxel =
+// first + number of set bits below it, which is its position in Morton order.
 struct VoxelBrick {
   uint x, y, z;  // brick coordinates: voxel coordinates / 8
   uint first;
   uint mask[brick_mask_words];
 };
 
-// A brick's first slot is brick_hash(x, y, z) & (slot count − 1); on a clash the next one, cyclically.
+// A brick's first slot is brick_hash(x, y, z) & (slot count − 1); on a collision the next one, cyclically.
 struct BrickSlot {
   uint x, y, z;
   uint brick;  // index into the bricks, or empty_slot

@@ -6,7 +6,7 @@
 
 namespace vantage {
 
-// Counts of points stay at the most that they can hold.
+// Saturating addition of point counts.
 inline void add_saturating(std::uint32_t& sum, std::uint32_t points) {
   constexpr std::uint32_t most = std::numeric_limits<std::uint32_t>::max();
   sum = points > most - sum ? most : sum + points;

@@ -25,7 +25,7 @@ std::string temporary_prefix(const std::filesystem::path& file) {
 constexpr std::string_view kSuffix = ".partial";
 constexpr std::size_t kBuffer = std::size_t{1} << 20;
 
-// `offset` < 0: where the file stands. False with errno where not all could be written.
+// `offset` < 0: the current position. Returns false, with errno, if not all could be written.
 bool write_all(int descriptor, const char* data, std::size_t bytes, off_t offset = -1) {
   while (bytes > 0) {
     const ssize_t n = offset < 0 ? ::write(descriptor, data, bytes) : ::pwrite(descriptor, data, bytes, offset);
@@ -40,7 +40,7 @@ bool write_all(int descriptor, const char* data, std::size_t bytes, off_t offset
   return true;
 }
 
-// Whether nobody has it open any more: who writes one holds a lock on it.
+// Whether no process writes the file any more: a writer holds a lock on it.
 bool abandoned(const std::filesystem::path& temporary) {
   const int descriptor = ::open(temporary.c_str(), O_RDWR | O_CLOEXEC);
   if (descriptor < 0) return false;
@@ -71,7 +71,7 @@ AtomicFile::AtomicFile(std::filesystem::path file) : file_(std::move(file)) {
   if (descriptor_ < 0)
     throw Error(Errc::io,
                 "cannot write " + file_.string() + ": " + reason(errno) + " (does its folder exist, is it writable?)");
-  ::flock(descriptor_, LOCK_EX | LOCK_NB);  // a file system that knows no locks loses only who cleans up
+  ::flock(descriptor_, LOCK_EX | LOCK_NB);  // a file system without locks only loses the clean-up
 }
 
 AtomicFile::~AtomicFile() {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A file that appears whole or not at all: written beside its name, renamed at commit().
+// A file that appears whole or not at all: written to a temporary beside it, renamed by commit().
 #pragma once
 
 #include <cstddef>
@@ -15,21 +15,21 @@ class AtomicFile {
   explicit AtomicFile(std::filesystem::path file);
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
-  ~AtomicFile();  // Without commit() nothing is left.
+  ~AtomicFile();  // Without commit() nothing remains.
 
   void write(const void* data, std::size_t bytes);
   void write(std::string_view text) { write(text.data(), text.size()); }
-  // Overwrites bytes that were written before; the next write() goes on at the end.
+  // Overwrites bytes written before; the next write() continues at the end.
   void patch(std::size_t offset, const void* data, std::size_t bytes);
-  // Brings all to the disk: of commit() only the new name is left to do. Throws Error io.
+  // Flushes everything to the disk; commit() then only renames. Throws Error io.
   void settle();
-  // Brings all to the disk and gives the file its name. Throws Error io.
+  // Flushes everything to the disk and renames the file. Throws Error io.
   void commit();
   const std::filesystem::path& path() const { return file_; }
 
-  // Removes temporaries of `file` that a killed process left behind; those of a process at work are locked, and stay.
+  // Removes temporaries of `file` left by a killed process. Running processes lock theirs, which stay.
   static void remove_leftovers(const std::filesystem::path& file);
-  // The same of all files in a folder.
+  // The same for all files of a folder.
   static void remove_leftovers_in(const std::filesystem::path& folder);
 
  private:

@@ -17,7 +17,7 @@ std::string plain(std::string_view text) {
 
 std::size_t edit_distance(std::string_view first, std::string_view second) {
   const std::string a = plain(first), b = plain(second);
-  // rows i − 2, i − 1 and i of the table of distances between the first i and the first j letters
+  // rows i − 2, i − 1 and i of the distances between the first i and the first j letters
   std::vector<std::size_t> before(b.size() + 1), above(b.size() + 1), row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
   for (std::size_t i = 1; i <= a.size(); ++i) {
@@ -35,13 +35,13 @@ std::size_t edit_distance(std::string_view first, std::string_view second) {
 std::string closest_name(std::string_view typed, std::span<const std::string> names) {
   const std::string wanted = plain(typed);
   std::string nearest;
-  double least = 1;  // of the largest distance that is near
+  double least = 1;  // as a share of the largest distance that counts as near
   for (const std::string& name : names) {
     const std::string known = plain(name);
     const auto longer = std::max(wanted.size(), known.size());
     double distance =
         static_cast<double>(edit_distance(wanted, known)) / std::max(1.0, static_cast<double>(longer / 3));
-    // half of a name is no mistake of spelling: it goes behind a slip, and before a name that is two thirds right
+    // half of a name is no misspelling: it ranks after a slip, and before a name that is two thirds right
     constexpr double kHalf = 0.6;
     if (wanted.size() >= 3 && (known.starts_with(wanted) || known.ends_with(wanted)))
       distance = std::min(distance, kHalf);

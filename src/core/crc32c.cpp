@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::uint32_t kPolynomial = 0x82F63B78;  // bits reversed: the lowest bit is the highest power
 
-// Row k: what a byte that k more bytes follow adds to the remainder.
+// Row k: contribution to the remainder of a byte followed by k more bytes.
 constexpr std::array<std::array<std::uint32_t, 256>, 8> remainders() {
   std::array<std::array<std::uint32_t, 256>, 8> table{};
   for (std::uint32_t byte = 0; byte < 256; ++byte) {

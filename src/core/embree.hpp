@@ -32,7 +32,7 @@ using Device = std::unique_ptr<std::remove_pointer_t<RTCDevice>, Release>;
 using Scene = std::unique_ptr<std::remove_pointer_t<RTCScene>, Release>;
 using Geometry = std::unique_ptr<std::remove_pointer_t<RTCGeometry>, Release>;
 
-// Throws the device's pending error, if it has one; a null device asks for the error of a failed rtcNewDevice.
+// Throws the device's pending error, if any. A null device reports the error of a failed rtcNewDevice.
 inline void check(RTCDevice device, const std::string& doing) {
   const RTCError error = rtcGetDeviceError(device);
   if (error == RTC_ERROR_NONE) return;
@@ -43,15 +43,15 @@ inline void check(RTCDevice device, const std::string& doing) {
               "Embree failed while " + doing + " (error " + std::to_string(static_cast<int>(error)) + ")");
 }
 
-// The instruction set that Embree is held to, and why: so that every x86-64 processor with AVX2 runs the same code of
-// Embree, whatever else it has. One without takes the best that it has. The environment variable VANTAGE_EMBREE_ISA
-// (sse2, sse4.2, avx, avx2, avx512) forces another, for tests and measurements.
+// Limits Embree's instruction set to AVX2, so that every x86-64 processor with AVX2 runs the same code of Embree.
+// Processors without AVX2 use the best they have. The environment variable VANTAGE_EMBREE_ISA (sse2, sse4.2, avx, avx2,
+// avx512) forces another, for tests and measurements.
 inline std::string device_config() {
   const char* const forced = std::getenv("VANTAGE_EMBREE_ISA");
   return forced && *forced ? "isa=" + std::string(forced) : "max_isa=avx2";
 }
 
-// What of that concerns whoever compares results, in a line.
+// One line about the instruction set, for comparing results.
 inline std::string told() {
   if (const char* const forced = std::getenv("VANTAGE_EMBREE_ISA"); forced && *forced)
     return "runs on every CPU; held to " + std::string(forced) + " by VANTAGE_EMBREE_ISA";

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdio>
 #include <fstream>
+#include <limits>
 
 namespace vantage {
 namespace {
@@ -13,7 +14,7 @@ std::optional<std::uint64_t> number_in(const char* file) {
   std::ifstream in(file);
   std::uint64_t bytes = 0;
   if (in >> bytes) return bytes;
-  return std::nullopt;  // not there, or "max"
+  return std::nullopt;  // missing, or "max"
 }
 
 std::optional<std::uint64_t> available() {
@@ -34,6 +35,12 @@ std::optional<std::uint64_t> free_memory() {
     free = free ? std::min(*free, left) : left;
   }
   return free;
+}
+
+std::uint64_t memory_limit(std::uint64_t max_memory_bytes) {
+  if (max_memory_bytes > 0) return max_memory_bytes;
+  const auto free = free_memory();
+  return free ? *free / 2 : std::numeric_limits<std::uint64_t>::max();
 }
 
 std::string bytes_text(std::uint64_t bytes) {

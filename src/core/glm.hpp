@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// GLM, with one set of settings: no other file includes it. Public headers show Vec3 instead; to_glm and to_vec3 lead
-// over.
+// GLM with one set of settings; no other file includes it. Public headers use Vec3 instead, converted by to_glm and
+// to_vec3.
 //
-// Results are compared bit for bit, so it matters how GLM rounds: dot, cross, length and a 3 × 3 matrix times a vector
-// sum from x to z, each product rounded; normalize multiplies by 1 / length. A dmat4 times a vector sums in pairs,
-// hence points go through a transform by transformed(). mix(a, b, t) is a·(1 − t) + b·t, which is not a + (b − a)·t.
+// Results are compared bit for bit, so GLM's rounding matters. dot, cross, length and a 3 × 3 matrix times a vector sum
+// from x to z, each product rounded; normalize multiplies by 1 / length. A dmat4 times a vector sums in pairs, so
+// points are transformed by transformed(). mix(a, b, t) is a·(1 − t) + b·t, not a + (b − a)·t.
 #pragma once
 
 #ifdef GLM_VERSION
@@ -12,7 +12,7 @@
 #endif
 #define GLM_FORCE_PURE           // no intrinsics, which sum in another order
 #define GLM_FORCE_XYZW_ONLY      // plain members x, y, z, w
-#define GLM_FORCE_EXPLICIT_CTOR  // nothing is rounded from double to float unasked
+#define GLM_FORCE_EXPLICIT_CTOR  // no implicit rounding from double to float
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -31,7 +31,7 @@ namespace vantage {
 inline glm::dvec3 to_glm(const Vec3& v) { return {v.x, v.y, v.z}; }
 inline Vec3 to_vec3(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
-// A point through an affine transform.
+// Applies an affine transform to a point.
 inline glm::dvec3 transformed(const glm::dmat4& b_from_a, const glm::dvec3& a) {
   return glm::dmat3(b_from_a) * a + glm::dvec3(b_from_a[3]);
 }

@@ -9,8 +9,8 @@
 namespace vantage {
 namespace {
 
-// Largest quotient of the continued fraction of step / population, 0 where they have a common divisor. The smaller it
-// is, the more even the walk at its worst size; the golden section itself has only ones.
+// Largest quotient of the continued fraction of step / population; 0 if they have a common divisor. The smaller it is,
+// the more even the walk at its worst size; the golden section has only ones.
 std::uint64_t largest_quotient(std::uint64_t step, std::uint64_t population) {
   std::uint64_t largest = 0;
   while (step > 0) {
@@ -25,7 +25,7 @@ std::uint64_t largest_quotient(std::uint64_t step, std::uint64_t population) {
 std::uint64_t golden_step(std::uint64_t population) {
   constexpr std::uint64_t search = 1000;
   const auto nearest = static_cast<std::uint64_t>(std::llround(static_cast<double>(population) / std::numbers::phi));
-  std::uint64_t best = 1, best_quotient = population;  // a step of 1 is a walk, if no even one
+  std::uint64_t best = 1, best_quotient = population;  // a step of 1 always walks, though not evenly
   const auto consider = [&](std::uint64_t step) {
     const std::uint64_t quotient = largest_quotient(step, population);
     if (quotient > 0 && quotient < best_quotient) {

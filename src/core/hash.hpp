@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A hash to recognise data by (multiply and xor-shift): quick, stable between runs, not cryptographic.
+// A hash to recognise data (multiply and xor-shift): fast, stable between runs, not cryptographic.
 #pragma once
 
 #include <cstdint>

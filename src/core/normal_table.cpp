@@ -13,7 +13,7 @@ double upper_tail(double z) { return 0.5 * std::erfc(z / std::numbers::sqrt2); }
 
 double density(double z) { return std::exp(-0.5 * z * z) / std::sqrt(2 * std::numbers::pi); }
 
-// Where a cubic over f in [0, 1] takes the given values at 0, ⅓, ⅔ and 1.
+// Coefficients of the cubic with the given values at 0, ⅓, ⅔ and 1.
 std::array<double, 4> cubic_through(const std::array<double, 4>& y) {
   const double d1 = y[1] - y[0], d2 = y[2] - y[0], d3 = y[3] - y[0];
   return {y[0], 9 * d1 - 4.5 * d2 + d3, -22.5 * d1 + 18 * d2 - 4.5 * d3, 13.5 * d1 - 13.5 * d2 + 4.5 * d3};
@@ -22,8 +22,7 @@ std::array<double, 4> cubic_through(const std::array<double, 4>& y) {
 std::vector<float> make_table() {
   const auto quantile_of = [](double m) { return truncated_normal_quantile((m + 0.5) * 0x1p-32); };
   const std::uint32_t segments = normal_octaves * normal_segments;
-  // Both ends of every cubic are floats already, shared with the neighbour: no step down at a joint, however c0 was
-  // rounded.
+  // Both ends of every cubic are floats shared with the neighbour, so rounding of c0 makes no step at a joint.
   std::vector<float> joints(segments + 1);
   const auto start_of = [](std::uint32_t row) {
     return std::ldexp(1.0 + static_cast<double>(row % normal_segments) / normal_segments,
@@ -51,8 +50,7 @@ std::vector<float> make_table() {
 double truncated_normal_quantile(double p) {
   const double beyond = upper_tail(normal_limit);
   const double q = beyond + p * (1 - 2 * beyond);
-  // Newton on log Q(z) = log q: concave and falling, so from 0 it overshoots once and then comes down to the root
-  // without fail.
+  // Newton on log Q(z) = log q: concave and falling, so from 0 it overshoots once and then converges to the root.
   double z = 0;
   for (int i = 0; i < 60; ++i) {
     const double tail = upper_tail(z);

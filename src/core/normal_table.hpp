@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The standard normal of the range noise, truncated at ±5: a table of cubics that turns 32 random bits into a number
+// The standard normal of the range noise, truncated at ±5: a table of cubics that turns 32 random bits into a number,
 // with multiplications and additions only. shaders/shared/noise_types.h defines it; shaders evaluate the same rows.
 #pragma once
 

@@ -7,7 +7,7 @@
 
 namespace vantage {
 
-// Progress of one of several parts of a work that take about as long each. Keeps a reference to `whole`.
+// Progress of one of several parts that take about equally long. Keeps a reference to `whole`.
 inline Progress part_of(const Progress& whole, std::size_t part, std::size_t parts) {
   return {.report = [&whole, part,
                      parts](double done) { whole((static_cast<double>(part) + done) / static_cast<double>(parts)); },

@@ -21,8 +21,8 @@ constexpr std::array<std::uint32_t, 4> philox4x32(std::uint64_t key, std::array<
   return c;
 }
 
-// A stream of numbers from Philox blocks, for code that draws one after the other. Its state is two integers, so it
-// checkpoints.
+// A stream of numbers from Philox blocks, for code that draws sequentially. Its state is two integers, so it can be
+// saved.
 class RandomStream {
  public:
   explicit RandomStream(std::uint64_t seed, std::uint64_t stream = 0) : seed_(seed), stream_(stream) {}
@@ -37,7 +37,7 @@ class RandomStream {
     const std::uint64_t high = bits() >> 5, low = bits() >> 6;
     return static_cast<double>((high << 26) | low) * 0x1p-53;
   }
-  double normal();  // Box–Muller, one of the pair; so the state stays one counter
+  double normal();  // Box–Muller, one of the pair, so that the state stays one counter
   std::uint64_t count() const { return count_; }
   void seek(std::uint64_t count) { count_ = count; }
 

@@ -8,14 +8,14 @@
 
 namespace vantage {
 
-// The few of something dear to make that were used last: whoever takes turns with them makes each once.
+// Least-recently-used cache of a few expensive objects.
 template <class T>
 class Recent {
  public:
   static constexpr std::size_t most = 4;
 
-  // The one that fits, or else a new one in the place of that which was not used for longest. Valid until `most` others
-  // were made.
+  // Returns the object that fits, or makes one in place of the least recently used. Valid until `most` others were
+  // made.
   template <class Fits, class Make>
   T& get(const Fits& fits, const Make& make) {
     auto found = std::find_if(kept_.begin(), kept_.end(), [&](const std::unique_ptr<T>& one) { return fits(*one); });
@@ -29,7 +29,7 @@ class Recent {
   }
 
  private:
-  std::vector<std::unique_ptr<T>> kept_;  // the latest first
+  std::vector<std::unique_ptr<T>> kept_;  // latest first
 };
 
 }  // namespace vantage

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes the list of settings of a struct, a line a field.
+// Makes the list of settings of a struct, one line per field.
 #pragma once
 
 #include <nlohmann/json.hpp>

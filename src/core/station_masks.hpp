@@ -8,8 +8,8 @@
 
 namespace vantage {
 
-// Tells each station that has a point in a voxel, ascending. `masks`: as in `VoxelField`, words of 64 stations for each
-// of so many voxels, one word of all of them after the other.
+// Visits each station with a point in a voxel, ascending. `masks`: as in `VoxelField`, words of 64 stations for each of
+// `voxels` voxels, one word of all of them after another.
 template <class Visit>
 void for_each_station(std::span<const std::uint64_t> masks, std::size_t voxels, std::size_t voxel, const Visit& visit) {
   for (std::size_t at = voxel, first = 0; at < masks.size(); at += voxels, first += 64)

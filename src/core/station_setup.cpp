@@ -6,7 +6,7 @@
 namespace vantage {
 namespace {
 
-// What π/2 in double leaves of a cosine that should be 0.
+// Removes the remainder of a cosine that should be 0, from π/2 in double.
 double without_rounding(double value) { return std::abs(value) < 1e-15 ? 0 : value; }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// VANTAGE_TARGET_CLONES before a function: compiled for the baseline and for AVX2 (with population count), chosen when
-// the program starts. Both round alike, since contraction is off. Sanitizers start after that choice, so with them
-// there is the baseline alone.
+// VANTAGE_TARGET_CLONES before a function compiles it for the baseline and for AVX2 (with population count), chosen at
+// program start. Both round alike, since contraction is off. Sanitizers start after that choice, so they get the
+// baseline alone.
 #pragma once
 
 #if defined(__x86_64__) && defined(__gnu_linux__) && !defined(__SANITIZE_THREAD__) && \

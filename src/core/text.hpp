@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers as text that reads back to the same bits, whatever the locale.
+// Numbers as text that reads back to the same bits, in any locale.
 #pragma once
 
 #include <charconv>
@@ -15,7 +15,7 @@ inline std::string number(double value) {
 }
 inline std::string number(std::integral auto value) { return std::to_string(value); }
 
-// With so many digits after the point, for people.
+// With `digits` digits after the point, for people.
 inline std::string fixed(double value, int digits) {
   char buffer[400];
   return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::fixed, digits).ptr};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Clustering of weighted graphs as in equation 13: Zhang, Horvath, A General Framework for Weighted Gene Co-Expression
+// Clustering of weighted graphs (equation 13): Zhang, Horvath, A General Framework for Weighted Gene Co-Expression
 // Network Analysis, 2005.
 #include <tbb/parallel_for.h>
 
@@ -13,8 +13,8 @@
 namespace vantage {
 namespace {
 
-// Of one station: the weights of its pairs of neighbours, and of those pairs that are linked, over j < k. Both sums of
-// equation 13 hold each pair twice.
+// Sums for one station over j < k: weights of its pairs of neighbours, and of linked pairs. Both sums of equation 13
+// hold each pair twice.
 struct LinkSums {
   double pairs = 0, triangles = 0;
   double share() const { return pairs > 0 ? triangles / pairs : 0; }
@@ -35,11 +35,11 @@ LinkSums link_sums(const std::vector<double>& w, std::size_t n, std::size_t i) {
   return sums;
 }
 
-// Larger networks than the objectives of a search have take the sums of some stations at once, so that a row is read
-// once for all of them, and of each by k, side by side: 1024 stations have 178 million triples.
+// Networks above kNarrow stations, more than a search has, sum kAtOnce stations at once, so that a row is read once for
+// all of them, vectorised over k. 1024 stations have 178 million triples.
 constexpr std::size_t kNarrow = 64, kAtOnce = 8;
 
-// linked[b][k] = Σ_j<k w_ij w_jk of the stations i = first + b.
+// linked[b][k] = Σ_j<k w_ij w_jk for stations i = first + b.
 VANTAGE_TARGET_CLONES
 void add_links(const double* w, std::size_t n, std::size_t first, std::size_t stations, double* linked) {
   for (std::size_t j = 0; j + 1 < n; ++j) {
@@ -77,8 +77,8 @@ double clustering_coefficient(const OverlapMatrix& overlap) {
   }
   if (largest == 0) return 0;
 
-  // With weights w = Overlap / max the factor 1/max of equation 13 is already in the quotient, and no sum can leave the
-  // range of doubles.
+  // With weights w = Overlap / max, the quotient includes the factor 1/max of equation 13, and no sum exceeds the range
+  // of doubles.
   std::vector<double> w(n * n);
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = 0; j < n; ++j) w[i * n + j] = overlap(i, j) / largest;

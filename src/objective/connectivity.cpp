@@ -14,7 +14,7 @@ Connectivity connectivity(const OverlapMatrix& overlap, double min_overlap) {
   };
   Connectivity result;
   result.part.assign(n, 0);
-  std::vector<std::size_t> order(n, 0), low(n, 0);  // 0: not yet seen
+  std::vector<std::size_t> order(n, 0), low(n, 0);  // 0: not visited yet
   std::size_t counter = 0;
   const std::function<void(std::size_t, std::size_t)> visit = [&](std::size_t i, std::size_t parent) {
     order[i] = low[i] = ++counter;
@@ -35,7 +35,7 @@ Connectivity connectivity(const OverlapMatrix& overlap, double min_overlap) {
   }
   std::sort(result.bridges.begin(), result.bridges.end());
 
-  // The weakest link of the strongest spanning tree: what the whole network hangs by (Prim).
+  // Weakest link of the strongest spanning tree (Prim), on which the whole network depends.
   if (result.parts == 1 && n > 1) {
     std::vector<double> best(n, -1);
     std::vector<bool> done(n, false);

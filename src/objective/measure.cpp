@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Coverage and overlap of section 4.5 from exact integer counts.
+// Coverage and overlap (section 4.5) from exact integer counts.
 #include "vantage/measure.hpp"
 
 #include <algorithm>
@@ -10,7 +10,7 @@ double coverage(const NetworkCounts& counts, double goal_density) {
   if (counts.weight == 0) return 0;
   const double filled = static_cast<double>(counts.saturated) +
                         static_cast<double>(counts.partial_points) / (goal_density * counts.point_worth);
-  return std::min(filled / static_cast<double>(counts.weight), 1.0);  // rounding may pass 1 in the last place
+  return std::min(filled / static_cast<double>(counts.weight), 1.0);  // rounding may exceed 1 in the last place
 }
 
 OverlapMatrix overlap_matrix(const NetworkCounts& counts) {

@@ -99,7 +99,7 @@ Requirement make_requirement(std::string_view text, const ObjectiveSettings& set
 }
 
 std::size_t station_count_from_alpha(double alpha, std::size_t n_min, std::size_t n_max) {
-  if (!(alpha > 0) || n_max <= n_min) return n_min;  // NaN too
+  if (!(alpha > 0) || n_max <= n_min) return n_min;  // also for NaN
   if (alpha >= 1) return n_max;
   const double extra = alpha * static_cast<double>(n_max - n_min);
   const double whole = std::floor(extra);

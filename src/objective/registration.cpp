@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Covariance of a network that is registered plane against plane. Point-to-plane information: Gelfand, Ikemoto,
-// Rusinkiewicz, Levoy, Geometrically Stable Sampling for the ICP Algorithm, 2003; Censi, An accurate closed-form
-// estimate of ICP's covariance, 2007.
+// Covariance of a network registered plane against plane. Point-to-plane information: Gelfand, Ikemoto, Rusinkiewicz,
+// Levoy, Geometrically Stable Sampling for the ICP Algorithm, 2003; Censi, An accurate closed-form estimate of ICP's
+// covariance, 2007.
 //
-// Unknowns of a station: x = [turn · scale, shift], so that a point at q (in units of scale, from the centre of the
-// covered surface) moves by shift + turn · scale × q. Rotations in the scale of the surface and coordinates from its
-// centre keep the matrix well conditioned wherever on Earth the site lies.
+// Unknowns of a station are x = [turn · scale, shift]: a point at q (in units of scale, from the centre of the covered
+// surface) moves by shift + turn · scale × q. With rotations in the scale of the surface and coordinates from its
+// centre, the matrix is well conditioned wherever on Earth the site lies.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -26,7 +26,7 @@ using Matrix6d = Eigen::Matrix<double, 6, 6>;
 using Matrix36d = Eigen::Matrix<double, 3, 6>;
 
 constexpr std::size_t of_pair = RegistrationSums::of_pair, of_station = RegistrationSums::of_station;
-constexpr double least_scale_m = 1;  // rotations of what is smaller are measured against a metre
+constexpr double least_scale_m = 1;  // least scale of rotations, for tiny surfaces
 
 Vector3d to_eigen(const Vec3& v) { return {v.x, v.y, v.z}; }
 
@@ -36,7 +36,7 @@ Matrix3d cross_matrix(const Vector3d& v) {
   return m;
 }
 
-// Displacement at q of an unknown vector.
+// Displacement at q by an unknown vector.
 Matrix36d displacement(const Vector3d& q) {
   Matrix36d m;
   m << -cross_matrix(q), Matrix3d::Identity();
@@ -58,7 +58,7 @@ struct Moments {
     first += other.first;
     second += other.second;
   }
-  // About another centre, in units of `scale`.
+  // The same about another centre, in units of `scale`.
   Moments moved(const Vector3d& centre, double scale) const {
     Moments m;
     m.mass = mass;
@@ -76,11 +76,11 @@ struct Moments {
   }
 };
 
-// The stations that see something, and what holds them together.
+// Adjustment of the stations that see something.
 class Adjustment {
  public:
-  // `sums`: of what holds the scans together, of which `share` counts once for each voxel that was not looked at.
-  // `covered`: of the surface whose error is asked for.
+  // `sums`: of the surfaces that register the scans; `share` scales them from the counted voxels to the whole site.
+  // `covered`: of the surface whose error is wanted.
   Adjustment(const RegistrationSums& sums, double share, const RegistrationSums& covered,
              const RegistrationOptions& options)
       : sums_(sums), share_(share), options_(options), unknowns_(options.tilt.in_radians() > 0 ? 6 : 4) {
@@ -159,7 +159,7 @@ class Adjustment {
     return moved * h * moved.transpose();
   }
 
-  // Of tilt, heading and head.
+  // Prior of tilt, heading and head.
   Matrix6d prior_of(std::size_t place) const {
     const auto weight = [](double sigma) { return sigma > 0 ? 1 / (sigma * sigma) : 0; };
     const double scale = scale_ * sums_.radius_m;
@@ -188,7 +188,7 @@ class Adjustment {
     return all;
   }
 
-  // Without the two tilts of each station, where they are known.
+  // Leaves out the two tilts of each station if they are known.
   MatrixXd of_unknowns(const MatrixXd& all) const {
     if (unknowns_ == 6) return all;
     const Eigen::Index n = all.rows() / 6;
@@ -198,8 +198,8 @@ class Adjustment {
     return some;
   }
 
-  // Covariance of each station's unknowns less the best-fitting motion of the whole: (I − 1 B) C (I − 1 B)ᵀ, where B x
-  // is that motion, the mean of the stations' motions in the metric of the surface that each sees.
+  // Covariance of each station's unknowns without the best-fitting motion of the whole: (I − 1 B) C (I − 1 B)ᵀ. B x is
+  // that motion, the mean of the stations' motions in the metric of the surface that each sees.
   std::vector<Matrix6d> relative_covariances() const {
     const MatrixXd information = of_unknowns(this->information());
     const Eigen::Index d = unknowns_, size = information.rows(), skipped = 6 - d;
@@ -224,9 +224,9 @@ class Adjustment {
   }
 
   const RegistrationSums& sums_;
-  double share_;  // voxels of the site over those counted
+  double share_;  // voxels of the site over counted voxels
   RegistrationOptions options_;
-  Eigen::Index unknowns_;  // of a station
+  Eigen::Index unknowns_;  // per station
   std::vector<std::size_t> stations_;
   std::vector<Moments> moments_;
   Vector3d centre_ = Vector3d::Zero();  // in units of the sums' radius, as is the scale

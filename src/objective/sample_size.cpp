@@ -13,8 +13,8 @@ std::uint64_t voxels_for_standard_error(Simulator& simulator, std::span<const Ne
   if (!(wanted > 0))
     throw Error(Errc::invalid_argument,
                 "the wanted standard error is " + std::to_string(wanted) + ", but must be above 0");
-  constexpr std::uint64_t first_pilot = 5000;  // below it pair overlaps, and errors themselves, are not to be trusted
-  constexpr double reserve = 1.1;              // the pilot's error is an estimate too
+  constexpr std::uint64_t first_pilot = 5000;  // below this, neither pair overlaps nor their errors are reliable
+  constexpr double reserve = 1.1;              // the pilot's error is an estimate, too
   const std::uint64_t population = simulator.voxel_count();
   for (std::uint64_t size = std::min(first_pilot, population);;) {
     if (size >= population) return population;
@@ -25,7 +25,7 @@ std::uint64_t voxels_for_standard_error(Simulator& simulator, std::span<const Ne
       if (overlap) error = std::max(error, overlap_estimate(counts, population).standard_error);
     }
     if (error <= wanted || progress.stopped()) return size;
-    // error² = s²·(1/n − 1/N) gives s², and that the n for the wanted error.
+    // error² = s²·(1/n − 1/N) gives s², which gives the n for the wanted error.
     const double n = static_cast<double>(size), all = static_cast<double>(population);
     const double variance = error * error / (1 / n - 1 / all);
     const double needed = reserve / (wanted * wanted / variance + 1 / all);

@@ -13,14 +13,14 @@ namespace vantage {
 namespace {
 
 constexpr double largest_error = 0.5;   // of the scale: the standard deviation of a value in {0, 1}
-constexpr double least_unbiased = 0.5;  // of a sample's registration error, after its bias is taken off
+constexpr double least_unbiased = 0.5;  // of a sample's registration error, that remains after subtracting its bias
 
 double unsampled_share(const NetworkCounts& counts, std::uint64_t population) {
   if (counts.voxels >= population) return 0;
   return 1.0 - static_cast<double>(counts.voxels) / static_cast<double>(population);
 }
 
-// What the sample holds, without its groups.
+// The sample's own counts, without its groups.
 NetworkCounts without_groups(const NetworkCounts& all) {
   NetworkCounts rest;
   rest.stations = all.stations;
@@ -39,12 +39,12 @@ void take_off(NetworkCounts& rest, const NetworkCounts& group) {
   };
   subtract(rest.seen, group.seen);
   subtract(rest.shared, group.shared);
-  // Differences of sums that are exact but for their last place.
+  // Differences of sums that are exact except for their last place.
   subtract(rest.registration.pairs, group.registration.pairs);
   subtract(rest.registration.surface, group.registration.surface);
 }
 
-// `of` each delete-one-group replicate; empty where there are fewer than two groups.
+// `of` each delete-one-group replicate; empty if there are fewer than two groups.
 template <class Value>
 std::vector<Value> replicates(const NetworkCounts& counts, const std::function<Value(const NetworkCounts&)>& of) {
   std::vector<Value> found;
@@ -68,8 +68,8 @@ double jackknife_error(const std::vector<double>& values, double unsampled, doub
   return std::min(std::sqrt(unsampled * (groups - 1) / groups * squares), largest_error * scale);
 }
 
-// How much too large a function of a sample tends to be, by the same replicates (Quenouille 1956): the part of its bias
-// that falls as 1/n, n counted against the population.
+// Bias of a function of a sample, by the same replicates (Quenouille 1956): the part that falls as 1/n, with n counted
+// against the population.
 double jackknife_bias(double estimate, const std::vector<double>& values, double unsampled) {
   const double groups = static_cast<double>(values.size());
   double sum = 0;
@@ -77,7 +77,7 @@ double jackknife_bias(double estimate, const std::vector<double>& values, double
   return values.empty() ? 0 : unsampled * (groups - 1) / groups * sum;
 }
 
-// What is corrected must not be worse known for it.
+// A correction must not exceed its own uncertainty.
 double within_error(double bias, double error) { return std::clamp(bias, -error, error); }
 
 Estimate jackknifed(double seen, const std::vector<double>& values, double unsampled, double scale) {
@@ -85,8 +85,8 @@ Estimate jackknifed(double seen, const std::vector<double>& values, double unsam
   return {seen - within_error(jackknife_bias(seen, values, unsampled), error), error};
 }
 
-// Whether group g of 20 is in the r-th half of them, r < 19: the rows of Paley's Hadamard matrix of order 20, by the
-// squares modulo 19. Each group is in as many halves as any other, and with each other one as often (McCarthy:
+// Whether group g of 20 is in half r < 19 of them: the rows of Paley's Hadamard matrix of order 20, by the squares
+// modulo 19. Each group is in as many halves as any other, and with each other one as often (McCarthy:
 // Pseudo-replication: Half samples, 1969).
 constexpr std::size_t kHalvedGroups = 20;
 bool in_half(std::size_t r, std::size_t g) {
@@ -99,8 +99,8 @@ bool in_half(std::size_t r, std::size_t g) {
   return g == q || (squares >> ((g + q - r) % q) & 1) == 1;
 }
 
-// By how much half a sample gives more than all of it, in the mean over balanced halves and their complements. Unlike
-// leaving out a twentieth, that sees what is lost where a link rests on a few voxels.
+// Mean excess of half a sample over all of it, over balanced halves and their complements. Unlike leaving out a
+// twentieth, this shows the loss of links that rest on a few voxels.
 double halving_bias(double estimate, const NetworkCounts& counts, double unsampled,
                     const std::function<double(const NetworkCounts&)>& of) {
   constexpr std::size_t halvings = kHalvedGroups - 1;
@@ -114,8 +114,8 @@ double halving_bias(double estimate, const NetworkCounts& counts, double unsampl
   return unsampled * sum / (2.0 * halvings);
 }
 
-// Of what station masks say of pairs: links may rest on a few voxels, of which a sample holds one or none. What is
-// taken off for it is itself known no better than it is large.
+// For functions of pairs: links may rest on a few voxels, of which a sample holds one or none. The correction's own
+// error is as large as the correction.
 Estimate of_pairs(double seen, const NetworkCounts& counts, double unsampled, double scale,
                   const std::function<double(const NetworkCounts&)>& of) {
   const std::vector<double> values = replicates<double>(counts, of);
@@ -175,7 +175,7 @@ Estimate estimate(const Objective& objective, const MeasuredNetwork& measured) {
       add(own.standard_error);
     }
   }
-  // Another sample, of other voxels: its error is on top.
+  // The surroundings are another sample, of other voxels: its error adds.
   if (objective.needs.surroundings && measured.surroundings) {
     const double unsampled = unsampled_share(*measured.surroundings, measured.surroundings_voxels);
     const auto of = [&](const NetworkCounts& rest) {
@@ -208,7 +208,7 @@ Estimate registration_estimate(const NetworkCounts& counts, std::uint64_t voxels
   const double seen = error(counts, surroundings);
   Estimate estimate{seen, 0};
   const auto add = [&](const std::vector<double>& values, double unsampled) {
-    // Nothing is further off than where it starts.
+    // No error exceeds the prior.
     const double own = jackknife_error(values, unsampled, 2 * options.position_m);
     estimate.value -= within_error(jackknife_bias(seen, values, unsampled), own);
     estimate.standard_error = std::hypot(estimate.standard_error, own);
@@ -219,8 +219,8 @@ Estimate registration_estimate(const NetworkCounts& counts, std::uint64_t voxels
     if (const double unsampled = unsampled_share(*surroundings, surroundings_voxels); unsampled > 0)
       add(replicates<double>(*surroundings, [&](const NetworkCounts& rest) { return error(counts, &rest); }),
           unsampled);
-  // Where a bias seems larger than that, the weakest link rests on voxels of one group, and how large it is cannot be
-  // told from the sample; but nothing registers without error.
+  // A bias that seems larger means that the weakest link rests on voxels of one group; the sample cannot tell its size.
+  // But no registration is without error.
   estimate.value = std::max(estimate.value, least_unbiased * seen);
   return estimate;
 }

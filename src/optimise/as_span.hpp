@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Eigen's arrays as the spans that states and the public interface take; of a matrix column by column.
+// Eigen arrays as spans, for states and the public interface; matrices column by column.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What MO-CMA-ES is compared with, behind the same interface: NSGA-II and random search.
+// Baselines for MO-CMA-ES behind the same interface: NSGA-II and random search.
 #pragma once
 
 #include "optimise/mo_common.hpp"
@@ -27,9 +27,9 @@ class Baseline : public Optimiser {
   void load(std::istream& in) final;
 
  protected:
-  // One more point, in the user's coordinates, once there is a population.
+  // Makes one more point, in the user's coordinates, once there is a population.
   virtual std::vector<double> make_point() = 0;
-  // Members and offspring together, of which a population is to be kept.
+  // Marks those of members and offspring together that stay in the population.
   virtual std::vector<char> choose(std::span<const double> fitness) const = 0;
   virtual void before_offspring() {}
 
@@ -53,7 +53,7 @@ class Nsga2 final : public Baseline {
   std::vector<double> crowding_;
 };
 
-// Uniform points; those that NSGA-II's baseline and MO-CMA-ES would keep by rank and hypervolume are kept.
+// Uniform points, of which it keeps those that MO-CMA-ES would keep, by rank and hypervolume.
 class RandomSearch final : public Baseline {
  public:
   RandomSearch(std::size_t dimension, std::size_t objectives, const OptimiserConfig& config)

@@ -65,7 +65,7 @@ void BoxConstraints::require_inside(std::span<const double> x) const {
 
 double squeeze(double genotype) {
   constexpr double kLow = -kMargin, kLength = 1 + 2 * kMargin;
-  // Mirror at both ends of the preimage.
+  // Mirrors at both ends of the preimage.
   double t = std::fmod(genotype - kLow, 2 * kLength);
   if (t < 0) t += 2 * kLength;
   if (t > kLength) t = 2 * kLength - t;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Box constraints. Inside, optimisers work in unit coordinates, [0, 1] along each axis; without bounds those are the
-// user's own.
+// Box constraints. Optimisers work in unit coordinates, [0, 1] along each axis; without bounds these are the user's
+// own.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,7 @@ class BoxConstraints {
   bool bounded() const { return !lower_.empty(); }
   std::span<const double> lower() const { return lower_; }
   std::span<const double> upper() const { return upper_; }
-  // Never outside the bounds, whatever rounding does.
+  // Never outside the bounds, whatever the rounding.
   double from_unit(double t, std::size_t axis) const;
   double to_unit(double x, std::size_t axis) const;
   bool contains(std::span<const double> x) const;
@@ -32,8 +32,8 @@ class BoxConstraints {
   std::vector<double> lower_, upper_;
 };
 
-// The smooth transform that lets CMA-ES search without bounds: the identity inside, quadratic towards each bound,
-// mirrored beyond (Hansen's piecewise quadratic "BoxConstraintsLinQuadTransformation"). Unit coordinates on both sides.
+// Smooth transform that lets CMA-ES search without bounds: the identity inside, quadratic towards each bound, mirrored
+// beyond (Hansen's piecewise quadratic "BoxConstraintsLinQuadTransformation"). Unit coordinates on both sides.
 double squeeze(double genotype);
 // The genotype in [−margin, 1 + margin] that squeeze() maps to t in [0, 1].
 double unsqueeze(double t);

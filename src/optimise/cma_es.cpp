@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Hansen: The CMA Evolution Strategy, A Tutorial, 2016: weights (49)–(53), paths (43), (45), covariance (47), step
-// (44), and the stopping rules of its appendix B.3. Share of the negative update that is given back: Hansen, Ros:
-// Benchmarking a Weighted Negative Covariance Matrix Update on the BBOB-2010 Noiseless Testbed, 2010. Restarts: Auger,
-// Hansen: A Restart CMA Evolution Strategy With Increasing Population Size, 2005.
+// (44), and the stopping rules of its appendix B.3. Returned share of the negative update: Hansen, Ros: Benchmarking a
+// Weighted Negative Covariance Matrix Update on the BBOB-2010 Noiseless Testbed, 2010. Restarts: Auger, Hansen: A
+// Restart CMA Evolution Strategy With Increasing Population Size, 2005.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -30,22 +30,23 @@ using optimise::kMaxPopulation;
 
 constexpr double kMaxCondition = 1e14;
 constexpr double kMaxGrowth = 1e4;  // of the step along the longest axis, times its share of sigma0
-// Share of what the worse half takes from the covariance that the better half gives back; the old covariance keeps the
-// rest.
+// Share of the worse half's negative update that the better half returns to the covariance; the old covariance keeps
+// the rest.
 constexpr double kReturned = 0.5;
 constexpr std::size_t kFlatIterations = 20;  // the step grows a thousandfold meanwhile
 constexpr std::size_t kMaxHistory = 20000;
-// Share of an iteration's points that have a swapped block, at least one; none where too few would be left to rank.
-// More where the number of blocks is searched too, and local optima are many.
+// Share of an iteration's points with a swapped block, at least one; none if too few points would be left to rank. More
+// if the number of blocks is searched, too, since local optima are then many.
 constexpr double kSwapped = 0.1, kSwappedOfMany = 0.25;
 constexpr std::size_t kSwapsFrom = 5;
-// Of a run that begins from the best so far: its step as a share of sigma0, and by when it must have caught up.
+// For a run that begins at the best point so far: its step as a share of sigma0, and the step by which it must have
+// caught up.
 constexpr double kNextStep = 0.5, kLateStep = 0.1;
 constexpr std::string_view kCmaEs = "CMA-ES";
 
 std::span<double> as_span(VectorXd& v) { return {v.data(), static_cast<std::size_t>(v.size())}; }
 
-// Learning rates and weights, which depend on n and λ alone.
+// Learning rates and weights, which depend only on n and λ.
 struct Strategy {
   Strategy() = default;
   Strategy(double n, std::size_t lambda, bool active);
@@ -103,7 +104,7 @@ bool is_stall(StopReason reason) {
 struct CmaEs::Impl : Common {
   Impl(std::size_t dimension, const OptimiserConfig& c);
 
-  void begin_run();  // a fresh distribution with the present λ
+  void begin_run();  // a fresh distribution with the current λ
   void draw();
   double phenotype(double g, std::size_t axis) const {
     return box.bounded() ? box.from_unit(optimise::squeeze(g), axis) : g;
@@ -111,7 +112,7 @@ struct CmaEs::Impl : Common {
   double genotype(double x, std::size_t axis) const {
     return box.bounded() ? optimise::unsqueeze(box.to_unit(x, axis)) : x;
   }
-  // Puts the genotype mean + sigma · steps.col(k) into the points.
+  // Writes the genotype mean + sigma · steps.col(k) to the points.
   void express(std::size_t k);
   std::vector<double> first_mean() const { return config.start.empty() ? std::vector<double>() : config.start.front(); }
   bool swaps() const { return box.bounded() && !config.blocks.empty(); }
@@ -124,31 +125,31 @@ struct CmaEs::Impl : Common {
     const std::size_t all = config.blocks.size();
     return config.blocks_in_use ? std::clamp<std::size_t>(config.blocks_in_use(x), 1, all) : all;
   }
-  // Puts the mean where the best point is, but for three quarters of its blocks, which may be anywhere.
+  // Moves the mean to the best point, with three quarters of its blocks at random places.
   void begin_beside_best();
-  // The search goes on among the first blocks alone, without what the distribution knew of the others.
+  // Restricts the search to the first blocks, and discards what the distribution learnt of the others.
   void use_blocks(std::size_t count);
-  // Whatever no point of the iteration made use of takes no part in it.
+  // Leaves out the blocks that no point of the iteration uses.
   void leave_unused();
   // Makes a coordinate independent of all others.
   void forget(Eigen::Index axis, double variance);
-  // Makes point λ + s the mean with one block from anywhere.
+  // Sets point λ + s to the mean with one block at a random place.
   void swap_block(std::size_t s);
-  // Moves the mean's block to where point λ + s has it; the distribution forgets what it knew of it.
+  // Moves the mean's block to its place in point λ + s, and discards what the distribution learnt of that block.
   void adopt_swap(std::size_t s);
   void update(const std::vector<std::size_t>& order);
   void decompose(bool now);
   StopReason stall(const std::vector<double>& sorted) const;
   void restart_if_at_rest();
   double hypervolume() const { return optimise::volume({best.f, 1}, reference); }
-  // After every tell() and load(): the target for f, then the run's own reason, then the common rules.
+  // After every tell() and load(). Precedence: the target for f, the run's own reason, the common rules.
   void settle();
 
   const std::size_t n;       // dimension
-  std::size_t asked_points;  // λ and those with swapped blocks
+  std::size_t asked_points;  // λ, and those with swapped blocks
   std::size_t lambda = 0;
-  std::size_t used_blocks = 0;  // of the iteration's points, the most
-  std::size_t used = 0;         // coordinates that are not of blocks beyond those
+  std::size_t used_blocks = 0;  // most blocks that any point of the iteration uses
+  std::size_t used = 0;         // coordinates except those of unused blocks
   Strategy strategy;
 
   VectorXd mean, path_c, path_sigma, axis_lengths;
@@ -159,10 +160,10 @@ struct CmaEs::Impl : Common {
   std::vector<double> best_history, median_history;  // of the run
   double run_best = kInfinity;
   ParetoPoint best;
-  StopReason own = StopReason::running;  // why the run stopped of itself
+  StopReason own = StopReason::running;  // the run's own reason to stop
 
   MatrixXd steps;                    // one column for each of λ points, (genotype − mean) / sigma
-  std::vector<std::size_t> swapped;  // the block of each point after those
+  std::vector<std::size_t> swapped;  // block of each further point
 };
 
 CmaEs::Impl::Impl(std::size_t d, const OptimiserConfig& c)
@@ -302,7 +303,7 @@ void CmaEs::Impl::update(const std::vector<std::size_t>& order) {
   path_sigma += std::sqrt(s.c_sigma * (2 - s.c_sigma) * s.mu_eff) * (axes * whitened(step));
   const double norm = path_sigma.norm();
   const double settled = std::sqrt(1 - std::pow(1 - s.c_sigma, 2.0 * static_cast<double>(run_iterations + 1)));
-  const bool moving = norm / settled >= (1.4 + 2 / (searched + 1)) * s.expected_norm;  // then hold path_c back
+  const bool moving = norm / settled >= (1.4 + 2 / (searched + 1)) * s.expected_norm;  // if so, hold path_c back
   path_c *= 1 - s.c_c;
   if (!moving) path_c += std::sqrt(s.c_c * (2 - s.c_c) * s.mu_eff) * step;
 
@@ -313,13 +314,13 @@ void CmaEs::Impl::update(const std::vector<std::size_t>& order) {
   for (std::size_t i = 0; i < lambda; ++i) {
     const auto column = static_cast<Eigen::Index>(i);
     scaled.col(column) = steps.col(static_cast<Eigen::Index>(order[i]));
-    // A long bad step must not take more than its length in the present metric, or C would lose its definiteness.
+    // A long bad step must not take more than its length in the current metric, or C would lose its definiteness.
     if (weights[column] < 0) weights[column] *= searched / std::max(whitened(scaled.col(column)).squaredNorm(), 1e-300);
   }
   covariance.noalias() += s.c_1 * path_c * path_c.transpose();
   covariance.noalias() += s.c_mu * scaled * weights.asDiagonal() * scaled.transpose();
   sigma *= std::exp(std::min(1.0, s.c_sigma / s.d_sigma * (norm / s.expected_norm - 1)));
-  sigma = std::max(sigma, 1e-300);  // stall() has it stop long before
+  sigma = std::max(sigma, 1e-300);  // stall() stops it long before
 }
 
 void CmaEs::Impl::decompose(bool now) {
@@ -329,7 +330,7 @@ void CmaEs::Impl::decompose(bool now) {
   covariance = 0.5 * (covariance + covariance.transpose()).eval();
   const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(covariance);
   axes = solver.eigenvectors();
-  // Rounding can make the smallest value negative at a condition number near 1e16; stall() sees that one.
+  // Rounding can make the smallest value negative at a condition number near 1e16; stall() sees that value.
   axis_lengths = solver.eigenvalues().cwiseMax(solver.eigenvalues().maxCoeff() * 1e-18).cwiseSqrt();
 }
 
@@ -354,7 +355,7 @@ StopReason CmaEs::Impl::stall(const std::vector<double>& sorted) const {
     if (std::max(*high, sorted.back()) - std::min(*low, sorted.front()) < config.cma.f_tolerance)
       return StopReason::converged;
   }
-  // Steps too small to change the mean, along an axis (one an iteration, in turn) or a coordinate.
+  // Steps too small to change the mean, along an axis (one per iteration, in turn) or a coordinate.
   const auto axis = static_cast<Eigen::Index>(run_iterations % n);
   if (mean == mean + 0.1 * sigma * axis_lengths[axis] * axes.col(axis)) return StopReason::converged;
   for (Eigen::Index i = 0; i < mean.size(); ++i)
@@ -409,7 +410,7 @@ void CmaEs::replace(std::size_t index, std::span<const double> x) {
   auto column = s.steps.col(static_cast<Eigen::Index>(index));
   for (std::size_t i = 0; i < s.n; ++i) {
     const auto axis = static_cast<Eigen::Index>(i);
-    if (whole[i] == x[i]) continue;  // its genotype may lie beyond a bound: it stays as drawn
+    if (whole[i] == x[i]) continue;  // unchanged; its genotype may lie beyond a bound and stays as drawn
     whole[i] = x[i];
     column[axis] = (s.genotype(x[i], i) - s.mean[axis]) / s.sigma;
   }
@@ -483,7 +484,7 @@ void CmaEs::tell(std::span<const double> values) {
     s.median_history.erase(s.median_history.begin(), s.median_history.begin() + surplus);
   }
   if (f.front() == f.back()) {
-    // A plateau says nothing about shape: only look further afield.
+    // A plateau says nothing about shape: only widen the search.
     ++s.flat_iterations;
     s.sigma *= std::exp(0.2 + s.strategy.c_sigma / s.strategy.d_sigma);
   } else {
@@ -495,7 +496,7 @@ void CmaEs::tell(std::span<const double> values) {
   if (s.covariance.allFinite()) s.decompose(adopts);
   s.own = s.stall(f);
   s.restart_if_at_rest();
-  if (s.own == StopReason::diverged) s.begin_run();  // what is asked for after all is finite again
+  if (s.own == StopReason::diverged) s.begin_run();  // later points must be finite, too
   s.settle();
 }
 
@@ -503,7 +504,7 @@ void CmaEs::reassess(std::span<const double> values) {
   Impl& s = *impl_;
   s.require_reassessable(values, s.best.x.empty() ? 0 : 1);
   if (!values.empty()) s.best.f[0] = s.run_best = std::isfinite(values[0]) ? values[0] : kInfinity;
-  // What is at rest is told by differences of values that are not measured alike.
+  // Convergence is judged by differences of values, and these were measured differently.
   s.best_history.clear();
   s.median_history.clear();
   s.forget_progress();
@@ -573,7 +574,7 @@ void CmaEs::load(std::istream& in) {
   s.best.x = r.reals();
   s.best.f[0] = r.real();
   r.end();
-  s.restart_if_at_rest();  // more may be allowed than when it was saved
+  s.restart_if_at_rest();  // the limit of restarts may be higher than when it was saved
   s.settle();
   impl_ = std::move(next);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every optimiser has: settings that were checked, the points asked for, and when to stop.
+// Common parts of all optimisers: checked settings, requested points, and stopping.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,7 @@ inline constexpr std::size_t kMaxPopulation = std::size_t{1} << 20;
 
 class Common {
  public:
-  // Throws Error invalid_argument. `name` begins the messages; `population` is what 0 stands for.
+  // Throws Error invalid_argument. Messages begin with `name`; `population` replaces 0.
   Common(std::string name, std::size_t dimension, std::size_t objectives, const OptimiserConfig& config,
          std::size_t population);
 
@@ -29,21 +29,21 @@ class Common {
   std::span<const double> points() const { return points_; }
   std::size_t asked() const { return asked_; }
   void require_not_asked(const char* what) const;
-  // Of replace() and resample().
+  // Checks of replace() and resample().
   void require_point(const char* what, std::size_t index) const;
   void require_coordinates(std::span<const std::size_t> coordinates) const;
-  // Checks the number of values told and counts them; nothing is asked for then.
+  // Checks the number of values told and counts them; then no points are requested any more.
   void take(std::span<const double> values);
-  // Of reassess(): checks that no point is asked for and that there is a row for each of `points`.
+  // For reassess(): checks that no points are requested and that there is a row for each of `points`.
   void require_reassessable(std::span<const double> values, std::size_t points) const;
   void forget_progress() { rules_.begin_anew(); }
 
-  // Why the algorithm itself stops, or else which of the rules says so.
+  // The algorithm's own reason to stop, or that of a rule.
   StopReason stop_reason() const { return reason_; }
-  // After every tell() and load(). `own`: what the algorithm says.
+  // After every tell() and load(). `own`: the algorithm's own reason.
   void judge(StopReason own, std::size_t iterations, const std::function<double()>& hypervolume);
 
-  // Settings and progress, as part of a saved state. load() throws Error malformed_file where the settings differ.
+  // Settings and progress, as part of a saved state. load() throws Error malformed_file if the settings differ.
   void save(StateWriter& w) const;
   void load(StateReader& r);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Some coordinates of a normal vector drawn again, given the others.
+// Redraws some coordinates of a normal vector, given the others.
 #pragma once
 
 #include <Eigen/Dense>
@@ -8,9 +8,9 @@
 
 namespace vantage::optimise {
 
-// For N(0, C) with whitening matrix W (Wᵀ W = C⁻¹): `columns` are the columns of W that belong to the coordinates,
-// `rest` is W times the vector with those coordinates set to 0. The precision of the coordinates is columnsᵀ columns,
-// and their mean given the others minus its inverse times columnsᵀ rest.
+// For N(0, C) with whitening matrix W (Wᵀ W = C⁻¹): `columns` are the columns of W for the coordinates, `rest` is W
+// times the vector with those coordinates set to 0. The precision of the coordinates is columnsᵀ columns, and their
+// mean given the others minus its inverse times columnsᵀ rest.
 inline Eigen::VectorXd draw_conditional(const Eigen::MatrixXd& columns, const Eigen::VectorXd& rest,
                                         NormalStream& random) {
   Eigen::VectorXd normals(columns.cols());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Four objectives and more: While, Bradstreet, Barone: A Fast Way of Calculating Exact Hypervolumes (WFG), 2012, cut
-// into slices along the last objective until three are left.
+// Four objectives and more: While, Bradstreet, Barone: A Fast Way of Calculating Exact Hypervolumes (WFG), 2012, in
+// slices along the last objective until three are left.
 #include "optimise/hypervolume.hpp"
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 namespace vantage::optimise {
 namespace {
 
-// Everything below works on a plain array of points that all lie inside the reference.
+// Everything below works on a plain array of points, all inside the reference.
 struct Points {
   std::vector<double> values;
   std::size_t objectives;
@@ -36,7 +36,7 @@ Points without_dominated(const Points& points) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     bool dominated = false;
     for (std::size_t j = 0; j < points.size() && !dominated; ++j) {
-      // Of equal points the first stays.
+      // The first of equal points stays.
       dominated =
           j != i && weakly_dominates(points[j], points[i], m) && (j < i || !weakly_dominates(points[i], points[j], m));
     }
@@ -68,8 +68,7 @@ double volume_inside(const Points& points, std::span<const double> reference) {
   if (m == 2) return area(as_arrays<2>(points), {reference[0], reference[1]});
   if (m == 3) return volume3(as_arrays<3>(points), {reference[0], reference[1], reference[2]});
 
-  // Worst in the last objective first: each point then adds a slab of constant cross-section over those that come after
-  // it.
+  // Worst in the last objective first: each point then adds a slab of constant cross-section above the later ones.
   std::vector<std::size_t> order(k);
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
@@ -123,9 +122,8 @@ Inside select_inside(const PointSet& set, std::span<const double> reference) {
   return result;
 }
 
-// When p leaves a set, another point gains what the two of them dominated and no other did. That volume lies in a box
-// above p which ends, along each objective, at the second point that dominates p's projection; few points reach into
-// it.
+// When p leaves a set, another point gains what only the two of them dominated. That volume lies in a box above p which
+// ends, along each objective, at the second point that dominates p's projection; few points reach into it.
 class Removal {
  public:
   Removal(const Points& points, std::span<const double> reference)
@@ -188,8 +186,8 @@ class Removal {
   Points local_;
 };
 
-// Two objectives: neighbours in a list, the least in a heap whose outdated entries are skipped. Needs non-dominated
-// points.
+// Two objectives: neighbours in a list, the least contributor in a heap whose outdated entries are skipped. Needs
+// non-dominated points.
 std::vector<std::size_t> remove_from_staircase(const Points& points, std::span<const double> reference,
                                                std::size_t count) {
   const std::size_t k = points.size();
@@ -204,7 +202,7 @@ std::vector<std::size_t> remove_from_staircase(const Points& points, std::span<c
   std::vector<double> value(k);
   std::vector<char> removed(k, 0);
   std::priority_queue<std::pair<double, std::size_t>>
-      heap;  // negated contributions: the least on top, of equals the later
+      heap;  // negated contributions: the least on top, the later of equals
   const auto measure = [&](std::size_t i) {
     const double right = next[i] == k ? reference[0] : points[next[i]][0];
     const double top = previous[i] == k ? reference[1] : points[previous[i]][1];
@@ -228,9 +226,9 @@ std::vector<std::size_t> remove_from_staircase(const Points& points, std::span<c
   return result;
 }
 
-// The front of each point by binary search: a front that dominates a point is followed by none that does not dominate
-// it later. Points come in lexicographic order, so that none is dominated by a later one. `Front` answers covers() and
-// takes insert().
+// Finds the front of each point by binary search: if a front does not dominate a point, no later front does. Points
+// come in lexicographic order, so no later point dominates an earlier one. `Front` answers covers() and accepts
+// insert().
 template <typename Front>
 std::vector<std::size_t> ranks_by_fronts(const PointSet& points) {
   const std::size_t k = points.size();
@@ -244,7 +242,7 @@ std::vector<std::size_t> ranks_by_fronts(const PointSet& points) {
   std::vector<Front> fronts;
   for (std::size_t i = 0; i < k; ++i) {
     const auto p = points[order[i]];
-    if (i > 0 && !less(order[i - 1], order[i])) {  // equal to the one before
+    if (i > 0 && !less(order[i - 1], order[i])) {  // equal to the previous one
       result[order[i]] = result[order[i - 1]];
       continue;
     }
@@ -255,7 +253,7 @@ std::vector<std::size_t> ranks_by_fronts(const PointSet& points) {
   return result;
 }
 
-// One objective, or two: the lowest last value.
+// One or two objectives: the lowest last value.
 struct LowestFront {
   double lowest = kInfinity;
   bool covers(std::span<const double> p) const { return p.size() == 1 || lowest <= p[1]; }
@@ -264,9 +262,9 @@ struct LowestFront {
   }
 };
 
-// Three: the staircase of the last two.
+// Three objectives: the staircase of the last two.
 struct StaircaseFront {
-  std::vector<std::array<double, 2>> stairs;  // by rising first and falling second value
+  std::vector<std::array<double, 2>> stairs;  // by ascending first and descending second value
   bool covers(std::span<const double> p) const {
     const auto after = std::partition_point(stairs.begin(), stairs.end(), [&](const auto& s) { return s[0] <= p[1]; });
     return after != stairs.begin() && std::prev(after)->at(1) <= p[2];
@@ -292,7 +290,7 @@ struct ListFront {
   void insert(std::span<const double> p) { members.push_back(p); }
 };
 
-// Whether each point is dominated, or equal to one before it. Such points contribute nothing.
+// Whether each point is dominated, or equal to an earlier one. Such points contribute nothing.
 std::vector<char> is_redundant(const PointSet& points) {
   const auto rank = ranks(points);
   std::vector<char> result(points.size());

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hypervolume, contributions, truncation and ranks on point sets that are stored row-major. All objectives are
-// minimised.
+// Hypervolume, contributions, truncation and ranks of point sets stored row-major. All objectives are minimised.
 #pragma once
 
 #include <cstddef>
@@ -18,17 +17,16 @@ struct PointSet {
   std::span<const double> operator[](std::size_t i) const { return values.subspan(i * objectives, objectives); }
 };
 
-// a is nowhere worse than b and somewhere better.
+// Whether a is nowhere worse than b and somewhere better.
 bool dominates(std::span<const double> a, std::span<const double> b);
-// Strictly better than the reference in every objective, so that it spans a volume.
+// Whether the point is strictly better than the reference in every objective, so that it spans a volume.
 bool inside(std::span<const double> point, std::span<const double> reference);
 
 double volume(const PointSet& points, std::span<const double> reference);
-// Volume that each point dominates alone. Dominated points and duplicates have 0, and take from those that dominate
-// them.
+// Volume that each point alone dominates. Dominated points and duplicates have 0, and reduce those that dominate them.
 std::vector<double> contributions(const PointSet& points, std::span<const double> reference);
-// Removes `count` points one after the other, each time the one that contributes least to those left (the later one of
-// equals); returns them in order of removal.
+// Removes `count` points one by one, each time the least contributor among the rest (the later one of equals). Returns
+// them in order of removal.
 std::vector<std::size_t> least_contributors(const PointSet& points, std::span<const double> reference,
                                             std::size_t count);
 

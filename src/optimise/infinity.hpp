@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is worse than any value: optimisers minimise.
+// Worse than any value, since optimisers minimise.
 #pragma once
 
 #include <limits>

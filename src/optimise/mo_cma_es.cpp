@@ -36,15 +36,15 @@ using optimise::StepStrategy;
 using Scheme = MoCmaEsConfig::Scheme;
 
 constexpr double kPenalty = 1e-6;  // per squared unit by which a point was clipped
-constexpr int kRedraws = 1;        // of a whole point, before what lies outside the box is clipped
-// As many again of chosen coordinates, which are few and seldom all at a bound.
+constexpr int kRedraws = 1;        // of a whole point, before coordinates outside the box are clipped
+// More for chosen coordinates, which are few and seldom all at a bound.
 constexpr int kPartialRedraws = 16;
-constexpr double kExtremes = 0.2;        // share of guided parents that are the best in one objective
+constexpr double kExtremes = 0.2;        // share of guided parents that are best in one objective
 constexpr double kNeighbourShare = 0.4;  // of a spread step's variance
 constexpr std::string_view kMoCmaEs = "MO-CMA-ES";
 
 struct Member : Solution {
-  VectorXd genotype;  // unit coordinates; may lie outside the box, where x is clipped
+  VectorXd genotype;  // unit coordinates; may lie outside the box, whereas x is clipped
   StepStrategy strategy;
   std::uint64_t id = 0;
   bool reassessed = false;
@@ -52,21 +52,21 @@ struct Member : Solution {
 
 struct Offspring {
   std::uint64_t parent = 0;
-  StepStrategy strategy;  // the parent's
+  StepStrategy strategy;  // of the parent
   VectorXd origin;        // the parent's genotype
   VectorXd genotype;
   double penalty = 0;
-  bool recombined = false;  // its place says nothing about the strategy's steps
-  bool mixed = false;       // nor did the strategy's normal distribution alone give it
-  bool anywhere = false;    // a block was drawn from the whole box, and is so again
+  bool recombined = false;  // not from a step of the strategy
+  bool mixed = false;       // not from the strategy's normal distribution alone
+  bool anywhere = false;    // a block was drawn from the whole box; a redraw does the same
 };
 
-// The front of the population, as the choice of parents needs it.
+// The front of the population, for choosing parents.
 struct Front {
   std::vector<std::size_t> members;
-  std::vector<double> weight_sums;    // by contribution; empty where parents are not guided
+  std::vector<double> weight_sums;    // by contribution; empty if parents are not guided
   std::vector<std::size_t> extremes;  // the best member in each objective
-  std::vector<double> low, high;      // of the fitness
+  std::vector<double> low, high;      // bounds of the fitness
 };
 
 }  // namespace
@@ -90,7 +90,7 @@ struct MoCmaEs::Impl {
   void swap_block(const Member& parent, const Front& front, std::size_t k);
   std::size_t blocks_in_use(const Member& member) const;
   VectorXd neighbour_step(const Member& parent, const Front& front);
-  // Puts unit coordinates, clipped where they lie outside, into point k, with the penalty that belongs to it.
+  // Writes unit coordinates, clipped to the box, to point k, with the penalty for clipping.
   void express(std::size_t k, VectorXd genotype);
 
   void tell_initial(std::vector<Solution> solutions);
@@ -103,8 +103,8 @@ struct MoCmaEs::Impl {
   MoCommon common;
   std::shared_ptr<const Shape> initial_shape;
   std::vector<Member> members;
-  SteadyFront population;          // of the members, in the steady state
-  std::vector<Member> recallable;  // members when values were last reassessed that had to go since
+  SteadyFront population;          // in the steady state
+  std::vector<Member> recallable;  // members removed since values were last reassessed
   std::uint64_t next_id = 0;
   std::size_t restarts = 0;
   std::vector<Offspring> pending;
@@ -182,7 +182,7 @@ void MoCmaEs::Impl::express(std::size_t k, VectorXd genotype) {
     }
     point[i] = common.box.from_unit(t, i);
   }
-  // The genotype stays where it fell: truncated steps would teach the path to lead away from the bound.
+  // The genotype stays unclipped: truncated steps would teach the path to lead away from the bound.
   o.genotype = std::move(genotype);
 }
 
@@ -204,7 +204,7 @@ void MoCmaEs::Impl::draw_step(const Member& parent, const Front* front, std::siz
   express(k, std::move(genotype));
 }
 
-// A normal step in the plane of the differences to the two members that are nearest on the front.
+// A normal step in the plane of the differences to the two nearest members on the front.
 VectorXd MoCmaEs::Impl::neighbour_step(const Member& parent, const Front& front) {
   const Member* nearest[2] = {nullptr, nullptr};
   double distance[2] = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
@@ -239,12 +239,12 @@ void MoCmaEs::Impl::recombine(const Member& parent, std::size_t k) {
                          common.config.blocks);
   const optimise::VariationConfig variation;
   auto child = optimise::make_child(as_span(first), as_span(second), variation, common.random);
-  if (std::ranges::equal(child, as_span(first)) || std::ranges::equal(child, as_span(second))) {  // known already
+  if (std::ranges::equal(child, as_span(first)) || std::ranges::equal(child, as_span(second))) {  // a known point
     double& t = child[common.random.index(child.size())];
     t = optimise::mutate(t, variation.mutation_index, common.random);
   }
   VectorXd genotype = Eigen::Map<const VectorXd>(child.data(), first.size());
-  // A coordinate that is handed on whole keeps its place beyond the bound, and so the child's offspring stay at it too.
+  // A coordinate inherited unchanged keeps its place beyond the bound, so the child's offspring stay there, too.
   for (Index i = 0; i < genotype.size(); ++i) {
     if (genotype[i] == first[i]) {
       genotype[i] = parent.genotype[i];
@@ -336,7 +336,7 @@ void MoCmaEs::Impl::tell_generation(std::vector<Solution> solutions) {
 // (μ + 1): an offspring succeeds when it is selected and its rank among the μ + 1 is not worse than its parent's.
 void MoCmaEs::Impl::tell_one(Solution solution, const Offspring& offspring) {
   const std::size_t mu = members.size();
-  // Another offspring of the same batch may have taken the parent's place.
+  // Another offspring of the same batch may have replaced the parent.
   const auto parent =
       std::find_if(members.begin(), members.end(), [&](const Member& p) { return p.id == offspring.parent; });
   const bool orphan = parent == members.end();
@@ -436,7 +436,7 @@ std::span<const double> MoCmaEs::resample(std::size_t index, std::span<const std
   const auto n = static_cast<Index>(c.dimension), k = static_cast<Index>(coordinates.size());
   MatrixXd columns = MatrixXd::Zero(n, k);
   VectorXd step = (o.genotype - o.origin) / o.strategy.sigma;
-  // Of a mixed offspring the other coordinates tell nothing about these.
+  // The other coordinates of a mixed offspring say nothing about these.
   if (o.mixed) step.setZero();
   for (Index j = 0; j < k; ++j) {
     const auto axis = static_cast<Index>(coordinates[static_cast<std::size_t>(j)]);
@@ -532,7 +532,7 @@ void save_member(optimise::StateWriter& w, const Member& member) {
   }
 }
 
-// `initial`: a shape of the same groups.
+// `initial`: a shape with the same groups.
 Member load_member(optimise::StateReader& r, const MoCommon& common, const Shape& initial) {
   const std::size_t n = common.dimension;
   Member member;
@@ -588,7 +588,7 @@ void MoCmaEs::load(std::istream& in) {
   const std::vector<double> contributions = r.finite_reals(count);
   if (count != 0) next->population.assign(optimise::fitness_of(next->members), contributions);
   r.end();
-  next->restart_if_at_rest();  // more may be allowed than when it was saved
+  next->restart_if_at_rest();  // the limit of restarts may be higher than when it was saved
   next->common.settle(next->members);
   impl_ = std::move(next);
 }

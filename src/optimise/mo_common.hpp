@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What MO-CMA-ES and its baselines share: the initial population, solutions, selection, and when a population is done.
+// Shared by MO-CMA-ES and its baselines: the initial population, solutions, selection, and convergence of a population.
 #pragma once
 
 #include <cstddef>
@@ -12,25 +12,25 @@
 
 namespace vantage::optimise {
 
-// A point with its objectives. `fitness` is what selection sees: the objectives plus a penalty for having been clipped.
+// A point with its objectives. `fitness`, used by selection, adds a penalty for clipping.
 struct Solution {
   std::vector<double> x, f, fitness;
 };
 
 class MoCommon : public Common {
  public:
-  // Throws Error invalid_argument. `name` begins the messages.
+  // Throws Error invalid_argument. Messages begin with `name`.
   MoCommon(std::string name, std::size_t dimension, std::size_t objectives, const OptimiserConfig& config);
 
-  // Point k of the initial population: as given, then random.
+  // Point k of the initial population: the given points, then random ones.
   std::vector<double> initial_point(std::size_t k);
   std::vector<double> random_point();
 
-  // Checks the values told, counts them, and gives one solution per asked point; those with a value that is not finite
-  // get +infinity.
+  // Checks and counts the values told, and returns one solution per requested point. Points with a value that is not
+  // finite get +infinity.
   std::vector<Solution> take(std::span<const double> values, std::span<const double> penalties = {});
 
-  // Puts other objectives in the place of the members', and keeps their penalties.
+  // Replaces the members' objectives, and keeps their penalties.
   template <typename Members>
   void reassess(Members& members, std::span<const double> values) {
     require_reassessable(values, members.size());
@@ -39,8 +39,8 @@ class MoCommon : public Common {
     forget_progress();
   }
 
-  // After every tell(), first: judges the population once an iteration. `converged` tells whether its steps have become
-  // too small.
+  // First call after every tell(): judges the population once per iteration. `converged` says whether its steps have
+  // become too small.
   template <typename Members, typename Converged>
   void watch(const Members& members, const Converged& converged) {
     if (iterations() == judged_iterations_) return;
@@ -51,7 +51,7 @@ class MoCommon : public Common {
   }
   bool at_rest() const { return own_ == StopReason::converged; }
   void run_on() { own_ = StopReason::running; }
-  // After every tell() and load(), last.
+  // Last call after every tell() and load().
   template <typename Members>
   void settle(const Members& members) {
     judge(own_, iterations(), [&] { return hypervolume(members); });
@@ -76,9 +76,9 @@ class MoCommon : public Common {
 
   StopReason own_ = StopReason::running;
   std::size_t judged_iterations_ = 0;
-  std::size_t failed_ = 0;  // evaluations in a row that were not finite
+  std::size_t failed_ = 0;  // consecutive evaluations that were not finite
   std::size_t flat_iterations_ = 0;
-  bool varied_ = false;  // two different values were told since the population was judged
+  bool varied_ = false;  // two different values were told since the population was last judged
   std::vector<double> last_value_;
 };
 
@@ -98,15 +98,15 @@ std::vector<double> fitness_of(const Members& members) {
   return fitness;
 }
 
-// The reference point, moved out along each objective in which fitness vectors (row-major) lie on or beyond it, to a
-// tenth of their range beyond them. So a front is spread before it has reached the reference, and one that has reached
+// The reference point, moved outwards along each objective in which fitness vectors (row-major) lie on or beyond it, by
+// a tenth of their range beyond the worst. So a front spreads before it reaches the reference, and a front that reached
 // it at one end does not lose the other.
 std::vector<double> reach_over(std::span<const double> fitness, std::span<const double> reference);
 // Which `count` of a set of mutually non-dominated fitness vectors to drop: the least contributors against
 // reach_over().
 std::vector<std::size_t> surplus(std::span<const double> fitness, std::span<const double> reference, std::size_t count);
 
-// Marks the `count` points to keep: by rank, the last front cut by surplus().
+// Marks the `count` points to keep: by rank, with the last front cut by surplus().
 std::vector<char> select(std::span<const double> fitness, std::span<const double> reference, std::size_t count);
 
 }  // namespace vantage::optimise

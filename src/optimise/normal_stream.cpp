@@ -9,7 +9,7 @@
 namespace vantage::optimise {
 namespace {
 
-constexpr std::uint32_t kStream = 0x6f707469;  // keeps this stream apart from others of the same seed
+constexpr std::uint32_t kStream = 0x6f707469;  // separates this stream from others of the same seed
 
 double unit_interval(std::uint32_t high, std::uint32_t low) {
   return static_cast<double>((std::uint64_t{high >> 5} << 26) | (low >> 6)) * 0x1p-53;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Normal and uniform numbers in bulk. A Philox block gives two 53-bit uniforms and so, by Box–Muller, both normals of a
-// pair: four times cheaper than drawing them one by one. The state is one counter, so it checkpoints.
+// pair, four times cheaper than one by one. The state is one counter, so it can be saved.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parts of the public header that belong to no single optimiser.
+// Parts of the public header that are common to all optimisers.
 #include "vantage/optimiser.hpp"
 
 #include <cmath>
@@ -115,7 +115,7 @@ std::vector<std::size_t> non_dominated_ranks(std::span<const double> points, std
     const auto p = std::span(values).subspan(i * objectives, objectives);
     for (const double v : p) {
       if (!std::isnan(v)) continue;
-      for (double& w : p) w = std::numeric_limits<double>::infinity();  // dominated by all that have none
+      for (double& w : p) w = std::numeric_limits<double>::infinity();  // dominated by all points with finite values
       break;
     }
   }

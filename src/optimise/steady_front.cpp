@@ -68,7 +68,7 @@ void SteadyFront::rank_newcomer() {
     if (rank_[i] >= rank && dominates(values_.data() + i * m_, p, m_)) rank = rank_[i] + 1;
   rank_[last] = rank;
   raised_.assign(1, last);
-  // Front by front: what has come into one pushes what it dominates there into the next.
+  // Front by front: points new to a front push the points they dominate there into the next.
   for (; !raised_.empty(); ++rank, std::swap(raised_, next_raised_)) {
     next_raised_.clear();
     for (std::size_t i = 0; i < last; ++i) {
@@ -131,7 +131,7 @@ void SteadyFront::measure_heirs(std::size_t p, std::size_t skipped) {
   gains_ = optimise::contributions({local_, m_}, bound_);
 }
 
-// Of the front of that rank.
+// Least contributor of the front of that rank.
 std::size_t SteadyFront::least_of(std::size_t rank) const {
   std::vector<std::size_t> index;
   for (std::size_t i = 0; i < rank_.size(); ++i)
@@ -156,7 +156,7 @@ SteadyFront::Verdict SteadyFront::offer(std::span<const double> fitness, std::si
   const auto next_reach = joins ? reach() : reach_;
   const bool local = m_ > 1 && next_reach == reach_;
   if (joins && local) {
-    // Those that fall out of the first front hand over what they had, one by one; the newcomer is not there yet.
+    // Points that leave the first front hand over their contributions one by one, before the newcomer is added.
     raised_.clear();
     for (std::size_t i = 0; i < mu; ++i)
       if (old_rank_[i] == 0 && rank_[i] != 0) raised_.push_back(i);
@@ -170,7 +170,7 @@ SteadyFront::Verdict SteadyFront::offer(std::span<const double> fitness, std::si
     const double own = exclusive(mu, kNone);
     measure_heirs(mu, kNone);
     if (worst == 0) {
-      // Who would contribute least with the newcomer in: if that is the newcomer, nothing has changed.
+      // The least contributor if the newcomer is in: if that is the newcomer, nothing changes.
       std::size_t least = mu;
       double lowest = own;
       std::size_t heir = 0;
@@ -203,7 +203,7 @@ SteadyFront::Verdict SteadyFront::offer(std::span<const double> fitness, std::si
   }
   const bool from_first = rank_[removed] == 0;
   if (from_first && local) {
-    rank_[removed] = kNone;  // gone
+    rank_[removed] = kNone;  // removed
     measure_heirs(removed, removed);
     for (std::size_t k = 0; k < near_.size(); ++k) contributions_[near_[k]] += gains_[k];
   }

@@ -8,24 +8,24 @@
 
 namespace vantage::optimise {
 
-// The fitness vectors of μ members, all minimised, their ranks, and what each of the first front contributes against
-// reach_over(). Ranks are exact. Contributions are handed over: who comes takes from its neighbours, who goes gives
-// back. recount() sums them up anew, so that rounding does not add up.
+// Fitness vectors of μ members, all minimised, their ranks, and contributions in the first front against reach_over().
+// Ranks are exact. Contributions are handed over: a newcomer takes from its neighbours, a leaving member returns its
+// own. recount() computes them anew, so that rounding does not accumulate.
 class SteadyFront {
  public:
   SteadyFront(std::size_t objectives, std::span<const double> reference);
 
-  // Takes a population, and its contributions where they are known (one a member, else empty).
+  // Takes a population and, if known, its contributions (one per member, else empty).
   void assign(std::span<const double> fitness, std::span<const double> contributions = {});
   void recount();
 
   struct Verdict {
-    std::size_t removed;      // the member that has to go; size() is the newcomer itself
-    std::size_t rank;         // the newcomer's among all μ + 1
-    std::size_t parent_rank;  // likewise; the newcomer's own where there is no parent
+    std::size_t removed;      // the member to remove; size() is the newcomer itself
+    std::size_t rank;         // of the newcomer among all μ + 1
+    std::size_t parent_rank;  // of the parent among all μ + 1; the newcomer's own without a parent
   };
-  // Puts the newcomer in the place of the member that contributes least to the last front, the later one of equals.
-  // `parent` is an index, or size().
+  // Replaces the least contributor of the last front, the later one of equals, by the newcomer. `parent` is an index,
+  // or size().
   Verdict offer(std::span<const double> fitness, std::size_t parent);
 
   std::size_t size() const { return rank_.size(); }
@@ -34,14 +34,15 @@ class SteadyFront {
   std::span<const double> contributions() const { return contributions_; }  // 0 outside the first front
 
  private:
-  // Ranks with the newcomer as the last: what it dominates falls back, and so does what that dominates.
+  // Ranks with the newcomer as the last member: what it dominates falls back, and so does what that dominates.
   void rank_newcomer();
   std::size_t least_of(std::size_t rank) const;
   std::vector<double> reach() const;
-  // The box around what p alone dominates in the first front, or what it and one other do, without `skipped` and p.
+  // The box around the volume that p alone dominates in the first front, or, if `second`, p and one other point;
+  // without `skipped`.
   void bound(std::size_t p, std::size_t skipped, bool second);
   double exclusive(std::size_t p, std::size_t skipped);
-  // Fills near_ and gains_: who would gain what if p left the first front.
+  // Fills near_ and gains_: which points would gain how much if p left the first front.
   void measure_heirs(std::size_t p, std::size_t skipped);
   void erase_last() { values_.resize(values_.size() - m_), rank_.pop_back(), contributions_.pop_back(); }
 

@@ -11,9 +11,9 @@ namespace {
 using Eigen::Index;
 
 constexpr double kSuccessThreshold = 0.44;
-constexpr double kMinSigma = 1e-300, kMaxSigma = 1e6;  // keep samples finite where every step fails, or succeeds
+constexpr double kMinSigma = 1e-300, kMaxSigma = 1e6;  // keep samples finite if every step fails, or succeeds
 
-// Entries of all factors; they are what a covariance has to learn, but for a factor of about two.
+// Entries of all factors: the number of parameters of a covariance, up to a factor of about two.
 Index entries(const std::vector<Group>& groups) {
   const Group& last = groups.back();
   return last.offset + last.size() * last.size();
@@ -93,8 +93,8 @@ void StepStrategy::adapt_sigma(bool succeeded) {
 }
 
 void StepStrategy::adapt_shape(const Eigen::VectorXd& step) {
-  // n² in one group. With fewer entries to learn, what there are are learnt the faster: Ros, Hansen, A Simple
-  // Modification in CMA-ES Achieving Linear Time and Space Complexity, 2008.
+  // n² in one group. Fewer parameters are learnt faster: Ros, Hansen, A Simple Modification in CMA-ES Achieving Linear
+  // Time and Space Complexity, 2008.
   const double n = static_cast<double>(step.size()), c_c = 2 / (n + 2);
   const double c_cov = 2 / (static_cast<double>(entries(*shape->groups)) + 6);
   Shape next = *shape;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The (1+1)-CMA-ES strategy that each member of MO-CMA-ES carries: step size by success, covariance by triangular
-// factors. Igel, Hansen, Roth: Covariance Matrix Adaptation for Multi-objective Optimization, 2007, algorithms 2 and 3.
+// The (1+1)-CMA-ES strategy of each member of MO-CMA-ES: step size by success, covariance by triangular factors. Igel,
+// Hansen, Roth: Covariance Matrix Adaptation for Multi-objective Optimization, 2007, algorithms 2 and 3.
 #pragma once
 
 #include <Eigen/Dense>
@@ -11,7 +11,7 @@
 
 namespace vantage::optimise {
 
-// Coordinates that vary together, and those of other groups independently of them.
+// Coordinates that vary together, independently of other groups.
 struct Group {
   std::vector<Eigen::Index> coordinates;
   Eigen::Index offset = 0;  // of its factor in Shape::factors
@@ -19,18 +19,18 @@ struct Group {
   Eigen::Index size() const { return static_cast<Eigen::Index>(coordinates.size()); }
 };
 
-// All coordinates in one group; or, of more than `most`, each block in one of its own and so each coordinate that is in
-// no block. Without blocks they stay together.
+// One group of all coordinates. Above `most` coordinates, with blocks: one group per block, and one per coordinate
+// outside blocks.
 std::vector<Group> groups_of(std::size_t dimension, const Blocks& blocks, std::size_t most);
 
-// C = A Aᵀ with a lower triangular A for each group, and the evolution path. Never changed once made, so that parents
-// and offspring share it.
+// C = A Aᵀ with a lower triangular A per group, and the evolution path. Immutable, so that parents and offspring share
+// it.
 struct Shape {
   using Factor = Eigen::Map<Eigen::MatrixXd>;
   using ConstFactor = Eigen::Map<const Eigen::MatrixXd>;
 
   std::shared_ptr<const std::vector<Group>> groups;
-  std::vector<double> factors;  // column-major, one group after the other
+  std::vector<double> factors;  // column-major, one group after another
   Eigen::VectorXd path;
 
   static std::shared_ptr<const Shape> identity(std::vector<Group> groups);
@@ -53,15 +53,14 @@ struct StepStrategy {
 
   // Counts a success or a failure.
   void adapt_sigma(bool succeeded);
-  // Learns the step that led here, divided by the sigma that it was drawn with. A covariance that rounding has broken
-  // begins anew.
+  // Learns the successful step, divided by the sigma it was drawn with. Resets a covariance that rounding broke.
   void adapt_shape(const Eigen::VectorXd& step);
   // The longest standard deviation along a coordinate.
   double reach() const { return sigma * shape->deviations().maxCoeff(); }
 };
 
-// factor · factorᵀ becomes decay · factor · factorᵀ + gain · v vᵀ in O(n²) (Krause, Igel: A More Efficient Rank-one
-// Covariance Matrix Update for Evolution Strategies, 2015, algorithm 3.1). False if rounding broke it.
+// Changes factor · factorᵀ to decay · factor · factorᵀ + gain · v vᵀ in O(n²) (Krause, Igel: A More Efficient Rank-one
+// Covariance Matrix Update for Evolution Strategies, 2015, algorithm 3.1). Returns false if rounding broke it.
 bool update_factor(Shape::Factor factor, double decay, double gain, Eigen::VectorXd v);
 
 }  // namespace vantage::optimise

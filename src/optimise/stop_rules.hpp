@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rules that end a search from outside of its algorithm: limits, target, stagnation. They may change where a search
-// goes on from a saved state, so what they are judged by is kept whether they are set or not.
+// Rules that end a search from outside its algorithm: limits, target, stagnation. They may change when a search
+// continues from a saved state, so their inputs are kept whether they are set or not.
 #pragma once
 
 #include <cstddef>
@@ -14,11 +14,11 @@ namespace vantage::optimise {
 
 class StopRules {
  public:
-  // To be asked after every tell(). `hypervolume` is called where a rule needs it, and once an iteration.
+  // To be called after every tell(). `hypervolume` is called if a rule needs it, and once per iteration.
   StopReason judge(const OptimiserConfig& config, std::size_t evaluations, std::size_t iterations,
                    const std::function<double()>& hypervolume);
 
-  // The hypervolumes so far do not compare with those to come.
+  // Discards the hypervolumes so far, which do not compare with later ones.
   void begin_anew() { steps_.clear(); }
 
   void save(StateWriter& w) const;
@@ -27,13 +27,13 @@ class StopRules {
  private:
   bool stagnated(const OptimiserConfig& config) const;
 
-  // The hypervolume over the iterations, where it changed.
+  // Changes of the hypervolume over the iterations.
   struct Step {
     std::size_t iteration;
     double hypervolume;
   };
   std::vector<Step> steps_;
-  std::size_t iterations_ = 0;  // of the last entry that was looked at
+  std::size_t iterations_ = 0;  // of the last entry examined
 };
 
 }  // namespace vantage::optimise

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Three dimensions: points are taken by rising z, and the staircase of those that are non-dominated in (x, y) is kept
-// in an ordered set (Beume, Fonseca, López-Ibáñez, Paquete, Vahrenhold: On the Complexity of Computing the Hypervolume
+// Three dimensions: points are taken by ascending z, and the staircase of those non-dominated in (x, y) is kept in an
+// ordered set (Beume, Fonseca, López-Ibáñez, Paquete, Vahrenhold: On the Complexity of Computing the Hypervolume
 // Indicator, 2009). Contributions: each point on the staircase keeps the area that it alone dominates as a list of
 // boxes, which newcomers cut (Emmerich, Fonseca: Computing Hypervolume Contributions in Low Dimensions, 2011).
 #include "optimise/sweep.hpp"
@@ -30,7 +30,7 @@ struct Sweep {
     sorted.push_back({reference[0], -kInfinity, 0});
     order.resize(k);
     std::iota(order.begin(), order.end(), 1u);
-    // Equal z by rank: a point that another weakly dominates in (x, y) then comes after it.
+    // Equal z are sorted by rank: a point that another weakly dominates in (x, y) then comes after it.
     std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
       return sorted[a][2] != sorted[b][2] ? sorted[a][2] < sorted[b][2] : a < b;
     });
@@ -44,8 +44,8 @@ struct Sweep {
   IndexSet stairs;                   // ranks on the staircase
 };
 
-// The area that each staircase point dominates alone, as boxes from left to right with falling tops. All boxes of a
-// point stand on its y; each remembers the z from which on it has been there.
+// The area that each staircase point alone dominates, as boxes from left to right with descending tops. All boxes of a
+// point stand on its y; each stores the z from which it exists.
 class ExclusiveAreas {
  public:
   ExclusiveAreas(std::span<const Point3> sorted)
@@ -59,7 +59,7 @@ class ExclusiveAreas {
     tail_[p] = b;
   }
 
-  // Takes x ≥ left away.
+  // Removes x ≥ left.
   void cut_right(std::uint32_t p, double left, double z) {
     while (tail_[p] != kEnd && boxes_[tail_[p]].left >= left) close(p, tail_[p], z);
     if (tail_[p] == kEnd) return;
@@ -69,12 +69,12 @@ class ExclusiveAreas {
     last.right = left;
   }
 
-  // Takes the quadrant x ≥ left, y ≥ bottom away.
+  // Removes the quadrant x ≥ left, y ≥ bottom.
   void cut_quadrant(std::uint32_t p, double left, double bottom, double z) {
     std::uint32_t b = head_[p];
     while (b != kEnd && boxes_[b].right <= left) b = boxes_[b].next;
     if (b == kEnd || boxes_[b].top <= bottom) return;
-    if (boxes_[b].left < left) {  // keep what stands left of the quadrant
+    if (boxes_[b].left < left) {  // keep the part left of the quadrant
       Box whole = boxes_[b];
       boxes_[b].right = left;
       const std::uint32_t rest = make({left, whole.right, whole.top, whole.z, b, whole.next});
@@ -184,7 +184,7 @@ std::vector<double> contributions2(std::span<const std::array<double, 2>> points
   std::vector<double> result(k, 0.0);
   double ceiling = reference[1];
   for (std::size_t i = 0; i < k;) {
-    // Up to the next staircase point come only points that this one dominates; they take from its step what lies above
+    // All points before the next staircase point are dominated by this one; they reduce its step by the part above
     // them.
     const auto& p = points[order[i]];
     const std::size_t begin = i++;

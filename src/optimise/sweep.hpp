@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The two- and three-dimensional sweeps on which hypervolumes of any dimension rest.
+// Sweeps in two and three dimensions, the basis of hypervolumes of any dimension.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@ namespace vantage::optimise {
 
 using Point3 = std::array<double, 3>;
 
-// All of these expect points strictly inside the reference; dominated points and duplicates are welcome. O(k log k).
+// These expect points strictly inside the reference; dominated points and duplicates are allowed. O(k log k).
 double area(std::span<const std::array<double, 2>> points, const std::array<double, 2>& reference);
 double volume3(std::span<const Point3> points, const Point3& reference);
 std::vector<double> contributions2(std::span<const std::array<double, 2>> points,

@@ -9,8 +9,8 @@ namespace {
 
 constexpr double kEqual = 1e-14;  // parents nearer than this along a coordinate leave nothing to recombine
 
-// The spread factor of simulated binary crossover, so that the child cannot pass a bound `room` (in units of the
-// parents' distance) away.
+// Spread factor of simulated binary crossover; the child cannot pass a bound `room` (in units of the parents' distance)
+// away.
 double spread(double room, double index, double u) {
   const double alpha = 2 - std::pow(1 + 2 * room, -(index + 1));
   return u <= 1 / alpha ? std::pow(u * alpha, 1 / (index + 1)) : std::pow(1 / (2 - u * alpha), 1 / (index + 1));

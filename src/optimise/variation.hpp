@@ -10,13 +10,13 @@
 namespace vantage::optimise {
 
 struct VariationConfig {
-  double crossover_probability = 0.9;  // of a pair
-  double crossover_index = 15;         // η of simulated binary crossover: larger stays nearer to the parents
+  double crossover_probability = 0.9;  // per pair
+  double crossover_index = 15;         // η of simulated binary crossover: larger values stay nearer to the parents
   double mutation_index = 20;          // η of polynomial mutation
 };
 
 // One child of two parents by bounded simulated binary crossover (Deb, Agrawal 1995; bounds as in Deb's NSGA-II), then
-// polynomial mutation with probability 1/n a coordinate (Deb, Goyal 1996). All of it in [0, 1].
+// polynomial mutation with probability 1/n per coordinate (Deb, Goyal 1996). All values in [0, 1].
 std::vector<double> make_child(std::span<const double> first, std::span<const double> second,
                                const VariationConfig& config, NormalStream& random);
 

@@ -38,10 +38,10 @@ LinearColour reflectivity_colour(double share) { return along(reflectivity_stops
 
 LinearColour mesh_colour(std::uint32_t mesh) {
   const double hue = std::fmod(0.08 + mesh * (std::numbers::phi - 1), 1.0) * 6;
-  const double light = 1 - 0.16 * (mesh % 3), grey = 0.40 + 0.14 * (mesh % 2);  // value, and its share that is grey
+  const double light = 1 - 0.16 * (mesh % 3), grey = 0.40 + 0.14 * (mesh % 2);  // value, and the grey part of it
   Code code;
   for (int i = 0; i < 3; ++i) {
-    // Red, green, blue are full within one sixth of their hue and gone beyond two.
+    // Red, green and blue are full within one sixth of their hue and 0 beyond two.
     const double away = std::abs(std::remainder(hue - 2.0 * i, 6.0));
     code[i] = 255 * light * (grey + (1 - grey) * std::clamp(2 - away, 0.0, 1.0));
   }

@@ -16,9 +16,9 @@
 namespace vantage {
 namespace {
 
-constexpr LinearColour backdrop{0.85f, 0.85f, 0.85f, 1};  // of false colours, where nothing is hit
+constexpr LinearColour backdrop{0.85f, 0.85f, 0.85f, 1};  // background of false colours
 
-// Ranges as 16 bits: 0 is no hit, the rest log2 of the range from 2^−10 m to 2^15 m, in steps of 0.03 %.
+// Ranges as 16 bits: 0 for no hit, otherwise log2 of the range from 2^−10 m to 2^15 m, in steps of 0.03 %.
 constexpr double lowest_log = -10, logs = 25, codes = 65534;
 std::uint16_t range_code(float range) {
   if (!std::isfinite(range)) return 0;
@@ -50,7 +50,7 @@ double extent_of(const Scene& scene) {
   return std::max({size.x, size.y, size.z, 1e-6});
 }
 
-// Rays are traced as a scan's; voxels play no part, so there are as few as can be.
+// Rays are traced as in a scan; voxels are not used, so there are as few as possible.
 Simulator make_simulator(const Scene& scene, const PanoramaOptions& options, const SimulatorConfig& config) {
   SimulatorConfig own = config;
   own.noise = false;
@@ -64,7 +64,7 @@ bool wants(std::span<const PanoramaView> views, std::initializer_list<PanoramaVi
                      [&](PanoramaView v) { return std::find(views.begin(), views.end(), v) != views.end(); });
 }
 
-// All rays of the picture as range codes, until the scale is known.
+// Range codes of all rays of the picture, until the scale is known.
 struct RangeRecord {
   std::vector<std::uint16_t> codes;
   std::uint32_t columns = 0;
@@ -103,7 +103,7 @@ struct PanoramaRenderer::Impl {
     const std::uint32_t side = options.supersample, columns = simulator.scanner().columns();
     LinearColour sum(0);
     for (std::uint32_t i = 0; i < side; ++i)
-      for (std::uint32_t j = 0; j < side; ++j)  // columns count against the image: azimuth grows to the left
+      for (std::uint32_t j = 0; j < side; ++j)  // columns run against the image: azimuth grows to the left
         sum += ray_colour(view, window, y * side + i, columns - 1 - (x * side + j));
     return sum / static_cast<float>(side * side);
   }

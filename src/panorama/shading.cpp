@@ -10,8 +10,7 @@ namespace {
 
 constexpr std::array<float, 2> ring_pixels{1.0f, 3.6f};
 constexpr int taps_a_ring = 8;
-constexpr float flat_cosine =
-    0.06f;  // a neighbour must rise this much over the tangent plane to count: hides facets of round pipes
+constexpr float flat_cosine = 0.06f;  // least rise of a neighbour over the tangent plane, to hide facets of round pipes
 constexpr float obscurance_strength = 1.5f;
 constexpr LinearColour zenith_sky{0.24f, 0.41f, 0.72f, 1}, horizon_sky{0.76f, 0.84f, 0.92f, 1},
     below{0.42f, 0.44f, 0.46f, 1};
@@ -79,7 +78,7 @@ float PanoramaShading::light(const RowWindow& window, std::uint32_t row, std::ui
     const float rise = dot(between, normal) / length - flat_cosine;
     if (rise <= 0) continue;
     const float near =
-        length / (8 * tap.radius * step_ * range);  // what is far in front casts no crease, only a faint outline
+        length / (8 * tap.radius * step_ * range);  // an object far in front casts no crease, only a faint outline
     covered += rise / (1 + near * near);
   }
   const float open = 1 / (1 + obscurance_strength * 4 * covered / static_cast<float>(taps_.size()));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How rendered panoramas look: a lamp at the station, a bright sky, and darkened creases (screen-space obscurance,
-// after Mittring: Finding Next Gen, 2007), so that pipes stand out before pipes.
+// Shading of rendered panoramas: a lamp at the station, a bright sky, and darkened creases (screen-space obscurance,
+// after Mittring: Finding Next Gen, 2007), so that pipes stand out in front of pipes.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ struct PanoramaRow {
   std::vector<std::uint32_t> colour;
 };
 
-// The rows around those being shaded. Rows are pushed from the top; old ones are dropped.
+// Rows around those being shaded. Rows are pushed from the top; old ones are dropped.
 class RowWindow {
  public:
   void push(PanoramaRow row) { rows_.push_back(std::move(row)); }
@@ -40,15 +40,15 @@ class RowWindow {
 
 class PanoramaShading {
  public:
-  // A pattern of `rows` × `columns` rays over the full sphere, `supersample` of them a pixel and direction, whose first
+  // A pattern of `rows` × `columns` rays over the full sphere, `supersample` of them per pixel and direction; the first
   // column looks along `first_azimuth`. `extent_m` of the scene scales the haze.
   PanoramaShading(std::uint32_t rows, std::uint32_t columns, std::uint32_t supersample, double first_azimuth,
                   double extent_m);
-  // How the pattern is turned from now on.
+  // Sets the rotation of the pattern.
   void turn(const StationSetup& setup);
-  // Rows that must be at hand below and above the one that is shaded.
+  // Rows needed below and above the shaded one.
   std::uint32_t reach() const { return reach_; }
-  // Light on a hit, to multiply its colour with. REQUIRES: a hit, with range and normal.
+  // Light on a hit, a factor of its colour. REQUIRES: a hit, with range and normal.
   float light(const RowWindow& window, std::uint32_t row, std::uint32_t column) const;
   // Share of its own colour that a surface keeps at a distance; the rest is sky at the horizon.
   float clearness(float range) const;

@@ -51,7 +51,7 @@ class Cutter {
   Cutter(const AreaLimits& limits, double spacing_m, SearchMesh& kept, LeftOut& cut_off)
       : limits_(limits), spacing_(spacing_m), kept_(kept), cut_off_(cut_off) {}
 
-  // Pieces of a triangle that the limits say nothing about stay together.
+  // Keeps pieces of a triangle together if no limit separates them.
   void cut(const std::array<Vertex, 3>& t) { put(t, sort(t, 0), 0); }
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Levels and regions that a search area is cut to.
+// Levels and regions that limit a search area.
 #pragma once
 
 #include <array>
@@ -14,12 +14,12 @@ namespace vantage {
 class AreaLimits {
  public:
   AreaLimits() = default;
-  // Throws Error invalid_argument: levels that do not rise, a ring of fewer than three corners or with one that is not
-  // finite.
+  // Throws Error invalid_argument: levels that do not ascend, a ring with fewer than three corners or with one that is
+  // not finite.
   explicit AreaLimits(const WalkableOptions& options);
   bool any() const { return levels_ || !within_.empty() || !without_.empty(); }
   bool allow(const Vec3& ground) const { return allow_near(ground, 0); }
-  // Whether a place no farther than `margin_m` away may be allowed; so may some beyond.
+  // Whether a place within `margin_m` may be allowed; conservative, so true for some places further away.
   bool allow_near(const Vec3& ground, double margin_m) const;
 
  private:
@@ -27,8 +27,9 @@ class AreaLimits {
   std::vector<PlanRegion> within_, without_;
 };
 
-// What of the mesh, cut into pieces no longer than `spacing_m`, may hold allowed places; `cut_off` gets the area of the
-// rest. Positions and (u, v) of pieces are interpolated; triangles with a position that is not finite go.
+// Cuts the mesh into pieces up to `spacing_m` and returns those that may hold allowed places; `cut_off` gets the area
+// of the rest. Positions and (u, v) of pieces are interpolated. Triangles with a position that is not finite are
+// dropped.
 SearchMesh cut_to_limits(const SearchMesh& mesh, const AreaLimits& limits, double spacing_m, LeftOut& cut_off);
 
 }  // namespace vantage

@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::uint32_t nobody = 0xFFFFFFFFu;
 
-// Sets with the smallest member as their name.
+// Disjoint sets, each named by its smallest member.
 class DisjointSets {
  public:
   explicit DisjointSets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0u); }
@@ -40,8 +40,8 @@ class DisjointSets {
   std::vector<std::uint32_t> parent_;
 };
 
-// Joins points that share a cell of a grid, and again of the grid moved by half a cell, so that near ones meet in one
-// of them.
+// Joins points that share a cell of a grid, or of the grid shifted by half a cell, so that near points meet in one of
+// them.
 void weld(const std::vector<glm::dvec3>& points, const std::vector<char>& used, double weld_m, DisjointSets& sets) {
   struct Entry {
     std::array<std::int64_t, 3> cell;
@@ -78,7 +78,7 @@ bool overlap_in_plan(const std::array<Uv, 3>& a, const std::array<Uv, 3>& b, dou
   return true;
 }
 
-// Undirected graph over pieces as rows of neighbours.
+// Undirected graph over pieces, as rows of neighbours.
 class Graph {
  public:
   Graph() = default;
@@ -132,7 +132,7 @@ Graph find_overlaps(const SurfacePieces& pieces, const std::vector<Triangle>& ke
   return Graph(kept.size(), std::move(all));
 }
 
-// Which pieces touch: those that have a vertex in common, and those of one source triangle.
+// Finds touching pieces: those with a common vertex, and those of one source triangle.
 class Neighbours {
  public:
   Neighbours(std::span<const std::uint32_t> members, const std::vector<std::array<std::uint32_t, 3>>& welded,
@@ -236,8 +236,7 @@ std::vector<GroundChart> make_charts(const SurfacePieces& pieces, double weld_m)
       charts.push_back(chart_of(pieces, std::move(own)));
       continue;
     }
-    // Grow a chart from one piece over its neighbours, leaving out what would overlap it; then another from what is
-    // left.
+    // Grows a chart from one piece over its neighbours, without overlaps; then another from the remaining pieces.
     const Neighbours neighbours(own, welded, pieces.source);
     for (const std::uint32_t seed : own) {
       if (chart_number[seed] != nobody) continue;
@@ -307,7 +306,7 @@ SearchMesh unfold(const SurfacePieces& pieces, const std::vector<GroundChart>& c
       for (const std::uint32_t v : pieces.triangles[piece]) plan.push_back({pieces.points[v].x, pieces.points[v].y});
     Rectangle r = smallest_rectangle(convex_hull(std::move(plan)));
     if (charts.size() > 1 && r.max.v - r.min.v > r.max.u - r.min.u) {
-      // A quarter turn lays it flat, which shelves like.
+      // Turns it to lie flat, which packs better on shelves.
       const Rectangle upright = r;
       r = {-upright.sine, upright.cosine, {upright.min.v, -upright.max.u}, {upright.max.v, -upright.min.u}};
     }
@@ -327,7 +326,7 @@ SearchMesh unfold(const SurfacePieces& pieces, const std::vector<GroundChart>& c
       Triangle t;
       for (int corner = 0; corner < 3; ++corner) {
         const std::uint32_t v = pieces.triangles[piece][corner];
-        // A point may have been given a number by an earlier chart, which holds another copy of it.
+        // An earlier chart may have numbered the point already, for its own copy.
         if (number[v] == nobody || number[v] < first) {
           number[v] = static_cast<std::uint32_t>(mesh.positions.size());
           const glm::dvec3& p = pieces.points[v];

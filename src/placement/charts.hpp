@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Unfolds pieces of walkable surface into (u, v): connected charts that do not overlap in plan view, each in its own
+// Unfolds pieces of walkable surface into (u, v): connected charts without overlap in plan view, each in its own
 // rectangle.
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace vantage {
 
-// Pieces that lie beside each other seen from above.
+// Pieces without overlap in plan view.
 struct GroundChart {
   std::vector<std::uint32_t> pieces;
   double area = 0;       // true
@@ -19,16 +19,16 @@ struct GroundChart {
   double mean_z = 0;     // over the plan area
 };
 
-// Connected parts (by vertices at the same place, to `weld_m`), parts that overlap themselves in plan view cut into
-// several. Pieces that another one repeats are left out. Largest first.
+// Connected parts (by vertices at the same place, to `weld_m`). Parts that overlap themselves in plan view are split;
+// repeated pieces are left out. Largest first.
 std::vector<GroundChart> make_charts(const SurfacePieces& pieces, double weld_m);
 
-// Whether a disc of this radius, seen from above, fits in the chart somewhere; tried at the middles of its pieces and
-// of their edges.
+// Whether a disc of this radius, seen from above, fits somewhere in the chart. Tests the middles of its pieces and of
+// their edges.
 bool holds_disc(const SurfacePieces& pieces, const GroundChart& chart, double radius_m);
 
-// Lays the charts side by side. Every chart is turned to its smallest rectangle and scaled so that its (u, v) area is
-// in proportion to its true area; all share one scale. v spans [0, 1], u starts at 0. Positions are moved by `origin`.
+// Lays the charts side by side. Each chart is turned to its smallest rectangle and scaled so that its (u, v) area is in
+// proportion to its true area; all share one scale. v spans [0, 1], u starts at 0. Positions are moved by `origin`.
 SearchMesh unfold(const SurfacePieces& pieces, const std::vector<GroundChart>& charts, const Vec3& origin);
 
 // Area of the convex hull of the points seen from above.

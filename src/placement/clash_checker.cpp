@@ -11,7 +11,7 @@ namespace vantage {
 
 namespace {
 
-// What head and mast keep clear around them, as shares of the security volume's radius.
+// Clearance of head and mast, as shares of the security volume's radius.
 constexpr double head_share = 0.2, mast_share = 0.1;
 
 }  // namespace
@@ -56,7 +56,7 @@ bool ClashChecker::clashes(const Vec3& ground, double height_m) const {
   const glm::dvec3 local = to_glm(ground - impl_->origin);
   const auto up = [&](double height) { return local + glm::dvec3{0, 0, height}; };
   if (impl_->tree.within(up(height_m), head_radius)) return true;
-  // Where the mast is well within a sphere nothing is left to ask.
+  // Parts of the mast well within a sphere need no test.
   const double within = std::sqrt(v.radius_m * v.radius_m - mast_radius * mast_radius);
   double from = v.lower_m - v.radius_m + mast_radius;
   for (const double sphere : {std::min(v.lower_m, v.upper_m), std::max(v.lower_m, v.upper_m)}) {

@@ -24,14 +24,14 @@ namespace {
 
 constexpr double columns_per_passage = 12;
 constexpr double most_columns = 6e6;  // some 300 MB at three storeys
-// A person walks where no scanner stands: stairs are often drawn as a slope, seldom steeper than this.
+// People walk on slopes too steep for a scanner: models often draw stairs as a slope, seldom steeper than this.
 constexpr double walking_slope_degrees = 40;
-// No wall passes between the middles of two columns that touch, corner to corner, at half this distance from either.
+// No wall passes between the middles of two columns that touch at a corner while both have half this distance clear.
 constexpr double half_diagonal = 0.7072;
 constexpr int cylinders = 3;
 constexpr double tolerance_share = 1e-3;  // of climb, height and width: rounding of the vertices
 
-// What is in the way, as bits.
+// Obstacles, as bits.
 constexpr std::uint8_t beside = 1, overhead = 2, at_door = 4;
 
 using Corners = std::array<glm::dvec3, 3>;
@@ -39,7 +39,7 @@ using Corners = std::array<glm::dvec3, 3>;
 double squared(const glm::dvec2& v) { return v.x * v.x + v.y * v.y; }
 double turn(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
 
-// Squared distance from p to a convex polygon; a polygon without area is its outline.
+// Squared distance from p to a convex polygon. A polygon without area counts as its outline.
 double squared_distance(const glm::dvec2& p, std::span<const glm::dvec2> polygon) {
   double nearest = std::numeric_limits<double>::infinity();
   bool left = false, right = false;
@@ -55,7 +55,7 @@ double squared_distance(const glm::dvec2& p, std::span<const glm::dvec2> polygon
   return !(left && right) && std::abs(area) > 1e-12 ? 0 : nearest;
 }
 
-// The part of a triangle from `low` to `high`, seen from above. At most five corners.
+// Part of a triangle from height `low` to `high`, seen from above. At most five corners.
 struct Slice {
   std::array<glm::dvec2, 8> corners;
   std::size_t count = 0;
@@ -83,7 +83,8 @@ Corners corners_of(const SceneData& scene, const Triangle& t) {
   return {to_glm(scene.positions[t[0]]), to_glm(scene.positions[t[1]]), to_glm(scene.positions[t[2]])};
 }
 
-// Visits (row, first column, last column) of the middles that may lie within `reach` of a triangle seen from above.
+// Visits (row, first column, last column) of the column middles that may lie within `reach` of a triangle seen from
+// above.
 struct Grid {
   glm::dvec2 corner;
   double cell;
@@ -104,7 +105,7 @@ void for_rows(const Grid& grid, const Corners& t, double reach, Visit&& visit) {
   for (std::int64_t row = first_at(y_min - reach, grid.corner.y, grid.rows),
                     last = last_at(y_max + reach, grid.corner.y, grid.rows);
        row <= last; ++row) {
-    // What of the triangle lies at the heights of this row, by `reach` more on either side.
+    // Part of the triangle within this row, widened by `reach` on either side.
     const double y = grid.corner.y + (static_cast<double>(row) + 0.5) * grid.cell, low = y - reach, high = y + reach;
     double x_min = std::numeric_limits<double>::infinity(), x_max = -x_min;
     for (int e = 0; e < 3; ++e) {
@@ -123,7 +124,7 @@ void for_rows(const Grid& grid, const Corners& t, double reach, Visit&& visit) {
   }
 }
 
-// Floats in an order that their bits as integers have.
+// Maps floats to integers in the same order.
 std::uint32_t ordered(float x) {
   const auto bits = std::bit_cast<std::uint32_t>(x);
   return bits & 0x80000000u ? ~bits : bits | 0x80000000u;
@@ -194,7 +195,7 @@ void GroundField::find_samples(const SceneData& scene, std::optional<Plane> plan
       all.push_back(std::uint64_t{column} << 32 | ordered(static_cast<float>(plane->z)));
   tbb::parallel_sort(all.begin(), all.end());
 
-  // Triangles that meet over a middle, and surfaces that all but touch, are one sample.
+  // Triangles that meet over a middle, and surfaces that nearly touch, count as one sample.
   const auto apart = static_cast<float>(tolerance_share * height_);
   first_.assign(count + 1, 0);
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -229,7 +230,7 @@ void GroundField::find_room(const SceneData& scene) {
       for_rows(grid, t, widest, [&](std::uint32_t row, std::uint32_t from, std::uint32_t to) {
         for (std::uint32_t c = from; c <= to; ++c) {
           const std::uint32_t column = row * columns_ + c;
-          double whole = -1;  // squared distance to all of the triangle, once it is known
+          double whole = -1;  // squared distance to the whole triangle, once computed
           for (std::uint32_t s = first_[column]; s < first_[column + 1]; ++s) {
             const double low = z_[s] + climb_, high = z_[s] + height_;
             if (z_max <= low || z_min >= high) continue;
@@ -277,7 +278,7 @@ void GroundField::for_neighbours(std::uint32_t sample, Visit&& visit) const {
     }
 }
 
-// The columns so many steps away along x and y.
+// Visits the columns `far` steps away along x and y.
 template <class Visit>
 void GroundField::for_columns_beside(std::uint32_t column, std::int64_t far, Visit&& visit) const {
   const std::int64_t x = column % columns_, y = column / columns_;
@@ -313,7 +314,7 @@ void GroundField::find_parts() {
     }
     part.mean_z /= static_cast<double>(part.samples);
   }
-  // What lies over a room of another part: a roof over its house.
+  // Counts samples above a room of another part, such as a roof above its house.
   for (std::uint32_t s = 0; s < z_.size(); ++s) {
     if (part_[s] == nowhere) continue;
     for (std::uint32_t below = first_[column_[s]]; below < s; ++below)
@@ -325,7 +326,7 @@ void GroundField::find_parts() {
   }
 }
 
-// Whether one sees out of the model, level, at the height of the knees and of the head, from where the part ends.
+// Whether a level line of sight, at knee or head height, leads out of the model from the edge of the part.
 bool GroundField::leads_out(const MeshTree& tree, const Part& part, std::uint32_t number) const {
   constexpr std::size_t most = 2000;
   constexpr int ways = 16;
@@ -355,9 +356,10 @@ bool GroundField::leads_out(const MeshTree& tree, const Part& part, std::uint32_
 }
 
 std::optional<std::uint32_t> GroundField::choose_part(const MeshTree& tree) const {
-  // Shares of the largest: a way in may be small beside its hall, but of what is closed none is more than another.
+  // Smallest shares of the largest part. An entrance may be small beside its hall; closed parts must be of similar
+  // size.
   constexpr double large_open = 0.2, large_closed = 0.5;
-  const double storey = 0.8 * height_;  // parts nearer in height than this lie on one level
+  const double storey = 0.8 * height_;  // parts nearer in height than this are on one level
   struct Candidate {
     std::uint32_t part;
     double area, z;
@@ -406,7 +408,7 @@ std::optional<std::uint32_t> GroundField::choose_part(const MeshTree& tree) cons
 
 void GroundField::reach(const MeshTree& tree, std::optional<glm::dvec3> enter) {
   access_.assign(parts_.size(), Access::unreachable);
-  std::optional<std::uint32_t> start;  // a sample
+  std::optional<std::uint32_t> start;  // index of a sample
   if (enter) {
     const double within = 2 * radius_ / 0.3;  // 2 m for a passage of 0.6 m
     double best = within * within;
@@ -445,11 +447,12 @@ void GroundField::reach(const MeshTree& tree, std::optional<glm::dvec3> enter) {
   look_beyond_high_steps();
 }
 
-// Of the parts that are not reached, those behind walls: under a cover, and not a step above or below what is reached
-// beside them.
+// Marks unreached parts as sealed if they are behind walls: under a cover, and not one step above or below a reached
+// part beside them.
 void GroundField::tell_apart() {
-  const auto far = static_cast<std::int64_t>(std::ceil(4 * radius_ / cell_));  // across a wall and both its margins
-  std::vector<std::int64_t> level(parts_.size(), 0);                           // more votes for than against
+  // across a wall and the margins on both sides
+  const auto far = static_cast<std::int64_t>(std::ceil(4 * radius_ / cell_));
+  std::vector<std::int64_t> level(parts_.size(), 0);  // votes for minus votes against
   for (std::uint32_t s = 0; s < z_.size(); ++s) {
     if (part_[s] == nowhere || access_[part_[s]] == Access::reached) continue;
     for_columns_beside(column_[s], far, [&](std::uint32_t other) {
@@ -466,8 +469,8 @@ void GroundField::tell_apart() {
       access_[i] = Access::sealed;
 }
 
-// Steps that keep a person from a hall are worth a word; those onto a bed are not. Each tread of a stair that is too
-// steep is a part of its own, so one goes from part to part.
+// Reports steps that keep a person from a hall, but not steps onto a bed. Each tread of a stair that is too steep is a
+// part of its own, so the search goes from part to part.
 void GroundField::look_beyond_high_steps() {
   struct Edge {
     std::uint32_t from, to;

@@ -15,11 +15,11 @@ namespace {
 constexpr double upward = 0.7071067811865476;  // cosine of 45°
 constexpr double quarter = 0.25;
 constexpr std::uint32_t heaviest = 255;
-// A search area lies on the surfaces it was made of, but for thin covers such as a carpet or a kerb.
+// Largest distance from a search area to the surfaces it was made of, for thin covers such as a carpet or a kerb.
 constexpr double same_surface_m = 0.15;
-// Points looked at over all upward surfaces.
+// Number of points tested over all upward surfaces.
 constexpr double samples = 20'000;
-constexpr int most_samples = 4096;  // of one triangle
+constexpr int most_samples = 4096;  // per triangle
 
 struct Area {
   double all = 0, up = 0, stood_on = 0;
@@ -29,7 +29,7 @@ struct Area {
 
 bool ground_is_unmarked(const Scene& scene, const SearchArea& area) {
   if (!area.derived() || !scene.options().surveyed.empty() || !scene.options().weights.empty()) return false;
-  // Once a mesh is marked surveyed in the file, those without a mark block.
+  // Once the file marks a mesh as surveyed, unmarked meshes are blocking.
   const bool patterns_block = !scene.options().blocking.empty();
   return std::ranges::all_of(scene.meshes(), [&](const MeshInfo& mesh) {
     return mesh.weight == 1 && (mesh.role == Role::surveyed || patterns_block);
@@ -50,7 +50,7 @@ GroundWeights ground_weights(const Scene& scene, const SearchArea& area) {
         const Triangle& of = data.triangles[t];
         const Vec3 a = corner(of[0]), b = corner(of[1]), c = corner(of[2]), normal = cross(b - a, c - a);
         const double twice = std::sqrt(dot(normal, normal));
-        // Models are wound either way, so a ceiling may count as upward too: no one stands on it.
+        // Models are wound either way, so a ceiling may count as upward, too; nobody stands on it.
         if (twice > 0) with(areas[m], a, b, c, twice / 2, std::abs(normal.z) >= upward * twice);
       }
     }
@@ -64,7 +64,7 @@ GroundWeights ground_weights(const Scene& scene, const SearchArea& area) {
   GroundWeights found;
   found.weights.assign(data.meshes.size(), 1);
   if (!(all > 0 && up > 0)) return found;
-  // Points of each triangle by a low-discrepancy walk, so many as its share of the upward surface.
+  // Points of each triangle by a low-discrepancy walk, in proportion to its share of the upward surface.
   for_each_surveyed([&](Area& of, const Vec3& a, const Vec3& b, const Vec3& c, double size, bool is_up) {
     if (!is_up) return;
     const int n = std::clamp(static_cast<int>(std::ceil(samples * size / up)), 1, most_samples);

@@ -23,10 +23,10 @@ struct Query {
   Buffers buffers;
   glm::dvec3 point;
   double best;         // nearest so far
-  double good_enough;  // no nearer one need be found
+  double good_enough;  // a hit this near ends the search
 };
 
-// A radius for Embree's boxes that loses nothing to the rounding of the point and of the radius to float.
+// A radius for Embree's boxes that covers the rounding of point and radius to float.
 float query_radius(const glm::dvec3& point, double radius) {
   const double reach = std::max({std::abs(point.x), std::abs(point.y), std::abs(point.z)});
   return static_cast<float>((radius + 4 * reach * 0x1p-23) * (1 + 0x1p-20));
@@ -72,10 +72,10 @@ bool visit_segment(RTCPointQueryFunctionArguments* arguments) {
   return true;
 }
 
-// The nearest triangle of a ray. Embree proposes; its own distance hangs on the maker of the processor, and its choice
-// between triangles that are equally far on the order in which it visits them.
+// Nearest triangle of a ray. Embree proposes hits; its own distance depends on the processor's maker, and its choice
+// among equally distant triangles on the order of visits.
 struct Nearest {
-  embree::Context rtc;  // first: Embree hands its address to the filter
+  embree::Context rtc;  // first member: Embree passes its address to the filter
   Buffers buffers;
   glm::dvec3 point, way;
   double distance = std::numeric_limits<double>::infinity();
@@ -83,7 +83,7 @@ struct Nearest {
 };
 
 void keep_nearest(const RTCFilterFunctionNArguments* arguments) {
-  constexpr float beyond = 1 + 0x1p-8f;  // how far past it Embree goes on searching
+  constexpr float beyond = 1 + 0x1p-8f;  // how far beyond the hit Embree continues
   Nearest& nearest = *reinterpret_cast<Nearest*>(arguments->context);
   const std::uint32_t proposed = RTCHitN_primID(arguments->hit, arguments->N, 0);
   const Triangle& t = nearest.buffers.triangles[proposed];
@@ -117,7 +117,7 @@ RTCRay ray_of(const glm::dvec3& point, const glm::dvec3& way, double from, doubl
 
 double squared(const glm::dvec3& v) { return dot(v, v); }
 
-// Of two closed segments (Ericson, Real-Time Collision Detection, 2005, section 5.1.9).
+// For two closed segments (Ericson, Real-Time Collision Detection, 2005, section 5.1.9).
 double squared_between_segments(const glm::dvec3& p, const glm::dvec3& q, const glm::dvec3& a, const glm::dvec3& b) {
   const glm::dvec3 u = q - p, v = b - a, w = p - a;
   const double uu = squared(u), vv = squared(v), uv = dot(u, v), uw = dot(u, w), vw = dot(v, w);
@@ -143,7 +143,7 @@ double squared_to_segment(const glm::dvec3& p, const glm::dvec3& a, const glm::d
 double distance_to_triangle(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
   const glm::dvec3 normal = cross(b - a, c - a);
   const double area = squared(normal);
-  // Above the inside the plane is nearest, anywhere else the outline.
+  // Above the triangle's inside the plane is nearest; elsewhere, the outline.
   if (area > 0 && dot(cross(b - a, p - a), normal) >= 0 && dot(cross(c - b, p - b), normal) >= 0 &&
       dot(cross(a - c, p - c), normal) >= 0)
     return std::abs(dot(p - a, normal)) / std::sqrt(area);
@@ -154,7 +154,7 @@ double distance_to_triangle(const glm::dvec3& p, const glm::dvec3& q, const glm:
                             const glm::dvec3& c) {
   const glm::dvec3 normal = cross(b - a, c - a);
   const double from = dot(p - a, normal), to = dot(q - a, normal);
-  if ((from <= 0) != (to <= 0)) {  // the segment crosses the plane: within the triangle?
+  if ((from <= 0) != (to <= 0)) {  // the segment crosses the plane; within the triangle?
     const glm::dvec3 x = p + (q - p) * (from / (from - to));
     if (dot(cross(b - a, x - a), normal) >= 0 && dot(cross(c - b, x - b), normal) >= 0 &&
         dot(cross(a - c, x - c), normal) >= 0)
@@ -168,7 +168,7 @@ double distance_to_triangle(const glm::dvec3& p, const glm::dvec3& q, const glm:
 struct MeshTree::Impl {
   embree::Device device = embree::new_device();
   embree::Scene tree;
-  Buffers buffers{};  // the geometry's own, so they live as long as the tree
+  Buffers buffers{};  // buffers of the geometry, which live as long as the tree
 
   explicit Impl(const SceneData& scene) : tree(rtcNewScene(device.get())) {
     rtcSetSceneFlags(tree.get(), RTC_SCENE_FLAG_ROBUST);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// All surveyed and blocking triangles in an Embree scene, for distances and for lines of sight on the host.
+// All surveyed and blocking triangles in an Embree scene, for distances and lines of sight on the host.
 #pragma once
 
 #include <array>
@@ -22,20 +22,19 @@ class MeshTree {
 
   // Distance from `point` to the nearest triangle, at most `limit`, in double on the float vertices.
   double distance(const glm::dvec3& point, double limit) const;
-  // Whether a triangle comes nearer to `point` than `radius`. Cheaper than the distance: the first such triangle
-  // settles it.
+  // Whether a triangle is nearer to `point` than `radius`. Cheaper than the distance: the first such triangle decides.
   bool within(const glm::dvec3& point, double radius) const;
-  // Whether a triangle comes nearer to the segment from a to b than `radius`.
+  // Whether a triangle is nearer to the segment from a to b than `radius`.
   bool within_of_segment(const glm::dvec3& a, const glm::dvec3& b, double radius) const;
-  // How far the first triangle straight below `point` is.
+  // Distance of the first triangle straight below `point`.
   std::optional<double> drop(const glm::dvec3& point) const;
-  // Whether a triangle lies on the segment from `point` + `from` to `point` + `to` straight up.
+  // Whether a triangle meets the vertical segment from `point` + `from` to `point` + `to`.
   bool covered(const glm::dvec3& point, double from, double to) const;
-  // Whether a triangle lies on the segment from a to b.
+  // Whether a triangle meets the segment from a to b.
   bool between(const glm::dvec3& a, const glm::dvec3& b) const;
-  // Whether there are surfaces straight above and level to all four sides, and the nearest of them show their backs:
-  // `point` lies within a closed solid, such as a tank, and not within a room, nor under a roof that is a mere sheet.
-  // One of the five may show its front, as where another solid stands on this one.
+  // Whether `point` lies within a closed solid, such as a tank, and not in a room or under a roof that is a mere sheet.
+  // Tests the nearest surfaces straight above and level to all four sides: each must show its back, except that one of
+  // the five may show its front, e.g. if another solid stands on this one.
   bool inside_solid(const glm::dvec3& point) const;
 
  private:

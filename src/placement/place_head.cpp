@@ -6,9 +6,9 @@
 namespace vantage {
 namespace {
 
-// Tripods are set higher and lower than planned, by up to this share of the planned height.
+// Tripods may be set higher or lower than planned by up to this share of the planned height.
 constexpr double height_tolerance = 0.5;
-// A head is above the ground of its (u, v) when it is so to this distance in plan.
+// Largest distance in plan between a head and the ground of its (u, v).
 constexpr double same_place_m = 1e-3;
 
 bool straight_below(const Vec3& ground, const Vec3& head) {

@@ -13,7 +13,7 @@ namespace vantage {
 std::vector<Uv> convex_hull(std::vector<Uv> points);
 double hull_area(const std::vector<Uv>& hull);
 
-// A rectangle given by its direction: the points' coordinates along (cosine, sine) lie in [min.u, max.u], across in
+// A rectangle given by its direction: points have coordinates along (cosine, sine) in [min.u, max.u] and across it in
 // [min.v, max.v].
 struct Rectangle {
   double cosine = 1, sine = 0;
@@ -21,8 +21,8 @@ struct Rectangle {
   double area() const { return (max.u - min.u) * (max.v - min.v); }
   Uv along(Uv p) const { return {cosine * p.u + sine * p.v, cosine * p.v - sine * p.u}; }
 };
-// The rectangle of least area. Axis-aligned unless another direction saves a tenth, so that u and v follow x and y
-// where they may.
+// Rectangle of least area. Axis-aligned unless another direction saves a tenth, so that u and v follow x and y where
+// possible.
 Rectangle smallest_rectangle(const std::vector<Uv>& hull);
 
 }  // namespace vantage

@@ -12,11 +12,11 @@ namespace vantage {
 namespace {
 
 constexpr std::size_t leaf_size = 8;
-constexpr int patience = 4;  // levels of subdivision in a row that part nothing, before it is given up
+constexpr int patience = 4;  // levels of subdivision in a row that separate nothing before it gives up
 constexpr double slack_share =
-    1e-9;  // of the larger side of the bounds: well above rounding, well below any distance that matters
+    1e-9;  // share of the larger side of the bounds: well above rounding, well below any relevant distance
 constexpr double no_area =
-    0x1p-48;  // height over length below which (u, v) rounded to double say nothing of a triangle's inside
+    0x1p-48;  // height over length below which (u, v) in double do not define a triangle's inside
 
 Uv operator-(Uv a, Uv b) { return {a.u - b.u, a.v - b.v}; }
 double cross(Uv a, Uv b) { return a.u * b.v - a.v * b.u; }
@@ -49,17 +49,17 @@ float above(double x) { return std::nextafter(static_cast<float>(x), HUGE_VALF);
 
 }  // namespace
 
-// Builds nodes for a cell and all below it. Large cells go to threads of their own; the result is the same.
+// Builds nodes of a cell and everything below it. Large cells get threads of their own; the result is the same.
 class PlaneQuadtree::Builder {
  public:
   struct Subtree {
-    std::vector<Node> nodes{1};  // the root first
+    std::vector<Node> nodes{1};  // root first
     std::vector<std::uint32_t> items;
   };
 
   explicit Builder(const PlaneQuadtree& tree)
       : tree_(tree),
-        // A regular mesh is parted after log4(n) levels; the rest is for crowded places.
+        // A regular mesh is separated after log4(n) levels; the rest is for crowded places.
         max_depth_(static_cast<int>(std::ceil(std::log2(static_cast<double>(tree.candidates_)) / 2)) + 8) {}
 
   Subtree build(const Cell& cell, std::vector<Item> items) const {
@@ -100,8 +100,8 @@ class PlaneQuadtree::Builder {
       copies += lists[q].size();
       most = std::max(most, partial(lists[q], cells[q]));
     }
-    // Triangles in a pile, or around one vertex, are copied by subdivision but not parted. A crowd in one corner is
-    // neither yet.
+    // Subdivision copies triangles in a pile, or around one vertex, without separating them. A crowd in one corner is
+    // not yet such a case.
     const bool parted = 4 * most <= 3 * crowd, cornered = 5 * copies <= 6 * items.size();
     idle = parted ? 0 : cornered ? idle : idle + 1;
     const bool threaded = depth < threaded_levels && items.size() >= worth_a_thread;
@@ -118,8 +118,8 @@ class PlaneQuadtree::Builder {
     for (std::uint32_t q = 0; q < 4; ++q) append(out, child + q, parts[q]);
   }
 
-  // Triangles that do not cover the whole cell; those that do would cover all its children too, so only the others
-  // count. Not counted where the cell is a leaf anyway.
+  // Number of triangles that do not cover the whole cell; those that do would cover all its children, too. Skipped if
+  // the cell is a leaf anyway.
   std::size_t partial(const std::vector<Item>& items, const Cell& cell) const {
     if (items.size() <= leaf_size) return 0;
     const double u_min = cell.min.u - tree_.min_.u, u_max = cell.max.u - tree_.min_.u;
@@ -132,7 +132,7 @@ class PlaneQuadtree::Builder {
     return count;
   }
 
-  // Puts a subtree's root in the place of `node` and the rest at the end.
+  // Puts a subtree's root in place of `node` and the rest at the end.
   static void append(Subtree& out, std::uint32_t node, const Subtree& part) {
     const auto first_node = static_cast<std::uint32_t>(out.nodes.size()),
                first_item = static_cast<std::uint32_t>(out.items.size());

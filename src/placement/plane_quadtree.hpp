@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds the triangles of a plane mesh that hold a point (section 4.2).
+// Finds the triangles of a plane mesh that contain a point (section 4.2).
 #pragma once
 
 #include <array>
@@ -14,22 +14,22 @@
 
 namespace vantage {
 
-// A point within a triangle by the barycentric coordinates of equation 3: (1 − s − t)·i + s·j + t·k.
+// A point within a triangle, by the barycentric coordinates of equation 3: (1 − s − t)·i + s·j + t·k.
 struct TrianglePoint {
   std::uint32_t triangle = 0;
   double s = 0, t = 0;
 };
 
-// A quadtree over the triangles of a mesh in the plane. Immutable, safe to read from any thread; borrows its arrays.
+// A quadtree over the triangles of a plane mesh. Immutable, safe to read from any thread; borrows its arrays.
 //
-// No point on an edge or a vertex is lost: whether a point lies left of an edge is computed from the edge's end points
-// in one fixed order, so that the two triangles of an edge never both refuse it; a point that all refuse is given to
-// the nearest triangle within `slack()`, at the nearest point of its outline. That also closes T-junctions, and the
-// mesh's own outline against rounding of the query.
+// No point on an edge or a vertex is lost. Whether a point lies left of an edge is computed from the edge's end points
+// in one fixed order, so the two triangles of an edge never both reject it. A point that all reject goes to the nearest
+// triangle within `slack()`, at the nearest point of its outline. This also closes T-junctions, and covers rounding of
+// the query at the mesh's outline.
 class PlaneQuadtree {
  public:
-  // Triangles without area (to rounding) and those with a coordinate that is not finite are no candidates.
-  // REQUIRES: indices below points.size(); both arrays outlive the tree.
+  // Triangles without area (to rounding), or with a coordinate that is not finite, are no candidates. REQUIRES: indices
+  // below points.size(); both arrays outlive the tree.
   PlaneQuadtree(std::span<const Uv> points, std::span<const Triangle> triangles);
 
   // Whether the tree would have a candidate.
@@ -41,11 +41,11 @@ class PlaneQuadtree {
   Uv max() const { return max_; }
   double slack() const { return slack_; }
 
-  // The first triangle, in the order of the mesh, that holds p.
+  // The first triangle, in the order of the mesh, that contains p.
   std::optional<TrianglePoint> find(Uv p) const;
-  // Every triangle that holds p (to slack), ascending.
+  // Every triangle that contains p (to slack), ascending.
   void find_all(Uv p, const std::function<void(const TrianglePoint&)>& found) const;
-  // Each list holds the triangles of one leaf, ascending: two triangles that overlap share a leaf.
+  // Triangles of each leaf, ascending; two triangles that overlap share a leaf.
   std::vector<std::span<const std::uint32_t>> leaves() const;
 
  private:
@@ -62,7 +62,7 @@ class PlaneQuadtree {
   bool covers(std::uint32_t triangle, const Cell& cell) const;
   bool holds(std::uint32_t triangle, Uv p) const;
   TrianglePoint coordinates(std::uint32_t triangle, Uv p) const;
-  // Distance from p to the triangle's outline and the outline's nearest point.
+  // Distance from p to the triangle's outline, and the nearest point of the outline.
   double nearest(std::uint32_t triangle, Uv p, TrianglePoint& at) const;
 
   std::span<const Uv> points_;

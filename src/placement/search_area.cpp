@@ -24,7 +24,7 @@ struct SearchArea::Impl {
   std::vector<LeftOut> left_out = {};
   AreaLimits limits = {};
   std::optional<PlaneQuadtree> in_uv;
-  // Over the mesh seen from above. Only stations given by X, Y, Z need it, so it is built when the first one asks.
+  // Quadtree over the mesh seen from above. Only stations given by X, Y, Z need it, so it is built on first use.
   mutable std::once_flag plan_once;
   mutable std::vector<Uv> plan_points;
   mutable std::optional<PlaneQuadtree> in_plan;
@@ -47,7 +47,7 @@ struct SearchArea::Impl {
           throw Error(Errc::invalid_argument, "triangle " + std::to_string(t) +
                                                   " of the search area refers to position " + std::to_string(v) +
                                                   "; there are " + std::to_string(mesh.positions.size()));
-    // A position that is not finite must not be interpolated: its triangles are no candidates.
+    // Positions that are not finite must not be interpolated: their triangles are no candidates.
     for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
       const Vec3& p = mesh.positions[v];
       if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
@@ -66,9 +66,10 @@ struct SearchArea::Impl {
   }
 
   const PlaneQuadtree& plan() const {
-    // Isolated: a thread that waits for the tree's tasks must not take up one of its caller's that asks for the tree.
+    // Isolated, since a thread that waits for the tree's tasks must not take up a task of its caller that needs the
+    // tree.
     std::call_once(plan_once, [this] {
-      plan_points.clear();  // of a call that threw
+      plan_points.clear();  // remains of a call that threw
       plan_points.reserve(mesh.positions.size());
       for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
         const bool usable = std::isfinite(mesh.uvs[v].u) && std::isfinite(mesh.uvs[v].v);
@@ -90,7 +91,7 @@ SearchArea SearchArea::build(const Scene& scene, const WalkableOptions& options)
                .description = "as the scene marks it, with its own (u, v)"};
   else
     surface = find_walkable_surface(data, options);
-  if (const AreaLimits limits(options); limits.any() && surface.left_out.empty()) {  // a marked one
+  if (const AreaLimits limits(options); limits.any() && surface.left_out.empty()) {  // a marked area
     Box bounds;
     for (const Vec3& p : surface.mesh.positions)
       if (std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)) bounds.extend(p);

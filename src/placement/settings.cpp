@@ -5,7 +5,7 @@
 namespace vantage {
 namespace {
 
-// The files that regions came from are for those who read them; what counts is what they held.
+// Regions count by their content, whatever file they came from.
 std::vector<std::vector<std::vector<std::array<double, 2>>>> rings_of(const std::vector<PlanRegion>& regions) {
   std::vector<std::vector<std::vector<std::array<double, 2>>>> rings;
   for (const PlanRegion& region : regions) rings.push_back(region.rings);

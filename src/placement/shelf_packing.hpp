@@ -9,12 +9,12 @@
 namespace vantage {
 
 struct Packing {
-  std::vector<Uv> corner;  // lower left of each rectangle, in the order given
+  std::vector<Uv> corner;  // lower left of each rectangle, in the given order
   Uv size;                 // of the rectangle around all
 };
 
-// Rectangles keep their orientation and stay `gap` apart. Of several shelf widths the one that wastes least is taken,
-// near a square where that costs nothing. A single rectangle fills the whole.
+// Rectangles keep their orientation and stay `gap` apart. Of several shelf widths the one with least waste is taken; a
+// shape near a square among equals. A single rectangle fills the whole.
 Packing pack_shelves(const std::vector<Uv>& sizes, double gap);
 
 }  // namespace vantage

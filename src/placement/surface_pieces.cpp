@@ -29,7 +29,7 @@ class Splitter {
   Splitter(double spacing_m, const std::function<Kind(const glm::dvec3&)>& kind_of)
       : longest_(spacing_m * spacing_m), kind_of_(kind_of) {}
 
-  // Appends the largest parts of one kind, unless all of the triangle is of one.
+  // Appends the largest parts of one kind, unless the whole triangle is of one kind.
   Kind split(const Corners& p, std::uint32_t source, std::vector<Part>& parts, int depth = 0) const {
     std::array<double, 3> length;
     for (int e = 0; e < 3; ++e) {
@@ -48,7 +48,7 @@ class Splitter {
   }
 
  private:
-  static constexpr int max_depth = 40;  // halving the area 40 times is enough for any spacing that callers choose
+  static constexpr int max_depth = 40;  // halving the area 40 times reaches any spacing that callers choose
   double longest_;
   const std::function<Kind(const glm::dvec3&)>& kind_of_;
 };
@@ -72,7 +72,7 @@ SurfacePieces sort_pieces(std::vector<glm::dvec3> points, std::span<const Triang
                         whole[t] = splitter.split(
                             {points[triangles[t][0]], points[triangles[t][1]], points[triangles[t][2]]}, t, parts);
                     });
-  // One thread does a whole source, so a stable sort by source restores the order that a single thread would give.
+  // Each source is done by one thread, so a stable sort by source restores the order of a single thread.
   std::vector<Part> parts;
   for (const auto& some : collected) parts.insert(parts.end(), some.begin(), some.end());
   std::stable_sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.source < b.source; });

@@ -12,22 +12,22 @@
 
 namespace vantage {
 
-// A triangle soup in the local frame, in double. A piece is a whole source triangle or a part of one.
+// A triangle soup in the local frame, in double. A piece is a whole source triangle or a part of it.
 struct SurfacePieces {
   std::vector<glm::dvec3> points;
   std::vector<Triangle> triangles;
-  std::vector<std::uint32_t> source;    // of each piece; pieces of one source are consecutive
-  std::vector<std::uint8_t> kind = {};  // of each piece, as sort_pieces() was told; empty otherwise
+  std::vector<std::uint32_t> source;    // per piece; pieces of one source are consecutive
+  std::vector<std::uint8_t> kind = {};  // per piece, from sort_pieces(); empty otherwise
 };
 
-// The triangles, cut up by what `kind_of` says of their places; what is of kind 0 is dropped. Each is halved across its
-// longest edge until no edge exceeds `spacing_m`; what is left is of its centroid's kind; halves of one kind are put
-// together again. Parallel; `kind_of` is called from several threads and gives kinds below 255.
+// Cuts the triangles up by the kind that `kind_of` gives their places, and drops kind 0. Each is halved across its
+// longest edge until no edge exceeds `spacing_m`; the remainder has its centroid's kind; halves of one kind are merged
+// again. Parallel; `kind_of` is called from several threads and returns kinds below 255.
 SurfacePieces sort_pieces(std::vector<glm::dvec3> points, std::span<const Triangle> triangles, double spacing_m,
                           const std::function<std::uint8_t(const glm::dvec3&)>& kind_of);
 // The pieces of one kind.
 SurfacePieces pieces_of_kind(const SurfacePieces& pieces, std::uint8_t kind);
-// The clear parts of the triangles: kind 1 of those that are clear or not.
+// The clear parts of the triangles: kind 1 of clear and not clear.
 SurfacePieces clear_pieces(std::vector<glm::dvec3> points, std::span<const Triangle> triangles, double spacing_m,
                            const std::function<bool(const glm::dvec3&)>& clear);
 

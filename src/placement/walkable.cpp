@@ -24,16 +24,16 @@
 namespace vantage {
 namespace {
 
-// Parts this near the model's largest extent to each other are connected.
+// Parts nearer than this share of the model's largest extent are connected.
 constexpr double weld_share = 1e-5;
-// Walkable surfaces are a ground when, in the lower half of the model, those that are reached, with all that continues
-// them, cover this share of its outline seen from above. The flat parts of a machine are clear too, but lie apart, or
-// on its top, and are not where one stands to scan it. So
-// they are where as much, reached or not, lies under a cover: in a building.
+// Walkable surfaces form a ground if, in the lower half of the model, the reached ones and their continuations cover
+// this share of the model's outline seen from above. Flat parts of a machine are clear, too, but they are scattered or
+// on its top, and nobody stands there to scan it. Surfaces also form a ground if as much area, reached or not, is under
+// a cover, as in a building.
 constexpr double ground_share = 0.3;
 constexpr double lower_half = 0.5;
-// A part that is large enough but holds no disc of this radius, in sides of the smallest square part, is the top of a
-// pipe or a rail. Parts so many times the smallest area need no look.
+// A part without room for a disc of this radius, in sides of the smallest square part, is the top of a pipe or a rail.
+// Parts of `surely_wide` times the smallest area are not tested.
 constexpr double disc_share = 0.25;
 constexpr double surely_wide = 100;
 
@@ -64,8 +64,7 @@ double extent_of(const Box& bounds) {
   return std::max({size.x, size.y, size.z});
 }
 
-// The marked triangles, in the first of these classes that has any: gentle and upward; gentle, either side up; not
-// vertical.
+// The marked triangles of the first non-empty class: gentle and upward; gentle, either side up; not vertical.
 std::vector<Triangle> standing_triangles(const std::vector<glm::dvec3>& points, std::span<const Triangle> triangles,
                                          double least_up) {
   std::array<std::vector<Triangle>, 3> classes;
@@ -100,12 +99,12 @@ WalkableSurface unfold_marked(const SceneData& scene, const WalkableOptions& opt
   return surface;
 }
 
-// Headroom is felt from this high above a surface, so that neither the surface itself nor what lies flat on it counts.
+// Headroom is measured from this height above a surface, to skip the surface itself and anything flat on it.
 double first_height(const Box& bounds, double headroom_m) {
   return std::max(0.01 * headroom_m, 1e-5 * extent_of(bounds));
 }
 
-// What becomes of a place, as a kind of piece.
+// Outcome for a place, as a kind of piece.
 enum Reach : std::uint8_t { kept = 1, first_left_out };
 
 std::uint8_t kind_of(LeftOutReason reason) {
@@ -123,7 +122,7 @@ LeftOutReason reason_of(Access access) {
   return LeftOutReason::narrow;
 }
 
-// What the pieces of each kind but `kept` come to, and the charts that are too small.
+// Areas of the pieces of each kind except `kept`, and of the charts that are too small.
 std::vector<LeftOut> gather_left_out(const SurfacePieces& pieces, const SurfacePieces& clear,
                                      const std::vector<GroundChart>& small, const Vec3& origin) {
   std::vector<LeftOut> all;
@@ -175,8 +174,8 @@ std::string place_text(const Vec3& p) {
               "nothing that one could stand on lies within the levels and regions that were asked for");
 }
 
-// Surfaces with room for a scanner, of those triangles that `usable` accepts, where `allowed` is what the field says of
-// their places.
+// Surfaces with room for a scanner, from `upward` triangles at places that the field reaches. With `any_access`, also
+// at unreached places with room.
 WalkableSurface derive_from(const SceneData& scene, const MeshTree& tree, const GroundField& field,
                             const std::vector<glm::dvec3>& points, const std::vector<Triangle>& upward,
                             const WalkableOptions& options, bool any_access) {
@@ -281,7 +280,7 @@ WalkableSurface lay_plane(const SceneData& scene, const MeshTree& tree, const Wa
   const std::vector<Triangle> triangles{{0, 1, 2}, {0, 2, 3}};
   GroundField field(scene, options, GroundField::Plane{reach, b.min.z});
   field.reach(tree, local_entry(scene, options));
-  // Under the model itself there is no place to stand.
+  // Nobody can stand under the model itself.
   const double from = 1e-4 * reach, to = b.size().z + reach, spacing = std::max(high.x - low.x, high.y - low.y) / 256;
   const SurfacePieces pieces =
       sort_pieces(std::move(points), triangles, spacing, [&](const glm::dvec3& p) -> std::uint8_t {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A search area for scenes that mark none, or mark one without (u, v).
+// Derives a search area for scenes that mark none, or one without (u, v).
 #pragma once
 
 #include <string>
@@ -17,13 +17,12 @@ struct WalkableSurface {
   std::vector<LeftOut> left_out = {};
 };
 
-// In this order, the first that gives anything: meshes that are to be stood on; the marked search area unfolded into
-// charts; upward, gentle and clear surfaces that are reached on foot, where they form a ground around the model; a
-// plane laid under the model. Throws Error invalid_argument where the scene has no mesh at all, or nothing lies within
-// the limits.
+// Returns the first non-empty of: meshes marked as station area; the marked search area unfolded into charts; upward,
+// gentle and clear surfaces reached on foot, if they form a ground around the model; a plane laid under the model.
+// Throws Error invalid_argument if the scene has no mesh at all, or nothing lies within the limits.
 WalkableSurface find_walkable_surface(const SceneData& scene, const WalkableOptions& options);
 
-// How finely surfaces are cut.
+// Size of the pieces into which surfaces are cut.
 double piece_spacing(const WalkableOptions& options, const Box& bounds);
 bool has_station_area(const SceneData& scene);
 

@@ -37,8 +37,8 @@ bool CandidateTable::add(std::span<const PlacedStation> stations, const CaptureR
   return count == stations.size();
 }
 
-std::vector<PlacedStation> positions_around(const Site& site, std::span<const PlacedStation> stations, std::size_t each,
-                                            double radius_m) {
+std::vector<PlacedStation> positions_around(const PlacementOracle& site, std::span<const PlacedStation> stations,
+                                            std::size_t each, double radius_m) {
   // A sunflower's seeds: turned on by the golden angle, each disc's area shared evenly (Vogel: A Better Way to
   // Construct the Sunflower Head, 1979).
   const double golden = 2 * std::numbers::pi * (2 - std::numbers::phi);

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "plan/fewest_on_rows.hpp"
-#include "plan/site.hpp"
+#include "plan/placement_oracle.hpp"
 #include "vantage/candidates.hpp"
 
 namespace vantage {
@@ -40,7 +40,7 @@ class CandidateTable {
 };
 
 // Allowed positions around each of `stations`, `each` of them within `radius_m`, evenly spread over the disc.
-std::vector<PlacedStation> positions_around(const Site& site, std::span<const PlacedStation> stations, std::size_t each,
-                                            double radius_m);
+std::vector<PlacedStation> positions_around(const PlacementOracle& site, std::span<const PlacedStation> stations,
+                                            std::size_t each, double radius_m);
 
 }  // namespace vantage

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "core/setting_list.hpp"
-#include "plan/site.hpp"
+#include "plan/placement_oracle.hpp"
 #include "plan/spread_positions.hpp"
 #include "vantage/error.hpp"
 
@@ -19,7 +19,7 @@ constexpr std::size_t chunk = 64;
 
 SpreadPositions spread_or_refuse(const SearchArea& area, const ClashChecker& clash, const Scanner& scanner,
                                  std::size_t most) {
-  const Site site = make_site(area, clash, scanner);
+  const PlacementOracle site = make_placement_oracle(area, clash, scanner);
   SpreadPositions spread = spread_positions(site, area.mesh(), site.height_m, most);
   if (spread.stations.empty())
     throw Error(Errc::invalid_argument,

@@ -6,7 +6,7 @@
 
 #include "core/part_of.hpp"
 #include "plan/fewest_on_rows.hpp"
-#include "plan/site.hpp"
+#include "plan/placement_oracle.hpp"
 #include "vantage/error.hpp"
 #include "vantage/planner.hpp"
 
@@ -32,8 +32,8 @@ ExactResult exact_network(Simulator& simulator, const SearchArea& area, const Cl
   if (!(config.max_seconds > 0))
     throw Error(Errc::invalid_argument,
                 "exact: branch and bound is given " + std::to_string(config.max_seconds) + " s, but needs some");
-  const Site site = make_site(area, clash, simulator.scanner());
-  std::vector<PlacedStation> stations = kept_stations(site, config.fixed, {});
+  const PlacementOracle site = make_placement_oracle(area, clash, simulator.scanner());
+  std::vector<PlacedStation> stations = existing_stations(site, config.fixed, {});
   for (PlacedStation& one : stations)
     if (active(one)) one.status = StationStatus::ok;  // rows of others are empty
   const std::size_t kept = stations.size();

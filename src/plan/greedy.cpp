@@ -13,7 +13,7 @@ namespace {
 
 // Evenly spread points of the unit square that any number of points may be taken of (Roberts: The Unreasonable
 // Effectiveness of Quasirandom Sequences, 2018): multiples of 1/g and 1/g², g the real root of g³ = g + 1, modulo 1.
-Uv spread_point(const Site& site, std::size_t k) {
+Uv spread_point(const PlacementOracle& site, std::size_t k) {
   constexpr double g = 1.32471795724474602596;
   const auto part = [k](double step) {
     const double x = 0.5 + static_cast<double>(k + 1) * step;
@@ -37,7 +37,7 @@ struct Candidate {
 
 }  // namespace
 
-GreedyResult choose_greedily(const Site& site, NetworkEvaluator& evaluator, const GreedyConfig& config,
+GreedyResult choose_greedily(const PlacementOracle& site, NetworkEvaluator& evaluator, const GreedyConfig& config,
                              const Progress& progress) {
   if (config.stations < 1 || config.stations + config.fixed.size() > max_stations)
     throw Error(Errc::invalid_argument, "greedy: 1 to " + std::to_string(max_stations) +
@@ -55,7 +55,7 @@ GreedyResult choose_greedily(const Site& site, NetworkEvaluator& evaluator, cons
 
   GreedyResult result;
   std::vector<PlacedStation>& chosen = result.stations;
-  const PlacedNetwork kept = kept_stations(site, config.fixed, config.fixed_setups);
+  const PlacedNetwork kept = existing_stations(site, config.fixed, config.fixed_setups);
   double covered = 0;
   if (!kept.empty()) {
     const std::vector<PlacedNetwork> one{kept};
@@ -122,7 +122,7 @@ GreedyResult choose_greedily(const Site& site, NetworkEvaluator& evaluator, cons
 
 GreedyResult greedy_network(Simulator& simulator, const SearchArea& area, const ClashChecker& clash,
                             const GreedyConfig& config, const Progress& progress) {
-  const Site site = make_site(area, clash, simulator.scanner());
+  const PlacementOracle site = make_placement_oracle(area, clash, simulator.scanner());
   SimulatorEvaluator evaluator(simulator, measures_of(coverage_fix(config.stations)),
                                {.sampled = config.sample_voxels > 0, .kept = config.fixed.size()});
   return choose_greedily(site, evaluator, config, progress);

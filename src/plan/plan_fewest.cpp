@@ -59,14 +59,14 @@ double least_of(const SurveyProblem& problem, std::string_view name) {
 
 class FewestPlan {
  public:
-  FewestPlan(Run& run, Simulator& simulator, const Candidates& candidates, double candidates_seconds,
+  FewestPlan(PlanContext& context, Simulator& simulator, const Candidates& candidates, double candidates_seconds,
              const PlanConfig& config, const PlanWatch& watch)
-      : run_(run),
+      : context_(context),
         simulator_(simulator),
         candidates_(candidates),
         config_(config),
         watch_(watch),
-        problem_(run.problem()),
+        problem_(context.problem()),
         most_(problem_.stations_max),
         link_(least_of(problem_, "link")),
         sample_(config.sample_voxels > 0 ? config.sample_voxels : simulator.voxel_count()),
@@ -96,24 +96,24 @@ class FewestPlan {
     }
     const SearchOutcome found = search(stations_of(choice_));
     take(confirmed(found, choice_.rows.size() - problem_.kept.size()));
-    PlanResult result = run_.result(found);
+    PlanResult result = context_.result(found);
     result.evaluations += traced_;
     result.front = front();
-    result.exact_hypervolume = judge_by_every_ray(result.front, problem_, run_.measures());
+    result.exact_hypervolume = judge_by_every_ray(result.front, problem_, context_.measures());
     return result;
   }
 
  private:
   bool stopped() const { return watch_.stop.stop_requested() || watch_.abort.stop_requested(); }
   CandidateTable make_table(std::uint64_t sample_voxels) {
-    return {simulator_, link_ > 0 || wants_links() ? &run_.surroundings() : nullptr, sample_voxels,
+    return {simulator_, link_ > 0 || wants_links() ? &context_.surroundings() : nullptr, sample_voxels,
             surroundings_sample(), least_of(problem_, "apart")};
   }
   bool wants_links() const {
     return std::ranges::any_of(problem_.objectives, [](const Objective& o) { return o.name == "link"; });
   }
   std::uint64_t surroundings_sample() {
-    const std::uint64_t sample = run_.surroundings_voxels();
+    const std::uint64_t sample = context_.surroundings_voxels();
     return sample > 0 ? sample : std::numeric_limits<std::uint32_t>::max();  // all there are
   }
   Progress progress(const char* phase) {
@@ -141,13 +141,13 @@ class FewestPlan {
     // The first call sets up what later ones use again, so that it may take longer.
     const auto sampled = [&](std::size_t copies) {
       const std::vector<PlacedNetwork> some(copies, chosen);
-      const auto evaluate = [&] { run_.evaluator().evaluate(some, {.voxels = config_.sample_voxels}, silent); };
+      const auto evaluate = [&] { context_.evaluator().evaluate(some, {.voxels = config_.sample_voxels}, silent); };
       return timed(evaluate) / static_cast<double>(copies);
     };
     const auto every_ray_of = [&](std::size_t stations) {
       const std::vector<PlacedNetwork> first(1,
                                              {chosen.begin(), chosen.begin() + static_cast<std::ptrdiff_t>(stations)});
-      return timed([&] { run_.evaluator().confirm(first, silent); });
+      return timed([&] { context_.evaluator().confirm(first, silent); });
     };
     const double network = std::min(sampled(1), sampled(kTimedNetworks));
     const std::size_t few = std::min(kTimedStations, chosen.size());
@@ -166,7 +166,7 @@ class FewestPlan {
   }
 
   void look_at_links() {
-    std::vector<PlacedStation> kept = kept_stations(run_.site(), problem_.kept, problem_.kept_setups);
+    std::vector<PlacedStation> kept = existing_stations(context_.oracle(), problem_.kept, problem_.kept_setups);
     for (PlacedStation& station : kept)
       if (active(station)) station.status = StationStatus::ok;  // rows of others are empty
     // Kept stations come first in every network, so they are traced even where time is short.
@@ -208,7 +208,7 @@ class FewestPlan {
 
   double minutes(const RowAnswer& answer) {
     const std::vector<PlacedStation> stations = stations_of(answer);
-    return run_.on_site().visit(std::span(stations).subspan(problem_.kept.size())).minutes;
+    return context_.on_site().visit(std::span(stations).subspan(problem_.kept.size())).minutes;
   }
 
   // Where a round of as many as it takes lasts too long: the most that can be captured by as many as there is time for.
@@ -217,7 +217,7 @@ class FewestPlan {
     if (!most) return;
     const double limit = *most;
     const std::size_t kept = problem_.kept.size();
-    const double each = run_.on_site().minutes_per_scan() + run_.on_site().options().set_up_min;
+    const double each = context_.on_site().minutes_per_scan() + context_.on_site().options().set_up_min;
     std::size_t placed = choice_.rows.size() - kept;
     if (each > 0) placed = std::min(placed, static_cast<std::size_t>(std::max(1.0, limit / each)));
     for (; minutes(choice_) > limit && placed >= std::max<std::size_t>(problem_.stations_min, 1); --placed) {
@@ -234,7 +234,7 @@ class FewestPlan {
     const auto add = [&](const RowAnswer& answer) {
       std::vector<PlacedStation> stations = stations_of(answer);
       stations.erase(stations.begin(), stations.begin() + static_cast<std::ptrdiff_t>(problem_.kept.size()));
-      const auto more = positions_around(run_.site(), stations, kAround, radius);
+      const auto more = positions_around(context_.oracle(), stations, kAround, radius);
       around.insert(around.end(), more.begin(), more.end());
     };
     add(choice_);
@@ -359,9 +359,9 @@ class FewestPlan {
   SearchOutcome search(const std::vector<PlacedStation>& chosen) {
     SearchOutcome found;
     const SurveyProblem narrow = with_margins(narrowed(chosen.size() - problem_.kept.size()));
-    const DecisionSpace space(run_.site(), narrow);
+    const DecisionSpace space(context_.oracle(), narrow);
     const std::vector<double> start = space.encode(std::span(chosen).subspan(problem_.kept.size()));
-    if (!stopped()) found = run_.search(narrow, search_config(narrow), start, watch_);
+    if (!stopped()) found = context_.search(narrow, search_config(narrow), start, watch_);
     if (stopped() && found.stop_reason == StopReason::running) found.stop_reason = StopReason::cancelled;
     return found;
   }
@@ -369,12 +369,12 @@ class FewestPlan {
   // `count`: of the stations that were searched for.
   std::vector<PlanEntry> confirmed(const SearchOutcome& found, std::size_t count) {
     if (found.front.empty()) return {};
-    return run_.confirm(found, narrowed(count), watch_).entries;
+    return context_.confirm(found, narrowed(count), watch_).entries;
   }
   // A network of which nothing is known yet.
   std::vector<PlanEntry> confirmed(std::span<const PlacedStation> placed) {
     SearchOutcome found;
-    found.front.push_back({.x = DecisionSpace(run_.site(), narrowed(placed.size())).encode(placed),
+    found.front.push_back({.x = DecisionSpace(context_.oracle(), narrowed(placed.size())).encode(placed),
                            .f = std::vector<double>(problem_.objectives.size(), 2)});
     return confirmed(found, placed.size());
   }
@@ -395,8 +395,8 @@ class FewestPlan {
   void take(std::vector<PlanEntry> entries) {
     for (PlanEntry& entry : entries) {
       std::vector<double> values;
-      for (const Objective& measure : run_.measures().all) values.push_back(entry.value(measure.name));
-      entry.missed = missed_by(problem_, run_.measures(), values);
+      for (const Objective& measure : context_.measures().all) values.push_back(entry.value(measure.name));
+      entry.missed = missed_by(problem_, context_.measures(), values);
       entries_.push_back(std::move(entry));
     }
   }
@@ -490,17 +490,18 @@ class FewestPlan {
   PlanResult nothing_known() {
     SearchOutcome none;
     none.stop_reason = StopReason::cancelled;
-    PlanResult result = run_.result(none);
+    PlanResult result = context_.result(none);
     std::vector<PlacedStation> one = candidates_.stations();
-    if (one.empty()) one = spread_positions(run_.site(), run_.area().mesh(), run_.site().height_m, 1).stations;
+    if (one.empty())
+      one = spread_positions(context_.oracle(), context_.area().mesh(), context_.oracle().height_m, 1).stations;
     if (one.empty()) return result;
     one.resize(1);
     result.front = confirmed(one);
-    result.exact_hypervolume = judge_by_every_ray(result.front, problem_, run_.measures());
+    result.exact_hypervolume = judge_by_every_ray(result.front, problem_, context_.measures());
     return result;
   }
 
-  Run& run_;
+  PlanContext& context_;
   Simulator& simulator_;
   const Candidates& candidates_;
   const PlanConfig& config_;
@@ -520,9 +521,9 @@ class FewestPlan {
 
 }  // namespace
 
-PlanResult plan_fewest(Run& run, Simulator& simulator, std::shared_ptr<const Candidates> candidates,
+PlanResult plan_fewest(PlanContext& context, Simulator& simulator, std::shared_ptr<const Candidates> candidates,
                        double candidates_seconds, const PlanConfig& config, const PlanWatch& watch) {
-  return FewestPlan(run, simulator, *candidates, candidates_seconds, config, watch).run();
+  return FewestPlan(context, simulator, *candidates, candidates_seconds, config, watch).run();
 }
 
 }  // namespace vantage

@@ -47,7 +47,7 @@ std::optional<Letter> Correspondence::answer(int rank, std::uint64_t serial, con
     }
     Reader reader(letter);
     const Head head = read_head(reader);
-    if (head.kind != Kind::failed && head.serial != serial) continue;  // of a question that was given up
+    if (head.kind != Kind::failed && head.serial != serial) continue;  // answer to an abandoned question
     switch (head.kind) {
       case Kind::progress: progress(reader.raw<double>()); break;
       case Kind::answer: return reader.text();

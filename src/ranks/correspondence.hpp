@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rank 0's questions to the others, and their answers. Thread-safe; one question at a time is open with each rank.
+// Requests of rank 0 to the other ranks, and their answers. Thread-safe; each rank has at most one open request.
 #pragma once
 
 #include <condition_variable>
@@ -18,24 +18,24 @@
 
 namespace vantage::ranks {
 
-// Bodies are letters without their heads, which are put before them.
+// Bodies are messages without heads, which are added here.
 class Correspondence {
  public:
-  // Borrows the post.
+  // Borrows the transport.
   explicit Correspondence(Post& post);
 
   int ranks() const { return post_.size(); }
-  // What is not answered.
+  // Sends a message without an answer.
   void tell(int rank, Kind kind, const Letter& body);
-  // The number that `answer` waits for.
+  // Sends a request and returns its number, for `answer`.
   std::uint64_t ask(int rank, Kind kind, const Letter& body);
-  // Empty where stopped: the question is given up then. Throws what the other rank threw, and its failure before it
-  // served, as Error.
+  // Waits for an answer. Empty if stopped, which abandons the request. Throws, as Error, what the other rank threw, and
+  // its failure before it served.
   std::optional<Letter> answer(int rank, std::uint64_t serial, const Progress& progress);
   // Ends all other ranks.
   void end();
 
-  // The sample, as one copy for all who remember that they have sent it.
+  // Returns the sample as a copy shared by all that remember having sent it.
   using Sample = std::shared_ptr<const std::vector<std::uint32_t>>;
   Sample kept(std::span<const std::uint32_t> sample);
 
@@ -44,7 +44,7 @@ class Correspondence {
     std::mutex mutex;
     std::condition_variable wake;
     std::deque<Letter> letters;
-    std::uint64_t serial = 0;  // given last
+    std::uint64_t serial = 0;  // number of the last request
   };
   void receive(int from, Letter letter);
 

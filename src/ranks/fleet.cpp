@@ -51,7 +51,7 @@ std::unique_ptr<Tracer> FirstRank::make(std::unique_ptr<Tracer> own, const Trace
   const Identity identity = identity_of(scene, fingerprint);
   const std::vector<Opened> others = open(identity);
   if (!greeted_) greet(others, identity, own->info());
-  // One that the others do not make, a panorama's say, is this rank's own affair.
+  // A simulator that the others do not make, such as a panorama's, works on this rank alone.
   if (!std::ranges::all_of(others, &Opened::known)) return own;
   std::vector<std::uint64_t> scan_rays;
   for (std::uint32_t k = 0; k < scene.scanners.size(); ++k) scan_rays.push_back(own->preferred_scan_rays(k));
@@ -63,7 +63,7 @@ std::unique_ptr<Tracer> FirstRank::make(std::unique_ptr<Tracer> own, const Trace
     there.engine = others[k].engine, there.device = others[k].device + " on " + others[k].host;
     all.push_back(std::make_unique<RemoteTracer>(post_, static_cast<int>(k) + 1, others[k].tracer, there, scan_rays));
   }
-  // What is written says nothing of who helped, so that it is the same whoever did.
+  // Output does not mention the helpers, so it is the same for any number of ranks.
   return std::make_unique<SpreadTracer>(std::move(all), scene, warn_, SpreadTracer::Options{.info = info});
 }
 

@@ -11,7 +11,7 @@
 
 namespace vantage::ranks {
 
-// On rank 0: its own tracer and one for each other rank, which pull pieces of the work.
+// On rank 0: its own tracer and one for each other rank; they pull pieces of the work.
 class FirstRank final : public TracerMaker {
  public:
   using Tell = std::function<void(const std::string&)>;
@@ -30,7 +30,7 @@ class FirstRank final : public TracerMaker {
   bool greeted_ = false;
 };
 
-// On the others: a tracer of its own, which is offered to rank 0.
+// On other ranks: its own tracer, which serves rank 0.
 class OtherRank final : public TracerMaker {
  public:
   explicit OtherRank(Server& server) : server_(server) {}

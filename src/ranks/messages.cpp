@@ -11,7 +11,7 @@
 namespace vantage::ranks {
 namespace {
 
-// Members of each, in the order in which they travel. `Archive` is a Writer or a Reader.
+// Members of each struct, in the order in which they are sent. `Archive` is a Writer or a Reader.
 
 template <class Archive, class T>
 void pass_identity(Archive& archive, T& identity) {

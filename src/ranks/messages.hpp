@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What ranks tell each other: stations and jobs one way, whole-number counts the other.
+// Messages between ranks: stations and jobs one way, integer counts the other.
 #pragma once
 
 #include <array>
@@ -12,24 +12,24 @@
 
 namespace vantage::ranks {
 
-// The first byte of a letter. Behind it, a serial number: an answer has its question's.
+// First byte of a message. A serial number follows; an answer has its request's.
 enum class Kind : std::uint8_t {
   // rank 0 to others
-  open,  // Identity: have you the tracer of it?
-  goal,  // goal density; not answered
+  open,  // Identity: does the rank have a tracer for it?
+  goal,  // goal density; no answer
   scan,
   count,
   count_each,
-  sample,   // new sample for sampled counts; not answered
-  patches,  // new registration job, but for `groups`; not answered
+  sample,   // new sample for sampled counts; no answer
+  patches,  // new registration job, except `groups`; no answer
   count_sampled,
-  stop,  // the question of this number is given up, and is not answered any more
-  end,   // go home
+  stop,  // abandons the request of this number, which is no longer answered
+  end,   // ends the worker
   // others to rank 0
   answer,
-  error,     // in place of an answer: Errc, text
+  error,     // replaces an answer: Errc, text
   progress,  // share done
-  failed,    // before there was anything to serve: text
+  failed,    // nothing could be served: text
 };
 struct Head {
   Kind kind = Kind::end;
@@ -38,7 +38,7 @@ struct Head {
 Writer begin(Kind kind, std::uint64_t serial);
 Head read_head(Reader& reader);
 
-// By which ranks know that they trace the same: a part each that is to be equal.
+// What ranks compare to know that they trace the same; every part must be equal.
 struct Identity {
   std::string version;
   std::uint64_t fingerprint = 0;  // of the scene
@@ -47,19 +47,19 @@ struct Identity {
   friend bool operator==(const Identity&, const Identity&) = default;
 };
 Identity identity_of(const TraceScene& scene, std::uint64_t fingerprint);
-// What is not the same, in words; empty where all is.
+// Describes the differences; empty if there are none.
 std::string difference(const Identity& here, const Identity& there);
 
 // A rank's answer to `open`.
 struct Opened {
   bool known = false;
-  std::uint32_t tracer = 0;  // to be named in what is asked of it
-  Identity own;              // of the rank's scene as it was loaded
+  std::uint32_t tracer = 0;  // number used in requests
+  Identity own;              // of the scene that the rank loaded
   std::string host, device;
   Engine engine = Engine::embree;
 };
 
-// Networks with the sizes that go with them.
+// Networks with their sizes.
 struct Networks {
   std::vector<std::vector<TraceStation>> stations;
   std::vector<std::uint32_t> sizes;

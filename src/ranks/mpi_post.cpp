@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The only file that knows MPI. One thread makes all calls, so that the library needs no locks of its own, and asks
-// again and again what has arrived, with longer and longer pauses: a blocking receive would keep a core busy.
+// The only file that uses MPI. One thread makes all calls, so the library needs no locks of its own. It polls for
+// messages with growing pauses, since a blocking receive would keep a core busy.
 #include "ranks/mpi_post.hpp"
 
 #define OMPI_SKIP_MPICXX 1
@@ -22,7 +22,7 @@
 namespace vantage::ranks {
 namespace {
 
-// MPI counts bytes in an int, so a long letter travels in parts, which the tag tells from the last.
+// MPI counts bytes in an int, so a long message travels in parts; the tag marks the last one.
 constexpr std::size_t largest_part = std::size_t{1} << 30;
 constexpr int tag_last = 0, tag_more = 1;
 
@@ -94,7 +94,7 @@ class Joined final : public MpiPost {
       pause = std::min(2 * pause, longest_pause);
     }
     MPI_Finalize();
-    // Whatever the rest of the process does, it does for nobody.
+    // The rest of the process may have work under way, but nobody waits for it.
     if (exit_code_) std::_Exit(*exit_code_);
   }
 
@@ -159,17 +159,17 @@ class Joined final : public MpiPost {
   bool leaving_ = false;
   std::optional<int> exit_code_;
 
-  // Of the thread alone.
+  // Used only by the thread.
   std::list<Sending> sending_;
   std::vector<Letter> partial_;
   std::deque<std::pair<int, Letter>> arrived_;
 
-  std::jthread thread_;  // last, so that all above is there while it runs
+  std::jthread thread_;  // last member: everything above outlives it
 };
 
 }  // namespace
 
-// Asked of the environment, because a program that joins alone would start a server beside itself, and wait for it.
+// Reads the environment, since a program that joins alone would start a server beside itself and wait for it.
 bool started_as_job() {
   for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK"})
     if (std::getenv(name)) return true;

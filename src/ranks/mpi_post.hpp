@@ -9,14 +9,14 @@ namespace vantage::ranks {
 
 class MpiPost : public Post {
  public:
-  // Ends the process with this exit code, once all that was sent is on its way and every rank has come to its end. From
-  // any thread, that of `deliver_to` included; returns at once.
+  // Ends the process with this exit code once all messages were sent and every rank has finished. Callable from any
+  // thread, including that of `deliver_to`; returns at once.
   virtual void leave(int exit_code) = 0;
 };
 
-// Whether this process is one of several that a launcher started as one job.
+// Whether a launcher started this process as one of a job.
 bool started_as_job();
-// Joins the job; its destructor leaves it, and waits until every rank does. Once in a process.
+// Joins the job. The destructor leaves it, and waits until every rank does. Once per process.
 std::unique_ptr<MpiPost> join_job();
 
 }  // namespace vantage::ranks

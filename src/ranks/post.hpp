@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Letters between the ranks of a job. Those of one rank to another arrive whole and in the order in which they were
-// sent.
+// Message transport between the ranks of a job. Messages from one rank to another arrive whole and in order.
 #pragma once
 
 #include <functional>
@@ -16,10 +15,10 @@ class Post {
   virtual ~Post() = default;
   virtual int rank() const = 0;
   virtual int size() const = 0;
-  // From any thread; returns at once.
+  // Callable from any thread; returns at once.
   virtual void send(int to, Letter letter) = 0;
-  // Who is handed each letter that arrives, on a thread of the post's own. Those that came before are kept. Called
-  // once.
+  // Sets the receiver of arriving messages, called on the transport's own thread. Earlier messages are kept for it.
+  // Call once.
   virtual void deliver_to(Receive receive) = 0;
 };
 

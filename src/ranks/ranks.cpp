@@ -30,7 +30,7 @@ class Rank0 final : public Ranks {
  public:
   explicit Rank0(std::unique_ptr<MpiPost> post)
       : post_(std::move(post)), letters_(std::make_shared<Correspondence>(*post_)) {}
-  // The post goes first: until then it may hand over a letter.
+  // The transport is destroyed first: until then it may deliver messages.
   ~Rank0() override {
     letters_->end();
     post_.reset();
@@ -54,7 +54,7 @@ class Other final : public Ranks {
  public:
   explicit Other(std::unique_ptr<MpiPost> post)
       : post_(std::move(post)), server_(*post_, host_name(), [this] { post_->leave(0); }) {}
-  // Whatever brought it here: rank 0's end is its own, and until then its post hands over letters.
+  // Waits in any case: rank 0 ends the job, and until then the transport delivers messages.
   ~Other() override { wait(); }
 
   bool first() const override { return false; }
@@ -63,7 +63,7 @@ class Other final : public Ranks {
                               std::function<void(const std::string&)>) override {
     return std::make_shared<Share<OtherRank>>(server_);
   }
-  // What a plan makes beside its own simulator is made here too, once it is asked for.
+  // Simulators that a plan makes besides its own are made here, too, on request.
   void serve(const Simulator& simulator) override {
     std::list<Simulator> more;
     server_.serve([&] {
@@ -77,7 +77,7 @@ class Other final : public Ranks {
   }
 
  private:
-  // For the post's thread to end the process.
+  // Waits for the transport's thread to end the process.
   [[noreturn]] static void wait() {
     for (;;) pause();
   }

@@ -13,7 +13,7 @@ std::vector<NetworkCounts> none_of(std::size_t networks) {
   return all;
 }
 
-// Kept by whoever compares, so that no address is used again.
+// The comparer keeps the models alive, so that no address is reused.
 bool same_scanners(const std::vector<PatchScanner>& a, const std::vector<PatchScanner>& b) {
   return std::ranges::equal(
       a, b, [](const PatchScanner& x, const PatchScanner& y) { return x.noise == y.noise && x.density == y.density; });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A tracer of another rank, as rank 0 has it: stations go there, counts come back. What does not change from call to
-// call, the sample and the planes of its voxels, is sent once.
+// Proxy on rank 0 for another rank's tracer: sends stations and receives counts. Data that stays the same between
+// calls, the sample and the planes of its voxels, is sent once.
 #pragma once
 
 #include "ranks/correspondence.hpp"
@@ -10,7 +10,7 @@ namespace vantage::ranks {
 
 class RemoteTracer final : public Tracer {
  public:
-  // `tracer`: the number that the rank gave it. `scan_rays`: a good chunk for scan(), as of the tracer here.
+  // `tracer`: the number that the rank gave it. `scan_rays`: a good chunk for scan(), as for the tracer here.
   RemoteTracer(std::shared_ptr<Correspondence> post, int rank, std::uint32_t tracer, EngineInfo info,
                std::vector<std::uint64_t> scan_rays);
 
@@ -39,8 +39,8 @@ class RemoteTracer final : public Tracer {
   std::uint32_t tracer_;
   EngineInfo info_;
   std::vector<std::uint64_t> scan_rays_;
-  Correspondence::Sample sample_;  // that the rank has
-  RegistrationJob patches_;        // likewise
+  Correspondence::Sample sample_;  // sample that the rank has
+  RegistrationJob patches_;        // patches that the rank has
 };
 
 }  // namespace vantage::ranks

@@ -8,7 +8,7 @@
 namespace vantage::ranks {
 namespace {
 
-// What is told beside the counts of a sample, kept until all of it is sent.
+// Results beside the counts of a sample, kept until all are sent.
 struct Told {
   std::size_t many = 0;
   Writer writer;
@@ -107,7 +107,7 @@ void Server::receive(Letter letter) {
   if (head.kind == Kind::end && on_end_) on_end_();
 }
 
-// The next that somebody waits for; false at the end.
+// Takes the next message that somebody waits for; returns false at the end.
 bool Server::next(Letter& letter, Head& head) {
   for (;;) {
     std::unique_lock lock(mutex_);

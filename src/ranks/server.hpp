@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a rank other than 0 does: counts what it is asked for, until it is sent home.
+// Work of a rank other than 0: answers requests until rank 0 ends the job.
 #pragma once
 
 #include <condition_variable>
@@ -19,16 +19,16 @@ namespace vantage::ranks {
 
 class Server {
  public:
-  // Borrows the post. `on_end`: called on the post's thread when rank 0 ends the job, whatever is under way.
+  // Borrows the transport. `on_end`: called on the transport's thread when rank 0 ends the job, whatever is under way.
   Server(Post& post, std::string host, std::function<void()> on_end);
 
-  // A tracer that can be asked for; the first is of the scene as it was loaded. Borrowed.
+  // Adds a tracer that rank 0 may use; the first is of the scene as loaded. Borrowed.
   void offer(Tracer& tracer, const Identity& identity);
-  // Makes what is asked for and was not offered, by offering it.
+  // Called for a tracer that is requested but was not offered; it makes and offers it.
   using More = std::function<void()>;
-  // Until the job ends.
+  // Serves until the job ends.
   void serve(const More& more);
-  // In place of serve(), for want of anything to serve: rank 0 is told why.
+  // Replaces serve() if there is nothing to serve: tells rank 0 why.
   void fail(Errc code, const std::string& why);
 
  private:
@@ -53,9 +53,9 @@ class Server {
   std::mutex mutex_;
   std::condition_variable wake_;
   std::deque<Letter> letters_;
-  std::uint64_t given_up_ = 0;  // the last question that nobody waits for
+  std::uint64_t given_up_ = 0;  // the last abandoned request
   std::uint64_t current_ = 0;
-  std::stop_source stop_;  // of the current question
+  std::stop_source stop_;  // of the current request
   bool ended_ = false;
 };
 

@@ -12,7 +12,7 @@
 namespace vantage {
 namespace {
 
-// The first surveyed mesh that asks for it; null where none does.
+// The first surveyed mesh with this wish; null if there is none.
 const MeshInfo* first_with(const SceneData& scene, double MeshInfo::*wish) {
   const auto found = std::ranges::find_if(
       scene.meshes, [&](const MeshInfo& mesh) { return mesh.role == Role::surveyed && mesh.*wish > 0; });
@@ -57,7 +57,7 @@ LimitModel make_limit_model(const SceneData& scene, const Scanner& scanner, cons
     model.meshes.back() = {least, static_cast<float>(mesh.detail_m * mesh.detail_m),
                            static_cast<float>(mesh.accuracy_m)};
   }
-  if (model.noise && !model.noise->enabled()) {  // a table of zeros, which misses nothing
+  if (model.noise && !model.noise->enabled()) {  // a table of zeros, which no point misses
     model.noise = nullptr;
     for (LimitModel::Limits& limits : model.meshes) limits.largest_sigma = 0;
   }

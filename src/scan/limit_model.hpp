@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What points must be to count, as engines compare it: all that takes a square root or an angle is done here, in
-// double.
+// Limits of points in the form that engines compare. All square roots and angles are computed here, in double.
 #pragma once
 
 #include <optional>
@@ -12,11 +11,11 @@
 
 namespace vantage {
 
-// The largest angle between ray and normal at which a point counts; empty where points have no limits.
+// Largest angle between ray and normal at which a point counts; empty if points have no limits.
 std::optional<Angle> incidence_limit(const SceneData& scene, const SimulatorConfig& config);
 
-// Not enabled where points have no limits. Throws Error invalid_argument: an incidence not in (0°, 90°], a detail where
-// the scanner's beam is not known, an accuracy where its noise is not.
+// Not enabled if points have no limits. Throws Error invalid_argument: an incidence not in (0°, 90°], a detail without
+// the scanner's beam, an accuracy without its noise.
 LimitModel make_limit_model(const SceneData& scene, const Scanner& scanner, const SimulatorConfig& config);
 
 }  // namespace vantage

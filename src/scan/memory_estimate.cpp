@@ -19,15 +19,14 @@
 namespace vantage {
 namespace {
 
-// By processes measured (docs/reliability.md). Of a voxel: its count, its share of a brick, and the
-// words of its mask. Of a triangle: vertices and what is built on the way; the tree
-// and planes of the CPU engine.
+// Measured on processes (docs/reliability.md). Per voxel: its count, its share of a brick, and the words of its mask.
+// Per triangle: vertices and temporary data; the tree and planes of the CPU engine.
 constexpr double kMebibyte = 1048576, kProgram = 23 * kMebibyte, kThread = kMebibyte, kTriangle = 75, kTree = 90,
                  kVoxel = 6, kMaskWord = 8;
 constexpr double kSoftwareDriver = 62 * kMebibyte;  // lavapipe with its compiler
 
 struct Surface {
-  double cells_m2 = 0;  // an infinite plane with the normal n meets |nx| + |ny| + |nz| cells for each face of a cell
+  double cells_m2 = 0;  // an infinite plane with normal n meets |nx| + |ny| + |nz| cells per face of a cell
   double extent_m = 0;
 };
 
@@ -48,13 +47,13 @@ Surface surface_of(const SceneData& scene) {
   return surface;
 }
 
-// Equation 2: the side of a voxel.
+// Equation 2: side of a voxel.
 double voxel_size(double extent_m, double user_size_m) {
   if (!(extent_m > 0)) return user_size_m;
   return extent_m / std::exp2(std::max(0.0, std::ceil(std::log2(extent_m / user_size_m))));
 }
 
-// Of voxels so far from each other that each is in a brick of its own there are few; of a surface a brick has some 64.
+// On a surface, a brick has some 64 voxels. Voxels so scattered that each has its own brick are few.
 constexpr double kVoxelsOfABrick = 64;
 
 double host_bytes(double triangles, double voxels, std::size_t stations) {
@@ -64,7 +63,7 @@ double host_bytes(double triangles, double voxels, std::size_t stations) {
 
 std::uint64_t whole(double bytes) { return static_cast<std::uint64_t>(std::min(bytes, 1e18)); }
 
-// What the devices of a configuration are, each once.
+// Devices of a configuration, each once.
 std::vector<ChosenDevice> devices_of(const SimulatorConfig& config) {
   std::vector<ChosenDevice> devices;
   if (config.devices.empty()) devices.push_back(choose_device(config.engine, config.device_index));
@@ -112,7 +111,7 @@ class Estimator {
   const SceneData& scene_;
   Surface surface_;
   std::size_t stations_;
-  double demands_;  // bytes a voxel, of what points in it are worth
+  double demands_;  // bytes per voxel, for point weights
   vulkan::DeviceLoad load_;
 };
 
@@ -131,12 +130,11 @@ MemoryEstimate estimate_memory(const Scene& scene, double user_size_m, std::size
 }
 
 void require_memory(const Scene& scene, std::span<const Scanner> scanners, const SimulatorConfig& config) {
-  if (!(config.user_size_m > 0 && std::isfinite(config.user_size_m))) return;  // who builds the grid refuses it
+  if (!(config.user_size_m > 0 && std::isfinite(config.user_size_m))) return;  // the grid's builder rejects it
   const std::vector<ChosenDevice> devices = devices_of(config);
   const std::uint64_t given = config.max_memory_bytes;
-  const auto free = free_memory();
   const std::uint64_t unlimited = std::numeric_limits<std::uint64_t>::max();
-  const std::uint64_t host = given > 0 ? given : free ? *free / 2 : unlimited;
+  const std::uint64_t host = memory_limit(given);
   std::uint64_t device = given > 0 ? given : unlimited;
   for (const ChosenDevice& each : devices) device = std::min(device, each.free_bytes.value_or(unlimited));
   const Estimator estimate(scene, scanners, mask_bits, config.spacing_by_detail);
@@ -152,7 +150,7 @@ void require_memory(const Scene& scene, std::span<const Scanner> scanners, const
   if (given > 0)
     what += "it may take " + bytes_text(given);
   else if (of_host)
-    what += "half of what is free is " + bytes_text(host) + " (max_memory_bytes, --memory)";
+    what += "half of what is free is " + bytes_text(host) + " (max_memory_bytes)";
   else
     what += bytes_text(device) + " of that is free";
   for (double size = config.user_size_m; size < 1e9; size *= 2)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Memory is known before it is spent.
+// Memory, estimated before it is allocated.
 #pragma once
 
 #include <cstdint>
@@ -9,17 +9,18 @@
 
 namespace vantage {
 
-// For a scanner's pattern and the engine that `config` comes to; of several devices, the one that takes most.
+// For a scanner's pattern and the engine that `config` resolves to; of several devices, the one that needs most.
 struct SimulatorMemory {
-  std::uint64_t voxels = 0;        // surveyed ones, about
-  std::uint64_t bytes = 0;         // of the whole process, at most at once; with a software device's
-  std::uint64_t device_bytes = 0;  // of a device, likewise; a software device's are in `bytes` too
+  std::uint64_t voxels = 0;        // approximate number of surveyed voxels
+  std::uint64_t bytes = 0;         // peak of the whole process, including a software device's memory
+  std::uint64_t device_bytes = 0;  // peak of a device; a software device's are in `bytes`, too
 };
 SimulatorMemory simulator_memory(const Scene& scene, std::span<const Scanner> scanners, const SimulatorConfig& config,
                                  std::size_t stations);
 
-// Throws Error out_of_memory, with the numbers and the user size that would fit, where the estimate is above
-// `config.max_memory_bytes`, or without one above half of what is free on the host, or all that is on a device.
+// Throws Error out_of_memory, with the numbers and the user size that would fit, if the estimate exceeds
+// `config.max_memory_bytes`. Without such a limit, it may take half of the host's free memory and all free memory of a
+// device.
 void require_memory(const Scene& scene, std::span<const Scanner> scanners, const SimulatorConfig& config);
 
 }  // namespace vantage

@@ -11,7 +11,8 @@
 namespace vantage {
 namespace {
 
-// The cell of ascending `nodes` whose line rules at x, and where x lies in it: below 0 or above 1 outside the nodes.
+// The cell of ascending `nodes` whose line applies at x, and the position of x in it: below 0 or above 1 outside the
+// nodes.
 struct Cell {
   std::size_t low = 0, high = 0;
   double share = 0;

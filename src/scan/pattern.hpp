@@ -9,10 +9,10 @@
 
 namespace vantage {
 
-// The direction tables of a scanner, each entry made in double and rounded once. REQUIRES: scanner.check() passes.
+// Direction tables of a scanner; each entry is computed in double and rounded once. REQUIRES: scanner.check() passes.
 RayPattern make_pattern(const Scanner& scanner);
 
-// How the setup turns directions, rounded once; none where it does not.
+// Rotation of a setup, rounded once; empty if it does not turn.
 std::optional<Turn> make_turn(const StationSetup& setup);
 
 }  // namespace vantage

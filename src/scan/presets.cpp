@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads data/scanners.json, which the build embeds, and files of that form (docs/scanners.md describes it). Strict: a
-// figure without a known source, or a name that is not known, is an error, so that a typing mistake cannot pass as a
-// scanner.
+// Reads data/scanners.json, which the build embeds, and files of that form (see docs/scanners.md). Strict: a figure
+// without a known source, or an unknown name, is an error, so that a typing mistake cannot pass as a scanner.
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
@@ -30,7 +29,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-// A place in a presets file: its value, and where it is for messages.
+// A node of a presets file: its value, and its location for messages.
 class Node {
  public:
   Node(const Json& value, std::string where, const std::set<std::string>* sources)
@@ -69,7 +68,7 @@ class Node {
     }
     return found;
   }
-  // A figure has its source beside it, or says that it is assumed; the values are its other members.
+  // Every figure has its source beside it, or says that it is assumed. The other members are its values.
   const Node& sourced() const {
     const Node source = member("source");
     if (source.text() != "assumed" && !sources_->contains(source.text()))
@@ -88,7 +87,7 @@ class Node {
   const std::set<std::string>* sources_;
 };
 
-// "3mm", "1/4": its step angle, from what the maker states.
+// Step angle of a setting ("3mm", "1/4"), from the maker's figures.
 Angle step_of(const Node& setting) {
   const bool by_angle = setting.has("step_deg"), by_spacing = setting.has("spacing_mm"),
              by_turn = setting.has("pixels_per_turn");
@@ -104,7 +103,7 @@ NoiseTable noise_of(const Node& node) {
   node.sourced();
   NoiseTable table;
   table.distances_m = node.member("distances_m").numbers();
-  // Without reflectivities the maker states none: one row, which holds for all.
+  // Without reflectivities in the file: one row for all of them.
   table.reflectivities =
       node.has("reflectivities") ? node.member("reflectivities").numbers() : std::vector<double>{0.5};
   const Node sigma = node.member("sigma_mm");
@@ -144,7 +143,7 @@ struct Document {
   static std::string text_of(const std::filesystem::path& path) { return read_file(path); }
 };
 
-// What is built in, and before it what a file adds.
+// The presets of a file, then the built-in ones.
 std::vector<Document> documents(const std::filesystem::path& more) {
   std::vector<Document> all;
   if (!more.empty()) all.emplace_back(more);
@@ -165,7 +164,7 @@ std::string lower_case(std::string text) {
   return text;
 }
 
-// The scanner `key` at `setting` (its default where empty).
+// The scanner `key` at `setting`; empty: its default setting.
 Scanner read_scanner(const Document& document, const std::string& key, std::string setting) {
   std::set<std::string> sources;
   const Node node(document.scanners()[key], document.file + ": " + key, &sources);
@@ -196,7 +195,7 @@ Scanner read_scanner(const Document& document, const std::string& key, std::stri
   scanner.vertical_angle = Angle::degrees(node.member("vertical_angle_deg").figure());
   if (node.has("zenith_start_deg")) scanner.zenith_start = Angle::degrees(node.member("zenith_start_deg").figure());
   scanner.azimuth_step = scanner.zenith_step = step_of(chosen);
-  // A setting's own figures go before the scanner's.
+  // A setting's own figures take precedence over the scanner's.
   const auto own_or_common = [&](const char* name) {
     return chosen.has(name) ? chosen.member(name).number() : node.member(name).figure();
   };

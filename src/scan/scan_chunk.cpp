@@ -17,7 +17,7 @@ namespace {
 constexpr std::uint32_t no_primitive = 0xFFFFFFFFu;
 constexpr std::size_t grain = 4096;
 
-// Neighbouring rays hit the same mesh mostly, so the last one is tried before searching.
+// Neighbouring rays mostly hit the same mesh, so the last one is tried before searching.
 class MeshLookup {
  public:
   explicit MeshLookup(const SceneData& scene) : scene_(scene) {}
@@ -55,7 +55,7 @@ Sums sum_rays(const Tracer::RawChunk& raw, std::size_t count, const SceneData& s
       std::plus<>());
 }
 
-// One element an output for each ray; the arrays that were not asked for stay empty.
+// One element per ray and output; arrays not asked for stay empty.
 template <class To, class Make>
 void fill(std::vector<To>& to, std::size_t count, Make make) {
   to.resize(count);
@@ -123,7 +123,7 @@ void fill_chunk(ScanChunk& chunk, Tracer::RawChunk& raw, const ScanOptions& opti
       }
     });
   }
-  // The rest goes over as it is. Swapped, so that both sides keep their memory from chunk to chunk.
+  // The other arrays are passed on. Swapped, so that both sides keep their memory from chunk to chunk.
   if (outputs & scan_ids) {
     chunk.primitive.swap(raw.primitive);
     chunk.primitive.resize(count);

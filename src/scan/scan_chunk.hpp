@@ -10,12 +10,11 @@
 
 namespace vantage {
 
-// What an engine must fill for the outputs asked for, and for the sums of a scan, which are always taken.
+// Outputs of the engine for the requested outputs and for the sums of a scan, which are always computed.
 std::uint32_t raw_outputs(const ScanOptions& options);
 
-// Turns an engine's rays into what the user asked for; mesh and colour are derived here. Adds to `summary`.
-// `scanner` is the station's. `chunk.first_ray` and `chunk.ray_count` are set already; its other arrays are
-// overwritten.
+// Turns an engine's rays into the requested outputs, deriving mesh and colour. Adds to `summary`. `scanner` is the
+// station's. `chunk.first_ray` and `chunk.ray_count` are set already; its other arrays are overwritten.
 void fill_chunk(ScanChunk& chunk, Tracer::RawChunk& raw, const ScanOptions& options, const SceneData& scene,
                 const Scanner& scanner, ScanSummary& summary);
 

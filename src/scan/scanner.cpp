@@ -9,9 +9,9 @@
 namespace vantage {
 namespace {
 
-constexpr double floor_guard = 1e-9;      // so that 360° / 0.1° is 3600 and not 3599
-constexpr double angle_guard_deg = 1e-9;  // 360° given in radians may come out a rounding above 360°
-constexpr double max_steps = 16'777'216;  // 2^24 a direction: 0.00002° over a full turn
+constexpr double floor_guard = 1e-9;      // makes 360° / 0.1° 3600 and not 3599
+constexpr double angle_guard_deg = 1e-9;  // 360° given in radians may exceed 360° by rounding
+constexpr double max_steps = 16'777'216;  // 2^24 per direction: 0.00002° over a full turn
 
 double steps(Angle sweep, Angle step) { return std::floor(sweep.in_radians() / step.in_radians() + floor_guard); }
 

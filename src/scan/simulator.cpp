@@ -31,7 +31,7 @@ constexpr std::uint32_t sample_groups = 20;
 constexpr std::uint32_t known_outputs =
     scan_range | scan_position | scan_normal | scan_reflectivity | scan_ids | scan_colour | scan_voxel;
 
-// Six digits, rounded up: as a user size it still gives the voxel size that it names.
+// Six digits, rounded up: as a user size, the text still gives the voxel size that it states.
 std::string rounded_up(double metres) {
   const double digit = std::pow(10.0, std::floor(std::log10(metres)) - 5);
   std::ostringstream text;
@@ -60,14 +60,14 @@ std::vector<double> spacings_of(const SceneData& scene, const SimulatorConfig& c
   throw Error(Errc::invalid_argument, what.str());
 }
 
-// Null where it was stopped.
+// Null if stopped.
 std::shared_ptr<const VoxelGrid> build_grid(const SceneData& scene, const SimulatorConfig& config,
                                             std::span<const double> spacings_m, const Progress& progress) {
   if (!(std::isfinite(config.point_spacing_m) && config.point_spacing_m > 0)) {
     throw Error(Errc::invalid_argument,
                 "the point spacing is " + std::to_string(config.point_spacing_m) + " m, but must be above 0");
   }
-  // A user size below the spacing cannot work. The grid is then built for the spacing, to say what would.
+  // A user size below the spacing cannot work. The grid is then built for the spacing, to suggest a size that works.
   const double finest = finest_spacing(scene, spacings_m);
   const bool too_small = config.user_size_m > 0 && config.user_size_m < finest;
   auto grid = VoxelGrid::build(scene, too_small ? finest : config.user_size_m, progress);
@@ -79,7 +79,7 @@ std::shared_ptr<const VoxelGrid> build_grid(const SceneData& scene, const Simula
   return std::make_shared<VoxelGrid>(std::move(*grid));
 }
 
-// What a network without an active station leaves: the voxels, and zeros.
+// Result for a network without active stations: the voxels, and zeros.
 NetworkCounts nothing_seen(std::uint64_t voxels, std::uint64_t weight, std::uint32_t point_worth, std::size_t stations,
                            bool overlap, bool registration) {
   NetworkCounts counts;
@@ -99,7 +99,7 @@ NetworkCounts nothing_seen(std::uint64_t voxels, std::uint64_t weight, std::uint
   return counts;
 }
 
-// Where one of them is large: its masks are put together on the host, and those of many would not fit side by side.
+// For populations with a large network: its masks are merged on the host, and several at once would not fit.
 std::vector<NetworkCounts> evaluate_one_by_one(Simulator& simulator, std::span<const Network> networks,
                                                const SampleOptions& options, const Progress& progress) {
   std::vector<NetworkCounts> all;
@@ -127,7 +127,7 @@ void check_registration(const std::optional<RegistrationModel>& registration, bo
 }  // namespace
 
 struct Simulator::Impl {
-  // Without a grid, and of no use, where it was stopped.
+  // If stopped, it has no grid and must not be used.
   Impl(const Scene& s, std::span<const Scanner> all, const SimulatorConfig& c, const Progress& progress)
       : scene(s), scanners(all.begin(), all.end()), config(c) {
     if (scanners.empty()) throw Error(Errc::invalid_argument, "no scanner given; a simulator has one at least");
@@ -140,7 +140,7 @@ struct Simulator::Impl {
     goal = wide * wide;
     for (const Scanner& scanner : scanners) traced.push_back(trace_scanner(scanner));
     registered = scanners;
-    // Shares the scene's storage for as long as the engine wants it.
+    // Shares ownership of the scene's storage for as long as the engine needs it.
     const auto kept = std::make_shared<const Scene>(scene);
     const std::shared_ptr<const SceneData> shared_scene(kept, &kept->data());
     const TraceScene shared{.scene = shared_scene,
@@ -164,13 +164,13 @@ struct Simulator::Impl {
             .limits = std::make_shared<const LimitModel>(make_limit_model(data(), scanner, config))};
   }
 
-  // Whether points have limits, they have them with every scanner.
+  // All scanners use the same point limits.
   bool limited() const { return traced.front().limits->enabled(); }
 
   const SceneData& data() const { return scene.data(); }
 
   TraceStation trace_station(const Station& station, std::size_t place) const {
-    // Further off floats say nothing of where, and what is kept of rounding would swallow the scene.
+    // Beyond this, floats are too coarse, and the margins for rounding would exceed the scene.
     constexpr double farthest_m = 1e6;
     const Vec3 local = station.position - data().origin;
     if (!(std::abs(local.x) <= farthest_m && std::abs(local.y) <= farthest_m && std::abs(local.z) <= farthest_m)) {
@@ -205,7 +205,7 @@ struct Simulator::Impl {
     return active;
   }
 
-  // Of every `step`-th voxel of a sample.
+  // Weight of every `step`-th voxel of a sample.
   std::uint64_t weight_of(std::span<const std::uint32_t> ranks, std::size_t first, std::size_t step) const {
     std::uint64_t sum = 0;
     for (std::size_t i = first; i < ranks.size(); i += step) sum += grid->demands().weight(ranks[i]);
@@ -221,7 +221,7 @@ struct Simulator::Impl {
     std::uint64_t size, from;
     std::vector<std::uint32_t> ranks;
   };
-  // A search asks for few of them all the time.
+  // A search requests few of them, repeatedly.
   const Sample& sample(std::uint64_t size, std::uint64_t from) {
     if (size >= grid->size()) size = grid->size(), from = 0;
     return samples.get([&](const Sample& one) { return one.size == size && one.from == from; },
@@ -230,7 +230,8 @@ struct Simulator::Impl {
                        });
   }
 
-  // The planes of a sample, or of all voxels, which is the one from 0. Range noise is the scanner's, simulated or not.
+  // Planes of a sample, or of all voxels, which is the one from 0. Uses the scanner's range noise, whether it is
+  // simulated or not.
   RegistrationJob registration_of(std::span<const std::uint32_t> ranks, std::uint64_t from,
                                   const RegistrationModel& model, bool groups) {
     if (!(model.rho_m > 0 && std::isfinite(model.rho_m) && model.patch_m > 0 && std::isfinite(model.patch_m))) {
@@ -269,7 +270,7 @@ struct Simulator::Impl {
   std::shared_ptr<const VoxelGrid> grid;
   double goal = 0;
   std::vector<TraceScanner> traced;  // of the scanners
-  std::vector<Scanner> registered;   // those of the scans that are registered
+  std::vector<Scanner> registered;   // scanners of the registered scans
   Recent<Sample> samples;
   Recent<SamplePatches> patches;
   std::vector<PatchScanner> patch_scanners;
@@ -404,8 +405,7 @@ std::vector<NetworkCounts> Simulator::evaluate_each(std::span<const Network> net
                                                     const Progress& progress) {
   std::vector<NetworkCounts> all(networks.size());
   for (NetworkCounts& counts : all) counts.cancelled = true;
-  // Networks without an active station are not the engine's concern; nor are sums over the field and
-  // passes, which are made here.
+  // Networks without active stations skip the engine; sums over the field, and passes, are made here.
   std::vector<std::vector<TraceStation>> traced;
   std::vector<std::uint32_t> sizes;
   std::vector<std::size_t> places;
@@ -436,7 +436,7 @@ std::vector<NetworkCounts> Simulator::evaluate_sampled(std::span<const Network> 
   const Simulator::Impl::Sample& drawn = impl_->sample(options.voxels, options.from);
   const std::vector<std::uint32_t>& sample = drawn.ranks;
   std::vector<NetworkCounts> all(networks.size());
-  // Networks without an active station are not the engine's concern.
+  // Networks without active stations skip the engine.
   std::vector<std::vector<TraceStation>> traced;
   std::vector<std::uint32_t> sizes;
   std::vector<std::size_t> places;

@@ -9,11 +9,10 @@
 namespace vantage {
 namespace {
 
-// Voxels of a hundredth to a two-hundredth of the site: a door and a desk are told apart, a bolt is not. Half a metre
-// at most, or rooms of a large site melt into each other.
+// Voxels of a hundredth to a two-hundredth of the site distinguish a door from a desk, but not bolts. Above half a
+// metre, rooms of a large site would merge.
 constexpr double extent_share = 0.01, largest_voxel_m = 0.5;
-// Two rays a voxel across where the site ends. What is nearer has more; what is seen more flatly has fewer, as it has
-// in a survey.
+// Two rays across a voxel at the far end of the site. Near surfaces get more; oblique ones get fewer, as in a survey.
 constexpr double rays_across = 2, fewest_rays = 16;
 
 double extent_of(const Scene& scene) {
@@ -32,7 +31,7 @@ Simulator surroundings_of(const Simulator& simulator) {
     config.device_index = simulator.engine().device_index;
   }
   config.user_size_m = std::max(simulator.voxel_size_m(), std::min(extent_share * extent, largest_voxel_m));
-  config.point_spacing_m = config.user_size_m / 4;  // a goal is of no use here, but has to be at least 1
+  config.point_spacing_m = config.user_size_m / 4;  // the goal is not used here, but must be at least 1
   config.noise = false;
   config.max_incidence = std::nullopt;
 
@@ -41,7 +40,7 @@ Simulator surroundings_of(const Simulator& simulator) {
     const double reach = std::min(scanner.max_range_m, extent);
     if (!(reach > 0)) continue;
     const Angle step = Angle::radians(config.user_size_m / 2 / (rays_across * reach));
-    // But no scanner of a handful of rays, where the sweep itself is narrow.
+    // At least a few rays, even if the sweep is narrow.
     const auto coarser = [&](Angle own, Angle sweep) {
       return std::max(own, std::min(step, Angle::radians(sweep.in_radians() / fewest_rays)));
     };

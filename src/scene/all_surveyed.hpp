@@ -5,8 +5,8 @@
 
 namespace vantage {
 
-// The same triangles with every mesh surveyed, each voxel as much as any other, and without what only colours or bends
-// points: normals, textures, the search area. Positions and triangles are copied.
+// The same triangles with every mesh surveyed and all voxels weighing alike. Data that only affects colours or
+// directions of points is left out: normals, textures, the search area. Positions and triangles are copied.
 Scene all_surveyed(const Scene& scene);
 
 }  // namespace vantage

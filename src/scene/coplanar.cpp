@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <mutex>
@@ -11,6 +12,7 @@
 
 #include "core/embree.hpp"
 #include "scene/positions.hpp"
+#include "vantage/error.hpp"
 
 namespace vantage {
 namespace {
@@ -21,7 +23,7 @@ struct Soup {
   std::span<const Float3> positions;
   std::span<const Triangle> triangles;
   std::vector<std::uint32_t> chosen;
-  double slack = 0;  // metres; planes no farther apart are one
+  double slack = 0;  // metres; planes no farther apart count as one
 
   Corners corners(std::size_t k) const {
     Corners corners;
@@ -47,7 +49,7 @@ void bounds_of(const RTCBoundsFunctionArguments* args) {
 
 embree::Scene tree_over(RTCDevice device, Soup& soup) {
   embree::Scene tree(rtcNewScene(device));
-  rtcSetSceneBuildQuality(tree.get(), RTC_BUILD_QUALITY_LOW);  // looked through once: building is what takes time
+  rtcSetSceneBuildQuality(tree.get(), RTC_BUILD_QUALITY_LOW);  // searched only once, so building dominates
   const embree::Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER));
   rtcSetGeometryUserPrimitiveCount(geometry.get(), static_cast<unsigned>(soup.chosen.size()));
   rtcSetGeometryUserData(geometry.get(), &soup);
@@ -65,7 +67,7 @@ bool lies_in_plane(const Corners& t, const Corners& other, const glm::dvec3& nor
   return std::ranges::all_of(t, [&](const glm::dvec3& p) { return std::abs(dot(normal, p - other[0])) <= slack; });
 }
 
-// Whether an edge of `a`, seen along `normal`, has all of `b` beyond it, or nearer to it than `slack`.
+// Whether, seen along `normal`, all of `b` lies beyond an edge of `a`, or closer to it than `slack`.
 bool edge_parts(const Corners& a, const Corners& b, const glm::dvec3& normal, double slack) {
   for (std::size_t k = 0; k < 3; ++k) {
     const glm::dvec3 edge = a[(k + 1) % 3] - a[k];
@@ -85,16 +87,21 @@ bool overlap_in_plane(const Corners& a, const Corners& b, double slack) {
 
 struct Search {
   const Soup &surveyed, &blocking;
+  const std::uint64_t most;
   std::mutex mutex;
   std::vector<CoplanarPair> found;
+  std::atomic<bool> too_many = false;
 };
 
 void compare_pairs(void* user, RTCCollision* pairs, unsigned count) {
   Search& search = *static_cast<Search*>(user);
+  if (search.too_many) return;  // Embree takes no exceptions, and cannot be stopped
   for (unsigned k = 0; k < count; ++k) {
     const unsigned s = pairs[k].primID0, b = pairs[k].primID1;
     if (!overlap_in_plane(search.surveyed.corners(s), search.blocking.corners(b), search.surveyed.slack)) continue;
     const std::lock_guard lock(search.mutex);
+    if (search.found.size() >= search.most) search.too_many = true;
+    if (search.too_many) return;
     search.found.push_back({search.blocking.chosen[b], search.surveyed.chosen[s]});
   }
 }
@@ -102,7 +109,7 @@ void compare_pairs(void* user, RTCCollision* pairs, unsigned count) {
 }  // namespace
 
 Coplanar find_coplanar(std::span<const Float3> positions, std::span<const Triangle> triangles,
-                       std::span<const MeshRange> ranges, std::span<const MeshInfo> meshes) {
+                       std::span<const MeshRange> ranges, std::span<const MeshInfo> meshes, std::uint64_t most_pairs) {
   Soup surveyed{positions, triangles, {}}, blocking{positions, triangles, {}};
   for (std::size_t m = 0; m < ranges.size(); ++m) {
     std::vector<std::uint32_t>& chosen = (meshes[m].role == Role::surveyed ? surveyed : blocking).chosen;
@@ -118,8 +125,8 @@ Coplanar find_coplanar(std::span<const Float3> positions, std::span<const Triang
   double reach = 0;
   for (const double c : {box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z})
     reach = std::max(reach, std::abs(c));
-  surveyed.slack = blocking.slack = 0x1p-20 * reach;  // as far as an engine's distances may be off
-  // Only what is near the others' bounds can meet them.
+  surveyed.slack = blocking.slack = 0x1p-20 * reach;  // bound on the error of an engine's distances
+  // Only triangles near the others' bounds can meet them.
   const auto keep_near = [](Soup& soup, const Box& others) {
     std::vector<std::uint32_t> near;
     Box bounds;
@@ -142,9 +149,13 @@ Coplanar find_coplanar(std::span<const Float3> positions, std::span<const Triang
   const embree::Device device = embree::new_device();
   const embree::Scene surveyed_tree = tree_over(device.get(), surveyed),
                       blocking_tree = tree_over(device.get(), blocking);
-  Search search{surveyed, blocking, {}, {}};
+  Search search{surveyed, blocking, most_pairs, {}, {}};
   rtcCollide(surveyed_tree.get(), blocking_tree.get(), compare_pairs, &search);
   embree::check(device.get(), "looking for surfaces in one plane");
+  if (search.too_many)
+    throw Error(Errc::out_of_memory, "more than " + std::to_string(most_pairs) +
+                                         " pairs of surveyed and blocking triangles overlap in one plane; leave "
+                                         "either of them out");
   std::ranges::sort(search.found);  // threads found them
   return {surveyed.slack, std::move(search.found)};
 }

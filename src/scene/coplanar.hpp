@@ -10,21 +10,22 @@
 
 namespace vantage {
 
-// Two triangles that overlap in one plane, to the rounding of float coordinates: which of them a ray hits there is up
-// to rounding. Triangles that only touch are none.
+// Two triangles that overlap in one plane, to the rounding of float coordinates; rounding decides which of them a ray
+// hits. Triangles that only touch are no such pair.
 struct CoplanarPair {
   std::uint32_t blocking = 0, surveyed = 0;
   friend auto operator<=>(const CoplanarPair&, const CoplanarPair&) = default;
 };
 
 struct Coplanar {
-  double slack_m = 0;               // planes no farther apart were taken for one
+  double slack_m = 0;               // planes no farther apart counted as one
   std::vector<CoplanarPair> pairs;  // ascending
 };
 
 // Triangles of surveyed meshes that lie in the plane of a blocking one and overlap it.
-// Throws Error: out_of_memory, device_failure.
+// Throws Error: out_of_memory, also where there are more than `most_pairs`; device_failure.
 Coplanar find_coplanar(std::span<const Float3> positions, std::span<const Triangle> triangles,
-                       std::span<const MeshRange> ranges, std::span<const MeshInfo> meshes);
+                       std::span<const MeshRange> ranges, std::span<const MeshInfo> meshes,
+                       std::uint64_t most_pairs = std::uint64_t{1} << 25);
 
 }  // namespace vantage

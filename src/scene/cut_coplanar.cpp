@@ -20,13 +20,13 @@ namespace {
 
 using Weights = std::array<double, 3>;  // of a triangle's corners
 
-// A blocking triangle and those in its plane that cover some of it.
+// A blocking triangle, and the triangles in its plane that cover part of it.
 struct Covered {
   std::uint32_t blocking = 0;
   std::span<const CoplanarPair> by;
 };
 
-// Coordinates in a triangle's plane; counter-clockwise there is the triangle's own sense.
+// Coordinates in a triangle's plane; the triangle is counter-clockwise there.
 class Frame {
  public:
   Frame(const std::vector<Float3>& positions, const Triangle& triangle) {
@@ -74,7 +74,7 @@ Float3 mixed_normal(const std::vector<Float3>& normals, const Triangle& t, const
   return size > 0 ? to_float3(n / size) : Float3{};
 }
 
-// Appends a vertex of triangle `t` at `p`, and returns its number.
+// Appends a vertex of triangle `t` at `p` and returns its number.
 std::uint32_t add_vertex(RawScene& raw, std::vector<Float3>& positions, const Frame& frame, const Triangle& t,
                          const PlanePoint& p) {
   const Weights w = frame.weights(p);
@@ -92,7 +92,7 @@ std::uint32_t add_vertex(RawScene& raw, std::vector<Float3>& positions, const Fr
   return static_cast<std::uint32_t>(positions.size() - 1);
 }
 
-// The runs of pairs with the same blocking triangle.
+// Runs of pairs with the same blocking triangle.
 std::vector<Covered> by_blocking(std::span<const CoplanarPair> pairs) {
   std::vector<Covered> runs;
   for (std::size_t begin = 0, end = 0; begin < pairs.size(); begin = end) {
@@ -112,9 +112,14 @@ std::size_t count_surveyed(std::span<const CoplanarPair> pairs) {
 }  // namespace
 
 CoplanarCut cut_coplanar(RawScene& raw, std::vector<Float3>& positions) {
-  const Coplanar coplanar = find_coplanar(positions, raw.triangles, raw.ranges, raw.meshes);
+  // A pair is listed while the list grows, and a part is a polygon, corners and triangles.
+  constexpr std::uint64_t kPair = 3 * sizeof(CoplanarPair), kPart = 400;
+  const Coplanar coplanar = find_coplanar(positions, raw.triangles, raw.ranges, raw.meshes,
+                                          std::min(std::uint64_t{1} << 25, raw.spare_bytes / 2 / kPair));
   if (coplanar.pairs.empty()) return {};
   const std::vector<Covered> covered = by_blocking(coplanar.pairs);
+  CutAllowance allowance;
+  allowance.parts = std::min(allowance.parts.load(), static_cast<std::int64_t>(raw.spare_bytes / 2 / kPart));
   std::vector<std::vector<ConvexPolygon>> left(covered.size());
   tbb::parallel_for(std::size_t{0}, covered.size(), [&](std::size_t k) {
     const Frame frame(positions, raw.triangles[covered[k].blocking]);
@@ -124,11 +129,11 @@ CoplanarCut cut_coplanar(RawScene& raw, std::vector<Float3>& positions) {
       for (const std::uint32_t v : raw.triangles[pair.surveyed]) hole.push_back(frame.flat(to_glm(positions[v])));
       holes.push_back(counter_clockwise(std::move(hole)));
     }
-    left[k] = cut_away(frame.triangle(), holes, coplanar.slack_m);
+    left[k] = cut_away(frame.triangle(), holes, coplanar.slack_m, allowance);
   });
 
   std::vector<Triangle> triangles;
-  std::size_t next = 0;  // of `covered`
+  std::size_t next = 0;  // index into `covered`
   for (MeshRange& range : raw.ranges) {
     const std::uint32_t first = range.first_triangle, end = first + range.triangle_count;
     range.first_triangle = static_cast<std::uint32_t>(triangles.size());

@@ -12,9 +12,9 @@ struct CoplanarCut {
   std::size_t surveyed = 0, blocking = 0;  // triangles that overlapped in one plane
 };
 
-// Where surveyed triangles lie in the plane of blocking ones, cuts that part away from the blocking ones: rays meet
-// the same surface, and it is the surveyed one. New vertices get interpolated attributes. `positions` are the scene's,
-// in the local frame, as raw.triangles index them.
+// Cuts blocking triangles back where surveyed ones lie in their plane, so that rays meet the same surface, and it is
+// the surveyed one. New vertices get interpolated attributes. `positions` are the scene's, in the local frame, as
+// indexed by raw.triangles.
 CoplanarCut cut_coplanar(RawScene& raw, std::vector<Float3>& positions);
 
 }  // namespace vantage

@@ -6,13 +6,15 @@
 #include <limits>
 #include <utility>
 
+#include "vantage/error.hpp"
+
 namespace vantage {
 namespace {
 
-// Holes that one after the other are cut out of every part; more are divided among two halves of the polygon first.
+// Up to this many holes are cut out of every part one by one; with more, the polygon is first halved.
 constexpr std::size_t kFewHoles = 16;
 
-// A line, and how far left of it a point lies.
+// A line, with the signed distance of points to its left.
 struct Line {
   PlanePoint at, normal;  // unit, to the left
 
@@ -24,7 +26,7 @@ struct Line {
   Line turned() const { return {at, -normal}; }
 };
 
-// What of a convex polygon lies left of the line, or right of it by at most `reach`.
+// Part of a convex polygon left of the line, or right of it by at most `reach`.
 ConvexPolygon clip(const ConvexPolygon& polygon, const Line& line, double reach) {
   ConvexPolygon kept;
   for (std::size_t k = 0; k < polygon.size(); ++k) {
@@ -39,7 +41,7 @@ ConvexPolygon clip(const ConvexPolygon& polygon, const Line& line, double reach)
   return kept;
 }
 
-// The least distance between two parallel lines that have the polygon between them; one of them runs along an edge.
+// Least distance between two parallel lines that enclose the polygon; one of them runs along an edge.
 double width(const ConvexPolygon& polygon) {
   if (polygon.size() < 3) return 0;
   double least = std::numeric_limits<double>::infinity();
@@ -75,7 +77,8 @@ struct Hole {
 
 class Cut {
  public:
-  Cut(const std::vector<ConvexPolygon>& holes, double slack) : slack_(slack) {
+  Cut(const std::vector<ConvexPolygon>& holes, double slack, CutAllowance& allowance)
+      : slack_(slack), allowance_(allowance) {
     for (const ConvexPolygon& hole : holes)
       if (width(hole) > 0) holes_.push_back({hole, Bounds(hole)});
   }
@@ -98,18 +101,20 @@ class Cut {
     std::vector<ConvexPolygon> parts{polygon};
     for (const Hole* hole : holes) {
       std::vector<ConvexPolygon> left;
+      spend(allowance_.visits, parts.size());
       for (ConvexPolygon& part : parts) {
         if (Bounds(part).overlaps(hole->bounds))
           subtract(std::move(part), hole->polygon, left);
         else
           left.push_back(std::move(part));
       }
+      spend(allowance_.parts, left.size() > parts.size() ? left.size() - parts.size() : 0);
       parts = std::move(left);
     }
     std::ranges::move(parts, std::back_inserter(parts_));
   }
 
-  // Cuts each half of the polygon with the holes it meets; false where that leaves a half with nearly all of them.
+  // Cuts each half of the polygon with the holes that it meets. Returns false if a half would keep nearly all of them.
   bool halve(const ConvexPolygon& polygon, const Bounds& bounds, const std::vector<const Hole*>& holes) {
     const bool along_x = bounds.max.x - bounds.min.x > bounds.max.y - bounds.min.y;
     std::vector<double> centres;
@@ -132,7 +137,7 @@ class Cut {
     return true;
   }
 
-  // One edge of the hole after the other takes off what lies beyond it; what is left in the end is the hole's.
+  // Cuts off the part beyond each edge of the hole in turn; the remainder is the hole's.
   void subtract(ConvexPolygon part, const ConvexPolygon& hole, std::vector<ConvexPolygon>& left) const {
     if (misses(part, hole)) {
       left.push_back(std::move(part));
@@ -146,7 +151,7 @@ class Cut {
     }
   }
 
-  // Whether an edge of the hole has all of the part beyond it: then it need not be divided.
+  // Whether all of the part lies beyond an edge of the hole, so that it need not be divided.
   bool misses(const ConvexPolygon& part, const ConvexPolygon& hole) const {
     for (std::size_t k = 0; k < hole.size(); ++k) {
       const Line edge = Line::through(hole[k], hole[(k + 1) % hole.size()]);
@@ -155,16 +160,25 @@ class Cut {
     return false;
   }
 
+  static void spend(std::atomic<std::int64_t>& left, std::size_t amount) {
+    if (left.fetch_sub(static_cast<std::int64_t>(amount), std::memory_order_relaxed) <
+        static_cast<std::int64_t>(amount))
+      throw Error(Errc::out_of_memory,
+                  "surveyed surfaces lie in one plane with blocking ones and cut these into too many parts; leave "
+                  "either of them out");
+  }
+
   double slack_;
+  CutAllowance& allowance_;
   std::vector<Hole> holes_;
   std::vector<ConvexPolygon> parts_;
 };
 
 }  // namespace
 
-std::vector<ConvexPolygon> cut_away(const ConvexPolygon& polygon, const std::vector<ConvexPolygon>& holes,
-                                    double slack) {
-  return Cut(holes, slack).from(polygon);
+std::vector<ConvexPolygon> cut_away(const ConvexPolygon& polygon, const std::vector<ConvexPolygon>& holes, double slack,
+                                    CutAllowance& allowance) {
+  return Cut(holes, slack, allowance).from(polygon);
 }
 
 }  // namespace vantage

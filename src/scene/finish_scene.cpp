@@ -16,7 +16,7 @@
 namespace vantage {
 namespace {
 
-// Keeps the triangles whose `keep` is not 0 and moves the ranges along.
+// Keeps the triangles whose `keep` is not 0, and adjusts the ranges.
 void keep_triangles(RawScene& raw, const std::vector<std::uint8_t>& keep) {
   std::uint32_t out = 0;
   for (MeshRange& range : raw.ranges) {
@@ -50,8 +50,8 @@ std::uint64_t hash(const std::array<Float3, 3>& corners) {
   return h;
 }
 
-// Of several triangles over the very same points the first stays, a surveyed one before any that only blocks: a ray
-// meets them at the same distance, and its point counts.
+// Of several triangles over the same points the first stays, surveyed ones before blocking ones: a ray meets them at
+// the same distance, and its point counts.
 std::size_t drop_duplicates(RawScene& raw, const std::vector<Float3>& positions) {
   struct Entry {
     std::uint64_t hash;
@@ -74,7 +74,7 @@ std::size_t drop_duplicates(RawScene& raw, const std::vector<Float3>& positions)
   for (std::size_t i = 0; i < entries.size();) {
     std::size_t end = i + 1;
     while (end < entries.size() && entries[end].hash == entries[i].hash) ++end;
-    for (std::size_t j = i + 1; j < end; ++j) {  // runs are one long but for duplicates and the rare collision
+    for (std::size_t j = i + 1; j < end; ++j) {  // runs have length one, except for duplicates and rare collisions
       const auto corners = sorted_corners(positions, raw.triangles[entries[j].triangle]);
       for (std::size_t k = i; k < j; ++k)
         if (keep[entries[k].triangle] && sorted_corners(positions, raw.triangles[entries[k].triangle]) == corners) {
@@ -96,7 +96,7 @@ void compact(std::vector<T>& values, const std::vector<std::uint32_t>& kept) {
   values.resize(kept.size());
 }
 
-// Numbers of the vertices that triangles use, ascending; renumbers the triangles to them.
+// Returns the numbers of used vertices, ascending, and renumbers the triangles to them.
 std::vector<std::uint32_t> renumber(std::vector<Triangle>& triangles, std::size_t vertices) {
   std::vector<std::uint32_t> place(vertices, 0);
   for (const Triangle& t : triangles)

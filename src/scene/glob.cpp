@@ -4,7 +4,7 @@
 namespace vantage {
 
 bool glob_matches(std::string_view pattern, std::string_view text) {
-  // On a mismatch only the last star needs to take one more character, so the cost is at most |pattern| · |text|.
+  // On a mismatch only the last star must take one more character, so the cost is at most |pattern| · |text|.
   std::size_t p = 0, t = 0, star = std::string_view::npos, star_text = 0;
   while (t < text.size()) {
     if (p < pattern.size() && pattern[p] == '*') {

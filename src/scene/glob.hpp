@@ -5,7 +5,7 @@
 
 namespace vantage {
 
-// Shell glob over a whole string: `*` any run of characters, `?` exactly one byte. Case matters.
+// Shell glob over a whole string: `*` any run of characters, `?` exactly one byte. Case-sensitive.
 bool glob_matches(std::string_view pattern, std::string_view text);
 
 }  // namespace vantage

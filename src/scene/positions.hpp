@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Positions and directions as they are stored, in float, and as they are reckoned with, in double.
+// Positions and directions: stored in float, computed in double.
 #pragma once
 
 #include "core/glm.hpp"
@@ -12,7 +12,7 @@ inline Float3 to_float3(const glm::dvec3& v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
-// −0 becomes 0, so that equal positions have equal bits.
+// Turns −0 into 0, so that equal positions have equal bits.
 inline Float3 without_minus_zero(const Float3& v) { return {v.x + 0.0F, v.y + 0.0F, v.z + 0.0F}; }
 
 }  // namespace vantage

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene in the survey frame in double precision, before cleaning and before a local origin is taken off.
+// A scene in the survey frame in double precision, before cleaning and before subtracting a local origin.
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -25,9 +26,10 @@ struct RawScene {
   std::vector<glm::dvec3> search_positions;
   std::vector<Uv> search_uvs;
   std::vector<Triangle> search_triangles;
-  // Coarsest spacing, in metres, of the float32 values from which positions were read, at those positions; 0 where they
-  // were exact.
+  // Coarsest spacing, in metres, of the float32 values of the file's positions; 0 if they were exact.
   double coarsest_input_spacing_m = 0;
+  // Memory that cleaning may take beyond what these arrays make it take.
+  std::uint64_t spare_bytes = std::numeric_limits<std::uint64_t>::max();
   std::vector<std::string> notes;
   std::string defaults_json = "{}";
   SceneOptions options = {};
@@ -36,15 +38,16 @@ struct RawScene {
 // Drops triangles that no ray can meet soundly (not finite, absurdly far, without area, exact duplicates), takes off
 // the local origin in double, rounds to float, cuts blocking triangles back where surveyed ones lie in their plane and
 // removes unused vertices. What was dropped is said in the notes.
-// Throws Error malformed_file, prefixed with `source`, where no surveyed triangle is left.
+// Throws Error: malformed_file, prefixed with `source`, where no surveyed triangle is left; out_of_memory where more
+// blocking triangles lie in one plane with surveyed ones than can be cut.
 std::shared_ptr<const SceneData> finish_scene(RawScene&& raw, const std::string& source);
 
-// Meshes left without triangles go. Of the others the counts become those of their ranges.
+// Removes meshes without triangles; sets the other meshes' counts from their ranges.
 void drop_empty_meshes(RawScene& raw);
 
-// The local origin for a box of coordinates: its centre, rounded to a multiple of the smallest power of ten that is not
-// below the largest extent. So a site modelled around 0 keeps 0, and one that was shifted by kilometres gets the very
-// same local coordinates as the unshifted one, while no local coordinate exceeds 5.5 times the extent.
+// Local origin for a box of coordinates: its centre, rounded to a multiple of the smallest power of ten not below the
+// largest extent. So a site modelled around 0 keeps 0, and one shifted by kilometres gets the same local coordinates as
+// the unshifted one. No local coordinate exceeds 5.5 times the extent.
 Vec3 local_origin(const Box& bounds);
 
 }  // namespace vantage

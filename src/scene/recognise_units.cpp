@@ -20,12 +20,12 @@ constexpr std::array<Unit, 5> kUnits{Unit::metre, Unit::foot, Unit::inch, Unit::
 
 double along(const Vec3& v, int axis) { return axis == kX ? v.x : axis == kY ? v.y : v.z; }
 
-// The survey frame as glTF's word has it, back to the file's axes.
+// From the survey frame, by glTF's rule, back to the file's axes.
 Vec3 file_from_survey(const glm::dvec3& p) { return {p.x, p.z, -p.y}; }
 
 // --- names ---
 
-// Lower-case words of a name: "Kitchen_Table.003" and "kitchenTable" are kitchen, table. A plural's s is taken off.
+// Lower-case words of a name, plurals without s: "Kitchen_Table.003" and "kitchenTable" are kitchen, table.
 std::vector<std::string> words_of(const std::string& name) {
   std::vector<std::string> words;
   bool inside = false, lower_before = false;
@@ -53,10 +53,10 @@ bool has_word(const std::vector<std::string>& words, std::initializer_list<std::
   return std::ranges::any_of(words, [&](const std::string& word) { return one_of(word, list); });
 }
 
-// Things whose size people know, in metres. Our own figures, wide on purpose: units are a factor of 2.5 or more apart.
+// Sizes of well-known things, in metres. Our own figures, wide on purpose: units differ by a factor of 2.5 or more.
 struct KnownThing {
   std::string_view word;
-  bool upright;  // its height is meant, else its longest side
+  bool upright;  // the range is for its height, else for its longest side
   double least_m, most_m;
 };
 constexpr KnownThing kKnown[] = {
@@ -73,9 +73,10 @@ constexpr KnownThing kKnown[] = {
     {"building", false, 4, 150},  {"column", true, 2, 15},      {"pump", false, 0.2, 4},
     {"room", false, 1.5, 40},     {"kerb", true, 0.05, 0.4},    {"curb", true, 0.05, 0.4},
 };
-constexpr double kSharp = 3.5;  // a range no wider than this tells neighbouring units apart and counts whole, else half
+constexpr double kSharp = 3.5;  // a range up to this width separates neighbouring units and counts full, a wider one
+                                // half
 
-// Names of parts say nothing of the whole.
+// Names of parts say nothing about the whole.
 bool is_fitting(const std::string& word) {
   return one_of(word, {"handle", "knob",   "frame",   "leg",    "wheel", "hinge",  "glass", "lock",   "light", "lamp",
                        "sill",   "drawer", "cushion", "pillow", "light", "mirror", "leaf",  "branch", "top",   "mat"});
@@ -91,8 +92,8 @@ struct Run {
 constexpr int kFewestSteps = 5;
 constexpr double kSameArea = 0.02, kSamePitch = 0.02;
 
-// Runs of faces of one area at one distance from each to the next: the treads of a stair along its height, the risers
-// along its length; but rows of windows as well.
+// Runs of faces of equal area at equal distances: treads of a stair along its height, risers along its length; also
+// rows of windows.
 std::vector<Run> equal_runs(const std::vector<FlatLevel>& levels, bool forward) {
   constexpr std::size_t kMostLevels = 4000;
   std::vector<FlatLevel> by_area;
@@ -124,7 +125,7 @@ struct Stair {
   int count = 0;
 };
 
-// A run along `up` and one as long along another axis whose pitch is a going to its rise.
+// Finds a run along `up` and one of equal length along another axis, with pitches in the ratio of going to rise.
 std::optional<Stair> find_stair(const std::array<std::vector<Run>, 3>& runs, int up) {
   constexpr double kLeastRatio = 1.15, kMostRatio = 2.3;
   std::optional<Stair> best;
@@ -140,7 +141,7 @@ std::optional<Stair> find_stair(const std::array<std::vector<Run>, 3>& runs, int
   return best;
 }
 
-// The air between the two largest faces that look at each other along an axis, as floor and ceiling do.
+// Free height between the two largest faces that face each other along an axis, such as floor and ceiling.
 struct Storey {
   double height = 0, area = 0;
 };
@@ -164,7 +165,7 @@ Storey find_storey(const std::vector<FlatLevel>& levels) {
 
 // --- signs ---
 
-// What speaks for one choice: how much, and in which words.
+// Evidence for one choice: its votes, and their description.
 struct Case {
   double votes = 0;
   std::vector<std::string> signs;
@@ -183,7 +184,7 @@ struct Case {
 
 struct UpCases {
   Case y, z;
-  bool more_than_proportions = false;  // of z
+  bool more_than_proportions = false;  // for z: evidence beyond proportions
 };
 
 void add_names(const SceneEvidence& evidence, UpCases& cases) {
@@ -254,14 +255,14 @@ UpCases up_cases(const SceneEvidence& evidence, const std::array<std::vector<Run
   return cases;
 }
 
-// What is drawn on a grid lies at whole numbers, of which most are multiples of 8 where lengths are inches, and of 10
-// where they are parts of a metre. Shares of the area of all faces across an axis.
+// Share of faces at whole-number coordinates, by area across an axis. In drawings on a grid, most are multiples of 8 in
+// inches, and of 10 in parts of a metre.
 struct DrawingGrid {
   double eights = 0, tens = 0;
 };
 DrawingGrid drawing_grid(const SceneEvidence& evidence) {
   constexpr double kWhole = 1e-3;
-  constexpr std::size_t kFewest = 30;  // different coordinates: fewer may be what they are by chance
+  constexpr std::size_t kFewest = 30;  // different coordinates; fewer may be coincidence
   double all = 0, eights = 0, tens = 0;
   std::size_t whole = 0;
   for (const auto& levels : evidence.levels)
@@ -278,7 +279,7 @@ DrawingGrid drawing_grid(const SceneEvidence& evidence) {
 
 Case unit_case(const SceneEvidence& evidence, const std::array<std::vector<Run>, 3>& runs, int up, double metres) {
   Case found;
-  std::map<std::string_view, std::pair<int, int>> things;  // how many fit, and how many there are
+  std::map<std::string_view, std::pair<int, int>> things;  // number that fit, and total
   for (const NamedBox& node : evidence.nodes) {
     const auto words = words_of(node.name);
     if (words.empty() || is_fitting(words.back())) continue;
@@ -335,8 +336,7 @@ std::string plural(Unit unit) {
   return {};
 }
 
-// A body as large in every direction as no building is, closed all around, with nothing in it that people use: a
-// machine as CAD programs draw it.
+// Whether the body looks like a machine drawn in CAD: larger in every direction than any building, and closed.
 bool like_a_machine(const SceneEvidence& evidence) {
   const Vec3 size = evidence.bounds.size();
   const double least = std::min({size.x, size.y, size.z}), most = std::max({size.x, size.y, size.z});
@@ -351,7 +351,7 @@ struct UnitChoice {
 
 UnitChoice choose_unit(const SceneEvidence& evidence, const std::array<std::vector<Run>, 3>& runs, int up) {
   constexpr double kAbsurd_m = 3000, kLeast_m = 0.5, kMost_m = 20'000;
-  constexpr double kWide_m = 800, kTall_m = 250;  // at once: mountains, which have no flat faces, but no site
+  constexpr double kWide_m = 800, kTall_m = 250;  // both exceeded: mountains, which have no flat faces, but no site
   const Vec3 size = evidence.bounds.size();
   const double extent = std::max({size.x, size.y, size.z});
   const std::string as_metres = rounded(size.x) + " x " + rounded(size.y) + " x " + rounded(size.z) + " m";
@@ -393,7 +393,7 @@ SceneEvidence gather_evidence(const RawScene& raw, const std::vector<NamedBox>& 
       return std::abs(p.x) < limit && std::abs(p.y) < limit && std::abs(p.z) < limit;
     });
   };
-  // Broken vertices are no evidence; but all of a site in millimetres may lie as far out as a vertex that is broken.
+  // Broken vertices are no evidence. But in a site in millimetres, all vertices may lie as far out as broken ones.
   const bool near = std::ranges::any_of(raw.triangles, [&](const Triangle& t) { return within(t, kFarthest_m); });
   const auto counts = [&](const Triangle& t) { return within(t, near ? kFarthest_m : kFarthest); };
   for (const Triangle& t : raw.triangles)
@@ -409,7 +409,7 @@ SceneEvidence gather_evidence(const RawScene& raw, const std::vector<NamedBox>& 
   struct Bin {
     double area = 0, moment = 0;
   };
-  std::array<std::vector<Bin>, 6> bins;  // axis, and which side
+  std::array<std::vector<Bin>, 6> bins;  // axis and side
   for (auto& side : bins) side.resize(kBins);
   for (const Triangle& t : raw.triangles) {
     if (!counts(t)) continue;

@@ -5,7 +5,7 @@
 namespace vantage {
 
 Settings settings(const SceneOptions& options) {
-  // As the program's options take them; numbers to the last bit.
+  // In the format of the program's options; numbers to the last bit.
   const auto listed = [](const auto& values) {
     std::vector<std::string> texts;
     for (const auto& [pattern, value] : values) texts.push_back(pattern + "=" + nlohmann::json(value).dump());

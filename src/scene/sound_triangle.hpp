@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which triangles a ray can meet, and which are the same.
+// Tests whether a ray can meet a triangle, and whether two triangles are the same.
 #pragma once
 
 #include <algorithm>
@@ -13,14 +13,14 @@
 
 namespace vantage {
 
-constexpr double kFarthest_m = 1e9;  // float32 is 64 m coarse there: no site reaches so far, but a broken vertex does
+constexpr double kFarthest_m = 1e9;  // the spacing of float32 is 64 m there: broken vertices reach so far, sites do not
 
 inline bool sound(const glm::dvec3& p) {
   return std::abs(p.x) <= kFarthest_m && std::abs(p.y) <= kFarthest_m && std::abs(p.z) <= kFarthest_m;
 }
 
-// A triangle has area when its normal can be formed in float. Differences of floats and their products are exact in
-// double, or nearly so, hence collinear corners give exactly 0.
+// A triangle has area if its normal can be formed in float. Differences of floats and their products are exact in
+// double, or nearly so; hence collinear corners give exactly 0.
 inline bool has_area(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
   const glm::dvec3 n = cross(b - a, c - a);
   return dot(n, n) >= static_cast<double>(std::numeric_limits<float>::min());

@@ -25,12 +25,12 @@ bool in_range(const MeshRange& range, std::size_t triangle) {
   return triangle >= range.first_triangle && triangle < std::size_t{range.first_triangle} + range.triangle_count;
 }
 
-// Whether a triangle of the piece may lie in the plane of one of another role, and over it. Wider than the search for
-// those that are cut, so that what passes here is not cut there.
+// Whether a triangle of the piece may overlap one of another role in its plane. Wider than the search of
+// find_coplanar(), so that a piece which passes here would not be cut there.
 bool may_be_coplanar(const SceneData& scene, std::size_t m, std::span<const Float3> positions, const MeshPiece& piece,
                      const Box& piece_box, double reach) {
   constexpr double kParallel = 0.98, kMostPairs = 2e7;
-  const double slack = 0x1p-16 * reach;  // 16 times what find_coplanar() takes
+  const double slack = 0x1p-16 * reach;  // 16 times that of find_coplanar()
   std::vector<std::uint32_t> near;
   for (std::size_t other = 0; other < scene.ranges.size(); ++other) {
     if (other == m || scene.meshes[other].role == piece.info.role) continue;
@@ -58,7 +58,7 @@ bool may_be_coplanar(const SceneData& scene, std::size_t m, std::span<const Floa
   return false;
 }
 
-// Whether two triangles of the piece, or one of it and one of the rest, have the very same corners.
+// Whether two triangles of the piece, or one of it and one of the rest, have identical corners.
 bool repeats(const SceneData& scene, std::size_t m, std::span<const Float3> positions, const MeshPiece& piece,
              const Box& piece_box) {
   std::vector<std::array<Float3, 3>> corners;
@@ -109,14 +109,14 @@ std::shared_ptr<const SceneData> splice_mesh(const SceneData& before, std::size_
   after->search_triangles = before.search_triangles;
   after->defaults_json = before.defaults_json;
   after->options = before.options;
-  // the mesh's own positions lie together, as its triangles do
+  // A mesh's own positions are contiguous, as its triangles are.
   const MeshRange& old = before.ranges[m];
   const auto old_first = before.triangles.begin() + old.first_triangle, old_end = old_first + old.triangle_count;
   std::uint32_t low = ~0U, high = 0;
   for (auto t = old_first; t != old_end; ++t)
     for (const std::uint32_t v : *t) low = std::min(low, v), high = std::max(high, v);
   const auto count = static_cast<std::uint32_t>(positions.size());
-  const std::uint32_t shift = count - (high + 1 - low);  // of later positions; wraps where there are fewer
+  const std::uint32_t shift = count - (high + 1 - low);  // shift of later positions; wraps around if there are fewer
   after->positions.reserve(before.positions.size() + count);
   after->positions.assign(before.positions.begin(), before.positions.begin() + low);
   after->positions.insert(after->positions.end(), positions.begin(), positions.end());

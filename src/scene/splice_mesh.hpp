@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene with one of its meshes changed, without looking at the others again.
+// Changes one mesh of a scene without processing the others.
 #pragma once
 
 #include <memory>
@@ -10,7 +10,7 @@
 
 namespace vantage {
 
-// What takes a mesh's place. Every position belongs to a triangle.
+// Replacement of a mesh. Every position belongs to a triangle.
 struct MeshPiece {
   std::vector<glm::dvec3> positions;  // survey frame
   std::vector<Triangle> triangles;    // into `positions`
@@ -18,10 +18,10 @@ struct MeshPiece {
   Material material;
 };
 
-// `before` with mesh `m` changed, exactly as finish_scene() would have made it from everything; null where that cannot
-// be told without making everything: another local origin, triangles to drop, or some in one plane with those of
-// another role. REQUIRES: nothing of `before` was dropped or cut, it has no attributes but positions, and a material
-// for each mesh. `bounds`: of all meshes as they are now, survey frame.
+// Returns `before` with mesh `m` changed, exactly as finish_scene() would build it from all meshes. Null if only a full
+// build can tell: another local origin, triangles to drop, or some in one plane with those of another role. REQUIRES:
+// nothing of `before` was dropped or cut, it has no attributes except positions, and a material for each mesh.
+// `bounds`: of all current meshes, survey frame.
 std::shared_ptr<const SceneData> splice_mesh(const SceneData& before, std::size_t m, const MeshPiece& piece,
                                              const Box& bounds);
 

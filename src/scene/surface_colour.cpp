@@ -7,8 +7,7 @@
 namespace vantage {
 namespace {
 
-// The two texels that x lies between, and how far from the first to the second. x in texels, their centres at whole
-// numbers.
+// The two texels around x, and the position of x between them. x in texels, whose centres are whole numbers.
 struct Texels {
   std::uint32_t first, second;
   float share;
@@ -33,7 +32,7 @@ LinearColour texel(const Image& image, std::uint32_t x, std::uint32_t y) {
   return {linear_from_srgb8(p[0]), linear_from_srgb8(p[1]), linear_from_srgb8(p[2]), static_cast<float>(p[3]) / 255.0f};
 }
 
-// GLM's mix weighs both ends, and so need not give back what they share.
+// Unlike GLM's mix, returns the common value exactly if both ends agree.
 LinearColour between(const LinearColour& a, const LinearColour& b, float share) { return a + (b - a) * share; }
 
 LinearColour vertex_colour(std::uint32_t packed) {

@@ -271,6 +271,7 @@ struct Site::Impl {
 };
 
 Site Site::open(const std::filesystem::path& file, SiteOptions options) {
+  if (options.memory_bytes > 0) options.scene.max_memory_bytes = options.memory_bytes;
   Scene scene = Scene::load(file, options.scene);
   if (options.log)
     for (const std::string& note : scene.notes()) options.log(file.string() + ": " + note);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `automatic` stands for.
+// Resolves `automatic` to an engine.
 #pragma once
 
 #include <cstddef>
@@ -11,8 +11,8 @@
 
 namespace vantage {
 
-// A hardware GPU by ray query where one has that, else by our own BVH; else the CPU. Of the engines on one device,
-// where that was named, the first usable one. REQUIRES: embree is listed.
+// Returns the index of the default engine: a hardware GPU with ray queries, else one with our own BVH, else the CPU. If
+// a device is given, the first usable Vulkan engine on it. REQUIRES: embree is listed.
 std::size_t default_engine(const std::vector<EngineInfo>& engines,
                            std::optional<std::uint32_t> device_index = std::nullopt);
 

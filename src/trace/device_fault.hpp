@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What fails because a device does, and may do on one that is set up anew; never what was wrong with the work.
+// Failure of a device; the same work may succeed on a device that is set up anew. Never an error in the work itself.
 #pragma once
 
 #include "vantage/error.hpp"

@@ -24,7 +24,7 @@ std::string to_string(Engine engine) {
 }
 
 Engine engine_from_string(const std::string& text) {
-  if (text == "automatic") return Engine::automatic;  // as the enumerator is called
+  if (text == "automatic") return Engine::automatic;  // name of the enumerator
   std::string known;
   std::vector<std::string> all;
   for (const auto& [engine, name] : names) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// shaders/lib/exact.glsl again, for what host and device must round alike: Vulkan allows slack in division and square
-// root, but none in + and ×.
+// Counterpart of shaders/lib/exact.glsl, for values that host and device must round alike. Vulkan allows slack in
+// division and square root, but none in + and ×.
 #pragma once
 
 #include <bit>
@@ -15,7 +15,7 @@ inline float exact_reciprocal(float x) {
   return y;
 }
 
-// 1 / √x likewise. REQUIRES: 2^-100 < x < 2^100.
+// 1 / √x, by the same method. REQUIRES: 2^-100 < x < 2^100.
 inline float exact_inverse_sqrt(float x) {
   float y = std::bit_cast<float>(0x5F375A86u - (std::bit_cast<std::uint32_t>(x) >> 1));
   const float half_x = 0.5f * x;

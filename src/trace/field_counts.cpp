@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs are counted on bit planes: the masks of 64 voxels, a word each, are transposed into a word a station (Warren:
-// Hacker's Delight, 2nd edition, 2012, section 7-3), so that one AND and one population count serve 64 voxels.
+// Pairs are counted on bit planes. The masks of 64 voxels, a word each, are transposed into a word a station (Warren:
+// Hacker's Delight, 2nd edition, 2012, section 7-3). So one AND and one population count serve 64 voxels.
 #include "trace/field_counts.hpp"
 
 #include <tbb/blocked_range.h>
@@ -17,7 +17,7 @@
 namespace vantage {
 namespace {
 
-constexpr std::size_t block = 64;  // voxels a block: bits a word
+constexpr std::size_t block = 64;  // voxels per block: bits in a word
 
 struct Sums {
   std::uint64_t weight = 0, saturated = 0, partial_points = 0;
@@ -43,7 +43,7 @@ void transpose(std::array<std::uint64_t, block>& rows) {
   }
 }
 
-// Of up to 64 stations.
+// For up to 64 stations.
 VANTAGE_TARGET_CLONES
 void add_pairs(const std::uint64_t* masks, std::size_t n, std::size_t stations, std::uint64_t* seen,
                std::uint64_t* shared) {
@@ -68,7 +68,8 @@ void add_pairs(const std::uint64_t* masks, std::size_t n, std::size_t stations, 
   }
 }
 
-// Of more: only those are paired that see any voxel of the block. `size`: voxels in all, the distance between words.
+// For more stations: pairs only those that see any voxel of the block. `size`: number of voxels, which is the distance
+// between words.
 VANTAGE_TARGET_CLONES
 void add_many_pairs(const std::uint64_t* masks, std::size_t size, std::size_t n, std::size_t stations,
                     std::uint64_t* seen, std::uint64_t* shared) {

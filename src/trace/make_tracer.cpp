@@ -21,13 +21,13 @@ namespace vantage {
 
 namespace {
 
-// The engines that run on Vulkan; where a device has several, `automatic` takes the first.
+// Engines that run on Vulkan; `automatic` takes the first of those on a device.
 constexpr const vulkan::VulkanEngine* vulkan_engines[] = {
     &vulkan::ray_query_engine,
     &vulkan::compute_bvh_engine,
 };
 
-// What `automatic` comes to.
+// Resolves `automatic`.
 DeviceChoice settled(Engine engine, std::optional<std::uint32_t> device_index) {
   if (engine != Engine::automatic) return {engine, device_index};
   const auto engines = list_engines();
@@ -93,7 +93,7 @@ ChosenDevice choose_device(Engine engine, std::optional<std::uint32_t> device_in
     if (info.engine == chosen.engine && info.usable && (!chosen.index || *chosen.index == info.device_index) &&
         (!best || (best->software && !info.software)))
       best = &info;
-  if (!best) return device;  // who makes it says why not
+  if (!best) return device;  // make_tracer() reports why
   device.software = best->software;
   if (!best->software) device.free_bytes = free_device_memory(best->device_index);
   return device;

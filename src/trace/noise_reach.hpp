@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far noise can move points, by how far away they are: what sampled evaluation must look beyond a voxel's cube.
+// Bounds on how far noise moves points, by distance. Sampled evaluation must look that far beyond a voxel's cube.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace vantage {
 
-// Column c of the noise table: no hit up to there is moved further than this. REQUIRES: model.enabled().
+// Column c of the noise table: noise moves no hit up to that distance further than this. REQUIRES: model.enabled().
 using NoiseReaches = std::array<float, NoiseModel::side>;
 inline NoiseReaches noise_reaches(const NoiseModel& model) {
   NoiseReaches reaches{};
@@ -26,7 +26,7 @@ inline NoiseReaches noise_reaches(const NoiseModel& model) {
   return reaches;
 }
 
-// No point of a hit nearer than t is moved further than this.
+// Upper bound on how far noise moves a hit nearer than t.
 inline float reach_within(const NoiseModel& model, const NoiseReaches& reaches, float t) {
   constexpr auto last = static_cast<float>(NoiseModel::side - 1);
   const float column = (t - model.min_range) * model.inverse_span * last + 1.01f;

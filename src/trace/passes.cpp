@@ -14,14 +14,14 @@ namespace {
 
 constexpr auto bits = static_cast<std::uint32_t>(mask_bits);
 
-// Stations of consecutive places; `word`: of the mask, `size`: how many places it spans.
+// Stations of consecutive places. `word`: word of the mask; `size`: number of places.
 struct Pass {
   std::size_t word;
   std::uint32_t size;
   std::vector<TraceStation> stations;
 };
 
-// Those with a station to trace.
+// Passes that have a station to trace.
 std::vector<Pass> passes_of(std::span<const TraceStation> stations, std::uint32_t station_count) {
   std::vector<Pass> passes;
   for (std::uint32_t first = 0; first < station_count; first += bits) {
@@ -37,7 +37,7 @@ void add(std::vector<std::uint32_t>& counts, std::span<const std::uint32_t> more
   for (std::size_t k = 0; k < counts.size(); ++k) add_saturating(counts[k], more[k]);
 }
 
-// A pass's figures of its own stations, among those of all.
+// Copies a pass's per-station figures to their places among all stations.
 template <class Figure>
 void place(std::vector<Figure>& all, const std::vector<Figure>& own, const Pass& pass, std::uint32_t station_count) {
   if (own.empty()) return;

@@ -10,12 +10,12 @@
 namespace vantage {
 namespace {
 
-// A direction's components are products of two values rounded to 24 bits: its angles are off by less than 2^−22, and
+// Components of a direction are products of two values rounded to 24 bits. Its angles are off by less than 2^−22, and
 // fast_atan2 by 2^−25.
 constexpr double angle_pad = 0x1p-20;
 
 // atan2 to 2e-8, for y >= 0 (Abramowitz, Stegun: Handbook of Mathematical Functions, 1964, 4.4.49). The C library's
-// would take most of the time that a sampled voxel takes. Without a branch, for loops over many.
+// atan2 would take most of the time of a sampled voxel. Branch-free, for loops over many boxes.
 [[gnu::always_inline]] inline double fast_atan2(double y, double x) {
   const double size = std::abs(x), least = std::min(y, size), most = std::max(y, size);
   const double q = least / (most + 1e-300), s = q * q;
@@ -39,7 +39,7 @@ constexpr double angle_pad = 0x1p-20;
           static_cast<std::uint32_t>(std::min(end, static_cast<double>(count)))};
 }
 
-// The columns whose azimuths lie in [begin, begin + width], modulo a turn.
+// Columns whose azimuths lie in [begin, begin + width], modulo a turn.
 [[gnu::always_inline]] inline std::array<RayRanges::Range, 2> columns_of(const RayPattern& pattern, double begin,
                                                                          double width) {
   constexpr double turn = 2 * std::numbers::pi;
@@ -48,13 +48,13 @@ constexpr double angle_pad = 0x1p-20;
   begin -= std::floor(begin / turn) * turn;
   const RayRanges::Range first = indices(begin, begin + width, 0, pattern.azimuth_step, columns);
   const RayRanges::Range second = indices(begin - turn, begin - turn + width, 0, pattern.azimuth_step, columns);
-  // Both ends of almost a turn, or a pattern of more than a turn: one range.
+  // Both ends of nearly a full turn, or a pattern of more than a turn: one range.
   if (!first.empty() && second.end > first.begin) return {{{0, columns}, {}}};
   return {first, second};
 }
 
-// In the scanner's frame: a box's middle, and the half extent of what holds it there. A turned direction is off by less
-// than 2^−21, of the turn's rounding and its own.
+// Turns a box's middle into the scanner's frame, and the half extents into those of an enclosing box. Rounding of the
+// turn and of the direction moves a turned direction by less than 2^−21.
 void turn_box(const Turn& turn, Vec3& middle, Vec3& half) {
   constexpr double doubt = 0x1p-20;
   const Vec3 m = middle, h = half;
@@ -92,7 +92,7 @@ RayRanges rays_of_box(const RayPattern& pattern, const Vec3& low, const Vec3& hi
   const double cx = (low.x + high.x) / 2, cy = (low.y + high.y) / 2, cz = (low.z + high.z) / 2;
   const double hx = (high.x - low.x) / 2, hy = (high.y - low.y) / 2, hz = (high.z - low.z) / 2;
   const double r = std::sqrt(cx * cx + cy * cy);
-  // Half of the box's extent along the horizontal direction to its middle, and across it, times r.
+  // Half extents of the box along the horizontal direction to its middle, and across it, times r.
   const double along = std::abs(cx) * hx + std::abs(cy) * hy, across = std::abs(cy) * hx + std::abs(cx) * hy;
   RayRanges ranges;
   if (along >= r * r) {  // the box may lie across the vertical axis, where every azimuth meets it
@@ -107,8 +107,8 @@ RayRanges rays_of_box(const RayPattern& pattern, const Vec3& low, const Vec3& hi
     ranges.rows = indices(least - angle_pad, most + angle_pad, pattern.first_zenith, pattern.zenith_step, rows);
     return ranges;
   }
-  // Seen from above the box lies within its middle's azimuth ± across / (r² − along): no point of it is further across,
-  // or nearer. In the plane of distance from the axis and height it lies, likewise, in a rectangle around its middle.
+  // Seen from above, the box lies within its middle's azimuth ± across / (r² − along), since no point of it is further
+  // across, or nearer. Likewise, in the plane of axis distance and height, it lies in a rectangle around its middle.
   const double radial = (along + across) / r;
   const double distance = std::sqrt(r * r + cz * cz);
   const double depth = distance - (r * radial + std::abs(cz) * hz) / distance;
@@ -129,7 +129,7 @@ RayRanges rays_of_box(const RayPattern& pattern, const Vec3& low, const Vec3& hi
   return ranges;
 }
 
-// As rays_of_box() where the box is neither around the axis nor across the seam, without a branch.
+// As rays_of_box() for boxes that neither surround the axis nor cross the seam; branch-free.
 VANTAGE_TARGET_CLONES
 void rays_of_boxes(const RayPattern& pattern, BoxBatch& boxes) {
   constexpr double turn = 2 * std::numbers::pi;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The inverse of the ray pattern: which rays pass through a box.
+// Inverse of the ray pattern: the rays that pass through a box.
 #pragma once
 
 #include <array>
@@ -9,8 +9,8 @@
 
 namespace vantage {
 
-// Every ray that meets the box lies in one of these rows and one of these column ranges (two where the box lies across
-// the pattern's seam); other rays may too.
+// Every ray that meets the box lies in one of these rows and column ranges; so may other rays. There are two column
+// ranges if the box lies across the pattern's seam.
 struct RayRanges {
   struct Range {
     std::uint32_t begin = 0, end = 0;
@@ -21,30 +21,31 @@ struct RayRanges {
   bool empty() const { return rows.empty() || (columns[0].empty() && columns[1].empty()); }
 };
 
-// `low` and `high`: corners of the box relative to the head. Bounds are widened by more than the directions' rounding.
+// `low` and `high`: corners of the box relative to the head. Bounds are widened by more than the rounding of
+// directions.
 RayRanges rays_of_box(const RayPattern& pattern, const Vec3& low, const Vec3& high);
 
-// For a turned scanner: corners of a box, relative to the head, become those of one in the scanner's own frame that
-// holds it, wide enough for the rounding of turned directions.
+// For a turned scanner: replaces a box, relative to the head, by one in the scanner's own frame that contains it. It is
+// wide enough for the rounding of turned directions.
 void turn_back(const Turn& turn, Vec3& low, Vec3& high);
 
-// Many boxes from one head, of which most are small and far off: those are done several at once.
+// Batch of boxes seen from one head. Small and distant boxes, the majority, are handled several at once.
 struct BoxBatch {
   static constexpr std::uint32_t capacity = 512;
   std::uint32_t size = 0;
-  // Middle, relative to the head, and half of the extent.
+  // Middle, relative to the head, and half extents.
   alignas(64) double x[capacity], y[capacity], z[capacity];
   alignas(64) double half_x[capacity], half_y[capacity], half_z[capacity];
-  // Out: one range of rows and one of columns, either may be empty; where not `simple`, rays_of_box() must be asked.
+  // Output: one range of rows and one of columns, either possibly empty. Unless `simple`, rays_of_box() must be called.
   alignas(64) std::int32_t row_begin[capacity], row_end[capacity], column_begin[capacity], column_end[capacity];
   alignas(64) std::int32_t simple[capacity];
 };
 void rays_of_boxes(const RayPattern& pattern, BoxBatch& boxes);
 void turn_back(const Turn& turn, BoxBatch& boxes);
 
-// How far a box must be widened on each side so that no point that float arithmetic puts into it lies outside: a point
-// is origin + t·d, and its cell the floor of (p − min)·inverse_size, five roundings of at most 2^−24 of `reach`, the
-// largest of the magnitudes involved (coordinates of head, box and grid, and the distance). Three times that.
+// Margin by which a box is widened on each side, so that every point which float arithmetic puts into it lies inside. A
+// point is origin + t·d, and its cell the floor of (p − min)·inverse_size: five roundings of at most 2^−24 of `reach`,
+// the largest magnitude involved (coordinates of head, box and grid, and the distance). The margin is three times that.
 double rounding_pad(double reach);
 
 }  // namespace vantage

@@ -33,7 +33,7 @@ void RebuildingTracer::set_up_anew(const DeviceFault& fault, const std::string& 
   if (warn_)
     warn_(to_string(info_.engine) + " on device " + std::to_string(info_.device_index) + ", " + info_.device + ": " +
           fault.what() + "; it is set up anew" + what_next);
-  tracer_ = nullptr;  // the old one goes first: what it holds may be what was lacking
+  tracer_ = nullptr;  // destroy the old tracer first, to free its resources for the new one
   tracer_ = make_();
   tracer_->set_goal_density(goal_density_);
 }
@@ -90,7 +90,7 @@ std::vector<NetworkCounts> RebuildingTracer::count_sampled(std::span<const std::
     }
     if (counts.back().cancelled) break;
   }
-  // Where cancelled, the rest was not reached.
+  // When cancelled, the other networks were not reached.
   NetworkCounts left;
   left.cancelled = true;
   counts.resize(networks.size(), left);

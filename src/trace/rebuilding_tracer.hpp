@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A tracer on a device that may fail: it is set up anew, once for each piece of work, and the piece done again. Counts
-// are those of a device that never failed.
+// Tracer on a device that may fail: it is set up anew, once for each piece of work, and repeats the piece. Counts equal
+// those of a device that never failed.
 #pragma once
 
 #include <functional>
@@ -18,8 +18,8 @@ class RebuildingTracer final : public Tracer {
  public:
   using Make = std::function<std::unique_ptr<Tracer>()>;
   using Warn = std::function<void(const std::string&)>;
-  // `make` is called again where a DeviceFault is thrown, by it or by what it made; `warn` is told of each, on the
-  // calling thread. What fails a second time is thrown.
+  // Calls `make` again after a DeviceFault, thrown by `make` or by the tracer that it made. `warn` is called for each
+  // fault, on the calling thread. A second failure is thrown.
   RebuildingTracer(Make make, Warn warn);
 
   const EngineInfo& info() const override { return info_; }
@@ -32,7 +32,7 @@ class RebuildingTracer final : public Tracer {
             RawChunk& chunk) override;
   NetworkCounts count(std::span<const TraceStation> stations, std::uint32_t station_count, const CountOptions& options,
                       const Progress& progress) override;
-  // Where the device's memory is too small for all networks at once, they go in halves from then on.
+  // Halves the networks in flight, permanently, when the device's memory is too small for all at once.
   std::vector<NetworkCounts> count_sampled(std::span<const std::vector<TraceStation>> networks,
                                            std::span<const std::uint32_t> station_counts, const SampleJob& job,
                                            const Progress& progress) override;
@@ -40,13 +40,13 @@ class RebuildingTracer final : public Tracer {
  private:
   Tracer& ready() const;
   void set_up_anew(const DeviceFault& fault, const std::string& what_next);
-  // Calls `work` on the tracer, and once more on a new one where that fails.
+  // Calls `work` on the tracer; after a failure, once more on a new tracer.
   template <class Work>
   auto twice(const Work& work);
 
   Make make_;
   Warn warn_;
-  std::unique_ptr<Tracer> tracer_;  // null: it failed, and could not be set up anew
+  std::unique_ptr<Tracer> tracer_;  // null: it failed and could not be set up anew
   EngineInfo info_;
   std::size_t networks_at_once_ = std::numeric_limits<std::size_t>::max();
 };

@@ -20,21 +20,21 @@ namespace {
 constexpr std::size_t of_pair = RegistrationSums::of_pair, of_station = RegistrationSums::of_station;
 constexpr std::size_t patches_a_block = patches_in_64_bits / 2;
 static_assert(of_pair == pair_sums && of_station == station_sums);
-constexpr double least_share = 0.5;       // of a voxel's surface, and of that around it, that one plane must have
-constexpr double least_area = 1e-3;       // of a face: what is less is a corner that no scan resolves
-constexpr double points_of_a_plane = 10;  // within a patch: fewer, and a scan has no normal there to register by
-// Of a patch's side, how far around it a surface must be flat. A scan's normal is fitted to points around it, within
-// the patch over which its error is the same: on a pipe thinner than that none is found, be voxels ever so fine.
+constexpr double least_share = 0.5;       // smallest share of one plane in a voxel's surface, and in that around it
+constexpr double least_area = 1e-3;       // in faces; anything smaller is a corner that no scan resolves
+constexpr double points_of_a_plane = 10;  // within a patch; a scan with fewer has no normal to register by
+// Distance, as a share of a patch's side, within which a surface must be flat. A scan's normal is fitted to points
+// around it, within the patch of constant error. So a pipe thinner than that has no normal, however fine the voxels.
 constexpr double flat_part = 0.5;
-constexpr double widest_fit_m = 1;  // no normal is fitted to more, be patches ever so large
+constexpr double widest_fit_m = 1;  // largest surface for a normal's fit, however large patches are
 
-constexpr double largest_section = 1.5;  // in faces: no plane has more than 3√3/4 within a cube
+constexpr double largest_section = 1.5;  // in faces: a plane's section of a cube is at most 3√3/4
 
 int quantised(double x) { return static_cast<int>(std::lround(x * patch_unit)); }
 
 __extension__ using Wide = __int128;
 
-// Of one block, or of several.
+// Sums of one block, or of several.
 template <class Number>
 struct Accumulator {
   std::vector<Number> pairs, surface;
@@ -47,21 +47,21 @@ struct Accumulator {
   }
 };
 
-// What a station makes of a plane.
+// A station's view of a plane.
 struct View {
   float weight = 0;  // 1 / s²
   bool behind = false;
 };
 
-// Where planes are looked at from.
+// Scanner head that sees the planes.
 struct Head {
   Float3 origin;
-  std::optional<Float3> axis;  // of a turned scanner
+  std::optional<Float3> axis;  // set if the scanner is turned
   const RangeNoise* noise = nullptr;
   float density = 1;
 };
 
-// w = 1/s² of docs/method.md; 0 where the plane is seen too flat, or by too few points.
+// w = 1/s² of docs/method.md; 0 if the plane is seen too obliquely, or with too few points.
 View view_of(const RegistrationPatch& patch, const Head& head) {
   const float x = head.origin.x - patch.point.x, y = head.origin.y - patch.point.y, z = head.origin.z - patch.point.z;
   const float xx = x * x, yy = y * y, zz = z * z;
@@ -87,7 +87,7 @@ View view_of(const RegistrationPatch& patch, const Head& head) {
   if (head.noise->enabled()) {
     const float points = std::max(expected, 1.0f);
     const float sigma = head.noise->sigma(square * inverse, patch.diffuse * cosine);
-    const float along = sigma * cosine;  // of range noise, what is along the normal
+    const float along = sigma * cosine;  // part of the range noise along the normal
     variance = variance + along * along * exact_reciprocal(points);
   }
   return {exact_reciprocal(variance), facing < 0};
@@ -122,10 +122,10 @@ class Summer {
     if (count > mask_bits) number_pairs();
   }
 
-  // Pairs that are summed: all of them, or of large networks those that share a voxel.
+  // Number of pairs that are summed: all; in large networks only pairs that share a voxel.
   std::size_t pairs() const { return kept_.empty() ? all_pairs() : kept_.size(); }
   std::size_t all_pairs() const { return stations_ * (stations_ - 1) / 2; }
-  // Of those, the k-th, among all.
+  // Index among all pairs of the k-th summed pair.
   std::size_t pair(std::size_t k) const { return kept_.empty() ? k : kept_[k]; }
 
   void add(std::size_t first, std::size_t end, Accumulator<std::int64_t>& sums) const {
@@ -135,7 +135,7 @@ class Summer {
   }
 
  private:
-  // Those that saw a voxel, ascending; how many.
+  // Fills `seen` with the stations that saw a voxel, ascending, and returns their number.
   std::size_t stations_of(std::size_t voxel, std::array<std::uint16_t, max_stations>& seen) const {
     std::size_t many = 0;
     for_each_station(masks_, patches_.patches.size(), voxel,
@@ -156,7 +156,7 @@ class Summer {
       number_[p] = static_cast<std::uint32_t>(kept_.size());
       kept_.push_back(static_cast<std::uint32_t>(p));
     }
-    if (kept_.empty()) kept_.push_back(0);  // none at all: one sum of nothing
+    if (kept_.empty()) kept_.push_back(0);  // no shared voxel: a single sum of nothing
   }
   std::size_t row_of(std::size_t i) const { return i * (2 * stations_ - i - 1) / 2; }
   std::uint32_t number_of(std::size_t pair) const {
@@ -170,7 +170,7 @@ class Summer {
     if (seen.size() > 1 && patch.variance > 0) add_pairs(patch, seen, sums.pairs.data() + group * pairs() * of_pair);
   }
 
-  // Moments of the covered surface, a voxel's shared by the stations that see it.
+  // Adds moments of the covered surface; the stations that see a voxel share it.
   void add_surface(const RegistrationPatch& patch, std::span<const std::uint16_t> seen, std::int64_t* sums) const {
     const auto weight =
         static_cast<std::int64_t>(patch.extent * exact_reciprocal(static_cast<float>(seen.size())) + 0.5f);
@@ -183,7 +183,7 @@ class Summer {
   }
 
   void add_pairs(const RegistrationPatch& patch, std::span<const std::uint16_t> seen, std::int64_t* sums) const {
-    // The stations on either side of the plane.
+    // Stations on either side of the plane.
     std::array<std::array<std::uint16_t, max_stations>, 2> places;
     std::array<std::array<float, max_stations>, 2> weights;
     std::array<std::size_t, 2> many{};
@@ -207,7 +207,7 @@ class Summer {
       for (std::size_t a = 0; a + 1 < many[side]; ++a) {
         const std::size_t i = places[side][a];
         const float scaled = weights[side][a] * scale;
-        // A row of pairs: of i with each station after it.
+        // One row of pairs: station i with each station after it.
         std::array<std::int32_t, max_stations> shared;
         std::array<std::uint32_t, max_stations> columns;
         std::size_t length = 0;
@@ -226,7 +226,8 @@ class Summer {
   std::span<const std::uint64_t> masks_;
   std::size_t stations_, groups_;
   float units_;
-  std::vector<std::uint32_t> number_, kept_;  // of each pair among the kept ones, and back; empty where all are kept
+  std::vector<std::uint32_t> number_, kept_;  // index of each pair among the summed ones, and back; empty if all are
+                                              // summed
 };
 
 // `pairs` and `surface`: of all stations.

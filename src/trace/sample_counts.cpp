@@ -28,7 +28,7 @@ NetworkCounts reduce_sample(std::span<const std::uint32_t> counts, std::span<con
     for (std::size_t w = 0; w * counts.size() < masks.size(); ++w)
       for (std::size_t i = g; i < counts.size(); i += groups) group_masks.push_back(masks[w * counts.size() + i]);
     all.groups.push_back(reduce_field(group_counts, group_masks, stations, goal_density, group_demands));
-    // A group without voxels still has its stations' zeros.
+    // A group without voxels still needs zeros for its stations.
     if (!masks.empty() && all.groups.back().seen.empty()) {
       all.groups.back().seen.resize(all.seen.size());
       all.groups.back().shared.resize(all.shared.size());

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A sample in runs of voxels that follow one another and so lie close together, one run after the other from all over
-// the site: the rays to a run share what they visit, and any number of runs has its part of what is near and what is
-// far.
+// Splits a sample into runs of consecutive, hence neighbouring, voxels, and orders the runs so that they jump across
+// the site. Rays to one run share the nodes that they visit; any range of runs holds a fair share of near and far
+// voxels.
 #pragma once
 
 #include <algorithm>
@@ -16,17 +16,17 @@ namespace vantage {
 
 class SampleRuns {
  public:
-  static constexpr std::size_t length = 32;  // voxels; the sample's last may have fewer
+  static constexpr std::size_t length = 32;  // voxels; the sample's last run may have fewer
 
   explicit SampleRuns(std::size_t voxels) : runs_((voxels + length - 1) / length), step_(golden_step(runs_)) {}
   std::size_t size() const { return runs_; }
 
-  // The k-th run of `sample`. REQUIRES: it is as long as was said.
+  // Returns the k-th run of `sample`. REQUIRES: its size is that given to the constructor.
   template <class T>
   std::span<const T> run(std::span<const T> sample, std::size_t k) const {
     return of(sample, k * step_ % runs_);
   }
-  // The voxels of runs [first, end), in the order of the sample.
+  // Returns the voxels of runs [first, end), in the order of the sample.
   template <class T>
   std::vector<T> runs(std::span<const T> sample, std::size_t first, std::size_t end) const {
     std::vector<std::size_t> places;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where other processes share the work: what makes a simulator's tracer of its own and of theirs.
+// Lets other processes share the work: builds a simulator's tracer from its own and theirs.
 #pragma once
 
 #include <cstddef>
@@ -13,21 +13,21 @@ namespace vantage {
 class TracerMaker {
  public:
   virtual ~TracerMaker() = default;
-  // `own`: over the devices of this process. `fingerprint`: of the scene that is traced.
+  // `own`: over the devices of this process. `fingerprint`: of the traced scene.
   virtual std::unique_ptr<Tracer> make(std::unique_ptr<Tracer> own, const TraceScene& scene,
                                        std::uint64_t fingerprint) = 0;
-  // How many networks of every ray keep all of them busy.
+  // Number of networks, of every ray, that keeps all processes busy.
   virtual std::size_t networks_at_once() const = 0;
 };
 
-// While it lives, simulators that are made on this thread trace with what `maker` makes. Not in another's life.
+// While it lives, simulators made on this thread trace with what `maker` makes. At most one lives per thread.
 class SharedTracing {
  public:
   explicit SharedTracing(TracerMaker& maker);
   SharedTracing(const SharedTracing&) = delete;
   SharedTracing& operator=(const SharedTracing&) = delete;
   ~SharedTracing();
-  // Of the one that lives on this thread; null: none does.
+  // Maker of the instance that lives on this thread; null: none.
   static TracerMaker* maker();
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A sampled count that is made in pieces, some of them again: whoever asked is told of each network once.
+// Delivers each network's result once when a sampled count is made in pieces and some are repeated.
 #pragma once
 
 #include <functional>
@@ -16,7 +16,7 @@ class ToldOnce {
   ToldOnce(const Tracer::SampleJob& job, std::size_t networks)
       : job_(job), points_(job.points ? networks : 0), masks_(job.station_masks ? networks : 0) {}
 
-  // The job over the networks from `first` on. What it tells goes through `ask`, which calls on the caller's thread.
+  // Returns the job over the networks from `first` on. It delivers through `ask`, which calls on the caller's thread.
   using OnCaller = std::function<void(const std::function<void()>&)>;
   Tracer::SampleJob piece(std::size_t first, const OnCaller& ask) {
     Tracer::SampleJob part = job_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The engine seam: stations in; points, counts and station masks out. An engine knows rays, triangles and voxels, and
-// no objective. Adding an engine: one folder, one enumerator, one line in make_tracer.cpp; the conformance suite picks
-// it up unedited.
+// The engine interface: stations in; points, counts and station masks out. An engine knows rays, triangles and voxels,
+// but no objective. To add an engine: one folder, one enumerator, one line in make_tracer.cpp; the conformance suite
+// then includes it.
 #pragma once
 
 #include <array>
@@ -21,14 +21,14 @@
 namespace vantage {
 
 // Directions of all rays in the scanner's frame, as products of table entries: d(i, j) = (sin_zenith[i]·cos_azimuth[j],
-// sin_zenith[i]·sin_azimuth[j], cos_zenith[i]). The tables are made in double and rounded once, so that no engine's
-// sine matters.
+// sin_zenith[i]·sin_azimuth[j], cos_zenith[i]). The tables are computed in double and rounded once, so the result does
+// not depend on an engine's sine.
 struct RayPattern {
   std::vector<float> sin_zenith, cos_zenith;    // rows
   std::vector<float> sin_azimuth, cos_azimuth;  // columns
-  // rays start at min_range and end at max_range, as the paper's do: what is nearer is passed
+  // rays start at min_range and end at max_range, as in the paper: anything nearer is ignored
   float min_range = 0, max_range = 0;
-  double zenith_step = 0, azimuth_step = 0;    // radians, for the inverse: which rays pass a cube
+  double zenith_step = 0, azimuth_step = 0;    // radians; used by the inverse, rays_of_box()
   double first_zenith = 0, first_azimuth = 0;  // of ray (0, 0)
   std::uint32_t rows() const { return static_cast<std::uint32_t>(sin_zenith.size()); }
   std::uint32_t columns() const { return static_cast<std::uint32_t>(sin_azimuth.size()); }
@@ -46,44 +46,44 @@ struct NoiseModel {
   bool enabled() const { return !sigma.empty(); }
 };
 
-// What a point must be to count, decided on the hit itself, before noise moves the point (docs/method.md). A limit that
-// is 0 is none.
+// Limits that a point must meet to count. They are checked on the hit itself, before noise moves the point
+// (docs/method.md). 0: no limit.
 struct LimitModel {
   struct Limits {
-    float least_cosine_square = 0;       // of the angle between ray and normal
-    float largest_footprint_square = 0;  // of the major axis of the beam on the surface, metres squared
-    float largest_sigma = 0;             // of the range, metres
+    float least_cosine_square = 0;       // angle between ray and normal
+    float largest_footprint_square = 0;  // major axis of the beam on the surface, metres squared
+    float largest_sigma = 0;             // range, metres
     friend bool operator==(const Limits&, const Limits&) = default;
   };
-  std::vector<Limits> meshes;                    // one for each of the scene; empty: every point counts
+  std::vector<Limits> meshes;                    // one per mesh of the scene; empty: every point counts
   float exit_diameter = 0;                       // of the beam, metres
   float divergence = 0;                          // full angle, radians
-  std::shared_ptr<const NoiseModel> noise = {};  // what σ is looked up in, applied or not; given where it is limited
+  std::shared_ptr<const NoiseModel> noise = {};  // table for σ, whether noise is applied or not; set if σ is limited
   bool enabled() const { return !meshes.empty(); }
 };
 
 // A scanner as an engine sees it.
 struct TraceScanner {
   std::shared_ptr<const RayPattern> pattern;
-  std::shared_ptr<const NoiseModel> noise;        // null: none
+  std::shared_ptr<const NoiseModel> noise;        // null: no noise
   std::shared_ptr<const LimitModel> limits = {};  // null: every point counts
 };
 
 struct RegistrationJob;  // trace/registration_sums.hpp
 
-// Everything an engine needs to be built. Borrowed for the constructor only, unless the engine says otherwise.
+// Input to an engine's constructor. Borrowed for that call only, unless the engine says otherwise.
 struct TraceScene {
   std::shared_ptr<const SceneData> scene;
   std::shared_ptr<const VoxelGrid> grid;
-  std::vector<TraceScanner> scanners;       // one at least
+  std::vector<TraceScanner> scanners;       // at least one
   std::uint64_t max_rays_per_dispatch = 0;  // 0: the engine's choice
   bool validation = false;
-  // What is drawn in each sampled voxel, shared among devices. Null: each engine finds out alone.
+  // Triangles of each sampled voxel, shared among devices. Null: each engine finds them itself.
   std::shared_ptr<SampleTriangles> sample_triangles = nullptr;
-  bool sort_triangles = true;  // for drivers that build on the order given; off only to measure what sorting gains
+  bool sort_triangles = true;  // for drivers that build on the given order; off only to measure the gain of sorting
 };
 
-// A rotation as engines apply it to directions: rows rounded once from double, products summed from the left, so that
+// A rotation as engines apply it to directions. Rows are rounded once from double and products summed from the left, so
 // every engine turns a direction into the same bits.
 struct Turn {
   Float3 x, y, z;
@@ -95,12 +95,12 @@ struct Turn {
 // A station as an engine sees it.
 struct TraceStation {
   Float3 origin;              // head, local frame
-  std::uint32_t place = 0;    // in its network: keys the noise
-  std::uint32_t scanner = 0;  // of TraceScene::scanners
-  // From the scanner's frame to the local one. None: upright, where directions are the pattern's own bits.
+  std::uint32_t place = 0;    // index in its network; keys the noise
+  std::uint32_t scanner = 0;  // index into TraceScene::scanners
+  // From the scanner's frame to the local one. Empty: upright, with the pattern's own directions.
   std::optional<Turn> turn = std::nullopt;
-  // Its bit in a mask and its index among a call's stations, whose places are all within one run of `mask_bits` that
-  // begins at a multiple of it.
+  // Bit in a mask and index among a call's stations. Their places all lie within one run of `mask_bits` that begins at
+  // a multiple of it.
   std::uint32_t bit() const { return place % static_cast<std::uint32_t>(mask_bits); }
 };
 
@@ -111,15 +111,14 @@ class Tracer {
   virtual const EngineInfo& info() const = 0;
 
   // Traces `ray_count` rays from `first_ray` (both multiples of the columns of the station's pattern) and fills the
-  // arrays of `chunk` that `outputs` asks for, but for mesh and colour, which the host derives from `primitive` and
-  // `barycentric`.
+  // arrays of `chunk` named by `outputs`. The host derives mesh and colour from `primitive` and `barycentric`.
   struct RawChunk {
     std::vector<float> range;              // noisy; +infinity without a hit
     std::vector<Float3> position, normal;  // local frame
     std::vector<float> reflectivity;
     std::vector<std::uint32_t> primitive;  // scene triangle; 2^32 − 1 without a hit
     std::vector<Float2> barycentric;       // weights of the triangle's second and third vertex
-    std::vector<std::uint32_t> voxel;      // no_voxel where the point does not count
+    std::vector<std::uint32_t> voxel;      // no_voxel if the point does not count
   };
   enum RawOutput : std::uint32_t {
     range = 1,
@@ -134,39 +133,40 @@ class Tracer {
                     std::uint32_t outputs, RawChunk& chunk) = 0;
   virtual std::uint64_t preferred_scan_rays(std::uint32_t scanner) const = 0;  // a good chunk for scan(): whole rows
 
-  // Exact: counts all rays of all stations. Inactive stations are left out by the caller; `station_count` is N_stations
-  // with them.
+  // Exact: counts all rays of all stations. The caller leaves out inactive stations; `station_count` is N_stations with
+  // them.
   struct CountOptions {
     bool masks = true;  // keep station masks, fill seen and shared
-    bool skip = true;   // leave out what cannot change a count; then `points` is empty
+    bool skip = true;   // leave out work that cannot change a count; `points` is then empty
     VoxelField* field = nullptr;
   };
   virtual NetworkCounts count(std::span<const TraceStation> stations, std::uint32_t station_count,
                               const CountOptions& options, const Progress& progress) = 0;
 
-  // Each network as count() does it; networks[k] lists the active stations of network k, station_counts[k] is its
-  // N_stations. Where cancelled, those that were not reached say so. An engine may go through them in another order,
-  // and trace a station that several have once; `rays` are what each would take alone. REQUIRES: no field.
+  // Counts each network as count() does. networks[k] lists the active stations of network k, station_counts[k] is its
+  // N_stations. When cancelled, networks that were not reached have `cancelled` set. An engine may change the order,
+  // and trace a station common to several networks once; `rays` is what each network would take alone. REQUIRES: no
+  // field.
   virtual std::vector<NetworkCounts> count_each(std::span<const std::vector<TraceStation>> networks,
                                                 std::span<const std::uint32_t> station_counts,
                                                 const CountOptions& options, const Progress& progress);
 
-  // Sampled: the same counts over the voxels of `sample` (ascending ranks) only, for many networks in one submission.
+  // Sampled: the same counts over the voxels of `sample` only (ascending indices), for many networks in one submission.
   // networks[k] lists the active stations of network k; station_counts[k] is its N_stations.
   struct SampleJob {
     std::span<const std::uint32_t> sample;
-    // Interleaved: voxel number i of the sample is in group i % groups. 0: without what standard errors need,
+    // Interleaved groups: voxel number i of the sample is in group i % groups. 0: omits what standard errors need,
     // `NetworkCounts::groups` and `successive_difference_sum`.
     std::uint32_t groups = 20;
     bool masks = true;
-    std::uint32_t stop_at = 0;  // goal rounded up: a voxel's points need not be counted beyond; or 0
-    // Where wanted: told the points in each voxel of the sample, once for every network that was counted to its end, in
-    // any order, on the calling thread.
+    std::uint32_t stop_at = 0;  // goal rounded up: points of a voxel need not be counted beyond it; 0: no limit
+    // Optional. Called with the points in each voxel of the sample, once for every network that was counted to its end,
+    // in any order, on the calling thread.
     std::function<void(std::size_t network, std::span<const std::uint32_t> points)> points = {};
-    // Where wanted, with masks: told the station masks [network][voxel of the sample] of consecutive networks, once for
-    // every network that was counted to its end, on the calling thread.
+    // Optional, with masks. Called with the station masks [network][voxel of the sample] of consecutive networks, once
+    // for every network that was counted to its end, on the calling thread.
     std::function<void(std::size_t first_network, std::span<const std::uint64_t> masks)> station_masks = {};
-    const RegistrationJob* registration = nullptr;  // where wanted, with masks
+    const RegistrationJob* registration = nullptr;  // optional, with masks
   };
   virtual std::vector<NetworkCounts> count_sampled(std::span<const std::vector<TraceStation>> networks,
                                                    std::span<const std::uint32_t> station_counts, const SampleJob& job,
@@ -178,19 +178,19 @@ class Tracer {
   double goal_density_ = 1;
 };
 
-// Builds the engine that `engine` names; `automatic` decides as DESIGN says. One that fails with its device is set up
-// anew, and `warn` told of it. Throws Error no_suitable_device with every refusal.
+// Builds the engine named by `engine`; choose_engine.hpp resolves `automatic`. A Vulkan engine that fails with its
+// device is set up anew, with a call to `warn`. Throws Error no_suitable_device with every refusal.
 std::unique_ptr<Tracer> make_tracer(Engine engine, std::optional<std::uint32_t> device_index, const TraceScene& scene,
                                     std::function<void(const std::string&)> warn = {});
-// What make_tracer() takes, and what is free of a device's own memory; not known: it has none, or its driver keeps no
-// account.
+// Device that make_tracer() takes, with the free part of its own memory. Unknown if it has no memory of its own or its
+// driver keeps no account.
 struct ChosenDevice {
   Engine engine;
   bool software = false;
   std::optional<std::uint64_t> free_bytes = std::nullopt;
 };
 ChosenDevice choose_device(Engine engine, std::optional<std::uint32_t> device_index);
-// One tracer over several devices, which tells `warn` of those that it loses. REQUIRES: at least one device.
+// Builds one tracer over several devices; calls `warn` for each device that it loses. REQUIRES: at least one device.
 std::unique_ptr<Tracer> make_tracer(std::span<const DeviceChoice> devices, const TraceScene& scene,
                                     std::function<void(const std::string&)> warn);
 

@@ -15,7 +15,7 @@
 namespace vantage {
 namespace {
 
-// The first vertex of those that are at the same place.
+// For each vertex, the first vertex at the same place.
 std::vector<std::uint32_t> first_at_its_place(std::span<const Float3> positions) {
   const auto place = [&](std::uint32_t v) {
     const Float3& p = positions[v];

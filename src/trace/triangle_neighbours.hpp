@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which triangles share an edge.
+// Finds triangles that share an edge.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@
 
 namespace vantage {
 
-// [3 t + k]: the triangle on the other side of triangle t's edge from corner k to the next. Corners are the same where
-// their positions are, bit for bit. `no_primitive` at an edge that not exactly two triangles have.
+// [3 t + k]: the triangle across triangle t's edge from corner k to the next. Corners are equal if their positions are,
+// bit for bit. `no_primitive` at an edge that does not belong to exactly two triangles.
 std::vector<std::uint32_t> triangle_neighbours(std::span<const Float3> positions, std::span<const Triangle> triangles);
 
 }  // namespace vantage

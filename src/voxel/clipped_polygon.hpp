@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A convex polygon, and what half-spaces leave of it.
+// A convex polygon, clipped by half-spaces.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace vantage {
 
-// Each of a box's six half-spaces adds a corner at most: there is room for what is left of a square.
+// A square clipped by a box fits: each of the six half-spaces adds at most one corner.
 class ClippedPolygon {
  public:
   using Point = glm::dvec3;
@@ -17,7 +17,7 @@ class ClippedPolygon {
   void add(const Point& p) { corners_[size_++] = p; }
   bool empty() const { return size_ < 3; }
 
-  // Keeps what lies where side · p[axis] <= side · bound.
+  // Keeps the part where side · p[axis] <= side · bound.
   void clip(int axis, double bound, double side) {
     ClippedPolygon kept;
     for (std::size_t i = 0; i < size_; ++i) {
@@ -29,7 +29,7 @@ class ClippedPolygon {
     *this = kept;
   }
 
-  // Its area, along the normal that the winding gives.
+  // Area vector, along the normal by the winding.
   Point area() const {
     Point sum(0);
     for (std::size_t i = 1; i + 1 < size_; ++i) sum += cross(corners_[i] - corners_[0], corners_[i + 1] - corners_[0]);

@@ -23,12 +23,12 @@ using glm::dvec3;
 using Corners = std::array<dvec3, 3>;
 using Cell = std::array<std::int64_t, 3>;
 
-// A surface that bends by the 26° of one plane within half a window leaves the plane by so much of that half, tan 13°;
-// what is parallel and further off is another sheet.
+// Largest distance from the plane of surface that still belongs to it, in half windows. A surface that bends by one
+// plane's 26° within half a window leaves the plane by tan 13° of it. Parallel surface further off is another sheet.
 constexpr double other_sheet = 0.25;
-// Triangles that are no larger than this share of a window, along any axis, are in it or not as their middle is.
+// Triangles up to this share of a window, along any axis, count as a whole, by their middle.
 constexpr double small_share = 1.0 / 4;
-// A window is larger than all else that is kept of a voxel.
+// A window takes more memory than all other data of a voxel.
 constexpr std::size_t windows_at_once = std::size_t{1} << 19;
 
 dvec3 point_of(const Float3& p) { return {p.x, p.y, p.z}; }
@@ -45,7 +45,7 @@ bool is_small(const Corners& c, double at_most) {
   return std::max({extent.x, extent.y, extent.z}) <= at_most;
 }
 
-// Cells of 2^shift voxels a side, as the lists of triangles have them.
+// Cells of 2^shift voxels per side, as in the lists of triangles.
 struct Cells {
   Cells(const VoxelGrid& grid, int bits)
       : transform(GridTransform{{grid.min()[0], grid.min()[1], grid.min()[2]}, grid.inverse_size()}.coarser(bits)),
@@ -79,7 +79,7 @@ Cells cells_of(const VoxelGrid& grid, double wanted_m) {
   return {grid, std::clamp(shift, 0, grid.depth())};
 }
 
-// Ranks are in Morton order, so those within a cell follow each other.
+// Voxel indices in the same cell; these are consecutive in Morton order.
 struct Runs {
   Runs(const VoxelGrid& grid, std::span<const std::uint32_t> ranks, int shift) {
     for (std::size_t i = 0; i < ranks.size(); ++i)
@@ -90,7 +90,7 @@ struct Runs {
     first.push_back(static_cast<std::uint32_t>(ranks.size()));
   }
 
-  // Calls visit(number of the cell) for each, in parallel.
+  // Calls visit(number of the cell) for each cell, in parallel.
   template <class Visit>
   void for_each(const Visit& visit) const {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, cells.size()),
@@ -100,12 +100,12 @@ struct Runs {
   }
 
   std::vector<std::uint64_t> cells;  // Morton keys
-  std::vector<std::uint32_t> first;  // of cell number c, ranks[first[c]] … ranks[first[c + 1] − 1]
+  std::vector<std::uint32_t> first;  // cell number c has ranks[first[c]] … ranks[first[c + 1] − 1]
 };
 
 using Numbers = std::unordered_map<std::uint64_t, std::uint32_t>;
 
-// Surface around one point.
+// Window around one point of a surface.
 struct Window {
   dvec3 point, normal;
   double half;  // metres
@@ -123,7 +123,7 @@ struct Window {
   float share() const { return within + other > 0 ? static_cast<float>(within / (within + other)) : 1; }
 };
 
-// A triangle of any size, local frame.
+// A large triangle, local frame.
 struct Large {
   Corners corners;
   dvec3 low, high, along;
@@ -134,7 +134,7 @@ void add_clipped(Window& window, const Large& large) {
   const dvec3 low = window.point - window.half, high = window.point + window.half;
   for (int axis = 0; axis < 3; ++axis)
     if (large.low[axis] > high[axis] || large.high[axis] < low[axis]) return;
-  // What no face of the window cuts is all within it.
+  // A triangle that no face of the window cuts lies entirely within it.
   ClippedPolygon polygon;
   for (const dvec3& corner : large.corners) polygon.add(corner - window.point);
   for (int axis = 0; axis < 3; ++axis) {
@@ -144,7 +144,7 @@ void add_clipped(Window& window, const Large& large) {
   if (!polygon.empty()) window.add(window.point + polygon.centroid(), large.along, length(polygon.area()));
 }
 
-// Pairs of a cell that holds a rank and a large triangle that a window from within it may reach.
+// Finds pairs of a cell with a sampled voxel and a large triangle that a window from that cell may reach.
 class LargeFinder {
  public:
   LargeFinder(const SceneData& scene, const Cells& cells, const Runs& runs, double half_m)
@@ -172,7 +172,8 @@ class LargeFinder {
 
 void add_large(std::span<Window> windows, const SceneData& scene, const VoxelGrid& grid,
                std::span<const std::uint32_t> ranks, double window_m) {
-  // Narrower cells would list almost the same triangles many times, wider ones many that no window of theirs holds.
+  // Narrower cells would repeat almost the same lists; wider ones would list many triangles that none of their windows
+  // holds.
   const Cells cells = cells_of(grid, 0.7 * window_m);
   const Runs runs(grid, ranks, cells.shift);
   const VoxelTriangles lists = triangle_lists(LargeFinder(scene, cells, runs, window_m / 2), runs.cells.size());
@@ -196,7 +197,7 @@ struct Small {
   float area;
 };
 
-// Each small triangle, with the cell that its middle lies in.
+// Finds each small triangle, with the cell of its middle.
 class SmallFinder {
  public:
   SmallFinder(const SceneData& scene, const Cells& cells, const Numbers& number, double small_m)
@@ -222,7 +223,7 @@ void add_small(std::span<Window> windows, const SceneData& scene, const VoxelGri
                std::span<const std::uint32_t> ranks, double window_m) {
   const Cells cells = cells_of(grid, window_m / 4);
   const Runs runs(grid, ranks, cells.shift);
-  // Neighbours that a window from within a cell reaches, by their place in a cube of them.
+  // Neighbours that a window from within a cell reaches, by their position in a cube of cells.
   const auto reach = static_cast<std::int64_t>(std::ceil(window_m / 2 * cells.transform.inverse_size));
   const auto neighbours = [&](std::size_t run, const auto& visit) {
     const auto [x, y, z] = morton_decode(runs.cells[run]);

@@ -22,12 +22,12 @@ namespace {
 
 constexpr double margin_share = 0.001;  // on either side: the cube's side is 1.002 extents
 constexpr double max_tilt =
-    1.0 / 128;  // off the axis; what counts is the thickness, this only keeps small facets of curves out
+    1.0 / 128;  // off the axis; thickness is the criterion, this only excludes small facets of curves
 
-// A surveyed triangle that is nearly square to an axis: its extent along that axis, relative to the grid's min.
+// A surveyed triangle nearly perpendicular to an axis: its extent along that axis, relative to the grid's min.
 struct Slab {
   double low, high;
-  std::uint64_t weight;  // area, as an integer so that sums do not depend on their order
+  std::uint64_t weight;  // area, as an integer so that sums do not depend on the order
 };
 
 using Points = std::array<glm::dvec3, 3>;
@@ -59,7 +59,7 @@ std::vector<Slab> slabs_of(std::span<const Float3> positions, std::span<const st
   return all;
 }
 
-// Weight of the slabs that come within `clearance` of a face.
+// Weight of the slabs within `clearance` of a face.
 std::uint64_t weight_near_faces(std::span<const Slab> slabs, double voxel, double clearance) {
   std::uint64_t sum = 0;
   for (const Slab& s : slabs)
@@ -74,9 +74,9 @@ double best_shift(std::span<const Slab> slabs, double voxel, double clearance, d
     std::int64_t change;
   };
   std::vector<Event> events;
-  std::int64_t weight = 0;  // at −most
+  std::int64_t weight = 0;  // at a shift of −most
   for (const Slab& s : slabs) {
-    // A shift of x puts face k within reach where s.low − clearance <= k·voxel + x <= s.high + clearance.
+    // A shift of x brings face k within reach if s.low − clearance <= k·voxel + x <= s.high + clearance.
     const auto first = std::ceil((s.low - clearance - most) / voxel),
                last = std::floor((s.high + clearance + most) / voxel);
     for (double k = first; k <= last; ++k) {
@@ -93,7 +93,7 @@ double best_shift(std::span<const Slab> slabs, double voxel, double clearance, d
     return std::tie(a.at, a.change) < std::tie(b.at, b.change);
   });
 
-  const double narrowest = clearance / 16;  // a gap that rounding of the grid's min cannot leave
+  const double narrowest = clearance / 16;  // a gap wide enough for the rounding of the grid's min
   std::tuple<std::int64_t, double, double> best{std::numeric_limits<std::int64_t>::max(), 0, 0};
   double gap_start = -most;
   const auto offer = [&](double gap_end) {
@@ -137,7 +137,7 @@ GridFit fit_grid(const SceneData& scene, std::span<const std::span<const Triangl
   const double extent = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
   double reach = 0;
   for (int axis = 0; axis < 3; ++axis) reach = std::max({reach, std::abs(low[axis]), std::abs(high[axis])});
-  // Coordinates too large for their extent leave no room in the usual margin for the rounding of min itself.
+  // If coordinates are very large for their extent, the usual margin does not cover the rounding of min itself.
   const double margin = std::max(margin_share * extent, 4 * 0x1p-23 * reach);
   const double side = extent + 2 * margin;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the voxel grid lies: equation 2 and the remedy for walls on voxel faces.
+// Fits the voxel grid: equation 2, and the remedy for walls on voxel faces.
 #pragma once
 
 #include <array>
@@ -17,19 +17,20 @@ struct GridFit {
 
 // The cube of `VoxelGrid::build`.
 //
-// Host and device must find the same voxel, so the grid is *defined* by the floats that the device reads: `min` and
+// Host and device must find the same voxel, so the grid is *defined* by the floats that the device reads. `min` and
 // `inverse_size` are rounded once, here, and the voxel size is 1 / inverse_size in double. A face then lies at a whole
-// number of (p − min) · inverse_size, which double evaluates without error for nearly all float coordinates, and float
-// with two roundings.
+// number of (p − min) · inverse_size. Double evaluates this without error for nearly all float coordinates, float with
+// two roundings.
 //
-// A plane on a face would mark the voxels on both sides of it while rounding scatters its points between them. So the
-// cube is moved, along each axis alone and by as little as possible, until no axis-aligned surveyed plane lies within
-// `face_clearance` of a face; where planes are so many that this cannot be, until the area of those that do is least.
+// A plane on a face would mark the voxels on both sides of it, while rounding scatters its points between them. So the
+// cube is moved along each axis, by as little as possible, until no axis-aligned surveyed plane lies within
+// `face_clearance` of a face. If there are too many planes for that, their area within it is minimised.
 GridFit fit_grid(const SceneData& scene, std::span<const std::span<const Triangle>> surveyed, double user_size_m);
 
-// Distance that a plane must keep from a voxel face: 16 ulp of the largest coordinate or of the cube's side (a hit's
-// position carries the roundings of t, t·d and o + t·d, its cell those of two more operations; 4 ulp were the worst
-// seen), and at least a thousandth of a voxel; at most an eighth, so that very fine grids keep most of each voxel free.
+// Distance that a plane must keep from a voxel face: 16 ulp of the largest coordinate or of the cube's side, at least a
+// thousandth and at most an eighth of a voxel. A hit's position carries the roundings of t, t·d and o + t·d, its cell
+// those of two more operations; 4 ulp were the worst seen. The upper limit keeps most of each voxel free in very fine
+// grids.
 double face_clearance(double reach_m, double voxel_size_m);
 
 }  // namespace vantage

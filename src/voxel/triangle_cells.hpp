@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The cells of a unit grid that one triangle touches. Separating axes after Akenine-Möller, Fast 3D Triangle-Box
-// Overlap Testing, 2001, with the nine edge axes taken as 2-D tests in the three coordinate planes (Schwarz and Seidel,
-// Fast Parallel Surface and Solid Voxelization on GPUs, 2010).
+// Cells of a unit grid that one triangle touches. Separating axes after Akenine-Möller, Fast 3D Triangle-Box Overlap
+// Testing, 2001, with the nine edge axes taken as 2-D tests in the three coordinate planes (Schwarz and Seidel, Fast
+// Parallel Surface and Solid Voxelization on GPUs, 2010).
 #pragma once
 
 #include <algorithm>
@@ -12,9 +12,9 @@
 
 namespace vantage {
 
-// Cell (i, j, k) is the closed box [i − margin, i + 1 + margin] × … in grid units, 0 <= i, j, k < cells_per_side.
-// The tests are made in double and rounding falls on the side of touching: what touches is never lost, and what is
-// taken for touching lies within some 2^-50 of the triangle's extent.
+// Cell (i, j, k) is the closed box [i − margin, i + 1 + margin] × … in grid units, 0 <= i, j, k < cells_per_side. Tests
+// are in double, and rounding favours touching: no touched cell is lost, and every cell found lies within some 2^-50 of
+// the triangle's extent.
 class TriangleCells {
  public:
   using Point = std::array<double, 3>;
@@ -36,13 +36,13 @@ class TriangleCells {
       wide_axes += count_[axis] > 1;
       for (int c = 0; c < 3; ++c) corner_[c][axis] = corners[c][axis] - first_cell;
     }
-    // Within a single row of cells the triangle's own extent decides: it is connected, so it touches each.
+    // Within a single row of cells, the triangle's extent decides: it is connected, so it touches each.
     full_ = wide_axes <= 1;
     if (!full_) prepare();
   }
 
-  // Calls visit(cell) once for every cell the triangle touches; or for those of the part number `part` of so many, of
-  // which each cell is in one.
+  // Calls visit(cell) once for every cell that the triangle touches. With `parts`, only for part number `part`; each
+  // cell is in one part.
   template <class Visit>
   void for_each(Visit&& visit, std::int64_t part = 0, std::int64_t parts = 1) const {
     if (empty_) return;
@@ -89,7 +89,7 @@ class TriangleCells {
   struct Range {
     std::int64_t first, last;
   };
-  // One edge in one coordinate plane: a cell (p, q) overlaps the triangle along the edge's normal while low <= a·p +
+  // One edge in one coordinate plane. A cell (p, q) overlaps the triangle along the edge's normal while low <= a·p +
   // b·q <= high.
   struct Edge {
     double a, b, low, high;
@@ -119,8 +119,7 @@ class TriangleCells {
     const double nw = normal[w_];
     slope_u_ = normal[u_] / nw;
     slope_v_ = normal[v_] / nw;
-    // The products of the normal are rounded relative to the edges' lengths, which for a sliver exceeds the normal by
-    // far.
+    // The products of the normal are rounded relative to the edges' lengths, which for a sliver far exceed the normal.
     const double products =
         (std::abs(e0[0]) + std::abs(e0[1]) + std::abs(e0[2])) * (std::abs(e1[0]) + std::abs(e1[1]) + std::abs(e1[2]));
     plane_slack_ = rounding * (reach + margin_ + 1) * (4 + 4 * products / std::abs(nw));
@@ -160,7 +159,7 @@ class TriangleCells {
     return true;
   }
 
-  // A range of j that holds every cell (i, j) inside the projection on (u, v).
+  // A range of j that contains every cell (i, j) inside the projection on (u, v).
   Range row(std::int64_t i) const {
     double first = 0, last = static_cast<double>(count_[v_] - 1);
     for (const Edge& e : uv_) {
@@ -193,7 +192,7 @@ class TriangleCells {
   bool empty_ = false, full_ = false;
   std::array<std::int64_t, 3> base_{}, count_{};  // cells of the triangle's extent
   std::array<Point, 3> corner_{};                 // relative to base_, which keeps the numbers small
-  int u_ = 0, v_ = 1, w_ = 2;                     // w: where the normal is largest, so that a column crosses few cells
+  int u_ = 0, v_ = 1, w_ = 2;  // w: axis of the largest normal component, so that a column crosses few cells
   Edges uv_{}, vw_{}, wu_{};
   double slope_u_ = 0, slope_v_ = 0, height_ = 0, spread_ = 0, plane_slack_ = 0;
   bool plane_known_ = false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How lists of triangles, one list a voxel or a cell of voxels, are made by walking over the triangles.
+// Makes lists of triangles, one per voxel or cell of voxels, by walking over the triangles.
 #pragma once
 
 #include <tbb/blocked_range.h>
@@ -17,7 +17,7 @@
 
 namespace vantage {
 
-// Calls visit(t) once a surveyed triangle, from several threads at once.
+// Calls visit(t) once per surveyed triangle, from several threads at once.
 template <class Visit>
 void for_each_surveyed(const SceneData& scene, const Visit& visit) {
   for (std::size_t m = 0; m < scene.ranges.size(); ++m) {
@@ -30,7 +30,7 @@ void for_each_surveyed(const SceneData& scene, const Visit& visit) {
   }
 }
 
-// Throws Error out_of_memory where lists would hold more pairs than their offsets can tell.
+// Throws Error out_of_memory if lists would hold more pairs than their offsets can count.
 inline void require_listable(std::uint64_t pairs) {
   if (pairs > 0xFFFFFFFFu)
     throw Error(Errc::out_of_memory,
@@ -38,7 +38,7 @@ inline void require_listable(std::uint64_t pairs) {
                     " triangles in all, more than can be listed; use a smaller sample or smaller voxels");
 }
 
-// So many lists of what finder.for_each(found) finds, which calls found(number of the list, triangle) once a pair, from
+// Makes `lists` lists from finder.for_each(found), which calls found(number of the list, triangle) once per pair, from
 // several threads at once, and the same pairs each time. Each list ascends. Throws as `require_listable`.
 template <class Finder>
 VoxelTriangles triangle_lists(const Finder& finder, std::size_t lists) {

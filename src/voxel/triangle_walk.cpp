@@ -9,11 +9,11 @@
 namespace vantage {
 namespace {
 
-// Large enough that to hand a piece to a thread costs nothing beside it, small enough that all threads end together.
+// Large enough to make handing out a piece cheap, small enough that all threads end together.
 constexpr double cells_a_piece = 1 << 16;
-// Of all steps, so many at least, where there is work for a second or more.
+// Least number of steps, for work of a second or more.
 constexpr double steps = 64, least_cells_a_step = 1 << 25;
-constexpr double own_cells = 4;  // what a triangle costs beside its area
+constexpr double own_cells = 4;  // fixed cost of a triangle, in cells
 
 }  // namespace
 
@@ -33,7 +33,7 @@ TriangleWalk::TriangleWalk(std::span<const Float3> positions, std::span<const st
       area_ += area;
       if (area > 2 * cells_a_piece) {
         close();
-        // An area beyond all bounds is refused before it is walked.
+        // Caps the pieces; an excessive area is rejected before it is walked.
         const auto parts = static_cast<std::int64_t>(std::min(std::ceil(area / cells_a_piece), 1e6));
         for (std::int64_t part = 0; part < parts; ++part)
           pieces_.push_back({m, t, t + 1, area / static_cast<double>(parts), part, parts});

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// All cells of a grid that triangles touch, in parallel, in steps between which it is told how far it is and may be
-// stopped.
+// Visits all cells of a grid that triangles touch, in parallel, in steps with progress and cancellation between them.
 #pragma once
 
 #include <tbb/parallel_for.h>
@@ -18,17 +17,16 @@ namespace vantage {
 
 class TriangleWalk {
  public:
-  // Borrows positions and triangles; `grid` is the finest that they will be walked in.
+  // Borrows positions and triangles; `grid` is the finest grid that will be walked.
   TriangleWalk(std::span<const Float3> positions, std::span<const std::span<const Triangle>> meshes,
                const GridTransform& grid);
 
-  // Area of all triangles in faces of cells. It bounds the cells from below but for slivers; triangles lying on each
-  // other are counted more than once.
+  // Area of all triangles in faces of cells, a lower bound on the cells except for slivers. Coincident triangles count
+  // several times.
   double area() const { return area_; }
 
-  // Calls visit(cell) for each cell that a triangle touches, several times where several do. `make_visit(mesh)` makes
-  // one for some triangles of a mesh, on the thread that visits. Reports on the calling thread. Returns false where it
-  // was stopped.
+  // Calls visit(cell) for each cell that a triangle touches, once per triangle. `make_visit(mesh)` makes a visitor for
+  // some triangles of a mesh, on the visiting thread. Reports on the calling thread. Returns false if stopped.
   template <class MakeVisit>
   bool for_each(const GridTransform& grid, std::int64_t cells_per_side, const Progress& progress,
                 const MakeVisit& make_visit) const {
@@ -51,7 +49,7 @@ class TriangleWalk {
   }
 
  private:
-  // Consecutive triangles of a mesh, or of one that is large the part number `part` of so many.
+  // Consecutive triangles of a mesh; or, of a large triangle, part number `part` of `parts`.
   struct Piece {
     std::size_t mesh, first, end;
     double area;
@@ -62,7 +60,7 @@ class TriangleWalk {
   std::span<const std::span<const Triangle>> meshes_;
   std::vector<Piece> pieces_;
   double area_ = 0;
-  double total_ = 0;  // of the pieces, each triangle with a cell or so for itself
+  double total_ = 0;  // of the pieces, with about a cell extra per triangle
   double step_ = 0;
 };
 

@@ -16,15 +16,16 @@
 namespace vantage {
 namespace {
 
-constexpr std::size_t least_compacted = std::size_t{1} << 22;  // keys a thread collects before it drops its duplicates
+constexpr std::size_t least_compacted = std::size_t{1} << 22;  // keys that a thread collects before it removes
+                                                               // duplicates
 
 void sort_unique(std::vector<std::uint64_t>& keys) {
   std::sort(keys.begin(), keys.end());
   keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
 }
 
-// Refuses a grid far beyond what ranks can number before any memory is spent on it; since an area bounds it loosely, by
-// a wide margin.
+// Rejects a grid with far more voxels than indices can number before it allocates memory. The area is a loose bound, so
+// the margin is wide.
 void check_area(const TriangleWalk& triangles) {
   if (!(triangles.area() < 0x1p36))
     throw Error(Errc::invalid_argument,
@@ -32,8 +33,8 @@ void check_area(const TriangleWalk& triangles) {
                     " voxels, more than the 4294967294 that can be numbered; use a larger user size");
 }
 
-// Sorted keys of the bricks that a triangle touches; nothing where it was stopped. A brick's closed box is the union of
-// its voxels' closed boxes, so these are exactly the bricks that hold a marked voxel.
+// Sorted keys of the bricks that a triangle touches; empty if stopped. A brick's closed box is the union of its voxels'
+// closed boxes, so these are exactly the bricks that hold a marked voxel.
 std::optional<std::vector<std::uint64_t>> touched_bricks(const TriangleWalk& triangles, const GridTransform& grid,
                                                          std::int64_t bricks_per_side, const Progress& progress) {
   struct Keys {
@@ -76,8 +77,7 @@ class MarkVoxels {
     const std::array<std::uint32_t, 3> b{c[0] >> shift, c[1] >> shift, c[2] >> shift};
     if (b != at_) {
       const std::uint32_t index = find_brick(bricks_.slots, b[0], b[1], b[2]);
-      // Rounding may take a voxel for touched where it does not take its brick for it; it lies 2^-50 beyond the
-      // triangle.
+      // Rounding may mark a voxel 2^-50 beyond the triangle as touched, but not its brick.
       brick_ = index == no_brick ? nullptr : &bricks_.bricks[index];
       at_ = b;
     }
@@ -158,7 +158,7 @@ std::optional<VoxelBricks> mark_bricks(std::span<const Float3> positions,
   if (!walk.for_each(grid, std::int64_t{1} << depth, progress, [&](std::size_t) { return MarkVoxels(result); }))
     return std::nullopt;
 
-  // A brick whose every voxel fell to the same rounding would be empty; it may stay, ranks pass over it.
+  // A brick may be empty if rounding drops its every voxel; it stays, since indices skip it.
   for (VoxelBrick& brick : result.bricks) {
     brick.first = static_cast<std::uint32_t>(result.voxels);
     for (const std::uint32_t word : brick.mask) result.voxels += static_cast<std::uint64_t>(std::popcount(word));

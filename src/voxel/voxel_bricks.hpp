@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Marked voxels as bricks of 8³ with a bit mask each, and the hash table over them (shaders/shared/voxel_types.h).
+// Marked voxels as bricks of 8³ with a bit mask each, and a hash table over the bricks (shaders/shared/voxel_types.h).
 #pragma once
 
 #include <array>
@@ -16,26 +16,26 @@ namespace vantage {
 
 inline constexpr std::uint32_t no_brick = empty_slot;
 
-// Local frame to grid units, in which voxel faces lie at whole numbers: (p − min) · inverse_size, in double.
+// Local frame to grid units: (p − min) · inverse_size, in double. Voxel faces lie at whole numbers.
 struct GridTransform {
   std::array<double, 3> min{};
   double inverse_size = 1;
   std::array<std::array<double, 3>, 3> corners(std::span<const Float3> positions, const Triangle& triangle) const;
-  // The same grid seen through cells of 2^shift voxels; exact.
+  // The same grid in cells of 2^shift voxels; exact.
   GridTransform coarser(int shift) const { return {min, inverse_size / static_cast<double>(1 << shift)}; }
 };
 
 // Bit of a voxel within its brick, from voxel coordinates.
 std::uint32_t brick_bit(std::uint32_t x, std::uint32_t y, std::uint32_t z);
 
-// Bricks in Morton order holding every voxel of 2^depth a side that one of the triangles touches; `first` is the
-// running count. Throws Error invalid_argument where there are more than 2^32 − 2 voxels.
+// Bricks in Morton order that hold every voxel, of 2^depth per side, touched by one of the triangles; `first` is the
+// running count. Throws Error invalid_argument for more than 2^32 − 2 voxels.
 struct VoxelBricks {
   std::vector<VoxelBrick> bricks;
   std::vector<BrickSlot> slots;
   std::uint64_t voxels = 0;
 };
-// Nothing where it was stopped.
+// Empty if stopped.
 std::optional<VoxelBricks> mark_bricks(std::span<const Float3> positions,
                                        std::span<const std::span<const Triangle>> triangles, const GridTransform& grid,
                                        int depth, const Progress& progress = {});
@@ -43,7 +43,7 @@ std::optional<VoxelBricks> mark_bricks(std::span<const Float3> positions,
 // Index of the brick with these brick coordinates, or no_brick.
 std::uint32_t find_brick(std::span<const BrickSlot> slots, std::uint32_t x, std::uint32_t y, std::uint32_t z);
 
-// The triangles of surveyed meshes, one span a mesh.
+// Triangles of surveyed meshes, one span per mesh.
 std::vector<std::span<const Triangle>> surveyed_triangles(const SceneData& scene);
 
 }  // namespace vantage

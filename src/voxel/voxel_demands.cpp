@@ -13,8 +13,8 @@
 namespace vantage {
 namespace {
 
-// By rank, of what the surveyed meshes that touch a voxel ask for, what goes `before` all else; `last` is what goes
-// after all else, and some surveyed mesh asks for it. Empty where all ask for that.
+// Per voxel index: among the demands of surveyed meshes that touch the voxel, the first in the order of `before`.
+// `last` is the last of that order, and some surveyed mesh demands it. Empty if all demand it.
 template <class T, class Before>
 std::optional<std::vector<T>> foremost(const SceneData& scene, const VoxelGrid& grid, std::span<const T> of_mesh,
                                        T last, Before before, const Progress& progress) {
@@ -48,7 +48,7 @@ std::optional<std::vector<T>> foremost(const SceneData& scene, const VoxelGrid& 
   return found;
 }
 
-// The one that goes after all others among surveyed meshes. REQUIRES: one is surveyed.
+// The demand that comes last among surveyed meshes. REQUIRES: one is surveyed.
 template <class T, class Before>
 T last_of(const SceneData& scene, std::span<const T> of_mesh, Before before) {
   std::optional<T> last;

@@ -45,7 +45,7 @@ std::optional<VoxelGrid> VoxelGrid::build(const SceneData& scene, double user_si
 }
 
 std::uint64_t VoxelGrid::key(std::uint64_t rank) const {
-  // Of bricks with the same `first` only the last holds voxels.
+  // Among bricks with the same `first`, only the last holds voxels.
   const auto after = std::upper_bound(bricks_.begin(), bricks_.end(), rank,
                                       [](std::uint64_t r, const VoxelBrick& b) { return r < b.first; });
   const VoxelBrick& brick = *std::prev(after);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The surveyed voxels (section 4.1): a cubic grid of 2^depth cells a side over the surveyed meshes, of which those that
-// a surveyed triangle touches are kept, in Morton order. The one definition of "which voxel".
+// The surveyed voxels (section 4.1), in Morton order: the cells that a surveyed triangle touches, of a cubic grid of
+// 2^depth cells per side over the surveyed meshes. The single definition of "which voxel".
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@
 namespace vantage {
 
 inline constexpr std::uint32_t no_voxel = 0xFFFFFFFFu;
-inline constexpr int max_voxel_depth = 18;  // 2^18 cells a side; 54-bit Morton keys
+inline constexpr int max_voxel_depth = 18;  // 2^18 cells per side; 54-bit Morton keys
 
 // Voxel coordinates interleaved, x lowest: bit 3k of the key is bit k of x.
 std::uint64_t morton_encode(std::uint32_t x, std::uint32_t y, std::uint32_t z);
@@ -26,30 +26,30 @@ std::array<std::uint32_t, 3> morton_decode(std::uint64_t key);
 
 class VoxelGrid {
  public:
-  // Equation 2. The cube's side is 1.002 × the largest extent of the surveyed meshes, centred on their bounds, and
-  // nudged within that margin where a surveyed axis-aligned plane would lie on a voxel face (docs/method.md). Throws
-  // Error invalid_argument: user size not positive, or so small that the depth exceeds max_voxel_depth.
+  // Equation 2. The cube's side is 1.002 × the largest extent of the surveyed meshes, centred on their bounds. It is
+  // moved within that margin to keep surveyed axis-aligned planes off voxel faces (docs/method.md). Throws Error
+  // invalid_argument: user size not positive, or so small that the depth exceeds max_voxel_depth.
   static VoxelGrid build(const SceneData& scene, double user_size_m);
-  // The same, told how far it is; nothing where it was stopped.
+  // The same, with progress; empty if stopped.
   static std::optional<VoxelGrid> build(const SceneData& scene, double user_size_m, const Progress& progress);
 
   int depth() const { return depth_; }
   double voxel_size() const { return voxel_size_; }
   const std::array<float, 3>& min() const { return min_; }  // local frame; exactly what shaders use
   std::uint64_t size() const { return size_; }              // N_v
-  // Sorted Morton key of the voxel with this rank, and back.
+  // Sorted Morton key of the voxel with this index, and back.
   std::uint64_t key(std::uint64_t rank) const;
-  std::uint32_t find(std::uint64_t key) const;  // rank, or no_voxel
+  std::uint32_t find(std::uint64_t key) const;  // index, or no_voxel
   // Voxel coordinates of a local-frame point, in float arithmetic: floor((p − min) · (1 / voxel_size)); empty outside
   // the cube.
   std::optional<std::array<std::uint32_t, 3>> cell_of(const Float3& p) const;
   std::uint32_t rank_of(const Float3& p) const;  // find(morton(cell_of(p))), no_voxel outside
 
-  // What is uploaded: bricks of 8³ voxels in Morton order and a hash table over them (shaders/shared/voxel_types.h).
+  // Data for upload: bricks of 8³ voxels in Morton order and a hash table over them (shaders/shared/voxel_types.h).
   std::span<const VoxelBrick> bricks() const { return bricks_; }
   std::span<const BrickSlot> slots() const { return slots_; }  // a power of two of them
   float inverse_size() const { return inverse_size_; }
-  // What coverage asks of each voxel, by rank: of the scene its weights, and what points are worth once it was told.
+  // Coverage's demands on each voxel, by index: weights from the scene; point weights once set.
   const VoxelDemands& demands() const { return demands_; }
   std::uint64_t total_weight() const { return total_weight_; }
   void set_worths(std::vector<std::uint32_t> worths) { demands_.worths = std::move(worths); }

@@ -20,7 +20,7 @@ namespace {
 
 using Point = ClippedPolygon::Point;
 
-// Sheets of a plane further apart than this share of a voxel are two, else one that is wound both ways.
+// Sheets of a plane further apart than this share of a voxel are two; nearer ones are a single sheet wound both ways.
 constexpr double one_sheet = 0.01;
 
 void clip_to_unit_cube(ClippedPolygon& polygon) {
@@ -30,7 +30,7 @@ void clip_to_unit_cube(ClippedPolygon& polygon) {
   }
 }
 
-// m² over (voxel size)² that the unit cube cuts from a plane.
+// Area, over (voxel size)², of a plane's section with the unit cube.
 double section(const Point& point, const Point& normal) {
   const Point other = std::abs(normal.x) < 0.6 ? Point(1, 0, 0) : Point(0, 1, 0);
   const Point u = normalize(cross(normal, other)) * 4.0, v = cross(normal, u);  // beyond every corner of the cube
@@ -41,7 +41,7 @@ double section(const Point& point, const Point& normal) {
   return square.empty() ? 0 : length(square.area());
 }
 
-// What of one triangle lies in a voxel.
+// Part of one triangle within a voxel.
 struct Part {
   Point along;  // unit normal by the winding
   Point centroid;
@@ -49,7 +49,7 @@ struct Part {
   std::uint32_t mesh;
 };
 
-// Parts whose normals are one plane's, those wound as the first of them and the others.
+// Parts with the normal of one plane, separated into those wound as the first and the others.
 struct Plane {
   Point axis{0, 0, 0};  // Σ area · normal, turned as the first part's
   std::array<double, 2> area{};
@@ -83,7 +83,7 @@ std::vector<Part> parts_of(const SceneData& scene, const GridTransform& transfor
     const std::uint32_t mesh = scene.mesh_of(t);
     parts.push_back({along / area, polygon.centroid(), area, scene.meshes[mesh].diffuse, mesh});
   }
-  // The largest first, so that small ones at an edge do not say what the planes are.
+  // Largest first, so that small parts at an edge do not define the planes.
   std::stable_sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.area > b.area; });
   return parts;
 }

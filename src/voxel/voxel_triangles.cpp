@@ -17,8 +17,8 @@
 namespace vantage {
 namespace {
 
-// Where more than one surveyed voxel in so many is asked for, walking the voxels of each triangle is cheaper than
-// walking its bricks and testing the voxels asked for in each.
+// If more than one in this many surveyed voxels is wanted, walking each triangle's voxels is cheaper than walking its
+// bricks and testing the wanted voxels in each.
 constexpr std::uint64_t dense_share = 32;
 
 bool is_dense(std::span<const std::uint32_t> ranks, const VoxelGrid& grid) {
@@ -31,8 +31,8 @@ GridTransform transform_of(const VoxelGrid& grid) {
   return {{grid.min()[0], grid.min()[1], grid.min()[2]}, grid.inverse_size()};
 }
 
-// Which voxels one triangle touches, widened by a margin in voxels. Most of those asked for lie beside a small
-// triangle: its extent tells, before any more is made of it.
+// Tests which voxels one triangle touches, widened by a margin in voxels. Most wanted voxels lie beside a small
+// triangle: its extent decides first, at low cost.
 class TriangleReach {
  public:
   TriangleReach(const std::array<std::array<double, 3>, 3>& corners, std::int64_t voxels, double margin)
@@ -122,7 +122,7 @@ class Finder {
     }
   }
 
-  // Calls found(number, triangle) once a pair, from several threads at once.
+  // Calls found(number, triangle) once per pair, from several threads at once.
   template <class Found>
   void for_each(const Found& found) const {
     for_each_surveyed(scene_, [&](std::uint32_t t) { dense_ ? by_voxels(t, found) : by_bricks(t, found); });
@@ -155,9 +155,9 @@ class Finder {
   GridTransform fine_;
   double margin_;  // in voxels
   bool dense_;
-  std::vector<std::uint32_t> number_;                // dense: of each rank, or no_voxel
-  std::vector<std::array<std::uint32_t, 3>> cells_;  // sparse: of each voxel asked for
-  std::vector<std::uint32_t> first_;                 // sparse: those of brick b are first_[b] … first_[b + 1] − 1
+  std::vector<std::uint32_t> number_;                // dense: for each voxel index, its number or no_voxel
+  std::vector<std::array<std::uint32_t, 3>> cells_;  // sparse: cell of each wanted voxel
+  std::vector<std::uint32_t> first_;                 // sparse: brick b has first_[b] … first_[b + 1] − 1
 };
 
 }  // namespace
@@ -178,13 +178,13 @@ VoxelTriangles SampleTriangles::touching(std::span<const std::uint32_t> ranks, d
 
 std::shared_ptr<const SampleTriangles::Bricks> SampleTriangles::bricks_for(std::span<const std::uint32_t> ranks,
                                                                            double margin_m) {
-  constexpr double to_spare = 1.5;  // of the margin, which grows as stations are farther off
+  constexpr double to_spare = 1.5;  // of the margin, which grows with the distance of stations
   const std::lock_guard lock(mutex_);
   if (first_.empty()) first_.assign(ranks.begin(), ranks.end());
   if (std::ranges::equal(first_, ranks)) return nullptr;
   if (!bricks_ || bricks_->margin_m < margin_m) {
     const double margin = to_spare * margin_m;
-    // A thread that waits for this must not take up other work, which might come here too.
+    // A thread that waits for this must not take up other work, which might wait here, too.
     tbb::this_task_arena::isolate([&] {
       bricks_ = std::make_shared<const Bricks>(
           Bricks{margin, triangle_lists(BrickFinder(*scene_, *grid_, margin), grid_->bricks().size())});

@@ -14,7 +14,7 @@
 #include "core/text.hpp"
 #include "export/chart.hpp"
 #include "plan/decision_space.hpp"
-#include "plan/site.hpp"
+#include "plan/placement_oracle.hpp"
 #include "vantage/error.hpp"
 #include "vantage/planner.hpp"
 
@@ -181,7 +181,7 @@ void run_front(const FrontOptions& options) {
   const auto [fewest, most] = range_of(options.stations);
   const SurveyProblem problem = survey_problem(options.problem, fewest, most);
   const std::size_t objectives = problem.objectives.size();
-  const Site site = make_site(area, clash, simulator.scanner());
+  const PlacementOracle site = make_placement_oracle(area, clash, simulator.scanner());
   const DecisionSpace space(site, problem);
   EveryRay every_ray(simulator, space, problem);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// When an engine's scan is that of the reference.
+// Criteria for an engine's scan to agree with the reference.
 #pragma once
 
 #include <cstddef>
@@ -10,14 +10,14 @@
 
 namespace vantage::test {
 
-// Nearer than this to an edge or a voxel face, rounding may decide otherwise; such rays are at most one in 100 000.
+// Closer than this to an edge or a voxel face, rounding may decide differently; at most one ray in 100 000 is.
 inline constexpr double undecided_m = 1e-4;
 inline constexpr double undecided_share = 1e-5;
 
 inline constexpr std::uint32_t all_outputs = Tracer::range | Tracer::position | Tracer::normal | Tracer::reflectivity |
                                              Tracer::primitive | Tracer::barycentric | Tracer::voxel;
 
-// Compares ray by ray, as gtest expectations, and counts those that rounding decided. `chunk` has all outputs.
+// Compares ray by ray, as gtest expectations, and counts rays decided by rounding. `chunk` has all outputs.
 void compare_with_reference(const SceneData& scene, const std::vector<ReferenceHit>& reference,
                             const Tracer::RawChunk& chunk, std::size_t& undecided);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every engine must do alike, on every device of this machine.
+// Behaviour that all engines share, on every device of this machine.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -47,9 +47,9 @@ class Conformance : public testing::TestWithParam<EngineUnderTest> {
     static Tracers made;
     return made;
   }
-  static void TearDownTestSuite() { tracers().clear(); }  // before drivers and layers tear themselves down
+  static void TearDownTestSuite() { tracers().clear(); }  // before drivers and layers are torn down
 
-  // Kept from test to test: building an engine costs more than most tests.
+  // Kept from test to test, since building an engine costs more than most tests.
   static Tracer& tracer(const TestSite& site, bool noisy) {
     auto& kept = tracers()[{GetParam().name, site.name, noisy}];
     if (!kept) kept = make(site, noisy);
@@ -89,7 +89,7 @@ TEST_P(Conformance, ScansMatchADoublePrecisionReference) {
   }
 }
 
-// Several times as far off as the site is large: rounding is larger there than anywhere on the site.
+// At several times the site's size, rounding is larger than anywhere on the site.
 TEST_P(Conformance, StationsFarOffAreNoLessExact) {
   const TestSite& site = sites()[2];
   const std::vector<TraceStation> far{{{41, 3, 2}, 0}, {{-5, -44, 9}, 1}};
@@ -133,7 +133,7 @@ TEST_P(Conformance, BarycentricWeightsGiveThePoint) {
   EXPECT_GT(hits, 10'000u);
 }
 
-// Points are made of range, origin and direction without contraction: equal bits on every device.
+// Points are computed from range, origin and direction without contraction: equal bits on every device.
 TEST_P(Conformance, PositionsAreRangeTimesDirectionToTheBit) {
   const TestSite& site = sites()[2];
   const RayPattern& pattern = *site.pattern;
@@ -181,7 +181,7 @@ TEST_P(Conformance, NoiseIsKeyedByRayAndPlace) {
   EXPECT_GT(differing, moved / 2);
 }
 
-// To the bit: a ray without a hit has NaNs, which compare unequal.
+// Bitwise, since a ray without a hit has NaNs, which compare unequal.
 template <typename T>
 bool same_bits(const T* a, const T* b, std::size_t n) {
   return std::memcmp(a, b, n * sizeof(T)) == 0;
@@ -206,7 +206,7 @@ void expect_same(const Tracer::RawChunk& part, const Tracer::RawChunk& whole, st
   });
 }
 
-// `one` has what `whole` has of `output`, and nothing else.
+// Expects `one` to have `output` as `whole` has it, and nothing else.
 void expect_only(std::uint32_t output, const Tracer::RawChunk& one, const Tracer::RawChunk& whole) {
   for_each_output(one, whole, [&](std::uint32_t bit, const auto& got, const auto& expected, const char* name) {
     if (bit == output) {
@@ -373,7 +373,8 @@ TEST_P(Conformance, ACancelledCountSaysSoAndLeavesTheEngineWell) {
   EXPECT_TRUE(cut.cancelled);
   EXPECT_TRUE(ascending);
   EXPECT_GT(last, 0.1);
-  EXPECT_LT(last, 0.9);  // far from the stop: several devices go on until this thread, which hears them, gets its turn
+  EXPECT_LT(last, 0.9);  // well before the end: several devices continue until this thread, which listens to them, gets
+                         // its turn
   VoxelField again, expected;
   const NetworkCounts after = small->count(site.stations, stations_of(site), {true, false, &again}, {});
   EXPECT_FALSE(after.cancelled);
@@ -421,7 +422,7 @@ TEST_P(Conformance, SkippingChangesNoVoxel) {
       EXPECT_EQ(skipped.stations, all.stations);
       EXPECT_EQ(counts.points_on_surveyed, expected.points_on_surveyed);
       EXPECT_TRUE(counts.points.empty());
-      // Each point that counts was some ray's.
+      // Each point that counts comes from a ray.
       EXPECT_GE(counts.rays, std::reduce(counts.points_on_surveyed.begin(), counts.points_on_surveyed.end()));
       EXPECT_LT(counts.rays, expected.rays);
       expect_equal_counts(counts, expected);
@@ -431,7 +432,7 @@ TEST_P(Conformance, SkippingChangesNoVoxel) {
 
 // Samples.
 
-// The counts of a sample by the book, from the voxel field of the exact evaluation.
+// Counts of a sample by definition, from the voxel field of the exact evaluation.
 NetworkCounts sampled_slowly(const TestSite& site, const VoxelField& field, const Tracer::SampleJob& job,
                              std::uint32_t stations) {
   VoxelField sample;
@@ -479,7 +480,7 @@ void expect_equal_samples(const NetworkCounts& got, const NetworkCounts& expecte
   }
 }
 
-// Each voxel its own group: then the groups are the voxels.
+// Each voxel is its own group, so groups are voxels.
 Tracer::SampleJob voxel_by_voxel(std::span<const std::uint32_t> sample, bool masks) {
   return {sample, static_cast<std::uint32_t>(sample.size()), masks, 0};
 }
@@ -524,7 +525,7 @@ TEST_P(Conformance, EverySampledVoxelIsCountedAsTheExactEvaluationDoes) {
   }
 }
 
-// What capture rows are made of: the points themselves, as many batches as it takes, and none of a cut count.
+// Input of the coverage matrix: the points themselves, over any number of batches, and none of an interrupted count.
 TEST_P(Conformance, PointsOfASampleAreThoseOfTheVoxelField) {
   for (const TestSite& site : sites()) {
     std::vector<std::uint32_t> everything(site.grid->size());
@@ -553,7 +554,7 @@ TEST_P(Conformance, PointsOfASampleAreThoseOfTheVoxelField) {
   }
 }
 
-// What registration is summed from: the masks themselves, so that its sums are the same on every engine.
+// Input of registration: the masks themselves, so that its sums are the same on every engine.
 TEST_P(Conformance, StationMasksOfASampleAreThoseOfTheVoxelField) {
   for (const TestSite& site : sites()) {
     std::vector<std::uint32_t> everything(site.grid->size());
@@ -577,7 +578,7 @@ TEST_P(Conformance, StationMasksOfASampleAreThoseOfTheVoxelField) {
   }
 }
 
-// And the sums themselves, to the last bit: of few stations and many, of which some pairs see nothing together.
+// The sums themselves, to the last bit: of few stations and many, some pairs of which share nothing.
 TEST_P(Conformance, RegistrationSumsAreThoseOfTheStationMasks) {
   for (const TestSite& site : sites()) {
     std::vector<std::uint32_t> sample;
@@ -585,7 +586,7 @@ TEST_P(Conformance, RegistrationSumsAreThoseOfTheStationMasks) {
       sample.push_back(rank);
     std::vector<std::vector<TraceStation>> networks{
         site.stations, random_stations(site, 40, 7), {site.stations[0]}, random_stations(site, 17, 8)};
-    networks[0].erase(networks[0].begin() + 1);  // one that stands nowhere keeps its place
+    networks[0].erase(networks[0].begin() + 1);  // an inactive station keeps its place
     const std::vector<std::uint32_t> sizes{static_cast<std::uint32_t>(site.stations.size()), 40, 1, 17};
     const auto patches =
         std::make_shared<const Patches>(make_patches(*site.scene, *site.grid, sample, *site.pattern, {}));
@@ -617,7 +618,7 @@ TEST_P(Conformance, RegistrationSumsAreThoseOfTheStationMasks) {
   }
 }
 
-// Many scanners in one place: what the first saturate, the rest need not look at.
+// Many scanners in one place: once the first saturate a voxel, the others need not look at it.
 TEST_P(Conformance, SamplesStopAtTheGoalOnlyWhereAsked) {
   const TestSite& site = sites()[2];
   std::vector<std::uint32_t> sample;
@@ -625,7 +626,7 @@ TEST_P(Conformance, SamplesStopAtTheGoalOnlyWhereAsked) {
   std::vector<std::vector<TraceStation>> networks(1);
   for (std::uint32_t place = 0; place < 32; ++place) networks[0].push_back({site.stations[0].origin, place});
   const std::vector<std::uint32_t> sizes{32};
-  // Dispatches so short that the scanners come one after the other on any device.
+  // Dispatches so short that the scanners come one after another on any device.
   const auto tracer = make(site, true, 5000);
   const auto count = [&](bool masks, std::uint32_t stop_at) {
     const Tracer::SampleJob job{sample, 20, masks, stop_at};
@@ -638,13 +639,13 @@ TEST_P(Conformance, SamplesStopAtTheGoalOnlyWhereAsked) {
     expect_equal_samples(stopping, whole);
     EXPECT_EQ(whole.seen.empty(), !masks);
     EXPECT_GT(whole.saturated, 0u);
-    // Who sees a voxel is not known before every station was asked.
+    // The stations that see a voxel are known only after every station was traced.
     EXPECT_LT(static_cast<double>(stopping.rays), (masks ? 1.01 : 0.8) * static_cast<double>(whole.rays))
         << "rays were traced for voxels that need no more";
   }
 }
 
-// Near and far, full and not, half hidden and seen flatly: what is not traced must not show.
+// Near and far, full and not, half hidden and oblique: rays left out must not show.
 TEST_P(Conformance, WhatAStoppedSampleLeavesOutDoesNotShow) {
   for (const TestSite& site : sites()) {
     std::vector<std::uint32_t> sample;
@@ -666,7 +667,7 @@ TEST_P(Conformance, WhatAStoppedSampleLeavesOutDoesNotShow) {
             expect_equal_samples(stopped[n], whole[n]);
             expect_equal_counts(searched[n], whole[n]);
             EXPECT_TRUE(searched[n].groups.empty() && std::isinf(searched[n].successive_difference_sum));
-            // More may be asked at once of what is hidden, but not many more.
+            // More rays may be traced for hidden voxels, but not many more.
             EXPECT_LE(static_cast<double>(stopped[n].rays), 1.1 * static_cast<double>(whole[n].rays));
           }
         }
@@ -732,8 +733,7 @@ TEST_P(Conformance, SamplesDoNotDependOnWhatWasCountedBefore) {
   EXPECT_EQ(after[0].rays, usual[0].rays);
 }
 
-// Seen by the reports: a device tells of every submission, and the first has one dispatch of rays where these are
-// limited.
+// Tested by progress: a device reports every submission, and the first has one dispatch of rays if these are limited.
 TEST_P(Conformance, SamplesKeepToTheLimitOfADispatch) {
   const TestSite& site = sites()[2];
   std::vector<std::uint32_t> sample;
@@ -752,7 +752,7 @@ TEST_P(Conformance, SamplesKeepToTheLimitOfADispatch) {
   const double limited = first_report(2000), unlimited = first_report(0);
   EXPECT_GT(unlimited, 0);
   EXPECT_LE(limited, unlimited);
-  if (tracer(site, false).info().engine != Engine::embree) {  // which has no dispatches
+  if (tracer(site, false).info().engine != Engine::embree) {  // Embree has no dispatches
     EXPECT_LT(limited, 0.5 * unlimited);
   }
 }
@@ -760,7 +760,7 @@ TEST_P(Conformance, SamplesKeepToTheLimitOfADispatch) {
 INSTANTIATE_TEST_SUITE_P(Engines, Conformance, testing::ValuesIn(engines_under_test()),
                          [](const auto& instance) { return instance.param.name; });
 
-// The machine.
+// Engines of this machine.
 
 TEST(Engines, ThisMachineHasThemAll) {
   for (const Engine engine : {Engine::embree, Engine::ray_query, Engine::compute_bvh}) {

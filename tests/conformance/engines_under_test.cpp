@@ -19,8 +19,8 @@ std::vector<EngineUnderTest> engines_under_test() {
   for (const EngineInfo& info : usable_engines())
     engines.push_back({name_of(info),
                        [info](const TraceScene& scene) { return make_tracer(info.engine, info.device_index, scene); }});
-  // And several devices together, software ones where there are no others. A network is always split, or one so small
-  // never would be; of a population, GPUs take voxels and processors networks.
+  // Several devices together, software ones if there are no others. A network is always split here, since a small one
+  // never would be. GPUs split a population by voxels, processors by networks.
   const auto together = [&](const std::string& name, const DeviceChoice& device, std::size_t many) {
     engines.push_back({name, [device, many](const TraceScene& scene) {
                          std::vector<std::unique_ptr<Tracer>> tracers;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the suite runs over: every engine that make_tracer knows, on every device that it can use, several devices
-// together, and the engine of this folder.
+// Engines under test: every engine known to make_tracer on every device that it can use, several devices together, and
+// the engine of this folder.
 #pragma once
 
 #include <functional>

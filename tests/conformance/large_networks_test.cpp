@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Networks of more stations than a mask's word has bits: counted in passes, they are what the scans of their stations
-// add up to.
+// Networks with more stations than a mask word has bits: counted in passes, they equal the sum of their stations'
+// scans.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 namespace vantage::test {
 namespace {
 
-// The site's stations again and again, a little aside each time; every ninth is left out.
+// The site's stations repeatedly, slightly shifted each time; every ninth is left out.
 std::vector<TraceStation> many_stations(const TestSite& site, std::uint32_t count) {
   std::vector<TraceStation> stations;
   for (std::uint32_t k = 0; k < count; ++k) {
@@ -61,7 +61,7 @@ TEST_P(LargeNetworksConformance, CountWhatTheirScansAddUpTo) {
       SCOPED_TRACE(std::to_string(count) + (noisy ? " stations, noise" : " stations"));
       const std::vector<TraceStation> stations = many_stations(site, count);
       const VoxelField expected = field_of_scans(*tracer, site, stations, count);
-      // Reached by some voxels, and not by others.
+      // A goal that some voxels reach and others do not.
       const double goal_density = 0.5 * *std::ranges::max_element(expected.count) + 0.25;
       tracer->set_goal_density(goal_density);
       const NetworkCounts reference = reference_counts(expected, count, goal_density);

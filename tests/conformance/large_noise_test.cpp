@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Noise of metres, more than the distances themselves: a point stays on its ray, at the head where the range would be
+// Noise of metres, more than the distances themselves. A point stays on its ray, at the head if the range would be
 // below 0, and a sample finds it wherever it lands.
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ namespace {
 
 constexpr double goal_density = 2;
 
-// The three walls from the middle of a surveyed voxel and from between them.
+// The three walls, from the middle of a surveyed voxel and from between the walls.
 TestSite noisy_site() {
   TestSite site = sites()[0];
   site.name = "three-walls, noise of metres";
@@ -83,7 +83,7 @@ TEST_P(LargeNoiseConformance, SamplesAndExactCountsAreThePointsOfTheScans) {
   expect_equal_counts(tracer->count(site.stations, stations, {true, true, &skipped}, {}), reference);
   EXPECT_EQ(skipped.count, expected.count);
 
-  // Any triangle may be behind any voxel, so not of all of them.
+  // Any triangle may affect any voxel, so only some voxels are tested.
   std::vector<std::uint32_t> sample, points, expected_points;
   for (std::size_t rank = 0; rank < site.grid->size(); ++rank) {
     if (expected.count[rank] == 0 && rank % 97 != 0) continue;

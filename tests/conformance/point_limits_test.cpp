@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Limits of points, which every engine must hold them to alike: by scan, by count, by sample, skipping or not.
+// Limits of points, which every engine must apply alike: by scan, by count, by sample, with and without skipping.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,8 +18,8 @@ namespace vantage::test {
 namespace {
 
 constexpr double goal_density = 12.5;
-// Nearer than this to an edge, a voxel's face or, as a part of it, a limit, rounding may decide otherwise; such rays
-// are at most one in 100 000.
+// Closer than this to an edge, a voxel's face or, relatively, a limit, rounding may decide differently; at most one ray
+// in 100 000 is.
 constexpr double undecided_m = 1e-4, undecided_part = 1e-5, undecided_share = 1e-5;
 
 class PointLimitsConformance : public testing::TestWithParam<EngineUnderTest> {
@@ -90,7 +90,7 @@ TEST_P(PointLimitsConformance, ScansAndCountsMatchADoublePrecisionReference) {
       EXPECT_EQ(field.count, expected.count);
       EXPECT_EQ(field.stations, expected.stations);
       expect_equal_counts(counts, reference_counts(field, stations_of(site), goal_density, site.grid->demands()));
-      // The sites are such that each limit tells.
+      // On these sites each limit drops points.
       EXPECT_GT(all.incidence, 100u);
       EXPECT_GT(all.footprint, 100u);
       EXPECT_GT(all.noise, 100u);
@@ -139,7 +139,7 @@ TEST_P(PointLimitsConformance, ASampleOfAllVoxelsIsTheExactEvaluation) {
     const std::vector<std::uint32_t> sizes{stations_of(site)};
     for (const bool noisy : {false, true}) {
       SCOPED_TRACE(site.name + (noisy ? ", noise" : ""));
-      // Each voxel its own group, so that equal groups are equal voxels.
+      // Each voxel is its own group, so equal groups are equal voxels.
       const Tracer::SampleJob job{everything, static_cast<std::uint32_t>(everything.size()), true, 0};
       const auto sampled = tracer(site, noisy).count_sampled(networks, sizes, job, {});
       ASSERT_EQ(sampled.size(), 1u);
@@ -161,7 +161,7 @@ TEST_P(PointLimitsConformance, ASampleOfAllVoxelsIsTheExactEvaluation) {
   }
 }
 
-// Limits that nothing misses leave every bit as it is without them.
+// Limits that all points meet leave every bit as it is without them.
 TEST_P(PointLimitsConformance, LimitsThatAllMeetChangeNothing) {
   const TestSite& site = sites()[2];
   LimitModel loose = *site.limits;

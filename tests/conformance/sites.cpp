@@ -17,7 +17,7 @@ namespace {
 
 using std::numbers::pi;
 
-// Adds meshes to a scene in the survey frame. Only curved parts bring normals.
+// Adds meshes to a scene in the survey frame. Only curved parts have normals.
 class Builder {
  public:
   using Normals = std::vector<Float3>;
@@ -82,8 +82,8 @@ class Builder {
   RawScene raw_;
 };
 
-// A tank, of which fewer points are wanted, a boiler, a tilted pipe and a cabinet, which weighs most, on uneven ground,
-// behind a blocking fence.
+// A tank that needs fewer points, a boiler, a tilted pipe and a cabinet of the largest weight, on uneven ground, behind
+// a blocking fence.
 std::shared_ptr<const SceneData> boiler_house() {
   Builder b;
   b.sheet("ground", Role::blocking, 0.3, 24, 24, [](double u, double v) {
@@ -114,7 +114,7 @@ std::shared_ptr<const SceneData> built_in(const std::string& name) {
   return std::make_shared<const SceneData>(Scene::load(file).data());
 }
 
-// Each mesh asks for something else, among what a scanner a few metres off gives and does not give.
+// Each mesh has other limits, some of which a scanner a few metres away meets and some not.
 LimitModel some_limits(SceneData scene, Scanner scanner) {
   scanner.beam_divergence = Angle::radians(5e-4);
   scanner.exit_diameter_m = 0.006;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sites on which every engine must give the same answers.
+// Sites on which every engine must give the same answers.
 #pragma once
 
 #include <memory>
@@ -17,15 +17,15 @@ struct TestSite {
   std::shared_ptr<const VoxelGrid> grid;
   std::shared_ptr<const RayPattern> pattern;
   std::shared_ptr<const NoiseModel> noise, no_noise;
-  std::shared_ptr<const LimitModel> limits;  // some of each kind, so that each drops points and lets others pass
-  std::vector<TraceStation> stations;        // at least four, places 0, 1, …; inside and outside
+  std::shared_ptr<const LimitModel> limits;  // several of each kind, so that each drops some points and passes others
+  std::vector<TraceStation> stations;        // at least four, with places 0, 1, …; inside and outside
 
   TraceScene trace_scene(bool noisy, bool limited = false) const {
     return {
         .scene = scene, .grid = grid, .scanners = {{pattern, noisy ? noise : no_noise, limited ? limits : nullptr}}};
   }
   std::uint64_t rays() const { return std::uint64_t{pattern->rows()} * pattern->columns(); }
-  // Made once for each station and kind.
+  // Computed once for each station and kind.
   const std::vector<ReferenceHit>& reference(std::size_t station, bool noisy, bool limited = false) const;
 };
 

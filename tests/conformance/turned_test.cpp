@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stations of several scanners, turned and tilted: what upright ones are held to, and closed forms.
+// Stations of several scanners, turned and tilted, meet the demands on upright ones, and closed forms.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -26,7 +26,7 @@ std::optional<Turn> turned(double heading_deg, double tilt_deg) {
   return make_turn({.heading = Angle::degrees(heading_deg), .tilt = Angle::degrees(tilt_deg)});
 }
 
-// Another model: coarser, not all the way round, less far, with noise of its own.
+// Another scanner: coarser, less than a full turn, shorter range, with its own noise.
 TraceScanner second_scanner(bool noisy) {
   Scanner scanner;
   scanner.horizontal_angle = Angle::degrees(250);
@@ -60,7 +60,7 @@ std::vector<TraceStation> stations_of(const TestSite& site) {
   return stations;
 }
 
-// Wherever, turned by whatever.
+// Random places and turns.
 std::vector<TraceStation> random_stations(const TestSite& site, std::uint32_t n, std::uint64_t seed) {
   RandomStream random(seed);
   const Box box = site.scene->local_bounds;
@@ -94,7 +94,8 @@ class TurnedConformance : public testing::TestWithParam<EngineUnderTest> {
 TEST_P(TurnedConformance, ScansMatchADoublePrecisionReference) {
   for (const TestSite& site : sites()) {
     for (const bool noisy : {false, true}) {
-      static std::map<std::tuple<std::string, std::size_t, bool>, std::vector<ReferenceHit>> made;  // for all engines
+      // shared by all engines
+      static std::map<std::tuple<std::string, std::size_t, bool>, std::vector<ReferenceHit>> made;
       const TraceScene scene = scene_of(site, noisy);
       const auto tracer = make(scene);
       const std::vector<TraceStation> stations = stations_of(site);
@@ -221,7 +222,7 @@ TEST_P(TurnedConformance, ASampleOfAllVoxelsIsTheExactEvaluation) {
   }
 }
 
-// Networks of one front have stations in common, which need not be traced again for each.
+// Networks of one front share stations, which need not be traced again for each.
 TEST_P(TurnedConformance, NetworksWithStationsInCommonAreCountedAsEachAlone) {
   const TestSite& site = sites()[1];
   const std::vector<TraceStation> all = stations_of(site);
@@ -251,7 +252,7 @@ TEST_P(TurnedConformance, NetworksWithStationsInCommonAreCountedAsEachAlone) {
 
 // Closed forms.
 
-// A full circle of rays is its own image under a quarter turn, to the bit where its columns divide by four.
+// A quarter turn maps a full circle of rays onto itself, to the bit if its columns divide by four.
 TEST_P(TurnedConformance, AQuarterTurnOfAFullCircleChangesNoCount) {
   const TestSite& site = sites()[2];
   ASSERT_EQ(site.pattern->columns() % 4, 0u);
@@ -265,7 +266,7 @@ TEST_P(TurnedConformance, AQuarterTurnOfAFullCircleChangesNoCount) {
   EXPECT_EQ(quarter.stations, upright.stations);
 }
 
-// By any other multiple of its step it is, but for rounding: ray (i, j) goes where (i, j + k) went.
+// So does any other multiple of its step, except for rounding: ray (i, j) goes where (i, j + k) went.
 TEST_P(TurnedConformance, AMultipleOfTheStepMovesColumns) {
   const TestSite& site = sites()[2];
   const auto tracer = make(site, false);
@@ -289,8 +290,8 @@ TEST_P(TurnedConformance, AMultipleOfTheStepMovesColumns) {
   EXPECT_LE(undecided, 20u);
 }
 
-// Nothing tells one axis of a cube from another: a head that lies in its middle sees on the wall before it what one
-// that stands sees on the ceiling.
+// The axes of a cube are equivalent: a lying head in its middle sees on the wall ahead what a standing one sees on the
+// ceiling.
 TEST_P(TurnedConformance, AHeadThatLiesInACubeSeesItAsOneThatStands) {
   constexpr double half = 2.5;
   const Vec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -324,10 +325,10 @@ TEST_P(TurnedConformance, AHeadThatLiesInACubeSeesItAsOneThatStands) {
   };
   const std::array<int, 6> stands = walls(std::nullopt);
   EXPECT_GT(stands[5], stands[4]) << "it sees all of the ceiling, and not all of the floor below it";
-  // Its axis goes to +x, its x to −z.
+  // Its axis points to +x, its x to −z.
   const std::array<int, 6> lies = walls(turned(0, 90));
   EXPECT_EQ(lies, (std::array<int, 6>{stands[4], stands[5], stands[2], stands[3], stands[1], stands[0]}));
-  // Its axis goes to +y, its x to −z, its y to −x.
+  // Its axis points to +y, its x to −z, its y to −x.
   const std::array<int, 6> aside = walls(turned(90, 90));
   EXPECT_EQ(aside, (std::array<int, 6>{stands[3], stands[2], stands[4], stands[5], stands[1], stands[0]}));
 }

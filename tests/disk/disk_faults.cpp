@@ -40,7 +40,7 @@ void leave_sign(const std::string& text) {
   ::close(descriptor);
 }
 
-// Counts a call; whether it is to fail.
+// Counts a call; returns whether it must fail.
 bool reached() {
   const int n = ++calls;
   if (fault.nth == 0 || n < fault.nth || (n > fault.nth && !fault.stays)) return false;
@@ -62,7 +62,7 @@ int fail() {
   return true;
 }();
 
-// A program that is told to fail nowhere says how many calls it makes.
+// Without a fault, the program reports its number of calls.
 struct Count {
   ~Count() {
     if (fault.nth == 0 && !sign.empty()) leave_sign(std::to_string(calls));
@@ -111,7 +111,7 @@ ssize_t pwrite(int descriptor, const void* data, size_t bytes, off_t offset) {
 int fsync(int descriptor) {
   static const auto next = real<int (*)(int)>("fsync");
   if (!below(descriptor)) return next(descriptor);
-  return reached() ? fail() : 0;  // no power is cut here, and hundreds of them take minutes
+  return reached() ? fail() : 0;  // not passed on: nothing here cuts the power, and hundreds of them take minutes
 }
 
 int rename(const char* from, const char* to) noexcept {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A plan on a disk that fails, in folders that vanish, and killed at any moment: whole files of before or whole new
-// ones, the same result when it goes on, or one clear error.
+// A plan on a failing disk, in vanishing folders, and killed at any moment. It leaves whole old or whole new files, and
+// gives the same result when continued, or one clear error.
 //
-// VANTAGE_FAULTS=N tries N of each kind instead of a few; all there are where N is large.
+// VANTAGE_FAULTS=N tries N of each kind instead of a few; a large N tries all.
 #include <signal.h>
 #include <sys/file.h>
 #include <sys/resource.h>
@@ -60,7 +60,7 @@ class PlanOnABadDisk : public ProgramTest {
     if (json.is_object()) drop_times(json);
     return json;
   }
-  // Every file that has its name is whole; `aborted`: temporaries may lie beside.
+  // Every file with its final name is whole; `aborted`: temporaries may remain beside.
   void expect_whole(const std::string& folder, bool aborted) const {
     for (const auto& entry : std::filesystem::directory_iterator(path(folder))) {
       const std::string name = entry.path().filename();
@@ -71,7 +71,7 @@ class PlanOnABadDisk : public ProgramTest {
         EXPECT_NO_THROW(read_checkpoint(entry.path()));
       } else if (name == "front.json") {
         EXPECT_EQ(front(folder), front("wanted"));
-      } else if (name == "history.csv") {  // has times
+      } else if (name == "history.csv") {  // contains times
         const auto lines = [](const std::string& text) { return std::count(text.begin(), text.end(), '\n'); };
         EXPECT_EQ(lines(read(folder + "/" + name)), lines(read("wanted/" + name)));
       } else {
@@ -85,7 +85,7 @@ class PlanOnABadDisk : public ProgramTest {
     expect_whole(folder, false);
     for (const std::string& name : wanted_) EXPECT_TRUE(std::filesystem::exists(path(folder + "/" + name))) << name;
   }
-  // Whether the call was reached at all.
+  // Returns whether the call was reached.
   bool run_with_fault(const std::string& folder, int nth, int error, bool stays, Outcome& outcome) const {
     const std::string sign = path("reached");
     std::filesystem::remove(sign);
@@ -98,7 +98,7 @@ class PlanOnABadDisk : public ProgramTest {
     unsetenv("LD_PRELOAD"), unsetenv(kDiskFaultVariable);
     return std::filesystem::exists(sign);
   }
-  // Calls that a whole plan makes.
+  // Number of calls in a whole plan.
   int calls() const {
     Outcome outcome;
     run_with_fault("probe", 0, 0, false, outcome);
@@ -159,7 +159,7 @@ TEST_F(PlanOnABadDisk, SurvivesBeingKilledAtRandomMoments) {
   const std::size_t wanted = tries(20);
   std::size_t killed = 0;
   for (std::size_t k = 0; killed < wanted && k < 10 * wanted; ++k) {
-    if (k % 4 == 0) std::filesystem::remove_all(path("plan"));  // then three more that go on
+    if (k % 4 == 0) std::filesystem::remove_all(path("plan"));  // then three more that continue
     const auto moment = std::chrono::microseconds(random() % static_cast<std::uint64_t>(whole.count()));
     const Outcome outcome = run_program(plan("plan", {"--resume"}), [&](int process) {
       std::this_thread::sleep_for(moment);
@@ -181,7 +181,7 @@ class Faults : public ProgramTest {
     return coarse("plan", {"--problem", "coverage-overlap-fix", "--stations", "3", "--population", "8", "--iterations",
                            "10000000", "--sample", "200", "--no-report", "--save-every", "0.02", "-o", path(folder)});
   }
-  // Until the search has begun to save itself.
+  // Waits until the search has begun to save itself.
   void wait_for_checkpoint(const std::string& folder) const {
     for (int tries = 0; tries < 1200 && !std::filesystem::exists(path(folder + "/checkpoint.bin.before")); ++tries)
       std::this_thread::sleep_for(std::chrono::milliseconds(25));
@@ -262,7 +262,7 @@ TEST_F(Faults, FilesWhereFoldersShouldBeAndFoldersWhereFilesShould) {
   expect_refused(run_program({"evaluate", folder_.path(), "--station", "8,0,1.5"}), 1, folder_.path());
 }
 
-// As `vantage … | head` does when it has seen enough, and as a full disk behind `>` does.
+// As `vantage … | head` stops reading, and as a full disk behind `>`.
 TEST_F(Faults, NobodyReadsTheResults) {
   const auto through = [&](const std::string& command) {
     return WEXITSTATUS(std::system(("bash -c '" + command + "'").c_str()));

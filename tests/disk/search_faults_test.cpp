@@ -32,7 +32,7 @@ class SearchOnABadDisk : public testing::Test {
   std::string run(const PlanConfig& config) {
     ToyEvaluator evaluator;
     const SurveyProblem problem = toy_problem(kProblem);
-    const Site site = toy_site();
+    const PlacementOracle site = toy_site();
     const DecisionSpace space(site, problem);
     evaluator.measures = measures_of(problem);
     return bits_of(search({.space = space,
@@ -131,7 +131,7 @@ TEST_F(SearchOnABadDisk, GoesOnFromTheCheckpointBeforeWhereTheNewestIsDamaged) {
   const auto write = [](const std::filesystem::path& file, const std::string& bytes) {
     std::ofstream(file, std::ios::binary | std::ios::trunc) << bytes;
   };
-  // Also cut short, empty and not there at all.
+  // Also truncated, empty and missing.
   std::vector<std::string> damaged{whole.substr(0, whole.size() / 2), ""};
   for (std::size_t at = 0; at < whole.size(); at += 97) {
     damaged.push_back(whole);
@@ -152,7 +152,7 @@ TEST_F(SearchOnABadDisk, GoesOnFromTheCheckpointBeforeWhereTheNewestIsDamaged) {
 
   write(file_, whole.substr(0, 40)), write(checkpoint_before(file_), "x");
   EXPECT_THROW(resumed(), Error);
-  // A damaged one must never take the place of the whole one before it.
+  // A damaged checkpoint must never replace the whole one before it.
   write(file_, whole.substr(0, 40)), write(checkpoint_before(file_), before);
   set_disk_fault({.below = folder_.path(), .nth = 1, .error = EIO, .stays = true});
   EXPECT_EQ(resumed(), wanted_);

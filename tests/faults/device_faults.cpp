@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes calls of a small plan on Vulkan fail, one by one, and says what becomes of it:
-//   vantage-device-faults ENGINE [EVERY [FIRST]]
-// EVERY: each call is tried, or one of so many, from number FIRST on, which is 0; docs/reliability.md has the table.
-// With VANTAGE_FAULTS_UNWATCHED set, without the validation layer.
+// Makes Vulkan calls of a small plan fail, one by one, and reports the outcome:
+//     vantage-device-faults ENGINE [EVERY [FIRST]]
+// Tries each call, or one of EVERY, from number FIRST (default 0) on; docs/reliability.md has the table. If
+// VANTAGE_FAULTS_UNWATCHED is set, runs without the validation layer.
 #include <unistd.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@
 namespace vantage::test {
 namespace {
 
-constexpr unsigned hang_seconds = 300;  // no attempt takes so long; the alarm ends the program
+constexpr unsigned hang_seconds = 300;  // longer than any attempt; the alarm ends the program
 
 struct Kind {
   Fault fault;
@@ -37,7 +37,7 @@ class Trial {
   Trial(Engine engine, const FaultControl& faults)
       : engine_(engine), faults_(faults), plan_(engine, watched()), quiet_plan_(engine, false) {
     front_ = reference();
-    // Later plans share an instance, as long as it lives.
+    // Later plans share an instance while it lives.
     befall(plan_, "cannot make an instance", 1, [&](std::uint64_t) { faults_.arm(Fault::host_memory, 0); });
     keeper_.emplace(kept(engine));
   }
@@ -50,7 +50,7 @@ class Trial {
       befall(plan_, kind.name, (calls - std::min(calls, first) + every - 1) / every,
              [&](std::uint64_t k) { faults_.arm(kind.fault, first + k * every); });
     }
-    if (first > 0) return failed_ ? 1 : 0;  // the rest is for whoever begins
+    if (first > 0) return failed_ ? 1 : 0;  // the rest runs only with FIRST 0
     too_little_memory();
     slow_device();
     hangs();
@@ -73,7 +73,7 @@ class Trial {
     std::fprintf(stderr, "WRONG: %s\n", what.c_str());
   }
 
-  // What a plan without a fault finds; leaves its counts with the layer.
+  // Front of a plan without a fault; its counts remain in the layer.
   std::string reference() {
     const TemporaryFolder folder;
     faults_.arm(Fault::none, 0);
@@ -82,7 +82,7 @@ class Trial {
     return front;
   }
 
-  // `many` plans, each with the fault that `arm` makes; tells what became of them.
+  // Runs `many` plans, each with the fault that `arm` makes, and returns the outcomes.
   template <class Arm>
   std::map<Outcome::Kind, int> befall(SmallPlan& plan, const char* name, std::uint64_t many, const Arm& arm) {
     const auto disarm = [&] {
@@ -117,7 +117,7 @@ class Trial {
     return outcomes;
   }
 
-  // From what all networks at once need, down to nothing.
+  // From the memory for all networks at once down to none.
   void too_little_memory() {
     reference();
     const std::uint64_t peak = faults_.peak_bytes();
@@ -141,7 +141,7 @@ class Trial {
     if (dispatches_ <= quick) complain("the work of a slow device was not split");
   }
 
-  // Leaves what it worked on for good, so without the validation layer, which would tell.
+  // Abandons its objects for good, so it runs without the validation layer, which would report them.
   void hangs() {
     front_ = [&] {
       const TemporaryFolder folder;

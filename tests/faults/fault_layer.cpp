@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A Vulkan layer that makes one call fail, and counts what is made and destroyed. Khronos' Loader and Layer Interface
-// says how a layer is called; it sits above the validation layer, which so never sees a call that was made to fail.
+// A Vulkan layer that makes one call fail, and counts objects made and destroyed. Khronos' Loader and Layer Interface
+// says how a layer is called. It sits above the validation layer, which thus never sees a failed call.
 #include "faults/fault_layer.hpp"
 
 #include <vulkan/vk_layer.h>
@@ -26,7 +26,7 @@ constexpr std::size_t faults = static_cast<std::size_t>(Fault::late) + 1;
 
 struct Layer {
   std::mutex mutex;
-  // Asked for when an instance is made: later the loader answers with the top of its chain.
+  // Fetched when an instance is made: later the loader returns the top of its chain.
   struct Instance {
     PFN_vkGetInstanceProcAddr get;
     PFN_vkDestroyInstance destroy;
@@ -51,7 +51,7 @@ struct Layer {
 };
 
 Layer& layer() {
-  static Layer& kept = *new Layer;  // drivers call until the very end
+  static Layer& kept = *new Layer;  // drivers call it until the very end
   return kept;
 }
 
@@ -67,10 +67,10 @@ Function next(Handle handle, const char* name) {
   return reinterpret_cast<Function>(device.get(device.handle, name));
 }
 
-// What may befall a call.
+// Faults that a call can meet.
 enum Can : unsigned { memory = 1, lose = 2, wait = 4 };
 
-// Counts a call; returns what it is to say in place of being made, or VK_SUCCESS.
+// Counts a call; returns its fault's result, or VK_SUCCESS to make the call.
 VkResult strike(void* device, const char* name, unsigned can) {
   Layer& l = layer();
   std::unique_lock lock(l.mutex);
@@ -102,7 +102,7 @@ void made(VkResult result, std::int64_t many = 1) {
   layer().alive += many;
 }
 
-// Calls of a device that say VkResult.
+// Calls on a device that return VkResult.
 #define PASS(name, can, parameters, ...)                                            \
   VKAPI_ATTR VkResult VKAPI_CALL name parameters {                                  \
     const VkResult struck = strike(key_of(self), #name, can);                       \
@@ -113,7 +113,7 @@ void made(VkResult result, std::int64_t many = 1) {
     }                                                                               \
     return next<PFN_##name>(self, #name)(__VA_ARGS__);                              \
   }
-// And make objects.
+// Calls that also make objects.
 #define MAKE(name, parameters, ...)                                     \
   VKAPI_ATTR VkResult VKAPI_CALL name parameters {                      \
     const VkResult struck = strike(key_of(self), #name, memory);        \
@@ -160,7 +160,7 @@ DESTROY(vkDestroyDescriptorPool, VkDescriptorPool)
 DESTROY(vkDestroyAccelerationStructureKHR, VkAccelerationStructureKHR)
 DESTROY(vkDestroyPipeline, VkPipeline)
 
-// Command buffers and sets go with their pools.
+// Command buffers and sets are freed with their pools.
 PASS(vkAllocateCommandBuffers, memory, (VkDevice self, const VkCommandBufferAllocateInfo* info, VkCommandBuffer* out),
      self, info, out)
 PASS(vkAllocateDescriptorSets, memory, (VkDevice self, const VkDescriptorSetAllocateInfo* info, VkDescriptorSet* out),
@@ -253,7 +253,7 @@ VKAPI_ATTR void VKAPI_CALL vkDestroyDevice(VkDevice self, const VkAllocationCall
   destroy(self, callbacks);
 }
 
-// The link of the loader's chain that is this layer's, taken out of it.
+// Takes this layer's link out of the loader's chain.
 template <class Info>
 Info* link(const void* chain, VkStructureType type) {
   for (auto* each = static_cast<const VkBaseInStructure*>(chain); each; each = each->pNext)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes allocations of a small plan fail, one by one, and says what becomes of it:
-//   vantage-memory-faults ENGINE sites|EVERY [FIRST]
-// sites: the first allocation of each place in the code, told by the calls that lead there; EVERY: one of so many, from
-// number FIRST on. What libraries allocate for themselves is left alone: docs/reliability.md.
+// Makes allocations of a small plan fail, one by one, and reports the outcome:
+//     vantage-memory-faults ENGINE sites|EVERY [FIRST]
+// sites: the first allocation of each place in the code, identified by its call stack. EVERY: one of EVERY allocations,
+// from number FIRST on. Allocations by libraries for themselves are excluded: docs/reliability.md.
 #include <dlfcn.h>
 #include <execinfo.h>
 #include <unistd.h>
@@ -28,7 +28,7 @@ constexpr int most_frames = 40;
 
 std::atomic<std::size_t> allocations{0}, fail_at{never};
 std::atomic<bool> failed{false};
-// Of each allocation, while they are listed; taken before, so that it is none of them.
+// Stack hash of each allocation while they are listed; allocated before, so as not to be counted.
 std::atomic<std::uint64_t>* sites = nullptr;
 constexpr std::size_t most_sites = std::size_t{1} << 22;
 
@@ -37,7 +37,7 @@ struct Stack {
   int depth;
   Stack() : depth(backtrace(frames, most_frames)) {}
 
-  // Whether it is the project that asks, itself or through the standard library.
+  // Whether the project allocates, directly or through the standard library.
   bool own() const { return asked_by_program() && !in_json_destructor(); }
   bool asked_by_program() const {
     for (int k = 1; k < depth; ++k) {
@@ -52,7 +52,7 @@ struct Stack {
     }
     return false;
   }
-  // nlohmann's JSON asks for memory in its destructor, which so ends the process where there is none.
+  // nlohmann's JSON allocates in its destructor; a failure there ends the process.
   bool in_json_destructor() const {
     for (int k = 1; k < std::min(depth, 10); ++k) {
       Dl_info info{};
@@ -156,7 +156,7 @@ int run(Engine engine, const std::string& which, std::size_t first) {
     const TemporaryFolder folder;
     return plan.run(folder / "checkpoint", false);
   };
-  fresh();  // what is made once and kept
+  fresh();  // creates objects that are made once and kept
   arm(never);
   const std::string front = fresh();
   const std::size_t all = allocations;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a simulation takes the memory that it was estimated to take:
-//   vantage-memory-peaks ENGINE TRIANGLES USER_SIZE [STEP]
-// of the process, by what the kernel says that it held at most, and of the device, by what the layer saw allocated.
-// Fails where an estimate is off by more than a fifth.
+// Compares a simulation's memory with its estimate:
+//     vantage-memory-peaks ENGINE TRIANGLES USER_SIZE [STEP]
+// The process's memory is the kernel's peak; the device's is what the layer saw allocated. Fails if an estimate is off
+// by more than a fifth.
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -30,7 +30,7 @@ double process_peak() {
   return 0;
 }
 
-// Heads all over the site, one above the other where they are many.
+// Heads all over the site, stacked if there are many.
 Network stations(const Scene& scene, std::size_t many) {
   const Box bounds = scene.bounds();
   const Vec3 size = bounds.size();
@@ -43,7 +43,7 @@ Network stations(const Scene& scene, std::size_t many) {
   return network;
 }
 
-// In a process of its own, whose memory does not count.
+// Runs in a process of its own, whose memory does not count.
 void make_scene(std::size_t triangles, const std::filesystem::path& file) {
   const pid_t child = fork();
   if (child == 0) {
@@ -68,7 +68,7 @@ int run(Engine engine, std::size_t triangles, double user_size_m, double step) {
   const SimulatorMemory estimate = simulator_memory(scene, {&scanner, 1}, config, many);
   Simulator simulator(scene, scanner, config);
   const Network network = stations(scene, many);
-  VoxelField field;  // as a plan has it that writes what is covered
+  VoxelField field;  // as in a plan that writes the covered surface
   simulator.evaluate(network, {.field = &field});
   const std::vector<Network> population(8, network);
   simulator.evaluate_sampled(population, {.voxels = 20'000});

@@ -10,7 +10,7 @@
 
 namespace vantage::test {
 
-// Has every Vulkan instance from here on loaded with the layer. REQUIRES: none was made yet.
+// Loads the layer into every Vulkan instance from here on. REQUIRES: none was made yet.
 inline const FaultControl& open_layer() {
   setenv("VK_ADD_LAYER_PATH", VANTAGE_FAULT_LAYER_FOLDER, 1);
   setenv("VK_INSTANCE_LAYERS", "VK_LAYER_VANTAGE_faults", 1);

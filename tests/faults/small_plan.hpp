@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A plan of milliseconds that goes through all that a plan goes through, to be made to fail anywhere.
+// A plan of a few milliseconds that covers all stages of planning, to be made to fail anywhere.
 #pragma once
 
 #include <filesystem>
@@ -16,10 +16,10 @@ class SmallPlan {
  public:
   SmallPlan(Engine engine, bool validation);
 
-  // Scene to front, as text with every bit of it.
+  // Runs from scene to front; returns the front as text, with every bit of it.
   std::string run(const std::filesystem::path& checkpoint, bool resume);
   const std::vector<std::string>& warned() const { return warned_; }  // since the last run() began
-  bool searching() const { return searching_; }                       // whether it came to a first evaluation
+  bool searching() const { return searching_; }                       // whether it reached a first evaluation
 
  private:
   TemporaryFolder folder_;
@@ -29,18 +29,18 @@ class SmallPlan {
   bool searching_ = false;
 };
 
-// What became of a plan that met a fault.
+// Outcome of a plan that met a fault.
 struct Outcome {
   enum class Kind {
-    same,     // it went on to the front of one that met none
+    same,     // continued to the front of an undisturbed plan
     refused,  // one clear error, before there was anything to lose
-    saved,    // one clear error, and from the checkpoint it goes on to that front
+    saved,    // one clear error; from the checkpoint it continues to that front
     wrong
   } kind;
   std::string text;  // the error, or what is wrong
 };
 
-// `arm` is called just before the plan, and `disarm` just after it, before it is tried whether the checkpoint is good.
+// Calls `arm` just before the plan, and `disarm` just after it, before testing the checkpoint.
 Outcome attempt(SmallPlan& plan, const std::string& front, const std::function<void()>& arm,
                 const std::function<void()>& disarm);
 

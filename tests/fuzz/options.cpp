@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the program reads of its users: the command line, configuration files, results of a plan.
+// Input from users of the program: the command line, configuration files, results of a plan.
 #include "cli/options.hpp"
 
 #include "cli/command.hpp"
@@ -44,7 +44,7 @@ void command_line(Bytes bytes) {
     else if (c != '\0')
       words.back() += c;
   Commands commands;
-  std::reverse(words.begin(), words.end());  // as CLI11 takes them
+  std::reverse(words.begin(), words.end());  // the order that CLI11 expects
   accepts([&] {
     try {
       commands.app.parse(words);

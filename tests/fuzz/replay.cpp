@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The same targets without libFuzzer: vantage-fuzz-replay TARGET MUTATIONS FILES… tries each file and so many mutations
-// of each, the same every time. vantage-fuzz-replay --write-seeds tests/fuzz/seeds makes those of the program's own
-// files anew, after a change of their format.
+// Runs the fuzz targets without libFuzzer. `vantage-fuzz-replay TARGET MUTATIONS FILES…` tries each file and MUTATIONS
+// mutations of each, always the same ones. `vantage-fuzz-replay --write-seeds tests/fuzz/seeds` rewrites the seeds of
+// the program's own files, after a change of their format.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -20,7 +20,7 @@ namespace {
 
 using Input = std::vector<std::uint8_t>;
 
-// One to eight changes: bits, odd bytes, numbers, runs copied, inserted, taken away, ends cut off.
+// Makes one to eight changes: bits, odd bytes, numbers; runs copied, inserted or removed; ends cut off.
 Input mutated(const Input& seed, RandomStream& random) {
   static constexpr const char* kWords[] = {"nan", "inf",  "-0",  "1e308", "1e-320", "0x1p9", "1,5",
                                            "",    "null", "[[[", "\"\"",  "-1",     "{",     "18446744073709551616"};
@@ -56,7 +56,7 @@ Input mutated(const Input& seed, RandomStream& random) {
   return out;
 }
 
-// So that a finding can be looked at: the input that was being tried.
+// Keeps the current input, to examine a finding.
 Input current;
 void keep() {
   std::ofstream("fuzz-finding", std::ios::binary)

@@ -7,8 +7,8 @@
 
 namespace vantage::fuzz {
 
-// Every other file is marked by patterns of names besides what it says itself; patterns that match any node, since one
-// that matches none is refused.
+// Every other file is also marked by patterns of names. They match any node, since a pattern without a match is
+// rejected.
 static SceneOptions options_for(Bytes bytes) {
   SceneOptions options;
   if (bytes.size() % 2 == 0) return options;

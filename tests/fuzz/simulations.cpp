@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes, scanners and networks made of bytes.
+// Scenes, scanners and networks made from bytes.
 #include <array>
 #include <vector>
 
@@ -25,7 +25,7 @@ Vec3 corner(Source& from, bool on_grid) {
 
 }  // namespace
 
-// Embree against every ray with every triangle in double precision.
+// Compares Embree with every ray against every triangle in double precision.
 void reference(Bytes bytes) {
   Source from(bytes);
   Scanner scanner;
@@ -72,7 +72,7 @@ void reference(Bytes bytes) {
   });
 }
 
-// Any numbers at all: refused, or finite results that add up.
+// Any numbers are rejected, or give finite results that add up.
 void simulator(Bytes bytes) {
   Source from(bytes);
   Scanner scanner;
@@ -115,7 +115,7 @@ void simulator(Bytes bytes) {
   }
   accepts([&] {
     scanner.check();
-    if (scanner.rays() > 20'000) return;  // right, but slow
+    if (scanner.rays() > 20'000) return;  // valid, but slow
     const Scene scene = Scene::from_triangles(positions, triangles);
     Simulator simulator(scene, scanner, config);
     if (simulator.voxel_count() > 1'000'000) return;

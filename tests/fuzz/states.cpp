@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files that the program keeps for itself. What is behind their checksums is reached with checksums made to fit.
+// Files that the program keeps for itself. Valid checksums are made, to reach the code behind them.
 #include <cmath>
 #include <cstring>
 #include <memory>
@@ -37,8 +37,8 @@ std::string saved(const Optimiser& optimiser) {
   return std::move(out).str();
 }
 
-// The head of a saved state up to the length of its payload, taken from one that the optimiser wrote: magic, version
-// (8 bytes), length of the kind (8 bytes), kind.
+// Header of a saved state up to the length of its payload, taken from one that the optimiser wrote: magic, version (8
+// bytes), length of the kind (8 bytes), kind.
 std::string head_of(const std::string& state) {
   const std::size_t at = std::strlen("vantage optimiser\n") + 8;
   std::uint64_t kind = 0;
@@ -50,13 +50,13 @@ std::string signed_state(const std::string& head, Bytes payload) {
   std::string whole = head;
   append(whole, std::uint64_t{payload.size()});
   whole.append(payload.begin(), payload.end());
-  std::uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a, as optimise/state_file.cpp
+  std::uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a, as in optimise/state_file.cpp
   for (const char c : whole) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
   append(whole, hash);
   return whole;
 }
 
-// So many rounds of asking and telling.
+// Runs that many rounds of ask and tell.
 void go_on(Optimiser& optimiser, int rounds) {
   for (int round = 0; round < rounds && optimiser.stop_reason() == StopReason::running; ++round) {
     const auto xs = optimiser.ask();
@@ -72,7 +72,7 @@ void load_and_go_on(std::size_t kind, const std::string& bytes) {
   const auto optimiser = small_optimiser(kind);
   std::istringstream in(bytes);
   if (!accepts([&] { optimiser->load(in); })) return;
-  // A state that was taken must be one to go on from.
+  // An accepted state must be usable.
   go_on(*optimiser, 2);
   const std::string again = saved(*optimiser);
   std::istringstream back(again);
@@ -135,7 +135,7 @@ void checkpoint(Bytes bytes) {
   });
 }
 
-// The first byte says of which optimiser, and whether the bytes are a whole file or what is behind the head.
+// The first byte selects the optimiser, and whether the bytes are a whole file or the part behind the header.
 void optimiser_state(Bytes bytes) {
   if (bytes.empty()) return;
   const std::size_t kind = bytes[0] % 4;

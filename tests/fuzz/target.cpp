@@ -32,7 +32,7 @@ constexpr Target kTargets[] = {{"gltf", gltf},
                                {"reference", reference},
                                {"simulator", simulator}};
 
-// A folder of this process, gone with it.
+// A folder of this process, removed with it.
 struct Folder {
   std::filesystem::path path;
   Folder() {
@@ -63,7 +63,7 @@ const Target& target(std::string_view name) {
 
 void broken(const std::string& promise) {
   std::fprintf(stderr, "broken: %s\n", promise.c_str());
-  std::terminate();  // whose handler may keep the input
+  std::terminate();  // its handler may keep the input
 }
 
 std::filesystem::path file_of(Bytes bytes, const std::string& name) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is fuzzed: functions of any bytes. Each may refuse them with a vantage::Error that says something; everything
-// else that leaves it, and every promise that does not hold, is a finding.
+// Fuzz targets: functions of arbitrary bytes. Each may reject them with a vantage::Error with a message. Any other
+// exception, and every broken promise, is a finding.
 #pragma once
 
 #include <cmath>
@@ -24,10 +24,10 @@ struct Target {
   void (*run)(Bytes bytes);
 };
 std::span<const Target> targets();
-// Throws std::invalid_argument and lists them.
+// Throws std::invalid_argument and lists the targets.
 const Target& target(std::string_view name);
 
-// A promise that does not hold: says which, and aborts.
+// Reports a broken promise and aborts.
 [[noreturn]] void broken(const std::string& promise);
 inline void require(bool holds, const char* promise) {
   if (!holds) broken(promise);
@@ -36,7 +36,7 @@ inline void require_finite(double value, const char* what) {
   if (!std::isfinite(value)) broken(std::string(what) + " is " + std::to_string(value));
 }
 
-// Runs a reader; whether it took the bytes. An Error must have words.
+// Runs a reader and returns whether it accepted the bytes. An Error must have a message.
 template <class Read>
 bool accepts(Read&& read) {
   try {
@@ -48,11 +48,11 @@ bool accepts(Read&& read) {
   }
 }
 
-// The bytes as a file of that name, in memory where the system has such a folder.
+// Writes the bytes to a file of that name, in memory if the system has such a folder.
 std::filesystem::path file_of(Bytes bytes, const std::string& name);
 inline std::string text_of(Bytes bytes) { return {bytes.begin(), bytes.end()}; }
 
-// Numbers taken from the front of the bytes; zeros behind their end.
+// Takes numbers from the front of the bytes; zeros after their end.
 class Source {
  public:
   explicit Source(Bytes bytes) : left_(bytes) {}
@@ -67,8 +67,8 @@ class Source {
     for (int k = 0; k < 8; ++k) value |= std::uint64_t{byte()} << (8 * k);
     return value;
   }
-  double any_real();                        // any double, some more often: NaN, infinity, 0, 1
-  double between(double low, double high);  // one of 65536
+  double any_real();                        // any double, with NaN, infinity, 0 and 1 more often
+  double between(double low, double high);  // one of 65536 values
   std::uint32_t below(std::uint32_t n) { return n > 0 ? byte() % n : 0; }
   bool empty() const { return left_.empty(); }
   Bytes rest() const { return left_; }
@@ -77,10 +77,10 @@ class Source {
   Bytes left_;
 };
 
-// Files below seeds/ and what they hold: states that nobody writes by hand.
+// Files below seeds/ and their contents: states that nobody writes by hand.
 std::vector<std::pair<std::string, std::string>> state_seeds();
 
-// The targets, a file each kind.
+// The targets, one file per kind.
 void gltf(Bytes);
 void image(Bytes);
 void panorama(Bytes);

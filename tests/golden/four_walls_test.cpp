@@ -38,7 +38,7 @@ TEST_F(FourWalls, HaveThePapersRaysAndGoal) {
 }
 
 // The walls are axis-aligned rectangles, so the voxels that they touch are plain intervals. Counted in double, on the
-// grid that the simulator itself reports by the centres of its voxels.
+// simulator's own grid, by the centres of its voxels.
 TEST_F(FourWalls, TouchAsManyVoxelsAsCountedInDouble) {
   const Simulator s = simulator();
   const double size = s.voxel_size_m();
@@ -58,7 +58,7 @@ TEST_F(FourWalls, TouchAsManyVoxelsAsCountedInDouble) {
   EXPECT_EQ(s.voxel_count(), cells.size());
 }
 
-// A station 3 m in front of each wall sees that wall alone.
+// A station 3 m in front of each wall sees only that wall.
 TEST_F(FourWalls, ReachThePapersCoverageWithAStationBeforeEach) {
   Simulator s = simulator();
   const Network network{{{8, 0, 1.5}}, {{-8, 0, 1.5}}, {{0, 8, 1.5}}, {{0, -8, 1.5}}};
@@ -66,7 +66,7 @@ TEST_F(FourWalls, ReachThePapersCoverageWithAStationBeforeEach) {
   const double share = coverage(counts, s.goal_density());
   std::printf("coverage %.4f\n", share);
   EXPECT_NEAR(share, 0.89, 0.005);
-  // Two walls share the column of voxels at their corner, and no more.
+  // Two walls share only the column of voxels at their corner.
   const auto column = static_cast<std::uint64_t>(std::ceil(5 / s.voxel_size_m()));
   for (const std::uint64_t both : counts.shared) EXPECT_LE(both, column);
 }

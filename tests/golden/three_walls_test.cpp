@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Table 3 of the method: one station before three walls, without and with noise. Prints the tables that docs/cases.md
-// shows.
+// Table 3 of the method: one station facing three walls, without and with noise. Prints the tables of docs/cases.md.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -97,8 +96,8 @@ TEST_F(ThreeWalls, GiveTable3) {
     EXPECT_GT(noisy.walls.at(far).lost(), noisy.walls.at("wall-centre").lost());
 }
 
-// Every count once more from the paper alone. Rays that pass within rounding of a wall's border, or of a voxel's, may
-// fall on either side of it; noise is drawn otherwise, so that its counts agree as two samples of one distribution do.
+// Repeats every count from the paper alone. Rays within rounding of a wall's border, or of a voxel's, may fall on
+// either side. The noise is another sample, so its counts agree as two samples of one distribution.
 TEST_F(ThreeWalls, CountAsInDouble) {
   const Evaluation clean = evaluate(false), noisy = evaluate(true);
   const test::WallCounts reference = test::count_walls_in_double({.aside = 17.875});
@@ -119,9 +118,9 @@ TEST_F(ThreeWalls, CountAsInDouble) {
   EXPECT_NEAR(noisy.coverage, reference.noisy.coverage, 0.0005);
 }
 
-// What is left to choose: equation 2 gives voxels of 1 cm and a goal of 2.8 while the side walls stand 17.84 to 17.93 m
-// aside. There the points and the clean coverage are the paper's; noise takes what the walls' depth in their voxels
-// gives it.
+// The remaining choice: equation 2 gives voxels of 1 cm and a goal of 2.8 if the side walls stand 17.84 to 17.93 m
+// aside. There the points and the clean coverage are the paper's; the loss to noise depends on the walls' depth in
+// their voxels.
 TEST_F(ThreeWalls, LoseToNoiseWhatTheirDepthInTheVoxelsDecides) {
   std::printf("| side walls aside (m) | goal | points | coverage | with noise | lost |\n");
   std::printf("| --- | --- | --- | --- | --- | --- |\n");
@@ -145,8 +144,8 @@ TEST_F(ThreeWalls, LoseToNoiseWhatTheirDepthInTheVoxelsDecides) {
   EXPECT_LT(test::count_walls_in_double({.aside = 17.94}).goal_density, 1);
 }
 
-// The other reading: side walls 30 m away along the line of sight, 20° off it, and voxels set to 1 cm whatever equation
-// 2 says. No step gives both the paper's points and its coverage.
+// The other reading: side walls 30 m away along the line of sight, 20° off it, and voxels of 1 cm regardless of
+// equation 2. No step gives both the paper's points and its coverage.
 TEST_F(ThreeWalls, ReadOtherwiseMissThePapersPointsOrItsCoverage) {
   constexpr double degree = 0.017453292519943295;
   std::printf("| step | points | coverage |\n| --- | --- | --- |\n");
@@ -162,7 +161,7 @@ TEST_F(ThreeWalls, ReadOtherwiseMissThePapersPointsOrItsCoverage) {
 
 TEST_F(ThreeWalls, HaveNoiseOfHalfAMillimetreToTwo) {
   const NoiseModel model = make_noise_model(scanner_, 1);
-  // Head on, R = 0.1 is the reflectivity.
+  // At normal incidence, R = 0.1 is the reflectivity.
   EXPECT_NEAR(model_sigma(model, 10, 0.1), 0.0006, 0.0001);
   EXPECT_GE(model_sigma(model, 10, 0.1), 0.0005);
   EXPECT_LE(model_sigma(model, 30, 0.1), 0.002);

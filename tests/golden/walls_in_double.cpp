@@ -13,7 +13,7 @@ constexpr double pi = 3.14159265358979323846;
 constexpr double user_size = 0.01, spacing = 0.006, diffuse = 0.1, head = 1.5, wide = 5, high = 2.5;
 
 // Table 1 at the diffuse coefficients that a wall of 0.1 shows: between its rows of 8 % and 21 %, and along the first
-// below it.
+// row below it.
 double sigma(double distance, double reflectivity) {
   constexpr std::array<double, 5> distances{5, 10, 20, 40, 60}, black{0.5, 0.6, 0.7, 2.5, 5.0},
       grey{0.4, 0.5, 0.6, 0.8, 2.0};
@@ -25,11 +25,11 @@ double sigma(double distance, double reflectivity) {
   return std::max(0.0, at(black) + row * (at(grey) - at(black))) * 1e-3;
 }
 
-// A wall's voxels are one layer in x, and an interval in y and in z.
+// A wall's voxels: one layer in x, and an interval in y and in z.
 struct Wall {
   double x, y_low;
   std::int64_t layer = 0, first_y = 0, first_z = 0, columns = 0, rows = 0;
-  std::array<std::vector<std::uint32_t>, 2> count = {};  // without noise, with it
+  std::array<std::vector<std::uint32_t>, 2> count = {};  // without noise, with noise
   std::uint64_t points = 0;
   std::array<std::uint64_t, 2> on_surface{};
 };
@@ -58,7 +58,7 @@ WallCounts count_walls_in_double(const WallCase& where) {
     result.voxels += wall.count[0].size();
   }
 
-  // What a point does to the counts; whether it lies in a voxel of some wall.
+  // Adds a point to the counts; returns whether it lies in a voxel of a wall.
   const auto add = [&](double x, double y, double z, std::size_t noisy) {
     for (Wall& wall : walls) {
       const std::int64_t column = cell(y, 1) - wall.first_y, row = cell(z, 2) - wall.first_z;
@@ -74,7 +74,7 @@ WallCounts count_walls_in_double(const WallCase& where) {
   struct Azimuth {
     double cosine, sine;
   };
-  std::vector<Azimuth> ahead;  // of all columns those that look towards the walls
+  std::vector<Azimuth> ahead;  // columns that face the walls
   for (int j = 0; j < static_cast<int>(2 * pi / step); ++j) {
     const double azimuth = (j + 0.5) * step - pi;
     if (std::abs(azimuth) < pi / 2) ahead.push_back({std::cos(azimuth), std::sin(azimuth)});
@@ -83,7 +83,7 @@ WallCounts count_walls_in_double(const WallCase& where) {
     const double zenith = (i + 0.5) * step, sine = std::sin(zenith), cosine = std::cos(zenith);
     for (const Azimuth& azimuth : ahead) {
       const double dx = sine * azimuth.cosine, dy = sine * azimuth.sine;
-      for (Wall& wall : walls) {  // the nearest first
+      for (Wall& wall : walls) {  // nearest first
         const double t = wall.x / dx, y = t * dy, z = head + t * cosine;
         if (y < wall.y_low || y > wall.y_low + wide || z < 0 || z > high) continue;
         const double s = sigma(t, diffuse * dx), moved = t + s * normal(random);

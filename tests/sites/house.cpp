@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A house of two storeys, 10 × 8 m, in a garden of 26 × 22 m: a hall with a stair of 17 rises of 0.18 m, three rooms
-// above and two below, a gabled roof over an attic that nothing leads to. The front door stands open.
+// A house of two storeys, 10 × 8 m, in a garden of 26 × 22 m: a hall with a stair of 17 rises of 0.18 m, two rooms
+// below and three above, and a gabled roof over an inaccessible attic. The front door stands open.
 #include "sites/shapes.hpp"
 
 namespace vantage::test {

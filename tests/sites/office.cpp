@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // One floor of an office, 24 × 15 m: a corridor with four rooms on either side, ceiling, plenum and a flat roof with a
-// parapet. One enters from the east, at the corridor's end.
+// parapet. The entrance is at the eastern end of the corridor.
 #include "sites/shapes.hpp"
 
 namespace vantage::test {
@@ -27,7 +27,7 @@ Site office() {
       {"kitchen", 0.3, 4.94}, {"open_office", 5.06, 14.94}, {"office_4", 15.06, 19.94}, {"store", 20.06, 23.7}};
   std::vector<Box> outer{block(0, kX, 0, kY, 0, kTop + 0.3)};
   std::vector<Box> open{block(kOuter, kX - kOuter, kOuter, kY - kOuter, 0, kTop + 0.3),
-                        block(kX - kOuter, kX, 7.0, 8.0, 0, 2.1)};  // the way in
+                        block(kX - kOuter, kX, 7.0, 8.0, 0, 2.1)};  // the entrance
   std::vector<Box> walls{block(kOuter, kX - kOuter, kSouth, kSouth + kInner, 0, kClear),
                          block(kOuter, kX - kOuter, kNorth, kNorth + kInner, 0, kClear)};
   std::vector<Box> doors;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The default question on whole places as users bring them: what it asks for is met, every room is visited, and the
-// time on site is about what it takes.
+// The default question on whole sites: its requirements are met, every room is visited, and the time on site is
+// plausible.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,10 +14,10 @@
 namespace vantage {
 namespace {
 
-// Rays and voxels that make a plan a matter of seconds.
+// Rays and voxels that let a plan take seconds.
 constexpr double kStep_deg = 0.6, kVoxel_m = 0.3, kSpacing_m = 0.1;
 constexpr std::uint64_t kSample = 4'000;
-// Of the share that the whole site is captured by, what a room without a station of its own has to have.
+// Least coverage of a room without a station, relative to that of the whole site.
 constexpr double kRoomShare = 0.7;
 
 Scanner coarse_scanner() {
@@ -77,7 +77,7 @@ TEST_P(Plans, MeetWhatIsAskedAndVisitEveryRoom) {
     EXPECT_TRUE(visited || captured_of(place, site, simulator, field) >= kRoomShare * whole) << place.name;
   }
 
-  // Straight lines in the order told, a quarter longer for what is in the way.
+  // Straight lines in the order of visits, plus a quarter for obstacles.
   ASSERT_TRUE(entry.visit);
   const OnSiteOptions on_site;
   double walk = 0;
@@ -116,7 +116,7 @@ TEST(PlansInATime, HaveAsManyStationsAsThereIsTimeFor) {
   EXPECT_LE(entry.visit->minutes, limit);
   EXPECT_LT(entry.value("capture"), all.value("capture"));
   EXPECT_FALSE(met(result));
-  // The walk of the whole network is about as long as that of a part of it gets.
+  // The walk of the whole network is about as long as that of a part.
   const double each = (all.visit->scan_min + all.visit->set_up_min) / static_cast<double>(all.stations.size());
   EXPECT_GE(static_cast<double>(entry.stations.size()) + 1, std::floor((limit - all.visit->walk_min) / each));
   const std::vector<std::string> help = what_would_help(result);

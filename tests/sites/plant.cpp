@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A small process plant on plain ground, 30 × 20 m: tanks, a pipe rack, pumps, and a platform that a stair leads to.
+// A small process plant on plain ground, 30 × 20 m: tanks, a pipe rack, pumps, and a platform with a stair.
 #include "sites/shapes.hpp"
 
 namespace vantage::test {
@@ -39,7 +39,7 @@ Site plant() {
     add_cylinder(add_part(site, "pipe_" + std::to_string(i + 1), kSteel, Surface::equipment),
                  {1.0, 8.5 + 0.7 * i, 3.25}, 0, 0.15, 27, 12);
 
-  // the stair comes up beside the deck's eastern edge
+  // the stair arrives beside the deck's eastern edge
   constexpr double kX0 = 10, kX1 = 17, kX2 = 17.9, kY0 = 14, kY1 = 18.5, kFoot = 12.6, kHead = kFoot + 13 * kGoing;
   carve(add_part(site, "platform_deck", kSteel, Surface::floor),
         {block(kX0, kX1, kY0, kY1, kDeck - 0.1, kDeck), block(kX1, kX2, kHead, kY1, kDeck - 0.1, kDeck)});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Unit and up of the reference sites, however they are written.
+// Unit and up axis of the reference sites, however they are written.
 #include <gtest/gtest.h>
 
 #include "sites/site.hpp"

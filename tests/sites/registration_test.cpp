@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The predicted registration error on a whole place: what a sample tells of it, and that it does not depend on where on
-// Earth the place lies.
+// The predicted registration error on a whole site: from a sample, and independent of the site's place on Earth.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +17,7 @@
 namespace vantage {
 namespace {
 
-// A place, and a station in the middle of each of its first rooms where one can stand.
+// A site, with a station in the middle of each of its first accessible rooms.
 struct Surveyed {
   explicit Surveyed(const std::string& name, const test::Variant& variant = {}) {
     const test::TemporaryFolder folder;
@@ -41,7 +40,7 @@ struct Surveyed {
   Network network;
 };
 
-// How far off a sample is depends on how many voxels hold the weakest stations; that it is as far off as it says does
+// A sample's error depends on how many voxels hold the weakest stations; that it agrees with its standard error does
 // not.
 TEST(Registration, OfASampleIsAsFarOffAsItsStandardErrorSays) {
   Surveyed plant("plant");
@@ -64,8 +63,8 @@ TEST(Registration, OfASampleIsAsFarOffAsItsStandardErrorSays) {
   }
   RecordProperty("percent_off", std::to_string(100 * std::sqrt(squares) / truth));
   EXPECT_LT(std::sqrt(squares), 0.2 * truth);
-  // Of twenty, 19 would lie within 1.96 and the middle one at 0.67, known to some 0.2. Variances tell less: where the
-  // weakest link rests on voxels of one group, a draw's is as large as those of all others together.
+  // Of twenty, 19 should lie within 1.96, and the middle one at 0.67, known to some 0.2. Variances say less: if the
+  // weakest link rests on voxels of one group, one draw's is as large as those of all others together.
   std::ranges::sort(off);
   EXPECT_LT(off[16], 1.96);
   EXPECT_GT(off[10], 0.25);

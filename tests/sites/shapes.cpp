@@ -23,7 +23,7 @@ void add_polygon(Part& part, const std::vector<Vec3>& corners) {
 double& axis(Vec3& v, int a) { return a == 0 ? v.x : a == 1 ? v.y : v.z; }
 double axis(const Vec3& v, int a) { return a == 0 ? v.x : a == 1 ? v.y : v.z; }
 
-// Cells between all faces of the boxes; a cell is solid or not as a whole.
+// Cells between all faces of the boxes; each cell is solid or empty as a whole.
 struct Cells {
   std::vector<double> at[3];
   std::vector<char> solid;
@@ -48,7 +48,7 @@ struct Cells {
   }
 };
 
-// Faces across axis `a` at plane `n`, joined into rectangles.
+// Faces across axis `a` at plane `n`, merged into rectangles.
 void add_faces(Part& part, Cells& cells, int a, int n, bool forward) {
   const int b = (a + 1) % 3, c = (a + 2) % 3;
   const int columns = cells.count(b), rows = cells.count(c);
@@ -165,7 +165,7 @@ void add_ball(Part& part, const Vec3& centre, double radius) {
 void add_gabled_roof(Part& roof, Part& gables, const Box& plan, double z, double slope_deg, double eaves) {
   constexpr double kThick = 0.2, kWall = 0.3;
   const double slope = std::tan(slope_deg * std::numbers::pi / 180), middle = (plan.min.y + plan.max.y) / 2;
-  const auto under = [&](double y) {  // the slabs' lower side: through the middle of the walls' tops
+  const auto under = [&](double y) {  // the slabs' underside: through the middle of the walls' tops
     return z + slope * (std::min(y - plan.min.y, plan.max.y - y) - kWall / 2);
   };
   const double south = plan.min.y - eaves, north = plan.max.y + eaves;
@@ -182,7 +182,7 @@ void add_gabled_roof(Part& roof, Part& gables, const Box& plan, double z, double
              {north, under(north) + kThick},
              {middle, under(middle) + kThick}},
             x0, x1);
-  // half-way into the slabs, so that no light comes in
+  // half-way into the slabs, so that no light enters
   const auto gable = [&](double from) {
     const double low = plan.min.y + kWall / 2, high = plan.max.y - kWall / 2;
     add_prism(
@@ -199,7 +199,7 @@ void add_flight(Part& part, double x0, double x1, double y, double z, int count,
   std::vector<Box> steps;
   for (int i = 0; i + 1 < count; ++i) {
     const double top = z + rise * (i + 1), from = y + going * i;
-    // reaches under the next one, so that the flight is one body
+    // extends under the next one, so that the flight is one body
     steps.push_back(block(x0, x1, from, from + going * (i + 2 < count ? 2 : 1), std::max(z, top - kThick), top));
   }
   carve(part, steps);

@@ -14,8 +14,8 @@ namespace {
 
 constexpr Vec3 kUtm{500000, 5400000, 400};
 
-// Whether p lies left of the line through a and b, seen from above. Each edge is asked in one direction only, so that
-// exactly one of two triangles that share it has a point on it.
+// Whether p lies left of the line through a and b, seen from above. Each edge is tested in one direction only, so that
+// a point on it is in exactly one of its two triangles.
 bool left_of(const Vec3& a, const Vec3& b, const Vec3& p) {
   if (std::tie(b.x, b.y) < std::tie(a.x, a.y)) return !left_of(b, a, p);
   return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x) > 0;
@@ -26,7 +26,7 @@ struct Crossing {
   bool upward;  // the upper side of something
 };
 
-// Where the vertical through p crosses the part.
+// Intersections of the vertical line through p with the part.
 std::vector<Crossing> crossings(const Part& part, const Vec3& p) {
   std::vector<Crossing> out;
   for (const auto& t : part.triangles) {
@@ -68,7 +68,7 @@ Standing Site::at(const Vec3& ground) const {
   double under_z = 0, ceiling = std::numeric_limits<double>::infinity();
   bool on_site = false;
   for (const Part& part : parts) {
-    int shells = 0;  // around the point above the ground
+    int shells = 0;  // shells around the point above the ground
     for (const Crossing& c : crossings(part, p)) {
       on_site = true;
       if (c.z > above) {

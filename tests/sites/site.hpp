@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sites as users bring them: unmarked models of whole places, each with the truth about where a person can stand in it.
+// Sites as users have them: unmarked models of whole places, with the truth about where a person can stand.
 #pragma once
 
 #include <array>
@@ -13,34 +13,34 @@
 
 namespace vantage::test {
 
-// What lies under a point, as a person sees it who has to put a tripod there.
+// The surface under a point, for a person who places a tripod.
 enum class Surface {
-  floor,      // reached on foot from the entry, and a person stands upright
-  covered,    // a floor that is reached, with less than `kUpright_m` above it: under a table or a stair
+  floor,      // reached on foot from the entry, with room to stand upright
+  covered,    // a reached floor with less than `kUpright_m` above it: under a table or a stair
   furniture,  // on a table, a bed, a chair, a shelf
   equipment,  // on a tank, a pipe, a pump
   car,
   tree,
   roof,
   wall_top,  // on a wall, a parapet, a railing
-  sealed,    // a floor that nobody gets to: an attic, a house without a door
-  inside,    // within something solid
+  sealed,    // an inaccessible floor: an attic, a house without a door
+  inside,    // inside a solid
   air,       // nothing within `kTouch_m` above or below
-  outside,   // off the site: nothing above or below at all
+  outside,   // off the site: nothing above or below
 };
 const char* to_string(Surface surface);
 
 constexpr double kUpright_m = 1.9;
 constexpr double kTouch_m = 0.05;
 
-// A point's surface, and the place it belongs to: a place's name, else the part's (a stair, a threshold).
+// A point's surface, and its place: a place's name, else the part's (a stair, a threshold).
 struct Standing {
   Surface surface = Surface::outside;
   std::string place;
   int storey = 0;
 };
 
-// A room, or a piece of open ground: a rectangle of floor.
+// A room or a piece of open ground: a rectangle of floor.
 struct Place {
   std::string name;
   int storey = 0;
@@ -48,7 +48,7 @@ struct Place {
   bool outdoors = false;
 };
 
-// One node: closed shells, Z up, metres. `top` is what its upper sides are to stand on.
+// One node: closed shells, Z up, metres. `top`: kind of its upper sides.
 struct Part {
   std::string name;
   std::array<float, 3> colour{0.8F, 0.8F, 0.8F};  // linear
@@ -57,30 +57,30 @@ struct Part {
   std::vector<std::array<std::uint32_t, 3>> triangles = {};
 };
 
-// How a site is written: what exporters do to the same model.
+// How a site is written, as exporters do with the same model.
 struct Variant {
-  bool millimetres = false;  // every length 1000 times as large
+  bool millimetres = false;  // every length times 1000
   bool z_up = false;         // coordinates as modelled, not turned to glTF's Y up
   bool utm = false;          // 500 km east, 5400 km north, 400 m up, in the translation of the root node
-  double per_metre = 1;      // another unit's, where `millimetres` is not set
-  bool nameless = false;     // without any names
+  double per_metre = 1;      // another unit, unless `millimetres` is set
+  bool nameless = false;     // without names
 };
 
 struct Site {
   std::string name;
   std::vector<Part> parts;
-  std::vector<Place> places;  // those to be visited
-  Vec3 entry;                 // on the floor where one comes in
-  Vec3 offset;                // of the survey frame, by the variant
+  std::vector<Place> places;  // places to visit
+  Vec3 entry;                 // on the floor at the entrance
+  Vec3 offset;                // of the survey frame, by variant
 
-  // What lies under a point of the survey frame, in metres.
+  // The surface under a point of the survey frame, in metres.
   Standing at(const Vec3& ground) const;
 };
 
 std::span<const char* const> site_names();  // office, house, street, plant
-// Throws std::invalid_argument where there is no such site.
+// Throws std::invalid_argument if there is no such site.
 Site make_site(const std::string& name, const Variant& variant = {});
-// As a GLB without any roles; the same arguments give the same bytes.
+// Writes a GLB without roles; the same arguments give the same bytes.
 void write_site(const Site& site, const Variant& variant, const std::filesystem::path& file);
 
 Site office();

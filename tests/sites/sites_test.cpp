@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The truth of each site against the file that is written of it: what one reaches on foot over the loaded triangles,
-// cell by cell, is what the truth calls a floor.
+// Compares the truth of each site with its file: what one reaches on foot over the loaded triangles, cell by cell, is
+// what the truth calls a floor.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ using test::Surface;
 
 constexpr double kCell = 0.1, kStep = 0.25;
 
-// The loaded scene cut by verticals through the middles of cells: heights on which a person could stand upright.
+// The loaded scene cut by vertical lines through the middles of cells: heights at which a person could stand upright.
 class Columns {
  public:
   explicit Columns(const Scene& scene) : origin_(scene.bounds().min) {
@@ -42,7 +42,7 @@ class Columns {
     levels_.resize(hits.size());
     for (std::size_t c = 0; c < hits.size(); ++c) {
       std::ranges::sort(hits[c], {}, &Hit::z);
-      int shells = 0;  // around what lies above the hits so far
+      int shells = 0;  // shells around the space above the hits so far
       for (std::size_t i = 0; i < hits[c].size(); ++i) {
         const Hit& hit = hits[c][i];
         shells += hit.upward ? -1 : 1;
@@ -54,7 +54,7 @@ class Columns {
     }
   }
 
-  // Marks what is reached from a point by steps of at most kStep.
+  // Marks the cells reached from a point by steps of at most kStep.
   void walk(const Vec3& entry) {
     struct Visit {
       int x, y;
@@ -100,7 +100,7 @@ class Columns {
     bool reached;
   };
   std::size_t index(int x, int y) const { return static_cast<std::size_t>(y * nx_ + x); }
-  // off the middle by irrational shares, so that no vertical meets an edge
+  // off the middle by irrational shares, so that no vertical line meets an edge
   static double middle(int i) { return (i + 0.4142135623) * kCell; }
   void cut(const Vec3* p, std::vector<std::vector<Hit>>& hits) const {
     const Vec3 n = cross(p[1] - p[0], p[2] - p[0]);
@@ -144,7 +144,7 @@ TEST_P(Sites, FloorsAreWhatIsReachedOnFoot) {
     Columns columns(scene);
     columns.walk(site.entry);
     std::size_t floors = 0, missed = 0, wrong = 0;
-    std::map<std::string, std::pair<std::size_t, std::size_t>> places;  // cells and how many are reached
+    std::map<std::string, std::pair<std::size_t, std::size_t>> places;  // cells, and reached cells
     std::map<Surface, std::size_t> seen;
     columns.each([&](const Vec3& ground, bool reached) {
       const Standing standing = site.at(ground);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The derived search area of each reference site against the site's truth: no place where nobody gets to, and a place
-// in every room that can be entered.
+// Compares the derived search area of each reference site with its truth: no inaccessible place, and a place in every
+// accessible room.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A street of 60 × 30 m between two rows of three houses. The houses have no doors: what is in them, floor and attic,
-// is sealed.
+// A street of 60 × 30 m between two rows of three houses. The houses have no doors, so their floors and attics are
+// sealed.
 #include "sites/shapes.hpp"
 
 namespace vantage::test {

@@ -12,7 +12,7 @@
 namespace vantage::test {
 namespace {
 
-// Nearer than this to an edge or a face, rounding may decide: 1e-4 m up to 100 m, 64 ulp beyond.
+// Closer than this to an edge or a face, rounding may decide: 1e-4 m up to 100 m, 64 ulp beyond.
 double undecided_m(const ReferenceHit& hit) {
   return std::max(1e-4, hit.triangle == ReferenceHit::none ? 0.0 : 64 * 0x1p-24 * hit.t);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An engine held against the double-precision brute force of support/reference_tracer.
+// Compares an engine with the double-precision brute force of support/reference_tracer.
 #pragma once
 
 #include <cstdint>
@@ -13,11 +13,11 @@
 
 namespace vantage::test {
 
-// Largest differences over all rays that both hit on the same triangle.
+// Largest differences over all rays that hit the same triangle in both.
 struct Comparison {
   std::uint64_t rays = 0, hits = 0;
   std::uint64_t differing = 0;    // in hit, mesh or voxel
-  std::uint64_t unexplained = 0;  // of these, farther than 1e-4 m from an edge, an end of the range or a voxel face
+  std::uint64_t unexplained = 0;  // of these, further than 1e-4 m from an edge, an end of the range or a voxel face
   std::uint64_t broken = 0;       // not a number, or a hit outside the range
   double range_m = 0, relative_range = 0, sigma_m = 0;
   void add(const Comparison& other);
@@ -30,7 +30,7 @@ Comparison compare(Tracer& tracer, const TraceScene& scene, const TraceStation& 
                    std::span<const ReferenceHit> reference);
 Comparison compare(Tracer& tracer, const TraceScene& scene, const TraceStation& station);
 
-// Largest difference between the σ that moved the engine's points and the model's for the reference's distance and
+// Largest difference between the σ that moved the engine's points and the model's σ for the reference's distance and
 // reflectivity. `noisy` and `clean` trace the same scene with and without `noise`.
 double sigma_difference(Tracer& noisy, Tracer& clean, const NoiseModel& noise, const TraceStation& station,
                         std::span<const ReferenceHit> reference);

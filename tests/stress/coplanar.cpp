@@ -14,7 +14,7 @@ namespace vantage::test {
 namespace {
 
 struct Plane {
-  Vec3 corner, along, up;  // unit, at right angles
+  Vec3 corner, along, up;  // unit, perpendicular
   Vec3 at(double x, double y) const { return corner + along * x + up * y; }
   Vec3 normal() const { return cross(along, up); }
 };

@@ -32,7 +32,7 @@ std::vector<Edge> edges_of(const std::vector<Triangle>& triangles) {
   return edges;
 }
 
-// A turn uniform over all turns, by a random unit quaternion.
+// A uniformly random rotation, by a random unit quaternion.
 struct Turn {
   Vec3 x, y, z;
   explicit Turn(std::mt19937_64& rng) {
@@ -85,7 +85,7 @@ ClosedMesh bumpy_sphere() {
 }
 
 ClosedMesh sliver_prism() {
-  // Points of the outline come in eight clusters, 2e-6 m from one to the next.
+  // Points of the outline lie in eight clusters, 2e-6 m from one to the next.
   ClosedMesh mesh{"slivers 1 : 10⁶", {{0, 0, -1}, {0, 0, 1}}, {}, 0.3};
   constexpr std::uint32_t clusters = 8, in_cluster = 5, outline = clusters * in_cluster;
   for (std::uint32_t k = 0; k < outline; ++k) {
@@ -146,7 +146,7 @@ Leaks count_leaks(const EngineInfo& engine, const ClosedMesh& mesh, std::uint64_
     } while (length({station.origin.x, station.origin.y, station.origin.z}) > mesh.core_m);
     const Vec3 origin{station.origin.x, station.origin.y, station.origin.z};
 
-    // One row: all rays share a z, so that columns can aim at whatever lies on that side.
+    // One row: all rays share a z, so columns can aim anywhere on that side.
     auto pattern = std::make_shared<RayPattern>();
     const double side = rng() % 2 == 0 ? 0.5 : -0.5;
     pattern->sin_zenith = {1};

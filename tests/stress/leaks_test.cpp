@@ -8,8 +8,7 @@ namespace {
 
 using Leakage = EngineSuite;
 
-// compute_bvh must be tight. The other two are Embree's and the driver's: bounded, so that a change for the worse
-// shows.
+// compute_bvh must be watertight. Embree's and the driver's leaks are bounded, so that a change for the worse shows.
 TEST_P(Leakage, RaysAtEdgesAndVerticesStayInside) {
   const bool tight = GetParam().engine == Engine::compute_bvh;
   for (const ClosedMesh& mesh : closed_meshes()) {

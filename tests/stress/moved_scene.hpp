@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One yard under a root node that shifts, scales or turns it, with scanner and voxels moved alike.
+// A yard under a root node that shifts, scales or turns it, with scanner and voxels moved alike.
 #pragma once
 
 #include <cstdint>
@@ -20,18 +20,18 @@ struct Move {
 std::vector<Move> shifts_and_scales();  // 1 km, 100 km, UTM, × 0.001, × 1000, and UTM with × 0.001
 std::vector<Move> turns();              // odd angles
 
-// A dish and a leaning box, surveyed, on uneven ground behind a fence, blocking; as glTF with `move` in a root node, or
+// A surveyed dish and a leaning box on uneven ground, behind a blocking fence. glTF with `move` in a root node, or
 // baked into its float32 vertices.
 Scene yard(const Move& move, bool baked = false);
 
 struct MovedFigures {
   std::uint64_t rays = 0;
-  std::uint64_t differing = 0;       // rays whose triangle or voxel is another
-  std::uint64_t differing_hits = 0;  // rays whose triangle is another, or that hit instead of missing
+  std::uint64_t differing = 0;       // rays with another triangle or voxel
+  std::uint64_t differing_hits = 0;  // rays with another triangle, or that hit instead of missing
   double farthest_m = 0;             // between points of the same ray and triangle, moved back
-  bool counts_equal = false;         // of every voxel
+  bool counts_equal = false;         // in every voxel
   double coverage = 0, moved_coverage = 0;
-  // Of the unmoved points, moved in double and put into the moved grid.
+  // From the unmoved points, moved in double and put into the moved grid.
   double predicted_coverage = 0;
 };
 MovedFigures compare_moved(const EngineInfo& engine, const Move& move, double step_degrees);

@@ -45,7 +45,7 @@ TEST_P(MovedScene, AWallSweptThroughAVoxelKeepsItsCoverage) {
 }
 VANTAGE_EVERY_ENGINE(MovedScene);
 
-// What is lost before the file is written cannot be won back, but must be said.
+// Precision lost before the file was written cannot be recovered, but must be reported.
 TEST(BakedCoordinates, AreNotedWithThePrecisionLost) {
   const auto note = [](const Scene& scene) {
     const auto found = std::ranges::find_if(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Networks of 1, 2, 64 and 150 stations, all in holes, seeing nothing in common; and more points than 32 bits hold.
+// Networks of 1, 2, 64 and 150 stations, all in holes, or with nothing in common; and more points than 32 bits hold.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -107,15 +107,15 @@ TEST_P(Networks, WithoutAnActiveStationOrACommonVoxelHaveNoOverlap) {
     EXPECT_EQ(overlap.value, 0);
     EXPECT_TRUE(std::isfinite(overlap.standard_error));
   }
-  // Three heads within the boiler, in the ground and far away: the largest overlap is 0.
+  // Three heads: in the boiler, in the ground and far away. The largest overlap is 0.
   const Network apart{{{0.7, 0.4, 1.31}}, {{0, 0, -3}}, {{500, 500, 1}}};
   const NetworkCounts counts = engine.evaluate(apart);
   EXPECT_GT(counts.seen[0], 0u);
   EXPECT_EQ(clustering_coefficient(overlap_matrix(counts)), 0);
   EXPECT_GT(coverage(counts, engine.goal_density()), 0);
 }
-// Five stations of 2³⁰ rays each, nearly all of them skipped: what keeps counts from wrapping comes in between, and
-// must leave them as they are.
+// Five stations of 2³⁰ rays each, nearly all skipped. The clamp against wrapping comes in between, and must not change
+// the counts.
 TEST_P(Networks, OfMoreThan32BitsOfRaysAddUpTheirStations) {
   const std::vector<Vec3> corners{{-0.1, 20, 1.4}, {0.1, 20, 1.4}, {0.1, 20, 1.6}, {-0.1, 20, 1.6}};
   const std::vector<std::array<std::uint32_t, 3>> triangles{{0, 1, 2}, {0, 2, 3}};
@@ -144,7 +144,7 @@ TEST_P(Networks, OfMoreThan32BitsOfRaysAddUpTheirStations) {
 }
 VANTAGE_EVERY_ENGINE(Networks);
 
-// The totals of fields whose voxels hold up to 2³² − 1 points each, and together far more than 2³².
+// Totals of fields whose voxels hold up to 2³² − 1 points each, and together far more than 2³².
 TEST(ManyPoints, AddUpBeyond32Bits) {
   constexpr std::uint32_t full = std::numeric_limits<std::uint32_t>::max();
   const std::vector<std::uint32_t> counts{full, full, full - 1, 0x80000000u, 7, 0};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Geometry that no one models on purpose and every export holds.
+// Geometry that nobody models on purpose but exports contain.
 #include <cmath>
 #include <limits>
 #include <string>
@@ -79,7 +79,7 @@ TEST_P(OddGeometry, BrokenFlatAndDoubledTrianglesAreDroppedWithTheirCount) {
   expect_same(count(GetParam(), scene), clean);
 }
 
-// A surveyed sheet over blocking triangles with the very same corners: the points count, whichever comes first.
+// A surveyed sheet over blocking triangles with identical corners: the points count, whichever comes first.
 TEST_P(OddGeometry, SurveyedOverBlockingWithTheSameCornersCounts) {
   const Counted clean = count(GetParam(), Yard().scene());
   Yard yard;
@@ -89,12 +89,12 @@ TEST_P(OddGeometry, SurveyedOverBlockingWithTheSameCornersCounts) {
   expect_same(count(GetParam(), scene), clean);
 }
 
-// In one plane but cut otherwise, what the surveyed surface covers of the blocking one is cut away.
+// In one plane but with other triangles, the part of the blocking surface under the surveyed one is cut away.
 TEST_P(OddGeometry, SurveyedInTheVeryPlaneOfBlockingIsWhatIsHit) {
   const auto clean = count(GetParam(), Yard().scene());
   Yard yard;
   yard.mesh("behind", "blocking", {-3, 0, -2, 3, 0, -2, 0, 4, -2});
-  yard.mesh("beside", "blocking", {2, 0, -2, 4, 0, -2, 4, 3, -2});  // touches the first triangle's edge only
+  yard.mesh("beside", "blocking", {2, 0, -2, 4, 0, -2, 4, 3, -2});  // touches only the first triangle's edge
   const Scene scene = yard.scene();
   EXPECT_TRUE(noted(scene, "1 blocking triangles lies in one plane with 2 surveyed"));
   EXPECT_FALSE(noted(Yard().scene(), "in one plane"));
@@ -112,7 +112,8 @@ TEST_P(OddGeometry, SurveyedInTheVeryPlaneOfBlockingIsWhatIsHit) {
   }
 }
 
-// Slivers as thin as float32 resolves do not disturb what lies behind: the wall cut into a fan of them counts as one.
+// Slivers as thin as float32 resolves do not disturb surfaces behind them: a wall cut into a fan of slivers counts as
+// one.
 TEST_P(OddGeometry, SliversOfAWallCountAsTheWall) {
   const Counted clean = count(GetParam(), Yard().scene());
   Yard yard;

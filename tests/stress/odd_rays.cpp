@@ -56,7 +56,7 @@ TraceStation at(double x, double y, double z) {
   return {{static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)}, 0};
 }
 
-// A room with a box on its floor, a tank's worth of facets beside it.
+// A room with a box on its floor, and a many-sided tank beside it.
 OddTriangles furnished_room() {
   OddTriangles t;
   t.box({-4, -3, 0}, {4, 3, 3});
@@ -87,11 +87,11 @@ std::vector<OddRays> odd_rays(double step) {
   all.push_back({"station 1e-6 m off a surface, d_min 0.1 m", scene_of(room, pattern_of(step, 0.1, 60), 0.1), off});
   all.push_back({"station 1e-6 m off a surface, d_min 0", scene_of(room, pattern_of(step, 0, 60), 0.1), off, true});
 
-  // A sphere's worth of rays at a wall 2 m off: the ring where the range begins, and where it ends, lies on the wall.
+  // A full sphere of rays and a wall 2 m away: the rings where the range begins and ends lie on the wall.
   OddTriangles wall;
   wall.quad({2, -6, -6}, {0, 12, 0}, {0, 0, 12});
   all.push_back({"d_min and d_max across a wall", scene_of(wall, pattern_of(step, 2.5, 5), 0.1), {at(0, 0, 0)}});
-  // Straight at the wall the hit is at exactly d_min, or d_max.
+  // Straight ahead, the hit is at exactly d_min, or d_max.
   for (const bool least : {true, false}) {
     auto straight = std::make_shared<RayPattern>();
     for (int k = -50; k <= 50; ++k) {
@@ -108,7 +108,7 @@ std::vector<OddRays> odd_rays(double step) {
                    true});
   }
 
-  // Ground seen under 80° to 89.99° from its normal: 8594 m out at the last.
+  // Ground seen at 80° to 89.99° from its normal, up to 8594 m away.
   OddTriangles ground;
   for (int i = 0; i < 20; ++i)
     for (int j = 0; j < 20; ++j)
@@ -127,7 +127,7 @@ std::vector<OddRays> odd_rays(double step) {
   grazing->max_range = 9000;
   all.push_back({"grazing, 80° to 89.99°", scene_of(ground, grazing, 500), {at(0.3, 0.2, 1.5)}});
 
-  // Straight up and down, and within 1e-7 to 0.1° of it, in a room whose floor and ceiling meet there at a vertex.
+  // Straight up and down, and within 1e-7 to 0.1° of that, in a room with vertices of floor and ceiling there.
   auto poles = std::make_shared<RayPattern>();
   for (const double sign : {1.0, -1.0}) {
     poles->sin_zenith.push_back(0);

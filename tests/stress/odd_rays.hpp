@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays where rounding is at its worst: from inside or on a surface, at the ends of the range, grazing, at the poles.
+// Rays for which rounding is worst: from inside or on a surface, at the ends of the range, grazing, at the poles.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ struct OddRays {
   std::string name;
   TraceScene scene;
   std::vector<TraceStation> stations;
-  bool at_a_limit = false;  // hits lie within rounding of an end of the range, so that each may be taken or passed
+  bool at_a_limit = false;  // hits lie within rounding of an end of the range, so each may count or not
 };
 std::vector<OddRays> odd_rays(double step_degrees);
 

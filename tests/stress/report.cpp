@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// vantage-stress: prints the tables of docs/stability.md, each under the command that makes it.
+// vantage-stress: prints the tables of docs/stability.md, each under its command.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -69,8 +69,8 @@ void moved(const std::vector<EngineInfo>& engines, double size) {
 
 void turned(const std::vector<EngineInfo>& engines, double size) {
   const double step = 0.25 / size;
-  head({"turned by", "engine", "rays", "hits that differ", "points apart by up to (m)", "coverage changed by",
-        "of which the new cut explains all but"});
+  head({"turned by", "engine", "rays", "hits that differ", "points apart by up to (m)", "change of coverage",
+        "not explained by the new cut"});
   for (const Move& move : turns()) {
     for (const EngineInfo& engine : engines) {
       const MovedFigures f = compare_moved(engine, move, step);
@@ -81,7 +81,7 @@ void turned(const std::vector<EngineInfo>& engines, double size) {
 }
 
 void baked(const std::vector<EngineInfo>&, double) {
-  head({"baked into float32 vertices at", "what the load notes"});
+  head({"baked into float32 vertices at", "note of the load"});
   for (const Move& move : {Move{"(0, 0, 0)", {}}, Move{"1 km", {1000, 1000, 0}}, Move{"100 km", {100'000, 100'000, 0}},
                            Move{"UTM (500 000, 4 500 000)", {500'000, 4'500'000, 230}}}) {
     const Scene scene = yard(move, true);
@@ -149,7 +149,7 @@ void reference(const std::vector<EngineInfo>& engines, double) {
 
 void many(const std::vector<EngineInfo>& engines, double size) {
   head({"stations", "engine", "rays", "points", "the voxel's count", "goal", "coverage", "from 64 bits",
-        "from 32 that wrapped"});
+        "from wrapped 32 bits"});
   for (const EngineInfo& engine : engines)
     for (const ManyPoints& m : trace_many_points(engine, 0.028 / std::sqrt(size)))
       row({count(m.stations), to_string(engine.engine), count(m.rays), count(m.points), count(m.count), number(m.goal),
@@ -161,7 +161,7 @@ int run(int argc, char** argv) {
   const std::vector<std::pair<std::string, Part>> parts{
       {"moved", moved},       {"turned", turned}, {"baked", baked}, {"sweep", sweep},         {"leaks", leaks},
       {"coplanar", coplanar}, {"odd", odd},       {"edges", edges}, {"reference", reference}, {"many", many}};
-  const std::string costly = "many";  // minutes on a graphics card: only where asked for
+  const std::string costly = "many";  // minutes on a graphics card: only on request
   std::vector<std::string> wanted, wanted_engines;
   double size = 1;
   for (int i = 1; i < argc; ++i) {

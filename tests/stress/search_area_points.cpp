@@ -11,7 +11,7 @@
 namespace vantage::test {
 namespace {
 
-// Ground of columns × rows jittered cells over u in [0, width] and v in [0, 1], 40 m of it a unit of v.
+// Ground of columns × rows jittered cells over u in [0, width] and v in [0, 1], with 40 m per unit of v.
 SearchMesh terrain(int columns, int rows, double width) {
   std::mt19937_64 rng(31);
   std::uniform_real_distribution<double> jitter(-0.3, 0.3);

@@ -10,7 +10,7 @@ namespace vantage::test {
 
 struct EdgePoints {
   std::string name;
-  std::uint64_t points = 0, lost = 0;  // four neighbours 1e-13 away included
+  std::uint64_t points = 0, lost = 0;  // including four neighbours 1e-13 away
   double farthest_m = 0;               // from the same point of the edge in space
   double jump_m = 0;                   // to the neighbours
 };

@@ -15,7 +15,7 @@ TEST(SearchAreaPoints, OnEdgesAreFoundWhereTheEdgeIs) {
   }
 }
 
-// Two charts over one another: the first triangle of the mesh wins everywhere, on the edges of either too.
+// Two overlapping charts: the first triangle of the mesh wins everywhere, also on the edges of either.
 TEST(SearchAreaPoints, OverlappingChartsGiveTheFirst) {
   SearchMesh mesh;
   mesh.uvs = {{0, 0}, {1, 0}, {1, 1}, {0.2, 0.1}, {0.9, 0.1}, {0.9, 0.7}, {0, 0}, {1, 1}, {0, 1}};

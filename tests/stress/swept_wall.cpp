@@ -51,7 +51,7 @@ SweepFigures sweep_wall(const EngineInfo& engine, int axis, int steps) {
   scanner.azimuth_step = scanner.zenith_step = Angle::degrees(1);
   std::vector<double> places;
   for (int step = 0; step <= steps; ++step) places.push_back(face + size * step / steps);
-  for (const double at : {face, face + size}) {  // and every float about either face
+  for (const double at : {face, face + size}) {  // and every float around either face
     float place = static_cast<float>(at);
     for (int ulp = 0; ulp < 3; ++ulp) place = std::nextafter(place, -1e9f);
     for (int ulp = 0; ulp < 7; ++ulp, place = std::nextafter(place, 1e9f)) places.push_back(static_cast<double>(place));
@@ -70,7 +70,7 @@ SweepFigures sweep_wall(const EngineInfo& engine, int axis, int steps) {
     for (std::uint64_t rank = 0; rank < field.count.size(); ++rank) {
       const Vec3 c = simulator.voxel_centre(rank);
       const double second = component(c, axis == 0 ? 1 : 0), third = component(c, axis == 2 ? 1 : 2);
-      // The wall's own, a voxel in from its outline: all that it marks on either side of its plane.
+      // The wall's own voxels, one voxel in from its outline: all that it marks on either side of its plane.
       if (std::abs(component(c, axis) - place) > size || second < -1.53 + size || second > 1.57 - size ||
           third < 1.07 + size || third > 3.17 - size)
         continue;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Simulators on several threads and in a caller's own tasks; callbacks that throw, and stops at any moment: what comes
-// of a call is what it always is, whatever went on beside it or before it.
+// Simulators on several threads and in a caller's own tasks, callbacks that throw, and stops at any moment. A call's
+// result never depends on other calls.
 #include <sys/wait.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -42,13 +42,13 @@ Simulator simulator(const EngineInfo& engine, std::uint64_t max_rays = 0) {
            .max_rays_per_dispatch = max_rays}};
 }
 
-// Another for each k, of three stations.
+// A different network for each k, of three stations.
 Network network(std::size_t k) {
   const double at = 0.1 * static_cast<double>(k);
   return {{{3.5 - at, 0.2, 1.2}}, {{-1 + at, 3.1, 1.4}}, {{-0.6, -3 + at, 1.3}}};
 }
 
-// All that a simulator makes of one network.
+// All results of a simulator for one network.
 struct Outcome {
   VoxelField field;
   NetworkCounts exact, sampled;
@@ -123,7 +123,7 @@ struct Thrown : std::runtime_error {
   Thrown() : std::runtime_error("thrown by a callback") {}
 };
 
-// Runs it again and again, the n-th callback throwing, for every n until none is left to throw.
+// Runs it repeatedly with the n-th callback throwing, for every n until none throws.
 int throw_at_each(const std::function<void(const std::function<void()>& callback)>& run) {
   for (int n = 0;; ++n) {
     int left = n;
@@ -167,7 +167,7 @@ TEST_P(Threads, CallbacksThatThrowLeaveTheSimulatorWell) {
   expect_same(outcome(engine, 1), expected);
 }
 
-// A thousand times in all, most of them where one is quick.
+// A thousand times in all, mostly on the fast engine.
 TEST_P(Threads, StopsAtAnyMomentAreSaidOrTooLate) {
   const int times = GetParam().engine == Engine::embree ? 800 : 100;
   Simulator engine = simulator(GetParam(), 2'000);
@@ -217,7 +217,7 @@ TEST_P(Threads, WorksInTasksOfTheCaller) {
   for (std::size_t k = 0; k < many; ++k) expect_same(got[k], expected[k]), expect_same(held[k], expected[k]);
 }
 
-// A child has none of its parent's threads: it leaves, or becomes another program, and the parent notices nothing.
+// A child has none of its parent's threads. It exits, or becomes another program, and the parent is unaffected.
 TEST_P(Threads, AForkedChildMayLeaveOrRunAnother) {
   Simulator engine = simulator(GetParam());
   const Outcome expected = outcome(engine, 2);

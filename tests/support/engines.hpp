@@ -14,10 +14,9 @@ void PrintTo(const EngineInfo& info, std::ostream* out);
 
 namespace test {
 
-// All pairs of engine and device that can run: what needs ray queries finds the software device, where the GPU has
-// none.
+// All pairs of engine and device that can run. If the GPU has no ray queries, they run on the software device.
 std::vector<EngineInfo> usable_engines();
-// The same of a list that was not asked of the machine.
+// The same for a given list.
 std::vector<EngineInfo> usable_of(std::vector<EngineInfo> listed);
 std::string name_of(const EngineInfo& info);  // letters, digits and _ only
 

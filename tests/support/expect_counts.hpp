@@ -7,7 +7,7 @@
 
 namespace vantage::test {
 
-// Everything that an objective is made of; not rays, points or times.
+// Compares every input of an objective, but not rays, points or times.
 inline void expect_equal_counts(const NetworkCounts& got, const NetworkCounts& expected) {
   EXPECT_EQ(got.voxels, expected.voxels);
   EXPECT_EQ(got.weight, expected.weight);

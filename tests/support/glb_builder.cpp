@@ -51,7 +51,7 @@ int GlbBuilder::triangle(const std::string& name, const nlohmann::json& extras) 
   const int points = positions({0, 0, 0, 1, 0, 0, 0, 1, 0});
   nlohmann::json entry{{"name", name}, {"mesh", mesh({{"attributes", {{"POSITION", points}}}})}};
   if (!extras.is_null()) entry["extras"] = {{"vantage", extras}};
-  // apart from one another, so that none is a duplicate
+  // separate places, so that none is a duplicate
   entry["translation"] = {0, 0, -1.0 * static_cast<double>(json["nodes"].size())};
   return node(entry);
 }

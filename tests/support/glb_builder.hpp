@@ -12,8 +12,7 @@
 
 namespace vantage::test {
 
-// Builds small glTF files by hand, right or wrong: `json` is the whole document and may be changed at will before
-// writing.
+// Builds small glTF files, valid or not: `json` is the whole document and may be changed freely before writing.
 class GlbBuilder {
  public:
   GlbBuilder() {
@@ -52,7 +51,7 @@ class GlbBuilder {
 void write_bytes(const std::filesystem::path& file, const std::string& bytes);
 std::string base64(const std::vector<std::uint8_t>& bytes);
 
-// As a file that is written, read and removed.
+// Writes it to a file, loads that and removes it.
 Scene load(const GlbBuilder& builder, const SceneOptions& options = {});
 
 }  // namespace vantage::test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Small scenes of quadrilaterals with closed forms.
+// Small scenes of quadrilaterals with closed-form results.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ class QuadScene {
  public:
   explicit QuadScene(const Vec3& origin = {}) { data_.origin = origin; }
 
-  // Corner, and the two edges from it; texture coordinates run from (0, 0) at the corner along the edges.
+  // Takes a corner and the two edges from it; texture coordinates run from (0, 0) at the corner along the edges.
   QuadScene& quad(const Float3& corner, const Float3& u, const Float3& v, Role role = Role::surveyed,
                   double diffuse = 0.5, const Material& material = {}) {
     const auto first = static_cast<std::uint32_t>(data_.positions.size());
@@ -55,7 +55,7 @@ inline QuadScene wall_and_floor(const Vec3& origin = {}) {
   return scene;
 }
 
-// Beside that wall, which asks for 0.08 m, another that asks for 0.2 m.
+// That wall, which wants a detail of 0.08 m, and another that wants 0.2 m.
 inline QuadScene walls_of_two_details() {
   QuadScene scene = wall_and_floor();
   scene.quad({-6, -3, -1.5f}, {0, 6, 0}, {0, 0, 4});

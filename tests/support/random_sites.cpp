@@ -16,7 +16,7 @@ namespace {
 
 constexpr double goal = 6.5;
 
-// VANTAGE_SEEDS=first..last looks further than the default.
+// VANTAGE_SEEDS=first..last overrides the default seeds.
 std::pair<std::uint64_t, std::uint64_t> seeds(std::uint64_t usual_first, std::uint64_t usual_last) {
   const char* text = std::getenv("VANTAGE_SEEDS");
   unsigned long long first = usual_first, last = usual_last;
@@ -30,13 +30,13 @@ struct RandomSite {
   std::vector<TraceStation> stations;
 };
 
-// Closed, of triangles that hang together, with dents that fold it as seen from most places.
+// A closed ball of connected triangles, with dents that fold it as seen from most places.
 std::vector<Float3> bumpy_ball(RandomStream& random, const Float3& centre, float radius) {
   constexpr std::size_t rows = 9, columns = 14;
   std::vector<Float3> corners((rows + 1) * columns);
   for (std::size_t r = 0; r <= rows; ++r)
     for (std::size_t c = 0; c < columns; ++c) {
-      if (c > 0 && (r == 0 || r == rows)) {  // a pole is one place
+      if (c > 0 && (r == 0 || r == rows)) {  // a pole is a single place
         corners[r * columns + c] = corners[r * columns];
         continue;
       }
@@ -58,8 +58,8 @@ std::vector<Float3> bumpy_ball(RandomStream& random, const Float3& centre, float
   return triangles;
 }
 
-// Clouds of triangles of all sizes, slivers, walls, coincident walls of both roles, grazing planes; heads anywhere, on
-// surfaces too; and balls.
+// Triangles of all sizes, slivers, walls, coincident walls of both roles, grazing planes and balls; heads anywhere,
+// also on surfaces.
 RandomSite random_site(std::uint64_t seed) {
   RandomStream random(seed, 1);
   const double scale = std::pow(10.0, 2 * random.uniform() - 1), offset = random.bits() % 3 == 0 ? 100 * scale : 0;
@@ -83,7 +83,7 @@ RandomSite random_site(std::uint64_t seed) {
   soup(blocking, 100, 0.3);
   const float s = static_cast<float>(scale);
   for (int k = 0; k < 4; ++k) {
-    // A wall, sometimes along the axes, and a piece of the other role on the very same plane.
+    // A wall, sometimes along the axes, and a piece of the other role in exactly the same plane.
     const Float3 corner{place(1.5), place(1.5), place(0.8)};
     const Float3 u = k % 2 ? Float3{s, 0, 0} : Float3{s * 0.7f, s * 0.6f, s * 0.1f}, v{0, 0, s * 0.9f};
     const auto wall = quad(corner, u, v),
@@ -115,7 +115,7 @@ RandomSite random_site(std::uint64_t seed) {
   scanner.noise = rtc360_noise();
   for (double& d : scanner.noise.distances_m) d *= scale / 10;
   for (double& d : scanner.noise.sigma_m)
-    d *= scale * (seed % 7 == 0 ? 20 : 1);  // a reach beyond the nearest range, too
+    d *= scale * (seed % 7 == 0 ? 20 : 1);  // also a reach beyond the nearest range
   RandomSite site;
   site.scene = trace_scene(scene, scanner, (0.08 + 0.15 * random.uniform()) * scale, seed);
   for (std::uint32_t k = 0; k < 7; ++k) {
@@ -154,7 +154,7 @@ RaysTraced expect_every_way_agrees(const std::function<std::unique_ptr<Tracer>(c
       EXPECT_EQ(all.stations, skipped.stations);
       EXPECT_EQ(exact.points_on_surveyed, part.points_on_surveyed);
 
-      // Each voxel its own group: then groups are voxels.
+      // Each voxel is its own group, so groups are voxels.
       const std::vector<std::vector<TraceStation>> networks{site.stations};
       const std::vector<std::uint32_t> sizes{7};
       // All points, and as many as voxels need.

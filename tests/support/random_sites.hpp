@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sites made to be awkward, on which every way of counting must agree in every voxel.
+// Deliberately awkward sites on which every way of counting must agree in every voxel.
 #pragma once
 
 #include <cstdint>
@@ -10,13 +10,14 @@
 
 namespace vantage::test {
 
-// What was traced of exact evaluations.
+// Rays traced by exact evaluations.
 struct RaysTraced {
   std::uint64_t all = 0, skipping = 0;
 };
 
-// Exact with and without skipping, and a sample of all voxels, stopped at the goal and not, by the engine that `make`
-// makes, with noise and without; seeds `first` to `last`, or those of VANTAGE_SEEDS=first..last.
+// Compares exact evaluations, with and without skipping, and a sample of all voxels, with and without stopping at the
+// goal, with and without noise. `make` makes the engine. Uses seeds `first` to `last`, or those of
+// VANTAGE_SEEDS=first..last.
 RaysTraced expect_every_way_agrees(const std::function<std::unique_ptr<Tracer>(const TraceScene&)>& make,
                                    std::uint64_t first, std::uint64_t last);
 

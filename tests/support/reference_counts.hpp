@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a network's counts are, counted one voxel, station and pair at a time.
+// Counts a network one voxel, station and pair at a time, as the reference.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@
 
 namespace vantage::test {
 
-// Equations 8 and 11 from a voxel field. Without station masks in it nothing is seen or shared; without demands every
-// voxel counts once and has the same goal.
+// Equations 8 and 11 from a voxel field. Without station masks nothing is seen or shared. Without demands every voxel
+// has weight 1 and the same goal.
 NetworkCounts reference_counts(const VoxelField& field, std::uint32_t stations, double goal_density,
                                const VoxelDemands& demands = {});
 

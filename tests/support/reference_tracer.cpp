@@ -36,7 +36,7 @@ Float3 turned(const Turn& turn, const Float3& d) {
 
 struct Crossing {
   bool inside = false;
-  double t = 0, u = 0, v = 0;  // weights of the second and third vertex
+  double t = 0, u = 0, v = 0;  // u, v: weights of the second and third vertex
   double boundary = 1e300;     // from the plane's point to the triangle's boundary
 };
 

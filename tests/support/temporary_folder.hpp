@@ -5,7 +5,7 @@
 
 namespace vantage::test {
 
-// A fresh folder that is gone with the object.
+// A fresh folder, removed with the object.
 class TemporaryFolder {
  public:
   TemporaryFolder();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Small scenes, already in the local frame, for the trace tests.
+// Small scenes in the local frame, for the trace tests.
 #pragma once
 
 #include <cstdint>

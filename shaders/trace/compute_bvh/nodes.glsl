@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tree in device memory: BvhNode and BvhTriangle, 16 bytes at a time, and the starts of tiles.
+// The tree in device memory: BvhNode and BvhTriangle, 16 bytes at a time, and starts of tiles.
 #ifndef VANTAGE_TRACE_COMPUTE_BVH_NODES
 #define VANTAGE_TRACE_COMPUTE_BVH_NODES
 #include "lib/parameters.glsl"

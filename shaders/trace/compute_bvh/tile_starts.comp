@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds for every listed tile the nodes of the BVH at which its rays may start: a thread a tile. The rays of a tile
-// leave one point in almost one direction, so far down the tree they all decide alike; the tile decides once for its
-// 1024 rays.
+// Finds the nodes of the BVH at which rays of each listed tile may start: one thread per tile. The rays of a tile leave
+// one point in almost the same direction, so their upper steps down the tree are alike; the tile takes these steps once
+// for its 1024 rays.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/tiles.glsl"
@@ -12,8 +12,8 @@
 layout(local_size_x = group_size) in;
 layout(push_constant, scalar) uniform Push { TilePush push; };
 
-// What lies on the inner side of four planes through the origin, and not beyond far. The planes hold all rays of a
-// tile: two upright ones through its first and last column, and two that touch the cones of its first and last row.
+// Space on the inner side of four planes through the origin, up to `far`. The planes enclose all rays of a tile: two
+// upright ones through its first and last column, and two that touch the cones of its first and last row.
 struct Beam {
   vec3 planes[4];
   float far;
@@ -26,14 +26,14 @@ Beam beam_of(uint tile, float far) {
   const vec2 first = vec2(parameters.cos_azimuth.at[column0], parameters.sin_azimuth.at[column0]),
              last = vec2(parameters.cos_azimuth.at[column1], parameters.sin_azimuth.at[column1]);
   Beam beam = Beam(vec3[4](vec3(0), vec3(0), vec3(0), vec3(0)), far);
-  // Wider tiles than 120° are not convex enough to be held by planes: everything is inside of (0, 0, 0).
+  // Tiles wider than 120° are not convex enough for planes: everything is inside (0, 0, 0).
   const float spread = length(first + last) * 0.5;  // cosine of half the width
   if (spread < 0.5 || float(column1 - column0) * parameters.azimuth_step > 2.1) return beam;
   const vec2 middle = (first + last) / (2.0 * spread);
   beam.planes[0] = vec3(-first.y, first.x, 0);
   beam.planes[1] = vec3(last.y, -last.x, 0);
   // A ray at zenith θ and horizontal distance ρ has ρ·cos θ0 ≥ z·sin θ0 from row 0 on, and ρ·cos θ1 ≤ z·sin θ1 up to
-  // row 1. Along the middle it goes u with u ≤ ρ ≤ u / spread.
+  // row 1. Its component u along the middle satisfies u ≤ ρ ≤ u / spread.
   const float cos0 = parameters.cos_zenith.at[row0], cos1 = parameters.cos_zenith.at[row1];
   const float wide = 1.00001 / spread;
   beam.planes[2] = vec3(middle * (cos0 > 0.0 ? cos0 * wide : cos0), -parameters.sin_zenith.at[row0]);
@@ -41,7 +41,7 @@ Beam beam_of(uint tile, float far) {
   return beam;
 }
 
-// Distance of the box from the origin; negative where it is out of the beam.
+// Distance of the box from the origin; negative if it is outside the beam.
 float distance_in(Beam beam, vec3 centre, vec3 half_size) {
   for (uint k = 0u; k < 4u; ++k)
     if (dot(beam.planes[k], centre) + dot(abs(beam.planes[k]), half_size) < 0.0) return -1.0;
@@ -56,10 +56,10 @@ void main() {
   Beam beam = beam_of(tile, min(parameters.max_range, push.tile_far.at[tile]));
   if (turned)
     for (uint p = 0u; p < 4u; ++p) beam.planes[p] = turn_direction(push.turn, beam.planes[p]);
-  // Twice as wide as the rays' own boxes of nodes, so that what a ray would enter is in the beam.
+  // Twice as wide as the rays' own boxes of nodes, so that everything that a ray would enter is in the beam.
   const float widening = 4.0 * widening_of(push.origin);
 
-  // Nodes that may still be opened, first in first out, and those at which rays start, nearest first: together at most
+  // Nodes that may still be opened, first in first out, and nodes where rays start, nearest first; together at most
   // tile_starts.
   uint waiting[tile_starts];
   TileStart starts[tile_starts];
@@ -84,7 +84,7 @@ void main() {
         ++inside;
         if ((children[c] & bvh_leaf_bit) != 0u) ++leaves;
       }
-    // A leaf's box is its parent's to test, so the parent is where rays start.
+    // The parent tests a leaf's box, so rays start at the parent.
     if (leaves > 0u || start_count + waiting_count + inside > tile_starts) {
       uint place = start_count++;
       for (; place > 0u && starts[place - 1u].near > near; --place) starts[place] = starts[place - 1u];

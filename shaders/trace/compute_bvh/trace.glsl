@@ -4,11 +4,11 @@
 #include "trace/compute_bvh/nodes.glsl"
 #include "trace/hit.glsl"
 
-// A ray as nodes' boxes are tested against, where a last bit more or less does no harm: contraction is welcome.
+// A ray for tests against nodes' boxes, where a last bit does no harm: contraction is welcome.
 struct NodeRay {
   vec3 inverse;
   vec3 moved;  // origin · inverse
-  vec3 size;   // of the inverse, times how much larger than they are boxes must be taken
+  vec3 size;  // size of the inverse, times the widening of boxes
 };
 
 NodeRay node_ray(vec3 origin, vec3 inverse, float widening) {
@@ -16,16 +16,16 @@ NodeRay node_ray(vec3 origin, vec3 inverse, float widening) {
   return NodeRay(inverse, origin * inverse, abs(inverse) * larger);
 }
 
-// The ray's way through a box, from x to y, up to t_max. Floats that are not negative are ordered as their bits are,
-// and of whole numbers a GPU may take the largest of three at once. What is negative becomes just any negative number:
-// it begins before t_min, or ends before it.
+// Interval of the ray inside a box, from x to y, up to t_max. Non-negative floats are ordered as their bits, and a GPU
+// takes the maximum of three integers at once. A negative value becomes any negative number, which begins before t_min,
+// or ends before it.
 ivec2 passage_of(NodeRay ray, vec3 centre, vec3 half_size, int t_min, int t_max) {
   const vec3 middle = centre * ray.inverse - ray.moved;
   const ivec3 near = floatBitsToInt(middle - half_size * ray.size), far = floatBitsToInt(middle + half_size * ray.size);
   return ivec2(max(max(max(near.x, near.y), near.z), t_min), min(min(min(far.x, far.y), far.z), t_max));
 }
 
-// Where the ray goes on when nothing is left of the node that it started at.
+// Node at which the ray continues once its start node is finished.
 uint next_start(Starts starts, inout uint started, inout uint depth, float nearest) {
   if (starts.list == 0ul || started == tile_starts) return bvh_end;
   const TileStart start = TileStarts(starts.list).at[starts.tile * tile_starts + started];
@@ -42,14 +42,14 @@ Hit trace(vec3 origin, vec3 direction, float t_min, float t_max, float enough, S
   const vec3 inverse = inverse_of(direction);
   const NodeRay ray = node_ray(origin, inverse, widening);
 
-  uint stack[bvh_stack_size];  // what is still to visit, above a mark for the end of it
+  uint stack[bvh_stack_size];  // nodes still to visit, above an end mark
   stack[0] = bvh_end;
   uint depth = 1u;
   uint current = 0u;  // the root is always a node
   uint started = 1u;
   if (starts.list != 0ul) current = TileStarts(starts.list).at[starts.tile * tile_starts].node;
-  // First down to a leaf, then its triangles: threads of a subgroup wait for each other at the leaves rather than take
-  // turns between nodes and triangles. All the time goes into the loop over nodes, and there into its instructions.
+  // First down to a leaf, then its triangles: threads of a subgroup wait for each other at the leaves instead of
+  // alternating between nodes and triangles. The time goes into the instructions of the loop over nodes.
   for (;;) {
     while ((current & bvh_leaf_bit) == 0u) {
       const uvec4 word0 = bvh_nodes.at[4u * current], word1 = bvh_nodes.at[4u * current + 1u],
@@ -60,7 +60,7 @@ Hit trace(vec3 origin, vec3 direction, float t_min, float t_max, float enough, S
                   way1 = passage_of(ray, uintBitsToFloat(word2.xyz), uintBitsToFloat(word3.xyz), first_t, last_t);
       const bool hit0 = way0.x <= way0.y, hit1 = way1.x <= way1.y;
       const bool first0 = hit0 && (!hit1 || way0.x <= way1.x);
-      stack[depth] = first0 ? child1 : child0;  // stays where both are hit
+      stack[depth] = first0 ? child1 : child0;  // kept if both are hit
       current = first0 ? child0 : child1;
       if (hit0 && hit1) ++depth;
       if (!hit0 && !hit1) {

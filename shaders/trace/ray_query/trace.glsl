@@ -7,8 +7,8 @@
 
 layout(set = 0, binding = 1) uniform accelerationStructureEXT acceleration_structure;
 
-// Weights of a triangle's second and third vertex where a ray that hits it does. The driver's own are good to 1e-5 at
-// best, which normals and reflectivities would show.
+// Weights of a triangle's second and third vertex at a hit. The driver's own are accurate to 1e-5 at best, which would
+// show in normals and reflectivities.
 vec2 barycentric_of(uint triangle, vec3 origin, vec3 direction, vec2 otherwise) {
   const uint first = 3u * triangle;
   const vec3 edges = edge_functions(
@@ -33,7 +33,7 @@ Hit trace(vec3 origin, vec3 direction, float t_min, float t_max, float enough, S
     hit.id = Uints(parameters.traversal[primitive_ids_array])
                  .at[rayQueryGetIntersectionInstanceCustomIndexEXT(query, true) * blas_triangles +
                      rayQueryGetIntersectionPrimitiveIndexEXT(query, true)];
-    // The scene's own arrays are there whenever anything that depends on weights is wanted.
+    // The scene's own arrays are present whenever an output depends on the weights.
     if (GIVEN(parameters.positions))
       hit.barycentric = barycentric_of(hit.id & ~surveyed_bit, origin, direction,
                                        rayQueryGetIntersectionBarycentricsEXT(query, true));

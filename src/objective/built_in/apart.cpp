@@ -7,7 +7,7 @@
 
 namespace vantage::built_in {
 
-// The distance of the two stations that stand nearest to each other; those that cannot be used stand nowhere.
+// Distance between the two nearest usable stations.
 Objective apart(const ObjectiveSettings&) {
   return {.name = "apart",
           .label = "Distance of the nearest two stations",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The objectives that have a name of their own: a file each in this folder, a line each in the module's list file.
+// Built-in objectives: one file each in this folder, one line each in the module's list file.
 #pragma once
 
 #include "vantage/objective.hpp"

@@ -7,8 +7,8 @@
 
 namespace vantage::built_in {
 
-// Coverage as a share of what can be seen at all. At most 1: the limit is an estimate, that a plan may pass by its
-// error.
+// Coverage as a share of attainable coverage, at most 1: the attainable coverage is an estimate, which a plan may
+// exceed by its error.
 Objective capture(const ObjectiveSettings& settings) {
   const double visible = settings.visible;
   if (!(visible > 0 && visible <= 1))

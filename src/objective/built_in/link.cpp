@@ -3,8 +3,8 @@
 
 namespace vantage::built_in {
 
-// The weakest link of the strongest tree that spans the network, by scan overlap over all surfaces, surveyed or not:
-// what practice asks to be at least 30 %. 0 where the network falls into parts.
+// Weakest link of the strongest spanning tree, by scan overlap over all surfaces, surveyed or not. Practice asks for at
+// least 30 %. 0 if the network is not connected.
 Objective link(const ObjectiveSettings&) {
   return {.name = "link",
           .label = "Weakest link (share of the smaller scan, over all surfaces)",

@@ -4,7 +4,7 @@
 
 namespace vantage::built_in {
 
-// Into how many parts a network falls that cannot be registered with each other.
+// Number of connected components, which cannot be registered with each other.
 Objective parts(const ObjectiveSettings& settings) {
   return {.name = "parts",
           .label = "Parts that no link connects",

@@ -10,7 +10,7 @@ namespace vantage::built_in {
 namespace {
 
 constexpr double millimetres = 1000;
-// What a search sees as the end of the scale. Better networks register to some tenths of a millimetre.
+// End of the search's scale. Good networks register to some tenths of a millimetre.
 constexpr double worst_mm = 10;
 
 std::string parameters_of(const RegistrationOptions& options) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the objectives of the registration error share.
+// Shared by the objectives of the registration error.
 #pragma once
 
 #include <string>

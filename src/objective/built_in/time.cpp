@@ -9,7 +9,7 @@ Objective time(const ObjectiveSettings& settings) {
           .label = "Time on site",
           .unit = "min",
           .best = 0,
-          // An hour a station, where the number is known: a scale that no survey leaves.
+          // An hour per station, if the number is known: no survey exceeds this scale.
           .worst = 60 * static_cast<double>(settings.stations_max),
           .needs = {.counts = false, .time = true},
           .value = [](const MeasuredNetwork& m) { return m.minutes_on_site; }};

@@ -3,8 +3,8 @@
 
 namespace vantage::built_in {
 
-// The weakest link of the strongest tree that spans the network: what its registration hangs by. 0 where it falls into
-// parts. Over surveyed voxels; `link` is over all surfaces.
+// Weakest link of the strongest spanning tree, on which registration depends, over surveyed voxels; `link` is over all
+// surfaces. 0 if the network is not connected.
 Objective weakest_link(const ObjectiveSettings&) {
   return {.name = "weakest_link",
           .label = "Weakest link (share of the smaller scan)",

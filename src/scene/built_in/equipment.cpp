@@ -11,13 +11,13 @@ namespace {
 
 constexpr dvec3 kEast{1, 0, 0}, kSouth{0, -1, 0};
 
-// How far a branch must reach back into a cylinder so that its whole rim lies inside.
+// How far a branch must reach into a cylinder so that its whole rim lies inside.
 double burial(double vessel_radius, double branch_radius) {
   return vessel_radius - std::sqrt(vessel_radius * vessel_radius - branch_radius * branch_radius) + 0.01;
 }
 
-// A plate across x that carries a lying cylinder: flat below, cut out above. `centre` is the cylinder's axis; the foot
-// is at `low`.
+// A plate across x that carries a lying cylinder: flat below, cut out above. `centre` is on the cylinder's axis; the
+// foot is at `low`.
 void add_saddle(Shaper& shaper, const dvec3& centre, double radius, double low, double half_width,
                 double half_thickness) {
   const int steps = std::max(4, shaper.detail().around(radius) / 4);
@@ -30,7 +30,7 @@ void add_saddle(Shaper& shaper, const dvec3& centre, double radius, double low, 
       const double x = centre.x + side * half_thickness;
       const dvec3 corner{x, side > 0 ? centre.y + y0 : centre.y + y1, low};
       shaper.face(corner, {0, side * (y1 - y0), 0}, {0, 0, z - low});
-      // the slanted rest up to the vessel
+      // the slanted remainder up to the vessel
       const double rise0 = side > 0 ? z0 : z1, rise1 = side > 0 ? z1 : z0;
       shaper.triangle(
           corner + dvec3{0, 0, z - low}, corner + dvec3{0, side * (y1 - y0), z - low},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vessels and machines of the industrial site. Closed shells: no triangles inside.
+// Vessels and machines of the industrial site. Closed shells, without triangles inside.
 #pragma once
 
 #include "scene/built_in/shapes.hpp"

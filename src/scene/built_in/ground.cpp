@@ -8,12 +8,12 @@
 namespace vantage::built_in {
 namespace {
 
-constexpr int kCells = 25;  // coarse cells a side; the search area has just these
+constexpr int kCells = 25;  // coarse cells per side; those of the search area
 constexpr double kSide = 40, kCell = kSide / kCells;
 constexpr double kEmbankment = 2.3;
 constexpr double kSlopeNorth = 10.4, kSlopeEast = 12.0,
                  kSlopeRun = 4.8;  // all on coarse lines, so that the breaks are sharp
-constexpr double kPad = 8.8;       // flat and level within this distance, where equipment stands
+constexpr double kPad = 8.8;       // flat and level within this distance, for the equipment
 
 double line(int i) { return -kSide / 2 + kCell * i; }
 
@@ -85,7 +85,7 @@ double area(const Mesh& mesh) {
 }  // namespace
 
 Mesh ground_mesh(std::size_t triangles) {
-  // columns × rows × 2 nearest to the wish, with cells as square as that allows
+  // columns × rows × 2 nearest to the wish, with cells as square as possible
   const double wish = static_cast<double>(triangles) / 2;
   const int square = std::max(kCells, static_cast<int>(std::sqrt(wish)));
   int columns = square, rows = square;

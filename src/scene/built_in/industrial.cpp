@@ -31,7 +31,7 @@ constexpr Colour kTank{0.36F, 0.44F, 0.38F}, kSteel{0.10F, 0.13F, 0.17F}, kDeckC
     kConcrete{0.40F, 0.39F, 0.36F}, kZinc{0.50F, 0.51F, 0.52F}, kBlack{0.03F, 0.03F, 0.03F},
     kCabinet{0.58F, 0.58F, 0.54F}, kGroundColour{0.24F, 0.20F, 0.13F};
 
-constexpr double kDiffuse = 0.24;  // the method's, after the dark green aspect of its model
+constexpr double kDiffuse = 0.24;  // as in the method, after the dark green look of its model
 constexpr Deck kDeckWest{-4.4, -4.19, -2.7, 5.8, 2.4, false}, kDeckSouth{-6.9, -6.8, -2.7, -4.2, 2.4, false};
 constexpr double kRackX[4] = {-1.6, 1.2, 4.0, 6.8}, kRackHalf = 1.0, kLower = 2.7, kUpper = 3.4, kRackTop = 3.9;
 
@@ -95,7 +95,7 @@ class Plant {
 
   Detail detail_;
   bool counting_, grating_;
-  std::deque<Entry> entries_;  // references to shapers stay good
+  std::deque<Entry> entries_;  // references to shapers stay valid
 };
 
 constexpr double kTankX = -5.75, kTankRadius = 1.15, kTankY[3] = {4.7, 1.4, -1.9};
@@ -161,8 +161,8 @@ void Plant::rack() {
   }
 }
 
-// How far below a pipe's axis an open block of this half width may end without showing its inside, however coarse the
-// pipe.
+// How far below a pipe's axis an open block of this half width may end without showing its inside, for any detail of
+// the pipe.
 double hidden_in(double pipe_radius, double half_width) {
   return 0.8 * std::sqrt(pipe_radius * pipe_radius - half_width * half_width);
 }
@@ -190,7 +190,7 @@ void Plant::rack_piping() {
     const char* name;
     Colour colour;
     double y, radius, level;
-    std::vector<dvec3> west, east;  // what leads on beyond the rack's ends; the level run lies between
+    std::vector<dvec3> west, east;  // runs beyond the rack's ends; the level run lies between
     PipeOptions options;
   };
   const double end_west = -1.95, end_east = 7.15;
@@ -355,7 +355,7 @@ void Plant::platforms() {
   constexpr double kInset = 0.03;
   const double w = kDeckWest.z, e = kDeckWest.x1 - kInset, n = kDeckWest.y1 - kInset, i = kDeckWest.x0 + kInset;
   Shaper& west_rails = part("railing-west", kYellow);
-  add_railing(west_rails, {{e, -4.15, w}, {e, n, w}, {-3.2, n, w}});  // the gap to the west of it leads to the ladder
+  add_railing(west_rails, {{e, -4.15, w}, {e, n, w}, {-3.2, n, w}});  // the gap to the west leads to the ladder
   add_railing(west_rails, {{-3.85, n, w}, {i, n, w}, {i, 5.25, w}});
   add_railing(west_rails, {{i, 4.15, w}, {i, 1.95, w}});
   add_railing(west_rails, {{i, 0.85, w}, {i, -1.35, w}});
@@ -405,7 +405,7 @@ Model industrial(std::size_t triangles) {
                                             " triangles; " + std::to_string(triangles) + " were asked for");
   const std::size_t for_plant = triangles - std::max(kFewestOnGround, triangles / 12);
   const bool grating = triangles >= kGratingFrom;
-  // The finest detail whose plant fits; the ground takes the rest.
+  // The finest detail whose plant fits; the ground takes the remaining triangles.
   double coarse = 0.03, fine = 1e-8;
   for (int i = 0; i < 60; ++i) {
     const double middle = std::sqrt(coarse * fine);

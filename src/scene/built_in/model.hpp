@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the built-in scenes are made of, before they are written: named parts in the survey frame (Z up, metres).
+// Parts of the built-in scenes before writing: named, in the survey frame (Z up, metres).
 #pragma once
 
 #include <array>
@@ -39,8 +39,7 @@ struct Model {
   nlohmann::json defaults;  // asset.extras.vantage
 };
 
-// The scanner and evaluation parameters of a built-in scene, as keys that mirror the program's options. Degrees and
-// metres.
+// Scanner and evaluation parameters of a built-in scene, with keys as the program's options. Degrees and metres.
 struct Defaults {
   double step = 0.1, height = 1.5;
   const char* noise = "off";

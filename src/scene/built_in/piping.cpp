@@ -7,7 +7,7 @@
 namespace vantage::built_in {
 namespace {
 
-// What interrupts a straight run, at a distance from its start.
+// An interruption of a straight run, at a distance from its start.
 struct Fitting {
   double at = 0, half_length = 0;
   bool valve = false;
@@ -15,7 +15,7 @@ struct Fitting {
 
 // The bend at a corner of a route.
 struct Bend {
-  double cut = 0, angle = 0;  // how much of each neighbouring run it takes
+  double cut = 0, angle = 0;  // cut: length taken from each neighbouring run
   dvec3 axis{};
 };
 
@@ -35,7 +35,7 @@ std::vector<Bend> bends_of(const std::vector<dvec3>& route, double radius) {
   return bends;
 }
 
-// Bonnet, stem and handwheel of a valve whose body's centre is at `frame`. The stem points up, on upright pipes to the
+// Bonnet, stem and handwheel of a valve whose body is centred at `frame`. The stem points up; on upright pipes, to the
 // north.
 void add_valve_top(Shaper& shaper, const Frame& frame, double radius) {
   const Frame stem = frame_along(frame.origin, std::abs(frame.z.z) < 0.5 ? dvec3{0, 0, 1} : dvec3{0, 1, 0});
@@ -112,7 +112,7 @@ std::vector<Fitting> fittings_of(double length, double radius, std::size_t run, 
   const int joints = options.flange_every_m > 0 && !rough ? static_cast<int>(length / options.flange_every_m) : 0;
   for (int i = 1; i <= joints; ++i) fittings.push_back({length * i / (joints + 1), half, false});
   std::ranges::stable_sort(fittings, {}, &Fitting::at);
-  std::vector<Fitting> kept;  // those that neither leave the run nor touch the one before
+  std::vector<Fitting> kept;  // those that neither leave the run nor touch the previous one
   for (const Fitting& fitting : fittings) {
     const double clear = kept.empty() ? 0.005 : kept.back().at + kept.back().half_length + 0.005;
     if (fitting.at - fitting.half_length < clear || fitting.at + fitting.half_length > length - 0.005) continue;

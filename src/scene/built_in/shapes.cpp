@@ -37,7 +37,7 @@ int Detail::around(double radius) const {
   const int fewest = radius < 0.015 ? 4 : radius < 0.03 ? 5 : radius < 0.2 ? 6 : 10;
   return std::clamp(static_cast<int>(std::ceil(kPi * std::sqrt(radius / (2 * sagitta_m)))), fewest, kMostSides);
 }
-// Rows need no curvature; they keep triangles from becoming needles, in proportion to what the circles get.
+// Curvature needs no rows; they keep triangles from becoming needles, in proportion to the circles.
 int Detail::along(double length) const {
   return std::clamp(static_cast<int>(std::lround(length / (600 * sagitta_m))), 1, 100'000);
 }
@@ -141,7 +141,7 @@ void Shaper::prism(const Frame& frame, double radius, double height, int sides) 
     mesh_.indices.insert(mesh_.indices.end(), {first, first + i, first + i + 1});
 }
 
-// One quadrilateral from the edge a–b over `ahead`, not cut further.
+// One quadrilateral from the edge a–b over `ahead`, undivided.
 void Shaper::strip(const dvec3& a, const dvec3& b, const dvec3& ahead, const dvec3& normal) {
   triangles_ += 2;
   if (counting_) return;

@@ -116,7 +116,7 @@ void add_ladder(Shaper& shaper, const dvec3& foot, const dvec3& out, double heig
     shaper.rod(foot + side * (-0.5 * kWidth + 0.006) + kUp * z, foot + side * (0.5 * kWidth - 0.006) + kUp * z, kRung,
                false);
   if (height < kCageFrom + 1) return;
-  // Hoops from stile to stile around the climber, tied by straps inside them.
+  // Hoops from stile to stile around the climber, connected by straps inside them.
   const dvec3 centre = foot + out * kReach;
   const double from = std::atan2(-kReach, 0.5 * kWidth);
   const double sweep = kPi - 2 * from;

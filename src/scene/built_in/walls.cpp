@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The two simple cases of the method (sections 5.1.1 and 5.1.2). Nothing but the walls can be hit: the paper's point
-// counts hold no point of the ground, and its search area is not intersectable.
+// The two simple cases of the method (sections 5.1.1 and 5.1.2). Only the walls can be hit: the paper's point counts
+// include no ground, and its search area is not intersectable.
 #include <cmath>
 
 #include "scene/built_in/shapes.hpp"
@@ -52,15 +52,16 @@ nlohmann::json to_json(const Defaults& d) {
           {"security", {0.6, 1.35, 0.5}}};
 }
 
-// The paper says "5 m wide and 2.5 m high, placed at 10 m (center) and 30 m (sides)", names voxels of 1 cm that
-// hold 2.8 points 6 mm apart, and counts 383 659 points. That tells where the sides stand: equation 2 makes voxels of 1
-// cm of walls square to one axis while the middles of the sides are 17.84 to 17.93 m aside, and there steps of 6 mm at
-// 10 m catch 383 360 to 383 654 points. Within these centimetres the place decides how deep in their voxels the walls
-// lie, and so how many points noise moves out of them: at 17.875 m about as many as in the paper.
+// The paper says "5 m wide and 2.5 m high, placed at 10 m (center) and 30 m (sides)", names voxels of 1 cm that hold
+// 2.8 points 6 mm apart, and counts 383 659 points. These figures determine where the sides stand. With walls
+// perpendicular to one axis, equation 2 gives voxels of 1 cm if the middles of the sides are 17.84 to 17.93 m aside;
+// there, steps of 6 mm at 10 m catch 383 360 to 383 654 points. Within these centimetres the position decides the
+// walls' depth in their voxels, and so how many points noise moves out of them: at 17.875 m about as many as in the
+// paper.
 Model three_walls() {
   constexpr double kWidth = 5, kHeight = 2.5, kNear = 10, kFar = 30, kAside = 17.875, kSpacing = 0.006;
   constexpr double kDegrees = 57.295779513082323;
-  // Square to the x axis, its front towards the scanner.
+  // Perpendicular to the x axis, its front towards the scanner.
   const auto facing = [&](const std::string& name, double x, double y) {
     return wall(name, {x, y + kWidth / 2, 0}, {0, -kWidth, 0}, kHeight, 1, 1);
   };

@@ -13,7 +13,7 @@
 namespace vantage {
 namespace {
 
-// A network on its way to its counts.
+// Collects a network's counts.
 class Tally {
  public:
   Tally(VoxelField& field, const StationRays& scanner, std::uint32_t stations, const Tracer::CountOptions& options)
@@ -22,13 +22,13 @@ class Tally {
         stations_(stations),
         points_(options.skip ? 0 : stations),
         on_surveyed_(stations),
-        dropped_(scanner.limited() ? stations : 0) {  // all scanners are or none
+        dropped_(scanner.limited() ? stations : 0) {  // either all scanners are limited or none
     field.count.assign(grid_.size(), 0);
     field.stations.assign(options.masks ? grid_.size() : 0, 0);
   }
 
   VoxelField& field() { return field_; }
-  // What a station sums to beside the field.
+  // Adds a station's sums beside the field.
   void add(const TraceStation& station, const StationTotals& totals) {
     rays_ += totals.rays;
     on_surveyed_[station.bit()] = totals.points_on_surveyed;
@@ -82,9 +82,9 @@ std::vector<NetworkCounts> count_networks(std::span<const StationRays> scanners,
   std::vector<NetworkCounts> all(networks.size());
   for (NetworkCounts& counts : all) counts.cancelled = true;
   const std::size_t voxels = scanners.front().grid().size();
-  SharedStations shared(scanners, networks, voxels * sizeof(std::uint32_t));  // no more than the counts take
+  SharedStations shared(scanners, networks, voxels * sizeof(std::uint32_t));  // at most the memory of the counts
   PointBuckets points(voxels);
-  VoxelField alone;  // of a station whose points are wanted again
+  VoxelField alone;  // of a station whose points are needed again
   std::size_t traced = 0;
   for (const std::size_t n : shared.order()) {
     if (progress.stopped()) break;
@@ -98,7 +98,7 @@ std::vector<NetworkCounts> count_networks(std::span<const StationRays> scanners,
         continue;
       }
       if (use.again) alone.count.assign(voxels, 0);
-      // What had no room is traced again, and told of no more.
+      // Stations for which there was no room are traced again, without progress.
       const Progress own = traced < shared.different() ? part_of(progress, traced, shared.different())
                                                        : Progress{.report = {}, .stop = progress.stop};
       ++traced;

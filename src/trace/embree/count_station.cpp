@@ -60,7 +60,7 @@ StationTotals count_tile(const StationRays& station_rays, const TraceStation& st
 
 bool count_station(const StationRays& rays, const TraceStation& station, bool skip, VoxelField& field,
                    PointBuckets& points, StationTotals& totals, const Progress& progress) {
-  // A tenth of a second or so between two looks at the stop token.
+  // About a tenth of a second between checks of the stop token.
   const std::size_t chunk = 1024 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
   const std::vector<PlannedTile> tiles = skip ? tiles_with_bricks(rays, station) : all_tiles(rays.pattern());
   for (std::size_t first = 0; first < tiles.size(); first += chunk) {

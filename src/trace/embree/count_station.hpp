@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rays of one station, counted.
+// Counts the rays of one station.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,8 @@ struct StationTotals {
   }
 };
 
-// Adds the station's points to the field, through `points`, and what they sum to to `totals`. `skip`: as
-// Tracer::CountOptions says. Whether it came to the end before it was stopped.
+// Adds the station's points to the field, through `points`, and their sums to `totals`. `skip`: as in
+// Tracer::CountOptions. Returns false if it was stopped before the end.
 bool count_station(const StationRays& rays, const TraceStation& station, bool skip, VoxelField& field,
                    PointBuckets& points, StationTotals& totals, const Progress& progress);
 

@@ -10,7 +10,8 @@ namespace {
 
 constexpr std::uint32_t lanes = Hits::lanes;
 
-// Of so many hits of one triangle. A loop for each kind of normal: one with a choice in it does not become vectors.
+// Shades several hits of one triangle. Each kind of normal has its own loop, since a branch would prevent
+// vectorisation.
 [[gnu::always_inline]] inline void shade(const Facet& facet, const Float3& o, const float* x, const float* y,
                                          const float* z, const float* t, float* __restrict reflectivity) {
   if (facet.smooth) {
@@ -34,7 +35,7 @@ void add_noise(const Surface& surface, const RangeNoise& noise, const Float3& or
     std::uint32_t end = first + 1;
     while (end < hits.size && hits.primitive[end] == hits.primitive[first]) ++end;
     const Facet facet = surface.facet(hits.primitive[first]);
-    // What the last vector has beyond the triangle's hits is overwritten.
+    // The last vector may run past the triangle's hits; those values are overwritten later.
     for (std::size_t k = first; k < end; k += lanes)
       shade(facet, origin, hits.x + k, hits.y + k, hits.z + k, hits.t + k, reflectivity + k);
     first = end;
@@ -52,7 +53,7 @@ void find_ranges(const Surface& surface, const RangeNoise& noise, const Float3& 
     std::copy_n(hits.t, hits.size, hits.range);
     return;
   }
-  // What the last vector has beyond the last hit is computed and never looked at.
+  // The last vector may run past the last hit; those values are never read.
   for (float* values : {hits.x, hits.y, hits.z, hits.t}) std::fill_n(values + hits.size, std::size_t{lanes}, 1.0f);
   for (std::uint32_t* values : {hits.ray_low, hits.ray_high}) std::fill_n(values + hits.size, std::size_t{lanes}, 0u);
   add_noise(surface, noise, origin, place, hits);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hits whose points are asked for, side by side, so that algorithm 1 works on many at once.
+// Hits whose points are wanted, as arrays, so that algorithm 1 works on many at once.
 #pragma once
 
 #include <cstdint>
@@ -24,9 +24,9 @@ struct Hits {
   alignas(64) std::uint32_t primitive[capacity];
   alignas(64) std::uint32_t ray_low[capacity], ray_high[capacity];  // halves of the ray's number, which keys the noise
   std::uint32_t slot[capacity];                                     // in the bundle
-  alignas(64) float range[capacity];                                // out: of find_ranges
+  alignas(64) float range[capacity];                                // output of find_ranges
 
-  // REQUIRES: the slot has a hit; no more than RayBundle::capacity since the size was 0.
+  // REQUIRES: the slot has a hit; at most RayBundle::capacity calls since the size was 0.
   void add(const RayBundle& rays, std::uint32_t from, std::uint64_t ray) {
     x[size] = rays.x[from];
     y[size] = rays.y[from];
@@ -40,7 +40,7 @@ struct Hits {
   Float3 point(const Float3& origin, std::uint32_t k) const { return point_at(origin, {x[k], y[k], z[k]}, range[k]); }
 };
 
-// Fills `range`: the distances of the points, noise included. `place` keys the noise, too.
+// Fills `range`: distances of the points, noise included. `place` also keys the noise.
 void find_ranges(const Surface& surface, const RangeNoise& noise, const Float3& origin, std::uint32_t place,
                  Hits& hits);
 

@@ -31,7 +31,7 @@ double Planes::within(std::uint32_t triangle, const Float3& o, const Float3& d, 
                b = dot(widen(scene_->positions[indices[1]]) - widen(o), way),
                c = dot(widen(scene_->positions[indices[2]]) - widen(o), way);
   const double nearest = std::min({a, b, c}), farthest = std::max({a, b, c});
-  return t > nearest ? std::min(t, farthest) : nearest;  // of no number, the nearest
+  return t > nearest ? std::min(t, farthest) : nearest;  // NaN becomes the nearest
 }
 
 }  // namespace vantage

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a ray meets the plane of a triangle: the distance of every hit of the CPU engine.
+// Intersection of a ray with the plane of a triangle: the distance of every hit of the CPU engine.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace vantage {
 
-// The planes of a scene's triangles. Immutable; safe to use from any thread.
+// Planes of a scene's triangles. Immutable; safe to use from any thread.
 class Planes {
  public:
   explicit Planes(std::shared_ptr<const SceneData> scene);
@@ -27,10 +27,10 @@ class Planes {
     return {p.x, p.y, p.z, p.offset - (p.x * o.x + p.y * o.y + p.z * o.z)};
   }
 
-  // Distances along n directions, in double and rounded once, by additions, multiplications and a division alone: the
-  // same bits on every processor. A ray that all but lies in the plane learns nothing from it, and is held within the
-  // triangle's extent along the ray. REQUIRES: plane == seen(triangle, o). Inlined, to be compiled for the caller's
-  // target.
+  // Distances along n directions, in double and rounded once. Only additions, multiplications and a division are used,
+  // so every processor gets the same bits. The plane says nothing about a ray that nearly lies in it; its distance is
+  // clamped to the triangle's extent along the ray. REQUIRES: plane == seen(triangle, o). Inlined, to be compiled for
+  // the caller's target.
   template <unsigned n>
   [[gnu::always_inline]] void distances(const Seen& plane, std::uint32_t triangle, const Float3& o, const float* x,
                                         const float* y, const float* z, float* t) const {
@@ -57,7 +57,7 @@ class Planes {
   double within(std::uint32_t triangle, const Float3& o, const Float3& d, double t) const;
 
   struct Plane {
-    double x, y, z, offset;  // unit normal n and n·p of its points
+    double x, y, z, offset;  // unit normal n, and n·p for its points p
   };
   std::shared_ptr<const SceneData> scene_;
   std::vector<Plane> planes_;

@@ -13,9 +13,9 @@
 
 namespace vantage {
 
-// Points on their way into the voxel field. Each thread sorts its own by range of rank; then each range is added by one
-// thread alone, while its part of the field stays in the cache. That is faster than an atomic addition a point, the
-// more so the larger the field is.
+// Buffers points for the voxel field. Each thread sorts its own by range of voxel index; then a single thread adds each
+// range, while that part of the field stays in the cache. This is faster than an atomic addition per point, and the
+// gain grows with the field.
 class PointBuckets {
  public:
   static constexpr std::uint32_t count = 256;
@@ -36,7 +36,7 @@ class PointBuckets {
   Local& local() { return local_.local(); }
   std::uint32_t shift() const { return shift_; }
 
-  // Adds all points to the field as those of the station with this bit, and empties the buckets. Counts saturate.
+  // Adds all points to the field under the bit of their station, and empties the buckets. Counts saturate.
   void flush(VoxelField& field, std::uint64_t bit) {
     const bool masks = !field.stations.empty();
     tbb::parallel_for(std::uint32_t{0}, count, [&](std::uint32_t b) {

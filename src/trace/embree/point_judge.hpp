@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a point is worth having, in double precision.
+// Checks the limits of points, in double precision.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ class PointJudge {
 
   bool enabled() const { return model_ && model_->enabled(); }
 
-  // Which limits of its mesh a point misses; all 0 where it counts. `cosine` is that between ray and normal, of either
+  // Limits of its mesh that a point misses; all 0 if it counts. `cosine` is that between ray and normal, of either
   // sign; `t` the distance without noise. REQUIRES: enabled().
   DroppedPoints missed(std::uint32_t mesh, double cosine, float t, float reflectivity) const {
     const LimitModel::Limits& limits = model_->meshes[mesh];

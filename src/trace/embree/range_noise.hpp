@@ -24,7 +24,7 @@ class RangeNoise {
 
   bool enabled() const { return model_ && model_->enabled(); }
   float reach() const { return enabled() ? model_->reach : 0.0f; }
-  // No point of a hit nearer than t is moved further than this.
+  // Upper bound on how far noise moves a hit nearer than t.
   float reach_within(float t) const { return enabled() ? vantage::reach_within(*model_, reaches_, t) : 0.0f; }
 
   // Bilinear in normalised distance and reflectivity, both clamped to [0, 1].
@@ -46,15 +46,15 @@ class RangeNoise {
     return upper + (lower - upper) * down;
   }
 
-  // The random bits of n rays, by the halves of their numbers. REQUIRES: enabled().
+  // Random bits of n rays, from the halves of their numbers. REQUIRES: enabled().
   template <unsigned n>
   [[gnu::always_inline]] void draw(const std::uint32_t* low, const std::uint32_t* high, std::uint32_t place,
                                    std::uint32_t* __restrict bits) const {
     const std::uint64_t seed = model_->seed;
     for (unsigned k = 0; k < n; ++k) bits[k] = philox4x32(seed, {low[k], high[k], place, noise_stream})[0];
   }
-  // REQUIRES: enabled(). No scanner measures a range below 0: noise larger than the range itself leaves the point at
-  // the head, never behind it, where no list of rays would look for it.
+  // REQUIRES: enabled(). No scanner measures a range below 0. Noise larger than the range leaves the point at the head,
+  // never behind it, where no list of rays would look for it.
   float displaced(float t, float reflectivity, std::uint32_t bits) const {
     return std::max(0.0f, t + normal_from_bits(bits, rows_) * sigma(t, reflectivity));
   }

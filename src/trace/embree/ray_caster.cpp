@@ -17,24 +17,24 @@ namespace {
 constexpr std::uint32_t packet = 8;
 constexpr std::uint32_t packets = RayBundle::capacity / packet;
 
-// Embree takes a direction's component below 1e-18 for +1e-18, but its sign as it was: such a ray, and its neighbours
-// in a packet, then miss every box. At 1 km a component below this moves a point by less than 1e-13 m.
+// Embree replaces a direction's component below 1e-18 by +1e-18 but keeps its sign; such a ray, and its neighbours in a
+// packet, then miss every box. At 1 km, a component below this moves a point by less than 1e-13 m.
 constexpr float least_component = 1e-16f;
 float safe(float component) { return std::abs(component) < least_component ? 0.0f : component; }
 
 constexpr float before = 1 - RayCaster::doubt, beyond = 1 + RayCaster::doubt;
 
 struct Context {
-  embree::Context rtc;  // first: Embree hands its address to the filters
+  embree::Context rtc;  // first member: Embree passes its address to the filters
   const Planes& planes;
   Float3 origin;
   float start;
-  float* t;  // by the ray's id; at first where the ray ends
+  float* t;  // by the ray's id; initially the ray's end
   std::uint32_t* primitive;
 };
 
-// Calls take(ray, primitive, distance) for rays `first` to first + n to which Embree proposes a triangle; where that
-// returns false the ray goes on.
+// Calls take(ray, primitive, distance) for rays `first` to first + n to which Embree proposes a triangle. A ray goes on
+// if it returns false.
 template <unsigned n, class Take>
 [[gnu::always_inline]] inline void judge(const RTCFilterFunctionNArguments* args, unsigned first,
                                          const Context& context, const Take& take) {
@@ -44,7 +44,7 @@ template <unsigned n, class Take>
   for (unsigned k = 0; k < n; ++k) {
     const unsigned i = first + k;
     if (args->valid[i] == 0) continue;
-    if (RTCHitN_primID(args->hit, all, i) != primitive) {  // mostly all rays of a packet meet the same
+    if (RTCHitN_primID(args->hit, all, i) != primitive) {  // mostly, all rays of a packet meet the same triangle
       primitive = RTCHitN_primID(args->hit, all, i);
       context.planes.distances<n>(context.planes.seen(primitive, context.origin), primitive, context.origin,
                                   &RTCRayN_dir_x(args->ray, all, first), &RTCRayN_dir_y(args->ray, all, first),
@@ -78,7 +78,7 @@ void keep_least(const RTCFilterFunctionNArguments* args) {
   });
 }
 
-// Until one counts.
+// Notes any hit that counts.
 VANTAGE_TARGET_CLONES
 void note(const RTCFilterFunctionNArguments* args) {
   const Context& context = *reinterpret_cast<const Context*>(args->context);
@@ -98,7 +98,7 @@ RayCaster::RayCaster(std::shared_ptr<const SceneData> scene, std::shared_ptr<con
   rtcSetSceneFlags(tree_.get(), RTC_SCENE_FLAG_ROBUST);
   rtcSetSceneBuildQuality(tree_.get(), RTC_BUILD_QUALITY_MEDIUM);
   const embree::Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
-  // Vertices are copied: Embree reads past the end of a buffer that it shares.
+  // Vertices are copied, since Embree reads past the end of a shared buffer.
   if (!scene_->positions.empty()) {
     void* vertices = rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                              sizeof(Float3), scene_->positions.size());
@@ -151,7 +151,7 @@ void RayCaster::cast(RayBundle& rays) const {
   const std::uint32_t used = (rays.size + packet - 1) / packet;
   for (std::uint32_t i = rays.size; i < used * packet; ++i) {
     rays.x[i] = rays.y[i] = rays.z[i] = 1;
-    rays.end[i] = -std::numeric_limits<float>::infinity();  // an end before the start: no ray
+    rays.end[i] = -std::numeric_limits<float>::infinity();  // an end before the start disables the ray
   }
   for (std::uint32_t p = 0; p < used; ++p) {
     RTCRay8& ray = hits[p].ray;

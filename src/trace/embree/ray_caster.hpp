@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Nearest hits of bundles of rays that leave one point. Embree proposes them, and this file decides.
+// Nearest hits of bundles of rays from one point. Embree proposes hits, and this file chooses.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace vantage {
 
-// Up to `capacity` rays with a common origin. Neighbours should have neighbouring directions.
+// Up to `capacity` rays with a common origin. Neighbours should have similar directions.
 struct RayBundle {
   static constexpr std::uint32_t capacity = 256;
   static constexpr std::uint32_t no_hit = 0xFFFFFFFFu;
@@ -23,31 +23,31 @@ struct RayBundle {
   alignas(64) float x[capacity], y[capacity], z[capacity];  // directions
   alignas(64) float end[capacity];
 
-  alignas(64) float t[capacity];                  // out: distance of the hit, as Planes has it
-  alignas(64) std::uint32_t primitive[capacity];  // out: scene triangle, or no_hit
+  alignas(64) float t[capacity];                  // output: distance of the hit, by Planes
+  alignas(64) std::uint32_t primitive[capacity];  // output: scene triangle, or no_hit
 };
 
-// Whether something stands in the way of a ray before `end`.
+// Query whether anything blocks a ray before `end`.
 struct Probe {
   Float3 d;
   float end = 0;
-  std::uint32_t hit = RayBundle::no_hit;  // out: some triangle that the ray hits on the way
+  std::uint32_t hit = RayBundle::no_hit;  // output: any triangle that the ray hits before its end
 };
 
-// The triangles of a scene in Embree's tree. Safe to use from any thread.
+// Triangles of a scene in Embree's tree. Safe to use from any thread.
 class RayCaster {
  public:
-  // Keeps shares of `scene` and of its planes. Throws Error: out_of_memory, device_failure.
+  // Shares ownership of `scene` and its planes. Throws Error: out_of_memory, device_failure.
   RayCaster(std::shared_ptr<const SceneData> scene, std::shared_ptr<const Planes> planes);
 
   // Fills t and primitive. The hit is the least (t, primitive) over all triangles with start < t <= end that Embree
-  // finds the ray to pass through, whatever the rays beside it. Embree's own distance hangs on the maker of the
-  // processor, and its choice between coincident triangles on the order in which it visits them: neither is used. Its
-  // tree is searched by `doubt` past the nearest hit and past both ends.
+  // finds the ray to pass through, whatever the other rays of the bundle. Embree's own distance depends on the
+  // processor's maker, and its choice among coincident triangles on the order of visits; neither is used. Its tree is
+  // searched by `doubt` past the nearest hit and past both ends.
   static constexpr float doubt = 0x1p-8f;
   void cast(RayBundle& rays) const;
 
-  // Fills `hit` of rays from one point, in any order. Faster.
+  // Fills `hit` of rays from one point, in any order. Faster than cast().
   void any_hits(const Float3& origin, float start, std::span<Probe> probes) const;
 
  private:

@@ -19,10 +19,10 @@ namespace vantage {
 namespace {
 
 constexpr std::size_t block = SampledVoxelCounter::block;
-constexpr std::size_t pairs_at_once = std::size_t{1}
-                                      << 22;  // (network, voxel), so that memory does not grow with the population
+constexpr std::size_t pairs_at_once = std::size_t{1} << 22;  // (network, voxel) pairs, so that memory does not grow
+                                                             // with the population
 
-// Nothing in sight has larger coordinates, relative or absolute. A power of two, so that most calls keep the last one's
+// Upper bound on coordinates in sight, relative or absolute. A power of two, so that most calls keep the last call's
 // sample.
 double magnitude(const VoxelGrid& grid, std::span<const std::vector<TraceStation>> networks) {
   const Vec3 min{grid.min()[0], grid.min()[1], grid.min()[2]};

@@ -11,8 +11,7 @@
 
 namespace vantage {
 
-// Tracer::count_sampled on the CPU. `scanners`: what TraceStation::scanner counts. `kept`: the samples of the last
-// calls.
+// Tracer::count_sampled on the CPU. `scanners`: indexed by TraceStation::scanner. `kept`: samples of the last calls.
 std::vector<NetworkCounts> sample_networks(std::span<const StationRays> scanners,
                                            std::span<const std::vector<TraceStation>> networks,
                                            std::span<const std::uint32_t> station_counts, double goal_density,

@@ -45,7 +45,7 @@ SampledVoxels::Piece piece_of(const Corners& t) {
   return piece;
 }
 
-// Widens `box` by what the plane and the cube around the origin share. Whether that is anything.
+// Extends `box` by the intersection of the plane with the cube around the origin. Returns whether there is any.
 bool extend(Box& box, const ExactPlane& plane, double half) {
   bool any = false;
   const auto corner = [&](unsigned k) {
@@ -86,7 +86,7 @@ SampledVoxels::SampledVoxels(const SceneData& scene, const VoxelGrid& grid, Samp
     places_.half[axis].resize(n);
   }
   const double side = grid.voxel_size();
-  // A hit's point lies on its plane but for rounding.
+  // A hit's point lies on its plane except for rounding.
   const double half = side / 2 + pad, wide = half + reach + 2 * pad;
 
   tbb::parallel_for(std::size_t{0}, n, [&](std::size_t i) {
@@ -103,7 +103,7 @@ SampledVoxels::SampledVoxels(const SceneData& scene, const VoxelGrid& grid, Samp
     std::vector<std::pair<std::size_t, std::uint32_t>> of;  // plane and triangle
     for (std::uint32_t k = first; k < end && own.size() <= most_planes; ++k) {
       const ExactPlane plane = plane_of(corners_of(k));
-      // So near that no hit in the cube is moved by a noticeable part of the pad, however grazing.
+      // Close enough that no hit in the cube moves by a noticeable part of the pad, however grazing.
       const auto same = [&](const ExactPlane& other) {
         const double sign = dot(plane.normal, other.normal) < 0 ? -1 : 1;
         return std::abs(plane.offset * sign - other.offset) + 3 * wide * largest(plane.normal * sign - other.normal) <=
@@ -136,7 +136,8 @@ SampledVoxels::SampledVoxels(const SceneData& scene, const VoxelGrid& grid, Samp
       if (now) crossing_[i] = plane - first;
     }
     offset_[i + 1] = plane - first;
-    // Noise may carry a point into the cube from elsewhere. Without it, a point is as near to its plane as to the cube.
+    // Noise may move a point into the cube from elsewhere. Without noise, a point is as near to its plane as to the
+    // cube.
     if (box.empty() || reach > 0) box = {{-half, -half, -half}, {half, half, half}};
     const auto place = [&](std::size_t axis, double low, double high) {
       low = std::max(low - pad, -half), high = std::min(high + pad, half);

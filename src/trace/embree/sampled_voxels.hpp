@@ -11,36 +11,36 @@
 
 namespace vantage {
 
-// The voxels of a sample, each with the surveyed triangles that can be hit in it. Immutable.
+// Voxels of a sample, each with the surveyed triangles that can be hit in it. Immutable.
 class SampledVoxels {
  public:
-  static constexpr std::size_t most_planes = 16;  // of a voxel that are worth asking
-  // A triangle within its plane. Relative to the middle of the voxel's cube, in which it matters alone.
+  static constexpr std::size_t most_planes = 16;  // most planes of a voxel that are worth testing
+  // A triangle within its plane, relative to the middle of the voxel's cube. Valid for that cube only.
   struct Piece {
     struct Edge {
       Float3 inwards;  // unit, in the plane; the triangle lies where inwards · p >= offset
       float offset;
-      float ratio;  // longest edge to this one
+      float ratio;  // longest edge divided by this one
     };
     std::array<Edge, 3> edge;
     float longest;  // edge
   };
-  // Some triangles of one plane, normal · p = offset for p from the middle of the cube.
+  // Triangles of one plane, normal · p = offset for p from the middle of the cube.
   struct Plane {
-    Float3 normal;  // unit, or 0 where a triangle has no area
+    Float3 normal;  // unit; 0 if a triangle has no area
     float offset;
-    float slenderness;  // largest, as SeenTriangle has it; infinite where a triangle has no area
+    float slenderness;  // largest SeenTriangle::slenderness; infinite if a triangle has no area
     std::uint32_t first, end;
   };
-  // By voxel: its cell, and a box that holds what of its planes can be hit there and count: middle, relative to that of
-  // the cube, and half of the extent.
+  // Per voxel: its cell, and a box around all that can be hit on its planes there and count. The box is given by its
+  // middle, relative to that of the cube, and its half extents.
   struct Places {
     std::array<std::vector<std::int32_t>, 3> cell;
     std::array<std::vector<float>, 3> middle, half;
   };
 
   // `pad`: rounding_pad() of everything in sight. `reach`: how far noise moves a point. `margin`: how far outside its
-  // voxel's cube a triangle may be hit whose point still counts in it. Metres.
+  // voxel's cube a triangle's hit may lie whose point still counts in it. Metres.
   SampledVoxels(const SceneData& scene, const VoxelGrid& grid, SampleTriangles& triangles,
                 std::span<const std::uint32_t> ranks, double pad, double reach, double margin);
 
@@ -50,7 +50,7 @@ class SampledVoxels {
     return {static_cast<std::uint32_t>(places_.cell[0][i]), static_cast<std::uint32_t>(places_.cell[1][i]),
             static_cast<std::uint32_t>(places_.cell[2][i])};
   }
-  // Those of them that pass the cube come first, so many. None at all: too many to be worth asking.
+  // Planes that pass the cube, followed by the others. Empty: too many to be worth testing.
   std::span<const Plane> planes(std::size_t i) const {
     return {planes_.data() + offset_[i], planes_.data() + offset_[i + 1]};
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A triangle as seen from a head, in double precision: tests that are certain of what RayCaster will say.
+// A triangle as seen from a head, in double precision. Its tests predict with certainty what RayCaster reports.
 #pragma once
 
 #include <algorithm>
@@ -27,19 +27,19 @@ class SeenTriangle {
     steep_ = steep * longest;
   }
 
-  // Whether Embree is bound to report one. REQUIRES: is_steep(d).
+  // Whether Embree is certain to report a hit. REQUIRES: is_steep(d).
   bool must_hit(const Vec3& d) const {
     return dot(edge_[0], d) > tolerance_ && dot(edge_[1], d) > tolerance_ && dot(edge_[2], d) > tolerance_;
   }
-  // Whether the distance of a hit is certain to within distance_doubt.
+  // Whether the distance of a hit is accurate to within distance_doubt.
   bool is_steep(const Vec3& d) const { return dot(normal_, d) > steep_; }
   double distance(const Vec3& d) const { return height_ / dot(normal_, d); }
 
   // Embree's edge test is a sum of products of an edge and of corners relative to the head, in float: some eight
-  // roundings of 2^−24 of their product. Eight times that.
+  // roundings of 2^−24 of their product. This is eight times that.
   static constexpr double edge_doubt = 0x1p-18;
-  // Its distance is off by some 2^−19 · slenderness / cosine, relative: the normal that it computes from a sliver's
-  // edges is that much worse. Where cosine / slenderness exceeds `steep` that is less than distance_doubt.
+  // Embree's distance has a relative error of some 2^−19 · slenderness / cosine, since slivers give inaccurate normals.
+  // Above `steep`, cosine / slenderness makes that less than distance_doubt.
   static constexpr double steep = 0x1p-5;
   static constexpr double distance_doubt = 0x1p-13;
   // Longest edge squared over twice the area; 1.15 for an equilateral triangle.

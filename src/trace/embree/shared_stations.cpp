@@ -10,7 +10,7 @@
 namespace vantage {
 namespace {
 
-// Equal where all rays of two stations give the same points. The place keys the noise; no turn is all zeros.
+// Equal if all rays of two stations give the same points. The place keys the noise; all zeros mean no turn.
 using Key = std::array<std::uint32_t, 14>;
 
 Key key_of(const TraceStation& station, bool noisy) {

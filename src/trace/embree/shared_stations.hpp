@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stations that several networks have in common: which they are, and the points of those that are wanted again.
+// Finds stations common to several networks, and keeps the points of those needed again.
 #pragma once
 
 #include <cstdint>
@@ -14,21 +14,21 @@ namespace vantage {
 
 class SharedStations {
  public:
-  // No more than `most_bytes` of points are kept.
+  // Keeps at most `most_bytes` of points.
   SharedStations(std::span<const StationRays> scanners, std::span<const std::vector<TraceStation>> networks,
                  std::size_t most_bytes);
 
   std::size_t different() const { return uses_.size(); }
-  // In which networks are to be gone through: next comes the one that has most stations in common with the last.
+  // Order in which to process the networks: the next one shares most stations with the last.
   std::span<const std::size_t> order() const { return order_; }
-  // To be asked for every station of every network, in that order.
+  // To be called for every station of every network, in that order.
   struct Use {
     std::size_t id;
     bool again;                   // a later network has it, too
-    const StationPoints* points;  // where they are kept; until the next call
+    const StationPoints* points;  // its points, if kept; valid until the next call
   };
   Use next(std::size_t network, std::size_t station);
-  // Makes room by those that are wanted last.
+  // Makes room by dropping the stations needed last.
   void keep(std::size_t id, StationPoints points);
 
  private:
@@ -36,15 +36,15 @@ class SharedStations {
 
   void put_in_order();
   void drop(std::size_t id);
-  // When the next network comes that has the station, or never.
+  // Position of the next network that has the station, or never.
   std::size_t wanted(std::size_t id) const { return left_[id] < uses_[id].size() ? uses_[id][left_[id]] : never; }
 
-  std::vector<std::vector<std::size_t>> ids_;  // of a network's stations
+  std::vector<std::vector<std::size_t>> ids_;  // stations of each network
   std::vector<std::size_t> order_;
-  std::vector<std::vector<std::size_t>> uses_;  // of each station, places in the order, ascending
-  std::vector<std::size_t> left_;               // the first of those that is still to come
+  std::vector<std::vector<std::size_t>> uses_;  // per station, positions in the order, ascending
+  std::vector<std::size_t> left_;               // per station, the first position still to come
   std::vector<std::optional<StationPoints>> kept_;
-  std::size_t last_ = never;  // asked for
+  std::size_t last_ = never;  // station returned last
   std::size_t bytes_ = 0, most_bytes_;
 };
 

@@ -10,7 +10,7 @@
 
 namespace vantage {
 
-// f(number, first word, end of words)
+// Calls f(number, first word, end of words).
 template <class F>
 void StationPoints::each_chunk(const F& f) const {
   constexpr std::size_t words = chunk / word;

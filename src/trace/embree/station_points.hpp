@@ -10,7 +10,7 @@
 
 namespace vantage {
 
-// What a station alone put into every voxel, packed: a bit a voxel, and a byte for each that has points.
+// Points of a single station in every voxel, packed: a bit per voxel, and a byte for each voxel with points.
 class StationPoints {
  public:
   // `counts`: of each voxel.
@@ -18,7 +18,7 @@ class StationPoints {
 
   const StationTotals& totals() const { return totals_; }
   std::size_t bytes() const { return seen_.size() * sizeof(seen_[0]) + few_.size() + many_.size() * sizeof(many_[0]); }
-  // To a field of as many voxels, as the station with this bit. Counts saturate.
+  // Adds them to a field of as many voxels, under the station's bit. Counts saturate.
   void add_to(VoxelField& field, std::uint64_t bit) const;
 
  private:
@@ -30,10 +30,10 @@ class StationPoints {
   std::uint32_t count_of(std::uint32_t rank) const;
 
   StationTotals totals_;
-  std::vector<std::uint64_t> seen_;                            // a bit a voxel
-  std::vector<std::size_t> first_;                             // of each chunk, in `few_`
-  std::vector<std::uint8_t> few_;                              // points of those that have any
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> many_;  // rank and points, ascending
+  std::vector<std::uint64_t> seen_;                            // a bit per voxel
+  std::vector<std::size_t> first_;                             // per chunk, its start in `few_`
+  std::vector<std::uint8_t> few_;                              // counts of voxels with points
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> many_;  // voxel index and points, ascending
 };
 
 }  // namespace vantage

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What all of the CPU engine's ways of tracing share: a scanner's rays, and what becomes of a hit. A ray's point is the
-// same bits whichever of them asks.
+// Shared by all ways of tracing on the CPU: a scanner's rays, and how a hit becomes a point. Each way gives the same
+// bits for a ray's point.
 #pragma once
 
 #include <algorithm>
@@ -18,14 +18,14 @@
 
 namespace vantage {
 
-// Rays that are traced together: at most tile_side rows of as many columns.
+// Rays that are traced together: at most `side` rows of as many columns.
 struct RayTile {
   static constexpr std::uint32_t side = 16;
   static_assert(side * side <= RayBundle::capacity);
   std::uint32_t row = 0, column = 0, rows = 0, columns = 0;
 };
 
-// What is hit, whichever scanner looks.
+// The scene, common to all scanners.
 struct EmbreeScene {
   explicit EmbreeScene(const TraceScene& traced)
       : scene(traced.scene),
@@ -46,7 +46,7 @@ struct EmbreeScene {
   BrickPrefixes prefixes;
 };
 
-// Directions of a pattern become those of a turned station.
+// Turns directions of a pattern for a turned station.
 inline void turn_all(const Turn& turn, float* __restrict x, float* __restrict y, float* __restrict z, std::size_t n) {
   for (std::size_t k = 0; k < n; ++k) {
     const Float3 d = turn({x[k], y[k], z[k]});
@@ -56,7 +56,7 @@ inline void turn_all(const Turn& turn, float* __restrict x, float* __restrict y,
   }
 }
 
-// Of one scanner.
+// Rays of one scanner.
 class StationRays {
  public:
   StationRays(std::shared_ptr<const EmbreeScene> scene, const TraceScanner& scanner)
@@ -75,7 +75,7 @@ class StationRays {
     return std::uint64_t{row} * pattern_->columns() + column;
   }
 
-  // The tile's rays, row by row, as a bundle that ends at `end`.
+  // Gathers the tile's rays, row by row, into a bundle that ends at `end`.
   void gather(const TraceStation& station, const RayTile& tile, float end, RayBundle& rays) const {
     const RayPattern& p = *pattern_;
     rays.origin = station.origin;
@@ -103,7 +103,7 @@ class StationRays {
   }
 
   bool limited() const { return judge_.enabled(); }
-  // What a point is dropped for; nothing where it counts. REQUIRES: limited(); rays.primitive[slot] is a hit on a
+  // Limits for which a point is dropped; none if it counts. REQUIRES: limited(); rays.primitive[slot] is a hit on a
   // surveyed mesh.
   DroppedPoints dropped(const RayBundle& rays, std::uint32_t slot) const {
     const std::uint32_t triangle = rays.primitive[slot];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a hit means: its normal, reflectivity, and whether it counts.
+// Properties of a hit: its normal, reflectivity, and whether it counts.
 #pragma once
 
 #include <algorithm>
@@ -14,13 +14,12 @@
 
 namespace vantage {
 
-// A triangle as its hits ask it: what is the same for all of them. No function but normal() has a branch, so that loops
-// over hits become vectors.
+// A triangle's data for its hits, computed once. Only normal() branches, so loops over hits vectorise.
 struct Facet {
   Vec3 corner, first, second;  // a corner, and the edges that leave it
   Vec3 across;                 // first × second
   double area = 0;             // across·across
-  bool smooth = false;         // has `normals`, of its corners
+  bool smooth = false;         // has `normals`, one per corner
   std::array<Vec3, 3> normals;
   Vec3 plane;  // unit normal
   double diffuse = 0;
@@ -32,7 +31,7 @@ struct Facet {
     const double v = std::min(std::max(dot(cross(first, p), across) / area, 0.0), 1.0 - u);
     return {area > 0 ? u : 0.0, area > 0 ? v : 0.0};
   }
-  // Unit normal turned against d: of the corners, interpolated, or of the plane where they have none or cancel out.
+  // Unit normal turned against d. Interpolated from the corners, or that of the plane if they have none or cancel out.
   Vec3 normal(const Float3& d, const std::array<double, 2>& weights) const {
     return smooth ? smooth_normal(d, weights) : flat_normal(d);
   }
@@ -69,9 +68,9 @@ class Surface {
  private:
   std::shared_ptr<const SceneData> scene_;
   std::shared_ptr<const Planes> planes_;
-  std::vector<std::uint64_t> surveyed_;  // a bit a triangle
+  std::vector<std::uint64_t> surveyed_;  // a bit per triangle
   std::vector<std::uint32_t> mesh_;
-  std::vector<double> diffuse_;  // a mesh
+  std::vector<double> diffuse_;  // per mesh
 };
 
 }  // namespace vantage

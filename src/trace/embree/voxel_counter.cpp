@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// How it works. For each station in turn, look_from() bounds the rows and columns of rays that can cross each cube of
-// the block, all side by side. list_rays() walks that window of a voxel: rays are gathered in the Fan, and when it is
-// full fill_nearest() meets them with the voxel's surveyed planes and triangles, in float, wide by all doubt: a ray
-// gets the least distance at which a hit of it can count, or infinity, and then list_fan() drops it. What is listed of
-// a voxel is a Sight: some rays, and how far away the last hit that counts may be. When many rays are listed settle()
-// asks first what hides each Sight: one ray of it is probed up to its nearest hit that counts. A triangle in the way
-// hides that ray, and drop_hidden() takes along all others of the Sight that it stops for certain. After `rounds` of
-// that, cast() traces every ray that is left to its nearest hit, in bundles, and finish() counts those whose point,
-// noise included, lies in the voxel. Hiding is only asked where the answer is certain, so the counts are those of all
-// rays cast.
+// For each station in turn, look_from() bounds the rows and columns of rays that can cross each cube of the block, all
+// side by side. list_rays() walks this window of a voxel and gathers rays in the Fan. When that is full, fill_nearest()
+// intersects them with the voxel's surveyed planes and triangles, in float with margins for all errors. Each ray gets
+// the least distance at which its hit can count; if there is none, infinity, and list_fan() drops the ray.
+// The rays listed for a voxel form a Sight, with the distance of the last hit that may count. Once many are listed,
+// settle() probes one ray of each Sight up to its nearest hit that counts. A triangle in the way hides that ray, and
+// drop_hidden() removes all other rays of the Sight that it stops for certain. After `rounds` of that, cast() traces
+// every remaining ray to its nearest hit, in bundles. finish() counts those whose point, noise included, lies in the
+// voxel.
+// Only certain occlusion is used, so the counts are those of casting all rays.
 #include "trace/embree/voxel_counter.hpp"
 
 #include <algorithm>
@@ -23,18 +23,18 @@ namespace {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr std::size_t rays_at_once = 2048;
-// A voxel's first ray is asked alone for what hides it, and so is the first that this does not hide. Then all are
-// traced.
+// Rays of a voxel probed one by one for an occluder: the first, and the first that its occluder does not hide. Then all
+// are traced.
 constexpr int rounds = 2;
-// No distance that is computed in float here is off by more than this part, on however grazing a plane that is asked.
+// Bound on the relative error of any distance computed in float here, on any plane tested, however grazing.
 constexpr double trust = 0x1p-7;
-// Below this cosine, over slenderness, the plane may not be what decides the point's distance (Planes).
+// Below this cosine, over slenderness, the plane may not determine the point's distance (see Planes).
 constexpr float grazing = 0x1p-10f;
-// Where a head is higher above a plane than this part of the distance, over slenderness, a more grazing ray meets the
-// plane well beyond the voxel, whatever is rounded on the way.
+// If a head is higher above a plane than this part of the distance, over slenderness, a more grazing ray meets the
+// plane well beyond the voxel, whatever the rounding.
 constexpr float sure_height = 1.5f * grazing;
-// Where a ray meets a plane is computed in float below: its distance is off by less than this part of the farthest,
-// over the cosine. So half as much again is allowed for what Embree may find, which is at least eight times that.
+// Distances to planes are computed in float below, with an error less than this part of the farthest, over the cosine.
+// Embree's allowance is at least eight times that, so half as much again is allowed for it.
 constexpr float float_doubt = 0x1p-21f;
 constexpr auto edge_doubt = static_cast<float>(SeenTriangle::edge_doubt * 1.5);
 constexpr auto steep_part = static_cast<float>(1 - SeenTriangle::distance_doubt * 1.5);
@@ -82,7 +82,7 @@ void SampledVoxelCounter::count(std::span<const TraceStation> stations, std::siz
   }
 }
 
-// Which rays to look at, for the block's voxels from the present head.
+// Bounds the rays to look at, for the block's voxels from the current head.
 VANTAGE_TARGET_CLONES
 void SampledVoxelCounter::look_from(std::size_t first, std::size_t n) {
   const SampledVoxels::Places& places = voxels_.places();
@@ -111,7 +111,7 @@ void SampledVoxelCounter::look_from(std::size_t first, std::size_t n) {
 VANTAGE_TARGET_CLONES
 void SampledVoxelCounter::fill_nearest(std::span<const SampledVoxels::Plane> planes, const Cube& cube) {
   Fan& fan = fan_;
-  const std::uint32_t n = (fan.size + 7) / 8 * 8;  // whole vectors; the surplus is never looked at
+  const std::uint32_t n = (fan.size + 7) / 8 * 8;  // whole vectors; the surplus is never read
   if (station_->turn) turn_all(*station_->turn, fan.x.data(), fan.y.data(), fan.z.data(), fan.size);
   const auto trusted = static_cast<float>(1 - trust), pad = static_cast<float>(2 * pad_);
   const float cx = cube.centre.x, cy = cube.centre.y, cz = cube.centre.z, half = cube.half + pad,
@@ -175,7 +175,7 @@ void SampledVoxelCounter::list_rays(std::uint32_t i) {
   bool sure = !planes.empty();
   for (std::size_t k = 0; k < planes.size(); ++k) {
     const SampledVoxels::Plane& plane = planes[k];
-    // In double, so that whatever rounding turned the plane by, it did so around the voxel.
+    // In double, so that rounding, which turned the plane, turned it around the voxel.
     heights_[k] = static_cast<float>(plane.normal.x * x_[i] + plane.normal.y * y_[i] + plane.normal.z * z_[i] +
                                      static_cast<double>(plane.offset));
     sure &= std::abs(heights_[k]) >= sure_height * plane.slenderness * cube.farthest;
@@ -228,16 +228,17 @@ void SampledVoxelCounter::list_rays(std::uint32_t i) {
   list_fan(sight);
   sight.end = listed_size_;
   if (sight.end == sight.begin) return;
-  std::swap(listed_[sight.begin], listed_[(sight.begin + sight.end) / 2]);  // what hides the middle may hide all
+  // an occluder of the middle ray may hide all
+  std::swap(listed_[sight.begin], listed_[(sight.begin + sight.end) / 2]);
   sights_.push_back(sight);
 }
 
-// Empties the fan: lists what of it may hit.
+// Empties the fan: lists those of its rays that may hit.
 void SampledVoxelCounter::list_fan(Sight& sight) {
   Ray* next = listed_.data() + listed_size_;
   for (std::uint32_t k = 0; k < fan_.size; ++k) {
     *next = {{fan_.x[k], fan_.y[k], fan_.z[k]}, fan_.nearest[k], fan_.row[k], fan_.column[k]};
-    next += fan_.nearest[k] < infinity;  // without a branch, which nobody could foresee
+    next += fan_.nearest[k] < infinity;  // branch-free, since the branch is unpredictable
   }
   listed_size_ = static_cast<std::uint32_t>(next - listed_.data());
   fan_.size = 0;
@@ -248,7 +249,7 @@ void SampledVoxelCounter::list_fan(Sight& sight) {
   sight.begin = 0;
 }
 
-// Takes from `sight` the rays that a triangle stops for certain, before they come near the voxel.
+// Drops rays from `sight` that a triangle stops for certain, before they come near the voxel.
 void SampledVoxelCounter::drop_hidden(Sight& sight, std::uint32_t by) {
   if (sight.begin == sight.end) return;
   const SceneData& scene = rays_->scene();
@@ -271,9 +272,9 @@ void SampledVoxelCounter::drop_hidden(Sight& sight, std::uint32_t by) {
   sight.end = kept;
 }
 
-// Traces what is listed. Most rays are stopped before they come near the voxel, and it is faster to learn that than by
-// what: so that is asked first, and only of the others what they hit. As what stops them comes before all that counts,
-// the answer for those that go on is the same.
+// Traces the listed rays. Most are stopped before they come near the voxel, and any hit is found faster than the
+// nearest. So occluders are looked for first, and nearest hits only for the other rays. An occluder comes before all
+// that counts, so the answer for the other rays is the same.
 void SampledVoxelCounter::settle() {
   visible_.clear();
   for (int round = 0; round < rounds && !sights_.empty(); ++round) {
@@ -282,7 +283,7 @@ void SampledVoxelCounter::settle() {
       probes_.push_back({listed_[sight.begin].d, std::min(listed_[sight.begin].nearest, sight.farthest)});
     rays_->caster().any_hits(bundle_.origin, bundle_.start, probes_);
     traced_ += probes_.size();
-    // In passes, so that memory answers for many at once.
+    // In separate passes, so that many loads are in flight at once.
     const SceneData& scene = rays_->scene();
     for (const Probe& probe : probes_) {
       if (probe.hit != RayBundle::no_hit) __builtin_prefetch(&scene.triangles[probe.hit]);
@@ -311,8 +312,8 @@ void SampledVoxelCounter::settle() {
   listed_size_ = 0;
 }
 
-// Traces the rays of what is visible, and counts points: where a voxel is to be filled only, first as many as mostly
-// do, and one where it is full and only wanted is whether it is seen.
+// Traces the rays of visible voxels and counts points. With a limit `stop_at`, a first pass traces as many rays as
+// usually suffice, or one if the voxel is full and only the station's bit is missing.
 void SampledVoxelCounter::cast() {
   bundle_.size = 0;
   if (stop_at_ != 0) {
@@ -327,7 +328,7 @@ void SampledVoxelCounter::cast() {
   finish();
 }
 
-// Takes the first so many rays.
+// Takes the first `many` rays.
 void SampledVoxelCounter::cast(Sight& sight, std::uint32_t many) {
   traced_ += many - (sight.probed && many > 0 ? 1 : 0);
   sight.probed = false;

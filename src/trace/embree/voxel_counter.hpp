@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The points that stations leave in some voxels, from just those rays that can leave one there.
+// Counts points of stations in some voxels, from only those rays that can leave one there.
 #pragma once
 
 #include <array>
@@ -14,48 +14,48 @@
 
 namespace vantage {
 
-// How far beyond the noise's reach of a cube a triangle may lie that holds a hit counted there: Embree's doubt about
-// edges, which a slant stretches.
+// How far beyond the noise's reach of a cube a triangle may lie whose hit counts there: Embree's error at edges,
+// stretched by a slant.
 inline double triangle_margin(double pad) { return 64 * pad; }
 
-// Works on a block of voxels at a time, a station after the other: what all need is computed side by side, and rays are
-// traced many at once. Not thread-safe.
+// Works on blocks of voxels, one station after the other: bounds are computed side by side, and many rays are traced at
+// once. Not thread-safe.
 class SampledVoxelCounter {
  public:
   static constexpr std::uint32_t block = BoxBatch::capacity;
 
-  // `scanners`: what TraceStation::scanner counts. `pad`: rounding_pad() of everything in sight. Borrows both.
+  // `scanners`: indexed by TraceStation::scanner. `pad`: rounding_pad() of everything in sight. Borrows both.
   SampledVoxelCounter(std::span<const StationRays> scanners, const SampledVoxels& voxels, double pad);
 
-  // Of voxels first, first + 1, …: every station's points (saturating), or, where `stop_at` is not 0, stations' points
-  // until there are so many and it is known who has one; and a bit for each station that has one there. `masks` is
-  // empty or as long as `counts`. REQUIRES: no more than `block` voxels; counts and masks are 0.
+  // Counts voxels first, first + 1, …: points of all stations (saturating), and a bit for each station with a point
+  // there. Unless `stop_at` is 0, counting stops once a voxel has that many points and its stations are known. `masks`
+  // is empty or as long as `counts`. REQUIRES: at most `block` voxels; counts and masks are 0.
   void count(std::span<const TraceStation> stations, std::size_t first, std::uint32_t stop_at,
              std::span<std::uint32_t> counts, std::span<std::uint64_t> masks);
   std::uint64_t traced() const { return traced_; }
 
  private:
-  // Where hits lie whose points count in the voxel: within the noise's reach of its cube. Relative to the head.
+  // Region of hits whose points count in the voxel: within the noise's reach of its cube. Relative to the head.
   struct Cube {
     Float3 centre;
     float half;
-    float nearest, farthest;  // distance of any such hit
+    float nearest, farthest;  // bounds on the distance of such a hit
   };
-  // Some of the rays that may cross a cube, side by side.
+  // Some of the rays that may cross a cube, as arrays.
   struct Fan {
-    static constexpr std::uint32_t capacity = 64, step = 8;  // so many are written at a time, whatever is needed
+    static constexpr std::uint32_t capacity = 64, step = 8;  // step: rays written at a time, even if fewer are needed
     std::uint32_t size = 0;
     alignas(64) std::array<float, capacity + step> x, y, z;
     alignas(64) std::array<std::uint32_t, capacity + step> row, column;
     alignas(64) std::array<float, capacity> nearest;  // no hit that counts is nearer; infinity: there is none
-    alignas(64) std::array<float, capacity> px, py, pz, slant, candidate;  // on the plane at hand
+    alignas(64) std::array<float, capacity> px, py, pz, slant, candidate;  // of the plane in work
   };
   // Rays that may leave a point in one voxel: listed_ from `begin` to `end`.
   struct Sight {
-    std::uint32_t voxel = 0;  // of the block
+    std::uint32_t voxel = 0;  // index in the block
     std::uint32_t begin = 0, end = 0;
     float farthest = 0;   // no hit that counts is farther
-    bool probed = false;  // its first ray
+    bool probed = false;  // its first ray was probed
   };
   struct Ray {
     Float3 d;
@@ -64,7 +64,7 @@ class SampledVoxelCounter {
   };
 
   void look_from(std::size_t first, std::size_t n);
-  // Whether the present station need not look at voxel number i of the block any more.
+  // Whether the current station can skip voxel number i of the block.
   bool full(std::uint32_t i) const {
     return stop_at_ != 0 && counts_[i] >= stop_at_ && (masks_.empty() || (masks_[i] >> station_->place & 1) != 0);
   }
@@ -91,9 +91,9 @@ class SampledVoxelCounter {
   std::uint64_t traced_ = 0;
 
   BoxBatch boxes_;
-  alignas(64) std::array<double, block> x_, y_, z_, distance_;  // of the cubes' middles from the head
+  alignas(64) std::array<double, block> x_, y_, z_, distance_;  // middles of the cubes, relative to the head
   Fan fan_;
-  std::array<float, SampledVoxels::most_planes> heights_;  // of the head over the planes of the voxel at hand
+  std::array<float, SampledVoxels::most_planes> heights_;  // of the head over the planes of the current voxel
   std::vector<Ray> listed_;
   std::uint32_t listed_size_ = 0;
   std::vector<Sight> sights_, visible_;

@@ -12,8 +12,8 @@
 
 namespace vantage {
 
-// Set voxels of each brick before each 64 bits of its mask, so that a rank takes one population count. 16 bytes a
-// brick. Immutable.
+// Set voxels of each brick before each 64 bits of its mask, so that a voxel index takes one population count. 16 bytes
+// a brick. Immutable.
 class BrickPrefixes {
  public:
   static constexpr std::uint32_t words = 8;
@@ -37,9 +37,8 @@ class BrickPrefixes {
   std::vector<std::array<std::uint16_t, words>> before_;
 };
 
-// VoxelGrid::rank_of for the points of a bundle, in steps that go over all of them: the arithmetic goes through vector
-// registers, and many loads are under way at once, for at any resolution worth the name neither hash table nor bricks
-// fit into a cache.
+// VoxelGrid::rank_of for the points of a bundle, in steps over all of them. Arithmetic uses vector registers, and many
+// loads are in flight at once: at practical resolutions neither hash table nor bricks fit into a cache.
 class VoxelLookup {
  public:
   static constexpr std::uint32_t capacity = 256;
@@ -54,7 +53,7 @@ class VoxelLookup {
         cells_(grid.slots().empty() ? 0.0f : static_cast<float>(1u << grid.depth())) {}
 
   void clear() { size_ = 0; }
-  // REQUIRES: no more than `capacity` since clear().
+  // REQUIRES: at most `capacity` calls since clear().
   void add(const Float3& p) {
     x_[size_] = p.x;
     y_[size_] = p.y;
@@ -62,8 +61,8 @@ class VoxelLookup {
     ++size_;
   }
 
-  // Calls f(rank) for every point that lies in a surveyed voxel, in order. Inlined, to be compiled for the caller's
-  // target.
+  // Calls f with the index of the surveyed voxel of each point that lies in one, in order. Inlined, to be compiled for
+  // the caller's target.
   template <class F>
   [[gnu::always_inline]] void each_rank(const F& f) {
     find_cells();
@@ -87,9 +86,9 @@ class VoxelLookup {
   }
 
  private:
-  struct Run {            // of points in one brick
-    std::uint32_t point;  // one of them
-    std::uint32_t slot;   // where to look; then the brick's index
+  struct Run {            // points in one brick
+    std::uint32_t point;  // any of them
+    std::uint32_t slot;   // slot to look up; then the brick's index
     std::uint32_t end;
   };
 
@@ -100,7 +99,7 @@ class VoxelLookup {
     for (std::uint32_t p = 0; p < size_; ++p) {
       const float x = (x_[p] - min_x) * inverse, y = (y_[p] - min_y) * inverse, z = (z_[p] - min_z) * inverse;
       const bool inside = (x >= 0) & (x < cells) & (y >= 0) & (y < cells) & (z >= 0) & (z < cells);
-      // Through int: a conversion that every processor has.
+      // Via int: every processor has that conversion.
       const std::uint32_t i = static_cast<std::uint32_t>(static_cast<int>(inside ? x : 0.0f));
       const std::uint32_t j = static_cast<std::uint32_t>(static_cast<int>(inside ? y : 0.0f));
       const std::uint32_t k = static_cast<std::uint32_t>(static_cast<int>(inside ? z : 0.0f));
@@ -138,7 +137,7 @@ class VoxelLookup {
     }
     run.slot = slot->brick;
     if (run.slot == empty_slot) return;
-    __builtin_prefetch(&bricks_[run.slot]);  // a brick may lie across two lines
+    __builtin_prefetch(&bricks_[run.slot]);  // a brick may span two cache lines
     __builtin_prefetch(&bricks_[run.slot].mask[brick_mask_words - 1]);
     prefixes_.prefetch(run.slot);
   }
@@ -152,7 +151,7 @@ class VoxelLookup {
   std::uint32_t size_ = 0;
   alignas(64) std::array<float, capacity> x_, y_, z_;
   alignas(64) std::array<std::uint32_t, capacity> a_, b_, c_;    // brick coordinates; a is empty_slot outside the cube
-  alignas(64) std::array<std::uint32_t, capacity> slot_, code_;  // where the hash says; Morton code in the brick
+  alignas(64) std::array<std::uint32_t, capacity> slot_, code_;  // slot by the hash; Morton code in the brick
   std::array<Run, capacity> runs_;
 };
 

@@ -24,7 +24,7 @@ Piece Pieces::take(double share, bool known) {
     returned_.pop_back();
     return piece;
   }
-  constexpr double least = 1.0 / 16;  // never so little that handing out costs
+  constexpr double least = 1.0 / 16;  // lower bound, so that handing out stays cheap
   const auto share_of = [&](std::size_t items, double part) {
     return static_cast<std::size_t>(std::ceil(part * share * static_cast<double>(items)));
   };

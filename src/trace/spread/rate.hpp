@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How fast one has shown to be.
+// Measured rate of one worker.
 #pragma once
 
 #include <cstddef>
@@ -8,10 +8,10 @@ namespace vantage {
 
 class Rate {
  public:
-  double items_a_second() const { return rate_; }  // 0: not seen yet
+  double items_a_second() const { return rate_; }  // 0: not measured yet
 
-  // Large pieces tell more than small ones, of which most of the time may be what any piece takes: one of twice the
-  // size that was learned from tells all, one of the same size half.
+  // Weighs large pieces more, since a fixed cost may dominate small ones. A piece of twice the size learned from
+  // replaces the rate; one of the same size counts half.
   void learn(std::size_t items, double seconds) {
     if (!(seconds > 0)) return;
     const auto size = static_cast<double>(items);

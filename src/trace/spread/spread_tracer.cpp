@@ -15,7 +15,7 @@
 namespace vantage {
 namespace {
 
-// Until one was seen: a field of counts and masks from a device to here, and merged.
+// Cost of copying a field of counts and masks from a device and merging it, until one was measured.
 constexpr double first_merge_seconds_a_voxel = 1e-8;
 
 // "2 x NVIDIA H200", "NVIDIA H200, Intel Xeon (16 threads)".
@@ -49,7 +49,7 @@ bool came_to_end(const std::vector<NetworkCounts>& counts) {
   return std::none_of(counts.begin(), counts.end(), [](const auto& c) { return c.cancelled; });
 }
 
-// What members have summed, as of one that has all of them.
+// Sets the summed counts of the members to what one tracer would return.
 void settle(std::vector<NetworkCounts>& all, bool finished, std::size_t members) {
   for (NetworkCounts& counts : all) {
     counts.cancelled = !finished;
@@ -181,7 +181,7 @@ std::vector<NetworkCounts> SpreadTracer::count_each(std::span<const std::vector<
                const std::vector<NetworkCounts> counts =
                    tracer.count_each(networks.subspan(piece.first, piece.size()),
                                      station_counts.subspan(piece.first, piece.size()), options, own);
-               // Nobody else writes there.
+               // Each piece has its own range of `all`.
                std::copy(counts.begin(), counts.end(), all.begin() + static_cast<std::ptrdiff_t>(piece.first));
                return came_to_end(counts);
              });
@@ -191,7 +191,7 @@ std::vector<NetworkCounts> SpreadTracer::count_each(std::span<const std::vector<
 std::vector<NetworkCounts> SpreadTracer::count_sampled(std::span<const std::vector<TraceStation>> networks,
                                                        std::span<const std::uint32_t> station_counts,
                                                        const SampleJob& job, const Progress& progress) {
-  // What a search asks for. The rest needs a network's voxels together.
+  // The case of a search. Other outputs need a network's voxels together.
   const bool sums_alone = job.groups == 0 && !job.points && !job.station_masks && !job.registration;
   return population_ == Population::by_voxels && sums_alone && !job.sample.empty() && team_.left() > 1
              ? count_by_voxels(networks, station_counts, job, progress)
@@ -224,7 +224,7 @@ std::vector<NetworkCounts> SpreadTracer::count_by_networks(std::span<const std::
                                                            std::span<const std::uint32_t> station_counts,
                                                            const SampleJob& job, const Progress& progress) {
   std::vector<NetworkCounts> all(networks.size());
-  // A member that is dropped may have told of networks that another then counts again.
+  // A member that is dropped may have delivered networks that another then counts again.
   ToldOnce told(job, networks.size());
   const std::size_t members = team_.left();
   const bool finished =
@@ -234,7 +234,7 @@ std::vector<NetworkCounts> SpreadTracer::count_by_networks(std::span<const std::
                        networks.subspan(piece.first, piece.size()), station_counts.subspan(piece.first, piece.size()),
                        told.piece(piece.first, ask), own);
                    const bool done = came_to_end(counts);
-                   // Nobody else writes there.
+                   // Each piece has its own range of `all`.
                    std::move(counts.begin(), counts.end(), all.begin() + static_cast<std::ptrdiff_t>(piece.first));
                    return done;
                  });

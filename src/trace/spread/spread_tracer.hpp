@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// One tracer made of several, each on a device of its own: sampled populations, networks of every ray and rows of a
-// scan are pulled in pieces, and a single network of every ray is split by its stations where merging costs less than
-// that gains. A piece of a population is some of its networks, or some of the sample's voxels. All counts are integers,
-// so who counted what does not show.
+// One tracer over several, each on its own device. Members pull pieces of sampled populations, networks of every ray,
+// and rows of a scan. A single network of every ray is split by stations if that gains more than merging costs. A piece
+// of a population is some of its networks, or some of the sample's voxels. All counts are integers, so the result does
+// not show who counted what.
 #pragma once
 
 #include <functional>
@@ -18,18 +18,18 @@ namespace vantage {
 
 class SpreadTracer final : public Tracer {
  public:
-  // When one network is split by its stations.
+  // When to split one network by its stations.
   enum class Split { where_it_pays, always };
-  // What a piece of a sampled population is. By voxels each member sees all stations: on a GPU, where rays to one voxel
-  // share their way if they come from stations that stand close together, half the stations are not half the work. By
-  // networks each member hears of some stations and answers for some networks only: for members that are far away.
+  // How a sampled population is cut. By voxels, each member sees all stations: suits GPUs, where rays from neighbouring
+  // stations to a voxel share their way, so half the stations are more than half the work. By networks, each member
+  // gets only the stations of its networks: suits members far away.
   enum class Population { by_networks, by_voxels };
   struct Options {
     Split split = Split::where_it_pays;
     Population population = Population::by_networks;
-    std::optional<EngineInfo> info = std::nullopt;  // what all are known by; their devices otherwise
+    std::optional<EngineInfo> info = std::nullopt;  // name of the whole; empty: the members' devices
   };
-  // The tracers are of one scene. REQUIRES: at least one.
+  // All tracers are of one scene. REQUIRES: at least one.
   SpreadTracer(std::vector<std::unique_ptr<Tracer>> tracers, const TraceScene& scene, Team::Warn warn, Options options);
 
   const EngineInfo& info() const override { return info_; }
@@ -68,7 +68,7 @@ class SpreadTracer final : public Tracer {
   Population population_;
   TeamRates rows_, networks_, samples_, stations_;
   TeamRates runs_{.of_rest = 1};
-  double seconds_a_station_ = 0;  // of networks counted whole, as seen last; 0: not yet
+  double seconds_a_station_ = 0;  // of networks counted whole, last measured; 0: not yet
   double merge_seconds_a_voxel_;
 };
 

@@ -22,7 +22,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Failures that another device may not have.
+// Failures that another device may not share.
 bool of_the_device(const Error& error) {
   return error.code() == Errc::device_failure || error.code() == Errc::out_of_memory;
 }
@@ -56,7 +56,7 @@ void Team::drop(std::size_t k, const std::string& why) {
   if (warn_) warn_(names_[k] + " is dropped, its work done again by the " + std::to_string(left()) + " left: " + why);
 }
 
-// One call of work() by several: what they share, behind one mutex.
+// One call of work() by several members: their shared state, behind one mutex.
 class Team::Shift {
  public:
   Shift(Team& team, std::size_t items, TeamRates& rates, const Progress& progress, const Do& job)
@@ -70,7 +70,7 @@ class Team::Shift {
         failures_(team.size()),
         outside_(progress.stop, [this] { stop_.request_stop(); }) {}
 
-  // Until nothing is left to take, or nobody to take it. Returns whether anything may have been left.
+  // Runs until nothing is left to take, or nobody to take it. Returns whether anything may be left.
   bool run() {
     std::vector<std::jthread> threads;
     threads.reserve(team_.size());
@@ -80,7 +80,7 @@ class Team::Shift {
         set_working(+1);
         threads.emplace_back([this, k] { serve(k); });
       }
-    } catch (...) {  // no more threads: those that there are have to be answered until they stop
+    } catch (...) {  // no more threads: answer the running ones until they stop
       give_up(std::current_exception());
       set_working(-1);
     }
@@ -186,7 +186,7 @@ class Team::Shift {
     stop_.request_stop();
   }
 
-  // On a member's thread.
+  // Called on a member's thread.
   void ask(const std::function<void()>& what) {
     Question question{&what, nullptr};
     std::unique_lock lock(mutex_);
@@ -198,7 +198,7 @@ class Team::Shift {
     throw QuestionThrew{};
   }
 
-  // On the caller's thread, until all members are through.
+  // Runs on the caller's thread until all members are done.
   void answer() {
     std::unique_lock lock(mutex_);
     for (;;) {
@@ -242,7 +242,7 @@ class Team::Shift {
   std::condition_variable wake_;
   Pieces pieces_;
   std::vector<Piece> own_piece_ = std::vector<Piece>(team_.size());
-  std::vector<double> under_way_;  // items of each member's piece
+  std::vector<double> under_way_;  // items in each member's current piece
   std::vector<std::optional<Error>> failures_;
   std::deque<Question*> questions_;
   std::exception_ptr thrown_;
@@ -263,7 +263,7 @@ bool Team::work(std::size_t items, TeamRates& rates, const Progress& progress, c
   return shift.finished();
 }
 
-// No threads where one does it all.
+// Without threads, since one member does everything.
 bool Team::work_alone(std::size_t items, TeamRates& rates, const Progress& progress, const Do& job) {
   for (;;) {
     const std::size_t k = fastest(rates);

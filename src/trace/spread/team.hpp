@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tracers that do one piece of work together, each on a thread of its own. One that fails is dropped, and the others do
-// its piece again.
+// Tracers that share one work, each on its own thread. A member that fails is dropped, and the others repeat its piece.
 #pragma once
 
 #include <cstddef>
@@ -15,11 +14,11 @@
 
 namespace vantage {
 
-// What a kind of work has shown of how fast each member is; it sizes pieces, never results.
+// Measured speed of each member for one kind of work. It sizes pieces and never affects results.
 struct TeamRates {
   std::vector<Rate> of_members = {};
-  std::vector<double> shares = {};  // of all work, by these rates
-  // Of what is left, handed out in one round: all of it where items take alike, so that rates seen hold good.
+  std::vector<double> shares = {};  // of all work, from these rates
+  // Part of the remaining items handed out in one round; 1 if all items cost the same, so that rates hold.
   double of_rest = Pieces::factored;
 };
 
@@ -29,17 +28,17 @@ class Team {
   // REQUIRES: at least one tracer.
   Team(std::vector<std::unique_ptr<Tracer>> tracers, Warn warn);
 
-  // What a member may ask for on the thread that called work(); it waits for the answer.
+  // Runs a member's request on the thread that called work(); the member waits for the answer.
   using OnCaller = std::function<void(const std::function<void()>&)>;
-  // Does items [first, end) of the work. Whether it came to their end: where not, the work is stopped.
+  // Does items [first, end) of the work. Returns false if it was stopped before the end.
   using Do = std::function<bool(Tracer& tracer, const Piece& piece, const Progress& progress, const OnCaller& ask)>;
 
-  // Has `items` items done, each once, but for those of a member that fails on its way. Returns whether all are done:
-  // where not, the caller wanted to stop. Throws what a member throws that is no failure of its device, and the failure
-  // of the last.
+  // Does each of `items` items once; a failed member's piece is repeated by another. Returns whether all are done;
+  // false if the caller stopped it. Throws exceptions of a member that are no failure of its device, and the failure of
+  // the last member.
   bool work(std::size_t items, TeamRates& rates, const Progress& progress, const Do& job);
 
-  std::size_t size() const { return tracers_.size(); }  // with those that were dropped
+  std::size_t size() const { return tracers_.size(); }  // including dropped members
   std::size_t left() const;
   // Null: dropped.
   Tracer* member(std::size_t k) const { return tracers_[k].get(); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a physical device offers of what engines need.
+// Abilities of a physical device that engines need.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +10,12 @@
 
 namespace vantage::vulkan {
 
-// What an engine asks of a device.
+// Requirements of an engine on a device.
 enum class Needs {
   compute,    // Vulkan 1.2 with addresses, 64-bit integers and subgroups
-  ray_query,  // VK_KHR_ray_query too
+  ray_query,  // VK_KHR_ray_query as well
 };
-// Which devices have it, for messages.
+// Devices that meet them, for messages.
 const char* who_has(Needs needs);
 
 struct DeviceAbilities {
@@ -25,17 +25,18 @@ struct DeviceAbilities {
   std::uint32_t subgroup_size = 1;
   std::uint64_t memory_bytes = 0;            // largest device-local heap
   std::vector<std::string> compute_lacks;    // why no engine runs on it
-  std::vector<std::string> ray_query_lacks;  // why none with ray queries does, beyond compute_lacks
+  std::vector<std::string> ray_query_lacks;  // why no engine with ray queries runs on it, beyond compute_lacks
   bool software() const { return type == VK_PHYSICAL_DEVICE_TYPE_CPU; }
-  // Why an engine with these needs does not run on it, and what helps; empty where it does.
+  // Why an engine with these needs does not run on it, and what helps; empty if it runs.
   std::string refusal(Needs needs) const;
   // Hardware before software, discrete before integrated, then the most memory.
   bool better_than(const DeviceAbilities& other) const;
 };
-// Of this process, bytes; where the driver keeps no account (VK_EXT_memory_budget), nothing is used and all is free.
+// Memory of this process in bytes. If the driver keeps no account (VK_EXT_memory_budget), nothing is used and all is
+// free.
 struct DeviceMemory {
-  std::uint64_t used = 0;  // of all device-local heaps
-  std::uint64_t free = 0;  // of the device-local heap with most of it
+  std::uint64_t used = 0;  // in all device-local heaps
+  std::uint64_t free = 0;  // in the device-local heap with most free memory
 };
 DeviceMemory memory_of(const Instance& instance, VkPhysicalDevice device);
 DeviceAbilities abilities_of(const Instance& instance, VkPhysicalDevice device);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Buffers that shaders reach by address, and the transfers between host and device.
+// Buffers that shaders access by address, and transfers between host and device.
 #pragma once
 
 #include <cstddef>
@@ -14,13 +14,13 @@
 
 namespace vantage::vulkan {
 
-// A buffer with memory of its own. Every buffer has an address, so that no descriptor's range limits it.
+// A buffer with its own memory. Every buffer has an address, so that no descriptor's range limits it.
 class Buffer {
  public:
   enum class Where {
     device,    // fastest for shaders; filled by copies
-    upload,    // mapped, for the host to write
-    download,  // mapped, for the host to read
+    upload,    // mapped, written by the host
+    download,  // mapped, read by the host
   };
   Buffer() = default;
   // size 0 becomes 16 bytes, so that every array has an address.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one place where a VkResult becomes an exception.
+// The only place that turns a VkResult into an exception.
 #pragma once
 
 #include <volk.h>

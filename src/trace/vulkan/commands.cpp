@@ -11,7 +11,7 @@ namespace vantage::vulkan {
 namespace {
 
 constexpr VkDeviceSize staging_bytes = VkDeviceSize{32} << 20;
-// Work is paced to a second or so; even a large structure built by a software device takes a minute at most.
+// Submissions take about a second; even a large structure takes a software device a minute at most.
 constexpr std::uint64_t wait_ns = 10'000'000'000;
 constexpr int most_waits = 60;
 
@@ -57,7 +57,7 @@ double Commands::run(const Record& record) {
     vk.vkResetCommandBuffer(commands_, 0);
     throw;
   }
-  // What was written must be visible to a host that reads mapped memory, and to the next submission.
+  // Makes all writes visible to a host that reads mapped memory, and to the next submission.
   recorder.anyone_after_anyone();
   vk.vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, timestamps_.get(), 1);
   check(vk.vkEndCommandBuffer(commands_), "vkEndCommandBuffer");
@@ -91,7 +91,7 @@ void Commands::wait() {
                                           " has not finished within ten minutes what takes seconds; it hangs. Start "
                                           "again on another (--device), or with --engine embree");
   }
-  // What is under way must be over before its buffers go.
+  // Pending work must end before its buffers are destroyed.
   if (result != VK_SUCCESS) vk.vkDeviceWaitIdle(device_.handle());
   check(result, "vkWaitForFences");
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recording and submitting work: one command buffer, one submission per batch, one fence.
+// Records and submits work: one command buffer, one submission per batch, one fence.
 #pragma once
 
 #include <cstdint>
@@ -18,12 +18,12 @@ class Commands {
  public:
   explicit Commands(Device& device);
 
-  // Records what `record` does, submits it and waits. Returns the seconds that the device spent
-  // on it. Throws Error device_failure, also for what the validation layer found.
+  // Records by calling `record`, submits and waits. Returns the seconds spent on the device. Throws Error
+  // device_failure, also for reports of the validation layer.
   using Record = std::function<void(const Recorder&)>;
   double run(const Record& record);
 
-  // The same, with buffers read back in the same submission, as `record` left them.
+  // The same, and reads buffers back in the same submission, as `record` left them.
   struct Download {
     const Buffer& from;
     void* to;
@@ -46,7 +46,7 @@ class Commands {
   Buffer staging_up_, staging_down_;
 };
 
-// A device buffer holding `values`.
+// Makes a device buffer that holds `values`.
 template <class T>
 Buffer make_device_buffer(Device& device, Commands& commands, std::span<const T> values, const char* name,
                           VkBufferUsageFlags extra = 0) {

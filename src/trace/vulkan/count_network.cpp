@@ -9,13 +9,14 @@ namespace vantage::vulkan {
 namespace {
 
 constexpr std::uint32_t most_stations = 64;
-constexpr VkDeviceSize word = sizeof(std::uint32_t), dispatch_bytes = 3 * word;  // of an indirect dispatch
+// dispatch_bytes: of an indirect dispatch
+constexpr VkDeviceSize word = sizeof(std::uint32_t), dispatch_bytes = 3 * word;
 
 }  // namespace
 
-// Scanners come one after the other, each with all of its stations. With skipping, each submission first finds which
-// tiles of directions see a surveyed brick (tiles), lists them for each part (tile_list), lets the engine prepare for
-// them (its tile pass), and then counts over the lists alone.
+// Processes scanners one by one, each with all of its stations. With skipping, each submission first finds the tiles of
+// directions that see a surveyed brick (tiles), lists them for each part (tile_list), runs the engine's tile pass, and
+// counts over the lists alone.
 class VulkanTracer::ExactCount {
  public:
   ExactCount(VulkanTracer& tracer, std::span<const TraceStation> stations, std::uint32_t station_count,
@@ -40,7 +41,7 @@ class VulkanTracer::ExactCount {
     ensure_buffers();
     NetworkCounts result;
     double done_rays = 0;
-    std::size_t scanner = std::min(next_scanner(0), stations_by_scanner_.size() - 1);  // any, where none has stations
+    std::size_t scanner = std::min(next_scanner(0), stations_by_scanner_.size() - 1);  // any, if none has stations
     begin_scanner(scanner);
     for (bool first = true, last = false; !last; first = false) {
       result.cancelled = progress.stopped();
@@ -63,7 +64,7 @@ class VulkanTracer::ExactCount {
   }
 
  private:
-  // The first from there on that has stations.
+  // The first scanner from there on that has stations.
   std::size_t next_scanner(std::size_t scanner) const {
     while (scanner < stations_by_scanner_.size() && stations_by_scanner_[scanner].empty()) ++scanner;
     return scanner;
@@ -92,7 +93,7 @@ class VulkanTracer::ExactCount {
     t_.ensure(t_.tile_rays_, sizeof tile_rays_, "tile rays");
   }
 
-  // Submits the parts and waits; the first submission clears the sums, the last brings them back.
+  // Submits the parts and waits. The first submission clears the sums, the last reads them back.
   double submit(std::span<const CountPart> parts, bool first, bool last) {
     const auto record = [&](const Recorder& r) {
       if (first) record_start(r);
@@ -129,7 +130,7 @@ class VulkanTracer::ExactCount {
 
   void record_tiles(const Recorder& r, std::span<const CountPart> parts) {
     for (std::size_t k = 0; k < parts.size(); ++k)
-      if (k == 0 || parts[k].slot != parts[k - 1].slot)  // once a station
+      if (k == 0 || parts[k].slot != parts[k - 1].slot)  // once per station
         r.dispatch(pipeline_of(Kernel::tiles, parts[k]), tile_push(parts[k], k),
                    groups_of(t_.scene_.grid->bricks().size()));
     r.shader_after_shader();
@@ -142,7 +143,7 @@ class VulkanTracer::ExactCount {
     if (tile_pass_) for_each_list(Kernel::tile_pass);
   }
 
-  // Counts are sums, so the parts of a submission need not wait for each other.
+  // Counts are sums, so the parts of a submission need no barriers between them.
   void record_part(const Recorder& r, const CountPart& part, std::size_t k) {
     if (headroom_.clamp_before(plan_->rays_of({&part, 1}))) record_clamp(r);
     const BoundPipeline pipeline =
@@ -168,7 +169,7 @@ class VulkanTracer::ExactCount {
     r.shader_after_shader();
   }
 
-  // `k`: the part's number in its submission.
+  // `k`: index of the part in its submission.
   TilePush tile_push(const CountPart& part, std::size_t k) const {
     TilePush push{};
     push.tile_far = t_.tile_far_.address() + std::uint64_t{part.slot} * plan_->tiles() * word;
@@ -245,13 +246,13 @@ class VulkanTracer::ExactCount {
   CountOptions options_;
   std::uint32_t voxels_, mask_words_, stride_;
   std::uint64_t all_rays_ = 0;
-  // Of the scanner at hand.
+  // Current scanner.
   const DeviceScanner* scanner_ = nullptr;
   std::span<const TraceStation> stations_;
   std::optional<CountPlan> plan_;
   CountHeadroom headroom_;
   std::optional<Traversal::TilePass> tile_pass_;
-  // As they come back from the device.
+  // Read back from the device.
   std::vector<std::uint32_t> totals_;
   std::array<std::uint64_t, std::size_t{station_counters} * most_stations> counters_{};  // of every place
   std::uint64_t tile_rays_ = 0;

@@ -54,7 +54,7 @@ std::uint64_t CountPlan::list_words() const {
 }
 
 bool CountHeadroom::clamp_before(std::uint64_t rays) {
-  // A clamped count is count_limit at most, so that as many rays again less one cannot make it wrap.
+  // A clamped count is at most count_limit, so fewer than count_limit further rays cannot make it wrap.
   assert(rays < count_limit);
   const bool clamp = added_ + rays > count_limit - 1;
   added_ = (clamp ? 0 : added_) + rays;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which rows of which stations an exact evaluation traces together, and when its counts must be clamped.
+// Schedules an exact evaluation: the rows of stations traced together, and when counts must be clamped.
 #pragma once
 
 #include <cstdint>
@@ -8,11 +8,11 @@
 
 namespace vantage::vulkan {
 
-// Rows of one station: what one dispatch traces.
+// Rows of one station, traced by one dispatch.
 struct CountPart {
   std::uint32_t station, first_row, row_count;
-  std::uint32_t slot;  // of its station among those of the submission
-  std::uint64_t list;  // where its list of tiles begins among those of the submission, in words
+  std::uint32_t slot;  // index of its station in the submission
+  std::uint64_t list;  // offset of its list of tiles in the submission, in words
 };
 
 // Cuts all rows of all stations into parts, and parts into submissions, in order.
@@ -23,16 +23,16 @@ class CountPlan {
   // REQUIRES: rows_per_part is a multiple of tile_side, so that no tile belongs to two parts.
   CountPlan(std::uint32_t stations, std::uint32_t rows, std::uint32_t columns, std::uint32_t rows_per_part);
 
-  // The parts of the next submission: as many as begin below so many rays; one at least, unless finished. None has more
-  // rays than that, as far as whole tiles allow.
+  // Returns the parts of the next submission: all that begin below `rays` rays, at least one unless finished. No part
+  // has more rays than that, as far as whole tiles allow.
   std::vector<CountPart> next(double rays);
   bool finished() const { return station_ == stations_; }
 
   std::uint64_t rays_of(std::span<const CountPart> parts) const;
   std::uint64_t all_rays() const { return std::uint64_t{rows_} * columns_ * stations_; }
   std::uint32_t tiles_in_row() const;
-  std::uint32_t tiles() const;                          // of a station
-  std::uint32_t tiles_of(const CountPart& part) const;  // its list: their number, then they
+  std::uint32_t tiles() const;                          // per station
+  std::uint32_t tiles_of(const CountPart& part) const;  // size of its list: the number of tiles, then the tiles
   std::uint64_t list_words() const;                     // enough for the lists of any submission
 
  private:
@@ -40,11 +40,11 @@ class CountPlan {
   std::uint32_t station_ = 0, row_ = 0;
 };
 
-// Counts are 32 bits wide. Keeps book of what dispatches may have added to one since all were clamped to count_limit.
+// Tracks how much dispatches may have added to a 32-bit count since all counts were clamped to count_limit.
 class CountHeadroom {
  public:
-  // Whether counts must be clamped before a dispatch of so many rays, which is then the first after it.
-  // REQUIRES: rays < count_limit.
+  // Whether to clamp counts before a dispatch of `rays` rays, which then is the first after it. REQUIRES: rays <
+  // count_limit.
   bool clamp_before(std::uint64_t rays);
 
  private:

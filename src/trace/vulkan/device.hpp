@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The logical device that an engine works on.
+// Logical device of an engine.
 #pragma once
 
 #include <cstdint>
@@ -12,14 +12,14 @@ namespace vantage::vulkan {
 // A logical device with one compute queue.
 class Device {
  public:
-  // REQUIRES: nothing lacking for what is asked.
+  // REQUIRES: the abilities lack nothing of the needs.
   Device(std::shared_ptr<Instance> instance, VkPhysicalDevice physical, const DeviceAbilities& abilities, Needs needs);
   ~Device();
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
 
   VkDevice handle() const { return device_; }
-  const VolkDeviceTable& vk() const { return vk_; }  // the device's own functions
+  const VolkDeviceTable& vk() const { return vk_; }  // functions of the device itself
   VkQueue queue() const { return queue_; }
   const DeviceAbilities& abilities() const { return abilities_; }
   Instance& instance() const { return *instance_; }
@@ -27,7 +27,7 @@ class Device {
   bool has_memory_type(VkMemoryPropertyFlags wanted) const;
   VkDeviceSize scratch_alignment() const { return scratch_alignment_; }
   double timestamp_period_ns() const { return timestamp_period_ns_; }
-  // It hangs: nothing of it can be destroyed any more, and nothing is.
+  // For a hanging device: from then on nothing of it is destroyed, since nothing can be.
   void give_up() { given_up_ = true; }
   bool given_up() const { return given_up_; }
   void name(VkObjectType type, std::uint64_t handle, const char* name) const;  // for debuggers and validation messages

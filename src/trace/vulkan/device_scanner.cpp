@@ -35,7 +35,7 @@ DeviceScanner::DeviceScanner(Device& device, Commands& commands, VkAccelerationS
   if (noise()) reaches_ = to_device(noise_reaches(*scanner_.noise), "reaches of noise");
 }
 
-// Meshes that ask for the same share one entry.
+// Meshes with equal limits share one entry.
 void DeviceScanner::upload_limits(Device& device, Commands& commands, const SceneData& scene) {
   std::vector<LimitModel::Limits> distinct;
   std::vector<PointLimits> limits;

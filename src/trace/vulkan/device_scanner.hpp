@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scanner on the device: tables of its pattern, noise and limits, and the block of parameters that kernels are told
-// them by.
+// A scanner on the device: tables of its pattern, noise and limits, and its parameter block for kernels.
 #pragma once
 
 #include "shared/trace_types.h"
@@ -13,8 +12,8 @@ namespace vantage::vulkan {
 
 class DeviceScanner {
  public:
-  // Throws Error invalid_argument where the pattern has 2^31 rays or more. `structure`: what rays are queried in, or
-  // null; it must outlive this.
+  // Throws Error invalid_argument if the pattern has 2^31 rays or more. `structure`: acceleration structure for ray
+  // queries, or null; it must outlive this.
   DeviceScanner(Device& device, Commands& commands, VkAccelerationStructureKHR structure, const SceneData& scene,
                 const TraceScanner& scanner);
 
@@ -23,11 +22,11 @@ class DeviceScanner {
   bool limits() const { return scanner_.limits && scanner_.limits->enabled(); }
   const TraceSet& set() const { return set_; }
 
-  // Writes the block: what all scanners have of scene and voxels, and what is this one's own.
+  // Writes the block: the part about scene and voxels that all scanners share, and this scanner's own.
   void write(Commands& commands, const TraceParameters& shared) const;
 
  private:
-  // What ranges are displaced by, or judged by where they are exact; null where neither.
+  // Noise model that displaces ranges, or, if ranges are exact, limits them; null without both.
   const NoiseModel* sigma_model() const {
     return noise() ? scanner_.noise.get() : limits() ? scanner_.limits->noise.get() : nullptr;
   }

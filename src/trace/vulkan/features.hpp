@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The features and extensions that engines ask of a device.
+// Features and extensions that engines require of a device.
 #pragma once
 
 #include <volk.h>
@@ -12,7 +12,7 @@ inline constexpr std::array ray_query_extensions{VK_KHR_ACCELERATION_STRUCTURE_E
                                                  VK_KHR_RAY_QUERY_EXTENSION_NAME,
                                                  VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME};
 
-// Chained for query and creation alike.
+// Chain of features, for query and creation alike.
 struct Features {
   VkPhysicalDeviceRayQueryFeaturesKHR ray_query{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_QUERY_FEATURES_KHR, nullptr,
                                                 VK_FALSE};

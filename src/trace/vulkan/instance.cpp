@@ -30,12 +30,12 @@ InstanceFunctions load_functions(VkInstance instance) {
 std::shared_ptr<Instance> Instance::get(bool validation) {
   static std::mutex mutex;
   static std::weak_ptr<Instance> watched;
-  // Kept for good: some drivers cannot be loaded and unloaded any number of times. Never destroyed, since at exit they
-  // may be gone first.
+  // Kept for good, since some drivers cannot be loaded and unloaded repeatedly. Never destroyed, since drivers may be
+  // gone first at exit.
   static auto& kept = *new std::shared_ptr<Instance>;
   const std::lock_guard lock(mutex);
   if (validation) {
-    // Not kept, so that what was left undestroyed is told.
+    // Not kept, so that the layer reports objects left undestroyed.
     auto instance = watched.lock();
     if (!instance) watched = instance = std::make_shared<Instance>(true);
     return instance;
@@ -94,7 +94,7 @@ Instance::Instance(bool validation) {
 Instance::~Instance() {
   if (messenger_) vk_.vkDestroyDebugUtilsMessengerEXT(instance_, messenger_, nullptr);
   if (instance_) vk_.vkDestroyInstance(instance_, nullptr);
-  // Too late for an exception, and what was left undestroyed is reported here.
+  // Reports objects left undestroyed; too late for an exception.
   for (const std::string& message : messages_)
     std::fprintf(stderr, "vantage: the Vulkan validation layer reports: %s\n", message.c_str());
 }
@@ -125,7 +125,7 @@ std::vector<VkPhysicalDevice> Instance::physical_devices() const {
 }
 
 VolkDeviceTable Instance::functions_of(VkDevice device) const {
-  // volk looks a device's functions up with this global, which nothing else here sets or reads.
+  // volk looks up a device's functions with this global, which nothing else here sets or reads.
   static std::mutex mutex;
   const std::lock_guard lock(mutex);
   vkGetDeviceProcAddr = vk_.vkGetDeviceProcAddr;

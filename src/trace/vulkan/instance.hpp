@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A Vulkan instance with functions of its own, and what its validation layer says.
+// A Vulkan instance with its own functions, and its validation layer's messages.
 #pragma once
 
 #include <volk.h>
@@ -12,7 +12,7 @@
 namespace vantage::vulkan {
 
 // clang-format off
-// The last three are there with validation only.
+// The last three exist with validation only.
 #define VANTAGE_INSTANCE_FUNCTIONS(use) \
   use(vkDestroyInstance) \
   use(vkEnumeratePhysicalDevices) \
@@ -30,8 +30,8 @@ namespace vantage::vulkan {
   use(vkSetDebugUtilsObjectNameEXT)
 // clang-format on
 
-// An instance's functions. volk's global table holds those of the instance that was loaded last, and what that one
-// lacks is null there: so nobody here loads it, and each instance and each device keeps a table.
+// Functions of one instance. volk's global table holds those of the instance loaded last, with null for any that it
+// lacks. So nothing here loads it; each instance and each device keeps its own table.
 struct InstanceFunctions {
 #define VANTAGE_FUNCTION(name) PFN_##name name = nullptr;
   VANTAGE_INSTANCE_FUNCTIONS(VANTAGE_FUNCTION)
@@ -40,11 +40,11 @@ struct InstanceFunctions {
 
 class Instance {
  public:
-  // The process's instance, with the validation layer or without, shared by all who hold one. Throws as the
+  // Returns the process's instance, with or without the validation layer; all holders share it. Throws as the
   // constructor.
   static std::shared_ptr<Instance> get(bool validation);
 
-  // Throws Error no_suitable_device where there is no Vulkan loader, or no validation layer though one is asked for.
+  // Throws Error no_suitable_device if there is no Vulkan loader, or no validation layer although requested.
   explicit Instance(bool validation);
   ~Instance();
   Instance(const Instance&) = delete;
@@ -52,9 +52,9 @@ class Instance {
 
   const InstanceFunctions& vk() const { return vk_; }
   std::vector<VkPhysicalDevice> physical_devices() const;
-  // The functions of one of its devices.
+  // Functions of one of its devices.
   VolkDeviceTable functions_of(VkDevice device) const;
-  // Throws Error device_failure with what the validation layer reported since the last call.
+  // Throws Error device_failure with the validation layer's reports since the last call.
   void check_validation();
 
  private:

@@ -15,7 +15,7 @@ struct Source {
   const char* name;
   Shader shader;
   std::uint32_t push_bytes;
-  std::uint32_t constants;  // how many specialization constants it has
+  std::uint32_t constants;  // number of specialization constants
 };
 
 Source source_of(Kernel kernel, const Traversal& traversal) {
@@ -48,7 +48,7 @@ BoundPipeline Kernels::get(const TraceSet& set, bool turned, Kernel kernel, std:
     const Source source = source_of(kernel, traversal_);
     std::vector<ComputePipeline::Constant> values;
     for (std::uint32_t k = 0; k < source.constants; ++k) values.push_back({k, constants[k]});
-    values.push_back({turned_constant, turned});  // where a kernel has none it changes nothing
+    values.push_back({turned_constant, turned});  // has no effect on kernels without it
     pipeline = ComputePipeline(device_, source.shader, source.push_bytes, values, set_, source.name);
   }
   return {&pipeline, set.handle()};

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The compute pipelines of one engine on one device, each compiled when first used: a run pays only for what it asks
-// for.
+// Compute pipelines of one engine on one device. Each is compiled on first use, so a run pays only for what it uses.
 #pragma once
 
 #include <array>
@@ -32,14 +31,14 @@ enum class Kernel {
 
 class Kernels {
  public:
-  // `set`: for kernels that any scanner's set will do for. All arguments must outlive it.
+  // `set`: for kernels that work with any scanner's set. All arguments must outlive it.
   Kernels(const Device& device, const Traversal& traversal, const TraceSet& set)
       : device_(device), traversal_(traversal), set_(set) {}
 
-  // `constants` are the kernel's specialization constants, in the order of their constant_id. REQUIRES: for tile_pass,
-  // an engine that has one.
+  // `constants`: the kernel's specialization constants, in the order of their constant_id. REQUIRES: for tile_pass, an
+  // engine that has one.
   BoundPipeline get(Kernel kernel, std::array<bool, 4> constants = {}) { return get(set_, false, kernel, constants); }
-  // For the scanner whose set it is. `turned`: for stations that are.
+  // For the scanner that owns the set. `turned`: for turned stations.
   BoundPipeline get(const TraceSet& set, bool turned, Kernel kernel, std::array<bool, 4> constants = {});
 
  private:

@@ -15,8 +15,8 @@ namespace {
 
 constexpr double word_bytes = 4, vertex = 12, triangle = 12;
 constexpr double most_staging = 1 << 25;  // commands.cpp
-// Of a triangle, as measured (docs/reliability.md): nodes of the tree, most leaves of which have two; and of the
-// structure that a driver builds, with what it needs meanwhile: lavapipe nothing worth counting, others by a guess.
+// Per triangle, measured (docs/reliability.md): nodes of our tree, most of whose leaves hold two triangles; bytes of a
+// driver's structure; bytes of scratch to build it. lavapipe's scratch is negligible, others' is a guess.
 constexpr double tree_nodes = 0.6, structure = 112, scratch = 64;
 
 double tree(const DeviceLoad& load) {
@@ -34,7 +34,7 @@ double grid(const DeviceLoad& load) {
   return load.bricks * sizeof(VoxelBrick) + static_cast<double>(slots) * sizeof(BrickSlot);
 }
 
-// Corners for a sample, and where points depend on what was hit the rest.
+// Corners, for a sample; with shading, also normals and per-triangle data.
 double surfaces(const DeviceLoad& load) {
   const double neighbours = load.engine == Engine::compute_bvh ? 3 * word_bytes : 0;
   const double corners = load.vertices * vertex + load.triangles * (triangle + neighbours);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a Vulkan engine takes of its device's memory, told before any of it is taken, and without Vulkan.
+// Estimates a Vulkan engine's device memory before any is allocated, without Vulkan.
 #pragma once
 
 #include <cstdint>
@@ -13,13 +13,13 @@ struct DeviceLoad {
   bool software = false;
   double vertices = 0, triangles = 0, voxels = 0, bricks = 0;
   std::uint32_t rows = 0, columns = 0;  // of the scanner's pattern
-  std::uint32_t stations = 0;           // of a network
-  bool shaded = false;                  // noise or limits, which look at the triangle that was hit
-  bool normals = false;                 // vertices have them
+  std::uint32_t stations = 0;           // per network
+  bool shaded = false;                  // noise or limits, which read the triangle that was hit
+  bool normals = false;                 // vertices have normals
 };
 
-// Bytes at most at once: while the structure is built, or with all that an exact evaluation and a sample take. Many
-// networks sampled at once take more where there is more, and are counted in parts where there is not.
+// Peak memory in bytes: while the structure is built, or with all buffers of an exact evaluation and a sample. Large
+// sampled populations use more memory if available; otherwise they are counted in parts.
 double device_bytes(const DeviceLoad& load);
 
 }  // namespace vantage::vulkan

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much work a submission takes: it follows the speed seen, and sizes submissions, never results.
+// Sizes submissions by measured speed; never affects results.
 #pragma once
 
 #include <algorithm>
@@ -8,8 +8,8 @@ namespace vantage::vulkan {
 
 class Pace {
  public:
-  // Of submissions that take about `seconds`. It begins with `first` rays, and never asks for fewer than `least`.
-  // Submissions of fewer rays than `telling`, and than half of what was asked for, do not tell the speed.
+  // Aims at submissions of about `seconds`. It begins with `first` rays, and never asks for fewer than `least`.
+  // Submissions below `telling` rays, and below half of what was asked for, are too small to measure the speed.
   Pace(double seconds, double first, double least, double telling)
       : seconds_(seconds), first_(first), least_(least), telling_(telling), rays_(first) {}
 
@@ -17,7 +17,7 @@ class Pace {
   void saw(double rays, double seconds) {
     if (!(seconds > 0)) return;
     if (rays >= std::min(telling_, 0.5 * rays_))
-      // A few quick rays do not vouch for very many.
+      // A fast small submission allows only a limited step.
       rays_ = std::clamp(rays / seconds * seconds_, least_, std::min(most, step * std::max(rays_, rays)));
     else if (seconds > seconds_)
       rays_ = std::max(least_, rays_ * std::max(seconds_ / seconds, 1 / step));

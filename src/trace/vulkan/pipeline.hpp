@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A compute pipeline: one embedded shader, its specialization constants, a push-constant block, and the layout of the
-// descriptor sets of all kernels.
+// A compute pipeline: one embedded shader, its specialization constants, a push-constant block, and the common layout
+// of descriptor sets.
 #pragma once
 
 #include <cstdint>
@@ -32,7 +32,7 @@ class ComputePipeline {
   UniquePipeline pipeline_;
 };
 
-// With the set of a scanner, as it is dispatched.
+// A pipeline with a scanner's set, ready for dispatch.
 struct BoundPipeline {
   const ComputePipeline* pipeline;
   VkDescriptorSet set;

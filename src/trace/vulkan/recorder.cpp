@@ -11,7 +11,7 @@ void Recorder::zero(const Buffer& buffer, VkDeviceSize offset, VkDeviceSize byte
 }
 
 void Recorder::update(const Buffer& buffer, const void* data, VkDeviceSize bytes) const {
-  constexpr VkDeviceSize most = 65536;  // of one command
+  constexpr VkDeviceSize most = 65536;  // limit of one command
   for (VkDeviceSize done = 0; done < bytes; done += most)
     vk_.vkCmdUpdateBuffer(commands_, buffer.handle(), done, std::min(most, bytes - done),
                           static_cast<const std::byte*>(data) + done);

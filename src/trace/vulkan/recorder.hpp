@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What our work puts into a command buffer.
+// Commands that a command buffer is recorded from.
 #pragma once
 
 #include <type_traits>
@@ -14,13 +14,14 @@ class Recorder {
   Recorder(const VolkDeviceTable& vk, VkCommandBuffer commands) : vk_(vk), commands_(commands) {}
 
   void zero(const Buffer& buffer, VkDeviceSize offset = 0, VkDeviceSize bytes = VK_WHOLE_SIZE) const;
-  // Writes `data` to the front of the buffer; for small arrays, whose bytes travel with the commands.
+  // Writes `data` to the front of the buffer. For small arrays, whose bytes are part of the command.
   void update(const Buffer& buffer, const void* data, VkDeviceSize bytes) const;
   void copy(const Buffer& from, const Buffer& to, const VkBufferCopy& region) const;
   void build(const VkAccelerationStructureBuildGeometryInfoKHR& info,
              const VkAccelerationStructureBuildRangeInfoKHR& range) const;
 
-  // Workgroups of a kernel: so many, or what three words at `offset` of `groups` say when it is their turn.
+  // Dispatches a kernel: with the given number of workgroups, or with the three words at `offset` of `groups` at
+  // execution.
   template <class Push>
   void dispatch(const BoundPipeline& pipeline, const Push& push, std::uint32_t x, std::uint32_t y = 1,
                 std::uint32_t z = 1) const {
@@ -34,15 +35,16 @@ class Recorder {
     vk_.vkCmdDispatchIndirect(commands_, groups.handle(), offset);
   }
 
-  // The barriers that our work needs.
-  void shader_after_transfer() const;  // shaders (and indirect dispatches) see earlier fills and copies
-  void shader_after_shader() const;    // shaders, indirect dispatches and copies see what earlier shaders wrote
-  void anyone_after_anyone() const;    // the host, and the next submission, see all that was written
+  // Barriers.
+  void shader_after_transfer() const;  // shaders and indirect dispatches see earlier fills and copies
+  void shader_after_shader() const;    // shaders, indirect dispatches and copies see earlier shaders' writes
+  void anyone_after_anyone() const;    // the host and the next submission see all writes
 
  private:
   template <class Push>
   void bind(const BoundPipeline& pipeline, const Push& push) const {
-    static_assert(std::is_trivially_copyable_v<Push> && sizeof(Push) <= 128);  // 128 bytes is what every device has
+    // 128 bytes are guaranteed on every device
+    static_assert(std::is_trivially_copyable_v<Push> && sizeof(Push) <= 128);
     pipeline.pipeline->bind(vk_, commands_, pipeline.set, &push);
   }
   void barrier(VkPipelineStageFlags from_stage, VkAccessFlags from, VkPipelineStageFlags to_stage,

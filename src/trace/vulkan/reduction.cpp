@@ -78,7 +78,7 @@ void VulkanTracer::read_totals(std::span<NetworkCounts> counts, std::span<const 
       sum.partial_points += group.partial_points;
       if (reduction.groups > 1) sum.groups.push_back(std::move(group));
     }
-    // Where one voxel is saturated, (1 − c / goal)² = 1 − 2 c / goal + c² / goal².
+    // If one of two voxels is saturated, (1 − c / goal)² = 1 − 2 c / goal + c² / goal².
     const double unit =
         std::ldexp(1.0, static_cast<int>(difference_shift(reduction.voxels))) / (goal_density_ * point_worth);
     sum.successive_difference_sum = static_cast<double>(squares) * unit * unit -

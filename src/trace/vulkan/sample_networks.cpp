@@ -19,7 +19,7 @@ const VulkanTracer::DeviceSample& VulkanTracer::upload_sample(std::span<const st
                       [&] { return device_sample(sample); });
 }
 
-// Run by run, so that one chunk has about as many rays as another.
+// Orders voxels run by run, so that chunks have similar numbers of rays.
 static std::vector<SampleVoxel> in_order_of_chunks(std::span<const SampleVoxel> voxels) {
   const SampleRuns runs(voxels.size());
   std::vector<SampleVoxel> ordered;
@@ -41,10 +41,10 @@ VulkanTracer::DeviceSample VulkanTracer::device_sample(std::span<const std::uint
           .demands = to_device(grid.demands().of(sample))};
 }
 
-// The networks go in batches that share counts and masks; of a batch go the stations of one scanner after the other,
-// upright ones and turned ones apart, so that a dispatch knows which it has. They go in chunks whose rays one list can
-// hold, as many a submission as are quick enough together (sample_plan.hpp). With the last chunk of a batch goes its
-// reduction; where some of it must come again, the reduction comes again too.
+// Networks go in batches that share counts and masks. Within a batch, stations go scanner by scanner, upright and
+// turned ones apart, so that a dispatch has one kind. They go in chunks whose rays fit one list, as many per submission
+// as are quick enough together (sample_plan.hpp). The last chunk of a batch brings its reduction; if some of it must be
+// repeated, so is the reduction.
 class VulkanTracer::SampledCount {
  public:
   SampledCount(VulkanTracer& tracer, std::span<const std::vector<TraceStation>> networks,
@@ -86,7 +86,7 @@ class VulkanTracer::SampledCount {
   }
 
  private:
-  static constexpr std::uint64_t entries_per_batch = std::uint64_t{1} << 25;  // of counts, and of masks
+  static constexpr std::uint64_t entries_per_batch = std::uint64_t{1} << 25;  // in counts, and in masks
   static constexpr VkDeviceSize word = sizeof(std::uint32_t);
 
   // Slots of one scanner, all turned or all upright.
@@ -102,10 +102,10 @@ class VulkanTracer::SampledCount {
     std::size_t size() const { return end - first; }
   };
 
-  // What one submission does of a batch.
+  // Part of a batch done by one submission.
   struct Submission {
     const Run* run;
-    std::vector<SampleChunk> chunks;  // of it
+    std::vector<SampleChunk> chunks;  // of the run
     bool first, last;                 // of the batch
   };
 
@@ -120,7 +120,7 @@ class VulkanTracer::SampledCount {
     t_.ensure_totals(networks_.size(), groups_, stride_);
   }
 
-  // Returns whether it came to its end; where not, the caller wants to stop.
+  // Returns false if the caller stopped it before the end.
   bool count_batch(Batch batch, const Progress& progress) {
     fill_slots(batch);
     t_.ensure(t_.sample_stations_, batch.slots.size() * sizeof(SampleStation), "sample stations");
@@ -155,7 +155,7 @@ class VulkanTracer::SampledCount {
     return true;
   }
 
-  // At least one run, even of no slots: the batch is cleared and reduced all the same.
+  // Makes at least one run, even without slots: the batch must be cleared and reduced all the same.
   void fill_slots(Batch& batch) const {
     struct Placed {
       std::uint64_t place;
@@ -184,7 +184,7 @@ class VulkanTracer::SampledCount {
     if (batch.runs.empty()) batch.runs.push_back({&t_.scanners_.front(), false, 0, 0});
   }
 
-  // Stations that follow one another stand close together.
+  // Places consecutive stations close together.
   std::uint64_t place_along_curve(const Float3& head) const {
     const Box& bounds = t_.scene_.scene->local_bounds;
     const auto cell = [](float at, double low, double high) {
@@ -195,7 +195,7 @@ class VulkanTracer::SampledCount {
                          cell(head.z, bounds.min.z, bounds.max.z));
   }
 
-  // Of the longest walk, which a cube around the station has.
+  // Parts of the longest walk, that of a cube around the station.
   static std::uint32_t most_parts(const RayPattern& pattern) {
     const std::uint64_t rays = std::uint64_t{pattern.rows()} * pattern.columns();
     return static_cast<std::uint32_t>(std::max<std::uint64_t>(std::bit_ceil(rays) / sample_part, 1));
@@ -222,8 +222,8 @@ class VulkanTracer::SampledCount {
     return masks;
   }
 
-  // On the device, but for standard errors, which are asked for the few networks of a front, for samples whose sums
-  // take more than 64 bits, and for stations that are not set up as usual.
+  // Sums on the device, with exceptions: standard errors, wanted only for the few networks of a front; samples whose
+  // sums exceed 64 bits; stations with a special setup.
   void register_batch(const Batch& batch) {
     const RegistrationJob& job = *job_.registration;
     const auto networks = networks_.subspan(batch.first, batch.size());
@@ -243,7 +243,7 @@ class VulkanTracer::SampledCount {
     });
   }
 
-  // Returns what became of each chunk, and the seconds that the device took.
+  // Returns the outcome of each chunk, and the seconds spent on the device.
   std::pair<std::vector<SampleTally>, double> submit(const Batch& batch, const Submission& submission) {
     const std::vector<SampleChunk>& chunks = submission.chunks;
     std::vector<std::uint32_t> control(std::max<std::size_t>(chunks.size(), 1) * control_words);
@@ -287,7 +287,7 @@ class VulkanTracer::SampledCount {
     if (mask_words_) r.zero(t_.masks_);
   }
 
-  // Probes, lists and traces one chunk, whose control words are number k of the submission.
+  // Probes, lists and traces one chunk; its control words are number k of the submission.
   void record_chunk(const Recorder& r, const Run& run, const SampleChunk& chunk, std::size_t k) const {
     const auto pipeline = [&](Kernel kernel, std::array<bool, 4> constants = {}) {
       return t_.kernels_.get(run.scanner->set(), run.turned, kernel, constants);
@@ -298,7 +298,7 @@ class VulkanTracer::SampledCount {
     };
     const VkDeviceSize dispatch = (k * control_words + control_dispatch) * word;
     SamplePush push = push_of(chunk, k);
-    // A thread for each that the control word counts by then.
+    // Dispatches a thread for each item that the control word counts by then.
     const auto over = [&](std::uint32_t control, const BoundPipeline& kernel) {
       const SampleArgumentsPush arguments{push.control, control, room_.pairs, push.ray_capacity, push.item_capacity};
       r.shader_after_shader();
@@ -307,7 +307,7 @@ class VulkanTracer::SampledCount {
       r.dispatch_indirect(kernel, push, t_.sample_control_, dispatch);
     };
     const std::uint32_t groups = groups_of(chunk.pairs());
-    r.shader_after_shader();  // the chunk before still reads the lists
+    r.shader_after_shader();  // the previous chunk still reads the lists
     r.dispatch(tracing(Kernel::sample_probe), probe_push_of(push, run, chunk), std::min(groups, groups_in_row),
                groups_of(groups, groups_in_row));
     push.list = control_rays;
@@ -393,14 +393,14 @@ class VulkanTracer::SampledCount {
   std::uint32_t voxels_, most_stations_, mask_words_, stride_;
   SampleRoom room_;
   std::size_t batch_size_;
-  std::uint32_t groups_;  // that sums are made of, one at least
+  std::uint32_t groups_;  // groups of the sums, at least one
   Reduction reduction_{};
   double seconds_ = 0;
-  std::vector<std::uint64_t> rays_;  // of networks
-  // As they come back from the device.
+  std::vector<std::uint64_t> rays_;  // per network
+  // Read back from the device.
   std::vector<std::uint32_t> totals_;
-  std::vector<std::uint64_t> slot_rays_;                     // of a batch
-  std::vector<std::vector<RegistrationSums>> registration_;  // of networks, where asked for
+  std::vector<std::uint64_t> slot_rays_;                     // of one batch
+  std::vector<std::vector<RegistrationSums>> registration_;  // per network, if asked for
 };
 
 std::vector<NetworkCounts> VulkanTracer::count_sampled(std::span<const std::vector<TraceStation>> networks,

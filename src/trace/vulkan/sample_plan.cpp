@@ -36,11 +36,11 @@ std::array<SampleChunk, 2> SampleChunk::cut(std::uint64_t most_pairs) const {
 }
 
 SampleRoom sample_room(bool software, std::uint64_t max_rays_per_dispatch) {
-  // Each kernel of a chunk ends with threads that wait for the last one: on a GPU, whose threads are many, chunks are
+  // Each kernel of a chunk ends with threads waiting for the last one. GPUs have many threads, so their chunks are
   // large.
   std::uint64_t rays = software ? 1u << 20 : 1u << 25;
   if (max_rays_per_dispatch > 0) rays = std::min(rays, max_rays_per_dispatch);
-  // Most parts have a few rays, or none that are not known to be stopped.
+  // Most parts have few rays that are not known to be stopped, or none.
   const auto room = static_cast<std::uint32_t>(std::max<std::uint64_t>(rays, sample_part));
   constexpr std::uint32_t rays_of_pair = 8, rays_of_part = 8;
   return {room / rays_of_pair, room, room / rays_of_part};
@@ -55,7 +55,7 @@ std::vector<SampleChunk> SamplePlan::next(double rays, const PairsSeen& seen, do
   constexpr double safety = 1.25;
   const double most_rays = std::min(at_once, static_cast<double>(room_.rays));
   const double most = std::min(most_rays / (seen.rays * safety), room_.pairs / (seen.open * safety));
-  // Each may be probed, and no dispatch traces more than there is room for.
+  // Every pair may be probed, and no dispatch traces more rays than the list holds.
   const auto most_pairs = static_cast<std::uint64_t>(std::clamp(most, 1.0, static_cast<double>(room_.rays)));
   std::vector<SampleChunk> chunks;
   for (double expected = 0; !todo_.empty() && (chunks.empty() || expected < rays);) {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which pairs of station and sampled voxel one set of lists takes, and what becomes of those that overflow it.
+// Schedules sampled evaluation: the pairs of station and sampled voxel for one set of lists, and how overflow is
+// handled.
 //
-// Lists have room for so many open pairs, rays and parts of walks and no more. How many there are is known only once
-// they are listed; so chunks of pairs are as large as the lists will probably hold, and one that turns out larger comes
-// again in halves, with what has been traced of it by then left out.
+// Lists have limited room for open pairs, rays and parts of walks. The numbers needed are known only after listing. So
+// a chunk of pairs is as large as the lists will probably hold; if it overflows, it is repeated in halves, without what
+// was already traced.
 #pragma once
 
 #include <array>
@@ -14,55 +15,55 @@
 
 namespace vantage::vulkan {
 
-// Slots (stations of the batch) × sampled voxels, and some parts of their walks.
+// Slots (stations of the batch) × sampled voxels, and a range of parts of their walks.
 struct SampleChunk {
   std::uint32_t first_slot, end_slot, first_voxel, end_voxel, first_part, end_part;
-  // What has been done already, as part of a chunk that was too large for the rest.
+  // Work already done, as part of a chunk whose other work did not fit.
   bool probed = false, first_traced = false;
 
   std::uint64_t pairs() const { return std::uint64_t{end_slot - first_slot} * (end_voxel - first_voxel); }
-  // By voxels while it has several, then by slots, then by parts. REQUIRES: more than one part of one pair.
+  // Splits by voxels while there are several, then by slots, then by parts. REQUIRES: more than one part of one pair.
   std::array<SampleChunk, 2> halves() const;
-  // A first piece and the rest, so that going on with the rest gives pieces of about the same size, of `most_pairs` at
-  // most; where even one voxel has more, that voxel and the rest. REQUIRES: it has more.
+  // Cuts off a first piece of at most `most_pairs`; cutting the rest again gives pieces of similar size. If one voxel
+  // alone has more, the piece is that voxel. REQUIRES: it has more than `most_pairs`.
   std::array<SampleChunk, 2> cut(std::uint64_t most_pairs) const;
   bool operator==(const SampleChunk&) const = default;
 };
 
-// What lists have room for: sample_part rays, all of one part, at least. `pairs`: that are open.
+// Capacity of the lists: at least sample_part rays, those of one part. `pairs`: open ones.
 struct SampleRoom {
   std::uint32_t pairs, rays, parts;
 };
 
-// What pairs are thought to have, in the mean.
+// Mean figures of pairs, from experience.
 struct PairsSeen {
   double rays, open;
 };
 
-// Room for the lists of an engine; no dispatch traces more rays than `max_rays_per_dispatch`, where that is not 0.
+// Capacity of an engine's lists. No dispatch traces more rays than `max_rays_per_dispatch`, unless that is 0.
 SampleRoom sample_room(bool software, std::uint64_t max_rays_per_dispatch);
 
-// What a chunk's kernels traced and listed, or wanted to.
+// Numbers that a chunk's kernels traced and listed, or would have listed.
 struct SampleTally {
-  std::uint32_t pairs = 0;   // that are open
+  std::uint32_t pairs = 0;   // open
   std::uint32_t probed = 0;  // rays
   std::uint32_t rays = 0;    // listed
-  std::uint32_t parts = 0;   // that come later
-  std::uint32_t rest = 0;    // rays listed of these
+  std::uint32_t parts = 0;   // to be listed later
+  std::uint32_t rest = 0;    // rays listed for those parts
 };
 
-// What is left to do of a batch.
+// Work left in a batch.
 class SamplePlan {
  public:
-  // `parts`: of a pair's walk, at most.
+  // `parts`: most parts of a pair's walk.
   SamplePlan(std::uint32_t slots, std::uint32_t voxels, std::uint32_t parts, const SampleRoom& room);
 
-  // The chunks of the next submission, in order: each probably fits, if pairs are as has been seen, and all together
-  // probably have `rays`; one at least, unless nothing is left. None has probably more than `at_once`.
+  // Returns the chunks of the next submission, in order, at least one unless nothing is left. By the figures seen, each
+  // probably fits and has at most `at_once` rays, and all together have `rays`.
   std::vector<SampleChunk> next(double rays, const PairsSeen& seen, double at_once);
   bool finished() const { return todo_.empty(); }
 
-  // Takes note of what became of the chunks of a submission. Returns how many rays were traced.
+  // Records the outcome of a submission's chunks. Returns the number of rays traced.
   double settle(std::span<const SampleChunk> chunks, std::span<const SampleTally> tallies);
   double done() const;  // share of all pairs, in [0, 1]
 

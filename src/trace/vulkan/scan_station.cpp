@@ -43,7 +43,7 @@ void VulkanTracer::scan(const TraceStation& station, std::uint64_t first_ray, st
   want(barycentric, chunk.barycentric, push.barycentric, "scan barycentric");
   want(voxel, chunk.voxel, push.voxel, "scan voxel");
 
-  // The arrays hold rays from first_ray on; a part's rows are counted from there, so its outputs move along.
+  // The arrays begin at first_ray. A part counts its rows from its own start, so its outputs are offset.
   const BoundPipeline pipeline =
       kernels_.get(scanner.set(), station.turn.has_value(), Kernel::scan, {scanner.noise(), scanner.limits()});
   const std::uint32_t at_once = rows_per_dispatch(scanner.pattern());

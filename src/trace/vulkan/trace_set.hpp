@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The descriptor set that a scanner has for all kernels: its block of parameters, and where rays are queried the
-// acceleration structure. All have the same layout.
+// A scanner's descriptor set, common to all kernels: its parameter block and, for ray queries, the acceleration
+// structure. All sets have the same layout.
 #pragma once
 
 #include "trace/vulkan/buffer.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The seam between Vulkan engines: how one of them builds, binds and walks a structure over the triangles of a scene.
-// VulkanTracer does all the rest, alike for every engine. docs/contributing.md tells how to add one.
+// Interface of a Vulkan engine: builds, binds and walks a structure over a scene's triangles. VulkanTracer does
+// everything else alike for all engines. docs/contributing.md says how to add one.
 #pragma once
 
 #include <array>
@@ -15,11 +15,11 @@
 
 namespace vantage::vulkan {
 
-// What a structure is built over. Borrowed for the call.
+// Input of a structure. Borrowed for the call.
 struct TraversalScene {
   std::span<const Float3> positions;
   std::span<const Triangle> triangles;
-  std::span<const std::uint32_t> ids;  // of the triangles, for Hit::id: numbers, with surveyed_bit where they count
+  std::span<const std::uint32_t> ids;  // per triangle, for Hit::id: its number, with surveyed_bit if its points count
   bool sort = true;                    // as TraceScene::sort_triangles
 };
 
@@ -37,18 +37,18 @@ class Traversal {
   };
   virtual TraceShaders shaders() const = 0;
 
-  // What its trace() reads.
+  // Inputs of its trace().
   struct Binding {
     std::array<VkDeviceAddress, traversal_arrays> arrays{};  // TraceParameters::traversal
-    VkAccelerationStructureKHR structure = VK_NULL_HANDLE;   // at binding 1, where there is one
+    VkAccelerationStructureKHR structure = VK_NULL_HANDLE;   // at binding 1, if any
   };
   virtual Binding binding() const = 0;
 
-  // Whether no ray passes between two triangles that share an edge, on any device.
+  // Whether, on every device, no ray passes between two triangles that share an edge.
   virtual bool is_watertight() const { return false; }
 
-  // A kernel that goes before an exact count with skipping: a thread a listed tile, told a TilePush. It leaves so many
-  // bytes a tile at TilePush::starts, where trace() finds them again as Starts.
+  // A kernel that runs before an exact count with skipping: one thread per listed tile, with a TilePush. It leaves
+  // `bytes_per_tile` bytes per tile at TilePush::starts, which trace() receives as Starts.
   struct TilePass {
     Shader shader;
     std::uint32_t bytes_per_tile = 0;
@@ -56,7 +56,7 @@ class Traversal {
   virtual std::optional<TilePass> tile_pass() const { return std::nullopt; }
 };
 
-// An engine, as make_tracer.cpp lists it.
+// An engine, as listed in make_tracer.cpp.
 struct VulkanEngine {
   Engine engine;
   Needs needs;

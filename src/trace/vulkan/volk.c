@@ -1,3 +1,3 @@
 // SPDX-License-Identifier: Apache-2.0
-// The loader of Vulkan functions, compiled into the library: its package ships it as a source.
+// The loader of Vulkan functions, compiled into the library since its package ships it as source.
 #include <volk.c>

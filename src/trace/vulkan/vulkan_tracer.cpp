@@ -14,10 +14,10 @@ namespace vantage::vulkan {
 
 namespace {
 
-constexpr double seconds_per_exact_submission = 0.25;  // often enough for reports, and to stop in time
-// A population of samples is one submission where it takes no longer than this, half of the shortest usual limit.
+constexpr double seconds_per_exact_submission = 0.25;  // often enough for progress, and to stop in time
+// A sampled population is one submission unless it takes longer than this, half of the shortest usual watchdog limit.
 constexpr double seconds_per_sampled_submission = 1;
-// Of an exact submission, the first dispatch has this share of what one may have: how fast the device is, it shows.
+// The first dispatch of an exact submission has this share of the limit, to measure the device's speed.
 constexpr double first_share = 1.0 / 16;
 
 }  // namespace

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// A Vulkan device that traces: scene, the engine's Traversal and whatever is kept from call to call. All engines share
-// all of it but the Traversal.
+// A Vulkan device that traces: scene, the engine's Traversal, and buffers kept from call to call. Engines differ only
+// in the Traversal.
 //
-//   vulkan_tracer.cpp    what is uploaded once
+//   vulkan_tracer.cpp    uploads that are made once
 //   scan_station.cpp     points of one station
 //   count_network.cpp    every ray of a network
-//   sample_networks.cpp  the rays of sampled voxels, for many networks
-//   reduction.cpp        from counts and masks to what coverage and overlap need
-//   registration.cpp     from masks to what the registration error needs
+//   sample_networks.cpp  rays of sampled voxels, for many networks
+//   reduction.cpp        counts and masks to the sums for coverage and overlap
+//   registration.cpp     masks to the sums for the registration error
 #pragma once
 
 #include <algorithm>
@@ -32,13 +32,13 @@
 
 namespace vantage::vulkan {
 
-// A dispatch of so many rays takes a fraction of a watchdog's limit even on a slow device of its kind.
+// Chosen so that a dispatch takes a fraction of a watchdog's limit even on a slow device of its kind.
 inline constexpr std::uint64_t hardware_rays_per_dispatch = std::uint64_t{1} << 26,
                                software_rays_per_dispatch = std::uint64_t{1} << 19;
 
 class VulkanTracer final : public Tracer {
  public:
-  // Throws Error invalid_argument where a pattern has 2^31 rays or more.
+  // Throws Error invalid_argument if a pattern has 2^31 rays or more.
   VulkanTracer(const VulkanEngine& engine, const EngineInfo& info, std::shared_ptr<Instance> instance,
                VkPhysicalDevice physical, const DeviceAbilities& abilities, const TraceScene& scene);
 
@@ -67,7 +67,7 @@ class VulkanTracer final : public Tracer {
   void upload_triangles();
   void upload_neighbours();
   void upload_shading();
-  // What coverage asks of voxels: of all, or of a sample. Without memory where all are alike.
+  // Coverage's demands on voxels, of all or of a sample. Without memory if all are alike.
   struct DemandAddresses {
     std::uint64_t weights = 0, worths = 0;
   };
@@ -75,7 +75,7 @@ class VulkanTracer final : public Tracer {
     Buffer weights, worths;
     DemandAddresses addresses() const { return {weights ? weights.address() : 0, worths ? worths.address() : 0}; }
   };
-  // A sample as the kernels read it.
+  // A sample in the kernels' format.
   struct DeviceSample {
     std::vector<std::uint32_t> ranks;
     Buffer voxels, in_order_of_chunks;
@@ -85,17 +85,17 @@ class VulkanTracer final : public Tracer {
   DeviceSample device_sample(std::span<const std::uint32_t> sample);
   SampleRoom room_for_sample() const { return sample_room(info_.software, scene_.max_rays_per_dispatch); }
   void write_parameters();
-  bool limited() const { return scanners_.front().limits(); }  // all are or none
+  bool limited() const { return scanners_.front().limits(); }  // either all scanners are limited or none
   std::uint64_t rays_per_dispatch() const {
     if (scene_.max_rays_per_dispatch > 0) return scene_.max_rays_per_dispatch;
     return info_.software ? software_rays_per_dispatch : hardware_rays_per_dispatch;
   }
-  // What points are worth that fill a voxel.
+  // Sum of point weights that fills a voxel.
   std::uint64_t goal_worth() const {
     const double least = scene_.grid->demands().least_worth();
     return static_cast<std::uint64_t>(std::min(std::ceil(goal_density_ * least), count_limit * least));
   }
-  // So that even `voxels` squares of almost the goal fit in 64 bits: 0 for every goal that scanners reach.
+  // Shift that lets `voxels` squares of nearly the goal fit in 64 bits; 0 for every goal that scanners reach.
   std::uint32_t difference_shift(std::uint32_t voxels) const {
     const int bits = 2 * static_cast<int>(std::bit_width(goal_worth())) + static_cast<int>(std::bit_width(voxels));
     return static_cast<std::uint32_t>(std::max(0, bits - 62) / 2);
@@ -106,7 +106,7 @@ class VulkanTracer final : public Tracer {
         std::clamp<std::uint64_t>(rows, tile_side, std::uint64_t{most_groups} * block_rows));
   }
 
-  // Rows as kernels read them; upright stations have none to read.
+  // Rows in the kernels' format; upright stations need none.
   static void set_turn(vec3 (&rows)[3], const TraceStation& station) {
     if (!station.turn) return;
     const Float3* const own[3] = {&station.turn->x, &station.turn->y, &station.turn->z};
@@ -116,7 +116,7 @@ class VulkanTracer final : public Tracer {
   // Grows a buffer that is kept from call to call.
   void ensure(Buffer& buffer, VkDeviceSize bytes, const char* name, VkBufferUsageFlags extra = 0) {
     if (!buffer || buffer.size() < bytes) {
-      buffer = Buffer();  // the old one goes first, so that both never exist at once
+      buffer = Buffer();  // frees the old one first, so that both never coexist
       buffer = Buffer(device_, bytes, Buffer::Where::device, name, extra);
     }
   }
@@ -138,7 +138,7 @@ class VulkanTracer final : public Tracer {
     std::uint32_t voxels, groups, mask_words;
     bool differences;
     DemandAddresses demands = {};
-    std::vector<std::uint64_t> weight = {};  // of each group, where voxels have any
+    std::vector<std::uint64_t> weight = {};  // per group, if voxels have weights
   };
   void record_reduction(const Recorder& r, const Reduction& reduction, std::uint32_t first_network,
                         std::uint32_t networks, std::uint32_t stride);
@@ -147,7 +147,7 @@ class VulkanTracer final : public Tracer {
   void ensure_totals(std::size_t networks, std::uint32_t groups, std::uint32_t stride);
   void record_totals_start(const Recorder& r, std::span<const std::uint32_t> station_counts);
 
-  // The sums of consecutive networks whose masks are on the device.
+  // Sums of consecutive networks whose masks are on the device.
   struct RegisteredNetworks {
     std::span<const std::vector<TraceStation>> networks;
     std::span<const std::uint32_t> station_counts;
@@ -162,21 +162,21 @@ class VulkanTracer final : public Tracer {
   Commands commands_;
   std::unique_ptr<Traversal> traversal_;
   std::vector<DeviceScanner> scanners_;
-  TraceParameters parameters_{};  // but for what is a scanner's own
+  TraceParameters parameters_{};  // except for each scanner's own part
   Kernels kernels_;
   Buffer bricks_, slots_;
-  Buffer positions_, normals_, triangles_, neighbours_, diffuse_, normal_table_;  // filled when first needed
-  DeviceDemands demands_;                                                         // of all voxels
+  Buffer positions_, normals_, triangles_, neighbours_, diffuse_, normal_table_;  // filled on first use
+  DeviceDemands demands_;                                                         // for all voxels
   Buffer counts_, masks_, station_counters_, totals_, station_counts_;
   Buffer tile_far_, tile_list_, tile_dispatch_, tile_rays_, tile_starts_;
   Pace exact_pace_, sampled_pace_;
 
   Recent<DeviceSample> samples_;
   Buffer sample_stations_, sample_pairs_, sample_rays_, sample_sights_, sample_items_, sample_control_, slot_rays_;
-  std::shared_ptr<const Patches> patches_;  // what the next buffers hold
+  std::shared_ptr<const Patches> patches_;  // contents of the next buffers
   std::shared_ptr<const NoiseModel> patch_noise_;
   Buffer registration_patches_, registration_sigma_, registration_heads_, registration_sums_;
-  PairsSeen pairs_seen_{.rays = 8, .open = 1};  // they size chunks, not the results
+  PairsSeen pairs_seen_{.rays = 8, .open = 1};  // sizes chunks, never affects results
 };
 
 }  // namespace vantage::vulkan

@@ -10,7 +10,7 @@ namespace {
 
 using namespace vulkan;
 
-constexpr std::size_t fan = 8;  // triangles of a pack, packs of a crate; as in trace.glsl
+constexpr std::size_t fan = 8;  // triangles per pack, packs per crate; as in trace.glsl
 
 struct Corners {
   Float3 low, high;
@@ -22,7 +22,7 @@ class BruteForce final : public Traversal {
     std::vector<Float3> corners;
     std::vector<Corners> boxes;
     std::vector<std::uint32_t> ids;
-    // The last crate is filled up with the last triangle, which changes no hit.
+    // The last crate is filled with copies of the last triangle, which changes no hit.
     const std::size_t n = scene.triangles.size(), crates = (n + fan * fan - 1) / (fan * fan);
     for (std::size_t k = 0; k < crates * fan * fan; ++k) {
       const std::size_t t = std::min(k, n - 1);
@@ -60,7 +60,7 @@ class BruteForce final : public Traversal {
 }  // namespace
 
 const VulkanEngine brute_force_engine{
-    static_cast<Engine>(1000),  // an engine of the library has an enumerator
+    static_cast<Engine>(1000),  // engines of the library have an enumerator
     Needs::compute, [](Device& device, Commands& commands, const TraversalScene& scene) -> std::unique_ptr<Traversal> {
       return std::make_unique<BruteForce>(device, commands, scene);
     }};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The smallest Vulkan engine: every ray against every triangle. It shows how little an engine of one's own takes, and
-// that the suite holds for one that nothing but this folder knows.
+// The smallest Vulkan engine: every ray against every triangle. It shows how little a user's own engine needs, and that
+// the suite works for an engine known only to this folder.
 #pragma once
 
 #include "trace/vulkan/traversal.hpp"

@@ -11,7 +11,7 @@
 namespace vantage {
 namespace {
 
-// The rule itself, a bit at a time.
+// The definition, one bit at a time.
 std::uint32_t bit_by_bit(const std::vector<std::uint8_t>& bytes) {
   std::uint32_t crc = 0xFFFFFFFF;
   for (const std::uint8_t byte : bytes)
@@ -23,7 +23,7 @@ std::uint32_t bit_by_bit(const std::vector<std::uint8_t>& bytes) {
 }
 
 // RFC 3720 (Internet Small Computer Systems Interface, 2004), appendix B.4, whose values are the bytes as sent, lowest
-// first; and the check value of the catalogue of CRC algorithms.
+// first; and the check value in the catalogue of CRC algorithms.
 TEST(Crc32c, GivesTheKnownValues) {
   const std::string digits = "123456789";
   EXPECT_EQ(crc32c(digits.data(), digits.size()), 0xE3069283u);

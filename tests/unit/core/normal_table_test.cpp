@@ -12,7 +12,7 @@
 namespace vantage {
 namespace {
 
-// g by bisection on erfc alone: another way than the library's.
+// g by bisection on erfc, independent of the library's method.
 double quantile_by_bisection(double p) {
   const double beyond = 0.5 * std::erfc(5 / std::sqrt(2.0));
   const double q = beyond + p * (1 - 2 * beyond);
@@ -44,7 +44,7 @@ TEST(NormalTable, CubicsFallAndMeet) {
   const auto rows = normal_table();
   for (std::uint32_t row = 0; row + 1 < normal_rows; ++row) {
     const double c0 = rows[4 * row], c1 = rows[4 * row + 1], c2 = rows[4 * row + 2], c3 = rows[4 * row + 3];
-    // The derivative is a parabola: its largest value on [0, 1] is at an end or at the vertex.
+    // The derivative is a parabola: its maximum on [0, 1] is at an end or at the vertex.
     const double at_vertex = c3 < 0 && -c2 / (3 * c3) > 0 && -c2 / (3 * c3) < 1 ? c1 - c2 * c2 / (3 * c3) : c1;
     EXPECT_LT(std::max({c1, c1 + 2 * c2 + 3 * c3, at_vertex}), 0.0) << "row " << row;
     const double next = row + 2 < normal_rows ? rows[4 * (row + 1)] : 0.0;
@@ -67,7 +67,7 @@ TEST(NormalTable, EdgeCases) {
   EXPECT_GT(normal_from_bits(0xFFFFFFFFu, rows), -1e-8f);    // 2^32 − 1
 }
 
-// Every row at its start, its end and eleven places between, against the true quantile.
+// Compares every row at its start, its end and eleven places between with the true quantile.
 TEST(NormalTable, EveryRowIsWithinAMillionth) {
   const auto rows = normal_table();
   for (std::uint32_t e = 4; e < normal_octaves; ++e) {
@@ -81,11 +81,11 @@ TEST(NormalTable, EveryRowIsWithinAMillionth) {
   }
 }
 
-// 10^7 inputs spread evenly over all 2^32, and all below 2^16: finite, bounded, symmetric, and falling with m but for
-// the last place.
+// 10^7 inputs spread evenly over all 2^32, and all below 2^16: finite, bounded, symmetric, and falling with m except
+// for the last place.
 TEST(NormalTable, StratifiedInputs) {
   const auto rows = normal_table();
-  constexpr std::uint32_t draws = 5'000'000;  // a side
+  constexpr std::uint32_t draws = 5'000'000;  // per sign
   double sum_of_squares = 0, worst_rise = 0;
   std::uint32_t bad = 0;
   float before = 5.0f;
@@ -108,7 +108,7 @@ TEST(NormalTable, StratifiedInputs) {
   EXPECT_NEAR(sum_of_squares / draws, 1 - 10 * 1.4867195147342979e-6, 2e-6);
 }
 
-// The finest steps of all: every input of the last segment, where the value goes to zero.
+// The finest steps: every input of the last segment, where the value goes to zero.
 TEST(NormalTable, LastSegmentNeverCrossesZero) {
   const auto rows = normal_table();
   std::uint32_t negative = 0;

@@ -26,7 +26,7 @@ TEST(StationSetup, QuarterTurnsAreExact) {
   // The heading turns x towards y.
   EXPECT_EQ(in_survey({.heading = Angle::degrees(90)}, {1, 2, 3}), (Vec3{-2, 1, 3}));
   EXPECT_EQ(in_survey({.heading = Angle::degrees(-180)}, {1, 2, 3}), (Vec3{-1, -2, 3}));
-  // A head that lies has its axis along the heading; one at 180° hangs.
+  // A lying head has its axis along the heading; one at 180° hangs.
   EXPECT_EQ(in_survey({.tilt = Angle::degrees(90)}, {0, 0, 1}), (Vec3{1, 0, 0}));
   EXPECT_EQ(in_survey({.heading = Angle::degrees(90), .tilt = Angle::degrees(90)}, {0, 0, 1}), (Vec3{0, 1, 0}));
   EXPECT_EQ(in_survey({.tilt = Angle::degrees(180)}, {0, 0, 1}), (Vec3{0, 0, -1}));
@@ -35,7 +35,7 @@ TEST(StationSetup, QuarterTurnsAreExact) {
 TEST(StationSetup, TurnsByRodriguesFormula) {
   std::mt19937 random(3);
   const auto angle = [&] { return 6.2831853 * (random() / 4294967296.0) - 3.14; };
-  // About a unit axis k: d cos a + (k × d) sin a + k (k · d)(1 − cos a).
+  // Rotation about a unit axis k: d cos a + (k × d) sin a + k (k · d)(1 − cos a).
   const auto about = [](const Vec3& k, double a, const Vec3& d) {
     return d * std::cos(a) + cross(k, d) * std::sin(a) + k * (dot(k, d) * (1 - std::cos(a)));
   };

@@ -15,7 +15,7 @@
 namespace vantage {
 namespace {
 
-// Every byte unlike its neighbours, alpha too.
+// Every byte differs from its neighbours, alpha included.
 Image counting_image(std::uint32_t width, std::uint32_t height) {
   Image image{width, height, std::vector<std::uint8_t>(std::size_t{4} * width * height)};
   std::iota(image.rgba.begin(), image.rgba.end(), std::uint8_t{0});
@@ -32,7 +32,7 @@ TEST(ImageFile, PngRoundTrip) {
   EXPECT_EQ(back.rgba, image.rgba);
 }
 
-// A file may say that a Huffman table has more codes than there can be.
+// A file may claim that a Huffman table has more codes than possible.
 TEST(ImageFile, RefusesJpegsWithDamagedTables) {
   const test::TemporaryFolder folder;
   Image image{16, 16, std::vector<std::uint8_t>(16 * 16 * 4, 200)};
@@ -68,7 +68,7 @@ TEST(ImageFile, JpegsAreReadBackNearlyAsTheyWere) {
   EXPECT_THROW(encode_jpeg(image, 0), Error);
 }
 
-// A chunk that claims a gigabyte: the decoder would make room for it before it looks.
+// A chunk claims a gigabyte, which the decoder would allocate before looking at it.
 TEST(ImageFile, RefusesPngsWhoseChunksClaimMoreThanThereIs) {
   const test::TemporaryFolder folder;
   write_png(folder / "a.png", counting_image(40, 20));
@@ -88,7 +88,7 @@ TEST(ImageFile, RefusesPngsWhoseChunksClaimMoreThanThereIs) {
   }
 }
 
-// As the format allows, at the beginning above all.
+// The format allows them, mostly at the beginning.
 TEST(ImageFile, PngsMayHaveChunksWithoutData) {
   const test::TemporaryFolder folder;
   const Image image = counting_image(40, 20);

@@ -37,7 +37,7 @@ TEST(Connectivity, ChainsAreAllBridges) {
 TEST(Connectivity, SmallNetworks) {
   EXPECT_EQ(connectivity(OverlapMatrix(), 0.1).parts, 0u);
   EXPECT_EQ(connectivity(OverlapMatrix(1), 0.1).parts, 1u);
-  EXPECT_EQ(connectivity(OverlapMatrix(3), 0).parts, 3u);  // no overlap is no link
+  EXPECT_EQ(connectivity(OverlapMatrix(3), 0).parts, 3u);  // zero overlap is no link
 }
 
 TEST(Connectivity, BridgesAreTheLinksWhoseLossParts) {
@@ -60,7 +60,7 @@ TEST(Connectivity, BridgesAreTheLinksWhoseLossParts) {
       }
     }
     EXPECT_EQ(whole.bridges, bridges) << "round " << round;
-    // The network holds together at the weakest link's overlap and falls apart just above.
+    // The network is connected at the weakest link's overlap and not just above it.
     if (whole.parts == 1 && n > 1) {
       EXPECT_EQ(connectivity(overlap, whole.weakest_overlap).parts, 1u);
       EXPECT_GT(connectivity(overlap, whole.weakest_overlap * 1.0000001).parts, 1u);

@@ -21,7 +21,7 @@ OverlapMatrix complete(std::size_t n, double weight) {
   return a;
 }
 
-// Equation 13 word by word.
+// Equation 13, literally.
 double clustering_by_definition(const OverlapMatrix& a) {
   const std::size_t n = a.size();
   double largest = 0, sum = 0;
@@ -85,7 +85,7 @@ TEST(SharedBy, FindsEveryPair) {
   }
 }
 
-// Station masks drawn at random, counted once through NetworkCounts and once by equations 10 and 11.
+// Random station masks, counted through NetworkCounts and by equations 10 and 11.
 TEST(OverlapMatrix, MatchesVoxelMasks) {
   for (const std::uint32_t n : {1u, 2u, 5u, 64u}) {
     RandomStream random(n);
@@ -143,14 +143,14 @@ TEST(Clustering, KnownGraphs) {
     EXPECT_DOUBLE_EQ(clustering_coefficient(complete(3, weight)), 1.0) << weight;
     EXPECT_DOUBLE_EQ(clustering_coefficient(complete(64, weight)), 1.0) << weight;
   }
-  // A star has no triangle; a path neither.
+  // Stars and paths have no triangles.
   OverlapMatrix star(5);
   for (std::size_t j = 1; j < 5; ++j) star.set(0, j, 0.5);
   EXPECT_EQ(clustering_coefficient(star), 0.0);
 }
 
 TEST(Clustering, TriangleOfThreeWeights) {
-  // Node 0 has the links 1 and ½, the opposite link is ¼: C_0 = ¼, C_1 = ½, C_2 = 1 (maximum weight 1).
+  // Node 0 has links 1 and ½, the opposite link is ¼: C_0 = ¼, C_1 = ½, C_2 = 1 (maximum weight 1).
   OverlapMatrix a(3);
   a.set(0, 1, 1.0);
   a.set(0, 2, 0.5);
@@ -200,7 +200,7 @@ TEST(StationCount, IsEquation7) {
   EXPECT_EQ(station_count_from_alpha(0, 4, 12), 4u);
   EXPECT_EQ(station_count_from_alpha(1, 4, 12), 12u);
   EXPECT_EQ(station_count_from_alpha(0.5, 4, 12), 8u);
-  EXPECT_EQ(station_count_from_alpha(1.0 / 16, 4, 12), 5u);  // 4.5 goes up
+  EXPECT_EQ(station_count_from_alpha(1.0 / 16, 4, 12), 5u);  // 4.5 is rounded up
   EXPECT_EQ(station_count_from_alpha(std::nextafter(1.0 / 16, 0.0), 4, 12), 4u);
   EXPECT_EQ(station_count_from_alpha(std::nextafter(0.5, 0.0), 4, 5), 4u);  // adding ½ first would round this up
   EXPECT_EQ(station_count_from_alpha(-3, 4, 12), 4u);

@@ -12,7 +12,7 @@
 namespace vantage {
 namespace {
 
-// Three stations, the first two of which share half of what they see.
+// Three stations; the first two share half of what they see.
 struct Survey {
   NetworkCounts counts;
   std::vector<PlacedStation> stations = std::vector<PlacedStation>(3);
@@ -44,7 +44,7 @@ TEST(Objective, BuiltInOnesAreTheFormulasTheyName) {
   EXPECT_EQ(value_of("overlap"), clustering_coefficient(overlap_matrix(survey.counts)));
   EXPECT_EQ(value_of("stations"), 3);
   EXPECT_EQ(value_of("parts"), 2);
-  EXPECT_EQ(value_of("parts", {.link_overlap = 0.5}), 3);  // the one link has 20 / 60
+  EXPECT_EQ(value_of("parts", {.link_overlap = 0.5}), 3);  // the only link has 20 / 60
 }
 
 TEST(Objective, TheWeakestLinkIsThatOfTheStrongestTree) {
@@ -59,9 +59,9 @@ TEST(Objective, TheWeakestLinkIsThatOfTheStrongestTree) {
   };
   EXPECT_EQ(weakest(4), 0.4);  // 25/50, 20/40 and 4/10 span it
   counts.shared[5] = 0;
-  EXPECT_EQ(weakest(4), 0.1);  // 1/10 is all that is left of the fourth
+  EXPECT_EQ(weakest(4), 0.1);  // the fourth is linked only by 1/10
   counts.shared[4] = 0;
-  EXPECT_EQ(weakest(4), 0);  // it stands alone
+  EXPECT_EQ(weakest(4), 0);  // the fourth is not connected
   counts.stations = 1, counts.seen = {5}, counts.shared = {};
   EXPECT_EQ(weakest(1), 1);  // nothing to link
 }
@@ -69,7 +69,7 @@ TEST(Objective, TheWeakestLinkIsThatOfTheStrongestTree) {
 TEST(Objective, LinkIsOverAllSurfaces) {
   NetworkCounts surveyed, around;
   surveyed.stations = around.stations = 3;
-  surveyed.seen = {10, 10, 10}, surveyed.shared = {0, 0, 0};  // nothing wanted is shared
+  surveyed.seen = {10, 10, 10}, surveyed.shared = {0, 0, 0};  // no surveyed surface is shared
   around.seen = {100, 50, 40};
   //               0-1 0-2 1-2
   around.shared = {25, 2, 16};
@@ -100,7 +100,7 @@ TEST(Objective, LinksErrorComesFromTheSurroundingsSample) {
   measured.surroundings = &around, measured.surroundings_voxels = 1000;
   const Estimate link = estimate(make_objective("link"), measured);
   EXPECT_EQ(link.value, 0.5);
-  // Replicates 0.6 and 0.4 about 0.5, less the tenth that was sampled.
+  // Replicates 0.6 and 0.4 about 0.5, less the sampled tenth.
   EXPECT_NEAR(link.standard_error, std::sqrt(0.9 * 0.5 * 0.02), 1e-12);
   measured.surroundings_voxels = 100;
   EXPECT_EQ(estimate(make_objective("link"), measured).standard_error, 0);
@@ -200,7 +200,7 @@ TEST(Objective, StandardErrorsComeByTheJackknifeWhereNoneIsGiven) {
                       .value = [](const MeasuredNetwork& m) {
                         return static_cast<double>(m.counts.seen[0]) / static_cast<double>(m.counts.voxels);
                       }};
-  // Replicates 0.2 and 0.6 about 0.4: variance (1/2)·(0.04 + 0.04), less the share of the site that was sampled.
+  // Replicates 0.2 and 0.6 about 0.4: variance (1/2)·(0.04 + 0.04), less the sampled share of the site.
   EXPECT_NEAR(estimate(own, measured).standard_error, std::sqrt(0.9 * 0.04), 1e-12);
   EXPECT_EQ(estimate(make_objective("stations"), measured).standard_error, 0);
   measured.voxels = 100;  // all of them were counted

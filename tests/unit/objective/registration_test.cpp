@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The registration error against closed forms, on made-up surfaces.
+// The registration error against closed forms, on artificial surfaces.
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
 
@@ -25,7 +25,7 @@ constexpr Vec3 X{1, 0, 0}, Y{0, 1, 0}, Z{0, 0, 1};
 constexpr RegistrationModel model{.rho_m = 0.002, .patch_m = 0.5};
 constexpr double q = 2 * model.rho_m * model.rho_m * model.patch_m * model.patch_m;  // m⁴: of two stations, per area
 
-// What is known before of poses: next to nothing, so that surfaces decide.
+// A wide prior, so that surfaces decide.
 RegistrationOptions weak() {
   return {.model = model, .position_m = 10, .heading = Angle::radians(1), .tilt = Angle::radians(1)};
 }
@@ -34,7 +34,7 @@ std::vector<PatchScanner> scanner_with(const NoiseModel& noise) {
   return {{std::make_shared<const NoiseModel>(noise)}};
 }
 
-// Surfaces, who sees them, and where the heads are.
+// Surfaces, the stations that see them, and the heads.
 struct Made {
   std::vector<VoxelSurface> surfaces = {};
   std::vector<std::uint64_t> masks = {};
@@ -58,7 +58,7 @@ struct Made {
     surfaces.push_back({.point = rounded(p), .normal = rounded(n), .area = a, .share = 1, .extent = a, .diffuse = 0.5});
     masks.push_back(who);
   }
-  // Three pairs of patches of side a at ±d around c; inside lies the room.
+  // Three pairs of patches of side a at ±d around c, facing inwards.
   void room(const Vec3& c, double d, double a, int k, std::uint64_t who) {
     for (const double s : {-1.0, 1.0}) {
       patch(c + X * (d * s), Y * a, Z * a, k, who);
@@ -109,8 +109,8 @@ struct Made {
 
 constexpr std::uint64_t all_of(int stations) { return (std::uint64_t{1} << stations) - 1; }
 
-// Variances of shift and turn of one station against another in a room: s²/A of two patches across each axis, and of
-// four about each.
+// Variances of shift and turn between two stations in a room: s²/A of two patches across each axis, and of four about
+// each.
 struct Room {
   double shift, turn, radius_squared;
   Room(double d, double a, int k) {
@@ -127,7 +127,7 @@ TEST(RegistrationError, OfThreePairsOfPlanes) {
   Made m{.heads = {{0.5, 0, 0}, {-0.5, 0, 0}}};
   m.room({}, d, a, k, 3);
   const Room room(d, a, k);
-  // Half of the difference's variance is each station's, the best motion of the whole being the mean: so a quarter.
+  // The best motion of the whole is the mean, so each station has half of the difference: a quarter of its variance.
   const double expected = std::sqrt((3 * room.shift + 2 * room.turn * room.radius_squared) / 4);
   EXPECT_NEAR(m.error().rms_m, expected, 1e-4 * expected);
   EXPECT_NEAR(m.error().worst_m, expected, 1e-4 * expected);
@@ -148,7 +148,7 @@ TEST(RegistrationError, OfThreePairsOfPlanes) {
   EXPECT_NEAR(turned.error().rms_m, expected, 1e-4 * expected) << "turned";
 }
 
-// Each plane is unknown itself: k stations give k − 1 constraints, so it is not every pair for itself.
+// Each plane is unknown itself: k stations give k − 1 constraints, so pairs are not independent.
 TEST(RegistrationError, OfManyStationsInOneRoom) {
   for (const int stations : {2, 3, 5, 8}) {
     Made m;
@@ -201,7 +201,7 @@ TEST(RegistrationError, KnowsWhatRoundSurfacesLeaveFree) {
       const Vec3 n{std::cos(t), std::sin(t), 0};
       cylinder.one(n + Z * ((j - 4.5) * 0.2), n, 0.003, 3);
     }
-  // Both stations stand outside; that each sees one half only is not asked here, so they look from within.
+  // Both stations stand outside. Visibility is not tested here, so they look from within.
   cylinder.heads = {{-0.1, 0, 0}, {0.1, 0, 0}};
   EXPECT_EQ(cylinder.rank(), 4);
   Made sphere{.heads = {{5, 6, 7}, {5.1, 6, 7}}};
@@ -213,18 +213,19 @@ TEST(RegistrationError, KnowsWhatRoundSurfacesLeaveFree) {
   EXPECT_EQ(sphere.rank(), 3);
 }
 
-// Links in a row add their variances as resistances do; a ring offers two ways round.
+// Links in a row add their variances as resistances do; a ring has two ways.
 TEST(RegistrationError, OfAChainAndARingOfRooms) {
   for (const bool ring : {false, true}) {
     const int stations = 6;
     Made m;
-    for (int i = 0; i < stations; ++i) m.heads.push_back({0.001 * i, 0, 0});  // about one centre: nothing levers
+    // about one centre, so nothing has leverage
+    for (int i = 0; i < stations; ++i) m.heads.push_back({0.001 * i, 0, 0});
     for (int i = 0; i + (ring ? 0 : 1) < stations; ++i)
       m.room({}, 3, 2, 20, std::uint64_t{1} << i | std::uint64_t{1} << (i + 1) % stations);
     const RegistrationError error = m.error();
-    // Shifts relative to the mean of all: variance of each is the pseudoinverse of the links' Laplacian, less what the
-    // surfaces' masses weigh. Station 1 against 4 cannot be read off, so the shape is checked: of a chain, the error at
-    // its ends over that in its middle; of a ring, none stands out.
+    // Shifts relative to the mean of all: the variance of each is the pseudoinverse of the links' Laplacian, weighted
+    // by the surfaces' masses. Tested by shape: in a chain, the error at its ends over that in its middle; in a ring,
+    // all are equal.
     std::vector<double> shift;
     for (const auto& pose : error.poses) shift.push_back(pose[21]);
     const double link = q / 8;
@@ -236,7 +237,7 @@ TEST(RegistrationError, OfAChainAndARingOfRooms) {
       for (int i = 0; i < stations; ++i) {
         double expected = 0;
         for (int l = 0; l + 1 < stations; ++l) {
-          double beyond = 0;  // mass on the other side of the link
+          double beyond = 0;  // mass on the far side of the link
           for (int k = 0; k < stations; ++k)
             if ((k <= l) != (i <= l)) beyond += mass[static_cast<std::size_t>(k)];
           expected += beyond * beyond;
@@ -261,7 +262,7 @@ TEST(RegistrationError, OfPartsThatShareNothingIsWhereTheyStart) {
   m.room(X * 10.5, 3, 2, 20, 12);
   const RegistrationOptions options{
       .model = model, .position_m = 0.1, .heading = Angle::radians(1e-6), .tilt = Angle::radians(1e-6)};
-  // Along X the parts' difference stays; across, a turn of the whole takes up all but r²/(D² + r²).
+  // Along X the components' difference remains; across, a turn of the whole absorbs all but r²/(D² + r²).
   const double r2 = 2 * (2 * 9 + 4 * (1.0 / 3) * (1 - 1.0 / 400)) / 6, left = r2 / (10.5 * 10.5 + r2);
   EXPECT_NEAR(m.error(options).rms_m, 0.05 * std::sqrt(1 + 2 * left), 1e-3 * 0.05);
 }
@@ -276,18 +277,18 @@ TEST(RegistrationError, OfASampleIsThatOfTheWhole) {
   EXPECT_NEAR(registration_error(half, m.masks.size(), weak()).rms_m, m.error().rms_m, 1e-12);
 }
 
-// Corners, seen by nobody, that move a frame and widen it.
+// Unseen corners that move and widen the frame.
 void widen(Made& m, const Vec3& a, const Vec3& b) {
   for (const Vec3& corner : {a, b}) m.one(corner, Z, 0.01, 0);
 }
 
-// What holds scans together is counted on a grid of its own; whose error is told is not.
+// The surfaces that register the scans have their own grid, separate from the surface whose error is wanted.
 TEST(RegistrationError, GoesByAllSurfacesWhereAsked) {
   const double a = 2, d = 3;
   Made around{.heads = {{0.5, 0, 0}, {-0.5, 0, 0}}}, surveyed{.heads = around.heads};
   around.room({}, d, a, 20, 3);
   surveyed.room({}, d, a, 40, 3);
-  for (VoxelSurface& s : surveyed.surfaces) s.share = 0.1f;  // nothing to hold on to
+  for (VoxelSurface& s : surveyed.surfaces) s.share = 0.1f;  // too little to register by
   widen(surveyed, {-20, -3, -4}, {5, 30, 9});
   RegistrationOptions options = weak();
   EXPECT_GT(surveyed.error(options).rms_m, 1);
@@ -301,7 +302,7 @@ TEST(RegistrationError, GoesByAllSurfacesWhereAsked) {
       << "a quarter of the surroundings was counted";
   EXPECT_EQ(registration_error(counts, counts.voxels, weak(), &held, held.voxels).rms_m, surveyed.error().rms_m)
       << "not asked for";
-  // And what is counted twice over, once on each grid, is one and the same.
+  // Counting the same thing on both grids changes nothing.
   Made same = around;
   EXPECT_NEAR(registration_error(same.counts(), same.masks.size(), options, &held, held.voxels).rms_m,
               same.error().rms_m, 1e-9);
@@ -310,9 +311,9 @@ TEST(RegistrationError, GoesByAllSurfacesWhereAsked) {
   EXPECT_THROW(registration_error(counts, counts.voxels, options, &held, held.voxels), Error);
 }
 
-// A station that sees nothing surveyed hands on the poses of its neighbours, and one that sees nothing at all nothing.
+// A station that sees nothing surveyed passes on the poses of its neighbours; one that sees nothing at all does not.
 TEST(RegistrationError, HandsPosesOnByStationsThatSeeNothingSurveyed) {
-  for (const std::size_t blind : {0u, 1u}) {  // so many before the others
+  for (const std::size_t blind : {0u, 1u}) {  // number of such stations before the others
     Made around{.heads = {{0, 0, 0}, {0.001, 0, 0}, {0.002, 0, 0}}};
     around.heads.insert(around.heads.begin(), blind, {5, 0, 0});
     Made surveyed{.heads = around.heads};
@@ -325,7 +326,7 @@ TEST(RegistrationError, HandsPosesOnByStationsThatSeeNothingSurveyed) {
     const NetworkCounts counts = surveyed.counts(), held = around.counts();
     const RegistrationError error = registration_error(counts, counts.voxels, options, &held, held.voxels);
     const Room room(3, 2, 20);
-    // Two links in a row, and half of the difference to each end: a quarter of its variance.
+    // Two links in a row, with half of the difference to each end: a quarter of its variance.
     const double expected = std::sqrt(2 * (3 * room.shift + 2 * room.turn * room.radius_squared) / 4);
     EXPECT_NEAR(error.rms_m, expected, 1e-3 * expected);
     const StationError& between = error.stations[blind + 1];
@@ -338,7 +339,7 @@ TEST(RegistrationError, HandsPosesOnByStationsThatSeeNothingSurveyed) {
 }
 
 TEST(RegistrationError, CountsRangeNoiseByTheRaysOfAFreeView) {
-  Made m{.heads = {{0.5, 0, 0}, {0.5, 0, 0}}};  // a level wall head on: no obliquity in either direction
+  Made m{.heads = {{0.5, 0, 0}, {0.5, 0, 0}}};  // a level wall straight ahead: no obliquity in either direction
   m.one({10.5, 0, 0}, X, 0.01, 3);
   m.one({-9.5, 0, 0}, X, 0.01, 3);
   NoiseModel noise;
@@ -387,8 +388,8 @@ TEST(RegistrationError, RefusesWhatItWasNotToldOf) {
     EXPECT_THROW(make_objective("registration", {.registration = bad}), Error);
 }
 
-// A street of rooms with doors between them, seen by six stations in part at random, as surfaces behind clutter are.
-// 95 % intervals hold the error that all voxels give in 93 to 97 of 100 samples, small ones and large ones.
+// A street of rooms with doors between them, seen by six stations, partly at random as through clutter. The 95 %
+// intervals contain the error of all voxels in 93 to 97 of 100 samples, small and large.
 TEST(RegistrationError, StandardErrorsHold) {
   RandomStream random(9);
   Made m;
@@ -404,7 +405,7 @@ TEST(RegistrationError, StandardErrorsHold) {
   const Patches all = m.patches();
   const RegistrationOptions options{.model = model};
   const double truth = m.error(options).rms_m;
-  constexpr int trials = 2000;  // so that the share itself is known to 0.005
+  constexpr int trials = 2000;  // determines the share itself to 0.005
   for (const std::uint64_t size : {1500u, 3000u, 6000u}) {
     SCOPED_TRACE(size);
     std::vector<Estimate> estimates(trials);
@@ -445,7 +446,7 @@ TEST(RegistrationError, StandardErrorsHold) {
   }
 }
 
-// Leaving out the only group that holds a link says that the error might be anything, not that there is none.
+// Leaving out the only group that holds a link shows that the error might be anything, not that there is none.
 TEST(Registration, OfALinkInOneGroupIsNotFreeOfError) {
   Made m{.heads = {{0.5, 0, 0}, {-0.5, 0, 0}}};
   m.room({}, 3, 2, 20, 3);

@@ -12,7 +12,7 @@
 namespace vantage {
 namespace {
 
-// A strip of voxels: points and station mask of each, smooth along the strip as a surface along the Morton order.
+// A strip of voxels with points and station masks, smooth along the strip as a surface along the Morton order.
 struct Strip {
   std::vector<std::uint32_t> points;
   std::vector<std::uint64_t> masks;
@@ -52,7 +52,7 @@ void count_voxel(NetworkCounts& counts, const Strip& strip, std::size_t v, doubl
   }
 }
 
-// What an engine hands back for the voxels of `sample`.
+// Counts that an engine would return for the voxels of `sample`.
 NetworkCounts count(const Strip& strip, const std::vector<std::size_t>& sample, double goal, std::size_t groups) {
   NetworkCounts counts;
   counts.stations = strip.stations;
@@ -85,7 +85,7 @@ TEST(CoverageEstimate, IsTheFormula) {
   const Estimate e = coverage_estimate(counts, 4, 20);
   EXPECT_DOUBLE_EQ(e.value, (2 + 3.0 / 4) / 5);
   EXPECT_DOUBLE_EQ(e.standard_error, std::sqrt((1 - 5.0 / 20) * 1.25 / (2 * 5 * 4)));
-  // Two voxels are enough for it.
+  // Two voxels suffice.
   counts.voxels = counts.weight = 2;
   counts.saturated = 1, counts.partial_points = 0, counts.successive_difference_sum = 1;
   EXPECT_DOUBLE_EQ(coverage_estimate(counts, 4, 20).standard_error, std::sqrt((1 - 2.0 / 20) / (2 * 2 * 1)));
@@ -96,13 +96,12 @@ TEST(CoverageEstimate, WithoutDifferencesKnowsNothing) {
   counts.voxels = counts.weight = 5;
   counts.saturated = 2;
   counts.successive_difference_sum = std::numeric_limits<double>::infinity();
-  EXPECT_EQ(coverage_estimate(counts, 4, 20).standard_error, 0.5);  // of something in [0, 1], at most
+  EXPECT_EQ(coverage_estimate(counts, 4, 20).standard_error, 0.5);  // the largest error of a value in [0, 1]
   EXPECT_EQ(coverage_estimate(counts, 4, 5).standard_error, 0.0);   // every voxel
 }
 
 TEST(OverlapEstimate, IsTheJackknife) {
-  // Three stations, two groups with different pair overlaps; the replicates are then the other group's own
-  // coefficients.
+  // Three stations and two groups with different pair overlaps; the replicates are then the other group's coefficients.
   NetworkCounts group;
   group.stations = 3;
   group.voxels = 10;
@@ -157,7 +156,7 @@ TEST(StandardErrors, OfStationsWithoutMasksAreZero) {
   EXPECT_EQ(overlap_standard_errors(counts, 100)(1, 2), 0.0);
 }
 
-// All systematic samples of many strips: how often does the true value lie within 1.96 standard errors?
+// Over all systematic samples of many strips: how often the true value is within 1.96 standard errors.
 TEST(StandardErrors, IntervalsHoldTheTruth) {
   constexpr std::size_t voxels = 12'000, step = 12;
   constexpr double goal = 3.5;
@@ -183,13 +182,13 @@ TEST(StandardErrors, IntervalsHoldTheTruth) {
       }
     }
   }
-  // Binomial: 144 trials at 0.95 stay within ±0.055 but once in 400; pairs of one trial hang together.
+  // Binomial: 144 trials at 0.95 stay within ±0.055 except once in 400; pairs of one trial are correlated.
   EXPECT_NEAR(static_cast<double>(coverage_held) / trials, 0.95, 0.05);
   EXPECT_NEAR(static_cast<double>(overlap_held) / trials, 0.95, 0.06);
   EXPECT_NEAR(static_cast<double>(pairs_held) / pairs, 0.95, 0.05);
 }
 
-// Cube roots of small shares come out too small on average.
+// Cube roots of small shares are biased low.
 TEST(OverlapEstimate, IsLessItsBias) {
   constexpr std::size_t voxels = 12'000;
   for (const std::size_t step : {12, 20, 30}) {
@@ -208,8 +207,8 @@ TEST(OverlapEstimate, IsLessItsBias) {
   }
 }
 
-// Beside strong links faint ones, of which a sample of a fortieth holds a voxel or none: leaving out a group at a time
-// takes off less than half of what they make the coefficient too small by, and too few intervals hold.
+// Faint links beside strong ones, of which a sample of a fortieth holds one voxel or none. Leaving out one group at a
+// time removes less than half of the coefficient's bias, and too few intervals hold.
 TEST(OverlapEstimate, KnowsOfLinksThatRestOnAFewVoxels) {
   constexpr std::size_t voxels = 24'000, step = 40;
   double seen = 0, told = 0;
@@ -232,7 +231,7 @@ TEST(OverlapEstimate, KnowsOfLinksThatRestOnAFewVoxels) {
   EXPECT_NEAR(static_cast<double>(held) / trials, 0.95, 0.04);
 }
 
-// With weights coverage is a ratio: what the stretches that count more weigh in the sample is itself drawn.
+// With weights coverage is a ratio: the sampled weight of the heavier stretches is itself random.
 TEST(StandardErrors, WeightedIntervalsHoldTheTruth) {
   constexpr std::size_t voxels = 12'000, step = 12;
   constexpr double goal = 3.5;
@@ -247,7 +246,7 @@ TEST(StandardErrors, WeightedIntervalsHoldTheTruth) {
       held += std::abs(c.value - truth) <= 1.96 * c.standard_error;
     }
   }
-  // The jackknife of a systematic sample errs to the safe side.
+  // The jackknife of a systematic sample is conservative.
   EXPECT_GE(static_cast<double>(held) / trials, 0.9);
 }
 

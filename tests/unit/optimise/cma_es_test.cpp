@@ -11,7 +11,7 @@
 #include "vantage/optimiser.hpp"
 
 namespace vantage {
-namespace cma_es_tests {  // of one objective, as other files have their own of several
+namespace cma_es_tests {  // for one objective; other files have helpers of the same names for several
 namespace {
 
 using Objective = std::function<double(std::span<const double>)>;
@@ -116,7 +116,7 @@ RC_GTEST_PROP(CmaEs, AsksInsideTheBounds, ()) {
 }
 
 TEST(CmaEs, ReplacedPointsCountAsDrawn) {
-  // Whatever is drawn, the user moves it to a finer and finer cloud around (0.3, …): the strategy must follow.
+  // The user moves every drawn point to an ever finer cloud around (0.3, …): the strategy must follow.
   const std::size_t n = 3;
   CmaEs optimiser(n, {.bounds = Bounds::uniform(n, 0, 1), .max_iterations = 60});
   std::vector<double> x(n), values;
@@ -215,7 +215,7 @@ TEST(CmaEs, StopsWithAReason) {
   const auto noisy = reason({.bounds = Bounds::uniform(n, 0, 1)}, noise);
   EXPECT_TRUE(noisy == StopReason::stagnated || noisy == StopReason::converged || noisy == StopReason::ill_conditioned)
       << to_string(noisy);
-  // With neither tolerance, the sphere ends where steps no longer change the mean, or at the smallest number.
+  // Without both tolerances, the sphere ends when steps no longer change the mean, or at the smallest number.
   EXPECT_NE(reason({.start = {std::vector<double>(n, 1.0)}, .x_tolerance = 0, .cma = {.f_tolerance = 0}}, sphere),
             StopReason::running);
 }
@@ -297,7 +297,7 @@ TEST(CmaEs, HypervolumeIsWhatTheBestPointDominates) {
 }
 
 TEST(CmaEs, RestartsAreNoWayRoundTheLimits) {
-  // At rest every few iterations, and at the end of the limit too: what was restarted there is gone on with.
+  // Converged every few iterations, and at the limit, too; the restarted run is continued.
   const std::size_t n = 4;
   OptimiserConfig c{.bounds = Bounds::uniform(n, -5, 5), .restarts = 1000, .x_tolerance = 0.8, .max_iterations = 100};
   CmaEs whole(n, c);
@@ -337,8 +337,7 @@ TEST(CmaEs, GoesOnFromRestWhereMoreRestartsAreAllowed) {
   EXPECT_EQ(resumed.best().x, whole.best().x);
 }
 
-// Three stations before three targets, each seen from nearby alone: two stations before one target have no way to the
-// third.
+// Three stations and three targets, each seen only nearby: two stations at one target cannot reach the third.
 double unseen(std::span<const double> x) {
   double sum = 0;
   for (const auto& [tx, ty] : {std::pair{0.1, 0.2}, std::pair{0.9, 0.1}, std::pair{0.5, 0.9}}) {
@@ -387,12 +386,12 @@ TEST(CmaEs, AsksForPointsThatDifferFromTheMeanByABlock) {
   std::size_t moved = 0;
   for (std::size_t b = 0; b < 8; b += 2) moved += x[b] != 0.5 || x[b + 1] != 0.5;
   EXPECT_EQ(moved, 1u);
-  EXPECT_EQ(x[6], 0.5);  // never the block that is not in use
+  EXPECT_EQ(x[6], 0.5);  // never the unused block
   const std::vector<std::size_t> coordinates{2, 3};
   const double before = x[2];
   EXPECT_NE(optimiser.resample(9, coordinates)[2], before);
   EXPECT_THROW(optimiser.tell(std::vector<double>(9, 1.0)), Error);
-  // The best of all is kept.
+  // The best of all points is kept.
   std::vector<double> values(10, 1.0);
   for (std::size_t k = 0; k < 9; ++k) values[k] += static_cast<double>(k);
   values[9] = 0.5;

@@ -17,7 +17,7 @@ namespace {
 
 using optimise::PointSet;
 
-// The union of boxes by inclusion–exclusion over all subsets: exact, and shares nothing with the code under test.
+// The union of boxes by inclusion–exclusion over all subsets: exact, and independent of the code under test.
 double brute_force(std::span<const double> points, std::size_t m, std::span<const double> reference) {
   const std::size_t k = points.size() / m;
   double sum = 0;
@@ -41,7 +41,7 @@ std::vector<double> without(std::span<const double> points, std::size_t m, std::
   return rest;
 }
 
-// Points on a coarse lattice: ties, duplicates, dominated points and points on and beyond the reference come often.
+// Points on a coarse lattice: ties, duplicates, dominated points and points on and beyond the reference are frequent.
 rc::Gen<std::vector<double>> lattice(std::size_t m, std::size_t max_points, int levels) {
   return rc::gen::mapcat(rc::gen::inRange<std::size_t>(0, max_points + 1), [=](std::size_t k) {
     return rc::gen::map(rc::gen::container<std::vector<int>>(k * m, rc::gen::inRange(0, levels)),
@@ -53,7 +53,7 @@ rc::Gen<std::vector<double>> lattice(std::size_t m, std::size_t max_points, int 
   });
 }
 
-// On the positive part of the unit sphere, so that all points are non-dominated.
+// Points on the positive part of the unit sphere, all non-dominated.
 std::vector<double> sphere(std::size_t k, std::size_t m, std::uint64_t seed) {
   optimise::NormalStream random(seed);
   std::vector<double> values(k * m);
@@ -104,7 +104,7 @@ TEST_P(HypervolumeProperty, ContributionsOfManyNonDominatedPoints) {
     EXPECT_NEAR(contributions[i], whole - hypervolume(without(points, m, i), m, reference), 1e-12);
 }
 
-// The greedy definition, one exact recount after another.
+// The greedy definition, with an exact recount each time.
 TEST_P(HypervolumeProperty, TruncationRemovesTheLeastContributorEachTime) {
   const std::size_t m = GetParam();
   const std::vector<double> reference(m, 1.0);

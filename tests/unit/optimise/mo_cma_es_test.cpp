@@ -59,9 +59,9 @@ struct Variant {
   Algorithm algorithm;
   Scheme scheme;
   std::size_t batch;
-  bool published = false;  // neither guided parents nor spread steps nor recombination
+  bool published = false;  // without guided parents, spread steps and recombination
   bool blocks = false;     // pairs of coordinates, the last block never in use
-  bool apart = false;      // each with a covariance of its own
+  bool apart = false;      // each block with its own covariance
 };
 
 class EveryOptimiser : public testing::TestWithParam<Variant> {
@@ -146,7 +146,7 @@ TEST_P(EveryOptimiser, TakesOtherObjectivesOfWhatItKeeps) {
   std::vector<double> all;
   for (const ParetoPoint& point : after) all.insert(all.end(), point.f.begin(), point.f.end());
   EXPECT_EQ(optimiser->hypervolume(), hypervolume(all, 2, std::vector{1.0, 1.0}));
-  // And goes on with them, also from a saved state.
+  // And continues with them, also from a saved state.
   std::stringstream file;
   optimiser->save(file);
   auto other = make(n, 2, config(n));
@@ -160,7 +160,7 @@ TEST_P(EveryOptimiser, TakesOtherObjectivesOfWhatItKeeps) {
   EXPECT_THROW(optimiser->reassess(values), Error);
 }
 
-// Newcomers of which a later sample thinks nothing do not outlive those whom they drove out.
+// Newcomers that later samples rate badly do not outlive the members they replaced.
 TEST(MoCmaEs, RecallsWhoHadToGoForSomebodyLucky) {
   const std::size_t n = 4, mu = 10;
   OptimiserConfig config{.population = mu, .bounds = Bounds::uniform(n, -1, 2), .mo = {.batch = 5, .recalls = true}};
@@ -234,7 +234,7 @@ TEST_P(EveryOptimiser, SameSeedSameBitsAndResumeToThem) {
     auto whole = make(n, m, c), parted = make(n, m, c);
     while (whole->stop_reason() == StopReason::running) {
       ASSERT_TRUE(std::ranges::equal(whole->ask(), parted->ask()));
-      // Redrawn points must resume as well.
+      // Redrawn points must resume, too.
       const std::vector<std::size_t> coordinates = {3, 1};
       whole->resample(0, coordinates);
       parted->resample(0, coordinates);
@@ -416,7 +416,7 @@ TEST_P(EveryOptimiser, RefusesWhatItCannotDo) {
 }
 
 TEST(MoCmaEs, ConvergesToOnePoint) {
-  // Both objectives agree, so that the population shrinks onto their minimum.
+  // Both objectives agree, so the population shrinks to their minimum.
   OptimiserConfig c;
   c.population = 4;
   c.bounds = Bounds::uniform(2, 0, 1);
@@ -453,9 +453,9 @@ TEST(MoCmaEs, RestartsItsStepsWhereItWouldStop) {
     ASSERT_EQ(run(optimiser, 2, two_wells), StopReason::converged);
     EXPECT_EQ(optimiser.restarts(), 2u);
     EXPECT_GT(optimiser.evaluations(), plain.evaluations());
-    EXPECT_GT(optimiser.hypervolume(), plain.hypervolume() - 1e-3);  // it may fall by what a truncation costs
+    EXPECT_GT(optimiser.hypervolume(), plain.hypervolume() - 1e-3);  // truncation may lower it a little
 
-    // One that had stopped goes on when more are allowed.
+    // A stopped optimiser continues when more restarts are allowed.
     std::stringstream file;
     plain.save(file);
     MoCmaEs resumed(2, 2, c);
@@ -478,8 +478,7 @@ TEST(MoCmaEs, WorksWithoutBounds) {
   EXPECT_GT(optimiser.hypervolume(), 0.78);
 }
 
-// Distance to a line of points behind many local fronts, as in ZDT4: small steps alone stay on the first one that they
-// meet.
+// Distance to a line of points behind many local fronts, as in ZDT4: small steps alone stay on the first local front.
 std::vector<double> rippled(std::span<const double> x) {
   double g = 1;
   for (std::size_t i = 1; i < x.size(); ++i) g += x[i] * x[i] + 1 - std::cos(6 * 3.14159265358979 * x[i]);
@@ -510,9 +509,8 @@ TEST(MoCmaEs, RecombinationLeavesLocalFronts) {
   EXPECT_LT(reached(0), 0.95 * best);
 }
 
-// Four stations of two coordinates before four targets that see a station only when it is near: which stands before
-// which does not matter, and a station that stands before another's target has no way from there. Against it, how far
-// the stations are apart.
+// Four stations of two coordinates and four targets that see a station only nearby. Stations are interchangeable, and a
+// station at another's target cannot leave it gradually. The other objective is the distance between stations.
 std::vector<double> targets(std::span<const double> x) {
   double missed = 0, apart = 0;
   for (const auto& [tx, ty] : {std::pair{0.1, 0.2}, std::pair{0.9, 0.1}, std::pair{0.8, 0.9}, std::pair{0.2, 0.8}}) {
@@ -544,7 +542,7 @@ TEST(MoCmaEs, SwappedBlocksLeaveLocalFronts) {
   EXPECT_GT(reached(0.4), reached(0) + 0.03);
 }
 
-// A front on the diagonal, whose members have next to no steps of their own.
+// A front on the diagonal, whose members have almost no steps of their own.
 OptimiserConfig at_rest(std::vector<double> along) {
   OptimiserConfig c;
   c.population = along.size();
@@ -571,7 +569,7 @@ TEST(MoCmaEs, StepsAlongTheFrontFollowItsMembers) {
   EXPECT_GT(between, points.size() / 3 * 9 / 10);
 }
 
-// Whoever adds nothing to the front, as one of two in one place, is nobody's parent but where it is an extreme.
+// A member that adds nothing to the front, such as one of two in the same place, is a parent only if it is an extreme.
 TEST(MoCmaEs, GuidedParentsAreDrawnByWhatTheyAddToTheFront) {
   OptimiserConfig c = at_rest({0.5, 0.5, 0.1, 0.9, 0.3});
   c.mo.guided = 1;
@@ -612,7 +610,7 @@ TEST(MoCmaEs, DrawsABlockFromAnywhereAgainFromAnywhere) {
       elsewhere += fresh;
       const std::vector<std::size_t> coordinates{b, b + 1};
       const auto again = optimiser.resample(k, coordinates);
-      // Beside another block or a member's, it stays there.
+      // Beside another block or a member's block, it stays there.
       if (!fresh && is_known(points[4 * k + 2 - b], 0) && is_known(points[4 * k + 3 - b], 1)) {
         EXPECT_TRUE(is_known(again[b], 0) && is_known(again[b + 1], 1)) << k;
       }
@@ -622,7 +620,7 @@ TEST(MoCmaEs, DrawsABlockFromAnywhereAgainFromAnywhere) {
   EXPECT_LT(elsewhere, 40u);
 }
 
-// It nears the front as one covariance for all does, in a fraction of the state; and neither takes the other's state.
+// It approaches the front as one covariance for all does, in a fraction of the state; neither loads the other's state.
 TEST(MoCmaEs, NearsAFrontWithACovarianceForEachBlock) {
   const std::size_t n = 40;
   const auto reached = [&](std::size_t full) {

@@ -14,7 +14,7 @@
 namespace vantage::optimise {
 namespace {
 
-// One newcomer after another, beside ranks and contributions counted from nothing each time.
+// Compares ranks and contributions, after each newcomer, with a full recount.
 void compare(std::size_t m, double reference, bool coarse, std::uint64_t seed) {
   NormalStream random(seed);
   const std::size_t mu = 20;

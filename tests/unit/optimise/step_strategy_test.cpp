@@ -14,7 +14,7 @@ Eigen::MatrixXd covariance(const Shape& shape) {
   return factor * factor.transpose();
 }
 
-// A shape that is neither round nor aligned, with a path of its own.
+// A shape neither round nor aligned, with a path.
 StepStrategy slanted(double success) {
   Shape shape = *Shape::identity(groups_of(3, {}, 3));
   factor_of(shape) << 1.2, 0, 0, -0.4, 0.7, 0, 0.25, 0.1, 2.1;
@@ -60,7 +60,7 @@ TEST(StepStrategy, KeepsBlocksInGroupsOnlyBeyondItsLimit) {
   EXPECT_EQ(groups_of(5, blocks, 4).back().offset, 8);
 }
 
-// The whole matrix of a shape in groups, with nothing between them.
+// The whole matrix of a grouped shape, with zeros between groups.
 Eigen::MatrixXd whole_factor(const Shape& shape) {
   const Eigen::Index n = shape.path.size();
   Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(n, n);

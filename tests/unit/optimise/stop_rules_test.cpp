@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What holds of every optimiser that make_optimiser() makes, above all when it stops.
+// Properties of every optimiser that make_optimiser() makes, mainly when it stops.
 #include "optimise/stop_rules.hpp"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ struct Made {
 
 void PrintTo(const Made& made, std::ostream* out) { *out << to_string(made.algorithm) << " of " << made.objectives; }
 
-// Squared distances to (0.3, …), and to (0.6, …).
+// Tells squared distances to (0.3, …), and to (0.6, …).
 void tell(Optimiser& optimiser) {
   const auto points = optimiser.ask();
   std::vector<double> values;
@@ -106,14 +106,14 @@ TEST_P(AnyOptimiser, StopsAtItsTargetAsSoonAsItIsReached) {
   }
   EXPECT_EQ(optimiser->stop_reason(), StopReason::target_reached);
   EXPECT_EQ(optimiser->evaluations(), free->evaluations());
-  // A limit that ends the search with the same tell() is what is said.
+  // If a limit ends the search at the same tell(), the limit is reported.
   c.max_evaluations = free->evaluations();
   EXPECT_EQ(run(*make(c)), StopReason::max_evaluations);
 }
 
 TEST_P(AnyOptimiser, StagnatesWhenTheHypervolumeHasNotGrown) {
   OptimiserConfig c = config();
-  c.restarts = 1'000'000;  // they are no way round it
+  c.restarts = 1'000'000;  // they do not circumvent it
   c.x_tolerance = 0.1;
   const auto free = make(c);
   c.stagnation_iterations = 4;
@@ -134,7 +134,7 @@ TEST_P(AnyOptimiser, StagnatesWhenTheHypervolumeHasNotGrown) {
   EXPECT_EQ(optimiser->evaluations(), free->evaluations());
 }
 
-// Whatever the rules were before: a search that goes on under others ends as one that always had them.
+// A search that continues under other rules ends as one that always had them.
 TEST_P(AnyOptimiser, IsJudgedByTheRulesThatItGoesOnWith) {
   const OptimiserConfig plain = config();
   std::vector<OptimiserConfig> ruled(4, plain);

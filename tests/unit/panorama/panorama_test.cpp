@@ -68,7 +68,7 @@ TEST(PanoramaView, NamesRoundTrip) {
   EXPECT_THROW(panorama_view_from_string("depth"), Error);
 }
 
-// Four walls around the origin, 5 m away and 6 m high, each in its own colour: +X red, +Y green, −X blue, −Y white. No
+// Four walls around the origin, 5 m away and 6 m high, in their own colours: +X red, +Y green, −X blue, −Y white. No
 // floor, no roof.
 Scene coloured_room() {
   test::QuadScene room;
@@ -136,10 +136,10 @@ TEST(PanoramaRenderer, HasNoSeamAndFollowsTheHeading) {
   for (std::uint32_t y = 0; y < 32; ++y) {
     for (std::uint32_t x = 0; x < 64; ++x) {
       const auto here = pixel(b, x, y),
-                 there = pixel(a, (x + 64 - 16) % 64, y);  // what was 16 columns to the left is in the middle
+                 there = pixel(a, (x + 64 - 16) % 64, y);  // the pixel 16 columns to the left is in the middle
       for (int c = 0; c < 4; ++c) ASSERT_NEAR(here[c], there[c], 1) << x << ", " << y;
     }
-    EXPECT_EQ(pixel(a, 0, y), pixel(a, 63, y)) << y;  // one wall goes through the seam
+    EXPECT_EQ(pixel(a, 0, y), pixel(a, 63, y)) << y;  // one wall crosses the seam
   }
 }
 
@@ -149,7 +149,7 @@ TEST(PanoramaRenderer, IsTurnedAsTheStationIs) {
   const auto of = [&](const StationSetup& setup) { return renderer.render({0, 0, 0}, views, {}, setup); };
   const auto upright = of({}), headed = of({.heading = Angle::degrees(90)}),
              hanging = of({.tilt = Angle::degrees(180)}), lying = of({.tilt = Angle::degrees(90)});
-  // The middle looks along the heading; one that hangs sees the same upside down and the other way round.
+  // The middle faces the heading; a hanging head sees the same upside down and reversed.
   std::array<int, 2> differ{};
   for (std::size_t v = 0; v < views.size(); ++v)
     for (std::uint32_t y = 0; y < 32; ++y)
@@ -161,7 +161,7 @@ TEST(PanoramaRenderer, IsTurnedAsTheStationIs) {
         }
   EXPECT_LT(differ[0], 60) << "of 30720";
   EXPECT_LT(differ[1], 60);
-  // Its axis along +X, the head of one that lies has the red wall overhead and the sky where −X was, behind.
+  // A lying head, its axis along +X, has the red wall overhead, and the sky behind, where −X was.
   const Image& colour = lying[0].image;
   for (const std::uint32_t x : {0u, 20u, 40u}) EXPECT_GT(pixel(colour, x, 0)[0], pixel(colour, x, 0)[1] + 60) << x;
   EXPECT_GT(pixel(colour, 0, 16)[2], pixel(colour, 0, 16)[0] + 30);
@@ -194,7 +194,7 @@ TEST(PanoramaRenderer, NothingInSightIsSkyAndBackdrop) {
   EXPECT_EQ(pixel(images[1].image, 3, 8), pixel(images[2].image, 20, 14));
 }
 
-// A scan coloured from a picture of the same place, taken by the same head, has the picture's colours.
+// A scan coloured from a picture taken by the same head has the picture's colours.
 class ColoursAScan : public testing::TestWithParam<StationSetup> {};
 INSTANTIATE_TEST_SUITE_P(Panorama, ColoursAScan,
                          testing::Values(StationSetup{},
@@ -224,7 +224,7 @@ TEST_P(ColoursAScan, OfTheSameHead) {
                    }
                  });
   EXPECT_GT(points, 4000u);
-  EXPECT_LT(off, points / 20);  // only along the walls' edges, where the picture mixes
+  EXPECT_LT(off, points / 20);  // only along the walls' edges, where the picture blends
 }
 
 }  // namespace

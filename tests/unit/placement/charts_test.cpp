@@ -17,7 +17,7 @@ SurfacePieces whole(std::vector<glm::dvec3> points, std::vector<Triangle> triang
   return pieces;
 }
 
-// A spiral ramp that passes over itself `turns` times.
+// A spiral ramp that overlaps itself `turns` times.
 SurfacePieces spiral(int turns, int steps) {
   std::vector<glm::dvec3> points;
   std::vector<Triangle> triangles;

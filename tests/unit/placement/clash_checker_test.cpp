@@ -36,10 +36,10 @@ TEST(ClashChecker, EitherSphereCounts) {
   EXPECT_TRUE(ClashChecker(kerb, volume).clashes(origin + Vec3{0.05, 0, 0.0099}));
 }
 
-// A head of searched height stands above the spheres: what it meets there counts too, and so does the mast.
+// The head stands above the spheres; obstacles there count, too, and so does the mast.
 TEST(ClashChecker, HeadAndMastKeepClear) {
   const ClashChecker shelf(test::Builder().floor(-5, -5, 5, 5, 0).box({0, -1, 2.5}, {3, 1, 2.6}).scene());
-  const double out = -0.06;  // of the shelf: beyond the mast's 0.05 m, within the head's 0.1 m
+  const double out = -0.06;  // outside the shelf: beyond the mast's 0.05 m, within the head's 0.1 m
   const auto at = [&](double x, double height) { return shelf.clashes(origin + Vec3{x, 0, 0}, height); };
   EXPECT_FALSE(shelf.clashes(origin + Vec3{1, 0, 0}));
   EXPECT_FALSE(at(1, 2.3999));

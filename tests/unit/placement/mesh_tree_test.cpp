@@ -12,7 +12,8 @@
 namespace vantage {
 namespace {
 
-// The least distance over a triangle by nested golden-section search over its barycentric coordinates, which is convex.
+// Least distance to a triangle by nested golden-section search over its barycentric coordinates; the distance is
+// convex.
 double searched_distance(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
   const auto at = [&](double s, double t) {
     const glm::dvec3 d = a + (b - a) * s + (c - a) * t - p;

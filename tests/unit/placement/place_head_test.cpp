@@ -9,7 +9,7 @@ namespace {
 
 using test::origin;
 
-// A floor of which only the left half is marked for standing, with a tank and a pillar on it.
+// A floor whose left half only is marked as station area, with a tank and a pillar on it.
 class PlaceHead : public testing::Test {
  protected:
   const Scene scene =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Meshes built by hand for the placement tests.
+// Meshes built in code for the placement tests.
 #pragma once
 
 #include <memory>
@@ -11,8 +11,8 @@
 
 namespace vantage::test {
 
-// A hilly ground of columns × rows squares over (u, v) in [0, 1]², bent so that no triangle is regular. `squeeze` draws
-// the columns together towards u = 0: 1 leaves them alone, small values make slivers.
+// Hilly ground of columns × rows squares over (u, v) in [0, 1]², bent so that no triangle is regular. `squeeze` moves
+// the columns towards u = 0: 1 leaves them, small values make slivers.
 inline SearchMesh hills(int columns, int rows, double squeeze = 1, unsigned seed = 1) {
   std::mt19937 rng(seed);
   std::uniform_real_distribution<double> jitter(-0.2, 0.2), height(0, 0.2);

@@ -68,7 +68,7 @@ TEST(PlaneQuadtree, FindsTheFirstTriangleThatHoldsThePoint) {
           all.push_back(t);
         }
       }
-      if (nearest_side < 1e-8) continue;  // on an edge; the next test is about those
+      if (nearest_side < 1e-8) continue;  // on an edge; see the next test
       const auto found = tree.find(p);
       ASSERT_EQ(found.has_value(), expected.has_value());
       std::vector<std::uint32_t> found_all;

@@ -19,7 +19,7 @@ namespace {
 
 double distance(const Vec3& a, const Vec3& b) { return std::sqrt(dot(a - b, a - b)); }
 
-// Random points on random edges: each found, where the edge is, and the position continuous across it.
+// Tests random points on random edges: each is found where the edge is, and the position is continuous across it.
 void expect_edges_found(const SearchMesh& mesh, int points, unsigned seed) {
   const SearchArea area = SearchArea::from_mesh(mesh);
   std::mt19937_64 rng(seed);
@@ -29,7 +29,7 @@ void expect_edges_found(const SearchMesh& mesh, int points, unsigned seed) {
   for (int i = 0; i < points; ++i) {
     const auto& t = mesh.triangles[rng() % mesh.triangles.size()];
     const std::uint32_t a = t[rng() % 3], b = t[rng() % 3];
-    const double x = i % 10 == 0 ? 0 : unit(rng);  // one in ten a vertex
+    const double x = i % 10 == 0 ? 0 : unit(rng);  // one in ten is a vertex
     const Uv ua = mesh.uvs[a], ub = mesh.uvs[b];
     const Uv p{ua.u + x * (ub.u - ua.u), ua.v + x * (ub.v - ua.v)};
     const auto found = area.locate(p);
@@ -59,8 +59,8 @@ TEST(SearchArea, FindsPointsOnTheEdgesOfSlivers) {
 }
 TEST(SearchArea, FindsPointsOnTheEdgesOfCoarseMeshes) { expect_edges_found(test::hills(1, 1), 20'000, 8); }
 
-// What the first call builds, it builds in tasks of its own; waiting for those, it must not take up another of its
-// caller's, which would wait for it. Many threads, so that some of them help to build.
+// The first call builds the tree in its own tasks. While waiting for them it must not take up another task of its
+// caller, which would wait for it. Many threads, so that some of them help to build.
 TEST(SearchArea, IsAskedForTheFirstTimeFromManyTasks) {
   const tbb::global_control allowed(tbb::global_control::max_allowed_parallelism, 16);
   const SearchMesh mesh = test::hills(150, 150);

@@ -33,7 +33,7 @@ TEST(SurfacePieces, CutsOutAHoleToTheSpacing) {
   for (const double spacing : {1.0, 0.25, 0.1}) {
     const SurfacePieces pieces = clear_pieces(square, halves, spacing, outside_disc);
     EXPECT_NEAR(total_area(pieces), 100 - M_PI * 4, 4 * M_PI * 0.35 * spacing + 1e-9) << spacing;
-    EXPECT_LT(pieces.triangles.size(), 60 / spacing);  // pieces gather along the rim alone
+    EXPECT_LT(pieces.triangles.size(), 60 / spacing);  // pieces accumulate only along the rim
     for (std::uint32_t i = 0; i < pieces.triangles.size(); ++i) {
       const Triangle& t = pieces.triangles[i];
       EXPECT_TRUE(outside_disc((pieces.points[t[0]] + pieces.points[t[1]] + pieces.points[t[2]]) * (1.0 / 3)) ||

@@ -25,7 +25,7 @@ double true_area(const SearchMesh& mesh) {
   return sum;
 }
 
-// Survey-frame ground points of random (u, v), those that exist.
+// Ground points, survey frame, of random (u, v) outside holes.
 std::vector<Vec3> random_places(const SearchArea& area, int count) {
   std::mt19937 rng(3);
   std::uniform_real_distribution<double> unit(0, 1);
@@ -37,14 +37,14 @@ std::vector<Vec3> random_places(const SearchArea& area, int count) {
   return places;
 }
 
-// What was left out for one reason, m².
+// Area left out for one reason, m².
 double left_out(const SearchArea& area, LeftOutReason reason) {
   for (const LeftOut& out : area.left_out())
     if (out.reason == reason) return out.area_m2;
   return 0;
 }
 
-// The person whose way decides is 0.6 m wide, so areas end 0.3 m before what stands in it, to a piece's size.
+// The assumed person is 0.6 m wide, so areas end 0.3 m before obstacles, up to the size of a piece.
 TEST(Walkable, GroundOfTwoTrianglesHasAHoleUnderABoxAndNoPlaceOnIt) {
   const Scene scene = test::Builder().floor(-10, -10, 10, 10, 0).box({2, 2, 1}, {6, 6, 1.5}).scene();
   const SearchArea area = SearchArea::build(scene);
@@ -60,8 +60,8 @@ TEST(Walkable, GroundOfTwoTrianglesHasAHoleUnderABoxAndNoPlaceOnIt) {
   }
 }
 
-// A house drawn as a closed shell stands on ground that goes on beneath it, in bumps that level rays near the ground
-// run into.
+// A house drawn as a closed shell stands on ground that continues beneath it, with bumps that block level rays near the
+// ground.
 TEST(Walkable, NoPlaceWithinAShellOnBumpyGround) {
   test::Builder builder;
   const auto z = [](int x, int y) { return 0.15 * ((x + y) % 2); };
@@ -89,7 +89,7 @@ TEST(Walkable, FloorUnderAHighPlatformStaysAndBothHaveTheirOwnPlacesWhereAStairL
   EXPECT_NEAR(true_area(without.mesh()), 100, 1e-6);
   EXPECT_NEAR(left_out(without, LeftOutReason::unreachable), 16, 1e-6);
 
-  const int rises = 13;  // of 0.2 m, beside the platform, with closed sides
+  const int rises = 13;  // of 0.2 m each, beside the platform, with closed sides
   for (int k = 0; k + 1 < rises; ++k) builder.box({2, -3 + 0.27 * k, 0}, {3, -3 + 0.27 * (k + 1), 0.2 * (k + 1)});
   builder.box({2, -3 + 0.27 * (rises - 1), 2.5}, {3, 2, 2.6});
   const SearchArea area = SearchArea::build(builder.scene());
@@ -100,7 +100,7 @@ TEST(Walkable, FloorUnderAHighPlatformStaysAndBothHaveTheirOwnPlacesWhereAStairL
   EXPECT_NEAR(area.locate(above)->z - origin.z, 2.6, 1e-6);
   EXPECT_LT(left_out(area, LeftOutReason::unreachable), 1);
 
-  // Steps that are too high end the way, and are told of.
+  // Steps that are too high end the way, and are reported.
   WalkableOptions low_steps;
   low_steps.climb_m = 0.15;
   const SearchArea stopped = SearchArea::build(builder.scene(), low_steps);
@@ -301,7 +301,7 @@ TEST(Walkable, AMarkedAreaWithoutUvIsUnfolded) {
 
   for (Triangle& t : data.search_triangles) std::swap(t[0], t[1]);  // upside down
   EXPECT_EQ(SearchArea::build(Scene(std::make_shared<const SceneData>(data))).mesh().triangles.size(), 3u);
-  data.search_uvs.assign(7, Uv{0.5, 0.5});  // (u, v) of no use
+  data.search_uvs.assign(7, Uv{0.5, 0.5});  // unusable (u, v)
   EXPECT_EQ(SearchArea::build(Scene(std::make_shared<const SceneData>(data))).mesh().triangles.size(), 3u);
 }
 

@@ -142,7 +142,7 @@ TEST(SpreadPositions, FollowTheGroundInSquareMetres) {
   const SearchArea area = SearchArea::from_mesh(mesh);
   const Scene scene = QuadScene().quad({0, 0, -50}, {1, 0, 0}, {0, 1, 0}).scene();
   const ClashChecker clash(scene);
-  const Site site = make_site(area, clash, coarse_scanner());
+  const PlacementOracle site = make_placement_oracle(area, clash, coarse_scanner());
   const SpreadPositions spread = spread_positions(site, area.mesh(), 1.5, 512);
   ASSERT_EQ(spread.stations.size(), 512u);
   for (const std::size_t n : {64u, 128u, 512u}) {

@@ -18,7 +18,7 @@ struct Confirmed {
 
 Confirmed confirmed(const SurveyProblem& problem, std::uint64_t sampled, test::ToyEvaluator& evaluator,
                     const PlanWatch& watch = {}) {
-  const Site site = test::toy_site();
+  const PlacementOracle site = test::toy_site();
   const DecisionSpace space(site, problem);
   Confirmed result{.found = test::toy_search(problem, test::toy_config(), evaluator), .entries = {}};
   result.entries = confirm_front(result.found, space, problem, evaluator.measures, sampled, evaluator, watch).entries;
@@ -84,7 +84,7 @@ TEST(ConfirmFront, AbortLeavesWhatTheSearchSaw) {
 }
 
 TEST(ConfirmFront, NetworksInHolesAreConfirmedToo) {
-  const Site site = test::toy_site();
+  const PlacementOracle site = test::toy_site();
   const SurveyProblem problem = test::toy_problem("coverage-fix");
   const DecisionSpace space(site, problem);
   SearchOutcome found;
@@ -97,7 +97,7 @@ TEST(ConfirmFront, NetworksInHolesAreConfirmedToo) {
 }
 
 TEST(ConfirmFront, SparesWhatIsBeatenBeyondDoubt) {
-  const Site site = test::toy_site();
+  const PlacementOracle site = test::toy_site();
   const SurveyProblem problem = test::toy_problem("coverage-overlap-fix");
   const DecisionSpace space(site, problem);
   test::ToyEvaluator evaluator;

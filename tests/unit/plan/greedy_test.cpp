@@ -10,7 +10,7 @@ namespace vantage {
 namespace {
 
 TEST(Greedy, ChoosesAsTheEagerAlgorithmDoes) {
-  const Site site = test::toy_site();
+  const PlacementOracle site = test::toy_site();
   test::ToyEvaluator lazy, eager;
   lazy.at_once = 0;
   const GreedyConfig config{.stations = 6, .candidates = 150};
@@ -43,20 +43,20 @@ TEST(Greedy, ChoosesAsTheEagerAlgorithmDoes) {
 }
 
 TEST(Greedy, CandidatesStandOnlyWhereTheyMay) {
-  const Site site = test::toy_site();
+  const PlacementOracle site = test::toy_site();
   test::ToyEvaluator evaluator;
   const GreedyResult result = choose_greedily(site, evaluator, {.stations = 40, .candidates = 50}, {});
   EXPECT_EQ(result.stations.size(), 40u);
   for (const PlacedStation& s : result.stations) EXPECT_EQ(s.status, StationStatus::ok);
   EXPECT_THROW(choose_greedily(site, evaluator, {.stations = 8, .candidates = 5}, {}), Error);
   EXPECT_THROW(choose_greedily(site, evaluator, {.stations = max_stations + 1, .candidates = 500}, {}), Error);
-  Site nowhere = site;
+  PlacementOracle nowhere = site;
   nowhere.locate = [](Uv) { return std::nullopt; };
   EXPECT_THROW(choose_greedily(nowhere, evaluator, {}, {}), Error);
 }
 
 TEST(Greedy, AddsToWhatIsThere) {
-  const Site site = test::toy_site();
+  const PlacementOracle site = test::toy_site();
   test::ToyEvaluator evaluator;
   const GreedyResult alone = choose_greedily(site, evaluator, {.stations = 4, .candidates = 150}, {});
   GreedyConfig config{.stations = 2, .candidates = 150};
@@ -69,7 +69,7 @@ TEST(Greedy, AddsToWhatIsThere) {
 }
 
 TEST(Greedy, StopsWhenTold) {
-  const Site site = test::toy_site();
+  const PlacementOracle site = test::toy_site();
   test::ToyEvaluator evaluator;
   std::stop_source stop;
   evaluator.before_each = [&](const PlacedNetwork&) {
@@ -83,7 +83,7 @@ TEST(Greedy, StopsWhenTold) {
 }
 
 TEST(Greedy, SeedsTheSearch) {
-  const Site site = test::toy_site();
+  const PlacementOracle site = test::toy_site();
   test::ToyEvaluator evaluator;
   const GreedyResult greedy = choose_greedily(site, evaluator, {.stations = 8, .candidates = 200}, {});
   const SurveyProblem problem = test::toy_problem("coverage-min");
@@ -97,7 +97,7 @@ TEST(Greedy, SeedsTheSearch) {
 }
 
 TEST(Greedy, ASeededSearchIsNoWorseThanItsSeed) {
-  const Site site = test::toy_site();
+  const PlacementOracle site = test::toy_site();
   test::ToyEvaluator evaluator;
   const GreedyResult greedy = choose_greedily(site, evaluator, {.stations = 4, .candidates = 300}, {});
   PlanConfig config = test::toy_config();

@@ -90,7 +90,7 @@ TEST(Measures, AreToldOnceByName) {
 }
 
 TEST(ChooseOptimiser, RefusesWhatCannotBe) {
-  const Site site = test::toy_site();
+  const PlacementOracle site = test::toy_site();
   const auto refused = [&](const SurveyProblem& problem, const PlanConfig& config) {
     const DecisionSpace space(site, problem);
     return refusal([&] { choose_optimiser(space, problem, config, 1); });

@@ -13,14 +13,14 @@
 
 #include "plan/measures.hpp"
 #include "plan/network_evaluator.hpp"
+#include "plan/placement_oracle.hpp"
 #include "plan/search.hpp"
-#include "plan/site.hpp"
 
 namespace vantage::test {
 
 inline constexpr double kHoleRadius_m = 2.5;
 
-inline Site toy_site() {
+inline PlacementOracle toy_site() {
   return {.uv_min = {0, 0},
           .uv_max = {1, 1},
           .locate = [](Uv uv) -> std::optional<Vec3> {
@@ -200,7 +200,7 @@ inline PlanConfig toy_config() { return {.population = 20, .iterations = 30, .se
 inline SearchOutcome toy_search(const SurveyProblem& problem, const PlanConfig& config, ToyEvaluator& evaluator,
                                 std::stop_token stop = {}, std::size_t batch = 4,
                                 std::function<void(const PlanProgress&)> watch = {}) {
-  const Site site = toy_site();
+  const PlacementOracle site = toy_site();
   const DecisionSpace space(site, problem);
   evaluator.measures = measures_of(problem);
   return search({.space = space,

@@ -34,7 +34,7 @@ class LocalPost final : public Post {
       }
     });
   }
-  // Whoever is handed the letters is there until now.
+  // The receiver of messages exists until now.
   void close() { thread_ = {}; }
   std::size_t bytes() const { return bytes_; }  // delivered so far
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The program as `mpirun` starts it: the same front from any number of ranks, whatever becomes of them.
+// The program under `mpirun`: the same front from any number of ranks, whatever happens to them.
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -23,7 +23,7 @@ using Words = std::vector<std::string>;
 
 class Mpi : public ProgramTest {
  protected:
-  // Any machine, without a network and with fewer cores than ranks; as root too.
+  // Settings for any machine, without a network and with fewer cores than ranks; also as root.
   Mpi() {
     for (const auto& [name, value] : {std::pair{"OMPI_ALLOW_RUN_AS_ROOT", "1"},
                                       {"OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1"},
@@ -32,7 +32,7 @@ class Mpi : public ProgramTest {
                                       {"OMPI_MCA_plm_rsh_agent", ""},
                                       {"OMPI_MCA_rmaps_base_oversubscribe", "1"},
                                       {"OMPI_MCA_hwloc_base_binding_policy", "none"},
-                                      // Who is told to end is killed at once: nobody may count on a moment more.
+                                      // Ranks told to end are killed at once, so nothing may rely on a delay.
                                       {"OMPI_MCA_odls_base_sigkill_timeout", "0"}})
       setenv(name, value, 1);
   }
@@ -46,7 +46,7 @@ class Mpi : public ProgramTest {
     more.insert(more.end(), {"--no-report", "-o", path(folder)});
     return coarse("plan", more);
   }
-  // All of a result but its times.
+  // A result without its times.
   std::string front(const std::string& folder) const {
     static const std::regex times("\"seconds\": (\\{[^}]*\\}|[-+0-9.e]+)");
     return std::regex_replace(read(folder + "/front.json"), times, "\"seconds\": 0") + read(folder + "/front.csv");
@@ -60,13 +60,13 @@ class Mpi : public ProgramTest {
       if (ranks > 1) {
         EXPECT_NE(outcome.err.find(std::to_string(ranks) + " ranks share the work"), std::string::npos) << outcome.err;
       }
-      // Rank 0 alone speaks.
+      // Only rank 0 prints.
       EXPECT_EQ(outcome.out.find("results in "), outcome.out.rfind("results in ")) << outcome.out;
       if (ranks == 1) first = front(folder);
       EXPECT_EQ(front(folder), first) << ranks << " ranks";
     }
     EXPECT_NE(first.find("\"stations\""), std::string::npos);
-    // Nor does the program without MPI find another.
+    // The program without MPI finds the same.
     const Outcome outcome = run_program(on(1, plan("plain", question), VANTAGE_PLAIN_PROGRAM));
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
     EXPECT_EQ(front("plain"), first);
@@ -83,7 +83,7 @@ TEST_F(Mpi, AnyNumberOfRanksFindsTheSameFrontByEveryRay) {
                        "--population", "6", "--iterations", "2"});
 }
 
-// Looks at candidates, chooses among them, and goes by overlaps of whole scans.
+// Examines candidates, chooses among them, and uses overlaps of whole scans.
 TEST_F(Mpi, AnyNumberOfRanksFindsTheSameFewest) { expect_equal_fronts({"--link", "0.1", "--iterations", "3"}); }
 
 TEST_F(Mpi, AnotherSceneIsRefused) {
@@ -123,7 +123,7 @@ TEST_F(Mpi, UsageIsToldOnce) {
   EXPECT_EQ(std::ranges::count(version.out, '\n'), 1) << version.out;
 }
 
-// Each would plan the whole and write the same files.
+// Each would plan everything and write the same files.
 TEST_F(Mpi, TheProgramWithoutMpiRefusesAJob) {
   const Outcome outcome = run_program(on(2, plan("plan", kSampled), VANTAGE_PLAIN_PROGRAM));
   EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
@@ -138,7 +138,7 @@ TEST_F(Mpi, ExitCodesAreRank0s) {
   EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
 }
 
-// Processes that the launcher started and that run, by rank.
+// Running processes that the launcher started, by rank.
 std::vector<int> ranks_of(int launcher) {
   std::vector<int> processes;
   for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
@@ -171,8 +171,8 @@ bool within(std::chrono::seconds limit, const std::function<bool()>& done) {
   return true;
 }
 
-// The same search again and again, on another number of ranks each time, one of which is killed at some moment; what
-// the last one then finds is what one finds that nobody disturbs.
+// The same search is run repeatedly on various numbers of ranks, and one rank is killed at some moment. The last run
+// must find what an undisturbed run finds.
 TEST_F(Mpi, KilledAndResumedItFindsTheSameFront) {
   using std::chrono::milliseconds;
   Words question{"--problem", "coverage-overlap-fix", "--stations",   "4",  "--sample",     "1500",
@@ -197,12 +197,12 @@ TEST_F(Mpi, KilledAndResumedItFindsTheSameFront) {
       if (!all_there()) return;
       struck = kill(processes[victim], SIGKILL) == 0;
       EXPECT_TRUE(within(std::chrono::seconds(60), [&] { return ranks_of(launcher).empty(); })) << "a rank goes on";
-      // Open MPI 4.1's launcher may lock itself out at its own end, once all it started is gone.
+      // Open MPI 4.1's launcher may deadlock at its own end, once all its processes are gone.
       if (!within(std::chrono::seconds(5), [&] { return ended(launcher); })) kill(launcher, SIGKILL);
     });
     SCOPED_TRACE(std::to_string(k) + ": rank " + std::to_string(victim) + " of " + std::to_string(ranks) + " after " +
                  std::to_string(moment.count()) + " ms");
-    if (outcome.exit_code == 0) continue;  // it had come to its end
+    if (outcome.exit_code == 0) continue;  // it had finished
     EXPECT_TRUE(struck) << outcome.err;
     EXPECT_NE(outcome.err.find("exited on signal 9"), std::string::npos) << outcome.err;
     ++killed;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Several ranks must count what one counts, whole number by whole number.
+// Several ranks must count what one counts, integer by integer.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -27,7 +27,7 @@ TraceScene two_walls(double second_wall_m = 6) {
       {.azimuth_step = Angle::degrees(1), .zenith_step = Angle::degrees(1), .noise = rtc360_noise()}, 0.2);
 }
 
-// Rank 0 and others of one process, each with a tracer of its own over `scenes[rank]`.
+// Rank 0 and others in one process, each with its own tracer over `scenes[rank]`.
 class Job {
  public:
   explicit Job(const std::vector<TraceScene>& scenes, std::vector<std::uint64_t> fingerprints = {}) {
@@ -56,7 +56,7 @@ class Job {
     tracer->set_goal_density(goal);
     return tracer;
   }
-  // That of one other rank, which all is asked of.
+  // Tracer of another rank, which does all the work.
   std::unique_ptr<Tracer> remote(const TraceScene& scene, std::uint32_t number = 0) {
     tracer(scene);
     auto there = std::make_unique<RemoteTracer>(letters_, 1, number, EngineInfo{}, std::vector<std::uint64_t>{3600});
@@ -241,7 +241,7 @@ TEST(Ranks, RefuseAnotherScene) {
   }
 }
 
-// What the others do not make as well is traced here.
+// Scenes that the others do not have are traced here.
 TEST(Ranks, TraceAloneWhatTheOthersDoNotHave) {
   const TraceScene scene = two_walls(), own = two_walls(4);
   const Work work(own);
@@ -262,7 +262,7 @@ TEST(Ranks, StopAtOnceAndGoOn) {
   stop.request_stop();
   const auto stopped = there->count_each(work.networks, work.sizes, {}, {.report = {}, .stop = stop.get_token()});
   EXPECT_TRUE(stopped.back().cancelled);
-  // The next question gets its own answer, not the last one's.
+  // The next request gets its own answer, not the previous one's.
   expect_all_equal(there->count(work.networks[5], work.sizes[5], {}, {}),
                    alone(scene)->count(work.networks[5], work.sizes[5], {}, {}));
 }
@@ -271,12 +271,12 @@ TEST(Ranks, AnErrorThereIsAnErrorHere) {
   const TraceScene scene = two_walls();
   const Work work(scene);
   Job job({scene, scene});
-  const auto there = job.remote(scene, 9);  // which nobody has
+  const auto there = job.remote(scene, 9);  // which no rank has
   try {
     there->count(work.networks[0], work.sizes[0], {}, {});
     FAIL() << "counted";
   } catch (const Error& error) {
-    EXPECT_EQ(error.code(), Errc::device_failure);  // of which several are made: one is dropped, the others go on
+    EXPECT_EQ(error.code(), Errc::device_failure);  // one of several members is dropped, the others continue
     EXPECT_EQ(std::string(error.what()).find("rank 1: on host1: "), 0u) << error.what();
   }
 }

@@ -38,7 +38,7 @@ TEST(Wire, SmallNumbersAreOneByte) {
   EXPECT_EQ(writer.take().size(), 101u);
 }
 
-// Cut anywhere, it is an error; nothing is made up, and no memory taken for what cannot be there.
+// A message cut anywhere is an error; nothing is invented, and no memory is allocated for missing content.
 TEST(Wire, ACutLetterIsRefused) {
   NetworkCounts counts;
   counts.voxels = 1000, counts.stations = 3, counts.points_on_surveyed = {5, 600, 70000};

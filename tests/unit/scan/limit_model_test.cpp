@@ -14,7 +14,7 @@ namespace {
 
 constexpr double pi = 3.141592653589793;
 
-// A wall 20 m square at x = 5, square on to the head at the origin.
+// A wall 20 m square at x = 5, facing the head at the origin.
 test::QuadScene wall(double detail_m, double accuracy_m) {
   test::QuadScene scene;
   scene.quad({5, -10, -10}, {0, 20, 0}, {0, 0, 20}, Role::surveyed, 0.8);
@@ -38,7 +38,7 @@ NetworkCounts count(const test::QuadScene& scene, const Scanner& scanner, Simula
   return Simulator(scene.scene(), scanner, config).evaluate({{Vec3{0, 0, 0}}});
 }
 
-// How many rays meet the wall at an x of their direction for which `counts` holds.
+// Number of rays that hit the wall and whose direction's x satisfies `counts`.
 template <class Counts>
 std::uint64_t expected(const Scanner& scanner, const Counts& counts) {
   std::uint64_t n = 0;
@@ -76,7 +76,7 @@ TEST(LimitModel, AFootprintGrowsWithRangeAndSlant) {
     EXPECT_EQ(counts.points_on_surveyed[0],
               expected(scanner, [&](double cosine) { return (0.006 + 5e-4 * 5 / cosine) / cosine <= detail; }));
   }
-  // 60° where nothing else is said: the beam at 5 m is 8.5 mm wide.
+  // 60° by default: the beam at 5 m is 8.5 mm wide.
   const NetworkCounts usual = count(wall(1, 0), scanner, {});
   EXPECT_EQ(usual.points_on_surveyed[0], expected(scanner, [](double cosine) { return cosine >= 0.5; }));
   EXPECT_EQ(usual.dropped[0].footprint, 0u);

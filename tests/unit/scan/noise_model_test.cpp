@@ -35,7 +35,7 @@ TEST(TableSigma, IsLinearBetweenNodes) {
 TEST(TableSigma, GoesOnLinearlyBeyondTheNodes) {
   const NoiseTable t = rtc360_noise();
   EXPECT_NEAR(table_sigma(t, 0, 0.89), 0.2e-3, 1e-12);      // 0.1 mm less for 5 m
-  EXPECT_NEAR(table_sigma(t, 130, 0.08), 13.75e-3, 1e-12);  // 5 mm and 70 m at 0.125 mm a metre
+  EXPECT_NEAR(table_sigma(t, 130, 0.08), 13.75e-3, 1e-12);  // 5 mm, and 70 m at 0.125 mm per metre
   EXPECT_NEAR(table_sigma(t, 60, 0.0), (5 + 3.0 * 8 / 13) * 1e-3, 1e-12);
   EXPECT_NEAR(table_sigma(t, 60, 1.0), (1 - 1.0 * 11 / 68) * 1e-3, 1e-12);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The noise of section 3.3 as a distribution: a million rays at each of twelve (distance, reflectivity) points.
+// Distribution of the noise of section 3.3: a million rays at each of twelve (distance, reflectivity) points.
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
 
@@ -66,7 +66,7 @@ TEST(NoiseStatistics, TwelvePointsOfTheTable) {
         mean += moved / rays;
         squares += moved * moved / rays;
       }
-      EXPECT_LT(largest_difference, 1e-5);  // the last place of the range
+      EXPECT_LT(largest_difference, 1e-5);  // last place of the range
       EXPECT_LE(farthest, static_cast<double>(model.reach) + 1e-5);
       const double sample_sigma = std::sqrt(squares - mean * mean);
       EXPECT_NEAR(sample_sigma / sigma, 1.0, 0.01) << distance << " m, " << reflectivity;
@@ -87,8 +87,8 @@ TEST(NoiseStatistics, TwelvePointsOfTheTable) {
   }
 }
 
-// Whatever the seed: the squared means of 200 samples, in standard errors, add up to χ² of 200 degrees of freedom,
-// whose 5·10⁻⁵ quantiles are 131 and 288.
+// For any seed: the squared means of 200 samples, in standard errors, add up to χ² of 200 degrees of freedom, whose
+// 5·10⁻⁵ quantiles are 131 and 288.
 TEST(NoiseStatistics, MeansScatterAsChanceDoes) {
   constexpr std::uint32_t samples = 200, size = 100'000;
   const auto table = normal_table();

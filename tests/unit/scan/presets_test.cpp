@@ -67,7 +67,7 @@ TEST(Presets, PixelsPerTurn) {
   EXPECT_EQ(load_scanner("zf5016@high", presets).columns(), 10000u);
 }
 
-// The beam of every preset is known, or said to be assumed.
+// The beam of every preset is known, or marked as assumed.
 TEST(Presets, HaveABeam) {
   for (const ScannerPreset& preset : list_scanners(presets)) {
     const Scanner scanner = load_scanner(preset.key, presets);
@@ -150,7 +150,7 @@ TEST(Presets, BrokenFilesSayWhere) {
   EXPECT_THROW(list_scanners(folder / "none.json"), Error);
 }
 
-// What is built in is the file in data/, and a file of one's own adds to it.
+// The built-in presets are the file in data/, and a user's file adds to them.
 TEST(Presets, AFileAddsToWhatIsBuiltIn) {
   std::ifstream in(presets);
   auto document = nlohmann::json::parse(in);
@@ -163,7 +163,7 @@ TEST(Presets, AFileAddsToWhatIsBuiltIn) {
   std::ofstream(folder / "scanners.json") << document;
   const auto file = folder / "scanners.json";
   EXPECT_EQ(load_scanner("mine", file).max_range_m, 42);
-  EXPECT_EQ(load_scanner("x7", file).max_range_m, 43);  // goes before the built-in one
+  EXPECT_EQ(load_scanner("x7", file).max_range_m, 43);  // takes precedence over the built-in one
   EXPECT_EQ(load_scanner("rtc360", file).max_range_m, load_scanner("rtc360").max_range_m);
   EXPECT_NE(load_scanner("x7").max_range_m, 43);
   EXPECT_EQ(list_scanners(file).size(), built_in + 1);

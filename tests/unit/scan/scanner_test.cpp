@@ -27,7 +27,7 @@ TEST(Scanner, CountsRaysAsThePaperDoes) {
 }
 
 TEST(Scanner, FloorsAreGuarded) {
-  // n steps of 360°/n are n columns, for every n, however 360/n rounds.
+  // n steps of 360°/n make n columns, for every n, however 360/n rounds.
   for (std::uint32_t n = 1; n <= 20'000; ++n) {
     Scanner scanner = with_step(360.0 / n);
     scanner.vertical_angle = Angle::degrees(360);

@@ -46,13 +46,13 @@ std::string message_of(const std::function<void()>& call) {
   return "";
 }
 
-// All chunks of a scan as one.
+// All chunks of a scan, joined.
 ScanChunk whole_scan(Simulator& simulator, const Station& station, std::uint32_t place, std::uint32_t outputs,
                      ScanSummary* summary = nullptr) {
   ScanChunk all;
   const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
   const ScanSummary sums = simulator.scan(station, {.outputs = outputs, .place = place}, [&](const ScanChunk& chunk) {
-    EXPECT_EQ(chunk.first_ray, all.ray_count);  // in order, without a gap
+    EXPECT_EQ(chunk.first_ray, all.ray_count);  // in order, without gaps
     all.ray_count += chunk.ray_count;
     append(all.range_m, chunk.range_m);
     append(all.position, chunk.position);
@@ -89,7 +89,7 @@ TEST(Simulator, DescribesItself) {
   }
 }
 
-// What takes minutes of a large site.
+// Building a large site takes minutes.
 TEST(Simulator, IsBuiltWithProgressAndNotWhereItIsStopped) {
   const Scene scene = wall_and_floor().scene();
   const Scanner scanner = coarse_scanner();
@@ -120,7 +120,7 @@ TEST(Simulator, RefusesGoalDensitiesBelowOneAndNamesWhatWorks) {
     const Simulator works(scene, coarse_scanner(), config(named, 0.2));
     EXPECT_GE(works.goal_density(), 1.0);
     EXPECT_NEAR(works.voxel_size_m(), named, 1e-4);
-    message_of([&] { Simulator(scene, coarse_scanner(), config(named * 0.999, 0.2)); });  // and nothing smaller does
+    message_of([&] { Simulator(scene, coarse_scanner(), config(named * 0.999, 0.2)); });  // nothing smaller does
   }
   EXPECT_NE(message_of([&] { Simulator(scene, coarse_scanner(), config(10, 7)); }).find("choose a point spacing below"),
             std::string::npos);
@@ -258,7 +258,7 @@ TEST(Scan, ColoursByDirectionWhereASourceIsGiven) {
   EXPECT_GT(points, 100u);
 }
 
-// A camera turns with the scanner that it is part of.
+// A camera turns with its scanner.
 TEST(Scan, ColoursTurnedStationsByTheScannersOwnAngles) {
   Simulator simulator(wall_and_floor().scene(), coarse_scanner(3), config());
   const Station station{{0, 0, 0}, true, {.heading = Angle::degrees(20), .tilt = Angle::degrees(70)}};
@@ -293,7 +293,7 @@ TEST(Simulator, HasScannersThatStationsChooseFrom) {
   EXPECT_EQ(simulator.scanner().azimuth_step, scanners[0].azimuth_step);
   ASSERT_EQ(simulator.scanners().size(), 2u);
   EXPECT_EQ(simulator.scanners()[1].azimuth_step, scanners[1].azimuth_step);
-  // Each station is counted as in a simulator that has its scanner alone.
+  // Each station counts as in a simulator with its scanner alone.
   const Network network{{{0, 0, 0}}, {{0.3, -0.2, 0.1}, true, {.scanner = 1}}};
   VoxelField together;
   const NetworkCounts counts = simulator.evaluate(network, {.field = &together});
@@ -337,7 +337,7 @@ TEST(Scan, StopsWhenTold) {
   EXPECT_NEAR(done, static_cast<double>(summary.rays) / static_cast<double>(simulator.scanner().rays()), 1e-12);
 }
 
-// A station is looked at in pieces, between which it may be stopped.
+// A station is traced in pieces, between which it may be stopped.
 TEST(Evaluate, TellsHowFarItIsWithinAStation) {
   tbb::task_arena(1).execute([] {
     Simulator simulator(wall_and_floor().scene(), coarse_scanner(0.1), config());
@@ -411,7 +411,7 @@ TEST(Evaluate, TakesOneToSoManyStations) {
   const NetworkCounts counts = simulator.evaluate(full);
   EXPECT_EQ(counts.stations, 64u);
   EXPECT_EQ(counts.shared.size(), 64u * 63u / 2);
-  EXPECT_DOUBLE_EQ(clustering_coefficient(overlap_matrix(counts)), 1.0);  // all at one place see the same
+  EXPECT_DOUBLE_EQ(clustering_coefficient(overlap_matrix(counts)), 1.0);  // stations at one place see the same
   EXPECT_EQ(clustering_coefficient(overlap_matrix(simulator.evaluate({full[0]}))), 0.0);
 }
 
@@ -547,7 +547,7 @@ TEST(Registration, OfAllVoxelsIsExactAndOfASampleNear) {
               1e-12);
 }
 
-// A surveyed panel in a room that nobody surveys.
+// A surveyed panel in a room that is not surveyed.
 QuadScene panel_in_a_room() {
   QuadScene scene;
   scene.quad({4.9f, -1, -0.5f}, {0, 2, 0}, {0, 0, 1.5f});
@@ -579,7 +579,7 @@ TEST(Registration, GoesByTheScansThatSurroundingsStandFor) {
   const double by_all_rays = registration_error(counts, counts.voxels, all, &seen, seen.voxels).rms_m;
   EXPECT_NEAR(whole_room, by_all_rays, 0.05 * by_all_rays);
 
-  // And of samples of both, within the errors that they have.
+  // And for samples of both, within their errors.
   const NetworkCounts few =
       simulator.evaluate_sampled({&network, 1}, {.voxels = counts.voxels / 2, .registration = all.model})[0];
   const NetworkCounts few_around =

@@ -59,7 +59,7 @@ TEST(VoxelSample, SeedsDiffer) {
   EXPECT_NE(voxel_sample(100'000, 100, 1), voxel_sample(100'000, 100, 2));
 }
 
-// The share of a smooth field's error: far below that of a simple random sample (1/√size).
+// The error of a smooth field's share is far below that of a simple random sample (1/√size).
 TEST(VoxelSample, EstimatesSmoothFieldsWell) {
   constexpr std::uint64_t population = 1'000'000;
   double squares = 0;
@@ -73,7 +73,7 @@ TEST(VoxelSample, EstimatesSmoothFieldsWell) {
   EXPECT_LT(std::sqrt(squares), 0.1 * 0.7 / std::sqrt(2000.0));
 }
 
-// Windows of one walk: the first few of each are part of it, and together they are all ranks.
+// Windows of one walk: the first few of each are part of it, and together they are all indices.
 TEST(VoxelSample, WindowsHaveNothingInCommon) {
   constexpr std::uint64_t population = 10'007, size = 1000, seed = 4;
   std::vector<std::uint32_t> all;
@@ -90,7 +90,7 @@ TEST(VoxelSample, WindowsHaveNothingInCommon) {
   std::vector<std::uint32_t> every(population);
   std::iota(every.begin(), every.end(), 0u);
   EXPECT_EQ(all, every);
-  // After all of them it begins again.
+  // After all of them it repeats.
   EXPECT_EQ(voxel_sample(population, size, seed, population), voxel_sample(population, size, seed));
 }
 

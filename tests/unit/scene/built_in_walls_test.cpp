@@ -135,7 +135,7 @@ TEST(BuiltInScenes, TheFilesInDataAreUpToDate) {
                 kept = Scene::load(std::filesystem::path(VANTAGE_DATA_FOLDER) / file);
     EXPECT_EQ(fresh.defaults_json(), kept.defaults_json());
     ASSERT_EQ(fresh.data().triangles, kept.data().triangles) << "make data/" << file << " again, see data/README.md";
-    for (std::size_t v = 0; v < fresh.data().positions.size(); ++v) {  // another sine may round otherwise
+    for (std::size_t v = 0; v < fresh.data().positions.size(); ++v) {  // another sine may round differently
       const Float3 &a = fresh.data().positions[v], &b = kept.data().positions[v];
       ASSERT_TRUE(std::abs(a.x - b.x) < 1e-5 && std::abs(a.y - b.y) < 1e-5 && std::abs(a.z - b.z) < 1e-5) << file;
     }

@@ -74,7 +74,7 @@ TEST(CutCoplanar, NewVerticesGetTheirShareOfTheCornersAttributes) {
   RawScene raw;
   add(raw, "wall", Role::blocking, {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}});
   add(raw, "sheet", Role::surveyed, {{1, 1, 0}, {2, 1, 0}, {1, 2, 0}});
-  // Linear over the plane, hence still so at every vertex left.
+  // Linear over the plane, so also at every vertex that remains.
   for (const glm::dvec3& p : raw.positions) {
     raw.texcoords.push_back({static_cast<float>(p.x / 4), static_cast<float>(p.y / 4)});
     const auto channel = [](double v) { return static_cast<std::uint32_t>(std::lround(v)); };

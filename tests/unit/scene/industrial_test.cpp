@@ -105,8 +105,8 @@ TEST(Industrial, NormalsAgreeWithWindings) {
   }
 }
 
-TEST(Industrial, PipesFaceOutward) {  // a pipe's triangles look away from its own axis: the signed volume of a closed
-                                      // shell is positive
+// Triangles of a pipe face away from its axis: the signed volume of a closed shell is positive.
+TEST(Industrial, PipesFaceOutward) {
   const SceneData& data = small_site().data();
   for (std::size_t m = 0; m < data.ranges.size(); ++m) {
     const std::string& name = data.meshes[m].name;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Broken files: one clear error each, or a note where the rest is still of use; never a crash.
+// Broken files give one clear error each, or a note if the rest is still useful; never a crash.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -22,7 +22,7 @@ using test::TemporaryFolder;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInfinity = std::numeric_limits<float>::infinity();
 
-// Four points, two triangles; with normals, (u, v), a material and a child node, so that there is something to break.
+// Four points and two triangles, with normals, (u, v), a material and a child node, as targets for damage.
 GlbBuilder square() {
   GlbBuilder builder;
   const int points = builder.positions({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}),
@@ -60,7 +60,7 @@ Failure failure(const GlbBuilder& builder) {
   return failure(folder / "scene.glb");
 }
 
-// Changes one thing in a good file and expects an error that holds every one of `words`, and the file's name.
+// Changes one thing in a good file and expects an error that contains all of `words` and the file's name.
 void expect_malformed(const std::function<void(GlbBuilder&)>& change, std::initializer_list<const char*> words) {
   GlbBuilder builder = square();
   change(builder);
@@ -360,8 +360,8 @@ TEST(FromTriangles, ChecksItsInput) {
   EXPECT_THROW(Scene::from_triangles(points, {}), Error);
 }
 
-// The square with a texture, a sparse accessor, quantized colours, a search area and instances: every reader has
-// something to trip over.
+// The square with a texture, a sparse accessor, quantized colours, a search area and instances, as targets for every
+// reader.
 GlbBuilder everything() {
   GlbBuilder b = square();
   const std::vector<std::uint8_t> places{1}, pixels(64, 7);
@@ -387,8 +387,7 @@ GlbBuilder everything() {
   return b;
 }
 
-// Random damage: whatever happens, it is a scene or an Error. Fixed seed; under a sanitizer this also finds reads out
-// of bounds.
+// Random damage gives a scene or an Error. The seed is fixed; under a sanitizer this also finds reads out of bounds.
 TEST(Fuzz, DamagedGlbNeverCrashes) {
   const std::string whole = everything().glb();
   const TemporaryFolder folder;
@@ -419,7 +418,7 @@ TEST(Fuzz, DamagedGlbNeverCrashes) {
   EXPECT_GT(refused, 100);
 }
 
-// Replaces values of the JSON by others of every kind, so that the text stays JSON and damage reaches deep.
+// Replaces JSON values by others of every kind, so that the text stays JSON and damage reaches deep code.
 TEST(Fuzz, DamagedJsonNeverCrashes) {
   const TemporaryFolder folder;
   std::mt19937 random(7);
@@ -456,7 +455,7 @@ TEST(Fuzz, DamagedJsonNeverCrashes) {
     return b;
   }();
   const json flat = good.json.flatten();
-  std::vector<std::string> paths;  // leaves and everything above them
+  std::vector<std::string> paths;  // leaves and all their ancestors
   for (const auto& [path, value] : flat.items())
     for (std::string part = path; !part.empty(); part.resize(part.rfind('/'))) paths.push_back(part);
   for (int round = 0; round < 3000; ++round) {

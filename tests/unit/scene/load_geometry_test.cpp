@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Geometry as glTF can store it: every index width and mode, strides, sparse and quantized accessors, node trees and
-// instances.
+// Geometry in all ways that glTF can store it: every index width and mode, strides, sparse and quantized accessors,
+// node trees and instances.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -95,7 +95,7 @@ TEST(LoadGeometry, WithoutIndicesEveryThreePointsAreATriangle) {
 TEST(LoadGeometry, StripsAndFansKeepTheirWinding) {
   for (const bool indexed : {false, true}) {
     GlbBuilder builder;
-    // a strip along x: all triangles must face +z of glTF
+    // a strip along x: all triangles must face glTF's +z
     const int strip = builder.positions({0, 0, 0, 0, 1, 0, 1, 0, 0, 1, 1, 0, 2, 0, 0});
     const int fan = builder.positions({0, 5, 0, 2, 5, 0, 2, 6, 0, 1, 7, 0, 0, 7, 0});
     json strip_primitive{{"attributes", {{"POSITION", strip}}}, {"mode", 5}},
@@ -139,7 +139,7 @@ TEST(LoadGeometry, PointsAndLinesAreIgnoredWithANote) {
 
 TEST(LoadGeometry, InterleavedAttributes) {
   GlbBuilder builder;
-  // position, normal, 4 bytes of padding a vertex
+  // position, normal and 4 bytes of padding per vertex
   std::vector<float> vertices;
   for (const auto& p : {std::array{0.F, 0.F, 0.F}, {3.F, 0.F, 0.F}, {0.F, 3.F, 0.F}}) {
     vertices.insert(vertices.end(), p.begin(), p.end());

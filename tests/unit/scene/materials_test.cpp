@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What colours a point: base colour, texture, vertex colours.
+// Colours of points: base colour, texture, vertex colours.
 #include <gtest/gtest.h>
 
 #define STB_IMAGE_WRITE_IMPLEMENTATION

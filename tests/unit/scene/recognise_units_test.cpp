@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Units and the axis that points up: what is recognised, what is left as glTF says, and what options and marks settle.
+// Units and the up axis: what is recognised, what keeps glTF's rule, and what options and marks decide.
 #include "scene/recognise_units.hpp"
 
 #include <gtest/gtest.h>
@@ -15,10 +15,10 @@ namespace {
 using test::GlbBuilder;
 using test::load;
 
-// A thing of `size` whose lower corner lies at `low`, in the file's axes.
+// A thing of `size` with its lower corner at `low`, in the file's axes.
 NamedBox thing(const std::string& name, const Vec3& low, const Vec3& size) { return {name, {low, low + size}}; }
 
-// Ten by eight by three, Y up, with a floor and a ceiling, and nothing that has a name.
+// A room of ten by eight by three, Y up, with a floor and a ceiling, and nothing named.
 SceneEvidence bare_room(double unit = 1) {
   SceneEvidence evidence;
   evidence.bounds = {{0, 0, 0}, Vec3{10, 3, 8} * unit};
@@ -72,7 +72,7 @@ TEST(RecogniseUnits, OneSignIsEnoughOnlyWhereMetresAreAbsurd) {
   EXPECT_EQ(recognised(bare_room(1)).note, "");
 }
 
-// Many faces across each axis, a grid apart.
+// Many faces across each axis, on a grid.
 SceneEvidence drawn_on(double grid, double extent) {
   SceneEvidence evidence;
   evidence.bounds = {{0, 0, 0}, {extent, 0.3 * extent, extent}};
@@ -108,7 +108,7 @@ TEST(RecogniseUnits, TakesAMachineAsMillimetres) {
   machine.bounds = {{-100, -150, -120}, {280, 200, 180}};
   machine.area = 1e6;
   EXPECT_EQ(recognised(machine).unit, Unit::millimetre);
-  machine.open = {0, 1e5, 0};  // nothing closes it below: a city, a valley
+  machine.open = {0, 1e5, 0};  // open below: a city or a valley
   EXPECT_EQ(recognised(machine).unit, Unit::metre);
   machine.open = {};
   machine.bounds.max.y = -100;  // flat
@@ -134,7 +134,7 @@ TEST(RecogniseUnits, ZIsUpByTwoSigns) {
   EXPECT_NE(both.note.find("--unit and --up settle it"), std::string::npos) << both.note;
 }
 
-// A wall that fills the picture is as flat as a floor, and nothing tells them apart but glTF's word.
+// A wall that fills the picture is as flat as a floor; only glTF's rule can distinguish them.
 TEST(RecogniseUnits, AFacadeStaysUpright) {
   SceneEvidence facade;
   facade.bounds = {{0, 0, 0}, {24, 12, 1}};

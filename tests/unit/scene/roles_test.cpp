@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Roles, weights, limits of points and diffuse coefficients: extras, patterns, their order, and what holds where
-// nothing is said.
+// Roles, weights, limits of points and diffuse coefficients: extras, patterns, their order, and defaults.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -134,9 +133,9 @@ TEST(Roles, ThePatternWithMostLettersHolds) {
   EXPECT_EQ(roles(load(builder, options)),
             (std::map<std::string, Role>{
                 {"house", Role::surveyed}, {"house-roof", Role::surveyed}, {"tree", Role::blocking}}));
-  options.ignore = {"*roof"};  // four letters to five
+  options.ignore = {"*roof"};  // four letters against five
   EXPECT_EQ(roles(load(builder, options)).at("house-roof"), Role::surveyed);
-  options.ignore = {"*-roof"};  // five to five: the later list
+  options.ignore = {"*-roof"};  // five against five: the later list wins
   EXPECT_FALSE(roles(load(builder, options)).contains("house-roof"));
   options.weights = {{"house", 3}, {"*", 2}};
   const Scene scene = load(builder, options);

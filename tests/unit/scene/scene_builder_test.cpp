@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes from arrays and from memory: the same as those from files, and after a change the same as built anew.
+// Scenes from arrays and from memory equal those from files, and changed scenes equal newly built ones.
 #include "vantage/scene_builder.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@
 namespace vantage {
 namespace {
 
-// A closed box, its corners as floats have them.
+// A closed box with float corners.
 SceneMesh box(const std::string& name, const Vec3& low, const Vec3& size, std::optional<Role> role = {}) {
   SceneMesh mesh{.name = name, .role = role};
   for (int i = 0; i < 8; ++i)
@@ -40,7 +40,7 @@ Scene built(const std::vector<SceneMesh>& meshes) {
   return builder.build();
 }
 
-// What a file says of the same meshes, Y up.
+// The same meshes as a glTF file, Y up.
 test::GlbBuilder as_gltf(const std::vector<SceneMesh>& meshes) {
   test::GlbBuilder glb;
   for (const SceneMesh& mesh : meshes) {
@@ -152,7 +152,7 @@ TEST(SceneBuilder, AReplacedMeshIsAsOneBuiltInItsPlace) {
   for (const std::size_t m : {std::size_t{0}, std::size_t{1}, std::size_t{2}}) {
     SceneMesh other = box("other", {-4 + 3.0 * static_cast<double>(m), -3, 1}, {1, 1, 1});
     other.triangles.resize(7 + m);
-    other.positions.push_back({1e6, 0, 0});  // of no triangle
+    other.positions.push_back({1e6, 0, 0});  // used by no triangle
     other.diffuse = 0.75, other.colour = {0, 1, 0, 1};
     if (m == 0) other = box("floor", {-8, -8, -0.5}, {16, 16, 0.25});
     builder.replace(m, other);
@@ -164,7 +164,7 @@ TEST(SceneBuilder, AReplacedMeshIsAsOneBuiltInItsPlace) {
   }
 }
 
-// Where others are touched by a change, everything is built; the scene is right all the same.
+// A change that affects other meshes rebuilds everything; the scene is right either way.
 TEST(SceneBuilder, BuildsEverythingWhereAChangeReachesOthers) {
   struct Change {
     const char* what;

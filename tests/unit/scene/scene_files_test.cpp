@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which files a scene may name: those below its own folder, whatever way leads there, and no others unless asked for.
+// A scene may refer to files below its own folder, by whatever path, and to others only on request.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -17,8 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// site/ with a scene of one triangle, whose buffer lies wherever a test puts it; beside it what is none of its
-// business.
+// site/ with a scene of one triangle, whose buffer each test places; beside it are files that it must not read.
 class SceneFiles : public testing::Test {
  protected:
   SceneFiles() {
@@ -36,7 +35,7 @@ class SceneFiles : public testing::Test {
     return Scene::load(scene_, {.allow_outside = allow_outside});
   }
 
-  // One error of that code with these words in it.
+  // Expects one error of that code with these words.
   void refuses(const std::string& uri, Errc code, std::initializer_list<std::string> words,
                bool allow_outside = false) const {
     try {
@@ -49,7 +48,7 @@ class SceneFiles : public testing::Test {
     }
   }
 
-  // Read only if asked for; otherwise told what was named, where it leads and what to do.
+  // Expects a read only on request; otherwise a message with the name, where it leads and what to do.
   void lies_outside(const std::string& uri, const std::string& name, const fs::path& leads_to) const {
     refuses(uri, Errc::malformed_file,
             {scene_.string(), "buffer 0", '"' + name + '"', fs::canonical(leads_to).string(),
@@ -92,7 +91,7 @@ TEST_F(SceneFiles, LinksAreFollowedBeforeTheyAreJudged) {
   refuses("round.bin", Errc::io, {"buffer 0", "round.bin"});
 }
 
-// What is refused does not tell whether it is there.
+// A refusal does not reveal whether the file exists.
 TEST_F(SceneFiles, OutsideThatAreNotThereAreRefusedAlike) {
   refuses("../absent.bin", Errc::malformed_file, {"buffer 0", "absent.bin", "--allow-outside"});
   refuses("../absent.bin", Errc::io, {"there is no file"}, true);
@@ -122,7 +121,7 @@ TEST_F(SceneFiles, OtherSchemesAndNulAreNoFileNames) {
   }
 }
 
-// As every texture that cannot be read. Where it is allowed, it is read and found to be no picture.
+// Treated as any texture that cannot be read. If allowed, it is read and found to be no picture.
 TEST_F(SceneFiles, AnImageOutsideCostsOnlyColour) {
   test::GlbBuilder builder = builder_;
   builder.json["images"] = {{{"uri", "../a.bin"}}};

@@ -33,7 +33,7 @@ TEST(MaterialColour, FiltersInLinearLight) {
   const SceneData scene = scene_with_image(false);
   const LinearColour half = material_colour(scene, scene.materials[0], {0.5f, 0.25f});
   for (int i = 0; i < 3; ++i) EXPECT_NEAR(half[i], 0.5, 1e-6);
-  EXPECT_EQ(pack_srgb(half), 0xFFBCBCBCu);  // 188, not the 128 of mixed codes
+  EXPECT_EQ(pack_srgb(half), 0xFFBCBCBCu);  // 188, not the 128 of averaged codes
   const LinearColour middle = material_colour(scene, scene.materials[0], {0.5f, 0.5f});
   EXPECT_NEAR(middle[0], 0.5, 1e-6);
   EXPECT_NEAR(middle[1], 0.5, 1e-6);

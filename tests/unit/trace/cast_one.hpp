@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A caster over a scene, and what one ray alone meets.
+// A caster over a scene, and the hit of a single ray.
 #pragma once
 
 #include <memory>

@@ -20,7 +20,7 @@ EngineInfo engine(Engine kind, std::uint32_t device, bool usable, bool software)
 
 const EngineInfo cpu = engine(Engine::embree, 0, true, false);
 
-// What a machine lists that has a GPU and, behind it, the software device.
+// Engines listed on a machine with a GPU, followed by the software device.
 std::vector<EngineInfo> machine(bool gpu_has_ray_queries, bool gpu_computes) {
   return {engine(Engine::ray_query, 0, gpu_has_ray_queries, false), engine(Engine::compute_bvh, 0, gpu_computes, false),
           engine(Engine::ray_query, 1, true, true), engine(Engine::compute_bvh, 1, true, true), cpu};
@@ -29,7 +29,7 @@ std::vector<EngineInfo> machine(bool gpu_has_ray_queries, bool gpu_computes) {
 TEST(ChooseEngine, TakesTheBestThatTheGpuCan) {
   EXPECT_EQ(default_engine(machine(true, true)), 0u);
   EXPECT_EQ(default_engine(machine(false, true)), 1u);   // no ray queries: our own tree on the GPU
-  EXPECT_EQ(default_engine(machine(false, false)), 4u);  // software is outrun by Embree
+  EXPECT_EQ(default_engine(machine(false, false)), 4u);  // Embree is faster than software
   EXPECT_EQ(default_engine({cpu}), 0u);
 }
 
@@ -39,7 +39,7 @@ TEST(ChooseEngine, OfADeviceTakesTheFirstThatRuns) {
   EXPECT_EQ(default_engine(machine(false, true), 1), 2u);
 }
 
-// Suites over engines run ray queries on the software device where the GPU has none.
+// Test suites over engines run ray queries on the software device if the GPU has none.
 TEST(ChooseEngine, TestsFindRayQueriesWhereverTheyAre) {
   const std::vector<EngineInfo> usable = test::usable_of(machine(false, true));
   ASSERT_EQ(usable.size(), 4u);

@@ -8,7 +8,7 @@
 namespace vantage {
 namespace {
 
-// Who compares results must be told that another instruction set was forced.
+// Anyone comparing results must see that another instruction set was forced.
 TEST(EmbreeInfo, TellsOfAForcedInstructionSet) {
   const char* const before = std::getenv("VANTAGE_EMBREE_ISA");
   const std::string kept = before ? before : "";

@@ -32,7 +32,7 @@ TEST(FieldCounts, EqualTheBookForAnySizeAndNumberOfStations) {
   for (const std::uint32_t stations : {1u, 2u, 3u, 15u, 33u, 64u, 65u, 200u}) {
     for (const std::size_t voxels : {std::size_t{0}, std::size_t{1}, std::size_t{63}, std::size_t{64}, std::size_t{65},
                                      std::size_t{3000}, std::size_t{70'001}}) {
-      if (stations > 64 && voxels > 3000) continue;  // the book takes its time
+      if (stations > 64 && voxels > 3000) continue;  // the reference is slow
       SCOPED_TRACE(std::to_string(stations) + " stations, " + std::to_string(voxels) + " voxels");
       VoxelField field = random_field(voxels, stations, stations * 1000 + voxels);
       if (voxels > 0)

@@ -10,7 +10,7 @@
 namespace vantage {
 namespace {
 
-// Triangles of the hits in a row, some alone and some in runs that end anywhere in a vector.
+// Triangles of consecutive hits: single ones, and runs that end anywhere in a vector.
 std::vector<std::uint32_t> in_runs(RandomStream& random, std::uint32_t size, std::uint32_t triangles) {
   std::vector<std::uint32_t> of;
   while (of.size() < size) {
@@ -68,7 +68,8 @@ TEST(Hits, RangesOfManyAreThoseOfEach) {
   for (std::size_t k = 0; k < scene.positions.size(); ++k)
     scene.normals.push_back({test::between(random, -1, 1), test::between(random, -1, 1), test::between(random, -1, 1)});
   expect_ranges_as_one_by_one(scene);
-  scene.normals.assign(scene.positions.size(), Float3{});  // as of a file that has some: those of the planes
+  scene.normals.assign(scene.positions.size(), Float3{});  // as in a file with some normals: here those of the planes
+                                                           // are used
   expect_ranges_as_one_by_one(scene);
 }
 

@@ -23,7 +23,7 @@ TEST(Planes, DistanceIsThePlanesToTheLastBit) {
   EXPECT_EQ(distance(planes, 0, {0, 1, 0}, {0, 1, 0}), 2.0f);
 }
 
-// Eight rays side by side get the bits that each gets alone; grazing ones among them too.
+// Eight rays together get the same bits as each alone, grazing ones included.
 TEST(Planes, DistancesDoNotDependOnTheRaysBeside) {
   RandomStream random(23);
   for (int k = 0; k < 300; ++k) {
@@ -34,7 +34,7 @@ TEST(Planes, DistancesDoNotDependOnTheRaysBeside) {
     const Float3 o{test::between(random, -9, 9), test::between(random, -9, 9), test::between(random, -9, 9)};
     float x[8], y[8], z[8], t[8];
     for (int i = 0; i < 8; ++i) {
-      // Every other one all but along an edge.
+      // Every other ray nearly follows an edge.
       const Float3 edge{corners[1].x - corners[0].x, corners[1].y - corners[0].y, corners[1].z - corners[0].z};
       x[i] = i % 2 ? edge.x / 20 : test::between(random, -1, 1);
       y[i] = i % 2 ? edge.y / 20 : test::between(random, -1, 1);
@@ -45,7 +45,7 @@ TEST(Planes, DistancesDoNotDependOnTheRaysBeside) {
   }
 }
 
-// A ray in the plane learns nothing from it: it is held within the triangle, and is a number.
+// A ray in the plane stays within the triangle, and its distance is a number.
 TEST(Planes, ARayInThePlaneStaysWithinTheTriangle) {
   const Planes planes(
       test::SceneBuilder().mesh(Role::surveyed, test::quad({-50, 3, -50}, {100, 0, 0}, {0, 0, 100})).finish());

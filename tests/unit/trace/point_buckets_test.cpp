@@ -18,7 +18,7 @@ TEST(PointBuckets, CountsSaturateAndMasksAdd) {
   buckets.flush(field, 4);
   EXPECT_EQ(field.count, (std::vector<std::uint32_t>{0, 0xFFFFFFFFu, 15, 7}));
   EXPECT_EQ(field.stations, (std::vector<std::uint64_t>{0, 4, 5, 0}));
-  buckets.flush(field, 8);  // they are empty now
+  buckets.flush(field, 8);  // the buckets are empty now
   EXPECT_EQ(field.stations, (std::vector<std::uint64_t>{0, 4, 5, 0}));
 }
 

@@ -29,7 +29,7 @@ std::unique_ptr<RayBundle> cone(RandomStream& random, double spread, std::uint32
   return rays;
 }
 
-// Random triangles, each there three times with its corners in another order, on a few planes at that: ties everywhere.
+// Random triangles on a few planes, each three times with its corners in another order, to force ties.
 std::shared_ptr<const SceneData> ties() {
   RandomStream random(3);
   std::vector<Float3> corners;
@@ -65,7 +65,7 @@ TEST(RayCaster, HitsDoNotDependOnTheBundle) {
       ASSERT_EQ(test::is_stopped(caster, rays->origin, d, 0, 100), rays->primitive[i] != RayBundle::no_hit);
       if (rays->primitive[i] == RayBundle::no_hit) continue;
       ++hits;
-      // An end just behind the hit, or a start just before it, changes nothing; an end before it leaves none.
+      // An end just behind the hit, or a start just before it, changes nothing; an end before it leaves no hit.
       float again = 0;
       ASSERT_EQ(test::nearest_hit(caster, rays->origin, d, std::nextafter(t, 0.0f), std::nextafter(t, 1e9f), again),
                 rays->primitive[i]);
@@ -120,9 +120,9 @@ TEST(RayCaster, RaysStartAndEndWhereToldTo) {
   EXPECT_EQ(rays.primitive[2], RayBundle::no_hit);
 }
 
-// A component of a hair below 0 must not turn the ray, or its neighbours in the packet, away.
+// A component slightly below 0 must not lose the ray, or its neighbours in the packet.
 TEST(RayCaster, TinyComponentsLoseNoRay) {
-  std::vector<Float3> ceiling;  // of many triangles, so that there are boxes
+  std::vector<Float3> ceiling;  // many triangles, so that there are boxes
   for (int i = 0; i < 400; ++i) {
     const float x = -3.1f + 0.3f * static_cast<float>(i % 20), y = -3.1f + 0.3f * static_cast<float>(i / 20);
     for (const Float3& p : {Float3{x, y, 2}, Float3{x + 0.3f, y, 2}, Float3{x + 0.3f, y + 0.3f, 2}, Float3{x, y, 2},

@@ -53,7 +53,7 @@ TEST(RaysOfBox, NoCrossingRayIsLeftOut) {
     std::uint64_t listed = 0, crossing = 0;
     for (int k = 0; k < 120; ++k) {
       SCOPED_TRACE("box " + std::to_string(k));
-      // Near and far, some around the vertical axis, some around the head itself, some across the seam.
+      // Boxes near and far, some around the vertical axis, some around the head, some across the seam.
       const double size = std::pow(10.0, -2.5 + 2.5 * random.uniform());
       Vec3 centre{4 * random.uniform() - 2, 4 * random.uniform() - 2, 4 * random.uniform() - 2};
       if (k % 5 == 1) centre.x = centre.y = size * (random.uniform() - 0.5) * 2.2;
@@ -115,7 +115,7 @@ TEST(RaysOfBoxes, SayWhatOneBoxAloneSays) {
       const bool empty = boxes->row_begin[i] >= boxes->row_end[i] || boxes->column_begin[i] >= boxes->column_end[i];
       ASSERT_EQ(empty, alone.empty());
       if (empty) continue;
-      // Corners are rounded otherwise: a ray at the very edge may be in one and not in the other.
+      // Corners round differently, so a ray at the very edge may be in one and not in the other.
       EXPECT_NEAR(boxes->row_begin[i], alone.rows.begin, 1);
       EXPECT_NEAR(boxes->row_end[i], alone.rows.end, 1);
       EXPECT_NEAR(boxes->column_begin[i], alone.columns[0].begin, 1);

@@ -8,7 +8,7 @@
 namespace vantage {
 namespace {
 
-// What a device does that fails as it is told; it counts the stations of a network.
+// A device that fails on request; it counts the stations of a network.
 struct Device {
   int made = 0, calls = 0, lose_calls = 0, lose_builds = 0;
   std::size_t most_networks = 1000;
@@ -103,7 +103,7 @@ TEST_F(Rebuilding, CountsFewerNetworksAtOnceWhereMemoryIsShort) {
   std::map<std::size_t, int> told;
   Tracer::SampleJob job{.sample = sample};
   job.points = [&](std::size_t network, std::span<const std::uint32_t>) { ++told[network]; };
-  // The first piece that fits is lost, and lost again.
+  // The first piece that fits fails, and fails again.
   EXPECT_THROW(tracer.count_sampled(networks, stations, job, {}), DeviceFault);
   told.clear();
   device.lose_calls = 1;

@@ -28,7 +28,7 @@ TEST(SampleRuns, HoldEachVoxelOnceInWhateverPieces) {
   }
 }
 
-// A tenth of the runs has about a tenth of any quarter of the site.
+// A tenth of the runs holds about a tenth of any quarter of the site.
 TEST(SampleRuns, ComeFromAllOverTheSite) {
   std::vector<std::uint32_t> sample(32'000);
   std::iota(sample.begin(), sample.end(), 0u);

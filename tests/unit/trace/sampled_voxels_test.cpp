@@ -11,7 +11,7 @@
 namespace vantage {
 namespace {
 
-// The scene of one triangle, and what is kept of it in the voxel that it lies in.
+// The piece stored for the only triangle of a scene, in its voxel.
 SampledVoxels::Piece piece_of(const std::array<Float3, 3>& corners) {
   const auto scene = test::SceneBuilder().mesh(Role::surveyed, {corners[0], corners[1], corners[2]}).finish();
   const auto grid = std::make_shared<const VoxelGrid>(VoxelGrid::build(*scene, 100));
@@ -20,7 +20,7 @@ SampledVoxels::Piece piece_of(const std::array<Float3, 3>& corners) {
   return SampledVoxels(*scene, *grid, triangles, ranks, 1e-5, 0, 1e-4).piece(0);
 }
 
-// Doubt about a hit near an edge grows with the longest edge over that edge: whichever edge is the longest.
+// Uncertainty about a hit near an edge grows with the longest edge over that edge, whichever edge is the longest.
 TEST(SampledVoxels, KnowTheEdgesOfEachTriangle) {
   const std::array<Float3, 3> corners{Float3{0, 0, 0}, Float3{4, 0, 0}, Float3{4, 3, 0}};
   for (std::size_t first = 0; first < 3; ++first) {
@@ -34,7 +34,7 @@ TEST(SampledVoxels, KnowTheEdgesOfEachTriangle) {
       EXPECT_FLOAT_EQ(piece.edge[k].ratio, static_cast<float>(5 / length)) << first << ' ' << k;
       const Float3& inwards = piece.edge[k].inwards;
       EXPECT_NEAR(std::hypot(inwards.x, inwards.y, inwards.z), 1, 1e-6);
-      // The triangle's middle lies inside of all three: a third of the height over that edge.
+      // The triangle's middle lies inside all three edges, at a third of the height over that edge.
       EXPECT_NEAR(inwards.x * (8.0 / 3 - turned[k].x) + inwards.y * (1 - turned[k].y), 12 / length / 3, 1e-5);
     }
   }

@@ -11,7 +11,7 @@
 namespace vantage {
 namespace {
 
-// The one thing that counts: where these tests are certain, Embree says the same.
+// If these tests are certain, Embree agrees.
 TEST(SeenTriangle, MustHitIsNeverWrong) {
   RandomStream random(77);
   std::size_t certain = 0, hits = 0;
@@ -25,7 +25,7 @@ TEST(SeenTriangle, MustHitIsNeverWrong) {
     const RayCaster caster = test::caster_over(test::SceneBuilder().mesh(Role::surveyed, corners).finish());
     const SeenTriangle seen(widen(corners[0]), widen(corners[1]), widen(corners[2]));
     for (int r = 0; r < 200; ++r) {
-      // Near an edge more often than not.
+      // Mostly near an edge.
       double u = random.uniform(), v = random.uniform() * (1 - u);
       if (r % 2) u = 1e-7 * (random.uniform() - 0.5);
       const Vec3 p = widen(corners[0]) * (1 - u - v) + widen(corners[1]) * u + widen(corners[2]) * v;

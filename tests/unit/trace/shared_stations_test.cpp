@@ -52,7 +52,8 @@ const Turn quarter{{0, -1, 0}, {1, 0, 0}, {0, 0, 1}};
 const std::vector<std::uint32_t> one_voxel{1};
 const std::size_t size_of_one = StationPoints(one_voxel, {}).bytes();
 
-// Goes through the networks as an engine does; how many stations it had to trace. What is kept is the station's own.
+// Goes through the networks as an engine does and returns the number of stations it had to trace. Kept points are the
+// station's own.
 std::size_t traced(const std::vector<StationRays>& scanners, const std::vector<std::vector<TraceStation>>& networks,
                    std::size_t room) {
   SharedStations shared(scanners, networks, room * size_of_one);
@@ -76,12 +77,12 @@ std::size_t traced(const std::vector<StationRays>& scanners, const std::vector<s
 TEST(SharedStations, AreTracedOnceWhereThereIsRoom) {
   const Stations quiet{Scanner()};
   const TraceStation a{{1, 0, 0}, 0}, b{{2, 0, 0}, 1}, c{{3, 0, 0}, 2};
-  // Gone through as {a, b}, {a, b, b}, {a, c}, {b, c}, {}.
+  // The order is {a, b}, {a, b, b}, {a, c}, {b, c}, {}.
   const std::vector<std::vector<TraceStation>> networks{{a, b}, {a, c}, {b, c}, {}, {a, b, b}};
   EXPECT_EQ(traced(quiet.scanners, networks, 3), 3u);
   EXPECT_EQ(traced(quiet.scanners, networks, 0), 9u);
-  // With room for one, whoever is wanted next stays: a for the second, then b for its own other place and for the
-  // fourth.
+  // With room for one, the station needed next stays: a for the second network, then b for its own other place and for
+  // the fourth.
   EXPECT_EQ(traced(quiet.scanners, networks, 1), 6u);
   const SharedStations shared(quiet.scanners, networks, 0);
   EXPECT_EQ(std::vector<std::size_t>(shared.order().begin(), shared.order().end()),

@@ -13,7 +13,7 @@ namespace {
 
 constexpr Float3 a{0, 0, 0}, b{1, 0, 0}, c{0, 1, 0}, d{0, 0, 1}, e{0, 0, -1};
 
-// Triangles with vertices of their own.
+// Triangles with separate vertices.
 std::vector<std::uint32_t> neighbours_of(const std::vector<std::array<Float3, 3>>& corners) {
   std::vector<Float3> positions;
   std::vector<Triangle> triangles;

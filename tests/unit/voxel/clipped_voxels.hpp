@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// An independent voxelization: the triangle, as a polygon, is clipped against each cell's six half-spaces in turn; the
-// cell is marked when something is left, be it a point. In double, or in fractions where touches must be decided
-// exactly.
+// An independent voxelization: clips the triangle, as a polygon, against each cell's six half-spaces in turn, and marks
+// the cell if anything is left, even a point. In double, or in fractions to decide touches exactly.
 #pragma once
 
 #include <algorithm>
@@ -46,7 +45,7 @@ inline int sign_of(double v) { return (v > 0) - (v < 0); }
 template <class Number>
 using Polygon = std::vector<std::array<Number, 3>>;
 
-// What is left of a polygon where side · (p[axis] − bound) <= 0.
+// Part of a polygon where side · (p[axis] − bound) <= 0.
 template <class Number>
 Polygon<Number> clip(const Polygon<Number>& in, int axis, Number bound, int side) {
   Polygon<Number> out;
@@ -71,7 +70,7 @@ bool touches_box(const Polygon<Number>& triangle, const std::array<Number, 3>& l
   return !p.empty();
 }
 
-// Cells {x, y, z} of 2^depth a side that the triangles touch, each box widened by `margin`. Slow: for tests.
+// Cells {x, y, z} of 2^depth per side that the triangles touch, each box widened by `margin`. Slow: for tests.
 inline std::set<std::array<std::uint32_t, 3>> clipped_voxels(std::span<const Float3> positions,
                                                              std::span<const Triangle> triangles,
                                                              const std::array<double, 3>& min, double size, int depth,

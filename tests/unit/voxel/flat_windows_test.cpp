@@ -26,7 +26,7 @@ std::vector<std::uint32_t> every_rank(const VoxelGrid& grid, std::uint32_t strid
   return ranks;
 }
 
-// A tube along Z without ends, of `around` × `up` rectangles.
+// An open tube along Z, of `around` × `up` rectangles.
 SceneData tube(double radius, double height, int around, int up) {
   SceneData scene;
   std::vector<Float3> positions;
@@ -47,7 +47,7 @@ SceneData tube(double radius, double height, int around, int up) {
   return scene;
 }
 
-// Of all surface, how much lies in voxels that registration goes by.
+// Area of the surface in voxels that registration uses.
 double counted(const SceneData& scene, const VoxelGrid& grid, const RegistrationModel& model = {}) {
   RayPattern pattern;
   pattern.zenith_step = pattern.azimuth_step = 0.001;
@@ -62,7 +62,7 @@ double counted(const SceneData& scene, const VoxelGrid& grid, const Registration
   return some / all;
 }
 
-// Of long slivers, and of triangles far smaller than a window.
+// With long slivers, and with triangles far smaller than a window.
 TEST(FlatWindows, HoldNothingOfAPipeHoweverFineVoxelsAre) {
   for (const int up : {1, 60})
     for (const double user_size : {0.1, 0.05, 0.02, 0.01}) {
@@ -87,7 +87,7 @@ TEST(FlatWindows, HoldAllOfATankHoweverFineVoxelsAre) {
     }
 }
 
-// Scans of a coarse model have normals over more, of a fine one over less.
+// Scans have normals over larger neighbourhoods in a coarse model than in a fine one.
 TEST(FlatWindows, AreHalfAPatchWide) {
   const SceneData pipe = tube(0.1, 1, 48, 60);
   const VoxelGrid grid = VoxelGrid::build(pipe, 0.02);
@@ -113,7 +113,7 @@ TEST(FlatWindows, OfAThinWallHoldBothFaces) {
     }
 }
 
-// Clipped exactly where triangles are large; by the middles of small ones within a few percent.
+// Large triangles are clipped exactly; small ones count by their middles, within a few percent.
 TEST(FlatWindows, OfAWallOnAFloorHoldMoreThanHalf) {
   for (const int cut : {1, 100}) {
     SceneData scene;
@@ -125,7 +125,7 @@ TEST(FlatWindows, OfAWallOnAFloorHoldMoreThanHalf) {
       const double x = static_cast<double>(surface.point.x), y = static_cast<double>(surface.point.y),
                    z = static_cast<double>(surface.point.z), up = std::max(x, z);
       if (up < grid.voxel_size() || up > 2 - half || y < half || y > 2 - half) continue;
-      // Of the plane half + up beyond the edge, of the other half a window.
+      // The plane extends half + up beyond the edge; the other plane is half a window.
       const double expected = up < half ? (half + up) / (2 * half + up) : 1;
       EXPECT_NEAR(surface.share, expected, cut == 1 ? 1e-4 : 0.08) << up;
       near += up < half;
@@ -134,7 +134,7 @@ TEST(FlatWindows, OfAWallOnAFloorHoldMoreThanHalf) {
   }
 }
 
-// Every triangle clipped to every window by another clipper.
+// Clips every triangle to every window with another clipper.
 TEST(FlatWindows, HaveTheSharesThatClippingLeaves) {
   std::mt19937 rng(5);
   SceneData scene;
@@ -185,7 +185,7 @@ TEST(FlatWindows, HaveTheSharesThatClippingLeaves) {
         else if (std::abs(dot(moment * (1 / weight) - point, normal)) <= side / 8)
           within += area;
       }
-      if (small > 0 || surfaces[k].area == 0) continue;  // by their middles
+      if (small > 0 || surfaces[k].area == 0) continue;  // small triangles count by their middles
       ASSERT_NEAR(shares[k], within / (within + other), 1e-4) << side << ' ' << ranks[k];
     }
   }
@@ -210,7 +210,7 @@ TEST(FlatWindows, DoNotDependOnOtherVoxelsOrThreads) {
   }
 }
 
-// A window that is wider than the whole scene.
+// The window is wider than the whole scene.
 TEST(FlatWindows, MayBeWiderThanTheGrid) {
   SceneData scene;
   test::add_patch(scene, {0, 0, 0}, {0.3, 0, 0}, {0, 0.3, 0}, 4, 4);

@@ -25,7 +25,7 @@ SceneData scene_of_weights(const std::vector<std::pair<Role, std::uint32_t>>& me
   return scene;
 }
 
-// By the lists of triangles of each voxel, which have a test of their own.
+// Compares with each voxel's list of triangles, which has its own test.
 TEST(VoxelWeights, AreTheLargestOfTheMeshesThatTouch) {
   const SceneData scene =
       scene_of_weights({{Role::surveyed, 2}, {Role::blocking, 200}, {Role::surveyed, 9}, {Role::surveyed, 5}});
@@ -55,7 +55,7 @@ TEST(VoxelWeights, TakeNoMemoryWhereAllWeighAlike) {
   EXPECT_EQ(grid.total_weight(), grid.size());
 }
 
-// Of each voxel the finest spacing of the surveyed meshes that touch it, by their lists, and never less than a point.
+// Each voxel takes the finest spacing of the surveyed meshes in its list, and at least one point.
 TEST(PointWorths, AreThoseOfTheFinestMeshThatTouches) {
   const SceneData scene =
       scene_of_weights({{Role::surveyed, 1}, {Role::blocking, 1}, {Role::surveyed, 1}, {Role::surveyed, 1}});

@@ -123,7 +123,7 @@ TEST(VoxelGrid, CellsAreHalfOpenAndOutsideIsEmpty) {
   EXPECT_FALSE(grid.cell_of({m[0] + 10.03f, m[1], m[2]}));
   EXPECT_FALSE(grid.cell_of({NAN, 0, 0}));
   EXPECT_FALSE(grid.cell_of({0, INFINITY, 0}));
-  EXPECT_EQ(grid.rank_of({0, 0, 2}), no_voxel);  // inside the cube, on nothing
+  EXPECT_EQ(grid.rank_of({0, 0, 2}), no_voxel);  // inside the cube, but on no surface
 }
 
 TEST(VoxelGrid, OnlySurveyedMeshesMark) {

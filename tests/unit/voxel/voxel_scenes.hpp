@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Small scenes built by hand for the voxel and placement tests.
+// Small scenes built in code for the voxel and placement tests.
 #pragma once
 
 #include <array>

@@ -21,7 +21,7 @@ std::vector<VoxelSurface> all_surfaces(const SceneData& scene, const VoxelGrid& 
 
 double along(const Float3& a, const Vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
-// Whatever way it is cut by voxels and triangles, a plane is what each voxel has of it.
+// Each voxel has the plane itself, however voxels and triangles cut it.
 TEST(VoxelSurfaces, OfATiltedPatchAreItsOwn) {
   SceneData scene;
   const Vec3 u{3, 1, 0.5}, v{-0.4, 2, 0.7}, corner{0.2, -0.3, 0.1};
@@ -42,7 +42,7 @@ TEST(VoxelSurfaces, OfATiltedPatchAreItsOwn) {
   EXPECT_NEAR(sum, area, 1e-5 * area);
 }
 
-// By the reference voxelization's own clipping, of single triangles.
+// Uses the reference voxelization's own clipping, on single triangles.
 TEST(VoxelSurfaces, HaveTheAreaThatClippingLeaves) {
   std::mt19937 rng(3);
   for (int k = 0; k < 20; ++k) {
@@ -69,7 +69,7 @@ TEST(VoxelSurfaces, HaveTheAreaThatClippingLeaves) {
 }
 
 TEST(VoxelSurfaces, ShareOfTheLargerPlaneAtAnEdge) {
-  SceneData scene;  // a floor, and a wall on it: within one voxel 0.09 m of floor meet 0.03 m of wall
+  SceneData scene;  // a floor with a wall on it: within one voxel, 0.09 m of floor meet 0.03 m of wall
   test::add_patch(scene, {0, 0, 0}, {0.09, 0, 0}, {0, 0.1, 0});
   test::add_patch(scene, {0, 0, 0}, {0, 0.1, 0}, {0, 0, 0.03});
   const VoxelGrid grid = VoxelGrid::build(scene, 1);
@@ -84,10 +84,10 @@ TEST(VoxelSurfaces, ShareOfTheLargerPlaneAtAnEdge) {
 
 TEST(VoxelSurfaces, OfAThinWallAreOneOfItsSheets) {
   for (const double thickness : {0.02, 0.0}) {
-    SceneData scene;  // two sheets, wound apart; without thickness one sheet that is modelled twice
+    SceneData scene;  // two sheets, wound apart; without thickness, one sheet modelled twice
     test::add_patch(scene, {0, 0, 0}, {0, 1, 0}, {0, 0, 1}, 3, 3);
     test::add_patch(scene, {-thickness, 0, 0}, {0, 0, 1}, {0, 1, 0}, 3, 3);
-    test::add_patch(scene, {1.3, 0, 0}, {0, 1, 0}, {0, 0, 1});  // so that the grid's middle lies elsewhere
+    test::add_patch(scene, {1.3, 0, 0}, {0, 1, 0}, {0, 0, 1});  // moves the grid's middle elsewhere
     const VoxelGrid grid = VoxelGrid::build(scene, 0.3);
     double sum = 0;
     for (const VoxelSurface& surface : all_surfaces(scene, grid)) {
@@ -95,7 +95,8 @@ TEST(VoxelSurfaces, OfAThinWallAreOneOfItsSheets) {
       EXPECT_TRUE(surface.area == 0 || std::abs(surface.share - 1) < 1e-6);
       sum += surface.area;
     }
-    // Voxels on the wall's outline have less of it than the cube cuts from its plane, so there a double stays double.
+    // Voxels on the wall's outline hold less than the cube's section with its plane, so there a double sheet stays
+    // double.
     const double s = grid.voxel_size();
     EXPECT_GE(sum, 1 - 1e-5);
     EXPECT_LE(sum, thickness > 0 ? 1 + 1e-5 : 1 + 4 * (1 + s) * s);

@@ -24,7 +24,7 @@ SceneData scene_with_blocking() {
   return scene;
 }
 
-// Every voxel's list by clipping each surveyed triangle against its cube.
+// Lists of all voxels, by clipping each surveyed triangle against the cube.
 std::vector<std::vector<std::uint32_t>> clipped_lists(const SceneData& scene, const VoxelGrid& grid,
                                                       std::span<const std::uint32_t> ranks, double margin) {
   std::vector<std::vector<std::uint32_t>> lists;
@@ -87,7 +87,7 @@ TEST(VoxelTriangles, SparseListsEqualThoseOfAllVoxels) {
   }
 }
 
-// Sample after sample, the second and later ones by lists of bricks, with margins that fit these and one that does not.
+// A series of samples; from the second on by lists of bricks, with margins that fit these and one that does not.
 TEST(VoxelTriangles, OneSampleAfterAnotherFindsTheSame) {
   const auto scene = std::make_shared<const SceneData>(scene_with_blocking());
   for (const double size : {0.02, 0.1}) {

@@ -81,7 +81,7 @@ TEST(Voxelize, DoesNotDependOnTheNumberOfThreads) {
   EXPECT_TRUE(std::is_sorted(all.begin(), all.end()));
 }
 
-// A whole wall at full depth: as many columns as cells, each with one or two voxels.
+// A whole wall at full depth: the number of columns is that of cells, each with one or two voxels.
 TEST(Voxelize, CountsALargeInclinedTriangle) {
   const int n = 2048;
   const std::vector<Float3> positions{{0, 0, 3.5f}, {2048, 0, 3.5f}, {2048, 2048, 3.5f}, {0, 2048, 3.5f}};

@@ -19,8 +19,8 @@ constexpr int steps = 200;
 float coordinate(const Float3& p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
 float& coordinate(Float3& p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
 
-// Four fixed walls and a floor with a wall between them, square to `axis` at `place`; `tilt_m` is how far its top
-// leans.
+// Four fixed walls and a floor, with a wall between them, perpendicular to `axis` at `place`; its top leans by
+// `tilt_m`.
 SceneData room(int axis, double place, double tilt_m = 0, int cut = 1) {
   SceneData scene;
   test::add_patch(scene, {-5, -5, 0}, {10, 0, 0}, {0, 0, 5});
@@ -34,7 +34,7 @@ SceneData room(int axis, double place, double tilt_m = 0, int cut = 1) {
   return scene;
 }
 
-// Layers of voxels that the last mesh marks by itself.
+// Layers of voxels that the last mesh alone marks.
 std::set<std::uint32_t> layers_of_wall(const SceneData& scene, const VoxelGrid& grid, int axis) {
   const MeshRange& wall = scene.ranges.back();
   std::set<std::uint32_t> layers;
@@ -46,7 +46,7 @@ std::set<std::uint32_t> layers_of_wall(const SceneData& scene, const VoxelGrid& 
   return layers;
 }
 
-// Points on the last mesh as an engine would report them: off by 2 ulp or 1e-6 m along the axis, whichever is more.
+// Points on the last mesh as an engine would report them, off by 2 ulp or 1e-6 m along the axis, whichever is more.
 void expect_points_in_layer(const SceneData& scene, const VoxelGrid& grid, int axis, std::uint32_t layer,
                             std::mt19937& rng) {
   std::uniform_real_distribution<double> unit(0, 1);
@@ -78,7 +78,7 @@ TEST(WallOnFace, SweptThroughAVoxelItMarksOneLayerAtEachStep) {
   for (int axis = 0; axis < 3; ++axis) {
     const VoxelGrid fixed = VoxelGrid::build(room(axis, 1.03), 0.1);
     const double size = fixed.voxel_size();
-    // From one face of the centred grid to the next, both included.
+    // From one face of the centred grid to the next, inclusive.
     const double face = fixed.min()[axis] + size * std::ceil((1.0 - fixed.min()[axis]) / size);
     std::set<std::uint64_t> sizes;
     for (int step = 0; step <= steps; ++step) {
@@ -122,10 +122,10 @@ TEST(WallOnFace, MovesAsLittleAsItMust) {
   const double clearance = face_clearance(5.01, size), moved = grid.min()[0] + 5.01;
   EXPECT_GT(std::abs(moved), clearance);
   EXPECT_LT(std::abs(moved), 1.5 * clearance);
-  EXPECT_NEAR(grid.min()[1], -5.01, 1e-6);  // the other axes are left alone
+  EXPECT_NEAR(grid.min()[1], -5.01, 1e-6);  // the other axes stay
 }
 
-// Where planes stand so close that none of the possible shifts clears all, the largest area is cleared.
+// If planes are too close to clear all, the largest area is cleared.
 TEST(WallOnFace, ClearsTheLargestAreaWhereNotAllCanBeCleared) {
   const double size = VoxelGrid::build(room(0, 1.03), 0.1).voxel_size();
   SceneData scene = room(0, 1.03);

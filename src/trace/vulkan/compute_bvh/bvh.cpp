@@ -19,9 +19,9 @@ constexpr std::uint32_t max_leaf = 2;
 constexpr int bins = 32;
 // From this depth on, items are halved by count.
 constexpr std::uint32_t max_sah_depth = 34;
-// Halving n items takes bit_width(n − 1) − 1 steps until each part is a leaf of two, and fewer than bvh_leaf_first_mask
-// items are ever taken. So an inner node has less than max_sah_depth + most_halvings above it. A traversal leaves one
-// child on its stack for each of these at most, one of the node's own, and a mark for the end.
+// Halving n items takes bit_width(n − 1) − 1 steps until each part is a leaf of two, and n < bvh_leaf_first_mask. So an
+// inner node has fewer than max_sah_depth + most_halvings nodes above it. A traversal leaves on its stack at most one
+// child for each of these, one of the node's own, and an end mark.
 constexpr std::uint32_t most_halvings = std::bit_width(bvh_leaf_first_mask) - 1;
 static_assert(max_leaf == 2 && max_sah_depth + most_halvings < bvh_stack_size);
 constexpr std::size_t parallel_grain = 8192;
@@ -45,7 +45,7 @@ struct Bounds3 {
       max[k] = std::max(max[k], v[k]);
     }
   }
-  // [centre − half_size, centre + half_size] holds the box and so much on all sides of it, whatever the rounding.
+  // [centre − half_size, centre + half_size] contains the box and `widening` on all sides, whatever the rounding.
   vec3 centre() const { return {middle(0), middle(1), middle(2)}; }
   vec3 half_size(float widening) const { return {half(0, widening), half(1, widening), half(2, widening)}; }
   float half_area() const {
@@ -63,8 +63,8 @@ struct Bounds3 {
   bool empty() const { return min[0] > max[0]; }
 };
 
-// Twice what shaders/lib/widening.glsl says of rays from as far off as twice the largest coordinate: whoever stands
-// further off takes larger boxes.
+// Twice the widening of shaders/lib/widening.glsl for rays from as far as twice the largest coordinate. Rays from
+// further away use larger boxes.
 float widening_of(const Bounds3& all) {
   float largest = 1e-3f;
   for (std::size_t k = 0; k < 3; ++k) largest = std::max({largest, std::abs(all.min[k]), std::abs(all.max[k])});
@@ -87,7 +87,7 @@ struct Item {
   float centre(std::size_t axis) const { return 0.5f * (box.min[axis] + box.max[axis]); }
 };
 
-// A subtree over items [begin, end) may use node slots [slot, slot + end − begin), which no other subtree touches.
+// A subtree over items [begin, end) may use node slots [slot, slot + end − begin), which no other subtree uses.
 class Builder {
  public:
   Builder(std::vector<Item>& items, float widening) : items_(items), widening_(widening), nodes_(items.size()) {}
@@ -145,7 +145,7 @@ class Builder {
     float cost() const { return count ? box.half_area() * static_cast<float>(count) : 0; }
   };
 
-  // Where items [begin, end) are cut in two, both of them not empty; puts them in order.
+  // Splits items [begin, end) into two non-empty parts, reorders them, and returns the boundary.
   std::size_t split(std::size_t begin, std::size_t end, std::uint32_t depth) {
     Bounds3 centres;
     for (std::size_t i = begin; i < end; ++i)
@@ -158,7 +158,7 @@ class Builder {
     return best ? partition(begin, end, *best) : halve(begin, end, centres);
   }
 
-  // None where all centres fall into one bin.
+  // Empty if all centres fall into one bin.
   std::optional<Cut> cheapest_cut(std::size_t begin, std::size_t end, std::size_t axis, const Bounds3& centres) const {
     const float extent = centres.max[axis] - centres.min[axis];
     if (!(extent > 0)) return std::nullopt;
@@ -169,7 +169,7 @@ class Builder {
       bin.box.extend(items_[i].box);
       ++bin.count;
     }
-    std::array<float, bins> right_cost{};  // of this bin and all to the right
+    std::array<float, bins> right_cost{};  // of this bin and all to its right
     Bin side;
     for (std::size_t b = bins - 1; b > 0; --b) {
       side.add(filled[b]);
@@ -194,7 +194,7 @@ class Builder {
     return static_cast<std::size_t>(middle - items_.begin());
   }
 
-  // By count, along the longest axis: where all centres coincide, or the tree is deep already.
+  // Splits by count along the longest axis, if all centres coincide or the tree is deep already.
   std::size_t halve(std::size_t begin, std::size_t end, const Bounds3& centres) {
     std::size_t axis = 0;
     for (std::size_t k = 1; k < 3; ++k)
@@ -251,7 +251,7 @@ Bvh build_bvh(std::span<const Float3> positions, std::span<const Triangle> trian
   Bvh bvh;
   Builder builder(items, widening_of(all));
   if (items.size() <= max_leaf) {
-    // The root must be a node: one child holds everything, the other box is empty, which no ray enters.
+    // The root must be a node: one child holds everything; no ray enters the other's empty box.
     const std::uint32_t leaf = bvh_leaf_bit | static_cast<std::uint32_t>(items.size() - 1) << bvh_leaf_count_shift;
     bvh.nodes = {node_of({all, Bounds3(), leaf, leaf}, widening_of(all))};
   } else {

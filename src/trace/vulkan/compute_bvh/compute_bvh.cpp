@@ -26,7 +26,7 @@ class ComputeBvh final : public Traversal {
     return binding;
   }
   bool is_watertight() const override { return true; }  // lib/triangle_hit.glsl
-  // What a tile of rays decides alike on its way down the tree is decided once for all of them.
+  // Decides common steps down the tree once for all rays of a tile.
   std::optional<TilePass> tile_pass() const override {
     return TilePass{shaders::tile_starts, tile_starts * sizeof(TileStart)};
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The engine compute_bvh: a BVH of our own, walked by a compute shader.
+// The engine compute_bvh: our own BVH, traversed by a compute shader.
 #pragma once
 
 #include "trace/vulkan/traversal.hpp"

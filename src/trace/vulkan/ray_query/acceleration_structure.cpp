@@ -52,7 +52,7 @@ AccelerationStructure::Level AccelerationStructure::build(VkAccelerationStructur
   info.dstAccelerationStructure = structure;
   info.scratchData.deviceAddress = (scratch.address() + alignment - 1) / alignment * alignment;
   const VkAccelerationStructureBuildRangeInfoKHR range{count, 0, 0, 0};
-  // A submission of its own, which waits: what follows sees the finished structure, and the scratch may go.
+  // Submits separately and waits, so that later work sees the finished structure and the scratch can be freed.
   commands_.run([&](const Recorder& r) { r.build(info, range); });
   return level;
 }

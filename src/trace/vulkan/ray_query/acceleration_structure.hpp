@@ -13,8 +13,8 @@ namespace vantage::vulkan {
 
 class AccelerationStructure {
  public:
-  // `ids[k]` becomes entry k of the map back to the scene, in the order that the structure numbers triangles. `sort`:
-  // on software devices, put triangles in the order on which such drivers build well.
+  // `ids[k]` becomes entry k of the map back to the scene, in the structure's order of triangles. `sort`: on software
+  // devices, sorts triangles so that such drivers build good trees.
   AccelerationStructure(Device& device, Commands& commands, std::span<const Float3> positions,
                         std::span<const Triangle> triangles, std::span<const std::uint32_t> ids, bool sort);
 

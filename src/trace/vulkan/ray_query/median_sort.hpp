@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An order of triangles that software Vulkan devices build good trees from.
+// Orders triangles so that software Vulkan devices build good trees.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +10,9 @@
 
 namespace vantage {
 
-// lavapipe (Mesa 25.0) builds its tree by halving triangles in input order, so the order is the tree. Returns a
-// permutation: recursive median splits by centroid, left child the first ⌈n/2⌉, along the axis with the least surface
-// area cost. Parallel and deterministic.
+// lavapipe (Mesa 25.0) builds its tree by halving triangles in input order, so the order determines the tree. Returns a
+// permutation: recursive median splits by centroid, left child the first ⌈n/2⌉, along the axis of least surface area
+// cost. Parallel and deterministic.
 std::vector<std::uint32_t> median_sort(std::span<const Float3> positions, std::span<const Triangle> triangles);
 
 }  // namespace vantage

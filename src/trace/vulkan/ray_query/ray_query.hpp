@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The engine ray_query: the driver's acceleration structure, walked by VK_KHR_ray_query.
+// The engine ray_query: the driver's acceleration structure, traversed by VK_KHR_ray_query.
 #pragma once
 
 #include "trace/vulkan/traversal.hpp"

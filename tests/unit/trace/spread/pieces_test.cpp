@@ -10,7 +10,7 @@
 namespace vantage {
 namespace {
 
-// Takes all, in turns; how often each item was taken.
+// Takes all pieces, in turns, and returns how often each item was taken.
 std::vector<int> taken(Pieces& pieces, std::size_t items, const std::vector<double>& shares, bool known) {
   std::vector<int> times(items);
   for (std::size_t k = 0; !pieces.empty(); ++k) {
@@ -34,10 +34,10 @@ TEST(Pieces, AreAllItemsOnce) {
 
 TEST(Pieces, FollowTheShare) {
   Pieces pieces(1000);
-  EXPECT_EQ(pieces.take(0.75, true).size(), 675u);       // nine tenths of what would be fair
+  EXPECT_EQ(pieces.take(0.75, true).size(), 675u);       // nine tenths of the fair share
   EXPECT_EQ(pieces.take(0.25, true).size(), 225u);       // whoever comes first
-  EXPECT_EQ(pieces.take(0.75, true).size(), 68u);        // of what is left by then
-  EXPECT_EQ(Pieces(1000).take(0.5, false).size(), 32u);  // a sixteenth of its half, to see how long that takes
+  EXPECT_EQ(pieces.take(0.75, true).size(), 68u);        // of the items left by then
+  EXPECT_EQ(Pieces(1000).take(0.5, false).size(), 32u);  // a sixteenth of its half, to measure its speed
 }
 
 TEST(Pieces, SharesFollowRatesButNotEachOfTheirSteps) {
@@ -73,7 +73,7 @@ TEST(Pieces, AreFewForThoseWhoAreEquallyFast) {
   Pieces pieces(250);
   std::size_t handed_out = 0;
   for (; !pieces.empty(); ++handed_out) pieces.take(0.5, true);
-  EXPECT_EQ(handed_out, 5u);  // 113, 112, 12, 11 and what is left
+  EXPECT_EQ(handed_out, 5u);  // 113, 112, 12, 11 and the rest
 }
 
 TEST(Pieces, AreAPieceForEachWhereAllIsHandedOutAtOnce) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Several devices must give what one gives, bit for bit, whatever becomes of them on the way.
+// Several devices must give the same results as one, bit for bit, whatever happens to them.
 #include "trace/spread/spread_tracer.hpp"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ constexpr double wanted = 40;
 constexpr std::uint32_t all_outputs = Tracer::range | Tracer::position | Tracer::normal | Tracer::reflectivity |
                                       Tracer::primitive | Tracer::barycentric | Tracer::voxel;
 
-// Fails for good at its n-th call, behind the work: what the call told on its way has been told. Takes its time.
+// Fails for good at its n-th call, after the work, so that results of the call were already delivered. Takes its time.
 class Frail : public Tracer {
  public:
   struct Manner {
@@ -69,7 +69,7 @@ class Frail : public Tracer {
 // Networks and voxels of each sampled count.
 using Asked = std::vector<std::pair<std::size_t, std::size_t>>;
 
-// Keeps what it is asked for.
+// Records its requests.
 class Attentive final : public Frail {
  public:
   Attentive(std::unique_ptr<Tracer> tracer, Asked& asked) : Frail(std::move(tracer), {}), asked_(asked) {}
@@ -84,7 +84,7 @@ class Attentive final : public Frail {
   Asked& asked_;
 };
 
-// Two walls at a corner, a screen before them, and heads here and there.
+// Two walls at a corner, a screen in front of them, and several heads.
 struct Site {
   TraceScene scene = test::trace_scene(
       test::SceneBuilder()
@@ -140,7 +140,7 @@ void expect_all_equal(const NetworkCounts& got, const NetworkCounts& expected) {
   for (std::size_t g = 0; g < got.groups.size(); ++g) test::expect_equal_counts(got.groups[g], expected.groups[g]);
 }
 
-// What a tracer is asked for, all of it, with what it tells on the way.
+// All results of a tracer, with those delivered on the way.
 struct Answers {
   Tracer::RawChunk scan;
   NetworkCounts exact;
@@ -209,7 +209,7 @@ void expect_same_answers(const Answers& got, const Answers& expected) {
     SCOPED_TRACE("network " + std::to_string(n));
     expect_all_equal(got.each[n], expected.each[n]);
     expect_all_equal(got.sampled[n], expected.sampled[n]);
-    // Not the rays: which voxels are asked together may cost some, and change no count.
+    // Except rays: which voxels are requested together may cost some, and changes no count.
     test::expect_equal_counts(got.searched[n], expected.searched[n]);
     EXPECT_FALSE(got.searched[n].cancelled);
     EXPECT_TRUE(got.searched[n].groups.empty());
@@ -234,7 +234,7 @@ TEST_P(Populations, AreGivenAsByOneDevice) {
     SCOPED_TRACE(std::to_string(manners.size()) + " devices");
     const auto tracer = site.several(manners, {}, {.split = SpreadTracer::Split::always, .population = GetParam()});
     expect_same_answers(ask(*tracer, site), expected);
-    expect_same_answers(ask(*tracer, site), expected);  // now that it knows how fast each is
+    expect_same_answers(ask(*tracer, site), expected);  // now that it knows each one's speed
   }
 }
 
@@ -244,7 +244,7 @@ INSTANTIATE_TEST_SUITE_P(SpreadTracer, Populations,
                            return of.param == SpreadTracer::Population::by_voxels ? "ByVoxels" : "ByNetworks";
                          });
 
-// Each member has some of the voxels and all networks, or all voxels and some of the networks.
+// Each member has some voxels and all networks, or all voxels and some networks.
 TEST(SpreadTracer, SplitsAPopulationAsItIsTold) {
   const Site site;
   for (const auto population : {SpreadTracer::Population::by_networks, SpreadTracer::Population::by_voxels}) {

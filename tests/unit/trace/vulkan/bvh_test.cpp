@@ -36,7 +36,7 @@ Soup random_soup(std::size_t n) {
   return soup;
 }
 
-// Each item lies so far beyond the rest that a cut by area splits off that one alone: as deep as trees get.
+// Each item is so far beyond the rest that a cut by area separates only that one: the deepest possible tree.
 Soup nested_soup() {
   Soup soup;
   for (int axis = 0; axis < 3; ++axis)
@@ -48,8 +48,8 @@ Soup nested_soup() {
   return soup;
 }
 
-// Walks the tree, checks that boxes hold what is below them, and tells how many nodes a traversal may have on its
-// stack: it leaves one child there at each inner node on its way.
+// Walks the tree, checks that boxes contain everything below them, and computes how many nodes a traversal may have on
+// its stack. A traversal leaves one child there at each inner node.
 class Walk {
  public:
   explicit Walk(const Bvh& bvh) : bvh_(bvh), seen_(bvh.triangles.size()) { node(0, 1); }
@@ -66,7 +66,7 @@ class Walk {
     child(n.child1, n.centre1, n.half1, on_stack);
   }
   void child(std::uint32_t word, const vec3& centre, const vec3& half, std::uint32_t on_stack) {
-    if (half.x < 0) return;  // an empty box, which no ray enters
+    if (half.x < 0) return;  // an empty box that no ray enters
     const std::size_t before = boxes_.size();
     boxes_.push_back({centre, half});
     if (word & bvh_leaf_bit) {
@@ -90,7 +90,7 @@ class Walk {
 
   const Bvh& bvh_;
   std::vector<int> seen_;
-  std::vector<std::array<vec3, 2>> boxes_;  // from the root down
+  std::vector<std::array<vec3, 2>> boxes_;  // from the root downwards
   std::uint32_t stack_ = 0;
 };
 

@@ -13,7 +13,7 @@ namespace {
 
 struct Shape {
   std::uint32_t stations, rows, columns, rows_per_part;
-  double rays;  // asked for a submission
+  double rays;  // requested per submission
 };
 void PrintTo(const Shape& s, std::ostream* out) {
   *out << s.stations << " stations, " << s.rows << " x " << s.columns << ", " << s.rows_per_part << " rows a part, "
@@ -63,7 +63,7 @@ TEST_P(CountPlans, ASubmissionKeepsItsBounds) {
     EXPECT_TRUE(parts.size() == 1 ||
                 static_cast<double>(plan.rays_of(std::span(parts).first(parts.size() - 1))) < shape.rays)
         << "the last part begins below what was asked for";
-    std::uint64_t free = 0;  // lists lie one after the other
+    std::uint64_t free = 0;  // lists are contiguous
     for (std::size_t k = 0; k < parts.size(); ++k) {
       EXPECT_EQ(parts[k].list, free);
       free += 1 + plan.tiles_of(parts[k]);
@@ -85,7 +85,7 @@ TEST(CountHeadroom, NoCountWrapsAndNoClampIsInVain) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     RandomStream random(seed);
     CountHeadroom headroom;
-    std::uint64_t most = 0;  // what a voxel that every ray hits has
+    std::uint64_t most = 0;  // count of a voxel that every ray hits
     for (int k = 0; k < 1000; ++k) {
       const auto rays = static_cast<std::uint64_t>(random.uniform() * random.uniform() * (count_limit - 1));
       const std::uint64_t unclamped = most + rays;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Instances with and without the validation layer side by side: neither may lose its functions to the other.
+// Instances with and without the validation layer coexist: neither may lose its functions to the other.
 #include "trace/vulkan/instance.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 namespace vantage::vulkan {
 namespace {
 
-// An instance and a device of it.
+// An instance with one of its devices.
 class Machine {
  public:
   explicit Machine(bool validation) : validation_(validation), instance_(std::make_shared<Instance>(validation)) {
@@ -25,7 +25,7 @@ class Machine {
     }
   }
 
-  // There is a device; it works; and where the validation layer watches, it names objects and hears of mistakes.
+  // Expects a working device; with the validation layer, it names objects and reports mistakes.
   void expect_well() {
     ASSERT_TRUE(device_) << "no Vulkan device: install mesa-vulkan-drivers >= 24.1";
     std::vector<std::uint32_t> numbers(1000), back(1000);
@@ -47,7 +47,7 @@ class Machine {
   void make_a_mistake() {
     VkFenceCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
-    info.flags = 1u << 20;  // no flag at all, which drivers pass over
+    info.flags = 1u << 20;  // an unknown flag, which drivers ignore
     VkFence fence = VK_NULL_HANDLE;
     ASSERT_EQ(device_->vk().vkCreateFence(device_->handle(), &info, nullptr, &fence), VK_SUCCESS);
     device_->vk().vkDestroyFence(device_->handle(), fence, nullptr);

@@ -9,7 +9,7 @@ namespace {
 TEST(Pace, FollowsTheSpeedSeen) {
   Pace pace(0.25, 1000, 100, 500);
   EXPECT_EQ(pace.rays(), 1000);
-  pace.saw(4000, 0.5);  // 8000 rays a second
+  pace.saw(4000, 0.5);  // 8000 rays per second
   EXPECT_EQ(pace.rays(), 2000);
   pace.saw(600, 6);
   EXPECT_EQ(pace.rays(), 100) << "never fewer than the least";
@@ -20,12 +20,12 @@ TEST(Pace, SplitsWhatTakesTooLongAndRecovers) {
   Pace pace(0.25, first, 1, first);
   pace.saw(first, first / rays_a_second);
   EXPECT_LE(pace.rays() / rays_a_second, 0.25) << "one was enough";
-  // Work that is not rays: it takes long, and says nothing of their speed.
+  // Work other than rays takes long and says nothing about their speed.
   Pace other(1, first, 1, first);
   for (int k = 0; k < 3; ++k) other.saw(10, 100);
   EXPECT_LT(other.rays(), first / 100);
   const double slow = other.rays();
-  other.saw(1, 0.5);  // in time, but not so quick that more could be asked for
+  other.saw(1, 0.5);  // in time, but not fast enough to ask for more
   EXPECT_EQ(other.rays(), slow);
   for (int k = 0; k < 20; ++k) other.saw(1, 1e-3);
   EXPECT_EQ(other.rays(), first);

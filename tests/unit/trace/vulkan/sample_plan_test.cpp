@@ -83,10 +83,10 @@ TEST(SamplePlan, NoChunkHasMorePairsThanThereIsRoomFor) {
 TEST(SamplePlan, WhatOverflowsComesAgainInHalvesAndFirst) {
   SamplePlan plan(4, 15, 8, {1000, 100, 10});
   const std::vector<SampleChunk> chunks =
-      plan.next(1e9, {4, 1}, 1e9);  // 20 pairs at most: 80 rays, and a quarter more to be safe
+      plan.next(1e9, {4, 1}, 1e9);  // at most 20 pairs: 80 rays, and a quarter more as reserve
   ASSERT_EQ(chunks.size(), 3u);
   EXPECT_TRUE(plan.finished());
-  // The first fits; the second has too many rays, the last too many parts. What was probed is traced anyway.
+  // The first fits; the second has too many rays, the last too many parts. Probed rays are traced anyway.
   EXPECT_EQ(plan.settle(chunks, std::vector<SampleTally>{{20, 20, 100, 10, 3}, {20, 20, 101}, {20, 20, 0, 11}}), 163);
   EXPECT_FALSE(plan.finished());
   EXPECT_DOUBLE_EQ(plan.done(), 1.0 / 3);
@@ -112,8 +112,8 @@ TEST(SamplePlan, MoreOpenPairsThanThereIsRoomForComeAgainWithAllTheirRays) {
   EXPECT_EQ(plan.next(1e9, {1, 0.1}, 1e9), (std::vector<SampleChunk>{halves[0], halves[1]}));
 }
 
-// Pairs whose numbers of rays nobody foresees: every part of every pair is traced once, whatever is guessed, and every
-// pair is probed once for the first time.
+// Pairs with unpredictable numbers of rays: every part of every pair is traced once, whatever the guess, and every pair
+// is probed first exactly once.
 TEST(SamplePlan, EveryPartOfEveryPairIsTracedOnce) {
   constexpr std::uint32_t slots = 7, voxels = 23, parts = 16, most = 30;
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
@@ -140,7 +140,7 @@ TEST(SamplePlan, EveryPartOfEveryPairIsTracedOnce) {
             for (std::uint32_t p = chunk.first_part; p < chunk.end_part; ++p)
               inside.push_back((std::size_t{s} * voxels + v) * parts + p);
           }
-        // As the kernels do. The first part of every fourth pair comes at once, all others later.
+        // As the kernels do: the first part of every fourth pair comes at once, all others later.
         for (const std::size_t k : inside) {
           const bool at_first = k / parts % 4 == 0 && k % parts == 0;
           if (at_first && !chunk.first_traced) list.rays += rays[k];

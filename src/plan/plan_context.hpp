@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What judging networks of a site takes, made once for all the searches of a plan: surroundings, ways, an evaluator.
+// What all searches of one plan share: the simulator of the surroundings, the walking graph, the evaluator.
 #pragma once
 
 #include <memory>
@@ -7,22 +7,22 @@
 #include <vector>
 
 #include "plan/confirm.hpp"
+#include "plan/placement_oracle.hpp"
 #include "plan/search.hpp"
 #include "plan/simulator_evaluator.hpp"
-#include "plan/site.hpp"
 
 namespace vantage {
 
-class Run {
+class PlanContext {
  public:
   // Borrows all. The problem is settled: its `capture` knows what can be seen.
-  Run(Simulator& simulator, const SearchArea& area, const ClashChecker& clash, const PlanConfig& config);
+  PlanContext(Simulator& simulator, const SearchArea& area, const ClashChecker& clash, const PlanConfig& config);
 
   // Networks are judged by this problem's measures from now on.
   void ask(const SurveyProblem& problem);
   const SurveyProblem& problem() const { return problem_; }
   const Measures& measures() const { return measures_; }
-  const Site& site() const { return site_; }
+  const PlacementOracle& oracle() const { return oracle_; }
   const SearchArea& area() const { return area_; }
   SimulatorEvaluator& evaluator() { return *evaluator_; }
   // Made when first needed.
@@ -42,7 +42,7 @@ class Run {
   const SearchArea& area_;
   const ClashChecker& clash_;
   const PlanConfig& config_;
-  Site site_;
+  PlacementOracle oracle_;
   SurveyProblem problem_;
   Measures measures_;
   std::unique_ptr<Simulator> surroundings_;

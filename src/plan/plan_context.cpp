@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plan/run.hpp"
+#include "plan/plan_context.hpp"
 
 #include <algorithm>
 
@@ -23,14 +23,15 @@ std::size_t batch_of(const Simulator& simulator, const PlanConfig& config) {
   return cpu ? 4 : 32;
 }
 
-Run::Run(Simulator& simulator, const SearchArea& area, const ClashChecker& clash, const PlanConfig& config)
+PlanContext::PlanContext(Simulator& simulator, const SearchArea& area, const ClashChecker& clash,
+                         const PlanConfig& config)
     : simulator_(simulator),
       area_(area),
       clash_(clash),
       config_(config),
-      site_(make_site(area, clash, simulator.scanner())) {}
+      oracle_(make_placement_oracle(area, clash, simulator.scanner())) {}
 
-void Run::ask(const SurveyProblem& problem) {
+void PlanContext::ask(const SurveyProblem& problem) {
   problem_ = problem;
   measures_ = measures_of(problem);
   const Needs needs = measures_.all_needs();
@@ -39,7 +40,7 @@ void Run::ask(const SurveyProblem& problem) {
       SimulatorEvaluator::Options{
           .sampled = config_.sample_voxels > 0,
           .kept = problem.kept.size(),
-          .visible_parts = [this](const Network& network) { return visibility_parts(site_, network); },
+          .visible_parts = [this](const Network& network) { return visibility_parts(oracle_, network); },
           .surroundings = needs.surroundings ? &surroundings() : nullptr,
           .surroundings_voxels = surroundings_voxels(),
           .registration = problem.registration,
@@ -48,42 +49,42 @@ void Run::ask(const SurveyProblem& problem) {
                                 : std::function<double(std::span<const PlacedStation>)>()});
 }
 
-Simulator& Run::surroundings() {
+Simulator& PlanContext::surroundings() {
   if (!surroundings_) surroundings_ = std::make_unique<Simulator>(surroundings_of(simulator_));
   return *surroundings_;
 }
 
-const OnSite& Run::on_site() {
+const OnSite& PlanContext::on_site() {
   if (!on_site_) on_site_.emplace(area_, clash_, simulator_.scanners(), problem_.on_site);
   return *on_site_;
 }
 
-std::uint64_t Run::surroundings_voxels() const { return std::min(config_.sample_voxels, kSurroundingsVoxels); }
+std::uint64_t PlanContext::surroundings_voxels() const { return std::min(config_.sample_voxels, kSurroundingsVoxels); }
 
-SearchOutcome Run::search(const SurveyProblem& narrowed, const PlanConfig& config, const std::vector<double>& start,
-                          const PlanWatch& watch) {
-  const DecisionSpace space(site_, narrowed);
+SearchOutcome PlanContext::search(const SurveyProblem& narrowed, const PlanConfig& config,
+                                  const std::vector<double>& start, const PlanWatch& watch) {
+  const DecisionSpace space(oracle_, narrowed);
   const std::size_t batch = batch_of(simulator_, config);
-  return vantage::search(
-      {.space = space,
-       .problem = narrowed,
-       .measures = measures_,
-       .config = config,
-       .evaluator = *evaluator_,
-       .batch = batch,
-       .identity = identity(simulator_, site_, area_, clash_, narrowed, config, population_of(narrowed, config), batch),
-       .start = start,
-       .watch = watch.report,
-       .warn = simulator_.config().warn,
-       .stop = watch.stop});
+  return vantage::search({.space = space,
+                          .problem = narrowed,
+                          .measures = measures_,
+                          .config = config,
+                          .evaluator = *evaluator_,
+                          .batch = batch,
+                          .identity = identity(simulator_, oracle_, area_, clash_, narrowed, config,
+                                               population_of(narrowed, config), batch),
+                          .start = start,
+                          .watch = watch.report,
+                          .warn = simulator_.config().warn,
+                          .stop = watch.stop});
 }
 
-ConfirmedFront Run::confirm(const SearchOutcome& found, const SurveyProblem& narrowed, const PlanWatch& watch) {
-  const DecisionSpace space(site_, narrowed);
+ConfirmedFront PlanContext::confirm(const SearchOutcome& found, const SurveyProblem& narrowed, const PlanWatch& watch) {
+  const DecisionSpace space(oracle_, narrowed);
   return confirm_front(found, space, narrowed, measures_, config_.sample_voxels, *evaluator_, watch);
 }
 
-PlanResult Run::result(const SearchOutcome& found) const {
+PlanResult PlanContext::result(const SearchOutcome& found) const {
   PlanResult result;
   result.problem = problem_, result.config = config_;
   result.population = population_of(problem_, config_), result.batch = batch_of(simulator_, config_);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where stations may stand, as the search sees it: SearchArea and ClashChecker behind two functions, so that the search
-// can be tested on sites made of formulas. The functions must be safe to call from several threads.
+// Tells the search where stations may stand. SearchArea and ClashChecker stand behind functions, so that tests can
+// search on sites made of formulas. The functions must be safe to call from several threads.
 #pragma once
 
 #include <functional>
@@ -13,11 +13,11 @@
 
 namespace vantage {
 
-struct Site {
+struct PlacementOracle {
   Uv uv_min, uv_max;
   std::function<std::optional<Vec3>(Uv)> locate;          // ground under (u, v)
-  std::function<std::optional<Uv>(const Vec3&)> project;  // and back
-  std::function<bool(const Vec3&, double)> clashes;       // by ground point and the head's height above it
+  std::function<std::optional<Uv>(const Vec3&)> project;  // (u, v) of a ground point
+  std::function<bool(const Vec3&, double)> clashes;       // ground point; height of the head above it
   std::function<PlacedStation(const Vec3&)> check_head;   // a station given by its head
   std::function<bool(const Vec3&, const Vec3&)> sees;     // one head the other, nothing between
   double height_m = 0;                                    // of the scanner's head
@@ -25,15 +25,15 @@ struct Site {
 };
 
 // Borrows both.
-Site make_site(const SearchArea& area, const ClashChecker& clash, const Scanner& scanner);
+PlacementOracle make_placement_oracle(const SearchArea& area, const ClashChecker& clash, const Scanner& scanner);
 
-PlacedStation place_station(const Site& site, Uv uv, double height_m);
+PlacedStation place_station(const PlacementOracle& oracle, Uv uv, double height_m);
 
 // Stations that are there already. `setups`: one each, or none. Throws Error invalid_argument for another number.
-std::vector<PlacedStation> kept_stations(const Site& site, std::span<const Vec3> heads,
-                                         std::span<const StationSetup> setups);
+std::vector<PlacedStation> existing_stations(const PlacementOracle& oracle, std::span<const Vec3> heads,
+                                             std::span<const StationSetup> setups);
 
 // Connected parts of the graph of stations that see each other within range. A skipped station is a part of its own.
-std::size_t visibility_parts(const Site& site, const Network& network);
+std::size_t visibility_parts(const PlacementOracle& oracle, const Network& network);
 
 }  // namespace vantage
