@@ -2,7 +2,11 @@
 // The tables of settings, which command line, configuration files, scenes and Python go by.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cctype>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <set>
 
 #include "vantage/error.hpp"
@@ -93,6 +97,40 @@ TEST(SettingTables, HaveTheOptionsOfResults) {
     EXPECT_NE(std::ranges::find(site_settings(), setting.option, &SettingRow<SiteOptions>::name), site_settings().end())
         << setting.option;
   }
+}
+
+template <class Options>
+std::string section(const std::string& title, const SettingTable<Options>& table) {
+  std::string text = "\n## " + title + "\n\n| option | value | in Python | meaning |\n| --- | --- | --- | --- |\n";
+  const auto cell = [](std::string value) {
+    for (std::size_t at = 0; (at = value.find('|', at)) != std::string::npos; at += 2) value.insert(at, "\\");
+    return value;
+  };
+  for (const SettingRow<Options>& setting : table) {
+    std::string keyword = setting.name;
+    std::ranges::replace(keyword, '-', '_');
+    text += "| `--" + setting.name + "` | " + cell(setting.unit.empty() ? "–" : setting.unit) + " | `" + keyword +
+            "` | " + cell(setting.help) + " |\n";
+  }
+  return text;
+}
+
+// docs/settings.md is made of the tables. Where it is not, the page as it should be is in the folder of the test.
+TEST(SettingTables, AreAPageOfTheDocumentation) {
+  const std::string page =
+      "# Settings\n\n"
+      "Every setting of a site, of a question and of a search, as the program's option, as a key of configuration "
+      "files\n"
+      "(`-` or `_` between words), and as a keyword in Python. A test makes this page from the tables of the library\n"
+      "(`site_settings()`, `question_settings()`, `plan_settings()`). [command_line.md](command_line.md) explains "
+      "them.\n" +
+      section("The site: `Site.open`, all commands", site_settings()) +
+      section("The question: `Site.plan`, `vantage plan`", question_settings()) +
+      section("The search: `Site.plan`, `vantage plan`", plan_settings());
+  std::ofstream("settings.md") << page;
+  std::ifstream file(VANTAGE_DOCS_FOLDER "/settings.md");
+  const std::string written{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  EXPECT_EQ(written, page) << "copy settings.md from " << std::filesystem::current_path();
 }
 
 }  // namespace
