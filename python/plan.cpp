@@ -2,15 +2,18 @@
 #include "evaluation.hpp"
 #include "module.hpp"
 #include "options.hpp"
+#include "settings.hpp"
 #include "simulator.hpp"
+#include "site.hpp"
 
 namespace vantage::python {
 namespace {
 
-/// A result, and the simulator and the search area that reports of it look at.
+/// A result, and the simulator and the search area that reports of it look at: the site's, or given ones.
 struct Plan {
   PlanResult result;
-  py::object simulator, area;
+  std::shared_ptr<GuardedSite> site = nullptr;
+  py::object simulator = py::none(), area = py::none();
 };
 /// A network of its front; shares the result.
 struct Entry {
@@ -26,7 +29,12 @@ struct Watched : PlanProgress {
   std::vector<ParetoPoint> points;
 };
 
-const Simulator& simulator_of(const Plan& plan) { return plan.simulator.cast<const GuardedSimulator&>().simulator; }
+const Simulator& simulator_of(const Plan& plan) {
+  return plan.site ? plan.site->site.simulator() : plan.simulator.cast<const GuardedSimulator&>().simulator;
+}
+const SearchArea& area_of(const Plan& plan) {
+  return plan.site ? plan.site->site.area() : plan.area.cast<const SearchArea&>();
+}
 
 py::array_t<double> table_of(const std::vector<std::vector<double>>& rows) {
   const std::size_t width = rows.empty() ? 0 : rows.front().size();
@@ -45,11 +53,14 @@ Options<PlanConfig> plan_options() {
   return Options<PlanConfig>("plan")
       .add("population", &PlanConfig::population,
            "0: 10 with one objective, 20 where the number is searched, else 100.")
-      .add("iterations", &PlanConfig::iterations, "Of `population` evaluations each.")
+      .add("iterations", &PlanConfig::iterations, "Of `population` evaluations each; 0: 100.")
       .add("sigma0", &PlanConfig::sigma0, "Initial step, as a share of the range.")
       .add("scheme", &PlanConfig::scheme, "'steady-state' or 'generational'.")
       .add("batch", &PlanConfig::batch, "Offspring at once in the steady state; 0: chosen by the engine.")
-      .add("sample_voxels", &PlanConfig::sample_voxels, "0: exact search; else sampled with so many voxels.")
+      .add("exact", &PlanConfig::exact, "Search with every ray, the dearest way.")
+      .add("sample_voxels", &PlanConfig::sample_voxels, "Search with so many voxels; 0: chosen by the problem.")
+      .add("renew_iterations", &PlanConfig::renew_iterations,
+           "Draw other voxels every so many iterations; 0: never; None: chosen by the problem.")
       .add("sample_from", &PlanConfig::sample_from,
            "Where not 0: looked at with so many voxels first; the sample then grows to `sample_voxels` as it has to.")
       .add("start", &PlanConfig::start, "Heads (x, y, z) of an initial network; empty: random.")
@@ -57,7 +68,7 @@ Options<PlanConfig> plan_options() {
       .add("max_seconds", &PlanConfig::max_seconds, "Of the search; 0: no limit.")
       .add("target_hypervolume", &PlanConfig::target_hypervolume, "Stop there; None: never.")
       .add("stagnation_iterations", &PlanConfig::stagnation_iterations, "Stop after so many without growth; 0: never.")
-      .add("seed", &PlanConfig::seed, "Of everything that is drawn.")
+      .add("seed", &PlanConfig::seed, "Of everything that is drawn; None: the simulator's.")
       .add<std::filesystem::path>(
           "checkpoint", [](const PlanConfig& c) { return c.checkpoint.string(); },
           [](PlanConfig& c, std::filesystem::path file) { c.checkpoint = std::move(file); },
@@ -77,8 +88,31 @@ std::shared_ptr<Plan> plan_survey(GuardedSimulator& guarded, const SearchArea& a
                  .stop = call.stop(),
                  .abort = call.abort()});
   });
-  return std::make_shared<Plan>(Plan{std::move(result), py::cast(guarded, py::return_value_policy::reference),
+  return std::make_shared<Plan>(Plan{std::move(result), nullptr, py::cast(guarded, py::return_value_policy::reference),
                                      py::cast(area, py::return_value_policy::reference)});
+}
+
+// By the settings of a question and of a search; `problem` in place of the former.
+std::shared_ptr<Plan> plan_site(const std::shared_ptr<GuardedSite>& guarded, const py::object& problem,
+                                py::object progress, const py::kwargs& given) {
+  refuse_unknown(given, "Site.plan", question_settings(), plan_settings());
+  SurveyQuestion question;
+  PlanConfig config;
+  const std::size_t asked = read_settings(question_settings(), question, given);
+  read_settings(plan_settings(), config, given);
+  if (!problem.is_none() && asked > 0)
+    throw py::type_error("Site.plan: a problem says all that is asked; give it or settings of a question");
+  const std::optional<SurveyProblem> own =
+      problem.is_none() ? std::nullopt : std::optional(problem.cast<SurveyProblem>());
+  LongCall call(std::move(progress));
+  PlanResult result = call.run([&] {
+    const Busy busy(guarded->mutex);
+    return plan(guarded->site, own ? *own : survey_problem(guarded->site, question), config,
+                {.report = [&](const PlanProgress& now) { call.report([&] { return Watched(now); }); },
+                 .stop = call.stop(),
+                 .abort = call.abort()});
+  });
+  return std::make_shared<Plan>(Plan{.result = std::move(result), .site = guarded});
 }
 
 void add_progress(py::module_& m) {
@@ -219,7 +253,7 @@ void add_results(py::module_& m) {
       .def(
           "write",
           [](const Plan& plan, const std::filesystem::path& folder, const std::string& crs) {
-            const auto& area = plan.area.cast<const SearchArea&>();
+            const SearchArea& area = area_of(plan);
             const Simulator& simulator = simulator_of(plan);
             const py::gil_scoped_release unlocked;
             write_plan(folder, plan.result, simulator, area, nullptr, crs);
@@ -240,6 +274,15 @@ void add_plans(py::module_& m) {
   add_progress(m);
   add_entries(m);
   add_results(m);
+  const py::object site = m.attr("Site");
+  site.attr("plan") = py::cpp_function(
+      &plan_site, py::name("plan"), py::is_method(site), py::arg("problem") = py::none(), py::kw_only(),
+      py::arg("progress") = py::none(),
+      ("Plans a survey as the program does: with nothing given, the fewest stations that capture and link enough.\n\n"
+       "problem: a SurveyProblem in place of the settings of a question. progress: as `vantage.plan` takes it.\n"
+       "Raises Error: invalid_argument." +
+       settings_doc("Site.plan", question_settings(), plan_settings()))
+          .c_str());
   const auto options = plan_options();
   m.def(
       "plan",

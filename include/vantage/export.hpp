@@ -18,6 +18,7 @@
 #include "vantage/planner.hpp"
 #include "vantage/scene.hpp"
 #include "vantage/simulator.hpp"
+#include "vantage/site.hpp"
 
 namespace vantage {
 
@@ -133,6 +134,9 @@ std::vector<std::filesystem::path> draw_plan_view(const std::filesystem::path& f
 /// .svg. Makes the folder where there is none. Returns the index of the chosen entry.
 std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& result, const Simulator& simulator,
                        const SearchArea& area, const VoxelField* field = nullptr, const std::string& crs = {});
+/// The same of a plan of a site.
+std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& result, Site& site,
+                       const VoxelField* field = nullptr);
 
 /// CSV: `node,voxels,captured,hidden,out_of_range,too_flat,too_sparse,not_chosen`, shares of the node's voxels.
 void write_missed_csv(const std::filesystem::path& file, std::span<const MissedShare> shares);

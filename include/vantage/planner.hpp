@@ -85,16 +85,19 @@ SurveyProblem survey_problem(std::span<const std::string> objectives, std::size_
 /// How to search.
 struct PlanConfig {
   std::size_t population = 0;  ///< 0: with one objective 10, or 20 where the number is searched; else 100.
-  /// Of `population` evaluations each. 0, where the fewest stations are asked for: by the site, so that the search
+  /// Of `population` evaluations each. 0: 100; where the fewest stations are asked for, by the site, so that the search
   /// traces about twice as many stations as looking at what can be seen did.
-  std::size_t iterations = 100;
+  std::size_t iterations = 0;
   double sigma0 = 0.2;
   /// Makes the optimiser of problems with several objectives; empty: MO-CMA-ES. A checkpoint is resumed only with the
   /// same.
   OptimiserMaker optimiser = {};
   MoCmaEsConfig::Scheme scheme = MoCmaEsConfig::Scheme::steady_state;
-  std::size_t batch = 0;            ///< Offspring at once in the steady state; 0: chosen by the engine.
-  std::uint64_t sample_voxels = 0;  ///< 0: exact search; else sampled with so many voxels.
+  std::size_t batch = 0;  ///< Offspring at once in the steady state; 0: chosen by the engine.
+  bool exact = false;     ///< Search with every ray, the dearest way; `sample_voxels` is then 0.
+  /// Search with so many of the surveyed voxels; 0: chosen by the problem and the site.
+  std::uint64_t sample_voxels = 0;
+  std::optional<double> sample_share = {};  ///< The same as a share of the surveyed voxels, above 0 and at most 1.
   /// Where not 0: a network is looked at with so many voxels first, and with four times as many where it might be on
   /// the front. That sample grows, by four each time, to `sample_voxels` when networks have come to differ by less than
   /// it can tell; what is kept is then measured anew (docs/method.md).
@@ -102,7 +105,8 @@ struct PlanConfig {
   /// Where not 0: every so many iterations other voxels are drawn, and what is kept is measured anew with them; at the
   /// end with voxels that nothing was chosen by. All that is then kept is confirmed, but for what cannot be on the
   /// front, and the front is chosen by every ray. 0: one sample for the whole search, and the front that it shows.
-  std::size_t renew_iterations = 0;
+  /// Empty: 20 for a front without a sample asked for, else 0.
+  std::optional<std::size_t> renew_iterations = {};
   /// Head positions of an initial network: the first mean of CMA-ES, a first member of MO-CMA-ES; empty: random. Where
   /// the number of stations is searched, the first N of them are a first member for each N that they suffice for.
   std::vector<Vec3> start = {};
@@ -110,9 +114,9 @@ struct PlanConfig {
   double max_seconds = 0;   ///< Of this call's search; looked at between evaluations. 0: no limit.
   std::optional<double> target_hypervolume = std::nullopt;
   std::size_t stagnation_iterations = 0;
-  std::uint64_t seed = 1;
-  std::filesystem::path checkpoint = {};  ///< File to write; the one before stays as FILE.before. Empty: none.
-  double checkpoint_seconds = 60;         ///< How often.
+  std::optional<std::uint64_t> seed = {};  ///< Empty: the site's.
+  std::filesystem::path checkpoint = {};   ///< File to write; the one before stays as FILE.before. Empty: none.
+  double checkpoint_seconds = 60;          ///< How often.
   /// Go on from the checkpoint, or the one before; where there is none begin. Limits (iterations, seconds, hypervolume,
   /// stagnation) may differ from the run that wrote it, nothing else.
   bool resume = false;

@@ -520,6 +520,120 @@ class Candidates:
     def spacing_m(self) -> float: ...
     def __len__(self) -> int: ...
 
+# A setting as the program's option of that name takes it: a number, a text, a truth value, or a sequence of them.
+Setting = Union[None, bool, float, str, Sequence[Any], "os.PathLike[str]"]
+
+class SiteChoice:
+    @property
+    def setting(self) -> str: ...
+    @property
+    def value(self) -> str: ...
+    @property
+    def why(self) -> str: ...
+
+class Site:
+    @staticmethod
+    def open(
+        file: Path,
+        *,
+        surveyed: Setting = None,
+        blocking: Setting = None,
+        search: Setting = None,
+        ignore: Setting = None,
+        weight: Setting = None,
+        detail: Setting = None,
+        accuracy: Setting = None,
+        unit: Setting = None,
+        up: Setting = None,
+        scene_index: Setting = None,
+        diffuse: Setting = None,
+        allow_outside: Setting = None,
+        scanner: Setting = None,
+        step: Setting = None,
+        heading: Setting = None,
+        horizontal: Setting = None,
+        vertical: Setting = None,
+        zenith_start: Setting = None,
+        height: Setting = None,
+        range: Setting = None,
+        noise: Setting = None,
+        beam: Setting = None,
+        rate: Setting = None,
+        user_size: Setting = None,
+        incidence: Setting = None,
+        spacing: Setting = None,
+        spacing_by_detail: Setting = None,
+        security: Setting = None,
+        slope: Setting = None,
+        headroom: Setting = None,
+        min_area: Setting = None,
+        passage: Setting = None,
+        climb: Setting = None,
+        enter: Setting = None,
+        doors: Setting = None,
+        station_area: Setting = None,
+        levels: Setting = None,
+        within: Setting = None,
+        without: Setting = None,
+        engine: Setting = None,
+        device: Setting = None,
+        seed: Setting = None,
+        memory: Setting = None,
+        validation: Setting = None,
+        crs: Setting = None,
+    ) -> Site: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def scene(self) -> Scene: ...
+    @property
+    def scanners(self) -> List[Scanner]: ...
+    @property
+    def choices(self) -> List[SiteChoice]: ...
+    def plan(
+        self,
+        problem: Optional[SurveyProblem] = None,
+        *,
+        progress: Optional[Callable[[PlanProgress], Any]] = None,
+        set_up: Setting = None,
+        walking: Setting = None,
+        registration_rho: Setting = None,
+        registration_patch: Setting = None,
+        registration_position: Setting = None,
+        registration_heading: Setting = None,
+        registration_tilt: Setting = None,
+        registration_surfaces: Setting = None,
+        problem: Setting = None,
+        capture: Setting = None,
+        link: Setting = None,
+        apart: Setting = None,
+        max_time_on_site: Setting = None,
+        objectives: Setting = None,
+        require: Setting = None,
+        stations: Setting = None,
+        search_step: Setting = None,
+        heights: Setting = None,
+        link_overlap: Setting = None,
+        min_overlap: Setting = None,
+        fitness: Setting = None,
+        algorithm: Setting = None,
+        population: Setting = None,
+        iterations: Setting = None,
+        batch: Setting = None,
+        redraws: Setting = None,
+        stagnation: Setting = None,
+        sigma: Setting = None,
+        scheme: Setting = None,
+        max_time: Setting = None,
+        target_hypervolume: Setting = None,
+        exact: Setting = None,
+        sample: Setting = None,
+        sample_from: Setting = None,
+        renew: Setting = None,
+        save_every: Setting = None,
+        resume: Setting = None,
+    ) -> PlanResult: ...
+
 def find_candidates(
     simulator: Simulator,
     area: SearchArea,
@@ -859,18 +973,20 @@ def plan(
     *,
     progress: Optional[Callable[[PlanProgress], Any]] = None,
     population: int = 0,
-    iterations: int = 100,
+    iterations: int = 0,
     sigma0: float = 0.2,
     scheme: Literal["steady-state", "generational"] = "steady-state",
     batch: int = 0,
+    exact: bool = False,
     sample_voxels: int = 0,
+    renew_iterations: Optional[int] = None,
     sample_from: int = 0,
     start: Sequence[Sequence[float]] = [],
     redraws: int = 8,
     max_seconds: float = 0.0,
     target_hypervolume: Optional[float] = None,
     stagnation_iterations: int = 0,
-    seed: int = 1,
+    seed: Optional[int] = None,
     checkpoint: Path = "",
     checkpoint_seconds: float = 60.0,
     resume: bool = False,

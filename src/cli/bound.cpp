@@ -16,7 +16,7 @@ namespace vantage::cli {
 namespace {
 
 struct BoundOptions {
-  SiteOptions site;
+  SiteArguments site;
   std::vector<std::size_t> stations;
   std::vector<double> captures;
   CandidateConfig candidates{.most = 1024};
@@ -103,11 +103,10 @@ std::string text_of(const StationsBound& bound, double capture) {
 
 int bound(CLI::App& command, BoundOptions& options, Program& program) {
   const Stopwatch watch;
-  LoadedSite site = open_site(command, options.site);
-  weigh_ground(site);
+  Site site = open_site(command, options.site);
   if (options.stations.empty() && options.captures.empty())
     throw Error(Errc::invalid_argument, "bound: of what? Give --stations N, --capture C or both");
-  Simulator simulator = build_simulator(site, {&site.scanner, 1}, program);
+  Simulator& simulator = build_simulator(site, program);
   tell_engine(simulator);
   tell_grid(simulator);
   if (options.sample) options.candidates.sample_voxels = options.sample->of(simulator.voxel_count());
@@ -175,8 +174,8 @@ int bound(CLI::App& command, BoundOptions& options, Program& program) {
                                        {"seconds", seconds_json(watch, 0)},
                                        {"engine", to_string(simulator.engine().engine)},
                                        {"device", simulator.engine().device},
-                                       {"seed", site.config.seed},
-                                       {"options", site.as_options()},
+                                       {"seed", site.simulator_config().seed},
+                                       {"options", options_of(site.settings())},
                                        {"version", version()}});
   return exit_ok;
 }

@@ -23,7 +23,7 @@ namespace vantage::cli {
 namespace {
 
 struct EditCommandOptions {
-  SiteOptions site;
+  SiteArguments site;
   StationOptions stations;
   EditOptions edit;
   std::optional<SampleSize> sample;
@@ -63,7 +63,7 @@ struct Keeper {
   }
 
   // Where the scene is another, nothing.
-  std::vector<EditStation> restored(LoadedSite& site) const {
+  std::vector<EditStation> restored(Site& site) const {
     std::error_code ignored;
     if (!std::filesystem::exists(file, ignored)) return {};
     std::vector<EditStation> stations;
@@ -120,12 +120,11 @@ class Browser {
 };
 
 int edit(CLI::App& command, EditCommandOptions& options, Program& program) {
-  LoadedSite site = open_site(command, options.site);
-  weigh_ground(site);
+  Site site = open_site(command, options.site);
   const std::string title = std::filesystem::path(options.site.scene).stem().string();
   const std::filesystem::path folder = options.output ? *options.output : title + "-edit";
   make_folder(folder);
-  const Keeper keeper{folder / "edit.json", fmt::format("{:016x}", site.scene.fingerprint())};
+  const Keeper keeper{folder / "edit.json", fmt::format("{:016x}", site.scene().fingerprint())};
   std::vector<EditStation> stations;
   if (options.stations.typed.empty() && !options.stations.file) {
     stations = keeper.restored(site);
@@ -137,7 +136,7 @@ int edit(CLI::App& command, EditCommandOptions& options, Program& program) {
       stations.push_back({.placed = station.placed});
     }
   }
-  Simulator simulator = build_simulator(site, site.scanners, program);
+  Simulator& simulator = build_simulator(site, program);
   tell_engine(simulator);
   tell_grid(simulator);
   if (options.link) options.edit.link = *options.link;

@@ -6,10 +6,7 @@
 #include "cli/command.hpp"
 #include "cli/dropped_points.hpp"
 #include "cli/missed.hpp"
-#include "cli/on_site.hpp"
 #include "cli/options.hpp"
-#include "cli/problem.hpp"
-#include "cli/registration.hpp"
 #include "cli/report.hpp"
 #include "cli/run_report.hpp"
 #include "cli/site.hpp"
@@ -22,10 +19,10 @@ namespace {
 constexpr std::uint64_t visible_sample = 20'000;
 
 struct EvaluateCommandOptions {
-  SiteOptions site;
+  SiteArguments site;
   StationOptions stations;
-  RegistrationCliOptions registration;
-  OnSiteCliOptions on_site;
+  RegistrationOptions registration;
+  OnSiteOptions on_site;
   bool exact = false, skip = false, no_overlap = false, with_registration = false, visible = false;
   std::optional<SampleSize> sample;
   std::optional<double> error, link, link_overlap;
@@ -56,7 +53,7 @@ struct EvaluateCommandOptions {
     command.add_flag("--no-overlap", no_overlap, "Coverage only")->group("Evaluation");
     command.add_flag("--registration", with_registration, "Predict the error of the registered scans")
         ->group("Registration");
-    registration.add(command);
+    add_settings(command, registration_settings(), registration);
     add_texts(command, "--registration-map", "FILE",
               "Write the predicted error on the surface, in false colours: .ply, or .png or .svg from above; may be "
               "repeated",
@@ -71,7 +68,7 @@ struct EvaluateCommandOptions {
         fmt::format("Scan overlap from which on two stations count as linked, 0 to 1; {} otherwise", default_link),
         link, {.low = 0, .high = 1})
         ->group("Evaluation");
-    on_site.add(command, "Evaluation");
+    add_settings(command, on_site_settings(), on_site, "Evaluation");
     add_text(command, "--cartography", "FILE", "Write every surveyed voxel with its count, in false colours: .ply",
              cartography)
         ->group("Results");
@@ -94,12 +91,12 @@ struct EvaluateCommandOptions {
   }
 
   std::optional<RegistrationModel> model() const {
-    return with_registration ? std::optional(registration.settle().model) : std::nullopt;
+    return with_registration ? std::optional(registration.model) : std::nullopt;
   }
 };
 
 // As `plan` looks at it before it searches.
-Estimate visible_share(LoadedSite& site, Simulator& simulator, std::uint64_t sample, Program& program) {
+Estimate visible_share(Site& site, Simulator& simulator, std::uint64_t sample, Program& program) {
   ProgressLine line(program.console, "look");
   return find_candidates(simulator, site.area(), site.clash(), {.most = 512, .sample_voxels = sample},
                          {.report = [&](double done) { line.update(done); }, .stop = program.stop})
@@ -160,8 +157,7 @@ nlohmann::json lines_json(const SurveySummary& summary) {
 
 int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& program) {
   const Stopwatch watch;
-  LoadedSite site = open_site(command, options.site);
-  weigh_ground(site);
+  Site site = open_site(command, options.site);
   const auto stations = place(site, options.stations.read(max_stations));
   warn_of_unusable(stations);
   const auto placed = placed_of(stations);
@@ -178,7 +174,7 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
   must_end(options.matrix, "--overlap-csv", ".csv");
   for (const std::string& file : options.station_files) {
     must_end(file, "--write-stations", ".dxf", ".geojson", ".kml");
-    if (!file.ends_with(".dxf")) to_wgs84(site.crs_text(), {});  // an error now, not behind the rays
+    if (!file.ends_with(".dxf")) to_wgs84(crs_text(site), {});  // an error now, not behind the rays
   }
   if (options.cartography && sampled)
     throw Error(Errc::invalid_argument, "--cartography: shows every voxel, and so needs --exact");
@@ -200,7 +196,7 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
   if (options.with_registration && !overlap)
     throw Error(Errc::invalid_argument, "--registration: looks at what scans share, which --no-overlap leaves out");
 
-  Simulator simulator = build_simulator(site, site.scanners, program);
+  Simulator& simulator = build_simulator(site, program);
   tell_engine(simulator);
   tell_grid(simulator);
   const Network network = to_network(stations);
@@ -217,7 +213,7 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
                                                              .registration = options.model()},
                                                             progress);
   if (counts.cancelled) throw Stopped{};
-  const RegistrationOptions registration = options.registration.settle();
+  const RegistrationOptions& registration = options.registration;
   const bool by_all = options.with_registration && registration.surfaces == RegistrationSurfaces::all;
   Surroundings around;
   if (overlap)
@@ -256,7 +252,7 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
   const OverlapMatrix& drawn = options.link_overlap ? matrix : scan_overlaps;
   const double least_drawn = options.link_overlap.value_or(link);
   if (options.picture) {
-    draw_plan_view(*options.picture, site.scene, site.area(), placed, drawn,
+    draw_plan_view(*options.picture, site.scene(), site.area(), placed, drawn,
                    fmt::format("{} station{}: coverage {:.3f}, overlap {:.3f}", placed.size(),
                                placed.size() == 1 ? "" : "s", covered.value, overlapped.value),
                    least_drawn, names, error.stations,
@@ -264,10 +260,10 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
   }
 
   for (const std::string& file : options.station_files)
-    write_stations(file, {placed, names}, drawn, least_drawn, site.area(), site.crs_text());
+    write_stations(file, {placed, names}, drawn, least_drawn, site.area(), crs_text(site));
   nlohmann::json rows = nlohmann::json::array();
   for (std::size_t k = 0; k < stations.size(); ++k) {
-    auto row = to_json(stations[k], names[k], site.scanners);
+    auto row = to_json(stations[k], names[k], site.scanners());
     row["points"] = nullptr;
     row["points_on_surveyed"] = nullptr;
     if (!sampled && !counts.points.empty()) row["points"] = counts.points[k];
@@ -286,7 +282,9 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
   if (options.with_registration) summary.registration_mm = 1e3 * registered.value;
   std::optional<Visit> visit;
   if (site.has_area()) {
-    visit = OnSite(site.area(), site.clash(), simulator.scanners(), options.on_site.settle(site)).visit(placed);
+    OnSiteOptions on_site = options.on_site;
+    on_site.entrance = site.walkable().enter;  // rounds begin and end where one comes in
+    visit = OnSite(site.area(), site.clash(), simulator.scanners(), on_site).visit(placed);
     summary.seconds_on_site = 60 * visit->minutes;
   }
   summary.faults = station_faults(placed, names);
@@ -323,8 +321,8 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
                         {"seconds", seconds_json(watch, counts.trace_seconds)},
                         {"engine", to_string(simulator.engine().engine)},
                         {"device", simulator.engine().device},
-                        {"seed", site.config.seed},
-                        {"options", site.as_options()},
+                        {"seed", site.simulator_config().seed},
+                        {"options", options_of(site.settings())},
                         {"version", version()}};
     if (overlap) {
       json["overlap"] = overlapped.value;
@@ -344,7 +342,7 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
   } else {
     std::string text =
         station_table(placed, names, sampled ? std::span<const std::uint64_t>() : std::span(counts.points_on_surveyed),
-                      site.scanners);
+                      site.scanners());
     const auto with_error = [&](const Estimate& estimate) {
       return sampled ? fmt::format("{:.4f} ± {:.4f}", estimate.value, estimate.standard_error)
                      : fmt::format("{:.4f}", estimate.value);

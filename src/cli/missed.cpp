@@ -33,12 +33,12 @@ void MissedFiles::check() const {
       throw Error(Errc::invalid_argument, "--missed: " + file + " is none of .csv, .ply, .png and .svg");
 }
 
-std::optional<JudgedVoxels> judge_missed(LoadedSite& site, const Simulator& simulator, const VoxelField& field,
+std::optional<JudgedVoxels> judge_missed(Site& site, const Simulator& simulator, const VoxelField& field,
                                          Program& program) {
   if (simulator.voxel_count() == 0) return std::nullopt;
   const MissedOptions options;
   const std::vector<PlacedStation> candidates =
-      candidate_positions(site.area(), site.clash(), site.scanner, options.candidates);
+      candidate_positions(site.area(), site.clash(), site.scanner(), options.candidates);
   JudgedVoxels judged{.ranks = simulator.sampled_voxels(std::min(most_voxels, simulator.voxel_count()))};
   for (const std::uint32_t rank : judged.ranks) judged.points.push_back(field.count[rank]);
   ProgressLine line(program.console, "why missed");

@@ -31,7 +31,7 @@ struct JudgedVoxels {
   std::vector<MissedShare> shares = {};
 };
 // Of a large site a sample of them. Empty where it was stopped, or nothing is surveyed.
-std::optional<JudgedVoxels> judge_missed(LoadedSite& site, const Simulator& simulator, const VoxelField& field,
+std::optional<JudgedVoxels> judge_missed(Site& site, const Simulator& simulator, const VoxelField& field,
                                          Program& program);
 
 // Writes each file by its extension: .csv a table by node, .ply a cloud, .png or .svg a picture from above.

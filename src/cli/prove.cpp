@@ -9,8 +9,8 @@
 
 namespace vantage::cli {
 
-void prove(const std::filesystem::path& file, LoadedSite& site, Simulator& simulator,
-           std::span<const PlacedStation> stations, std::size_t kept, Program& program) {
+void prove(const std::filesystem::path& file, Site& site, Simulator& simulator, std::span<const PlacedStation> stations,
+           std::size_t kept, Program& program) {
   if (stations.size() <= kept) return;
   ProgressLine line(program.console, "bound");
   const Progress progress{.report = [&](double done) { line.update(done); }, .stop = program.abort};

@@ -19,7 +19,7 @@ std::string why_no_report();
 
 // What a command knows of a network besides the report itself; null: not looked at.
 struct ReportSources {
-  LoadedSite& site;
+  Site& site;
   Simulator& simulator;
   const VoxelField* field = nullptr;
   const JudgedVoxels* judged = nullptr;

@@ -37,19 +37,19 @@ std::vector<std::vector<std::uint8_t>> encoded(std::span<const Image> images) {
 
 }  // namespace
 
-std::vector<std::vector<std::uint8_t>> station_pictures(const LoadedSite& site, std::span<const PlacedStation> stations,
+std::vector<std::vector<std::uint8_t>> station_pictures(const Site& site, std::span<const PlacedStation> stations,
                                                         std::stop_token stop) {
   if (stations.empty()) return {};
-  const Box bounds = site.scene.bounds();
+  const Box bounds = site.scene().bounds();
   const Vec3 middle = (bounds.min + bounds.max) * 0.5;
   constexpr PanoramaView view[] = {PanoramaView::colour};
   std::vector<Image> images;
   try {
-    PanoramaRenderer renderer(site.scene,
+    PanoramaRenderer renderer(site.scene(),
                               {.width = width_for(stations.size()),
-                               .min_range_m = site.scanner.min_range_m,
-                               .max_range_m = std::max(1000.0, site.scanner.max_range_m)},
-                              site.config);
+                               .min_range_m = site.scanner().min_range_m,
+                               .max_range_m = std::max(1000.0, site.scanner().max_range_m)},
+                              site.simulator_config());
     for (const PlacedStation& station : stations) {
       images.emplace_back();
       if (station.status == StationStatus::hole) continue;

@@ -182,7 +182,7 @@ std::string front_json(const PlanResult& result, const Simulator& simulator) {
   json["seconds"] = {{"total", result.seconds}, {"trace", result.trace_seconds}};
   json["engine"] = to_string(simulator.engine().engine);
   json["device"] = simulator.engine().device;
-  json["seed"] = result.config.seed;
+  json["seed"] = result.config.seed.value_or(1);
   json["version"] = version();
   json["parameters"] = run_parameters(simulator, &result);
   return json.dump(2) + "\n";

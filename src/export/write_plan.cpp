@@ -74,4 +74,10 @@ std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& re
   return chosen;
 }
 
+std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& result, Site& site,
+                       const VoxelField* field) {
+  const std::string crs = site.crs().empty() ? "" : coordinate_system(site.crs());
+  return write_plan(folder, result, site.simulator(), site.area(), field, crs);
+}
+
 }  // namespace vantage

@@ -43,9 +43,9 @@ std::unique_ptr<Optimiser> choose_optimiser(const DecisionSpace& space, const Su
       .max_iterations = config.iterations,
       .target_hypervolume = config.target_hypervolume,
       .stagnation_iterations = config.stagnation_iterations,
-      .seed = config.seed,
+      .seed = config.seed.value_or(1),
       .mo = {
-          .scheme = config.scheme, .batch = batch, .recalls = config.sample_voxels > 0 && config.renew_iterations > 0}};
+          .scheme = config.scheme, .batch = batch, .recalls = config.sample_voxels > 0 && config.renew_iterations.value_or(0) > 0}};
   if (space.searches_number())
     chosen.blocks_in_use = [&space](std::span<const double> x) { return space.placed_count(x); };
   if (problem.objectives.size() == 1) {

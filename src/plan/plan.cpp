@@ -10,6 +10,7 @@
 #include "plan/somewhere_to_stand.hpp"
 #include "vantage/error.hpp"
 #include "vantage/planner.hpp"
+#include "vantage/question.hpp"
 
 namespace vantage {
 namespace {
@@ -64,7 +65,8 @@ void work_out_rounds(PlanResult& result, PlanContext& context) {
 }  // namespace
 
 PlanResult plan(Simulator& simulator, const SearchArea& area, const ClashChecker& clash, const SurveyProblem& asked,
-                const PlanConfig& config, const PlanWatch& watch) {
+                const PlanConfig& wanted, const PlanWatch& watch) {
+  const PlanConfig config = settled(wanted, asked, simulator.voxel_count(), simulator.config().seed);
   using Clock = std::chrono::steady_clock;
   const auto start = Clock::now();
   const auto since = [](Clock::time_point then) { return std::chrono::duration<double>(Clock::now() - then).count(); };
@@ -112,7 +114,7 @@ PlanResult plan(Simulator& simulator, const SearchArea& area, const ClashChecker
     result.front = std::move(confirmed.entries), result.spared = confirmed.spared;
     drop_networks(result.front, problem);
     result.exact_hypervolume = judge_by_every_ray(result.front, problem, context.measures());
-    if (config.renew_iterations > 0) keep_undominated(result.front, problem, context.measures());
+    if (config.renew_iterations.value_or(0) > 0) keep_undominated(result.front, problem, context.measures());
     result.seconds = found.seconds + since(searched);
     result.trace_seconds = found.trace_seconds + context.evaluator().trace_seconds() - searched_trace;
   }

@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/scanners.hpp"
-
 #include <algorithm>
 #include <functional>
 #include <sstream>
 #include <vector>
 
-#include "cli/parse.hpp"
+#include "core/parse.hpp"
 #include "core/read_file.hpp"
 #include "vantage/error.hpp"
+#include "vantage/scanner.hpp"
 
-namespace vantage::cli {
+namespace vantage {
 namespace {
 
-std::string trimmed(std::string line) {
+std::string noise_line(std::string line) {
   while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
   return line;
 }
@@ -27,14 +26,14 @@ NoiseTable load_noise(const std::string& name) {
     const Scanner scanner = load_scanner(name, own_presets_file());
     if (scanner.noise.empty())
       throw Error(Errc::invalid_argument,
-                  "--noise: the maker of '" + name + "' states no noise table; give a CSV file or off");
+                  "noise: the maker of '" + name + "' states no noise table; give a CSV file or off");
     return scanner.noise;
   }
   std::istringstream stream(read_file(name));
   NoiseTable table;
   std::string line;
   for (std::size_t number = 1; std::getline(stream, line); ++number) {
-    line = trimmed(line);
+    line = noise_line(line);
     if (line.empty() || line.starts_with('#')) continue;
     const std::string what = name + ", line " + std::to_string(number);
     const auto cells = split(line, ',');
@@ -56,4 +55,4 @@ NoiseTable load_noise(const std::string& name) {
   return table;
 }
 
-}  // namespace vantage::cli
+}  // namespace vantage
