@@ -106,7 +106,8 @@ std::shared_ptr<Plan> plan_site(const std::shared_ptr<GuardedSite>& guarded, con
       problem.is_none() ? std::nullopt : std::optional(problem.cast<SurveyProblem>());
   LongCall call(std::move(progress));
   PlanResult result = call.run([&] {
-    const Busy busy(guarded->mutex);
+    const std::unique_lock lock(guarded->mutex, std::try_to_lock);
+    if (!lock) throw Error(Errc::invalid_argument, "the site is in use by another call: open one for each thread");
     return plan(guarded->site, own ? *own : survey_problem(guarded->site, question), config,
                 {.report = [&](const PlanProgress& now) { call.report([&] { return Watched(now); }); },
                  .stop = call.stop(),

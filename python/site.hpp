@@ -2,12 +2,13 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
 
-#include "long_call.hpp"
+#include "casters.hpp"
 
 namespace vantage::python {
 
-/// A site, and who is using it: see `Busy`. Results of its plans keep it.
+/// A site, which serves one call at a time. Results of its plans keep it.
 struct GuardedSite {
   Site site;
   std::mutex mutex = {};

@@ -16,7 +16,6 @@
 #include <string_view>
 #include <vector>
 
-#include "vantage/bound.hpp"
 #include "vantage/candidates.hpp"
 #include "vantage/objective.hpp"
 #include "vantage/on_site.hpp"
@@ -243,49 +242,49 @@ std::vector<std::string> what_would_help(const PlanResult& result);
 std::vector<double> scaled_objectives(const SurveyProblem& problem, std::span<const double> x,
                                       std::span<const double> values);
 
+/// How a first network is chosen among candidates.
 struct GreedyConfig {
   std::size_t stations = 4;              ///< How many to choose.
-  std::size_t candidates = 300;          ///< Positions to choose from, spread evenly over the search area's (u, v).
-  std::uint64_t sample_voxels = 20'000;  ///< 0: with every ray.
-  std::vector<Vec3> fixed = {};          ///< Stations that are there already; neither counted nor returned.
-  std::vector<StationSetup> fixed_setups = {};  ///< As `SurveyProblem::kept_setups`.
+  std::size_t candidates = 300;          ///< Positions to choose from, spread evenly over the ground.
+  std::uint64_t sample_voxels = 20'000;  ///< 0: every voxel.
+  std::vector<Vec3> existing = {};       ///< Heads of stations that are there already; neither counted nor returned.
+  std::vector<StationSetup> existing_setups = {};  ///< As `SurveyProblem::kept_setups`.
 };
 
 /// What `greedy_network` chose.
 struct GreedyResult {
   std::vector<PlacedStation> stations;  ///< In the order of choosing: the first k are the choice for k.
-  std::vector<double> coverage;         ///< After each.
-  std::uint64_t evaluations = 0;
+  std::vector<double> coverage;         ///< After each, on the sample.
   bool cancelled = false;
 };
 
-/// Greedy set cover: takes the candidate that adds most coverage, again and again. Coverage is submodular, so a
-/// candidate's gain can only shrink and most need not be looked at twice (Minoux: Accelerated greedy algorithms for
-/// maximizing submodular set functions, 1978). A baseline, and a first network for `PlanConfig::start`. Throws Error
-/// invalid_argument where no candidate can stand.
+/// A first network for `PlanConfig::start`, and a baseline: greedy() over candidates (vantage/cover.hpp). Once no
+/// candidate adds anything, the rest are the most evenly spread ones. Throws Error invalid_argument for more stations
+/// than candidates, and where no candidate can stand.
 GreedyResult greedy_network(Simulator& simulator, const SearchArea& area, const ClashChecker& clash,
                             const GreedyConfig& config = {}, const Progress& progress = {});
 
+/// How the best network among candidates is chosen.
 struct ExactConfig {
   std::size_t stations = 4;              ///< How many to choose.
   std::size_t candidates = 256;          ///< Positions to choose from, spread evenly over the ground.
   std::uint64_t sample_voxels = 20'000;  ///< 0: every voxel.
-  double link = 0;               ///< Least scan overlap along some spanning tree; 0: stations need not hang together.
-  double apart_m = 0;            ///< Least distance between heads.
-  double max_seconds = 60;       ///< Of branch and bound. What is found when they are over depends on the machine.
-  std::vector<Vec3> fixed = {};  ///< Stations that are there already; neither counted nor returned.
+  double link = 0;          ///< Least scan overlap of links by which the network is connected; 0: it need not be.
+  double apart_m = 0;       ///< Least distance between heads.
+  double max_seconds = 60;  ///< Of branch and bound. What is found when they are over depends on the machine.
+  std::vector<Vec3> existing = {};  ///< Heads of stations that are there already; neither counted nor returned.
 };
 
 /// What `exact_network` chose.
 struct ExactResult {
-  std::vector<PlacedStation> stations;  ///< Empty where no network that hangs together was found.
-  CaptureBound choice;                  ///< Coverage of the choice, and the most that any choice of candidates has.
+  std::vector<PlacedStation> stations;  ///< Empty where no connected network was found.
+  CoverSolution choice;                 ///< The choice among candidates, and the most coverage that any has.
   bool cancelled = false;
 };
 
-/// The best network among candidates, as an integer program: `bound_capture`, or `bound_linked_capture` where it has to
-/// hang together. Without a gap it is the best there is among them. A baseline, and a first network for
-/// `PlanConfig::start`. Throws Error invalid_argument where no candidate can stand.
+/// The best network among candidates, by max_cover() with branch and bound. Without a gap it is the best there is among
+/// them. A baseline, and a first network for `PlanConfig::start`. Throws Error invalid_argument where no candidate can
+/// stand.
 ExactResult exact_network(Simulator& simulator, const SearchArea& area, const ClashChecker& clash,
                           const ExactConfig& config = {}, const Progress& progress = {});
 

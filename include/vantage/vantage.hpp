@@ -2,8 +2,8 @@
 /// All of vantage.
 #pragma once
 
-#include "vantage/bound.hpp"
 #include "vantage/candidates.hpp"
+#include "vantage/cover.hpp"
 #include "vantage/error.hpp"
 #include "vantage/export.hpp"
 #include "vantage/ground.hpp"

@@ -484,32 +484,53 @@ class Simulator:
         progress: Optional[Progress] = None,
     ) -> List[Evaluation]: ...
 
-class CaptureRows:
+class CoverageMatrix:
+    def __init__(self, weights: Sequence[int], goal: float, amounts: Sequence[Sequence[int]]) -> None: ...
     def __len__(self) -> int: ...
-    def row(self, k: int) -> npt.NDArray[np.uint32]: ...
-    @property
-    def voxels(self) -> npt.NDArray[np.uint32]: ...
+    def column(self, candidate: int) -> npt.NDArray[np.uint32]: ...
     @property
     def weights(self) -> npt.NDArray[np.uint32]: ...
     @property
-    def goal_density(self) -> float: ...
+    def goal(self) -> float: ...
+    def coverage(self, chosen: Sequence[int]) -> float: ...
+
+class SampledCoverage:
+    def __len__(self) -> int: ...
+    @property
+    def matrix(self) -> CoverageMatrix: ...
+    @property
+    def voxels(self) -> npt.NDArray[np.uint32]: ...
     @property
     def cancelled(self) -> bool: ...
-    def coverage(self, rows: Optional[Sequence[int]] = None) -> Estimate: ...
+    def coverage(self, stations: Optional[Sequence[int]] = None) -> Estimate: ...
 
-def capture_rows(
+def sample_coverage(
     simulator: Simulator,
     stations: Sequence[PlacedStation],
     *,
     sample_voxels: int = 20000,
     progress: Optional[Progress] = None,
-) -> CaptureRows: ...
+) -> SampledCoverage: ...
+
+class StationGraph:
+    def __init__(self, overlaps: npt.ArrayLike, excluded: Sequence[Tuple[int, int]] = []) -> None: ...
+    def __len__(self) -> int: ...
+    @property
+    def overlaps(self) -> npt.NDArray[np.float32]: ...
+
+def overlap_graph(
+    simulator: Simulator,
+    stations: Sequence[PlacedStation],
+    *,
+    sample_voxels: int = 10000,
+    progress: Optional[Progress] = None,
+) -> StationGraph: ...
 
 class Candidates:
     @property
     def stations(self) -> List[PlacedStation]: ...
     @property
-    def rows(self) -> CaptureRows: ...
+    def coverage(self) -> SampledCoverage: ...
     @property
     def visible(self) -> Estimate: ...
     @property
@@ -648,9 +669,15 @@ def find_candidates(
     max_seconds: float = 0.0,
 ) -> Candidates: ...
 
-class CaptureBound:
+class CoverSolution:
     @property
-    def stations(self) -> int: ...
+    def chosen(self) -> List[int]: ...
+    @property
+    def coverage(self) -> float: ...
+    @property
+    def link(self) -> float: ...
+    @property
+    def violation(self) -> float: ...
     @property
     def bound(self) -> float: ...
     @property
@@ -658,13 +685,9 @@ class CaptureBound:
     @property
     def complete(self) -> bool: ...
     @property
-    def spacing_term(self) -> float: ...
-    @property
     def half_bound(self) -> float: ...
     @property
-    def chosen(self) -> List[int]: ...
-    @property
-    def reached(self) -> Estimate: ...
+    def spacing_term(self) -> float: ...
     @property
     def gap(self) -> float: ...
 
@@ -680,56 +703,52 @@ class StationsBound:
     @property
     def chosen(self) -> List[int]: ...
 
-def bound_capture(
-    rows: CaptureRows,
+def max_cover(
+    matrix: CoverageMatrix,
     stations: int,
-    fixed: Sequence[int] = [],
+    existing: Sequence[int] = [],
     *,
+    graph: Optional[StationGraph] = None,
+    link: float = 0.0,
     progress: Optional[Progress] = None,
     tolerance: float = 0.001,
     max_seconds: float = 120.0,
     exact_seconds: float = 0.0,
-) -> CaptureBound: ...
-def bound_stations(
-    rows: CaptureRows,
-    capture: float,
-    fixed: Sequence[int] = [],
+) -> CoverSolution: ...
+def min_cover(
+    matrix: CoverageMatrix,
+    coverage: float,
+    existing: Sequence[int] = [],
     *,
     progress: Optional[Progress] = None,
     tolerance: float = 0.001,
     max_seconds: float = 120.0,
     exact_seconds: float = 0.0,
 ) -> StationsBound: ...
-def bound_linked_capture(
-    rows: CaptureRows,
-    stations: int,
-    links: Sequence[Tuple[int, int]],
-    fixed: Sequence[int] = [],
+def greedy(matrix: CoverageMatrix, stations: int, existing: Sequence[int] = []) -> List[int]: ...
+def improve_by_swaps(
+    matrix: CoverageMatrix,
+    chosen: Sequence[int],
+    existing: Sequence[int] = [],
     *,
     progress: Optional[Progress] = None,
-    tolerance: float = 0.001,
-    max_seconds: float = 120.0,
-    exact_seconds: float = 0.0,
-) -> CaptureBound: ...
-def links_between(
-    simulator: Simulator,
-    stations: Sequence[PlacedStation],
-    least: float,
-    *,
-    sample_voxels: int = 10000,
-    progress: Optional[Progress] = None,
-) -> List[List[int]]: ...
-def choose_rows(
-    rows: CaptureRows, stations: int, fixed: Sequence[int] = [], *, progress: Optional[Progress] = None
 ) -> List[int]: ...
+def min_connected_cover(
+    matrix: CoverageMatrix,
+    coverage: float,
+    graph: StationGraph,
+    link: float,
+    existing: Sequence[int] = [],
+    *,
+    most: Optional[int] = None,
+    progress: Optional[Progress] = None,
+) -> CoverSolution: ...
 
 class GreedyResult:
     @property
     def stations(self) -> List[PlacedStation]: ...
     @property
     def coverage(self) -> List[float]: ...
-    @property
-    def evaluations(self) -> int: ...
     @property
     def cancelled(self) -> bool: ...
 
@@ -742,15 +761,15 @@ def greedy_network(
     progress: Optional[Progress] = None,
     candidates: int = 300,
     sample_voxels: int = 20000,
-    fixed: Sequence[Sequence[float]] = [],
-    fixed_setups: Sequence[StationSetup] = [],
+    existing: Sequence[Sequence[float]] = [],
+    existing_setups: Sequence[StationSetup] = [],
 ) -> GreedyResult: ...
 
 class ExactResult:
     @property
     def stations(self) -> List[PlacedStation]: ...
     @property
-    def choice(self) -> CaptureBound: ...
+    def choice(self) -> CoverSolution: ...
     @property
     def cancelled(self) -> bool: ...
 
@@ -766,7 +785,7 @@ def exact_network(
     link: float = 0.0,
     apart_m: float = 0.0,
     max_seconds: float = 60.0,
-    fixed: Sequence[Sequence[float]] = [],
+    existing: Sequence[Sequence[float]] = [],
 ) -> ExactResult: ...
 
 class MeasuredNetwork:

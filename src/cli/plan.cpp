@@ -98,8 +98,8 @@ std::vector<Vec3> greedy_start(Site& site, const SurveyProblem& problem, const P
       greedy_network(site.simulator(), site.area(), site.clash(),
                      {.stations = problem.stations_max,
                       .sample_voxels = std::min<std::uint64_t>(config.sample_voxels, kStartSample),
-                      .fixed = problem.kept,
-                      .fixed_setups = problem.kept_setups},
+                      .existing = problem.kept,
+                      .existing_setups = problem.kept_setups},
                      {.report = [&](double done) { line.update(done); }, .stop = std::move(stop)});
   std::vector<Vec3> heads;
   if (greedy.cancelled) return heads;
@@ -126,17 +126,17 @@ std::vector<Vec3> exact_start(Site& site, const SurveyProblem& problem, const Pl
                                            .link = link,
                                            .apart_m = least("apart"),
                                            .max_seconds = seconds,
-                                           .fixed = problem.kept},
+                                           .existing = problem.kept},
                                           {.report = [&](double done) { line.update(done); }, .stop = std::move(stop)});
   std::vector<Vec3> heads;
   if (exact.cancelled) return heads;
   for (const auto& station : exact.stations) heads.push_back(station.position);
   if (heads.empty())
-    spdlog::warn("exact: no network of {} stations was found that hangs together by overlaps of {:g}",
+    spdlog::warn("exact: no network of {} stations was found that is connected by overlaps of {:g}",
                  problem.stations_max, link);
   else
     spdlog::info("exact: {} stations cover {:.4f}, within {:.1f} % of the best that any of the candidates can do",
-                 heads.size(), exact.choice.reached.value, 100 * exact.choice.gap());
+                 heads.size(), exact.choice.coverage, 100 * exact.choice.gap());
   return heads;
 }
 

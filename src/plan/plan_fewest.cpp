@@ -12,11 +12,10 @@
 #include <numeric>
 #include <utility>
 
+#include "cover/partial_cover.hpp"
 #include "plan/candidate_table.hpp"
-#include "plan/choose_on_rows.hpp"
 #include "plan/choose_optimiser.hpp"
 #include "plan/drop_networks.hpp"
-#include "plan/fewest_on_rows.hpp"
 #include "plan/limits.hpp"
 #include "plan/spread_positions.hpp"
 
@@ -95,7 +94,7 @@ class FewestPlan {
     for (std::size_t k = 0; k < kRepairs && best_missed() == 0 && !stopped() && choose_again(); ++k) {
     }
     const SearchOutcome found = search(stations_of(choice_));
-    take(confirmed(found, choice_.rows.size() - problem_.kept.size()));
+    take(confirmed(found, choice_.chosen.size() - problem_.kept.size()));
     PlanResult result = context_.result(found);
     result.evaluations += traced_;
     result.front = front();
@@ -134,7 +133,7 @@ class FewestPlan {
   // What is still to come, once the first round of further candidates was tried: the others, the short list by a larger
   // sample, the end of the search, and by every ray the choice, others with other margins, and what is found.
   void tell_expected(double round_seconds, std::size_t tried) {
-    if (!watch_.report || stopped() || choice_.rows.size() <= problem_.kept.size()) return;
+    if (!watch_.report || stopped() || choice_.chosen.size() <= problem_.kept.size()) return;
     const std::vector<PlacedStation> chosen = stations_of(choice_);
     const auto count = static_cast<double>(chosen.size()), kept = static_cast<double>(problem_.kept.size());
     const Progress silent{.report = {}, .stop = watch_.stop};
@@ -175,38 +174,45 @@ class FewestPlan {
     // than one chosen from many.
     const std::span<const PlacedStation> all = candidates_.stations();
     if (stopped())
-      table_.add(all.first(std::min(all.size(), kLateCandidates)), candidates_.rows(),
+      table_.add(all.first(std::min(all.size(), kLateCandidates)), candidates_.coverage(),
                  {.report = {}, .stop = watch_.abort});
     else
-      station_seconds_ += timed([&] { table_.add(all, candidates_.rows(), progress("look")); }) /
+      station_seconds_ += timed([&] { table_.add(all, candidates_.coverage(), progress("look")); }) /
                           static_cast<double>(std::max<std::size_t>(all.size(), 1));
     traced_ += table_.stations().size();
   }
 
-  RowQuestion question(const CandidateTable& table, double coverage_margin) const {
-    return {.rows = table.rows(),
-            .pairs = table.pairs(),
-            .coverage = coverage_ + (coverage_ > 0 ? coverage_margin : 0),
-            .link = link_ > 0 ? link_ + link_margin_ : 0,
-            .fixed = problem_.kept.size(),
+  CoverProblem question(const CandidateTable& table, double coverage_margin) const {
+    std::vector<std::size_t> existing(problem_.kept.size());
+    std::iota(existing.begin(), existing.end(), std::size_t{0});
+    return {.matrix = table.matrix(),
+            .graph = &table.graph(),
+            .existing = std::move(existing),
             .fewest = problem_.stations_min,
-            .most = most_};
+            .most = most_,
+            .coverage = coverage_ + (coverage_ > 0 ? coverage_margin : 0),
+            .link = link_ > 0 ? link_ + link_margin_ : 0};
   }
-  RowQuestion question() const { return question(table_, coverage_margin_); }
-  std::vector<PlacedStation> stations_of(const RowAnswer& answer) const {
+  CoverProblem question() const { return question(table_, coverage_margin_); }
+  std::vector<PlacedStation> stations_of(const CoverSolution& answer) const {
     std::vector<PlacedStation> stations;
-    for (const std::size_t row : answer.rows) stations.push_back(table_.stations()[row]);
+    for (const std::size_t row : answer.chosen) stations.push_back(table_.stations()[row]);
     return stations;
+  }
+
+  void choose_from(std::optional<CoverSolution> start) {
+    ConnectedCover found = min_connected_cover(question(), watch_.stop, std::move(start));
+    choice_ = std::move(found.best), nearly_ = std::move(found.one_fewer);
   }
 
   void choose() {
     tell("choose", -1);
-    choice_ = fewest_on_rows(question(), watch_.stop, {}, &nearly_);
+    choose_from({});
     fit_time();
-    choice_ = better_on_rows(question(), std::move(choice_), watch_.stop);
+    choice_ = improve_weakest_link(question(), std::move(choice_), watch_.stop);
   }
 
-  double minutes(const RowAnswer& answer) {
+  double minutes(const CoverSolution& answer) {
     const std::vector<PlacedStation> stations = stations_of(answer);
     return context_.on_site().visit(std::span(stations).subspan(problem_.kept.size())).minutes;
   }
@@ -218,12 +224,12 @@ class FewestPlan {
     const double limit = *most;
     const std::size_t kept = problem_.kept.size();
     const double each = context_.on_site().minutes_per_scan() + context_.on_site().options().set_up_min;
-    std::size_t placed = choice_.rows.size() - kept;
+    std::size_t placed = choice_.chosen.size() - kept;
     if (each > 0) placed = std::min(placed, static_cast<std::size_t>(std::max(1.0, limit / each)));
     for (; minutes(choice_) > limit && placed >= std::max<std::size_t>(problem_.stations_min, 1); --placed) {
       most_ = placed;
       nearly_.reset();
-      choice_ = fewest_on_rows(question(), watch_.stop);
+      choice_ = min_connected_cover(question(), watch_.stop).best;
     }
   }
 
@@ -231,7 +237,7 @@ class FewestPlan {
   void choose_around(std::size_t round) {
     const double radius = kAroundRadius * std::ldexp(std::max(candidates_.spacing_m(), 0.1), -static_cast<int>(round));
     std::vector<PlacedStation> around;
-    const auto add = [&](const RowAnswer& answer) {
+    const auto add = [&](const CoverSolution& answer) {
       std::vector<PlacedStation> stations = stations_of(answer);
       stations.erase(stations.begin(), stations.begin() + static_cast<std::ptrdiff_t>(problem_.kept.size()));
       const auto more = positions_around(context_.oracle(), stations, kAround, radius);
@@ -243,49 +249,46 @@ class FewestPlan {
     table_.add(around, progress("choose"));
     traced_ += table_.stations().size() - before;
     if (nearly_) {
-      RowQuestion fewer = question();
-      fewer.most = std::min(fewer.most, nearly_->rows.size() - problem_.kept.size());
-      RowAnswer better = better_on_rows(fewer, std::move(*nearly_), watch_.stop);
+      CoverProblem fewer = question();
+      fewer.most = std::min(fewer.most, nearly_->chosen.size() - problem_.kept.size());
+      CoverSolution better = improve_weakest_link(fewer, std::move(*nearly_), watch_.stop);
       nearly_ = better;
-      if (better.missed <= choice_.missed) {
-        nearly_.reset();
-        choice_ = fewest_on_rows(question(), watch_.stop, std::move(better), &nearly_);
+      if (better.violation <= choice_.violation) {
+        choose_from(std::move(better));
       }
     }
-    choice_ = better_on_rows(question(), std::move(choice_), watch_.stop);
+    choice_ = improve_weakest_link(question(), std::move(choice_), watch_.stop);
   }
 
   // Rows that may be worth having in a network like the one chosen: it, the best one of a station fewer, for each of
   // its stations those that would replace it best, and those that would add most to it; `times` as many of the latter
   // two.
   std::vector<std::size_t> short_list(std::size_t times) const {
-    const CaptureRows& rows = table_.rows();
-    const RowColumns columns(rows);
-    const RowCover cover(rows, choice_.rows);
-    std::vector<double> gains(rows.size());
-    std::vector<char> listed(rows.size(), 0);
-    std::vector<std::size_t> order(rows.size());
+    const CoverageMatrix& rows = table_.matrix();
+    const ColumnIndex columns(rows);
+    const PartialCover cover(rows, choice_.chosen);
+    std::vector<double> gains(rows.candidates());
+    std::vector<char> listed(rows.candidates(), 0);
+    std::vector<std::size_t> order(rows.candidates());
     std::iota(order.begin(), order.end(), std::size_t{0});
     const auto list_best = [&](std::span<const double> by, std::size_t count) {
       std::ranges::stable_sort(order, std::ranges::greater(), [&](std::size_t row) { return by[row]; });
       for (std::size_t k = 0; k < std::min(count, order.size()); ++k) listed[order[k]] = 1;
     };
     // One after the other: those that add most at first are near each other.
-    const PairTable& pairs = table_.pairs();
-    const auto apart = [&](std::size_t row, std::span<const std::size_t> taken) {
-      return std::ranges::none_of(taken, [&](std::size_t other) { return pairs.too_near(other, row); });
-    };
-    for (const std::size_t row : choose_greedily(rows, times * kMoreClosely, choice_.rows, 1, apart)) listed[row] = 1;
-    for (std::size_t row = 0; row < rows.size(); ++row) gains[row] = cover.gain(row);
-    for (std::size_t at = problem_.kept.size(); at < choice_.rows.size(); ++at) {
+    const CoverProblem more{
+        .matrix = rows, .graph = &table_.graph(), .existing = choice_.chosen, .most = times * kMoreClosely};
+    for (const std::size_t row : greedy(more)) listed[row] = 1;
+    for (std::size_t row = 0; row < rows.candidates(); ++row) gains[row] = cover.gain(row);
+    for (std::size_t at = problem_.kept.size(); at < choice_.chosen.size(); ++at) {
       std::vector<double> without = gains;
-      columns.add_gains_without(choice_.rows[at], cover, without);
+      columns.add_gains_without(choice_.chosen[at], cover, without);
       list_best(without, times * kInsteadClosely);
     }
     if (nearly_)
-      for (const std::size_t row : nearly_->rows) listed[row] = 1;
+      for (const std::size_t row : nearly_->chosen) listed[row] = 1;
     std::vector<std::size_t> list;
-    for (std::size_t row = problem_.kept.size(); row < rows.size(); ++row)
+    for (std::size_t row = problem_.kept.size(); row < rows.candidates(); ++row)
       if (listed[row]) list.push_back(row);
     return list;
   }
@@ -312,15 +315,14 @@ class FewestPlan {
       if (!table.add(listed, progress("choose"))) return;
       traced_ += listed.size();
       std::vector<std::size_t> rows;
-      for (const std::size_t row : choice_.rows) rows.push_back(row_of[row]);
-      const RowQuestion asked = question(table, margin);
-      std::optional<RowAnswer> nearly;
-      RowAnswer found = fewest_on_rows(asked, watch_.stop, judge_rows(asked, std::move(rows)), &nearly);
-      if (found.missed > choice_.missed && times < kLongerList && !stopped()) continue;
+      for (const std::size_t row : choice_.chosen) rows.push_back(row_of[row]);
+      const CoverProblem asked = question(table, margin);
+      ConnectedCover found = min_connected_cover(asked, watch_.stop, evaluate_cover(asked, std::move(rows)));
+      if (found.best.violation > choice_.violation && times < kLongerList && !stopped()) continue;
       table_ = std::move(table);
       coverage_margin_ = margin;
-      nearly_ = std::move(nearly);
-      choice_ = better_on_rows(question(), std::move(found), watch_.stop);
+      nearly_ = std::move(found.one_fewer);
+      choice_ = improve_weakest_link(question(), std::move(found.best), watch_.stop);
       return;
     }
   }
@@ -379,7 +381,7 @@ class FewestPlan {
                            .f = std::vector<double>(problem_.objectives.size(), 2)});
     return confirmed(found, placed.size());
   }
-  std::vector<PlanEntry> confirmed(const RowAnswer& answer) {
+  std::vector<PlanEntry> confirmed(const CoverSolution& answer) {
     const std::vector<PlacedStation> chosen = stations_of(answer);
     return confirmed(std::span(chosen).subspan(problem_.kept.size()));
   }
@@ -413,7 +415,7 @@ class FewestPlan {
     const PlanEntry* nearest = nullptr;
     for (const PlanEntry& entry : entries_)
       if (entry.confirmed && (!nearest || entry.missed < nearest->missed)) nearest = &entry;
-    if (!nearest || choice_.missed > 0) return false;
+    if (!nearest || choice_.violation > 0) return false;
     const auto shortfall = [&](std::string_view name) {
       const auto found = nearest->values.find(std::string(name));
       const double limit = least_of(problem_, name);
@@ -425,10 +427,13 @@ class FewestPlan {
     coverage_margin_ += kBeyond * coverage, link_margin_ += kBeyond * link;
     nearly_.reset();
     // From where it is, at this number, or else by what one more allows.
-    choice_ = judge_rows(question(), choice_.rows);
-    RowAnswer same = better_on_rows(question(), choice_, watch_.stop);
-    choice_ = same.missed == 0 ? std::move(same) : fewest_on_rows(question(), watch_.stop, std::move(same), &nearly_);
-    choice_ = better_on_rows(question(), std::move(choice_), watch_.stop);
+    choice_ = evaluate_cover(question(), choice_.chosen);
+    CoverSolution same = improve_weakest_link(question(), choice_, watch_.stop);
+    if (same.violation == 0)
+      choice_ = std::move(same);
+    else
+      choose_from(std::move(same));
+    choice_ = improve_weakest_link(question(), std::move(choice_), watch_.stop);
     confirm_choice();
     return true;
   }
@@ -437,18 +442,19 @@ class FewestPlan {
   // many may be linked better. False where neither is so.
   bool choose_again() {
     const auto exact = entries_.back().values.find("coverage");
-    if (exact == entries_.back().values.end() || !nearly_ || choice_.missed > 0) return false;
+    if (exact == entries_.back().values.end() || !nearly_ || choice_.violation > 0) return false;
     const double off = choice_.coverage - exact->second.best_known();
     if (off >= coverage_margin_) return false;
     const double margin = std::exchange(coverage_margin_, off);
-    std::optional<RowAnswer> next;
-    RowAnswer found = fewest_on_rows(question(), watch_.stop, *nearly_, &next);
-    if (found.missed == 0 && found.rows.size() <= choice_.rows.size()) {
-      const RowAnswer before = std::exchange(choice_, better_on_rows(question(), std::move(found), watch_.stop));
+    ConnectedCover next = min_connected_cover(question(), watch_.stop, *nearly_);
+    CoverSolution found = std::move(next.best);
+    if (found.violation == 0 && found.chosen.size() <= choice_.chosen.size()) {
+      const CoverSolution before =
+          std::exchange(choice_, improve_weakest_link(question(), std::move(found), watch_.stop));
       const double before_off = sample_off_;
       confirm_choice();
       if (entries_.back().confirmed && entries_.back().missed == 0) {
-        nearly_ = std::move(next);
+        nearly_ = std::move(next.one_fewer);
         return true;
       }
       choice_ = before, sample_off_ = before_off;
@@ -514,8 +520,8 @@ class FewestPlan {
   double look_seconds_ = 0, station_seconds_ = 0;  // that one takes by the sample: what it captures, and links and all
   std::uint64_t sample_;                           // voxels
   CandidateTable table_;
-  RowAnswer choice_;
-  std::optional<RowAnswer> nearly_;
+  CoverSolution choice_;
+  std::optional<CoverSolution> nearly_;
   std::vector<PlanEntry> entries_;
   std::uint64_t traced_ = 0;
 };

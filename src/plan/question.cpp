@@ -190,7 +190,7 @@ PlanConfig settled(const PlanConfig& config, const SurveyProblem& problem, std::
   if (all.iterations == 0 && !problem.fewest) all.iterations = kUsualIterations;
   if (!all.seed) all.seed = seed;
   if (!all.renew_iterations) {
-    const bool front = problem.objectives.size() > 1 && !problem.fewest && config.algorithm == Algorithm::mo_cma_es;
+    const bool front = problem.objectives.size() > 1 && !problem.fewest && !config.optimiser;
     all.renew_iterations =
         front && !config.exact && !sample_given && config.sample_from == 0 ? kIterationsOfASample : 0;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plan/capture_master.hpp"
+#include "cover/benders_master.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -23,83 +23,85 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// More groups make each cut tell more, and the linear program larger; so many of this size do well.
-constexpr std::size_t most_groups = 24;
-constexpr std::size_t voxels_per_group = 50;
-// Cuts that no solution has leaned on for so many rounds are dropped.
-constexpr std::size_t idle_rounds = 6;
-// What branch and bound may be wrong by: its tolerances.
-constexpr double bound_slack = 1e-6;
-// Solutions as good as the known one must not be lost to rounding.
-constexpr double known_slack = 1e-7;
-// A cut must be broken by this share of all weight.
-constexpr double broken = 1e-9;
+// More groups make cuts tighter and the linear program larger.
+constexpr std::size_t kMostGroups = 24;
+constexpr std::size_t kElementsPerGroup = 50;
+// A cut is dropped once it was slack for so many rounds.
+constexpr std::size_t kIdleRounds = 6;
+// Error of a bound by branch and bound, from its tolerances.
+constexpr double kBoundSlack = 1e-6;
+// Rounding must not lose solutions as good as the known one.
+constexpr double kKnownSlack = 1e-7;
+// A cut is added where it is violated by this share of all weight.
+constexpr double kViolated = 1e-9;
 
 }  // namespace
 
-struct CaptureMaster::Impl {
+struct BendersMaster::Impl {
   struct Cut {
     std::size_t group;
     double constant;
-    std::vector<double> of;  // a coefficient each candidate
+    std::vector<double> of;  // a coefficient for each candidate
     std::size_t idle = 0;
   };
 
-  const CaptureRows& rows;
-  std::vector<std::size_t> fixed;
+  const CoverProblem& problem;
+  const CoverageMatrix& matrix;
+  const std::vector<std::size_t>& existing;
   std::size_t candidates, groups;
-  std::vector<double> base;          // b_v
-  std::vector<double> weight;        // w_v / Σ w
+  std::vector<double> base;          // b_e
+  std::vector<double> weight;        // w_e / Σ w
   std::vector<double> group_weight;  // Σ w of each group
   std::vector<Cut> cuts;
 
-  Impl(const CaptureRows& r, std::size_t n, std::span<const std::size_t> f)
-      : rows(r),
-        fixed(f.begin(), f.end()),
+  Impl(const CoverProblem& p, std::size_t n)
+      : problem(p),
+        matrix(p.matrix),
+        existing(p.existing),
         candidates(n),
-        groups(std::clamp<std::size_t>(r.voxels().size() / voxels_per_group, 1, most_groups)),
-        base(r.voxels().size()),
-        weight(r.voxels().size()),
+        groups(std::clamp<std::size_t>(matrix.elements() / kElementsPerGroup, 1, kMostGroups)),
+        base(matrix.elements()),
+        weight(matrix.elements()),
         group_weight(groups) {
-    const double all = rows.total_weight() > 0 ? rows.total_weight() : 1;
-    for (std::size_t v = 0; v < weight.size(); ++v) {
-      weight[v] = rows.weights()[v] / all;
-      group_weight[group_of(v)] += weight[v];
+    const double all = matrix.total_weight() > 0 ? matrix.total_weight() : 1;
+    for (std::size_t e = 0; e < weight.size(); ++e) {
+      weight[e] = matrix.weights()[e] / all;
+      group_weight[group_of(e)] += weight[e];
     }
-    for (const std::size_t k : fixed)
-      for (const CapturedVoxel& seen : rows.row(k)) base[seen.voxel] += share(seen);
+    for (const std::size_t k : existing)
+      for (const CoverageMatrix::Entry& one : matrix.column(k)) base[one.element] += share(one);
     for (double& b : base) b = std::min(b, 1.0);
   }
 
-  // Neighbours along the Morton order are seen alike.
-  std::size_t group_of(std::size_t voxel) const { return voxel * groups / weight.size(); }
-  double share(const CapturedVoxel& seen) const { return std::min(seen.points / rows.goal_density(), 1.0); }
+  // Neighbours by number belong together: along a space-filling curve they are covered alike.
+  std::size_t group_of(std::size_t element) const { return element * groups / weight.size(); }
+  double share(const CoverageMatrix::Entry& one) const { return std::min(one.amount / matrix.goal(), 1.0); }
 
-  std::vector<double> fills(std::span<const double> y) const {
-    std::vector<double> fill(base);
+  std::vector<double> covered_at(std::span<const double> y) const {
+    std::vector<double> covered(base);
     for (std::size_t k = 0; k < candidates; ++k) {
       if (y[k] <= 0) continue;
-      for (const CapturedVoxel& seen : rows.row(k)) fill[seen.voxel] += y[k] * share(seen);
+      for (const CoverageMatrix::Entry& one : matrix.column(k)) covered[one.element] += y[k] * share(one);
     }
-    return fill;
+    return covered;
   }
 
   double value(std::span<const double> y) const {
-    const std::vector<double> fill = fills(y);
+    const std::vector<double> covered = covered_at(y);
     double sum = 0;
-    for (std::size_t v = 0; v < fill.size(); ++v) sum += weight[v] * std::min(fill[v], 1.0);
+    for (std::size_t e = 0; e < covered.size(); ++e) sum += weight[e] * std::min(covered[e], 1.0);
     return sum;
   }
 
   std::vector<Cut> cuts_at(std::span<const double> y) const {
-    const std::vector<double> fill = fills(y);
+    const std::vector<double> covered = covered_at(y);
     std::vector<Cut> made(groups);
     for (std::size_t g = 0; g < groups; ++g) made[g] = {g, 0, std::vector<double>(candidates), 0};
-    for (std::size_t v = 0; v < fill.size(); ++v)
-      made[group_of(v)].constant += weight[v] * (fill[v] >= 1 ? 1 : base[v]);
+    for (std::size_t e = 0; e < covered.size(); ++e)
+      made[group_of(e)].constant += weight[e] * (covered[e] >= 1 ? 1 : base[e]);
     for (std::size_t k = 0; k < candidates; ++k)
-      for (const CapturedVoxel& seen : rows.row(k))
-        if (fill[seen.voxel] < 1) made[group_of(seen.voxel)].of[k] += weight[seen.voxel] * share(seen);
+      for (const CoverageMatrix::Entry& one : matrix.column(k))
+        if (covered[one.element] < 1) made[group_of(one.element)].of[k] += weight[one.element] * share(one);
     return made;
   }
 
@@ -109,8 +111,9 @@ struct CaptureMaster::Impl {
     return sum;
   }
 
-  // What the duals of the cuts prove, in our own arithmetic: with u_c >= 0 on the cuts of each group adding up to at
-  // most 1, F(y) <= Σ_c u_c constant_c + Σ_g (1 − Σ_{c of g} u_c) W_g + Σ_k y_k Σ_c u_c of_ck for every y.
+  // The bound that the duals of the cuts prove, by arithmetic of our own: with u_c >= 0 on the cuts of each group
+  // adding up to at most 1, F(y) <= Σ_c u_c constant_c + Σ_g (1 − Σ_{c of g} u_c) W_g + Σ_k y_k Σ_c u_c of_ck for every
+  // y.
   double proven(std::span<const double> dual, double stations) const {
     std::vector<double> used(groups), gain(candidates);
     std::vector<double> u(dual.begin(), dual.end());
@@ -129,7 +132,7 @@ struct CaptureMaster::Impl {
     return std::min(sum, 1.0);
   }
 
-  // The fewest stations of which `proven` allows that much.
+  // The fewest stations for which `proven` allows that much coverage.
   double stations_proven(std::span<const double> dual, double wanted) const {
     double least = 0, most = static_cast<double>(candidates);
     if (proven(dual, most) < wanted) return most;
@@ -141,10 +144,10 @@ struct CaptureMaster::Impl {
     return least;
   }
 
-  // Further columns and rows under which the taken rows hang together: at one of them a unit for each enters, each
-  // keeps one and hands the others on along links to taken rows. Returns the columns that have to be whole.
-  std::vector<int> add_flow(ClpSimplex& lp, std::size_t stations, const RowGraph& graph) const;
-  void add_exclusions(ClpSimplex& lp, std::size_t stations, const ExcludedRows& excluded) const;
+  // Columns and rows of a flow that connects the taken candidates: it enters at one of them with a unit for each; each
+  // keeps a unit and sends the others on along links to taken ones. Returns the columns that have to be integer.
+  std::vector<int> add_flow(ClpSimplex& lp, std::size_t stations) const;
+  void add_exclusions(ClpSimplex& lp, std::size_t stations) const;
 
   Relaxed solve(bool fewest, double limit, double tolerance, double seconds, const Progress& progress);
 
@@ -153,7 +156,7 @@ struct CaptureMaster::Impl {
     std::vector<Cut> kept;
     for (std::size_t c = 0; c < cuts.size(); ++c) {
       cuts[c].idle = dual[c] > 0 ? 0 : cuts[c].idle + 1;
-      if (cuts[c].idle > idle_rounds)
+      if (cuts[c].idle > kIdleRounds)
         drop.push_back(first_cut + static_cast<int>(c));
       else
         kept.push_back(std::move(cuts[c]));
@@ -163,7 +166,7 @@ struct CaptureMaster::Impl {
   }
 
   // Columns: y of each candidate, then θ of each group. Rows: Σ y, Σ θ, then the cuts.
-  enum Row { number, capture, first_cut };
+  enum Row { number, coverage, first_cut };
 
   void load(ClpSimplex& lp) const {
     const int columns = static_cast<int>(candidates + groups);
@@ -195,31 +198,31 @@ struct CaptureMaster::Impl {
   }
 };
 
-CaptureMaster::CaptureMaster(const CaptureRows& rows, std::size_t candidates, std::span<const std::size_t> fixed)
-    : impl_(std::make_unique<Impl>(rows, candidates, fixed)) {
+BendersMaster::BendersMaster(const CoverProblem& problem, std::size_t candidates)
+    : impl_(std::make_unique<Impl>(problem, candidates)) {
   cut_at(std::vector<double>(candidates, 0.0));
 }
-CaptureMaster::CaptureMaster(CaptureMaster&&) noexcept = default;
-CaptureMaster::~CaptureMaster() = default;
+BendersMaster::BendersMaster(BendersMaster&&) noexcept = default;
+BendersMaster::~BendersMaster() = default;
 
-double CaptureMaster::value(std::span<const double> y) const { return impl_->value(y); }
+double BendersMaster::value(std::span<const double> y) const { return impl_->value(y); }
 
-void CaptureMaster::cut_at(std::span<const double> y) {
+void BendersMaster::cut_at(std::span<const double> y) {
   for (Impl::Cut& cut : impl_->cuts_at(y)) impl_->cuts.push_back(std::move(cut));
 }
 
-Relaxed CaptureMaster::most(double stations, double tolerance, double seconds, const Progress& progress) {
+Relaxed BendersMaster::max_coverage(double stations, double tolerance, double seconds, const Progress& progress) {
   return impl_->solve(false, stations, tolerance, seconds, progress);
 }
 
-Relaxed CaptureMaster::fewest(double capture, double tolerance, double seconds, const Progress& progress) {
-  return impl_->solve(true, capture, tolerance, seconds, progress);
+Relaxed BendersMaster::min_stations(double coverage, double tolerance, double seconds, const Progress& progress) {
+  return impl_->solve(true, coverage, tolerance, seconds, progress);
 }
 
-// Both questions have the same cuts. Of `most`, `limit` is the number of stations and the master's solution is always
-// one of the relaxation, F(y) below its bound; of `fewest`, `limit` is the capture and the master's solution falls
-// short of it until enough cuts are there.
-Relaxed CaptureMaster::Impl::solve(bool fewest, double limit, double tolerance, double seconds,
+// Both questions have the same cuts. For max_coverage() `limit` is the number of stations, and the master's solution is
+// always one of the relaxation, F(y) below its bound. For min_stations() it is the coverage, of which the master's
+// solution is short until there are enough cuts.
+Relaxed BendersMaster::Impl::solve(bool fewest, double limit, double tolerance, double seconds,
                                    const Progress& progress) {
   const auto begun = Clock::now();
   Relaxed best{.bound = fewest ? 0.0 : 1.0, .reached = 0, .y = std::vector<double>(candidates, 0.0)};
@@ -237,7 +240,7 @@ Relaxed CaptureMaster::Impl::solve(bool fewest, double limit, double tolerance, 
   for (std::size_t c = 0; c < candidates + groups; ++c)
     lp.setObjectiveCoefficient(static_cast<int>(c), (c < candidates) == fewest ? 1 : 0);
   if (fewest)
-    lp.setRowLower(capture, limit);
+    lp.setRowLower(coverage, limit);
   else
     lp.setRowUpper(number, limit);
 
@@ -250,10 +253,10 @@ Relaxed CaptureMaster::Impl::solve(bool fewest, double limit, double tolerance, 
     const std::vector<double> y(lp.primalColumnSolution(), lp.primalColumnSolution() + candidates);
     const std::vector<double> theta(lp.primalColumnSolution() + candidates,
                                     lp.primalColumnSolution() + candidates + groups);
-    const double of_capture = fewest ? std::abs(lp.dualRowSolution()[capture]) : 1;
+    const double of_coverage = fewest ? std::abs(lp.dualRowSolution()[coverage]) : 1;
     std::vector<double> dual(cuts.size());
-    for (std::size_t c = 0; c < dual.size() && of_capture > 0; ++c)
-      dual[c] = std::abs(lp.dualRowSolution()[first_cut + static_cast<int>(c)]) / of_capture;
+    for (std::size_t c = 0; c < dual.size() && of_coverage > 0; ++c)
+      dual[c] = std::abs(lp.dualRowSolution()[first_cut + static_cast<int>(c)]) / of_coverage;
     best.bound =
         fewest ? std::max(best.bound, stations_proven(dual, limit)) : std::min(best.bound, proven(dual, limit));
     const double now = value(y);
@@ -267,7 +270,7 @@ Relaxed CaptureMaster::Impl::solve(bool fewest, double limit, double tolerance, 
     best.complete = apart <= tolerance;
     if (best.complete || progress.stopped() || (seconds > 0 && seconds_since(begun) > seconds)) return best;
 
-    // Between the master's solution, which jumps about, and the best so far, cuts are deeper (Ben-Ameur and Neto:
+    // Cuts are deeper between the master's solution, which jumps about, and the best so far (Ben-Ameur and Neto:
     // Acceleration of cutting-plane and column generation algorithms, Networks 49, 2007).
     for (std::size_t k = 0; k < candidates; ++k) between[k] = 0.5 * (y[k] + best.y[k]);
     std::vector<Cut> made = cuts_at(y);
@@ -275,22 +278,22 @@ Relaxed CaptureMaster::Impl::solve(bool fewest, double limit, double tolerance, 
       for (Cut& cut : cuts_at(between)) made.push_back(std::move(cut));
     drop_idle(lp, dual);
     for (Cut& cut : made) {
-      if (theta[cut.group] - at(cut, y) <= broken) continue;
+      if (theta[cut.group] - at(cut, y) <= kViolated) continue;
       add(lp, cut);
       cuts.push_back(std::move(cut));
     }
   }
 }
 
-std::vector<int> CaptureMaster::Impl::add_flow(ClpSimplex& lp, std::size_t stations, const RowGraph& graph) const {
-  const auto all = static_cast<double>(stations + fixed.size());
-  const auto is_fixed = [&](std::size_t k) { return std::ranges::find(fixed, k) != fixed.end(); };
+std::vector<int> BendersMaster::Impl::add_flow(ClpSimplex& lp, std::size_t stations) const {
+  const auto all = static_cast<double>(stations + existing.size());
+  const auto exists = [&](std::size_t k) { return std::ranges::find(existing, k) != existing.end(); };
   const auto add_column = [&](double most) {
     lp.addColumn(0, nullptr, nullptr, 0, most, 0);
     return lp.numberColumns() - 1;
   };
   std::vector<int> whole;
-  // What each row takes in, and what it takes in less what it hands on.
+  // The flow into each candidate, and that less the flow out of it.
   struct Terms {
     std::vector<int> index;
     std::vector<double> value;
@@ -299,7 +302,7 @@ std::vector<int> CaptureMaster::Impl::add_flow(ClpSimplex& lp, std::size_t stati
   std::vector<Terms> in(candidates), net(candidates);
   Terms sources;
   for (std::size_t k = 0; k < candidates; ++k) {
-    if (!fixed.empty() && k != fixed.front()) continue;
+    if (!existing.empty() && k != existing.front()) continue;
     const int flow = add_column(all), here = add_column(1);
     whole.push_back(here);
     sources.add(here, 1);
@@ -311,25 +314,25 @@ std::vector<int> CaptureMaster::Impl::add_flow(ClpSimplex& lp, std::size_t stati
   lp.addRow(static_cast<int>(sources.index.size()), sources.index.data(), sources.value.data(), -COIN_DBL_MAX, 1);
   for (std::size_t a = 0; a < candidates; ++a)
     for (std::size_t b = 0; b < candidates; ++b) {
-      if (!graph.linked(a, b)) continue;
+      if (!problem.graph->linked(a, b, problem.link)) continue;
       const int flow = add_column(all - 1);
       in[b].add(flow, 1), net[b].add(flow, 1), net[a].add(flow, -1);
     }
   for (std::size_t k = 0; k < candidates; ++k) {
     const int y = static_cast<int>(k);
-    const double there = is_fixed(k) ? 1 : 0;
+    const double there = exists(k) ? 1 : 0;
     if (there == 0) in[k].add(y, -all), net[k].add(y, -1);
     lp.addRow(static_cast<int>(in[k].index.size()), in[k].index.data(), in[k].value.data(), -COIN_DBL_MAX, there * all);
     lp.addRow(static_cast<int>(net[k].index.size()), net[k].index.data(), net[k].value.data(), there, there);
-    // A fraction of a flow reaches far; so each taken row needs a taken neighbour, too.
+    // Fractions of a flow reach far, so each taken candidate needs a taken neighbour, too.
     Terms neighbours;
-    bool fixed_neighbour = there > 0;
+    bool existing_neighbour = there > 0;
     for (std::size_t l = 0; l < candidates; ++l) {
-      if (!graph.linked(k, l)) continue;
-      fixed_neighbour = fixed_neighbour || is_fixed(l);
+      if (!problem.graph->linked(k, l, problem.link)) continue;
+      existing_neighbour = existing_neighbour || exists(l);
       neighbours.add(static_cast<int>(l), -1);
     }
-    if (fixed_neighbour || all < 2) continue;
+    if (existing_neighbour || all < 2) continue;
     neighbours.add(y, 1);
     lp.addRow(static_cast<int>(neighbours.index.size()), neighbours.index.data(), neighbours.value.data(),
               -COIN_DBL_MAX, 0);
@@ -337,16 +340,21 @@ std::vector<int> CaptureMaster::Impl::add_flow(ClpSimplex& lp, std::size_t stati
   return whole;
 }
 
-// At most one of two that exclude each other: none of those beside a row that is taken, one line of the program for
-// all.
-void CaptureMaster::Impl::add_exclusions(ClpSimplex& lp, std::size_t stations, const ExcludedRows& excluded) const {
-  for (const std::size_t k : fixed)
-    for (const std::size_t other : excluded.beside(k))
-      if (other < candidates) lp.setColumnUpper(static_cast<int>(other), 0);
+// At most one of two that exclude each other: one row for each candidate, none of the others beside it if it is taken.
+// Existing candidates stand together whatever excludes them.
+void BendersMaster::Impl::add_exclusions(ClpSimplex& lp, std::size_t stations) const {
+  if (!problem.graph) return;
+  const auto exists = [&](std::size_t k) { return std::ranges::find(existing, k) != existing.end(); };
+  const auto excluded_by = [&](std::size_t k) {
+    std::vector<int> others;
+    for (std::size_t other = 0; other < candidates; ++other)
+      if (problem.graph->excluded(k, other) && !(exists(k) && exists(other))) others.push_back(static_cast<int>(other));
+    return others;
+  };
+  for (const std::size_t k : existing)
+    for (const int other : excluded_by(k)) lp.setColumnUpper(other, 0);
   for (std::size_t k = 0; k < candidates; ++k) {
-    std::vector<int> index;
-    for (const std::size_t other : excluded.beside(k))
-      if (other < candidates) index.push_back(static_cast<int>(other));
+    std::vector<int> index = excluded_by(k);
     if (index.empty()) continue;
     const auto most = static_cast<double>(std::min(index.size(), stations));
     std::vector<double> value(index.size(), 1);
@@ -355,20 +363,20 @@ void CaptureMaster::Impl::add_exclusions(ClpSimplex& lp, std::size_t stations, c
   }
 }
 
-CaptureMaster::Choice CaptureMaster::choose(std::size_t stations, double seconds, double known, const RowGraph* graph,
-                                            const ExcludedRows& excluded) const {
+BendersMaster::Choice BendersMaster::choose(std::size_t stations, double seconds, double known) const {
   const Impl& m = *impl_;
   ClpSimplex lp;
   m.load(lp);
   lp.setOptimizationDirection(-1);
   for (std::size_t g = 0; g < m.groups; ++g) lp.setObjectiveCoefficient(static_cast<int>(m.candidates + g), 1);
   lp.setRowUpper(Impl::number, static_cast<double>(stations));
-  lp.setRowLower(Impl::capture, known - known_slack);
+  lp.setRowLower(Impl::coverage, known - kKnownSlack);
   std::vector<int> whole;
-  for (const std::size_t k : m.fixed)
+  for (const std::size_t k : m.existing)
     if (k < m.candidates) lp.setColumnUpper(static_cast<int>(k), 0);  // it cannot be taken again
-  if (graph) whole = m.add_flow(lp, stations, *graph);
-  m.add_exclusions(lp, stations, excluded);
+  const bool connected = m.problem.link > 0;
+  if (connected) whole = m.add_flow(lp, stations);
+  m.add_exclusions(lp, stations);
   OsiClpSolverInterface solver(&lp);
   solver.messageHandler()->setLogLevel(0);
   for (const int column : whole) solver.setInteger(column);
@@ -377,22 +385,22 @@ CaptureMaster::Choice CaptureMaster::choose(std::size_t stations, double seconds
   model.setLogLevel(0);
   model.messageHandler()->setLogLevel(0);
   model.setMaximumSeconds(seconds);
-  // What costs to be used at all, as flows between stations do.
+  // Cuts for fixed charges, as flows between stations have.
   CglFlowCover flow_cover;
   CglMixedIntegerRounding2 rounding;
   CglGomory gomory;
-  if (graph) {
+  if (connected) {
     model.addCutGenerator(&flow_cover, -1, "flow cover");
     model.addCutGenerator(&rounding, -1, "rounding");
     model.addCutGenerator(&gomory, -1, "gomory");
   }
   model.branchAndBound();
   Choice choice;
-  // Maximised, so Cbc's values are those of the negated objective.
-  choice.bound = std::min(1.0, std::abs(model.getBestPossibleObjValue()) + bound_slack);
+  // Cbc minimises the negated objective.
+  choice.bound = std::min(1.0, std::abs(model.getBestPossibleObjValue()) + kBoundSlack);
   if (const double* best = model.bestSolution()) {
     for (std::size_t k = 0; k < m.candidates; ++k)
-      if (best[k] > 0.5) choice.rows.push_back(k);
+      if (best[k] > 0.5) choice.candidates.push_back(k);
   }
   return choice;
 }
