@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
 #include "evaluation.hpp"
 #include "module.hpp"
 #include "options.hpp"
@@ -7,10 +9,15 @@
 namespace vantage::python {
 namespace {
 
-/// A result, and the simulator and the search area that reports of it look at.
+/// A result, and what reports of it look at.
 struct Plan {
   PlanResult result;
-  py::object simulator, area;
+  py::object simulator, area, clash;
+};
+/// What became known of one measure of a network.
+struct MeasuredValue {
+  double searched, standard_error, exact;
+  double best_known() const { return exact == exact ? exact : searched; }
 };
 /// A network of its front; shares the result.
 struct Entry {
@@ -80,7 +87,8 @@ std::shared_ptr<Plan> plan_survey(GuardedSimulator& guarded, const SearchArea& a
                  .abort = call.abort()});
   });
   return std::make_shared<Plan>(Plan{std::move(result), py::cast(guarded, py::return_value_policy::reference),
-                                     py::cast(area, py::return_value_policy::reference)});
+                                     py::cast(area, py::return_value_policy::reference),
+                                     py::cast(clash, py::return_value_policy::reference)});
 }
 
 void add_progress(py::module_& m) {
@@ -118,26 +126,34 @@ void add_entries(py::module_& m) {
           "heads", [](const Entry& e) { return heads_of(e.get().stations); },
           "Their heads, survey frame: (n, 3), metres.")
       .def_property_readonly(
-          "values", [](const Entry& e) { return e.get().values; }, "MeasuredValue by the names of the plan's measures.")
+          "values",
+          [](const Entry& e) {
+            const PlanEntry& entry = e.get();
+            std::map<std::string, MeasuredValue> values;
+            for (const auto& [name, seen] : entry.searched)
+              values[name] = {seen.value, seen.standard_error, entry.exact ? entry.value(name) : std::nan("")};
+            return values;
+          },
+          "MeasuredValue by the names of the plan's measures.")
       .def(
           "value",
           [](const Entry& e, const std::string& name) {
             const auto found = e.get().values.find(name);
             if (found == e.get().values.end()) throw py::key_error(name);
-            return found->second.best_known();
+            return found->second.value;
           },
           py::arg("name"), "values[name].best_known")
       .def_property_readonly(
-          "confirmed", [](const Entry& e) { return e.get().confirmed; }, "Whether the exact values were computed.")
+          "confirmed", [](const Entry& e) { return e.get().exact; }, "Whether the exact values were computed.")
       .def_property_readonly(
           "dominated", [](const Entry& e) { return e.get().dominated; }, "By another one, once every ray is traced.")
       .def_property_readonly(
-          "missed", [](const Entry& e) { return e.get().missed; }, "By how much requirements are missed; 0: kept.")
+          "missed", [](const Entry& e) { return e.get().violation; }, "By how much requirements are missed; 0: kept.")
       .def_property_readonly(
-          "overlap_matrix", [](const Entry& e) { return matrix_of(e.get().exact_overlap_matrix); },
+          "overlap_matrix", [](const Entry& e) { return matrix_of(e.get().overlap_matrix); },
           "Equation 11 by every ray: (n, n); (0, 0) unless confirmed.")
       .def_property_readonly(
-          "scan_overlap_matrix", [](const Entry& e) { return matrix_of(e.get().exact_scan_overlap_matrix); },
+          "scan_overlap_matrix", [](const Entry& e) { return matrix_of(e.get().scan_overlap_matrix); },
           "Scan overlaps over all surfaces: (n, n); (0, 0) unless a measure needs them.")
       .def_property_readonly(
           "registration", [](const Entry& e) { return e.get().registration; },
@@ -145,7 +161,7 @@ void add_entries(py::module_& m) {
       .def("__repr__", [](const Entry& e) {
         std::string text;
         for (const auto& [name, value] : e.get().values)
-          text += ", " + name + " " + std::string(py::str(py::float_(value.best_known())));
+          text += ", " + name + " " + std::string(py::str(py::float_(value.value)));
         return "<vantage.PlanEntry of " + std::to_string(e.get().stations.size()) + " stations" + text + ">";
       });
 }
@@ -162,6 +178,27 @@ py::list history_of(const Plan& plan) {
     lines.append(line);
   }
   return lines;
+}
+
+void write_plan_report(const Plan& plan, const std::filesystem::path& file, const std::string& title,
+                       py::object progress) {
+  auto& guarded = plan.simulator.cast<GuardedSimulator&>();
+  const auto& area = plan.area.cast<const SearchArea&>();
+  const auto& clash = plan.clash.cast<const ClashChecker&>();
+  const PlanEntry& chosen = plan.result.front.at(answer(plan.result));
+  LongCall call(std::move(progress));
+  call.run([&] {
+    const Busy busy(guarded.mutex);
+    const Evaluation seen =
+        evaluate_stations({.simulator = guarded.simulator}, chosen.stations, {.field = true}, call.progress(0, 0.3));
+    MissedVoxels missed;
+    if (!seen.counts.cancelled)
+      missed = missed_voxels(guarded.simulator, area, clash, seen.field, {}, call.progress(0.3, 0.6));
+    if (!call.stop().stop_requested())
+      write_report(file, plan.result, guarded.simulator, area,
+                   {.title = title, .field = &seen.field, .missed = &missed}, call.progress(0.6, 1));
+    return 0;
+  });
 }
 
 void add_results(py::module_& m) {
@@ -212,7 +249,7 @@ void add_results(py::module_& m) {
       .def_property_readonly(
           "summary",
           [](const Plan& plan) {
-            return summary_text(summary_of(plan.result.front.at(answer(plan.result)), plan.result));
+            return summary_text(plan.result.front.at(answer(plan.result)), plan.result.problem.requirements);
           },
           "What the answer comes to, in plain words.")
       .def(
@@ -230,6 +267,10 @@ void add_results(py::module_& m) {
           "Writes the result folder: front.csv, front.json, stations.csv, the pictures (docs/files.md). crs: the "
           "frame,\n"
           "as 'EPSG:25832', for maps. Raises Error: io, invalid_argument.")
+      .def("write_report", &write_plan_report, py::arg("file"), py::kw_only(), py::arg("title") = "Survey",
+           py::arg("progress") = py::none(),
+           "Writes report.html or report.pdf by the file's extension, with what the answer captures and misses.\n"
+           "Raises Error: io, invalid_argument (another extension, a build that writes no reports).")
       .def("__repr__", [](const Plan& plan) {
         return "<vantage.PlanResult of " + std::to_string(plan.result.front.size()) + " networks, " +
                std::to_string(plan.result.evaluations) + " evaluations, " + to_string(plan.result.stop_reason) + ">";
@@ -238,10 +279,32 @@ void add_results(py::module_& m) {
 
 }  // namespace
 
+void write_evaluation_report(const std::filesystem::path& file, const Evaluation& evaluation, GuardedSimulator& guarded,
+                             const SearchArea& area, const ClashChecker* clash, const std::string& title,
+                             py::object progress) {
+  LongCall call(std::move(progress));
+  call.run([&] {
+    const Busy busy(guarded.mutex);
+    MissedVoxels missed;
+    if (clash && !evaluation.field.count.empty())
+      missed = missed_voxels(guarded.simulator, area, *clash, evaluation.field, {}, call.progress(0, 0.3));
+    if (!call.stop().stop_requested())
+      write_report(file, evaluation, guarded.simulator, area, {.title = title, .missed = &missed},
+                   call.progress(0.3, 1));
+    return 0;
+  });
+}
+
 void add_plans(py::module_& m) {
   add_progress(m);
   add_entries(m);
   add_results(m);
+  m.def("write_report", &write_evaluation_report, py::arg("file"), py::arg("evaluation"), py::arg("simulator"),
+        py::arg("area"), py::arg("clash") = py::none(), py::kw_only(), py::arg("title") = "Survey",
+        py::arg("progress") = py::none(),
+        "Writes report.html or report.pdf, by the file's extension, of a network evaluated by this simulator. With\n"
+        "clash, of one evaluated with field=True, it also says why surfaces are not captured.\n"
+        "Raises Error: io, invalid_argument (another extension, a build that writes no reports).");
   const auto options = plan_options();
   m.def(
       "plan",

@@ -315,8 +315,8 @@ Before look_into(const std::filesystem::path& folder, const nlohmann::json& opti
 std::string remarks(const PlanEntry& entry, const PlanResult& result) {
   std::string text;
   const auto pairs = [](const Objective& objective) { return objective.needs.pairs; };
-  if (entry.confirmed && std::ranges::any_of(result.problem.objectives, pairs)) {
-    const std::size_t parts = connectivity(entry.exact_overlap_matrix, result.problem.link_overlap).parts;
+  if (entry.exact && std::ranges::any_of(result.problem.objectives, pairs)) {
+    const std::size_t parts = connectivity(entry.overlap_matrix, result.problem.link_overlap).parts;
     if (parts > 1) text += fmt::format("  in {} parts", parts);
   }
   for (const Requirement& requirement : result.problem.requirements) {
@@ -349,10 +349,11 @@ std::string summary(const PlanResult& result, std::size_t chosen, const std::str
   if (result.spared > 0) text += fmt::format(", {} networks not worth every ray", result.spared);
   text += fmt::format(", stopped: {}\n", to_string(result.stop_reason));
   const PlanEntry& entry = result.front[chosen];
-  text += "\n" +
-          station_table(entry.stations, station_names(entry.stations), entry.points_on_surveyed, result.scanners) +
-          "\n";
-  text += summary_text(summary_of(entry, result));
+  text +=
+      "\n" +
+      station_table(entry.stations, station_names(entry.stations), entry.counts.points_on_surveyed, result.scanners) +
+      "\n";
+  text += summary_text(entry, result.problem.requirements);
   for (const std::string& help : what_would_help(result)) text += fmt::format("{:<11}{}\n", "would help", help);
   return text + "results in " + folder + "\n";
 }
@@ -497,7 +498,7 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
     throw Error(Errc::invalid_argument,
                 "there is nothing to write: the search ended before its first networks were evaluated");
   if (options.resume) {
-    const auto confirmed = static_cast<std::uint64_t>(std::ranges::count(result.front, true, &PlanEntry::confirmed));
+    const auto confirmed = static_cast<std::uint64_t>(std::ranges::count(result.front, true, &PlanEntry::exact));
     if (result.evaluations < before.evaluations || (confirmed == 0 && before.confirmed > 0)) {
       spdlog::warn("{} holds better results, of {} evaluations; these of {} are not written", folder.string(),
                    before.evaluations, result.evaluations);
@@ -512,16 +513,20 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   if (!field) spdlog::warn("stopped: {} is not written", (folder / "coverage.ply").string());
   spdlog::info("writing {}", folder.string());
   const std::size_t chosen = write_plan(folder, result, simulator, area, field ? &*field : nullptr, crs);
-  std::optional<JudgedVoxels> judged;
+  std::optional<MissedVoxels> judged;
   if (field && !deadline.passed()) judged = judge_missed(site, simulator, *field, program);
   if (judged)
     write_missed(
         std::vector<std::filesystem::path>{folder / "missed.csv", folder / "missed.ply", folder / "missed.png"},
         *judged, simulator, result.front[chosen].stations);
-  if (!options.no_report)
-    write_reports(std::vector<std::filesystem::path>{folder / "report.html", folder / "report.pdf"}, result,
-                  std::filesystem::path(options.site.scene).stem().string(),
-                  {site, simulator, field ? &*field : nullptr, judged ? &*judged : nullptr}, program, deadline.abort());
+  if (!options.no_report && !why_no_report().empty()) spdlog::warn("no report: {}", why_no_report());
+  if (!options.no_report && why_no_report().empty())
+    write_reports(std::vector<std::filesystem::path>{folder / "report.html", folder / "report.pdf"}, result, simulator,
+                  area,
+                  {.title = std::filesystem::path(options.site.scene).stem().string(),
+                   .field = field ? &*field : nullptr,
+                   .missed = judged ? &*judged : nullptr},
+                  program, deadline.abort());
   if (options.prove)
     prove(folder / "bound.json", site, simulator, result.front[chosen].stations, problem.kept.size(), program);
   if (options.json)
