@@ -32,7 +32,7 @@ if(NOT VANTAGE_WITH_REPORT)
   message(STATUS "No report: VANTAGE_WITH_REPORT is off")
 elseif(VANTAGE_THREE_JS AND VANTAGE_ORBIT_JS AND meshoptimizer_FOUND AND ZLIB_FOUND)
   set(VANTAGE_HAVE_REPORT TRUE)
-elseif(VANTAGE_BUILD_CLI)
+else()
   message(STATUS "No report: libjs-three, libmeshoptimizer-dev or zlib1g-dev is not installed")
 endif()
 # The editor serves its page by Boost.Beast: headers alone.

@@ -38,7 +38,7 @@ int main(int argc, char** argv) try {
            }});
   std::fprintf(stderr, "\n");
   write_plan(argv[2], result, site);
-  std::printf("%s", summary_text(summary_of(result.front[answer(result)], result)).c_str());
+  std::printf("%s", summary_text(result.front[answer(result)], result.problem.requirements).c_str());
   return 0;
 } catch (const Error& error) {
   std::fprintf(stderr, "error: %s\n", error.what());

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
 #include "evaluation.hpp"
 #include "module.hpp"
 #include "options.hpp"
@@ -9,11 +11,16 @@
 namespace vantage::python {
 namespace {
 
-/// A result, and the simulator and the search area that reports of it look at: the site's, or given ones.
+/// A result, and what reports of it look at: the site's, or what was given.
 struct Plan {
   PlanResult result;
   std::shared_ptr<GuardedSite> site = nullptr;
-  py::object simulator = py::none(), area = py::none();
+  py::object simulator = py::none(), area = py::none(), clash = py::none();
+};
+/// What became known of one measure of a network.
+struct MeasuredValue {
+  double searched, standard_error, exact;
+  double best_known() const { return exact == exact ? exact : searched; }
 };
 /// A network of its front; shares the result.
 struct Entry {
@@ -29,8 +36,8 @@ struct Watched : PlanProgress {
   std::vector<ParetoPoint> points;
 };
 
-const Simulator& simulator_of(const Plan& plan) {
-  return plan.site ? plan.site->site.simulator() : plan.simulator.cast<const GuardedSimulator&>().simulator;
+Simulator& simulator_of(const Plan& plan) {
+  return plan.site ? plan.site->site.simulator() : plan.simulator.cast<GuardedSimulator&>().simulator;
 }
 const SearchArea& area_of(const Plan& plan) {
   return plan.site ? plan.site->site.area() : plan.area.cast<const SearchArea&>();
@@ -89,7 +96,8 @@ std::shared_ptr<Plan> plan_survey(GuardedSimulator& guarded, const SearchArea& a
                  .abort = call.abort()});
   });
   return std::make_shared<Plan>(Plan{std::move(result), nullptr, py::cast(guarded, py::return_value_policy::reference),
-                                     py::cast(area, py::return_value_policy::reference)});
+                                     py::cast(area, py::return_value_policy::reference),
+                                     py::cast(clash, py::return_value_policy::reference)});
 }
 
 // By the settings of a question and of a search; `problem` in place of the former.
@@ -151,26 +159,34 @@ void add_entries(py::module_& m) {
           "heads", [](const Entry& e) { return heads_of(e.get().stations); },
           "Their heads, survey frame: (n, 3), metres.")
       .def_property_readonly(
-          "values", [](const Entry& e) { return e.get().values; }, "MeasuredValue by the names of the plan's measures.")
+          "values",
+          [](const Entry& e) {
+            const PlanEntry& entry = e.get();
+            std::map<std::string, MeasuredValue> values;
+            for (const auto& [name, seen] : entry.searched)
+              values[name] = {seen.value, seen.standard_error, entry.exact ? entry.value(name) : std::nan("")};
+            return values;
+          },
+          "MeasuredValue by the names of the plan's measures.")
       .def(
           "value",
           [](const Entry& e, const std::string& name) {
             const auto found = e.get().values.find(name);
             if (found == e.get().values.end()) throw py::key_error(name);
-            return found->second.best_known();
+            return found->second.value;
           },
           py::arg("name"), "values[name].best_known")
       .def_property_readonly(
-          "confirmed", [](const Entry& e) { return e.get().confirmed; }, "Whether the exact values were computed.")
+          "confirmed", [](const Entry& e) { return e.get().exact; }, "Whether the exact values were computed.")
       .def_property_readonly(
           "dominated", [](const Entry& e) { return e.get().dominated; }, "By another one, once every ray is traced.")
       .def_property_readonly(
-          "missed", [](const Entry& e) { return e.get().missed; }, "By how much requirements are missed; 0: kept.")
+          "missed", [](const Entry& e) { return e.get().violation; }, "By how much requirements are missed; 0: kept.")
       .def_property_readonly(
-          "overlap_matrix", [](const Entry& e) { return matrix_of(e.get().exact_overlap_matrix); },
+          "overlap_matrix", [](const Entry& e) { return matrix_of(e.get().overlap_matrix); },
           "Equation 11 by every ray: (n, n); (0, 0) unless confirmed.")
       .def_property_readonly(
-          "scan_overlap_matrix", [](const Entry& e) { return matrix_of(e.get().exact_scan_overlap_matrix); },
+          "scan_overlap_matrix", [](const Entry& e) { return matrix_of(e.get().scan_overlap_matrix); },
           "Scan overlaps over all surfaces: (n, n); (0, 0) unless a measure needs them.")
       .def_property_readonly(
           "registration", [](const Entry& e) { return e.get().registration; },
@@ -178,7 +194,7 @@ void add_entries(py::module_& m) {
       .def("__repr__", [](const Entry& e) {
         std::string text;
         for (const auto& [name, value] : e.get().values)
-          text += ", " + name + " " + std::string(py::str(py::float_(value.best_known())));
+          text += ", " + name + " " + std::string(py::str(py::float_(value.value)));
         return "<vantage.PlanEntry of " + std::to_string(e.get().stations.size()) + " stations" + text + ">";
       });
 }
@@ -195,6 +211,25 @@ py::list history_of(const Plan& plan) {
     lines.append(line);
   }
   return lines;
+}
+
+void write_plan_report(const Plan& plan, const std::filesystem::path& file, const std::string& title,
+                       py::object progress) {
+  Simulator& simulator = simulator_of(plan);
+  const SearchArea& area = area_of(plan);
+  const ClashChecker& clash = plan.site ? plan.site->site.clash() : plan.clash.cast<const ClashChecker&>();
+  const PlanEntry& chosen = plan.result.front.at(answer(plan.result));
+  LongCall call(std::move(progress));
+  call.run([&] {
+    const Evaluation seen =
+        evaluate_stations({.simulator = simulator}, chosen.stations, {.field = true}, call.progress(0, 0.3));
+    MissedVoxels missed;
+    if (!seen.counts.cancelled) missed = missed_voxels(simulator, area, clash, seen.field, {}, call.progress(0.3, 0.6));
+    if (!call.stop().stop_requested())
+      write_report(file, plan.result, simulator, area, {.title = title, .field = &seen.field, .missed = &missed},
+                   call.progress(0.6, 1));
+    return 0;
+  });
 }
 
 void add_results(py::module_& m) {
@@ -245,7 +280,7 @@ void add_results(py::module_& m) {
       .def_property_readonly(
           "summary",
           [](const Plan& plan) {
-            return summary_text(summary_of(plan.result.front.at(answer(plan.result)), plan.result));
+            return summary_text(plan.result.front.at(answer(plan.result)), plan.result.problem.requirements);
           },
           "What the answer comes to, in plain words.")
       .def(
@@ -263,6 +298,10 @@ void add_results(py::module_& m) {
           "Writes the result folder: front.csv, front.json, stations.csv, the pictures (docs/files.md). crs: the "
           "frame,\n"
           "as 'EPSG:25832', for maps. Raises Error: io, invalid_argument.")
+      .def("write_report", &write_plan_report, py::arg("file"), py::kw_only(), py::arg("title") = "Survey",
+           py::arg("progress") = py::none(),
+           "Writes report.html or report.pdf by the file's extension, with what the answer captures and misses.\n"
+           "Raises Error: io, invalid_argument (another extension, a build that writes no reports).")
       .def("__repr__", [](const Plan& plan) {
         return "<vantage.PlanResult of " + std::to_string(plan.result.front.size()) + " networks, " +
                std::to_string(plan.result.evaluations) + " evaluations, " + to_string(plan.result.stop_reason) + ">";
@@ -271,10 +310,31 @@ void add_results(py::module_& m) {
 
 }  // namespace
 
+void write_evaluation_report(const std::filesystem::path& file, const Evaluation& evaluation, GuardedSimulator& guarded,
+                             const SearchArea& area, const ClashChecker* clash, const std::string& title,
+                             py::object progress) {
+  LongCall call(std::move(progress));
+  call.run([&] {
+    MissedVoxels missed;
+    if (clash && !evaluation.field.count.empty())
+      missed = missed_voxels(guarded.simulator, area, *clash, evaluation.field, {}, call.progress(0, 0.3));
+    if (!call.stop().stop_requested())
+      write_report(file, evaluation, guarded.simulator, area, {.title = title, .missed = &missed},
+                   call.progress(0.3, 1));
+    return 0;
+  });
+}
+
 void add_plans(py::module_& m) {
   add_progress(m);
   add_entries(m);
   add_results(m);
+  m.def("write_report", &write_evaluation_report, py::arg("file"), py::arg("evaluation"), py::arg("simulator"),
+        py::arg("area"), py::arg("clash") = py::none(), py::kw_only(), py::arg("title") = "Survey",
+        py::arg("progress") = py::none(),
+        "Writes report.html or report.pdf, by the file's extension, of a network evaluated by this simulator. With\n"
+        "clash, of one evaluated with field=True, it also says why surfaces are not captured.\n"
+        "Raises Error: io, invalid_argument (another extension, a build that writes no reports).");
   const py::object site = m.attr("Site");
   site.attr("plan") = py::cpp_function(
       &plan_site, py::name("plan"), py::is_method(site), py::arg("problem") = py::none(), py::kw_only(),

@@ -15,18 +15,34 @@ struct Measured {
   std::optional<Evaluation> surroundings = std::nullopt;
 };
 
+// What counts say of the network, pairs where they have some.
+Evaluation figures_of(const MeasuredNetwork& network, const std::optional<RegistrationOptions>& registration) {
+  static const std::vector<Objective> figures{make_objective("coverage"), make_objective("overlap")};
+  const std::size_t known = network.counts.seen.empty() ? 1 : 2;
+  return evaluation_of(network, std::span(figures).first(known), registration);
+}
+
 Measured copy_of(const MeasuredNetwork& network, const std::optional<RegistrationOptions>& registration) {
-  Measured copy{.evaluation = {.counts = network.counts,
-                               .goal_density = network.goal_density,
-                               .voxels = network.voxels,
-                               .registration = registration},
+  MeasuredNetwork seen{.counts = network.counts,
+                       .stations = network.stations,
+                       .kept = network.kept,
+                       .goal_density = network.goal_density,
+                       .voxels = network.voxels,
+                       .overlap = overlap_matrix(network.counts),
+                       .surroundings = network.surroundings,
+                       .surroundings_voxels = network.surroundings_voxels};
+  Measured copy{.evaluation = figures_of(seen, registration),
                 .stations = {network.stations.begin(), network.stations.end()},
                 .kept = network.kept,
                 .visible_parts = network.visible_parts,
                 .minutes_on_site = network.minutes_on_site};
   if (network.surroundings)
-    copy.surroundings = {
-        .counts = *network.surroundings, .goal_density = network.goal_density, .voxels = network.surroundings_voxels};
+    copy.surroundings = figures_of({.counts = *network.surroundings,
+                                    .stations = network.stations,
+                                    .goal_density = network.goal_density,
+                                    .voxels = network.surroundings_voxels,
+                                    .overlap = overlap_matrix(*network.surroundings)},
+                                   std::nullopt);
   return copy;
 }
 

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "vantage/evaluation.hpp"
 #include "vantage/missed.hpp"
 #include "vantage/objective.hpp"
 #include "vantage/placement.hpp"
@@ -98,6 +99,12 @@ std::vector<StationRow> read_stations_csv(const std::filesystem::path& file);
 /// Everything about a run that its results must name: version, engine, device, seed, scene, every parameter. JSON text.
 std::string run_parameters_json(const Simulator& simulator, const PlanResult* result = nullptr);
 
+/// The figures of one network, as JSON text: keys coverage, coverage_se, overlap, overlap_se, overlap_matrix,
+/// scan_overlap_matrix, visible, visible_se, minutes_on_site, registration{error_mm, standard_error_mm, worst_mm,
+/// worst_station, stations}, dropped, voxels, goal_density, rays, sample, summary. Null: not known. Stations count from
+/// 1; axes of the standard ellipsoid of each head are in millimetres, survey frame, longest first.
+std::string evaluation_json(const Evaluation& evaluation);
+
 /// `front.json`: keys problem, objectives, hypervolume, evaluations, stop_reason, front, seconds, engine, device, seed,
 /// parameters, version. Every network of the front carries its values by their objectives' names. Whatever is numbered
 /// (`entry`, `answer`, stations of links) counts from 1.
@@ -119,11 +126,9 @@ void draw_history_fronts(const std::filesystem::path& file, const PlanResult& re
 /// the files that it wrote.
 std::vector<std::filesystem::path> draw_plan_view(const std::filesystem::path& file, const Scene& scene,
                                                   const SearchArea& area, std::span<const PlacedStation> stations,
-                                                  const OverlapMatrix& overlap, const std::string& title,
-                                                  double link_overlap = default_link_overlap,
+                                                  const StationLinks& links, const std::string& title,
                                                   std::span<const std::string> names = {},
-                                                  std::span<const StationError> errors = {},
-                                                  const std::string& overlap_words = "Overlap of two stations");
+                                                  std::span<const StationError> errors = {});
 
 /// Writes a whole result folder: front.csv, front.json, history.csv, fronts.csv (every iteration's front), and for the
 /// `answer()` stations.csv, overlap.csv (where it is confirmed), coverage.ply (where `field`, its voxel field,

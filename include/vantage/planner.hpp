@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "vantage/candidates.hpp"
+#include "vantage/evaluation.hpp"
 #include "vantage/objective.hpp"
 #include "vantage/on_site.hpp"
 #include "vantage/optimiser.hpp"
@@ -125,36 +126,16 @@ struct PlanConfig {
 /// on.
 Settings settings(const PlanConfig& config);
 
-/// What became known of one measure of a network.
-struct MeasuredValue {
-  double searched = 0;        ///< As the search saw it; NaN where it kept none and nothing was confirmed.
-  double standard_error = 0;  ///< Of `searched`; 0 when exact.
-  double exact = 0;           ///< Evaluated again with every ray; NaN unless the entry is confirmed.
-  /// The exact value where there is one.
-  double best_known() const { return exact == exact ? exact : searched; }
-};
-
-/// One network of the front.
-struct PlanEntry {
+/// One network of the front: its evaluation, and how it came there. `exact` once it is confirmed by every ray; until
+/// then its values are those of `searched`.
+struct PlanEntry : Evaluation {
   /// Decision vector: u1, v1, …, uN, vN [, h1, …, hN] [, s1, …, sN] [, α]; s in [0, 1) chooses among
   /// `SurveyProblem::scanners`, each as often as any other.
   std::vector<double> x;
-  std::vector<PlacedStation> stations;
-  std::map<std::string, MeasuredValue> values;  ///< By objective's name, of `PlanResult::measures`.
-  bool confirmed = false;                       ///< Whether the exact values were computed.
+  /// The figures as the search saw them, by measure's name, of `PlanResult::measures`; NaN where it kept none.
+  std::map<std::string, Estimate> searched;
   /// Judged by every ray, another confirmed entry is as good in all objectives and better in one.
   bool dominated = false;
-  /// By how much the requirements are missed in all, as shares of their objectives' scales; 0: it keeps them.
-  double missed = 0;
-  OverlapMatrix exact_overlap_matrix;  ///< Equation 11.
-  /// By `scan_overlap_matrix()` over all surfaces; empty unless a measure needs the surroundings.
-  OverlapMatrix exact_scan_overlap_matrix;
-  /// By every ray, of the problem's `registration`, where a measure needs it and the entry is confirmed.
-  std::optional<RegistrationError> registration = std::nullopt;
-  std::optional<Visit> visit = std::nullopt;  ///< The round on site without the kept stations, where it was worked out.
-  std::vector<std::uint64_t> points_on_surveyed;  ///< Per station, exact.
-  /// `values.at(name).best_known()`. Throws std::out_of_range.
-  double value(const std::string& name) const { return values.at(name).best_known(); }
 };
 
 /// One line of the history, an iteration each.
@@ -214,7 +195,7 @@ struct PlanProgress {
 struct PlanWatch {
   std::function<void(const PlanProgress&)> report = {};  ///< Called between evaluations, on the calling thread.
   std::stop_token stop = {};                             ///< Ends the search; what was found so far is still confirmed.
-  std::stop_token abort = {};  ///< Ends the confirmation too: entries that it did not reach have `confirmed` false.
+  std::stop_token abort = {};  ///< Ends the confirmation too: entries that it did not reach have `exact` false.
 };
 
 /// Runs the search. Borrows simulator, area and clash for the call. Same inputs, same seed: same result but for
@@ -291,6 +272,5 @@ ExactResult exact_network(Simulator& simulator, const SearchArea& area, const Cl
 /// Decision vector to stations: locate, raise by `height_m`, check for clashes.
 std::vector<PlacedStation> place_stations(const SearchArea& area, const ClashChecker& clash, double height_m,
                                           std::span<const double> uvs);
-Network to_network(std::span<const PlacedStation> stations);
 
 }  // namespace vantage

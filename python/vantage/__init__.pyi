@@ -331,6 +331,7 @@ class Evaluation:
     @property
     def scan_overlap_matrix(self) -> Floats: ...
     def connectivity(self, min_overlap: float = 0.01) -> Connectivity: ...
+    def scan_connectivity(self, min_overlap: float = 0.3) -> Connectivity: ...
     @property
     def registration(self) -> RegistrationError: ...
     @property
@@ -361,6 +362,8 @@ class Evaluation:
     def trace_seconds(self) -> float: ...
     @property
     def cancelled(self) -> bool: ...
+    @property
+    def summary(self) -> str: ...
     def to_dict(self) -> Dict[str, Any]: ...
 
 class EngineInfo:
@@ -471,6 +474,7 @@ class Simulator:
         overlap: bool = True,
         skip: bool = True,
         field: bool = False,
+        surroundings: bool = False,
         registration: Optional[RegistrationOptions] = None,
         progress: Optional[Progress] = None,
     ) -> Evaluation: ...
@@ -480,6 +484,7 @@ class Simulator:
         *,
         voxels: int = 20000,
         overlap: bool = True,
+        surroundings: bool = False,
         registration: Optional[RegistrationOptions] = None,
         progress: Optional[Progress] = None,
     ) -> List[Evaluation]: ...
@@ -983,6 +988,18 @@ class PlanResult:
     def summary(self) -> str: ...
     def to_dict(self) -> Dict[str, Any]: ...
     def write(self, folder: Path, crs: str = "") -> None: ...
+    def write_report(self, file: Path, *, title: str = "Survey", progress: Optional[Progress] = None) -> None: ...
+
+def write_report(
+    file: Path,
+    evaluation: Evaluation,
+    simulator: Simulator,
+    area: SearchArea,
+    clash: Optional[ClashChecker] = None,
+    *,
+    title: str = "Survey",
+    progress: Optional[Progress] = None,
+) -> None: ...
 
 def plan(
     simulator: Simulator,

@@ -141,17 +141,12 @@ int edit(CLI::App& command, EditCommandOptions& options, Program& program) {
   tell_grid(simulator);
   if (options.link) options.edit.link = *options.link;
   if (options.sample) options.edit.voxels = options.sample->of(simulator.voxel_count());
-  const auto save = [&](const EditSession::Exact& exact, const Progress& progress) {
+  const auto save = [&](const Evaluation& exact, const Progress& progress) {
     write_stations_csv(folder / "stations.csv", exact.stations, simulator.scanners());
     const auto judged = judge_missed(site, simulator, exact.field, program);
     if (progress.stopped()) return;
-    write_reports(std::vector<std::filesystem::path>{folder / "report.html", folder / "report.pdf"},
-                  {.stations = exact.stations,
-                   .names = station_names(exact.stations),
-                   .counts = exact.counts,
-                   .scan_overlaps = exact.scan_overlaps,
-                   .link = options.edit.link},
-                  title, {site, simulator, &exact.field, judged ? &*judged : nullptr}, program, progress.stop);
+    write_reports(std::vector<std::filesystem::path>{folder / "report.html", folder / "report.pdf"}, exact, simulator,
+                  site.area(), {.title = title, .missed = judged ? &*judged : nullptr}, program, progress.stop);
     spdlog::info("saved in {}", folder.string());
   };
   EditSession session(

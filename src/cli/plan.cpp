@@ -228,16 +228,18 @@ void write_results(const std::filesystem::path& folder, Site& site, const PlanOp
   if (!field) spdlog::warn("stopped: {} is not written", (folder / "coverage.ply").string());
   spdlog::info("writing {}", folder.string());
   write_plan(folder, result, simulator, site.area(), field ? &*field : nullptr, crs);
-  std::optional<JudgedVoxels> judged;
+  std::optional<MissedVoxels> judged;
   if (field && !deadline.passed()) judged = judge_missed(site, simulator, *field, program);
   if (judged)
     write_missed(
         std::vector<std::filesystem::path>{folder / "missed.csv", folder / "missed.ply", folder / "missed.png"},
         *judged, simulator, chosen.stations);
-  if (!options.no_report)
-    write_reports(std::vector<std::filesystem::path>{folder / "report.html", folder / "report.pdf"}, result,
-                  site.name(), {site, simulator, field ? &*field : nullptr, judged ? &*judged : nullptr}, program,
-                  deadline.abort());
+  if (!options.no_report && !why_no_report().empty()) spdlog::warn("no report: {}", why_no_report());
+  if (!options.no_report && why_no_report().empty())
+    write_reports(std::vector<std::filesystem::path>{folder / "report.html", folder / "report.pdf"}, result, simulator,
+                  site.area(),
+                  {.title = site.name(), .field = field ? &*field : nullptr, .missed = judged ? &*judged : nullptr},
+                  program, deadline.abort());
   if (options.prove)
     prove(folder / "bound.json", site, simulator, chosen.stations, result.problem.kept.size(), program);
 }
@@ -296,7 +298,7 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
     return code;
   };
   if (config.resume) {
-    const auto confirmed = static_cast<std::uint64_t>(std::ranges::count(result.front, true, &PlanEntry::confirmed));
+    const auto confirmed = static_cast<std::uint64_t>(std::ranges::count(result.front, true, &PlanEntry::exact));
     if (result.evaluations < before.evaluations || (confirmed == 0 && before.confirmed > 0)) {
       spdlog::warn("{} holds better results, of {} evaluations; these of {} are not written", folder.string(),
                    before.evaluations, result.evaluations);

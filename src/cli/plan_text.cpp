@@ -14,8 +14,8 @@ namespace {
 std::string remarks(const PlanEntry& entry, const PlanResult& result) {
   std::string text;
   const auto pairs = [](const Objective& objective) { return objective.needs.pairs; };
-  if (entry.confirmed && std::ranges::any_of(result.problem.objectives, pairs)) {
-    const std::size_t parts = connectivity(entry.exact_overlap_matrix, result.problem.link_overlap).parts;
+  if (entry.exact && std::ranges::any_of(result.problem.objectives, pairs)) {
+    const std::size_t parts = connectivity(entry.overlap_matrix, result.problem.link_overlap).parts;
     if (parts > 1) text += fmt::format("  in {} parts", parts);
   }
   for (const Requirement& requirement : result.problem.requirements) {
@@ -50,10 +50,11 @@ std::string plan_text(const PlanResult& result, std::size_t chosen, const std::s
   if (result.spared > 0) text += fmt::format(", {} networks not worth every ray", result.spared);
   text += fmt::format(", stopped: {}\n", to_string(result.stop_reason));
   const PlanEntry& entry = result.front[chosen];
-  text += "\n" +
-          station_table(entry.stations, station_names(entry.stations), entry.points_on_surveyed, result.scanners) +
-          "\n";
-  text += summary_text(summary_of(entry, result));
+  text +=
+      "\n" +
+      station_table(entry.stations, station_names(entry.stations), entry.counts.points_on_surveyed, result.scanners) +
+      "\n";
+  text += summary_text(entry, result.problem.requirements);
   for (const std::string& help : what_would_help(result)) text += fmt::format("{:<11}{}\n", "would help", help);
   return text + "results in " + folder + "\n";
 }

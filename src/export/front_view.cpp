@@ -64,12 +64,12 @@ FrontView::FrontView(const PlanResult& result) : result_(result), measures_(resu
 }
 
 FrontDot FrontView::searched(const PlanEntry& entry) const {
-  const auto value = [&](const Objective& measure) { return entry.values.at(measure.name).searched; };
+  const auto value = [&](const Objective& measure) { return entry.searched.at(measure.name).value; };
   return {value(*x_), value(*y_), third_ ? value(*third_) : 0};
 }
 
 FrontDot FrontView::confirmed(const PlanEntry& entry) const {
-  const auto value = [&](const Objective& measure) { return entry.values.at(measure.name).exact; };
+  const auto value = [&](const Objective& measure) { return entry.value(measure.name); };
   return {value(*x_), value(*y_), third_ ? value(*third_) : 0};
 }
 

@@ -10,7 +10,7 @@
 
 namespace vantage {
 
-Connectivity connectivity(const OverlapMatrix& overlap, double min_overlap) {
+Connectivity connectivity(const PairMatrix& overlap, double min_overlap) {
   const std::size_t n = overlap.size();
   const auto linked = [&](std::size_t i, std::size_t j) {
     return i != j && overlap(i, j) > 0 && overlap(i, j) >= min_overlap;

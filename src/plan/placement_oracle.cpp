@@ -31,24 +31,4 @@ std::vector<PlacedStation> existing_stations(const PlacementOracle& oracle, std:
   return existing;
 }
 
-std::size_t visibility_parts(const PlacementOracle& oracle, const Network& network) {
-  OverlapMatrix seen(network.size());
-  for (std::size_t i = 0; i < network.size(); ++i) {
-    for (std::size_t j = i + 1; j < network.size(); ++j) {
-      if (!network[i].active || !network[j].active) continue;
-      const Vec3 &a = network[i].position, &b = network[j].position;
-      if (dot(a - b, a - b) <= oracle.range_m * oracle.range_m && oracle.sees(a, b)) seen.set(i, j, 1);
-    }
-  }
-  return connectivity(seen, 1).parts;
-}
-
-Network to_network(std::span<const PlacedStation> stations) {
-  Network network;
-  network.reserve(stations.size());
-  for (const PlacedStation& station : stations)
-    network.push_back({.position = station.position, .active = active(station), .setup = station.setup});
-  return network;
-}
-
 }  // namespace vantage

@@ -33,7 +33,4 @@ PlacedStation place_station(const PlacementOracle& oracle, Uv uv, double height_
 std::vector<PlacedStation> existing_stations(const PlacementOracle& oracle, std::span<const Vec3> heads,
                                              std::span<const StationSetup> setups);
 
-// Connected parts of the graph of stations that see each other within range. A skipped station is a part of its own.
-std::size_t visibility_parts(const PlacementOracle& oracle, const Network& network);
-
 }  // namespace vantage

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "evaluate/visibility.hpp"
 #include "plan/choose_optimiser.hpp"
 #include "plan/identity.hpp"
 
@@ -40,7 +41,8 @@ void PlanContext::ask(const SurveyProblem& problem) {
       SimulatorEvaluator::Options{
           .sampled = config_.sample_voxels > 0,
           .kept = problem.kept.size(),
-          .visible_parts = [this](const Network& network) { return visibility_parts(oracle_, network); },
+          .visible_parts =
+              [this](const Network& network) { return visibility_parts(oracle_.sees, oracle_.range_m, network); },
           .surroundings = needs.surroundings ? &surroundings() : nullptr,
           .surroundings_voxels = surroundings_voxels(),
           .registration = problem.registration,

@@ -389,24 +389,21 @@ class FewestPlan {
   void confirm_choice() {
     take(confirmed(choice_));
     sample_off_ = coverage_margin_;
-    if (entries_.empty() || !entries_.back().confirmed) return;
-    if (const auto coverage = entries_.back().values.find("coverage"); coverage != entries_.back().values.end())
-      sample_off_ = coverage->second.searched - coverage->second.exact;
+    if (entries_.empty() || !entries_.back().exact) return;
+    sample_off_ = entries_.back().searched.at("coverage").value - entries_.back().value("coverage");
   }
 
   // Entries of networks that stand where others do already are none.
   void take(std::vector<PlanEntry> entries) {
     for (PlanEntry& entry : entries) {
-      std::vector<double> values;
-      for (const Objective& measure : context_.measures().all) values.push_back(entry.value(measure.name));
-      entry.missed = missed_by(problem_, context_.measures(), values);
+      entry.violation = violation_of(entry, problem_.requirements);
       entries_.push_back(std::move(entry));
     }
   }
   double best_missed() const {
     double least = std::numeric_limits<double>::infinity();
     for (const PlanEntry& entry : entries_)
-      if (entry.confirmed) least = std::min(least, entry.missed);
+      if (entry.exact) least = std::min(least, entry.violation);
     return least;
   }
 
@@ -414,12 +411,12 @@ class FewestPlan {
   bool repair() {
     const PlanEntry* nearest = nullptr;
     for (const PlanEntry& entry : entries_)
-      if (entry.confirmed && (!nearest || entry.missed < nearest->missed)) nearest = &entry;
+      if (entry.exact && (!nearest || entry.violation < nearest->violation)) nearest = &entry;
     if (!nearest || choice_.violation > 0) return false;
     const auto shortfall = [&](std::string_view name) {
       const auto found = nearest->values.find(std::string(name));
       const double limit = least_of(problem_, name);
-      return limit > 0 && found != nearest->values.end() ? std::max(0.0, limit - found->second.best_known()) : 0;
+      return limit > 0 && found != nearest->values.end() ? std::max(0.0, limit - found->second.value) : 0;
     };
     const double coverage = std::max(shortfall("coverage"), shortfall("capture") * problem_.visible.value_or(1));
     const double link = shortfall("link");
@@ -443,7 +440,7 @@ class FewestPlan {
   bool choose_again() {
     const auto exact = entries_.back().values.find("coverage");
     if (exact == entries_.back().values.end() || !nearly_ || choice_.violation > 0) return false;
-    const double off = choice_.coverage - exact->second.best_known();
+    const double off = choice_.coverage - exact->second.value;
     if (off >= coverage_margin_) return false;
     const double margin = std::exchange(coverage_margin_, off);
     ConnectedCover next = min_connected_cover(question(), watch_.stop, *nearly_);
@@ -453,7 +450,7 @@ class FewestPlan {
           std::exchange(choice_, improve_weakest_link(question(), std::move(found), watch_.stop));
       const double before_off = sample_off_;
       confirm_choice();
-      if (entries_.back().confirmed && entries_.back().missed == 0) {
+      if (entries_.back().exact && entries_.back().violation == 0) {
         nearly_ = std::move(next.one_fewer);
         return true;
       }
@@ -466,13 +463,13 @@ class FewestPlan {
   // Of all networks that were confirmed, or of all where none was: those of fewest stations that keep what is required,
   // else those that miss least; and of these, those that no other one dominates.
   std::vector<PlanEntry> front() {
-    const bool any_confirmed = std::ranges::any_of(entries_, &PlanEntry::confirmed);
+    const bool any_confirmed = std::ranges::any_of(entries_, &PlanEntry::exact);
     std::vector<PlanEntry> left;
     for (PlanEntry& entry : entries_)
-      if (entry.confirmed || !any_confirmed) left.push_back(std::move(entry));
+      if (entry.exact || !any_confirmed) left.push_back(std::move(entry));
     drop_unplaced(left, problem_.kept.size());
     const auto rank = [](const PlanEntry& entry) {
-      return std::pair{entry.missed, entry.missed > 0 ? std::size_t{0} : entry.stations.size()};
+      return std::pair{entry.violation, entry.violation > 0 ? std::size_t{0} : entry.stations.size()};
     };
     if (left.empty()) return left;
     const auto best = rank(*std::ranges::min_element(left, {}, rank));

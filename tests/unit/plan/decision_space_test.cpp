@@ -116,11 +116,11 @@ TEST(DecisionSpace, KeptStationsStandAsTheyStood) {
 TEST(VisibilityParts, CountsWhoSeesWhomWithinRange) {
   const PlacementOracle site = test::toy_site();  // a wall at y = 5, range 6 m
   const Network network{{{1, 1, 0}, true}, {{6, 1, 0}, true}, {{9, 4, 0}, true}, {{1, 9, 0}, true}, {{9, 9, 0}, true}};
-  EXPECT_EQ(visibility_parts(site, network), 3u);  // 1-2-3, 4, 5
+  EXPECT_EQ(visibility_parts(site.sees, site.range_m, network), 3u);  // 1-2-3, 4, 5
   Network skipped = network;
   skipped[1].active = false;
-  EXPECT_EQ(visibility_parts(site, skipped), 5u);
-  EXPECT_EQ(visibility_parts(site, Network(1)), 1u);
+  EXPECT_EQ(visibility_parts(site.sees, site.range_m, skipped), 5u);
+  EXPECT_EQ(visibility_parts(site.sees, site.range_m, Network(1)), 1u);
 }
 
 TEST(DecisionSpace, EncodesAnInitialNetworkForEachNumber) {

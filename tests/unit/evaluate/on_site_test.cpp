@@ -8,7 +8,7 @@
 #include <numeric>
 #include <random>
 
-#include "plan/ways.hpp"
+#include "evaluate/ways.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage {

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/station_pictures.hpp"
-
-#include <spdlog/spdlog.h>
+#include "report/station_pictures.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "image/encode.hpp"
+#include "vantage/error.hpp"
 #include "vantage/panorama.hpp"
 
-namespace vantage::cli {
+namespace vantage {
 namespace {
 
 constexpr std::uint32_t kWidest = 512, kNarrowest = 64;
@@ -37,19 +36,19 @@ std::vector<std::vector<std::uint8_t>> encoded(std::span<const Image> images) {
 
 }  // namespace
 
-std::vector<std::vector<std::uint8_t>> station_pictures(const Site& site, std::span<const PlacedStation> stations,
-                                                        std::stop_token stop) {
+std::vector<std::vector<std::uint8_t>> station_pictures(const Simulator& simulator,
+                                                        std::span<const PlacedStation> stations, std::stop_token stop) {
   if (stations.empty()) return {};
-  const Box bounds = site.scene().bounds();
+  const Box bounds = simulator.scene().bounds();
   const Vec3 middle = (bounds.min + bounds.max) * 0.5;
   constexpr PanoramaView view[] = {PanoramaView::colour};
   std::vector<Image> images;
   try {
-    PanoramaRenderer renderer(site.scene(),
+    PanoramaRenderer renderer(simulator.scene(),
                               {.width = width_for(stations.size()),
-                               .min_range_m = site.scanner().min_range_m,
-                               .max_range_m = std::max(1000.0, site.scanner().max_range_m)},
-                              site.simulator_config());
+                               .min_range_m = simulator.scanner().min_range_m,
+                               .max_range_m = std::max(1000.0, simulator.scanner().max_range_m)},
+                              simulator.config());
     for (const PlacedStation& station : stations) {
       images.emplace_back();
       if (station.status == StationStatus::hole) continue;
@@ -60,10 +59,11 @@ std::vector<std::vector<std::uint8_t>> station_pictures(const Site& site, std::s
       images.back() = std::move(drawn.front().image);
     }
   } catch (const Error& error) {
-    spdlog::warn("no pictures of what stations see: {}", error.what());
+    if (const auto& warn = simulator.config().warn)
+      warn(std::string("no pictures of what stations see: ") + error.what());
     return {};
   }
   return encoded(images);
 }
 
-}  // namespace vantage::cli
+}  // namespace vantage

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Shortest paths by Dijkstra: A Note on Two Problems in Connexion with Graphs, 1959.
-#include "plan/ways.hpp"
+#include "evaluate/ways.hpp"
 
 #include <tbb/parallel_for.h>
 

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "core/setting_list.hpp"
-#include "plan/ways.hpp"
+#include "evaluate/ways.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage {
