@@ -24,7 +24,7 @@ struct Positions {
 Positions positions_to_choose(const SearchArea& area, const ClashChecker& clash, const Scanner& scanner,
                               std::size_t candidates, std::span<const Vec3> existing,
                               std::span<const StationSetup> setups) {
-  Positions found{.stations = kept_stations(make_placement_oracle(area, clash, scanner), existing, setups),
+  Positions found{.stations = existing_stations(make_placement_oracle(area, clash, scanner), existing, setups),
                   .existing = {}};
   for (PlacedStation& one : found.stations)
     if (active(one)) one.status = StationStatus::ok;  // others are not traced

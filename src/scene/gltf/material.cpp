@@ -11,7 +11,7 @@ namespace {
 
 using nlohmann::json;
 
-double number(const json& object, const char* name, double fallback) {
+double number_in(const json& object, const char* name, double fallback) {
   const auto it = object.find(name);
   return it != object.end() && it->is_number() ? it->get<double>() : fallback;
 }
@@ -30,7 +30,7 @@ std::array<double, N> numbers(const json& object, const char* name, std::array<d
 void read_uv_map(const json& transform, MaterialInfo& info) {
   const auto offset = numbers<2>(transform, "offset", {0, 0});
   const auto scale = numbers<2>(transform, "scale", {1, 1});
-  const double angle = number(transform, "rotation", 0), c = std::cos(angle), s = std::sin(angle);
+  const double angle = number_in(transform, "rotation", 0), c = std::cos(angle), s = std::sin(angle);
   // translation · rotation · scale, as the extension defines it
   info.uv_map[0][0] = c * scale[0];
   info.uv_map[0][1] = s * scale[1];
@@ -62,7 +62,7 @@ const MaterialInfo& MaterialTable::get(int index) {
         texture_index != texture.end() && texture_index->is_number_unsigned()) {
       const int number_of_texture = texture_index->get<int>();
       material.image = image(number_of_texture);
-      info.texcoord_set = static_cast<int>(std::clamp(number(texture, "texCoord", 0), 0.0, 1000.0));
+      info.texcoord_set = static_cast<int>(std::clamp(number_in(texture, "texCoord", 0), 0.0, 1000.0));
       const json& transform = file_.find(
           "materials", index, {"pbrMetallicRoughness", "baseColorTexture", "extensions", "KHR_texture_transform"});
       if (transform.is_object()) read_uv_map(transform, info);

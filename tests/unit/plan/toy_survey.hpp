@@ -211,7 +211,7 @@ inline SearchOutcome toy_search(const SurveyProblem& problem, const PlanConfig& 
                  .config = config,
                  .evaluator = evaluator,
                  .batch = batch,
-                 .identity = "toy = " + problem.name + "\nseed = " + std::to_string(config.seed) + "\n",
+                 .identity = "toy = " + problem.name + "\nseed = " + std::to_string(config.seed.value_or(1)) + "\n",
                  .watch = std::move(watch),
                  .stop = stop});
 }
