@@ -49,7 +49,7 @@ void write_stations(const std::filesystem::path& file, const NamedStations& stat
                     const SearchArea& area, const std::string& crs);
 
 /// stations.dxf, and where `crs` is given, stations.geojson and stations.kml.
-void write_station_files(const std::filesystem::path& folder, const NamedStations& stations, const PairMatrix& overlap,
-                         double link_overlap, const SearchArea& area, const std::string& crs);
+void write_station_files(const std::filesystem::path& folder, const NamedStations& stations, const StationLinks& links,
+                         const SearchArea& area, const std::string& crs);
 
 }  // namespace vantage
