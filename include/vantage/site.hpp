@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "vantage/evaluation.hpp"
 #include "vantage/placement.hpp"
 #include "vantage/progress.hpp"
 #include "vantage/scanner.hpp"
@@ -113,6 +114,11 @@ class Site {
   bool build(const Progress& progress = {});
   Simulator& simulator();     ///< Built if need be.
   Simulator& surroundings();  ///< `surroundings_of(simulator())`.
+
+  /// Evaluates a network on this site: `evaluate_stations()` with scan overlaps if pairs are counted, and with the
+  /// round on site, which begins and ends where one enters, if there is ground. Throws Error as that does.
+  Evaluation evaluate(std::span<const PlacedStation> stations, const EvaluationOptions& options = {},
+                      const OnSiteOptions& on_site = {}, const Progress& progress = {});
 
  private:
   struct Impl;

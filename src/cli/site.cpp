@@ -36,11 +36,6 @@ Site open_site(CLI::App& command, SiteArguments& arguments) {
 
 std::string crs_text(const Site& site) { return site.crs().empty() ? "" : coordinate_system(site.crs()); }
 
-OnSiteOptions on_site_of(const Site& site, OnSiteOptions options) {
-  options.entrance = site.walkable().enter;
-  return options;
-}
-
 Simulator& build_simulator(Site& site, Program& program) {
   ProgressLine line(program.console, "voxels");
   // Ranks stop together, between pieces of the search.

@@ -366,4 +366,17 @@ Simulator& Site::surroundings() {
   return *impl_->surroundings;
 }
 
+Evaluation Site::evaluate(std::span<const PlacedStation> stations, const EvaluationOptions& options,
+                          const OnSiteOptions& on_site, const Progress& progress) {
+  OnSiteOptions round = on_site;
+  if (!round.entrance) round.entrance = walkable().enter;
+  std::optional<OnSite> walk;
+  if (has_area()) walk.emplace(area(), clash(), scanners(), round);
+  return evaluate_stations({.simulator = simulator(),
+                            .surroundings = options.overlap ? &surroundings() : nullptr,
+                            .on_site = walk ? &*walk : nullptr,
+                            .clash = &clash()},
+                           stations, options, progress);
+}
+
 }  // namespace vantage
