@@ -20,6 +20,8 @@
 
 namespace vantage {
 
+class TracerMaker;  // internal: see src/trace/tracer_maker.hpp
+
 struct SimulatorConfig {
   Engine engine = Engine::automatic;
   std::optional<std::uint32_t> device_index = std::nullopt;  ///< Empty: the best device that has the engine.
@@ -29,6 +31,8 @@ struct SimulatorConfig {
   /// Called, on the calling thread, with a device that failed and was dropped. The other devices repeat its work;
   /// failure of the last one is an `Error`.
   std::function<void(const std::string&)> warn = {};
+  /// Spans the work over other processes; made by the program's `vantage_ranks`. Null: this process works alone.
+  std::shared_ptr<TracerMaker> shared = nullptr;
   double user_size_m = 0.1;       ///< Upper bound of the voxel size (equation 2).
   double point_spacing_m = 0.01;  ///< Wanted spacing n of points; goal density = voxel_size² / n².
   /// Uses a mesh's detail (`MeshInfo::detail_m`) as the wanted spacing of its voxels, so goals may differ between

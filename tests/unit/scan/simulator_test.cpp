@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <memory>
 #include <stop_token>
 #include <string>
 #include <thread>
@@ -18,8 +19,10 @@
 #include <utility>
 
 #include "support/quad_scene.hpp"
+#include "trace/tracer_maker.hpp"
 #include "vantage/error.hpp"
 #include "vantage/objective.hpp"
+#include "voxel/voxel_grid.hpp"
 
 namespace vantage {
 namespace {
@@ -669,6 +672,32 @@ TEST(Simulator, RefusesToBeCalledByACallbackOfItsOwnCall) {
   EXPECT_GE(refused, 1);
   EXPECT_EQ(counts.partial_points, callers.exact[0].partial_points);
   EXPECT_TRUE(callers.agrees(0));  // and it serves again
+}
+
+// As other processes would share the work, but it does all of it itself.
+struct Counted final : TracerMaker {
+  std::unique_ptr<Tracer> make(std::unique_ptr<Tracer> own, const TraceScene& scene,
+                               std::uint64_t fingerprint) override {
+    fingerprints.push_back(fingerprint);
+    voxels.push_back(scene.grid->size());
+    return own;
+  }
+  std::size_t networks_at_once() const override { return 1; }
+  std::vector<std::uint64_t> fingerprints, voxels;
+};
+
+TEST(Simulator, SharesItsTracingOnlyIfToldTo) {
+  const Scene scene = wall_and_floor().scene();
+  const auto maker = std::make_shared<Counted>();
+  SimulatorConfig sharing = config();
+  sharing.shared = maker;
+  Simulator simulator(scene, coarse_scanner(2), sharing), alone(scene, coarse_scanner(2), config());
+  EXPECT_EQ(maker->fingerprints, std::vector{scene.fingerprint()});
+  EXPECT_EQ(maker->voxels, std::vector{simulator.voxel_count()});
+  const Network network{{{0, 0, 0}}};
+  EXPECT_EQ(simulator.evaluate(network).partial_points, alone.evaluate(network).partial_points);
+  surroundings_of(simulator);
+  EXPECT_EQ(maker->fingerprints.size(), 2u);
 }
 
 }  // namespace
