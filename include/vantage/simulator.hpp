@@ -114,6 +114,20 @@ struct ScanSummary {
   bool cancelled = false;
 };
 
+/// The points of one scan, in ray order: rays without a hit are left out. Arrays not asked for are empty.
+struct ScanPoints {
+  std::vector<std::uint64_t> ray;  ///< Row ray / columns and column ray % columns of the station's scanner.
+  std::vector<Vec3> position;      ///< Survey frame, metres.
+  std::vector<float> range_m;      ///< Metres from the head, noise included.
+  std::vector<std::array<float, 3>> normal;
+  std::vector<float> reflectivity;
+  std::vector<std::int32_t> mesh;        ///< Index into `Scene::meshes()`.
+  std::vector<std::uint32_t> primitive;  ///< Triangle of the scene (all meshes in order).
+  std::vector<std::uint32_t> colour;     ///< 0xAABBGGRR, sRGB.
+  std::vector<std::uint32_t> voxel;      ///< Index of the surveyed voxel; 2³²−1 if the point does not count.
+  ScanSummary summary;
+};
+
 /// How `Simulator::evaluate` works.
 struct EvaluateOptions {
   bool overlap = true;  ///< Keeps station masks and counts pairs.
@@ -203,6 +217,9 @@ class Simulator {
   /// not exist, unknown outputs).
   ScanSummary scan(const Station& station, const ScanOptions& options,
                    const std::function<void(const ScanChunk&)>& sink, const Progress& progress = {});
+
+  /// The points of one station, all at once. `scan` needs less memory. Throws as `scan`.
+  ScanPoints scan_points(const Station& station, const ScanOptions& options = {}, const Progress& progress = {});
 
   /// Counts every ray of every station. Sets `cancelled` if stopped. REQUIRES: 1 to `max_stations` stations.
   NetworkCounts evaluate(const Network& network, const EvaluateOptions& options = {}, const Progress& progress = {});

@@ -222,6 +222,42 @@ TEST(Scan, GivesOnlyWhatWasAskedFor) {
             std::string::npos);
 }
 
+// Of a room so far from the survey frame's origin that floats have steps of half a metre there.
+TEST(ScanPoints, AreTheHitsOfAScanInTheSurveyFrame) {
+  const Vec3 far{4'500'000, 5'300'000, 100};
+  Simulator simulator(wall_and_floor(far).scene(), coarse_scanner(2), config());
+  const Station station{far + Vec3{0.25, 0.125, 0}};
+  const ScanPoints points = simulator.scan_points(station, {.outputs = everything});
+  const ScanChunk all = whole_scan(simulator, station, 0, everything);
+  ASSERT_EQ(points.ray.size(), points.summary.points);
+  EXPECT_LT(points.summary.points, points.summary.rays);
+  EXPECT_EQ(points.summary.rays, all.ray_count);
+  std::size_t hit = 0;
+  for (std::uint64_t ray = 0; ray < all.ray_count; ++ray) {
+    if (all.mesh[ray] < 0) continue;
+    ASSERT_EQ(points.ray[hit], ray);
+    EXPECT_EQ(points.range_m[hit], all.range_m[ray]);
+    const auto& [x, y, z] = all.position[ray];
+    EXPECT_EQ(points.position[hit], (simulator.origin() + Vec3{x, y, z}));
+    const Vec3 from_head = points.position[hit] - station.position;
+    EXPECT_NEAR(std::sqrt(dot(from_head, from_head)), points.range_m[hit], 1e-4);
+    EXPECT_EQ(points.normal[hit], all.normal[ray]);
+    EXPECT_EQ(points.reflectivity[hit], all.reflectivity[ray]);
+    EXPECT_EQ(points.mesh[hit], all.mesh[ray]);
+    EXPECT_EQ(points.primitive[hit], all.primitive[ray]);
+    EXPECT_EQ(points.colour[hit], all.colour[ray]);
+    EXPECT_EQ(points.voxel[hit], all.voxel[ray]);
+    ++hit;
+  }
+  EXPECT_EQ(hit, points.ray.size());
+
+  const ScanPoints positions = simulator.scan_points(station);
+  EXPECT_EQ(positions.position, points.position);
+  EXPECT_TRUE(positions.range_m.empty() && positions.normal.empty() && positions.mesh.empty());
+  EXPECT_TRUE(simulator.scan_points({station.position, false}).ray.empty());
+  EXPECT_THROW(simulator.scan_points(station, {.outputs = 1024}), Error);
+}
+
 TEST(Scan, NoiseIsKeyedBySeedPlaceAndRay) {
   Scanner scanner = coarse_scanner(2);
   scanner.noise = {.distances_m = {10}, .reflectivities = {0.5}, .sigma_m = {0.01}};
