@@ -110,6 +110,9 @@ class Site {
   /// Throws Error invalid_argument where there is none.
   const SearchArea& area();
   const ClashChecker& clash();
+  /// Spans the simulator over other processes (`SimulatorConfig::shared`). Throws Error invalid_argument once it is
+  /// there.
+  void share(std::shared_ptr<TracerMaker> others);
   /// Makes the simulator unless it is there; false where it was stopped meanwhile. Throws as `Simulator`.
   bool build(const Progress& progress = {});
   Simulator& simulator();     ///< Built if need be.

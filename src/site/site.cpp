@@ -353,6 +353,11 @@ const ClashChecker& Site::clash() {
   return *impl_->clash;
 }
 
+void Site::share(std::shared_ptr<TracerMaker> others) {
+  if (impl_->simulator)
+    throw Error(Errc::invalid_argument, "the site's simulator is made, and can no longer span other processes");
+  impl_->config.shared = std::move(others);
+}
 bool Site::build(const Progress& progress) {
   if (!impl_->simulator) impl_->simulator = Simulator::build(impl_->scene, impl_->scanners, impl_->config, progress);
   return impl_->simulator.has_value();

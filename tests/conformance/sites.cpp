@@ -11,6 +11,7 @@
 #include "scan/pattern.hpp"
 #include "scene/raw_scene.hpp"
 #include "support/temporary_folder.hpp"
+#include "vantage/built_in_scenes.hpp"
 
 namespace vantage::test {
 namespace {

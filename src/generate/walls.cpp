@@ -3,7 +3,7 @@
 // include no ground, and its search area is not intersectable.
 #include <cmath>
 
-#include "scene/built_in/shapes.hpp"
+#include "generate/shapes.hpp"
 
 namespace vantage::built_in {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/built_in/ground.hpp"
+#include "generate/ground.hpp"
 
 #include <algorithm>
 #include <array>

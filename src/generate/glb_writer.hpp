@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "scene/built_in/model.hpp"
+#include "generate/model.hpp"
 
 namespace vantage::built_in {
 

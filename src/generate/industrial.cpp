@@ -14,11 +14,11 @@
 #include <limits>
 #include <string>
 
-#include "scene/built_in/equipment.hpp"
-#include "scene/built_in/ground.hpp"
-#include "scene/built_in/model.hpp"
-#include "scene/built_in/piping.hpp"
-#include "scene/built_in/structure.hpp"
+#include "generate/equipment.hpp"
+#include "generate/ground.hpp"
+#include "generate/model.hpp"
+#include "generate/piping.hpp"
+#include "generate/structure.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage::built_in {

@@ -9,6 +9,7 @@
 
 #include "scene/scene_data.hpp"
 #include "support/temporary_folder.hpp"
+#include "vantage/built_in_scenes.hpp"
 #include "vantage/error.hpp"
 #include "vantage/scene.hpp"
 

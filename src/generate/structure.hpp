@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "scene/built_in/shapes.hpp"
+#include "generate/shapes.hpp"
 
 namespace vantage::built_in {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/built_in/glb_writer.hpp"
+#include "generate/glb_writer.hpp"
 
 #include <algorithm>
 #include <cstring>

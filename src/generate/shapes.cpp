@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/built_in/shapes.hpp"
+#include "generate/shapes.hpp"
 
 #include <algorithm>
 #include <cmath>

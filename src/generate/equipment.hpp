@@ -2,7 +2,7 @@
 // Vessels and machines of the industrial site. Closed shells, without triangles inside.
 #pragma once
 
-#include "scene/built_in/shapes.hpp"
+#include "generate/shapes.hpp"
 
 namespace vantage::built_in {
 

@@ -20,15 +20,4 @@ class TracerMaker {
   virtual std::size_t networks_at_once() const = 0;
 };
 
-// While it lives, simulators made on this thread trace with what `maker` makes. At most one lives per thread.
-class SharedTracing {
- public:
-  explicit SharedTracing(TracerMaker& maker);
-  SharedTracing(const SharedTracing&) = delete;
-  SharedTracing& operator=(const SharedTracing&) = delete;
-  ~SharedTracing();
-  // Maker of the instance that lives on this thread; null: none.
-  static TracerMaker* maker();
-};
-
 }  // namespace vantage

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/built_in/piping.hpp"
+#include "generate/piping.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "scene/built_in/structure.hpp"
+#include "generate/structure.hpp"
 
 namespace vantage::built_in {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/built_in/equipment.hpp"
+#include "generate/equipment.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "scene/built_in/piping.hpp"
+#include "generate/piping.hpp"
 
 namespace vantage::built_in {
 namespace {

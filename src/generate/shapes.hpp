@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "scene/built_in/model.hpp"
+#include "generate/model.hpp"
 
 namespace vantage::built_in {
 

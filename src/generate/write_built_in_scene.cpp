@@ -2,8 +2,9 @@
 #include <array>
 
 #include "core/closest_name.hpp"
-#include "scene/built_in/glb_writer.hpp"
-#include "scene/built_in/model.hpp"
+#include "generate/glb_writer.hpp"
+#include "generate/model.hpp"
+#include "vantage/built_in_scenes.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage {
