@@ -58,13 +58,17 @@ std::string missing(const Format& format, const std::string& why, const std::str
 }  // namespace
 
 Importer find_importer(const Format& format) {
-  const bool script = std::string_view(format.importer) == "vantage-import-ifc";
-  const std::string remedy = script ? "install node and web-ifc with setup.sh --ifc"
-                                    : "install libassimp-dev and build vantage again (setup.sh does both)";
+  const bool ifc = std::string_view(format.importer) == "vantage-import-ifc";
+  const std::string remedy = ifc ? "install node and web-ifc with setup.sh --ifc"
+                                 : "install libassimp-dev and build vantage again (setup.sh does both)";
   for (const fs::path& folder : folders()) {
     std::error_code failure;
-    const fs::path program = fs::canonical(folder / format.importer, failure);
-    if (failure || !can_run(program)) continue;
+    // A program, or a folder with a script for node.
+    fs::path program = fs::canonical(folder / format.importer, failure);
+    if (failure) continue;
+    const bool script = fs::is_directory(program, failure);
+    if (script) program /= "import.mjs";
+    if (!fs::is_regular_file(program, failure)) continue;
     Importer found{program, {program.string()}, {program.parent_path()}};
     if (!script) {
       const std::string_view extensions = format.extensions;

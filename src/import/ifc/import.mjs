@@ -1,9 +1,9 @@
-#!/usr/bin/env node
 // SPDX-License-Identifier: Apache-2.0
-// vantage-import-ifc FILE: writes an IFC model to standard output, as GLB. Exit codes are those of sysexits.h: 65 where
+// node import.mjs FILE: writes an IFC model to standard output, as GLB. Exit codes are those of sysexits.h: 65 where
 // the model is at fault, 69 where web-ifc is not installed, each with a line that says so.
 import fs from "node:fs";
 import { createRequire } from "node:module";
+import { fileURLToPath } from "node:url";
 import { Building } from "./building.mjs";
 
 const [DATA, UNAVAILABLE, USAGE] = [65, 69, 64];
@@ -13,14 +13,14 @@ function fail(code, message) {
   process.exit(code);
 }
 
-if (process.argv.length !== 3) fail(USAGE, "usage: vantage-import-ifc FILE >site.glb");
+if (process.argv.length !== 3) fail(USAGE, "usage: node import.mjs FILE >site.glb");
 for (const talk of ["log", "info", "warn", "error", "debug"]) console[talk] = () => {};  // standard output is the GLB's
 
 let ifc;
 try {
   ifc = createRequire(import.meta.url)("web-ifc");
 } catch {
-  fail(UNAVAILABLE, "IFC is read by web-ifc, which is not installed; run setup.sh --ifc");
+  fail(UNAVAILABLE, `IFC is read by web-ifc, which is not installed; run npm ci in ${fileURLToPath(new URL(".", import.meta.url))} (setup.sh --ifc does)`);
 }
 
 try {
