@@ -12,6 +12,14 @@ install(
 if(TARGET vantage-cli)
   install(TARGETS vantage-cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()
+# Importers are programs that vantage alone starts.
+if(TARGET vantage-cli)
+  set(VANTAGE_IMPORTERS_DIR ${CMAKE_INSTALL_LIBEXECDIR}/vantage)
+  if(TARGET vantage-import-mesh)
+    install(TARGETS vantage-import-mesh RUNTIME DESTINATION ${VANTAGE_IMPORTERS_DIR})
+  endif()
+  vantage_install_ifc(${VANTAGE_IMPORTERS_DIR})
+endif()
 # The presets are part of the library; the file is an example of their form.
 install(FILES ${PROJECT_SOURCE_DIR}/data/scanners.json DESTINATION ${CMAKE_INSTALL_DATADIR}/vantage)
 
