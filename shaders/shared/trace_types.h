@@ -203,11 +203,11 @@ struct SamplePair {
   uint voxel;  // within the sample
   uint slot;
   uint probe;     // the traced ray; no_ray: none was worth tracing
-  uint blocker;   // the triangle that stopped it before the voxel; not_blocked: none did
+  uint occluder;  // the triangle that stopped it before the voxel; not_occluded: none did
   int window[6];  // RayWindow, in its order
 };
 VANTAGE_CONST uint no_ray = 0xFFFFFFFFu;
-VANTAGE_CONST uint not_blocked = 0xFFFFFFFFu;
+VANTAGE_CONST uint not_occluded = 0xFFFFFFFFu;
 struct SampleRay {
   uint pair;
   uint ray;

@@ -8,7 +8,7 @@
 #include <sstream>
 #include <utility>
 
-#include "core/recent.hpp"
+#include "core/lru_cache.hpp"
 #include "core/seconds_since.hpp"
 #include "scan/limit_model.hpp"
 #include "scan/memory_estimate.hpp"
@@ -271,8 +271,8 @@ struct Simulator::Impl {
   double goal = 0;
   std::vector<TraceScanner> traced;  // of the scanners
   std::vector<Scanner> registered;   // scanners of the registered scans
-  Recent<Sample> samples;
-  Recent<SamplePatches> patches;
+  LruCache<Sample> samples;
+  LruCache<SamplePatches> patches;
   std::vector<PatchScanner> patch_scanners;
   std::unique_ptr<Tracer> tracer;
 };

@@ -42,7 +42,7 @@ double magnitude(const VoxelGrid& grid, std::span<const std::vector<TraceStation
 std::vector<NetworkCounts> sample_networks(std::span<const StationRays> scanners,
                                            std::span<const std::vector<TraceStation>> networks,
                                            std::span<const std::uint32_t> station_counts, double goal_density,
-                                           const Tracer::SampleJob& job, Recent<SampledVoxels>& kept,
+                                           const Tracer::SampleJob& job, LruCache<SampledVoxels>& kept,
                                            const Progress& progress) {
   const SceneData& scene = scanners.front().scene();
   const VoxelGrid& grid = scanners.front().grid();

@@ -18,16 +18,16 @@
 #include <span>
 #include <vector>
 
-#include "core/recent.hpp"
+#include "core/lru_cache.hpp"
 #include "shared/trace_types.h"
 #include "trace/registration_sums.hpp"
 #include "trace/tracer.hpp"
 #include "trace/vulkan/commands.hpp"
 #include "trace/vulkan/device_scanner.hpp"
+#include "trace/vulkan/dispatch_sizer.hpp"
 #include "trace/vulkan/groups.hpp"
 #include "trace/vulkan/kernels.hpp"
-#include "trace/vulkan/pace.hpp"
-#include "trace/vulkan/sample_plan.hpp"
+#include "trace/vulkan/pair_schedule.hpp"
 #include "trace/vulkan/traversal.hpp"
 
 namespace vantage::vulkan {
@@ -169,9 +169,9 @@ class VulkanTracer final : public Tracer {
   DeviceDemands demands_;                                                         // for all voxels
   Buffer counts_, masks_, station_counters_, totals_, station_counts_;
   Buffer tile_far_, tile_list_, tile_dispatch_, tile_rays_, tile_starts_;
-  Pace exact_pace_, sampled_pace_;
+  DispatchSizer exact_sizer_, sampled_sizer_;
 
-  Recent<DeviceSample> samples_;
+  LruCache<DeviceSample> samples_;
   Buffer sample_stations_, sample_pairs_, sample_rays_, sample_sights_, sample_items_, sample_control_, slot_rays_;
   std::shared_ptr<const Patches> patches_;  // contents of the next buffers
   std::shared_ptr<const NoiseModel> patch_noise_;

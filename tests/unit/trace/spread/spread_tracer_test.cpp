@@ -112,7 +112,7 @@ struct Site {
     tracer->set_goal_density(wanted);
     return tracer;
   }
-  std::unique_ptr<SpreadTracer> several(const std::vector<Frail::Manner>& manners, Team::Warn warn = {},
+  std::unique_ptr<SpreadTracer> several(const std::vector<Frail::Manner>& manners, WorkerPool::Warn warn = {},
                                         SpreadTracer::Options options = {
                                             .split = SpreadTracer::Split::always,
                                             .population = SpreadTracer::Population::by_voxels}) const {
@@ -244,7 +244,7 @@ INSTANTIATE_TEST_SUITE_P(SpreadTracer, Populations,
                            return of.param == SpreadTracer::Population::by_voxels ? "ByVoxels" : "ByNetworks";
                          });
 
-// Each member has some voxels and all networks, or all voxels and some networks.
+// Each worker has some voxels and all networks, or all voxels and some networks.
 TEST(SpreadTracer, SplitsAPopulationAsItIsTold) {
   const Site site;
   for (const auto population : {SpreadTracer::Population::by_networks, SpreadTracer::Population::by_voxels}) {
