@@ -26,10 +26,13 @@ install(FILES ${PROJECT_BINARY_DIR}/vantageConfig.cmake ${PROJECT_BINARY_DIR}/va
 
 # Paths in the .pc hang on its own place, so that an installed tree can be moved.
 file(RELATIVE_PATH VANTAGE_PC_PREFIX ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
-# PROJ by its shared library alone: `pkg-config --static` would list whatever curl below it was built with.
-set(VANTAGE_PC_PROJ "")
-if(VANTAGE_HAVE_PROJ)
-  set(VANTAGE_PC_PROJ " -lproj")
+# It names PROJ's shared library alone: `pkg-config --static` would list whatever curl below PROJ was built with.
+# What the report packs its page with; Debian's meshoptimizer has no .pc of its own.
+set(VANTAGE_PC_ZLIB "")
+set(VANTAGE_PC_MESHOPTIMIZER "")
+if(VANTAGE_HAVE_REPORT)
+  set(VANTAGE_PC_ZLIB " zlib")
+  set(VANTAGE_PC_MESHOPTIMIZER " -lmeshoptimizer")
 endif()
 configure_file(${PROJECT_SOURCE_DIR}/cmake/vantage.pc.in ${PROJECT_BINARY_DIR}/vantage.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/vantage.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

@@ -11,23 +11,23 @@ int main(int argc, char** argv) try {
     return std::fprintf(stderr, "usage: evaluate_network SCENE X Y Z [X Y Z ...]\n"), 2;
 
   const Scene scene = Scene::load(argv[1]);
-  Network network;
+  std::vector<PlacedStation> stations;
   for (int k = 2; k < argc; k += 3)
-    network.push_back({.position = {std::atof(argv[k]), std::atof(argv[k + 1]), std::atof(argv[k + 2])}});
+    stations.push_back({.position = {std::atof(argv[k]), std::atof(argv[k + 1]), std::atof(argv[k + 2])}});
 
   Simulator simulator(scene, Scanner{}, {.user_size_m = 0.1, .point_spacing_m = 0.01});
+  Simulator surroundings = surroundings_of(simulator);
 
-  const NetworkCounts counts = simulator.evaluate(network);
-  std::printf("coverage %.3f, overlap %.3f, from %llu rays\n", coverage(counts, simulator.goal_density()),
-              clustering_coefficient(overlap_matrix(counts)), static_cast<unsigned long long>(counts.rays));
+  const Evaluation exact = evaluate_stations({simulator, &surroundings}, stations);
+  std::printf("%scoverage %.3f, overlap %.3f, from %llu rays\n", summary_text(exact).c_str(), exact.value("coverage"),
+              exact.value("overlap"), static_cast<unsigned long long>(exact.counts.rays));
 
-  // The same from 5000 voxels, with standard errors: what a search would use, many networks at a time.
-  const NetworkCounts sample = simulator.evaluate_sampled({&network, 1}, {.voxels = 5'000}).front();
-  const Estimate covered = coverage_estimate(sample, simulator.goal_density(), simulator.voxel_count());
-  const Estimate overlapped = overlap_estimate(sample, simulator.voxel_count());
-  std::printf("sampled: coverage %.3f +- %.3f, overlap %.3f +- %.3f, from %llu rays\n", covered.value,
-              covered.standard_error, overlapped.value, overlapped.standard_error,
-              static_cast<unsigned long long>(sample.rays));
+  // The same from 5000 voxels, with standard errors.
+  const Evaluation sampled = evaluate_stations({simulator}, stations, {.sample_voxels = 5'000});
+  const auto [coverage, coverage_se] = sampled.values.at("coverage");
+  const auto [overlap, overlap_se] = sampled.values.at("overlap");
+  std::printf("sampled: coverage %.3f +- %.3f, overlap %.3f +- %.3f, from %llu rays\n", coverage, coverage_se, overlap,
+              overlap_se, static_cast<unsigned long long>(sampled.counts.rays));
   return 0;
 } catch (const Error& error) {
   std::fprintf(stderr, "error: %s\n", error.what());

@@ -11,17 +11,9 @@
 using namespace vantage;
 
 double loneliest(const MeasuredNetwork& network) {
-  const NetworkCounts& counts = network.counts;
+  const ScanOverlapMatrix overlap = scan_overlap_matrix(*network.surroundings);
   double least = 1;
-  for (std::size_t i = 0; i < counts.stations; ++i) {
-    double strongest = 0;
-    for (std::size_t j = 0; j < counts.stations; ++j) {
-      if (i == j || counts.seen[i] == 0 || counts.seen[j] == 0) continue;
-      const auto smaller = static_cast<double>(std::min(counts.seen[i], counts.seen[j]));
-      strongest = std::max(strongest, static_cast<double>(counts.shared_by(i, j)) / smaller);
-    }
-    least = std::min(least, strongest);
-  }
+  for (std::size_t i = 0; i < overlap.size(); ++i) least = std::min(least, std::ranges::max(overlap.row(i)));
   return least;
 }
 
@@ -39,7 +31,8 @@ int main(int argc, char** argv) try {
   problem.name = "custom";
   problem.objectives.push_back({.name = "neighbour",
                                 .label = "What the loneliest scan shares with its neighbour",
-                                .needs = {.pairs = true},
+                                .scale = maximise(1, 0),
+                                .needs = {.surroundings = true},
                                 .value = loneliest});
   problem.requirements = {make_requirement("coverage >= 0.5")};
   const PlanConfig config{.population = 20, .iterations = 10, .sample_voxels = 5'000, .seed = 42};
@@ -47,7 +40,7 @@ int main(int argc, char** argv) try {
 
   for (const PlanEntry& entry : result.front)
     std::printf("coverage %.3f, neighbour %.3f%s\n", entry.value("coverage"), entry.value("neighbour"),
-                entry.missed > 0 ? "  (misses what is required)" : "");
+                entry.violation > 0 ? "  (misses what is required)" : "");
   write_plan(argv[3], result, simulator, area);
   return 0;
 } catch (const Error& error) {

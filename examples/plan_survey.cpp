@@ -1,32 +1,44 @@
 // SPDX-License-Identifier: Apache-2.0
-// Searches for the best networks of N stations, coverage against overlap, and writes the front: plan_survey SCENE N
-// FOLDER
+// Plans a survey as `vantage plan` does, with the same settings, and writes the results:
+// plan_survey SCENE FOLDER [SETTING=VALUE]..., as stations=4 capture=0.95
+#include <algorithm>
 #include <cstdio>
-#include <cstdlib>
+#include <string>
 #include <vantage/vantage.hpp>
 
 using namespace vantage;
 
+// Sets `name` if the table has it.
+template <class Options>
+bool set(const SettingTable<Options>& table, Options& options, const std::string& name, const std::string& value) {
+  const auto row = std::ranges::find(table, name, &SettingRow<Options>::name);
+  if (row == table.end()) return false;
+  row->set(options, value, name);
+  return true;
+}
+
 int main(int argc, char** argv) try {
-  if (argc != 4) return std::fprintf(stderr, "usage: plan_survey SCENE N FOLDER\n"), 2;
+  if (argc < 3) return std::fprintf(stderr, "usage: plan_survey SCENE FOLDER [SETTING=VALUE]...\n"), 2;
 
-  const Scene scene = Scene::load(argv[1]);
-  const Scanner scanner{.azimuth_step = Angle::degrees(0.2), .zenith_step = Angle::degrees(0.2), .height_m = 1.5};
-  Simulator simulator(scene, scanner, {.user_size_m = 0.2, .point_spacing_m = 0.05});
-  const SearchArea area = SearchArea::build(scene);
-  const ClashChecker clash(scene);
+  SiteOptions options;
+  SurveyQuestion question;
+  PlanConfig config;
+  for (int k = 3; k < argc; ++k) {
+    const std::string text = argv[k], name = text.substr(0, text.find('='));
+    const std::string value = text.size() > name.size() ? text.substr(name.size() + 1) : "true";
+    if (!set(site_settings(), options, name, value) && !set(question_settings(), question, name, value) &&
+        !set(plan_settings(), config, name, value))
+      throw Error(Errc::invalid_argument, "there is no setting \"" + name + "\"");
+  }
 
-  const auto stations = static_cast<std::size_t>(std::atoi(argv[2]));
-  const PlanConfig config{.population = 20, .iterations = 10, .sample_voxels = 5'000, .seed = 42};
+  Site site = Site::open(argv[1], options);
   const PlanResult result =
-      plan(simulator, area, clash, coverage_overlap_fix(stations), config, {.report = [](const PlanProgress& now) {
-             std::fprintf(stderr, "\r%zu of %zu, hypervolume %.3f", now.iteration, now.iterations, now.hypervolume);
+      plan(site, question, config, {.report = [](const PlanProgress& now) {
+             std::fprintf(stderr, "\r%s %zu of %zu  ", now.phase.c_str(), now.iteration, now.iterations);
            }});
   std::fprintf(stderr, "\n");
-
-  for (const PlanEntry& entry : result.front)
-    std::printf("coverage %.3f, overlap %.3f\n", entry.value("coverage"), entry.value("overlap"));
-  write_plan(argv[3], result, simulator, area);
+  write_plan(argv[2], result, site);
+  std::printf("%s", summary_text(result.front[answer(result)], result.problem.requirements).c_str());
   return 0;
 } catch (const Error& error) {
   std::fprintf(stderr, "error: %s\n", error.what());

@@ -40,18 +40,27 @@ std::vector<Each> all_of(const py::object& stations) {
 
 }  // namespace
 
-Network network_of(const py::object& stations) {
+std::vector<PlacedStation> stations_of(const py::object& stations) {
+  std::vector<PlacedStation> placed;
   if (!py::isinstance<py::array>(stations) && py::isinstance<py::sequence>(stations) && py::len(stations) > 0) {
     const py::object first = stations[py::int_(0)];
-    if (py::isinstance<PlacedStation>(first)) return to_network(all_of<PlacedStation>(stations));
-    if (py::isinstance<Station>(first)) return all_of<Station>(stations);
+    if (py::isinstance<PlacedStation>(first)) return all_of<PlacedStation>(stations);
+    if (py::isinstance<Station>(first)) {
+      for (const Station& one : all_of<Station>(stations))
+        placed.push_back({.position = one.position,
+                          .ground = one.position,
+                          .status = one.active ? StationStatus::ok : StationStatus::clash,
+                          .setup = one.setup});
+      return placed;
+    }
   }
   const auto heads = Doubles::ensure(stations);
   if (!heads) throw py::error_already_set();
-  Network network;
-  for (const Vec3& head : rows_of<Vec3>(heads, "stations")) network.push_back({.position = head});
-  return network;
+  for (const Vec3& head : rows_of<Vec3>(heads, "stations")) placed.push_back({.position = head, .ground = head});
+  return placed;
 }
+
+Network network_of(const py::object& stations) { return to_network(stations_of(stations)); }
 
 py::array_t<double> heads_of(std::span<const PlacedStation> stations) {
   std::vector<Vec3> heads;

@@ -62,7 +62,9 @@ std::span<const Row> rows_of(const Doubles& array, const char* what) {
 std::vector<std::array<std::uint32_t, 3>> triangles_of(const py::array& array);
 
 /// Heads of stations as an array of (n, 3), or `Station`s or `PlacedStation`s, of which those that are not active keep
-/// their place.
+/// their place. Of the former two the ground is not known, and is where the head is.
+std::vector<PlacedStation> stations_of(const py::object& stations);
+/// The same as a simulator takes them.
 Network network_of(const py::object& stations);
 
 /// The heads of stations, one row each.

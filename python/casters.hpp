@@ -61,7 +61,6 @@ std::string name_of(Enum value) {
 inline void from_name(const std::string& text, Engine& value) { value = engine_from_string(text); }
 inline void from_name(const std::string& text, Unit& value) { value = unit_from_string(text); }
 inline void from_name(const std::string& text, UpAxis& value) { value = up_axis_from_string(text); }
-inline void from_name(const std::string& text, Algorithm& value) { value = algorithm_from_string(text); }
 template <class Enum>
 void from_name(const std::string& text, Enum& value) {
   std::string known;
@@ -96,8 +95,6 @@ template <>
 struct type_caster<vantage::Unit> : vantage::python::NameCaster<vantage::Unit> {};
 template <>
 struct type_caster<vantage::UpAxis> : vantage::python::NameCaster<vantage::UpAxis> {};
-template <>
-struct type_caster<vantage::Algorithm> : vantage::python::NameCaster<vantage::Algorithm> {};
 template <>
 struct type_caster<vantage::RegistrationSurfaces> : vantage::python::NameCaster<vantage::RegistrationSurfaces> {};
 template <>

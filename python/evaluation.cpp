@@ -11,18 +11,34 @@ namespace {
   throw Error(Errc::invalid_argument, what + ": was not asked for; evaluate with " + how);
 }
 
-const NetworkCounts& with_pairs(const Evaluation& e, const char* what) {
+const Evaluation& with_pairs(const Evaluation& e, const char* what) {
   if (e.counts.stations > 0 && e.counts.seen.empty()) not_asked_for(what, "overlap=True");
-  return e.counts;
+  return e;
+}
+
+const Estimate& estimate_of(const Evaluation& e, const char* measure, const char* how) {
+  const auto found = e.values.find(measure);
+  if (found != e.values.end()) return found->second;
+  if (e.counts.cancelled) throw Error(Errc::invalid_argument, std::string(measure) + ": the call was cancelled");
+  not_asked_for(measure, how);
+}
+double value_of(const Evaluation& e, const char* measure) { return estimate_of(e, measure, "overlap=True").value; }
+double error_of(const Evaluation& e, const char* measure) {
+  return estimate_of(e, measure, "overlap=True").standard_error;
 }
 
 const VoxelField& field_of(const Evaluation& e, const char* what) {
-  if (!e.field) not_asked_for(what, "field=True");
-  return *e.field;
+  if (e.field.count.empty() && e.voxels > 0) not_asked_for(what, "field=True");
+  return e.field;
+}
+
+const ScanOverlapMatrix& scan_overlaps_of(const Evaluation& e, const char* what) {
+  if (e.scan_overlap_matrix.size() == 0 && e.counts.stations > 0) not_asked_for(what, "surroundings=True");
+  return e.scan_overlap_matrix;
 }
 
 py::array_t<std::uint64_t> shared_voxels(const Evaluation& e) {
-  const NetworkCounts& counts = with_pairs(e, "shared");
+  const NetworkCounts& counts = with_pairs(e, "shared").counts;
   const std::size_t n = counts.stations;
   std::vector<std::uint64_t> shared(n * n);
   for (std::size_t i = 0; i < n; ++i)
@@ -31,24 +47,9 @@ py::array_t<std::uint64_t> shared_voxels(const Evaluation& e) {
 }
 
 py::dict values_of(const Evaluation& e) {
-  const bool pairs = !e.counts.seen.empty();
-  const Estimate covered = coverage_estimate(e.counts, e.goal_density, e.voxels);
-  py::dict dict;
-  dict["coverage"] = covered.value;
-  dict["coverage_se"] = covered.standard_error;
-  for (const char* key : {"overlap", "overlap_se", "overlap_matrix"}) dict[key] = py::none();
-  if (pairs) {
-    const Estimate overlap = overlap_estimate(e.counts, e.voxels);
-    dict["overlap"] = overlap.value;
-    dict["overlap_se"] = overlap.standard_error;
-    dict["overlap_matrix"] = matrix_of(overlap_matrix(e.counts)).attr("tolist")();
-  }
+  py::dict dict = from_json(evaluation_json(e));
   dict["points"] = e.counts.points;
   dict["points_on_surveyed"] = e.counts.points_on_surveyed;
-  dict["voxels"] = e.voxels;
-  dict["sample"] = e.counts.voxels == e.voxels ? py::none() : py::object(py::int_(e.counts.voxels));
-  dict["goal_density"] = e.goal_density;
-  dict["rays"] = e.counts.rays;
   dict["trace_seconds"] = e.counts.trace_seconds;
   return dict;
 }
@@ -125,59 +126,66 @@ void add_evaluations(py::module_& m) {
       "What a network of n stations leaves in the surveyed voxels: of every ray, or of a sample of the voxels, where\n"
       "`coverage_se` and the like are standard errors. Measures that were not asked for raise Error.")
       .def_property_readonly(
-          "coverage", [](const Evaluation& e) { return coverage(e.counts, e.goal_density); },
+          "coverage", [](const Evaluation& e) { return value_of(e, "coverage"); },
           "Equation 8 of the paper, in [0, 1].")
       .def_property_readonly(
-          "coverage_se",
-          [](const Evaluation& e) { return coverage_estimate(e.counts, e.goal_density, e.voxels).standard_error; },
+          "coverage_se", [](const Evaluation& e) { return error_of(e, "coverage"); },
           "Standard error; 0 where all voxels were counted.")
       .def_property_readonly(
-          "overlap",
-          [](const Evaluation& e) { return clustering_coefficient(overlap_matrix(with_pairs(e, "overlap"))); },
+          "overlap", [](const Evaluation& e) { return value_of(e, "overlap"); },
           "Average weighted clustering coefficient (equation 13), in [0, 1].")
       .def_property_readonly(
-          "overlap_se",
-          [](const Evaluation& e) { return overlap_estimate(with_pairs(e, "overlap_se"), e.voxels).standard_error; },
+          "overlap_se", [](const Evaluation& e) { return error_of(e, "overlap"); },
           "Standard error; 0 where all voxels were counted.")
       .def_property_readonly(
           "overlap_matrix",
-          [](const Evaluation& e) { return matrix_of(overlap_matrix(with_pairs(e, "overlap_matrix"))); },
+          [](const Evaluation& e) { return matrix_of(with_pairs(e, "overlap_matrix").overlap_matrix); },
           "Voxels shared over voxels seen by either (equation 11): (n, n), 0 on the diagonal.")
       .def_property_readonly(
           "overlap_matrix_se",
           [](const Evaluation& e) {
-            return matrix_of(overlap_standard_errors(with_pairs(e, "overlap_matrix_se"), e.voxels));
+            const bool none = with_pairs(e, "overlap_matrix_se").overlap_errors.size() == 0;
+            return matrix_of(none ? PairMatrix(e.counts.stations) : e.overlap_errors);
           },
           "Standard errors of that: (n, n).")
       .def_property_readonly(
           "scan_overlap_matrix",
-          [](const Evaluation& e) { return matrix_of(scan_overlap_matrix(with_pairs(e, "scan_overlap_matrix"))); },
-          "Voxels shared over those of the smaller scan, as practice states it: (n, n), 0 on the diagonal.")
+          [](const Evaluation& e) { return matrix_of(scan_overlaps_of(e, "scan_overlap_matrix")); },
+          "Voxels of all surfaces, surveyed or not, that both stations see, over those of the smaller scan, as "
+          "practice\n"
+          "states it: (n, n), 0 on the diagonal.")
       .def(
           "connectivity",
           [](const Evaluation& e, double min_overlap) {
-            return connectivity(overlap_matrix(with_pairs(e, "connectivity")), min_overlap);
+            return connectivity(with_pairs(e, "connectivity").overlap_matrix, min_overlap);
           },
           py::arg("min_overlap") = default_link_overlap,
           "How stations hang together by the overlaps (equation 11) of at least `min_overlap`.")
+      .def(
+          "scan_connectivity",
+          [](const Evaluation& e, double min_overlap) {
+            return connectivity(scan_overlaps_of(e, "scan_connectivity"), min_overlap);
+          },
+          py::arg("min_overlap") = default_link,
+          "How stations hang together by the scan overlaps of at least `min_overlap`.")
       .def_property_readonly(
           "registration",
           [](const Evaluation& e) {
             if (!e.registration) not_asked_for("registration", "registration=RegistrationOptions()");
-            return registration_error(e.counts, e.voxels, *e.registration, &e.surroundings, e.surroundings_voxels);
+            return *e.registration;
           },
           "Predicted error of the registered scans.")
       .def_property_readonly(
           "registration_estimate",
           [](const Evaluation& e) {
-            if (!e.registration) not_asked_for("registration_estimate", "registration=RegistrationOptions()");
-            return registration_estimate(e.counts, e.voxels, *e.registration, &e.surroundings, e.surroundings_voxels);
+            const Estimate& mm = estimate_of(e, "registration", "registration=RegistrationOptions()");
+            return Estimate{mm.value / 1e3, mm.standard_error / 1e3};
           },
           "(rms_m, its standard error), of a sample less its bias.")
       .def_property_readonly(
           "seen",
           [](const py::object& self) {
-            return view<std::uint64_t>(std::span(with_pairs(self.cast<const Evaluation&>(), "seen").seen), self);
+            return view<std::uint64_t>(std::span(with_pairs(self.cast<const Evaluation&>(), "seen").counts.seen), self);
           },
           "Per station, voxels with a point of it: (n,), read-only.")
       .def_property_readonly("shared", &shared_voxels,
@@ -220,10 +228,12 @@ void add_evaluations(py::module_& m) {
       .def_property_readonly(
           "cancelled", [](const Evaluation& e) { return e.counts.cancelled; },
           "Stopped before its end: counts too little.")
+      .def_property_readonly(
+          "summary", [](const Evaluation& e) { return summary_text(e); }, "What it comes to, in plain words.")
       .def("to_dict", &values_of, "Plain values by the names that `vantage evaluate --json` gives them.")
       .def("__repr__", [](const Evaluation& e) {
         return "<vantage.Evaluation of " + std::to_string(e.counts.stations) + " stations: coverage " +
-               std::string(py::str(py::float_(coverage(e.counts, e.goal_density)))) + ">";
+               (e.counts.cancelled ? "cancelled" : std::string(py::str(py::float_(value_of(e, "coverage"))))) + ">";
       });
 }
 

@@ -4,27 +4,12 @@
 #pragma once
 
 #include <exception>
-#include <mutex>
 #include <stop_token>
 #include <utility>
 
 #include "casters.hpp"
 
 namespace vantage::python {
-
-/// One thread at a time uses what it guards. Others get an Error: a `Simulator` is for one thread, and waiting for it
-/// would hang where an objective, which a search calls, uses the simulator of that search.
-class Busy {
- public:
-  explicit Busy(std::mutex& mutex) : lock_(mutex, std::try_to_lock) {
-    if (!lock_)
-      throw Error(Errc::invalid_argument,
-                  "the simulator is in use by another call: make one for each thread, and none in an objective");
-  }
-
- private:
-  std::unique_lock<std::mutex> lock_;
-};
 
 class LongCall {
  public:

@@ -45,6 +45,7 @@ PYBIND11_MODULE(_core, m) {
   add_placement(m);
   add_evaluations(m);
   add_simulators(m);
+  add_sites(m);
   add_candidates(m);
   add_problems(m);
   add_plans(m);

@@ -12,6 +12,7 @@ void add_scanners(pybind11::module_& m);
 void add_placement(pybind11::module_& m);
 void add_evaluations(pybind11::module_& m);
 void add_simulators(pybind11::module_& m);
+void add_sites(pybind11::module_& m);
 void add_candidates(pybind11::module_& m);
 void add_problems(pybind11::module_& m);
 void add_plans(pybind11::module_& m);

@@ -1,16 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
 #include "evaluation.hpp"
 #include "module.hpp"
 #include "options.hpp"
+#include "settings.hpp"
 #include "simulator.hpp"
+#include "site.hpp"
 
 namespace vantage::python {
 namespace {
 
-/// A result, and the simulator and the search area that reports of it look at.
+/// A result, and what reports of it look at: the site's, or what was given.
 struct Plan {
   PlanResult result;
-  py::object simulator, area;
+  std::shared_ptr<GuardedSite> site = nullptr;
+  py::object simulator = py::none(), area = py::none(), clash = py::none();
+};
+/// What became known of one measure of a network.
+struct MeasuredValue {
+  double searched, standard_error, exact;
+  double best_known() const { return exact == exact ? exact : searched; }
 };
 /// A network of its front; shares the result.
 struct Entry {
@@ -26,7 +36,12 @@ struct Watched : PlanProgress {
   std::vector<ParetoPoint> points;
 };
 
-const Simulator& simulator_of(const Plan& plan) { return plan.simulator.cast<const GuardedSimulator&>().simulator; }
+Simulator& simulator_of(const Plan& plan) {
+  return plan.site ? plan.site->site.simulator() : plan.simulator.cast<GuardedSimulator&>().simulator;
+}
+const SearchArea& area_of(const Plan& plan) {
+  return plan.site ? plan.site->site.area() : plan.area.cast<const SearchArea&>();
+}
 
 py::array_t<double> table_of(const std::vector<std::vector<double>>& rows) {
   const std::size_t width = rows.empty() ? 0 : rows.front().size();
@@ -45,12 +60,14 @@ Options<PlanConfig> plan_options() {
   return Options<PlanConfig>("plan")
       .add("population", &PlanConfig::population,
            "0: 10 with one objective, 20 where the number is searched, else 100.")
-      .add("iterations", &PlanConfig::iterations, "Of `population` evaluations each.")
+      .add("iterations", &PlanConfig::iterations, "Of `population` evaluations each; 0: 100.")
       .add("sigma0", &PlanConfig::sigma0, "Initial step, as a share of the range.")
-      .add("algorithm", &PlanConfig::algorithm, "'mo_cma_es', 'nsga2' or 'random_search', for several objectives.")
       .add("scheme", &PlanConfig::scheme, "'steady-state' or 'generational'.")
       .add("batch", &PlanConfig::batch, "Offspring at once in the steady state; 0: chosen by the engine.")
-      .add("sample_voxels", &PlanConfig::sample_voxels, "0: exact search; else sampled with so many voxels.")
+      .add("exact", &PlanConfig::exact, "Search with every ray, the dearest way.")
+      .add("sample_voxels", &PlanConfig::sample_voxels, "Search with so many voxels; 0: chosen by the problem.")
+      .add("renew_iterations", &PlanConfig::renew_iterations,
+           "Draw other voxels every so many iterations; 0: never; None: chosen by the problem.")
       .add("sample_from", &PlanConfig::sample_from,
            "Where not 0: looked at with so many voxels first; the sample then grows to `sample_voxels` as it has to.")
       .add("start", &PlanConfig::start, "Heads (x, y, z) of an initial network; empty: random.")
@@ -58,7 +75,7 @@ Options<PlanConfig> plan_options() {
       .add("max_seconds", &PlanConfig::max_seconds, "Of the search; 0: no limit.")
       .add("target_hypervolume", &PlanConfig::target_hypervolume, "Stop there; None: never.")
       .add("stagnation_iterations", &PlanConfig::stagnation_iterations, "Stop after so many without growth; 0: never.")
-      .add("seed", &PlanConfig::seed, "Of everything that is drawn.")
+      .add("seed", &PlanConfig::seed, "Of everything that is drawn; None: the simulator's.")
       .add<std::filesystem::path>(
           "checkpoint", [](const PlanConfig& c) { return c.checkpoint.string(); },
           [](PlanConfig& c, std::filesystem::path file) { c.checkpoint = std::move(file); },
@@ -73,14 +90,38 @@ std::shared_ptr<Plan> plan_survey(GuardedSimulator& guarded, const SearchArea& a
   const PlanConfig config = options.read(given);
   LongCall call(std::move(progress));
   PlanResult result = call.run([&] {
-    const Busy busy(guarded.mutex);
     return plan(guarded.simulator, area, clash, problem, config,
                 {.report = [&](const PlanProgress& now) { call.report([&] { return Watched(now); }); },
                  .stop = call.stop(),
                  .abort = call.abort()});
   });
-  return std::make_shared<Plan>(Plan{std::move(result), py::cast(guarded, py::return_value_policy::reference),
-                                     py::cast(area, py::return_value_policy::reference)});
+  return std::make_shared<Plan>(Plan{std::move(result), nullptr, py::cast(guarded, py::return_value_policy::reference),
+                                     py::cast(area, py::return_value_policy::reference),
+                                     py::cast(clash, py::return_value_policy::reference)});
+}
+
+// By the settings of a question and of a search; `problem` in place of the former.
+std::shared_ptr<Plan> plan_site(const std::shared_ptr<GuardedSite>& guarded, const py::object& problem,
+                                py::object progress, const py::kwargs& given) {
+  refuse_unknown(given, "Site.plan", question_settings(), plan_settings());
+  SurveyQuestion question;
+  PlanConfig config;
+  const std::size_t asked = read_settings(question_settings(), question, given);
+  read_settings(plan_settings(), config, given);
+  if (!problem.is_none() && asked > 0)
+    throw py::type_error("Site.plan: a problem says all that is asked; give it or settings of a question");
+  const std::optional<SurveyProblem> own =
+      problem.is_none() ? std::nullopt : std::optional(problem.cast<SurveyProblem>());
+  LongCall call(std::move(progress));
+  PlanResult result = call.run([&] {
+    const std::unique_lock lock(guarded->mutex, std::try_to_lock);
+    if (!lock) throw Error(Errc::invalid_argument, "the site is in use by another call: open one for each thread");
+    return plan(guarded->site, own ? *own : survey_problem(guarded->site, question), config,
+                {.report = [&](const PlanProgress& now) { call.report([&] { return Watched(now); }); },
+                 .stop = call.stop(),
+                 .abort = call.abort()});
+  });
+  return std::make_shared<Plan>(Plan{.result = std::move(result), .site = guarded});
 }
 
 void add_progress(py::module_& m) {
@@ -118,26 +159,34 @@ void add_entries(py::module_& m) {
           "heads", [](const Entry& e) { return heads_of(e.get().stations); },
           "Their heads, survey frame: (n, 3), metres.")
       .def_property_readonly(
-          "values", [](const Entry& e) { return e.get().values; }, "MeasuredValue by the names of the plan's measures.")
+          "values",
+          [](const Entry& e) {
+            const PlanEntry& entry = e.get();
+            std::map<std::string, MeasuredValue> values;
+            for (const auto& [name, seen] : entry.searched)
+              values[name] = {seen.value, seen.standard_error, entry.exact ? entry.value(name) : std::nan("")};
+            return values;
+          },
+          "MeasuredValue by the names of the plan's measures.")
       .def(
           "value",
           [](const Entry& e, const std::string& name) {
             const auto found = e.get().values.find(name);
             if (found == e.get().values.end()) throw py::key_error(name);
-            return found->second.best_known();
+            return found->second.value;
           },
           py::arg("name"), "values[name].best_known")
       .def_property_readonly(
-          "confirmed", [](const Entry& e) { return e.get().confirmed; }, "Whether the exact values were computed.")
+          "confirmed", [](const Entry& e) { return e.get().exact; }, "Whether the exact values were computed.")
       .def_property_readonly(
           "dominated", [](const Entry& e) { return e.get().dominated; }, "By another one, once every ray is traced.")
       .def_property_readonly(
-          "missed", [](const Entry& e) { return e.get().missed; }, "By how much requirements are missed; 0: kept.")
+          "missed", [](const Entry& e) { return e.get().violation; }, "By how much requirements are missed; 0: kept.")
       .def_property_readonly(
-          "overlap_matrix", [](const Entry& e) { return matrix_of(e.get().exact_overlap_matrix); },
+          "overlap_matrix", [](const Entry& e) { return matrix_of(e.get().overlap_matrix); },
           "Equation 11 by every ray: (n, n); (0, 0) unless confirmed.")
       .def_property_readonly(
-          "scan_overlap_matrix", [](const Entry& e) { return matrix_of(e.get().exact_scan_overlap_matrix); },
+          "scan_overlap_matrix", [](const Entry& e) { return matrix_of(e.get().scan_overlap_matrix); },
           "Scan overlaps over all surfaces: (n, n); (0, 0) unless a measure needs them.")
       .def_property_readonly(
           "registration", [](const Entry& e) { return e.get().registration; },
@@ -145,7 +194,7 @@ void add_entries(py::module_& m) {
       .def("__repr__", [](const Entry& e) {
         std::string text;
         for (const auto& [name, value] : e.get().values)
-          text += ", " + name + " " + std::string(py::str(py::float_(value.best_known())));
+          text += ", " + name + " " + std::string(py::str(py::float_(value.value)));
         return "<vantage.PlanEntry of " + std::to_string(e.get().stations.size()) + " stations" + text + ">";
       });
 }
@@ -162,6 +211,25 @@ py::list history_of(const Plan& plan) {
     lines.append(line);
   }
   return lines;
+}
+
+void write_plan_report(const Plan& plan, const std::filesystem::path& file, const std::string& title,
+                       py::object progress) {
+  Simulator& simulator = simulator_of(plan);
+  const SearchArea& area = area_of(plan);
+  const ClashChecker& clash = plan.site ? plan.site->site.clash() : plan.clash.cast<const ClashChecker&>();
+  const PlanEntry& chosen = plan.result.front.at(answer(plan.result));
+  LongCall call(std::move(progress));
+  call.run([&] {
+    const Evaluation seen =
+        evaluate_stations({.simulator = simulator}, chosen.stations, {.field = true}, call.progress(0, 0.3));
+    MissedVoxels missed;
+    if (!seen.counts.cancelled) missed = missed_voxels(simulator, area, clash, seen.field, {}, call.progress(0.3, 0.6));
+    if (!call.stop().stop_requested())
+      write_report(file, plan.result, simulator, area, {.title = title, .field = &seen.field, .missed = &missed},
+                   call.progress(0.6, 1));
+    return 0;
+  });
 }
 
 void add_results(py::module_& m) {
@@ -212,7 +280,7 @@ void add_results(py::module_& m) {
       .def_property_readonly(
           "summary",
           [](const Plan& plan) {
-            return summary_text(summary_of(plan.result.front.at(answer(plan.result)), plan.result));
+            return summary_text(plan.result.front.at(answer(plan.result)), plan.result.problem.requirements);
           },
           "What the answer comes to, in plain words.")
       .def(
@@ -221,7 +289,7 @@ void add_results(py::module_& m) {
       .def(
           "write",
           [](const Plan& plan, const std::filesystem::path& folder, const std::string& crs) {
-            const auto& area = plan.area.cast<const SearchArea&>();
+            const SearchArea& area = area_of(plan);
             const Simulator& simulator = simulator_of(plan);
             const py::gil_scoped_release unlocked;
             write_plan(folder, plan.result, simulator, area, nullptr, crs);
@@ -230,6 +298,10 @@ void add_results(py::module_& m) {
           "Writes the result folder: front.csv, front.json, stations.csv, the pictures (docs/files.md). crs: the "
           "frame,\n"
           "as 'EPSG:25832', for maps. Raises Error: io, invalid_argument.")
+      .def("write_report", &write_plan_report, py::arg("file"), py::kw_only(), py::arg("title") = "Survey",
+           py::arg("progress") = py::none(),
+           "Writes report.html or report.pdf by the file's extension, with what the answer captures and misses.\n"
+           "Raises Error: io, invalid_argument (another extension, a build that writes no reports).")
       .def("__repr__", [](const Plan& plan) {
         return "<vantage.PlanResult of " + std::to_string(plan.result.front.size()) + " networks, " +
                std::to_string(plan.result.evaluations) + " evaluations, " + to_string(plan.result.stop_reason) + ">";
@@ -238,10 +310,40 @@ void add_results(py::module_& m) {
 
 }  // namespace
 
+void write_evaluation_report(const std::filesystem::path& file, const Evaluation& evaluation, GuardedSimulator& guarded,
+                             const SearchArea& area, const ClashChecker* clash, const std::string& title,
+                             py::object progress) {
+  LongCall call(std::move(progress));
+  call.run([&] {
+    MissedVoxels missed;
+    if (clash && !evaluation.field.count.empty())
+      missed = missed_voxels(guarded.simulator, area, *clash, evaluation.field, {}, call.progress(0, 0.3));
+    if (!call.stop().stop_requested())
+      write_report(file, evaluation, guarded.simulator, area, {.title = title, .missed = &missed},
+                   call.progress(0.3, 1));
+    return 0;
+  });
+}
+
 void add_plans(py::module_& m) {
   add_progress(m);
   add_entries(m);
   add_results(m);
+  m.def("write_report", &write_evaluation_report, py::arg("file"), py::arg("evaluation"), py::arg("simulator"),
+        py::arg("area"), py::arg("clash") = py::none(), py::kw_only(), py::arg("title") = "Survey",
+        py::arg("progress") = py::none(),
+        "Writes report.html or report.pdf, by the file's extension, of a network evaluated by this simulator. With\n"
+        "clash, of one evaluated with field=True, it also says why surfaces are not captured.\n"
+        "Raises Error: io, invalid_argument (another extension, a build that writes no reports).");
+  const py::object site = m.attr("Site");
+  site.attr("plan") = py::cpp_function(
+      &plan_site, py::name("plan"), py::is_method(site), py::arg("problem") = py::none(), py::kw_only(),
+      py::arg("progress") = py::none(),
+      ("Plans a survey as the program does: with nothing given, the fewest stations that capture and link enough.\n\n"
+       "problem: a SurveyProblem in place of the settings of a question. progress: as `vantage.plan` takes it.\n"
+       "Raises Error: invalid_argument." +
+       settings_doc("Site.plan", question_settings(), plan_settings()))
+          .c_str());
   const auto options = plan_options();
   m.def(
       "plan",

@@ -15,18 +15,34 @@ struct Measured {
   std::optional<Evaluation> surroundings = std::nullopt;
 };
 
+// What counts say of the network, pairs where they have some.
+Evaluation figures_of(const MeasuredNetwork& network, const std::optional<RegistrationOptions>& registration) {
+  static const std::vector<Objective> figures{make_objective("coverage"), make_objective("overlap")};
+  const std::size_t known = network.counts.seen.empty() ? 1 : 2;
+  return evaluation_of(network, std::span(figures).first(known), registration);
+}
+
 Measured copy_of(const MeasuredNetwork& network, const std::optional<RegistrationOptions>& registration) {
-  Measured copy{.evaluation = {.counts = network.counts,
-                               .goal_density = network.goal_density,
-                               .voxels = network.voxels,
-                               .registration = registration},
+  MeasuredNetwork seen{.counts = network.counts,
+                       .stations = network.stations,
+                       .kept = network.kept,
+                       .goal_density = network.goal_density,
+                       .voxels = network.voxels,
+                       .overlap = overlap_matrix(network.counts),
+                       .surroundings = network.surroundings,
+                       .surroundings_voxels = network.surroundings_voxels};
+  Measured copy{.evaluation = figures_of(seen, registration),
                 .stations = {network.stations.begin(), network.stations.end()},
                 .kept = network.kept,
                 .visible_parts = network.visible_parts,
                 .minutes_on_site = network.minutes_on_site};
   if (network.surroundings)
-    copy.surroundings = {
-        .counts = *network.surroundings, .goal_density = network.goal_density, .voxels = network.surroundings_voxels};
+    copy.surroundings = figures_of({.counts = *network.surroundings,
+                                    .stations = network.stations,
+                                    .goal_density = network.goal_density,
+                                    .voxels = network.surroundings_voxels,
+                                    .overlap = overlap_matrix(*network.surroundings)},
+                                   std::nullopt);
   return copy;
 }
 
@@ -47,16 +63,15 @@ Measure measure_of(const py::function& function, const std::optional<Registratio
   };
 }
 
-Objective objective_of(std::string name, const py::function& value, std::string label, std::string unit, double best,
-                       double worst, bool counts, bool pairs, bool visibility, bool surroundings, bool time,
+Objective objective_of(std::string name, const py::function& value, const Scale& scale, std::string label,
+                       std::string unit, bool counts, bool pairs, bool visibility, bool surroundings, bool time,
                        const std::optional<RegistrationOptions>& registration,
                        const std::optional<py::function>& standard_error, std::string parameters) {
   Objective made{
       .name = std::move(name),
       .label = std::move(label),
       .unit = std::move(unit),
-      .best = best,
-      .worst = worst,
+      .scale = scale,
       .needs = {.counts = counts, .pairs = pairs, .visibility = visibility, .surroundings = surroundings, .time = time},
       .value = measure_of(value, registration),
       .parameters = std::move(parameters)};
@@ -85,26 +100,34 @@ void add_objectives(py::module_& m) {
       .def_readonly("minutes_on_site", &Measured::minutes_on_site, "Without kept stations; 0 unless needed.")
       .def_readonly("surroundings", &Measured::surroundings,
                     "Counts on all surfaces, surveyed or not; None unless needed.");
-  py::class_<Objective>(
-      m, "Objective",
-      "One measure of a network, to be searched for, required or reported; best above worst: more is\n"
-      "better.")
-      .def(py::init(&objective_of), py::arg("name"), py::arg("value"), py::kw_only(), py::arg("label") = "",
-           py::arg("unit") = "", py::arg("best") = 1.0, py::arg("worst") = 0.0, py::arg("counts") = true,
-           py::arg("pairs") = false, py::arg("visibility") = false, py::arg("surroundings") = false,
-           py::arg("time") = false, py::arg("registration") = py::none(), py::arg("standard_error") = py::none(),
-           py::arg("parameters") = "",
+  py::class_<Scale>(m, "Scale", "The range of values that matter of an objective; made by `minimise` or `maximise`.")
+      .def_readonly("best", &Scale::best, "Scaled to 0.")
+      .def_readonly("worst", &Scale::worst, "Scaled to 1: the reference point of the hypervolume.")
+      .def("__repr__", [](const Scale& scale) {
+        return std::string(scale.best > scale.worst ? "vantage.maximise(" : "vantage.minimise(") +
+               py::str(py::float_(scale.best)).cast<std::string>() + ", " +
+               py::str(py::float_(scale.worst)).cast<std::string>() + ")";
+      });
+  m.def("minimise", &minimise, py::arg("best"), py::arg("worst"),
+        "Less is better: the Scale of an objective, in its unit. Raises Error unless best <= worst, both finite.");
+  m.def("maximise", &maximise, py::arg("best"), py::arg("worst"),
+        "More is better: the Scale of an objective, in its unit. Raises Error unless best >= worst, both finite.");
+  py::class_<Objective>(m, "Objective", "One measure of a network, to be searched for, required or reported.")
+      .def(py::init(&objective_of), py::arg("name"), py::arg("value"), py::arg("scale"), py::kw_only(),
+           py::arg("label") = "", py::arg("unit") = "", py::arg("counts") = true, py::arg("pairs") = false,
+           py::arg("visibility") = false, py::arg("surroundings") = false, py::arg("time") = false,
+           py::arg("registration") = py::none(), py::arg("standard_error") = py::none(), py::arg("parameters") = "",
            "name: lower-case letters, digits, `_`. value: a function of a MeasuredNetwork, which gives the same for "
            "the\n"
-           "same. best, worst: the scale that the search and the hypervolume go by. counts, pairs, visibility,\n"
+           "same. scale: `minimise(best, worst)` or `maximise(best, worst)`, by which search and hypervolume go. "
+           "counts, pairs, visibility,\n"
            "surroundings, time, registration (RegistrationOptions): what of the network it looks at; the rest is not\n"
            "computed. standard_error: a function\n"
            "as value; None: by the jackknife. parameters: what it was made with; runs resume only under the same.")
       .def_readonly("name", &Objective::name, "Its key in tables and results.")
       .def_readonly("label", &Objective::label, "For axes.")
       .def_readonly("unit", &Objective::unit, "'mm'; empty: a plain number.")
-      .def_readonly("best", &Objective::best, "Scaled to 0.")
-      .def_readonly("worst", &Objective::worst, "Scaled to 1: the reference point of the hypervolume.")
+      .def_readonly("scale", &Objective::scale, "From best to worst, in its unit.")
       .def("__repr__", [](const Objective& o) { return "<vantage.Objective '" + o.name + "'>"; });
   py::class_<Requirement>(m, "Requirement", "A bound that a wanted network keeps.")
       .def(py::init([](Objective objective, const std::string& bound, double limit) {

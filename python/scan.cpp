@@ -81,7 +81,6 @@ Scan scan(GuardedSimulator& self, const Vec3& position, const std::vector<std::s
   Scan made{.outputs = bits_of(outputs), .grid = grid};
   LongCall call(std::move(progress));
   made.summary = call.run([&] {
-    const Busy busy(self.mutex);
     return self.simulator.scan(
         {.position = position, .setup = setup}, {.outputs = made.outputs, .place = place},
         [&](const ScanChunk& chunk) { append(made, chunk, simulator.origin()); }, call.progress());

@@ -26,18 +26,35 @@ Options<SceneOptions> scene_options() {
       .add("allow_outside", &SceneOptions::allow_outside, "Let the file name others outside of its own folder.");
 }
 
-SceneMesh mesh_of(const Doubles& positions, const py::array& triangles, std::string name, std::optional<Role> role,
-                  double diffuse, std::uint32_t weight, std::array<float, 4> colour, const Vec3& translation,
-                  std::array<double, 4> rotation) {
+Options<SceneMesh> mesh_options(const std::string& call) {
+  return Options<SceneMesh>(call)
+      .add("name", &SceneMesh::name, "Opens messages.")
+      .add("role", &SceneMesh::role,
+           "'surveyed', 'blocking', 'search' (part of the search area) or 'ignore'; None: surveyed, or blocking once "
+           "any mesh is marked surveyed.")
+      .add("diffuse", &SceneMesh::diffuse, "Diffuse reflection coefficient R, in [0, 1].")
+      .add("weight", &SceneMesh::weight, "What a voxel of it counts in coverage, 1 to 255.")
+      .add("door", &SceneMesh::door, "A closed leaf that counts as open for who walks; it blocks rays.")
+      .add("station_area", &SceneMesh::station_area, "Stations may stand on it, whatever its role.")
+      .add("detail_m", &SceneMesh::detail_m, "Widest footprint of the beam that counts, metres; 0: any.")
+      .add("accuracy_m", &SceneMesh::accuracy_m, "Largest range noise (sigma) that counts, metres; 0: any.")
+      .add("colour", &SceneMesh::colour, "Linear red, green, blue and alpha, in [0, 1].")
+      .add<Vec3>(
+          "translation", [](const SceneMesh& mesh) { return mesh.pose.translation; },
+          [](SceneMesh& mesh, const Vec3& by) { mesh.pose.translation = by; }, "Moves its points, metres.")
+      .add<std::array<double, 4>>(
+          "rotation", [](const SceneMesh& mesh) { return mesh.pose.rotation; },
+          [](SceneMesh& mesh, const std::array<double, 4>& by) { mesh.pose.rotation = by; },
+          "Turns its points before they are moved: a quaternion (x, y, z, w).");
+}
+
+SceneMesh mesh_of(const Options<SceneMesh>& options, const Doubles& positions, const py::array& triangles,
+                  const py::kwargs& given) {
+  SceneMesh mesh = options.read(given);
   const auto points = rows_of<Vec3>(positions, "positions");
-  return {.name = std::move(name),
-          .positions = {points.begin(), points.end()},
-          .triangles = triangles_of(triangles),
-          .role = role,
-          .diffuse = diffuse,
-          .weight = weight,
-          .colour = colour,
-          .pose = {translation, rotation}};
+  mesh.positions.assign(points.begin(), points.end());
+  mesh.triangles = triangles_of(triangles);
+  return mesh;
 }
 
 void add_mesh_info(py::module_& m) {
@@ -112,40 +129,29 @@ void add_scene(py::module_& m) {
 }
 
 void add_builder(py::module_& m) {
+  const auto added = mesh_options("SceneBuilder.add"), replaced = mesh_options("SceneBuilder.replace");
   py::class_<SceneBuilder>(
       m, "SceneBuilder",
       "Makes scenes of meshes from arrays, which may be moved and replaced between one `build` and the next.")
       .def(py::init<>())
       .def(
           "add",
-          [](SceneBuilder& builder, const Doubles& positions, const py::array& triangles, std::string name,
-             std::optional<Role> role, double diffuse, std::uint32_t weight, std::array<float, 4> colour,
-             const Vec3& translation, std::array<double, 4> rotation) {
-            return builder.add(
-                mesh_of(positions, triangles, std::move(name), role, diffuse, weight, colour, translation, rotation));
-          },
-          py::arg("positions"), py::arg("triangles"), py::kw_only(), py::arg("name") = "mesh",
-          py::arg("role") = py::none(), py::arg("diffuse") = 0.5, py::arg("weight") = 1,
-          py::arg("colour") = std::array<float, 4>{1, 1, 1, 1}, py::arg("translation") = Vec3{},
-          py::arg("rotation") = std::array<double, 4>{0, 0, 0, 1},
-          "Adds a mesh and returns its number, from 0. positions: (n, 3), metres, Z up; triangles: (m, 3), indices of\n"
-          "positions, counter-clockwise from outside. role: 'surveyed', 'blocking', 'search' (part of the search\n"
-          "area) or 'ignore'; None: surveyed, or blocking once any mesh is marked surveyed. colour: linear RGBA in\n"
-          "[0, 1]. Its points are turned by the quaternion rotation (x, y, z, w), then moved by translation (metres).\n"
-          "Raises Error invalid_argument.")
+          [added](SceneBuilder& builder, const Doubles& positions, const py::array& triangles,
+                  const py::kwargs& given) { return builder.add(mesh_of(added, positions, triangles, given)); },
+          py::arg("positions"), py::arg("triangles"),
+          ("Adds a mesh and returns its number, from 0. positions: (n, 3), metres, Z up; triangles: (m, 3), indices "
+           "of\n"
+           "positions, counter-clockwise from outside. Raises Error invalid_argument." +
+           added.doc())
+              .c_str())
       .def(
           "replace",
-          [](SceneBuilder& builder, std::size_t mesh, const Doubles& positions, const py::array& triangles,
-             std::string name, std::optional<Role> role, double diffuse, std::uint32_t weight,
-             std::array<float, 4> colour, const Vec3& translation, std::array<double, 4> rotation) {
-            builder.replace(mesh, mesh_of(positions, triangles, std::move(name), role, diffuse, weight, colour,
-                                          translation, rotation));
+          [replaced](SceneBuilder& builder, std::size_t mesh, const Doubles& positions, const py::array& triangles,
+                     const py::kwargs& given) {
+            builder.replace(mesh, mesh_of(replaced, positions, triangles, given));
           },
-          py::arg("mesh"), py::arg("positions"), py::arg("triangles"), py::kw_only(), py::arg("name") = "mesh",
-          py::arg("role") = py::none(), py::arg("diffuse") = 0.5, py::arg("weight") = 1,
-          py::arg("colour") = std::array<float, 4>{1, 1, 1, 1}, py::arg("translation") = Vec3{},
-          py::arg("rotation") = std::array<double, 4>{0, 0, 0, 1},
-          "Puts another mesh in the place of number `mesh`; the rest as `add`.")
+          py::arg("mesh"), py::arg("positions"), py::arg("triangles"),
+          ("Puts another mesh in the place of number `mesh`; the rest as `add`." + replaced.doc()).c_str())
       .def(
           "move",
           [](SceneBuilder& builder, std::size_t mesh, const Vec3& translation, std::array<double, 4> rotation) {

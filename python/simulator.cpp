@@ -28,56 +28,34 @@ Options<SimulatorConfig> simulator_options() {
       .add("max_rays_per_dispatch", &SimulatorConfig::max_rays_per_dispatch, "0: chosen.");
 }
 
+bool all_surfaces(const std::optional<RegistrationOptions>& registration) {
+  return registration && registration->surfaces == RegistrationSurfaces::all;
+}
+
 Evaluation evaluate(GuardedSimulator& self, const py::object& stations, bool overlap, bool skip, bool field,
-                    const std::optional<RegistrationOptions>& registration, py::object progress) {
-  const Network network = network_of(stations);
-  Evaluation made{.goal_density = self.simulator.goal_density(),
-                  .voxels = self.simulator.voxel_count(),
-                  .registration = registration};
-  EvaluateOptions options{.overlap = overlap, .skip = skip};
-  if (field) options.field = &made.field.emplace();
-  if (registration) options.registration = registration->model;
-  const bool by_all = registration && registration->surfaces == RegistrationSurfaces::all;
+                    bool surroundings, const std::optional<RegistrationOptions>& registration, py::object progress) {
+  const std::vector<PlacedStation> placed = stations_of(stations);
   LongCall call(std::move(progress));
-  made.counts = call.run([&] {
-    const Busy busy(self.mutex);
-    NetworkCounts counts = self.simulator.evaluate(network, options, call.progress(0, by_all ? 0.5 : 1));
-    if (by_all && !counts.cancelled) {
-      made.surroundings =
-          self.surroundings().evaluate(network, {.registration = registration->model}, call.progress(0.5, 1));
-      made.surroundings_voxels = self.surroundings().voxel_count();
-    }
-    return counts;
+  return call.run([&] {
+    const bool around = surroundings || all_surfaces(registration);
+    return evaluate_stations({.simulator = self.simulator, .surroundings = around ? &self.surroundings() : nullptr},
+                             placed, {.overlap = overlap, .skip = skip, .field = field, .registration = registration},
+                             call.progress());
   });
-  return made;
 }
 
 std::vector<Evaluation> evaluate_sampled(GuardedSimulator& self, const py::sequence& networks, std::uint64_t voxels,
-                                         bool overlap, const std::optional<RegistrationOptions>& registration,
-                                         py::object progress) {
-  std::vector<Network> all;
-  for (const auto& stations : networks) all.push_back(network_of(py::reinterpret_borrow<py::object>(stations)));
-  SampleOptions options{.voxels = voxels, .overlap = overlap};
-  if (registration) options.registration = registration->model;
-  const bool by_all = registration && registration->surfaces == RegistrationSurfaces::all;
+                                         bool overlap, bool surroundings,
+                                         const std::optional<RegistrationOptions>& registration, py::object progress) {
+  if (voxels == 0) throw Error(Errc::invalid_argument, "evaluate_sampled: voxels: a sample has at least one");
+  std::vector<std::vector<PlacedStation>> all;
+  for (const auto& stations : networks) all.push_back(stations_of(py::reinterpret_borrow<py::object>(stations)));
   LongCall call(std::move(progress));
   return call.run([&] {
-    const Busy busy(self.mutex);
-    std::vector<NetworkCounts> counts =
-                                   self.simulator.evaluate_sampled(all, options, call.progress(0, by_all ? 0.5 : 1)),
-                               around;
-    if (by_all) around = self.surroundings().evaluate_sampled(all, options, call.progress(0.5, 1));
-    std::vector<Evaluation> made;
-    for (std::size_t k = 0; k < counts.size(); ++k) {
-      made.push_back({.counts = std::move(counts[k]),
-                      .goal_density = self.simulator.goal_density(),
-                      .voxels = self.simulator.voxel_count(),
-                      .registration = registration});
-      if (!by_all) continue;
-      made.back().surroundings = std::move(around[k]);
-      made.back().surroundings_voxels = self.surroundings().voxel_count();
-    }
-    return made;
+    const bool around = surroundings || all_surfaces(registration);
+    return evaluate_networks({.simulator = self.simulator, .surroundings = around ? &self.surroundings() : nullptr},
+                             all, {.sample_voxels = voxels, .overlap = overlap, .registration = registration},
+                             call.progress());
   });
 }
 
@@ -129,9 +107,9 @@ void add_simulators(py::module_& m) {
   py::class_<GuardedSimulator>(
       m, "Simulator",
       ("Simulates a scanner in a scene, or several, of which each station has one (`StationSetup`). Other Python "
-       "threads run while it traces; a simulator itself serves one call "
-       "at\n"
-       "a time, and a second raises Error. Same inputs, seed and engine: same result, bit for bit.\n\n"
+       "threads run while it traces; calls from several of them are done one after another, and a callback that calls "
+       "the\n"
+       "simulator that called it gets an Error. Same inputs, seed and engine: same result, bit for bit.\n\n"
        "`progress` is called, where it is given, with the share done in [0, 1]; where it returns False the call ends\n"
        "early and its result says `cancelled`. Ctrl-C ends a call too, by KeyboardInterrupt." +
        options.doc())
@@ -181,17 +159,18 @@ void add_simulators(py::module_& m) {
            "and range_m are always there. grid: arrays of shape (rows, columns, ...), an element a ray, instead of\n"
            "(points, ...). place: the station's in its network, which keys the noise.\n"
            "Raises Error invalid_argument: a position that is not finite, an output that there is not.")
-      .def(
-          "evaluate", &evaluate, py::arg("stations"), py::kw_only(), py::arg("overlap") = true, py::arg("skip") = true,
-          py::arg("field") = false, py::arg("registration") = py::none(), py::arg("progress") = py::none(),
-          "Every ray of every station. stations: heads (n, 3), survey frame, metres, or `Station`s or\n"
-          "`PlacedStation`s; n at most 1024. overlap: count pairs. skip: leave out rays that can reach no surveyed "
-          "voxel; counts do not change, but\n"
-          "`points` is not counted. field: keep the counts of every voxel. registration: RegistrationOptions; predict\n"
-          "its error.\n"
-          "Raises Error invalid_argument.")
+      .def("evaluate", &evaluate, py::arg("stations"), py::kw_only(), py::arg("overlap") = true, py::arg("skip") = true,
+           py::arg("field") = false, py::arg("surroundings") = false, py::arg("registration") = py::none(),
+           py::arg("progress") = py::none(),
+           "Every ray of every station. stations: heads (n, 3), survey frame, metres, or `Station`s or\n"
+           "`PlacedStation`s; n at most 1024. overlap: count pairs. skip: leave out rays that can reach no surveyed "
+           "voxel; counts do not change, but\n"
+           "`points` is not counted. field: keep the counts of every voxel. surroundings: look at all surfaces,\n"
+           "surveyed or not, for scan overlaps. registration: RegistrationOptions; predict its error.\n"
+           "Raises Error invalid_argument.")
       .def("evaluate_sampled", &evaluate_sampled, py::arg("networks"), py::kw_only(), py::arg("voxels") = 20'000,
-           py::arg("overlap") = true, py::arg("registration") = py::none(), py::arg("progress") = py::none(),
+           py::arg("overlap") = true, py::arg("surroundings") = false, py::arg("registration") = py::none(),
+           py::arg("progress") = py::none(),
            "Several networks, each as for `evaluate`, on one sample of the surveyed voxels: an Evaluation each, with\n"
            "standard errors. voxels: of the sample; as many as there are: all of them.")
       .def("__repr__", [](const GuardedSimulator& self) {

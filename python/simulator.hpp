@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <mutex>
 #include <optional>
 
 #include "long_call.hpp"
 
 namespace vantage::python {
 
-/// A simulator, and who is using it: see `Busy`.
+/// A simulator, and the one over all surfaces that goes with it.
 struct GuardedSimulator {
   Simulator simulator;
-  std::mutex mutex = {};
+  std::once_flag made = {};
   std::optional<Simulator> of_all_surfaces = std::nullopt;
 
-  /// The same over all surfaces, made when it is first asked for. Only while `mutex` is held.
+  /// Made when it is first asked for.
   Simulator& surroundings() {
-    if (!of_all_surfaces) of_all_surfaces = surroundings_of(simulator);
+    std::call_once(made, [&] { of_all_surfaces = surroundings_of(simulator); });
     return *of_all_surfaces;
   }
 };

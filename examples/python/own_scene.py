@@ -18,7 +18,7 @@ def box(low, high):
 def evaluate(scene, heads):
     scanner = vantage.Scanner(azimuth_step_deg=0.25, zenith_step_deg=0.25)
     simulator = vantage.Simulator(scene, scanner, user_size_m=0.1, point_spacing_m=0.05)
-    return simulator.evaluate(heads, registration=vantage.RegistrationOptions())
+    return simulator.evaluate(heads, surroundings=True, registration=vantage.RegistrationOptions())
 
 
 builder = vantage.SceneBuilder()

@@ -12,19 +12,20 @@
 #include <string>
 #include <vector>
 
+#include "vantage/evaluation.hpp"
 #include "vantage/missed.hpp"
 #include "vantage/objective.hpp"
 #include "vantage/placement.hpp"
 #include "vantage/planner.hpp"
 #include "vantage/scene.hpp"
 #include "vantage/simulator.hpp"
+#include "vantage/site.hpp"
 
 namespace vantage {
 
 /// Well-known text (version 1, OGC 01-009, which LAS 1.4 asks for) of the coordinate system that a scene's survey frame
-/// stands in. `text`: "EPSG:25832" and the like (UTM zones on WGS 84, ETRS89, NAD83, GDA94 and GDA2020; with PROJ any),
-/// the name of a .prj or .wkt file, or such a text. Throws Error: io, invalid_argument (a code that is not known,
-/// angles, a unit other than metres, version 2).
+/// stands in. `text`: "EPSG:25832" and the like, the name of a .prj or .wkt file, or such a text. Throws Error: io,
+/// invalid_argument (a code that is not known, angles, a unit other than metres, version 2).
 std::string coordinate_system(const std::string& text);
 
 /// What a file that keeps stations apart (E57) says of one.
@@ -98,6 +99,12 @@ std::vector<StationRow> read_stations_csv(const std::filesystem::path& file);
 /// Everything about a run that its results must name: version, engine, device, seed, scene, every parameter. JSON text.
 std::string run_parameters_json(const Simulator& simulator, const PlanResult* result = nullptr);
 
+/// The figures of one network, as JSON text: keys coverage, coverage_se, overlap, overlap_se, overlap_matrix,
+/// scan_overlap_matrix, visible, visible_se, minutes_on_site, registration{error_mm, standard_error_mm, worst_mm,
+/// worst_station, stations}, dropped, voxels, goal_density, rays, sample, summary. Null: not known. Stations count from
+/// 1; axes of the standard ellipsoid of each head are in millimetres, survey frame, longest first.
+std::string evaluation_json(const Evaluation& evaluation);
+
 /// `front.json`: keys problem, objectives, hypervolume, evaluations, stop_reason, front, seconds, engine, device, seed,
 /// parameters, version. Every network of the front carries its values by their objectives' names. Whatever is numbered
 /// (`entry`, `answer`, stations of links) counts from 1.
@@ -119,21 +126,22 @@ void draw_history_fronts(const std::filesystem::path& file, const PlanResult& re
 /// the files that it wrote.
 std::vector<std::filesystem::path> draw_plan_view(const std::filesystem::path& file, const Scene& scene,
                                                   const SearchArea& area, std::span<const PlacedStation> stations,
-                                                  const OverlapMatrix& overlap, const std::string& title,
-                                                  double link_overlap = default_link_overlap,
+                                                  const StationLinks& links, const std::string& title,
                                                   std::span<const std::string> names = {},
-                                                  std::span<const StationError> errors = {},
-                                                  const std::string& overlap_words = "Overlap of two stations");
+                                                  std::span<const StationError> errors = {});
 
 /// Writes a whole result folder: front.csv, front.json, history.csv, fronts.csv (every iteration's front), and for the
 /// `answer()` stations.csv, overlap.csv (where it is confirmed), coverage.ply (where `field`, its voxel field,
 /// is given), and the pictures front.png, hypervolume.png, history.png (with several objectives), plan.png (each also
 /// as .svg), of several floors also plan-level-1.png and so on; and for the crew stations.dxf, and where `crs`, the
-/// `coordinate_system()` of the survey frame, is given and this build has PROJ stations.geojson and stations.kml. Where
+/// `coordinate_system()` of the survey frame, is given stations.geojson and stations.kml. Where
 /// the registration error is known, plan.png has its ellipses, and with `field` there are registration.ply, .png and
 /// .svg. Makes the folder where there is none. Returns the index of the chosen entry.
 std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& result, const Simulator& simulator,
                        const SearchArea& area, const VoxelField* field = nullptr, const std::string& crs = {});
+/// The same of a plan of a site.
+std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& result, Site& site,
+                       const VoxelField* field = nullptr);
 
 /// CSV: `node,voxels,captured,hidden,out_of_range,too_flat,too_sparse,not_chosen`, shares of the node's voxels.
 void write_missed_csv(const std::filesystem::path& file, std::span<const MissedShare> shares);

@@ -17,11 +17,11 @@
 
 namespace vantage {
 
-/// Symmetric matrix of Overlap_ij (equation 11), zero on the diagonal.
-class OverlapMatrix {
+/// Symmetric matrix with a number for each pair of stations, zero on the diagonal.
+class PairMatrix {
  public:
-  OverlapMatrix() = default;
-  explicit OverlapMatrix(std::size_t n) : n_(n), values_(n * n, 0.0) {}
+  PairMatrix() = default;
+  explicit PairMatrix(std::size_t n) : n_(n), values_(n * n, 0.0) {}
   std::size_t size() const noexcept { return n_; }
   double operator()(std::size_t i, std::size_t j) const { return values_[i * n_ + j]; }
   void set(std::size_t i, std::size_t j, double value) { values_[i * n_ + j] = values_[j * n_ + i] = value; }
@@ -31,15 +31,26 @@ class OverlapMatrix {
   std::size_t n_ = 0;
   std::vector<double> values_;
 };
+/// Overlap_ij (equation 11): the voxels that both stations see, of those that either sees.
+class OverlapMatrix : public PairMatrix {
+ public:
+  using PairMatrix::PairMatrix;
+};
+/// Scan overlap: the voxels that both stations see, of those that the smaller scan sees, |i and j| / min(|i|, |j|).
+/// Practice states the overlap that registration takes so. It is up to twice the overlap of equation 11, or more where
+/// scans differ in size.
+class ScanOverlapMatrix : public PairMatrix {
+ public:
+  using PairMatrix::PairMatrix;
+};
 
 /// Equation 8, in [0, 1]: a mean over voxels, weighted by the weights of meshes. 0 for a scene without surveyed voxels.
 /// REQUIRES: goal_density > 0.
 double coverage(const NetworkCounts& counts, double goal_density);
 /// Equation 11 for every pair; 0/0 is 0.
 OverlapMatrix overlap_matrix(const NetworkCounts& counts);
-/// Scan overlap of every pair, the measure that practice states for registration: the share of the smaller scan that
-/// both see, |i and j| / min(|i|, |j|); 0/0 is 0. Equation 11 divides by the union instead.
-OverlapMatrix scan_overlap_matrix(const NetworkCounts& counts);
+/// Scan overlap of every pair; 0/0 is 0.
+ScanOverlapMatrix scan_overlap_matrix(const NetworkCounts& counts);
 /// Smallest scan overlap at which two stations count as linked, by default; usual in practice.
 inline constexpr double default_link = 0.3;
 /// Equation 13: average weighted clustering coefficient, in [0, 1]; the maximum is over all pairs. 0/0 is 0, so
@@ -59,7 +70,7 @@ Estimate coverage_estimate(const NetworkCounts& counts, double goal_density, std
 /// jackknife's over the interleaved groups and that bias, added in squares (docs/method.md).
 Estimate overlap_estimate(const NetworkCounts& counts, std::uint64_t population);
 /// Standard errors of `overlap_matrix`, by the jackknife over the same groups.
-OverlapMatrix overlap_standard_errors(const NetworkCounts& counts, std::uint64_t population);
+PairMatrix overlap_standard_errors(const NetworkCounts& counts, std::uint64_t population);
 
 /// Number of voxels that `evaluate_sampled` needs so that no standard error exceeds `wanted` on any of `networks`: of
 /// coverage and, with `overlap`, of overlap. Found on growing pilot samples; at most `simulator.voxel_count()`, whose
@@ -143,7 +154,7 @@ struct Connectivity {
   double weakest_overlap = 0;
 };
 /// Links are the pairs whose overlap is above 0 and at least `min_overlap`.
-Connectivity connectivity(const OverlapMatrix& overlap, double min_overlap);
+Connectivity connectivity(const PairMatrix& overlap, double min_overlap);
 /// Smallest overlap (equation 11) at which stations count as linked, by default. Figure 12 of the method draws links
 /// from 0.01 on; its figure 16 those above 0.05.
 inline constexpr double default_link_overlap = 0.01;

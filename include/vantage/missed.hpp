@@ -61,4 +61,17 @@ struct MissedShare {
 std::vector<MissedShare> missed_by_node(const Simulator& simulator, std::span<const std::uint32_t> ranks,
                                         std::span<const WhyMissed> why);
 
+/// What became of surveyed voxels under a network: all of them, or of a large site a sample.
+struct MissedVoxels {
+  std::vector<std::uint32_t> ranks = {};   ///< Ascending.
+  std::vector<std::uint32_t> points = {};  ///< That the network left in each.
+  std::vector<WhyMissed> why = {};
+  std::vector<MissedShare> shares = {};  ///< `missed_by_node()` of them.
+  std::size_t candidates = 0;            ///< Positions that lines were drawn from.
+};
+/// Judges 50 000 voxels of the network whose voxel field is `field`, or as many as there are: enough for shares to a
+/// tenth of a percent. Empty if it was stopped, or if nothing is surveyed. Throws as `why_missed`.
+MissedVoxels missed_voxels(const Simulator& simulator, const SearchArea& area, const ClashChecker& clash,
+                           const VoxelField& field, const MissedOptions& options = {}, const Progress& progress = {});
+
 }  // namespace vantage

@@ -2,9 +2,11 @@
 /// What a network is searched for and judged by: objectives and requirements, as lists that anybody can add to.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -54,16 +56,27 @@ constexpr Needs operator|(const Needs& a, const Needs& b) {
           a.surroundings_registration || b.surroundings_registration};
 }
 
+/// The range of values that matter of an objective, in its unit, made by `minimise` or `maximise`. The search minimises
+/// (best − value) / (best − worst), and the hypervolume is measured against `worst`, its reference point. Values beyond
+/// either end are allowed.
+struct Scale {
+  double best = std::numeric_limits<double>::quiet_NaN(), worst = best;
+  bool given() const { return !std::isnan(best); }
+  double width() const { return std::abs(best - worst); }
+};
+/// Less is better. Throws Error invalid_argument unless best <= worst, both finite.
+Scale minimise(double best, double worst);
+/// More is better. Throws Error invalid_argument unless best >= worst, both finite.
+Scale maximise(double best, double worst);
+
 /// One measure of a network, to be searched for, required or reported. A program's own needs no change of the library:
-/// give it a name and a value (examples/own_objective.cpp).
+/// give it a name, a scale and a value (examples/own_objective.cpp). `plan` refuses one that lacks any of them.
 struct Objective {
   /// "coverage": its key in tables, JSON and options. Lower-case letters, digits, `_`; unique.
   std::string name = {};
   std::string label = {};  ///< For axes: "Overlap (average clustering coefficient)".
   std::string unit = {};   ///< "mm"; empty: a plain number.
-  /// The scale: the search minimises `scaled()`, and the hypervolume is measured against the value `worst`, its
-  /// reference point. `best` above `worst`: more is better. Values beyond either end are allowed.
-  double best = 1, worst = 0;
+  Scale scale = {};        ///< `minimise(0, 10)` of millimetres, `maximise(1, 0)` of a share.
   Needs needs = {};
   /// Of what was measured. Called from several threads at once. Must give the same for the same.
   std::function<double(const MeasuredNetwork&)> value = {};
@@ -75,11 +88,13 @@ struct Objective {
   /// What it was made with, as text: a run is resumed only under the same, and results tell it.
   std::string parameters = {};
 
-  /// 0 at `best`, 1 at `worst`; 0 where they are one.
-  double scaled(double measured) const { return best == worst ? 0 : (best - measured) / (best - worst); }
+  /// 0 at the scale's best, 1 at its worst; 0 if they are equal.
+  double scaled(double measured) const {
+    return scale.width() == 0 ? 0 : (scale.best - measured) / (scale.best - scale.worst);
+  }
   /// The value of a scaled one.
   double unscaled(double f) const;
-  bool maximised() const { return best > worst; }
+  bool maximised() const { return scale.best > scale.worst; }
 };
 
 /// What all of them look at together.

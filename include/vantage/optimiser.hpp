@@ -44,16 +44,6 @@ struct ParetoPoint {
   std::vector<double> x, f;
 };
 
-/// Which optimiser make_optimiser() makes.
-enum class Algorithm {
-  cma_es,         ///< CmaEs, for one objective.
-  mo_cma_es,      ///< MoCmaEs, as MoCmaEsConfig::scheme says.
-  nsga2,          ///< NSGA-II (Deb, Pratap, Agarwal, Meyarivan 2002): baseline. Needs bounds.
-  random_search,  ///< Uniform points, the best μ kept: baseline. Needs bounds.
-};
-std::string to_string(Algorithm);
-Algorithm algorithm_from_string(const std::string&);  ///< Throws Error invalid_argument and lists the algorithms.
-
 /// Settings of CMA-ES alone.
 struct CmaEsConfig {
   bool active = true;  ///< Negative weights for the worst half (active CMA).
@@ -162,9 +152,9 @@ class Optimiser {
   virtual void load(std::istream&) = 0;
 };
 
-/// Throws Error invalid_argument: settings with which the algorithm cannot search, cma_es with several objectives.
-std::unique_ptr<Optimiser> make_optimiser(Algorithm algorithm, std::size_t dimension, std::size_t objectives,
-                                          const OptimiserConfig& config = {});
+/// Makes an optimiser of so many coordinates and objectives.
+using OptimiserMaker = std::function<std::unique_ptr<Optimiser>(std::size_t dimension, std::size_t objectives,
+                                                                const OptimiserConfig& config)>;
 
 /// CMA-ES (Hansen: The CMA Evolution Strategy, A Tutorial, 2016) for one objective, with IPOP restarts (Auger, Hansen
 /// 2005). ask() gives λ points. A smooth transform of the coordinates keeps bounds. Its population and its front are

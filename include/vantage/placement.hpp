@@ -22,8 +22,13 @@ namespace vantage {
 struct PlanRegion {
   std::vector<std::vector<std::array<double, 2>>> rings;  ///< Corners (x, y); a ring is closed whether or not it
                                                           ///< repeats its first corner.
+  std::string file = {};                                  ///< File it was read from, if any.
   bool holds(double x, double y) const;
 };
+
+/// Reads a region in survey coordinates: the Polygons and MultiPolygons of a GeoJSON file (.json, .geojson), or the
+/// corners of one polygon, x,y a line, from any other file. Throws Error: io, malformed_file.
+PlanRegion read_region(const std::string& file);
 
 /// How a search area is derived if the scene marks none. It consists of upward, gentle and clear surfaces that a person
 /// with a tripod can reach from the entrance.

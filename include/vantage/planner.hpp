@@ -16,8 +16,8 @@
 #include <string_view>
 #include <vector>
 
-#include "vantage/bound.hpp"
 #include "vantage/candidates.hpp"
+#include "vantage/evaluation.hpp"
 #include "vantage/objective.hpp"
 #include "vantage/on_site.hpp"
 #include "vantage/optimiser.hpp"
@@ -85,14 +85,19 @@ SurveyProblem survey_problem(std::span<const std::string> objectives, std::size_
 /// How to search.
 struct PlanConfig {
   std::size_t population = 0;  ///< 0: with one objective 10, or 20 where the number is searched; else 100.
-  /// Of `population` evaluations each. 0, where the fewest stations are asked for: by the site, so that the search
+  /// Of `population` evaluations each. 0: 100; where the fewest stations are asked for, by the site, so that the search
   /// traces about twice as many stations as looking at what can be seen did.
-  std::size_t iterations = 100;
+  std::size_t iterations = 0;
   double sigma0 = 0.2;
-  Algorithm algorithm = Algorithm::mo_cma_es;  ///< Of problems with several objectives.
+  /// Makes the optimiser of problems with several objectives; empty: MO-CMA-ES. A checkpoint is resumed only with the
+  /// same.
+  OptimiserMaker optimiser = {};
   MoCmaEsConfig::Scheme scheme = MoCmaEsConfig::Scheme::steady_state;
-  std::size_t batch = 0;            ///< Offspring at once in the steady state; 0: chosen by the engine.
-  std::uint64_t sample_voxels = 0;  ///< 0: exact search; else sampled with so many voxels.
+  std::size_t batch = 0;  ///< Offspring at once in the steady state; 0: chosen by the engine.
+  bool exact = false;     ///< Search with every ray, the dearest way; `sample_voxels` is then 0.
+  /// Search with so many of the surveyed voxels; 0: chosen by the problem and the site.
+  std::uint64_t sample_voxels = 0;
+  std::optional<double> sample_share = {};  ///< The same as a share of the surveyed voxels, above 0 and at most 1.
   /// Where not 0: a network is looked at with so many voxels first, and with four times as many where it might be on
   /// the front. That sample grows, by four each time, to `sample_voxels` when networks have come to differ by less than
   /// it can tell; what is kept is then measured anew (docs/method.md).
@@ -100,7 +105,8 @@ struct PlanConfig {
   /// Where not 0: every so many iterations other voxels are drawn, and what is kept is measured anew with them; at the
   /// end with voxels that nothing was chosen by. All that is then kept is confirmed, but for what cannot be on the
   /// front, and the front is chosen by every ray. 0: one sample for the whole search, and the front that it shows.
-  std::size_t renew_iterations = 0;
+  /// Empty: 20 for a front without a sample asked for, else 0.
+  std::optional<std::size_t> renew_iterations = {};
   /// Head positions of an initial network: the first mean of CMA-ES, a first member of MO-CMA-ES; empty: random. Where
   /// the number of stations is searched, the first N of them are a first member for each N that they suffice for.
   std::vector<Vec3> start = {};
@@ -108,47 +114,28 @@ struct PlanConfig {
   double max_seconds = 0;   ///< Of this call's search; looked at between evaluations. 0: no limit.
   std::optional<double> target_hypervolume = std::nullopt;
   std::size_t stagnation_iterations = 0;
-  std::uint64_t seed = 1;
-  std::filesystem::path checkpoint = {};  ///< File to write; the one before stays as FILE.before. Empty: none.
-  double checkpoint_seconds = 60;         ///< How often.
+  std::optional<std::uint64_t> seed = {};  ///< Empty: the site's.
+  std::filesystem::path checkpoint = {};   ///< File to write; the one before stays as FILE.before. Empty: none.
+  double checkpoint_seconds = 60;          ///< How often.
   /// Go on from the checkpoint, or the one before; where there is none begin. Limits (iterations, seconds, hypervolume,
   /// stagnation) may differ from the run that wrote it, nothing else.
   bool resume = false;
 };
 
-/// All but where the checkpoint is and how it is used, which no result depends on.
+/// All but an optimiser of the caller's own, and where the checkpoint is and how it is used, which no result depends
+/// on.
 Settings settings(const PlanConfig& config);
 
-/// What became known of one measure of a network.
-struct MeasuredValue {
-  double searched = 0;        ///< As the search saw it; NaN where it kept none and nothing was confirmed.
-  double standard_error = 0;  ///< Of `searched`; 0 when exact.
-  double exact = 0;           ///< Evaluated again with every ray; NaN unless the entry is confirmed.
-  /// The exact value where there is one.
-  double best_known() const { return exact == exact ? exact : searched; }
-};
-
-/// One network of the front.
-struct PlanEntry {
+/// One network of the front: its evaluation, and how it came there. `exact` once it is confirmed by every ray; until
+/// then its values are those of `searched`.
+struct PlanEntry : Evaluation {
   /// Decision vector: u1, v1, …, uN, vN [, h1, …, hN] [, s1, …, sN] [, α]; s in [0, 1) chooses among
   /// `SurveyProblem::scanners`, each as often as any other.
   std::vector<double> x;
-  std::vector<PlacedStation> stations;
-  std::map<std::string, MeasuredValue> values;  ///< By objective's name, of `PlanResult::measures`.
-  bool confirmed = false;                       ///< Whether the exact values were computed.
+  /// The figures as the search saw them, by measure's name, of `PlanResult::measures`; NaN where it kept none.
+  std::map<std::string, Estimate> searched;
   /// Judged by every ray, another confirmed entry is as good in all objectives and better in one.
   bool dominated = false;
-  /// By how much the requirements are missed in all, as shares of their objectives' scales; 0: it keeps them.
-  double missed = 0;
-  OverlapMatrix exact_overlap_matrix;  ///< Equation 11.
-  /// By `scan_overlap_matrix()` over all surfaces; empty unless a measure needs the surroundings.
-  OverlapMatrix exact_scan_overlap_matrix;
-  /// By every ray, of the problem's `registration`, where a measure needs it and the entry is confirmed.
-  std::optional<RegistrationError> registration = std::nullopt;
-  std::optional<Visit> visit = std::nullopt;  ///< The round on site without the kept stations, where it was worked out.
-  std::vector<std::uint64_t> points_on_surveyed;  ///< Per station, exact.
-  /// `values.at(name).best_known()`. Throws std::out_of_range.
-  double value(const std::string& name) const { return values.at(name).best_known(); }
 };
 
 /// One line of the history, an iteration each.
@@ -208,7 +195,7 @@ struct PlanProgress {
 struct PlanWatch {
   std::function<void(const PlanProgress&)> report = {};  ///< Called between evaluations, on the calling thread.
   std::stop_token stop = {};                             ///< Ends the search; what was found so far is still confirmed.
-  std::stop_token abort = {};  ///< Ends the confirmation too: entries that it did not reach have `confirmed` false.
+  std::stop_token abort = {};  ///< Ends the confirmation too: entries that it did not reach have `exact` false.
 };
 
 /// Runs the search. Borrows simulator, area and clash for the call. Same inputs, same seed: same result but for
@@ -236,55 +223,54 @@ std::vector<std::string> what_would_help(const PlanResult& result);
 std::vector<double> scaled_objectives(const SurveyProblem& problem, std::span<const double> x,
                                       std::span<const double> values);
 
+/// How a first network is chosen among candidates.
 struct GreedyConfig {
   std::size_t stations = 4;              ///< How many to choose.
-  std::size_t candidates = 300;          ///< Positions to choose from, spread evenly over the search area's (u, v).
-  std::uint64_t sample_voxels = 20'000;  ///< 0: with every ray.
-  std::vector<Vec3> fixed = {};          ///< Stations that are there already; neither counted nor returned.
-  std::vector<StationSetup> fixed_setups = {};  ///< As `SurveyProblem::kept_setups`.
+  std::size_t candidates = 300;          ///< Positions to choose from, spread evenly over the ground.
+  std::uint64_t sample_voxels = 20'000;  ///< 0: every voxel.
+  std::vector<Vec3> existing = {};       ///< Heads of stations that are there already; neither counted nor returned.
+  std::vector<StationSetup> existing_setups = {};  ///< As `SurveyProblem::kept_setups`.
 };
 
 /// What `greedy_network` chose.
 struct GreedyResult {
   std::vector<PlacedStation> stations;  ///< In the order of choosing: the first k are the choice for k.
-  std::vector<double> coverage;         ///< After each.
-  std::uint64_t evaluations = 0;
+  std::vector<double> coverage;         ///< After each, on the sample.
   bool cancelled = false;
 };
 
-/// Greedy set cover: takes the candidate that adds most coverage, again and again. Coverage is submodular, so a
-/// candidate's gain can only shrink and most need not be looked at twice (Minoux: Accelerated greedy algorithms for
-/// maximizing submodular set functions, 1978). A baseline, and a first network for `PlanConfig::start`. Throws Error
-/// invalid_argument where no candidate can stand.
+/// A first network for `PlanConfig::start`, and a baseline: greedy() over candidates (vantage/cover.hpp). Once no
+/// candidate adds anything, the rest are the most evenly spread ones. Throws Error invalid_argument for more stations
+/// than candidates, and where no candidate can stand.
 GreedyResult greedy_network(Simulator& simulator, const SearchArea& area, const ClashChecker& clash,
                             const GreedyConfig& config = {}, const Progress& progress = {});
 
+/// How the best network among candidates is chosen.
 struct ExactConfig {
   std::size_t stations = 4;              ///< How many to choose.
   std::size_t candidates = 256;          ///< Positions to choose from, spread evenly over the ground.
   std::uint64_t sample_voxels = 20'000;  ///< 0: every voxel.
-  double link = 0;               ///< Least scan overlap along some spanning tree; 0: stations need not hang together.
-  double apart_m = 0;            ///< Least distance between heads.
-  double max_seconds = 60;       ///< Of branch and bound. What is found when they are over depends on the machine.
-  std::vector<Vec3> fixed = {};  ///< Stations that are there already; neither counted nor returned.
+  double link = 0;          ///< Least scan overlap of links by which the network is connected; 0: it need not be.
+  double apart_m = 0;       ///< Least distance between heads.
+  double max_seconds = 60;  ///< Of branch and bound. What is found when they are over depends on the machine.
+  std::vector<Vec3> existing = {};  ///< Heads of stations that are there already; neither counted nor returned.
 };
 
 /// What `exact_network` chose.
 struct ExactResult {
-  std::vector<PlacedStation> stations;  ///< Empty where no network that hangs together was found.
-  CaptureBound choice;                  ///< Coverage of the choice, and the most that any choice of candidates has.
+  std::vector<PlacedStation> stations;  ///< Empty where no connected network was found.
+  CoverSolution choice;                 ///< The choice among candidates, and the most coverage that any has.
   bool cancelled = false;
 };
 
-/// The best network among candidates, as an integer program: `bound_capture`, or `bound_linked_capture` where it has to
-/// hang together. Without a gap it is the best there is among them. A baseline, and a first network for
-/// `PlanConfig::start`. Throws Error invalid_argument where no candidate can stand.
+/// The best network among candidates, by max_cover() with branch and bound. Without a gap it is the best there is among
+/// them. A baseline, and a first network for `PlanConfig::start`. Throws Error invalid_argument where no candidate can
+/// stand.
 ExactResult exact_network(Simulator& simulator, const SearchArea& area, const ClashChecker& clash,
                           const ExactConfig& config = {}, const Progress& progress = {});
 
 /// Decision vector to stations: locate, raise by `height_m`, check for clashes.
 std::vector<PlacedStation> place_stations(const SearchArea& area, const ClashChecker& clash, double height_m,
                                           std::span<const double> uvs);
-Network to_network(std::span<const PlacedStation> stations);
 
 }  // namespace vantage

@@ -66,6 +66,11 @@ Settings settings(const Scanner& scanner);
 /// Table 1 of the method: Leica RTC360, single measurement.
 NoiseTable rtc360_noise();
 
+/// Returns the range noise named "off", that of a preset, or that of a CSV file: a header `reflectivity,<distance in
+/// metres>,…`, then a line of standard deviations in metres for each reflectivity. Throws Error: io, malformed_file,
+/// invalid_argument.
+NoiseTable load_noise(const std::string& name);
+
 /// One preset scanner.
 struct ScannerPreset {
   std::string key;      ///< "rtc360"

@@ -79,8 +79,10 @@ struct SceneOptions {
   /// stairs and storeys say otherwise; a note then reports it. Files with any `vantage` extras are always read in
   /// metres.
   std::optional<Unit> unit = std::nullopt;
-  std::optional<UpAxis> up = std::nullopt;  ///< Axis that points up. Empty: Y, as glTF says, or recognised as the unit
-                                            ///< is.
+  std::optional<UpAxis> up = std::nullopt;  ///< Which axis points up. Empty: Y, as glTF says, or as with `unit`.
+  /// Memory that the process may take while the scene is loaded, in bytes; what takes more is refused before it is
+  /// read. 0: half of what is free.
+  std::uint64_t max_memory_bytes = 0;
 };
 
 /// None of these is marked as deciding what a run finds: the scene's fingerprint covers them.
@@ -93,7 +95,8 @@ class Scene {
   /// images come from the file itself and from regular files below its folder, links followed; from elsewhere only if
   /// `allow_outside`.
   /// Throws Error: io, malformed_file (bad reference, unknown required extension, nothing to survey), invalid_argument
-  /// (a pattern without a match; a scene index, weight or coefficient out of range), out_of_memory.
+  /// (a pattern that matches nothing, a scene index, weight or coefficient out of range), out_of_memory (estimated to
+  /// take more than `max_memory_bytes`).
   static Scene load(const std::filesystem::path& file, const SceneOptions& options = {});
 
   /// One surveyed mesh from an indexed triangle list in the survey frame. Throws Error: invalid_argument (an index or

@@ -31,6 +31,10 @@ struct SceneMesh {
   std::optional<Role> role = std::nullopt;     ///< Empty: surveyed, or blocking once any mesh is marked surveyed.
   double diffuse = 0.5;                        ///< Diffuse reflection coefficient R, in [0, 1].
   std::uint32_t weight = 1;                    ///< Weight of its voxels in coverage, 1 to 255.
+  bool door = false;                           ///< A closed leaf; walking passes it, rays do not.
+  bool station_area = false;                   ///< Stations may stand on it, whatever its role.
+  double detail_m = 0;                         ///< Widest beam footprint of a counted point, metres; 0: any.
+  double accuracy_m = 0;                       ///< Largest range noise (σ) of a counted point, metres; 0: any.
   std::array<float, 4> colour = {1, 1, 1, 1};  ///< Linear red, green, blue and alpha, in [0, 1].
   Pose pose = {};
 };

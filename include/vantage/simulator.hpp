@@ -148,7 +148,10 @@ struct VoxelPatch {
 /// Owns device, acceleration structure and voxel grid; shares ownership of the scene. The same inputs, seed and engine
 /// give the same result, bit for bit.
 /// Several simulators work side by side, on threads or in tasks of a caller's TBB arena; CPU work then keeps to that
-/// arena's threads. On one simulator, const calls may run from several threads at once; any other call must run alone.
+/// arena's threads. One simulator may be called from several threads: const calls run at any time, and each other call
+/// waits until the one before it has returned. A callback must not call the simulator that called it: on the calling
+/// thread that throws Error invalid_argument, on another thread (`ScanOptions::colour`) it would wait forever. Moving
+/// and destroying a simulator must run alone.
 /// An exception from a callback ends the call and leaves the simulator unchanged. A child of fork() has neither the
 /// threads nor the device: it may only exec or _exit.
 class Simulator {

@@ -8,8 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "vantage/measure.hpp"
-#include "vantage/objective.hpp"
+#include "vantage/evaluation.hpp"
 #include "vantage/placement.hpp"
 
 namespace vantage {
@@ -20,16 +19,13 @@ struct NamedStations {
   std::span<const std::string> names;  ///< As `station_names()` gives them.
 };
 
-/// Whether this build can turn the survey frame into longitude and latitude: it was made with PROJ.
-bool has_projections() noexcept;
-
 /// A point of the survey frame on WGS 84, in degrees, and its height: z as it is.
 struct GeodeticPoint {
   double longitude_deg = 0, latitude_deg = 0, height_m = 0;
 };
 /// `points` of the frame whose well-known text or "EPSG:N" is `crs` on WGS 84 (EPSG:4326), by PROJ's best operation
-/// that needs no network. Throws Error invalid_argument: no PROJ in this build, a `crs` that is empty or unknown to
-/// PROJ, a point that it has no place for.
+/// that needs no network. Throws Error invalid_argument: a `crs` that is empty or unknown to PROJ, a point that it has
+/// no place for.
 std::vector<GeodeticPoint> to_wgs84(const std::string& crs, std::span<const Vec3> points);
 
 /// GeoJSON (RFC 7946): a FeatureCollection with a Point a station where its tripod stands, [longitude, latitude, z]
@@ -42,19 +38,18 @@ void write_stations_geojson(const std::filesystem::path& file, const NamedStatio
 void write_stations_kml(const std::filesystem::path& file, const NamedStations& stations, const std::string& crs);
 
 /// DXF (release 12, ASCII), metres, survey frame: layers STATIONS, STATIONS_KEPT and STATIONS_LEFT_OUT (a point and a
-/// circle where the tripod stands), STATION_NAMES (text), LINKS (lines between the grounds of stations whose overlap is
-/// at least `link_overlap`), SEARCH_AREA (closed polylines around it; its outline and its holes).
-/// `overlap`: of these stations, or empty. Throws Error: io, invalid_argument (sizes that do not fit together).
-void write_stations_dxf(const std::filesystem::path& file, const NamedStations& stations, const OverlapMatrix& overlap,
-                        double link_overlap, const SearchArea& area);
+/// circle where the tripod stands), STATION_NAMES (text), LINKS (lines between the grounds of stations that are
+/// linked), SEARCH_AREA (closed polylines around it; its outline and its holes). `links`: of these stations, or without
+/// values. Throws Error: io, invalid_argument (sizes that do not fit together).
+void write_stations_dxf(const std::filesystem::path& file, const NamedStations& stations, const StationLinks& links,
+                        const SearchArea& area);
 
 /// By the file's extension: .geojson, .kml or .dxf. Throws Error as above, and invalid_argument for any other.
-void write_stations(const std::filesystem::path& file, const NamedStations& stations, const OverlapMatrix& overlap,
-                    double link_overlap, const SearchArea& area, const std::string& crs);
+void write_stations(const std::filesystem::path& file, const NamedStations& stations, const StationLinks& links,
+                    const SearchArea& area, const std::string& crs);
 
-/// stations.dxf, and where `crs` is given and this build has PROJ, stations.geojson and stations.kml.
-void write_station_files(const std::filesystem::path& folder, const NamedStations& stations,
-                         const OverlapMatrix& overlap, double link_overlap, const SearchArea& area,
-                         const std::string& crs);
+/// stations.dxf, and where `crs` is given, stations.geojson and stations.kml.
+void write_station_files(const std::filesystem::path& folder, const NamedStations& stations, const StationLinks& links,
+                         const SearchArea& area, const std::string& crs);
 
 }  // namespace vantage

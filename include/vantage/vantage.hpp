@@ -2,9 +2,10 @@
 /// All of vantage.
 #pragma once
 
-#include "vantage/bound.hpp"
 #include "vantage/candidates.hpp"
+#include "vantage/cover.hpp"
 #include "vantage/error.hpp"
+#include "vantage/evaluation.hpp"
 #include "vantage/export.hpp"
 #include "vantage/ground.hpp"
 #include "vantage/image.hpp"
@@ -17,10 +18,13 @@
 #include "vantage/placement.hpp"
 #include "vantage/planner.hpp"
 #include "vantage/progress.hpp"
+#include "vantage/question.hpp"
+#include "vantage/report.hpp"
 #include "vantage/scanner.hpp"
 #include "vantage/scene.hpp"
 #include "vantage/scene_builder.hpp"
 #include "vantage/simulator.hpp"
+#include "vantage/site.hpp"
 #include "vantage/station_files.hpp"
 #include "vantage/summary.hpp"
 #include "vantage/trace.hpp"

@@ -91,9 +91,13 @@ class SceneBuilder:
         role: Optional[Role] = None,
         diffuse: float = 0.5,
         weight: int = 1,
-        colour: Sequence[float] = (1, 1, 1, 1),
+        door: bool = False,
+        station_area: bool = False,
+        detail_m: float = 0.0,
+        accuracy_m: float = 0.0,
+        colour: Sequence[float] = [1, 1, 1, 1],
         translation: Sequence[float] = (0, 0, 0),
-        rotation: Sequence[float] = (0, 0, 0, 1),
+        rotation: Sequence[float] = [0, 0, 0, 1],
     ) -> int: ...
     def replace(
         self,
@@ -105,9 +109,13 @@ class SceneBuilder:
         role: Optional[Role] = None,
         diffuse: float = 0.5,
         weight: int = 1,
-        colour: Sequence[float] = (1, 1, 1, 1),
+        door: bool = False,
+        station_area: bool = False,
+        detail_m: float = 0.0,
+        accuracy_m: float = 0.0,
+        colour: Sequence[float] = [1, 1, 1, 1],
         translation: Sequence[float] = (0, 0, 0),
-        rotation: Sequence[float] = (0, 0, 0, 1),
+        rotation: Sequence[float] = [0, 0, 0, 1],
     ) -> None: ...
     def move(
         self, mesh: int, translation: Sequence[float] = (0, 0, 0), rotation: Sequence[float] = (0, 0, 0, 1)
@@ -323,6 +331,7 @@ class Evaluation:
     @property
     def scan_overlap_matrix(self) -> Floats: ...
     def connectivity(self, min_overlap: float = 0.01) -> Connectivity: ...
+    def scan_connectivity(self, min_overlap: float = 0.3) -> Connectivity: ...
     @property
     def registration(self) -> RegistrationError: ...
     @property
@@ -353,6 +362,8 @@ class Evaluation:
     def trace_seconds(self) -> float: ...
     @property
     def cancelled(self) -> bool: ...
+    @property
+    def summary(self) -> str: ...
     def to_dict(self) -> Dict[str, Any]: ...
 
 class EngineInfo:
@@ -463,6 +474,7 @@ class Simulator:
         overlap: bool = True,
         skip: bool = True,
         field: bool = False,
+        surroundings: bool = False,
         registration: Optional[RegistrationOptions] = None,
         progress: Optional[Progress] = None,
     ) -> Evaluation: ...
@@ -472,36 +484,58 @@ class Simulator:
         *,
         voxels: int = 20000,
         overlap: bool = True,
+        surroundings: bool = False,
         registration: Optional[RegistrationOptions] = None,
         progress: Optional[Progress] = None,
     ) -> List[Evaluation]: ...
 
-class CaptureRows:
+class CoverageMatrix:
+    def __init__(self, weights: Sequence[int], goal: float, amounts: Sequence[Sequence[int]]) -> None: ...
     def __len__(self) -> int: ...
-    def row(self, k: int) -> npt.NDArray[np.uint32]: ...
-    @property
-    def voxels(self) -> npt.NDArray[np.uint32]: ...
+    def column(self, candidate: int) -> npt.NDArray[np.uint32]: ...
     @property
     def weights(self) -> npt.NDArray[np.uint32]: ...
     @property
-    def goal_density(self) -> float: ...
+    def goal(self) -> float: ...
+    def coverage(self, chosen: Sequence[int]) -> float: ...
+
+class SampledCoverage:
+    def __len__(self) -> int: ...
+    @property
+    def matrix(self) -> CoverageMatrix: ...
+    @property
+    def voxels(self) -> npt.NDArray[np.uint32]: ...
     @property
     def cancelled(self) -> bool: ...
-    def coverage(self, rows: Optional[Sequence[int]] = None) -> Estimate: ...
+    def coverage(self, stations: Optional[Sequence[int]] = None) -> Estimate: ...
 
-def capture_rows(
+def sample_coverage(
     simulator: Simulator,
     stations: Sequence[PlacedStation],
     *,
     sample_voxels: int = 20000,
     progress: Optional[Progress] = None,
-) -> CaptureRows: ...
+) -> SampledCoverage: ...
+
+class StationGraph:
+    def __init__(self, overlaps: npt.ArrayLike, excluded: Sequence[Tuple[int, int]] = []) -> None: ...
+    def __len__(self) -> int: ...
+    @property
+    def overlaps(self) -> npt.NDArray[np.float32]: ...
+
+def overlap_graph(
+    simulator: Simulator,
+    stations: Sequence[PlacedStation],
+    *,
+    sample_voxels: int = 10000,
+    progress: Optional[Progress] = None,
+) -> StationGraph: ...
 
 class Candidates:
     @property
     def stations(self) -> List[PlacedStation]: ...
     @property
-    def rows(self) -> CaptureRows: ...
+    def coverage(self) -> SampledCoverage: ...
     @property
     def visible(self) -> Estimate: ...
     @property
@@ -511,6 +545,120 @@ class Candidates:
     @property
     def spacing_m(self) -> float: ...
     def __len__(self) -> int: ...
+
+# A setting as the program's option of that name takes it: a number, a text, a truth value, or a sequence of them.
+Setting = Union[None, bool, float, str, Sequence[Any], "os.PathLike[str]"]
+
+class SiteChoice:
+    @property
+    def setting(self) -> str: ...
+    @property
+    def value(self) -> str: ...
+    @property
+    def why(self) -> str: ...
+
+class Site:
+    @staticmethod
+    def open(
+        file: Path,
+        *,
+        surveyed: Setting = None,
+        blocking: Setting = None,
+        search: Setting = None,
+        ignore: Setting = None,
+        weight: Setting = None,
+        detail: Setting = None,
+        accuracy: Setting = None,
+        unit: Setting = None,
+        up: Setting = None,
+        scene_index: Setting = None,
+        diffuse: Setting = None,
+        allow_outside: Setting = None,
+        scanner: Setting = None,
+        step: Setting = None,
+        heading: Setting = None,
+        horizontal: Setting = None,
+        vertical: Setting = None,
+        zenith_start: Setting = None,
+        height: Setting = None,
+        range: Setting = None,
+        noise: Setting = None,
+        beam: Setting = None,
+        rate: Setting = None,
+        user_size: Setting = None,
+        incidence: Setting = None,
+        spacing: Setting = None,
+        spacing_by_detail: Setting = None,
+        security: Setting = None,
+        slope: Setting = None,
+        headroom: Setting = None,
+        min_area: Setting = None,
+        passage: Setting = None,
+        climb: Setting = None,
+        enter: Setting = None,
+        doors: Setting = None,
+        station_area: Setting = None,
+        levels: Setting = None,
+        within: Setting = None,
+        without: Setting = None,
+        engine: Setting = None,
+        device: Setting = None,
+        seed: Setting = None,
+        memory: Setting = None,
+        validation: Setting = None,
+        crs: Setting = None,
+    ) -> Site: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def scene(self) -> Scene: ...
+    @property
+    def scanners(self) -> List[Scanner]: ...
+    @property
+    def choices(self) -> List[SiteChoice]: ...
+    def plan(
+        self,
+        problem: Optional[SurveyProblem] = None,
+        *,
+        progress: Optional[Callable[[PlanProgress], Any]] = None,
+        set_up: Setting = None,
+        walking: Setting = None,
+        registration_rho: Setting = None,
+        registration_patch: Setting = None,
+        registration_position: Setting = None,
+        registration_heading: Setting = None,
+        registration_tilt: Setting = None,
+        registration_surfaces: Setting = None,
+        problem: Setting = None,
+        capture: Setting = None,
+        link: Setting = None,
+        apart: Setting = None,
+        max_time_on_site: Setting = None,
+        objectives: Setting = None,
+        require: Setting = None,
+        stations: Setting = None,
+        search_step: Setting = None,
+        heights: Setting = None,
+        link_overlap: Setting = None,
+        min_overlap: Setting = None,
+        fitness: Setting = None,
+        algorithm: Setting = None,
+        population: Setting = None,
+        iterations: Setting = None,
+        batch: Setting = None,
+        redraws: Setting = None,
+        stagnation: Setting = None,
+        sigma: Setting = None,
+        scheme: Setting = None,
+        max_time: Setting = None,
+        target_hypervolume: Setting = None,
+        exact: Setting = None,
+        sample: Setting = None,
+        sample_from: Setting = None,
+        renew: Setting = None,
+        save_every: Setting = None,
+        resume: Setting = None,
+    ) -> PlanResult: ...
 
 def find_candidates(
     simulator: Simulator,
@@ -526,9 +674,15 @@ def find_candidates(
     max_seconds: float = 0.0,
 ) -> Candidates: ...
 
-class CaptureBound:
+class CoverSolution:
     @property
-    def stations(self) -> int: ...
+    def chosen(self) -> List[int]: ...
+    @property
+    def coverage(self) -> float: ...
+    @property
+    def link(self) -> float: ...
+    @property
+    def violation(self) -> float: ...
     @property
     def bound(self) -> float: ...
     @property
@@ -536,13 +690,9 @@ class CaptureBound:
     @property
     def complete(self) -> bool: ...
     @property
-    def spacing_term(self) -> float: ...
-    @property
     def half_bound(self) -> float: ...
     @property
-    def chosen(self) -> List[int]: ...
-    @property
-    def reached(self) -> Estimate: ...
+    def spacing_term(self) -> float: ...
     @property
     def gap(self) -> float: ...
 
@@ -558,56 +708,52 @@ class StationsBound:
     @property
     def chosen(self) -> List[int]: ...
 
-def bound_capture(
-    rows: CaptureRows,
+def max_cover(
+    matrix: CoverageMatrix,
     stations: int,
-    fixed: Sequence[int] = [],
+    existing: Sequence[int] = [],
     *,
+    graph: Optional[StationGraph] = None,
+    link: float = 0.0,
     progress: Optional[Progress] = None,
     tolerance: float = 0.001,
     max_seconds: float = 120.0,
     exact_seconds: float = 0.0,
-) -> CaptureBound: ...
-def bound_stations(
-    rows: CaptureRows,
-    capture: float,
-    fixed: Sequence[int] = [],
+) -> CoverSolution: ...
+def min_cover(
+    matrix: CoverageMatrix,
+    coverage: float,
+    existing: Sequence[int] = [],
     *,
     progress: Optional[Progress] = None,
     tolerance: float = 0.001,
     max_seconds: float = 120.0,
     exact_seconds: float = 0.0,
 ) -> StationsBound: ...
-def bound_linked_capture(
-    rows: CaptureRows,
-    stations: int,
-    links: Sequence[Tuple[int, int]],
-    fixed: Sequence[int] = [],
+def greedy(matrix: CoverageMatrix, stations: int, existing: Sequence[int] = []) -> List[int]: ...
+def improve_by_swaps(
+    matrix: CoverageMatrix,
+    chosen: Sequence[int],
+    existing: Sequence[int] = [],
     *,
     progress: Optional[Progress] = None,
-    tolerance: float = 0.001,
-    max_seconds: float = 120.0,
-    exact_seconds: float = 0.0,
-) -> CaptureBound: ...
-def links_between(
-    simulator: Simulator,
-    stations: Sequence[PlacedStation],
-    least: float,
-    *,
-    sample_voxels: int = 10000,
-    progress: Optional[Progress] = None,
-) -> List[List[int]]: ...
-def choose_rows(
-    rows: CaptureRows, stations: int, fixed: Sequence[int] = [], *, progress: Optional[Progress] = None
 ) -> List[int]: ...
+def min_connected_cover(
+    matrix: CoverageMatrix,
+    coverage: float,
+    graph: StationGraph,
+    link: float,
+    existing: Sequence[int] = [],
+    *,
+    most: Optional[int] = None,
+    progress: Optional[Progress] = None,
+) -> CoverSolution: ...
 
 class GreedyResult:
     @property
     def stations(self) -> List[PlacedStation]: ...
     @property
     def coverage(self) -> List[float]: ...
-    @property
-    def evaluations(self) -> int: ...
     @property
     def cancelled(self) -> bool: ...
 
@@ -620,15 +766,15 @@ def greedy_network(
     progress: Optional[Progress] = None,
     candidates: int = 300,
     sample_voxels: int = 20000,
-    fixed: Sequence[Sequence[float]] = [],
-    fixed_setups: Sequence[StationSetup] = [],
+    existing: Sequence[Sequence[float]] = [],
+    existing_setups: Sequence[StationSetup] = [],
 ) -> GreedyResult: ...
 
 class ExactResult:
     @property
     def stations(self) -> List[PlacedStation]: ...
     @property
-    def choice(self) -> CaptureBound: ...
+    def choice(self) -> CoverSolution: ...
     @property
     def cancelled(self) -> bool: ...
 
@@ -644,7 +790,7 @@ def exact_network(
     link: float = 0.0,
     apart_m: float = 0.0,
     max_seconds: float = 60.0,
-    fixed: Sequence[Sequence[float]] = [],
+    existing: Sequence[Sequence[float]] = [],
 ) -> ExactResult: ...
 
 class MeasuredNetwork:
@@ -663,16 +809,24 @@ class MeasuredNetwork:
     @property
     def surroundings(self) -> Optional[Evaluation]: ...
 
+class Scale:
+    @property
+    def best(self) -> float: ...
+    @property
+    def worst(self) -> float: ...
+
+def minimise(best: float, worst: float) -> Scale: ...
+def maximise(best: float, worst: float) -> Scale: ...
+
 class Objective:
     def __init__(
         self,
         name: str,
         value: Callable[[MeasuredNetwork], float],
+        scale: Scale,
         *,
         label: str = "",
         unit: str = "",
-        best: float = 1.0,
-        worst: float = 0.0,
         counts: bool = True,
         pairs: bool = False,
         visibility: bool = False,
@@ -689,9 +843,7 @@ class Objective:
     @property
     def unit(self) -> str: ...
     @property
-    def best(self) -> float: ...
-    @property
-    def worst(self) -> float: ...
+    def scale(self) -> Scale: ...
 
 class Requirement:
     def __init__(self, objective: Objective, bound: Literal[">=", "<="], limit: float) -> None: ...
@@ -836,6 +988,18 @@ class PlanResult:
     def summary(self) -> str: ...
     def to_dict(self) -> Dict[str, Any]: ...
     def write(self, folder: Path, crs: str = "") -> None: ...
+    def write_report(self, file: Path, *, title: str = "Survey", progress: Optional[Progress] = None) -> None: ...
+
+def write_report(
+    file: Path,
+    evaluation: Evaluation,
+    simulator: Simulator,
+    area: SearchArea,
+    clash: Optional[ClashChecker] = None,
+    *,
+    title: str = "Survey",
+    progress: Optional[Progress] = None,
+) -> None: ...
 
 def plan(
     simulator: Simulator,
@@ -845,19 +1009,20 @@ def plan(
     *,
     progress: Optional[Callable[[PlanProgress], Any]] = None,
     population: int = 0,
-    iterations: int = 100,
+    iterations: int = 0,
     sigma0: float = 0.2,
-    algorithm: Literal["mo_cma_es", "nsga2", "random_search"] = "mo_cma_es",
     scheme: Literal["steady-state", "generational"] = "steady-state",
     batch: int = 0,
+    exact: bool = False,
     sample_voxels: int = 0,
+    renew_iterations: Optional[int] = None,
     sample_from: int = 0,
     start: Sequence[Sequence[float]] = [],
     redraws: int = 8,
     max_seconds: float = 0.0,
     target_hypervolume: Optional[float] = None,
     stagnation_iterations: int = 0,
-    seed: int = 1,
+    seed: Optional[int] = None,
     checkpoint: Path = "",
     checkpoint_seconds: float = 60.0,
     resume: bool = False,

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vantage/bound.hpp"
-
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -11,12 +9,13 @@
 #include "cli/options.hpp"
 #include "cli/run_report.hpp"
 #include "cli/site.hpp"
+#include "vantage/candidates.hpp"
 
 namespace vantage::cli {
 namespace {
 
 struct BoundOptions {
-  SiteOptions site;
+  SiteArguments site;
   std::vector<std::size_t> stations;
   std::vector<double> captures;
   CandidateConfig candidates{.most = 1024};
@@ -67,9 +66,9 @@ struct BoundOptions {
   }
 };
 
-nlohmann::json heads_json(const Candidates& candidates, const std::vector<std::size_t>& rows) {
+nlohmann::json heads_json(const Candidates& candidates, const std::vector<std::size_t>& chosen) {
   nlohmann::json heads = nlohmann::json::array();
-  for (const std::size_t k : rows) {
+  for (const std::size_t k : chosen) {
     const Vec3& head = candidates.stations()[k].position;
     heads.push_back({head.x, head.y, head.z});
   }
@@ -78,19 +77,20 @@ nlohmann::json heads_json(const Candidates& candidates, const std::vector<std::s
 
 std::string percent(double share) { return fmt::format("{:.1f} %", 100 * share); }
 
-std::string text_of(const CaptureBound& bound, double visible) {
-  if (bound.chosen.empty())
+std::string text_of(const CoverSolution& best, std::size_t stations, const Estimate& reached, double visible) {
+  if (best.chosen.empty())
     return fmt::format(
-        "{:>3} stations  capture at most {:.4f} of what can be seen (coverage {:.4f}); no network of them "
-        "that hangs together was found\n",
-        bound.stations, std::min(bound.bound / visible, 1.0), bound.bound);
+        "{:>3} stations  capture at most {:.4f} of what can be seen (coverage {:.4f}); no connected network of them "
+        "was "
+        "found\n",
+        stations, std::min(best.bound / visible, 1.0), best.bound);
   std::string text = fmt::format(
       "{:>3} stations  capture at most {:.4f} of what can be seen (coverage {:.4f}); found {:.4f} (coverage {:.4f} ± "
       "{:.4f}), within {} of the best that any {} candidates can do\n",
-      bound.stations, std::min(bound.bound / visible, 1.0), bound.bound, bound.reached.value / visible,
-      bound.reached.value, bound.reached.standard_error, percent(bound.gap()), bound.stations);
-  text += fmt::format("              twice as many candidates raised the bound by {:.4f}{}\n", bound.spacing_term,
-                      bound.complete ? "" : "; the linear program was cut short");
+      stations, std::min(best.bound / visible, 1.0), best.bound, reached.value / visible, reached.value,
+      reached.standard_error, percent(CoverSolution::relative_gap(best.bound, reached.value)), stations);
+  text += fmt::format("              twice as many candidates raised the bound by {:.4f}{}\n", best.spacing_term,
+                      best.complete ? "" : "; the linear program was cut short");
   return text;
 }
 
@@ -103,11 +103,10 @@ std::string text_of(const StationsBound& bound, double capture) {
 
 int bound(CLI::App& command, BoundOptions& options, Program& program) {
   const Stopwatch watch;
-  LoadedSite site = open_site(command, options.site);
-  weigh_ground(site);
+  Site site = open_site(command, options.site);
   if (options.stations.empty() && options.captures.empty())
     throw Error(Errc::invalid_argument, "bound: of what? Give --stations N, --capture C or both");
-  Simulator simulator = build_simulator(site, {&site.scanner, 1}, program);
+  Simulator& simulator = build_simulator(site, program);
   tell_engine(simulator);
   tell_grid(simulator);
   if (options.sample) options.candidates.sample_voxels = options.sample->of(simulator.voxel_count());
@@ -124,33 +123,38 @@ int bound(CLI::App& command, BoundOptions& options, Program& program) {
       "{:.2f} m from one\n",
       visible, candidates.visible().standard_error, candidates.stations().size(), candidates.spacing_m());
   nlohmann::json by_number = nlohmann::json::array(), by_capture = by_number;
-  std::vector<RowLink> links;
+  StationGraph graph;
   if (options.link) {
     line.set_label("links");
     Simulator surroundings = surroundings_of(simulator);
-    links = links_between(surroundings, candidates.stations(), *options.link, 10'000, progress);
+    graph = overlap_graph(surroundings, candidates.stations(), 10'000, progress);
   }
   line.set_label("bound");
+  const SampledCoverage& sampled = candidates.coverage();
   for (const std::size_t stations : options.stations) {
-    const CaptureBound found =
-        options.link ? bound_linked_capture(candidates.rows(), stations, links, {}, options.bound, progress)
-                     : bound_capture(candidates.rows(), stations, {}, options.bound, progress);
-    text += text_of(found, visible);
+    const CoverSolution found = max_cover({.matrix = sampled.matrix(),
+                                           .graph = options.link ? &graph : nullptr,
+                                           .most = stations,
+                                           .link = options.link.value_or(0)},
+                                          options.bound, progress);
+    const Estimate reached = sampled.coverage(found.chosen);
+    text += text_of(found, stations, reached, visible);
     by_number.push_back({{"stations", stations},
                          {"bound", found.bound},
                          {"relaxation", found.relaxation},
                          {"complete", found.complete},
                          {"half_bound", found.half_bound},
                          {"spacing_term", found.spacing_term},
-                         {"reached", found.reached.value},
-                         {"reached_se", found.reached.standard_error},
-                         {"gap", found.gap()},
+                         {"reached", reached.value},
+                         {"reached_se", reached.standard_error},
+                         {"gap", CoverSolution::relative_gap(found.bound, reached.value)},
                          {"chosen", heads_json(candidates, found.chosen)}});
     if (program.stop.stop_requested()) break;
   }
   for (const double capture : options.captures) {
     if (program.stop.stop_requested()) break;
-    const StationsBound found = bound_stations(candidates.rows(), capture * visible, {}, options.bound, progress);
+    const StationsBound found =
+        min_cover({.matrix = sampled.matrix(), .coverage = capture * visible}, options.bound, progress);
     text += text_of(found, capture);
     by_capture.push_back({{"capture", capture},
                           {"possible", found.possible},
@@ -170,13 +174,13 @@ int bound(CLI::App& command, BoundOptions& options, Program& program) {
                                        {"spacing", candidates.spacing_m()},
                                        {"stations", std::move(by_number)},
                                        {"captures", std::move(by_capture)},
-                                       {"sample", candidates.rows().voxels().size()},
+                                       {"sample", sampled.voxels().size()},
                                        {"voxels", simulator.voxel_count()},
                                        {"seconds", seconds_json(watch, 0)},
                                        {"engine", to_string(simulator.engine().engine)},
                                        {"device", simulator.engine().device},
-                                       {"seed", site.config.seed},
-                                       {"options", site.as_options()},
+                                       {"seed", site.simulator_config().seed},
+                                       {"options", options_of(site.settings())},
                                        {"version", version()}});
   return exit_ok;
 }

@@ -10,10 +10,34 @@
 #include <cstdio>
 #include <mutex>
 #include <system_error>
+#include <utility>
 
 #include "vantage/error.hpp"
 
 namespace vantage::cli {
+
+std::string printable(std::string_view text) {
+  std::string out;
+  // How many bytes of UTF-8 begin at `k` with a character that moves the cursor or the order of others, and its code.
+  const auto control = [&](std::size_t k) -> std::pair<std::size_t, unsigned> {
+    const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
+    const unsigned a = byte(k), b = byte(k + 1), c = byte(k + 2);
+    if ((a < 0x20 && a != '\n' && a != '\t') || a == 0x7f) return {1, a};
+    if (a == 0xc2 && b >= 0x80 && b < 0xa0) return {2, b};
+    const unsigned code = 0x2000 + ((b & 0x3f) << 6) + (c & 0x3f);
+    const bool turns = (code >= 0x202a && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
+    return a == 0xe2 && turns ? std::pair{std::size_t{3}, code} : std::pair{std::size_t{0}, 0u};
+  };
+  for (std::size_t k = 0; k < text.size();) {
+    const auto [bytes, code] = control(k);
+    if (bytes > 0)
+      out += fmt::format("\\u{:04x}", code);
+    else
+      out += text[k];
+    k += std::max<std::size_t>(bytes, 1);
+  }
+  return out;
+}
 
 // Log lines go above the status line, which is drawn again below them.
 class TerminalSink : public spdlog::sinks::base_sink<std::mutex> {
@@ -35,7 +59,7 @@ class TerminalSink : public spdlog::sinks::base_sink<std::mutex> {
     const char* kind = message.level >= spdlog::level::err    ? "error: "
                        : message.level == spdlog::level::warn ? "warning: "
                                                               : "";
-    std::string line = "vantage: " + (kind + std::string(message.payload.data(), message.payload.size())) + "\n";
+    std::string line = "vantage: " + (kind + printable({message.payload.data(), message.payload.size()})) + "\n";
     if (!status_.empty()) line = "\r\033[K" + line + status_;
     write(line);
   }
@@ -57,9 +81,10 @@ Console::~Console() { set_status(""); }
 
 bool Console::interactive() const { return sink_->interactive; }
 
-void Console::set_status(const std::string& line) { sink_->set_status(line); }
+void Console::set_status(const std::string& line) { sink_->set_status(printable(line)); }
 
-void Console::print(const std::string& text) {
+void Console::print(const std::string& what) {
+  const std::string text = printable(what);
   if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0) return;
   if (errno == EPIPE) return;  // who reads has had enough, as `head` does
   throw Error(Errc::io, "cannot write to standard output: " + std::generic_category().message(errno));

@@ -8,8 +8,13 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 
 namespace vantage::cli {
+
+// Names come from scenes of other people: characters that a terminal obeys, or that turn the order of others, become
+// \u escapes, as in JSON. Lines and tabs stay.
+std::string printable(std::string_view text);
 
 class TerminalSink;
 
@@ -23,7 +28,7 @@ class Console {
 
   bool interactive() const;                  // standard error is a terminal
   void set_status(const std::string& line);  // the last line of a terminal; empty: none
-  void print(const std::string& text);       // standard output; throws Error io where that is closed or full
+  void print(const std::string& text);       // standard output, printable; throws Error io where that is closed or full
   void print(const nlohmann::json& object);
 
  private:

@@ -14,12 +14,8 @@ nlohmann::json dropped_json(const DroppedPoints& dropped) {
           {"noise", dropped.noise}};
 }
 
-DroppedPoints all_dropped(const NetworkCounts& counts) {
-  return std::accumulate(counts.dropped.begin(), counts.dropped.end(), DroppedPoints{});
-}
-
 std::string dropped_text(const NetworkCounts& counts) {
-  const DroppedPoints dropped = all_dropped(counts);
+  const DroppedPoints dropped = std::accumulate(counts.dropped.begin(), counts.dropped.end(), DroppedPoints{});
   const std::uint64_t counted =
       std::accumulate(counts.points_on_surveyed.begin(), counts.points_on_surveyed.end(), std::uint64_t{0});
   const auto all = static_cast<double>(counted + dropped.points);

@@ -10,7 +10,6 @@
 namespace vantage::cli {
 
 nlohmann::json dropped_json(const DroppedPoints& dropped);
-DroppedPoints all_dropped(const NetworkCounts& counts);
 // One line, as shares of the points in surveyed voxels. REQUIRES: counts.dropped is not empty.
 std::string dropped_text(const NetworkCounts& counts);
 

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fcntl.h>
 #include <spawn.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
+#include <optional>
 
 #include "cli/command.hpp"
 #include "cli/missed.hpp"
@@ -20,7 +23,7 @@ namespace vantage::cli {
 namespace {
 
 struct EditCommandOptions {
-  SiteOptions site;
+  SiteArguments site;
   StationOptions stations;
   EditOptions edit;
   std::optional<SampleSize> sample;
@@ -60,7 +63,7 @@ struct Keeper {
   }
 
   // Where the scene is another, nothing.
-  std::vector<EditStation> restored(LoadedSite& site) const {
+  std::vector<EditStation> restored(Site& site) const {
     std::error_code ignored;
     if (!std::filesystem::exists(file, ignored)) return {};
     std::vector<EditStation> stations;
@@ -83,22 +86,45 @@ struct Keeper {
   }
 };
 
-void open_browser(const std::string& address) {
-  if (!std::getenv("DISPLAY") && !std::getenv("WAYLAND_DISPLAY")) return;
-  std::string command = "xdg-open", url = address;
-  char* const arguments[] = {command.data(), url.data(), nullptr};
-  pid_t child = 0;
-  if (posix_spawnp(&child, "xdg-open", nullptr, nullptr, arguments, environ) != 0)
-    spdlog::warn("no browser can be opened by xdg-open; open the address by hand");
-}
+// Opens a browser on the address without telling it to other programs: who lists processes sees their arguments. The
+// browser gets a page of this user's own that leads there, and that goes with this.
+class Browser {
+ public:
+  Browser(const std::filesystem::path& folder, const std::string& address) {
+    if (!std::getenv("DISPLAY") && !std::getenv("WAYLAND_DISPLAY")) return;
+    page_ = std::filesystem::absolute(folder / "open-editor.html");
+    std::error_code ignored;
+    std::filesystem::remove(page_, ignored);
+    const int file = ::open(page_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600);
+    const std::string html =
+        "<!doctype html>\n<meta name=\"referrer\" content=\"no-referrer\">\n"
+        "<meta http-equiv=\"refresh\" content=\"0; url=" +
+        address + "\">\n<title>vantage</title>\n";
+    const bool written = file >= 0 && ::write(file, html.data(), html.size()) == std::ssize(html);
+    if (file >= 0) ::close(file);
+    std::string command = "xdg-open", argument = page_.string();
+    char* const arguments[] = {command.data(), argument.data(), nullptr};
+    pid_t child = 0;
+    if (!written || posix_spawnp(&child, "xdg-open", nullptr, nullptr, arguments, environ) != 0)
+      spdlog::warn("no browser can be opened by xdg-open; open the address by hand");
+  }
+  ~Browser() {
+    std::error_code ignored;
+    if (!page_.empty()) std::filesystem::remove(page_, ignored);
+  }
+  Browser(const Browser&) = delete;
+  Browser& operator=(const Browser&) = delete;
+
+ private:
+  std::filesystem::path page_;
+};
 
 int edit(CLI::App& command, EditCommandOptions& options, Program& program) {
-  LoadedSite site = open_site(command, options.site);
-  weigh_ground(site);
+  Site site = open_site(command, options.site);
   const std::string title = std::filesystem::path(options.site.scene).stem().string();
   const std::filesystem::path folder = options.output ? *options.output : title + "-edit";
   make_folder(folder);
-  const Keeper keeper{folder / "edit.json", fmt::format("{:016x}", site.scene.fingerprint())};
+  const Keeper keeper{folder / "edit.json", fmt::format("{:016x}", site.scene().fingerprint())};
   std::vector<EditStation> stations;
   if (options.stations.typed.empty() && !options.stations.file) {
     stations = keeper.restored(site);
@@ -110,34 +136,30 @@ int edit(CLI::App& command, EditCommandOptions& options, Program& program) {
       stations.push_back({.placed = station.placed});
     }
   }
-  Simulator simulator = build_simulator(site, site.scanners, program);
+  Simulator& simulator = build_simulator(site, program);
   tell_engine(simulator);
   tell_grid(simulator);
   if (options.link) options.edit.link = *options.link;
   if (options.sample) options.edit.voxels = options.sample->of(simulator.voxel_count());
-  const auto save = [&](const EditSession::Exact& exact, const Progress& progress) {
+  const auto save = [&](const Evaluation& exact, const Progress& progress) {
     write_stations_csv(folder / "stations.csv", exact.stations, simulator.scanners());
     const auto judged = judge_missed(site, simulator, exact.field, program);
     if (progress.stopped()) return;
-    write_reports(std::vector<std::filesystem::path>{folder / "report.html", folder / "report.pdf"},
-                  {.stations = exact.stations,
-                   .names = station_names(exact.stations),
-                   .counts = exact.counts,
-                   .scan_overlaps = exact.scan_overlaps,
-                   .link = options.edit.link},
-                  title, {site, simulator, &exact.field, judged ? &*judged : nullptr}, program, progress.stop);
+    write_reports(std::vector<std::filesystem::path>{folder / "report.html", folder / "report.pdf"}, exact, simulator,
+                  site.area(), {.title = title, .missed = judged ? &*judged : nullptr}, program, progress.stop);
     spdlog::info("saved in {}", folder.string());
   };
   EditSession session(
       simulator, site.area(), site.clash(), stations, options.edit,
       [&](const std::vector<EditStation>& now) { keeper.keep(now, simulator.scanners()); }, save);
+  std::optional<Browser> browser;
   serve_editor(
       session, title,
       [&](const std::string& address) {
         program.console.print(address + "\n");
         spdlog::info("the editor is at this address until Ctrl-C; {} has the stations at any time",
                      keeper.file.string());
-        if (!options.no_browser) open_browser(address);
+        if (!options.no_browser) browser.emplace(folder, address);
       },
       program.stop);
   return exit_ok;

@@ -12,8 +12,8 @@ struct NoOptions {
 
 int refuse(CLI::App&, NoOptions&, Program&) {
   throw Error(Errc::invalid_argument,
-              "edit: vantage was built without cpp-httplib, three.js, meshoptimizer or zlib (Debian: "
-              "libcpp-httplib-dev, libjs-three, libmeshoptimizer-dev, zlib1g-dev)");
+              "edit: vantage was built without Boost.Beast, three.js, meshoptimizer or zlib (Debian: "
+              "libboost-dev, libjs-three, libmeshoptimizer-dev, zlib1g-dev)");
 }
 
 }  // namespace

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "cli/command.hpp"
 #include "cli/dropped_points.hpp"
 #include "cli/missed.hpp"
-#include "cli/on_site.hpp"
 #include "cli/options.hpp"
-#include "cli/problem.hpp"
-#include "cli/registration.hpp"
 #include "cli/report.hpp"
 #include "cli/run_report.hpp"
 #include "cli/site.hpp"
@@ -22,10 +20,10 @@ namespace {
 constexpr std::uint64_t visible_sample = 20'000;
 
 struct EvaluateCommandOptions {
-  SiteOptions site;
+  SiteArguments site;
   StationOptions stations;
-  RegistrationCliOptions registration;
-  OnSiteCliOptions on_site;
+  RegistrationOptions registration;
+  OnSiteOptions on_site;
   bool exact = false, skip = false, no_overlap = false, with_registration = false, visible = false;
   std::optional<SampleSize> sample;
   std::optional<double> error, link, link_overlap;
@@ -56,7 +54,7 @@ struct EvaluateCommandOptions {
     command.add_flag("--no-overlap", no_overlap, "Coverage only")->group("Evaluation");
     command.add_flag("--registration", with_registration, "Predict the error of the registered scans")
         ->group("Registration");
-    registration.add(command);
+    add_settings(command, registration_settings(), registration);
     add_texts(command, "--registration-map", "FILE",
               "Write the predicted error on the surface, in false colours: .ply, or .png or .svg from above; may be "
               "repeated",
@@ -71,7 +69,7 @@ struct EvaluateCommandOptions {
         fmt::format("Scan overlap from which on two stations count as linked, 0 to 1; {} otherwise", default_link),
         link, {.low = 0, .high = 1})
         ->group("Evaluation");
-    on_site.add(command, "Evaluation");
+    add_settings(command, on_site_settings(), on_site, "Evaluation");
     add_text(command, "--cartography", "FILE", "Write every surveyed voxel with its count, in false colours: .ply",
              cartography)
         ->group("Results");
@@ -93,272 +91,202 @@ struct EvaluateCommandOptions {
     command.add_flag("--json", json, "Print one JSON object");
   }
 
-  std::optional<RegistrationModel> model() const {
-    return with_registration ? std::optional(registration.settle().model) : std::nullopt;
+  bool sampled() const { return sample || error; }
+  bool wants_field() const {
+    return !sampled() && (cartography || !missed.files.empty() || !registration_files.empty() || !reports.empty());
   }
 };
 
 // As `plan` looks at it before it searches.
-Estimate visible_share(LoadedSite& site, Simulator& simulator, std::uint64_t sample, Program& program) {
+Estimate visible_share(Site& site, Simulator& simulator, std::uint64_t sample, Program& program) {
   ProgressLine line(program.console, "look");
   return find_candidates(simulator, site.area(), site.clash(), {.most = 512, .sample_voxels = sample},
                          {.report = [&](double done) { line.update(done); }, .stop = program.stop})
       .visible();
 }
 
-NetworkCounts evaluate_sample(Simulator& simulator, const Network& network, const EvaluateCommandOptions& options,
-                              const Progress& progress) {
-  const bool overlap = !options.no_overlap;
-  const std::optional<RegistrationModel> model = options.model();
-  const std::uint64_t voxels =
-      options.error ? voxels_for_standard_error(simulator, {&network, 1}, *options.error, overlap, progress)
-                    : options.sample->of(simulator.voxel_count());
-  return simulator
-      .evaluate_sampled({&network, 1}, {.voxels = voxels, .overlap = overlap, .registration = model}, progress)
-      .front();
-}
-
-// Over all surfaces, surveyed or not, by every ray of a coarser pattern: scan overlaps and, where it goes by them,
-// registration.
-struct Surroundings {
-  NetworkCounts counts;
-  std::uint64_t voxels = 0;
-};
-Surroundings surroundings(const Simulator& simulator, const Network& network,
-                          const std::optional<RegistrationModel>& registration, std::stop_token stop) {
-  Simulator all = surroundings_of(simulator);
-  return {
-      all.evaluate(network, {.overlap = true, .registration = registration}, {.report = {}, .stop = std::move(stop)}),
-      all.voxel_count()};
-}
-
-// Millimetres; axes of the standard ellipsoid of each head, longest first, in the survey frame.
-nlohmann::json registration_json(const RegistrationError& error, const Estimate& whole) {
-  const auto mm = [](const Vec3& v) { return nlohmann::json{1e3 * v.x, 1e3 * v.y, 1e3 * v.z}; };
-  nlohmann::json stations = nlohmann::json::array();
-  for (const StationError& station : error.stations)
-    stations.push_back({{"error_mm", 1e3 * station.rms_m},
-                        {"head_axes_mm", {mm(station.axes[0]), mm(station.axes[1]), mm(station.axes[2])}}});
-  return {{"error_mm", 1e3 * whole.value},
-          {"standard_error_mm", 1e3 * whole.standard_error},
-          {"worst_mm", 1e3 * error.worst_m},
-          {"worst_station", error.worst_station + 1},
-          {"stations", std::move(stations)}};
-}
-
-nlohmann::json matrix_json(const OverlapMatrix& overlap) {
-  nlohmann::json rows = nlohmann::json::array();
-  for (std::size_t i = 0; i < overlap.size(); ++i) rows.push_back(overlap.row(i));
-  return rows;
-}
-
-nlohmann::json lines_json(const SurveySummary& summary) {
-  nlohmann::json lines = nlohmann::json::array();
-  for (const auto& [heading, text] : summary_lines(summary)) lines.push_back({{"heading", heading}, {"text", text}});
-  return lines;
-}
-
-int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& program) {
-  const Stopwatch watch;
-  LoadedSite site = open_site(command, options.site);
-  weigh_ground(site);
-  const auto stations = place(site, options.stations.read(max_stations));
-  warn_of_unusable(stations);
-  const auto placed = placed_of(stations);
-  const auto names = names_of(stations);
-  const bool sampled = options.sample || options.error;
-  const bool overlap = !options.no_overlap;
-  const auto must_end = [](const std::optional<std::string>& file, const char* what, auto... endings) {
+// Throws Error invalid_argument for options that do not go together, and files that no writer has.
+void check(const EvaluateCommandOptions& options, const Site& site) {
+  const auto refuse = [](const std::string& why) { throw Error(Errc::invalid_argument, why); };
+  const auto must_end = [&](const std::optional<std::string>& file, const char* what, auto... endings) {
     if (file && (!file->ends_with(endings) && ...))
-      throw Error(Errc::invalid_argument, std::string(what) + ": '" + *file + "' must end with" +
-                                              (std::string() + ... + (std::string(" ") + endings)));
+      refuse(std::string(what) + ": '" + *file + "' must end with" +
+             (std::string() + ... + (std::string(" ") + endings)));
   };
   must_end(options.cartography, "--cartography", ".ply");
   must_end(options.picture, "--picture", ".png", ".svg");
   must_end(options.matrix, "--overlap-csv", ".csv");
   for (const std::string& file : options.station_files) {
     must_end(file, "--write-stations", ".dxf", ".geojson", ".kml");
-    if (!file.ends_with(".dxf")) to_wgs84(site.crs_text(), {});  // an error now, not behind the rays
+    if (!file.ends_with(".dxf")) to_wgs84(crs_text(site), {});  // an error now, not behind the rays
   }
-  if (options.cartography && sampled)
-    throw Error(Errc::invalid_argument, "--cartography: shows every voxel, and so needs --exact");
   for (const std::string& file : options.reports) must_end(file, "--report", ".html", ".pdf");
-  if (!options.reports.empty() && !why_no_report().empty())
-    throw Error(Errc::invalid_argument, "--report: " + why_no_report());
+  if (!options.reports.empty() && !why_no_report().empty()) refuse("--report: " + why_no_report());
   options.missed.check();
-  if (!options.missed.files.empty() && sampled)
-    throw Error(Errc::invalid_argument, "--missed: looks at every voxel, and so needs --exact");
-  if ((options.matrix || options.picture) && !overlap)
-    throw Error(Errc::invalid_argument, "--overlap-csv and --picture show overlaps, which --no-overlap leaves out");
-
   for (const std::string& file : options.registration_files)
     must_end(file, "--registration-map", ".ply", ".png", ".svg");
-  if (!options.registration_files.empty() && (sampled || !options.with_registration))
-    throw Error(
-        Errc::invalid_argument,
-        "--registration-map: shows the error of --registration on every voxel, and so needs both it and --exact");
-  if (options.with_registration && !overlap)
-    throw Error(Errc::invalid_argument, "--registration: looks at what scans share, which --no-overlap leaves out");
 
-  Simulator simulator = build_simulator(site, site.scanners, program);
-  tell_engine(simulator);
-  tell_grid(simulator);
-  const Network network = to_network(stations);
-  ProgressLine line(program.console, "evaluate");
-  const Progress progress{.report = [&](double done) { line.update(done); }, .stop = program.stop};
-  VoxelField field;
-  const bool with_field = options.cartography || !options.missed.files.empty() || !options.registration_files.empty() ||
-                          !options.reports.empty();
-  const NetworkCounts counts = sampled ? evaluate_sample(simulator, network, options, progress)
-                                       : simulator.evaluate(network,
-                                                            {.overlap = overlap,
-                                                             .skip = options.skip,
-                                                             .field = with_field ? &field : nullptr,
-                                                             .registration = options.model()},
-                                                            progress);
-  if (counts.cancelled) throw Stopped{};
-  const RegistrationOptions registration = options.registration.settle();
-  const bool by_all = options.with_registration && registration.surfaces == RegistrationSurfaces::all;
-  Surroundings around;
-  if (overlap)
-    around = surroundings(simulator, network, by_all ? std::optional(registration.model) : std::nullopt, program.stop);
-  if (around.counts.cancelled) throw Stopped{};
-  const std::uint64_t voxels = simulator.voxel_count();
-  Estimate registered;
-  RegistrationError error;
-  if (options.with_registration) {
-    registered = registration_estimate(counts, voxels, registration, &around.counts, around.voxels);
-    error = registration_error(counts, voxels, registration, &around.counts, around.voxels);
-  }
-  const Estimate covered = coverage_estimate(counts, simulator.goal_density(), voxels);
-  const Estimate overlapped = overlap ? overlap_estimate(counts, voxels) : Estimate{};
-  const OverlapMatrix matrix = overlap ? overlap_matrix(counts) : OverlapMatrix{};
+  if (options.cartography && options.sampled()) refuse("--cartography: shows every voxel, and so needs --exact");
+  if (!options.missed.files.empty() && options.sampled())
+    refuse("--missed: looks at every voxel, and so needs --exact");
+  if ((options.matrix || options.picture) && options.no_overlap)
+    refuse("--overlap-csv and --picture show overlaps, which --no-overlap leaves out");
+  if (!options.registration_files.empty() && (options.sampled() || !options.with_registration))
+    refuse("--registration-map: shows the error of --registration on every voxel, and so needs both it and --exact");
+  if (options.with_registration && options.no_overlap)
+    refuse("--registration: looks at what scans share, which --no-overlap leaves out");
+}
 
-  if (options.cartography) write_coverage_ply(*options.cartography, simulator, field);
-  std::optional<JudgedVoxels> judged;
-  if (!options.missed.files.empty() || (!options.reports.empty() && !sampled)) {
-    judged = judge_missed(site, simulator, field, program);
-    if (!judged && program.abort.stop_requested()) return exit_failed;
-  }
+// How the network is evaluated, but for its names and what can be seen.
+EvaluationOptions evaluation_options(const EvaluateCommandOptions& options, Simulator& simulator,
+                                     const Network& network, const Progress& progress) {
+  EvaluationOptions chosen{.overlap = !options.no_overlap,
+                           .skip = options.skip,
+                           .field = options.wants_field(),
+                           .link = options.link.value_or(default_link)};
+  if (options.sample) chosen.sample_voxels = options.sample->of(simulator.voxel_count());
+  if (options.error)
+    chosen.sample_voxels =
+        voxels_for_standard_error(simulator, {&network, 1}, *options.error, chosen.overlap, progress);
+  if (options.with_registration) chosen.registration = options.registration;
+  return chosen;
+}
+
+// Pictures and drawings show the links of the summary, unless those of the method are asked for.
+StationLinks drawn_links(const EvaluateCommandOptions& options, const Evaluation& found) {
+  if (options.link_overlap) return station_links(found.overlap_matrix, *options.link_overlap, found.stations);
+  return found.links().value_or(StationLinks{.least = found.link_overlap});
+}
+
+// `judged`: where it was looked at.
+void write_files(const EvaluateCommandOptions& options, Site& site, Simulator& simulator, const Evaluation& found,
+                 const std::vector<std::string>& names, const MissedVoxels* judged, Program& program) {
+  if (options.cartography) write_coverage_ply(*options.cartography, simulator, found.field);
   if (judged)
     write_missed(std::vector<std::filesystem::path>(options.missed.files.begin(), options.missed.files.end()), *judged,
-                 simulator, placed);
-  if (options.matrix) write_overlap_csv(*options.matrix, matrix);
+                 simulator, found.stations);
+  if (options.matrix) write_overlap_csv(*options.matrix, found.overlap_matrix);
   for (const std::string& file : options.registration_files) {
     if (file.ends_with(".ply"))
-      write_registration_ply(file, simulator, field, error);
+      write_registration_ply(file, simulator, found.field, *found.registration);
     else
-      draw_registration(file, simulator, field, error, placed, "Registration error on the surface (predicted)");
+      draw_registration(file, simulator, found.field, *found.registration, found.stations,
+                        "Registration error on the surface (predicted)");
   }
-  const OverlapMatrix scan_overlaps = overlap ? scan_overlap_matrix(around.counts) : OverlapMatrix{};
-  const double link = options.link.value_or(default_link);
-  // Pictures and drawings show the links of the summary, unless those of the method are asked for.
-  const OverlapMatrix& drawn = options.link_overlap ? matrix : scan_overlaps;
-  const double least_drawn = options.link_overlap.value_or(link);
+  const StationLinks links = drawn_links(options, found);
   if (options.picture) {
-    draw_plan_view(*options.picture, site.scene, site.area(), placed, drawn,
-                   fmt::format("{} station{}: coverage {:.3f}, overlap {:.3f}", placed.size(),
-                               placed.size() == 1 ? "" : "s", covered.value, overlapped.value),
-                   least_drawn, names, error.stations,
-                   options.link_overlap ? "Overlap of two stations" : "Scan overlap of two stations");
+    const std::vector<StationError> errors =
+        found.registration ? found.registration->stations : std::vector<StationError>();
+    draw_plan_view(*options.picture, site.scene(), site.area(), found.stations, links,
+                   fmt::format("{} station{}: coverage {:.3f}, overlap {:.3f}", names.size(),
+                               names.size() == 1 ? "" : "s", found.value("coverage"), found.value("overlap")),
+                   names, errors);
   }
-
   for (const std::string& file : options.station_files)
-    write_stations(file, {placed, names}, drawn, least_drawn, site.area(), site.crs_text());
+    write_stations(file, {found.stations, names}, links, site.area(), crs_text(site));
+  if (!options.reports.empty())
+    write_reports(std::vector<std::filesystem::path>(options.reports.begin(), options.reports.end()), found, simulator,
+                  site.area(), {.title = std::filesystem::path(options.site.scene).stem().string(), .missed = judged},
+                  program, program.abort);
+}
+
+// `traced`: with every ray, also where a sample has all voxels.
+nlohmann::json stations_json(const std::vector<SiteStation>& stations, const Evaluation& found,
+                             const std::vector<std::string>& names, bool traced, std::span<const Scanner> scanners) {
+  const NetworkCounts& counts = found.counts;
   nlohmann::json rows = nlohmann::json::array();
   for (std::size_t k = 0; k < stations.size(); ++k) {
-    auto row = to_json(stations[k], names[k], site.scanners);
+    auto row = to_json(stations[k], names[k], scanners);
     row["points"] = nullptr;
     row["points_on_surveyed"] = nullptr;
-    if (!sampled && !counts.points.empty()) row["points"] = counts.points[k];
-    if (!sampled && !counts.points_on_surveyed.empty()) row["points_on_surveyed"] = counts.points_on_surveyed[k];
+    if (traced && !counts.points.empty()) row["points"] = counts.points[k];
+    if (traced && !counts.points_on_surveyed.empty()) row["points_on_surveyed"] = counts.points_on_surveyed[k];
     row["dropped"] = nullptr;
     if (!counts.dropped.empty()) row["dropped"] = dropped_json(counts.dropped[k]);
     rows.push_back(std::move(row));
   }
-  SurveySummary summary{.names = names, .captured = covered.value, .captured_error = covered.standard_error};
-  if (overlap) summary.links = scan_links(scan_overlaps, link, placed);
-  std::optional<Estimate> visible;
-  if (options.visible) {
-    visible = visible_share(site, simulator, sampled ? counts.voxels : visible_sample, program);
-    if (visible->value > 0) summary.of_visible = std::min(1.0, covered.value / visible->value);
+  return rows;
+}
+
+nlohmann::json json_of(const EvaluateCommandOptions& options, const Site& site, const Simulator& simulator,
+                       const Evaluation& found) {
+  nlohmann::json json = nlohmann::json::parse(evaluation_json(found));
+  if (found.registration) json["registration"]["surfaces"] = to_string(options.registration.surfaces);
+  if (options.sampled()) json["sample"] = found.counts.voxels;
+  json["voxel_size"] = simulator.voxel_size_m();
+  json["engine"] = to_string(simulator.engine().engine);
+  json["device"] = simulator.engine().device;
+  json["seed"] = site.simulator_config().seed;
+  json["options"] = options_of(site.settings());
+  json["version"] = version();
+  return json;
+}
+
+std::string evaluation_text(const Evaluation& found, const std::vector<std::string>& names, bool traced,
+                            std::span<const Scanner> scanners) {
+  std::string text = station_table(
+      found.stations, names,
+      traced ? std::span<const std::uint64_t>(found.counts.points_on_surveyed) : std::span<const std::uint64_t>(),
+      scanners);
+  const auto with_error = [&](const char* measure) {
+    const Estimate& estimate = found.values.at(measure);
+    return traced ? fmt::format("{:.4f}", estimate.value)
+                  : fmt::format("{:.4f} ± {:.4f}", estimate.value, estimate.standard_error);
+  };
+  text += "coverage " + with_error("coverage") + "\n";
+  if (found.values.contains("overlap")) text += "overlap  " + with_error("overlap") + "\n";
+  if (found.registration) {
+    const Estimate& error_mm = found.values.at("registration");
+    text += fmt::format("registration {:.2f}{} mm, worst station {}: {:.2f} mm\n", error_mm.value,
+                        traced ? "" : fmt::format(" ± {:.2f}", error_mm.standard_error),
+                        names[found.registration->worst_station], 1e3 * found.registration->worst_m);
   }
-  if (options.with_registration) summary.registration_mm = 1e3 * registered.value;
-  std::optional<Visit> visit;
-  if (site.has_area()) {
-    visit = OnSite(site.area(), site.clash(), simulator.scanners(), options.on_site.settle(site)).visit(placed);
-    summary.seconds_on_site = 60 * visit->minutes;
+  if (!found.counts.dropped.empty()) text += dropped_text(found.counts) + "\n";
+  return text + "\n" + summary_text(found);
+}
+
+int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& program) {
+  const Stopwatch watch;
+  Site site = open_site(command, options.site);
+  const auto stations = place(site, options.stations.read(max_stations));
+  warn_of_unusable(stations);
+  const auto placed = placed_of(stations);
+  const auto names = names_of(stations);
+  check(options, site);
+
+  Simulator& simulator = build_simulator(site, program);
+  tell_engine(simulator);
+  tell_grid(simulator);
+  ProgressLine line(program.console, "evaluate");
+  const Progress progress{.report = [&](double done) { line.update(done); }, .stop = program.stop};
+  EvaluationOptions chosen = evaluation_options(options, simulator, to_network(stations), progress);
+  chosen.names = names;
+  if (options.visible)
+    chosen.attainable = visible_share(
+        site, simulator, options.sampled() ? std::min(chosen.sample_voxels, simulator.voxel_count()) : visible_sample,
+        program);
+  std::optional<OnSite> on_site;
+  if (site.has_area())
+    on_site.emplace(site.area(), site.clash(), simulator.scanners(), on_site_of(site, options.on_site));
+  const Evaluation found = evaluate_stations({.simulator = simulator,
+                                              .surroundings = chosen.overlap ? &site.surroundings() : nullptr,
+                                              .on_site = on_site ? &*on_site : nullptr},
+                                             placed, chosen, progress);
+  if (found.counts.cancelled) throw Stopped{};
+
+  std::optional<MissedVoxels> judged;
+  if (!options.missed.files.empty() || (!options.reports.empty() && !options.sampled())) {
+    judged = judge_missed(site, simulator, found.field, program);
+    if (!judged && program.abort.stop_requested()) return exit_failed;
   }
-  summary.faults = station_faults(placed, names);
-  if (!options.reports.empty()) {
-    write_reports(std::vector<std::filesystem::path>(options.reports.begin(), options.reports.end()),
-                  {.stations = placed,
-                   .names = names,
-                   .counts = counts,
-                   .scan_overlaps = scan_overlaps,
-                   .link = link,
-                   .registration = options.with_registration ? &error : nullptr,
-                   .summary = &summary},
-                  std::filesystem::path(options.site.scene).stem().string(),
-                  {site, simulator, sampled ? nullptr : &field, judged ? &*judged : nullptr}, program, program.abort);
-  }
+  write_files(options, site, simulator, found, names, judged ? &*judged : nullptr, program);
   if (options.json) {
-    nlohmann::json json{{"summary", lines_json(summary)},
-                        {"coverage", covered.value},
-                        {"coverage_se", covered.standard_error},
-                        {"overlap", nullptr},
-                        {"overlap_se", nullptr},
-                        {"overlap_matrix", nullptr},
-                        {"scan_overlap_matrix", nullptr},
-                        {"visible", nullptr},
-                        {"visible_se", nullptr},
-                        {"minutes_on_site", nullptr},
-                        {"stations", std::move(rows)},
-                        {"dropped", nullptr},
-                        {"voxels", voxels},
-                        {"voxel_size", simulator.voxel_size_m()},
-                        {"goal_density", simulator.goal_density()},
-                        {"rays", counts.rays},
-                        {"sample", nullptr},
-                        {"seconds", seconds_json(watch, counts.trace_seconds)},
-                        {"engine", to_string(simulator.engine().engine)},
-                        {"device", simulator.engine().device},
-                        {"seed", site.config.seed},
-                        {"options", site.as_options()},
-                        {"version", version()}};
-    if (overlap) {
-      json["overlap"] = overlapped.value;
-      json["overlap_se"] = overlapped.standard_error;
-      json["overlap_matrix"] = matrix_json(matrix);
-      json["scan_overlap_matrix"] = matrix_json(scan_overlaps);
-    }
-    if (visible) json["visible"] = visible->value, json["visible_se"] = visible->standard_error;
-    if (visit) json["minutes_on_site"] = visit->minutes;
-    if (options.with_registration) {
-      json["registration"] = registration_json(error, registered);
-      json["registration"]["surfaces"] = to_string(options.registration.surfaces);
-    }
-    if (sampled) json["sample"] = counts.voxels;
-    if (!counts.dropped.empty()) json["dropped"] = dropped_json(all_dropped(counts));
+    nlohmann::json json = json_of(options, site, simulator, found);
+    json["stations"] = stations_json(stations, found, names, !options.sampled(), site.scanners());
+    json["seconds"] = seconds_json(watch, found.counts.trace_seconds);
     program.console.print(json);
   } else {
-    std::string text =
-        station_table(placed, names, sampled ? std::span<const std::uint64_t>() : std::span(counts.points_on_surveyed),
-                      site.scanners);
-    const auto with_error = [&](const Estimate& estimate) {
-      return sampled ? fmt::format("{:.4f} ± {:.4f}", estimate.value, estimate.standard_error)
-                     : fmt::format("{:.4f}", estimate.value);
-    };
-    text += "coverage " + with_error(covered) + "\n";
-    if (overlap) text += "overlap  " + with_error(overlapped) + "\n";
-    if (options.with_registration) {
-      text += fmt::format("registration {:.2f}{} mm, worst station {}: {:.2f} mm\n", 1e3 * registered.value,
-                          sampled ? fmt::format(" ± {:.2f}", 1e3 * registered.standard_error) : "",
-                          names[error.worst_station], 1e3 * error.worst_m);
-    }
-    if (!counts.dropped.empty()) text += dropped_text(counts) + "\n";
-    text += "\n" + summary_text(summary);
-    program.console.print(text);
+    program.console.print(evaluation_text(found, names, !options.sampled(), site.scanners()));
   }
   return exit_ok;
 }

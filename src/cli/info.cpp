@@ -8,7 +8,6 @@
 
 #include "cli/command.hpp"
 #include "cli/options.hpp"
-#include "cli/scanners.hpp"
 #include "vantage/vantage.hpp"
 
 namespace vantage::cli {

@@ -10,9 +10,6 @@
 namespace vantage::cli {
 namespace {
 
-// Enough for shares to a tenth of a percent, few enough for seconds.
-constexpr std::uint64_t most_voxels = 50'000;
-
 bool known(const std::string& extension) {
   return extension == ".csv" || extension == ".ply" || extension == ".png" || extension == ".svg";
 }
@@ -33,30 +30,24 @@ void MissedFiles::check() const {
       throw Error(Errc::invalid_argument, "--missed: " + file + " is none of .csv, .ply, .png and .svg");
 }
 
-std::optional<JudgedVoxels> judge_missed(LoadedSite& site, const Simulator& simulator, const VoxelField& field,
+std::optional<MissedVoxels> judge_missed(Site& site, const Simulator& simulator, const VoxelField& field,
                                          Program& program) {
-  if (simulator.voxel_count() == 0) return std::nullopt;
-  const MissedOptions options;
-  const std::vector<PlacedStation> candidates =
-      candidate_positions(site.area(), site.clash(), site.scanner, options.candidates);
-  JudgedVoxels judged{.ranks = simulator.sampled_voxels(std::min(most_voxels, simulator.voxel_count()))};
-  for (const std::uint32_t rank : judged.ranks) judged.points.push_back(field.count[rank]);
   ProgressLine line(program.console, "why missed");
-  judged.why = why_missed(simulator, site.clash(), candidates, judged.ranks, judged.points, options,
-                          {.report = [&](double done) { line.update(done); }, .stop = program.abort});
-  if (judged.why.empty()) return std::nullopt;
-  judged.shares = missed_by_node(simulator, judged.ranks, judged.why);
+  MissedVoxels judged = missed_voxels(simulator, site.area(), site.clash(), field, {},
+                                      {.report = [&](double done) { line.update(done); }, .stop = program.abort});
+  if (judged.shares.empty()) return std::nullopt;
   const MissedShare& all = judged.shares.front();
+  const auto percent = [&](WhyMissed why) { return 100 * all.share(why); };
   spdlog::info(
-      "of the surveyed voxels {:.1f} % are captured, {:.1f} % could be by other stations; {:.1f} % are hidden from "
-      "{} positions all over the ground, {:.1f} % out of range, {:.1f} % seen too flatly, {:.1f} % too sparsely",
-      100 * all.share(WhyMissed::captured), 100 * all.share(WhyMissed::not_chosen), 100 * all.share(WhyMissed::hidden),
-      candidates.size(), 100 * all.share(WhyMissed::far), 100 * all.share(WhyMissed::flat),
-      100 * all.share(WhyMissed::sparse));
+      "{:.1f} % of the surveyed voxels have the wanted points, {:.1f} % could have them from other stations; {:.1f} % "
+      "are hidden from {} positions all over the ground, {:.1f} % out of range, {:.1f} % seen too flatly, {:.1f} % too "
+      "sparsely",
+      percent(WhyMissed::captured), percent(WhyMissed::not_chosen), percent(WhyMissed::hidden), judged.candidates,
+      percent(WhyMissed::far), percent(WhyMissed::flat), percent(WhyMissed::sparse));
   return judged;
 }
 
-void write_missed(std::span<const std::filesystem::path> files, const JudgedVoxels& judged, const Simulator& simulator,
+void write_missed(std::span<const std::filesystem::path> files, const MissedVoxels& judged, const Simulator& simulator,
                   std::span<const PlacedStation> stations) {
   for (const std::filesystem::path& file : files) {
     if (file.extension() == ".csv")

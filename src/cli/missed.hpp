@@ -3,7 +3,6 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -24,18 +23,12 @@ struct MissedFiles {
   void check() const;
 };
 
-// What became of each of these voxels of a field, and of each node's.
-struct JudgedVoxels {
-  std::vector<std::uint32_t> ranks = {}, points = {};
-  std::vector<WhyMissed> why = {};
-  std::vector<MissedShare> shares = {};
-};
-// Of a large site a sample of them. Empty where it was stopped, or nothing is surveyed.
-std::optional<JudgedVoxels> judge_missed(LoadedSite& site, const Simulator& simulator, const VoxelField& field,
+// `missed_voxels()` with its progress and a line of what it found. Empty where it was stopped, or nothing is surveyed.
+std::optional<MissedVoxels> judge_missed(Site& site, const Simulator& simulator, const VoxelField& field,
                                          Program& program);
 
 // Writes each file by its extension: .csv a table by node, .ply a cloud, .png or .svg a picture from above.
-void write_missed(std::span<const std::filesystem::path> files, const JudgedVoxels& judged, const Simulator& simulator,
+void write_missed(std::span<const std::filesystem::path> files, const MissedVoxels& judged, const Simulator& simulator,
                   std::span<const PlacedStation> stations);
 
 }  // namespace vantage::cli

@@ -5,26 +5,13 @@
 
 #include "cli/mistyped.hpp"
 #include "core/closest_name.hpp"
-#include "core/read_file.hpp"
+#include "core/read_json.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage::cli {
 namespace {
 
 std::string long_name(const std::string& names) { return names.substr(names.find("--")); }
-
-std::string scalar_text(const nlohmann::json& value, const std::string& what) {
-  if (value.is_string()) return value.get<std::string>();
-  if (value.is_number() || value.is_boolean()) return value.dump();
-  if (!value.is_array())
-    throw Error(Errc::invalid_argument, what + ": " + value.dump() + " is no number, text, true, false or list");
-  std::string joined;
-  for (const auto& item : value) {
-    if (item.is_structured()) throw Error(Errc::invalid_argument, what + ": " + value.dump() + " is nested too deeply");
-    joined += (joined.empty() ? "" : ",") + scalar_text(item, what);
-  }
-  return joined;
-}
 
 bool takes_many(const CLI::Option& option) { return option.get_items_expected_max() > 1; }
 
@@ -74,6 +61,13 @@ CLI::Option* add_values(CLI::App& app, const std::string& names, const std::stri
       ->allow_extra_args(false);
 }
 
+CLI::Option* add_switch(CLI::App& app, const std::string& names, const std::string& help, Setter set) {
+  return app.add_flag_function(
+      names,
+      [set = std::move(set), what = long_name(names)](std::int64_t given) { set(given > 0 ? "true" : "false", what); },
+      help);
+}
+
 CLI::Option* add_number(CLI::App& app, const std::string& names, const std::string& unit, const std::string& help,
                         std::optional<double>& target, const Interval& interval) {
   return add_value(app, names, unit, help, [&target, interval](const std::string& text, const std::string& what) {
@@ -110,9 +104,9 @@ void apply_layer(CLI::App& command, const nlohmann::json& values, const std::str
 
     const bool one_point = value.is_array() && !value.empty() && value[0].is_number();
     if (takes_many(*option) && value.is_array() && !one_point) {
-      for (const auto& item : value) option->add_result(scalar_text(item, source + ": " + written_key));
+      for (const auto& item : value) option->add_result(setting_text(item, source + ": " + written_key));
     } else {
-      option->add_result(scalar_text(value, source + ": " + written_key));
+      option->add_result(setting_text(value, source + ": " + written_key));
     }
     try {
       if (option->count() > 0) option->run_callback();
@@ -139,23 +133,6 @@ nlohmann::json options_of(const Settings& settings) {
       options[settings[k].option] = std::move(value);
   }
   return options;
-}
-
-nlohmann::json read_json(const std::string& file) {
-  const std::string text = read_file(file);
-  // Who reads it walks down by recursion.
-  constexpr int kDeepest = 64;
-  const auto shallow = [&](int depth, nlohmann::json::parse_event_t, const nlohmann::json&) {
-    if (depth > kDeepest) throw Error(Errc::malformed_file, file + ": is nested too deeply");
-    return true;
-  };
-  try {
-    auto value = nlohmann::json::parse(text, shallow);
-    if (value.is_object()) return value;
-  } catch (const nlohmann::json::exception& error) {
-    throw Error(Errc::malformed_file, file + ": is not JSON: " + error.what());
-  }
-  throw Error(Errc::malformed_file, file + ": must hold a JSON object");
 }
 
 }  // namespace vantage::cli

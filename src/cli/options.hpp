@@ -24,12 +24,33 @@ CLI::Option* add_value(CLI::App& app, const std::string& names, const std::strin
 CLI::Option* add_values(CLI::App& app, const std::string& names, const std::string& unit, const std::string& help,
                         Setter set);
 
+// Takes no value, or true or false in a configuration file.
+CLI::Option* add_switch(CLI::App& app, const std::string& names, const std::string& help, Setter set);
+
 CLI::Option* add_number(CLI::App& app, const std::string& names, const std::string& unit, const std::string& help,
                         std::optional<double>& target, const Interval& interval);
 CLI::Option* add_text(CLI::App& app, const std::string& names, const std::string& unit, const std::string& help,
                       std::optional<std::string>& target);
 CLI::Option* add_texts(CLI::App& app, const std::string& names, const std::string& unit, const std::string& help,
                        std::vector<std::string>& target);
+
+// An option for each row of a table, under the heading `group` where one is given.
+template <class Options>
+void add_settings(CLI::App& app, const SettingTable<Options>& table, Options& options, const std::string& group = "") {
+  for (const SettingRow<Options>& row : table) {
+    const auto set = [&row, &options](const std::string& text, const std::string& what) {
+      row.set(options, text, what);
+    };
+    const std::string name = "--" + row.name;
+    CLI::Option* option = row.unit.empty() ? add_switch(app, name, row.help, set)
+                          : row.repeated   ? add_values(app, name, row.unit, row.help, set)
+                                           : add_value(app, name, row.unit, row.help, set);
+    option->group(group.empty() ? row.group : group);
+  }
+  for (const SettingRow<Options>& row : table)
+    for (const std::string& other : row.excludes)
+      app.get_option("--" + row.name)->excludes(app.get_option("--" + other));
+}
 
 // Sets the options of `command` that `values` names and nothing above has set yet. Keys are long option names, with -
 // or _ between words; an object groups options, for one command alone where its key is that command's name. `accepts`
@@ -39,8 +60,5 @@ void apply_layer(CLI::App& command, const nlohmann::json& values, const std::str
 
 // Settings as options, so that they can be given to --config again.
 nlohmann::json options_of(const Settings& settings);
-
-// Reads a JSON object from a file. Throws Error: io, malformed_file.
-nlohmann::json read_json(const std::string& file);
 
 }  // namespace vantage::cli

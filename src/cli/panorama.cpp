@@ -14,7 +14,7 @@ namespace vantage::cli {
 namespace {
 
 struct PanoramaCommandOptions {
-  SiteOptions site;
+  SiteArguments site;
   StationOptions stations;
   std::optional<std::string> output;
   std::vector<PanoramaView> views;
@@ -43,7 +43,8 @@ struct PanoramaCommandOptions {
 
 int panorama(CLI::App& command, PanoramaCommandOptions& options, Program& program) {
   const Stopwatch watch;
-  LoadedSite site = open_site(command, options.site);
+  options.site.given.weigh_ground = false;  // nothing here measures coverage
+  Site site = open_site(command, options.site);
   const auto stations = place(site, options.stations.read(max_stations));
   const auto names = names_of(stations);
   if (!options.output) throw Error(Errc::invalid_argument, "panorama: say where the pictures go with -o DIR");
@@ -58,11 +59,11 @@ int panorama(CLI::App& command, PanoramaCommandOptions& options, Program& progra
 
   std::map<std::uint32_t, PanoramaRenderer> renderers;  // a scanner each, by its place
   const auto renderer_of = [&](std::uint32_t place) -> PanoramaRenderer& {
-    const Scanner& scanner = site.scanners[place];
+    const Scanner& scanner = site.scanners()[place];
     options.picture.heading = scanner.heading;
     options.picture.min_range_m = scanner.min_range_m;
     options.picture.max_range_m = scanner.max_range_m;
-    return renderers.try_emplace(place, site.scene, options.picture, site.config).first->second;
+    return renderers.try_emplace(place, site.scene(), options.picture, site.simulator_config()).first->second;
   };
   ProgressLine line(program.console, "panorama");
   nlohmann::json rows = nlohmann::json::array();
@@ -79,7 +80,7 @@ int panorama(CLI::App& command, PanoramaCommandOptions& options, Program& progra
       spdlog::error("stopped at station {}; the pictures of those before it are in {}", k + 1, folder.string());
       return exit_failed;
     }
-    auto row = to_json(stations[k], names[k], site.scanners);
+    auto row = to_json(stations[k], names[k], site.scanners());
     for (const auto& image : images) {
       const std::string name = fmt::format("station_{}_{}.png", k + 1, to_string(image.view));
       write_png(folder / name, image.image);

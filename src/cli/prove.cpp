@@ -9,27 +9,28 @@
 
 namespace vantage::cli {
 
-void prove(const std::filesystem::path& file, LoadedSite& site, Simulator& simulator,
-           std::span<const PlacedStation> stations, std::size_t kept, Program& program) {
+void prove(const std::filesystem::path& file, Site& site, Simulator& simulator, std::span<const PlacedStation> stations,
+           std::size_t kept, Program& program) {
   if (stations.size() <= kept) return;
   ProgressLine line(program.console, "bound");
   const Progress progress{.report = [&](double done) { line.update(done); }, .stop = program.abort};
   const Candidates candidates =
       find_candidates(simulator, site.area(), site.clash(), {.first = 1024, .most = 1024}, progress);
-  CaptureRows rows = candidates.rows();
-  const std::size_t first = rows.size(), placed = stations.size() - kept;
-  rows.append(capture_rows(simulator, stations, rows.sample_voxels(), progress));
-  if (rows.cancelled()) {
+  SampledCoverage sampled = candidates.coverage();
+  const std::size_t first = sampled.size(), placed = stations.size() - kept;
+  sampled.append(sample_coverage(simulator, stations, sampled.sample_voxels(), progress));
+  if (sampled.cancelled()) {
     spdlog::warn("stopped: {} is not written", file.string());
     return;
   }
   // The plan itself on the voxels of the bound, so that the sample favours neither.
-  std::vector<std::size_t> plan(stations.size()), fixed(kept);
+  std::vector<std::size_t> plan(stations.size()), existing(kept);
   std::iota(plan.begin(), plan.end(), first);
-  std::iota(fixed.begin(), fixed.end(), first);
-  const Estimate reached = rows.coverage(plan);
-  const CaptureBound bound = bound_capture(rows, placed, fixed, {}, progress);
-  const double gap = reached.value > 0 ? std::max(bound.bound / reached.value - 1, 0.0) : 0;
+  std::iota(existing.begin(), existing.end(), first);
+  const Estimate reached = sampled.coverage(plan);
+  const CoverSolution bound =
+      max_cover({.matrix = sampled.matrix(), .existing = std::move(existing), .most = placed}, {}, progress);
+  const double gap = CoverSolution::relative_gap(bound.bound, reached.value);
   spdlog::info(
       "within {:.1f} % of the best that any {} stations can do: coverage {:.4f} ± {:.4f} on a sample, where no network "
       "of {} candidates has more than {:.4f}; twice as many candidates raised that by {:.4f}",
@@ -52,9 +53,9 @@ void prove(const std::filesystem::path& file, LoadedSite& site, Simulator& simul
                                   {"spacing", candidates.spacing_m()},
                                   {"visible", candidates.visible().value},
                                   {"visible_se", candidates.visible().standard_error},
-                                  {"best_of_candidates", bound.reached.value},
+                                  {"best_of_candidates", sampled.coverage(bound.chosen).value},
                                   {"chosen", std::move(chosen)},
-                                  {"sample", rows.voxels().size()}}
+                                  {"sample", sampled.voxels().size()}}
                            .dump(2) +
                        "\n");
 }

@@ -11,7 +11,7 @@ namespace vantage::cli {
 
 // Bounds what any network of as many stations captures, the first `kept` of `stations` given, says how near these come,
 // and writes it to `file` as JSON.
-void prove(const std::filesystem::path& file, LoadedSite& site, Simulator& simulator,
-           std::span<const PlacedStation> stations, std::size_t kept, Program& program);
+void prove(const std::filesystem::path& file, Site& site, Simulator& simulator, std::span<const PlacedStation> stations,
+           std::size_t kept, Program& program);
 
 }  // namespace vantage::cli

@@ -25,7 +25,7 @@ Panorama load_panorama(const std::string& text, const std::string& what) {
 }
 
 struct ScanCommandOptions {
-  SiteOptions site;
+  SiteArguments site;
   StationOptions stations;
   std::optional<std::string> output;
   std::vector<Panorama> panoramas;
@@ -60,7 +60,8 @@ struct ScanCommandOptions {
 
 int scan(CLI::App& command, ScanCommandOptions& options, Program& program) {
   const Stopwatch watch;
-  LoadedSite site = open_site(command, options.site);
+  options.site.given.weigh_ground = false;  // nothing here measures coverage
+  Site site = open_site(command, options.site);
   const auto typed = options.stations.read(65535);  // what a LAS point source id can tell apart, from 1
   const auto stations = place(site, typed);
   const auto names = names_of(stations);
@@ -75,12 +76,12 @@ int scan(CLI::App& command, ScanCommandOptions& options, Program& program) {
       spdlog::warn("the station at {:.6g},{:.6g},{:.6g} {}", station.placed.position.x, station.placed.position.y,
                    station.placed.position.z, explain(station.placed.status));
 
-  Simulator simulator = build_simulator(site, site.scanners, program);
+  Simulator& simulator = build_simulator(site, program);
   tell_engine(simulator);
   tell_grid(simulator);
 
   std::optional<PointCloudWriter> writer;
-  if (options.output) writer.emplace(*options.output, simulator.origin(), options.outputs, site.crs_text());
+  if (options.output) writer.emplace(*options.output, simulator.origin(), options.outputs, crs_text(site));
   ScanSummary sum;
   nlohmann::json rows = nlohmann::json::array();
   ProgressLine line(program.console, "scan");
@@ -114,7 +115,7 @@ int scan(CLI::App& command, ScanCommandOptions& options, Program& program) {
     sum.points += one.points;
     sum.points_on_surveyed += one.points_on_surveyed;
     sum.trace_seconds += one.trace_seconds;
-    auto row = to_json(stations[k], names[k], site.scanners);
+    auto row = to_json(stations[k], names[k], site.scanners());
     row["points"] = one.points;
     row["points_on_surveyed"] = one.points_on_surveyed;
     row["hits_on_surveyed"] = one.hits_on_surveyed;
@@ -130,8 +131,8 @@ int scan(CLI::App& command, ScanCommandOptions& options, Program& program) {
                         {"seconds", seconds_json(watch, sum.trace_seconds)},
                         {"engine", to_string(simulator.engine().engine)},
                         {"device", simulator.engine().device},
-                        {"seed", site.config.seed},
-                        {"options", site.as_options()},
+                        {"seed", site.simulator_config().seed},
+                        {"options", options_of(site.settings())},
                         {"version", version()}};
     if (options.output) json["file"] = *options.output;
     program.console.print(json);

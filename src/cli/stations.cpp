@@ -91,7 +91,7 @@ std::vector<StationText> StationOptions::read(std::size_t most) const {
 namespace {
 
 // The ground at x, y. Throws Error invalid_argument where there is none, or where floors lie above each other.
-Vec3 ground_at(LoadedSite& site, const std::array<double, 2>& xy) {
+Vec3 ground_at(Site& site, const std::array<double, 2>& xy) {
   constexpr double same_floor_m = 0.5, far = 1e6;  // beyond any site
   const auto at = fmt::format("x,y = {},{}", xy[0], xy[1]);
   const auto ground = [&](double z) -> std::optional<Vec3> {
@@ -111,7 +111,7 @@ Vec3 ground_at(LoadedSite& site, const std::array<double, 2>& xy) {
 }
 
 // Two numbers without names are (u, v) where nothing else can be meant.
-Uv uv_of_pair(LoadedSite& site, const std::array<double, 2>& pair) {
+Uv uv_of_pair(Site& site, const std::array<double, 2>& pair) {
   const SearchArea& area = site.area();
   const Uv low = area.uv_min(), high = area.uv_max();
   const auto within = [](double value, double from, double to) { return value >= from && value <= to; };
@@ -122,21 +122,21 @@ Uv uv_of_pair(LoadedSite& site, const std::array<double, 2>& pair) {
               fmt::format("--station: '{0},{1}' may be x,y or u,v: for metres in the scene's frame, with the head "
                           "{2:g} m above the ground there, give x={0},y={1}; for a point of the search area, whose u "
                           "runs from {3:.4g} to {4:.4g} and v from {5:.4g} to {6:.4g}, give u={0},v={1}",
-                          pair[0], pair[1], site.scanner.height_m, low.u, high.u, low.v, high.v));
+                          pair[0], pair[1], site.scanner().height_m, low.u, high.u, low.v, high.v));
 }
 
 // The same with a head or (u, v).
-StationText settled(LoadedSite& site, StationText station) {
+StationText settled(Site& site, StationText station) {
   if (station.pair) station.uv = uv_of_pair(site, *station.pair);
   if (!station.position && !station.ground && station.xy) station.ground = ground_at(site, *station.xy);
-  if (!station.position && station.ground) station.position = *station.ground + Vec3{0, 0, site.scanner.height_m};
+  if (!station.position && station.ground) station.position = *station.ground + Vec3{0, 0, site.scanner().height_m};
   return station;
 }
 
 }  // namespace
 
-std::vector<SiteStation> place(LoadedSite& site, const std::vector<StationText>& stations) {
-  const double height = site.scanner.height_m;
+std::vector<SiteStation> place(Site& site, const std::vector<StationText>& stations) {
+  const double height = site.scanner().height_m;
   std::vector<SiteStation> placed;
   for (const auto& typed : stations) {
     const StationText station = settled(site, typed);

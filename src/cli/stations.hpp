@@ -34,7 +34,7 @@ struct SiteStation {
 
 // Heads stay where they are given; (u, v) go to the ground below and up by the scanner's height. Both are checked for
 // clashes, heads also for what they stand on. Scanners of their own join those of the site.
-std::vector<SiteStation> place(LoadedSite& site, const std::vector<StationText>& stations);
+std::vector<SiteStation> place(Site& site, const std::vector<StationText>& stations);
 
 Network to_network(const std::vector<SiteStation>& stations);
 std::vector<PlacedStation> placed_of(const std::vector<SiteStation>& stations);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdio>
 #include <fstream>
+#include <limits>
 
 namespace vantage {
 namespace {
@@ -34,6 +35,12 @@ std::optional<std::uint64_t> free_memory() {
     free = free ? std::min(*free, left) : left;
   }
   return free;
+}
+
+std::uint64_t memory_limit(std::uint64_t max_memory_bytes) {
+  if (max_memory_bytes > 0) return max_memory_bytes;
+  const auto free = free_memory();
+  return free ? *free / 2 : std::numeric_limits<std::uint64_t>::max();
 }
 
 std::string bytes_text(std::uint64_t bytes) {

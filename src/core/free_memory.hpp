@@ -11,6 +11,9 @@ namespace vantage {
 // group. Empty if neither can be read.
 std::optional<std::uint64_t> free_memory();
 
+// What a process may take: `max_memory_bytes`, or where that is 0 half of what is free.
+std::uint64_t memory_limit(std::uint64_t max_memory_bytes);
+
 // "850 MiB", "12.3 GiB"
 std::string bytes_text(std::uint64_t bytes);
 

@@ -2,10 +2,12 @@
 // Files that the editor's page is made of besides those of the report, embedded when vantage is built.
 #pragma once
 
+#include "report/page_files.hpp"
+
 namespace vantage {
 
-extern const char* const page_edit_html;
-extern const char* const page_edit_css;
-extern const char* const page_edit_js;
+extern const PageText page_edit_html;
+extern const PageText page_edit_css;
+extern const PageText page_edit_js;
 
 }  // namespace vantage

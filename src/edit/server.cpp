@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edit/server.hpp"
 
-#include <httplib.h>
-
 #include <array>
-#include <memory>
 #include <random>
-#include <thread>
+#include <utility>
 
 #include "edit/edit_files.hpp"
+#include "edit/local_server.hpp"
 #include "report/page.hpp"
 #include "report/page_files.hpp"
 #include "vantage/error.hpp"
@@ -19,8 +17,6 @@ namespace {
 
 using nlohmann::json;
 using nlohmann::ordered_json;
-
-constexpr std::size_t kMostBytes = 4096;  // of a request's body: a change is some numbers
 
 std::string random_token() {
   std::random_device device;  // the system's own, not a generator with a seed
@@ -33,9 +29,23 @@ std::string text_of(const ordered_json& value) {
   return value.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
-void refuse(httplib::Response& response, int status, const std::string& why) {
-  response.status = status;
-  response.set_content(text_of({{"error", why}}), "application/json");
+HttpResponse json_response(const ordered_json& value, int status = 200) {
+  return {status, "application/json", text_of(value)};
+}
+HttpResponse refused(int status, const std::string& why) { return json_response({{"error", why}}, status); }
+
+HttpResponse changed(EditSession& session, const std::string& body) {
+  const json change = json::parse(body, nullptr, false);
+  if (change.is_discarded()) return refused(400, "the request is no JSON");
+  std::string why;
+  try {
+    session.change(change);
+  } catch (const Error& error) {
+    why = error.what();  // no error of the request: the page tells it, and shows what there is
+  }
+  ordered_json state = session.state();
+  if (!why.empty()) state["refused"] = why;
+  return json_response(state);
 }
 
 }  // namespace
@@ -47,66 +57,26 @@ void serve_editor(EditSession& session, const std::string& title, const std::fun
   const std::string page =
       make_page(page_edit_html, styles, scripts, title,
                 {{"title", title}, {"version", version()}, {"view", session.site()}, {"state", session.state()}});
+  const std::string policy = page_policy(styles, scripts) + "; connect-src 'self'; frame-ancestors 'none'";
 
-  httplib::Server server;
-  const int port = server.bind_to_any_port("127.0.0.1");
-  if (port <= 0) throw Error(Errc::io, "no port of 127.0.0.1 can be had to serve the page");
-  const std::string token = random_token(), root = "/" + token + "/";
-  const std::string host = "127.0.0.1:" + std::to_string(port), origin = "http://" + host;
-  server.set_payload_max_length(kMostBytes);
-  server.set_keep_alive_timeout(2);  // an idle tab holds nothing up
-  server.set_read_timeout(5);
-  server.new_task_queue = [] { return new httplib::ThreadPool(4); };
-  server.set_default_headers({{"Cache-Control", "no-store"},
-                              {"X-Content-Type-Options", "nosniff"},
-                              {"Referrer-Policy", "no-referrer"},
-                              {"Content-Security-Policy",
-                               "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; "
-                               "img-src data: blob:; connect-src 'self'; base-uri 'none'; form-action 'none'; "
-                               "frame-ancestors 'none'"}});
-  using Handled = httplib::Server::HandlerResponse;
-  server.set_pre_routing_handler([&](const httplib::Request& request, httplib::Response& response) {
-    const std::string from = request.get_header_value("Origin");
-    const bool changes = request.method != "GET" && request.method != "HEAD";
-    if (request.get_header_value("Host") != host)
-      refuse(response, 403, "this page is served to " + host + " alone");
-    else if ((changes || !from.empty()) && from != origin)
-      refuse(response, 403, "this page takes nothing from other pages");
-    else if (!request.path.starts_with(root))
-      refuse(response, 404, "there is nothing here");
-    else
-      return Handled::Unhandled;
-    return Handled::Handled;
-  });
-  server.Get(root, [&](const httplib::Request&, httplib::Response& response) {
-    response.set_content(page, "text/html; charset=utf-8");
-  });
-  server.Get(root + "state", [&](const httplib::Request& request, httplib::Response& response) {
-    if (request.get_param_value("version") == std::to_string(session.version())) {
-      response.status = 204;
-      return;
-    }
-    response.set_content(text_of(session.state()), "application/json");
-  });
-  server.Post(root + "change", [&](const httplib::Request& request, httplib::Response& response) {
-    const json change = json::parse(request.body, nullptr, false);
-    if (change.is_discarded()) return refuse(response, 400, "the request is no JSON");
-    std::string refused;
-    try {
-      session.change(change);
-    } catch (const Error& error) {
-      refused = error.what();  // no error of the request: the page tells it, and shows what there is
-    }
-    ordered_json state = session.state();
-    if (!refused.empty()) state["refused"] = refused;
-    response.set_content(text_of(state), "application/json");
-  });
-  // The listener begins before a stop can come, or the stop would be lost.
-  std::jthread listener([&] { server.listen_after_bind(); });
-  while (!server.is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  const std::stop_callback stopped(stop, [&] { server.stop(); });
+  LocalServer server;
+  const std::string root = "/" + random_token() + "/", host = "127.0.0.1:" + std::to_string(server.port()),
+                    origin = "http://" + host;
+  const auto answer = [&](const HttpRequest& request) -> HttpResponse {
+    const bool get = request.method == "GET", post = request.method == "POST";
+    if (request.host != host) return refused(403, "this page is served to " + host + " alone");
+    if ((!get || !request.origin.empty()) && request.origin != origin)
+      return refused(403, "this page takes nothing from other pages");
+    if (!request.target.starts_with(root)) return refused(404, "there is nothing here");
+    const std::string what = request.target.substr(root.size());
+    if (get && what.empty()) return {200, "text/html; charset=utf-8", page, policy};
+    if (get && what == "state?version=" + std::to_string(session.version())) return {204, "", ""};
+    if (get && (what == "state" || what.starts_with("state?"))) return json_response(session.state());
+    if (post && what == "change") return changed(session, request.body);
+    return refused(404, "there is nothing here");
+  };
   ready(origin + root);
-  listener.join();
+  server.serve(answer, std::move(stop));
 }
 
 }  // namespace vantage

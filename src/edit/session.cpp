@@ -7,11 +7,9 @@
 #include <utility>
 
 #include "report/packed.hpp"
-#include "report/report.hpp"
 #include "report/report_json.hpp"
 #include "vantage/error.hpp"
 #include "vantage/planner.hpp"
-#include "vantage/summary.hpp"
 
 namespace vantage {
 namespace {
@@ -89,17 +87,16 @@ ordered_json EditSession::state() const {
     ids.push_back(station.id);
     locked.push_back(station.locked);
   }
-  const auto stations = placed();
-  const ReportNetwork network =
-      measured_network(stations, station_names(stations), counts_, simulator_, scan_overlaps_, options_.link);
+  ordered_json network = network_json(evaluation_);
+  network["dominated"] = false;
   ordered_json json = {{"version", version_.load()},
-                       {"network", network_json(network)},
+                       {"network", std::move(network)},
                        {"ids", std::move(ids)},
                        {"locked", std::move(locked)},
                        {"coverage", packed(colours_.coverage)},
                        {"only", packed(colours_.only)},
-                       {"sample", exact_ ? std::uint64_t{0} : surveyed_.sample().size()},
-                       {"exact", exact_},
+                       {"sample", evaluation_.exact ? std::uint64_t{0} : surveyed_.sample().size()},
+                       {"exact", evaluation_.exact},
                        {"undo", !undo_.empty()},
                        {"redo", !redo_.empty()},
                        {"message", message_},
@@ -126,7 +123,7 @@ void EditSession::change(const json& request) {
   if (what == "save") {
     keep_(stations_);
     return start("saving", [this](const Progress& progress) {
-      trace_exactly(progress, [&](const Exact& exact) { save_(exact, progress); });
+      trace_exactly(progress, [&](const Evaluation& exact) { save_(exact, progress); });
     });
   }
   bool dragging = false;
@@ -205,14 +202,22 @@ void EditSession::step(std::vector<Stations>& from, std::vector<Stations>& to) {
 }
 
 void EditSession::measure() {
-  exact_ = false;
   std::vector<std::uint32_t> ids;
   for (const EditStation& station : stations_) ids.push_back(station.id);
   const Network all = network();
   surveyed_.follow(all, ids);
   around_.follow(all, ids);
-  counts_ = surveyed_.counts();
-  scan_overlaps_ = scan_overlap_matrix(around_.counts());
+  static const std::vector<Objective> measures{make_objective("coverage"), make_objective("overlap")};
+  const auto stations = placed();
+  evaluation_ = evaluation_of({.counts = surveyed_.counts(),
+                               .stations = stations,
+                               .goal_density = simulator_.goal_density(),
+                               .voxels = simulator_.voxel_count(),
+                               .overlap = overlap_matrix(surveyed_.counts())},
+                              measures, std::nullopt);
+  evaluation_.scan_overlap_matrix = scan_overlap_matrix(around_.counts());
+  evaluation_.link = options_.link;
+  evaluation_.exact = false;  // links come from a sample, even where coverage does not
   colours_ = cell_colours(cells_, surveyed_.sample(), surveyed_.points(), surveyed_.seen_by(), simulator_);
 }
 
@@ -239,16 +244,12 @@ void EditSession::start(const std::string& what, std::function<void(const Progre
   });
 }
 
-void EditSession::trace_exactly(const Progress& progress, const std::function<void(const Exact&)>& then) {
-  Exact exact;
-  exact.stations = placed();  // nobody changes them while this is busy
-  const Network all = network();
-  if (std::ranges::none_of(all, &Station::active)) throw Error(Errc::invalid_argument, "there is no station to trace");
-  exact.counts = simulator_.evaluate(all, {.field = &exact.field}, progress);
+void EditSession::trace_exactly(const Progress& progress, const std::function<void(const Evaluation&)>& then) {
+  const auto stations = placed();  // nobody changes them while this is busy
+  if (std::ranges::none_of(stations, active)) throw Error(Errc::invalid_argument, "there is no station to trace");
+  Evaluation exact = evaluate_stations({.simulator = simulator_, .surroundings = &surroundings_}, stations,
+                                       {.field = true, .link = options_.link}, progress);
   if (exact.counts.cancelled) return;
-  const NetworkCounts around = surroundings_.evaluate(all, {}, {.report = {}, .stop = progress.stop});
-  if (around.cancelled) return;
-  exact.scan_overlaps = scan_overlap_matrix(around);
   std::vector<std::uint32_t> points;
   std::vector<Seer> seen_by;
   for (const std::uint32_t rank : cells_.ranks) {
@@ -258,7 +259,7 @@ void EditSession::trace_exactly(const Progress& progress, const std::function<vo
   CellColours colours = cell_colours(cells_, cells_.ranks, points, seen_by, simulator_);
   {
     const std::scoped_lock lock(mutex_);
-    counts_ = exact.counts, scan_overlaps_ = exact.scan_overlaps, colours_ = std::move(colours), exact_ = true;
+    evaluation_ = exact, evaluation_.field = {}, colours_ = std::move(colours);
   }
   if (!then) return;
   then(exact);
@@ -279,10 +280,10 @@ void EditSession::improve(const Progress& progress) {
       scanners.insert(s.placed.setup.scanner);
   }
   if (start.empty()) throw Error(Errc::invalid_argument, "all stations are locked");
-  const auto parts_now = [&] { return connectivity(scan_overlaps_, options_.link).parts; };
+  const auto parts_now = [&] { return connectivity(evaluation_.scan_overlap_matrix, options_.link).parts; };
   const std::size_t parts = parts_now();
-  const double weakest = connectivity(scan_overlaps_, 0).weakest_overlap;
-  const double before = coverage(counts_, simulator_.goal_density());
+  const double weakest = connectivity(evaluation_.scan_overlap_matrix, 0).weakest_overlap;
+  const double before = evaluation_.value("coverage");
   const std::string names[] = {"coverage"};
   SurveyProblem problem = survey_problem(names, start.size(), start.size());
   problem.kept = kept;
@@ -308,7 +309,7 @@ void EditSession::improve(const Progress& progress) {
   const auto nothing_better = [&] {
     message_ = "nothing better was found in " + std::to_string(static_cast<int>(options_.improve_seconds)) + " s";
   };
-  if (!best || best->missed > 0 || best->value("coverage") <= before) return nothing_better();
+  if (!best || best->violation > 0 || best->value("coverage") <= before) return nothing_better();
   const Stations now = stations_;
   std::size_t next = kept.size();  // kept ones come first
   for (EditStation& s : stations_) {
@@ -319,7 +320,7 @@ void EditSession::improve(const Progress& progress) {
   }
   measure();
   // The search had them upright, and where they have several scanners with the first.
-  const bool better = coverage(counts_, simulator_.goal_density()) > before && parts_now() <= parts;
+  const bool better = evaluation_.value("coverage") > before && parts_now() <= parts;
   std::vector<EditStation> found = std::exchange(stations_, now);
   if (!better) {
     measure();

@@ -13,7 +13,7 @@
 
 #include "edit/traced_stations.hpp"
 #include "report/coverage_cells.hpp"
-#include "vantage/measure.hpp"
+#include "vantage/evaluation.hpp"
 #include "vantage/placement.hpp"
 #include "vantage/simulator.hpp"
 
@@ -39,15 +39,8 @@ class EditSession {
  public:
   // Called after every change that is not one of many of a drag, with the stations as they are then.
   using Keep = std::function<void(const std::vector<EditStation>&)>;
-  // Of some stations, by every ray.
-  struct Exact {
-    std::vector<PlacedStation> stations;
-    NetworkCounts counts;
-    OverlapMatrix scan_overlaps;  // of all surfaces
-    VoxelField field;
-  };
-  // Writes the results; on the session's own thread.
-  using Save = std::function<void(const Exact&, const Progress&)>;
+  // Writes the results of an exact evaluation with its field; on the session's own thread.
+  using Save = std::function<void(const Evaluation&, const Progress&)>;
 
   EditSession(Simulator& simulator, const SearchArea& area, const ClashChecker& clash,
               const std::vector<EditStation>& stations, const EditOptions& options, Keep keep, Save save);
@@ -77,7 +70,7 @@ class EditSession {
   void step(std::vector<Stations>& from, std::vector<Stations>& to);
   void measure();
   void start(const std::string& what, std::function<void(const Progress&)> work);
-  void trace_exactly(const Progress& progress, const std::function<void(const Exact&)>& then);
+  void trace_exactly(const Progress& progress, const std::function<void(const Evaluation&)>& then);
   void improve(const Progress& progress);
 
   Simulator& simulator_;
@@ -95,10 +88,8 @@ class EditSession {
   std::uint32_t next_id_ = 1;
   std::atomic<std::uint64_t> version_ = 1;
   TracedStations surveyed_, around_;
-  NetworkCounts counts_;
-  OverlapMatrix scan_overlaps_;
+  Evaluation evaluation_;
   CellColours colours_;
-  bool exact_ = false;
   std::string busy_, message_;
   double done_ = 0;
   std::stop_source stop_job_;

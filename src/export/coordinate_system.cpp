@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Coordinate reference systems as LAS 1.4 wants them: well-known text after OGC 01-009 (Coordinate Transformation
-// Services, 2001). Written here from the definitions of the EPSG registry for the UTM zones, which follow a rule;
-// anything else comes from PROJ, where it is there, or as text.
+// Services, 2001), by PROJ from a code of the EPSG registry, or as given.
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
-#include <iterator>
 #include <optional>
 
 #include "core/read_file.hpp"
@@ -18,60 +15,7 @@
 namespace vantage {
 namespace {
 
-// Codes first … last are the zones first_zone … of a Transverse Mercator projection on one datum.
-struct UtmFamily {
-  int first, last, first_zone;
-  bool south;
-  const char *name, *geographic, *datum;
-  int geographic_code, datum_code;
-  bool wgs84;  // its ellipsoid; else GRS 1980
-};
-constexpr std::array<UtmFamily, 6> kFamilies{
-    {{32601, 32660, 1, false, "WGS 84 / UTM zone", "WGS 84", "WGS_1984", 4326, 6326, true},
-     {32701, 32760, 1, true, "WGS 84 / UTM zone", "WGS 84", "WGS_1984", 4326, 6326, true},
-     {25828, 25837, 28, false, "ETRS89 / UTM zone", "ETRS89", "European_Terrestrial_Reference_System_1989", 4258, 6258,
-      false},
-     {26901, 26923, 1, false, "NAD83 / UTM zone", "NAD83", "North_American_Datum_1983", 4269, 6269, false},
-     {28348, 28358, 48, true, "GDA94 / MGA zone", "GDA94", "Geocentric_Datum_of_Australia_1994", 4283, 6283, false},
-     {7846, 7859, 46, true, "GDA2020 / MGA zone", "GDA2020", "Geocentric_Datum_of_Australia_2020", 7844, 1168, false}}};
-
-std::string authority(int code) { return ",AUTHORITY[\"EPSG\",\"" + std::to_string(code) + "\"]"; }
-
-std::string utm_text(const UtmFamily& f, int code) {
-  const int zone = f.first_zone + code - f.first;
-  const bool australian = std::string(f.name).find("MGA") != std::string::npos;
-  std::string text = "PROJCS[\"" + std::string(f.name) + " " + std::to_string(zone);
-  if (!australian) text += f.south ? "S" : "N";
-  text += "\",GEOGCS[\"" + std::string(f.geographic) + "\",DATUM[\"" + f.datum + "\",";
-  text += f.wgs84 ? "SPHEROID[\"WGS 84\",6378137,298.257223563" + authority(7030)
-                  : "SPHEROID[\"GRS 1980\",6378137,298.257222101" + authority(7019);
-  text += "]" + authority(f.datum_code) + "],PRIMEM[\"Greenwich\",0" + authority(8901) +
-          "],UNIT[\"degree\",0.0174532925199433" + authority(9122) + "]" + authority(f.geographic_code) + "]";
-  text += ",PROJECTION[\"Transverse_Mercator\"],PARAMETER[\"latitude_of_origin\",0],PARAMETER[\"central_meridian\"," +
-          std::to_string(6 * zone - 183) + "],PARAMETER[\"scale_factor\",0.9996],PARAMETER[\"false_easting\",500000]" +
-          ",PARAMETER[\"false_northing\"," + (f.south ? "10000000" : "0") + "],UNIT[\"metre\",1" + authority(9001) +
-          "],AXIS[\"Easting\",EAST],AXIS[\"Northing\",NORTH]" + authority(code) + "]";
-  return text;
-}
-
 [[noreturn]] void refuse(const std::string& why) { throw Error(Errc::invalid_argument, why); }
-
-std::string checked(const std::string& written, const std::string& source);
-
-std::string of_code(std::string_view digits, const std::string& asked) {
-  int code = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), code);
-  if (digits.empty() || error != std::errc() || end != digits.data() + digits.size())
-    refuse("'" + asked + "' is no coordinate system: give EPSG and its number, as EPSG:25832");
-  for (const UtmFamily& family : kFamilies)
-    if (code >= family.first && code <= family.last) return utm_text(family, code);
-  if (const std::string text = epsg_text(code); !text.empty()) return checked(text, asked);
-  std::string known;
-  for (const UtmFamily& f : kFamilies)
-    known += (known.empty() ? "" : ", ") + std::to_string(f.first) + " to " + std::to_string(f.last);
-  refuse("the definition of " + asked + " is not built in, only those of UTM zones (EPSG " + known +
-         "); give the file of its well-known text, as SITE.prj or SITE.wkt");
-}
 
 // The factor of the UNIT that stands directly in a PROJCS, LOCAL_CS or GEOCCS.
 std::optional<double> unit_of(const std::string& text) {
@@ -136,6 +80,18 @@ std::string checked(const std::string& written, const std::string& source) {
   if (unit && std::abs(*unit - 1) > 1e-9)
     refuse(source + ": its unit is " + number(*unit) + " m; vantage's points are in metres");
   return text;
+}
+
+std::string of_code(std::string_view digits, const std::string& asked) {
+  int code = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), code);
+  if (digits.empty() || error != std::errc() || end != digits.data() + digits.size())
+    refuse("'" + asked + "' is no coordinate system: give EPSG and its number, as EPSG:25832");
+  const std::string text = epsg_text(code);
+  if (text.empty())
+    refuse("PROJ knows no coordinate system " + asked +
+           " (its registry comes with proj-data); give another code, or a file of well-known text, as SITE.prj");
+  return checked(text, asked);
 }
 
 }  // namespace

@@ -26,8 +26,8 @@ std::unique_ptr<Canvas> front_picture(const PlanResult& result) {
   std::vector<FrontDot> dots;
   bool any_confirmed = false;
   for (const PlanEntry& entry : result.front) {
-    if (sampled || !entry.confirmed) dots.push_back(view.searched(entry));
-    if (entry.confirmed) dots.push_back(view.confirmed(entry)), any_confirmed = true;
+    if (sampled || !entry.exact) dots.push_back(view.searched(entry));
+    if (entry.exact) dots.push_back(view.confirmed(entry)), any_confirmed = true;
   }
   auto page = std::make_unique<Canvas>(kWidth, kHeight);
   Canvas& canvas = *page;
@@ -46,15 +46,15 @@ std::unique_ptr<Canvas> front_picture(const PlanResult& result) {
     const FrontDot seen = view.searched(entry), exact = view.confirmed(entry);
     if (!known(seen)) continue;
     const Point a = chart.at(seen.x, seen.y), b = chart.at(exact.x, exact.y);
-    if (!sampled && entry.confirmed) continue;
-    if (entry.confirmed) canvas.line(a, b, {.colour = style::pale, .width = 1});
+    if (!sampled && entry.exact) continue;
+    if (entry.exact) canvas.line(a, b, {.colour = style::pale, .width = 1});
     canvas.circle(a, 4, {.colour = view.third() ? view.colour(seen) : style::blue, .width = 1.1, .opacity = 0.75});
     occupy(a, 5);
   }
   bool any_dominated = false;
   for (const bool dominated : {true, false}) {  // the front itself on top
     for (const PlanEntry& entry : result.front) {
-      if (!entry.confirmed || entry.dominated != dominated) continue;
+      if (!entry.exact || entry.dominated != dominated) continue;
       const FrontDot exact = view.confirmed(entry);
       const Point p = chart.at(exact.x, exact.y);
       canvas.disc(p, dominated ? 3.6 : 5.4, {1, 1, 1});
@@ -73,9 +73,9 @@ std::unique_ptr<Canvas> front_picture(const PlanResult& result) {
   else if (!any_confirmed)
     legend.push_back({LegendItem::Mark::hollow, key, "as the search saw it"});
   const PlanEntry* best = result.front.empty() ? nullptr : &result.front[answer(result)];
-  if (best && known(best->confirmed ? view.confirmed(*best) : view.searched(*best))) {
+  if (best && known(best->exact ? view.confirmed(*best) : view.searched(*best))) {
     const PlanEntry& chosen = *best;
-    const FrontDot dot = chosen.confirmed ? view.confirmed(chosen) : view.searched(chosen);
+    const FrontDot dot = chosen.exact ? view.confirmed(chosen) : view.searched(chosen);
     const Point p = chart.at(dot.x, dot.y);
     if (!view.single()) canvas.circle(p, 9, {.colour = style::orange, .width = 2.2});
     occupy(p, 11);

@@ -34,6 +34,10 @@ void draw_scale_bar(Canvas& canvas, Point at, double widest, double metre) {
   canvas.text({at.x + width / 2, at.y - 14}, number(length) + " m", {.size = 12.5, .across = Align::middle});
 }
 
+std::string link_words(const StationLinks& links) {
+  return links.measure == LinkMeasure::scan_overlap ? "Scan overlap of two stations" : "Overlap of two stations";
+}
+
 // Draws what the marks mean below each other and returns where it ends.
 double draw_plan_legend(Canvas& canvas, Point at, const PlanView& view, const PlanMapContent& content) {
   constexpr TextStyle text{.size = 12.5}, faint{.size = 12.5, .colour = style::faint};
@@ -102,7 +106,7 @@ double draw_plan_legend(Canvas& canvas, Point at, const PlanView& view, const Pl
   }
   if (content.largest > 0) {
     at.y += 6;
-    canvas.text(at, view.overlap_words, {.size = 12.5, .bold = true});
+    canvas.text(at, link_words(view.links), {.size = 12.5, .bold = true});
     at.y += 22;
     for (const double overlap : kLinkSamples) {
       draw_link(canvas, {at.x, at.y}, {at.x + 24, at.y}, overlap, false, false);
@@ -115,7 +119,7 @@ double draw_plan_legend(Canvas& canvas, Point at, const PlanView& view, const Pl
       at.y += 22;
     }
     canvas.text(at, "largest " + fixed(content.largest, 3), faint);
-    canvas.text({at.x, at.y + 17}, "below " + number(view.link_overlap) + " not drawn", faint);
+    canvas.text({at.x, at.y + 17}, "below " + number(view.links.least) + " not drawn", faint);
     at.y += 34;
     if (content.hidden_links > 0) {
       canvas.text(at, "strongest tree, two of each station;", faint);
@@ -123,8 +127,8 @@ double draw_plan_legend(Canvas& canvas, Point at, const PlanView& view, const Pl
                   faint);
       at.y += 34;
     }
-  } else if (view.stations.size() > 1 && view.overlap.size() == view.stations.size()) {
-    canvas.text({at.x, at.y + 6}, "no overlap above " + number(view.link_overlap), faint);
+  } else if (view.stations.size() > 1 && view.links.values.size() == view.stations.size()) {
+    canvas.text({at.x, at.y + 6}, "no overlap above " + number(view.links.least), faint);
     at.y += 24;
   }
   return at.y;
@@ -180,10 +184,10 @@ std::unique_ptr<Canvas> draw_page(const PlanView& view, const Box& window, const
 }  // namespace
 
 std::vector<PlanPage> plan_view_pictures(const PlanView& view) {
-  if (view.overlap.size() != view.stations.size() && view.overlap.size() != 0)
+  if (view.links.values.size() != view.stations.size() && view.links.values.size() != 0)
     throw Error(Errc::invalid_argument, "draw_plan_view: " + std::to_string(view.stations.size()) +
                                             " stations, but an overlap matrix of " +
-                                            std::to_string(view.overlap.size()));
+                                            std::to_string(view.links.values.size()));
   if (view.errors.size() != view.stations.size() && !view.errors.empty())
     throw Error(Errc::invalid_argument, "draw_plan_view: " + std::to_string(view.stations.size()) + " stations, but " +
                                             std::to_string(view.errors.size()) + " errors");
@@ -199,18 +203,15 @@ std::vector<PlanPage> plan_view_pictures(const PlanView& view) {
 
 std::vector<std::filesystem::path> draw_plan_view(const std::filesystem::path& file, const Scene& scene,
                                                   const SearchArea& area, std::span<const PlacedStation> stations,
-                                                  const OverlapMatrix& overlap, const std::string& title,
-                                                  double link_overlap, std::span<const std::string> names,
-                                                  std::span<const StationError> errors,
-                                                  const std::string& overlap_words) {
+                                                  const StationLinks& links, const std::string& title,
+                                                  std::span<const std::string> names,
+                                                  std::span<const StationError> errors) {
   const PlanView view{.scene = scene,
                       .area = area,
                       .stations = stations,
                       .names = station_names(stations, names),
-                      .overlap = overlap,
-                      .link_overlap = link_overlap,
+                      .links = links,
                       .title = title,
-                      .overlap_words = overlap_words,
                       .errors = errors};
   std::vector<std::filesystem::path> written;
   for (const PlanPage& page : plan_view_pictures(view)) {

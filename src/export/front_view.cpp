@@ -22,15 +22,16 @@ std::string axis_label(const Objective& measure) {
 }
 
 Axis count_axis(const Objective& measure) {
-  Axis axis{.label = measure.label, .low = measure.best - 0.5, .high = measure.worst + 0.5};
-  const double step = std::max(1.0, std::ceil((measure.worst - measure.best) / 12));
-  for (double n = measure.best; n <= measure.worst; n += step) axis.ticks.push_back(n);
+  const auto [fewest, most] = measure.scale;
+  Axis axis{.label = measure.label, .low = fewest - 0.5, .high = most + 0.5};
+  const double step = std::max(1.0, std::ceil((most - fewest) / 12));
+  for (double n = fewest; n <= most; n += step) axis.ticks.push_back(n);
   return axis;
 }
 
 Axis axis_of(const Objective& measure, const std::vector<FrontDot>& dots, bool whole, double FrontDot::*coordinate) {
   if (measure.by_alpha) return count_axis(measure);
-  const double bottom = std::min(measure.best, measure.worst), top = std::max(measure.best, measure.worst);
+  const auto [bottom, top] = std::minmax({measure.scale.best, measure.scale.worst});
   double low = top, high = bottom;
   for (const FrontDot& dot : dots) {
     if (!std::isfinite(dot.*coordinate)) continue;
@@ -63,12 +64,12 @@ FrontView::FrontView(const PlanResult& result) : result_(result), measures_(resu
 }
 
 FrontDot FrontView::searched(const PlanEntry& entry) const {
-  const auto value = [&](const Objective& measure) { return entry.values.at(measure.name).searched; };
+  const auto value = [&](const Objective& measure) { return entry.searched.at(measure.name).value; };
   return {value(*x_), value(*y_), third_ ? value(*third_) : 0};
 }
 
 FrontDot FrontView::confirmed(const PlanEntry& entry) const {
-  const auto value = [&](const Objective& measure) { return entry.values.at(measure.name).exact; };
+  const auto value = [&](const Objective& measure) { return entry.value(measure.name); };
   return {value(*x_), value(*y_), third_ ? value(*third_) : 0};
 }
 
@@ -87,7 +88,7 @@ Axis FrontView::y_axis(const std::vector<FrontDot>& dots) const { return axis_of
 
 Colour FrontView::colour(const FrontDot& dot) const {
   if (!third_) return style::blue;
-  const double low = std::min(third_->best, third_->worst), range = std::abs(third_->best - third_->worst);
+  const double low = std::min(third_->scale.best, third_->scale.worst), range = third_->scale.width();
   const double share = (dot.colour - low) / (range > 0 ? range : 1);
   return ramp(kRisingRamp, 0.95 * std::clamp(share, 0.0, 1.0));  // the last yellow is too pale on white
 }
@@ -138,7 +139,7 @@ void draw_legend(Canvas& canvas, Point at, std::span<const LegendItem> items) {
 
 void draw_colour_bar(Canvas& canvas, const Rect& area, const FrontView& view) {
   const Objective& measure = *view.third();
-  const double low = std::min(measure.best, measure.worst), high = std::max(measure.best, measure.worst);
+  const auto [low, high] = std::minmax({measure.scale.best, measure.scale.worst});
   const std::size_t cells = measure.by_alpha ? static_cast<std::size_t>(high - low) + 1 : 24;
   const double cell = area.height / static_cast<double>(cells);
   const auto step = static_cast<std::size_t>(std::ceil((measure.by_alpha ? 16 : 48) / cell));

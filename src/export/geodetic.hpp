@@ -5,8 +5,7 @@
 
 namespace vantage {
 
-// Well-known text (version 1, as GDAL writes it, in one line) of a code of the EPSG registry; empty where PROJ knows
-// none, or this build has no PROJ.
+// Well-known text (version 1, as GDAL writes it, in one line) of a code of the EPSG registry; empty if PROJ knows none.
 std::string epsg_text(int code);
 
 }  // namespace vantage

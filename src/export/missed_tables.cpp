@@ -3,30 +3,19 @@
 
 #include "core/atomic_file.hpp"
 #include "core/text.hpp"
+#include "export/csv_cell.hpp"
 #include "export/missed_colours.hpp"
 #include "export/voxel_ply.hpp"
 #include "vantage/error.hpp"
 #include "vantage/export.hpp"
 
 namespace vantage {
-namespace {
-
-// A name may hold what separates fields (RFC 4180).
-std::string field(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
-
-}  // namespace
-
 void write_missed_csv(const std::filesystem::path& file, std::span<const MissedShare> shares) {
   std::string text = "node,voxels";
   for (const MissedStyle& style : kMissedStyles) text += "," + to_string(style.why);
   text += "\n";
   for (const MissedShare& share : shares) {
-    text += field(&share == &shares.front() ? "(all)" : share.node) + "," + number(share.voxels);
+    text += csv_cell(&share == &shares.front() ? "(all)" : share.node) + "," + number(share.voxels);
     for (const MissedStyle& style : kMissedStyles) text += "," + fixed(share.share(style.why), 4);
     text += "\n";
   }

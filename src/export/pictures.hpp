@@ -8,6 +8,7 @@
 
 #include "export/canvas.hpp"
 #include "export/plan_map.hpp"
+#include "vantage/evaluation.hpp"
 #include "vantage/placement.hpp"
 #include "vantage/planner.hpp"
 #include "vantage/scene.hpp"

@@ -114,13 +114,13 @@ class Stations {
   Colour colour(std::size_t k) const { return station(k).kept ? kKept : kStation; }
 
   void draw_links(PlanMapContent& content) {
-    if (view_.overlap.size() != view_.stations.size()) return;
+    if (view_.links.values.size() != view_.stations.size()) return;
     std::vector<ShownLink> links;
-    const auto bridges = connectivity(view_.overlap, view_.link_overlap).bridges;
+    const auto bridges = connectivity(view_.links.values, view_.links.least).bridges;
     for (std::size_t a = 0; a < shown_.size(); ++a) {
       for (std::size_t b = a + 1; b < shown_.size(); ++b) {
-        const double value = view_.overlap(shown_[a], shown_[b]);
-        if (value < view_.link_overlap || value <= 0 || (!on_level(a) && !on_level(b))) continue;
+        const double value = view_.links.values(shown_[a], shown_[b]);
+        if (value < view_.links.least || value <= 0 || (!on_level(a) && !on_level(b))) continue;
         const bool bridge = std::binary_search(bridges.begin(), bridges.end(), std::pair{shown_[a], shown_[b]});
         links.push_back({a, b, value, bridge});
         content.bridge = content.bridge || bridge;

@@ -9,7 +9,7 @@
 
 #include "export/canvas.hpp"
 #include "export/plan_levels.hpp"
-#include "vantage/measure.hpp"
+#include "vantage/evaluation.hpp"
 #include "vantage/placement.hpp"
 #include "vantage/scene.hpp"
 
@@ -21,10 +21,8 @@ struct PlanView {
   const SearchArea& area;
   std::span<const PlacedStation> stations;
   std::vector<std::string> names;  // one a station
-  OverlapMatrix overlap;           // of all stations, or of none
-  double link_overlap = default_link_overlap;
+  StationLinks links = {};         // values of all stations, or of none
   std::string title;
-  std::string overlap_words = "Overlap of two stations";  // what `overlap` is, in the legend
   std::span<const StationError> errors = {};  // of the stations, or of none: their standard ellipses are drawn
 
   // Canvas units a metre of such an ellipse; 0 where there is none. The widest is as wide as kWidestEllipse.

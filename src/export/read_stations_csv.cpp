@@ -10,6 +10,7 @@
 
 #include "core/closest_name.hpp"
 #include "core/read_file.hpp"
+#include "export/csv_cell.hpp"
 #include "vantage/error.hpp"
 #include "vantage/export.hpp"
 
@@ -72,12 +73,15 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-// "; and the like between cells; a blank: any number of blanks.
+// "; and the like between cells; a blank: any number of blanks. Within quotes two of them are one.
 std::vector<std::string> cells_of(std::string_view line, char separator) {
   std::vector<std::string> cells(1);
   bool quoted = false;
-  for (const char c : line) {
-    if (c == '"')
+  for (std::size_t k = 0; k < line.size(); ++k) {
+    const char c = line[k];
+    if (quoted && line.substr(k, 2) == "\"\"")
+      cells.back() += line[k++];
+    else if (c == '"')
       quoted = !quoted;
     else if (c == separator && !quoted) {
       if (separator != ' ' || !cells.back().empty()) cells.emplace_back();
@@ -246,8 +250,8 @@ class Table {
       const auto found = at_.find(column);
       return found != at_.end() && found->second < cells.size() ? cells[found->second] : std::string();
     };
-    row.name = word(Column::name);
-    row.scanner = word(Column::scanner);
+    row.name = text_of_csv_cell(word(Column::name));
+    row.scanner = text_of_csv_cell(word(Column::scanner));
     const auto angle = [&](Column column) -> std::optional<Angle> {
       const auto degrees = value(column);
       return degrees ? std::optional(Angle::degrees(*degrees)) : std::nullopt;

@@ -2,6 +2,7 @@
 #include "export/run_json.hpp"
 
 #include <cstdio>
+#include <numeric>
 
 #include "export/station_cells.hpp"
 #include "vantage/export.hpp"
@@ -49,7 +50,7 @@ ordered_json plan_json(const PlanResult& result) {
 }
 
 // What registration will hang by. Stations are numbered from 1, as in the tables and pictures.
-ordered_json links_json(const OverlapMatrix& overlap, double min_overlap) {
+ordered_json links_json(const PairMatrix& overlap, double min_overlap) {
   const Connectivity graph = connectivity(overlap, min_overlap);
   ordered_json bridges = ordered_json::array();
   for (const auto& [i, j] : graph.bridges) bridges.push_back({i + 1, j + 1});
@@ -88,6 +89,30 @@ void add_setup(ordered_json& station, const StationSetup& setup, std::span<const
   if (scanner.azimuth_step == scanner.zenith_step) station["step"] = scanner.azimuth_step.in_degrees();
 }
 
+ordered_json matrix_json(const PairMatrix& matrix) {
+  ordered_json rows = ordered_json::array();
+  for (std::size_t i = 0; i < matrix.size(); ++i) rows.push_back(matrix.row(i));
+  return rows;
+}
+
+ordered_json registration_json(const RegistrationError& error, const Estimate& whole_mm) {
+  const auto mm = [](const Vec3& v) { return ordered_json{1e3 * v.x, 1e3 * v.y, 1e3 * v.z}; };
+  ordered_json stations = ordered_json::array();
+  for (const StationError& station : error.stations)
+    stations.push_back({{"error_mm", 1e3 * station.rms_m},
+                        {"head_axes_mm", {mm(station.axes[0]), mm(station.axes[1]), mm(station.axes[2])}}});
+  return {{"error_mm", whole_mm.value},
+          {"standard_error_mm", whole_mm.standard_error},
+          {"worst_mm", 1e3 * error.worst_m},
+          {"worst_station", error.worst_station + 1},
+          {"stations", std::move(stations)}};
+}
+
+ordered_json dropped_json(const std::vector<DroppedPoints>& dropped) {
+  const DroppedPoints all = std::accumulate(dropped.begin(), dropped.end(), DroppedPoints{});
+  return {{"points", all.points}, {"incidence", all.incidence}, {"footprint", all.footprint}, {"noise", all.noise}};
+}
+
 // `number`: of the entry, from 1.
 ordered_json entry_json(const PlanEntry& entry, std::size_t number, const PlanResult& result,
                         std::span<const Scanner> scanners) {
@@ -103,31 +128,32 @@ ordered_json entry_json(const PlanEntry& entry, std::size_t number, const PlanRe
       station["ground"] = to_json(s.ground);
     }
     if (setups) add_setup(station, s.setup, scanners);
-    if (entry.confirmed && i < entry.points_on_surveyed.size())
-      station["points_on_surveyed"] = entry.points_on_surveyed[i];
+    if (entry.exact && i < entry.counts.points_on_surveyed.size())
+      station["points_on_surveyed"] = entry.counts.points_on_surveyed[i];
     stations.push_back(std::move(station));
   }
   ordered_json json{{"entry", number}}, exact, values;
   for (const Objective& measure : result.measures) {
-    const MeasuredValue& value = entry.values.at(measure.name);
-    values[measure.name] = {
-        {"searched", known(value.searched)}, {"standard_error", value.standard_error}, {"exact", known(value.exact)}};
+    const Estimate& searched = entry.searched.at(measure.name);
+    values[measure.name] = {{"searched", known(searched.value)},
+                            {"standard_error", searched.standard_error},
+                            {"exact", entry.exact ? known(entry.value(measure.name)) : ordered_json()}};
   }
   for (const char* always : {"coverage", "overlap"}) {
-    const MeasuredValue& value = entry.values.at(always);
-    json[always] = known(value.searched);
-    json[std::string(always) + "_se"] = value.standard_error;
-    exact[always] = known(value.exact);
+    const Estimate& searched = entry.searched.at(always);
+    json[always] = known(searched.value);
+    json[std::string(always) + "_se"] = searched.standard_error;
+    exact[always] = known(entry.value(always));
   }
   exact["dominated"] = entry.dominated;
   json["station_count"] = entry.stations.size();
   json["values"] = std::move(values);
-  json["missed"] = known(entry.missed);
-  json["exact"] = entry.confirmed ? std::move(exact) : ordered_json();
+  json["missed"] = known(entry.violation);
+  json["exact"] = entry.exact ? std::move(exact) : ordered_json();
   json["stations"] = std::move(stations);
   json["x"] = entry.x;
-  if (entry.confirmed) json["links"] = links_json(entry.exact_overlap_matrix, result.problem.link_overlap);
-  if (entry.exact_scan_overlap_matrix.size() > 0) json["scan_links"] = links_json(entry.exact_scan_overlap_matrix, 0);
+  if (entry.exact) json["links"] = links_json(entry.overlap_matrix, result.problem.link_overlap);
+  if (entry.scan_overlap_matrix.size() > 0) json["scan_links"] = links_json(entry.scan_overlap_matrix, 0);
   if (entry.visit) json["on_site"] = visit_json(*entry.visit, result.problem.kept.size());
   return json;
 }
@@ -158,6 +184,38 @@ std::string run_parameters_json(const Simulator& simulator, const PlanResult* re
   return run_parameters(simulator, result).dump(2);
 }
 
+std::string evaluation_json(const Evaluation& evaluation) {
+  ordered_json json = {{"summary", to_json(summary_lines(evaluation))},
+                       {"coverage", evaluation.value("coverage")},
+                       {"coverage_se", evaluation.values.at("coverage").standard_error},
+                       {"overlap", nullptr},
+                       {"overlap_se", nullptr},
+                       {"overlap_matrix", nullptr},
+                       {"scan_overlap_matrix", nullptr},
+                       {"visible", nullptr},
+                       {"visible_se", nullptr},
+                       {"minutes_on_site", nullptr},
+                       {"dropped", nullptr},
+                       {"voxels", evaluation.voxels},
+                       {"goal_density", evaluation.goal_density},
+                       {"rays", evaluation.counts.rays},
+                       {"sample", nullptr}};
+  if (const auto overlap = evaluation.values.find("overlap"); overlap != evaluation.values.end()) {
+    json["overlap"] = overlap->second.value, json["overlap_se"] = overlap->second.standard_error;
+    json["overlap_matrix"] = matrix_json(evaluation.overlap_matrix);
+  }
+  if (evaluation.scan_overlap_matrix.size() > 0)
+    json["scan_overlap_matrix"] = matrix_json(evaluation.scan_overlap_matrix);
+  if (evaluation.attainable)
+    json["visible"] = evaluation.attainable->value, json["visible_se"] = evaluation.attainable->standard_error;
+  if (evaluation.visit) json["minutes_on_site"] = evaluation.visit->minutes;
+  if (evaluation.registration)
+    json["registration"] = registration_json(*evaluation.registration, evaluation.values.at("registration"));
+  if (!evaluation.exact) json["sample"] = evaluation.counts.voxels;
+  if (!evaluation.counts.dropped.empty()) json["dropped"] = dropped_json(evaluation.counts.dropped);
+  return json.dump();
+}
+
 std::string front_json(const PlanResult& result, const Simulator& simulator) {
   ordered_json front = ordered_json::array(), objectives = front;
   for (const PlanEntry& entry : result.front)
@@ -172,7 +230,7 @@ std::string front_json(const PlanResult& result, const Simulator& simulator) {
     json["answer"] = chosen + 1;
     json["met"] = met(result);
     json["what_would_help"] = what_would_help(result);
-    json["summary"] = to_json(summary_lines(summary_of(result.front[chosen], result)));
+    json["summary"] = to_json(summary_lines(result.front[chosen], result.problem.requirements));
   }
   if (result.candidates)
     json["visible"] = {{"coverage", result.candidates->visible().value},
@@ -182,7 +240,7 @@ std::string front_json(const PlanResult& result, const Simulator& simulator) {
   json["seconds"] = {{"total", result.seconds}, {"trace", result.trace_seconds}};
   json["engine"] = to_string(simulator.engine().engine);
   json["device"] = simulator.engine().device;
-  json["seed"] = result.config.seed;
+  json["seed"] = result.config.seed.value_or(1);
   json["version"] = version();
   json["parameters"] = run_parameters(simulator, &result);
   return json.dump(2) + "\n";

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/text.hpp"
+#include "export/csv_cell.hpp"
 #include "vantage/placement.hpp"
 #include "vantage/scanner.hpp"
 
@@ -22,26 +23,19 @@ inline bool tells_setups(std::span<const PlacedStation> stations) {
   return std::ranges::any_of(stations, [](const PlacedStation& s) { return s.setup != StationSetup(); });
 }
 
-inline std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string cell = "\"";
-  for (const char c : text) cell += c == '"' ? '\'' : c;
-  return cell + "\"";
-}
-
 // Degrees; the scanner as load_scanner() takes it, and its step where both are one.
 inline std::string setup_cells(const StationSetup& setup, std::span<const Scanner> scanners) {
   std::string cells = number(setup.heading.in_degrees()) + "," + number(setup.tilt.in_degrees());
   if (setup.scanner >= scanners.size()) return cells + ",,";
   const Scanner& scanner = scanners[setup.scanner];
-  cells += "," + quoted(scanner.name) + ",";
+  cells += "," + csv_cell(scanner.name) + ",";
   return scanner.azimuth_step == scanner.zenith_step ? cells + number(scanner.azimuth_step.in_degrees()) : cells;
 }
 
 // One cell a column, with commas between them. A station in a hole has no position; empty cells keep a reader from
 // taking it for the origin.
 inline std::string station_cells(const PlacedStation& s, const std::string& name) {
-  std::string cells = quoted(name);
+  std::string cells = csv_cell(name);
   if (s.status == StationStatus::hole)
     cells += ",,,,,";
   else

@@ -87,13 +87,13 @@ void put_ring(Drawing& drawing, const std::vector<Vec3>& ring) {
 
 }  // namespace
 
-void write_stations_dxf(const std::filesystem::path& file, const NamedStations& stations, const OverlapMatrix& overlap,
-                        double link_overlap, const SearchArea& area) {
+void write_stations_dxf(const std::filesystem::path& file, const NamedStations& stations, const StationLinks& links,
+                        const SearchArea& area) {
   const auto grounds = grounds_of(stations);
   const std::size_t n = stations.stations.size();
-  if (overlap.size() != 0 && overlap.size() != n)
+  if (links.values.size() != 0 && links.values.size() != n)
     throw Error(Errc::invalid_argument,
-                std::to_string(n) + " stations, but an overlap matrix of " + std::to_string(overlap.size()));
+                std::to_string(n) + " stations, but an overlap matrix of " + std::to_string(links.values.size()));
   const auto rings = area_outline(area.mesh());
   Box box;
   for (const Vec3& ground : grounds) box.extend(ground);
@@ -113,9 +113,9 @@ void write_stations_dxf(const std::filesystem::path& file, const NamedStations& 
   put_tables(drawing);
   drawing.begin("ENTITIES");
   for (const auto& ring : rings) put_ring(drawing, ring);
-  for (std::size_t i = 0; i < overlap.size(); ++i)
-    for (std::size_t j = i + 1; j < overlap.size(); ++j) {
-      if (overlap(i, j) < link_overlap || overlap(i, j) <= 0) continue;
+  for (std::size_t i = 0; i < links.values.size(); ++i)
+    for (std::size_t j = i + 1; j < links.values.size(); ++j) {
+      if (links.values(i, j) < links.least || links.values(i, j) <= 0) continue;
       drawing.entity("LINE", kLinks.name);
       drawing.put(10, stations.stations[i].ground), drawing.put(11, stations.stations[j].ground);
     }

@@ -48,12 +48,12 @@ void write_front_csv(const std::filesystem::path& file, const PlanResult& result
     const PlanEntry& e = result.front[k];
     text += number(k + 1) + "," + number(e.stations.size());
     for (const Objective& measure : result.measures) {
-      const MeasuredValue& value = e.values.at(measure.name);
-      text += "," + number(value.searched) + "," + number(value.standard_error);
+      const Estimate& value = e.searched.at(measure.name);
+      text += "," + number(value.value) + "," + number(value.standard_error);
     }
     for (const Objective& measure : result.measures)
-      text += "," + (e.confirmed ? number(e.values.at(measure.name).exact) : std::string());
-    text += std::string(",") + (!e.confirmed ? "" : e.dominated ? "1" : "0") + "," + number(e.missed);
+      text += "," + (e.exact ? number(e.value(measure.name)) : std::string());
+    text += std::string(",") + (!e.exact ? "" : e.dominated ? "1" : "0") + "," + number(e.violation);
     if (alpha) text += "," + number(e.x.back());
     const auto names = station_names(e.stations);
     for (std::size_t i = 0; i < most; ++i) {

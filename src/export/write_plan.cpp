@@ -12,11 +12,11 @@
 namespace vantage {
 namespace {
 
-std::string title_of(const PlanEntry& entry, const SurveySummary& summary) {
+std::string title_of(const PlanEntry& entry) {
   std::string title = std::to_string(entry.stations.size()) + (entry.stations.size() == 1 ? " station" : " stations");
-  if (summary.of_visible)
-    return title + ": " + fixed(100 * summary.captured, 1) + " % of the site captured, " +
-           fixed(100 * *summary.of_visible, 1) + " % of what can be seen";
+  if (const auto capture = entry.values.find("capture"); capture != entry.values.end())
+    return title + ": " + fixed(100 * entry.value("coverage"), 1) + " % of the site captured, " +
+           fixed(100 * capture->second.value, 1) + " % of what can be seen";
   return title + ": coverage " + fixed(entry.value("coverage"), 3) + ", overlap " + fixed(entry.value("overlap"), 3);
 }
 
@@ -38,12 +38,11 @@ std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& re
   write_history_csv(folder / "history.csv", result);
   write_fronts_csv(folder / "fronts.csv", result);
   write_stations_csv(folder / "stations.csv", entry.stations, simulator.scanners());
-  if (entry.confirmed) write_overlap_csv(folder / "overlap.csv", entry.exact_overlap_matrix);
+  if (entry.exact) write_overlap_csv(folder / "overlap.csv", entry.overlap_matrix);
   if (field) write_coverage_ply(folder / "coverage.ply", simulator, *field);
 
   if (field && entry.registration)
     write_registration_ply(folder / "registration.ply", simulator, *field, *entry.registration);
-  const SurveySummary summary = summary_of(entry, result);
   const auto save = [&](const std::string& name, const Canvas& picture) {
     for (const char* extension : {".png", ".svg"}) picture.save(folder / (name + extension));
   };
@@ -56,22 +55,24 @@ std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& re
                         entry.stations, "Registration error on the surface (predicted)");
   std::span<const StationError> errors;
   if (entry.registration) errors = entry.registration->stations;
-  const bool scans = entry.exact_scan_overlap_matrix.size() > 0;
-  const OverlapMatrix& links = scans ? entry.exact_scan_overlap_matrix : entry.exact_overlap_matrix;
-  const double least = scans && summary.links ? summary.links->least : result.problem.link_overlap;
+  const auto names = station_names(entry.stations, entry.names);
+  const StationLinks links = entry.links().value_or(StationLinks{.least = entry.link_overlap});
   for (const PlanPage& page : plan_view_pictures({.scene = simulator.scene(),
                               .area = area,
                               .stations = entry.stations,
-                              .names = summary.names,
-                              .overlap = links,
-                              .link_overlap = least,
-                              .title = title_of(entry, summary),
-                              .overlap_words = scans ? "Scan overlap of two stations" : "Overlap of two stations",
+                              .names = names,
+                              .links = links,
+                              .title = title_of(entry),
                               .errors = errors}))
     save("plan" + page.suffix, *page.canvas);
-  const auto names = station_names(entry.stations);
-  write_station_files(folder, {entry.stations, names}, links, least, area, crs);
+  write_station_files(folder, {entry.stations, names}, links, area, crs);
   return chosen;
+}
+
+std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& result, Site& site,
+                       const VoxelField* field) {
+  const std::string crs = site.crs().empty() ? "" : coordinate_system(site.crs());
+  return write_plan(folder, result, site.simulator(), site.area(), field, crs);
 }
 
 }  // namespace vantage

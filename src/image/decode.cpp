@@ -1,10 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/decode.hpp"
 
+#include <cstdlib>
 #include <limits>
 #include <memory>
 #include <vector>
 
+namespace {
+
+// A small PNG may inflate to gigabytes. No buffer of its decoder is larger than the picture that its header announces
+// can need, by thread.
+thread_local std::size_t largest_buffer = 0;
+void* bounded(void* old, std::size_t bytes) { return bytes <= largest_buffer ? std::realloc(old, bytes) : nullptr; }
+
+}  // namespace
+
+#define STBI_MALLOC(bytes) bounded(nullptr, bytes)
+#define STBI_REALLOC(old, bytes) bounded(old, bytes)
+#define STBI_FREE(old) std::free(old)
 #define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_STATIC
 #define STBI_ONLY_PNG
@@ -12,6 +25,7 @@
 #define STBI_MAX_DIMENSIONS 16384  // a side; 1 GiB of pixels: more is a broken header
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
+#pragma GCC diagnostic ignored "-Wold-style-cast"
 #include <stb_image.h>
 #pragma GCC diagnostic pop
 
@@ -19,6 +33,9 @@ namespace vantage {
 namespace {
 
 constexpr std::size_t chunk_frame = 12;  // length, name and checksum
+
+bool is_jpeg(std::span<const std::uint8_t> bytes) { return bytes.size() >= 2 && bytes[0] == 0xff && bytes[1] == 0xd8; }
+bool fits_int(std::size_t bytes) { return bytes > 0 && bytes <= std::size_t{std::numeric_limits<int>::max()}; }
 
 // Of a PNG: where each chunk begins that lies within the bytes, up to the image's end, and its length and name. Returns
 // whether none claims more than there is; whatever is missing is told by the decoder.
@@ -57,13 +74,25 @@ std::vector<std::uint8_t> without_chunks(std::span<const std::uint8_t> bytes, st
 
 }  // namespace
 
+ImageHeader read_image_header(std::span<const std::uint8_t> bytes) {
+  if (!fits_int(bytes.size())) return {};
+  if (is_jpeg(bytes)) return read_jpeg_header(bytes, STBI_MAX_DIMENSIONS);
+  largest_buffer = bytes.size();
+  const int size = static_cast<int>(bytes.size());
+  int width = 0, height = 0, channels = 0;
+  if (!stbi_info_from_memory(bytes.data(), size, &width, &height, &channels)) return {};
+  // Of interlaced ones three pictures at once: as filtered, of a pass, and whole.
+  const std::uint64_t pixel = stbi_is_16_bit_from_memory(bytes.data(), size) ? 3 * 8 : 3 * 4;
+  const ImageHeader header{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), 0};
+  return {header.width, header.height, pixel * header.width * header.height + 2 * bytes.size()};
+}
+
 Image decode_image(std::span<const std::uint8_t> bytes, std::string& problem) {
-  if (bytes.empty() || bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
+  if (!fits_int(bytes.size())) {
     problem = "it has " + std::to_string(bytes.size()) + " bytes";
     return {};
   }
-  if (bytes.size() >= 2 && bytes[0] == 0xff && bytes[1] == 0xd8)
-    return decode_jpeg(bytes, STBI_MAX_DIMENSIONS, problem);
+  if (is_jpeg(bytes)) return decode_jpeg(bytes, STBI_MAX_DIMENSIONS, problem);
   // stb_image makes room for what a chunk claims before it looks for it; and it copies nothing to nowhere where the
   // first of the image's data are none, as they may be.
   constexpr std::size_t data = 0x49444154;  // "IDAT"
@@ -77,6 +106,8 @@ Image decode_image(std::span<const std::uint8_t> bytes, std::string& problem) {
   }
   std::vector<std::uint8_t> rest;
   if (!empty.empty()) bytes = rest = without_chunks(bytes, empty);
+  constexpr std::size_t tables = std::size_t{1} << 16;
+  largest_buffer = static_cast<std::size_t>(read_image_header(bytes).decoding_bytes) + tables;
   int width = 0, height = 0, channels = 0;
   const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
       stbi_load_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height, &channels, 4),

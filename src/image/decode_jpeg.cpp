@@ -7,8 +7,26 @@
 
 namespace vantage {
 
+namespace {
+
+using Decoder = std::unique_ptr<void, int (*)(tjhandle)>;
+
+}  // namespace
+
+ImageHeader read_jpeg_header(std::span<const std::uint8_t> bytes, std::uint32_t largest_side) {
+  const Decoder decoder(tjInitDecompress(), tjDestroy);
+  int width = 0, height = 0, subsampling = 0, colours = 0;
+  if (!decoder || tjDecompressHeader3(decoder.get(), bytes.data(), static_cast<unsigned long>(bytes.size()), &width,
+                                      &height, &subsampling, &colours) != 0)
+    return {};
+  const ImageHeader header{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), 0};
+  if (header.width > largest_side || header.height > largest_side) return {};
+  // Four bytes a pixel, and in a progressive one two bytes for each coefficient of up to four colours.
+  return {header.width, header.height, std::uint64_t{12} * header.width * header.height};
+}
+
 Image decode_jpeg(std::span<const std::uint8_t> bytes, std::uint32_t largest_side, std::string& problem) {
-  const std::unique_ptr<void, int (*)(tjhandle)> decoder(tjInitDecompress(), tjDestroy);
+  const Decoder decoder(tjInitDecompress(), tjDestroy);
   if (!decoder) {
     problem = "there is not enough memory to decode it";
     return {};

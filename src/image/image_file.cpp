@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/atomic_file.hpp"
+#include "core/free_memory.hpp"
 #include "core/read_file.hpp"
 #include "image/decode.hpp"
 #include "image/encode.hpp"
@@ -19,8 +20,15 @@ namespace vantage {
 
 Image read_image(const std::filesystem::path& file) {
   const std::string bytes = read_file(file);
+  const std::span content{reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()};
+  const ImageHeader header = read_image_header(content);
+  if (header.decoding_bytes > memory_limit(0))
+    throw Error(Errc::out_of_memory, file.string() + ": decoding its " + std::to_string(header.width) + " × " +
+                                         std::to_string(header.height) + " pixels would take about " +
+                                         bytes_text(header.decoding_bytes) + " of memory; half of what is free is " +
+                                         bytes_text(memory_limit(0)) + ". Make the picture smaller");
   std::string problem;
-  Image image = decode_image({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, problem);
+  Image image = decode_image(content, problem);
   if (image.rgba.empty())
     throw Error(Errc::malformed_file, file.string() + " is no PNG or JPEG that can be read: " + problem);
   return image;

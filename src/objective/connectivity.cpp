@@ -2,23 +2,27 @@
 // Bridges by depth-first search: Tarjan, A Note on Finding the Bridges of a Graph, 1974.
 #include <algorithm>
 #include <functional>
+#include <utility>
+#include <vector>
 
+#include "core/graph.hpp"
 #include "vantage/measure.hpp"
 
 namespace vantage {
 
-Connectivity connectivity(const OverlapMatrix& overlap, double min_overlap) {
+Connectivity connectivity(const PairMatrix& overlap, double min_overlap) {
   const std::size_t n = overlap.size();
   const auto linked = [&](std::size_t i, std::size_t j) {
     return i != j && overlap(i, j) > 0 && overlap(i, j) >= min_overlap;
   };
   Connectivity result;
-  result.part.assign(n, 0);
-  std::vector<std::size_t> order(n, 0), low(n, 0);  // 0: not visited yet
+  Components found = components(n, linked);
+  result.parts = found.count;
+  result.part = std::move(found.of);
+  std::vector<std::size_t> order(n, 0), low(n, 0);  // 0: not yet seen
   std::size_t counter = 0;
   const std::function<void(std::size_t, std::size_t)> visit = [&](std::size_t i, std::size_t parent) {
     order[i] = low[i] = ++counter;
-    result.part[i] = result.parts;
     for (std::size_t j = 0; j < n; ++j) {
       if (!linked(i, j) || j == parent) continue;
       if (order[j] == 0) {
@@ -28,35 +32,16 @@ Connectivity connectivity(const OverlapMatrix& overlap, double min_overlap) {
       low[i] = std::min(low[i], order[j] > order[i] ? low[j] : order[j]);
     }
   };
-  for (std::size_t i = 0; i < n; ++i) {
-    if (order[i] != 0) continue;
-    visit(i, n);
-    ++result.parts;
-  }
+  for (std::size_t i = 0; i < n; ++i)
+    if (order[i] == 0) visit(i, n);
   std::sort(result.bridges.begin(), result.bridges.end());
 
-  // Weakest link of the strongest spanning tree (Prim), on which the whole network depends.
   if (result.parts == 1 && n > 1) {
-    std::vector<double> best(n, -1);
-    std::vector<bool> done(n, false);
-    std::vector<std::size_t> from(n, 0);
-    std::size_t at = 0;
-    result.weakest_link = {0, 0};
-    double weakest = 2;
-    for (std::size_t step = 1; step < n; ++step) {
-      done[at] = true;
-      for (std::size_t j = 0; j < n; ++j)
-        if (!done[j] && linked(at, j) && overlap(at, j) > best[j]) best[j] = overlap(at, j), from[j] = at;
-      std::size_t next = n;
-      for (std::size_t j = 0; j < n; ++j)
-        if (!done[j] && best[j] > 0 && (next == n || best[j] > best[next])) next = j;
-      if (best[next] < weakest) {
-        weakest = best[next];
-        result.weakest_link = {std::min(next, from[next]), std::max(next, from[next])};
-      }
-      at = next;
-    }
-    result.weakest_overlap = weakest;
+    const auto weight = [&](std::size_t i, std::size_t j) { return linked(i, j) ? overlap(i, j) : 0; };
+    const std::vector<TreeEdge> tree = strongest_spanning_tree(n, weight);
+    const TreeEdge& weakest = *std::ranges::min_element(tree, {}, &TreeEdge::weight);
+    result.weakest_link = {std::min(weakest.from, weakest.to), std::max(weakest.from, weakest.to)};
+    result.weakest_overlap = weakest.weight;
   }
   return result;
 }

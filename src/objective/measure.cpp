@@ -26,8 +26,8 @@ OverlapMatrix overlap_matrix(const NetworkCounts& counts) {
   return overlap;
 }
 
-OverlapMatrix scan_overlap_matrix(const NetworkCounts& counts) {
-  OverlapMatrix overlap(counts.stations);
+ScanOverlapMatrix scan_overlap_matrix(const NetworkCounts& counts) {
+  ScanOverlapMatrix overlap(counts.stations);
   if (counts.seen.empty()) return overlap;
   for (std::size_t i = 0; i < counts.stations; ++i)
     for (std::size_t j = i + 1; j < counts.stations; ++j)

@@ -39,6 +39,11 @@ std::string_view trimmed(std::string_view text) {
   throw Error(Errc::invalid_argument, "\"" + std::string(text) + "\" is no requirement: " + why);
 }
 
+[[noreturn]] void refuse_scale(const std::string& what, const std::string& order, double best, double worst) {
+  throw Error(Errc::invalid_argument, what + ": the scale must have best " + order + " worst, both finite, not best " +
+                                          number(best) + " and worst " + number(worst));
+}
+
 }  // namespace
 
 Needs needs_of(std::span<const Objective> objectives) {
@@ -47,7 +52,18 @@ Needs needs_of(std::span<const Objective> objectives) {
   return needs;
 }
 
+Scale minimise(double best, double worst) {
+  if (!(best <= worst && std::isfinite(best) && std::isfinite(worst))) refuse_scale("minimise", "<=", best, worst);
+  return {best, worst};
+}
+
+Scale maximise(double best, double worst) {
+  if (!(best >= worst && std::isfinite(best) && std::isfinite(worst))) refuse_scale("maximise", ">=", best, worst);
+  return {best, worst};
+}
+
 double Objective::unscaled(double f) const {
+  const auto [best, worst] = scale;
   if (by_alpha)
     return static_cast<double>(
         station_count_from_alpha(f, static_cast<std::size_t>(best), static_cast<std::size_t>(worst)));
@@ -57,8 +73,8 @@ double Objective::unscaled(double f) const {
 double Requirement::missed_by(double measured) const {
   if (std::isnan(measured)) return std::numeric_limits<double>::infinity();
   const double short_of = bound == Bound::at_least ? limit - measured : measured - limit;
-  const double scale = std::abs(objective.best - objective.worst);
-  return short_of > 0 ? short_of / (scale > 0 ? scale : 1) : 0;
+  const double width = objective.scale.width();
+  return short_of > 0 ? short_of / (width > 0 ? width : 1) : 0;
 }
 
 std::string to_string(const Requirement& requirement) {

@@ -148,7 +148,7 @@ Estimate coverage_estimate(const NetworkCounts& counts, double goal_density, std
 
 Estimate estimate(const Objective& objective, const MeasuredNetwork& measured) {
   Estimate estimate{objective.value(measured), 0};
-  const double scale = std::abs(objective.best - objective.worst);
+  const double scale = objective.scale.width();
   const NetworkCounts& counts = measured.counts;
   double variance = 0;
   const auto add = [&](double error) { variance += error * error; };
@@ -225,8 +225,8 @@ Estimate registration_estimate(const NetworkCounts& counts, std::uint64_t voxels
   return estimate;
 }
 
-OverlapMatrix overlap_standard_errors(const NetworkCounts& counts, std::uint64_t population) {
-  OverlapMatrix errors(counts.stations);
+PairMatrix overlap_standard_errors(const NetworkCounts& counts, std::uint64_t population) {
+  PairMatrix errors(counts.stations);
   const double unsampled = unsampled_share(counts, population);
   if (unsampled == 0 || counts.seen.empty()) return errors;
   const std::vector<OverlapMatrix> without = replicates<OverlapMatrix>(counts, overlap_matrix);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shared by MO-CMA-ES and its baselines: the initial population, solutions, selection, and convergence of a population.
+// Shared by optimisers of several objectives: the initial population, solutions, selection, and convergence of a
+// population.
 #pragma once
 
 #include <cstddef>

@@ -4,8 +4,6 @@
 
 #include <cmath>
 
-#include "core/closest_name.hpp"
-#include "optimise/baselines.hpp"
 #include "optimise/hypervolume.hpp"
 #include "vantage/error.hpp"
 
@@ -53,42 +51,6 @@ std::string to_string(StopReason reason) {
     case StopReason::cancelled: return "cancelled";
   }
   return "unknown";
-}
-
-std::string to_string(Algorithm algorithm) {
-  switch (algorithm) {
-    case Algorithm::cma_es: return "cma_es";
-    case Algorithm::mo_cma_es: return "mo_cma_es";
-    case Algorithm::nsga2: return "nsga2";
-    case Algorithm::random_search: return "random_search";
-  }
-  return "unknown";
-}
-
-Algorithm algorithm_from_string(const std::string& name) {
-  std::vector<std::string> known;
-  for (const auto algorithm : {Algorithm::cma_es, Algorithm::mo_cma_es, Algorithm::nsga2, Algorithm::random_search}) {
-    known.push_back(to_string(algorithm));
-    if (name == known.back()) return algorithm;
-  }
-  throw Error(Errc::invalid_argument, "there is no optimiser \"" + name +
-                                          "\"; take cma_es, mo_cma_es, nsga2 or random_search" +
-                                          did_you_mean(name, known));
-}
-
-std::unique_ptr<Optimiser> make_optimiser(Algorithm algorithm, std::size_t dimension, std::size_t objectives,
-                                          const OptimiserConfig& config) {
-  switch (algorithm) {
-    case Algorithm::cma_es:
-      if (objectives != 1)
-        throw Error(Errc::invalid_argument,
-                    "CMA-ES: " + std::to_string(objectives) + " objectives; it takes one, mo_cma_es takes several");
-      return std::make_unique<CmaEs>(dimension, config);
-    case Algorithm::nsga2: return std::make_unique<optimise::Nsga2>(dimension, objectives, config);
-    case Algorithm::random_search: return std::make_unique<optimise::RandomSearch>(dimension, objectives, config);
-    case Algorithm::mo_cma_es: break;
-  }
-  return std::make_unique<MoCmaEs>(dimension, objectives, config);
 }
 
 Bounds Bounds::uniform(std::size_t dimension, double lower, double upper) {

@@ -17,7 +17,7 @@ bool looks_at_pairs(const SurveyProblem& problem) {
 }
 
 bool hangs_together(const PlanEntry& entry, const SurveyProblem& problem) {
-  return entry.confirmed && connectivity(entry.exact_overlap_matrix, problem.link_overlap).parts == 1;
+  return entry.exact && connectivity(entry.overlap_matrix, problem.link_overlap).parts == 1;
 }
 
 // Of the scaled objectives to the best values of all of them. Unknown ones are as bad as the worst.
@@ -37,8 +37,8 @@ std::size_t answer(const PlanResult& result) {
   const bool required = !problem.requirements.empty();
   const bool links = !required && looks_at_pairs(problem);
   const auto rank = [&](const PlanEntry& entry) {
-    const std::size_t stations = problem.fewest && entry.missed == 0 ? entry.stations.size() : 0;
-    return std::tuple{entry.missed, stations, links && !hangs_together(entry, problem), distance(entry, problem)};
+    const std::size_t stations = problem.fewest && entry.violation == 0 ? entry.stations.size() : 0;
+    return std::tuple{entry.violation, stations, links && !hangs_together(entry, problem), distance(entry, problem)};
   };
   return static_cast<std::size_t>(std::ranges::min_element(result.front, {}, rank) - result.front.begin());
 }
@@ -46,7 +46,7 @@ std::size_t answer(const PlanResult& result) {
 bool met(const PlanResult& result) {
   if (result.front.empty()) return false;
   const PlanEntry& entry = result.front[answer(result)];
-  return entry.missed == 0 && (result.problem.requirements.empty() || entry.confirmed);
+  return entry.violation == 0 && (result.problem.requirements.empty() || entry.exact);
 }
 
 std::vector<std::string> what_would_help(const PlanResult& result) {
@@ -54,7 +54,7 @@ std::vector<std::string> what_would_help(const PlanResult& result) {
   if (result.front.empty() || met(result)) return help;
   const PlanEntry& entry = result.front[answer(result)];
   const SurveyProblem& problem = result.problem;
-  if (entry.missed == 0) {
+  if (entry.violation == 0) {
     help.push_back("more time: no network was traced with every ray, so that what is told is an estimate");
     return help;
   }

@@ -14,31 +14,35 @@ CandidateTable::CandidateTable(Simulator& simulator, Simulator* surroundings, st
       sample_voxels_(sample_voxels),
       surroundings_voxels_(surroundings_voxels),
       nearest_m_(nearest_m),
-      rows_(simulator, sample_voxels),
-      around_(surroundings ? CaptureRows(*surroundings, surroundings_voxels) : CaptureRows()) {}
+      coverage_(simulator, sample_voxels),
+      around_(surroundings ? SampledCoverage(*surroundings, surroundings_voxels) : SampledCoverage()) {}
 
 bool CandidateTable::add(std::span<const PlacedStation> stations, const Progress& progress) {
-  const CaptureRows fresh = capture_rows(*simulator_, stations, sample_voxels_, progress);
+  const SampledCoverage fresh = sample_coverage(*simulator_, stations, sample_voxels_, progress);
   const bool whole = add(stations.first(std::min(stations.size(), fresh.size())), fresh, progress);
   return whole && !fresh.cancelled();
 }
 
-bool CandidateTable::add(std::span<const PlacedStation> stations, const CaptureRows& known, const Progress& progress) {
+bool CandidateTable::add(std::span<const PlacedStation> stations, const SampledCoverage& known,
+                         const Progress& progress) {
   std::size_t count = std::min(stations.size(), known.size());
   if (surroundings_) {
-    const CaptureRows fresh = capture_rows(*surroundings_, stations.first(count), surroundings_voxels_,
-                                           {.report = {}, .stop = progress.stop});
+    const SampledCoverage fresh = sample_coverage(*surroundings_, stations.first(count), surroundings_voxels_,
+                                                  {.report = {}, .stop = progress.stop});
     around_.append(fresh);
     count = std::min(count, fresh.size());
   }
-  rows_.append(known, count);  // rows of both kinds must be of the same stations
+  coverage_.append(known, count);
   stations_.insert(stations_.end(), stations.begin(), stations.begin() + static_cast<std::ptrdiff_t>(count));
-  pairs_ = surroundings_ ? PairTable(around_, stations_, nearest_m_) : PairTable(CaptureRows(), stations_, nearest_m_);
+  graph_ = StationGraph(around_.matrix(), stations_.size());
+  std::vector<Vec3> positions;
+  for (const PlacedStation& station : stations_) positions.push_back(station.position);
+  graph_.exclude_nearer(positions, nearest_m_);
   return count == stations.size();
 }
 
-std::vector<PlacedStation> positions_around(const Site& site, std::span<const PlacedStation> stations, std::size_t each,
-                                            double radius_m) {
+std::vector<PlacedStation> positions_around(const PlacementOracle& site, std::span<const PlacedStation> stations,
+                                            std::size_t each, double radius_m) {
   // A sunflower's seeds: turned on by the golden angle, each disc's area shared evenly (Vogel: A Better Way to
   // Construct the Sunflower Head, 1979).
   const double golden = 2 * std::numbers::pi * (2 - std::numbers::phi);

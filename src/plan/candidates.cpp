@@ -7,7 +7,7 @@
 #include <string>
 
 #include "core/setting_list.hpp"
-#include "plan/site.hpp"
+#include "plan/placement_oracle.hpp"
 #include "plan/spread_positions.hpp"
 #include "vantage/error.hpp"
 
@@ -19,7 +19,7 @@ constexpr std::size_t chunk = 64;
 
 SpreadPositions spread_or_refuse(const SearchArea& area, const ClashChecker& clash, const Scanner& scanner,
                                  std::size_t most) {
-  const Site site = make_site(area, clash, scanner);
+  const PlacementOracle site = make_placement_oracle(area, clash, scanner);
   SpreadPositions spread = spread_positions(site, area.mesh(), site.height_m, most);
   if (spread.stations.empty())
     throw Error(Errc::invalid_argument,
@@ -71,24 +71,24 @@ Candidates find_candidates(Simulator& simulator, const SearchArea& area, const C
 
   const std::uint64_t sample = config.sample_voxels == 0 ? simulator.voxel_count() : config.sample_voxels;
   Candidates found;
-  found.rows_ = CaptureRows(simulator, std::max<std::uint64_t>(sample, 1));
+  found.coverage_ = SampledCoverage(simulator, std::max<std::uint64_t>(sample, 1));
   std::size_t goal = std::min(config.first, spread.stations.size());
   double before = -1;
   while (found.ended_.empty()) {
-    while (found.rows_.size() < goal && found.ended_.empty()) {
-      const std::size_t first = found.rows_.size(), here = std::min(chunk, goal - first);
+    while (found.coverage_.size() < goal && found.ended_.empty()) {
+      const std::size_t first = found.coverage_.size(), here = std::min(chunk, goal - first);
       const auto share = [&](double done) {
         progress((static_cast<double>(first) + done * static_cast<double>(here)) /
                  static_cast<double>(spread.stations.size()));
       };
-      found.rows_.append(capture_rows(simulator, std::span(spread.stations).subspan(first, here),
-                                      found.rows_.sample_voxels(), {share, progress.stop}));
-      if (found.rows_.cancelled())
+      found.coverage_.append(sample_coverage(simulator, std::span(spread.stations).subspan(first, here),
+                                             found.coverage_.sample_voxels(), {share, progress.stop}));
+      if (found.coverage_.cancelled())
         found.ended_ = "cancelled";
-      else if (found.rows_.size() < goal && out_of_time())
+      else if (found.coverage_.size() < goal && out_of_time())
         found.ended_ = "time";
     }
-    found.visible_ = found.rows_.coverage();
+    found.visible_ = found.coverage_.coverage();
     if (!found.ended_.empty()) break;
     const double now = found.visible_.value;
     if (before >= 0) found.change_ = now > 0 ? (now - before) / now : 0;
@@ -103,7 +103,7 @@ Candidates find_candidates(Simulator& simulator, const SearchArea& area, const C
     before = now;
     goal = std::min(2 * goal, spread.stations.size());
   }
-  const std::size_t taken = found.rows_.size();
+  const std::size_t taken = found.coverage_.size();
   found.stations_.assign(spread.stations.begin(), spread.stations.begin() + static_cast<std::ptrdiff_t>(taken));
   found.spacing_m_ = taken > 0 ? spread.spacing_m[taken - 1] : 0;
   progress(1);

@@ -43,9 +43,9 @@ std::unique_ptr<Optimiser> choose_optimiser(const DecisionSpace& space, const Su
       .max_iterations = config.iterations,
       .target_hypervolume = config.target_hypervolume,
       .stagnation_iterations = config.stagnation_iterations,
-      .seed = config.seed,
+      .seed = config.seed.value_or(1),
       .mo = {
-          .scheme = config.scheme, .batch = batch, .recalls = config.sample_voxels > 0 && config.renew_iterations > 0}};
+          .scheme = config.scheme, .batch = batch, .recalls = config.sample_voxels > 0 && config.renew_iterations.value_or(0) > 0}};
   if (space.searches_number())
     chosen.blocks_in_use = [&space](std::span<const double> x) { return space.placed_count(x); };
   if (problem.objectives.size() == 1) {
@@ -55,14 +55,15 @@ std::unique_ptr<Optimiser> choose_optimiser(const DecisionSpace& space, const Su
       chosen.start = {start};
     else if (!config.start.empty())
       chosen.start = {space.encode(config.start)};
-    return make_optimiser(Algorithm::cma_es, space.dimension(), 1, chosen);
+    return std::make_unique<CmaEs>(space.dimension(), chosen);
   }
   if (!start.empty())
     chosen.start = {start};
   else if (!config.start.empty())
     chosen.start = space.encode_each(config.start);
   if (chosen.start.size() > chosen.population) chosen.start.resize(chosen.population);
-  return make_optimiser(config.algorithm, space.dimension(), problem.objectives.size(), chosen);
+  if (config.optimiser) return config.optimiser(space.dimension(), problem.objectives.size(), chosen);
+  return std::make_unique<MoCmaEs>(space.dimension(), problem.objectives.size(), chosen);
 }
 
 }  // namespace vantage

@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "plan/limits.hpp"
 #include "plan/scaled_objectives.hpp"
 
 namespace vantage {
@@ -23,8 +24,8 @@ constexpr double kBeyondDoubt = 3;
 void take_objectives(PlanEntry& entry, const ParetoPoint& point, const SurveyProblem& problem) {
   for (std::size_t k = 0; k < problem.objectives.size(); ++k) {
     const Objective& objective = problem.objectives[k];
-    if (point.f[k] <= 1) entry.values.at(objective.name).searched = objective.unscaled(point.f[k]);
-    if (objective.by_alpha) entry.values.at(objective.name).searched = static_cast<double>(entry.stations.size());
+    if (point.f[k] <= 1) entry.searched.at(objective.name).value = objective.unscaled(point.f[k]);
+    if (objective.by_alpha) entry.searched.at(objective.name).value = static_cast<double>(entry.stations.size());
   }
 }
 
@@ -38,7 +39,7 @@ std::vector<double> best_known(const PlanEntry& entry, const Measures& measures)
 bool comes_before(const PlanEntry& a, const PlanEntry& b, const Measures& measures) {
   for (const Objective& measure : measures.all) {
     const auto cost = [&](const PlanEntry& entry) {
-      const double value = entry.values.at(measure.name).searched;
+      const double value = entry.searched.at(measure.name).value;
       return value == value ? (measure.maximised() ? -value : value) : std::numeric_limits<double>::infinity();
     };
     if (cost(a) != cost(b)) return cost(a) < cost(b);
@@ -67,9 +68,9 @@ std::vector<bool> beaten(std::span<const PlanEntry> entries, const SurveyProblem
   for (std::size_t k = 0; k < entries.size(); ++k) {
     for (std::size_t j = 0; j < m; ++j) {
       const Objective& objective = problem.objectives[j];
-      const double scale = std::abs(objective.best - objective.worst);
+      const double scale = objective.scale.width();
       if (!objective.by_alpha && scale > 0)
-        errors[k * m + j] = entries[k].values.at(objective.name).standard_error / scale;
+        errors[k * m + j] = entries[k].searched.at(objective.name).standard_error / scale;
     }
   }
   const auto beats = [&](std::size_t a, std::size_t b) {
@@ -106,11 +107,9 @@ ConfirmedFront confirm_front(const SearchOutcome& found, const DecisionSpace& sp
     PlanEntry& entry = entries.emplace_back();
     entry.x = point.x;
     entry.stations = space.decode(point.x);
-    entry.exact_overlap_matrix = OverlapMatrix(entry.stations.size());
-    entry.points_on_surveyed.assign(entry.stations.size(), 0);
-    for (const Objective& measure : measures.all)
-      entry.values[measure.name] = {.searched = kUnknown, .standard_error = 0, .exact = kUnknown};
+    for (const Objective& measure : measures.all) entry.searched[measure.name] = {kUnknown, 0};
     take_objectives(entry, point, problem);
+    entry.values = entry.searched;
     networks.push_back(entry.stations);
   }
 
@@ -122,11 +121,10 @@ ConfirmedFront confirm_front(const SearchOutcome& found, const DecisionSpace& sp
                                NetworkEvaluator::Which::all, {.report = {}, .stop = watch.abort})) {
       for (std::size_t k = 0; k < entries.size(); ++k) {
         for (std::size_t m = 0; m < measures.all.size(); ++m) {
-          MeasuredValue& value = entries[k].values.at(measures.all[m].name);
           const bool pooled = k < found.estimates.size() && m < measures.searched;
-          const Estimate& estimate = pooled ? found.estimates[k][m] : (*estimates)[k][m];
-          value.searched = estimate.value, value.standard_error = estimate.standard_error;
+          entries[k].searched.at(measures.all[m].name) = pooled ? found.estimates[k][m] : (*estimates)[k][m];
         }
+        entries[k].values = entries[k].searched;
       }
       // Requirements may be missed by one voxel that only every ray sees.
       if (problem.requirements.empty()) {
@@ -164,21 +162,15 @@ ConfirmedFront confirm_front(const SearchOutcome& found, const DecisionSpace& sp
                                 report(whole, std::max(0.0, done - static_cast<double>(whole)));
                               },
                           .stop = watch.abort};
-  std::vector<std::optional<ConfirmedNetwork>> confirmed = evaluator.confirm(networks, progress);
+  std::vector<std::optional<Evaluation>> confirmed = evaluator.confirm(networks, progress);
+  const double link = limit_of(problem, "link", Requirement::Bound::at_least).value_or(0);
   for (std::size_t k = 0; k < entries.size(); ++k) {
-    std::optional<ConfirmedNetwork>& exact = confirmed[k];
-    if (!exact) continue;
     PlanEntry& entry = entries[k];
-    entry.exact_overlap_matrix = std::move(exact->overlaps);
-    entry.exact_scan_overlap_matrix = std::move(exact->scan_overlaps);
-    entry.points_on_surveyed = std::move(exact->points_on_surveyed);
-    entry.registration = std::move(exact->registration);
-    entry.confirmed = true;
-    for (std::size_t m = 0; m < measures.all.size(); ++m) {
-      MeasuredValue& value = entry.values.at(measures.all[m].name);
-      value.exact = exact->values[m];
-      if (!sampled) value.searched = value.exact;
+    if (confirmed[k]) {
+      static_cast<Evaluation&>(entry) = std::move(*confirmed[k]);
+      if (!sampled) entry.searched = entry.values;
     }
+    entry.link_overlap = problem.link_overlap, entry.link = link;
   }
   report(entries.size(), 0);
   std::sort(entries.begin(), entries.end(),
@@ -205,10 +197,10 @@ double judge_by_every_ray(std::vector<PlanEntry>& entries, const SurveyProblem& 
   std::vector<PlanEntry*> judged;
   for (PlanEntry& entry : entries) {
     const std::vector<double> values = best_known(entry, measures);
-    entry.missed = missed_by(problem, measures, values);
-    if (!entry.confirmed) continue;
+    entry.violation = violation_of(entry, problem.requirements);
+    if (!entry.exact) continue;
     scaled.resize(scaled.size() + objectives);
-    scale_objectives(problem, entry.x, values, entry.missed, std::span(scaled).last(objectives));
+    scale_objectives(problem, entry.x, values, entry.violation, std::span(scaled).last(objectives));
     judged.push_back(&entry);
   }
   const std::vector<std::size_t> ranks = non_dominated_ranks(scaled, objectives);

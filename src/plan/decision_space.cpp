@@ -28,16 +28,16 @@ void check(const SurveyProblem& problem) {
 
 }  // namespace
 
-DecisionSpace::DecisionSpace(const Site& site, const SurveyProblem& problem)
-    : site_(site),
+DecisionSpace::DecisionSpace(const PlacementOracle& oracle, const SurveyProblem& problem)
+    : oracle_(oracle),
       min_(problem.stations_min),
       max_(problem.stations_max),
       heights_(problem.heights_m.has_value()),
       scanners_(problem.scanners) {
   check(problem);
   if (heights_) height_bounds_ = *problem.heights_m;
-  // A kept station was scanned from where it stands, whatever the search area says; its (u, v) is for the reader.
-  kept_ = kept_stations(site, problem.kept, problem.kept_setups);
+  // An existing station was scanned from where it stands, whatever the search area says; its (u, v) is for the reader.
+  existing_ = existing_stations(oracle, problem.kept, problem.kept_setups);
 }
 
 std::size_t DecisionSpace::dimension() const {
@@ -47,8 +47,8 @@ std::size_t DecisionSpace::dimension() const {
 Bounds DecisionSpace::bounds() const {
   Bounds bounds;
   for (std::size_t i = 0; i < max_; ++i) {
-    bounds.lower.insert(bounds.lower.end(), {site_.uv_min.u, site_.uv_min.v});
-    bounds.upper.insert(bounds.upper.end(), {site_.uv_max.u, site_.uv_max.v});
+    bounds.lower.insert(bounds.lower.end(), {oracle_.uv_min.u, oracle_.uv_min.v});
+    bounds.upper.insert(bounds.upper.end(), {oracle_.uv_max.u, oracle_.uv_max.v});
   }
   if (heights_) {
     bounds.lower.insert(bounds.lower.end(), max_, height_bounds_[0]);
@@ -67,7 +67,7 @@ std::size_t DecisionSpace::placed_count(std::span<const double> x) const {
 }
 
 double DecisionSpace::height(std::span<const double> x, std::size_t i) const {
-  return heights_ ? x[2 * max_ + i] : site_.height_m;
+  return heights_ ? x[2 * max_ + i] : oracle_.height_m;
 }
 
 std::uint32_t DecisionSpace::scanner(std::span<const double> x, std::size_t i) const {
@@ -83,17 +83,17 @@ double DecisionSpace::encoded(std::uint32_t scanner) const {
 }
 
 std::vector<PlacedStation> DecisionSpace::decode(std::span<const double> x) const {
-  std::vector<PlacedStation> stations = kept_;
+  std::vector<PlacedStation> stations = existing_;
   const std::size_t n = placed_count(x);
   for (std::size_t i = 0; i < n; ++i) {
-    stations.push_back(place_station(site_, {x[2 * i], x[2 * i + 1]}, height(x, i)));
+    stations.push_back(place_station(oracle_, {x[2 * i], x[2 * i + 1]}, height(x, i)));
     stations.back().setup.scanner = scanner(x, i);
   }
   return stations;
 }
 
 std::vector<std::size_t> DecisionSpace::coordinates(std::size_t i) const {
-  const std::size_t k = i - kept_.size();
+  const std::size_t k = i - existing_.size();
   std::vector<std::size_t> own{2 * k, 2 * k + 1};
   if (heights_) own.push_back(2 * max_ + k);
   return own;
@@ -116,14 +116,15 @@ std::vector<double> DecisionSpace::encode(std::span<const Vec3> heads) const {
   std::vector<double> x(dimension());
   for (std::size_t i = 0; i < max_; ++i) {
     const Vec3 head = heads[i % heads.size()];
-    const auto uv = site_.project(head - Vec3{0, 0, site_.height_m});
+    const auto uv = oracle_.project(head - Vec3{0, 0, oracle_.height_m});
     if (!uv)
       refuse("the initial position " + std::to_string(head.x) + ", " + std::to_string(head.y) + ", " +
              std::to_string(head.z) + " is not above the search area");
     x[2 * i] = uv->u, x[2 * i + 1] = uv->v;
     if (heights_) {
-      const auto ground = site_.locate(*uv);
-      x[2 * max_ + i] = std::clamp(ground ? head.z - ground->z : site_.height_m, height_bounds_[0], height_bounds_[1]);
+      const auto ground = oracle_.locate(*uv);
+      x[2 * max_ + i] =
+          std::clamp(ground ? head.z - ground->z : oracle_.height_m, height_bounds_[0], height_bounds_[1]);
     }
     if (searches_scanner()) x[first_scanner() + i] = encoded(scanners_.front());
   }

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "plan/site.hpp"
+#include "plan/placement_oracle.hpp"
 #include "vantage/planner.hpp"
 
 namespace vantage {
@@ -14,21 +14,21 @@ namespace vantage {
 class DecisionSpace {
  public:
   // Throws Error invalid_argument.
-  DecisionSpace(const Site& site, const SurveyProblem& problem);
+  DecisionSpace(const PlacementOracle& oracle, const SurveyProblem& problem);
 
   std::size_t dimension() const;
   bool searches_number() const { return min_ < max_; }
   Bounds bounds() const;
 
-  // Equation 7; how many stations of x are searched for. The kept ones come on top.
+  // Equation 7; how many stations of x are searched for. Existing ones come on top.
   std::size_t placed_count(std::span<const double> x) const;
-  // Kept stations first, then those of x.
+  // Existing stations first, then those of x.
   std::vector<PlacedStation> decode(std::span<const double> x) const;
-  // Coordinates of x that belong to station `i` of decode(x), which is no kept one.
+  // Coordinates of x that belong to station `i` of decode(x), which is not an existing one.
   std::vector<std::size_t> coordinates(std::size_t i) const;
   // The coordinates of each station of x, which may change places.
   std::vector<std::vector<std::size_t>> blocks() const;
-  std::size_t kept() const { return kept_.size(); }
+  std::size_t existing() const { return existing_.size(); }
   // x whose stations stand at `heads`; further ones repeat them. Throws where one is outside the search area.
   std::vector<double> encode(std::span<const Vec3> heads) const;
   // x of these stations, by their (u, v). REQUIRES: as many as are searched at most, at least one.
@@ -42,12 +42,12 @@ class DecisionSpace {
   std::size_t first_scanner() const { return max_ * (heights_ ? 3 : 2); }  // coordinate
   std::uint32_t scanner(std::span<const double> x, std::size_t i) const;
   double encoded(std::uint32_t scanner) const;  // the middle of what stands for it
-  const Site& site_;
+  const PlacementOracle& oracle_;
   std::size_t min_, max_;
   bool heights_;
   std::vector<std::uint32_t> scanners_;
   std::array<double, 2> height_bounds_{};
-  std::vector<PlacedStation> kept_;
+  std::vector<PlacedStation> existing_;
 };
 
 }  // namespace vantage

@@ -14,7 +14,7 @@ constexpr double kLeastGain = 0.1;
 }  // namespace
 
 GrowingSample::GrowingSample(const PlanConfig& config)
-    : renew_(config.sample_voxels > 0 ? config.renew_iterations : 0) {
+    : renew_(config.sample_voxels > 0 ? config.renew_iterations.value_or(0) : 0) {
   if (config.sample_from > 0)
     for (std::uint64_t size = config.sample_from; size < config.sample_voxels; size *= kGrowth) sizes_.push_back(size);
   sizes_.push_back(config.sample_voxels);

@@ -43,14 +43,14 @@ Hash hash_of(std::span<const Vec3> points) {
 }
 
 // What the search can see of ground and security volume: the answers on a grid of (u, v).
-Hash hash_of(const Site& site) {
+Hash hash_of(const PlacementOracle& oracle) {
   constexpr int kSide = 33;
   Hash hash;
   for (int i = 0; i < kSide; ++i) {
     for (int j = 0; j < kSide; ++j) {
       const auto at = [](double low, double high, int k) { return low + (high - low) * k / (kSide - 1); };
       const auto station = place_station(
-          site, {at(site.uv_min.u, site.uv_max.u, i), at(site.uv_min.v, site.uv_max.v, j)}, site.height_m);
+          oracle, {at(oracle.uv_min.u, oracle.uv_max.u, i), at(oracle.uv_min.v, oracle.uv_max.v, j)}, oracle.height_m);
       hash.add(static_cast<int>(station.status));
       hash.add(station.position.x), hash.add(station.position.y), hash.add(station.position.z);
     }
@@ -60,9 +60,9 @@ Hash hash_of(const Site& site) {
 
 }  // namespace
 
-std::string identity(const Simulator& simulator, const Site& site, const SearchArea& area, const ClashChecker& clash,
-                     const SurveyProblem& problem, const PlanConfig& config, std::size_t population,
-                     std::size_t batch) {
+std::string identity(const Simulator& simulator, const PlacementOracle& oracle, const SearchArea& area,
+                     const ClashChecker& clash, const SurveyProblem& problem, const PlanConfig& config,
+                     std::size_t population, std::size_t batch) {
   Lines lines;
   lines.add("version", version());
   Hash scene;
@@ -73,7 +73,7 @@ std::string identity(const Simulator& simulator, const Site& site, const SearchA
   search.add_all(area.mesh().triangles);
   search.add(hash_of(area.mesh().positions).value());
   lines.add_hash("search area", search);
-  lines.add_hash("holes and clashes", hash_of(site));
+  lines.add_hash("holes and clashes", hash_of(oracle));
 
   lines.add("engine", to_string(simulator.engine().engine));
   lines.add("population", std::uint64_t{population});

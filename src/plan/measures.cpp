@@ -14,6 +14,8 @@ void check(const Objective& objective) {
   if (objective.name.empty() || !std::all_of(objective.name.begin(), objective.name.end(), plain))
     refuse("an objective is named by lower-case letters, digits and _, not \"" + objective.name + "\"");
   if (!objective.value) refuse("the objective " + objective.name + " has no value");
+  if (!objective.scale.given())
+    refuse("the objective " + objective.name + " has no scale; give it minimise(best, worst) or maximise(best, worst)");
 }
 
 // Where it stands; added where it is new.

@@ -16,6 +16,8 @@ namespace {
 
 // Voxels between two looks at whether to stop.
 constexpr std::size_t voxels_at_once = 4096;
+// Enough for shares to a tenth of a percent, few enough for seconds.
+constexpr std::uint64_t kJudgedVoxels = 50'000;
 
 double length(const Vec3& v) { return std::sqrt(dot(v, v)); }
 
@@ -168,6 +170,20 @@ std::vector<MissedShare> missed_by_node(const Simulator& simulator, std::span<co
   }
   std::erase_if(shares, [&](const MissedShare& share) { return share.voxels == 0 && &share != &shares.front(); });
   return shares;
+}
+
+MissedVoxels missed_voxels(const Simulator& simulator, const SearchArea& area, const ClashChecker& clash,
+                           const VoxelField& field, const MissedOptions& options, const Progress& progress) {
+  if (simulator.voxel_count() == 0) return {};
+  const std::vector<PlacedStation> candidates =
+      candidate_positions(area, clash, simulator.scanner(), options.candidates);
+  MissedVoxels judged{.ranks = simulator.sampled_voxels(std::min(kJudgedVoxels, simulator.voxel_count()))};
+  for (const std::uint32_t rank : judged.ranks) judged.points.push_back(field.count[rank]);
+  judged.why = why_missed(simulator, clash, candidates, judged.ranks, judged.points, options, progress);
+  if (judged.why.empty()) return {};
+  judged.shares = missed_by_node(simulator, judged.ranks, judged.why);
+  judged.candidates = candidates.size();
+  return judged;
 }
 
 }  // namespace vantage

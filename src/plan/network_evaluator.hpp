@@ -10,7 +10,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "vantage/objective.hpp"
+#include "vantage/evaluation.hpp"
 #include "vantage/progress.hpp"
 
 namespace vantage {
@@ -21,15 +21,6 @@ using PlacedNetwork = std::vector<PlacedStation>;
 struct VoxelWindow {
   std::uint64_t voxels = 0, from = 0;
   friend bool operator==(const VoxelWindow&, const VoxelWindow&) = default;
-};
-
-// With every ray.
-struct ConfirmedNetwork {
-  std::vector<double> values;  // of all measures
-  OverlapMatrix overlaps = {};
-  OverlapMatrix scan_overlaps = {};  // over all surfaces; empty where no measure needs it
-  std::vector<std::uint64_t> points_on_surveyed = {};
-  std::optional<RegistrationError> registration = std::nullopt;  // where a measure needs it
 };
 
 class NetworkEvaluator {
@@ -46,9 +37,9 @@ class NetworkEvaluator {
   virtual std::optional<std::vector<std::vector<Estimate>>> estimate(std::span<const PlacedNetwork> networks,
                                                                      const VoxelWindow& sample, Which measures,
                                                                      const Progress& progress) = 0;
-  // With every ray; empty what was not reached before it was stopped.
-  virtual std::vector<std::optional<ConfirmedNetwork>> confirm(std::span<const PlacedNetwork> networks,
-                                                               const Progress& progress) = 0;
+  // All measures with every ray; empty for networks that were not reached before it was stopped.
+  virtual std::vector<std::optional<Evaluation>> confirm(std::span<const PlacedNetwork> networks,
+                                                         const Progress& progress) = 0;
   virtual double trace_seconds() const = 0;
 };
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <string>
 
-#include "plan/site.hpp"
+#include "plan/placement_oracle.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage {
 
-Site make_site(const SearchArea& area, const ClashChecker& clash, const Scanner& scanner) {
+PlacementOracle make_placement_oracle(const SearchArea& area, const ClashChecker& clash, const Scanner& scanner) {
   return {.uv_min = area.uv_min(),
           .uv_max = area.uv_max(),
           .locate = [&area](Uv uv) { return area.locate(uv); },
@@ -26,7 +26,7 @@ std::vector<PlacedStation> place_stations(const SearchArea& area, const ClashChe
                 "place_stations: (u, v) pairs are wanted, " + std::to_string(uvs.size()) + " values were given");
   Scanner scanner;
   scanner.height_m = height_m;
-  const Site site = make_site(area, clash, scanner);
+  const PlacementOracle site = make_placement_oracle(area, clash, scanner);
   std::vector<PlacedStation> stations;
   stations.reserve(uvs.size() / 2);
   for (std::size_t i = 0; i < uvs.size(); i += 2)

@@ -5,11 +5,12 @@
 #include <utility>
 
 #include "plan/drop_networks.hpp"
+#include "plan/plan_context.hpp"
 #include "plan/plan_fewest.hpp"
-#include "plan/run.hpp"
 #include "plan/somewhere_to_stand.hpp"
 #include "vantage/error.hpp"
 #include "vantage/planner.hpp"
+#include "vantage/question.hpp"
 
 namespace vantage {
 namespace {
@@ -25,8 +26,8 @@ SurveyProblem settled(SurveyProblem problem) {
   const auto settle = [&](Objective& objective) {
     if (objective.name == "capture") objective = make_objective("capture", problem.settings());
     if (!objective.by_alpha) return;
-    objective.best = static_cast<double>(problem.kept.size() + problem.stations_min);
-    objective.worst = static_cast<double>(problem.kept.size() + problem.stations_max);
+    objective.scale = {static_cast<double>(problem.kept.size() + problem.stations_min),
+                       static_cast<double>(problem.kept.size() + problem.stations_max)};
   };
   for (Objective& objective : problem.objectives) settle(objective);
   if (problem.visible)
@@ -51,20 +52,21 @@ constexpr std::size_t kMostCandidates = 512;
 // The front of more entries than this has its rounds worked out for the answer alone.
 constexpr std::size_t kMostRounds = 16;
 
-void work_out_rounds(PlanResult& result, Run& run) {
+void work_out_rounds(PlanResult& result, PlanContext& context) {
   if (result.front.empty()) return;
   const std::size_t chosen = answer(result), kept = result.problem.kept.size();
   for (std::size_t k = 0; k < result.front.size(); ++k) {
     PlanEntry& entry = result.front[k];
     if (k == chosen || result.front.size() <= kMostRounds)
-      entry.visit = run.on_site().visit(std::span(entry.stations).subspan(kept));
+      entry.visit = context.on_site().visit(std::span(entry.stations).subspan(kept));
   }
 }
 
 }  // namespace
 
 PlanResult plan(Simulator& simulator, const SearchArea& area, const ClashChecker& clash, const SurveyProblem& asked,
-                const PlanConfig& config, const PlanWatch& watch) {
+                const PlanConfig& wanted, const PlanWatch& watch) {
+  const PlanConfig config = settled(wanted, asked, simulator.voxel_count(), simulator.config().seed);
   using Clock = std::chrono::steady_clock;
   const auto start = Clock::now();
   const auto since = [](Clock::time_point then) { return std::chrono::duration<double>(Clock::now() - then).count(); };
@@ -96,28 +98,28 @@ PlanResult plan(Simulator& simulator, const SearchArea& area, const ClashChecker
     if (limit_wanted) problem.visible = candidates->visible().value > 0 ? candidates->visible().value : 1;
   }
   problem = settled(std::move(problem));
-  Run run(simulator, area, clash, config);
-  run.ask(problem);
+  PlanContext context(simulator, area, clash, config);
+  context.ask(problem);
   PlanResult result;
   if (problem.fewest) {
-    result = plan_fewest(run, simulator, candidates, candidates_seconds, config, watch);
+    result = plan_fewest(context, simulator, candidates, candidates_seconds, config, watch);
     result.seconds = since(start);
-    result.trace_seconds = run.evaluator().trace_seconds();
+    result.trace_seconds = context.evaluator().trace_seconds();
   } else {
-    const SearchOutcome found = run.search(problem, config, {}, watch);
+    const SearchOutcome found = context.search(problem, config, {}, watch);
     const auto searched = Clock::now();
-    const double searched_trace = run.evaluator().trace_seconds();
-    result = run.result(found);
-    ConfirmedFront confirmed = run.confirm(found, problem, watch);
+    const double searched_trace = context.evaluator().trace_seconds();
+    result = context.result(found);
+    ConfirmedFront confirmed = context.confirm(found, problem, watch);
     result.front = std::move(confirmed.entries), result.spared = confirmed.spared;
     drop_networks(result.front, problem);
-    result.exact_hypervolume = judge_by_every_ray(result.front, problem, run.measures());
-    if (config.renew_iterations > 0) keep_undominated(result.front, problem, run.measures());
+    result.exact_hypervolume = judge_by_every_ray(result.front, problem, context.measures());
+    if (config.renew_iterations.value_or(0) > 0) keep_undominated(result.front, problem, context.measures());
     result.seconds = found.seconds + since(searched);
-    result.trace_seconds = found.trace_seconds + run.evaluator().trace_seconds() - searched_trace;
+    result.trace_seconds = found.trace_seconds + context.evaluator().trace_seconds() - searched_trace;
   }
   result.candidates = std::move(candidates);
-  work_out_rounds(result, run);
+  work_out_rounds(result, context);
   return result;
 }
 

@@ -12,11 +12,10 @@
 #include <numeric>
 #include <utility>
 
+#include "cover/partial_cover.hpp"
 #include "plan/candidate_table.hpp"
-#include "plan/choose_on_rows.hpp"
 #include "plan/choose_optimiser.hpp"
 #include "plan/drop_networks.hpp"
-#include "plan/fewest_on_rows.hpp"
 #include "plan/limits.hpp"
 #include "plan/spread_positions.hpp"
 
@@ -59,14 +58,14 @@ double least_of(const SurveyProblem& problem, std::string_view name) {
 
 class FewestPlan {
  public:
-  FewestPlan(Run& run, Simulator& simulator, const Candidates& candidates, double candidates_seconds,
+  FewestPlan(PlanContext& context, Simulator& simulator, const Candidates& candidates, double candidates_seconds,
              const PlanConfig& config, const PlanWatch& watch)
-      : run_(run),
+      : context_(context),
         simulator_(simulator),
         candidates_(candidates),
         config_(config),
         watch_(watch),
-        problem_(run.problem()),
+        problem_(context.problem()),
         most_(problem_.stations_max),
         link_(least_of(problem_, "link")),
         sample_(config.sample_voxels > 0 ? config.sample_voxels : simulator.voxel_count()),
@@ -95,25 +94,25 @@ class FewestPlan {
     for (std::size_t k = 0; k < kRepairs && best_missed() == 0 && !stopped() && choose_again(); ++k) {
     }
     const SearchOutcome found = search(stations_of(choice_));
-    take(confirmed(found, choice_.rows.size() - problem_.kept.size()));
-    PlanResult result = run_.result(found);
+    take(confirmed(found, choice_.chosen.size() - problem_.kept.size()));
+    PlanResult result = context_.result(found);
     result.evaluations += traced_;
     result.front = front();
-    result.exact_hypervolume = judge_by_every_ray(result.front, problem_, run_.measures());
+    result.exact_hypervolume = judge_by_every_ray(result.front, problem_, context_.measures());
     return result;
   }
 
  private:
   bool stopped() const { return watch_.stop.stop_requested() || watch_.abort.stop_requested(); }
   CandidateTable make_table(std::uint64_t sample_voxels) {
-    return {simulator_, link_ > 0 || wants_links() ? &run_.surroundings() : nullptr, sample_voxels,
+    return {simulator_, link_ > 0 || wants_links() ? &context_.surroundings() : nullptr, sample_voxels,
             surroundings_sample(), least_of(problem_, "apart")};
   }
   bool wants_links() const {
     return std::ranges::any_of(problem_.objectives, [](const Objective& o) { return o.name == "link"; });
   }
   std::uint64_t surroundings_sample() {
-    const std::uint64_t sample = run_.surroundings_voxels();
+    const std::uint64_t sample = context_.surroundings_voxels();
     return sample > 0 ? sample : std::numeric_limits<std::uint32_t>::max();  // all there are
   }
   Progress progress(const char* phase) {
@@ -134,20 +133,20 @@ class FewestPlan {
   // What is still to come, once the first round of further candidates was tried: the others, the short list by a larger
   // sample, the end of the search, and by every ray the choice, others with other margins, and what is found.
   void tell_expected(double round_seconds, std::size_t tried) {
-    if (!watch_.report || stopped() || choice_.rows.size() <= problem_.kept.size()) return;
+    if (!watch_.report || stopped() || choice_.chosen.size() <= problem_.kept.size()) return;
     const std::vector<PlacedStation> chosen = stations_of(choice_);
     const auto count = static_cast<double>(chosen.size()), kept = static_cast<double>(problem_.kept.size());
     const Progress silent{.report = {}, .stop = watch_.stop};
     // The first call sets up what later ones use again, so that it may take longer.
     const auto sampled = [&](std::size_t copies) {
       const std::vector<PlacedNetwork> some(copies, chosen);
-      const auto evaluate = [&] { run_.evaluator().evaluate(some, {.voxels = config_.sample_voxels}, silent); };
+      const auto evaluate = [&] { context_.evaluator().evaluate(some, {.voxels = config_.sample_voxels}, silent); };
       return timed(evaluate) / static_cast<double>(copies);
     };
     const auto every_ray_of = [&](std::size_t stations) {
       const std::vector<PlacedNetwork> first(1,
                                              {chosen.begin(), chosen.begin() + static_cast<std::ptrdiff_t>(stations)});
-      return timed([&] { run_.evaluator().confirm(first, silent); });
+      return timed([&] { context_.evaluator().confirm(first, silent); });
     };
     const double network = std::min(sampled(1), sampled(kTimedNetworks));
     const std::size_t few = std::min(kTimedStations, chosen.size());
@@ -166,7 +165,7 @@ class FewestPlan {
   }
 
   void look_at_links() {
-    std::vector<PlacedStation> kept = kept_stations(run_.site(), problem_.kept, problem_.kept_setups);
+    std::vector<PlacedStation> kept = existing_stations(context_.oracle(), problem_.kept, problem_.kept_setups);
     for (PlacedStation& station : kept)
       if (active(station)) station.status = StationStatus::ok;  // rows of others are empty
     // Kept stations come first in every network, so they are traced even where time is short.
@@ -175,40 +174,47 @@ class FewestPlan {
     // than one chosen from many.
     const std::span<const PlacedStation> all = candidates_.stations();
     if (stopped())
-      table_.add(all.first(std::min(all.size(), kLateCandidates)), candidates_.rows(),
+      table_.add(all.first(std::min(all.size(), kLateCandidates)), candidates_.coverage(),
                  {.report = {}, .stop = watch_.abort});
     else
-      station_seconds_ += timed([&] { table_.add(all, candidates_.rows(), progress("look")); }) /
+      station_seconds_ += timed([&] { table_.add(all, candidates_.coverage(), progress("look")); }) /
                           static_cast<double>(std::max<std::size_t>(all.size(), 1));
     traced_ += table_.stations().size();
   }
 
-  RowQuestion question(const CandidateTable& table, double coverage_margin) const {
-    return {.rows = table.rows(),
-            .pairs = table.pairs(),
-            .coverage = coverage_ + (coverage_ > 0 ? coverage_margin : 0),
-            .link = link_ > 0 ? link_ + link_margin_ : 0,
-            .fixed = problem_.kept.size(),
+  CoverProblem question(const CandidateTable& table, double coverage_margin) const {
+    std::vector<std::size_t> existing(problem_.kept.size());
+    std::iota(existing.begin(), existing.end(), std::size_t{0});
+    return {.matrix = table.matrix(),
+            .graph = &table.graph(),
+            .existing = std::move(existing),
             .fewest = problem_.stations_min,
-            .most = most_};
+            .most = most_,
+            .coverage = coverage_ + (coverage_ > 0 ? coverage_margin : 0),
+            .link = link_ > 0 ? link_ + link_margin_ : 0};
   }
-  RowQuestion question() const { return question(table_, coverage_margin_); }
-  std::vector<PlacedStation> stations_of(const RowAnswer& answer) const {
+  CoverProblem question() const { return question(table_, coverage_margin_); }
+  std::vector<PlacedStation> stations_of(const CoverSolution& answer) const {
     std::vector<PlacedStation> stations;
-    for (const std::size_t row : answer.rows) stations.push_back(table_.stations()[row]);
+    for (const std::size_t row : answer.chosen) stations.push_back(table_.stations()[row]);
     return stations;
+  }
+
+  void choose_from(std::optional<CoverSolution> start) {
+    ConnectedCover found = min_connected_cover(question(), watch_.stop, std::move(start));
+    choice_ = std::move(found.best), nearly_ = std::move(found.one_fewer);
   }
 
   void choose() {
     tell("choose", -1);
-    choice_ = fewest_on_rows(question(), watch_.stop, {}, &nearly_);
+    choose_from({});
     fit_time();
-    choice_ = better_on_rows(question(), std::move(choice_), watch_.stop);
+    choice_ = improve_weakest_link(question(), std::move(choice_), watch_.stop);
   }
 
-  double minutes(const RowAnswer& answer) {
+  double minutes(const CoverSolution& answer) {
     const std::vector<PlacedStation> stations = stations_of(answer);
-    return run_.on_site().visit(std::span(stations).subspan(problem_.kept.size())).minutes;
+    return context_.on_site().visit(std::span(stations).subspan(problem_.kept.size())).minutes;
   }
 
   // Where a round of as many as it takes lasts too long: the most that can be captured by as many as there is time for.
@@ -217,13 +223,13 @@ class FewestPlan {
     if (!most) return;
     const double limit = *most;
     const std::size_t kept = problem_.kept.size();
-    const double each = run_.on_site().minutes_per_scan() + run_.on_site().options().set_up_min;
-    std::size_t placed = choice_.rows.size() - kept;
+    const double each = context_.on_site().minutes_per_scan() + context_.on_site().options().set_up_min;
+    std::size_t placed = choice_.chosen.size() - kept;
     if (each > 0) placed = std::min(placed, static_cast<std::size_t>(std::max(1.0, limit / each)));
     for (; minutes(choice_) > limit && placed >= std::max<std::size_t>(problem_.stations_min, 1); --placed) {
       most_ = placed;
       nearly_.reset();
-      choice_ = fewest_on_rows(question(), watch_.stop);
+      choice_ = min_connected_cover(question(), watch_.stop).best;
     }
   }
 
@@ -231,10 +237,10 @@ class FewestPlan {
   void choose_around(std::size_t round) {
     const double radius = kAroundRadius * std::ldexp(std::max(candidates_.spacing_m(), 0.1), -static_cast<int>(round));
     std::vector<PlacedStation> around;
-    const auto add = [&](const RowAnswer& answer) {
+    const auto add = [&](const CoverSolution& answer) {
       std::vector<PlacedStation> stations = stations_of(answer);
       stations.erase(stations.begin(), stations.begin() + static_cast<std::ptrdiff_t>(problem_.kept.size()));
-      const auto more = positions_around(run_.site(), stations, kAround, radius);
+      const auto more = positions_around(context_.oracle(), stations, kAround, radius);
       around.insert(around.end(), more.begin(), more.end());
     };
     add(choice_);
@@ -243,49 +249,46 @@ class FewestPlan {
     table_.add(around, progress("choose"));
     traced_ += table_.stations().size() - before;
     if (nearly_) {
-      RowQuestion fewer = question();
-      fewer.most = std::min(fewer.most, nearly_->rows.size() - problem_.kept.size());
-      RowAnswer better = better_on_rows(fewer, std::move(*nearly_), watch_.stop);
+      CoverProblem fewer = question();
+      fewer.most = std::min(fewer.most, nearly_->chosen.size() - problem_.kept.size());
+      CoverSolution better = improve_weakest_link(fewer, std::move(*nearly_), watch_.stop);
       nearly_ = better;
-      if (better.missed <= choice_.missed) {
-        nearly_.reset();
-        choice_ = fewest_on_rows(question(), watch_.stop, std::move(better), &nearly_);
+      if (better.violation <= choice_.violation) {
+        choose_from(std::move(better));
       }
     }
-    choice_ = better_on_rows(question(), std::move(choice_), watch_.stop);
+    choice_ = improve_weakest_link(question(), std::move(choice_), watch_.stop);
   }
 
   // Rows that may be worth having in a network like the one chosen: it, the best one of a station fewer, for each of
   // its stations those that would replace it best, and those that would add most to it; `times` as many of the latter
   // two.
   std::vector<std::size_t> short_list(std::size_t times) const {
-    const CaptureRows& rows = table_.rows();
-    const RowColumns columns(rows);
-    const RowCover cover(rows, choice_.rows);
-    std::vector<double> gains(rows.size());
-    std::vector<char> listed(rows.size(), 0);
-    std::vector<std::size_t> order(rows.size());
+    const CoverageMatrix& rows = table_.matrix();
+    const ColumnIndex columns(rows);
+    const PartialCover cover(rows, choice_.chosen);
+    std::vector<double> gains(rows.candidates());
+    std::vector<char> listed(rows.candidates(), 0);
+    std::vector<std::size_t> order(rows.candidates());
     std::iota(order.begin(), order.end(), std::size_t{0});
     const auto list_best = [&](std::span<const double> by, std::size_t count) {
       std::ranges::stable_sort(order, std::ranges::greater(), [&](std::size_t row) { return by[row]; });
       for (std::size_t k = 0; k < std::min(count, order.size()); ++k) listed[order[k]] = 1;
     };
     // One after the other: those that add most at first are near each other.
-    const PairTable& pairs = table_.pairs();
-    const auto apart = [&](std::size_t row, std::span<const std::size_t> taken) {
-      return std::ranges::none_of(taken, [&](std::size_t other) { return pairs.too_near(other, row); });
-    };
-    for (const std::size_t row : choose_greedily(rows, times * kMoreClosely, choice_.rows, 1, apart)) listed[row] = 1;
-    for (std::size_t row = 0; row < rows.size(); ++row) gains[row] = cover.gain(row);
-    for (std::size_t at = problem_.kept.size(); at < choice_.rows.size(); ++at) {
+    const CoverProblem more{
+        .matrix = rows, .graph = &table_.graph(), .existing = choice_.chosen, .most = times * kMoreClosely};
+    for (const std::size_t row : greedy(more)) listed[row] = 1;
+    for (std::size_t row = 0; row < rows.candidates(); ++row) gains[row] = cover.gain(row);
+    for (std::size_t at = problem_.kept.size(); at < choice_.chosen.size(); ++at) {
       std::vector<double> without = gains;
-      columns.add_gains_without(choice_.rows[at], cover, without);
+      columns.add_gains_without(choice_.chosen[at], cover, without);
       list_best(without, times * kInsteadClosely);
     }
     if (nearly_)
-      for (const std::size_t row : nearly_->rows) listed[row] = 1;
+      for (const std::size_t row : nearly_->chosen) listed[row] = 1;
     std::vector<std::size_t> list;
-    for (std::size_t row = problem_.kept.size(); row < rows.size(); ++row)
+    for (std::size_t row = problem_.kept.size(); row < rows.candidates(); ++row)
       if (listed[row]) list.push_back(row);
     return list;
   }
@@ -312,15 +315,14 @@ class FewestPlan {
       if (!table.add(listed, progress("choose"))) return;
       traced_ += listed.size();
       std::vector<std::size_t> rows;
-      for (const std::size_t row : choice_.rows) rows.push_back(row_of[row]);
-      const RowQuestion asked = question(table, margin);
-      std::optional<RowAnswer> nearly;
-      RowAnswer found = fewest_on_rows(asked, watch_.stop, judge_rows(asked, std::move(rows)), &nearly);
-      if (found.missed > choice_.missed && times < kLongerList && !stopped()) continue;
+      for (const std::size_t row : choice_.chosen) rows.push_back(row_of[row]);
+      const CoverProblem asked = question(table, margin);
+      ConnectedCover found = min_connected_cover(asked, watch_.stop, evaluate_cover(asked, std::move(rows)));
+      if (found.best.violation > choice_.violation && times < kLongerList && !stopped()) continue;
       table_ = std::move(table);
       coverage_margin_ = margin;
-      nearly_ = std::move(nearly);
-      choice_ = better_on_rows(question(), std::move(found), watch_.stop);
+      nearly_ = std::move(found.one_fewer);
+      choice_ = improve_weakest_link(question(), std::move(found.best), watch_.stop);
       return;
     }
   }
@@ -328,8 +330,9 @@ class FewestPlan {
   SurveyProblem narrowed(std::size_t stations) const {
     SurveyProblem narrowed = problem_;
     narrowed.stations_min = narrowed.stations_max = stations;
+    const auto all = static_cast<double>(problem_.kept.size() + stations);
     for (Objective& objective : narrowed.objectives)
-      if (objective.by_alpha) objective.best = objective.worst = static_cast<double>(problem_.kept.size() + stations);
+      if (objective.by_alpha) objective.scale = minimise(all, all);
     return narrowed;
   }
 
@@ -359,9 +362,9 @@ class FewestPlan {
   SearchOutcome search(const std::vector<PlacedStation>& chosen) {
     SearchOutcome found;
     const SurveyProblem narrow = with_margins(narrowed(chosen.size() - problem_.kept.size()));
-    const DecisionSpace space(run_.site(), narrow);
+    const DecisionSpace space(context_.oracle(), narrow);
     const std::vector<double> start = space.encode(std::span(chosen).subspan(problem_.kept.size()));
-    if (!stopped()) found = run_.search(narrow, search_config(narrow), start, watch_);
+    if (!stopped()) found = context_.search(narrow, search_config(narrow), start, watch_);
     if (stopped() && found.stop_reason == StopReason::running) found.stop_reason = StopReason::cancelled;
     return found;
   }
@@ -369,16 +372,16 @@ class FewestPlan {
   // `count`: of the stations that were searched for.
   std::vector<PlanEntry> confirmed(const SearchOutcome& found, std::size_t count) {
     if (found.front.empty()) return {};
-    return run_.confirm(found, narrowed(count), watch_).entries;
+    return context_.confirm(found, narrowed(count), watch_).entries;
   }
   // A network of which nothing is known yet.
   std::vector<PlanEntry> confirmed(std::span<const PlacedStation> placed) {
     SearchOutcome found;
-    found.front.push_back({.x = DecisionSpace(run_.site(), narrowed(placed.size())).encode(placed),
+    found.front.push_back({.x = DecisionSpace(context_.oracle(), narrowed(placed.size())).encode(placed),
                            .f = std::vector<double>(problem_.objectives.size(), 2)});
     return confirmed(found, placed.size());
   }
-  std::vector<PlanEntry> confirmed(const RowAnswer& answer) {
+  std::vector<PlanEntry> confirmed(const CoverSolution& answer) {
     const std::vector<PlacedStation> chosen = stations_of(answer);
     return confirmed(std::span(chosen).subspan(problem_.kept.size()));
   }
@@ -386,24 +389,21 @@ class FewestPlan {
   void confirm_choice() {
     take(confirmed(choice_));
     sample_off_ = coverage_margin_;
-    if (entries_.empty() || !entries_.back().confirmed) return;
-    if (const auto coverage = entries_.back().values.find("coverage"); coverage != entries_.back().values.end())
-      sample_off_ = coverage->second.searched - coverage->second.exact;
+    if (entries_.empty() || !entries_.back().exact) return;
+    sample_off_ = entries_.back().searched.at("coverage").value - entries_.back().value("coverage");
   }
 
   // Entries of networks that stand where others do already are none.
   void take(std::vector<PlanEntry> entries) {
     for (PlanEntry& entry : entries) {
-      std::vector<double> values;
-      for (const Objective& measure : run_.measures().all) values.push_back(entry.value(measure.name));
-      entry.missed = missed_by(problem_, run_.measures(), values);
+      entry.violation = violation_of(entry, problem_.requirements);
       entries_.push_back(std::move(entry));
     }
   }
   double best_missed() const {
     double least = std::numeric_limits<double>::infinity();
     for (const PlanEntry& entry : entries_)
-      if (entry.confirmed) least = std::min(least, entry.missed);
+      if (entry.exact) least = std::min(least, entry.violation);
     return least;
   }
 
@@ -411,12 +411,12 @@ class FewestPlan {
   bool repair() {
     const PlanEntry* nearest = nullptr;
     for (const PlanEntry& entry : entries_)
-      if (entry.confirmed && (!nearest || entry.missed < nearest->missed)) nearest = &entry;
-    if (!nearest || choice_.missed > 0) return false;
+      if (entry.exact && (!nearest || entry.violation < nearest->violation)) nearest = &entry;
+    if (!nearest || choice_.violation > 0) return false;
     const auto shortfall = [&](std::string_view name) {
       const auto found = nearest->values.find(std::string(name));
       const double limit = least_of(problem_, name);
-      return limit > 0 && found != nearest->values.end() ? std::max(0.0, limit - found->second.best_known()) : 0;
+      return limit > 0 && found != nearest->values.end() ? std::max(0.0, limit - found->second.value) : 0;
     };
     const double coverage = std::max(shortfall("coverage"), shortfall("capture") * problem_.visible.value_or(1));
     const double link = shortfall("link");
@@ -424,10 +424,13 @@ class FewestPlan {
     coverage_margin_ += kBeyond * coverage, link_margin_ += kBeyond * link;
     nearly_.reset();
     // From where it is, at this number, or else by what one more allows.
-    choice_ = judge_rows(question(), choice_.rows);
-    RowAnswer same = better_on_rows(question(), choice_, watch_.stop);
-    choice_ = same.missed == 0 ? std::move(same) : fewest_on_rows(question(), watch_.stop, std::move(same), &nearly_);
-    choice_ = better_on_rows(question(), std::move(choice_), watch_.stop);
+    choice_ = evaluate_cover(question(), choice_.chosen);
+    CoverSolution same = improve_weakest_link(question(), choice_, watch_.stop);
+    if (same.violation == 0)
+      choice_ = std::move(same);
+    else
+      choose_from(std::move(same));
+    choice_ = improve_weakest_link(question(), std::move(choice_), watch_.stop);
     confirm_choice();
     return true;
   }
@@ -436,18 +439,19 @@ class FewestPlan {
   // many may be linked better. False where neither is so.
   bool choose_again() {
     const auto exact = entries_.back().values.find("coverage");
-    if (exact == entries_.back().values.end() || !nearly_ || choice_.missed > 0) return false;
-    const double off = choice_.coverage - exact->second.best_known();
+    if (exact == entries_.back().values.end() || !nearly_ || choice_.violation > 0) return false;
+    const double off = choice_.coverage - exact->second.value;
     if (off >= coverage_margin_) return false;
     const double margin = std::exchange(coverage_margin_, off);
-    std::optional<RowAnswer> next;
-    RowAnswer found = fewest_on_rows(question(), watch_.stop, *nearly_, &next);
-    if (found.missed == 0 && found.rows.size() <= choice_.rows.size()) {
-      const RowAnswer before = std::exchange(choice_, better_on_rows(question(), std::move(found), watch_.stop));
+    ConnectedCover next = min_connected_cover(question(), watch_.stop, *nearly_);
+    CoverSolution found = std::move(next.best);
+    if (found.violation == 0 && found.chosen.size() <= choice_.chosen.size()) {
+      const CoverSolution before =
+          std::exchange(choice_, improve_weakest_link(question(), std::move(found), watch_.stop));
       const double before_off = sample_off_;
       confirm_choice();
-      if (entries_.back().confirmed && entries_.back().missed == 0) {
-        nearly_ = std::move(next);
+      if (entries_.back().exact && entries_.back().violation == 0) {
+        nearly_ = std::move(next.one_fewer);
         return true;
       }
       choice_ = before, sample_off_ = before_off;
@@ -459,13 +463,13 @@ class FewestPlan {
   // Of all networks that were confirmed, or of all where none was: those of fewest stations that keep what is required,
   // else those that miss least; and of these, those that no other one dominates.
   std::vector<PlanEntry> front() {
-    const bool any_confirmed = std::ranges::any_of(entries_, &PlanEntry::confirmed);
+    const bool any_confirmed = std::ranges::any_of(entries_, &PlanEntry::exact);
     std::vector<PlanEntry> left;
     for (PlanEntry& entry : entries_)
-      if (entry.confirmed || !any_confirmed) left.push_back(std::move(entry));
+      if (entry.exact || !any_confirmed) left.push_back(std::move(entry));
     drop_unplaced(left, problem_.kept.size());
     const auto rank = [](const PlanEntry& entry) {
-      return std::pair{entry.missed, entry.missed > 0 ? std::size_t{0} : entry.stations.size()};
+      return std::pair{entry.violation, entry.violation > 0 ? std::size_t{0} : entry.stations.size()};
     };
     if (left.empty()) return left;
     const auto best = rank(*std::ranges::min_element(left, {}, rank));
@@ -490,17 +494,18 @@ class FewestPlan {
   PlanResult nothing_known() {
     SearchOutcome none;
     none.stop_reason = StopReason::cancelled;
-    PlanResult result = run_.result(none);
+    PlanResult result = context_.result(none);
     std::vector<PlacedStation> one = candidates_.stations();
-    if (one.empty()) one = spread_positions(run_.site(), run_.area().mesh(), run_.site().height_m, 1).stations;
+    if (one.empty())
+      one = spread_positions(context_.oracle(), context_.area().mesh(), context_.oracle().height_m, 1).stations;
     if (one.empty()) return result;
     one.resize(1);
     result.front = confirmed(one);
-    result.exact_hypervolume = judge_by_every_ray(result.front, problem_, run_.measures());
+    result.exact_hypervolume = judge_by_every_ray(result.front, problem_, context_.measures());
     return result;
   }
 
-  Run& run_;
+  PlanContext& context_;
   Simulator& simulator_;
   const Candidates& candidates_;
   const PlanConfig& config_;
@@ -512,17 +517,17 @@ class FewestPlan {
   double look_seconds_ = 0, station_seconds_ = 0;  // that one takes by the sample: what it captures, and links and all
   std::uint64_t sample_;                           // voxels
   CandidateTable table_;
-  RowAnswer choice_;
-  std::optional<RowAnswer> nearly_;
+  CoverSolution choice_;
+  std::optional<CoverSolution> nearly_;
   std::vector<PlanEntry> entries_;
   std::uint64_t traced_ = 0;
 };
 
 }  // namespace
 
-PlanResult plan_fewest(Run& run, Simulator& simulator, std::shared_ptr<const Candidates> candidates,
+PlanResult plan_fewest(PlanContext& context, Simulator& simulator, std::shared_ptr<const Candidates> candidates,
                        double candidates_seconds, const PlanConfig& config, const PlanWatch& watch) {
-  return FewestPlan(run, simulator, *candidates, candidates_seconds, config, watch).run();
+  return FewestPlan(context, simulator, *candidates, candidates_seconds, config, watch).run();
 }
 
 }  // namespace vantage

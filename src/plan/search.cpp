@@ -254,7 +254,7 @@ class Search {
       for (std::size_t k = 0; k < networks.size(); ++k) {
         for (const Estimate& estimate : (*found)[k]) values[k].push_back(estimate.value);
         for (std::size_t j = 0; j < m; ++j) {
-          const double scale = std::abs(problem.objectives[j].best - problem.objectives[j].worst);
+          const double scale = problem.objectives[j].scale.width();
           if (scale > 0) errors += (*found)[k][j].standard_error / scale;
         }
       }
@@ -306,12 +306,12 @@ class Search {
         placed[open[i]] = space_.decode(std::span<const double>(xs).subspan(open[i] * n, n));
       });
       if (round == 0)
-        for (const auto& stations : placed) drawn_ += stations.size() - space_.kept();
+        for (const auto& stations : placed) drawn_ += stations.size() - space_.existing();
       if (round == config_.redraws) break;
       std::vector<std::size_t> again;
       for (const std::size_t k : open) {
         std::vector<std::size_t> coordinates;
-        for (std::size_t i = space_.kept(); i < placed[k].size(); ++i) {
+        for (std::size_t i = space_.existing(); i < placed[k].size(); ++i) {
           if (placed[k][i].status == StationStatus::ok) continue;
           const auto own = space_.coordinates(i);
           coordinates.insert(coordinates.end(), own.begin(), own.end());

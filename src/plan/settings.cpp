@@ -11,8 +11,8 @@ nlohmann::ordered_json to_json(const Objective& objective) {
   return {{"name", objective.name},
           {"label", objective.label},
           {"unit", objective.unit},
-          {"best", objective.best},
-          {"worst", objective.worst},
+          {"best", objective.scale.best},
+          {"worst", objective.scale.worst},
           {"by_alpha", objective.by_alpha},
           {"parameters", objective.parameters}};
 }
@@ -76,19 +76,19 @@ Settings settings(const PlanConfig& config) {
       .add("population", config.population, {unless(config.population == 0, "population")})
       .add("iterations", config.iterations, {unless(config.iterations == 0, "iterations"), false})
       .add("sigma0", config.sigma0, {"sigma"})
-      .add("algorithm", to_string(config.algorithm), {"algorithm"})
       .add("scheme", generational ? "generational" : "steady-state", {"scheme"})
       .add("batch", config.batch, {unless(config.batch == 0, "batch")})
       .add("sample_voxels", config.sample_voxels, {unless(config.sample_voxels == 0, "sample")})
       .add("sample_from", config.sample_from, {unless(config.sample_from == 0, "sample-from")})
-      .add("renew_iterations", config.renew_iterations, {unless(config.renew_iterations == 0, "renew")})
+      .add("renew_iterations", config.renew_iterations.value_or(0),
+           {unless(config.renew_iterations.value_or(0) == 0, "renew")})
       .add("start", config.start, {"start"})
       .add("redraws", config.redraws, {"redraws"})
       .add("max_seconds", config.max_seconds, {unless(config.max_seconds == 0, "max-time"), false})
       .add("target_hypervolume", config.target_hypervolume, {"target-hypervolume", false})
       .add("stagnation_iterations", config.stagnation_iterations,
            {unless(config.stagnation_iterations == 0, "stagnation"), false})
-      .add("seed", config.seed, {"seed"})
+      .add("seed", config.seed.value_or(1), {"seed"})
       .take();
 }
 

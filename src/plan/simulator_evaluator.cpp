@@ -132,8 +132,8 @@ std::optional<std::vector<std::vector<Estimate>>> SimulatorEvaluator::estimate(s
   return estimates;
 }
 
-std::vector<std::optional<ConfirmedNetwork>> SimulatorEvaluator::confirm(std::span<const PlacedNetwork> placed,
-                                                                         const Progress& progress) {
+std::vector<std::optional<Evaluation>> SimulatorEvaluator::confirm(std::span<const PlacedNetwork> placed,
+                                                                   const Progress& progress) {
   const Needs needs = measures_.all_needs();
   const std::vector<Network> networks = to_networks(placed);
   const auto count = [&](Simulator& simulator, const EvaluateOptions& options, const Progress& own) {
@@ -149,19 +149,12 @@ std::vector<std::optional<ConfirmedNetwork>> SimulatorEvaluator::confirm(std::sp
     around = count(*options_.surroundings, {.overlap = true, .registration = registered_around(needs)},
                    part_of(progress, 1, parts));
 
-  std::vector<std::optional<ConfirmedNetwork>> all(placed.size());
+  std::vector<std::optional<Evaluation>> all(placed.size());
   for (std::size_t k = 0; k < placed.size(); ++k) {
     if (counts[k].cancelled || (needs.surroundings && around[k].cancelled)) continue;
-    const MeasuredNetwork seen =
-        measured(counts[k], needs.surroundings ? &around[k] : nullptr, placed[k], networks[k], needs);
-    ConfirmedNetwork& confirmed = all[k].emplace();
-    confirmed.overlaps = seen.overlap;
-    if (needs.surroundings) confirmed.scan_overlaps = scan_overlap_matrix(around[k]);
-    for (const Objective& objective : measures_.all) confirmed.values.push_back(objective.value(seen));
-    if (needs.registration)
-      confirmed.registration = registration_error(counts[k], seen.voxels, options_.registration, seen.surroundings,
-                                                  seen.surroundings_voxels);
-    confirmed.points_on_surveyed = std::move(counts[k].points_on_surveyed);
+    all[k] =
+        evaluation_of(measured(counts[k], needs.surroundings ? &around[k] : nullptr, placed[k], networks[k], needs),
+                      measures_.all, needs.registration ? std::optional(options_.registration) : std::nullopt);
   }
   return all;
 }

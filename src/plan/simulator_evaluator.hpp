@@ -34,8 +34,8 @@ class SimulatorEvaluator final : public NetworkEvaluator {
   std::optional<std::vector<std::vector<Estimate>>> estimate(std::span<const PlacedNetwork> networks,
                                                              const VoxelWindow& sample, Which measures,
                                                              const Progress& progress) override;
-  std::vector<std::optional<ConfirmedNetwork>> confirm(std::span<const PlacedNetwork> networks,
-                                                       const Progress& progress) override;
+  std::vector<std::optional<Evaluation>> confirm(std::span<const PlacedNetwork> networks,
+                                                 const Progress& progress) override;
   double trace_seconds() const override { return trace_seconds_; }
 
  private:

@@ -50,7 +50,7 @@ class GroundByArea {
   std::vector<double> below_;  // area of all triangles before each, and of all
 };
 
-std::vector<PlacedStation> allowed_positions(const Site& site, const SearchMesh& mesh, double height_m,
+std::vector<PlacedStation> allowed_positions(const PlacementOracle& site, const SearchMesh& mesh, double height_m,
                                              std::size_t wanted, std::size_t tries) {
   const GroundByArea ground(mesh);
   std::vector<PlacedStation> allowed;
@@ -71,7 +71,8 @@ std::vector<PlacedStation> allowed_positions(const Site& site, const SearchMesh&
 
 }  // namespace
 
-SpreadPositions spread_positions(const Site& site, const SearchMesh& mesh, double height_m, std::size_t most) {
+SpreadPositions spread_positions(const PlacementOracle& site, const SearchMesh& mesh, double height_m,
+                                 std::size_t most) {
   const std::vector<PlacedStation> pool =
       allowed_positions(site, mesh, height_m, pool_per_position * most, tries_per_position * most);
   SpreadPositions spread;

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "plan/site.hpp"
+#include "plan/placement_oracle.hpp"
 
 namespace vantage {
 
@@ -18,6 +18,7 @@ struct SpreadPositions {
 
 // At most `most`, out of a pool of several times as many that fills the ground evenly by area. No random numbers; the
 // pool depends on `most`. Fewer where the pool has no more allowed positions.
-SpreadPositions spread_positions(const Site& site, const SearchMesh& mesh, double height_m, std::size_t most);
+SpreadPositions spread_positions(const PlacementOracle& site, const SearchMesh& mesh, double height_m,
+                                 std::size_t most);
 
 }  // namespace vantage

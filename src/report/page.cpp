@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/page.hpp"
 
+#include <algorithm>
+#include <cstdint>
+#include <map>
 #include <string_view>
+#include <vector>
+
+#include "report/packed.hpp"
 
 namespace vantage {
 namespace {
@@ -21,21 +27,40 @@ std::string within_html(std::string_view text) {
   return html;
 }
 
-void put(std::string& page, std::string_view mark, const std::string& text) {
-  page.replace(page.find(mark), mark.size(), text);
+// "'sha256-…'", in base64.
+std::string hash_source(const PageText& part) {
+  std::vector<std::uint8_t> bytes;
+  const std::string_view digits = part.sha256;
+  for (std::size_t k = 0; k + 1 < digits.size(); k += 2)
+    bytes.push_back(static_cast<std::uint8_t>(std::stoul(std::string(digits.substr(k, 2)), nullptr, 16)));
+  return "'sha256-" + base64(bytes) + "'";
 }
 
 }  // namespace
 
-std::string make_page(const char* html, std::span<const char* const> styles, std::span<const char* const> scripts,
+std::string page_policy(std::span<const PageText> styles, std::span<const PageText> scripts) {
+  std::string policy = "default-src 'none'; script-src";
+  for (const PageText& part : scripts) policy += " " + hash_source(part);
+  policy += "; style-src";
+  for (const PageText& part : styles) policy += " " + hash_source(part);
+  return policy + "; img-src data: blob:; base-uri 'none'; form-action 'none'";
+}
+
+std::string make_page(const PageText& html, std::span<const PageText> styles, std::span<const PageText> scripts,
                       const std::string& title, const nlohmann::ordered_json& data) {
-  std::string page = html, style, script;
-  for (const char* text : styles) style += text;
-  for (const char* text : scripts) script += std::string("<script>") + text + "</script>\n";
-  put(page, "{{title}}", within_html(title));
-  put(page, "{{style}}", style);
-  put(page, "{{scripts}}", script);
-  put(page, "{{data}}", within_script(data));
+  std::map<std::string_view, std::string> parts{
+      {"title", within_html(title)}, {"policy", page_policy(styles, scripts)}, {"data", within_script(data)}};
+  for (const PageText& part : styles) parts["styles"] += std::string("<style>") + part.text + "</style>\n";
+  for (const PageText& part : scripts) parts["scripts"] += std::string("<script>") + part.text + "</script>\n";
+  // Marks of the markup alone: what is put in may hold some, too.
+  std::string page;
+  for (std::string_view rest = html.text; !rest.empty();) {
+    const std::size_t begin = std::min(rest.find("{{"), rest.size()), end = rest.find("}}", begin);
+    page += rest.substr(0, begin);
+    if (end == std::string_view::npos) break;
+    page += parts.at(rest.substr(begin + 2, end - begin - 2));
+    rest.remove_prefix(end + 2);
+  }
   return page;
 }
 

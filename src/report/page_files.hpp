@@ -4,14 +4,19 @@
 
 namespace vantage {
 
-extern const char* const page_three;  // three.js and its orbit controls, as packaged
-extern const char* const page_orbit;
-extern const char* const page_report_html;
-extern const char* const page_report_css;
-extern const char* const page_unpack;
-extern const char* const page_site_view;
-extern const char* const page_chart;
-extern const char* const page_tables;
-extern const char* const page_report_js;
+struct PageText {
+  const char* text;
+  const char* sha256;  // of the text, 64 hexadecimal digits
+};
+
+extern const PageText page_three;  // three.js and its orbit controls, as packaged
+extern const PageText page_orbit;
+extern const PageText page_report_html;
+extern const PageText page_report_css;
+extern const PageText page_unpack;
+extern const PageText page_site_view;
+extern const PageText page_chart;
+extern const PageText page_tables;
+extern const PageText page_report_js;
 
 }  // namespace vantage

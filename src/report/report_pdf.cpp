@@ -9,6 +9,7 @@
 #include "export/missed_colours.hpp"
 #include "export/pictures.hpp"
 #include "report/report.hpp"
+#include "vantage/summary.hpp"
 #include "vantage/version.hpp"
 
 namespace vantage {
@@ -91,16 +92,16 @@ void table(Sheet& sheet, const std::vector<Column>& columns, std::size_t rows, c
   sheet.y += 14;
 }
 
-Sheet summary_sheet(const Report& report, const ReportSite& site) {
-  const ReportNetwork& network = report.networks[report.answer];
+Sheet summary_sheet(const Report& report, const Simulator& simulator, const SearchArea& area) {
+  const Evaluation& network = report.shown();
   Sheet sheet;
   sheet.canvas->text({kMargin, sheet.y + 8},
-                     fitted(*sheet.canvas, report.title, kWidth - 2 * kMargin, {.size = 22, .bold = true}),
+                     fitted(*sheet.canvas, report.options.title, kWidth - 2 * kMargin, {.size = 22, .bold = true}),
                      {.size = 22, .bold = true});
   sheet.y += 32;
   sheet.words(kMargin, "Laser scanning survey plan: " + report.question, {.size = 10, .colour = kFaint});
   sheet.y += 14;
-  for (const auto& [heading, text] : summary_lines(network.summary)) {
+  for (const auto& [heading, text] : summary_lines(network, report.requirements)) {
     sheet.canvas->text({kMargin, sheet.y}, heading,
                        {.size = 10, .bold = true, .colour = heading == "to do" ? kAlert : Colour{0.15, 0.15, 0.17}});
     sheet.words(kMargin + 68, text, {.size = 10});
@@ -108,17 +109,15 @@ Sheet summary_sheet(const Report& report, const ReportSite& site) {
   }
   sheet.y += 10;
   std::span<const StationError> errors;
-  if (network.entry.registration) errors = network.entry.registration->stations;
-  const auto pages =
-      plan_view_pictures({.scene = site.simulator.scene(),
-                          .area = site.area,
-                          .stations = network.entry.stations,
-                          .names = network.names,
-                          .overlap = network.links,
-                          .link_overlap = network.summary.links ? network.summary.links->least : default_link_overlap,
-                          .title = "Plan",
-                          .overlap_words = link_words(network) + " of two stations",
-                          .errors = errors});
+  if (network.registration) errors = network.registration->stations;
+  const StationLinks links = network.links().value_or(StationLinks{.least = network.link_overlap});
+  const auto pages = plan_view_pictures({.scene = simulator.scene(),
+                                         .area = area,
+                                         .stations = network.stations,
+                                         .names = station_names(network.stations, network.names),
+                                         .links = links,
+                                         .title = "Plan",
+                                         .errors = errors});
   const Canvas& plan = *pages.front().canvas;
   const double scale = std::min((kWidth - 2 * kMargin) / plan.width(), sheet.left() / plan.height());
   sheet.canvas->page({kMargin, sheet.y, plan.width() * scale, plan.height() * scale}, plan);
@@ -126,8 +125,8 @@ Sheet summary_sheet(const Report& report, const ReportSite& site) {
   return sheet;
 }
 
-void stations_table(Sheet& sheet, const ReportNetwork& network) {
-  const PlanEntry& entry = network.entry;
+void stations_table(Sheet& sheet, const Evaluation& network, const std::vector<std::string>& names) {
+  const std::vector<std::uint64_t>& points = network.counts.points_on_surveyed;
   sheet.heading("Stations");
   sheet.words(kMargin, "Survey frame, metres. The head is the scanner's; the ground is where the tripod stands.",
               {.size = 9, .colour = kFaint});
@@ -140,16 +139,16 @@ void stations_table(Sheet& sheet, const ReportNetwork& network) {
          {"ground z (m)", 82},
          {"points on site", 86},
          {"", 43, Align::start}},
-        entry.stations.size(), "stations.csv has all", [&](std::size_t k) -> std::vector<std::string> {
-          const PlacedStation& s = entry.stations[k];
+        network.stations.size(), "stations.csv has all", [&](std::size_t k) -> std::vector<std::string> {
+          const PlacedStation& s = network.stations[k];
           const std::string note = s.kept ? "kept" : active(s) ? "" : "left out";
-          if (s.status == StationStatus::hole) return {network.names[k], "", "", "", "", "", "no ground"};
-          return {network.names[k],
+          if (s.status == StationStatus::hole) return {names[k], "", "", "", "", "", "no ground"};
+          return {names[k],
                   fixed(s.position.x, 3),
                   fixed(s.position.y, 3),
                   fixed(s.position.z, 3),
                   fixed(s.ground.z, 3),
-                  k < entry.points_on_surveyed.size() ? grouped(entry.points_on_surveyed[k]) : "",
+                  network.exact && k < points.size() ? grouped(points[k]) : "",
                   note};
         });
 }
@@ -161,42 +160,41 @@ struct Link {
 };
 
 // Those that matter most first: bridges, then the weakest.
-std::vector<Link> links_of(const ReportNetwork& network) {
+std::vector<Link> links_of(const StationLinks& network) {
   std::vector<Link> links;
-  if (!network.summary.links) return links;
-  const double least = network.summary.links->least;
-  const Connectivity graph = connectivity(network.links, least);
-  for (std::size_t i = 0; i < network.links.size(); ++i)
-    for (std::size_t j = i + 1; j < network.links.size(); ++j)
-      if (const double value = network.links(i, j); value > 0 && value >= least)
+  const Connectivity graph = connectivity(network.values, network.least);
+  for (std::size_t i = 0; i < network.values.size(); ++i)
+    for (std::size_t j = i + 1; j < network.values.size(); ++j)
+      if (const double value = network.values(i, j); value > 0 && value >= network.least)
         links.push_back({i, j, value, std::ranges::count(graph.bridges, std::pair(i, j)) > 0});
   std::ranges::stable_sort(
       links, [](const Link& l, const Link& r) { return l.bridge != r.bridge ? l.bridge : l.value < r.value; });
   return links;
 }
 
-void links_table(Sheet& sheet, const ReportNetwork& network, const std::vector<Link>& links) {
-  const SummaryLinks& summary = *network.summary.links;
+void links_table(Sheet& sheet, const StationLinks& network, const std::vector<Link>& links,
+                 const std::vector<std::string>& names) {
+  const std::string measure = to_string(network.measure);
   sheet.heading("Links");
   sheet.words(kMargin,
-              "Pairs of stations with " + summary.measure + " of at least " + number(summary.least) +
+              "Pairs of stations with " + measure + " of at least " + number(network.least) +
                   ". Bridges, the only link between two parts, come first, then the weakest.",
               {.size = 9, .colour = kFaint});
   sheet.y += 6;
   if (links.empty()) return sheet.words(kMargin, "No two stations are linked.", {.size = 10, .colour = kAlert});
-  table(sheet, {{"From", 90, Align::start}, {"To", 90, Align::start}, {summary.measure, 90}, {"", 200, Align::start}},
+  table(sheet, {{"From", 90, Align::start}, {"To", 90, Align::start}, {measure, 90}, {"", 200, Align::start}},
         links.size(), "report.html has all", [&](std::size_t k) -> std::vector<std::string> {
           const Link& link = links[k];
           std::string note = link.bridge ? "bridge" : "";
-          if (summary.weakest == std::pair(link.a, link.b))
+          if (network.weakest == std::pair(link.a, link.b))
             note += std::string(note.empty() ? "" : ", ") + "weakest that all hang by";
-          return {network.names[link.a], network.names[link.b], percent(link.value), note};
+          return {names[link.a], names[link.b], percent(link.value), note};
         });
 }
 
-void missed_table(Sheet& sheet, const Report& report) {
+void missed_table(Sheet& sheet, const std::vector<MissedShare>& shares) {
   sheet.heading("What is missed, and why");
-  const MissedShare& all = report.missed.front();
+  const MissedShare& all = shares.front();
   double at = kMargin;
   const double width = kWidth - 2 * kMargin;
   for (const MissedStyle& style : kMissedStyles) {
@@ -216,14 +214,14 @@ void missed_table(Sheet& sheet, const Report& report) {
   }
   sheet.y += 26;
   std::vector<const MissedShare*> nodes;
-  for (std::size_t k = 1; k < report.missed.size(); ++k) nodes.push_back(&report.missed[k]);
+  for (std::size_t k = 1; k < shares.size(); ++k) nodes.push_back(&shares[k]);
   std::ranges::stable_sort(nodes, std::ranges::greater{}, [](const MissedShare* s) {
     return static_cast<double>(s->voxels) * (1 - s->share(WhyMissed::captured));
   });
   const auto share = [](const MissedShare& s, WhyMissed why) { return fixed(100 * s.share(why), 1); };
   table(sheet,
-        {{"Mesh, shares in %", 143, Align::start},
-         {"captured", 58},
+        {{"Mesh, shares in %", 135, Align::start},
+         {"dense enough", 66},
          {"not chosen", 72},
          {"hidden", 50},
          {"too far", 50},
@@ -243,21 +241,25 @@ void missed_table(Sheet& sheet, const Report& report) {
 
 }  // namespace
 
-void write_report_pdf(const std::filesystem::path& file, const Report& report, const ReportSite& site) {
-  const ReportNetwork& network = report.networks[report.answer];
+void write_report_pdf(const std::filesystem::path& file, const Report& report, const Simulator& simulator,
+                      const SearchArea& area) {
+  const Evaluation& network = report.shown();
+  const std::vector<std::string> names = station_names(network.stations, network.names);
   std::vector<Sheet> sheets;
-  sheets.push_back(summary_sheet(report, site));
+  sheets.push_back(summary_sheet(report, simulator, area));
   // On the sheet before, where there is room for all of it.
   const auto sheet_for = [&](std::size_t rows) -> Sheet& {
     if (sheets.back().left() < 90 + kLine * static_cast<double>(rows)) sheets.emplace_back();
     return sheets.back();
   };
-  stations_table(sheet_for(network.entry.stations.size()), network);
-  const std::vector<Link> links = links_of(network);
-  if (network.summary.links) links_table(sheet_for(links.size()), network, links);
-  if (!report.missed.empty()) {
+  stations_table(sheet_for(network.stations.size()), network, names);
+  if (const auto links = network.links()) {
+    const std::vector<Link> rows = links_of(*links);
+    links_table(sheet_for(rows.size()), *links, rows, names);
+  }
+  if (report.options.missed && !report.options.missed->shares.empty()) {
     Sheet missed;
-    missed_table(missed, report);
+    missed_table(missed, report.options.missed->shares);
     sheets.push_back(std::move(missed));
   }
   std::vector<std::unique_ptr<Canvas>> pages;
@@ -267,11 +269,11 @@ void write_report_pdf(const std::filesystem::path& file, const Report& report, c
     const std::string page = "vantage " + std::string(version()) + "   " + std::to_string(pages.size() + 1) + " / " +
                              std::to_string(sheets.size());
     const double room = kWidth - 2 * kMargin - sheet.canvas->text_width(page, style) - 20;
-    sheet.canvas->text({kMargin, y}, fitted(*sheet.canvas, report.command, room, style), style);
+    sheet.canvas->text({kMargin, y}, fitted(*sheet.canvas, report.options.command, room, style), style);
     sheet.canvas->text({kWidth - kMargin, y}, page, {.size = 8, .colour = kFaint, .across = Align::end});
     pages.push_back(std::move(sheet.canvas));
   }
-  Canvas::save_pages(file, pages, report.title);
+  Canvas::save_pages(file, pages, report.options.title);
 }
 
 }  // namespace vantage

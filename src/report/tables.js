@@ -3,7 +3,10 @@
 
 function element(name, attributes = {}, ...children) {
   const node = document.createElement(name);
-  for (const [key, value] of Object.entries(attributes)) node.setAttribute(key, value);
+  for (const [key, value] of Object.entries(attributes)) {
+    if (key === 'style') node.style.cssText = value; // the page's policy takes no attribute of that name
+    else node.setAttribute(key, value);
+  }
   node.append(...children.filter((child) => child !== null && child !== undefined));
   return node;
 }

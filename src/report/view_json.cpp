@@ -96,23 +96,23 @@ std::vector<std::size_t> coloured_networks(const Report& report) {
 }
 
 // One byte object a network; null where its colours are not kept.
-ordered_json colours_json(const Report& report, const ReportSite& site, const CoverageCells& cells,
+ordered_json colours_json(const Report& report, Simulator& simulator, const CoverageCells& cells,
                           const Progress& progress) {
   ordered_json colours = ordered_json::array();
   for (std::size_t k = 0; k < report.networks.size(); ++k) colours.push_back(nullptr);
   const std::vector<std::size_t> chosen = coloured_networks(report);
   const std::uint64_t voxels = std::min<std::uint64_t>(
       cells.ranks.size(), std::max(kLeastSampled, kSampled / static_cast<std::uint64_t>(chosen.size())));
-  const std::vector<std::uint32_t> ranks = site.simulator.sampled_voxels(voxels);
+  const std::vector<std::uint32_t> ranks = simulator.sampled_voxels(voxels);
   double done = 0;
   for (const std::size_t k : chosen) {
-    const bool exact = k == report.answer && site.field;
+    const VoxelField* const field = k == report.answer ? report.options.field : nullptr;
     bool cancelled = false;
-    const CellColours network = exact ? exact_colours(cells, *site.field, site.simulator)
-                                      : sampled_colours(cells, report.networks[k].entry.stations, ranks, site.simulator,
+    const CellColours network = field ? exact_colours(cells, *field, simulator)
+                                      : sampled_colours(cells, report.networks[k].evaluation.stations, ranks, simulator,
                                                         progress.stop, cancelled);
     if (!cancelled)
-      colours[k] = {{"sample", exact ? std::uint64_t{0} : voxels},
+      colours[k] = {{"sample", field ? std::uint64_t{0} : voxels},
                     {"coverage", packed(network.coverage)},
                     {"only", packed(network.only)}};
     if (progress.report) progress.report(++done / static_cast<double>(chosen.size()));
@@ -173,13 +173,13 @@ ordered_json site_json(const Simulator& simulator, const SearchArea& area, std::
   return json;
 }
 
-ordered_json view_json(const Report& report, const ReportSite& site, const Progress& progress) {
-  const CoverageCells cells = coverage_cells(site.simulator, kVoxels, kCells);
-  ordered_json json = site_json(site.simulator, site.area, report.networks[report.answer].entry.stations, cells);
+ordered_json view_json(const Report& report, Simulator& simulator, const SearchArea& area, const Progress& progress) {
+  const CoverageCells cells = coverage_cells(simulator, kVoxels, kCells);
+  ordered_json json = site_json(simulator, area, report.shown().stations, cells);
   if (cells.keys.empty()) return json;
-  json["cells"]["networks"] = colours_json(report, site, cells, progress);
-  if (site.missed && !site.missed->ranks.empty())
-    json["cells"]["reasons"] = packed(cell_reasons(cells, site.missed->ranks, site.missed->why));
+  json["cells"]["networks"] = colours_json(report, simulator, cells, progress);
+  if (const MissedVoxels* const missed = report.options.missed; missed && !missed->ranks.empty())
+    json["cells"]["reasons"] = packed(cell_reasons(cells, missed->ranks, missed->why));
   return json;
 }
 

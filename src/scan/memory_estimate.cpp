@@ -133,9 +133,8 @@ void require_memory(const Scene& scene, std::span<const Scanner> scanners, const
   if (!(config.user_size_m > 0 && std::isfinite(config.user_size_m))) return;  // the grid's builder rejects it
   const std::vector<ChosenDevice> devices = devices_of(config);
   const std::uint64_t given = config.max_memory_bytes;
-  const auto free = free_memory();
   const std::uint64_t unlimited = std::numeric_limits<std::uint64_t>::max();
-  const std::uint64_t host = given > 0 ? given : free ? *free / 2 : unlimited;
+  const std::uint64_t host = memory_limit(given);
   std::uint64_t device = given > 0 ? given : unlimited;
   for (const ChosenDevice& each : devices) device = std::min(device, each.free_bytes.value_or(unlimited));
   const Estimator estimate(scene, scanners, mask_bits, config.spacing_by_detail);
@@ -151,7 +150,7 @@ void require_memory(const Scene& scene, std::span<const Scanner> scanners, const
   if (given > 0)
     what += "it may take " + bytes_text(given);
   else if (of_host)
-    what += "half of what is free is " + bytes_text(host) + " (max_memory_bytes, --memory)";
+    what += "half of what is free is " + bytes_text(host) + " (max_memory_bytes)";
   else
     what += bytes_text(device) + " of that is free";
   for (double size = config.user_size_m; size < 1e9; size *= 2)

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vantage/simulator.hpp"
 
+#include <tbb/task_arena.h>
+
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
+#include <mutex>
 #include <numeric>
 #include <sstream>
+#include <thread>
 #include <utility>
 
 #include "core/lru_cache.hpp"
@@ -99,25 +104,17 @@ NetworkCounts nothing_seen(std::uint64_t voxels, std::uint64_t weight, std::uint
   return counts;
 }
 
-// For populations with a large network: its masks are merged on the host, and several at once would not fit.
-std::vector<NetworkCounts> evaluate_one_by_one(Simulator& simulator, std::span<const Network> networks,
-                                               const SampleOptions& options, const Progress& progress) {
-  std::vector<NetworkCounts> all;
-  const auto share = [&](double done) {
-    progress((static_cast<double>(all.size()) + done) / static_cast<double>(networks.size()));
-  };
-  for (std::size_t k = 0; k < networks.size(); ++k) {
-    SampleOptions one = options;
-    if (options.points)
-      one.points = [&options, k](std::size_t, std::span<const std::uint32_t> points) { options.points(k, points); };
-    NetworkCounts counts =
-        simulator.evaluate_sampled(networks.subspan(k, 1), one, {.report = share, .stop = progress.stop}).front();
-    all.push_back(std::move(counts));
-    if (all.back().cancelled) break;
-  }
-  for (std::size_t k = all.size(); k < networks.size(); ++k) all.push_back(all.back());
-  return all;
-}
+// Records the calling thread while its call runs.
+class AsCaller {
+ public:
+  explicit AsCaller(std::atomic<std::thread::id>& caller) : caller_(caller) { caller_ = std::this_thread::get_id(); }
+  AsCaller(const AsCaller&) = delete;
+  AsCaller& operator=(const AsCaller&) = delete;
+  ~AsCaller() { caller_ = std::thread::id(); }
+
+ private:
+  std::atomic<std::thread::id>& caller_;
+};
 
 void check_registration(const std::optional<RegistrationModel>& registration, bool overlap) {
   if (registration && !overlap)
@@ -222,7 +219,7 @@ struct Simulator::Impl {
     std::vector<std::uint32_t> ranks;
   };
   // A search requests few of them, repeatedly.
-  const Sample& sample(std::uint64_t size, std::uint64_t from) {
+  const Sample& sample_of(std::uint64_t size, std::uint64_t from) {
     if (size >= grid->size()) size = grid->size(), from = 0;
     return samples.get([&](const Sample& one) { return one.size == size && one.from == from; },
                        [&] {
@@ -259,6 +256,30 @@ struct Simulator::Impl {
     return {own.patches, patch_scanners, groups};
   }
 
+  // Runs `work` alone. The isolation keeps oneTBB from giving this thread another task meanwhile, which could be a call
+  // of the same simulator.
+  template <class Work>
+  auto alone(const Work& work) {
+    if (caller.load(std::memory_order_relaxed) == std::this_thread::get_id())
+      throw Error(Errc::invalid_argument,
+                  "a callback of a simulator's call called that simulator; wait until the first call has returned, or "
+                  "use another simulator");
+    const std::lock_guard lock(running);
+    const AsCaller named(caller);
+    return tbb::this_task_arena::isolate(work);
+  }
+
+  ScanSummary scan(const Station& station, const ScanOptions& options,
+                   const std::function<void(const ScanChunk&)>& sink, const Progress& progress);
+  NetworkCounts evaluate(const Network& network, const EvaluateOptions& options, const Progress& progress);
+  std::vector<NetworkCounts> evaluate_each(std::span<const Network> networks, const EvaluateOptions& options,
+                                           const Progress& progress);
+  std::vector<NetworkCounts> evaluate_sampled(std::span<const Network> networks, const SampleOptions& options,
+                                              const Progress& progress);
+  // For populations with a large network: its masks are merged on the host, and several at once would not fit.
+  std::vector<NetworkCounts> evaluate_one_by_one(std::span<const Network> networks, const SampleOptions& options,
+                                                 const Progress& progress);
+
   struct SamplePatches {
     std::uint64_t from;
     std::shared_ptr<const Patches> patches;
@@ -275,6 +296,8 @@ struct Simulator::Impl {
   LruCache<SamplePatches> patches;
   std::vector<PatchScanner> patch_scanners;
   std::unique_ptr<Tracer> tracer;
+  std::mutex running;
+  std::atomic<std::thread::id> caller;  // holds `running`
 };
 
 Simulator::Simulator(const Scene& scene, const Scanner& scanner, const SimulatorConfig& config)
@@ -341,16 +364,31 @@ void Simulator::stand_for(std::span<const Scanner> scanners) {
 
 ScanSummary Simulator::scan(const Station& station, const ScanOptions& options,
                             const std::function<void(const ScanChunk&)>& sink, const Progress& progress) {
+  return impl_->alone([&] { return impl_->scan(station, options, sink, progress); });
+}
+NetworkCounts Simulator::evaluate(const Network& network, const EvaluateOptions& options, const Progress& progress) {
+  return impl_->alone([&] { return impl_->evaluate(network, options, progress); });
+}
+std::vector<NetworkCounts> Simulator::evaluate_each(std::span<const Network> networks, const EvaluateOptions& options,
+                                                    const Progress& progress) {
+  return impl_->alone([&] { return impl_->evaluate_each(networks, options, progress); });
+}
+std::vector<NetworkCounts> Simulator::evaluate_sampled(std::span<const Network> networks, const SampleOptions& options,
+                                                       const Progress& progress) {
+  return impl_->alone([&] { return impl_->evaluate_sampled(networks, options, progress); });
+}
+
+ScanSummary Simulator::Impl::scan(const Station& station, const ScanOptions& options,
+                                  const std::function<void(const ScanChunk&)>& sink, const Progress& progress) {
   if (options.outputs & ~known_outputs)
     throw Error(Errc::invalid_argument,
                 "scan: unknown output bits " + std::to_string(options.outputs & ~known_outputs));
   ScanSummary summary;
   if (!station.active) return summary;
-  const TraceStation from = impl_->trace_station(station, options.place);
-  const Scanner& scanner = impl_->scanners[from.scanner];
+  const TraceStation from = trace_station(station, options.place);
+  const Scanner& scanner = scanners[from.scanner];
   const std::uint64_t columns = scanner.columns(), rays = scanner.rays();
-  const std::uint64_t rows_at_once =
-      std::max<std::uint64_t>(1, impl_->tracer->preferred_scan_rays(from.scanner) / columns);
+  const std::uint64_t rows_at_once = std::max<std::uint64_t>(1, tracer->preferred_scan_rays(from.scanner) / columns);
   Tracer::RawChunk raw;
   ScanChunk chunk;
   for (std::uint64_t first = 0; first < rays; first += chunk.ray_count) {
@@ -361,121 +399,139 @@ ScanSummary Simulator::scan(const Station& station, const ScanOptions& options,
     chunk.first_ray = first;
     chunk.ray_count = std::min(rows_at_once * columns, rays - first);
     const auto start = std::chrono::steady_clock::now();
-    impl_->tracer->scan(from, first, chunk.ray_count, raw_outputs(options), raw);
+    tracer->scan(from, first, chunk.ray_count, raw_outputs(options), raw);
     summary.trace_seconds += seconds_since(start);
-    fill_chunk(chunk, raw, options, impl_->data(), scanner, summary);
+    fill_chunk(chunk, raw, options, data(), scanner, summary);
     if (sink) sink(chunk);
     progress(static_cast<double>(first + chunk.ray_count) / static_cast<double>(rays));
   }
   return summary;
 }
 
-NetworkCounts Simulator::evaluate(const Network& network, const EvaluateOptions& options, const Progress& progress) {
+NetworkCounts Simulator::Impl::evaluate(const Network& network, const EvaluateOptions& options,
+                                        const Progress& progress) {
   check_registration(options.registration, options.overlap);
-  const std::vector<TraceStation> active = impl_->active_stations(network);
+  const std::vector<TraceStation> active = active_stations(network);
   if (active.empty()) {
-    const std::uint32_t point_worth = impl_->grid->demands().least_worth();
+    const std::uint32_t point_worth = grid->demands().least_worth();
     if (options.field) {
-      options.field->count.assign(voxel_count(), 0);
-      options.field->stations.assign(voxel_count() * mask_words(network.size()), 0);
+      options.field->count.assign(grid->size(), 0);
+      options.field->stations.assign(grid->size() * mask_words(network.size()), 0);
     }
-    NetworkCounts counts = nothing_seen(voxel_count(), impl_->grid->total_weight(), point_worth, network.size(),
+    NetworkCounts counts = nothing_seen(grid->size(), grid->total_weight(), point_worth, network.size(),
                                         options.overlap, options.registration.has_value());
     counts.points_on_surveyed.assign(network.size(), 0);
-    if (impl_->limited()) counts.dropped.assign(network.size(), {});
+    if (limited()) counts.dropped.assign(network.size(), {});
     if (!options.skip) counts.points.assign(network.size(), 0);
     return counts;
   }
   VoxelField own;
   VoxelField* field = options.registration && !options.field ? &own : options.field;
   const auto size = static_cast<std::uint32_t>(network.size());
-  NetworkCounts counts =
-      count_in_passes(*impl_->tracer, active, size, {.masks = options.overlap, .skip = options.skip, .field = field},
-                      *impl_->grid, impl_->goal, progress);
+  NetworkCounts counts = count_in_passes(
+      *tracer, active, size, {.masks = options.overlap, .skip = options.skip, .field = field}, *grid, goal, progress);
   if (options.registration && !counts.cancelled) {
-    std::vector<std::uint32_t> ranks(voxel_count());
+    std::vector<std::uint32_t> ranks(grid->size());
     std::iota(ranks.begin(), ranks.end(), 0u);
-    const RegistrationJob job = impl_->registration_of(ranks, 0, *options.registration, false);
+    const RegistrationJob job = registration_of(ranks, 0, *options.registration, false);
     take_registration(counts, sum_patches(job, active, size, field->stations, 0));
   }
   return counts;
 }
 
-std::vector<NetworkCounts> Simulator::evaluate_each(std::span<const Network> networks, const EvaluateOptions& options,
-                                                    const Progress& progress) {
+std::vector<NetworkCounts> Simulator::Impl::evaluate_each(std::span<const Network> networks,
+                                                          const EvaluateOptions& options, const Progress& progress) {
   std::vector<NetworkCounts> all(networks.size());
   for (NetworkCounts& counts : all) counts.cancelled = true;
   // Networks without active stations skip the engine; sums over the field, and passes, are made here.
-  std::vector<std::vector<TraceStation>> traced;
+  std::vector<std::vector<TraceStation>> tracing;
   std::vector<std::uint32_t> sizes;
   std::vector<std::size_t> places;
   const auto many = static_cast<double>(networks.size());
   for (std::size_t k = 0; k < networks.size() && !progress.stopped(); ++k) {
-    std::vector<TraceStation> active = impl_->active_stations(networks[k]);
+    std::vector<TraceStation> active = active_stations(networks[k]);
     if (active.empty() || options.registration || networks[k].size() > mask_bits) {
       all[k] = evaluate(
           networks[k], options,
           {.report = [&](double part) { progress((static_cast<double>(k) + part) / many); }, .stop = progress.stop});
       continue;
     }
-    traced.push_back(std::move(active));
+    tracing.push_back(std::move(active));
     sizes.push_back(static_cast<std::uint32_t>(networks[k].size()));
     places.push_back(k);
   }
   std::vector<NetworkCounts> counts =
-      impl_->tracer->count_each(traced, sizes, {.masks = options.overlap, .skip = options.skip}, progress);
+      tracer->count_each(tracing, sizes, {.masks = options.overlap, .skip = options.skip}, progress);
   for (std::size_t k = 0; k < counts.size(); ++k) all[places[k]] = std::move(counts[k]);
   return all;
 }
 
-std::vector<NetworkCounts> Simulator::evaluate_sampled(std::span<const Network> networks, const SampleOptions& options,
-                                                       const Progress& progress) {
+std::vector<NetworkCounts> Simulator::Impl::evaluate_one_by_one(std::span<const Network> networks,
+                                                                const SampleOptions& options,
+                                                                const Progress& progress) {
+  std::vector<NetworkCounts> all;
+  const auto share = [&](double done) {
+    progress((static_cast<double>(all.size()) + done) / static_cast<double>(networks.size()));
+  };
+  for (std::size_t k = 0; k < networks.size(); ++k) {
+    SampleOptions one = options;
+    if (options.points)
+      one.points = [&options, k](std::size_t, std::span<const std::uint32_t> points) { options.points(k, points); };
+    NetworkCounts counts =
+        evaluate_sampled(networks.subspan(k, 1), one, {.report = share, .stop = progress.stop}).front();
+    all.push_back(std::move(counts));
+    if (all.back().cancelled) break;
+  }
+  for (std::size_t k = all.size(); k < networks.size(); ++k) all.push_back(all.back());
+  return all;
+}
+
+std::vector<NetworkCounts> Simulator::Impl::evaluate_sampled(std::span<const Network> networks,
+                                                             const SampleOptions& options, const Progress& progress) {
   check_registration(options.registration, options.overlap);
   const bool large = std::ranges::any_of(networks, [](const Network& n) { return n.size() > mask_bits; });
-  if (large && networks.size() > 1) return evaluate_one_by_one(*this, networks, options, progress);
-  const Simulator::Impl::Sample& drawn = impl_->sample(options.voxels, options.from);
-  const std::vector<std::uint32_t>& sample = drawn.ranks;
+  if (large && networks.size() > 1) return evaluate_one_by_one(networks, options, progress);
+  const Sample& taken = sample_of(options.voxels, options.from);
+  const std::vector<std::uint32_t>& sample = taken.ranks;
   std::vector<NetworkCounts> all(networks.size());
   // Networks without active stations skip the engine.
-  std::vector<std::vector<TraceStation>> traced;
+  std::vector<std::vector<TraceStation>> tracing;
   std::vector<std::uint32_t> sizes;
   std::vector<std::size_t> places;
   for (std::size_t k = 0; k < networks.size(); ++k) {
-    std::vector<TraceStation> active = impl_->active_stations(networks[k]);
+    std::vector<TraceStation> active = active_stations(networks[k]);
     if (active.empty() || sample.empty()) {
-      const std::uint32_t point_worth = impl_->grid->demands().least_worth();
-      all[k] = nothing_seen(sample.size(), impl_->weight_of(sample, 0, 1), point_worth, networks[k].size(),
-                            options.overlap, options.registration.has_value());
+      const std::uint32_t point_worth = grid->demands().least_worth();
+      all[k] = nothing_seen(sample.size(), weight_of(sample, 0, 1), point_worth, networks[k].size(), options.overlap,
+                            options.registration.has_value());
       for (std::uint32_t g = 0; options.groups && g < sample_groups; ++g)
         all[k].groups.push_back(nothing_seen((sample.size() + sample_groups - 1 - g) / sample_groups,
-                                             impl_->weight_of(sample, g, sample_groups), point_worth,
-                                             networks[k].size(), options.overlap, options.registration.has_value()));
+                                             weight_of(sample, g, sample_groups), point_worth, networks[k].size(),
+                                             options.overlap, options.registration.has_value()));
       if (options.points) options.points(k, std::vector<std::uint32_t>(sample.size()));
       continue;
     }
-    traced.push_back(std::move(active));
+    tracing.push_back(std::move(active));
     sizes.push_back(static_cast<std::uint32_t>(networks[k].size()));
     places.push_back(k);
   }
-  if (traced.empty()) return all;
+  if (tracing.empty()) return all;
   const auto points = [&](std::size_t k, std::span<const std::uint32_t> counted) {
     options.points(places[k], counted);
   };
   std::optional<RegistrationJob> registration;
-  if (options.registration)
-    registration = impl_->registration_of(sample, drawn.from, *options.registration, options.groups);
+  if (options.registration) registration = registration_of(sample, taken.from, *options.registration, options.groups);
   const Tracer::SampleJob job{.sample = sample,
                               .groups = options.groups ? sample_groups : 0,
                               .masks = options.overlap,
-                              .stop_at = options.stop_at_goal ? static_cast<std::uint32_t>(std::ceil(impl_->goal)) : 0,
+                              .stop_at = options.stop_at_goal ? static_cast<std::uint32_t>(std::ceil(goal)) : 0,
                               .points = options.points ? decltype(options.points)(points) : nullptr,
                               .registration = registration ? &*registration : nullptr};
   std::vector<NetworkCounts> counts;
   if (large)
-    counts.push_back(count_sampled_in_passes(*impl_->tracer, traced.front(), sizes.front(), job, *impl_->grid,
-                                             impl_->goal, progress));
+    counts.push_back(count_sampled_in_passes(*tracer, tracing.front(), sizes.front(), job, *grid, goal, progress));
   else
-    counts = impl_->tracer->count_sampled(traced, sizes, job, progress);
+    counts = tracer->count_sampled(tracing, sizes, job, progress);
   for (std::size_t k = 0; k < counts.size(); ++k) all[places[k]] = std::move(counts[k]);
   return all;
 }

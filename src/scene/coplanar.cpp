@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <mutex>
@@ -11,6 +12,7 @@
 
 #include "core/embree.hpp"
 #include "scene/positions.hpp"
+#include "vantage/error.hpp"
 
 namespace vantage {
 namespace {
@@ -85,16 +87,21 @@ bool overlap_in_plane(const Corners& a, const Corners& b, double slack) {
 
 struct Search {
   const Soup &surveyed, &blocking;
+  const std::uint64_t most;
   std::mutex mutex;
   std::vector<CoplanarPair> found;
+  std::atomic<bool> too_many = false;
 };
 
 void compare_pairs(void* user, RTCCollision* pairs, unsigned count) {
   Search& search = *static_cast<Search*>(user);
+  if (search.too_many) return;  // Embree takes no exceptions, and cannot be stopped
   for (unsigned k = 0; k < count; ++k) {
     const unsigned s = pairs[k].primID0, b = pairs[k].primID1;
     if (!overlap_in_plane(search.surveyed.corners(s), search.blocking.corners(b), search.surveyed.slack)) continue;
     const std::lock_guard lock(search.mutex);
+    if (search.found.size() >= search.most) search.too_many = true;
+    if (search.too_many) return;
     search.found.push_back({search.blocking.chosen[b], search.surveyed.chosen[s]});
   }
 }
@@ -102,7 +109,7 @@ void compare_pairs(void* user, RTCCollision* pairs, unsigned count) {
 }  // namespace
 
 Coplanar find_coplanar(std::span<const Float3> positions, std::span<const Triangle> triangles,
-                       std::span<const MeshRange> ranges, std::span<const MeshInfo> meshes) {
+                       std::span<const MeshRange> ranges, std::span<const MeshInfo> meshes, std::uint64_t most_pairs) {
   Soup surveyed{positions, triangles, {}}, blocking{positions, triangles, {}};
   for (std::size_t m = 0; m < ranges.size(); ++m) {
     std::vector<std::uint32_t>& chosen = (meshes[m].role == Role::surveyed ? surveyed : blocking).chosen;
@@ -142,10 +149,14 @@ Coplanar find_coplanar(std::span<const Float3> positions, std::span<const Triang
   const embree::Device device = embree::new_device();
   const embree::Scene surveyed_tree = tree_over(device.get(), surveyed),
                       blocking_tree = tree_over(device.get(), blocking);
-  Search search{surveyed, blocking, {}, {}};
+  Search search{surveyed, blocking, most_pairs, {}, {}};
   rtcCollide(surveyed_tree.get(), blocking_tree.get(), compare_pairs, &search);
   embree::check(device.get(), "looking for surfaces in one plane");
-  std::ranges::sort(search.found);  // threads found them in any order
+  if (search.too_many)
+    throw Error(Errc::out_of_memory, "more than " + std::to_string(most_pairs) +
+                                         " pairs of surveyed and blocking triangles overlap in one plane; leave "
+                                         "either of them out");
+  std::ranges::sort(search.found);  // threads found them
   return {surveyed.slack, std::move(search.found)};
 }
 

@@ -112,9 +112,14 @@ std::size_t count_surveyed(std::span<const CoplanarPair> pairs) {
 }  // namespace
 
 CoplanarCut cut_coplanar(RawScene& raw, std::vector<Float3>& positions) {
-  const Coplanar coplanar = find_coplanar(positions, raw.triangles, raw.ranges, raw.meshes);
+  // A pair is listed while the list grows, and a part is a polygon, corners and triangles.
+  constexpr std::uint64_t kPair = 3 * sizeof(CoplanarPair), kPart = 400;
+  const Coplanar coplanar = find_coplanar(positions, raw.triangles, raw.ranges, raw.meshes,
+                                          std::min(std::uint64_t{1} << 25, raw.spare_bytes / 2 / kPair));
   if (coplanar.pairs.empty()) return {};
   const std::vector<Covered> covered = by_blocking(coplanar.pairs);
+  CutAllowance allowance;
+  allowance.parts = std::min(allowance.parts.load(), static_cast<std::int64_t>(raw.spare_bytes / 2 / kPart));
   std::vector<std::vector<ConvexPolygon>> left(covered.size());
   tbb::parallel_for(std::size_t{0}, covered.size(), [&](std::size_t k) {
     const Frame frame(positions, raw.triangles[covered[k].blocking]);
@@ -124,7 +129,7 @@ CoplanarCut cut_coplanar(RawScene& raw, std::vector<Float3>& positions) {
       for (const std::uint32_t v : raw.triangles[pair.surveyed]) hole.push_back(frame.flat(to_glm(positions[v])));
       holes.push_back(counter_clockwise(std::move(hole)));
     }
-    left[k] = cut_away(frame.triangle(), holes, coplanar.slack_m);
+    left[k] = cut_away(frame.triangle(), holes, coplanar.slack_m, allowance);
   });
 
   std::vector<Triangle> triangles;

@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "vantage/error.hpp"
+
 namespace vantage {
 namespace {
 
@@ -75,7 +77,8 @@ struct Hole {
 
 class Cut {
  public:
-  Cut(const std::vector<ConvexPolygon>& holes, double slack) : slack_(slack) {
+  Cut(const std::vector<ConvexPolygon>& holes, double slack, CutAllowance& allowance)
+      : slack_(slack), allowance_(allowance) {
     for (const ConvexPolygon& hole : holes)
       if (width(hole) > 0) holes_.push_back({hole, Bounds(hole)});
   }
@@ -98,12 +101,14 @@ class Cut {
     std::vector<ConvexPolygon> parts{polygon};
     for (const Hole* hole : holes) {
       std::vector<ConvexPolygon> left;
+      spend(allowance_.visits, parts.size());
       for (ConvexPolygon& part : parts) {
         if (Bounds(part).overlaps(hole->bounds))
           subtract(std::move(part), hole->polygon, left);
         else
           left.push_back(std::move(part));
       }
+      spend(allowance_.parts, left.size() > parts.size() ? left.size() - parts.size() : 0);
       parts = std::move(left);
     }
     std::ranges::move(parts, std::back_inserter(parts_));
@@ -155,16 +160,25 @@ class Cut {
     return false;
   }
 
+  static void spend(std::atomic<std::int64_t>& left, std::size_t amount) {
+    if (left.fetch_sub(static_cast<std::int64_t>(amount), std::memory_order_relaxed) <
+        static_cast<std::int64_t>(amount))
+      throw Error(Errc::out_of_memory,
+                  "surveyed surfaces lie in one plane with blocking ones and cut these into too many parts; leave "
+                  "either of them out");
+  }
+
   double slack_;
+  CutAllowance& allowance_;
   std::vector<Hole> holes_;
   std::vector<ConvexPolygon> parts_;
 };
 
 }  // namespace
 
-std::vector<ConvexPolygon> cut_away(const ConvexPolygon& polygon, const std::vector<ConvexPolygon>& holes,
-                                    double slack) {
-  return Cut(holes, slack).from(polygon);
+std::vector<ConvexPolygon> cut_away(const ConvexPolygon& polygon, const std::vector<ConvexPolygon>& holes, double slack,
+                                    CutAllowance& allowance) {
+  return Cut(holes, slack, allowance).from(polygon);
 }
 
 }  // namespace vantage

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -27,15 +28,18 @@ struct RawScene {
   std::vector<Triangle> search_triangles;
   // Coarsest spacing, in metres, of the float32 values of the file's positions; 0 if they were exact.
   double coarsest_input_spacing_m = 0;
+  // Memory that cleaning may take beyond what these arrays make it take.
+  std::uint64_t spare_bytes = std::numeric_limits<std::uint64_t>::max();
   std::vector<std::string> notes;
   std::string defaults_json = "{}";
   SceneOptions options = {};
 };
 
-// Drops triangles that no ray can meet soundly (not finite, extremely far, without area, exact duplicates). Then
-// subtracts the local origin in double, rounds to float, cuts blocking triangles back where surveyed ones lie in their
-// plane, and removes unused vertices. Notes say what was dropped. Throws Error malformed_file, prefixed with `source`,
-// if no surveyed triangle is left.
+// Drops triangles that no ray can meet soundly (not finite, absurdly far, without area, exact duplicates), takes off
+// the local origin in double, rounds to float, cuts blocking triangles back where surveyed ones lie in their plane and
+// removes unused vertices. What was dropped is said in the notes.
+// Throws Error: malformed_file, prefixed with `source`, where no surveyed triangle is left; out_of_memory where more
+// blocking triangles lie in one plane with surveyed ones than can be cut.
 std::shared_ptr<const SceneData> finish_scene(RawScene&& raw, const std::string& source);
 
 // Removes meshes without triangles; sets the other meshes' counts from their ranges.

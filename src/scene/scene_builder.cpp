@@ -34,6 +34,9 @@ void check(const SceneMesh& mesh, std::size_t number) {
     throw refused(who + ": the diffuse coefficient must be in [0, 1]; " + std::to_string(mesh.diffuse) + " was given");
   if (mesh.weight < 1 || mesh.weight > kMostWeight)
     throw refused(who + ": the weight must be from 1 to 255; " + std::to_string(mesh.weight) + " was given");
+  for (const auto& [what, metres] : {std::pair("detail", mesh.detail_m), std::pair("accuracy", mesh.accuracy_m)})
+    if (!(metres >= 0 && std::isfinite(metres)))
+      throw refused(who + ": the " + what + " must be 0 or more metres; " + std::to_string(metres) + " was given");
   for (const float channel : mesh.colour)
     if (!(channel >= 0 && channel <= 1))
       throw refused(who + ": a colour's channels must be in [0, 1]; " + std::to_string(channel) + " was given");
@@ -103,7 +106,15 @@ struct SceneBuilder::Impl {
   }
   static bool in_scene(Role role) { return role == Role::surveyed || role == Role::blocking; }
   static MeshInfo info(const SceneMesh& mesh, Role role) {
-    return {mesh.name, role, mesh.diffuse, static_cast<std::uint32_t>(mesh.triangles.size()), mesh.weight};
+    return {.name = mesh.name,
+            .role = role,
+            .diffuse = mesh.diffuse,
+            .triangle_count = static_cast<std::uint32_t>(mesh.triangles.size()),
+            .weight = mesh.weight,
+            .door = mesh.door,
+            .station_area = mesh.station_area,
+            .detail_m = mesh.detail_m,
+            .accuracy_m = mesh.accuracy_m};
   }
   static Material material(const SceneMesh& mesh) {
     Material out;

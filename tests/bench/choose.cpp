@@ -8,21 +8,20 @@
 #include <vector>
 
 #include "core/philox.hpp"
-#include "plan/choose_on_rows.hpp"
-#include "vantage/bound.hpp"
+#include "cover/swaps.hpp"
 
 namespace vantage::bench {
 namespace {
 
 // A square floor of one voxel a cell, with candidates all over it. Of the cells within reach each sees those that
 // nothing hides at random, the nearer the denser: a station at the goal out to a third of its reach.
-CaptureRows floor_rows(const ChooseOptions& options) {
+CoverageMatrix floor_matrix(const ChooseOptions& options) {
   RandomStream random(options.seed);
   const auto side = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(options.voxels))));
   // So far that the stations' discs cover the floor once.
   const double reach = std::sqrt(static_cast<double>(side * side) / 3.14159 / static_cast<double>(options.stations));
   constexpr double goal = 100;
-  CaptureRows rows(std::vector<std::uint32_t>(side * side, 1), goal);
+  CoverageMatrix matrix(std::vector<std::uint32_t>(side * side, 1), goal);
   std::vector<std::uint32_t> points(side * side);
   for (std::size_t k = 0; k < options.candidates; ++k) {
     std::fill(points.begin(), points.end(), 0u);
@@ -38,9 +37,9 @@ CaptureRows floor_rows(const ChooseOptions& options) {
         if (away < 1 && random.uniform() < 0.7)
           points[j * side + i] = static_cast<std::uint32_t>(goal / std::max(9 * away * away, 0.1));
       }
-    rows.add(points);
+    matrix.add(points);
   }
-  return rows;
+  return matrix;
 }
 
 }  // namespace
@@ -56,22 +55,23 @@ void ChooseOptions::add(CLI::App& command) {
 }
 
 void run_choose(const ChooseOptions& options) {
-  const CaptureRows rows = floor_rows(options);
+  const CoverageMatrix matrix = floor_matrix(options);
   using Clock = std::chrono::steady_clock;
   std::printf("what,stations,coverage,seconds\n");
   const auto timed = [&](const char* what, auto&& choose) {
     const auto begun = Clock::now();
-    const std::vector<std::size_t> chosen = choose();
+    const std::vector<std::size_t> found = choose();
     const double seconds = std::chrono::duration<double>(Clock::now() - begun).count();
-    std::printf("%s,%zu,%.4f,%.2f\n", what, chosen.size(), RowCover(rows, chosen).value(), seconds);
+    std::printf("%s,%zu,%.4f,%.2f\n", what, found.size(), matrix.coverage(found), seconds);
     std::fflush(stdout);
-    return chosen;
+    return found;
   };
-  const auto greedy = timed("greedy", [&] { return choose_greedily(rows, options.stations); });
-  timed("swaps", [&] { return improve_by_swaps(rows, greedy); });
-  const auto enough =
-      timed("greedy for the capture", [&] { return choose_greedily(rows, options.candidates, {}, options.capture); });
-  timed("drops and swaps", [&] { return drop_and_swap(rows, enough, 0, options.capture); });
+  const CoverProblem most{.matrix = matrix, .most = options.stations};
+  const auto chosen = timed("greedy", [&] { return greedy(most); });
+  timed("swaps", [&] { return improve_by_swaps(most, chosen); });
+  const CoverProblem fewest{.matrix = matrix, .coverage = options.capture};
+  const auto enough = timed("greedy for the coverage", [&] { return greedy(fewest); });
+  timed("drops and swaps", [&] { return drop_and_swap(fewest, enough); });
 }
 
 }  // namespace vantage::bench

@@ -11,10 +11,11 @@
 #include <span>
 #include <utility>
 
+#include "bench/baselines.hpp"
 #include "core/text.hpp"
 #include "export/chart.hpp"
 #include "plan/decision_space.hpp"
-#include "plan/site.hpp"
+#include "plan/placement_oracle.hpp"
 #include "vantage/error.hpp"
 #include "vantage/planner.hpp"
 
@@ -157,6 +158,7 @@ void FrontOptions::add(CLI::App& command) {
   site.add(command);
   command.add_option("--problem", problem, "One of the method's problems")->capture_default_str();
   command.add_option("--number", stations, "Stations: N, or N..M where the number is searched")->capture_default_str();
+  command.add_option("--algorithm", algorithm, "mo_cma_es, or a baseline: nsga2, random_search")->capture_default_str();
   command.add_option("--population", population, "Networks of the front")->capture_default_str();
   command.add_option("--iterations", iterations, "Of so many evaluations each")->capture_default_str();
   command.add_option("--batch", batch, "Offspring at once; 0: by the engine")->capture_default_str();
@@ -181,7 +183,8 @@ void run_front(const FrontOptions& options) {
   const auto [fewest, most] = range_of(options.stations);
   const SurveyProblem problem = survey_problem(options.problem, fewest, most);
   const std::size_t objectives = problem.objectives.size();
-  const Site site = make_site(area, clash, simulator.scanner());
+  const Algorithm algorithm = algorithm_from_string(options.algorithm);
+  const PlacementOracle site = make_placement_oracle(area, clash, simulator.scanner());
   const DecisionSpace space(site, problem);
   EveryRay every_ray(simulator, space, problem);
 
@@ -196,6 +199,9 @@ void run_front(const FrontOptions& options) {
       search.sample_voxels = std::min(to, simulator.voxel_count()), search.sample_from = from < to ? from : 0;
       search.renew_iterations = renew;
       search.seed = seed;
+      search.optimiser = [algorithm](std::size_t dimension, std::size_t count, const OptimiserConfig& config) {
+        return make_optimiser(algorithm, dimension, count, config);
+      };
       Curve& curve = curves.emplace_back(Curve{sample, seed, {}});
       const Stopwatch watch;
       double next = options.first_s, searched = 0;

@@ -13,6 +13,7 @@ namespace vantage::bench {
 struct FrontOptions {
   SiteOptions site;
   std::string problem = "coverage-overlap-fix", stations = "15";
+  std::string algorithm = "mo_cma_es";
   std::size_t population = 250, iterations = 600, batch = 0;
   std::vector<std::string> samples{"20000", "2000..20000"};  // voxels, or from..to where it grows
   std::vector<std::uint64_t> seeds{1};

@@ -8,7 +8,7 @@
 
 #include "core/text.hpp"
 #include "export/chart.hpp"
-#include "vantage/bound.hpp"
+#include "vantage/candidates.hpp"
 #include "vantage/placement.hpp"
 
 namespace vantage::bench {
@@ -90,16 +90,12 @@ void run_gap(const GapOptions& options) {
   for (const std::size_t stations : options.counts)
     for (const std::size_t candidates : options.candidates) {
       if (candidates > all.stations().size()) continue;
-      CaptureRows rows(all.rows().weights(), all.rows().goal_density());
-      std::vector<std::uint32_t> points;
-      for (std::size_t k = 0; k < candidates; ++k) {
-        points.assign(rows.voxels().size(), 0);
-        for (const CapturedVoxel& seen : all.rows().row(k)) points[seen.voxel] = seen.points;
-        rows.add(points);
-      }
-      const CaptureBound bound = bound_capture(rows, stations);
-      dots.push_back({stations, candidates, bound.bound, bound.reached.value});
-      std::printf("%zu,%zu,%.4f,%.4f,%.4f\n", stations, candidates, bound.bound, bound.reached.value, bound.gap());
+      const CoverageMatrix& whole = all.coverage().matrix();
+      CoverageMatrix matrix(whole.weights(), whole.goal());
+      matrix.append(whole, candidates);
+      const CoverSolution best = max_cover({.matrix = matrix, .most = stations});
+      dots.push_back({stations, candidates, best.bound, best.coverage});
+      std::printf("%zu,%zu,%.4f,%.4f,%.4f\n", stations, candidates, best.bound, best.coverage, best.gap());
       std::fflush(stdout);
     }
   if (!options.picture.empty()) draw(options.picture, options, dots);

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/baselines.hpp"
 #include "optimise/normal_stream.hpp"
 #include "optimiser_problems.hpp"
 #include "survey_problem.hpp"

@@ -16,11 +16,11 @@ std::string text_of(const PlanResult& result) {
   };
   for (const PlanEntry& entry : result.front) {
     for (const double x : entry.x) add(x);
-    for (const auto& [name, value] : entry.values) {
+    for (const auto& [name, seen] : entry.searched) {
       text += name + " ";
-      add(value.searched), add(value.standard_error), add(value.exact);
+      add(seen.value), add(seen.standard_error), add(entry.value(name));
     }
-    for (const std::uint64_t points : entry.points_on_surveyed) add(static_cast<double>(points));
+    for (const std::uint64_t points : entry.counts.points_on_surveyed) add(static_cast<double>(points));
     text += "\n";
   }
   return text;

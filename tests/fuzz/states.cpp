@@ -23,12 +23,8 @@ void append(std::string& bytes, T value) {
 std::unique_ptr<Optimiser> small_optimiser(std::size_t kind) {
   const OptimiserConfig config{
       .population = 6, .bounds = Bounds{{0, 0, 0, 0}, {1, 1, 1, 1}}, .blocks = {{0, 1}, {2, 3}}};
-  switch (kind) {
-    case 0: return make_optimiser(Algorithm::cma_es, 4, 1, config);
-    case 1: return make_optimiser(Algorithm::mo_cma_es, 4, 2, config);
-    case 2: return make_optimiser(Algorithm::nsga2, 4, 2, config);
-    default: return make_optimiser(Algorithm::random_search, 4, 2, config);
-  }
+  if (kind == 0) return std::make_unique<CmaEs>(4, config);
+  return std::make_unique<MoCmaEs>(4, 2, config);
 }
 
 std::string saved(const Optimiser& optimiser) {
@@ -100,7 +96,7 @@ std::string signed_checkpoint(const std::string& body) {
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> state_seeds() {
-  static constexpr const char* names[] = {"cma_es", "mo_cma_es", "nsga2", "random_search"};
+  static constexpr const char* names[] = {"cma_es", "mo_cma_es"};
   std::vector<std::pair<std::string, std::string>> seeds;
   Checkpoint checkpoint;
   checkpoint.identity = "seed = 1\nstations = 2\n";
@@ -112,7 +108,7 @@ std::vector<std::pair<std::string, std::string>> state_seeds() {
     const std::size_t head = head_of(state).size() + 8, sum = 8;
     seeds.emplace_back(std::string("optimiser_state/") + names[kind],
                        static_cast<char>(kind) + state.substr(head, state.size() - head - sum));
-    if (kind == 3) checkpoint.snapshot.optimiser = state;
+    if (kind == 1) checkpoint.snapshot.optimiser = state;
   }
   checkpoint.snapshot.drawn = 12, checkpoint.snapshot.redrawn = 1;
   checkpoint.snapshot.history = {{1, 6, 0.25, {{0.5, 0.25}}, 0.5}, {2, 12, 0.5, {{0.5, 0.125}, {0.25, 0.75}}, 1}};
@@ -138,11 +134,10 @@ void checkpoint(Bytes bytes) {
 // The first byte selects the optimiser, and whether the bytes are a whole file or the part behind the header.
 void optimiser_state(Bytes bytes) {
   if (bytes.empty()) return;
-  const std::size_t kind = bytes[0] % 4;
+  const std::size_t kind = bytes[0] % 2;
   const Bytes rest = bytes.subspan(1);
   if (bytes[0] & 4) return load_and_go_on(kind, text_of(rest));
-  static const std::string heads[] = {head_of(saved(*small_optimiser(0))), head_of(saved(*small_optimiser(1))),
-                                      head_of(saved(*small_optimiser(2))), head_of(saved(*small_optimiser(3)))};
+  static const std::string heads[] = {head_of(saved(*small_optimiser(0))), head_of(saved(*small_optimiser(1)))};
   load_and_go_on(kind, signed_state(heads[kind], rest));
 }
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
-#include "cli/area.hpp"
-#include "cli/scanners.hpp"
 #include "fuzz/target.hpp"
 #include "placement/area_limits.hpp"
 #include "vantage/export.hpp"
@@ -14,7 +12,7 @@ namespace {
 void region(Bytes bytes, const char* name) {
   const std::string file = file_of(bytes, name);
   accepts([&] {
-    const PlanRegion found = cli::read_region(file);
+    const PlanRegion found = read_region(file);
     require(!found.rings.empty(), "a region has a ring");
     for (const auto& ring : found.rings) {
       require(ring.size() >= 3, "a ring has three corners");
@@ -44,7 +42,7 @@ void stations_csv(Bytes bytes) {
 void noise_csv(Bytes bytes) {
   const std::string file = file_of(bytes, "noise.csv");
   accepts([&] {
-    const NoiseTable table = cli::load_noise(file);
+    const NoiseTable table = load_noise(file);
     require(table.sigma_m.size() == table.distances_m.size() * table.reflectivities.size(), "a table is full");
     require(std::is_sorted(table.distances_m.begin(), table.distances_m.end()), "distances rise");
     for (const auto* values : {&table.distances_m, &table.reflectivities, &table.sigma_m})

@@ -43,8 +43,9 @@ class Plans(unittest.TestCase):
     def test_objectives_in_python_are_searched_as_built_in_ones(self):
         built_in = self.plan(vantage.coverage_overlap_fix(4))
         own = self.plan(vantage.SurveyProblem(objectives=[
-            vantage.Objective("own_coverage", lambda network: network.evaluation.coverage),
-            vantage.Objective("own_overlap", lambda network: network.evaluation.overlap, pairs=True)]))
+            vantage.Objective("own_coverage", lambda network: network.evaluation.coverage, vantage.maximise(1, 0)),
+            vantage.Objective("own_overlap", lambda network: network.evaluation.overlap, vantage.maximise(1, 0),
+                              pairs=True)]))
         self.assert_same_front(built_in, own)
         self.assertEqual(built_in.hypervolume, own.hypervolume)
         entry = own.answer
@@ -54,13 +55,22 @@ class Plans(unittest.TestCase):
 
     def test_objectives_in_python_may_look_at_registration(self):
         options = vantage.RegistrationOptions()
-        own = vantage.Objective("own_mm", lambda network: 1e3 * network.evaluation.registration.rms_m, best=0,
-                                worst=100, registration=options)
+        own = vantage.Objective("own_mm", lambda network: 1e3 * network.evaluation.registration.rms_m,
+                                vantage.minimise(0, 100), registration=options)
         answer = self.plan(vantage.SurveyProblem(objectives=[own, "registration"]), population=4, iterations=2).answer
         expected = 1e3 * self.simulator.evaluate(answer.heads, registration=options).registration.rms_m
         self.assertEqual(answer.value("own_mm"), expected)
         self.assertEqual(answer.value("registration"), expected)
         self.assertEqual(1e3 * answer.registration.rms_m, expected)
+
+    def test_objectives_say_which_way_is_better(self):
+        with self.assertRaises(TypeError):
+            vantage.Objective("walk", lambda network: 1)
+        for way, best, worst in (vantage.minimise, 1, 0), (vantage.maximise, 0, 1), (vantage.minimise, 0, np.inf):
+            with self.assertRaisesRegex(vantage.Error, f"{way.__name__}: the scale must have best .= worst"):
+                way(best, worst)
+        walk = vantage.Objective("walk", lambda network: 1, vantage.minimise(0, 20), unit="m")
+        self.assertEqual((walk.scale.best, walk.scale.worst, repr(walk.scale)), (0, 20, "vantage.minimise(0.0, 20.0)"))
 
     def test_requirements_and_kept_stations_hold(self):
         problem = vantage.SurveyProblem(
@@ -126,11 +136,11 @@ class Plans(unittest.TestCase):
             raise LookupError("no such thing")
 
         with self.assertRaisesRegex(LookupError, "no such thing"):
-            self.plan(vantage.SurveyProblem(objectives=[vantage.Objective("fails", fail)]))
+            self.plan(vantage.SurveyProblem(objectives=[vantage.Objective("fails", fail, vantage.maximise(1, 0))]))
         with self.assertRaisesRegex(LookupError, "no such thing"):
             self.plan(vantage.coverage_fix(4), progress=fail)
         with self.assertRaisesRegex(TypeError, "must be real number"):
-            self.plan(vantage.SurveyProblem(objectives=[vantage.Objective("text", lambda network: "much")]))
+            self.plan(vantage.SurveyProblem(objectives=[vantage.Objective("text", lambda network: "much", vantage.maximise(1, 0))]))
         with self.assertRaisesRegex(TypeError, "plan: population: -1 is no int of 0 or more"):
             self.plan(vantage.coverage_fix(4), population=-1)
         with self.assertRaisesRegex(vantage.Error, "nonsense"):

@@ -83,8 +83,16 @@ class Building(unittest.TestCase):
         builder.move(number, (0, 10, 0))
         np.testing.assert_allclose(builder.build().bounds[:, 1], [13, 13])
         np.testing.assert_allclose(first.bounds[:, 1], [3, 3])
-        builder.replace(number, *wall((0, 0, 5)))
-        np.testing.assert_allclose(builder.build().bounds[:, 2], [4, 6])
+        builder.replace(number, *wall((0, 0, 5)), door=True, station_area=True, detail_m=0.008, accuracy_m=0.003)
+        second = builder.build()
+        np.testing.assert_allclose(second.bounds[:, 2], [4, 6])
+        limits = [(mesh.door, mesh.station_area, mesh.detail_m, mesh.accuracy_m)
+                  for scene in (first, second) for mesh in scene.meshes]
+        self.assertEqual(limits, [(False, False, 0, 0), (True, True, 0.008, 0.003)])
+        with self.assertRaisesRegex(TypeError, "SceneBuilder.add: no option 'doors'; there are name, role"):
+            builder.add(*wall(), doors=True)
+        with self.assertRaisesRegex(vantage.Error, "the detail must be 0 or more metres"):
+            builder.add(*wall(), detail_m=-1)
 
 
 class Placing(unittest.TestCase):

@@ -12,6 +12,7 @@ Objective apart(const ObjectiveSettings&) {
   return {.name = "apart",
           .label = "Distance of the nearest two stations",
           .unit = "m",
+          .scale = maximise(1, 0),
           .needs = {.counts = false},
           .value = [](const MeasuredNetwork& m) {
             double nearest = std::numeric_limits<double>::infinity();

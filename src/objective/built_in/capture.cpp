@@ -16,6 +16,7 @@ Objective capture(const ObjectiveSettings& settings) {
                 "capture is told against what can be seen, a coverage above 0 and at most 1, not " + number(visible));
   return {.name = "capture",
           .label = "Capture (share of what can be seen)",
+          .scale = maximise(1, 0),
           .value =
               [visible](const MeasuredNetwork& m) {
                 return std::min(1.0, vantage::coverage(m.counts, m.goal_density) / visible);

@@ -7,6 +7,7 @@ namespace vantage::built_in {
 Objective coverage(const ObjectiveSettings&) {
   return {.name = "coverage",
           .label = "Coverage (1: every surveyed voxel at its goal density)",
+          .scale = maximise(1, 0),
           .value = [](const MeasuredNetwork& m) { return vantage::coverage(m.counts, m.goal_density); },
           .standard_error =
               [](const MeasuredNetwork& m) {

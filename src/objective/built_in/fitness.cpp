@@ -17,6 +17,7 @@ Objective fitness(const ObjectiveSettings& settings) {
   const auto low = static_cast<double>(settings.stations_min), high = static_cast<double>(settings.stations_max);
   return {.name = "fitness",
           .label = "Fitness (weighted sum of coverage, spared stations, visibility)",
+          .scale = maximise(1, 0),
           .needs = {.visibility = true},
           .value =
               [weights, low, high](const MeasuredNetwork& m) {

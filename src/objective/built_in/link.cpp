@@ -8,6 +8,7 @@ namespace vantage::built_in {
 Objective link(const ObjectiveSettings&) {
   return {.name = "link",
           .label = "Weakest link (share of the smaller scan, over all surfaces)",
+          .scale = maximise(1, 0),
           .needs = {.counts = false, .surroundings = true},
           .value = [](const MeasuredNetwork& m) {
             return m.stations.size() == 1 ? 1 : connectivity(scan_overlap_matrix(*m.surroundings), 0).weakest_overlap;

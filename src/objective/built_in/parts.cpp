@@ -8,8 +8,7 @@ namespace vantage::built_in {
 Objective parts(const ObjectiveSettings& settings) {
   return {.name = "parts",
           .label = "Parts that no link connects",
-          .best = 1,
-          .worst = 2,
+          .scale = minimise(1, 2),
           .needs = {.pairs = true},
           .value = [least = settings.link_overlap](
                        const MeasuredNetwork& m) { return static_cast<double>(connectivity(m.overlap, least).parts); },

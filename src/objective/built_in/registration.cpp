@@ -31,8 +31,7 @@ Objective registration_figure(const ObjectiveSettings& settings, std::string nam
       .name = std::move(name),
       .label = std::move(label),
       .unit = "mm",
-      .best = 0,
-      .worst = worst_mm,
+      .scale = minimise(0, worst_mm),
       .needs = {.pairs = true, .surroundings = all, .registration = options.model, .surroundings_registration = all},
       .value =
           [options, figure](const MeasuredNetwork& m) {

@@ -6,8 +6,7 @@ namespace vantage::built_in {
 Objective stations(const ObjectiveSettings& settings) {
   return {.name = "stations",
           .label = "Number of stations",
-          .best = static_cast<double>(settings.stations_min),
-          .worst = static_cast<double>(settings.stations_max),
+          .scale = {static_cast<double>(settings.stations_min), static_cast<double>(settings.stations_max)},
           .needs = {.counts = false},
           .value = [](const MeasuredNetwork& m) { return static_cast<double>(m.stations.size()); },
           .by_alpha = true};

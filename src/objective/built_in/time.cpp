@@ -8,9 +8,8 @@ Objective time(const ObjectiveSettings& settings) {
   return {.name = "time",
           .label = "Time on site",
           .unit = "min",
-          .best = 0,
           // An hour per station, if the number is known: no survey exceeds this scale.
-          .worst = 60 * static_cast<double>(settings.stations_max),
+          .scale = minimise(0, 60 * static_cast<double>(settings.stations_max)),
           .needs = {.counts = false, .time = true},
           .value = [](const MeasuredNetwork& m) { return m.minutes_on_site; }};
 }

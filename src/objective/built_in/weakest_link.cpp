@@ -8,6 +8,7 @@ namespace vantage::built_in {
 Objective weakest_link(const ObjectiveSettings&) {
   return {.name = "weakest_link",
           .label = "Weakest link (share of the smaller scan)",
+          .scale = maximise(1, 0),
           .needs = {.pairs = true},
           .value = [](const MeasuredNetwork& m) {
             return m.stations.size() == 1 ? 1 : connectivity(scan_overlap_matrix(m.counts), 0).weakest_overlap;

@@ -53,24 +53,63 @@ std::uint32_t little_endian(Bytes bytes, std::size_t offset) {
          static_cast<std::uint32_t>(bytes[offset + 2]) << 16 | static_cast<std::uint32_t>(bytes[offset + 3]) << 24;
 }
 
-// Deepest nesting of arrays and objects; brackets inside strings do not count.
-int nesting(Bytes text) {
-  int depth = 0, deepest = 0;
+// Of a JSON text, told before it is parsed; brackets and commas inside strings do not count.
+struct Outline {
+  int deepest = 0;  // nesting of arrays and objects
+  std::uint64_t containers = 0, values = 0, members = 0, strings = 0;
+
+  // What the parsed document takes at most. A value is a slot of an array that may have grown to twice what it needs;
+  // a member is a node of a map, with a name; containers and strings are allocated by themselves.
+  std::uint64_t bytes(std::size_t text) const {
+    return 24 * values + 64 * containers + 96 * members + 48 * strings + text;
+  }
+};
+
+Outline outline_of(Bytes text) {
+  Outline outline;
+  int depth = 0;
   bool in_string = false;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const std::uint8_t c = text[i];
     if (in_string) {
       if (c == '\\') ++i;
       if (c == '"') in_string = false;
-    } else if (c == '"') {
-      in_string = true;
-    } else if (c == '{' || c == '[') {
-      deepest = std::max(deepest, ++depth);
-    } else if (c == '}' || c == ']') {
-      --depth;
+      continue;
+    }
+    switch (c) {
+      case '"':
+        in_string = true;
+        ++outline.strings;
+        break;
+      case '{':
+      case '[':
+        outline.deepest = std::max(outline.deepest, ++depth);
+        ++outline.containers, ++outline.values;
+        break;
+      case '}':
+      case ']': --depth; break;
+      case ',': ++outline.values; break;
+      case ':': ++outline.members; break;
+      default: break;
     }
   }
-  return deepest;
+  return outline;
+}
+
+// A copy without what only this program looks at, in the document itself: tinygltf would make of each number in it an
+// object of a hundred bytes and more.
+json without_extras(const json& element) {
+  const auto part = [](const json& value) { return value.is_structured() ? without_extras(value) : value; };
+  if (element.is_array()) {
+    json copy = json::array();
+    copy.get_ref<json::array_t&>().reserve(element.size());
+    for (const json& value : element) copy.push_back(part(value));
+    return copy;
+  }
+  json copy = json::object();
+  for (const auto& [key, value] : element.get_ref<const json::object_t&>())
+    if (key != "extras" && key != "extensions") copy[key] = part(value);
+  return copy;
 }
 
 std::string percent_decoded(const std::string& uri) {
@@ -111,13 +150,18 @@ std::string quoted(const std::string& text) {
   return text.size() <= kLongest ? "\"" + text + "\"" : "\"" + text.substr(0, kLongest) + "…\"";
 }
 
-File::File(const std::filesystem::path& path, bool allow_outside)
-    : path_(path), allow_outside_(allow_outside), bytes_(read_file(path, "the scene cannot be read")) {
+File::File(const std::filesystem::path& path, bool allow_outside, LoadBudget& budget)
+    : path_(path),
+      allow_outside_(allow_outside),
+      budget_(budget),
+      bytes_(read_file(path, "the scene cannot be read", budget)) {
   read_bytes();
 }
 
-File::File(std::vector<std::uint8_t> bytes, const std::string& name)
-    : path_(name), allow_outside_(false), in_memory_(true), bytes_(std::move(bytes)) {
+File::File(std::span<const std::uint8_t> bytes, const std::string& name, LoadBudget& budget)
+    : path_(name), allow_outside_(false), in_memory_(true), budget_(budget) {
+  budget_.keep(bytes.size(), "a copy of the file");
+  bytes_.assign(bytes.begin(), bytes.end());
   read_bytes();
 }
 
@@ -171,9 +215,12 @@ Bytes File::open_container() {
 }
 
 void File::parse(Bytes text) {
-  if (const int depth = nesting(text); depth > kDeepestJson)
-    throw malformed("the JSON nests " + std::to_string(depth) + " levels deep; at most " +
+  const Outline outline = outline_of(text);
+  if (outline.deepest > kDeepestJson)
+    throw malformed("the JSON nests " + std::to_string(outline.deepest) + " levels deep; at most " +
                     std::to_string(kDeepestJson) + " are read");
+  document_bytes_ = outline.bytes(text.size());
+  budget_.keep(document_bytes_, "the JSON");
   try {
     json_ = json::parse(text.begin(), text.end());
   } catch (const json::exception& problem) {
@@ -280,6 +327,8 @@ void File::check_integers() const {
 
 std::vector<std::uint8_t> File::read_uri(const std::string& uri, const std::string& what) const {
   if (uri.starts_with("data:")) {
+    budget_.keep(uri.size(), "the data URI of " + what);
+    budget_.require(2 * uri.size(), "decoding the data URI of " + what);
     std::vector<std::uint8_t> bytes;
     std::string type;
     if (!tinygltf::IsDataURI(uri) || !tinygltf::DecodeDataURI(&bytes, type, uri, 0, false))
@@ -295,7 +344,7 @@ std::vector<std::uint8_t> File::read_uri(const std::string& uri, const std::stri
                     ", which glTF in memory cannot name; put it into the bytes");
   const std::string name = percent_decoded(uri), user = path_.string() + ": " + what;
   if (name.find('\0') != std::string::npos) throw malformed(what + ": " + quoted(uri) + " is no file name");
-  return read_file(locate(path_.parent_path(), name, allow_outside_, user), user + " is missing");
+  return read_file(locate(path_.parent_path(), name, allow_outside_, user), user + " is missing", budget_);
 }
 
 void File::load_buffers(Bytes glb_chunk) {
@@ -324,12 +373,33 @@ void File::load_buffers(Bytes glb_chunk) {
   }
 }
 
+std::uint64_t File::model_bytes() const {
+  // Lists grow by doubling. A node is kept with its place and names, too (node_tree.hpp).
+  constexpr std::uint64_t kPlacedNode = 1000;
+  std::uint64_t primitives = 0;
+  if (const auto meshes = json_.find("meshes"); meshes != json_.end())
+    for (const json& mesh : *meshes)
+      if (const auto list = mesh.find("primitives"); list != mesh.end()) primitives += list->size();
+  return document_bytes_ + (2 * sizeof(tinygltf::Node) + kPlacedNode) * count("nodes") +
+         2 * (sizeof(tinygltf::Accessor) * count("accessors") + sizeof(tinygltf::BufferView) * count("bufferViews") +
+              sizeof(tinygltf::Mesh) * count("meshes") + sizeof(tinygltf::Primitive) * primitives +
+              sizeof(tinygltf::Sampler) * count("samplers") + sizeof(tinygltf::Scene) * count("scenes") +
+              sizeof(tinygltf::Texture) * count("textures"));
+}
+
 void File::read_structure() {
-  json structure = json::object();
-  for (const char* part : {"asset", "accessors", "bufferViews", "extensionsUsed", "materials", "meshes", "nodes",
-                           "samplers", "scene", "scenes", "textures"})
-    if (const auto it = json_.find(part); it != json_.end()) structure[part] = *it;
-  const std::string text = structure.dump();
+  budget_.keep(model_bytes(), "its " + std::to_string(count("nodes")) + " nodes, " + std::to_string(count("meshes")) +
+                                  " meshes and " + std::to_string(count("accessors")) + " accessors");
+  budget_.require(2 * document_bytes_, "reading the JSON");
+  std::string text;
+  {
+    json structure = json::object();
+    for (const char* part : {"asset", "accessors", "bufferViews", "extensionsUsed", "meshes", "nodes", "samplers",
+                             "scene", "scenes", "textures"})
+      if (const auto it = json_.find(part); it != json_.end())
+        structure[part] = it->is_structured() ? without_extras(*it) : *it;
+    text = structure.dump();
+  }
   tinygltf::TinyGLTF loader;
   std::string error, warning;
   bool read = false;
@@ -370,19 +440,22 @@ Bytes File::view(int index, const std::string& user) const {
   return buffer.subspan(view.byteOffset, view.byteLength);
 }
 
-std::vector<std::uint8_t> File::image(int index) const {
+Bytes File::image(int index, std::vector<std::uint8_t>& own) const {
   const auto images = json_.find("images");
   const std::string name = "image " + std::to_string(index);
   if (images == json_.end() || index < 0 || static_cast<std::size_t>(index) >= images->size())
     throw malformed("there is no " + name);
   const json& image = (*images)[static_cast<std::size_t>(index)];
-  if (const auto view_index = image.find("bufferView"); view_index != image.end()) {
-    const Bytes bytes = view(view_index->get<int>(), name);
-    return {bytes.begin(), bytes.end()};
-  }
+  if (const auto view_index = image.find("bufferView"); view_index != image.end())
+    return view(view_index->get<int>(), name);
   const auto uri = image.find("uri");
   if (uri == image.end() || !uri->is_string()) throw malformed(name + " has neither uri nor bufferView");
-  return read_uri(uri->get<std::string>(), name);
+  return own = read_uri(uri->get<std::string>(), name);
+}
+
+std::size_t File::count(const char* array) const {
+  const auto elements = json_.find(array);
+  return elements != json_.end() && elements->is_array() ? elements->size() : 0;
 }
 
 const nlohmann::json& File::find(const char* array, int index, std::initializer_list<const char*> path) const {

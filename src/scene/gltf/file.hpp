@@ -17,6 +17,7 @@
 #define TINYGLTF_NO_EXTERNAL_IMAGE
 #include <tiny_gltf.h>
 
+#include "scene/load_budget.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage::gltf {
@@ -29,17 +30,19 @@ using Bytes = std::span<const std::uint8_t>;
 class File {
  public:
   // Its buffers and images may lie below its own folder, or anywhere if `allow_outside`. Throws Error: io,
-  // malformed_file.
-  File(const std::filesystem::path& path, bool allow_outside);
-  // From memory; `name` opens messages. Its buffers and images lie in it. Throws Error malformed_file.
-  File(std::vector<std::uint8_t> bytes, const std::string& name);
+  // malformed_file, out_of_memory where `budget`, which must outlive the file, has too little for what it takes.
+  File(const std::filesystem::path& path, bool allow_outside, LoadBudget& budget);
+  // From memory; `name` opens messages. Its buffers and images lie in it. Throws Error: malformed_file, out_of_memory.
+  File(std::span<const std::uint8_t> bytes, const std::string& name, LoadBudget& budget);
 
   const tinygltf::Model& model() const { return model_; }
   const nlohmann::json& document() const { return json_; }
   // Bytes of a buffer view. Throws Error malformed_file where it, or its buffer, does not exist or ends too early.
   Bytes view(int index, const std::string& user) const;
-  // Encoded bytes of an image. Throws Error: io, malformed_file.
-  std::vector<std::uint8_t> image(int index) const;
+  // Encoded bytes of an image, in the file or in `own`. Throws Error: io, malformed_file.
+  Bytes image(int index, std::vector<std::uint8_t>& own) const;
+  // Of an array of the document, such as "materials".
+  std::size_t count(const char* array) const;
   // A member of an element, e.g. ("nodes", 3, {"extras", "vantage"}); null where there is none.
   const nlohmann::json& find(const char* array, int index, std::initializer_list<const char*> path) const;
 
@@ -54,15 +57,18 @@ class File {
   void check_extensions() const;
   void check_integers() const;
   void load_buffers(Bytes glb_chunk);
+  std::uint64_t model_bytes() const;
   void read_structure();
   std::vector<std::uint8_t> read_uri(const std::string& uri, const std::string& what) const;
 
   std::filesystem::path path_;
   bool allow_outside_;
   bool in_memory_ = false;
+  LoadBudget& budget_;
   std::vector<std::uint8_t> bytes_;                     // the whole file; a GLB's buffer 0 stays in here
   std::vector<std::vector<std::uint8_t>> own_buffers_;  // the others
   std::vector<Bytes> buffers_;
+  std::uint64_t document_bytes_ = 0;  // that json_ takes at most
   nlohmann::json json_;
   tinygltf::Model model_;
 };

@@ -10,6 +10,7 @@
 #include <mutex>
 #include <new>
 
+#include "core/text.hpp"
 #include "scene/gltf/file.hpp"
 #include "scene/gltf/material.hpp"
 #include "scene/gltf/node_tree.hpp"
@@ -26,6 +27,13 @@ namespace {
 
 constexpr std::size_t kBlock = 4096;
 constexpr std::size_t kMostTriangles = std::size_t{1} << 31;
+
+// Bytes of a vertex and a triangle, until the scene is finished. Of a vertex: in double, in float, its new number and
+// back. Of a triangle: its corners, its entry among those that may be duplicates, whether it is kept; and among
+// triangles of both roles, its leaves of two trees and its list. Of one that is read: its indices, its corners.
+constexpr double kVertex = 24 + 12 + 8, kTriangle = 12 + 16 + 1, kCoplanar = 100, kSearchVertex = 24 + 24 + 3 * 16 + 8,
+                 kSearchTriangle = 3 * 12;
+constexpr std::uint64_t kTriangleRead = 12 + 3 * 12;
 
 // A mesh that is to be read: one primitive as one node places it.
 struct Job {
@@ -77,14 +85,16 @@ std::uint32_t packed_colour(const double* rgba, int components) {
 
 class Loader {
  public:
-  Loader(File file, const SceneOptions& options)
-      : file_(std::move(file)), options_(options), materials_(file_, raw_.notes) {
+  // Borrows all that it is given.
+  Loader(const File& file, const SceneOptions& options, LoadBudget& budget)
+      : file_(file), options_(options), budget_(budget), materials_(file, budget, raw_.notes) {
     raw_.options = options;
   }
 
   RawScene load() {
-    const auto placed = flatten_scene(file_, options_, raw_.notes);
+    const auto placed = flatten_scene(file_, options_, budget_, raw_.notes);
     std::vector<Job> jobs = list_jobs(placed);
+    reserve(jobs);
     for (const Job& job : jobs) read(job);
     settle_axes();
     note_skipped();
@@ -121,6 +131,11 @@ class Loader {
   }
 
   std::vector<Job> list_jobs(const std::vector<PlacedMesh>& placed) {
+    constexpr std::uint64_t kPrimitive = 3 * (sizeof(Job) + sizeof(MeshInfo) + sizeof(MeshRange)) + kLongestName;
+    std::uint64_t primitives_placed = 0;
+    for (const PlacedMesh& mesh : placed)
+      primitives_placed += file_.model().meshes[static_cast<std::size_t>(mesh.mesh)].primitives.size();
+    budget_.keep(kPrimitive * primitives_placed, std::to_string(primitives_placed) + " primitives placed by nodes");
     std::vector<Job> jobs;
     bool some_surveyed = false;
     for (const PlacedMesh& mesh : placed) {
@@ -151,6 +166,41 @@ class Loader {
     for (Job& job : jobs)
       if (!job.role) job.role = some_surveyed ? Role::blocking : Role::surveyed;
     return jobs;
+  }
+
+  // Makes room for all meshes, once it is known to be there.
+  void reserve(const std::vector<Job>& jobs) {
+    double vertices = 0, triangles = 0, search_vertices = 0, search_triangles = 0;  // products of what a file claims
+    std::uint64_t largest = 0;
+    bool normals = false, colours = false, texcoords = false, roles[4] = {};
+    for (const Job& job : jobs) {
+      if (job.role == Role::ignore) continue;
+      const PrimitiveSize size = primitive_size(file_, job.placed->mesh, job.primitive);
+      const auto instances = static_cast<double>(job.placed->world_from_mesh.size());
+      const bool search = job.role == Role::search;
+      (search ? search_vertices : vertices) += instances * static_cast<double>(size.vertices);
+      (search ? search_triangles : triangles) += instances * static_cast<double>(size.triangles);
+      largest = std::max(largest, size.triangles);
+      normals |= size.normals, colours |= size.colours, texcoords |= job.material->texcoord_set >= 0;
+      roles[static_cast<std::size_t>(*job.role)] = true;
+    }
+    const double vertex = kVertex + (normals ? sizeof(Float3) : 0) + (texcoords ? sizeof(Float2) : 0) +
+                          (colours ? sizeof(std::uint32_t) : 0);
+    const bool both =
+        roles[static_cast<std::size_t>(Role::surveyed)] && roles[static_cast<std::size_t>(Role::blocking)];
+    const double bytes = vertex * vertices + (kTriangle + (both ? kCoplanar : 0)) * triangles +
+                         kSearchVertex * search_vertices + kSearchTriangle * search_triangles;
+    const auto whole = [](double value) { return static_cast<std::uint64_t>(std::min(value, 1e18)); };
+    const std::string what = number(whole(triangles + search_triangles)) + " triangles on " +
+                             number(whole(vertices + search_vertices)) + " vertices, instances counted,";
+    budget_.keep(whole(bytes), what);
+    budget_.require(kTriangleRead * largest, what);
+    raw_.positions.reserve(whole(vertices));
+    raw_.triangles.reserve(whole(triangles));
+    if (normals) raw_.normals.reserve(whole(vertices));
+    if (texcoords) raw_.texcoords.reserve(whole(vertices));
+    if (colours) raw_.colours.reserve(whole(vertices));
+    raw_.spare_bytes = budget_.left();
   }
 
   void read(const Job& job) {
@@ -303,8 +353,9 @@ class Loader {
     if (search_without_uv_) raw_.search_uvs.clear();
   }
 
-  File file_;
+  const File& file_;
   const SceneOptions& options_;
+  LoadBudget& budget_;
   RawScene raw_;
   MaterialTable materials_;
   SkippedPrimitives skipped_;
@@ -326,7 +377,9 @@ Scene load_scene(Open&& open, const std::string& name, const SceneOptions& optio
     throw Error(Errc::invalid_argument,
                 "default_diffuse must be in [0, 1]; " + std::to_string(options.default_diffuse) + " was given");
   try {
-    return Scene(finish_scene(gltf::Loader(open(), options).load(), name));
+    LoadBudget budget(options.max_memory_bytes, name);
+    const gltf::File file = open(budget);
+    return Scene(finish_scene(gltf::Loader(file, options, budget).load(), name));
   } catch (const std::bad_alloc&) {
     throw Error(Errc::out_of_memory, name + ": the scene does not fit into memory");
   } catch (const std::length_error&) {
@@ -337,11 +390,12 @@ Scene load_scene(Open&& open, const std::string& name, const SceneOptions& optio
 }  // namespace
 
 Scene Scene::load(const std::filesystem::path& file, const SceneOptions& options) {
-  return load_scene([&] { return gltf::File(file, options.allow_outside); }, file.string(), options);
+  return load_scene([&](LoadBudget& budget) { return gltf::File(file, options.allow_outside, budget); }, file.string(),
+                    options);
 }
 
 Scene load_gltf(std::span<const std::uint8_t> bytes, const SceneOptions& options, const std::string& name) {
-  return load_scene([&] { return gltf::File({bytes.begin(), bytes.end()}, name); }, name, options);
+  return load_scene([&](LoadBudget& budget) { return gltf::File(bytes, name, budget); }, name, options);
 }
 
 }  // namespace vantage

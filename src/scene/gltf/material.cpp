@@ -11,7 +11,7 @@ namespace {
 
 using nlohmann::json;
 
-double number(const json& object, const char* name, double fallback) {
+double number_in(const json& object, const char* name, double fallback) {
   const auto it = object.find(name);
   return it != object.end() && it->is_number() ? it->get<double>() : fallback;
 }
@@ -30,7 +30,7 @@ std::array<double, N> numbers(const json& object, const char* name, std::array<d
 void read_uv_map(const json& transform, MaterialInfo& info) {
   const auto offset = numbers<2>(transform, "offset", {0, 0});
   const auto scale = numbers<2>(transform, "scale", {1, 1});
-  const double angle = number(transform, "rotation", 0), c = std::cos(angle), s = std::sin(angle);
+  const double angle = number_in(transform, "rotation", 0), c = std::cos(angle), s = std::sin(angle);
   // translation · rotation · scale, as the extension defines it
   info.uv_map[0][0] = c * scale[0];
   info.uv_map[0][1] = s * scale[1];
@@ -49,9 +49,9 @@ const MaterialInfo& MaterialTable::get(int index) {
   MaterialInfo info;
   Material material;
   if (index >= 0) {
-    if (static_cast<std::size_t>(index) >= file_.model().materials.size())
+    if (const std::size_t count = file_.count("materials"); static_cast<std::size_t>(index) >= count)
       throw file_.malformed("a primitive refers to material " + std::to_string(index) + "; there are " +
-                            std::to_string(file_.model().materials.size()));
+                            std::to_string(count));
     info.marks = read_marks(file_, "materials", index, "material " + std::to_string(index));
     const json& pbr = file_.find("materials", index, {"pbrMetallicRoughness"});
     const auto factor = numbers<4>(pbr, "baseColorFactor", {-1, 1, 1, 1});
@@ -62,7 +62,7 @@ const MaterialInfo& MaterialTable::get(int index) {
         texture_index != texture.end() && texture_index->is_number_unsigned()) {
       const int number_of_texture = texture_index->get<int>();
       material.image = image(number_of_texture);
-      info.texcoord_set = static_cast<int>(std::clamp(number(texture, "texCoord", 0), 0.0, 1000.0));
+      info.texcoord_set = static_cast<int>(std::clamp(number_in(texture, "texCoord", 0), 0.0, 1000.0));
       const json& transform = file_.find(
           "materials", index, {"pbrMetallicRoughness", "baseColorTexture", "extensions", "KHR_texture_transform"});
       if (transform.is_object()) read_uv_map(transform, info);
@@ -101,12 +101,9 @@ std::int32_t MaterialTable::image(int texture) {
   std::string problem = "its format is not PNG or JPEG";
   if (source >= 0) {
     try {
-      Image decoded = decode_image(file_.image(source), problem);
-      if (decoded.width > 0) {
-        place = static_cast<std::int32_t>(images.size());
-        images.push_back(std::move(decoded));
-      }
+      place = decode(source, "texture " + std::to_string(texture), problem);
     } catch (const Error& error) {
+      if (error.code() == Errc::out_of_memory) throw;
       problem = error.what();
     }
   }
@@ -114,6 +111,29 @@ std::int32_t MaterialTable::image(int texture) {
     notes_.push_back("texture " + std::to_string(texture) +
                      " cannot be read, its material keeps its plain colour: " + problem);
   read_images_.emplace(source, place);
+  return place;
+}
+
+std::int32_t MaterialTable::decode(int source, const std::string& texture, std::string& problem) {
+  std::vector<std::uint8_t> own;
+  const Bytes bytes = file_.image(source, own);
+  if (own.empty())
+    if (const auto it = read_bytes_.find({bytes.data(), bytes.size()}); it != read_bytes_.end()) {
+      problem = "it has the bytes of another that cannot be read";
+      return it->second;
+    }
+  const ImageHeader header = read_image_header(bytes);
+  const std::string what = "decoding " + texture + ", of " + std::to_string(header.width) + " × " +
+                           std::to_string(header.height) + " pixels,";
+  budget_.require(header.decoding_bytes, what);
+  budget_.keep(std::uint64_t{4} * header.width * header.height, what);
+  Image decoded = decode_image(bytes, problem);
+  std::int32_t place = -1;
+  if (decoded.width > 0) {
+    place = static_cast<std::int32_t>(images.size());
+    images.push_back(std::move(decoded));
+  }
+  if (own.empty()) read_bytes_.emplace(std::pair{bytes.data(), bytes.size()}, place);
   return place;
 }
 

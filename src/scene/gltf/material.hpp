@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scene/gltf/file.hpp"
@@ -22,12 +23,14 @@ struct MaterialInfo {
   double uv_map[2][3] = {{1, 0, 0}, {0, 1, 0}};  // KHR_texture_transform: uv' = map · (u, v, 1)
 };
 
-// Reads each material once, when it is first used, and each image likewise. An image that cannot be read costs only
-// colour: it is left out and noted.
+// Reads each material once, when it is first used, and each image likewise: images of the same bytes are one. An image
+// that cannot be read costs only colour: it is left out and noted.
 class MaterialTable {
  public:
-  MaterialTable(const File& file, std::vector<std::string>& notes) : file_(file), notes_(notes) {}
-  // REQUIRES: nothing; -1 is the default material. Throws Error malformed_file.
+  MaterialTable(const File& file, LoadBudget& budget, std::vector<std::string>& notes)
+      : file_(file), budget_(budget), notes_(notes) {}
+  // REQUIRES: nothing; -1 is the default material. Throws Error: malformed_file, out_of_memory before an image is
+  // decoded that does not fit.
   const MaterialInfo& get(int material);
 
   std::vector<Material> materials;
@@ -35,11 +38,14 @@ class MaterialTable {
 
  private:
   std::int32_t image(int texture);
+  std::int32_t decode(int source, const std::string& texture, std::string& problem);
 
   const File& file_;
+  LoadBudget& budget_;
   std::vector<std::string>& notes_;
   std::map<int, MaterialInfo> read_;
-  std::map<int, std::int32_t> read_images_;  // by glTF image
+  std::map<int, std::int32_t> read_images_;                                         // by glTF image; -1: cannot be read
+  std::map<std::pair<const std::uint8_t*, std::size_t>, std::int32_t> read_bytes_;  // those of buffer views, likewise
 };
 
 }  // namespace vantage::gltf

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 #include <span>
+#include <string_view>
 
 #include "scene/glob.hpp"
 #include "scene/gltf/accessor.hpp"
@@ -98,12 +99,21 @@ Patterns<double> length_patterns(const std::vector<std::pair<std::string, double
   return lengths;
 }
 
+// Cut between characters of UTF-8.
+std::string cut_name(const std::string& name) {
+  if (name.size() <= kLongestName) return name;
+  constexpr std::string_view kMore = "…";
+  std::size_t end = kLongestName - kMore.size();
+  while (end > 0 && (static_cast<unsigned char>(name[end]) & 0xC0u) == 0x80) --end;
+  return name.substr(0, end).append(kMore);
+}
+
 std::string node_name(const tinygltf::Model& model, int index) {
   const tinygltf::Node& node = model.nodes[static_cast<std::size_t>(index)];
-  if (!node.name.empty()) return node.name;
+  if (!node.name.empty()) return cut_name(node.name);
   if (node.mesh >= 0 && static_cast<std::size_t>(node.mesh) < model.meshes.size() &&
       !model.meshes[static_cast<std::size_t>(node.mesh)].name.empty())
-    return model.meshes[static_cast<std::size_t>(node.mesh)].name;
+    return cut_name(model.meshes[static_cast<std::size_t>(node.mesh)].name);
   return "node " + std::to_string(index);
 }
 
@@ -147,7 +157,7 @@ glm::dmat4 local_transform(const File& file, const tinygltf::Node& node, const s
 }
 
 // Transforms of EXT_mesh_gpu_instancing, relative to the node.
-std::vector<glm::dmat4> instance_transforms(const File& file, int node, const std::string& where) {
+std::vector<glm::dmat4> instance_transforms(const File& file, int node, const std::string& where, LoadBudget& budget) {
   if (file.find("nodes", node, {"extensions", kInstancing}).is_null()) return {glm::dmat4(1)};
   std::unique_ptr<Accessor> parts[3];
   const char* const names[3] = {"TRANSLATION", "ROTATION", "SCALE"};
@@ -165,6 +175,7 @@ std::vector<glm::dmat4> instance_transforms(const File& file, int node, const st
     count = parts[i]->count();
   }
   if (count == 0) throw file.malformed(where + ": " + kInstancing + " lists no instances");
+  budget.keep(count * sizeof(glm::dmat4), where + ": its " + std::to_string(count) + " instances");
   std::vector<glm::dmat4> out(count);
   for (std::size_t i = 0; i < count; ++i) {
     double t[3] = {0, 0, 0}, q[4] = {0, 0, 0, 1}, s[3] = {1, 1, 1};
@@ -246,7 +257,8 @@ Marks read_marks(const File& file, const char* array, int index, const std::stri
   return marks;
 }
 
-std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& options, std::vector<std::string>& notes) {
+std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& options, LoadBudget& budget,
+                                      std::vector<std::string>& notes) {
   const tinygltf::Model& model = file.model();
   struct Visit {
     int node;
@@ -307,7 +319,7 @@ std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& opti
       PlacedMesh mesh{visit.node,
                       node.mesh,
                       name,
-                      instance_transforms(file, visit.node, where),
+                      instance_transforms(file, visit.node, where, budget),
                       visit.pattern_role,
                       visit.pattern_weight,
                       visit.pattern_detail_mm,

@@ -24,10 +24,13 @@ struct Marks {
 // detail or accuracy that is not above 0.
 Marks read_marks(const File& file, const char* array, int index, const std::string& name);
 
+// Names are cut to so many bytes: they are copied to every mesh, table and page.
+constexpr std::size_t kLongestName = 200;
+
 // A node that carries a mesh.
 struct PlacedMesh {
   int node = 0, mesh = 0;
-  std::string name;                         // the node's, else the mesh's, else "node N"
+  std::string name;                         // the node's, else the mesh's, else "node N"; at most kLongestName bytes
   std::vector<glm::dmat4> world_from_mesh;  // affine, to the survey frame; several with EXT_mesh_gpu_instancing
   std::optional<Role> pattern_role;         // by the nearest node whose name matches a pattern
   std::optional<std::uint32_t> pattern_weight;
@@ -37,7 +40,8 @@ struct PlacedMesh {
 };
 
 // Throws Error: malformed_file (cycles, nodes with two parents, matrices that are not finite or not affine),
-// invalid_argument (scene index out of range, a pattern that matches no node).
-std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& options, std::vector<std::string>& notes);
+// invalid_argument (scene index out of range, a pattern that matches no node), out_of_memory (instances).
+std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& options, LoadBudget& budget,
+                                      std::vector<std::string>& notes);
 
 }  // namespace vantage::gltf

@@ -38,6 +38,21 @@ std::unique_ptr<Accessor> Primitive::texcoord(const File& file, int set) const {
   return accessor;
 }
 
+PrimitiveSize primitive_size(const File& file, int mesh, std::size_t index) {
+  const tinygltf::Primitive& primitive = file.model().meshes[static_cast<std::size_t>(mesh)].primitives[index];
+  const auto count = [&](int accessor) -> std::uint64_t {
+    const auto& accessors = file.model().accessors;
+    const bool known = accessor >= 0 && static_cast<std::size_t>(accessor) < accessors.size();
+    return known ? accessors[static_cast<std::size_t>(accessor)].count : 0;
+  };
+  const auto position = primitive.attributes.find("POSITION");
+  if (primitive.mode < TINYGLTF_MODE_TRIANGLES || position == primitive.attributes.end()) return {};
+  const std::uint64_t vertices = count(position->second),
+                      corners = primitive.indices >= 0 ? count(primitive.indices) : vertices;
+  return {vertices, primitive.mode == TINYGLTF_MODE_TRIANGLES ? corners / 3 : corners,
+          primitive.attributes.contains("NORMAL"), primitive.attributes.contains("COLOR_0")};
+}
+
 std::unique_ptr<Primitive> read_primitive(const File& file, int mesh, std::size_t index, SkippedPrimitives& skipped) {
   const tinygltf::Primitive& primitive = file.model().meshes[static_cast<std::size_t>(mesh)].primitives[index];
   auto out = std::make_unique<Primitive>();

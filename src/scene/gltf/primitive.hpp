@@ -28,6 +28,13 @@ struct Primitive {
   std::unique_ptr<Accessor> texcoord(const File& file, int set) const;
 };
 
+// Of a primitive, as its accessors say before they are checked or read: triangles at most.
+struct PrimitiveSize {
+  std::uint64_t vertices = 0, triangles = 0;
+  bool normals = false, colours = false;
+};
+PrimitiveSize primitive_size(const File& file, int mesh, std::size_t primitive);
+
 // Null for points, lines and primitives without positions. Throws Error malformed_file.
 std::unique_ptr<Primitive> read_primitive(const File& file, int mesh, std::size_t primitive,
                                           SkippedPrimitives& skipped);

@@ -2,9 +2,9 @@
 #include "scene/gltf/scene_files.hpp"
 
 #include <algorithm>
-#include <fstream>
 #include <system_error>
 
+#include "core/read_file.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage::gltf {
@@ -37,19 +37,11 @@ fs::path locate(const fs::path& folder, const std::string& name, bool allow_outs
   return file;
 }
 
-std::vector<std::uint8_t> read_file(const fs::path& path, const std::string& what) {
-  std::error_code failure;
-  const auto status = fs::status(path, failure);
-  if (!fs::exists(status)) throw Error(Errc::io, what + ": there is no file " + path.string());
-  if (!fs::is_regular_file(status)) throw Error(Errc::io, what + ": " + path.string() + " is not a regular file");
-  const auto size = fs::file_size(path, failure);
-  std::ifstream stream(path, std::ios::binary);
-  if (failure || !stream) throw Error(Errc::io, what + ": " + path.string() + " cannot be opened for reading");
-  std::vector<std::uint8_t> bytes(size);
-  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
-  if (static_cast<std::uintmax_t>(stream.gcount()) != size)
-    throw Error(Errc::io, what + ": " + path.string() + " could be read only up to byte " +
-                              std::to_string(stream.gcount()) + " of " + std::to_string(size));
+std::vector<std::uint8_t> read_file(const fs::path& path, const std::string& what, LoadBudget& budget) {
+  RegularFile file(path, what);
+  budget.keep(file.size(), "reading " + path.string());
+  std::vector<std::uint8_t> bytes(file.size());
+  file.read(bytes.data());
   return bytes;
 }
 

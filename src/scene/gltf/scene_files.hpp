@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "scene/load_budget.hpp"
+
 namespace vantage::gltf {
 
 // The file that `name` leads to from `folder`, all links followed. A scene comes from anywhere, so it may name none but
@@ -15,8 +17,7 @@ namespace vantage::gltf {
 std::filesystem::path locate(const std::filesystem::path& folder, const std::string& name, bool allow_outside,
                              const std::string& what);
 
-// All bytes of a regular file: a device has no end, and a pipe may never begin. Throws Error io; `what` opens the
-// message.
-std::vector<std::uint8_t> read_file(const std::filesystem::path& path, const std::string& what);
+// All bytes of a regular file, kept in the budget. Throws Error: io, where `what` opens the message; out_of_memory.
+std::vector<std::uint8_t> read_file(const std::filesystem::path& path, const std::string& what, LoadBudget& budget);
 
 }  // namespace vantage::gltf

@@ -16,10 +16,8 @@
 #include <set>
 #include <thread>
 
-#include "cli/area.hpp"
 #include "cli/command.hpp"
 #include "cli/options.hpp"
-#include "cli/scanners.hpp"
 #include "cli/stations.hpp"
 #include "placement/area_limits.hpp"
 #include "program.hpp"
@@ -219,7 +217,7 @@ TEST_F(NumbersInFiles, OfStations) {
 
 TEST_F(NumbersInFiles, OfNoise) {
   const auto read = [](const std::string& file) {
-    const NoiseTable table = cli::load_noise(file);
+    const NoiseTable table = load_noise(file);
     std::vector<double> values = table.sigma_m;
     values.insert(values.end(), table.distances_m.begin(), table.distances_m.end());
     values.insert(values.end(), table.reflectivities.begin(), table.reflectivities.end());
@@ -236,7 +234,7 @@ TEST_F(NumbersInFiles, OfNoise) {
 TEST_F(NumbersInFiles, OfRegions) {
   const auto read = [](const std::string& file) {
     std::vector<double> values;
-    for (const auto& ring : cli::read_region(file).rings)
+    for (const auto& ring : read_region(file).rings)
       for (const auto& corner : ring) values.insert(values.end(), corner.begin(), corner.end());
     return values;
   };

@@ -48,15 +48,14 @@ struct Bench {
   std::vector<EditStation> last_kept;
   std::vector<PlacedStation> saved;
   std::uint64_t saved_voxels = 0;
-  EditSession session{simulator,
-                      area,
-                      clash,
-                      {},
-                      options,
-                      [this](const std::vector<EditStation>& stations) { ++kept, last_kept = stations; },
-                      [this](const EditSession::Exact& exact, const Progress&) {
-                        saved = exact.stations, saved_voxels = exact.counts.voxels;
-                      }};
+  EditSession session{
+      simulator,
+      area,
+      clash,
+      {},
+      options,
+      [this](const std::vector<EditStation>& stations) { ++kept, last_kept = stations; },
+      [this](const Evaluation& exact, const Progress&) { saved = exact.stations, saved_voxels = exact.counts.voxels; }};
 
   State add(double x, double y) {
     session.change({{"do", "add"}, {"to", {1000 + x, 2000 + y, 50 - 1.5}}});
@@ -97,7 +96,7 @@ TEST(EditSession, ShowsTheNumbersOfTheProgram) {
     EXPECT_EQ(state["network"]["values"]["overlap"]["value"], overlap.value);
     EXPECT_EQ(state["network"]["values"]["overlap"]["error"], overlap.standard_error);
     Simulator all = surroundings_of(bench.simulator);
-    const OverlapMatrix links = scan_overlap_matrix(
+    const ScanOverlapMatrix links = scan_overlap_matrix(
         all.evaluate_sampled({&network, 1}, {.voxels = std::min(bench.options.link_voxels, all.voxel_count())})
             .front());
     EXPECT_GT(state["network"]["links"].size(), 0u);
@@ -110,7 +109,7 @@ TEST(EditSession, ShowsTheNumbersOfTheProgram) {
   EXPECT_EQ(state["network"]["values"]["coverage"]["value"],
             coverage(bench.simulator.evaluate(network), bench.simulator.goal_density()));
   EXPECT_EQ(state["network"]["values"]["coverage"]["error"], 0);
-  const OverlapMatrix links = scan_overlap_matrix(surroundings_of(bench.simulator).evaluate(network));
+  const ScanOverlapMatrix links = scan_overlap_matrix(surroundings_of(bench.simulator).evaluate(network));
   EXPECT_GT(state["network"]["links"].size(), 0u);
   for (const auto& link : state["network"]["links"]) EXPECT_EQ(link["value"], links(link["a"], link["b"]));
 }

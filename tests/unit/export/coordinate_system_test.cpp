@@ -4,7 +4,7 @@
 #include "support/temporary_folder.hpp"
 #include "unit/export/files.hpp"
 #include "vantage/error.hpp"
-#include "vantage/station_files.hpp"
+#include "vantage/export.hpp"
 
 namespace vantage {
 namespace {
@@ -20,7 +20,7 @@ std::string refusal(const std::string& text) {
 }
 
 // The registry's own text of one code, and what changes from zone to zone of the others.
-TEST(CoordinateSystem, UtmZonesFollowFromTheirCodes) {
+TEST(CoordinateSystem, HasTheTextOfItsCode) {
   EXPECT_EQ(coordinate_system("EPSG:25832"),
             R"(PROJCS["ETRS89 / UTM zone 32N",GEOGCS["ETRS89",DATUM["European_Terrestrial_Reference_System_1989",)"
             R"(SPHEROID["GRS 1980",6378137,298.257222101,AUTHORITY["EPSG","7019"]],AUTHORITY["EPSG","6258"]],)"
@@ -48,7 +48,7 @@ TEST(CoordinateSystem, UtmZonesFollowFromTheirCodes) {
   }
 }
 
-TEST(CoordinateSystem, OthersComeAsText) {
+TEST(CoordinateSystem, MayComeAsText) {
   const test::TemporaryFolder folder;
   write_text(folder / "site.prj",
              "PROJCS[\"Site grid\",\r\n  GEOGCS[\"x y\", UNIT[\"degree\", 0.017]],\n  "
@@ -56,7 +56,7 @@ TEST(CoordinateSystem, OthersComeAsText) {
   EXPECT_EQ(coordinate_system(folder / "site.prj"),
             "PROJCS[\"Site grid\",GEOGCS[\"x y\",UNIT[\"degree\",0.017]],UNIT[\"Meter\",1.0],AXIS[\"E\",EAST]]");
   EXPECT_THROW(coordinate_system(folder / "none.prj"), Error);
-  EXPECT_NE(refusal("EPSG:999999").find("well-known text, as SITE.prj"), std::string::npos);
+  EXPECT_NE(refusal("EPSG:999999").find("PROJ knows no coordinate system EPSG:999999"), std::string::npos);
   EXPECT_NE(refusal("EPSG:").find("no coordinate system"), std::string::npos);
   EXPECT_NE(refusal("EPSG:25832x").find("as EPSG:25832"), std::string::npos);
   EXPECT_NE(refusal("25832").find("EPSG:25832"), std::string::npos);
@@ -67,18 +67,13 @@ TEST(CoordinateSystem, OthersComeAsText) {
   EXPECT_NE(refusal("FOO[\"x\"]").find("PROJCS["), std::string::npos);
 }
 
-// What is not built in comes from PROJ's registry, where there is one.
-TEST(CoordinateSystem, AsksProjForOtherCodes) {
-  if (has_projections()) {
-    const std::string text = coordinate_system("EPSG:31467");
-    EXPECT_TRUE(text.starts_with("PROJCS[")) << text;
-    EXPECT_NE(text.find("AUTHORITY[\"EPSG\",\"31467\"]"), std::string::npos) << text;
-    EXPECT_EQ(text.find('\n'), std::string::npos);
-    EXPECT_NE(refusal("EPSG:4326").find("angles"), std::string::npos);
-    EXPECT_NE(refusal("EPSG:2263").find("unit"), std::string::npos) << "feet";
-  } else {
-    EXPECT_NE(refusal("EPSG:31467").find("SITE.prj"), std::string::npos);
-  }
+TEST(CoordinateSystem, IsOneInMetres) {
+  const std::string text = coordinate_system("EPSG:31467");
+  EXPECT_TRUE(text.starts_with("PROJCS[")) << text;
+  EXPECT_NE(text.find("AUTHORITY[\"EPSG\",\"31467\"]"), std::string::npos) << text;
+  EXPECT_EQ(text.find('\n'), std::string::npos);
+  EXPECT_NE(refusal("EPSG:4326").find("angles"), std::string::npos);
+  EXPECT_NE(refusal("EPSG:2263").find("unit"), std::string::npos) << "feet";
 }
 
 }  // namespace

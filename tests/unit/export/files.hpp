@@ -52,12 +52,12 @@ inline PlanResult sample_result(const std::string& name, std::size_t stations_mi
     if (counts) e.x.push_back(1 - t);
     const double coverage = 0.95 - 0.5 * t * t, overlap = 0.1 + 0.8 * t;
     for (const Objective& measure : result.measures)
-      e.values[measure.name] = {static_cast<double>(n), 0, static_cast<double>(n)};
-    e.values["coverage"] = {coverage, 0.001, coverage - 0.002};
-    e.values["overlap"] = {overlap, 0.01, overlap + 0.004};
-    e.confirmed = true;
-    e.exact_overlap_matrix = OverlapMatrix(n);
-    e.points_on_surveyed.assign(n, 1000 + k);
+      e.searched[measure.name] = e.values[measure.name] = {static_cast<double>(n), 0};
+    e.searched["coverage"] = {coverage, 0.001}, e.values["coverage"] = {coverage - 0.002, 0};
+    e.searched["overlap"] = {overlap, 0.01}, e.values["overlap"] = {overlap + 0.004, 0};
+    e.exact = true;
+    e.overlap_matrix = OverlapMatrix(n);
+    e.counts.points_on_surveyed.assign(n, 1000 + k);
     result.front.push_back(e);
   }
   for (std::size_t it = 1; it <= 20; ++it) {
@@ -68,7 +68,7 @@ inline PlanResult sample_result(const std::string& name, std::size_t stations_mi
                        .seconds = 0.5 * static_cast<double>(it)};
     for (const PlanEntry& e : result.front) {
       std::vector<double> values;
-      for (const Objective& objective : problem.objectives) values.push_back(e.values.at(objective.name).searched);
+      for (const Objective& objective : problem.objectives) values.push_back(e.searched.at(objective.name).value);
       line.front.push_back(scaled_objectives(problem, e.x, values));
       for (std::size_t k = 0; k < line.front.back().size(); ++k)
         if (!problem.objectives[k].by_alpha) line.front.back()[k] += 0.01 * static_cast<double>(20 - it) * 0.4;

@@ -246,7 +246,7 @@ TEST(Pictures, DrawResultsThatHoldLittle) {
   const test::TemporaryFolder folder;
   for (const std::string problem : {"coverage-fix", "coverage-overlap-fix", "coverage-min", "coverage-overlap-min"}) {
     PlanResult one = test::sample_result(problem, 1, problem.ends_with("-min") ? 64 : 1, 1);
-    one.front[0].confirmed = false;
+    one.front[0].exact = false;
     one.front[0].values["coverage"] = one.front[0].values["overlap"] = {0, 0, std::nan("")};
     one.history.resize(1);
     one.history[0].hypervolume = 0;
@@ -291,9 +291,10 @@ TEST(Pictures, PlanViewDrawsEveryKindOfStation) {
       station(0, 1.6, StationStatus::ok, true),   {.uv = {5, 5}, .position = {}, .status = StationStatus::hole}};
   OverlapMatrix overlap(6);
   overlap.set(0, 2, 0.5);
-  draw_plan_view(folder / "plan.png", room(), area, stations, overlap, "A room");
-  draw_plan_view(folder / "plan.svg", room(), area, stations, overlap, "A room");
-  draw_plan_view(folder / "unlinked.png", room(), area, stations, OverlapMatrix(6), "A room");
+  const StationLinks links{.least = 0.01, .values = overlap};
+  draw_plan_view(folder / "plan.png", room(), area, stations, links, "A room");
+  draw_plan_view(folder / "plan.svg", room(), area, stations, links, "A room");
+  draw_plan_view(folder / "unlinked.png", room(), area, stations, {.values = OverlapMatrix(6)}, "A room");
   const auto written = draw_plan_view(folder / "none.png", room(), area, {}, {}, "No station");
   EXPECT_EQ(written, std::vector{folder / "none.png"});
   EXPECT_EQ(test::entries(folder.path()), 4u);
@@ -311,7 +312,8 @@ TEST(Pictures, PlanViewDrawsEveryKindOfStation) {
   // The map is room and search area: 640 units high at two pixels each, nearly as wide.
   EXPECT_GT(none.ink(), 1'000'000u);
   EXPECT_GT(shapes(test::content(folder / "plan.svg")), 40u);
-  EXPECT_THROW(draw_plan_view(folder / "bad.png", room(), area, stations, OverlapMatrix(3), "Wrong"), Error);
+  EXPECT_THROW(draw_plan_view(folder / "bad.png", room(), area, stations, {.values = OverlapMatrix(3)}, "Wrong"),
+               Error);
 }
 
 TEST(Pictures, PlanViewDrawsStandardEllipses) {
@@ -325,12 +327,11 @@ TEST(Pictures, PlanViewDrawsStandardEllipses) {
                       .area = floor_of_room(),
                       .stations = stations,
                       .names = {"S1", "S2"},
-                      .overlap = {},
                       .title = "",
                       .errors = errors};
   EXPECT_NEAR(kWidestEllipse / view.ellipse_scale(), 3e-3, 1e-12);
   const auto red = [&](const char* name, std::span<const StationError> shown) {
-    draw_plan_view(folder / name, room(), floor_of_room(), stations, {}, "A room", default_link_overlap, {}, shown);
+    draw_plan_view(folder / name, room(), floor_of_room(), stations, {}, "A room", {}, shown);
     return test::Drawn(folder / name).near({0.72, 0.12, 0.12}, 40);
   };
   EXPECT_GT(red("with.png", errors), red("without.png", {}) + 200);
@@ -410,7 +411,7 @@ TEST(Pictures, EachFloorHasAPageAndItsWallsAreFilled) {
                                             {.uv = {}, .position = {8, 6, 4.85}, .ground = {8, 6, 3}}};
   const test::TemporaryFolder folder;
   const auto written = draw_plan_view(folder / "plan.png", Scene::from_triangles(p, t), SearchArea::from_mesh(mesh),
-                                      stations, OverlapMatrix(2), "A house");
+                                      stations, {.values = OverlapMatrix(2)}, "A house");
   ASSERT_EQ(written, (std::vector{folder / "plan.png", folder / "plan-level-1.png", folder / "plan-level-2.png"}));
   constexpr Colour cut{0.27, 0.28, 0.31}, number{0.10, 0.22, 0.45};
   const auto largest = [&](const std::filesystem::path& file) {

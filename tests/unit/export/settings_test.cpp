@@ -94,8 +94,9 @@ const std::vector<Change<SceneOptions>> kScene{
     {"default_diffuse", [](SceneOptions& o) { o.default_diffuse = 0.25; }, false},
     {"allow_outside", [](SceneOptions& o) { o.allow_outside = true; }, false},
     {"unit", [](SceneOptions& o) { o.unit = Unit::foot; }, false},
-    {"up", [](SceneOptions& o) { o.up = UpAxis::z; }, false}};
-static_assert(member_count<SceneOptions>() == 14);
+    {"up", [](SceneOptions& o) { o.up = UpAxis::z; }, false},
+    {"max_memory_bytes", [](SceneOptions& o) { o.max_memory_bytes = std::uint64_t{1} << 40; }, false, false}};
+static_assert(member_count<SceneOptions>() == 15);
 
 const std::vector<Change<SimulatorConfig>> kSimulation{
     {"engine", [](SimulatorConfig& c) { c.engine = Engine::automatic; }, false},
@@ -186,7 +187,13 @@ const std::vector<Change<PlanConfig>> kPlan{
     {"population", [](PlanConfig& c) { c.population = 7; }},
     {"iterations", [](PlanConfig& c) { c.iterations = 7; }, false},
     {"sigma0", [](PlanConfig& c) { c.sigma0 = 0.3; }},
-    {"algorithm", [](PlanConfig& c) { c.algorithm = Algorithm::nsga2; }},
+    {"optimiser",  // a saved state tells which it is of
+     [](PlanConfig& c) {
+       c.optimiser = [](std::size_t n, std::size_t m, const OptimiserConfig& o) {
+         return std::make_unique<MoCmaEs>(n, m, o);
+       };
+     },
+     false, false},
     {"scheme", [](PlanConfig& c) { c.scheme = MoCmaEsConfig::Scheme::generational; }},
     {"batch", [](PlanConfig& c) { c.batch = 3; }},
     {"sample_voxels", [](PlanConfig& c) { c.sample_voxels = 100; }},
@@ -225,7 +232,7 @@ Told told(const PlanRun& run) {
   const SearchArea area = SearchArea::build(scene, run.walkable);
   const ClashChecker clash(scene, run.security);
   const Simulator simulator(scene, run.scanner, run.simulation);
-  const Site site = make_site(area, clash, run.scanner);
+  const PlacementOracle site = make_placement_oracle(area, clash, run.scanner);
   PlanResult result;
   result.problem = run.problem, result.config = run.config;
   result.walkable = area.options(), result.security = clash.volume();

@@ -68,7 +68,7 @@ TEST(StationFiles, DxfHasStationsNamesLinksAndArea) {
   const auto stations = sample();
   OverlapMatrix overlap(4);
   overlap.set(0, 1, 0.25);
-  write_stations_dxf(folder / "a.dxf", {stations, kNames}, overlap, 0.1, area());
+  write_stations_dxf(folder / "a.dxf", {stations, kNames}, {.least = 0.1, .values = overlap}, area());
   const std::string text = content(folder / "a.dxf");
   EXPECT_TRUE(std::all_of(text.begin(), text.end(), [](char c) { return c == '\n' || (c >= ' ' && c < 0x7F); }));
   EXPECT_TRUE(text.ends_with("0\nEOF\n"));
@@ -92,7 +92,7 @@ TEST(StationFiles, DxfHasStationsNamesLinksAndArea) {
 
   // Weaker links than asked for are not drawn; without a matrix there are none.
   for (const auto& [matrix, least] : {std::pair{overlap, 0.3}, {OverlapMatrix(), 0.0}}) {
-    write_stations_dxf(folder / "a.dxf", {stations, kNames}, matrix, least, area());
+    write_stations_dxf(folder / "a.dxf", {stations, kNames}, {.least = least, .values = matrix}, area());
     EXPECT_EQ(content(folder / "a.dxf").find("\nLINE\n"), std::string::npos);
   }
 }
@@ -104,9 +104,9 @@ TEST(StationFiles, GeoJsonAndKmlNeedACoordinateSystem) {
   EXPECT_THROW(write_stations_kml(folder / "a.kml", {stations, kNames}, ""), Error);
   EXPECT_THROW(write_stations_kml(folder / "a.kml", {stations, kNames}, "EPSG:99999999"), Error);
   EXPECT_EQ(test::entries(folder.path()), 0u);
-  write_station_files(folder.path(), {stations, kNames}, {}, 0.1, area(), "");
+  write_station_files(folder.path(), {stations, kNames}, {}, area(), "");
   EXPECT_EQ(test::entries(folder.path()), 1u);  // the drawing
-  write_station_files(folder.path(), {stations, kNames}, {}, 0.1, area(), kUtm32);
+  write_station_files(folder.path(), {stations, kNames}, {}, area(), kUtm32);
   EXPECT_EQ(test::entries(folder.path()), has_projections() ? 3u : 1u);
 }
 
@@ -114,10 +114,6 @@ TEST(StationFiles, GeoJsonAndKmlNeedACoordinateSystem) {
 // 0.9996 · a · π / 180 at the meridian.
 TEST(StationFiles, FindsLongitudeAndLatitude) {
   const std::vector<Vec3> points{{500'000, 0, 5}, {500'001, 0, 6}, {500'000, 5'300'000, 7}};
-  if (!has_projections()) {
-    EXPECT_THROW(to_wgs84(kUtm32, points), Error);
-    return;
-  }
   const auto at = to_wgs84(kUtm32, points);
   ASSERT_EQ(at.size(), 3u);
   EXPECT_NEAR(at[0].longitude_deg, 9, 1e-10);
@@ -132,10 +128,6 @@ TEST(StationFiles, FindsLongitudeAndLatitude) {
 TEST(StationFiles, GeoJsonFollowsTheRfc) {
   const test::TemporaryFolder folder;
   const auto stations = sample();
-  if (!has_projections()) {
-    EXPECT_THROW(write_stations_geojson(folder / "a.geojson", {stations, kNames}, kUtm32), Error);
-    return;
-  }
   write_stations_geojson(folder / "a.geojson", {stations, kNames}, kUtm32);
   const auto json = nlohmann::json::parse(content(folder / "a.geojson"));
   EXPECT_EQ(json["type"], "FeatureCollection");
@@ -159,10 +151,6 @@ TEST(StationFiles, GeoJsonFollowsTheRfc) {
 TEST(StationFiles, KmlEscapesNamesAndLeavesOutWhatHasNoPlace) {
   const test::TemporaryFolder folder;
   const auto stations = sample();
-  if (!has_projections()) {
-    EXPECT_THROW(write_stations_kml(folder / "a.kml", {stations, kNames}, kUtm32), Error);
-    return;
-  }
   write_stations_kml(folder / "a.kml", {stations, kNames}, kUtm32);
   const std::string kml = content(folder / "a.kml");
   EXPECT_NE(kml.find("<name>S1 &lt;north&gt; &amp; Tür</name>"), std::string::npos);
@@ -175,10 +163,10 @@ TEST(StationFiles, RefusesWrongUse) {
   const test::TemporaryFolder folder;
   const auto stations = sample();
   const std::vector<std::string> few{"S1"};
-  EXPECT_THROW(write_stations_dxf(folder / "a.dxf", {stations, few}, {}, 0, area()), Error);
-  EXPECT_THROW(write_stations_dxf(folder / "a.dxf", {stations, kNames}, OverlapMatrix(2), 0, area()), Error);
-  EXPECT_THROW(write_stations(folder / "a.shp", {stations, kNames}, {}, 0, area(), kUtm32), Error);
-  EXPECT_THROW(write_stations_dxf(folder.path() / "none" / "a.dxf", {stations, kNames}, {}, 0, area()), Error);
+  EXPECT_THROW(write_stations_dxf(folder / "a.dxf", {stations, few}, {}, area()), Error);
+  EXPECT_THROW(write_stations_dxf(folder / "a.dxf", {stations, kNames}, {.values = OverlapMatrix(2)}, area()), Error);
+  EXPECT_THROW(write_stations(folder / "a.shp", {stations, kNames}, {}, area(), kUtm32), Error);
+  EXPECT_THROW(write_stations_dxf(folder.path() / "none" / "a.dxf", {stations, kNames}, {}, area()), Error);
   EXPECT_EQ(test::entries(folder.path()), 0u);
 }
 

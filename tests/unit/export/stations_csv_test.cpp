@@ -166,5 +166,26 @@ TEST(StationsCsv, NamesTheLineThatIsWrong) {
   EXPECT_THROW(read_stations_csv("/nonexistent/stations.csv"), Error);
 }
 
+// Names come from other people's scenes, and a spreadsheet runs a cell that begins like this.
+TEST(StationsCsv, NoCellIsAFormulaAndTextsAreReadBackAsTheyWere) {
+  const test::TemporaryFolder folder;
+  for (const std::string text : {"=1+2", "+wall", "-5", "@SUM(A1)", "'=1", "''-x", "'plain", "plain", "a=b",
+                                 "=a,\"b\";c", "say \"x\"", "\"\"", "Tür; links"}) {
+    std::vector<Scanner> scanners(2);
+    scanners[1].name = text;
+    write_stations_csv(folder / "s.csv", std::vector<PlacedStation>{{.setup = {.scanner = 1}}}, scanners);
+    EXPECT_EQ(read_stations_csv(folder / "s.csv")[0].scanner, text);
+    std::vector<MissedShare> shares(2);
+    shares[1].node = text;
+    write_missed_csv(folder / "missed.csv", shares);
+    for (const char* name : {"s.csv", "missed.csv"}) {
+      const std::string table = test::content(folder / name);
+      for (const std::string begins : {"\n", ",", "\""})
+        for (const std::string runs : {"=", "+", "@", "-5"})
+          EXPECT_EQ(table.find(begins + runs), std::string::npos) << table;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace vantage

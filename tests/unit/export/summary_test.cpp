@@ -9,47 +9,29 @@ namespace vantage {
 namespace {
 
 // 0–1–2 in a chain, 3–4 a pair that is near to 2, 5 by itself, 6 in a hole.
-OverlapMatrix three_parts() {
-  OverlapMatrix overlap(7);
-  overlap.set(0, 1, 0.4), overlap.set(1, 2, 0.25), overlap.set(3, 4, 0.5), overlap.set(2, 3, 0.004),
-      overlap.set(0, 4, 0.002);
+Evaluation seven_stations() {
+  Evaluation network{.stations = std::vector<PlacedStation>(7), .exact = true};
+  network.stations[6].status = StationStatus::hole;
+  network.overlap_matrix = OverlapMatrix(7);
+  OverlapMatrix& overlap = network.overlap_matrix;
+  overlap.set(0, 1, 0.4), overlap.set(1, 2, 0.25), overlap.set(3, 4, 0.5), overlap.set(2, 3, 0.004);
+  overlap.set(0, 4, 0.002);
   overlap.set(6, 5, 0.9);  // of a station that is not used
-  return overlap;
-}
-const std::vector<bool> kUsed{true, true, true, true, true, true, false};
-
-TEST(Summary, LinksTellPartsAndWhereTheyAreNearest) {
-  const SummaryLinks links = summary_links(three_parts(), 0.01, kUsed);
-  EXPECT_EQ(links.parts, (std::vector<std::vector<std::size_t>>{{0, 1, 2}, {3, 4}, {5}}));
-  EXPECT_FALSE(links.weakest);
-  ASSERT_EQ(links.gaps.size(), 2u);
-  EXPECT_EQ(links.gaps[0].inside, 3u);
-  EXPECT_EQ(links.gaps[0].outside, 2u);
-  EXPECT_EQ(links.gaps[0].value, 0.004);
-  EXPECT_EQ(links.gaps[1].inside, 5u);
-  EXPECT_EQ(links.gaps[1].value, 0);
-
-  EXPECT_EQ(summary_links(three_parts(), 0.01).parts.back(), (std::vector<std::size_t>{5, 6}))
-      << "what nothing is said of is used";
-  OverlapMatrix ring(3);
-  ring.set(0, 1, 0.4), ring.set(1, 2, 0.25), ring.set(0, 2, 0.1);
-  const SummaryLinks one = summary_links(ring, 0.01, {true, true, true});
-  ASSERT_TRUE(one.weakest);
-  EXPECT_EQ(*one.weakest, (std::pair<std::size_t, std::size_t>{1, 2}));
-  EXPECT_EQ(one.weakest_value, 0.25);
+  network.values["coverage"] = {0.7125, 0};
+  return network;
 }
 
 TEST(Summary, SaysInWordsWhatItKnowsAndNothingElse) {
-  SurveySummary summary{.names = {"S1", "S2", "S3", "S4", "S5", "S6", "S7"}, .captured = 0.7125};
-  EXPECT_EQ(summary_text(summary), "captured   71.2 % of the site\n");
-  summary.captured_error = 0.004;
-  summary.of_visible = 0.92;
-  summary.registration_mm = 1.234;
-  summary.seconds_on_site = 3 * 3600 + 25 * 60 + 20;
-  summary.links = summary_links(three_parts(), 0.01, kUsed);
-  summary.faults = {{"S7 is in a hole", "move it"}};
+  Evaluation network{.stations = std::vector<PlacedStation>(7), .exact = true, .values = {{"coverage", {0.7125, 0}}}};
+  EXPECT_EQ(summary_text(network), "captured   71.2 % of the site\n");
+  network = seven_stations();
+  network.exact = false;
+  network.values["coverage"].standard_error = 0.004;
+  network.values["capture"] = {0.92, 0.01};
+  network.values["registration"] = {1.234, 0};
+  network.visit = Visit{.minutes = 3 * 60 + 25 + 20 / 60.0};
   EXPECT_EQ(
-      summary_text(summary),
+      summary_text(network),
       "captured   71.2 % ± 0.4 % of the site, 92.0 % of what can be seen\n"
       "linked     no: in 3 parts, by overlap of at least 0.01: S1, S2 and S3; S4 and S5; S6 stands alone\n"
       "registered to about 1.23 mm, as predicted\n"
@@ -57,15 +39,21 @@ TEST(Summary, SaysInWordsWhatItKnowsAndNothingElse) {
       "to do      link S4 to S3, the nearest to it with 0.004: put a station between them, or move them closer\n"
       "           S6 shares nothing with any station of another part: put a station between it and S1, or tie it in "
       "with targets\n"
-      "           S7 is in a hole: move it\n");
-  OverlapMatrix pair(2);
-  pair.set(0, 1, 0.3);
-  SurveySummary linked{.names = {"K1", "S1"}, .captured = 1, .links = summary_links(pair, 0.01, {true, true})};
-  EXPECT_EQ(summary_text(linked),
+      "           S7 " +
+          explain(StationStatus::hole) + ", and is left out: move it\n");
+  Evaluation pair{.stations = std::vector<PlacedStation>(2), .exact = true, .values = {{"coverage", {1, 0}}}};
+  pair.stations[0].kept = true;
+  pair.overlap_matrix = OverlapMatrix(2);
+  pair.overlap_matrix.set(0, 1, 0.3);
+  EXPECT_EQ(summary_text(pair),
             "captured   100.0 % of the site\n"
             "linked     yes: all 2 stations, by overlap of at least 0.01; weakest link K1–S1 with 0.300\n");
-  linked.links = summary_links(OverlapMatrix(1), 0.01, {true});
-  EXPECT_EQ(summary_lines(linked)[1].text, "one station, nothing to link");
+  pair.scan_overlap_matrix = ScanOverlapMatrix(2);
+  pair.scan_overlap_matrix.set(0, 1, 0.5);
+  EXPECT_EQ(summary_lines(pair)[1].text,
+            "yes: all 2 stations, by scan overlap of at least 0.3; weakest link K1–S1 with 0.500");
+  pair.stations.resize(1), pair.scan_overlap_matrix = {}, pair.overlap_matrix = OverlapMatrix(1);
+  EXPECT_EQ(summary_lines(pair)[1].text, "one station, nothing to link");
 }
 
 TEST(Summary, TheTableHasGroundAndHeadToTheMillimetre) {
@@ -95,21 +83,19 @@ TEST(Summary, TheTableSaysHowStationsAreSetUpWhereAnyIsNotAsUsual) {
 }
 
 TEST(Summary, OfAPlanTellsWhatItMisses) {
-  PlanResult result = test::sample_result("coverage-overlap-fix", 3, 3, 1);
-  result.problem.requirements = {make_requirement("coverage>=0.99"), make_requirement("coverage>=0.2")};
-  PlanEntry& entry = result.front[0];
+  const PlanResult result = test::sample_result("coverage-overlap-fix", 3, 3, 1);
+  const std::vector<Requirement> requirements{make_requirement("coverage>=0.99"), make_requirement("coverage>=0.2")};
+  PlanEntry entry = result.front[0];
   entry.stations[1].status = StationStatus::clash;
-  entry.exact_overlap_matrix.set(0, 2, 0.2);
-  const SurveySummary summary = summary_of(entry, result);
-  EXPECT_EQ(summary.captured, entry.value("coverage"));
-  ASSERT_TRUE(summary.links);
-  EXPECT_EQ(summary.links->parts, (std::vector<std::vector<std::size_t>>{{0, 2}})) << "the clash is no part";
-  ASSERT_EQ(summary.faults.size(), 2u);
-  EXPECT_TRUE(summary.faults[0].what.starts_with("S2 clashes")) << summary.faults[0].what;
-  EXPECT_EQ(summary.faults[1].what, "misses coverage >= 0.99: it has 0.948");
-  entry.confirmed = false;
-  EXPECT_FALSE(summary_of(entry, result).links) << "not known without every ray";
-  EXPECT_EQ(summary_of(entry, result).captured_error, 0.001);
+  entry.overlap_matrix.set(0, 2, 0.2);
+  ASSERT_TRUE(entry.links());
+  EXPECT_EQ(entry.links()->parts, (std::vector<std::vector<std::size_t>>{{0, 2}})) << "the clash is no part";
+  const std::vector<SummaryLine> lines = summary_lines(entry, requirements);
+  ASSERT_EQ(lines.size(), 4u);
+  EXPECT_EQ(lines[0].text, "94.8 % of the site");
+  EXPECT_TRUE(lines[2].text.starts_with("S2 clashes")) << lines[2].text;
+  EXPECT_TRUE(lines[3].text.starts_with("misses coverage >= 0.99: it has 0.948")) << lines[3].text;
+  EXPECT_EQ(summary_lines(entry).size(), 3u) << "nothing is required";
 }
 
 }  // namespace

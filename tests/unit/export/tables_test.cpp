@@ -25,7 +25,7 @@ TEST(Tables, EveryLineHasAsManyCellsAsTheHeader) {
   for (const std::string name : {"coverage-fix", "coverage-overlap-fix", "coverage-min", "coverage-overlap-min"}) {
     PlanResult result = test::sample_result(name, 2, 5, 7);
     result.front[2].stations[1].status = StationStatus::hole;
-    result.front[3].confirmed = false;
+    result.front[3].exact = false;
     write_front_csv(folder / "front.csv", result);
     write_history_csv(folder / "history.csv", result);
     write_fronts_csv(folder / "fronts.csv", result);

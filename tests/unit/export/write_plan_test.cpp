@@ -110,7 +110,7 @@ TEST_P(WritePlan, WhatIsWrittenEvaluatesToTheSameNumbers) {
     EXPECT_TRUE(written.contains(key)) << key;
   EXPECT_EQ(written["front"].size(), result.front.size());
   const json& first = written["front"][chosen];
-  EXPECT_EQ(first["coverage"].get<double>(), entry.values.at("coverage").searched);
+  EXPECT_EQ(first["coverage"].get<double>(), entry.searched.at("coverage").value);
   EXPECT_EQ(first["exact"]["overlap"].get<double>(), entry.value("overlap"));
   EXPECT_EQ(first["station_count"].get<std::size_t>(), entry.stations.size());
   EXPECT_EQ(first["stations"][0]["position"][0].get<double>(), entry.stations[0].position.x);
@@ -167,9 +167,9 @@ TEST(Plan, SampledOfEveryVoxelIsExact) {
   ASSERT_EQ(exact.front.size(), sampled.front.size());
   for (std::size_t k = 0; k < exact.front.size(); ++k) {
     EXPECT_EQ(exact.front[k].x, sampled.front[k].x);
-    for (const auto& [name, value] : sampled.front[k].values) {
-      EXPECT_EQ(value.searched, value.exact) << name;
-      EXPECT_EQ(value.standard_error, 0) << name;
+    for (const auto& [name, seen] : sampled.front[k].searched) {
+      EXPECT_EQ(seen.value, sampled.front[k].value(name)) << name;
+      EXPECT_EQ(seen.standard_error, 0) << name;
     }
   }
 }
@@ -190,7 +190,7 @@ TEST(Plan, ResumesOnARealSiteAndRefusesAnother) {
                                    },
                                .stop = stop.get_token()});
   EXPECT_EQ(cut.stop_reason, StopReason::cancelled);
-  for (const PlanEntry& e : cut.front) EXPECT_TRUE(e.confirmed);  // what was found so far is still confirmed
+  for (const PlanEntry& e : cut.front) EXPECT_TRUE(e.exact);  // what was found so far is still confirmed
   Survey second;
   const PlanResult rest = plan(second.simulator, second.area, second.clash, coverage_overlap_fix(3), config);
   EXPECT_GE(rest.resumed_evaluations, 12u);
@@ -212,7 +212,7 @@ TEST(Plan, KeepsStationsThatAreThere) {
   ASSERT_EQ(result.front[0].stations.size(), 3u);
   EXPECT_EQ(result.front[0].stations[0].position, problem.kept[0]);
   EXPECT_EQ(result.front[0].stations[1].position, problem.kept[1]);
-  EXPECT_GT(result.front[0].points_on_surveyed[0], 0u);
+  EXPECT_GT(result.front[0].counts.points_on_surveyed[0], 0u);
 }
 
 // Nothing of the library knows it: far stations are dear.
@@ -222,8 +222,7 @@ TEST(Plan, SearchesForAnObjectiveOfTheCallersOwn) {
   problem.objectives.push_back({.name = "walk",
                                 .label = "Way between the stations",
                                 .unit = "m",
-                                .best = 0,
-                                .worst = 14,
+                                .scale = minimise(0, 14),
                                 .needs = {.counts = false},
                                 .value = [](const MeasuredNetwork& m) {
                                   const Vec3 way = m.stations[1].position - m.stations[0].position;
@@ -236,7 +235,7 @@ TEST(Plan, SearchesForAnObjectiveOfTheCallersOwn) {
   for (const PlanEntry& entry : result.front) {
     const Vec3 way = entry.stations[1].position - entry.stations[0].position;
     EXPECT_EQ(entry.value("walk"), std::sqrt(dot(way, way)));
-    EXPECT_EQ(entry.missed, 0);
+    EXPECT_EQ(entry.violation, 0);
     EXPECT_GE(entry.value("walk"), 3);
   }
   const json written = json::parse(front_json(result, survey.simulator));

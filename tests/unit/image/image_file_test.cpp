@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "image/decode.hpp"
 #include "image/encode.hpp"
 #include "support/temporary_folder.hpp"
 #include "vantage/error.hpp"
@@ -86,6 +87,24 @@ TEST(ImageFile, RefusesPngsWhoseChunksClaimMoreThanThereIs) {
       EXPECT_NE(std::string(error.what()).find("claims more bytes"), std::string::npos) << error.what();
     }
   }
+}
+
+TEST(ImageFile, TellsWhatDecodingTakesFromTheHeader) {
+  const test::TemporaryFolder folder;
+  write_png(folder / "a.png", counting_image(40, 20));
+  std::ifstream file(folder / "a.png", std::ios::binary);
+  const std::vector<char> png{std::istreambuf_iterator<char>(file), {}};
+  const auto jpeg = encode_jpeg(counting_image(48, 32), 90);
+  const auto header = [](const auto& bytes) {
+    return read_image_header({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+  };
+  EXPECT_EQ(header(png).width, 40u);
+  EXPECT_EQ(header(png).height, 20u);
+  EXPECT_GE(header(png).decoding_bytes, 2u * 4 * 40 * 20);
+  EXPECT_EQ(header(jpeg).width, 48u);
+  EXPECT_EQ(header(jpeg).decoding_bytes, 12u * 48 * 32);
+  EXPECT_EQ(header(std::string("no picture")).decoding_bytes, 0u);
+  EXPECT_EQ(header(std::string()).decoding_bytes, 0u);
 }
 
 // The format allows them, mostly at the beginning.

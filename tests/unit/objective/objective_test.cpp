@@ -165,7 +165,7 @@ TEST(Objective, FitnessIsEquation1) {
 }
 
 TEST(Objective, ScalesBetweenBestAndWorst) {
-  const Objective error{.name = "error", .label = "Error", .unit = "mm", .best = 0, .worst = 10};
+  const Objective error{.name = "error", .label = "Error", .unit = "mm", .scale = minimise(0, 10)};
   EXPECT_FALSE(error.maximised());
   EXPECT_EQ(error.scaled(0), 0);
   EXPECT_EQ(error.scaled(2.5), 0.25);
@@ -175,7 +175,13 @@ TEST(Objective, ScalesBetweenBestAndWorst) {
   EXPECT_EQ(stations.unscaled(1.0 / 16), 5);  // by equation 7
   for (const char* name : {"registration", "registration_worst"})
     EXPECT_EQ(make_objective(name).scaled(10), 1) << name;  // mm
-  EXPECT_EQ((Objective{.best = 3, .worst = 3}).scaled(7), 0);
+  EXPECT_EQ((Objective{.scale = minimise(3, 3)}).scaled(7), 0);
+  EXPECT_TRUE((Objective{.scale = maximise(1, 0)}).maximised());
+  EXPECT_FALSE(Objective{}.scale.given());
+  EXPECT_THROW(minimise(1, 0), Error);
+  EXPECT_THROW(maximise(0, 1), Error);
+  EXPECT_THROW(minimise(0, std::numeric_limits<double>::infinity()), Error);
+  EXPECT_THROW(maximise(std::numeric_limits<double>::quiet_NaN(), 0), Error);
 }
 
 TEST(Objective, StandardErrorsComeByTheJackknifeWhereNoneIsGiven) {
@@ -196,6 +202,7 @@ TEST(Objective, StandardErrorsComeByTheJackknifeWhereNoneIsGiven) {
 
   const Objective own{.name = "own",
                       .label = "Share of voxels that the first station sees",
+                      .scale = maximise(1, 0),
                       .needs = {.pairs = true},
                       .value = [](const MeasuredNetwork& m) {
                         return static_cast<double>(m.counts.seen[0]) / static_cast<double>(m.counts.voxels);

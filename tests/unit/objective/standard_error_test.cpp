@@ -172,7 +172,8 @@ TEST(StandardErrors, IntervalsHoldTheTruth) {
       const Estimate c = coverage_estimate(sample, goal, voxels), o = overlap_estimate(sample, voxels);
       coverage_held += std::abs(c.value - true_coverage) <= 1.96 * c.standard_error;
       overlap_held += std::abs(o.value - true_clustering) <= 1.96 * o.standard_error;
-      const OverlapMatrix values = overlap_matrix(sample), errors = overlap_standard_errors(sample, voxels);
+      const OverlapMatrix values = overlap_matrix(sample);
+      const PairMatrix errors = overlap_standard_errors(sample, voxels);
       for (std::size_t i = 0; i < 6; ++i) {
         for (std::size_t j = i + 1; j < 6; ++j) {
           if (true_overlap(i, j) < 0.05) continue;  // too few shared voxels for a normal interval

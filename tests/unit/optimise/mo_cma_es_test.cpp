@@ -8,15 +8,14 @@
 #include <limits>
 #include <sstream>
 
+#include "bench/baselines.hpp"
 #include "vantage/error.hpp"
 #include "vantage/optimiser.hpp"
 
 namespace vantage {
-
-void PrintTo(Algorithm algorithm, std::ostream* out) { *out << to_string(algorithm); }
-
 namespace {
 
+using bench::Algorithm;
 using Scheme = MoCmaEsConfig::Scheme;
 using Objectives = std::function<std::vector<double>(std::span<const double>)>;
 
@@ -664,12 +663,6 @@ TEST(MoCmaEs, RefusesBlocksThatDoNotChangePlaces) {
   EXPECT_THROW(MoCmaEs(4, 2, c), Error);
   c.blocks = {{0}, {2}};
   EXPECT_NO_THROW(MoCmaEs(4, 2, c));
-}
-
-TEST(Algorithm, NamesRoundTrip) {
-  for (const auto a : {Algorithm::cma_es, Algorithm::mo_cma_es, Algorithm::nsga2, Algorithm::random_search})
-    EXPECT_EQ(algorithm_from_string(to_string(a)), a);
-  EXPECT_THROW(algorithm_from_string("spea2"), Error);
 }
 
 }  // namespace

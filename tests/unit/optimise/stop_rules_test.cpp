@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// Properties of every optimiser that make_optimiser() makes, mainly when it stops.
+// Properties of every optimiser and baseline, mainly when it stops.
 #include "optimise/stop_rules.hpp"
 
 #include <gtest/gtest.h>
 
 #include <sstream>
 
+#include "bench/baselines.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage {
 namespace {
+
+using bench::Algorithm;
 
 constexpr std::size_t kDimension = 3;
 
@@ -157,12 +160,6 @@ TEST_P(AnyOptimiser, IsJudgedByTheRulesThatItGoesOnWith) {
     }
     EXPECT_EQ(loaded(plain, end)->stop_reason(), StopReason::running);
   }
-}
-
-TEST(MakeOptimiser, GivesCmaEsOneObjectiveAlone) {
-  EXPECT_THROW(make_optimiser(Algorithm::cma_es, 2, 2), Error);
-  EXPECT_THROW(make_optimiser(Algorithm::cma_es, 2, 0), Error);
-  EXPECT_NO_THROW(make_optimiser(Algorithm::cma_es, 2, 1));
 }
 
 }  // namespace

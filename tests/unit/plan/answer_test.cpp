@@ -21,9 +21,9 @@ PlanResult front_of(SurveyProblem problem, std::initializer_list<std::array<doub
   for (const auto& [coverage, overlap, alpha] : values) {
     PlanEntry e;
     e.x = {0.5, 0.5, alpha};
-    e.confirmed = true;
-    for (const Objective& measure : result.measures) e.values[measure.name] = {0.5, 0, 0.5};
-    e.values["coverage"].exact = coverage, e.values["overlap"].exact = overlap;
+    e.exact = true;
+    for (const Objective& measure : result.measures) e.searched[measure.name] = e.values[measure.name] = {0.5, 0};
+    e.values["coverage"].value = coverage, e.values["overlap"].value = overlap;
     result.front.push_back(e);
   }
   return result;
@@ -41,20 +41,19 @@ TEST(Answer, IsNearestToTheBestOfAllObjectives) {
 
 TEST(Answer, TakesWhatTheSearchSawWhereNothingWasConfirmed) {
   PlanResult result = front_of(coverage_overlap_fix(1), {{0, 0, 0}, {0, 0, 0}});
-  const double unknown = std::numeric_limits<double>::quiet_NaN();
   for (std::size_t k = 0; k < 2; ++k) {
-    result.front[k].confirmed = false;
+    result.front[k].exact = false;
     const double seen = 0.4 + 0.1 * static_cast<double>(k);
-    result.front[k].values["coverage"] = result.front[k].values["overlap"] = {seen, 0, unknown};
+    result.front[k].values["coverage"] = result.front[k].values["overlap"] = {seen, 0};
   }
   EXPECT_EQ(answer(result), 1u);
 }
 
 TEST(Answer, HangsTogetherWhereAnyEntryDoes) {
   PlanResult result = front_of(coverage_overlap_fix(3), {{0.9, 0.5, 0}, {0.8, 0.5, 0}, {0.7, 0.5, 0}});
-  result.front[0].exact_overlap_matrix = chain(0.9, 0.005);
-  result.front[1].exact_overlap_matrix = chain(0.02, 0.02);
-  result.front[2].exact_overlap_matrix = chain(0.1, 0.1);
+  result.front[0].overlap_matrix = chain(0.9, 0.005);
+  result.front[1].overlap_matrix = chain(0.02, 0.02);
+  result.front[2].overlap_matrix = chain(0.1, 0.1);
   const auto with_links_from = [&](double least) {
     result.problem.link_overlap = least;
     return answer(result);
@@ -69,9 +68,9 @@ TEST(Answer, HangsTogetherWhereAnyEntryDoes) {
 
 TEST(Answer, KeepsTheRequirementsWhereAnyEntryDoes) {
   PlanResult result = front_of(coverage_overlap_fix(1), {{0.99, 0.9, 0}, {0.5, 0.5, 0}, {0.6, 0.3, 0}});
-  result.front[0].missed = 0.01;
+  result.front[0].violation = 0.01;
   EXPECT_EQ(answer(result), 1u);
-  result.front[1].missed = 0.2, result.front[2].missed = 0.1;
+  result.front[1].violation = 0.2, result.front[2].violation = 0.1;
   EXPECT_EQ(answer(result), 0u) << "none does: the one that misses least";
 }
 
@@ -83,13 +82,13 @@ TEST(Answer, HasTheFewestStationsThatKeepWhatIsRequired) {
   EXPECT_EQ(answer(result), 2u) << "then the best";
   EXPECT_TRUE(met(result));
   EXPECT_TRUE(what_would_help(result).empty());
-  for (PlanEntry& entry : result.front) entry.missed = 0.1;
-  result.front[0].missed = 0.05, result.front[0].values["coverage"].exact = 0.85;
+  for (PlanEntry& entry : result.front) entry.violation = 0.1;
+  result.front[0].violation = 0.05, result.front[0].values["coverage"].value = 0.85;
   EXPECT_EQ(answer(result), 0u);
   EXPECT_FALSE(met(result));
   ASSERT_EQ(what_would_help(result).size(), 1u);
   EXPECT_NE(what_would_help(result)[0].find("coverage"), std::string::npos);
-  result.front[0].missed = 0, result.front[0].confirmed = false;
+  result.front[0].violation = 0, result.front[0].exact = false;
   EXPECT_FALSE(met(result)) << "not for sure";
 }
 

@@ -9,7 +9,6 @@
 
 #include "plan/spread_positions.hpp"
 #include "support/quad_scene.hpp"
-#include "unit/plan/random_rows.hpp"
 #include "vantage/error.hpp"
 #include "vantage/planner.hpp"
 
@@ -52,86 +51,98 @@ PlacedStation at(const Vec3& head) {
   return station;
 }
 
-TEST(CaptureRows, AreTheVoxelFieldsOfSingleStations) {
+TEST(SampledCoverage, AreTheVoxelFieldsOfSingleStations) {
   Scanner scanner = coarse_scanner();
   scanner.noise = rtc360_noise();
   Simulator simulator(wall_and_floor().scene(), scanner, config());
   std::vector<PlacedStation> stations{at({0, 0, 0}), at({3, 2, 0}), at({0, 0, 0}), at({9, 0, 0})};
   stations[2].status = StationStatus::clash;
-  const CaptureRows rows = capture_rows(simulator, stations, simulator.voxel_count());
-  ASSERT_EQ(rows.size(), 4u);
-  EXPECT_EQ(rows.row(2).size(), 0u);
-  EXPECT_EQ(rows.voxels().size(), simulator.voxel_count());
+  const SampledCoverage sampled = sample_coverage(simulator, stations, simulator.voxel_count());
+  ASSERT_EQ(sampled.size(), 4u);
+  EXPECT_EQ(sampled.matrix().column(2).size(), 0u);
+  EXPECT_EQ(sampled.voxels().size(), simulator.voxel_count());
   for (const std::size_t k : {0u, 1u, 3u}) {
     VoxelField field;
     simulator.evaluate({{stations[k].position}}, {.overlap = false, .field = &field});
     std::vector<std::uint32_t> dense(field.count.size());
-    for (const CapturedVoxel& seen : rows.row(k)) dense[seen.voxel] = seen.points;
+    for (const CoverageMatrix::Entry& one : sampled.matrix().column(k)) dense[one.element] = one.amount;
     EXPECT_EQ(dense, field.count) << k;
-    EXPECT_GT(rows.row(k).size(), 0u);
+    EXPECT_GT(sampled.matrix().column(k).size(), 0u);
   }
 }
 
-TEST(CaptureRows, SumToNetworks) {
+TEST(SampledCoverage, SumToNetworks) {
   Simulator simulator(wall_and_floor().scene(), coarse_scanner(4), config());
   const std::vector<PlacedStation> stations{at({0, 0, 0}), at({3, 2, 0}), at({2, -2, 0.5})};
   constexpr std::uint64_t sample = 90;
-  const CaptureRows rows = capture_rows(simulator, stations, sample);
-  EXPECT_EQ(rows.voxels(), simulator.sampled_voxels(sample));
+  const SampledCoverage sampled = sample_coverage(simulator, stations, sample);
+  EXPECT_EQ(sampled.voxels(), simulator.sampled_voxels(sample));
   const std::vector<Network> networks{to_network(stations)};
   const NetworkCounts counts = simulator.evaluate_sampled(networks, {.voxels = sample}).front();
   const Estimate expected = coverage_estimate(counts, simulator.goal_density(), simulator.voxel_count());
   const std::vector<std::size_t> all{0, 1, 2};
-  EXPECT_DOUBLE_EQ(rows.coverage(all).value, expected.value);
-  EXPECT_DOUBLE_EQ(rows.coverage(all).standard_error, expected.standard_error);
-  EXPECT_EQ(rows.coverage().value, rows.coverage(all).value);
+  EXPECT_DOUBLE_EQ(sampled.coverage(all).value, expected.value);
+  EXPECT_DOUBLE_EQ(sampled.coverage(all).standard_error, expected.standard_error);
+  EXPECT_EQ(sampled.coverage().value, sampled.coverage(all).value);
   EXPECT_GT(expected.standard_error, 0);
 }
 
-TEST(CaptureRows, GoByTheGoalOfEachVoxel) {
+TEST(SampledCoverage, GoByTheGoalOfEachVoxel) {
   Scanner scanner = coarse_scanner(2);
   scanner.beam_divergence = Angle::radians(1e-4), scanner.exit_diameter_m = 0.005;
   SimulatorConfig by_detail = config();
   by_detail.spacing_by_detail = true;
   Simulator simulator(walls_of_two_details().scene(), scanner, by_detail);
   const std::vector<PlacedStation> stations{at({0, 0, 0}), at({3, 2, 0}), at({-3, -2, 0.5})};
-  const CaptureRows rows = capture_rows(simulator, stations, simulator.voxel_count());
+  const SampledCoverage sampled = sample_coverage(simulator, stations, simulator.voxel_count());
   const double covered = coverage(simulator.evaluate(to_network(stations)), simulator.goal_density());
   const std::vector<std::size_t> all{0, 1, 2};
-  EXPECT_NEAR(rows.coverage(all).value, covered, 1e-12);
+  EXPECT_NEAR(sampled.coverage(all).value, covered, 1e-12);
   EXPECT_GT(covered, 0.3);
   EXPECT_LT(covered, 0.9);
-  CaptureRows first(simulator, simulator.voxel_count());
-  first.append(rows, 2);
+  SampledCoverage first(simulator, simulator.voxel_count());
+  first.append(sampled, 2);
   EXPECT_EQ(first.size(), 2u);
-  EXPECT_EQ(first.coverage().value, rows.coverage(std::vector<std::size_t>{0, 1}).value);
+  EXPECT_EQ(first.coverage().value, sampled.coverage(std::vector<std::size_t>{0, 1}).value);
 }
 
-TEST(CaptureRows, StopWhereTold) {
+TEST(SampledCoverage, StopWhereTold) {
   Simulator simulator(wall_and_floor().scene(), coarse_scanner(), config());
   const std::vector<PlacedStation> stations(200, at({0, 0, 0}));
   std::stop_source stop;
-  const CaptureRows rows = capture_rows(simulator, stations, 50,
-                                        {.report =
-                                             [&](double done) {
-                                               if (done > 0.5) stop.request_stop();
-                                             },
-                                         .stop = stop.get_token()});
-  EXPECT_TRUE(rows.cancelled());
-  EXPECT_GT(rows.size(), 0u);
-  EXPECT_LT(rows.size(), stations.size());
+  const SampledCoverage sampled = sample_coverage(simulator, stations, 50,
+                                                  {.report =
+                                                       [&](double done) {
+                                                         if (done > 0.5) stop.request_stop();
+                                                       },
+                                                   .stop = stop.get_token()});
+  EXPECT_TRUE(sampled.cancelled());
+  EXPECT_GT(sampled.size(), 0u);
+  EXPECT_LT(sampled.size(), stations.size());
 }
 
-TEST(CaptureRows, JoinOnlyWithinOneSample) {
-  CaptureRows some = test::random_rows(3, 20, 1), more(some.weights(), some.goal_density());
-  more.append(some);
-  more.append(some);
-  ASSERT_EQ(more.size(), 6u);
-  for (std::size_t k = 0; k < 6; ++k)
-    EXPECT_TRUE(std::ranges::equal(more.row(k), some.row(k % 3), [](const CapturedVoxel& a, const CapturedVoxel& b) {
-      return a.voxel == b.voxel && a.points == b.points;
-    }));
-  EXPECT_THROW(more.append(test::random_rows(3, 21, 1)), Error);
+TEST(SampledCoverage, JoinsOnlyWithinOneSample) {
+  Simulator simulator(wall_and_floor().scene(), coarse_scanner(3), config());
+  const std::vector<PlacedStation> stations{at({0, 0, 0}), at({3, 2, 0})};
+  SampledCoverage some = sample_coverage(simulator, stations, 60);
+  some.append(sample_coverage(simulator, stations, 60));
+  EXPECT_EQ(some.size(), 4u);
+  EXPECT_THROW(some.append(sample_coverage(simulator, stations, 50)), Error);
+}
+
+TEST(OverlapGraph, HasTheScanOverlapOfEachPair) {
+  Simulator simulator(wall_and_floor().scene(), coarse_scanner(3), config());
+  Simulator surroundings = surroundings_of(simulator);
+  std::vector<PlacedStation> stations{at({0, 0, 0}), at({3, 2, 0}), at({-6, -6, 0})};
+  const StationGraph graph = overlap_graph(surroundings, stations, surroundings.voxel_count());
+  const OverlapMatrix expected = scan_overlap_matrix(surroundings.evaluate(to_network(stations)));
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j)
+      EXPECT_FLOAT_EQ(graph.overlap(i, j), static_cast<float>(expected(i, j))) << i << " and " << j;
+  std::stop_source stopped;
+  stopped.request_stop();
+  EXPECT_EQ(overlap_graph(surroundings, stations, 100, {.report = {}, .stop = stopped.get_token()}).size(), 3u)
+      << "a stopped call knows no overlap, but all stations";
 }
 
 // Square metres decide, not (u, v): the small field has most of the chart.
@@ -142,7 +153,7 @@ TEST(SpreadPositions, FollowTheGroundInSquareMetres) {
   const SearchArea area = SearchArea::from_mesh(mesh);
   const Scene scene = QuadScene().quad({0, 0, -50}, {1, 0, 0}, {0, 1, 0}).scene();
   const ClashChecker clash(scene);
-  const Site site = make_site(area, clash, coarse_scanner());
+  const PlacementOracle site = make_placement_oracle(area, clash, coarse_scanner());
   const SpreadPositions spread = spread_positions(site, area.mesh(), 1.5, 512);
   ASSERT_EQ(spread.stations.size(), 512u);
   for (const std::size_t n : {64u, 128u, 512u}) {
@@ -183,8 +194,8 @@ TEST(Candidates, TellWhatCanBeSeen) {
   EXPECT_EQ(found.visible().standard_error, 0);
   EXPECT_EQ(found.ended(), "enough");
   EXPECT_LT(found.change(), 0.005);
-  EXPECT_EQ(found.rows().size(), found.stations().size());
-  EXPECT_NEAR(found.rows().coverage().value, found.visible().value, 1e-12);
+  EXPECT_EQ(found.coverage().size(), found.stations().size());
+  EXPECT_NEAR(found.coverage().coverage().value, found.visible().value, 1e-12);
   for (const PlacedStation& station : found.stations()) {
     EXPECT_EQ(station.status, StationStatus::ok);
     EXPECT_NEAR(station.position.z, -1.5 + simulator.scanner().height_m, 1e-9);

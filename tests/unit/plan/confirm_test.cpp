@@ -18,7 +18,7 @@ struct Confirmed {
 
 Confirmed confirmed(const SurveyProblem& problem, std::uint64_t sampled, test::ToyEvaluator& evaluator,
                     const PlanWatch& watch = {}) {
-  const Site site = test::toy_site();
+  const PlacementOracle site = test::toy_site();
   const DecisionSpace space(site, problem);
   Confirmed result{.found = test::toy_search(problem, test::toy_config(), evaluator), .entries = {}};
   result.entries = confirm_front(result.found, space, problem, evaluator.measures, sampled, evaluator, watch).entries;
@@ -32,15 +32,15 @@ TEST(ConfirmFront, ReportsExactBesideSampled) {
   EXPECT_EQ(evaluator.confirmed, entries.size());
   EXPECT_EQ(evaluator.estimated, entries.size());
   for (const PlanEntry& e : entries) {
-    EXPECT_TRUE(e.confirmed);
-    EXPECT_EQ(e.values.at("coverage").standard_error, 0.01);
-    EXPECT_EQ(e.values.at("overlap").standard_error, 0.02);
-    EXPECT_NEAR(e.value("coverage"), e.values.at("coverage").searched - 0.001, 1e-12);
-    EXPECT_EQ(e.points_on_surveyed, std::vector<std::uint64_t>(4, 7));
-    EXPECT_EQ(e.exact_overlap_matrix.size(), 4u);
+    EXPECT_TRUE(e.exact);
+    EXPECT_EQ(e.searched.at("coverage").standard_error, 0.01);
+    EXPECT_EQ(e.searched.at("overlap").standard_error, 0.02);
+    EXPECT_NEAR(e.value("coverage"), e.searched.at("coverage").value - 0.001, 1e-12);
+    EXPECT_EQ(e.counts.points_on_surveyed, std::vector<std::uint64_t>(4, 7));
+    EXPECT_EQ(e.overlap_matrix.size(), 4u);
   }
   for (std::size_t k = 1; k < entries.size(); ++k)
-    EXPECT_LE(entries[k].values.at("coverage").searched, entries[k - 1].values.at("coverage").searched);
+    EXPECT_LE(entries[k].searched.at("coverage").value, entries[k - 1].searched.at("coverage").value);
 }
 
 TEST(ConfirmFront, AnExactSearchHasOneValue) {
@@ -51,7 +51,7 @@ TEST(ConfirmFront, AnExactSearchHasOneValue) {
   for (const PlanEntry& e : entries) {
     EXPECT_EQ(e.values.size(), 3u);  // overlap is told though nobody asked for it
     for (const auto& [name, value] : e.values) {
-      EXPECT_EQ(value.searched, value.exact) << name;
+      EXPECT_EQ(e.searched.at(name).value, value.value) << name;
       EXPECT_EQ(value.standard_error, 0) << name;
     }
     EXPECT_EQ(e.value("stations"), static_cast<double>(e.stations.size()));
@@ -70,13 +70,12 @@ TEST(ConfirmFront, AbortLeavesWhatTheSearchSaw) {
                     .abort = abort.get_token()};
     const auto [found, entries] = confirmed(test::toy_problem("coverage-overlap-min"), sampled, evaluator, watch);
     ASSERT_GT(entries.size(), 3u);
-    const auto done = std::count_if(entries.begin(), entries.end(), [](const PlanEntry& e) { return e.confirmed; });
+    const auto done = std::count_if(entries.begin(), entries.end(), [](const PlanEntry& e) { return e.exact; });
     EXPECT_EQ(done, 2);
     for (const PlanEntry& e : entries) {
       EXPECT_GT(e.value("coverage"), 0);
       EXPECT_EQ(e.value("stations"), static_cast<double>(e.stations.size()));
-      if (!e.confirmed) {
-        EXPECT_TRUE(std::isnan(e.values.at("coverage").exact));
+      if (!e.exact) {
         EXPECT_DOUBLE_EQ(e.value("coverage"), test::ToyEvaluator::coverage_of(e.stations));
       }
     }
@@ -84,7 +83,7 @@ TEST(ConfirmFront, AbortLeavesWhatTheSearchSaw) {
 }
 
 TEST(ConfirmFront, NetworksInHolesAreConfirmedToo) {
-  const Site site = test::toy_site();
+  const PlacementOracle site = test::toy_site();
   const SurveyProblem problem = test::toy_problem("coverage-fix");
   const DecisionSpace space(site, problem);
   SearchOutcome found;
@@ -92,12 +91,12 @@ TEST(ConfirmFront, NetworksInHolesAreConfirmedToo) {
   test::ToyEvaluator evaluator;
   const auto entries = confirm_front(found, space, problem, evaluator.measures, 0, evaluator, {}).entries;
   ASSERT_EQ(entries.size(), 1u);
-  EXPECT_TRUE(entries[0].confirmed);
+  EXPECT_TRUE(entries[0].exact);
   EXPECT_EQ(entries[0].stations[0].status, StationStatus::hole);
 }
 
 TEST(ConfirmFront, SparesWhatIsBeatenBeyondDoubt) {
-  const Site site = test::toy_site();
+  const PlacementOracle site = test::toy_site();
   const SurveyProblem problem = test::toy_problem("coverage-overlap-fix");
   const DecisionSpace space(site, problem);
   test::ToyEvaluator evaluator;
@@ -131,10 +130,10 @@ std::vector<PlanEntry> made_up(const Measures& measures, std::initializer_list<s
   for (const auto& [coverage, overlap] : values) {
     PlanEntry& e = entries.emplace_back();
     e.x.assign(8, 0.5);
-    e.confirmed = true;
-    for (const Objective& measure : measures.all) e.values[measure.name] = {.searched = 0.5, .exact = 0.5};
-    e.values["coverage"] = {.searched = 1 - coverage, .exact = coverage};
-    e.values["overlap"] = {.searched = 1 - overlap, .exact = overlap};
+    e.exact = true;
+    for (const Objective& measure : measures.all) e.searched[measure.name] = e.values[measure.name] = {0.5, 0};
+    e.searched["coverage"] = {1 - coverage, 0}, e.values["coverage"] = {coverage, 0};
+    e.searched["overlap"] = {1 - overlap, 0}, e.values["overlap"] = {overlap, 0};
   }
   return entries;
 }
@@ -159,7 +158,7 @@ TEST(JudgeByEveryRay, MarksWhatIsDominatedAndMeasuresTheRest) {
   EXPECT_FALSE(entries[1].dominated);
   EXPECT_TRUE(entries[2].dominated);
   EXPECT_TRUE(entries[3].dominated);
-  entries[1].confirmed = false;
+  entries[1].exact = false;
   EXPECT_TRUE(std::isnan(judge_by_every_ray(entries, problem, measures)));
   EXPECT_FALSE(entries[2].dominated) << "only confirmed entries are compared";
 }
@@ -170,10 +169,10 @@ TEST(JudgeByEveryRay, RanksWhatBreaksARequirementBehindAllElse) {
   const Measures measures = measures_of(problem);
   auto entries = made_up(measures, {{0.9, 0.2}, {0.5, 0.3}, {0.4, 0.9}, {0.3, 0.2}});
   EXPECT_DOUBLE_EQ(judge_by_every_ray(entries, problem, measures), 0.5 * 0.3);
-  EXPECT_EQ(entries[1].missed, 0);
-  EXPECT_NEAR(entries[0].missed, 0.1, 1e-12);
-  EXPECT_NEAR(entries[2].missed, 0.1, 1e-12);
-  EXPECT_NEAR(entries[3].missed, 0.3, 1e-12);
+  EXPECT_EQ(entries[1].violation, 0);
+  EXPECT_NEAR(entries[0].violation, 0.1, 1e-12);
+  EXPECT_NEAR(entries[2].violation, 0.1, 1e-12);
+  EXPECT_NEAR(entries[3].violation, 0.3, 1e-12);
   EXPECT_FALSE(entries[1].dominated);
   for (const std::size_t k : {0, 2, 3}) EXPECT_TRUE(entries[k].dominated) << k;
 }

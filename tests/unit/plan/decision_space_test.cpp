@@ -14,7 +14,7 @@ namespace {
 SurveyProblem stations(std::size_t low, std::size_t high) { return {.stations_min = low, .stations_max = high}; }
 
 TEST(DecisionSpace, HasTheDimensionsOfSection44) {
-  const Site site = test::toy_site();
+  const PlacementOracle site = test::toy_site();
   EXPECT_EQ(DecisionSpace(site, stations(4, 4)).dimension(), 8u);
   EXPECT_EQ(DecisionSpace(site, stations(8, 20)).dimension(), 41u);
   SurveyProblem heights = stations(2, 3);
@@ -26,7 +26,7 @@ TEST(DecisionSpace, HasTheDimensionsOfSection44) {
 }
 
 TEST(DecisionSpace, KnowsWhichCoordinatesMakeAStation) {
-  const Site site = test::toy_site();
+  const PlacementOracle site = test::toy_site();
   SurveyProblem config = stations(2, 3);
   EXPECT_EQ(DecisionSpace(site, config).blocks(), (std::vector<std::vector<std::size_t>>{{0, 1}, {2, 3}, {4, 5}}));
   config.heights_m = {1.2, 2.4};
@@ -35,7 +35,7 @@ TEST(DecisionSpace, KnowsWhichCoordinatesMakeAStation) {
 }
 
 TEST(DecisionSpace, DecodesByEquation7) {
-  const Site site = test::toy_site();
+  const PlacementOracle site = test::toy_site();
   const DecisionSpace space(site, stations(2, 4));
   std::vector<double> x{0.1, 0.1, 0.9, 0.2, 0.5, 0.5, 0.01, 0.5, 0};
   EXPECT_EQ(space.decode(x).size(), 2u);
@@ -55,7 +55,7 @@ TEST(DecisionSpace, DecodesByEquation7) {
 }
 
 TEST(DecisionSpace, KeepsStationsAndVariesHeights) {
-  const Site site = test::toy_site();
+  const PlacementOracle site = test::toy_site();
   SurveyProblem config = stations(2, 2);
   config.kept = {{5, 5, 9}};  // above the hole: it was scanned from there all the same
   config.heights_m = {1, 2};
@@ -72,7 +72,7 @@ TEST(DecisionSpace, KeepsStationsAndVariesHeights) {
 }
 
 TEST(DecisionSpace, ChoosesScannersInEqualShares) {
-  const Site site = test::toy_site();
+  const PlacementOracle site = test::toy_site();
   SurveyProblem config = stations(2, 3);
   config.heights_m = {1, 2};
   config.scanners = {4, 0, 7};
@@ -100,7 +100,7 @@ TEST(DecisionSpace, ChoosesScannersInEqualShares) {
 }
 
 TEST(DecisionSpace, KeptStationsStandAsTheyStood) {
-  const Site site = test::toy_site();
+  const PlacementOracle site = test::toy_site();
   SurveyProblem config = stations(1, 1);
   config.kept = {{5, 5, 9}, {1, 1, 4}};
   config.kept_setups = {{.tilt = Angle::degrees(90)}, {.scanner = 1}};
@@ -114,17 +114,17 @@ TEST(DecisionSpace, KeptStationsStandAsTheyStood) {
 }
 
 TEST(VisibilityParts, CountsWhoSeesWhomWithinRange) {
-  const Site site = test::toy_site();  // a wall at y = 5, range 6 m
+  const PlacementOracle site = test::toy_site();  // a wall at y = 5, range 6 m
   const Network network{{{1, 1, 0}, true}, {{6, 1, 0}, true}, {{9, 4, 0}, true}, {{1, 9, 0}, true}, {{9, 9, 0}, true}};
-  EXPECT_EQ(visibility_parts(site, network), 3u);  // 1-2-3, 4, 5
+  EXPECT_EQ(visibility_parts(site.sees, site.range_m, network), 3u);  // 1-2-3, 4, 5
   Network skipped = network;
   skipped[1].active = false;
-  EXPECT_EQ(visibility_parts(site, skipped), 5u);
-  EXPECT_EQ(visibility_parts(site, Network(1)), 1u);
+  EXPECT_EQ(visibility_parts(site.sees, site.range_m, skipped), 5u);
+  EXPECT_EQ(visibility_parts(site.sees, site.range_m, Network(1)), 1u);
 }
 
 TEST(DecisionSpace, EncodesAnInitialNetworkForEachNumber) {
-  const Site site = test::toy_site();
+  const PlacementOracle site = test::toy_site();
   const std::vector<Vec3> heads{{1, 2, 4.5}, {8, 9, 4.5}, {9, 1, 4.5}};
   const DecisionSpace space(site, stations(2, 4));
   const auto xs = space.encode_each(heads);
@@ -137,7 +137,7 @@ TEST(DecisionSpace, EncodesAnInitialNetworkForEachNumber) {
 }
 
 TEST(DecisionSpace, EncodesAnInitialNetwork) {
-  const Site site = test::toy_site();
+  const PlacementOracle site = test::toy_site();
   SurveyProblem config = stations(2, 4);
   config.heights_m = {1, 2};
   const DecisionSpace space(site, config);
@@ -154,7 +154,7 @@ TEST(DecisionSpace, EncodesAnInitialNetwork) {
 }
 
 TEST(DecisionSpace, RefusesWhatCannotBe) {
-  const Site site = test::toy_site();
+  const PlacementOracle site = test::toy_site();
   const auto refused = [&](const SurveyProblem& config, const std::string& part) {
     try {
       DecisionSpace space(site, config);

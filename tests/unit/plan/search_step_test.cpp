@@ -95,7 +95,7 @@ TEST(SearchStep, IsCoarseWhereSurfacesAreNearAndFineWhereTheyAreFar) {
       plan(simulator, middles(), clash, problem, {.population = 16, .iterations = 30, .sample_voxels = 500, .seed = 4});
   bool found = false;
   for (const PlanEntry& entry : result.front) {
-    ASSERT_TRUE(entry.confirmed);
+    ASSERT_TRUE(entry.exact);
     ASSERT_EQ(entry.x.size(), 6u);
     std::array<int, 2> many{};   // stations in closet and hall
     std::array<bool, 2> fine{};  // any of them
@@ -125,7 +125,7 @@ TEST(SearchStep, TheFewestStationsAreChosenByTheStepThatSeesMost) {
   const PlanConfig config{.population = 6, .iterations = 4, .sample_voxels = 500, .seed = 4};
   const PlanResult result = plan(simulator, middles(), clash, problem, config);
   ASSERT_FALSE(result.front.empty());
-  EXPECT_EQ(result.front.front().missed, 0) << "the coarse step, the first of the list, cannot capture as much";
+  EXPECT_EQ(result.front.front().violation, 0) << "the coarse step, the first of the list, cannot capture as much";
   ASSERT_TRUE(result.candidates);
   for (const PlacedStation& candidate : result.candidates->stations()) EXPECT_EQ(candidate.setup.scanner, 1u);
 

@@ -144,7 +144,7 @@ TEST_P(EveryProblem, AGrowingSampleLeavesNoLuck) {
   config.sample_from = 0;
   const SearchOutcome large = toy_search(problem_, config, fixed);
   EXPECT_LT(growing.voxels, fixed.voxels);
-  const Site site = test::toy_site();
+  const PlacementOracle site = test::toy_site();
   const DecisionSpace space(site, problem_);
   // What is told of the front is what all of the sample says.
   for (const ParetoPoint& point : found.front) {
@@ -173,7 +173,7 @@ TEST_P(EveryProblem, EndsWithVoxelsThatNothingWasChosenBy) {
   EXPECT_EQ(found.sample.from, (drawn + 1) * config.sample_voxels);
   EXPECT_EQ(found.sample.voxels, 4 * config.sample_voxels);
   ASSERT_EQ(found.estimates.size(), found.front.size());
-  const Site site = test::toy_site();
+  const PlacementOracle site = test::toy_site();
   const DecisionSpace space(site, problem_);
   for (std::size_t k = 0; k < found.front.size(); ++k) {
     const ParetoPoint& point = found.front[k];
@@ -197,7 +197,7 @@ TEST(Search, SamplesDrawnAnewDoNotFlatter) {
       config.seed = seed, config.sample_from = 0, config.iterations = 30;
       if (!renewed) config.renew_iterations = 0;
       const SearchOutcome found = toy_search(problem, config, evaluator);
-      const Site site = test::toy_site();
+      const PlacementOracle site = test::toy_site();
       const DecisionSpace space(site, problem);
       std::vector<double> exact;
       for (const ParetoPoint& point : found.front) {
@@ -413,7 +413,7 @@ TEST(Search, WantsNetworksThatKeepTheRequirements) {
   SurveyProblem problem = test::toy_problem("coverage-overlap-fix");
   PlanConfig config = toy_config();
   config.iterations = 60;
-  const Site site = test::toy_site();
+  const PlacementOracle site = test::toy_site();
   const auto parted = [&] {
     ToyEvaluator evaluator;
     const SearchOutcome outcome = toy_search(problem, config, evaluator);
@@ -436,7 +436,7 @@ TEST(Search, FindsTheFewestStationsThatKeepARequirement) {
   config.iterations = 100;
   ToyEvaluator evaluator;
   const SearchOutcome outcome = toy_search(problem, config, evaluator);
-  const Site site = test::toy_site();
+  const PlacementOracle site = test::toy_site();
   const DecisionSpace space(site, problem);
   ASSERT_FALSE(outcome.front.empty());
   for (const ParetoPoint& point : outcome.front) {

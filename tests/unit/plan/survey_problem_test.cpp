@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "plan/choose_optimiser.hpp"
 #include "plan/measures.hpp"
@@ -85,12 +86,20 @@ TEST(Measures, AreToldOnceByName) {
   EXPECT_NE(refusal([&] { measures_of(problem); }).find("two objectives are named coverage"), std::string::npos);
   problem.objectives.back().name = "My own";
   EXPECT_NE(refusal([&] { measures_of(problem); }).find("not \"My own\""), std::string::npos);
-  problem.objectives.back().name = "own", problem.objectives.back().value = nullptr;
+  const auto value = std::exchange(problem.objectives.back().value, nullptr);
+  problem.objectives.back().name = "own";
   EXPECT_NE(refusal([&] { measures_of(problem); }).find("own has no value"), std::string::npos);
+  // Metres, say, must not be maximised because nobody said otherwise.
+  problem.objectives.back() = {.name = "walk", .unit = "m", .value = value};
+  EXPECT_NE(
+      refusal([&] { measures_of(problem); }).find("the objective walk has no scale; give it minimise(best, worst)"),
+      std::string::npos);
+  problem.objectives.back().scale = minimise(0, 100);
+  EXPECT_EQ(measures_of(problem).all.back().name, "overlap");
 }
 
 TEST(ChooseOptimiser, RefusesWhatCannotBe) {
-  const Site site = test::toy_site();
+  const PlacementOracle site = test::toy_site();
   const auto refused = [&](const SurveyProblem& problem, const PlanConfig& config) {
     const DecisionSpace space(site, problem);
     return refusal([&] { choose_optimiser(space, problem, config, 1); });
@@ -103,6 +112,28 @@ TEST(ChooseOptimiser, RefusesWhatCannotBe) {
   EXPECT_EQ(population_of(coverage_fix(4), {}), 10u);
   EXPECT_EQ(population_of(fitness_min(4, 8), {}), 20u);
   EXPECT_EQ(population_of(coverage_min(4, 8), {}), 100u);
+}
+
+TEST(ChooseOptimiser, TakesOneOfTheCallersOwnForSeveralObjectives) {
+  const PlacementOracle site = test::toy_site();
+  const Optimiser* made = nullptr;
+  PlanConfig config{.population = 6, .iterations = 3, .seed = 9};
+  config.optimiser = [&](std::size_t dimension, std::size_t objectives, const OptimiserConfig& asked) {
+    EXPECT_EQ(dimension, 8u);
+    EXPECT_EQ(objectives, 2u);
+    EXPECT_EQ(asked.population, 6u);
+    EXPECT_EQ(asked.max_iterations, 3u);
+    EXPECT_EQ(asked.seed, 9u);
+    auto own = std::make_unique<MoCmaEs>(dimension, objectives, asked);
+    made = own.get();
+    return own;
+  };
+  const DecisionSpace two(site, coverage_overlap_fix(4)), one(site, coverage_fix(4));
+  EXPECT_EQ(choose_optimiser(two, coverage_overlap_fix(4), config, 1).get(), made);
+  EXPECT_NE(made, nullptr);
+  made = nullptr;
+  EXPECT_EQ(choose_optimiser(one, coverage_fix(4), config, 1)->objectives(), 1u);
+  EXPECT_EQ(made, nullptr);
 }
 
 TEST(SurveyProblem, TheSurveyorsQuestionAsksForFewStations) {

@@ -11,16 +11,17 @@
 #include <thread>
 #include <vector>
 
+#include "evaluate/visibility.hpp"
 #include "plan/measures.hpp"
 #include "plan/network_evaluator.hpp"
+#include "plan/placement_oracle.hpp"
 #include "plan/search.hpp"
-#include "plan/site.hpp"
 
 namespace vantage::test {
 
 inline constexpr double kHoleRadius_m = 2.5;
 
-inline Site toy_site() {
+inline PlacementOracle toy_site() {
   return {.uv_min = {0, 0},
           .uv_max = {1, 1},
           .locate = [](Uv uv) -> std::optional<Vec3> {
@@ -98,7 +99,7 @@ class ToyEvaluator final : public NetworkEvaluator {
                           .goal_density = whole,
                           .voxels = 1,
                           .overlap = near(network),
-                          .visible_parts = visibility_parts(toy_site(), to_network(network))});
+                          .visible_parts = visibility_parts(toy_site().sees, toy_site().range_m, to_network(network))});
   }
 
   // One and the same for the same network and sample.
@@ -143,18 +144,19 @@ class ToyEvaluator final : public NetworkEvaluator {
     }
     return estimates;
   }
-  std::vector<std::optional<ConfirmedNetwork>> confirm(std::span<const PlacedNetwork> networks,
-                                                       const Progress& progress) override {
-    std::vector<std::optional<ConfirmedNetwork>> all(networks.size());
+  std::vector<std::optional<Evaluation>> confirm(std::span<const PlacedNetwork> networks,
+                                                 const Progress& progress) override {
+    std::vector<std::optional<Evaluation>> all(networks.size());
     for (std::size_t k = 0; k < networks.size(); ++k) {
       progress(static_cast<double>(k) / static_cast<double>(networks.size()));
       if (progress.stopped()) break;
       ++confirmed;
-      all[k] = {.values = {},
-                .overlaps = OverlapMatrix(networks[k].size()),
-                .points_on_surveyed = std::vector<std::uint64_t>(networks[k].size(), 7)};
+      Evaluation& exact = all[k].emplace();
+      exact.stations = networks[k], exact.exact = true;
+      exact.overlap_matrix = OverlapMatrix(networks[k].size());
+      exact.counts.points_on_surveyed.assign(networks[k].size(), 7);
       for (const Objective& measure : measures.all)
-        all[k]->values.push_back(value_of(measure, networks[k]) - (measure.by_alpha ? 0 : 0.001));
+        exact.values[measure.name] = {value_of(measure, networks[k]) - (measure.by_alpha ? 0 : 0.001), 0};
     }
     return all;
   }
@@ -200,7 +202,7 @@ inline PlanConfig toy_config() { return {.population = 20, .iterations = 30, .se
 inline SearchOutcome toy_search(const SurveyProblem& problem, const PlanConfig& config, ToyEvaluator& evaluator,
                                 std::stop_token stop = {}, std::size_t batch = 4,
                                 std::function<void(const PlanProgress&)> watch = {}) {
-  const Site site = toy_site();
+  const PlacementOracle site = toy_site();
   const DecisionSpace space(site, problem);
   evaluator.measures = measures_of(problem);
   return search({.space = space,
@@ -209,7 +211,7 @@ inline SearchOutcome toy_search(const SurveyProblem& problem, const PlanConfig& 
                  .config = config,
                  .evaluator = evaluator,
                  .batch = batch,
-                 .identity = "toy = " + problem.name + "\nseed = " + std::to_string(config.seed) + "\n",
+                 .identity = "toy = " + problem.name + "\nseed = " + std::to_string(config.seed.value_or(1)) + "\n",
                  .watch = std::move(watch),
                  .stop = stop});
 }

@@ -11,6 +11,7 @@
 #include "report/report_json.hpp"
 #include "support/quad_scene.hpp"
 #include "support/temporary_folder.hpp"
+#include "vantage/error.hpp"
 
 namespace vantage {
 namespace {
@@ -23,8 +24,6 @@ struct Survey {
       scene, test::coarse_scanner(2), {.engine = Engine::embree, .user_size_m = 0.4, .point_spacing_m = 0.1}};
   PlanResult result = plan(simulator, area, clash, coverage_overlap_fix(3),
                            {.population = 6, .iterations = 3, .sample_voxels = 100, .seed = 2});
-  Report report = report_of(result, simulator);
-  ReportSite site{.simulator = simulator, .area = area};
 };
 
 std::string read(const std::filesystem::path& file) {
@@ -41,7 +40,7 @@ std::size_t count(const std::string& text, const std::string& what) {
 
 TEST(Report, HasTheNumbersOfThePlan) {
   Survey survey;
-  const auto json = report_json(survey.report);
+  const auto json = report_json(report_of(survey.result, survey.simulator, {}));
   EXPECT_EQ(json["answer"], answer(survey.result));
   ASSERT_EQ(json["networks"].size(), survey.result.front.size());
   for (std::size_t k = 0; k < survey.result.front.size(); ++k) {
@@ -52,7 +51,7 @@ TEST(Report, HasTheNumbersOfThePlan) {
     for (std::size_t s = 0; s < entry.stations.size(); ++s)
       EXPECT_EQ(network["stations"][s]["head"][0], entry.stations[s].position.x);
     for (const auto& link : network["links"]) {
-      const double overlap = entry.exact_overlap_matrix(link["a"], link["b"]);
+      const double overlap = entry.overlap_matrix(link["a"], link["b"]);
       EXPECT_EQ(link["value"], overlap);
       EXPECT_GE(overlap, survey.result.problem.link_overlap);
     }
@@ -62,9 +61,8 @@ TEST(Report, HasTheNumbersOfThePlan) {
 TEST(Report, ThePageNamesNoAddressToLoadFrom) {
   const test::TemporaryFolder folder;
   Survey survey;
-  survey.report.title = "a </title><script>alert(1)</script> & b";
-  survey.report.command = "vantage plan '</script><!--.glb'";
-  write_report_html(folder / "report.html", survey.report, survey.site);
+  write_report(folder / "report.html", survey.result, survey.simulator, survey.area,
+               {.title = "a </title><script>alert(1)</script> & b", .command = "vantage plan '</script><!--.glb'"});
   const std::string page = read(folder / "report.html");
   EXPECT_LT(page.size(), 5'000'000u);
   for (const char* loads : {"src=\"", "<link rel=\"stylesheet", "@import", "url(", "{{"})
@@ -79,25 +77,38 @@ TEST(Report, IsOnFourSheetsAtMost) {
   const test::TemporaryFolder folder;
   Survey survey;
   // As many stations as there may be, all linked, and a long list of meshes.
-  ReportNetwork& network = survey.report.networks[survey.report.answer];
-  PlacedStation station = network.entry.stations.front();
-  network.entry.stations.assign(max_stations, station);
-  network.names = station_names(network.entry.stations);
-  network.entry.points_on_surveyed.assign(max_stations, 123'456'789);
-  network.links = OverlapMatrix(max_stations);
+  PlanEntry& entry = survey.result.front[answer(survey.result)];
+  const PlacedStation station = entry.stations.front();
+  entry.stations.assign(max_stations, station);
+  entry.counts.points_on_surveyed.assign(max_stations, 123'456'789);
+  entry.overlap_matrix = OverlapMatrix(max_stations);
   for (std::size_t i = 0; i < max_stations; ++i)
-    for (std::size_t j = i + 1; j < max_stations; ++j) network.links.set(i, j, 0.5);
-  network.entry.exact_overlap_matrix = network.links;
-  network.summary.names = network.names;
-  network.summary.links = summary_links(network.links, 0.01);
-  survey.report.missed.assign(
-      200, {.node = "a mesh with a name that is far too long for its column", .voxels = 10, .count = {10}});
-  write_report_pdf(folder / "report.pdf", survey.report, survey.site);
+    for (std::size_t j = i + 1; j < max_stations; ++j) entry.overlap_matrix.set(i, j, 0.5);
+  MissedVoxels missed;
+  missed.shares.assign(200,
+                       {.node = "a mesh with a name that is far too long for its column", .voxels = 10, .count = {10}});
+  write_report(folder / "report.pdf", survey.result, survey.simulator, survey.area, {.missed = &missed});
   const std::string pdf = read(folder / "report.pdf");
   EXPECT_EQ(pdf.substr(0, 5), "%PDF-");
   const std::size_t pages = count(pdf, "/Type /Page") - count(pdf, "/Type /Pages");
   EXPECT_GE(pages, 2u);
   EXPECT_LE(pages, 4u);
+}
+
+TEST(Report, OfANetworkThatNoPlanFoundHasItsFigures) {
+  const test::TemporaryFolder folder;
+  Survey survey;
+  const Evaluation found =
+      evaluate_stations({.simulator = survey.simulator}, survey.result.front.front().stations, {.field = true});
+  const auto json = report_json(report_of(found, survey.simulator, {}));
+  ASSERT_EQ(json["networks"].size(), 1u);
+  EXPECT_EQ(json["networks"][0]["captured"], found.value("coverage"));
+  EXPECT_EQ(json["question"], "3 stations, as given");
+  EXPECT_TRUE(json["axes"].empty());
+  write_report(folder / "a.html", found, survey.simulator, survey.area, {.title = "A wall", .pictures = false});
+  EXPECT_EQ(count(read(folder / "a.html"), "<title>A wall</title>"), 1u);
+  EXPECT_THROW(write_report(folder / "a.txt", found, survey.simulator, survey.area), Error);
+  EXPECT_TRUE(why_no_report().empty());
 }
 
 }  // namespace

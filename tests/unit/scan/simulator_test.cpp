@@ -2,15 +2,20 @@
 #include "vantage/simulator.hpp"
 
 #include <gtest/gtest.h>
+#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
 #include <stop_token>
 #include <string>
+#include <thread>
+#include <tuple>
+#include <utility>
 
 #include "support/quad_scene.hpp"
 #include "vantage/error.hpp"
@@ -599,6 +604,71 @@ TEST(Simulator, TwoCoexistAndCanBeMoved) {
   EXPECT_EQ(moved.evaluate(network).points_on_surveyed[0], points);
   b = std::move(moved);
   EXPECT_EQ(b.evaluate(network).points_on_surveyed[0], points);
+}
+
+// Networks of a room with unlike counts, and what one thread alone counts of them.
+struct SeveralCallers {
+  Simulator simulator{wall_and_floor().scene(), coarse_scanner(0.2), config()};
+  std::vector<Network> networks = {
+      {{{0, 0, 0}}}, {{{0.5, 0.3, 0.2}}}, {{{0, 0, 0}}, {{1, 0.5, 0}}}, {{{-1, 0.2, 0.1}}}};
+  std::vector<NetworkCounts> exact = simulator.evaluate_each(networks);
+  std::vector<NetworkCounts> sampled = simulator.evaluate_sampled(networks, {.voxels = 50});
+
+  // Whether calls give for network k what they gave before.
+  bool agrees(std::size_t k) {
+    const auto same = [](const NetworkCounts& a, const NetworkCounts& b) {
+      return std::tie(a.saturated, a.partial_points, a.rays, a.points_on_surveyed, a.seen, a.shared) ==
+             std::tie(b.saturated, b.partial_points, b.rays, b.points_on_surveyed, b.seen, b.shared);
+    };
+    return same(simulator.evaluate(networks[k]), exact[k]) &&
+           same(simulator.evaluate_sampled({&networks[k], 1}, {.voxels = 50}).front(), sampled[k]);
+  }
+};
+
+TEST(Simulator, ServesSeveralThreadsOneAfterAnother) {
+  SeveralCallers callers;
+  std::atomic<int> wrong = 0;
+  {
+    std::vector<std::jthread> threads;
+    for (std::size_t k = 0; k < callers.networks.size(); ++k)
+      threads.emplace_back([&, k] {
+        for (int time = 0; time < 20; ++time)
+          if (!callers.agrees(k)) ++wrong;
+      });
+  }
+  EXPECT_EQ(wrong, 0);
+}
+
+// A thread that waits within a call could be given another of these tasks, which would call the simulator again.
+TEST(Simulator, ServesTasksThatShareTheThreadsOfOneArena) {
+  SeveralCallers callers;
+  std::atomic<int> wrong = 0;
+  tbb::task_arena arena(4);
+  arena.execute([&] {
+    tbb::parallel_for(std::size_t{0}, std::size_t{80}, [&](std::size_t k) {
+      if (!callers.agrees(k % callers.networks.size())) ++wrong;
+    });
+  });
+  EXPECT_EQ(wrong, 0);
+}
+
+TEST(Simulator, RefusesToBeCalledByACallbackOfItsOwnCall) {
+  SeveralCallers callers;
+  Simulator& simulator = callers.simulator;
+  int refused = 0;
+  const auto call_again = [&] {
+    EXPECT_NE(message_of([&] { simulator.evaluate(callers.networks[0]); }).find("a callback of"), std::string::npos);
+    ++refused;
+  };
+  simulator.scan({{0, 0, 0}}, {}, [&](const ScanChunk&) { call_again(); });
+  EXPECT_GE(std::exchange(refused, 0), 1);
+  simulator.evaluate_sampled(callers.networks, {.points = [&](auto, auto) { call_again(); }});
+  EXPECT_EQ(std::exchange(refused, 0), 4);
+  const NetworkCounts counts =
+      simulator.evaluate(callers.networks[0], {}, {.report = [&](double) { call_again(); }, .stop = {}});
+  EXPECT_GE(refused, 1);
+  EXPECT_EQ(counts.partial_points, callers.exact[0].partial_points);
+  EXPECT_TRUE(callers.agrees(0));  // and it serves again
 }
 
 }  // namespace

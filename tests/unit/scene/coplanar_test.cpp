@@ -7,6 +7,8 @@
 #include <random>
 #include <vector>
 
+#include "vantage/error.hpp"
+
 namespace vantage {
 namespace {
 
@@ -86,6 +88,17 @@ TEST(Coplanar, PairsAreASurveyedAndABlockingTriangle) {
   for (const std::uint32_t wall : {50u, 51u})
     for (std::uint32_t k = 0; k < 50; ++k) expected.push_back({wall, k});
   EXPECT_EQ(scene.pairs(), expected);
+}
+
+TEST(Coplanar, MorePairsThanAllowedAreRefused) {
+  Meshes scene;
+  for (const Role role : {Role::surveyed, Role::blocking})
+    for (int k = 0; k < 10; ++k) scene.add(role, {{0, 0, 0}, {4.0 + k, 0, 0}, {0, 4, 0}});
+  const auto pairs_of_at_most = [&](std::uint64_t most) {
+    return find_coplanar(scene.positions, scene.triangles, scene.ranges, scene.meshes, most).pairs.size();
+  };
+  EXPECT_EQ(pairs_of_at_most(100), 100u);
+  EXPECT_THROW(pairs_of_at_most(99), Error);
 }
 
 }  // namespace

@@ -8,6 +8,8 @@
 #include <random>
 #include <vector>
 
+#include "vantage/error.hpp"
+
 namespace vantage {
 namespace {
 
@@ -47,6 +49,11 @@ ConvexPolygon random_triangle(std::mt19937& rng, double low, double high, double
   return t;
 }
 
+std::vector<ConvexPolygon> cut(const ConvexPolygon& polygon, const std::vector<ConvexPolygon>& holes) {
+  CutAllowance allowance;
+  return cut_away(polygon, holes, kSlack, allowance);
+}
+
 TEST(CutPolygon, EveryPointOutsideTheHolesIsLeftAndNoneInside) {
   std::mt19937 rng(5);
   const ConvexPolygon whole{{0, 0}, {4, 0}, {0, 3}};
@@ -55,7 +62,7 @@ TEST(CutPolygon, EveryPointOutsideTheHolesIsLeftAndNoneInside) {
       std::vector<ConvexPolygon> holes;
       for (std::size_t k = 0; k < count; ++k)
         holes.push_back(random_triangle(rng, -0.5, 4, 3 / std::sqrt(static_cast<double>(count))));
-      const std::vector<ConvexPolygon> left = cut_away(whole, holes, kSlack);
+      const std::vector<ConvexPolygon> left = cut(whole, holes);
       std::uniform_real_distribution<double> x(0, 4), y(0, 3);
       for (int i = 0; i < 500; ++i) {
         const PlanePoint p{x(rng), y(rng)};
@@ -84,7 +91,7 @@ TEST(CutPolygon, AMeshOverAllLeavesNothing) {
       mesh.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
       mesh.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
     }
-  EXPECT_TRUE(cut_away({{0, 0}, {4, 0}, {0, 3}}, mesh, kSlack).empty());
+  EXPECT_TRUE(cut({{0, 0}, {4, 0}, {0, 3}}, mesh).empty());
 }
 
 TEST(CutPolygon, AMeshWithAnOutlineLeavesTheRestInFewParts) {
@@ -96,23 +103,43 @@ TEST(CutPolygon, AMeshWithAnOutlineLeavesTheRestInFewParts) {
       mesh.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
       mesh.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
     }
-  const std::vector<ConvexPolygon> left = cut_away({{0, 0}, {4, 0}, {4, 3}, {0, 3}}, mesh, kSlack);
+  const std::vector<ConvexPolygon> left = cut({{0, 0}, {4, 0}, {4, 3}, {0, 3}}, mesh);
   EXPECT_NEAR(area(left), 12 - 1, 1e-3);
   EXPECT_LT(left.size(), 40u * n);  // out of 2 n² triangles
 }
 
 TEST(CutPolygon, ManyHolesOnOneAnotherEnd) {
   const std::vector<ConvexPolygon> holes(3000, ConvexPolygon{{0.5, 0.5}, {1, 0.5}, {0.5, 1}});
-  const std::vector<ConvexPolygon> left = cut_away({{0, 0}, {4, 0}, {0, 3}}, holes, kSlack);
+  const std::vector<ConvexPolygon> left = cut({{0, 0}, {4, 0}, {0, 3}}, holes);
   EXPECT_NEAR(area(left), 6 - 0.125, 1e-4);
   EXPECT_LT(left.size(), 20u);
 }
 
 TEST(CutPolygon, NoHolesAndHolesWithoutAreaLeaveIt) {
   const ConvexPolygon whole{{0, 0}, {4, 0}, {0, 3}};
-  EXPECT_DOUBLE_EQ(area(cut_away(whole, {}, kSlack)), 6);
-  EXPECT_DOUBLE_EQ(area(cut_away(whole, {{{1, 1}, {2, 1}, {1.5, 1}}, {{1, 1}, {1, 1}, {1, 1}}}, kSlack)), 6);
-  EXPECT_DOUBLE_EQ(area(cut_away(whole, {{{5, 5}, {6, 5}, {5, 6}}}, kSlack)), 6);
+  EXPECT_DOUBLE_EQ(area(cut(whole, {})), 6);
+  EXPECT_DOUBLE_EQ(area(cut(whole, {{{1, 1}, {2, 1}, {1.5, 1}}, {{1, 1}, {1, 1}, {1, 1}}})), 6);
+  EXPECT_DOUBLE_EQ(area(cut(whole, {{{5, 5}, {6, 5}, {5, 6}}})), 6);
+}
+
+// A grid of so many slits a side leaves that many squares, squared.
+TEST(CutPolygon, EndsWhereItsAllowanceDoes) {
+  std::vector<ConvexPolygon> slits;
+  for (int k = 1; k < 40; ++k) {
+    const double at = 0.1 * k;
+    slits.push_back({{at, -1}, {at + 0.01, -1}, {at + 0.01, 5}, {at, 5}});
+    slits.push_back({{-1, at}, {5, at}, {5, at + 0.01}, {-1, at + 0.01}});
+  }
+  const ConvexPolygon whole{{0, 0}, {4, 0}, {4, 4}, {0, 4}};
+  EXPECT_GE(cut(whole, slits).size(), 1600u);
+  CutAllowance few_parts, few_visits;
+  few_parts.parts = 1000, few_visits.visits = 1000;
+  for (CutAllowance* allowance : {&few_parts, &few_visits}) try {
+      cut_away(whole, slits, kSlack, *allowance);
+      ADD_FAILURE() << "it was cut";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), Errc::out_of_memory);
+    }
 }
 
 }  // namespace

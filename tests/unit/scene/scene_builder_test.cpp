@@ -54,6 +54,8 @@ test::GlbBuilder as_gltf(const std::vector<SceneMesh>& meshes) {
     const auto& c = mesh.colour;
     glb.json["materials"].push_back({{"pbrMetallicRoughness", {{"baseColorFactor", {c[0], c[1], c[2], c[3]}}}}});
     nlohmann::json marks{{"diffuse", mesh.diffuse}, {"weight", mesh.weight}};
+    if (mesh.detail_m > 0) marks["detail_mm"] = 1e3 * mesh.detail_m;
+    if (mesh.accuracy_m > 0) marks["accuracy_mm"] = 1e3 * mesh.accuracy_m;
     if (mesh.role == Role::surveyed) marks["role"] = "surveyed";
     if (mesh.role == Role::search) marks["role"] = "search";
     const int shape = glb.mesh({{"attributes", {{"POSITION", points}}}, {"indices", corners}, {"material", material}});
@@ -81,6 +83,9 @@ std::string refusal(Body&& body, Errc code = Errc::invalid_argument) {
 
 TEST(SceneBuilder, MakesWhatAFileOfTheSameMakes) {
   std::vector<SceneMesh> meshes = room();
+  meshes[0].station_area = true, meshes[1].door = true;
+  meshes[1].detail_m = 0.008, meshes[2].accuracy_m = 0.003;
+  const SceneOptions patterns{.doors = {"crate"}, .station_area = {"floor"}};
   const test::TemporaryFolder folder;
   for (const bool marked : {false, true}) {
     if (marked) {
@@ -88,7 +93,7 @@ TEST(SceneBuilder, MakesWhatAFileOfTheSameMakes) {
       meshes.push_back(box("where to stand", {-8, -8, 0}, {16, 16, 0.125}, Role::search));
     }
     as_gltf(meshes).write_glb(folder / "scene.glb");
-    const Scene loaded = Scene::load(folder / "scene.glb"), made = built(meshes);
+    const Scene loaded = Scene::load(folder / "scene.glb", patterns), made = built(meshes);
     EXPECT_EQ(made.data().origin, loaded.data().origin);
     EXPECT_EQ(made.data().positions, loaded.data().positions);
     EXPECT_EQ(made.data().triangles, loaded.data().triangles);
@@ -101,6 +106,10 @@ TEST(SceneBuilder, MakesWhatAFileOfTheSameMakes) {
       EXPECT_EQ(made.meshes()[m].name, loaded.meshes()[m].name);
       EXPECT_EQ(made.meshes()[m].role, loaded.meshes()[m].role);
       EXPECT_EQ(made.meshes()[m].weight, loaded.meshes()[m].weight);
+      EXPECT_EQ(made.meshes()[m].door, m == 1);
+      EXPECT_EQ(made.meshes()[m].station_area, m == 0);
+      EXPECT_EQ(made.meshes()[m].detail_m, m == 1 ? 0.008 : 0);
+      EXPECT_EQ(made.meshes()[m].accuracy_m, m == 2 ? 0.003 : 0);
     }
   }
 }
@@ -154,6 +163,7 @@ TEST(SceneBuilder, AReplacedMeshIsAsOneBuiltInItsPlace) {
     other.triangles.resize(7 + m);
     other.positions.push_back({1e6, 0, 0});  // used by no triangle
     other.diffuse = 0.75, other.colour = {0, 1, 0, 1};
+    other.door = true, other.detail_m = 0.02;
     if (m == 0) other = box("floor", {-8, -8, -0.5}, {16, 16, 0.25});
     builder.replace(m, other);
     const Scene replaced = builder.build();
@@ -243,6 +253,9 @@ TEST(SceneBuilder, RefusesWhatIsOutOfRange) {
       std::string::npos);
   EXPECT_NE(bad([](SceneMesh& m) { m.diffuse = 1.5; }).find("1.5"), std::string::npos);
   EXPECT_NE(bad([](SceneMesh& m) { m.weight = 256; }).find("256"), std::string::npos);
+  EXPECT_NE(bad([](SceneMesh& m) { m.detail_m = -0.5; }).find("the detail must be 0 or more metres; -0.5"),
+            std::string::npos);
+  EXPECT_NE(bad([](SceneMesh& m) { m.accuracy_m = NAN; }).find("the accuracy"), std::string::npos);
   EXPECT_NE(bad([](SceneMesh& m) { m.colour[1] = -1; }).find("-1"), std::string::npos);
   EXPECT_NE(bad([](SceneMesh& m) { m.pose.rotation = {}; }).find("rotation"), std::string::npos);
   EXPECT_NE(bad([](SceneMesh& m) { m.pose.translation.y = NAN; }).find("translation"), std::string::npos);

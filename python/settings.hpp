@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// Keyword arguments by the library's tables of settings: names, values and docstrings come from the rows.
+#pragma once
+
+#include <algorithm>
+#include <string>
+
+#include "options.hpp"
+
+namespace vantage::python {
+
+/// "user_size" of "user-size".
+inline std::string keyword(const std::string& name) {
+  std::string word = name;
+  std::ranges::replace(word, '-', '_');
+  return word;
+}
+
+/// A value as the text that a setting's row reads: numbers, texts, truth values, and sequences of them with commas.
+inline std::string setting_text(const py::handle& value, const std::string& what) {
+  if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "true" : "false";
+  if (py::isinstance<py::str>(value)) return value.cast<std::string>();
+  if (py::hasattr(value, "__fspath__")) return py::str(value.attr("__fspath__")());
+  if (py::isinstance<py::sequence>(value) || py::hasattr(value, "__array__")) {
+    std::string joined;
+    for (const py::handle item : value) joined += (joined.empty() ? "" : ",") + setting_text(item, what);
+    return joined;
+  }
+  if (py::hasattr(value, "__float__") || py::hasattr(value, "__index__")) return py::str(value.attr("__str__")());
+  throw py::type_error(what + ": " + std::string(py::repr(value)) + " is no number, text, truth value or sequence");
+}
+
+/// Sets what `given` names and the table has; returns how many that were. None leaves a setting open.
+template <class Options>
+std::size_t read_settings(const SettingTable<Options>& table, Options& options, const py::kwargs& given) {
+  std::size_t taken = 0;
+  for (const SettingRow<Options>& row : table) {
+    const std::string word = keyword(row.name);
+    if (!given.contains(word)) continue;
+    ++taken;
+    const py::object value = given[word.c_str()];
+    if (value.is_none()) continue;
+    if (row.repeated && !py::isinstance<py::str>(value))
+      for (const py::handle item : value) row.set(options, setting_text(item, word), word);
+    else
+      row.set(options, setting_text(value, word), word);
+  }
+  return taken;
+}
+
+/// Throws TypeError with the first name that no table has.
+template <class... Options>
+void refuse_unknown(const py::kwargs& given, const std::string& call, const SettingTable<Options>&... tables) {
+  for (const auto& item : given) {
+    const auto name = item.first.cast<std::string>();
+    const auto in = [&](const auto& table) {
+      return std::ranges::any_of(table, [&](const auto& row) { return keyword(row.name) == name; });
+    };
+    if (!(in(tables) || ...)) throw py::type_error(call + ": there is no setting '" + name + "'");
+  }
+}
+
+/// A line for each row, to end a docstring with, and the rows' names for the test of the stubs.
+template <class... Options>
+std::string settings_doc(const std::string& call, const SettingTable<Options>&... tables) {
+  std::string text = "\n\nSettings, None where they are left open:\n";
+  py::dict defaults;
+  const auto add = [&](const auto& table) {
+    for (const auto& row : table) {
+      text += "    " + keyword(row.name) + ": " + row.help + ".\n";
+      defaults[py::str(keyword(row.name))] = py::none();
+    }
+  };
+  (add(tables), ...);
+  all_defaults().emplace_back(call, defaults);
+  return text;
+}
+
+}  // namespace vantage::python

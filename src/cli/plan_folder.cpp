@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/plan_folder.hpp"
+
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/fmt/ranges.h>
+
+#include <string>
+
+#include "cli/options.hpp"
+#include "core/read_json.hpp"
+
+namespace vantage::cli {
+namespace {
+
+// As --keep takes it.
+std::string typed(const Vec3& head, const StationSetup& setup, const Scanner& scanner) {
+  return fmt::format("x={},y={},z={},heading={},tilt={},step={},scanner={}", head.x, head.y, head.z,
+                     setup.heading.in_degrees(), setup.tilt.in_degrees(), scanner.azimuth_step.in_degrees(),
+                     scanner.name);
+}
+
+// The requirements that a survey has by itself go by their own options, so that 0 can take one away.
+void add_requirements(nlohmann::json& options, const SurveyProblem& problem) {
+  nlohmann::json further = nlohmann::json::array();
+  for (const char* own : {"capture", "link", "apart"}) options[own] = 0;
+  for (const Requirement& requirement : problem.requirements) {
+    const std::string& name = requirement.objective.name;
+    if (options.contains(name) && requirement.bound == Requirement::Bound::at_least)
+      options[name] = requirement.limit;
+    else
+      further.push_back(to_string(requirement));
+  }
+  options["require"] = std::move(further);
+  options["problem"] = problem.name;
+}
+
+}  // namespace
+
+nlohmann::json plan_options(const Site& site, const SurveyQuestion& question, const SurveyProblem& problem,
+                            const PlanConfig& config) {
+  nlohmann::json options = options_of(settings(problem));
+  if (!problem.kept_setups.empty()) {
+    options["keep"] = nlohmann::json::array();
+    for (std::size_t k = 0; k < problem.kept.size(); ++k) {
+      const StationSetup& setup = problem.kept_setups[k];
+      options["keep"].push_back(typed(problem.kept[k], setup, site.scanners()[setup.scanner]));
+    }
+  }
+  if (!question.search_steps.empty()) options["search-step"] = fmt::format("{}", fmt::join(question.search_steps, ","));
+  if (question.asks_for_fewest()) add_requirements(options, problem);
+  options.update(options_of(settings(config)));
+  if (config.exact) options["exact"] = true;
+  if (question.fitness)
+    options["fitness"] = {question.fitness->coverage, question.fitness->station_count, question.fitness->visibility};
+  nlohmann::json all = options_of(site.settings());
+  all["plan"] = std::move(options);
+  return all;
+}
+
+EarlierResults earlier_results(const std::filesystem::path& folder, const nlohmann::json& options) {
+  EarlierResults before;
+  std::error_code ignored;
+  const auto read = [](const std::filesystem::path& file) {
+    try {
+      return read_json(file.string());
+    } catch (const Error&) {
+      return nlohmann::json();  // damaged, or none of ours: nothing to go by
+    }
+  };
+  if (std::filesystem::exists(folder / "config.json", ignored))
+    before.another_run = read(folder / "config.json") != options;
+  if (std::filesystem::exists(folder / "front.json", ignored)) {
+    const nlohmann::json results = read(folder / "front.json");
+    if (!results.is_object()) return before;
+    before.evaluations = results.value("evaluations", std::uint64_t{0});
+    for (const auto& entry : results.value("front", nlohmann::json::array()))
+      if (entry.is_object() && entry.contains("exact") && !entry["exact"].is_null()) ++before.confirmed;
+  }
+  return before;
+}
+
+}  // namespace vantage::cli

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/plan_text.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace vantage::cli {
+namespace {
+
+// What it misses, and where it does not hang together.
+std::string remarks(const PlanEntry& entry, const PlanResult& result) {
+  std::string text;
+  const auto pairs = [](const Objective& objective) { return objective.needs.pairs; };
+  if (entry.exact && std::ranges::any_of(result.problem.objectives, pairs)) {
+    const std::size_t parts = connectivity(entry.overlap_matrix, result.problem.link_overlap).parts;
+    if (parts > 1) text += fmt::format("  in {} parts", parts);
+  }
+  for (const Requirement& requirement : result.problem.requirements) {
+    const double value = entry.value(requirement.objective.name);
+    if (requirement.missed_by(value) > 0) text += fmt::format("  misses {} ({:.4g})", to_string(requirement), value);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string plan_text(const PlanResult& result, std::size_t chosen, const std::string& folder) {
+  std::string text = unmet_text(result);
+  std::vector<const Objective*> told;
+  for (const Objective& measure : result.measures)
+    if (!measure.by_alpha) told.push_back(&measure);
+  for (const Objective* measure : told)
+    text += fmt::format("{:>9}", measure->unit.empty() ? measure->name : measure->name + " " + measure->unit) + " ";
+  text += "stations\n";
+  for (std::size_t k = 0; k < result.front.size(); ++k) {
+    const PlanEntry& entry = result.front[k];
+    for (const Objective* measure : told) text += fmt::format("{:9.4f} ", entry.value(measure->name));
+    text += fmt::format("{:>8}{}{}\n", entry.stations.size(),
+                        k == chosen       ? "  <- answer"
+                        : entry.dominated ? "  dominated"
+                                          : "",
+                        remarks(entry, result));
+  }
+  text += fmt::format("{} evaluations, hypervolume {:.4f}", result.evaluations, result.hypervolume);
+  if (result.config.sample_voxels > 0 && !std::isnan(result.exact_hypervolume))
+    text += fmt::format(" ({:.4f} by every ray)", result.exact_hypervolume);
+  if (result.spared > 0) text += fmt::format(", {} networks not worth every ray", result.spared);
+  text += fmt::format(", stopped: {}\n", to_string(result.stop_reason));
+  const PlanEntry& entry = result.front[chosen];
+  text +=
+      "\n" +
+      station_table(entry.stations, station_names(entry.stations), entry.counts.points_on_surveyed, result.scanners) +
+      "\n";
+  text += summary_text(entry, result.problem.requirements);
+  for (const std::string& help : what_would_help(result)) text += fmt::format("{:<11}{}\n", "would help", help);
+  return text + "results in " + folder + "\n";
+}
+
+}  // namespace vantage::cli

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "vantage/vantage.hpp"
+
+namespace vantage::cli {
+
+// What a plan says on a terminal: the front, the chosen network's stations and its summary.
+std::string plan_text(const PlanResult& result, std::size_t chosen, const std::string& folder);
+
+}  // namespace vantage::cli

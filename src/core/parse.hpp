@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads the text of a setting. Every function throws Error invalid_argument that quotes the text it could not read.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "vantage/settings.hpp"
+
+namespace vantage {
+
+// The numbers that a setting takes. Never NaN; infinite only where an end is.
+struct Interval {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  bool low_included = true, high_included = true;
+};
+inline constexpr Interval any_number{};
+inline constexpr Interval positive{.low = 0, .low_included = false};
+inline constexpr Interval not_negative{.low = 0};
+
+// `what` opens the message: the name of the setting.
+double parse_number(std::string_view text, const std::string& what, const Interval& interval = any_number);
+std::uint64_t parse_count(std::string_view text, const std::string& what, std::uint64_t low = 0,
+                          std::uint64_t high = std::numeric_limits<std::uint64_t>::max());
+// "true" or "false".
+bool parse_flag(std::string_view text, const std::string& what);
+// The text without the blanks around it.
+std::string_view trimmed_text(std::string_view text);
+std::vector<std::string_view> split(std::string_view text, char separator);
+// Comma-separated numbers, from `fewest` to `most` of them.
+std::vector<double> parse_numbers(std::string_view text, const std::string& what, std::size_t fewest, std::size_t most,
+                                  const Interval& interval = any_number);
+
+struct CountRange {
+  std::size_t low = 0, high = 0;
+};
+CountRange parse_count_range(std::string_view text, const std::string& what, std::size_t low, std::size_t high);
+
+// A number of voxels ("20000") or a share of them ("5%", "0.05").
+SampleSize parse_sample(std::string_view text, const std::string& what);
+
+// Devices, comma-separated: all, numbers, cpu.
+DeviceList parse_devices(std::string_view text, const std::string& what);
+
+// Seconds: a number, or one with s, min or h behind it.
+double parse_duration(std::string_view text, const std::string& what);
+// "4G", "500 MiB", "2e9": bytes; K, M, G, T are powers of 1024.
+std::uint64_t parse_bytes(std::string_view text, const std::string& what);
+
+}  // namespace vantage

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <queue>
+
+#include "cover/network.hpp"
+#include "cover/partial_cover.hpp"
+
+namespace vantage {
+namespace {
+
+// A candidate with what it was last known to add, which bounds what it adds to any larger network.
+struct KnownGain {
+  double gain;
+  std::size_t candidate, network_size;  // of the network that it was computed for
+  bool operator<(const KnownGain& other) const {
+    return gain != other.gain ? gain < other.gain : candidate > other.candidate;
+  }
+};
+
+}  // namespace
+
+std::vector<std::size_t> greedy(const CoverProblem& problem) {
+  check(problem);
+  std::vector<std::size_t> chosen = problem.existing;
+  PartialCover cover(problem.matrix, chosen);
+  std::priority_queue<KnownGain> queue;
+  for (const std::size_t k : free_candidates(problem)) queue.push({cover.gain(k), k, chosen.size()});
+
+  std::vector<KnownGain> refused;  // until the network has grown: then they may be allowed
+  const auto enough = [&] { return problem.coverage < 1 && cover.value() >= problem.coverage; };
+  while (chosen.size() - problem.existing.size() < problem.most && !queue.empty() && !enough()) {
+    const KnownGain best = queue.top();
+    queue.pop();
+    if (best.gain <= 0) break;
+    if (!may_join(problem, best.candidate, chosen)) {
+      refused.push_back(best);
+      continue;
+    }
+    if (best.network_size < chosen.size()) {
+      queue.push({cover.gain(best.candidate), best.candidate, chosen.size()});
+      continue;
+    }
+    cover.add(best.candidate);
+    chosen.push_back(best.candidate);
+    for (const KnownGain& again : refused) queue.push(again);
+    refused.clear();
+  }
+  return chosen;
+}
+
+}  // namespace vantage

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <utility>
+
+#include "cover/connected_growth.hpp"
+#include "cover/network.hpp"
+#include "cover/partial_cover.hpp"
+#include "cover/tabu_search.hpp"
+
+namespace vantage {
+namespace {
+
+// How many networks of one candidate fewer a search begins at: those that lose least.
+constexpr std::size_t kBeginnings = 3;
+// How much stronger a weakest link is asked for at a time.
+constexpr double kLinkStep = 0.02;
+
+// Places of the chosen candidates that may leave, the one whose leaving violates least first.
+std::vector<std::size_t> places_by_loss(const CoverProblem& problem, const std::vector<std::size_t>& chosen) {
+  struct Loss {
+    double violation, coverage;
+    std::size_t at;
+  };
+  const PartialCover cover(problem.matrix, chosen);
+  const double whole = cover.value();
+  std::vector<Loss> losses;
+  for (std::size_t at = problem.existing.size(); at < chosen.size(); ++at) {
+    const double coverage = whole - cover.loss(chosen[at]);
+    const Components rest = components_of(problem, without(chosen, at), problem.link);
+    losses.push_back({violation(problem, coverage, rest.count), coverage, at});
+  }
+  std::ranges::stable_sort(losses, [](const Loss& a, const Loss& b) {
+    return a.violation != b.violation ? a.violation < b.violation : a.coverage > b.coverage;
+  });
+  std::vector<std::size_t> places;
+  for (const Loss& loss : losses) places.push_back(loss.at);
+  return places;
+}
+
+}  // namespace
+
+ConnectedCover min_connected_cover(const CoverProblem& problem, std::stop_token stop,
+                                   std::optional<CoverSolution> start) {
+  check(problem);
+  TabuSearch tabu(problem, stop);
+  const bool from_start = start.has_value();
+  ConnectedCover found{.best = from_start ? std::move(*start)
+                                          : evaluate_cover(problem, grow_connected(problem, problem.existing))};
+  CoverSolution& best = found.best;
+  const auto placed = [&] { return best.chosen.size() - problem.existing.size(); };
+  const auto swap = [&] {
+    if (best.violation > 0 && !stop.stop_requested())
+      best = evaluate_cover(problem, tabu.run(best.chosen, problem.link));
+  };
+  swap();
+  if (from_start && best.violation > 0 && placed() < problem.most && !stop.stop_requested()) {
+    best = evaluate_cover(problem, grow_connected(problem, std::move(best.chosen)));
+    swap();
+  }
+  // One fewer for as long as that is no worse, even where it is not what is wanted.
+  while (placed() > std::max<std::size_t>(problem.fewest, 1) && !stop.stop_requested()) {
+    const std::vector<std::size_t> places = places_by_loss(problem, best.chosen);
+    std::optional<CoverSolution> fewer;
+    for (std::size_t k = 0; k < std::min(kBeginnings, places.size()) && !fewer && !stop.stop_requested(); ++k) {
+      CoverSolution now = evaluate_cover(problem, tabu.run(without(best.chosen, places[k]), problem.link));
+      std::optional<CoverSolution>& nearest = found.one_fewer;
+      if (now.violation <= best.violation)
+        fewer = std::move(now);
+      else if (!nearest || nearest->chosen.size() > now.chosen.size() || nearest->violation > now.violation)
+        nearest = std::move(now);
+    }
+    if (!fewer) break;
+    best = std::move(*fewer);
+  }
+  return found;
+}
+
+CoverSolution improve_weakest_link(const CoverProblem& problem, CoverSolution from, std::stop_token stop) {
+  check(problem);
+  TabuSearch tabu(problem, stop);
+  CoverSolution best = std::move(from);
+  if (best.violation > 0) {
+    CoverSolution found = evaluate_cover(problem, tabu.run(best.chosen, problem.link));
+    if (found.violation < best.violation) best = std::move(found);
+  }
+  while (problem.graph && best.violation == 0 && best.chosen.size() > 1 && !stop.stop_requested()) {
+    CoverSolution found = evaluate_cover(problem, tabu.run(best.chosen, best.link + kLinkStep));
+    if (found.violation > 0 || found.link <= best.link) break;
+    best = std::move(found);
+  }
+  return best;
+}
+
+}  // namespace vantage

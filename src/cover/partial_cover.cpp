@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cover/partial_cover.hpp"
+
+#include <numeric>
+
+namespace vantage {
+
+PartialCover::PartialCover(const CoverageMatrix& matrix, std::span<const std::size_t> chosen)
+    : matrix_(matrix), amounts_(matrix.elements()) {
+  for (const std::size_t candidate : chosen) add(candidate);
+}
+
+double PartialCover::covered(std::uint64_t amount) const {
+  const double share = static_cast<double>(amount) / matrix_.goal();
+  return share < 1 ? share : 1;
+}
+
+void PartialCover::add(std::size_t candidate) {
+  for (const CoverageMatrix::Entry& one : matrix_.column(candidate)) amounts_[one.element] += one.amount;
+}
+
+void PartialCover::remove(std::size_t candidate) {
+  for (const CoverageMatrix::Entry& one : matrix_.column(candidate)) amounts_[one.element] -= one.amount;
+}
+
+double PartialCover::gain(std::size_t candidate) const {
+  double sum = 0;
+  for (const CoverageMatrix::Entry& one : matrix_.column(candidate)) {
+    const std::uint64_t has = amounts_[one.element];
+    if (static_cast<double>(has) >= matrix_.goal()) continue;
+    sum += matrix_.weights()[one.element] * (covered(has + one.amount) - covered(has));
+  }
+  return matrix_.total_weight() > 0 ? sum / matrix_.total_weight() : 0;
+}
+
+double PartialCover::loss(std::size_t candidate) const {
+  double sum = 0;
+  for (const CoverageMatrix::Entry& one : matrix_.column(candidate)) {
+    const std::uint64_t has = amounts_[one.element];
+    sum += matrix_.weights()[one.element] * (covered(has) - covered(has - one.amount));
+  }
+  return matrix_.total_weight() > 0 ? sum / matrix_.total_weight() : 0;
+}
+
+double PartialCover::value() const {
+  double sum = 0;
+  for (std::size_t e = 0; e < amounts_.size(); ++e) sum += matrix_.weights()[e] * covered(amounts_[e]);
+  return matrix_.total_weight() > 0 ? sum / matrix_.total_weight() : 0;
+}
+
+ColumnIndex::ColumnIndex(const CoverageMatrix& matrix) : matrix_(matrix), offsets_(matrix.elements() + 1, 0) {
+  for (std::size_t k = 0; k < matrix.candidates(); ++k)
+    for (const CoverageMatrix::Entry& one : matrix.column(k)) ++offsets_[one.element + 1];
+  std::partial_sum(offsets_.begin(), offsets_.end(), offsets_.begin());
+  columns_.resize(offsets_.back());
+  std::vector<std::size_t> next(offsets_.begin(), offsets_.end() - 1);
+  for (std::size_t k = 0; k < matrix.candidates(); ++k)
+    for (const CoverageMatrix::Entry& one : matrix.column(k))
+      columns_[next[one.element]++] = {static_cast<std::uint32_t>(k), one.amount};
+}
+
+void ColumnIndex::add_gains_without(std::size_t leaving, const PartialCover& cover, std::span<double> gains) const {
+  if (matrix_.total_weight() <= 0) return;
+  for (const CoverageMatrix::Entry& one : matrix_.column(leaving)) {
+    const std::uint64_t has = cover.amount(one.element), left = has - one.amount;
+    if (static_cast<double>(left) >= matrix_.goal()) continue;  // covered without it, too
+    const double share = matrix_.weights()[one.element] / matrix_.total_weight();
+    const double lost = cover.covered(has) - cover.covered(left);
+    for (std::size_t k = offsets_[one.element]; k < offsets_[one.element + 1]; ++k) {
+      const Column& other = columns_[k];
+      gains[other.candidate] +=
+          share * (lost - (cover.covered(has + other.amount) - cover.covered(left + other.amount)));
+    }
+  }
+}
+
+}  // namespace vantage

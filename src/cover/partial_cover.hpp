@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a set of candidates covers, kept up as candidates come and go.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "vantage/cover.hpp"
+
+namespace vantage {
+
+// The amounts of a set S of candidates; one may be in it more than once.
+class PartialCover {
+ public:
+  // Keeps a reference to `matrix`.
+  explicit PartialCover(const CoverageMatrix& matrix, std::span<const std::size_t> chosen = {});
+  void add(std::size_t candidate);
+  void remove(std::size_t candidate);        // REQUIRES: in S
+  double gain(std::size_t candidate) const;  // F(S + candidate) − F(S)
+  double loss(std::size_t candidate) const;  // F(S) − F(S − candidate). REQUIRES: in S
+  double value() const;                      // F(S), summed anew
+  // How much of an element so much covers: min(amount / goal, 1).
+  double covered(std::uint64_t amount) const;
+  std::uint64_t amount(std::size_t element) const { return amounts_[element]; }
+
+ private:
+  const CoverageMatrix& matrix_;
+  std::vector<std::uint64_t> amounts_;
+};
+
+// The columns of each element: the transposed matrix. What a swap changes is read where the candidate that leaves is
+// needed, instead of over whole columns.
+class ColumnIndex {
+ public:
+  // Keeps a reference to `matrix`.
+  explicit ColumnIndex(const CoverageMatrix& matrix);
+  // `gains` are F(S + k) − F(S) of all candidates k. Changes them to F(S − leaving + k) − F(S − leaving). REQUIRES: S
+  // has `leaving`, gains.size() == candidates().
+  void add_gains_without(std::size_t leaving, const PartialCover& cover, std::span<double> gains) const;
+
+ private:
+  struct Column {
+    std::uint32_t candidate, amount;
+  };
+  const CoverageMatrix& matrix_;
+  std::vector<std::size_t> offsets_;
+  std::vector<Column> columns_;
+};
+
+}  // namespace vantage

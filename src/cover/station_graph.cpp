@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <bit>
+#include <string>
+
+#include "vantage/cover.hpp"
+#include "vantage/error.hpp"
+
+namespace vantage {
+
+StationGraph::StationGraph(std::size_t size, std::vector<float> overlaps)
+    : size_(size), overlaps_(std::move(overlaps)) {
+  if (overlaps_.size() != size * size)
+    throw Error(Errc::invalid_argument, "station graph: " + std::to_string(overlaps_.size()) + " overlaps of " +
+                                            std::to_string(size) + " candidates; give one for each pair of them");
+}
+
+StationGraph::StationGraph(const CoverageMatrix& seen, std::size_t size) : StationGraph(size) {
+  const std::size_t known = std::min(size, seen.candidates()), words = (seen.elements() + 63) / 64;
+  std::vector<std::uint64_t> bits(known * words, 0);
+  for (std::size_t k = 0; k < known; ++k)
+    for (const CoverageMatrix::Entry& one : seen.column(k))
+      bits[k * words + one.element / 64] |= std::uint64_t{1} << (one.element % 64);
+  tbb::parallel_for(std::size_t{0}, known, [&](std::size_t i) {
+    for (std::size_t j = 0; j < known; ++j) {
+      if (i == j) continue;
+      std::uint32_t both = 0;
+      for (std::size_t w = 0; w < words; ++w)
+        both += static_cast<std::uint32_t>(std::popcount(bits[i * words + w] & bits[j * words + w]));
+      const auto fewer = static_cast<float>(std::min(seen.column(i).size(), seen.column(j).size()));
+      if (both > 0) overlaps_[i * size_ + j] = static_cast<float>(both) / fewer;
+    }
+  });
+}
+
+void StationGraph::set_overlap(std::size_t i, std::size_t j, float overlap) {
+  overlaps_[i * size_ + j] = overlaps_[j * size_ + i] = overlap;
+}
+
+void StationGraph::exclude(std::size_t i, std::size_t j) {
+  if (excluded_.empty()) excluded_.assign(size_ * size_, 0);
+  excluded_[i * size_ + j] = excluded_[j * size_ + i] = 1;
+}
+
+void StationGraph::exclude_nearer(std::span<const Vec3> positions, double least_m) {
+  for (std::size_t i = 0; i < size_; ++i)
+    for (std::size_t j = i + 1; j < size_; ++j)
+      if (const Vec3 apart = positions[i] - positions[j]; dot(apart, apart) < least_m * least_m) exclude(i, j);
+}
+
+}  // namespace vantage

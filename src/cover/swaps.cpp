@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cover/swaps.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "cover/network.hpp"
+#include "cover/partial_cover.hpp"
+
+namespace vantage {
+namespace {
+
+// Coverage that a swap has to gain, so that rounding ends no search late.
+constexpr double kLeastGain = 1e-9;
+
+// Local search over swaps. An upper bound of each candidate's gain, kept from swap to swap, spares most evaluations.
+class SwapSearch {
+ public:
+  SwapSearch(const CoverProblem& problem, std::vector<std::size_t> chosen)
+      : problem_(problem),
+        chosen_(std::move(chosen)),
+        cover_(problem.matrix, chosen_),
+        in_(problem.matrix.candidates(), 0),
+        bound_(in_.size()),
+        known_(in_.size()) {
+    for (const std::size_t k : chosen_) in_[k] = 1;
+    for (std::size_t k = 0; k < bound_.size(); ++k) bound_[k] = cover_.gain(k);
+  }
+
+  // Until no candidate can be replaced, or stopped.
+  std::vector<std::size_t> run(const std::stop_token& stop) {
+    const std::size_t first = problem_.existing.size();
+    std::size_t unchanged = 0;  // candidates, one after the other, that were not replaced
+    for (std::size_t at = first;
+         chosen_.size() > first && unchanged < chosen_.size() - first && !stop.stop_requested();) {
+      unchanged = replace(at) ? 0 : unchanged + 1;
+      at = at + 1 < chosen_.size() ? at + 1 : first;
+    }
+    return std::move(chosen_);
+  }
+
+ private:
+  // Replaces the candidate at `at` by the one that gains most. False where none gains.
+  bool replace(std::size_t at) {
+    const std::size_t out = chosen_[at];
+    const double lost = cover_.loss(out);
+    cover_.remove(out);
+    const std::vector<std::size_t> others = without(chosen_, at), order = by_bound();
+    std::size_t best = out, looked_at = 0;
+    double most = lost + kLeastGain;
+    // F(S − out + k) − F(S − out) is at most F(S + k) − F(S − out): the gain of k and the loss of `out`.
+    for (; looked_at < order.size() && bound_[order[looked_at]] + lost > most; ++looked_at) {
+      const std::size_t k = order[looked_at];
+      known_[k] = cover_.gain(k);
+      if (known_[k] > most && may_join(problem_, k, others)) most = known_[k], best = k;
+    }
+    cover_.add(best);
+    if (best != out) {
+      in_[out] = 0, in_[best] = 1;
+      chosen_[at] = best;
+      for (double& one : bound_) one += lost;
+      bound_[out] = lost;
+    }
+    // What a candidate adds shrinks when another is added.
+    for (std::size_t i = 0; i < looked_at; ++i) bound_[order[i]] = std::min(bound_[order[i]], known_[order[i]]);
+    return best != out;
+  }
+
+  std::vector<std::size_t> by_bound() const {
+    std::vector<std::size_t> order;
+    for (std::size_t k = 0; k < in_.size(); ++k)
+      if (!in_[k]) order.push_back(k);
+    std::sort(order.begin(), order.end(),
+              [&](std::size_t a, std::size_t b) { return bound_[a] != bound_[b] ? bound_[a] > bound_[b] : a < b; });
+    return order;
+  }
+
+  const CoverProblem& problem_;
+  std::vector<std::size_t> chosen_;
+  PartialCover cover_;
+  std::vector<char> in_;
+  std::vector<double> bound_, known_;  // of each candidate's gain: an upper bound, and the last one computed
+};
+
+}  // namespace
+
+std::vector<std::size_t> improve_by_swaps(const CoverProblem& problem, std::vector<std::size_t> chosen,
+                                          std::stop_token stop) {
+  check(problem);
+  return SwapSearch(problem, std::move(chosen)).run(stop);
+}
+
+std::vector<std::size_t> drop_and_swap(const CoverProblem& problem, std::vector<std::size_t> chosen,
+                                       std::stop_token stop) {
+  const std::size_t first = problem.existing.size();
+  while (chosen.size() > first && !stop.stop_requested()) {
+    const PartialCover cover(problem.matrix, chosen);
+    std::size_t least = first;
+    double lost = cover.loss(chosen[first]);
+    for (std::size_t at = first + 1; at < chosen.size(); ++at)
+      if (const double loss = cover.loss(chosen[at]); loss < lost) lost = loss, least = at;
+    std::vector<std::size_t> fewer = without(chosen, least);
+    if (problem.matrix.coverage(fewer) < problem.coverage) {
+      fewer = improve_by_swaps(problem, std::move(fewer), stop);
+      if (problem.matrix.coverage(fewer) < problem.coverage) break;
+    }
+    chosen = std::move(fewer);
+  }
+  return chosen;
+}
+
+}  // namespace vantage

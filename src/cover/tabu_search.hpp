@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tabu search over swaps (Glover: Tabu Search, Part I, 1989).
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <stop_token>
+#include <vector>
+
+#include "cover/network.hpp"
+#include "cover/partial_cover.hpp"
+
+namespace vantage {
+
+class TabuSearch {
+ public:
+  // Keeps a reference to the problem.
+  explicit TabuSearch(const CoverProblem& problem, std::stop_token stop = {});
+
+  // Makes the best swap each time, even a worse network, and returns the best network met. Ends where nothing is
+  // violated any more. `link` takes the place of the problem's.
+  std::vector<std::size_t> run(std::vector<std::size_t> start, double link);
+
+ private:
+  // A chosen candidate, by its place, that leaves for another one; and the network after it.
+  struct Swap;
+  struct State;
+  Swap best_swap(const State& state) const;
+  Swap best_swap_at(const State& state, std::size_t at, double coverage) const;
+
+  const CoverProblem& problem_;
+  std::stop_token stop_;
+  std::vector<std::size_t> free_;
+  std::optional<ColumnIndex> columns_;  // made when first needed
+};
+
+}  // namespace vantage

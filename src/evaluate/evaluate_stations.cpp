@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <string>
+
+#include "evaluate/visibility.hpp"
+#include "vantage/error.hpp"
+#include "vantage/evaluation.hpp"
+
+namespace vantage {
+namespace {
+
+constexpr double kMillimetres = 1000;
+
+std::vector<Objective> measures_of(const EvaluationOptions& options) {
+  std::vector<Objective> all{make_objective("coverage")};
+  const auto add = [&](const Objective& measure) {
+    if (std::ranges::count(all, measure.name, &Objective::name) == 0) all.push_back(measure);
+  };
+  if (options.overlap) add(make_objective("overlap"));
+  for (const Objective& measure : options.measures) add(measure);
+  for (const Requirement& requirement : options.requirements) add(requirement.objective);
+  if (options.attainable && options.attainable->value > 0)
+    add(make_objective("capture", {.visible = options.attainable->value}));
+  return all;
+}
+
+Needs needs_of(const std::vector<Objective>& measures, const EvaluationOptions& options) {
+  Needs needs = vantage::needs_of(measures);
+  if (!options.registration) return needs;
+  const bool all_surfaces = options.registration->surfaces == RegistrationSurfaces::all;
+  return needs | Needs{.pairs = true,
+                       .surroundings = all_surfaces,
+                       .registration = options.registration->model,
+                       .surroundings_registration = all_surfaces};
+}
+
+void check(const EvaluationSite& site, const Needs& needs, const EvaluationOptions& options) {
+  const auto refuse = [](const std::string& why) { throw Error(Errc::invalid_argument, "evaluate: " + why); };
+  if (needs.pairs && !options.overlap) refuse("what is measured looks at pairs of stations; count overlap too");
+  if (needs.surroundings && !site.surroundings)
+    refuse("what is measured looks at all surfaces; give the simulator of the surroundings too");
+  if (needs.visibility && !site.clash) refuse("what is measured looks at who sees whom; give the clash checker too");
+  if (needs.time && !site.on_site) refuse("what is measured looks at the time on site; give the rounds on site too");
+  if (options.field && options.sample_voxels > 0)
+    refuse("the points of every voxel were asked for, and so was a sample of the voxels; choose one");
+}
+
+std::vector<NetworkCounts> count(Simulator& simulator, std::span<const Network> networks, const Needs& needs,
+                                 const EvaluationOptions& options, VoxelField* field, const Progress& progress) {
+  if (options.sample_voxels > 0)
+    return simulator.evaluate_sampled(
+        networks, {.voxels = options.sample_voxels, .overlap = options.overlap, .registration = needs.registration},
+        progress);
+  const EvaluateOptions every_ray{
+      .overlap = options.overlap, .skip = options.skip, .field = field, .registration = needs.registration};
+  if (networks.size() == 1) return {simulator.evaluate(networks.front(), every_ray, progress)};
+  return simulator.evaluate_each(networks, every_ray, progress);
+}
+
+}  // namespace
+
+std::vector<Evaluation> evaluate_networks(const EvaluationSite& site,
+                                          std::span<const std::vector<PlacedStation>> stations,
+                                          const EvaluationOptions& options, const Progress& progress) {
+  const std::vector<Objective> measures = measures_of(options);
+  const Needs needs = needs_of(measures, options);
+  check(site, needs, options);
+  if (options.field && stations.size() != 1)
+    throw Error(Errc::invalid_argument, "evaluate: the points of every voxel are kept of one network at a time");
+  std::vector<Network> networks;
+  for (const auto& one : stations) networks.push_back(to_network(one));
+
+  VoxelField field;
+  const std::vector<NetworkCounts> counts =
+      count(site.simulator, networks, needs, options, options.field ? &field : nullptr, progress);
+  std::vector<NetworkCounts> around;
+  if (site.surroundings && options.overlap && !progress.stopped())
+    around = site.surroundings->evaluate_each(
+        networks, {.registration = needs.surroundings_registration ? needs.registration : std::nullopt},
+        {.report = {}, .stop = progress.stop});
+
+  std::vector<Evaluation> made;
+  for (std::size_t k = 0; k < networks.size(); ++k) {
+    const bool has_around = site.surroundings && options.overlap;
+    if (counts[k].cancelled || (has_around && (around.empty() || around[k].cancelled))) {
+      made.push_back({.stations = stations[k]});
+      made.back().counts.cancelled = true;
+      continue;
+    }
+    const auto existing = static_cast<std::size_t>(std::ranges::count(stations[k], true, &PlacedStation::kept));
+    std::optional<Visit> visit;
+    if (site.on_site) visit = site.on_site->visit(std::span(stations[k]).subspan(existing));
+    const MeasuredNetwork measured{
+        .counts = counts[k],
+        .stations = stations[k],
+        .kept = existing,
+        .goal_density = site.simulator.goal_density(),
+        .voxels = site.simulator.voxel_count(),
+        .overlap = options.overlap ? overlap_matrix(counts[k]) : OverlapMatrix{},
+        .visible_parts = needs.visibility
+                             ? visibility_parts([&](const Vec3& a, const Vec3& b) { return site.clash->sees(a, b); },
+                                                site.simulator.scanner().max_range_m, networks[k])
+                             : 0,
+        .surroundings = has_around ? &around[k] : nullptr,
+        .surroundings_voxels = has_around ? site.surroundings->voxel_count() : 0,
+        .minutes_on_site = visit ? visit->minutes : 0};
+    Evaluation& one = made.emplace_back(evaluation_of(measured, measures, options.registration));
+    if (options.registration) {
+      const Estimate rms = registration_estimate(counts[k], measured.voxels, *options.registration,
+                                                 measured.surroundings, measured.surroundings_voxels);
+      one.values["registration"] = {kMillimetres * rms.value, kMillimetres * rms.standard_error};
+    }
+    one.names = options.names, one.visit = std::move(visit), one.attainable = options.attainable;
+    one.link_overlap = options.link_overlap, one.link = options.link;
+    one.violation = violation_of(one, options.requirements);
+  }
+  if (options.field && !made.front().counts.cancelled) made.front().field = std::move(field);
+  return made;
+}
+
+Evaluation evaluate_stations(const EvaluationSite& site, std::span<const PlacedStation> stations,
+                             const EvaluationOptions& options, const Progress& progress) {
+  const std::vector<PlacedStation> one(stations.begin(), stations.end());
+  return std::move(evaluate_networks(site, {&one, 1}, options, progress).front());
+}
+
+}  // namespace vantage

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vantage/evaluation.hpp"
+
+namespace vantage {
+
+Network to_network(std::span<const PlacedStation> stations) {
+  Network network;
+  network.reserve(stations.size());
+  for (const PlacedStation& station : stations)
+    network.push_back({.position = station.position, .active = active(station), .setup = station.setup});
+  return network;
+}
+
+double violation_of(const Evaluation& evaluation, std::span<const Requirement> requirements) {
+  double violation = 0;
+  for (const Requirement& requirement : requirements)
+    violation += requirement.missed_by(evaluation.value(requirement.objective.name));
+  return violation;
+}
+
+Evaluation evaluation_of(const MeasuredNetwork& measured, std::span<const Objective> measures,
+                         const std::optional<RegistrationOptions>& registration) {
+  const NetworkCounts& counts = measured.counts;
+  Evaluation made{.stations = {measured.stations.begin(), measured.stations.end()},
+                  .exact = counts.voxels >= measured.voxels,
+                  .voxels = measured.voxels,
+                  .goal_density = measured.goal_density,
+                  .counts = counts};
+  for (const Objective& measure : measures) made.values[measure.name] = estimate(measure, measured);
+  if (!counts.seen.empty()) {
+    made.overlap_matrix = measured.overlap.size() > 0 ? measured.overlap : overlap_matrix(counts);
+    if (!counts.groups.empty()) made.overlap_errors = overlap_standard_errors(counts, measured.voxels);
+  }
+  if (measured.surroundings) made.scan_overlap_matrix = scan_overlap_matrix(*measured.surroundings);
+  if (registration)
+    made.registration =
+        registration_error(counts, measured.voxels, *registration, measured.surroundings, measured.surroundings_voxels);
+  made.counts.groups.clear();
+  made.counts.registration = {};
+  return made;
+}
+
+}  // namespace vantage

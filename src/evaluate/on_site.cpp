@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+// The order of a round: nearest neighbour, then 2-opt (Croes: A Method for Solving Traveling-Salesman Problems, 1958)
+// and Or-opt (Or: Traveling Salesman-Type Combinatorial Problems, 1976).
+#include "vantage/on_site.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "core/setting_list.hpp"
+#include "evaluate/ways.hpp"
+#include "vantage/error.hpp"
+
+namespace vantage {
+namespace {
+
+constexpr double kHip_m = 1.0;
+
+void check(const OnSiteOptions& options) {
+  const auto refuse = [](const char* what, double value, const char* wanted) {
+    throw Error(Errc::invalid_argument,
+                std::string("on site: ") + what + " must be " + wanted + ", not " + std::to_string(value));
+  };
+  if (!(options.set_up_min >= 0 && std::isfinite(options.set_up_min)))
+    refuse("set_up_min", options.set_up_min, "0 or more");
+  if (!(options.walking_m_per_s > 0 && std::isfinite(options.walking_m_per_s)))
+    refuse("walking_m_per_s", options.walking_m_per_s, "above 0");
+  if (!(options.detour >= 1 && std::isfinite(options.detour))) refuse("detour", options.detour, "1 or more");
+}
+
+// A closed round over the points of a matrix, beginning at point 0.
+class Round {
+ public:
+  explicit Round(const std::vector<std::vector<double>>& metres) : metres_(metres) {}
+
+  std::vector<std::size_t> order() {
+    const std::size_t n = metres_.size();
+    std::vector<bool> seen(n, false);
+    order_.assign(1, 0);
+    seen[0] = true;
+    while (order_.size() < n) {
+      std::size_t next = n;
+      for (std::size_t k = 0; k < n; ++k)
+        if (!seen[k] && (next == n || metres_[order_.back()][k] < metres_[order_.back()][next])) next = k;
+      seen[next] = true;
+      order_.push_back(next);
+    }
+    while (turn_round() || move_elsewhere()) {
+    }
+    return order_;
+  }
+
+ private:
+  // Below it a gain is rounding, and the search for more would not end.
+  static constexpr double kGain_m = 1e-9;
+
+  double leg(std::size_t at) const { return metres_[order_[at % order_.size()]][order_[(at + 1) % order_.size()]]; }
+
+  bool turn_round() {
+    const std::size_t n = order_.size();
+    for (std::size_t i = 0; i + 2 < n; ++i) {
+      for (std::size_t j = i + 2; j < n; ++j) {
+        const double now = leg(i) + leg(j);
+        const double then = metres_[order_[i]][order_[j]] + metres_[order_[i + 1]][order_[(j + 1) % n]];
+        if (then + kGain_m >= now) continue;
+        std::reverse(order_.begin() + static_cast<std::ptrdiff_t>(i) + 1,
+                     order_.begin() + static_cast<std::ptrdiff_t>(j) + 1);
+        return true;
+      }
+    }
+    return false;
+  }
+
+  bool move_elsewhere() {
+    const std::size_t n = order_.size();
+    const auto length = [&](const std::vector<std::size_t>& order) {
+      double sum = 0;
+      for (std::size_t k = 0; k < n; ++k) sum += metres_[order[k]][order[(k + 1) % n]];
+      return sum;
+    };
+    const double now = length(order_);
+    for (std::size_t count = 1; count <= 3 && count + 1 < n; ++count) {
+      for (std::size_t from = 1; from + count <= n; ++from) {
+        std::vector<std::size_t> rest = order_;
+        const auto first = rest.begin() + static_cast<std::ptrdiff_t>(from);
+        const std::vector<std::size_t> moved(first, first + static_cast<std::ptrdiff_t>(count));
+        rest.erase(first, first + static_cast<std::ptrdiff_t>(count));
+        for (std::size_t to = 1; to <= rest.size(); ++to) {
+          std::vector<std::size_t> tried = rest;
+          tried.insert(tried.begin() + static_cast<std::ptrdiff_t>(to), moved.begin(), moved.end());
+          if (length(tried) + kGain_m >= now) continue;
+          order_ = std::move(tried);
+          return true;
+        }
+      }
+    }
+    return false;
+  }
+
+  const std::vector<std::vector<double>>& metres_;
+  std::vector<std::size_t> order_;
+};
+
+}  // namespace
+
+struct OnSite::Impl {
+  Impl(const SearchArea& area, const ClashChecker& clash, const OnSiteOptions& o, std::vector<double> scans)
+      : options(o), scan_min(std::move(scans)), ways(area.mesh(), [&clash](const Vec3& a, const Vec3& b) {
+          const Vec3 hip{0, 0, kHip_m};
+          return clash.sees(a + hip, b + hip);
+        }) {}
+  OnSiteOptions options;
+  std::vector<double> scan_min;  // by scanner
+  Ways ways;
+};
+
+OnSite::OnSite(const SearchArea& area, const ClashChecker& clash, const Scanner& scanner, const OnSiteOptions& options)
+    : OnSite(area, clash, std::span(&scanner, 1), options) {}
+
+OnSite::OnSite(const SearchArea& area, const ClashChecker& clash, std::span<const Scanner> scanners,
+               const OnSiteOptions& options) {
+  check(options);
+  if (scanners.empty()) throw Error(Errc::invalid_argument, "on site: no scanner given");
+  std::vector<double> scan_min;
+  for (const Scanner& scanner : scanners)
+    scan_min.push_back(static_cast<double>(scanner.rays()) / scanner.points_per_second / 60);
+  impl_ = std::make_shared<const Impl>(area, clash, options, std::move(scan_min));
+}
+
+std::optional<double> OnSite::way_m(const Vec3& from, const Vec3& to) const { return impl_->ways.between(from, to); }
+double OnSite::minutes_per_scan(std::uint32_t scanner) const { return impl_->scan_min.at(scanner); }
+const OnSiteOptions& OnSite::options() const noexcept { return impl_->options; }
+
+Visit OnSite::visit(std::span<const PlacedStation> stations) const {
+  Visit visit;
+  std::vector<Vec3> stops;
+  std::vector<std::size_t> station_of;
+  const OnSiteOptions& options = impl_->options;
+  if (options.entrance) stops.push_back(*options.entrance);
+  for (std::size_t i = 0; i < stations.size(); ++i) {
+    if (!active(stations[i])) continue;
+    stops.push_back(stations[i].ground);
+    station_of.push_back(i);
+  }
+  if (station_of.empty()) return visit;
+  const std::size_t n = stops.size();
+  std::vector<std::vector<double>> metres(n, std::vector<double>(n, 0));
+  std::vector<std::vector<bool>> connected(n, std::vector<bool>(n, true));
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = i + 1; j < n; ++j) {
+      const Vec3 apart = stops[j] - stops[i];
+      const auto way = way_m(stops[i], stops[j]);
+      metres[i][j] = metres[j][i] = way ? *way : options.detour * std::sqrt(dot(apart, apart));
+      connected[i][j] = connected[j][i] = way.has_value();
+    }
+  }
+  const std::vector<std::size_t> round = Round(metres).order();
+  const std::size_t first = options.entrance ? 1 : 0;
+  for (std::size_t k = first; k < n; ++k) visit.order.push_back(station_of[round[k] - first]);
+  if (!options.entrance) visit.legs_m.push_back(0);
+  for (std::size_t k = 0; k < n; ++k) {
+    const std::size_t a = round[k], b = round[(k + 1) % n];
+    visit.legs_m.push_back(metres[a][b]);
+    visit.walk_m += metres[a][b];
+    if (!connected[a][b]) ++visit.unconnected;
+  }
+  const auto count = static_cast<double>(station_of.size());
+  // By scanner, so that stations of one make a product: no sum that rounds on the way.
+  std::vector<double> scans(impl_->scan_min.size());
+  for (const std::size_t i : station_of) scans.at(stations[i].setup.scanner) += 1;
+  for (std::size_t k = 0; k < scans.size(); ++k) visit.scan_min += scans[k] * impl_->scan_min[k];
+  visit.set_up_min = count * options.set_up_min;
+  visit.walk_min = visit.walk_m / options.walking_m_per_s / 60;
+  visit.minutes = visit.scan_min + visit.set_up_min + visit.walk_min;
+  return visit;
+}
+
+}  // namespace vantage

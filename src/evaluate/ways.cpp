@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+// Shortest paths by Dijkstra: A Note on Two Problems in Connexion with Graphs, 1959.
+#include "evaluate/ways.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <queue>
+#include <utility>
+
+namespace vantage {
+namespace {
+
+constexpr double kMostPlaces = 20'000, kFinest_m = 0.25;
+// Two places in one column are two levels where they are further apart.
+constexpr double kSameLevel_m = 0.4;
+// A step, and a stair of 45 degrees.
+constexpr double kStep_m = 0.35, kSteepest = 1.0;
+// Of one network's stations, some hundred networks' worth.
+constexpr std::size_t kMostKnown = 1'000;
+
+std::uint64_t cell_key(std::int64_t x, std::int64_t y) {
+  return (static_cast<std::uint64_t>(static_cast<std::uint32_t>(x)) << 32) | static_cast<std::uint32_t>(y);
+}
+
+double plan_area(const Vec3& a, const Vec3& b, const Vec3& c) {
+  return std::abs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)) / 2;
+}
+
+// Height of a triangle's plane over a point of its plan; empty outside it.
+std::optional<double> height_at(const std::array<Vec3, 3>& t, double x, double y) {
+  const double area = (t[1].x - t[0].x) * (t[2].y - t[0].y) - (t[1].y - t[0].y) * (t[2].x - t[0].x);
+  if (area == 0) return std::nullopt;
+  const double b = ((x - t[0].x) * (t[2].y - t[0].y) - (y - t[0].y) * (t[2].x - t[0].x)) / area;
+  const double c = ((t[1].x - t[0].x) * (y - t[0].y) - (t[1].y - t[0].y) * (x - t[0].x)) / area;
+  constexpr double rim = 1e-9;
+  if (b < -rim || c < -rim || b + c > 1 + rim) return std::nullopt;
+  return t[0].z + b * (t[1].z - t[0].z) + c * (t[2].z - t[0].z);
+}
+
+}  // namespace
+
+Ways::Ways(const SearchMesh& ground, const std::function<bool(const Vec3&, const Vec3&)>& sees) {
+  const auto corners = [&](const std::array<std::uint32_t, 3>& t) {
+    return std::array<Vec3, 3>{ground.positions[t[0]], ground.positions[t[1]], ground.positions[t[2]]};
+  };
+  double area = 0;
+  for (const auto& t : ground.triangles) {
+    const auto [a, b, c] = corners(t);
+    area += plan_area(a, b, c);
+  }
+  spacing_ = std::max(kFinest_m, std::sqrt(area / kMostPlaces));
+
+  std::vector<std::pair<std::int64_t, std::int64_t>> cell_of;
+  for (const auto& t : ground.triangles) {
+    const auto triangle = corners(t);
+    const auto [low_x, high_x] = std::minmax({triangle[0].x, triangle[1].x, triangle[2].x});
+    const auto [low_y, high_y] = std::minmax({triangle[0].y, triangle[1].y, triangle[2].y});
+    for (auto i = static_cast<std::int64_t>(std::ceil(low_x / spacing_)); i * spacing_ <= high_x; ++i) {
+      for (auto j = static_cast<std::int64_t>(std::ceil(low_y / spacing_)); j * spacing_ <= high_y; ++j) {
+        const double x = static_cast<double>(i) * spacing_, y = static_cast<double>(j) * spacing_;
+        const auto z = height_at(triangle, x, y);
+        if (!z) continue;
+        auto& levels = cells_[cell_key(i, j)];
+        const bool known = std::ranges::any_of(
+            levels, [&](std::uint32_t place) { return std::abs(places_[place].z - *z) < kSameLevel_m; });
+        if (known) continue;
+        levels.push_back(static_cast<std::uint32_t>(places_.size()));
+        places_.push_back({x, y, *z});
+        cell_of.emplace_back(i, j);
+      }
+    }
+  }
+
+  const auto step_to = [&](std::uint32_t from, std::int64_t di, std::int64_t dj) -> std::optional<std::uint32_t> {
+    const auto [i, j] = cell_of[from];
+    const auto found = cells_.find(cell_key(i + di, j + dj));
+    if (found == cells_.end()) return std::nullopt;
+    const double flat = spacing_ * std::hypot(static_cast<double>(di), static_cast<double>(dj));
+    std::optional<std::uint32_t> best;
+    for (const std::uint32_t to : found->second) {
+      const double rise = std::abs(places_[to].z - places_[from].z);
+      if (rise > kStep_m + kSteepest * flat) continue;
+      if (!best || rise < std::abs(places_[*best].z - places_[from].z)) best = to;
+    }
+    return best;
+  };
+  constexpr std::array<std::pair<int, int>, 4> half{{{1, 0}, {0, 1}, {1, 1}, {1, -1}}};
+  std::vector<std::array<std::optional<std::uint32_t>, 4>> ahead(places_.size());
+  tbb::parallel_for(std::size_t{0}, places_.size(), [&](std::size_t k) {
+    const auto from = static_cast<std::uint32_t>(k);
+    for (std::size_t d = 0; d < half.size(); ++d) {
+      const auto to = step_to(from, half[d].first, half[d].second);
+      if (to && sees(places_[from], places_[*to])) ahead[k][d] = to;
+    }
+  });
+  links_.resize(places_.size());
+  const auto link = [&](std::uint32_t a, std::uint32_t b) {
+    const Vec3 way = places_[b] - places_[a];
+    const auto metres = static_cast<float>(std::sqrt(dot(way, way)));
+    links_[a].push_back({b, metres}), links_[b].push_back({a, metres});
+  };
+  const auto linked = [&](std::uint32_t a, std::uint32_t b) {
+    return std::ranges::any_of(links_[a], [&](const Link& l) { return l.to == b; });
+  };
+  for (std::uint32_t k = 0; k < places_.size(); ++k)
+    for (const auto& to : ahead[k])
+      if (to && !linked(k, *to)) link(k, *to);
+  // Ways of eight directions alone are up to 8 % too long; with a knight's moves, where both ways round are free, 3 %.
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> knights;
+  for (std::uint32_t k = 0; k < places_.size(); ++k) {
+    for (const auto& [di, dj] : std::array<std::pair<int, int>, 4>{{{2, 1}, {1, 2}, {2, -1}, {1, -2}}}) {
+      const int si = di == 2 ? 1 : 0, sj = di == 2 ? 0 : (dj > 0 ? 1 : -1);
+      const auto straight = step_to(k, si, sj), slanted = step_to(k, 1, dj > 0 ? 1 : -1);
+      if (!straight || !slanted || !linked(k, *straight) || !linked(k, *slanted)) continue;
+      const auto to = step_to(*straight, di - si, dj - sj);
+      if (to && linked(*straight, *to) && linked(*slanted, *to)) knights.emplace_back(k, *to);
+    }
+  }
+  for (const auto& [a, b] : knights)
+    if (!linked(a, b)) link(a, b);
+}
+
+std::optional<std::uint32_t> Ways::nearest(const Vec3& ground) const {
+  const auto i = static_cast<std::int64_t>(std::lround(ground.x / spacing_)),
+             j = static_cast<std::int64_t>(std::lround(ground.y / spacing_));
+  constexpr std::int64_t reach = 3;
+  std::optional<std::uint32_t> best;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::int64_t di = -reach; di <= reach; ++di) {
+    for (std::int64_t dj = -reach; dj <= reach; ++dj) {
+      const auto found = cells_.find(cell_key(i + di, j + dj));
+      if (found == cells_.end()) continue;
+      for (const std::uint32_t place : found->second) {
+        const Vec3 away = places_[place] - ground;
+        if (std::abs(away.z) > kStep_m + kSteepest * spacing_ * 2 * reach) continue;
+        // Another level is further than it looks.
+        const double distance = std::hypot(away.x, away.y) + 4 * std::abs(away.z);
+        if (distance < least) least = distance, best = place;
+      }
+    }
+  }
+  return best;
+}
+
+std::shared_ptr<const std::vector<float>> Ways::distances_from(std::uint32_t place) const {
+  {
+    const std::scoped_lock lock(mutex_);
+    if (const auto found = known_.find(place); found != known_.end()) return found->second;
+  }
+  std::vector<float> far(places_.size(), std::numeric_limits<float>::infinity());
+  using Entry = std::pair<float, std::uint32_t>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
+  far[place] = 0;
+  open.emplace(0.0F, place);
+  while (!open.empty()) {
+    const auto [metres, at] = open.top();
+    open.pop();
+    if (metres > far[at]) continue;
+    for (const Link& link : links_[at]) {
+      if (const float sum = metres + link.metres; sum < far[link.to]) far[link.to] = sum, open.emplace(sum, link.to);
+    }
+  }
+  auto found = std::make_shared<const std::vector<float>>(std::move(far));
+  const std::scoped_lock lock(mutex_);
+  if (known_.size() >= kMostKnown) known_.clear();
+  known_[place] = found;
+  return found;
+}
+
+std::optional<double> Ways::between(const Vec3& from, const Vec3& to) const {
+  const auto a = nearest(from), b = nearest(to);
+  if (!a || !b) return std::nullopt;
+  const auto length = [](const Vec3& v) { return std::sqrt(dot(v, v)); };
+  if (*a == *b) return length(to - from);
+  // From the place with the smaller number, so that the way back is as long to the last bit.
+  const double metres = static_cast<double>((*distances_from(std::min(*a, *b)))[std::max(*a, *b)]);
+  if (!std::isfinite(metres)) return std::nullopt;
+  return length(places_[*a] - from) + metres + length(to - places_[*b]);
+}
+
+}  // namespace vantage

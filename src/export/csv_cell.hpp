@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// Text in cells of CSV files (RFC 4180). A spreadsheet takes a cell that begins with =, +, - or @ for a formula and
+// runs it; names come from scenes of other people. An apostrophe before it makes it text, and our own reader takes that
+// off.
+#pragma once
+
+#include <string>
+
+namespace vantage {
+
+// Whether a spreadsheet would run it, but for apostrophes before it.
+inline bool is_formula(const std::string& text) {
+  const std::size_t at = text.find_first_not_of('\'');
+  return at != std::string::npos && std::string("=+-@\t\r").find(text[at]) != std::string::npos;
+}
+
+inline std::string csv_cell(const std::string& text) {
+  const std::string plain = is_formula(text) ? "'" + text : text;
+  if (plain.find_first_of(",;\"\n\r\t") == std::string::npos) return plain;
+  std::string cell = "\"";
+  for (const char c : plain) cell += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return cell + "\"";
+}
+
+// Of a cell without its quotes, the text that it was made of.
+inline std::string text_of_csv_cell(const std::string& cell) {
+  return cell.starts_with('\'') && is_formula(cell) ? cell.substr(1) : cell;
+}
+
+}  // namespace vantage

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plan/plan_context.hpp"
+
+#include <algorithm>
+
+#include "evaluate/visibility.hpp"
+#include "plan/choose_optimiser.hpp"
+#include "plan/identity.hpp"
+
+namespace vantage {
+namespace {
+
+// Scan overlap is a share of what a scan sees, some thousand voxels of so many: known to 0.01.
+constexpr std::uint64_t kSurroundingsVoxels = 10'000;
+
+}  // namespace
+
+// Every one more is a step further from the textbook's one at a time, so no more than the engine needs to be kept busy:
+// a whole network with every ray keeps any engine busy, a sampled one only a CPU.
+std::size_t batch_of(const Simulator& simulator, const PlanConfig& config) {
+  if (config.batch > 0) return config.batch;
+  if (config.sample_voxels == 0) return 1;
+  const bool cpu = simulator.engine().engine == Engine::embree || simulator.engine().software;
+  return cpu ? 4 : 32;
+}
+
+PlanContext::PlanContext(Simulator& simulator, const SearchArea& area, const ClashChecker& clash,
+                         const PlanConfig& config)
+    : simulator_(simulator),
+      area_(area),
+      clash_(clash),
+      config_(config),
+      oracle_(make_placement_oracle(area, clash, simulator.scanner())) {}
+
+void PlanContext::ask(const SurveyProblem& problem) {
+  problem_ = problem;
+  measures_ = measures_of(problem);
+  const Needs needs = measures_.all_needs();
+  evaluator_.emplace(
+      simulator_, measures_,
+      SimulatorEvaluator::Options{
+          .sampled = config_.sample_voxels > 0,
+          .kept = problem.kept.size(),
+          .visible_parts =
+              [this](const Network& network) { return visibility_parts(oracle_.sees, oracle_.range_m, network); },
+          .surroundings = needs.surroundings ? &surroundings() : nullptr,
+          .surroundings_voxels = surroundings_voxels(),
+          .registration = problem.registration,
+          .minutes = needs.time ? [this, &ways = on_site()](
+                                      std::span<const PlacedStation> stations) { return ways.visit(stations).minutes; }
+                                : std::function<double(std::span<const PlacedStation>)>()});
+}
+
+Simulator& PlanContext::surroundings() {
+  if (!surroundings_) surroundings_ = std::make_unique<Simulator>(surroundings_of(simulator_));
+  return *surroundings_;
+}
+
+const OnSite& PlanContext::on_site() {
+  if (!on_site_) on_site_.emplace(area_, clash_, simulator_.scanners(), problem_.on_site);
+  return *on_site_;
+}
+
+std::uint64_t PlanContext::surroundings_voxels() const { return std::min(config_.sample_voxels, kSurroundingsVoxels); }
+
+SearchOutcome PlanContext::search(const SurveyProblem& narrowed, const PlanConfig& config,
+                                  const std::vector<double>& start, const PlanWatch& watch) {
+  const DecisionSpace space(oracle_, narrowed);
+  const std::size_t batch = batch_of(simulator_, config);
+  return vantage::search({.space = space,
+                          .problem = narrowed,
+                          .measures = measures_,
+                          .config = config,
+                          .evaluator = *evaluator_,
+                          .batch = batch,
+                          .identity = identity(simulator_, oracle_, area_, clash_, narrowed, config,
+                                               population_of(narrowed, config), batch),
+                          .start = start,
+                          .watch = watch.report,
+                          .warn = simulator_.config().warn,
+                          .stop = watch.stop});
+}
+
+ConfirmedFront PlanContext::confirm(const SearchOutcome& found, const SurveyProblem& narrowed, const PlanWatch& watch) {
+  const DecisionSpace space(oracle_, narrowed);
+  return confirm_front(found, space, narrowed, measures_, config_.sample_voxels, *evaluator_, watch);
+}
+
+PlanResult PlanContext::result(const SearchOutcome& found) const {
+  PlanResult result;
+  result.problem = problem_, result.config = config_;
+  result.population = population_of(problem_, config_), result.batch = batch_of(simulator_, config_);
+  result.walkable = area_.options(), result.security = clash_.volume();
+  result.scanners.assign(simulator_.scanners().begin(), simulator_.scanners().end());
+  result.measures = measures_.all;
+  result.history = found.history;
+  result.hypervolume = found.hypervolume;
+  result.evaluations = found.evaluations, result.resumed_evaluations = found.resumed_evaluations;
+  result.drawn = found.drawn, result.redrawn = found.redrawn;
+  result.stop_reason = found.stop_reason;
+  return result;
+}
+
+}  // namespace vantage

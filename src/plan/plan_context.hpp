@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// What all searches of one plan share: the simulator of the surroundings, the walking graph, the evaluator.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "plan/confirm.hpp"
+#include "plan/placement_oracle.hpp"
+#include "plan/search.hpp"
+#include "plan/simulator_evaluator.hpp"
+
+namespace vantage {
+
+class PlanContext {
+ public:
+  // Borrows all. The problem is settled: its `capture` knows what can be seen.
+  PlanContext(Simulator& simulator, const SearchArea& area, const ClashChecker& clash, const PlanConfig& config);
+
+  // Networks are judged by this problem's measures from now on.
+  void ask(const SurveyProblem& problem);
+  const SurveyProblem& problem() const { return problem_; }
+  const Measures& measures() const { return measures_; }
+  const PlacementOracle& oracle() const { return oracle_; }
+  const SearchArea& area() const { return area_; }
+  SimulatorEvaluator& evaluator() { return *evaluator_; }
+  // Made when first needed.
+  Simulator& surroundings();
+  const OnSite& on_site();
+  std::uint64_t surroundings_voxels() const;
+
+  // With the asked problem narrowed to so many stations, other limits, or left as it is.
+  SearchOutcome search(const SurveyProblem& narrowed, const PlanConfig& config, const std::vector<double>& start,
+                       const PlanWatch& watch);
+  ConfirmedFront confirm(const SearchOutcome& found, const SurveyProblem& narrowed, const PlanWatch& watch);
+  // Everything of a result but its front, as found.
+  PlanResult result(const SearchOutcome& found) const;
+
+ private:
+  Simulator& simulator_;
+  const SearchArea& area_;
+  const ClashChecker& clash_;
+  const PlanConfig& config_;
+  PlacementOracle oracle_;
+  SurveyProblem problem_;
+  Measures measures_;
+  std::unique_ptr<Simulator> surroundings_;
+  std::optional<OnSite> on_site_;
+  std::optional<SimulatorEvaluator> evaluator_;
+};
+
+// Offspring at once in the steady state.
+std::size_t batch_of(const Simulator& simulator, const PlanConfig& config);
+
+}  // namespace vantage

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where vantage is built without what a report takes.
+#include "vantage/error.hpp"
+#include "vantage/report.hpp"
+
+namespace vantage {
+
+std::string why_no_report() {
+  return "vantage was built without three.js, meshoptimizer or zlib (Debian: libjs-three, libmeshoptimizer-dev, "
+         "zlib1g-dev)";
+}
+
+void write_report(const std::filesystem::path&, const PlanResult&, Simulator&, const SearchArea&, const ReportOptions&,
+                  const Progress&) {
+  throw Error(Errc::invalid_argument, "report: " + why_no_report());
+}
+
+void write_report(const std::filesystem::path&, const Evaluation&, Simulator&, const SearchArea&, const ReportOptions&,
+                  const Progress&) {
+  throw Error(Errc::invalid_argument, "report: " + why_no_report());
+}
+
+}  // namespace vantage

@@ -1,0 +1,369 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vantage/site.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "core/read_json.hpp"
+#include "core/setting_list.hpp"
+#include "site/site_scanner.hpp"
+#include "vantage/error.hpp"
+#include "vantage/ground.hpp"
+
+namespace vantage {
+namespace {
+
+std::string number(double value, int digits = 3) {
+  std::array<char, 32> buffer{};
+  std::snprintf(buffer.data(), buffer.size(), "%.*g", digits, value);
+  return buffer.data();
+}
+
+// The detail that all surveyed meshes ask for; empty where they ask for none or differ.
+std::optional<double> common_detail(const Scene& scene) {
+  std::optional<double> common;
+  for (const MeshInfo& mesh : scene.meshes()) {
+    if (mesh.role != Role::surveyed) continue;
+    if (mesh.detail_m == 0 || mesh.detail_m != common.value_or(mesh.detail_m)) return std::nullopt;
+    common = mesh.detail_m;
+  }
+  return common;
+}
+
+bool asks_for_detail(const Scene& scene) {
+  return std::ranges::any_of(scene.meshes(),
+                             [](const MeshInfo& mesh) { return mesh.role == Role::surveyed && mesh.detail_m > 0; });
+}
+
+// For a scene whose size is unlike a site's: 1 from 2 m to 200 m; otherwise the largest extent over 20 m, with two
+// significant digits.
+double scale_of(const Box& bounds) {
+  const Vec3 size = bounds.size();
+  const double extent = std::max({size.x, size.y, size.z});
+  if ((extent >= 2 && extent <= 200) || !(extent > 0)) return 1;
+  const double scale = extent / 20;
+  const double unit = std::pow(10, std::floor(std::log10(scale)) - 1);
+  return std::round(scale / unit) * unit;
+}
+
+// Where nobody asks for a spacing: as dense as the scanner's own steps are square on at 10 m, the distance that makers
+// state resolutions at, so that one station can give it. Not below the library's, whose goal a fine pattern meets with
+// ease; nor so wide that a voxel would want less than a point.
+double usual_spacing(const Scanner& scanner, const SimulatorConfig& config, double scale) {
+  const double step = std::max(scanner.azimuth_step.in_radians(), scanner.zenith_step.in_radians());
+  const double usual = config.point_spacing_m * scale;
+  return std::max(usual, std::min(10 * step * scale, config.user_size_m / 2));
+}
+
+// Gives the settings that nobody gave the scene's own defaults. Throws Error as the settings' reading does.
+void take_scene_defaults(SiteOptions& options, const Scene& scene, const std::string& source) {
+  const auto defaults = nlohmann::json::parse(scene.defaults_json());
+  const bool preset = options.scanner.has_value();
+  const auto apply = [&](const nlohmann::json& values, const auto& again) -> void {
+    for (const auto& [key, value] : values.items()) {
+      if (value.is_object()) {
+        again(value, again);
+        continue;
+      }
+      std::string name = key;
+      std::ranges::replace(name, '_', '-');
+      const auto row = std::ranges::find(site_settings(), name, &SettingRow<SiteOptions>::name);
+      if (row == site_settings().end() || !row->by_scene || (preset && row->by_preset) || row->given(options) ||
+          value.is_null())
+        continue;
+      const std::string text = setting_text(value, source + ": " + key);
+      // What a scene names goes to no file of this machine.
+      if (name == "noise" && text.ends_with(".csv"))
+        throw Error(Errc::malformed_file, source + ": its defaults name the file \"" + text +
+                                              "\" for noise, and a scene may name scanners only; give it as a setting");
+      if (name == "crs" && text.find('[') == std::string::npos && !text.starts_with("EPSG:"))
+        throw Error(Errc::malformed_file, source + ": its defaults name the coordinate system \"" + text +
+                                              "\", and a scene may give EPSG:N or well-known text only");
+      try {
+        row->set(options, text, name);
+      } catch (const Error& error) {
+        throw Error(error.code(), source + ": " + error.what());
+      }
+    }
+  };
+  apply(defaults, apply);
+}
+
+// One device is named as ever; several are listed. The processor is one by the name of its engine.
+void choose_devices(SimulatorConfig& config, const SiteOptions& options) {
+  config.engine = options.engine;
+  if (options.devices.all) config.devices = all_devices(options.engine);
+  for (const std::uint32_t device : options.devices.numbers) config.devices.push_back({options.engine, device});
+  const DeviceChoice cpu{Engine::embree, std::nullopt};
+  if (options.devices.cpu && std::find(config.devices.begin(), config.devices.end(), cpu) == config.devices.end())
+    config.devices.push_back(cpu);
+  if (config.devices.size() != 1) return;
+  config.engine = config.devices.front().engine;
+  config.device_index = config.devices.front().index;
+  config.devices.clear();
+}
+
+SecurityVolume security_of(const SiteOptions& options, double scale) {
+  SecurityVolume volume;
+  if (options.security_m) return {(*options.security_m)[0], (*options.security_m)[1], (*options.security_m)[2]};
+  volume.lower_m *= scale, volume.upper_m *= scale, volume.radius_m *= scale;
+  return volume;
+}
+
+WalkableOptions walkable_of(const SiteOptions& options, double scale) {
+  WalkableOptions walkable;
+  if (options.max_slope) walkable.max_slope = *options.max_slope;
+  walkable.headroom_m = options.headroom_m.value_or(walkable.headroom_m * scale);
+  walkable.min_area_m2 = options.min_area_m2.value_or(walkable.min_area_m2 * scale * scale);
+  walkable.passage_width_m = options.passage_m ? (*options.passage_m)[0] : walkable.passage_width_m * scale;
+  walkable.passage_height_m = options.passage_m ? (*options.passage_m)[1] : walkable.passage_height_m * scale;
+  walkable.climb_m = options.climb_m.value_or(walkable.climb_m * scale);
+  walkable.enter = options.enter;
+  walkable.levels = options.levels_m;
+  if (walkable.levels && (*walkable.levels)[0] > (*walkable.levels)[1])
+    throw Error(Errc::invalid_argument,
+                "levels: " + number((*walkable.levels)[0], 6) + " is not below " + number((*walkable.levels)[1], 6));
+  walkable.within = options.within, walkable.without = options.without;
+  return walkable;
+}
+
+// What was left out of the search area, and a hint at closed doors.
+void log_area(const SearchArea& area, const Scene& scene, const std::function<void(const std::string&)>& log) {
+  log("search area: " + area.description());
+  std::string left_out;
+  bool sealed = false;
+  for (const LeftOut& out : area.left_out()) {
+    left_out += (left_out.empty() ? "" : ", ") + number(out.area_m2) + " m² " + to_string(out.reason);
+    sealed = sealed || (out.reason == LeftOutReason::sealed && out.area_m2 >= 1);
+  }
+  if (!left_out.empty()) log("left out of the search area: " + left_out);
+  if (!sealed || !scene.options().doors.empty()) return;
+  for (const MeshInfo& mesh : scene.meshes()) {
+    std::string name = mesh.name;
+    std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (name.find("door") == std::string::npos) continue;
+    log("what is sealed may lie behind closed doors, as \"" + mesh.name + "\": the setting doors opens them");
+    return;
+  }
+}
+
+std::string absolute(const std::string& file) { return std::filesystem::absolute(file).string(); }
+
+}  // namespace
+
+struct Site::Impl {
+  std::string name;
+  SiteOptions options;
+  Scene scene;
+  std::vector<Scanner> scanners;
+  std::string noise = "off";
+  double scale = 1;
+  SimulatorConfig config;
+  SecurityVolume security;
+  WalkableOptions walkable;
+  std::vector<SiteChoice> choices;
+  std::optional<SearchArea> area;
+  std::optional<ClashChecker> clash;
+  std::optional<Simulator> simulator, surroundings;
+
+  explicit Impl(Scene s) : scene(std::move(s)) {}
+
+  void log(const std::string& line) const {
+    if (options.log) options.log(line);
+  }
+  void choose(const char* setting, std::string value, std::string why) {
+    choices.push_back({setting, std::move(value), std::move(why)});
+  }
+
+  void resolve() {
+    scale = scale_of(scene.bounds());
+    const double small = std::min(scale, 1.0);  // people and tripods do not grow with a site
+    scanners = options.scanners;
+    if (scanners.empty()) scanners = {site_scanner(options, small)};
+    noise = noise_source(options, scanners.front());
+    choose_devices(config, options);
+    config.warn = options.warn;
+    config.seed = options.seed;
+    config.validation = options.validation;
+    config.max_memory_bytes = options.memory_bytes;
+    config.max_incidence = options.max_incidence;
+    config.noise = std::ranges::any_of(scanners, [](const Scanner& scanner) { return !scanner.noise.empty(); });
+    resolve_density();
+    security = security_of(options, small);
+    walkable = walkable_of(options, small);
+    if (scale != 1) log_scaled();
+  }
+
+  void resolve_density() {
+    const std::optional<double> detail = common_detail(scene);
+    config.user_size_m = options.user_size_m.value_or(config.user_size_m * scale);
+    config.point_spacing_m =
+        options.spacing_m.value_or(detail.value_or(usual_spacing(scanners.front(), config, scale)));
+    const bool details_differ = asks_for_detail(scene) && !detail;
+    config.spacing_by_detail = options.spacing_by_detail || (details_differ && !options.spacing_m);
+    if (!options.user_size_m)
+      choose("user-size", number(config.user_size_m), scale == 1 ? "the usual size" : "by the size of the scene");
+    if (!options.spacing_m)
+      choose("spacing", number(config.point_spacing_m),
+             detail ? "the detail that all surveyed nodes ask for" : "the scanner's own steps at 10 m");
+    if (!details_differ || !config.spacing_by_detail) return;
+    choose("spacing-by-detail", "true", "nodes ask for details that differ");
+    log("surveyed nodes are wanted as densely as the detail that they ask for, others with a point every " +
+        number(config.point_spacing_m) + " m");
+  }
+
+  // One line on what was made up for a scene of unusual size.
+  void log_scaled() const {
+    const bool small = scale < 1;
+    std::string made_up;
+    const auto add = [&](bool given, const std::string& text) {
+      if (!given) made_up += (made_up.empty() ? "" : ", ") + text;
+    };
+    add(options.user_size_m.has_value(), "user-size " + number(config.user_size_m));
+    add(options.spacing_m.has_value(), "spacing " + number(config.point_spacing_m));
+    if (small) {
+      const Scanner& scanner = scanners.front();
+      add(options.height_m.has_value(), "height " + number(scanner.height_m));
+      add(options.range_m || options.scanner,
+          "range " + number(scanner.min_range_m) + "," + number(scanner.max_range_m));
+      add(options.security_m.has_value(),
+          "security " + number(security.lower_m) + "," + number(security.upper_m) + "," + number(security.radius_m));
+    }
+    if (made_up.empty()) return;
+    const Vec3 size = scene.bounds().size();
+    log("the scene measures " + number(size.x) + " x " + number(size.y) + " x " + number(size.z) + " m, " +
+        (small ? "smaller" : "larger") + " than a site: " + (small ? "lengths" : "what is measured by is") +
+        " taken as " + number(scale, 2) + " times the usual (" + made_up + ")");
+  }
+
+  const SearchArea& search_area() {
+    if (!area) {
+      area = SearchArea::build(scene, walkable);
+      if (options.log) log_area(*area, scene, options.log);
+    }
+    return *area;
+  }
+
+  bool has_area() {
+    if (scene.has_search_area() || area) return true;
+    try {
+      search_area();
+      return true;
+    } catch (const Error& error) {
+      if (error.code() != Errc::invalid_argument) throw;
+      return false;
+    }
+  }
+
+  // Gives all but the ground so much weight that ground has a third of coverage at most.
+  void weigh_ground() {
+    if (!options.weigh_ground || !has_area() || !ground_is_unmarked(scene, search_area())) return;
+    const GroundWeights found = ground_weights(scene, search_area());
+    if (!found.told.empty()) log(found.told);
+    if (!found.changes) return;
+    choose("weigh-ground", "true", found.told);
+    scene = with_weights(scene, found.weights);
+  }
+};
+
+Site Site::open(const std::filesystem::path& file, SiteOptions options) {
+  if (options.memory_bytes > 0) options.scene.max_memory_bytes = options.memory_bytes;
+  Scene scene = Scene::load(file, options.scene);
+  if (options.log)
+    for (const std::string& note : scene.notes()) options.log(file.string() + ": " + note);
+  take_scene_defaults(options, scene, file.string());
+  return Site(std::move(scene), std::move(options), file.stem().string());
+}
+
+Site::Site(Scene scene, SiteOptions options, std::string name) : impl_(std::make_unique<Impl>(std::move(scene))) {
+  impl_->name = std::move(name);
+  impl_->options = std::move(options);
+  impl_->resolve();
+  impl_->weigh_ground();
+}
+
+Site::Site(Simulator simulator, SearchArea area, ClashChecker clash, std::string name)
+    : impl_(std::make_unique<Impl>(simulator.scene())) {
+  impl_->name = std::move(name);
+  impl_->scanners.assign(simulator.scanners().begin(), simulator.scanners().end());
+  impl_->config = simulator.config();
+  impl_->options.seed = simulator.config().seed;
+  impl_->security = clash.volume();
+  impl_->walkable = area.options();
+  impl_->area = std::move(area);
+  impl_->clash = std::move(clash);
+  impl_->simulator = std::move(simulator);
+}
+
+Site::Site(Site&&) noexcept = default;
+Site& Site::operator=(Site&&) noexcept = default;
+Site::~Site() = default;
+
+const std::string& Site::name() const noexcept { return impl_->name; }
+const Scene& Site::scene() const noexcept { return impl_->scene; }
+const SiteOptions& Site::options() const noexcept { return impl_->options; }
+std::span<const SiteChoice> Site::choices() const noexcept { return impl_->choices; }
+const Scanner& Site::scanner() const noexcept { return impl_->scanners.front(); }
+std::span<const Scanner> Site::scanners() const noexcept { return impl_->scanners; }
+double Site::length_scale() const noexcept { return impl_->scale; }
+const SimulatorConfig& Site::simulator_config() const noexcept { return impl_->config; }
+const WalkableOptions& Site::walkable() const noexcept { return impl_->walkable; }
+const SecurityVolume& Site::security() const noexcept { return impl_->security; }
+const std::string& Site::crs() const noexcept { return impl_->options.crs; }
+
+std::uint32_t Site::place_of(const Scanner& scanner) {
+  const std::size_t known = impl_->scanners.size();
+  const std::uint32_t place = place_in(impl_->scanners, scanner);
+  if (place < known || !impl_->simulator) return place;
+  impl_->scanners.pop_back();
+  throw Error(Errc::invalid_argument,
+              "the site's simulator is made, and \"" + scanner.name + "\" is none of its scanners");
+}
+
+Settings Site::settings() const {
+  Settings all = vantage::settings(scanner());
+  const auto append = [&](const Settings& more) { all.insert(all.end(), more.begin(), more.end()); };
+  append(vantage::settings(scene().options()));
+  append(vantage::settings(impl_->config));
+  append(vantage::settings(impl_->security));
+  append(vantage::settings(impl_->walkable));
+  SettingList more;
+  more.add("noise_source", impl_->noise, {"noise"});
+  if (!crs().empty()) more.add("crs", crs(), {"crs", false});
+  const auto files = [&](const char* name, const std::vector<PlanRegion>& regions) {
+    std::vector<std::string> list;
+    for (const PlanRegion& region : regions)
+      if (!region.file.empty()) list.push_back(absolute(region.file));
+    if (!list.empty()) more.add(std::string(name) + "_files", list, {name, false});
+  };
+  files("within", impl_->walkable.within);
+  files("without", impl_->walkable.without);
+  append(more.take());
+  return all;
+}
+
+bool Site::has_area() { return impl_->has_area(); }
+const SearchArea& Site::area() { return impl_->search_area(); }
+const ClashChecker& Site::clash() {
+  if (!impl_->clash) impl_->clash.emplace(impl_->scene, impl_->security);
+  return *impl_->clash;
+}
+
+bool Site::build(const Progress& progress) {
+  if (!impl_->simulator) impl_->simulator = Simulator::build(impl_->scene, impl_->scanners, impl_->config, progress);
+  return impl_->simulator.has_value();
+}
+Simulator& Site::simulator() {
+  build();
+  return *impl_->simulator;
+}
+Simulator& Site::surroundings() {
+  if (!impl_->surroundings) impl_->surroundings = surroundings_of(simulator());
+  return *impl_->surroundings;
+}
+
+}  // namespace vantage

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "site/site_scanner.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "vantage/error.hpp"
+
+namespace vantage {
+namespace {
+
+// A step that went through a table of degrees and back may differ in its last digit.
+bool near(Angle a, Angle b) { return std::abs(a.in_radians() - b.in_radians()) <= 1e-12 * a.in_radians(); }
+
+bool same(const Scanner& a, Scanner b) {
+  if (!near(a.azimuth_step, b.azimuth_step) || !near(a.zenith_step, b.zenith_step)) return false;
+  b.azimuth_step = a.azimuth_step, b.zenith_step = a.zenith_step;
+  const auto text = [](const Setting& setting) { return setting.json; };
+  return std::ranges::equal(settings(a), settings(b), {}, text, text);
+}
+
+}  // namespace
+
+Scanner site_scanner(const SiteOptions& options, double scale) {
+  Scanner scanner;
+  scanner.height_m *= scale;
+  scanner.min_range_m *= scale;
+  scanner.max_range_m *= scale;
+  if (options.scanner) {
+    const double height = scanner.height_m;  // no preset knows the tripod
+    scanner = load_scanner(*options.scanner, own_presets_file());
+    scanner.height_m = height;
+  }
+  if (options.steps) scanner.azimuth_step = (*options.steps)[0], scanner.zenith_step = (*options.steps)[1];
+  const auto take = [](auto& value, const auto& given) {
+    if (given) value = *given;
+  };
+  take(scanner.heading, options.heading);
+  take(scanner.horizontal_angle, options.horizontal_angle);
+  take(scanner.vertical_angle, options.vertical_angle);
+  take(scanner.zenith_start, options.zenith_start);
+  take(scanner.height_m, options.height_m);
+  take(scanner.points_per_second, options.points_per_second);
+  if (options.range_m) {
+    scanner.min_range_m = (*options.range_m)[0], scanner.max_range_m = (*options.range_m)[1];
+    if (!(scanner.min_range_m < scanner.max_range_m))
+      throw Error(Errc::invalid_argument, "range: the nearest distance must be below the farthest, and " +
+                                              std::to_string(scanner.min_range_m) + " is not below " +
+                                              std::to_string(scanner.max_range_m));
+  }
+  if (options.noise) scanner.noise = load_noise(*options.noise);
+  if (options.beam) {
+    scanner.beam_divergence = Angle::radians((*options.beam)[0] * 1e-3);
+    scanner.exit_diameter_m = (*options.beam)[1] * 1e-3;
+  }
+  scanner.check();
+  return scanner;
+}
+
+std::string noise_source(const SiteOptions& options, const Scanner& scanner) {
+  const std::string noise = scanner.noise.empty() ? "off"
+                            : options.noise       ? *options.noise
+                                                  : options.scanner.value_or("off");
+  return noise.ends_with(".csv") ? std::filesystem::absolute(noise).string() : noise;
+}
+
+std::uint32_t place_in(std::vector<Scanner>& scanners, const Scanner& scanner) {
+  scanner.check();
+  const auto found = std::ranges::find_if(scanners, [&](const Scanner& known) { return same(known, scanner); });
+  const auto place = static_cast<std::uint32_t>(found - scanners.begin());
+  if (found == scanners.end()) scanners.push_back(scanner);
+  return place;
+}
+
+}  // namespace vantage

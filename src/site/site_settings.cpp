@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/setting_table.hpp"
+#include "vantage/site.hpp"
+
+namespace vantage {
+namespace {
+
+using Rows = SettingRows<SiteOptions>;
+
+// PATTERN=VALUE, its value as `parse` reads it.
+template <class Parse>
+auto wish(std::string unit, std::string example, Parse parse) {
+  return
+      [unit = std::move(unit), example = std::move(example), parse](const std::string& text, const std::string& what) {
+        const std::size_t equals = text.rfind('=');
+        if (equals == std::string::npos || equals == 0)
+          throw Error(Errc::invalid_argument, what + ": \"" + text + "\" is not " + unit + ", as \"" + example + "\"");
+        return std::pair(text.substr(0, equals), parse(text.substr(equals + 1), what));
+      };
+}
+
+double length(const std::string& text, const std::string& what) { return parse_number(text, what, positive); }
+
+void add_scene(Rows& rows) {
+  rows.group("Scene")
+      .texts(
+          "surveyed", "PATTERN", "Nodes to survey, by name; * and ? stand for any text and any letter",
+          [](SiteOptions & o) -> auto& { return o.scene.surveyed; })
+      .texts(
+          "blocking", "PATTERN", "Nodes that only block rays and stations",
+          [](SiteOptions & o) -> auto& { return o.scene.blocking; })
+      .texts(
+          "search", "PATTERN", "Nodes where stations may stand",
+          [](SiteOptions & o) -> auto& { return o.scene.search; })
+      .texts(
+          "ignore", "PATTERN", "Nodes to leave out", [](SiteOptions & o) -> auto& { return o.scene.ignore; })
+      .repeated(
+          "weight", "PATTERN=W",
+          "What a voxel of these nodes counts in coverage, 1 to 255, where others count 1; may be repeated",
+          [](SiteOptions & o) -> auto& { return o.scene.weights; },
+          wish("PATTERN=W", "facade*=5",
+               [](const std::string& text, const std::string& what) {
+                 return static_cast<std::uint32_t>(parse_count(text, what, 1, 255));
+               }))
+      .repeated(
+          "detail", "PATTERN=MM",
+          "Widest footprint of the beam, in millimetres, of points that count on these nodes; may be repeated",
+          [](SiteOptions & o) -> auto& { return o.scene.details_mm; }, wish("PATTERN=MM", "pipe*=10", length))
+      .repeated(
+          "accuracy", "PATTERN=MM",
+          "Largest range noise, in millimetres, of points that count on these nodes; may be repeated",
+          [](SiteOptions & o) -> auto& { return o.scene.accuracies_mm; }, wish("PATTERN=MM", "flange*=1", length))
+      .custom(
+          "unit", "UNIT", "What lengths in the file are: m, cm, mm, in or ft; recognised otherwise",
+          [](SiteOptions& o, const std::string& text, const std::string& what) {
+            o.scene.unit = named(what, [&] { return unit_from_string(text); });
+          },
+          [](const SiteOptions& o) { return o.scene.unit.has_value(); })
+      .custom(
+          "up", "AXIS", "Which axis of the file points up: y or z; recognised otherwise",
+          [](SiteOptions& o, const std::string& text, const std::string& what) {
+            o.scene.up = named(what, [&] { return up_axis_from_string(text); });
+          },
+          [](const SiteOptions& o) { return o.scene.up.has_value(); })
+      .custom(
+          "scene-index", "N", "Which scene of the file; the file's own default otherwise",
+          [](SiteOptions& o, const std::string& text, const std::string& what) {
+            o.scene.scene_index = parse_count(text, what, 0, 0xFFFFFFFF);
+          },
+          [](const SiteOptions& o) { return o.scene.scene_index.has_value(); })
+      .custom("diffuse", "R", "Diffuse reflection coefficient where the file gives none, 0 to 1",
+              [](SiteOptions& o, const std::string& text, const std::string& what) {
+                o.scene.default_diffuse = parse_number(text, what, {.low = 0, .high = 1});
+              })
+      .custom("allow-outside", "", "Let the scene name buffers and images outside its own folder",
+              [](SiteOptions& o, const std::string& text, const std::string& what) {
+                o.scene.allow_outside = parse_flag(text, what);
+              });
+}
+
+void add_scanner(Rows& rows) {
+  rows.group("Scanner")
+      .text("scanner", "PRESET", "A scanner that `vantage info` lists, as rtc360 or rtc360@6mm", &SiteOptions::scanner)
+      .by_scene()
+      .optional("step", "DEG[,DEG]", "Angle between rays: both, or azimuth and zenith", &SiteOptions::steps,
+                [](const std::string& text, const std::string& what) {
+                  const auto values = parse_numbers(text, what, 1, 2, positive);
+                  return std::array{Angle::degrees(values.front()), Angle::degrees(values.back())};
+                })
+      .by_scene()
+      .by_preset()
+      .degrees("heading", "Azimuth of the middle of the horizontal sweep, from +X towards +Y", &SiteOptions::heading,
+               any_number)
+      .by_scene()
+      .degrees("horizontal", "Horizontal wide angle", &SiteOptions::horizontal_angle,
+               {.low = 0, .high = 360, .low_included = false})
+      .by_scene()
+      .by_preset()
+      .degrees("vertical", "Vertical wide angle, over both sides of the head: 300 is zenith 0 to 150",
+               &SiteOptions::vertical_angle, {.low = 0, .high = 360, .low_included = false})
+      .by_scene()
+      .by_preset()
+      .degrees("zenith-start", "Zenith of the first ray; above 0 for scanners that cannot look straight up",
+               &SiteOptions::zenith_start, {.low = 0, .high = 180, .high_included = false})
+      .by_scene()
+      .by_preset()
+      .number("height", "M", "Height of the scanner's head above the ground", &SiteOptions::height_m, not_negative)
+      .by_scene()
+      .numbers("range", "MIN,MAX", "Nearest and farthest distance measured, in metres", &SiteOptions::range_m, 2,
+               not_negative)
+      .by_scene()
+      .by_preset()
+      .text("noise", "TABLE", "Range noise: off, a scanner's name (rtc360), or a CSV file", &SiteOptions::noise)
+      .by_scene()
+      .by_preset()
+      .numbers("beam", "MRAD,MM",
+               "Full angle by which the beam widens, in milliradians, and its diameter at the exit, in millimetres",
+               &SiteOptions::beam, 2, not_negative)
+      .by_scene()
+      .by_preset()
+      .number("rate", "N", "Points measured a second, for the time on site; the preset's, or a million",
+              &SiteOptions::points_per_second, positive)
+      .by_preset();
+}
+
+void add_measure(Rows& rows) {
+  rows.group("Measure")
+      .number("user-size", "M", "Upper bound of the voxel size", &SiteOptions::user_size_m, positive)
+      .by_scene()
+      .degrees("incidence",
+               "Largest angle between ray and normal of points that count, 90: any; 60 where a detail or an accuracy "
+               "is wanted, else 90",
+               &SiteOptions::max_incidence, {.low = 0, .high = 90, .low_included = false})
+      .number("spacing", "M", "Wanted distance between points; sets the goal density", &SiteOptions::spacing_m,
+              positive)
+      .by_scene()
+      .flag("spacing-by-detail",
+            "On nodes of which a detail is wanted that is the spacing; so where details differ and no spacing is given",
+            &SiteOptions::spacing_by_detail);
+}
+
+void add_placement(Rows& rows) {
+  rows.group("Placement")
+      .numbers("security", "H1,H2,R",
+               "Clear space a station needs: two spheres of radius R at heights H1 and H2 above the ground; R 0: none",
+               &SiteOptions::security_m, 3, not_negative)
+      .by_scene()
+      .degrees("slope", "Steepest ground that counts as walkable, where the scene marks no search area",
+               &SiteOptions::max_slope, {.low = 0, .high = 90, .high_included = false})
+      .by_scene()
+      .number("headroom", "M", "Clear height that walkable ground needs", &SiteOptions::headroom_m, not_negative)
+      .by_scene()
+      .number("min-area", "M2", "Smallest connected piece of walkable ground", &SiteOptions::min_area_m2, not_negative)
+      .by_scene()
+      .numbers("passage", "W,H", "Width and height of the narrowest opening that a person passes; 0.6,1.9",
+               &SiteOptions::passage_m, 2, positive)
+      .number("climb", "M", "Highest step that a person takes; 0.25", &SiteOptions::climb_m, not_negative)
+      .optional("enter", "X,Y,Z", "Where one enters the site; found by itself otherwise", &SiteOptions::enter,
+                [](const std::string& text, const std::string& what) {
+                  const auto values = parse_numbers(text, what, 3, 3);
+                  return Vec3{values[0], values[1], values[2]};
+                })
+      .texts(
+          "doors", "PATTERN", "Nodes that are closed doors, which count as open for who walks",
+          [](SiteOptions & o) -> auto& { return o.scene.doors; })
+      .texts(
+          "station-area", "PATTERN", "Nodes to stand on that stay what they are, as surveyed",
+          [](SiteOptions & o) -> auto& { return o.scene.station_area; })
+      .numbers("levels", "LOW,HIGH", "Heights of ground between which stations may stand", &SiteOptions::levels_m, 2,
+               any_number)
+      .repeated(
+          "within", "FILE", "Stations only within a polygon: GeoJSON, or a CSV file with x,y a line",
+          [](SiteOptions & o) -> auto& { return o.within; },
+          [](const std::string& text, const std::string&) { return read_region(text); })
+      .repeated(
+          "without", "FILE", "No stations within a polygon", [](SiteOptions & o) -> auto& { return o.without; },
+          [](const std::string& text, const std::string&) { return read_region(text); });
+}
+
+void add_run(Rows& rows) {
+  rows.group("Run")
+      .custom("engine", "ENGINE", "auto, ray_query, compute_bvh or embree",
+              [](SiteOptions& o, const std::string& text, const std::string& what) {
+                o.engine = named(what, [&] { return engine_from_string(text); });
+              })
+      .custom("device", "LIST",
+              "Number of the device, as `vantage info` lists it; several that share the work: 0,1, or all, or 0,cpu",
+              [](SiteOptions& o, const std::string& text, const std::string& what) {
+                o.devices = parse_devices(text, what);
+              })
+      .count("seed", "N", "Seed of noise, samples and search; 1 otherwise", &SiteOptions::seed, 0,
+             std::numeric_limits<std::uint64_t>::max())
+      .custom("memory", "SIZE",
+              "Refuse what is estimated to take more memory: 4G, 500M; half of what is free otherwise",
+              [](SiteOptions& o, const std::string& text, const std::string& what) {
+                o.memory_bytes = parse_bytes(text, what);
+              })
+      .flag("validation", "Check every Vulkan call with the validation layer", &SiteOptions::validation)
+      .custom(
+          "crs", "EPSG:N|FILE",
+          "Coordinate system of the scene: EPSG:25832 and the like, or a .prj or .wkt file; point clouds carry it",
+          [](SiteOptions& o, const std::string& text, const std::string&) { o.crs = text; },
+          [](const SiteOptions& o) { return !o.crs.empty(); })
+      .by_scene();
+}
+
+}  // namespace
+
+const SettingTable<SiteOptions>& site_settings() {
+  static const SettingTable<SiteOptions> table = [] {
+    Rows rows;
+    add_scene(rows);
+    add_scanner(rows);
+    add_measure(rows);
+    add_placement(rows);
+    add_run(rows);
+    return rows.take();
+  }();
+  return table;
+}
+
+}  // namespace vantage

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: Apache-2.0
+import os
+import re
+import subprocess
+import tempfile
+import unittest
+
+import vantage
+from sites import FOUR_WALLS, SOURCE, program
+
+COARSE = {"step": 0.5, "user_size": 0.3, "spacing": 0.1, "engine": "embree", "seed": 7}
+
+
+def options(settings):
+    return [text for name, value in settings.items() for text in ("--" + name.replace("_", "-"), value)]
+
+
+def without_seconds(text):
+    """front.json but for what differs from run to run."""
+    return re.sub(r'"seconds": \{[^}]*\}', "", text)
+
+
+class Sites(unittest.TestCase):
+    def assert_same_as_the_program(self, scene, settings, question):
+        found = vantage.Site.open(scene, **settings).plan(**question)
+        with tempfile.TemporaryDirectory() as folder:
+            found.write(os.path.join(folder, "module"))
+            code, _, text = program("plan", scene, *options(settings), *options(question), "--no-report", "-o",
+                                    os.path.join(folder, "program"))
+            self.assertIn(code, (0, 3), text)
+            given = [f"{name.replace('_', '-')}={value}" for name, value in {**settings, **question}.items()]
+            subprocess.run([os.environ["VANTAGE_EXAMPLE"], scene, os.path.join(folder, "example"), *given], check=True,
+                           capture_output=True)
+            told = [open(os.path.join(folder, each, "front.json")).read() for each in ("module", "program", "example")]
+        self.assertEqual(without_seconds(told[0]), without_seconds(told[1]))
+        self.assertEqual(without_seconds(told[0]), without_seconds(told[2]))
+
+    def test_a_plan_has_the_bytes_of_the_program_and_the_example(self):
+        self.assert_same_as_the_program(FOUR_WALLS, COARSE, {
+            "problem": "coverage-overlap-fix", "stations": 4, "population": 10, "iterations": 5, "sample": 500})
+
+    def test_the_surveyors_question_has_the_bytes_of_the_program(self):
+        self.assert_same_as_the_program(FOUR_WALLS, COARSE, {"sample": 300})
+
+    def test_it_chooses_what_nobody_gave_and_says_why(self):
+        site = vantage.Site.open(os.path.join(SOURCE, "data", "industrial_20k.glb"), engine="embree", height=None)
+        self.assertEqual(site.name, "industrial_20k")
+        self.assertEqual(len(site.scanners), 1)
+        for choice in site.choices:
+            self.assertTrue(choice.setting and choice.value and choice.why, repr(choice))
+
+    def test_settings_are_refused_by_their_name(self):
+        with self.assertRaisesRegex(TypeError, "no setting 'hight'"):
+            vantage.Site.open(FOUR_WALLS, hight=2)
+        with self.assertRaisesRegex(vantage.Error, "^height: 'tall' is not a number"):
+            vantage.Site.open(FOUR_WALLS, height="tall")
+        site = vantage.Site.open(FOUR_WALLS, **COARSE)
+        with self.assertRaisesRegex(vantage.Error, "^capture: "):
+            site.plan(capture=2)
+        with self.assertRaisesRegex(TypeError, "says all that is asked"):
+            site.plan(vantage.coverage_fix(3), stations=3)
+
+    def test_a_list_is_given_value_by_value(self):
+        site = vantage.Site.open(FOUR_WALLS, **COARSE, weight=["wall*=5"])
+        self.assertEqual({mesh.weight for mesh in site.scene.meshes}, {5})
+
+
+if __name__ == "__main__":
+    unittest.main()

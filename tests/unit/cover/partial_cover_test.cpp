@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cover/partial_cover.hpp"
+
+#include <gtest/gtest.h>
+
+#include "unit/cover/random_matrix.hpp"
+
+namespace vantage {
+namespace {
+
+using test::Chosen;
+using test::coverage_by_definition;
+using test::random_matrix;
+
+TEST(PartialCover, KeepsTheCoverageOfItsCandidates) {
+  const CoverageMatrix matrix = random_matrix(12, 80, 1, 0.3, 4);
+  PartialCover cover(matrix);
+  Chosen chosen;
+  for (const std::size_t k : {3u, 7u, 1u, 3u}) {
+    const double before = cover.value(), gain = cover.gain(k);
+    cover.add(k);
+    chosen.push_back(k);
+    EXPECT_NEAR(cover.value(), coverage_by_definition(matrix, chosen), 1e-12);
+    EXPECT_NEAR(cover.value() - before, gain, 1e-12);
+    EXPECT_NEAR(cover.loss(k), gain, 1e-12);
+  }
+  EXPECT_EQ(matrix.coverage(chosen), cover.value());
+  cover.remove(7);
+  EXPECT_NEAR(cover.value(), coverage_by_definition(matrix, Chosen{3, 1, 3}), 1e-12);
+}
+
+TEST(ColumnIndex, KnowsWhatCandidatesGainWithoutOneThatLeaves) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    SCOPED_TRACE(seed);
+    const CoverageMatrix matrix = random_matrix(20, 90, seed, 0.3, 3);
+    const Chosen chosen{2, 11, 7, 2, 19};  // one of them twice
+    const PartialCover cover(matrix, chosen);
+    const ColumnIndex columns(matrix);
+    for (std::size_t at = 0; at < chosen.size(); ++at) {
+      Chosen others = chosen;
+      others.erase(others.begin() + static_cast<std::ptrdiff_t>(at));
+      const PartialCover without(matrix, others);
+      std::vector<double> gains(matrix.candidates());
+      for (std::size_t k = 0; k < gains.size(); ++k) gains[k] = cover.gain(k);
+      columns.add_gains_without(chosen[at], cover, gains);
+      for (std::size_t k = 0; k < gains.size(); ++k)
+        EXPECT_NEAR(gains[k], without.gain(k), 1e-12) << k << " without " << chosen[at];
+    }
+  }
+}
+
+}  // namespace
+}  // namespace vantage

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vantage/on_site.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+
+#include "evaluate/ways.hpp"
+#include "vantage/error.hpp"
+
+namespace vantage {
+namespace {
+
+void add_rectangle(SearchMesh& mesh, double x0, double x1, double y0, double y1, double z) {
+  const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+  for (const auto& [x, y] : {std::pair{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}) {
+    mesh.positions.push_back({x, y, z});
+    mesh.uvs.push_back({x / 100 + z, y / 100});
+  }
+  mesh.triangles.push_back({first, first + 1, first + 2});
+  mesh.triangles.push_back({first, first + 2, first + 3});
+}
+
+bool everywhere(const Vec3&, const Vec3&) { return true; }
+
+TEST(Ways, AreAsLongAsTheyAre) {
+  SearchMesh square;
+  add_rectangle(square, 0, 20, 0, 20, 0);
+  const Ways ways(square, everywhere);
+  for (const Vec3& to : {Vec3{19, 1, 0}, Vec3{19, 19, 0}, Vec3{19, 10, 0}, Vec3{5, 18, 0}}) {
+    const double straight = std::sqrt(dot(to - Vec3{1, 1, 0}, to - Vec3{1, 1, 0}));
+    const auto found = ways.between({1, 1, 0}, to);
+    ASSERT_TRUE(found);
+    EXPECT_GE(*found, straight * 0.999);
+    EXPECT_LE(*found, straight * 1.03 + 0.1);
+    EXPECT_EQ(*found, *ways.between(to, {1, 1, 0})) << "the way back is as long";
+  }
+}
+
+TEST(Ways, GoRoundCornersAndWalls) {
+  SearchMesh corner;  // an L of two arms, 10 m long and 2 m wide
+  add_rectangle(corner, 0, 10, 0, 2, 0);
+  add_rectangle(corner, 0, 2, 2, 10, 0);
+  const auto round = Ways(corner, everywhere).between({9, 1, 0}, {1, 9, 0});
+  ASSERT_TRUE(round);
+  EXPECT_NEAR(*round, 2 * std::hypot(7.0, 1.0), 0.6);  // past the inner corner (2, 2)
+
+  SearchMesh square;
+  add_rectangle(square, 0, 20, 0, 20, 0);
+  const auto past_a_wall = [](const Vec3& a, const Vec3& b) {  // at x = 10.1, up to y = 15
+    return (a.x < 10.1) == (b.x < 10.1) || std::min(a.y, b.y) > 15;
+  };
+  const auto detour = Ways(square, past_a_wall).between({9, 5, 0}, {11, 5, 0});
+  ASSERT_TRUE(detour);
+  EXPECT_NEAR(*detour, std::hypot(10.0, 1.1) + std::hypot(10.0, 0.9), 1.3);
+}
+
+TEST(Ways, ClimbStairsAndNotWalls) {
+  SearchMesh stairs;
+  add_rectangle(stairs, 0, 5, 0, 2, 0);
+  for (int k = 0; k < 10; ++k) add_rectangle(stairs, 5 + 0.28 * k, 5.28 + 0.28 * k, 0, 2, 0.17 * (k + 1));
+  add_rectangle(stairs, 7.8, 12, 0, 2, 1.7);
+  const auto up = Ways(stairs, everywhere).between({1, 1, 0}, {11, 1, 1.7});
+  ASSERT_TRUE(up);
+  EXPECT_NEAR(*up, 4 + std::hypot(2.8, 1.7) + 3.2, 0.7);
+
+  SearchMesh ledge;
+  add_rectangle(ledge, 0, 5, 0, 5, 0);
+  add_rectangle(ledge, 5, 10, 0, 5, 1.7);
+  EXPECT_FALSE(Ways(ledge, everywhere).between({1, 1, 0}, {9, 1, 1.7}));
+  EXPECT_FALSE(Ways(ledge, everywhere).between({1, 1, 0}, {50, 1, 0})) << "no ground near it";
+}
+
+// A ground of 40 × 40 m beside a wall.
+struct Yard {
+  SearchMesh ground;
+  Scene scene = Scene::from_triangles(std::vector<Vec3>{{0, 60, 0}, {40, 60, 0}, {40, 60, 3}, {0, 60, 3}},
+                                      std::vector<std::array<std::uint32_t, 3>>{{0, 1, 2}, {0, 2, 3}});
+  Scanner scanner;
+  Yard() {
+    add_rectangle(ground, 0, 40, 0, 40, 0);
+    scanner.azimuth_step = scanner.zenith_step = Angle::degrees(0.1);  // 5.4 million rays
+    scanner.points_per_second = 90'000;                                // one minute
+  }
+  OnSite on_site(const OnSiteOptions& options = {}) const {
+    return OnSite(SearchArea::from_mesh(ground), ClashChecker(scene), scanner, options);
+  }
+};
+
+std::vector<PlacedStation> stations_at(const std::vector<Vec3>& grounds) {
+  std::vector<PlacedStation> stations;
+  for (const Vec3& ground : grounds)
+    stations.push_back({.uv = {}, .position = ground + Vec3{0, 0, 1.8}, .ground = ground});
+  return stations;
+}
+
+TEST(OnSite, AddsScansSettingUpAndWalking) {
+  const OnSite on_site = Yard().on_site({.set_up_min = 2, .walking_m_per_s = 0.5, .entrance = Vec3{0, 20, 0}});
+  EXPECT_NEAR(on_site.minutes_per_scan(), 1, 1e-12);
+  const Visit visit = on_site.visit(stations_at({{30, 20, 0}, {10, 20, 0}, {20, 20, 0}}));
+  EXPECT_EQ(visit.order, (std::vector<std::size_t>{1, 2, 0}));
+  ASSERT_EQ(visit.legs_m.size(), 4u);
+  EXPECT_NEAR(visit.legs_m.back(), 30, 0.5) << "back out";
+  EXPECT_NEAR(visit.walk_m, 60, 1);
+  EXPECT_NEAR(visit.scan_min, 3, 1e-12);
+  EXPECT_NEAR(visit.set_up_min, 6, 1e-12);
+  EXPECT_NEAR(visit.walk_min, 2, 0.05);
+  EXPECT_NEAR(visit.minutes, visit.scan_min + visit.set_up_min + visit.walk_min, 1e-12);
+  EXPECT_EQ(visit.unconnected, 0u);
+}
+
+TEST(OnSite, ScansTakeAsLongAsTheirScanners) {
+  const Yard yard;
+  std::vector<Scanner> scanners{yard.scanner, yard.scanner};
+  scanners[1].azimuth_step = scanners[1].zenith_step = Angle::degrees(0.05);
+  const OnSite on_site(SearchArea::from_mesh(yard.ground), ClashChecker(yard.scene), scanners);
+  EXPECT_NEAR(on_site.minutes_per_scan(1), 4, 1e-12);
+  auto stations = stations_at({{30, 20, 0}, {10, 20, 0}, {20, 20, 0}});
+  EXPECT_NEAR(on_site.visit(stations).scan_min, 3, 1e-12);
+  stations[1].setup.scanner = 1;
+  EXPECT_NEAR(on_site.visit(stations).scan_min, 6, 1e-12);
+  stations[0].setup.scanner = 2;
+  EXPECT_THROW(on_site.visit(stations), std::out_of_range);
+  EXPECT_THROW(OnSite(SearchArea::from_mesh(yard.ground), ClashChecker(yard.scene), std::span<const Scanner>()), Error);
+}
+
+TEST(OnSite, LeavesOutWhatCannotBeUsedAndTellsOfWhatIsNotConnected) {
+  const OnSite on_site = Yard().on_site({.detour = 2});
+  auto stations = stations_at({{10, 10, 0}, {100, 10, 0}, {20, 10, 0}});
+  stations[2].status = StationStatus::hole;
+  const Visit visit = on_site.visit(stations);
+  EXPECT_EQ(visit.order.size(), 2u);
+  EXPECT_EQ(visit.unconnected, 2u);
+  EXPECT_NEAR(visit.walk_m, 2 * 2 * 90, 1e-9);
+  EXPECT_EQ(on_site.visit({}).minutes, 0);
+  EXPECT_THROW(Yard().on_site({.walking_m_per_s = 0}), Error);
+  EXPECT_THROW(Yard().on_site({.set_up_min = -1}), Error);
+  EXPECT_THROW(Yard().on_site({.detour = 0.5}), Error);
+}
+
+TEST(OnSite, GoesNearlyTheShortestRound) {
+  const OnSite on_site = Yard().on_site();
+  std::mt19937 random(5);
+  const auto number = [&] { return 40 * static_cast<double>(random()) / 4294967296.0; };
+  for (int trial = 0; trial < 5; ++trial) {
+    std::vector<Vec3> grounds(7);
+    for (Vec3& ground : grounds) ground = {number(), number(), 0};
+    const auto length = [&](const std::vector<std::size_t>& order) {
+      double sum = 0;
+      for (std::size_t k = 0; k < order.size(); ++k)
+        sum += on_site.way_m(grounds[order[k]], grounds[order[(k + 1) % order.size()]]).value();
+      return sum;
+    };
+    std::vector<std::size_t> order(grounds.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    double shortest = length(order);
+    while (std::next_permutation(order.begin() + 1, order.end())) shortest = std::min(shortest, length(order));
+    const Visit visit = on_site.visit(stations_at(grounds));
+    EXPECT_NEAR(visit.walk_m, length(visit.order), 1e-6);
+    EXPECT_LE(visit.walk_m, 1.05 * shortest);
+  }
+}
+
+}  // namespace
+}  // namespace vantage

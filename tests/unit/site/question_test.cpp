@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vantage/question.hpp"
+
+#include <gtest/gtest.h>
+
+#include "vantage/error.hpp"
+
+namespace vantage {
+namespace {
+
+Site small_site() {
+  const std::vector<Vec3> corners{{0, 0, 0}, {8, 0, 0}, {8, 8, 0}, {0, 8, 0}};
+  const std::vector<std::array<std::uint32_t, 3>> triangles{{0, 1, 2}, {0, 2, 3}};
+  SiteOptions options;
+  options.engine = Engine::embree;
+  options.user_size_m = 0.5, options.spacing_m = 0.2;
+  return Site(Scene::from_triangles(corners, triangles), options);
+}
+
+std::vector<std::string> required(const SurveyProblem& problem) {
+  std::vector<std::string> texts;
+  for (const Requirement& requirement : problem.requirements) texts.push_back(to_string(requirement));
+  return texts;
+}
+
+std::string refused(const SurveyQuestion& question) {
+  Site site = small_site();
+  try {
+    survey_problem(site, question);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(SurveyQuestion, AsksForTheFewestStationsWhereNothingIsSaid) {
+  Site site = small_site();
+  const SurveyProblem problem = survey_problem(site);
+  EXPECT_TRUE(problem.fewest);
+  EXPECT_EQ(problem.name, "survey");
+  EXPECT_EQ(required(problem), (std::vector<std::string>{"capture >= 0.9", "link >= 0.3", "apart >= 1"}));
+  EXPECT_EQ(problem.stations_max, max_stations);
+}
+
+TEST(SurveyQuestion, IsAProblemByNameOrByObjectives) {
+  Site site = small_site();
+  SurveyQuestion question;
+  question.problem = "coverage-overlap-fix", question.stations = {4, 4};
+  EXPECT_FALSE(survey_problem(site, question).fewest);
+  EXPECT_TRUE(survey_problem(site, question).requirements.empty());
+  question.problem.reset(), question.objectives = {"coverage", "registration"};
+  const SurveyProblem problem = survey_problem(site, question);
+  EXPECT_EQ(problem.objectives.size(), 2u);
+  EXPECT_EQ(required(problem), (std::vector<std::string>{"apart >= 1"}));
+}
+
+TEST(SurveyQuestion, TakesRequirementsInPlaceOfItsOwn) {
+  Site site = small_site();
+  SurveyQuestion question;
+  question.requirements = {"capture>=0.8", "stations<=9"};
+  question.minutes_on_site = 90;
+  EXPECT_EQ(required(survey_problem(site, question)),
+            (std::vector<std::string>{"capture >= 0.8", "link >= 0.3", "apart >= 1", "time <= 90", "stations <= 9"}));
+}
+
+TEST(SurveyQuestion, ChoosesAmongStepsOfTheSitesScanner) {
+  Site site = small_site();
+  SurveyQuestion question;
+  question.search_steps = {"0.2", "0.1"};
+  EXPECT_EQ(survey_problem(site, question).scanners.size(), 2u);
+  question.search_steps = {"6mm"};
+  EXPECT_NE(refused(question).find("search-step: '6mm'"), std::string::npos);
+}
+
+TEST(SurveyQuestion, RefusesWhatContradictsItself) {
+  SurveyQuestion question;
+  question.problem = "coverage-fix";
+  EXPECT_NE(refused(question).find("stations: how many?"), std::string::npos);
+  question = {}, question.min_overlap = 0.1, question.link_overlap = 0.2;
+  EXPECT_NE(refused(question).find("differ"), std::string::npos);
+  question = {}, question.problem = "coverage-fix", question.stations = {4, 4}, question.objectives = {"coverage"};
+  EXPECT_NE(refused(question).find("has its own"), std::string::npos);
+}
+
+TEST(SettledPlan, ChoosesSampleAndIterationsByTheProblem) {
+  const PlanConfig fewest = settled({}, fewest_stations(), 1'000'000, 7);
+  EXPECT_EQ(fewest.sample_voxels, 5'000u);
+  EXPECT_EQ(fewest.iterations, 0u);  // by the site
+  EXPECT_EQ(fewest.seed, 7u);
+  const PlanConfig front = settled({}, coverage_overlap_fix(4), 1'000'000, 7);
+  EXPECT_EQ(front.sample_voxels, 5'000u);
+  EXPECT_EQ(front.renew_iterations, 20u);
+  EXPECT_EQ(front.iterations, 100u);
+  const PlanConfig single = settled({.seed = 3}, coverage_fix(4), 1'000'000, 7);
+  EXPECT_EQ(single.sample_voxels, 20'000u);
+  EXPECT_EQ(single.renew_iterations, 0u);
+  EXPECT_EQ(single.seed, 3u);
+  EXPECT_EQ(settled({}, coverage_fix(4), 900, 1).sample_voxels, 900u);
+}
+
+TEST(SettledPlan, KeepsWhatIsGivenAndIsSettledOnce) {
+  const PlanConfig share = settled({.sample_share = 0.05}, coverage_overlap_fix(4), 100'000, 1);
+  EXPECT_EQ(share.sample_voxels, 5'000u);
+  EXPECT_EQ(share.renew_iterations, 0u);
+  const PlanConfig exact = settled({.exact = true}, coverage_overlap_fix(4), 100'000, 1);
+  EXPECT_EQ(exact.sample_voxels, 0u);
+  EXPECT_EQ(exact.renew_iterations, 0u);
+  for (const PlanConfig& config : {share, exact}) {
+    const PlanConfig again = settled(config, coverage_overlap_fix(4), 100'000, 9);
+    EXPECT_EQ(again.sample_voxels, config.sample_voxels);
+    EXPECT_EQ(again.seed, config.seed);
+  }
+  EXPECT_THROW(settled({.exact = true, .sample_voxels = 10}, coverage_fix(4), 100, 1), Error);
+}
+
+TEST(PlanOfASite, IsThatOfItsParts) {
+  const PlanConfig config{.population = 4, .iterations = 2, .sample_voxels = 100, .seed = 3};
+  SurveyQuestion question;
+  question.objectives = {"coverage"}, question.stations = {2, 2};
+  Site site = small_site();
+  const PlanResult whole = plan(site, question, config);
+  Site parts = small_site();
+  const PlanResult by_parts =
+      plan(parts.simulator(), parts.area(), parts.clash(), survey_problem(parts, question), config);
+  ASSERT_EQ(whole.front.size(), by_parts.front.size());
+  EXPECT_EQ(whole.front[0].x, by_parts.front[0].x);
+  EXPECT_EQ(whole.front[0].value("coverage"), by_parts.front[0].value("coverage"));
+}
+
+}  // namespace
+}  // namespace vantage
