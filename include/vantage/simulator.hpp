@@ -186,8 +186,8 @@ class Simulator {
   Vec3 voxel_centre(std::uint64_t rank) const;  ///< Survey frame. REQUIRES: rank < voxel_count().
   /// Weight of a voxel in coverage (`MeshInfo::weight`). REQUIRES: rank < voxel_count().
   std::uint32_t voxel_weight(std::uint64_t rank) const;
-  /// Point weight in a voxel, as `NetworkCounts::point_worth`. REQUIRES: rank < voxel_count().
-  std::uint32_t point_worth(std::uint64_t rank) const;
+  /// Point weight in a voxel, as `NetworkCounts::point_weight`. REQUIRES: rank < voxel_count().
+  std::uint32_t point_weight(std::uint64_t rank) const;
   /// Surfaces of voxels. REQUIRES: ranks ascending, without duplicates, all below voxel_count().
   std::vector<VoxelPatch> voxel_patches(std::span<const std::uint32_t> ranks) const;
   /// Indices of the voxels that `evaluate_sampled` draws for `SampleOptions::voxels` and `from`, ascending. Fixed by

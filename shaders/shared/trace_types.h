@@ -156,11 +156,12 @@ struct ClampPush {
 // of group g of network n start at word (n · groups + g) · totals_stride:
 // - weight of the saturated voxels (64 bits);
 // - points of the others, each times its voxel's weight and point weight (64 bits);
-// - three sums over successive voxels, from which the host computes Σ (r(k) − r(k−1))² of r = min(worth / goal, 1)
+// - three sums over successive voxels, from which the host computes Σ (r(k) − r(k−1))² of r = min(weighted points /
+// goal, 1)
 //   without rounding;
 // - seen[stations], then shared[pairs].
-// With c = worth >> difference_shift for a voxel that is not saturated: squares (64 bits) adds (c(k) − c(k−1))² if
-// neither voxel is saturated and c² if one is; edge_points (64 bits) adds c if one is; edges counts those.
+// With c = weighted points >> difference_shift for a voxel that is not saturated: squares (64 bits) adds (c(k) −
+// c(k−1))² if neither voxel is saturated and c² if one is; edge_points (64 bits) adds c if one is; edges counts those.
 VANTAGE_CONST uint reduce_voxels = 256;  // voxels of a workgroup at a time
 VANTAGE_CONST uint reduce_rounds = 16;   // at most 32
 VANTAGE_CONST uint totals_saturated = 0;
@@ -175,7 +176,7 @@ struct ReducePush {
   VANTAGE_ADDRESS(Uints) totals;
   VANTAGE_ADDRESS(Uints) station_counts;  // per network
   VANTAGE_ADDRESS(Uints) weights;         // of voxels, one byte each; 0: all weigh 1
-  VANTAGE_ADDRESS(Uints) worths;          // point weight in each voxel; 0: all are 1
+  VANTAGE_ADDRESS(Uints) point_weights;   // point weight in each voxel; 0: all are 1
   uint64_t goal;                          // sum of point weights that saturates a voxel
   uint voxel_count;
   uint difference_shift;  // keeps the sum of squares within 64 bits

@@ -17,14 +17,14 @@ TracedStations::TracedStations(Simulator& simulator, std::uint64_t voxels) : sim
   if (simulator.voxel_count() > 0) sample_ = simulator.sampled_voxels(std::min(voxels, simulator.voxel_count()));
   for (const std::uint32_t rank : sample_) {
     demands_.weights.push_back(static_cast<std::uint8_t>(simulator.voxel_weight(rank)));
-    demands_.worths.push_back(simulator.point_worth(rank));
+    demands_.point_weights.push_back(simulator.point_weight(rank));
   }
   // None where all are 1: as the simulator has it.
   const auto clear_ones = [](auto& of_voxels) {
     if (std::ranges::count(of_voxels, 1u) == std::ssize(of_voxels)) of_voxels.clear();
   };
   clear_ones(demands_.weights);
-  clear_ones(demands_.worths);
+  clear_ones(demands_.point_weights);
 }
 
 void TracedStations::follow(const Network& network, std::span<const std::uint32_t> ids) {

@@ -78,19 +78,19 @@ std::shared_ptr<const VoxelGrid> build_grid(const SceneData& scene, const Simula
   auto grid = VoxelGrid::build(scene, too_small ? finest : config.user_size_m, progress);
   if (!grid) return nullptr;
   if (too_small || grid->voxel_size() < finest) refuse_goal_density(*grid, config, finest);
-  auto worths = point_worths(scene, *grid, spacings_m, {.report = {}, .stop = progress.stop});
-  if (!worths) return nullptr;
-  grid->set_worths(std::move(*worths));
+  auto weights_of_points = point_weights(scene, *grid, spacings_m, {.report = {}, .stop = progress.stop});
+  if (!weights_of_points) return nullptr;
+  grid->set_point_weights(std::move(*weights_of_points));
   return std::make_shared<VoxelGrid>(std::move(*grid));
 }
 
 // Result for a network without active stations: the voxels, and zeros.
-NetworkCounts nothing_seen(std::uint64_t voxels, std::uint64_t weight, std::uint32_t point_worth, std::size_t stations,
+NetworkCounts nothing_seen(std::uint64_t voxels, std::uint64_t weight, std::uint32_t point_weight, std::size_t stations,
                            bool overlap, bool registration) {
   NetworkCounts counts;
   counts.voxels = voxels;
   counts.weight = weight;
-  counts.point_worth = point_worth;
+  counts.point_weight = point_weight;
   counts.stations = static_cast<std::uint32_t>(stations);
   if (overlap) {
     counts.seen.assign(stations, 0);
@@ -326,7 +326,7 @@ double Simulator::voxel_size_m() const noexcept { return impl_->grid->voxel_size
 double Simulator::goal_density() const noexcept { return impl_->goal; }
 double Simulator::goal_density(std::uint64_t rank) const {
   const VoxelDemands& demands = impl_->grid->demands();
-  return impl_->goal * demands.least_worth() / demands.worth(rank);
+  return impl_->goal * demands.least_point_weight() / demands.point_weight(rank);
 }
 std::optional<Angle> Simulator::max_incidence() const noexcept { return incidence_limit(impl_->data(), impl_->config); }
 
@@ -338,7 +338,7 @@ Vec3 Simulator::voxel_centre(std::uint64_t rank) const {
                          static_cast<double>(min[2]) + (z + 0.5) * size};
 }
 
-std::uint32_t Simulator::point_worth(std::uint64_t rank) const { return impl_->grid->demands().worth(rank); }
+std::uint32_t Simulator::point_weight(std::uint64_t rank) const { return impl_->grid->demands().point_weight(rank); }
 std::uint32_t Simulator::voxel_weight(std::uint64_t rank) const { return impl_->grid->demands().weight(rank); }
 
 std::vector<VoxelPatch> Simulator::voxel_patches(std::span<const std::uint32_t> ranks) const {
@@ -413,12 +413,12 @@ NetworkCounts Simulator::Impl::evaluate(const Network& network, const EvaluateOp
   check_registration(options.registration, options.overlap);
   const std::vector<TraceStation> active = active_stations(network);
   if (active.empty()) {
-    const std::uint32_t point_worth = grid->demands().least_worth();
+    const std::uint32_t point_weight = grid->demands().least_point_weight();
     if (options.field) {
       options.field->count.assign(grid->size(), 0);
       options.field->stations.assign(grid->size() * mask_words(network.size()), 0);
     }
-    NetworkCounts counts = nothing_seen(grid->size(), grid->total_weight(), point_worth, network.size(),
+    NetworkCounts counts = nothing_seen(grid->size(), grid->total_weight(), point_weight, network.size(),
                                         options.overlap, options.registration.has_value());
     counts.points_on_surveyed.assign(network.size(), 0);
     if (limited()) counts.dropped.assign(network.size(), {});
@@ -501,12 +501,12 @@ std::vector<NetworkCounts> Simulator::Impl::evaluate_sampled(std::span<const Net
   for (std::size_t k = 0; k < networks.size(); ++k) {
     std::vector<TraceStation> active = active_stations(networks[k]);
     if (active.empty() || sample.empty()) {
-      const std::uint32_t point_worth = grid->demands().least_worth();
-      all[k] = nothing_seen(sample.size(), weight_of(sample, 0, 1), point_worth, networks[k].size(), options.overlap,
+      const std::uint32_t point_weight = grid->demands().least_point_weight();
+      all[k] = nothing_seen(sample.size(), weight_of(sample, 0, 1), point_weight, networks[k].size(), options.overlap,
                             options.registration.has_value());
       for (std::uint32_t g = 0; options.groups && g < sample_groups; ++g)
         all[k].groups.push_back(nothing_seen((sample.size() + sample_groups - 1 - g) / sample_groups,
-                                             weight_of(sample, g, sample_groups), point_worth, networks[k].size(),
+                                             weight_of(sample, g, sample_groups), point_weight, networks[k].size(),
                                              options.overlap, options.registration.has_value()));
       if (options.points) options.points(k, std::vector<std::uint32_t>(sample.size()));
       continue;

@@ -52,7 +52,9 @@ class VoxelGrid {
   // Coverage's demands on each voxel, by index: weights from the scene; point weights once set.
   const VoxelDemands& demands() const { return demands_; }
   std::uint64_t total_weight() const { return total_weight_; }
-  void set_worths(std::vector<std::uint32_t> worths) { demands_.worths = std::move(worths); }
+  void set_point_weights(std::vector<std::uint32_t> point_weights) {
+    demands_.point_weights = std::move(point_weights);
+  }
 
  private:
   int depth_ = 0;

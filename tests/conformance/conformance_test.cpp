@@ -456,7 +456,8 @@ NetworkCounts sampled_slowly(const TestSite& site, const VoxelField& field, cons
   }
   const VoxelDemands& demands = site.grid->demands();
   const auto filled = [&](std::size_t i) {
-    return std::min(1.0 * sample.count[i] * demands.worth(job.sample[i]) / (goal_density * counts.point_worth), 1.0);
+    return std::min(1.0 * sample.count[i] * demands.point_weight(job.sample[i]) / (goal_density * counts.point_weight),
+                    1.0);
   };
   for (std::size_t i = 1; i < sample.count.size(); ++i) {
     const double step = filled(i) - filled(i - 1);

@@ -69,11 +69,13 @@ class VulkanTracer final : public Tracer {
   void upload_shading();
   // Coverage's demands on voxels, of all or of a sample. Without memory if all are alike.
   struct DemandAddresses {
-    std::uint64_t weights = 0, worths = 0;
+    std::uint64_t weights = 0, point_weights = 0;
   };
   struct DeviceDemands {
-    Buffer weights, worths;
-    DemandAddresses addresses() const { return {weights ? weights.address() : 0, worths ? worths.address() : 0}; }
+    Buffer weights, point_weights;
+    DemandAddresses addresses() const {
+      return {weights ? weights.address() : 0, point_weights ? point_weights.address() : 0};
+    }
   };
   // A sample in the kernels' format.
   struct DeviceSample {
@@ -91,13 +93,14 @@ class VulkanTracer final : public Tracer {
     return info_.software ? software_rays_per_dispatch : hardware_rays_per_dispatch;
   }
   // Sum of point weights that fills a voxel.
-  std::uint64_t goal_worth() const {
-    const double least = scene_.grid->demands().least_worth();
+  std::uint64_t goal_point_weight() const {
+    const double least = scene_.grid->demands().least_point_weight();
     return static_cast<std::uint64_t>(std::min(std::ceil(goal_density_ * least), count_limit * least));
   }
   // Shift that lets `voxels` squares of nearly the goal fit in 64 bits; 0 for every goal that scanners reach.
   std::uint32_t difference_shift(std::uint32_t voxels) const {
-    const int bits = 2 * static_cast<int>(std::bit_width(goal_worth())) + static_cast<int>(std::bit_width(voxels));
+    const int bits =
+        2 * static_cast<int>(std::bit_width(goal_point_weight())) + static_cast<int>(std::bit_width(voxels));
     return static_cast<std::uint32_t>(std::max(0, bits - 62) / 2);
   }
   std::uint32_t rows_per_dispatch(const RayPattern& pattern) const {
@@ -128,7 +131,8 @@ class VulkanTracer final : public Tracer {
     DeviceDemands made;
     demands.weights.resize((demands.weights.size() + 3) / 4 * 4);  // whole words, as shaders read them
     if (!demands.weights.empty()) made.weights = to_device<std::uint8_t>(demands.weights, "voxel weights");
-    if (!demands.worths.empty()) made.worths = to_device<std::uint32_t>(demands.worths, "worths of points");
+    if (!demands.point_weights.empty())
+      made.point_weights = to_device<std::uint32_t>(demands.point_weights, "point weights");
     return made;
   }
 
