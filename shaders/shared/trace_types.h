@@ -17,7 +17,7 @@ VANTAGE_SHARED_BEGIN
 
 VANTAGE_CONST uint surveyed_bit = 0x80000000u;  // bit of a scene triangle's number: its mesh is surveyed
 VANTAGE_CONST uint no_primitive = 0xFFFFFFFFu;
-VANTAGE_CONST uint no_rank = 0xFFFFFFFFu;
+VANTAGE_CONST uint no_voxel_index = 0xFFFFFFFFu;
 
 VANTAGE_CONST uint group_size = 128;       // threads of a workgroup, unless a kernel says otherwise
 VANTAGE_CONST uint groups_in_row = 32768;  // of a dispatch with many groups; the rest goes to y

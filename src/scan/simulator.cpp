@@ -203,9 +203,9 @@ struct Simulator::Impl {
   }
 
   // Weight of every `step`-th voxel of a sample.
-  std::uint64_t weight_of(std::span<const std::uint32_t> ranks, std::size_t first, std::size_t step) const {
+  std::uint64_t weight_of(std::span<const std::uint32_t> voxel_indices, std::size_t first, std::size_t step) const {
     std::uint64_t sum = 0;
-    for (std::size_t i = first; i < ranks.size(); i += step) sum += grid->demands().weight(ranks[i]);
+    for (std::size_t i = first; i < voxel_indices.size(); i += step) sum += grid->demands().weight(voxel_indices[i]);
     return sum;
   }
 
@@ -216,7 +216,7 @@ struct Simulator::Impl {
 
   struct Sample {
     std::uint64_t size, from;
-    std::vector<std::uint32_t> ranks;
+    std::vector<std::uint32_t> voxel_indices;
   };
   // A search requests few of them, repeatedly.
   const Sample& sample_of(std::uint64_t size, std::uint64_t from) {
@@ -229,7 +229,7 @@ struct Simulator::Impl {
 
   // Planes of a sample, or of all voxels, which is the one from 0. Uses the scanner's range noise, whether it is
   // simulated or not.
-  RegistrationJob registration_of(std::span<const std::uint32_t> ranks, std::uint64_t from,
+  RegistrationJob registration_of(std::span<const std::uint32_t> voxel_indices, std::uint64_t from,
                                   const RegistrationModel& model, bool groups) {
     if (!(model.rho_m > 0 && std::isfinite(model.rho_m) && model.patch_m > 0 && std::isfinite(model.patch_m))) {
       std::ostringstream what;
@@ -239,11 +239,11 @@ struct Simulator::Impl {
     }
     const SamplePatches& own = patches.get(
         [&](const SamplePatches& one) {
-          return one.from == from && one.patches->patches.size() == ranks.size() && one.patches->model == model;
+          return one.from == from && one.patches->patches.size() == voxel_indices.size() && one.patches->model == model;
         },
         [&] {
-          return SamplePatches{from, std::make_shared<Patches>(
-                                         make_patches(data(), *grid, ranks, make_pattern(registered.front()), model))};
+          return SamplePatches{from, std::make_shared<Patches>(make_patches(data(), *grid, voxel_indices,
+                                                                            make_pattern(registered.front()), model))};
         });
     if (patch_scanners.empty()) {
       const auto solid_angle = [](const Scanner& scanner) {
@@ -324,27 +324,31 @@ Vec3 Simulator::origin() const noexcept { return impl_->data().origin; }
 std::uint64_t Simulator::voxel_count() const noexcept { return impl_->grid->size(); }
 double Simulator::voxel_size_m() const noexcept { return impl_->grid->voxel_size(); }
 double Simulator::goal_density() const noexcept { return impl_->goal; }
-double Simulator::goal_density(std::uint64_t rank) const {
+double Simulator::goal_density(std::uint64_t voxel_index) const {
   const VoxelDemands& demands = impl_->grid->demands();
-  return impl_->goal * demands.least_point_weight() / demands.point_weight(rank);
+  return impl_->goal * demands.least_point_weight() / demands.point_weight(voxel_index);
 }
 std::optional<Angle> Simulator::max_incidence() const noexcept { return incidence_limit(impl_->data(), impl_->config); }
 
-Vec3 Simulator::voxel_centre(std::uint64_t rank) const {
-  const auto [x, y, z] = morton_decode(impl_->grid->key(rank));
+Vec3 Simulator::voxel_centre(std::uint64_t voxel_index) const {
+  const auto [x, y, z] = morton_decode(impl_->grid->key(voxel_index));
   const auto& min = impl_->grid->min();
   const double size = impl_->grid->voxel_size();
   return origin() + Vec3{static_cast<double>(min[0]) + (x + 0.5) * size, static_cast<double>(min[1]) + (y + 0.5) * size,
                          static_cast<double>(min[2]) + (z + 0.5) * size};
 }
 
-std::uint32_t Simulator::point_weight(std::uint64_t rank) const { return impl_->grid->demands().point_weight(rank); }
-std::uint32_t Simulator::voxel_weight(std::uint64_t rank) const { return impl_->grid->demands().weight(rank); }
+std::uint32_t Simulator::point_weight(std::uint64_t voxel_index) const {
+  return impl_->grid->demands().point_weight(voxel_index);
+}
+std::uint32_t Simulator::voxel_weight(std::uint64_t voxel_index) const {
+  return impl_->grid->demands().weight(voxel_index);
+}
 
-std::vector<VoxelPatch> Simulator::voxel_patches(std::span<const std::uint32_t> ranks) const {
+std::vector<VoxelPatch> Simulator::voxel_patches(std::span<const std::uint32_t> voxel_indices) const {
   std::vector<VoxelPatch> patches;
-  patches.reserve(ranks.size());
-  for (const VoxelSurface& surface : voxel_surfaces(impl_->data(), *impl_->grid, ranks)) {
+  patches.reserve(voxel_indices.size());
+  for (const VoxelSurface& surface : voxel_surfaces(impl_->data(), *impl_->grid, voxel_indices)) {
     const auto [x, y, z] = surface.point;
     patches.push_back({.point = origin() + Vec3{x, y, z},
                        .normal = {surface.normal.x, surface.normal.y, surface.normal.z},
@@ -431,9 +435,9 @@ NetworkCounts Simulator::Impl::evaluate(const Network& network, const EvaluateOp
   NetworkCounts counts = count_in_passes(
       *tracer, active, size, {.masks = options.overlap, .skip = options.skip, .field = field}, *grid, goal, progress);
   if (options.registration && !counts.cancelled) {
-    std::vector<std::uint32_t> ranks(grid->size());
-    std::iota(ranks.begin(), ranks.end(), 0u);
-    const RegistrationJob job = registration_of(ranks, 0, *options.registration, false);
+    std::vector<std::uint32_t> voxel_indices(grid->size());
+    std::iota(voxel_indices.begin(), voxel_indices.end(), 0u);
+    const RegistrationJob job = registration_of(voxel_indices, 0, *options.registration, false);
     take_registration(counts, sum_patches(job, active, size, field->stations, 0));
   }
   return counts;
@@ -492,7 +496,7 @@ std::vector<NetworkCounts> Simulator::Impl::evaluate_sampled(std::span<const Net
   const bool large = std::ranges::any_of(networks, [](const Network& n) { return n.size() > mask_bits; });
   if (large && networks.size() > 1) return evaluate_one_by_one(networks, options, progress);
   const Sample& taken = sample_of(options.voxels, options.from);
-  const std::vector<std::uint32_t>& sample = taken.ranks;
+  const std::vector<std::uint32_t>& sample = taken.voxel_indices;
   std::vector<NetworkCounts> all(networks.size());
   // Networks without active stations skip the engine.
   std::vector<std::vector<TraceStation>> tracing;

@@ -38,10 +38,10 @@ std::optional<std::vector<T>> foremost(const SceneData& scene, const VoxelGrid& 
   const bool whole = TriangleWalk(scene.positions, triangles, transform)
                          .for_each(transform, std::int64_t{1} << grid.depth(), progress, [&](std::size_t mesh) {
                            return [&, asked = own[mesh]](const TriangleCells::Cell& c) {
-                             const std::uint32_t rank = grid.find(morton_encode(static_cast<std::uint32_t>(c[0]),
-                                                                                static_cast<std::uint32_t>(c[1]),
-                                                                                static_cast<std::uint32_t>(c[2])));
-                             if (rank != no_voxel) bring_forward(found[rank], asked);
+                             const std::uint32_t voxel_index = grid.find(
+                                 morton_encode(static_cast<std::uint32_t>(c[0]), static_cast<std::uint32_t>(c[1]),
+                                               static_cast<std::uint32_t>(c[2])));
+                             if (voxel_index != no_voxel) bring_forward(found[voxel_index], asked);
                            };
                          });
   if (!whole) return std::nullopt;
@@ -61,12 +61,12 @@ T last_of(const SceneData& scene, std::span<const T> of_mesh, Before before) {
 
 std::uint32_t VoxelDemands::least_point_weight() const { return point_weights.empty() ? 1 : densest_point_weight; }
 
-VoxelDemands VoxelDemands::of(std::span<const std::uint32_t> ranks) const {
+VoxelDemands VoxelDemands::of(std::span<const std::uint32_t> voxel_indices) const {
   VoxelDemands some;
   if (!weights.empty())
-    for (const std::uint32_t rank : ranks) some.weights.push_back(weights[rank]);
+    for (const std::uint32_t voxel_index : voxel_indices) some.weights.push_back(weights[voxel_index]);
   if (!point_weights.empty())
-    for (const std::uint32_t rank : ranks) some.point_weights.push_back(point_weights[rank]);
+    for (const std::uint32_t voxel_index : voxel_indices) some.point_weights.push_back(point_weights[voxel_index]);
   return some;
 }
 

@@ -26,8 +26,8 @@ struct VoxelDemands {
   std::uint32_t point_weight(std::size_t k) const { return point_weights.empty() ? 1 : point_weights[k]; }
   // Point weight in a voxel of the densest goal.
   std::uint32_t least_point_weight() const;
-  // Demands of a sample. REQUIRES: ranks below the number of voxels.
-  VoxelDemands of(std::span<const std::uint32_t> ranks) const;
+  // Demands of a sample. REQUIRES: voxel_indices below the number of voxels.
+  VoxelDemands of(std::span<const std::uint32_t> voxel_indices) const;
 };
 
 inline constexpr std::uint32_t densest_point_weight = 4096;

@@ -45,12 +45,12 @@ StationTotals count_tile(const StationRays& station_rays, const TraceStation& st
     const DroppedPoints dropped = limited ? station_rays.dropped(rays, hits.slot[k]) : DroppedPoints{};
     if (dropped.points == 0) {
       voxels.add(point);
-    } else if (station_rays.grid().rank_of(point) != no_voxel) {
+    } else if (station_rays.grid().index_of(point) != no_voxel) {
       totals.dropped = totals.dropped + dropped;
     }
   }
-  voxels.each_rank([&](std::uint32_t rank) {
-    points.add(rank, shift);
+  voxels.each_index([&](std::uint32_t voxel_index) {
+    points.add(voxel_index, shift);
     ++totals.points_on_surveyed;
   });
   return totals;

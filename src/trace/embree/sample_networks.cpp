@@ -19,8 +19,7 @@ namespace vantage {
 namespace {
 
 constexpr std::size_t block = SampledVoxelCounter::block;
-constexpr std::size_t pairs_at_once = std::size_t{1} << 22;  // (network, voxel) pairs, so that memory does not grow
-                                                             // with the population
+constexpr std::size_t pairs_at_once = std::size_t{1} << 22;  // (network, voxel) pairs, to bound memory
 
 // Upper bound on coordinates in sight, relative or absolute. A power of two, so that most calls keep the last call's
 // sample.

@@ -15,7 +15,7 @@
 namespace vantage::vulkan {
 
 const VulkanTracer::DeviceSample& VulkanTracer::upload_sample(std::span<const std::uint32_t> sample) {
-  return samples_.get([&](const DeviceSample& one) { return std::ranges::equal(sample, one.ranks); },
+  return samples_.get([&](const DeviceSample& one) { return std::ranges::equal(sample, one.voxel_indices); },
                       [&] { return device_sample(sample); });
 }
 
@@ -35,7 +35,7 @@ VulkanTracer::DeviceSample VulkanTracer::device_sample(std::span<const std::uint
     const auto cell = morton_decode(grid.key(sample[k]));
     voxels[k] = {cell[0], cell[1], cell[2], static_cast<std::uint32_t>(k)};
   });
-  return {.ranks = {sample.begin(), sample.end()},
+  return {.voxel_indices = {sample.begin(), sample.end()},
           .voxels = to_device<SampleVoxel>(voxels, "sample voxels"),
           .in_order_of_chunks = to_device<SampleVoxel>(in_order_of_chunks(voxels), "voxels of chunks"),
           .demands = to_device(grid.demands().of(sample))};

@@ -79,7 +79,7 @@ class VulkanTracer final : public Tracer {
   };
   // A sample in the kernels' format.
   struct DeviceSample {
-    std::vector<std::uint32_t> ranks;
+    std::vector<std::uint32_t> voxel_indices;
     Buffer voxels, in_order_of_chunks;
     DeviceDemands demands;
   };

@@ -105,7 +105,8 @@ struct Site {
         network.push_back({{test::between(random, -2.5, 2.5), test::between(random, -2.5, 2.5), 1.5f}, place});
       sizes.push_back(static_cast<std::uint32_t>(network.size()));
     }
-    for (std::uint32_t rank = 0; rank < scene.grid->size(); rank += 3) sample.push_back(rank);
+    for (std::uint32_t voxel_index = 0; voxel_index < scene.grid->size(); voxel_index += 3)
+      sample.push_back(voxel_index);
   }
   std::unique_ptr<Tracer> one() const {
     auto tracer = make_embree_tracer(scene);
