@@ -61,20 +61,23 @@ std::vector<Evaluation> evaluate_sampled(GuardedSimulator& self, const py::seque
 
 py::array_t<double> voxel_centres(const GuardedSimulator& self) {
   std::vector<Vec3> centres(self.simulator.voxel_count());
-  for (std::uint64_t rank = 0; rank < centres.size(); ++rank) centres[rank] = self.simulator.voxel_centre(rank);
+  for (std::uint64_t voxel_index = 0; voxel_index < centres.size(); ++voxel_index)
+    centres[voxel_index] = self.simulator.voxel_centre(voxel_index);
   return adopt(std::move(centres));
 }
 
 py::array_t<std::uint32_t> voxel_weights(const GuardedSimulator& self) {
   std::vector<std::uint32_t> weights(self.simulator.voxel_count());
-  for (std::uint64_t rank = 0; rank < weights.size(); ++rank) weights[rank] = self.simulator.voxel_weight(rank);
+  for (std::uint64_t voxel_index = 0; voxel_index < weights.size(); ++voxel_index)
+    weights[voxel_index] = self.simulator.voxel_weight(voxel_index);
   const auto count = static_cast<py::ssize_t>(weights.size());
   return adopt<std::uint32_t>(std::move(weights), {count});
 }
 
 py::array_t<double> goal_densities(const GuardedSimulator& self) {
   std::vector<double> goals(self.simulator.voxel_count());
-  for (std::uint64_t rank = 0; rank < goals.size(); ++rank) goals[rank] = self.simulator.goal_density(rank);
+  for (std::uint64_t voxel_index = 0; voxel_index < goals.size(); ++voxel_index)
+    goals[voxel_index] = self.simulator.goal_density(voxel_index);
   const auto count = static_cast<py::ssize_t>(goals.size());
   return adopt<double>(std::move(goals), {count});
 }

@@ -44,15 +44,15 @@ void main() {
     if (is_point && (hit.id & surveyed_bit) != 0u) {
       Look look = unseen;
       if (with_look) look = look_of(hit, direction);
-      const uint rank = rank_of(point_of(hit, look, push.origin, direction, ray_number(row, column), push.place));
-      if (rank != no_rank) misses = misses_of(hit, look, direction);
-      if (rank != no_rank && misses == 0u) {
+      const uint voxel_index = index_of(point_of(hit, look, push.origin, direction, ray_number(row, column), push.place));
+      if (voxel_index != no_voxel_index) misses = misses_of(hit, look, direction);
+      if (voxel_index != no_voxel_index && misses == 0u) {
         counted = true;
-        atomicAdd(push.counts.at[rank], 1u);
+        atomicAdd(push.counts.at[voxel_index], 1u);
         if (with_masks) {
           const uint bit = 1u << (push.place & 31u);
           // Reading first avoids most atomics; a stale read only costs one.
-          if ((push.masks.at[rank] & bit) == 0u) atomicOr(push.masks.at[rank], bit);
+          if ((push.masks.at[voxel_index] & bit) == 0u) atomicOr(push.masks.at[voxel_index], bit);
         }
       }
     }

@@ -31,8 +31,8 @@ uvec2 pair_of(uint p, uint n) {
   return uvec2(i, i + 1u + p);
 }
 
-uint64_t worth_of(uint voxel, uint count) {
-  return count == 0u || uint64_t(push.worths) == 0ul ? uint64_t(count) : uint64_t(count) * push.worths.at[voxel];
+uint64_t weighted_points_of(uint voxel, uint count) {
+  return count == 0u || uint64_t(push.point_weights) == 0ul ? uint64_t(count) : uint64_t(count) * push.point_weights.at[voxel];
 }
 
 // Adds to a 64-bit sum of the workgroup.
@@ -94,18 +94,18 @@ void main() {
     const uint voxel = group + push.groups * ((gl_WorkGroupID.x * reduce_rounds + round) * reduce_voxels + thread);
     const bool inside = voxel < push.voxel_count;
     const uint count = counts_of[round];
-    const uint64_t worth = worth_of(voxel, count);
-    const bool full = worth >= push.goal;
+    const uint64_t weighted_points = weighted_points_of(voxel, count);
+    const bool full = weighted_points >= push.goal;
     const uint weight = !weighted ? 1u : inside ? push.weights.at[voxel / 4u] >> (voxel % 4u * 8u) & 0xFFu : 0u;
     if (inside && full) {
       saturated += weight;
     } else {
-      partial += worth * weight;
+      partial += weighted_points * weight;
     }
     if (push.with_differences != 0u && inside && voxel > 0u) {
-      const uint64_t before = worth_of(voxel - 1u, push.counts.at[counts + voxel - 1u]);
+      const uint64_t before = weighted_points_of(voxel - 1u, push.counts.at[counts + voxel - 1u]);
       const bool full_before = before >= push.goal;
-      const uint c = uint(worth >> push.difference_shift), d = uint(before >> push.difference_shift);
+      const uint c = uint(weighted_points >> push.difference_shift), d = uint(before >> push.difference_shift);
       if (full != full_before) {
         const uint partly = full ? d : c;
         ++edges;

@@ -11,7 +11,7 @@
 
 layout(local_size_x = group_size) in;
 layout(push_constant, scalar) uniform Push { SamplePush push; };
-#include "lib/blocker.glsl"
+#include "lib/occluder.glsl"
 #include "lib/sample.glsl"
 
 RayWindow window_of(SamplePair pair) {
@@ -46,7 +46,7 @@ shared Cube cubes[group_size];
 shared uint slots[group_size];
 shared Walk walks[group_size];
 shared uint probes[group_size];
-shared Blocker blockers[group_size];
+shared Occluder occluders[group_size];
 shared uint ends[group_size];  // end of the thread's steps among those of the subgroup
 shared uvec2 founds[group_size];  // one bit per step
 
@@ -91,7 +91,7 @@ void main() {
     walks[self] = Walk(window.row0, window.column0, window.column1, window.wrapped0, column_count_of(window), rays,
                        item.part * sample_part);
     probes[self] = pair.probe;
-    blockers[self] = pair.blocker == not_blocked ? no_blocker : blocker_of(corners_of(pair.blocker, station.origin));
+    occluders[self] = pair.occluder == not_occluded ? no_blocker : occluder_of(corners_of(pair.occluder, station.origin));
   }
   // within the subgroup
   const uint first = subgroupMin(self), threads = subgroupAdd(1u), rank = subgroupExclusiveAdd(1u);
@@ -111,7 +111,7 @@ void main() {
     uvec2 ray;
     if (!ray_at(low, k, ray) || number_of(ray) == probes[low]) continue;
     const vec3 direction = ray_direction(ray.x, ray.y, push.stations.at[slots[low]].turn);
-    if (!may_see(cubes[low], passage(cubes[low], direction)) || stops(blockers[low], direction)) continue;
+    if (!may_see(cubes[low], passage(cubes[low], direction)) || stops(occluders[low], direction)) continue;
     if (k < 32u) atomicOr(founds[low].x, 1u << k);
     else atomicOr(founds[low].y, 1u << (k - 32u));
   }

@@ -10,7 +10,7 @@
 layout(local_size_x = group_size) in;
 layout(constant_id = 3) const bool watertight = false;  // whether the engine is watertight
 layout(push_constant, scalar) uniform Push { SampleProbePush push; };
-#include "lib/blocker.glsl"
+#include "lib/occluder.glsl"
 #include "lib/sampled_point.glsl"
 
 void main() {
@@ -22,7 +22,7 @@ void main() {
   const SampleStation station = push.stations.at[slot];
   const Cube cube = cube_of(voxel, station.origin);
   bool open = false, traced = false;
-  uint probe = no_ray, blocker = not_blocked;
+  uint probe = no_ray, occluder = not_occluded;
   RayWindow window;
   if (alive && !is_closed(station, of_voxel)) {
     window = window_of(cube, station);
@@ -41,8 +41,8 @@ void main() {
         if (hit.id != no_primitive && hit.t < range.x - reach_of(cube)) {
           const Corners corners = corners_of(hit.id & ~surveyed_bit, station.origin);
           if (open && is_before(corners, cube)) {
-            blocker = hit.id & ~surveyed_bit;
-            open = watertight ? !patch_covers(blocker, station.origin, cube) : !covers(blocker_of(corners), cube);
+            occluder = hit.id & ~surveyed_bit;
+            open = watertight ? !patch_covers(occluder, station.origin, cube) : !covers(occluder_of(corners), cube);
           }
         } else if (push.probed == 0u && is_point_of(voxel, station, hit, direction, probe)) {
           const uint points = count_point(station, of_voxel);
@@ -61,7 +61,7 @@ void main() {
   const uint at = subgroupBroadcastFirst(base) + before;
   if (open && at < push.pair_capacity)
     push.pairs.at[at] =
-        SamplePair(of_voxel, slot, probe, blocker,
+        SamplePair(of_voxel, slot, probe, occluder,
                    int[6](window.row0, window.row1, window.column0, window.column1, window.wrapped0, window.wrapped1));
   // Threads of a subgroup have adjacent slots, and networks are many: summing over a subgroup would save no addition.
   if (traced && push.probed == 0u) add64(push.slot_rays, 2u * slot, 1u);

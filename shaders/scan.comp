@@ -24,14 +24,14 @@ void main() {
   const bool is_point = hit.id != no_primitive;
   float t = uintBitsToFloat(0x7F800000u);
   Look look = unseen;
-  uint rank = no_rank;
+  uint voxel_index = no_voxel_index;
   vec3 position = vec3(uintBitsToFloat(0x7FC00000u));
   if (is_point) {
     if (with_look || GIVEN(push.normal) || GIVEN(push.reflectivity)) look = look_of(hit, direction);
     t = range_of(hit, look, ray_number(row, column), push.place);
     position = point_on_ray(push.origin, direction, t);
     if (GIVEN(push.voxel) && (hit.id & surveyed_bit) != 0u && misses_of(hit, look, direction) == 0u)
-      rank = rank_of(position);
+      voxel_index = index_of(position);
   }
   if (GIVEN(push.range)) push.range.at[k] = t;
   if (GIVEN(push.position)) push.position.at[k] = position;
@@ -39,5 +39,5 @@ void main() {
   if (GIVEN(push.reflectivity)) push.reflectivity.at[k] = look.reflectivity;
   if (GIVEN(push.primitive)) push.primitive.at[k] = is_point ? hit.id & ~surveyed_bit : no_primitive;
   if (GIVEN(push.barycentric)) push.barycentric.at[k] = is_point ? hit.barycentric : vec2(0);
-  if (GIVEN(push.voxel)) push.voxel.at[k] = rank;
+  if (GIVEN(push.voxel)) push.voxel.at[k] = voxel_index;
 }

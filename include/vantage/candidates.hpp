@@ -22,7 +22,7 @@ namespace vantage {
 /// What stations cover one by one of a sample of voxels: a coverage matrix, its elements the sampled voxels.
 ///
 /// An amount is a station's points in a voxel. Where the goals of voxels differ, points count by
-/// `Simulator::point_worth`, up to the goal. A column is counted with its station as the only one of a network. Noise
+/// `Simulator::point_weight`, up to the goal. A column is counted with its station as the only one of a network. Noise
 /// is keyed by a station's place in its network, so elsewhere in a network the same station draws other noise: without
 /// noise sums of columns are exactly what `Simulator::evaluate_sampled` counts, with noise they are another draw of the
 /// same distribution.

@@ -36,7 +36,7 @@ struct MeasuredNetwork {
 };
 
 /// What an objective looks at besides the stations. What nobody needs is not computed.
-struct Needs {
+struct RequiredInputs {
   bool counts = true;         ///< `MeasuredNetwork::counts`. False: of places alone, so no ray is traced for it.
   bool pairs = false;         ///< `NetworkCounts::seen` and `shared`, and `MeasuredNetwork::overlap`.
   bool visibility = false;    ///< `MeasuredNetwork::visible_parts`.
@@ -46,7 +46,7 @@ struct Needs {
   std::optional<RegistrationModel> registration = std::nullopt;
   bool surroundings_registration = false;  ///< That of `MeasuredNetwork::surroundings` too, by the same model.
 };
-constexpr Needs operator|(const Needs& a, const Needs& b) {
+constexpr RequiredInputs operator|(const RequiredInputs& a, const RequiredInputs& b) {
   return {a.counts || b.counts,
           a.pairs || b.pairs,
           a.visibility || b.visibility,
@@ -77,7 +77,7 @@ struct Objective {
   std::string label = {};  ///< For axes: "Overlap (average clustering coefficient)".
   std::string unit = {};   ///< "mm"; empty: a plain number.
   Scale scale = {};        ///< `minimise(0, 10)` of millimetres, `maximise(1, 0)` of a share.
-  Needs needs = {};
+  RequiredInputs needs = {};
   /// Of what was measured. Called from several threads at once. Must give the same for the same.
   std::function<double(const MeasuredNetwork&)> value = {};
   /// Standard error of `value` where a sample was counted; empty: as docs/method.md has it, from the sample's groups.
@@ -98,7 +98,7 @@ struct Objective {
 };
 
 /// What all of them look at together.
-Needs needs_of(std::span<const Objective> objectives);
+RequiredInputs required_inputs_of(std::span<const Objective> objectives);
 
 /// Value and standard error of an objective; the error is 0 where all voxels were counted, or none matter.
 Estimate estimate(const Objective& objective, const MeasuredNetwork& measured);

@@ -196,18 +196,18 @@ class Simulator {
   std::uint64_t voxel_count() const noexcept;  ///< N_v of equation 8.
   double voxel_size_m() const noexcept;
   double goal_density() const noexcept;  ///< Points wanted in a voxel; the densest goal if goals differ.
-  /// Points wanted in one voxel (`SimulatorConfig::spacing_by_detail`). REQUIRES: rank < voxel_count().
-  double goal_density(std::uint64_t rank) const;
+  /// Points wanted in one voxel (`SimulatorConfig::spacing_by_detail`). REQUIRES: voxel < voxel_count().
+  double goal_density(std::uint64_t voxel) const;
   /// Limit in force, from `SimulatorConfig::max_incidence`. Empty: points have no limits of any kind, and all on
   /// surveyed voxels count.
   std::optional<Angle> max_incidence() const noexcept;
-  Vec3 voxel_centre(std::uint64_t rank) const;  ///< Survey frame. REQUIRES: rank < voxel_count().
-  /// Weight of a voxel in coverage (`MeshInfo::weight`). REQUIRES: rank < voxel_count().
-  std::uint32_t voxel_weight(std::uint64_t rank) const;
-  /// Point weight in a voxel, as `NetworkCounts::point_worth`. REQUIRES: rank < voxel_count().
-  std::uint32_t point_worth(std::uint64_t rank) const;
-  /// Surfaces of voxels. REQUIRES: ranks ascending, without duplicates, all below voxel_count().
-  std::vector<VoxelPatch> voxel_patches(std::span<const std::uint32_t> ranks) const;
+  Vec3 voxel_centre(std::uint64_t voxel) const;  ///< Survey frame. REQUIRES: voxel < voxel_count().
+  /// Weight of a voxel in coverage (`MeshInfo::weight`). REQUIRES: voxel < voxel_count().
+  std::uint32_t voxel_weight(std::uint64_t voxel) const;
+  /// Point weight in a voxel, as `NetworkCounts::point_weight`. REQUIRES: voxel < voxel_count().
+  std::uint32_t point_weight(std::uint64_t voxel) const;
+  /// Surfaces of voxels. REQUIRES: voxels ascending, without duplicates, all below voxel_count().
+  std::vector<VoxelPatch> voxel_patches(std::span<const std::uint32_t> voxels) const;
   /// Indices of the voxels that `evaluate_sampled` draws for `SampleOptions::voxels` and `from`, ascending. Fixed by
   /// the seed. Throws Error invalid_argument for 0 voxels.
   std::vector<std::uint32_t> sampled_voxels(std::uint64_t voxels, std::uint64_t from = 0) const;

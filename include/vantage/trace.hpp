@@ -102,7 +102,7 @@ struct NetworkCounts {
   std::uint64_t partial_points = 0;
   /// Point weight in a voxel of the densest goal. Above 1 only if goals differ: a point weighs more in a voxel that
   /// needs fewer.
-  std::uint32_t point_worth = 1;
+  std::uint32_t point_weight = 1;
   std::uint64_t rays = 0;             ///< Rays traced.
   std::uint32_t stations = 0;         ///< N_stations, skipped ones included.
   std::vector<std::uint64_t> points;  ///< Per station, on all meshes; empty if not counted (rays were skipped).

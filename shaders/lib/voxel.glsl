@@ -15,12 +15,12 @@ bool cell_of(vec3 p, out uvec3 cell) {
   return true;
 }
 
-uint rank_of_cell(uvec3 cell) {
+uint index_of_cell(uvec3 cell) {
   const uvec3 b = cell >> brick_bits;
   uint slot = brick_hash(b.x, b.y, b.z) & parameters.slot_mask;
   for (;;) {
     const BrickSlot s = parameters.slots.at[slot];
-    if (s.brick == empty_slot) return no_rank;
+    if (s.brick == empty_slot) return no_voxel_index;
     if (s.x == b.x && s.y == b.y && s.z == b.z) {
       slot = s.brick;
       break;
@@ -39,15 +39,15 @@ uint rank_of_cell(uvec3 cell) {
   const uvec4 below = uvec4(word > 0u ? all : one - 1u, word > 1u ? all : word == 1u ? one - 1u : 0u,
                             word > 2u ? all : word == 2u ? one - 1u : 0u, word == 3u ? one - 1u : 0u);
   const uvec4 at = uvec4(word == 0u ? one : 0u, word == 1u ? one : 0u, word == 2u ? one : 0u, word == 3u ? one : 0u);
-  if ((bits & at) == uvec4(0)) return no_rank;
+  if ((bits & at) == uvec4(0)) return no_voxel_index;
   ivec4 set = bitCount(bits & below);
   for (uint q = 0; q < quarter; ++q) set += bitCount(parameters.bricks.at[brick + 1u + q]);
   return parameters.bricks.at[brick].w + uint(set.x + set.y + set.z + set.w);
 }
 
-uint rank_of(vec3 p) {
+uint index_of(vec3 p) {
   uvec3 cell;
-  return cell_of(p, cell) ? rank_of_cell(cell) : no_rank;
+  return cell_of(p, cell) ? index_of_cell(cell) : no_voxel_index;
 }
 
 #endif

@@ -17,7 +17,7 @@ VANTAGE_SHARED_BEGIN
 
 VANTAGE_CONST uint surveyed_bit = 0x80000000u;  // bit of a scene triangle's number: its mesh is surveyed
 VANTAGE_CONST uint no_primitive = 0xFFFFFFFFu;
-VANTAGE_CONST uint no_rank = 0xFFFFFFFFu;
+VANTAGE_CONST uint no_voxel_index = 0xFFFFFFFFu;
 
 VANTAGE_CONST uint group_size = 128;       // threads of a workgroup, unless a kernel says otherwise
 VANTAGE_CONST uint groups_in_row = 32768;  // of a dispatch with many groups; the rest goes to y
@@ -156,11 +156,12 @@ struct ClampPush {
 // of group g of network n start at word (n · groups + g) · totals_stride:
 // - weight of the saturated voxels (64 bits);
 // - points of the others, each times its voxel's weight and point weight (64 bits);
-// - three sums over successive voxels, from which the host computes Σ (r(k) − r(k−1))² of r = min(worth / goal, 1)
+// - three sums over successive voxels, from which the host computes Σ (r(k) − r(k−1))² of r = min(weighted points /
+// goal, 1)
 //   without rounding;
 // - seen[stations], then shared[pairs].
-// With c = worth >> difference_shift for a voxel that is not saturated: squares (64 bits) adds (c(k) − c(k−1))² if
-// neither voxel is saturated and c² if one is; edge_points (64 bits) adds c if one is; edges counts those.
+// With c = weighted points >> difference_shift for a voxel that is not saturated: squares (64 bits) adds (c(k) −
+// c(k−1))² if neither voxel is saturated and c² if one is; edge_points (64 bits) adds c if one is; edges counts those.
 VANTAGE_CONST uint reduce_voxels = 256;  // voxels of a workgroup at a time
 VANTAGE_CONST uint reduce_rounds = 16;   // at most 32
 VANTAGE_CONST uint totals_saturated = 0;
@@ -175,7 +176,7 @@ struct ReducePush {
   VANTAGE_ADDRESS(Uints) totals;
   VANTAGE_ADDRESS(Uints) station_counts;  // per network
   VANTAGE_ADDRESS(Uints) weights;         // of voxels, one byte each; 0: all weigh 1
-  VANTAGE_ADDRESS(Uints) worths;          // point weight in each voxel; 0: all are 1
+  VANTAGE_ADDRESS(Uints) point_weights;   // point weight in each voxel; 0: all are 1
   uint64_t goal;                          // sum of point weights that saturates a voxel
   uint voxel_count;
   uint difference_shift;  // keeps the sum of squares within 64 bits
@@ -203,11 +204,11 @@ struct SamplePair {
   uint voxel;  // within the sample
   uint slot;
   uint probe;     // the traced ray; no_ray: none was worth tracing
-  uint blocker;   // the triangle that stopped it before the voxel; not_blocked: none did
+  uint occluder;  // the triangle that stopped it before the voxel; not_occluded: none did
   int window[6];  // RayWindow, in its order
 };
 VANTAGE_CONST uint no_ray = 0xFFFFFFFFu;
-VANTAGE_CONST uint not_blocked = 0xFFFFFFFFu;
+VANTAGE_CONST uint not_occluded = 0xFFFFFFFFu;
 struct SampleRay {
   uint pair;
   uint ray;

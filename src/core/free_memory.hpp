@@ -11,7 +11,7 @@ namespace vantage {
 // group. Empty if neither can be read.
 std::optional<std::uint64_t> free_memory();
 
-// What a process may take: `max_memory_bytes`, or where that is 0 half of what is free.
+// Memory that a process may take: `max_memory_bytes`, or, if that is 0, half of the free memory.
 std::uint64_t memory_limit(std::uint64_t max_memory_bytes);
 
 // "850 MiB", "12.3 GiB"

@@ -20,7 +20,7 @@ constexpr std::uint64_t kLargest = std::uint64_t{1} << 30;
 
 RegularFile::RegularFile(const std::filesystem::path& file, const std::string& what)
     : name_(file.string()), prefix_(what.empty() ? "" : what + ": ") {
-  // Asked before it is opened, since opening a device may do something; and again of what was opened.
+  // Checked before opening, since opening a device may have effects, and again on the opened file.
   struct stat found {};
   const auto require_regular = [&] {
     if (!S_ISREG(found.st_mode)) throw Error(Errc::io, prefix_ + name_ + " is not a regular file");

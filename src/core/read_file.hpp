@@ -8,14 +8,14 @@
 
 namespace vantage {
 
-// A regular file that is open for reading. Others are refused: a device has no end, and a pipe may never begin.
+// A regular file open for reading. Others are rejected: a device has no end, and a pipe may never begin.
 class RegularFile {
  public:
-  // Throws Error io; `what` opens its message.
+  // Throws Error io; messages begin with `what`.
   explicit RegularFile(const std::filesystem::path& file, const std::string& what = "");
 
   std::uint64_t size() const { return size_; }
-  // All of it, size() bytes. Called once. Throws Error io.
+  // Reads all size() bytes. Called once. Throws Error io.
   void read(void* bytes);
 
  private:
@@ -34,8 +34,8 @@ class RegularFile {
   std::uint64_t size_ = 0;
 };
 
-// All bytes of a table, a configuration or another small file. Throws Error: io where it is no regular file or cannot
-// be read; malformed_file where it is larger than 1 GiB.
+// Returns all bytes of a table, a configuration or another small file. Throws Error: io if it is no regular file or
+// cannot be read; malformed_file if it is larger than 1 GiB.
 std::string read_file(const std::filesystem::path& file);
 
 }  // namespace vantage

@@ -15,16 +15,16 @@ constexpr std::uint32_t kGroups = 20;  // of a sample, as the simulator makes th
 
 TracedStations::TracedStations(Simulator& simulator, std::uint64_t voxels) : simulator_(simulator) {
   if (simulator.voxel_count() > 0) sample_ = simulator.sampled_voxels(std::min(voxels, simulator.voxel_count()));
-  for (const std::uint32_t rank : sample_) {
-    demands_.weights.push_back(static_cast<std::uint8_t>(simulator.voxel_weight(rank)));
-    demands_.worths.push_back(simulator.point_worth(rank));
+  for (const std::uint32_t voxel_index : sample_) {
+    demands_.weights.push_back(static_cast<std::uint8_t>(simulator.voxel_weight(voxel_index)));
+    demands_.point_weights.push_back(simulator.point_weight(voxel_index));
   }
   // None where all are 1: as the simulator has it.
   const auto clear_ones = [](auto& of_voxels) {
     if (std::ranges::count(of_voxels, 1u) == std::ssize(of_voxels)) of_voxels.clear();
   };
   clear_ones(demands_.weights);
-  clear_ones(demands_.worths);
+  clear_ones(demands_.point_weights);
 }
 
 void TracedStations::follow(const Network& network, std::span<const std::uint32_t> ids) {

@@ -23,7 +23,7 @@ class TracedStations {
   // `ids`: a name of each station's own, for as long as it is there.
   void follow(const Network& network, std::span<const std::uint32_t> ids);
 
-  const std::vector<std::uint32_t>& sample() const { return sample_; }  // ranks, ascending
+  const std::vector<std::uint32_t>& sample() const { return sample_; }  // voxel indices, ascending
   const NetworkCounts& counts() const { return counts_; }               // with groups and pairs
   const std::vector<std::uint32_t>& points() const { return points_; }  // of all stations, one each of the sample
   const std::vector<Seer>& seen_by() const { return seen_by_; }         // likewise

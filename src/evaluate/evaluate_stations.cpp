@@ -24,17 +24,17 @@ std::vector<Objective> measures_of(const EvaluationOptions& options) {
   return all;
 }
 
-Needs needs_of(const std::vector<Objective>& measures, const EvaluationOptions& options) {
-  Needs needs = vantage::needs_of(measures);
+RequiredInputs required_inputs_of(const std::vector<Objective>& measures, const EvaluationOptions& options) {
+  RequiredInputs needs = vantage::required_inputs_of(measures);
   if (!options.registration) return needs;
   const bool all_surfaces = options.registration->surfaces == RegistrationSurfaces::all;
-  return needs | Needs{.pairs = true,
-                       .surroundings = all_surfaces,
-                       .registration = options.registration->model,
-                       .surroundings_registration = all_surfaces};
+  return needs | RequiredInputs{.pairs = true,
+                                .surroundings = all_surfaces,
+                                .registration = options.registration->model,
+                                .surroundings_registration = all_surfaces};
 }
 
-void check(const EvaluationSite& site, const Needs& needs, const EvaluationOptions& options) {
+void check(const EvaluationSite& site, const RequiredInputs& needs, const EvaluationOptions& options) {
   const auto refuse = [](const std::string& why) { throw Error(Errc::invalid_argument, "evaluate: " + why); };
   if (needs.pairs && !options.overlap) refuse("what is measured looks at pairs of stations; count overlap too");
   if (needs.surroundings && !site.surroundings)
@@ -45,7 +45,7 @@ void check(const EvaluationSite& site, const Needs& needs, const EvaluationOptio
     refuse("the points of every voxel were asked for, and so was a sample of the voxels; choose one");
 }
 
-std::vector<NetworkCounts> count(Simulator& simulator, std::span<const Network> networks, const Needs& needs,
+std::vector<NetworkCounts> count(Simulator& simulator, std::span<const Network> networks, const RequiredInputs& needs,
                                  const EvaluationOptions& options, VoxelField* field, const Progress& progress) {
   if (options.sample_voxels > 0)
     return simulator.evaluate_sampled(
@@ -63,7 +63,7 @@ std::vector<Evaluation> evaluate_networks(const EvaluationSite& site,
                                           std::span<const std::vector<PlacedStation>> stations,
                                           const EvaluationOptions& options, const Progress& progress) {
   const std::vector<Objective> measures = measures_of(options);
-  const Needs needs = needs_of(measures, options);
+  const RequiredInputs needs = required_inputs_of(measures, options);
   check(site, needs, options);
   if (options.field && stations.size() != 1)
     throw Error(Errc::invalid_argument, "evaluate: the points of every voxel are kept of one network at a time");

@@ -8,8 +8,8 @@
 
 namespace {
 
-// A small PNG may inflate to gigabytes. No buffer of its decoder is larger than the picture that its header announces
-// can need, by thread.
+// A small PNG may inflate to gigabytes. So no buffer of its decoder may exceed the size that the header's picture can
+// need; per thread.
 thread_local std::size_t largest_buffer = 0;
 void* bounded(void* old, std::size_t bytes) { return bytes <= largest_buffer ? std::realloc(old, bytes) : nullptr; }
 
@@ -22,7 +22,7 @@ void* bounded(void* old, std::size_t bytes) { return bytes <= largest_buffer ? s
 #define STB_IMAGE_STATIC
 #define STBI_ONLY_PNG
 #define STBI_NO_STDIO
-#define STBI_MAX_DIMENSIONS 16384  // a side; 1 GiB of pixels: more is a broken header
+#define STBI_MAX_DIMENSIONS 16384  // per side; 1 GiB of pixels: more means a broken header
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
 #pragma GCC diagnostic ignored "-Wold-style-cast"
@@ -37,15 +37,15 @@ constexpr std::size_t chunk_frame = 12;  // length, name and checksum
 bool is_jpeg(std::span<const std::uint8_t> bytes) { return bytes.size() >= 2 && bytes[0] == 0xff && bytes[1] == 0xd8; }
 bool fits_int(std::size_t bytes) { return bytes > 0 && bytes <= std::size_t{std::numeric_limits<int>::max()}; }
 
-// Of a PNG: where each chunk begins that lies within the bytes, up to the image's end, and its length and name. Returns
-// whether none claims more than there is; whatever is missing is told by the decoder.
+// Visits each chunk of a PNG that lies within the bytes, up to the image's end, with its start, length and name.
+// Returns false if a chunk claims more than there is. The decoder reports anything missing.
 template <class Tell>
 bool walk_chunks(std::span<const std::uint8_t> bytes, const Tell& tell) {
   const auto word = [&](std::size_t at) {
     return std::size_t{bytes[at]} << 24 | std::size_t{bytes[at + 1]} << 16 | std::size_t{bytes[at + 2]} << 8 |
            std::size_t{bytes[at + 3]};
   };
-  constexpr std::size_t signature = 8, end = 0x49454e44;  // "IEND": what follows is not looked at
+  constexpr std::size_t signature = 8, end = 0x49454e44;  // "IEND": anything after it is ignored
   for (std::size_t at = signature; at + chunk_frame <= bytes.size();) {
     const std::size_t length = word(at), name = word(at + 4);
     if (name == end) return true;
@@ -56,7 +56,7 @@ bool walk_chunks(std::span<const std::uint8_t> bytes, const Tell& tell) {
   return true;
 }
 
-// All but the chunks without data that begin at `empty`, in ascending order.
+// Copies all bytes except the empty chunks that begin at `empty`, in ascending order.
 std::vector<std::uint8_t> without_chunks(std::span<const std::uint8_t> bytes, std::span<const std::size_t> empty) {
   std::vector<std::uint8_t> rest;
   std::size_t from = 0;
@@ -81,7 +81,7 @@ ImageHeader read_image_header(std::span<const std::uint8_t> bytes) {
   const int size = static_cast<int>(bytes.size());
   int width = 0, height = 0, channels = 0;
   if (!stbi_info_from_memory(bytes.data(), size, &width, &height, &channels)) return {};
-  // Of interlaced ones three pictures at once: as filtered, of a pass, and whole.
+  // Interlaced images need three pictures at once: filtered, of a pass, and whole.
   const std::uint64_t pixel = stbi_is_16_bit_from_memory(bytes.data(), size) ? 3 * 8 : 3 * 4;
   const ImageHeader header{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), 0};
   return {header.width, header.height, pixel * header.width * header.height + 2 * bytes.size()};
@@ -93,8 +93,8 @@ Image decode_image(std::span<const std::uint8_t> bytes, std::string& problem) {
     return {};
   }
   if (is_jpeg(bytes)) return decode_jpeg(bytes, STBI_MAX_DIMENSIONS, problem);
-  // stb_image makes room for what a chunk claims before it looks for it; and it copies nothing to nowhere where the
-  // first of the image's data are none, as they may be.
+  // stb_image allocates what a chunk claims before looking for it. It also copies nothing to nowhere, which is
+  // undefined, if the image's first data chunk is empty, as the format allows.
   constexpr std::size_t data = 0x49444154;  // "IDAT"
   std::vector<std::size_t> empty;
   const bool fit = walk_chunks(bytes, [&](std::size_t at, std::size_t length, std::size_t name) {

@@ -21,7 +21,7 @@ ImageHeader read_jpeg_header(std::span<const std::uint8_t> bytes, std::uint32_t 
     return {};
   const ImageHeader header{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), 0};
   if (header.width > largest_side || header.height > largest_side) return {};
-  // Four bytes a pixel, and in a progressive one two bytes for each coefficient of up to four colours.
+  // Four bytes per pixel; in a progressive image, also two bytes for each coefficient of up to four colours.
   return {header.width, header.height, std::uint64_t{12} * header.width * header.height};
 }
 
@@ -33,7 +33,7 @@ Image decode_jpeg(std::span<const std::uint8_t> bytes, std::uint32_t largest_sid
   }
   const auto size = static_cast<unsigned long>(bytes.size());
   int width = 0, height = 0, subsampling = 0, colours = 0;
-  // Before there is a picture even a warning is damage.
+  // Before there is a picture, even a warning means damage.
   if (tjDecompressHeader3(decoder.get(), bytes.data(), size, &width, &height, &subsampling, &colours) != 0) {
     problem = tjGetErrorStr2(decoder.get());
     return {};
@@ -46,7 +46,7 @@ Image decode_jpeg(std::span<const std::uint8_t> bytes, std::uint32_t largest_sid
   }
   Image image{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), {}};
   image.rgba.resize(std::size_t{4} * image.width * image.height);
-  // Alpha is set to 255. Limits on scans: a small file of thousands of them would take minutes.
+  // Sets alpha to 255. Scans are limited, since a small file with thousands of them would take minutes.
   if (tjDecompress2(decoder.get(), bytes.data(), size, image.rgba.data(), width, 0, height, TJPF_RGBA,
                     TJFLAG_LIMITSCANS) != 0) {
     problem = tjGetErrorStr2(decoder.get());

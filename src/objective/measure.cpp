@@ -9,7 +9,7 @@ namespace vantage {
 double coverage(const NetworkCounts& counts, double goal_density) {
   if (counts.weight == 0) return 0;
   const double filled = static_cast<double>(counts.saturated) +
-                        static_cast<double>(counts.partial_points) / (goal_density * counts.point_worth);
+                        static_cast<double>(counts.partial_points) / (goal_density * counts.point_weight);
   return std::min(filled / static_cast<double>(counts.weight), 1.0);  // rounding may exceed 1 in the last place
 }
 

@@ -46,8 +46,8 @@ std::string_view trimmed(std::string_view text) {
 
 }  // namespace
 
-Needs needs_of(std::span<const Objective> objectives) {
-  Needs needs{.counts = false};
+RequiredInputs required_inputs_of(std::span<const Objective> objectives) {
+  RequiredInputs needs{.counts = false};
   for (const Objective& objective : objectives) needs = needs | objective.needs;
   return needs;
 }

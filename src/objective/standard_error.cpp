@@ -25,7 +25,7 @@ NetworkCounts without_groups(const NetworkCounts& all) {
   NetworkCounts rest;
   rest.stations = all.stations;
   rest.voxels = all.voxels, rest.weight = all.weight;
-  rest.saturated = all.saturated, rest.partial_points = all.partial_points, rest.point_worth = all.point_worth;
+  rest.saturated = all.saturated, rest.partial_points = all.partial_points, rest.point_weight = all.point_weight;
   rest.seen = all.seen, rest.shared = all.shared;
   rest.registration = all.registration;
   return rest;

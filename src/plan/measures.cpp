@@ -29,8 +29,8 @@ std::size_t place_of(std::vector<Objective>& all, const Objective& objective) {
 
 }  // namespace
 
-Needs Measures::searched_needs() const { return needs_of(std::span(all).first(searched)); }
-Needs Measures::all_needs() const { return needs_of(all); }
+RequiredInputs Measures::searched_needs() const { return required_inputs_of(std::span(all).first(searched)); }
+RequiredInputs Measures::all_needs() const { return required_inputs_of(all); }
 
 Measures measures_of(const SurveyProblem& problem) {
   if (problem.objectives.empty()) refuse("at least one objective is needed");

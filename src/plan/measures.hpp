@@ -16,8 +16,8 @@ struct Measures {
   std::size_t searched = 0;
   std::vector<std::size_t> required;  // where each requirement's objective stands in `all`
 
-  Needs searched_needs() const;
-  Needs all_needs() const;
+  RequiredInputs searched_needs() const;
+  RequiredInputs all_needs() const;
 };
 
 // Throws Error invalid_argument: no objective, one without name or value, two different ones of one name.

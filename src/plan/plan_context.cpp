@@ -35,7 +35,7 @@ PlanContext::PlanContext(Simulator& simulator, const SearchArea& area, const Cla
 void PlanContext::ask(const SurveyProblem& problem) {
   problem_ = problem;
   measures_ = measures_of(problem);
-  const Needs needs = measures_.all_needs();
+  const RequiredInputs needs = measures_.all_needs();
   evaluator_.emplace(
       simulator_, measures_,
       SimulatorEvaluator::Options{

@@ -25,11 +25,12 @@ SampledCoverage::SampledCoverage(const Simulator& simulator, std::uint64_t sampl
   std::vector<std::uint32_t> weights;
   for (const std::uint32_t voxel : voxels_) {
     weights.push_back(simulator.voxel_weight(voxel));
-    point_weights_.push_back(simulator.point_worth(voxel));
+    point_weights_.push_back(simulator.point_weight(voxel));
   }
   // All are 1, or none is.
   if (!point_weights_.empty() && point_weights_.front() == 1) point_weights_.clear();
-  matrix_ = CoverageMatrix(std::move(weights), simulator.goal_density() * (point_weights_.empty() ? 1 : densest_worth));
+  matrix_ = CoverageMatrix(std::move(weights),
+                           simulator.goal_density() * (point_weights_.empty() ? 1 : densest_point_weight));
 }
 
 std::uint32_t SampledCoverage::amount(std::uint32_t element, std::uint32_t points) const {

@@ -19,7 +19,7 @@ std::vector<Network> to_networks(std::span<const PlacedNetwork> placed) {
 }
 
 // The model by which scans are held together by all surfaces, where they are.
-std::optional<RegistrationModel> registered_around(const Needs& needs) {
+std::optional<RegistrationModel> registered_around(const RequiredInputs& needs) {
   return needs.surroundings_registration ? needs.registration : std::nullopt;
 }
 
@@ -34,8 +34,9 @@ std::size_t SimulatorEvaluator::chunk() const {
 }
 
 std::optional<SimulatorEvaluator::Counted> SimulatorEvaluator::count(std::span<const Network> networks,
-                                                                     const VoxelWindow& sample, const Needs& needs,
-                                                                     bool errors, const Progress& progress) {
+                                                                     const VoxelWindow& sample,
+                                                                     const RequiredInputs& needs, bool errors,
+                                                                     const Progress& progress) {
   Counted counted;
   counted.surveyed.resize(networks.size());
   if (needs.counts) {
@@ -79,7 +80,7 @@ std::optional<std::vector<NetworkCounts>> SimulatorEvaluator::count_with(Simulat
 
 MeasuredNetwork SimulatorEvaluator::measured(const NetworkCounts& counts, const NetworkCounts* surroundings,
                                              const PlacedNetwork& stations, const Network& network,
-                                             const Needs& needs) const {
+                                             const RequiredInputs& needs) const {
   return {.counts = counts,
           .stations = stations,
           .kept = options_.kept,
@@ -95,7 +96,7 @@ MeasuredNetwork SimulatorEvaluator::measured(const NetworkCounts& counts, const 
 std::optional<std::vector<std::vector<double>>> SimulatorEvaluator::evaluate(std::span<const PlacedNetwork> placed,
                                                                              const VoxelWindow& sample,
                                                                              const Progress& progress) {
-  const Needs needs = measures_.searched_needs();
+  const RequiredInputs needs = measures_.searched_needs();
   const std::vector<Network> networks = to_networks(placed);
   const auto counts = count(networks, sample, needs, false, progress);
   if (!counts) return std::nullopt;
@@ -115,7 +116,7 @@ std::optional<std::vector<std::vector<Estimate>>> SimulatorEvaluator::estimate(s
                                                                                const VoxelWindow& sample, Which which,
                                                                                const Progress& progress) {
   const bool all = which == Which::all;
-  const Needs needs = all ? measures_.all_needs() : measures_.searched_needs();
+  const RequiredInputs needs = all ? measures_.all_needs() : measures_.searched_needs();
   const auto estimated = std::span(measures_.all).first(all ? measures_.all.size() : measures_.searched);
   const std::vector<Network> networks = to_networks(placed);
   const auto counts = count(networks, sample, needs, true, progress);
@@ -134,7 +135,7 @@ std::optional<std::vector<std::vector<Estimate>>> SimulatorEvaluator::estimate(s
 
 std::vector<std::optional<Evaluation>> SimulatorEvaluator::confirm(std::span<const PlacedNetwork> placed,
                                                                    const Progress& progress) {
-  const Needs needs = measures_.all_needs();
+  const RequiredInputs needs = measures_.all_needs();
   const std::vector<Network> networks = to_networks(placed);
   const auto count = [&](Simulator& simulator, const EvaluateOptions& options, const Progress& own) {
     std::vector<NetworkCounts> counts = simulator.evaluate_each(networks, options, own);

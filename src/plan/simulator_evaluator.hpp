@@ -43,13 +43,13 @@ class SimulatorEvaluator final : public NetworkEvaluator {
     std::vector<NetworkCounts> surveyed, surroundings;  // the latter empty where nothing needs them
   };
   // `errors`: whether standard errors are wanted of them.
-  std::optional<Counted> count(std::span<const Network> networks, const VoxelWindow& sample, const Needs& needs,
-                               bool errors, const Progress& progress);
+  std::optional<Counted> count(std::span<const Network> networks, const VoxelWindow& sample,
+                               const RequiredInputs& needs, bool errors, const Progress& progress);
   // Of no voxels: with every ray.
   std::optional<std::vector<NetworkCounts>> count_with(Simulator& simulator, std::span<const Network> networks,
                                                        const SampleOptions& sample, const Progress& progress);
   MeasuredNetwork measured(const NetworkCounts& counts, const NetworkCounts* surroundings,
-                           const PlacedNetwork& stations, const Network& network, const Needs& needs) const;
+                           const PlacedNetwork& stations, const Network& network, const RequiredInputs& needs) const;
 
   Simulator& simulator_;
   Measures measures_;

@@ -30,7 +30,7 @@ void pass_opened(Archive& archive, T& opened) {
 template <class Archive, class T>
 void pass_counts(Archive& archive, T& counts) {
   archive.whole(counts.voxels), archive.whole(counts.weight), archive.whole(counts.saturated);
-  archive.whole(counts.partial_points), archive.whole(counts.point_worth), archive.whole(counts.rays),
+  archive.whole(counts.partial_points), archive.whole(counts.point_weight), archive.whole(counts.rays),
       archive.whole(counts.stations);
   archive.wholes(counts.points), archive.wholes(counts.points_on_surveyed);
   archive.array(counts.dropped);
@@ -119,7 +119,7 @@ Identity identity_of(const TraceScene& scene, std::uint64_t fingerprint) {
   voxels.add(grid.size()), voxels.add(grid.voxel_size());
   for (const float coordinate : grid.min()) voxels.add(coordinate);
   for (std::uint64_t rank = 0; rank < grid.size(); ++rank) voxels.add(grid.key(rank));
-  voxels.add_all(grid.demands().weights), voxels.add_all(grid.demands().worths);
+  voxels.add_all(grid.demands().weights), voxels.add_all(grid.demands().point_weights);
   for (const TraceScanner& scanner : scene.scanners) add(scanners, scanner);
   return {version(), fingerprint, voxels.value(), scanners.value()};
 }

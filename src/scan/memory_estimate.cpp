@@ -12,7 +12,7 @@
 #include "core/glm.hpp"
 #include "core/text.hpp"
 #include "trace/tracer.hpp"
-#include "trace/vulkan/memory_plan.hpp"
+#include "trace/vulkan/device_memory.hpp"
 #include "vantage/error.hpp"
 #include "voxel/voxel_bricks.hpp"
 

@@ -13,7 +13,7 @@
 #include <thread>
 #include <utility>
 
-#include "core/recent.hpp"
+#include "core/lru_cache.hpp"
 #include "core/seconds_since.hpp"
 #include "scan/limit_model.hpp"
 #include "scan/memory_estimate.hpp"
@@ -78,19 +78,19 @@ std::shared_ptr<const VoxelGrid> build_grid(const SceneData& scene, const Simula
   auto grid = VoxelGrid::build(scene, too_small ? finest : config.user_size_m, progress);
   if (!grid) return nullptr;
   if (too_small || grid->voxel_size() < finest) refuse_goal_density(*grid, config, finest);
-  auto worths = point_worths(scene, *grid, spacings_m, {.report = {}, .stop = progress.stop});
-  if (!worths) return nullptr;
-  grid->set_worths(std::move(*worths));
+  auto weights_of_points = point_weights(scene, *grid, spacings_m, {.report = {}, .stop = progress.stop});
+  if (!weights_of_points) return nullptr;
+  grid->set_point_weights(std::move(*weights_of_points));
   return std::make_shared<VoxelGrid>(std::move(*grid));
 }
 
 // Result for a network without active stations: the voxels, and zeros.
-NetworkCounts nothing_seen(std::uint64_t voxels, std::uint64_t weight, std::uint32_t point_worth, std::size_t stations,
+NetworkCounts nothing_seen(std::uint64_t voxels, std::uint64_t weight, std::uint32_t point_weight, std::size_t stations,
                            bool overlap, bool registration) {
   NetworkCounts counts;
   counts.voxels = voxels;
   counts.weight = weight;
-  counts.point_worth = point_worth;
+  counts.point_weight = point_weight;
   counts.stations = static_cast<std::uint32_t>(stations);
   if (overlap) {
     counts.seen.assign(stations, 0);
@@ -202,9 +202,9 @@ struct Simulator::Impl {
   }
 
   // Weight of every `step`-th voxel of a sample.
-  std::uint64_t weight_of(std::span<const std::uint32_t> ranks, std::size_t first, std::size_t step) const {
+  std::uint64_t weight_of(std::span<const std::uint32_t> voxel_indices, std::size_t first, std::size_t step) const {
     std::uint64_t sum = 0;
-    for (std::size_t i = first; i < ranks.size(); i += step) sum += grid->demands().weight(ranks[i]);
+    for (std::size_t i = first; i < voxel_indices.size(); i += step) sum += grid->demands().weight(voxel_indices[i]);
     return sum;
   }
 
@@ -215,7 +215,7 @@ struct Simulator::Impl {
 
   struct Sample {
     std::uint64_t size, from;
-    std::vector<std::uint32_t> ranks;
+    std::vector<std::uint32_t> voxel_indices;
   };
   // A search requests few of them, repeatedly.
   const Sample& sample_of(std::uint64_t size, std::uint64_t from) {
@@ -228,7 +228,7 @@ struct Simulator::Impl {
 
   // Planes of a sample, or of all voxels, which is the one from 0. Uses the scanner's range noise, whether it is
   // simulated or not.
-  RegistrationJob registration_of(std::span<const std::uint32_t> ranks, std::uint64_t from,
+  RegistrationJob registration_of(std::span<const std::uint32_t> voxel_indices, std::uint64_t from,
                                   const RegistrationModel& model, bool groups) {
     if (!(model.rho_m > 0 && std::isfinite(model.rho_m) && model.patch_m > 0 && std::isfinite(model.patch_m))) {
       std::ostringstream what;
@@ -238,11 +238,11 @@ struct Simulator::Impl {
     }
     const SamplePatches& own = patches.get(
         [&](const SamplePatches& one) {
-          return one.from == from && one.patches->patches.size() == ranks.size() && one.patches->model == model;
+          return one.from == from && one.patches->patches.size() == voxel_indices.size() && one.patches->model == model;
         },
         [&] {
-          return SamplePatches{from, std::make_shared<Patches>(
-                                         make_patches(data(), *grid, ranks, make_pattern(registered.front()), model))};
+          return SamplePatches{from, std::make_shared<Patches>(make_patches(data(), *grid, voxel_indices,
+                                                                            make_pattern(registered.front()), model))};
         });
     if (patch_scanners.empty()) {
       const auto solid_angle = [](const Scanner& scanner) {
@@ -291,8 +291,8 @@ struct Simulator::Impl {
   double goal = 0;
   std::vector<TraceScanner> traced;  // of the scanners
   std::vector<Scanner> registered;   // scanners of the registered scans
-  Recent<Sample> samples;
-  Recent<SamplePatches> patches;
+  LruCache<Sample> samples;
+  LruCache<SamplePatches> patches;
   std::vector<PatchScanner> patch_scanners;
   std::unique_ptr<Tracer> tracer;
   std::mutex running;
@@ -323,27 +323,31 @@ Vec3 Simulator::origin() const noexcept { return impl_->data().origin; }
 std::uint64_t Simulator::voxel_count() const noexcept { return impl_->grid->size(); }
 double Simulator::voxel_size_m() const noexcept { return impl_->grid->voxel_size(); }
 double Simulator::goal_density() const noexcept { return impl_->goal; }
-double Simulator::goal_density(std::uint64_t rank) const {
+double Simulator::goal_density(std::uint64_t voxel_index) const {
   const VoxelDemands& demands = impl_->grid->demands();
-  return impl_->goal * demands.least_worth() / demands.worth(rank);
+  return impl_->goal * demands.least_point_weight() / demands.point_weight(voxel_index);
 }
 std::optional<Angle> Simulator::max_incidence() const noexcept { return incidence_limit(impl_->data(), impl_->config); }
 
-Vec3 Simulator::voxel_centre(std::uint64_t rank) const {
-  const auto [x, y, z] = morton_decode(impl_->grid->key(rank));
+Vec3 Simulator::voxel_centre(std::uint64_t voxel_index) const {
+  const auto [x, y, z] = morton_decode(impl_->grid->key(voxel_index));
   const auto& min = impl_->grid->min();
   const double size = impl_->grid->voxel_size();
   return origin() + Vec3{static_cast<double>(min[0]) + (x + 0.5) * size, static_cast<double>(min[1]) + (y + 0.5) * size,
                          static_cast<double>(min[2]) + (z + 0.5) * size};
 }
 
-std::uint32_t Simulator::point_worth(std::uint64_t rank) const { return impl_->grid->demands().worth(rank); }
-std::uint32_t Simulator::voxel_weight(std::uint64_t rank) const { return impl_->grid->demands().weight(rank); }
+std::uint32_t Simulator::point_weight(std::uint64_t voxel_index) const {
+  return impl_->grid->demands().point_weight(voxel_index);
+}
+std::uint32_t Simulator::voxel_weight(std::uint64_t voxel_index) const {
+  return impl_->grid->demands().weight(voxel_index);
+}
 
-std::vector<VoxelPatch> Simulator::voxel_patches(std::span<const std::uint32_t> ranks) const {
+std::vector<VoxelPatch> Simulator::voxel_patches(std::span<const std::uint32_t> voxel_indices) const {
   std::vector<VoxelPatch> patches;
-  patches.reserve(ranks.size());
-  for (const VoxelSurface& surface : voxel_surfaces(impl_->data(), *impl_->grid, ranks)) {
+  patches.reserve(voxel_indices.size());
+  for (const VoxelSurface& surface : voxel_surfaces(impl_->data(), *impl_->grid, voxel_indices)) {
     const auto [x, y, z] = surface.point;
     patches.push_back({.point = origin() + Vec3{x, y, z},
                        .normal = {surface.normal.x, surface.normal.y, surface.normal.z},
@@ -412,12 +416,12 @@ NetworkCounts Simulator::Impl::evaluate(const Network& network, const EvaluateOp
   check_registration(options.registration, options.overlap);
   const std::vector<TraceStation> active = active_stations(network);
   if (active.empty()) {
-    const std::uint32_t point_worth = grid->demands().least_worth();
+    const std::uint32_t point_weight = grid->demands().least_point_weight();
     if (options.field) {
       options.field->count.assign(grid->size(), 0);
       options.field->stations.assign(grid->size() * mask_words(network.size()), 0);
     }
-    NetworkCounts counts = nothing_seen(grid->size(), grid->total_weight(), point_worth, network.size(),
+    NetworkCounts counts = nothing_seen(grid->size(), grid->total_weight(), point_weight, network.size(),
                                         options.overlap, options.registration.has_value());
     counts.points_on_surveyed.assign(network.size(), 0);
     if (limited()) counts.dropped.assign(network.size(), {});
@@ -430,9 +434,9 @@ NetworkCounts Simulator::Impl::evaluate(const Network& network, const EvaluateOp
   NetworkCounts counts = count_in_passes(
       *tracer, active, size, {.masks = options.overlap, .skip = options.skip, .field = field}, *grid, goal, progress);
   if (options.registration && !counts.cancelled) {
-    std::vector<std::uint32_t> ranks(grid->size());
-    std::iota(ranks.begin(), ranks.end(), 0u);
-    const RegistrationJob job = registration_of(ranks, 0, *options.registration, false);
+    std::vector<std::uint32_t> voxel_indices(grid->size());
+    std::iota(voxel_indices.begin(), voxel_indices.end(), 0u);
+    const RegistrationJob job = registration_of(voxel_indices, 0, *options.registration, false);
     take_registration(counts, sum_patches(job, active, size, field->stations, 0));
   }
   return counts;
@@ -491,7 +495,7 @@ std::vector<NetworkCounts> Simulator::Impl::evaluate_sampled(std::span<const Net
   const bool large = std::ranges::any_of(networks, [](const Network& n) { return n.size() > mask_bits; });
   if (large && networks.size() > 1) return evaluate_one_by_one(networks, options, progress);
   const Sample& taken = sample_of(options.voxels, options.from);
-  const std::vector<std::uint32_t>& sample = taken.ranks;
+  const std::vector<std::uint32_t>& sample = taken.voxel_indices;
   std::vector<NetworkCounts> all(networks.size());
   // Networks without active stations skip the engine.
   std::vector<std::vector<TraceStation>> tracing;
@@ -500,12 +504,12 @@ std::vector<NetworkCounts> Simulator::Impl::evaluate_sampled(std::span<const Net
   for (std::size_t k = 0; k < networks.size(); ++k) {
     std::vector<TraceStation> active = active_stations(networks[k]);
     if (active.empty() || sample.empty()) {
-      const std::uint32_t point_worth = grid->demands().least_worth();
-      all[k] = nothing_seen(sample.size(), weight_of(sample, 0, 1), point_worth, networks[k].size(), options.overlap,
+      const std::uint32_t point_weight = grid->demands().least_point_weight();
+      all[k] = nothing_seen(sample.size(), weight_of(sample, 0, 1), point_weight, networks[k].size(), options.overlap,
                             options.registration.has_value());
       for (std::uint32_t g = 0; options.groups && g < sample_groups; ++g)
         all[k].groups.push_back(nothing_seen((sample.size() + sample_groups - 1 - g) / sample_groups,
-                                             weight_of(sample, g, sample_groups), point_worth, networks[k].size(),
+                                             weight_of(sample, g, sample_groups), point_weight, networks[k].size(),
                                              options.overlap, options.registration.has_value()));
       if (options.points) options.points(k, std::vector<std::uint32_t>(sample.size()));
       continue;

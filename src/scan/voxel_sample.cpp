@@ -18,20 +18,21 @@ constexpr std::uint64_t sample_stream = 0x766f78656cull;
 std::vector<std::uint32_t> voxel_sample(std::uint64_t population, std::uint64_t size, std::uint64_t seed,
                                         std::uint64_t from) {
   assert(population < (std::uint64_t{1} << 32));
-  std::vector<std::uint32_t> ranks(std::min(size, population));
+  std::vector<std::uint32_t> voxel_indices(std::min(size, population));
   if (size >= population) {
-    std::iota(ranks.begin(), ranks.end(), std::uint32_t{0});
-    return ranks;
+    std::iota(voxel_indices.begin(), voxel_indices.end(), std::uint32_t{0});
+    return voxel_indices;
   }
   const std::uint64_t step = golden_step(population);
-  auto rank = static_cast<std::uint64_t>(RandomStream(seed, sample_stream).uniform() * static_cast<double>(population));
-  rank = (rank + from % population * step) % population;
-  for (std::uint32_t& r : ranks) {
-    r = static_cast<std::uint32_t>(rank);
-    rank = (rank + step) % population;
+  auto voxel_index =
+      static_cast<std::uint64_t>(RandomStream(seed, sample_stream).uniform() * static_cast<double>(population));
+  voxel_index = (voxel_index + from % population * step) % population;
+  for (std::uint32_t& r : voxel_indices) {
+    r = static_cast<std::uint32_t>(voxel_index);
+    voxel_index = (voxel_index + step) % population;
   }
-  std::sort(ranks.begin(), ranks.end());
-  return ranks;
+  std::sort(voxel_indices.begin(), voxel_indices.end());
+  return voxel_indices;
 }
 
 }  // namespace vantage

@@ -22,8 +22,8 @@ struct Coplanar {
   std::vector<CoplanarPair> pairs;  // ascending
 };
 
-// Triangles of surveyed meshes that lie in the plane of a blocking one and overlap it.
-// Throws Error: out_of_memory, also where there are more than `most_pairs`; device_failure.
+// Finds triangles of surveyed meshes that lie in the plane of a blocking one and overlap it. Throws Error:
+// out_of_memory, also for more than `most_pairs` pairs; device_failure.
 Coplanar find_coplanar(std::span<const Float3> positions, std::span<const Triangle> triangles,
                        std::span<const MeshRange> ranges, std::span<const MeshInfo> meshes,
                        std::uint64_t most_pairs = std::uint64_t{1} << 25);

@@ -13,8 +13,8 @@
 namespace vantage {
 namespace {
 
-constexpr std::uint32_t kMostWeight = 255;  // a byte a voxel
-constexpr std::size_t kMostSpliced = 8;     // more changed meshes than these, and everything is built
+constexpr std::uint32_t kMostWeight = 255;  // a byte per voxel
+constexpr std::size_t kMostSpliced = 8;     // with more changed meshes, everything is built
 
 Error refused(const std::string& what) { return Error(Errc::invalid_argument, what); }
 
@@ -48,7 +48,7 @@ void check(const SceneMesh& mesh, std::size_t number) {
   check(mesh.pose, who);
 }
 
-// Positions that no triangle uses go, and the others keep their order.
+// Removes positions that no triangle uses; the others keep their order.
 void compact(SceneMesh& mesh) {
   std::vector<std::uint32_t> place(mesh.positions.size(), 0);
   for (const auto& t : mesh.triangles)
@@ -82,7 +82,7 @@ Box bounds_of(const std::vector<glm::dvec3>& points) {
 
 struct SceneBuilder::Impl {
   std::vector<SceneMesh> meshes;
-  std::vector<Box> boxes;            // of the meshes as placed
+  std::vector<Box> boxes;            // of the placed meshes
   std::vector<std::size_t> changed;  // since the last build
   std::shared_ptr<const SceneData> last;
   std::vector<Role> last_roles;
@@ -125,7 +125,7 @@ struct SceneBuilder::Impl {
   std::shared_ptr<const SceneData> from_everything(const std::vector<Role>& roles) {
     RawScene raw;
     for (std::size_t m = 0; m < meshes.size(); ++m) {
-      raw.materials.push_back(material(meshes[m]));  // as a file has them, used or not
+      raw.materials.push_back(material(meshes[m]));  // as in a file, used or not
       if (roles[m] == Role::ignore) continue;
       const bool search = roles[m] == Role::search;
       auto& positions = search ? raw.search_positions : raw.positions;
@@ -149,7 +149,7 @@ struct SceneBuilder::Impl {
     return data;
   }
 
-  // Null where everything has to be built.
+  // Null if everything must be built.
   std::shared_ptr<const SceneData> from_changes(const std::vector<Role>& roles) const {
     if (!last || !whole || roles != last_roles || changed.size() > kMostSpliced) return nullptr;
     Box bounds;

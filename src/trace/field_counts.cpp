@@ -108,7 +108,7 @@ NetworkCounts reduce_field(std::span<const std::uint32_t> counts, std::span<cons
   Sums zero;
   zero.seen.resize(masks.empty() ? 0 : stations);
   zero.shared.resize(pairs);
-  const double goal = std::ceil(goal_density * demands.least_worth());
+  const double goal = std::ceil(goal_density * demands.least_point_weight());
 
   constexpr std::size_t grain = 1024;  // blocks
   const std::size_t blocks = (counts.size() + block - 1) / block;
@@ -117,12 +117,13 @@ NetworkCounts reduce_field(std::span<const std::uint32_t> counts, std::span<cons
       [&](const tbb::blocked_range<std::size_t>& range, Sums part) {
         const std::size_t first = range.begin() * block, end = std::min(counts.size(), range.end() * block);
         for (std::size_t k = first; k < end; ++k) {
-          const std::uint64_t weight = demands.weight(k), worth = std::uint64_t{counts[k]} * demands.worth(k);
+          const std::uint64_t weight = demands.weight(k),
+                              weighted_points = std::uint64_t{counts[k]} * demands.point_weight(k);
           part.weight += weight;
-          if (static_cast<double>(worth) >= goal) {
+          if (static_cast<double>(weighted_points) >= goal) {
             part.saturated += weight;
           } else {
-            part.partial_points += weight * worth;
+            part.partial_points += weight * weighted_points;
           }
         }
         if (!masks.empty() && stations > mask_bits)
@@ -141,7 +142,7 @@ NetworkCounts reduce_field(std::span<const std::uint32_t> counts, std::span<cons
   result.voxels = counts.size();
   result.stations = stations;
   result.weight = sums.weight;
-  result.point_worth = demands.least_worth();
+  result.point_weight = demands.least_point_weight();
   result.saturated = sums.saturated;
   result.partial_points = sums.partial_points;
   result.seen = sums.seen;

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "trace/told_once.hpp"
+#include "trace/deliver_once.hpp"
 
 namespace vantage {
 
@@ -61,8 +61,8 @@ NetworkCounts RebuildingTracer::count(std::span<const TraceStation> stations, st
 std::vector<NetworkCounts> RebuildingTracer::count_sampled(std::span<const std::vector<TraceStation>> networks,
                                                            std::span<const std::uint32_t> station_counts,
                                                            const SampleJob& job, const Progress& progress) {
-  ToldOnce told(job, networks.size());
-  const ToldOnce::OnCaller here = [](const std::function<void()>& what) { what(); };
+  DeliverOnce deliver(job, networks.size());
+  const DeliverOnce::OnCaller here = [](const std::function<void()>& what) { what(); };
   const auto all = static_cast<double>(networks.size());
   std::vector<NetworkCounts> counts;
   for (bool again = false; counts.size() < networks.size();) {
@@ -71,10 +71,10 @@ std::vector<NetworkCounts> RebuildingTracer::count_sampled(std::span<const std::
       progress((static_cast<double>(first) + static_cast<double>(size) * done) / all);
     };
     try {
-      std::vector<NetworkCounts> piece =
+      std::vector<NetworkCounts> chunk =
           ready().count_sampled(networks.subspan(first, size), station_counts.subspan(first, size),
-                                told.piece(first, here), {.report = share, .stop = progress.stop});
-      std::ranges::move(piece, std::back_inserter(counts));
+                                deliver.chunk(first, here), {.report = share, .stop = progress.stop});
+      std::ranges::move(chunk, std::back_inserter(counts));
       again = false;
     } catch (const DeviceFault& fault) {
       if (fault.code() == Errc::out_of_memory && size > 1) {

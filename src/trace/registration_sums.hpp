@@ -40,7 +40,7 @@ struct PatchFrame {
 Patches make_patches(std::span<const VoxelSurface> surfaces, const PatchFrame& frame, const RayPattern& pattern,
                      const RegistrationModel& model);
 // For voxels of a grid; indices as for `voxel_surfaces`.
-Patches make_patches(const SceneData& scene, const VoxelGrid& grid, std::span<const std::uint32_t> ranks,
+Patches make_patches(const SceneData& scene, const VoxelGrid& grid, std::span<const std::uint32_t> voxel_indices,
                      const RayPattern& pattern, const RegistrationModel& model);
 
 // Scanner properties that the sums need.

@@ -23,7 +23,7 @@ NetworkCounts reduce_sample(std::span<const std::uint32_t> counts, std::span<con
     for (std::size_t i = g; i < counts.size(); i += groups) {
       group_counts.push_back(counts[i]);
       if (!demands.weights.empty()) group_demands.weights.push_back(demands.weights[i]);
-      if (!demands.worths.empty()) group_demands.worths.push_back(demands.worths[i]);
+      if (!demands.point_weights.empty()) group_demands.point_weights.push_back(demands.point_weights[i]);
     }
     for (std::size_t w = 0; w * counts.size() < masks.size(); ++w)
       for (std::size_t i = g; i < counts.size(); i += groups) group_masks.push_back(masks[w * counts.size() + i]);
@@ -38,8 +38,8 @@ NetworkCounts reduce_sample(std::span<const std::uint32_t> counts, std::span<con
     all.successive_difference_sum = std::numeric_limits<double>::infinity();
     return all;
   }
-  const auto filled = [&, goal = goal_density * demands.least_worth()](std::size_t i) {
-    return std::min(static_cast<double>(std::uint64_t{counts[i]} * demands.worth(i)) / goal, 1.0);
+  const auto filled = [&, goal = goal_density * demands.least_point_weight()](std::size_t i) {
+    return std::min(static_cast<double>(std::uint64_t{counts[i]} * demands.point_weight(i)) / goal, 1.0);
   };
   for (std::size_t i = 1; i < counts.size(); ++i) {
     const double step = filled(i) - filled(i - 1);

@@ -81,13 +81,13 @@ Cells cells_of(const VoxelGrid& grid, double wanted_m) {
 
 // Voxel indices in the same cell; these are consecutive in Morton order.
 struct Runs {
-  Runs(const VoxelGrid& grid, std::span<const std::uint32_t> ranks, int shift) {
-    for (std::size_t i = 0; i < ranks.size(); ++i)
-      if (const std::uint64_t cell = grid.key(ranks[i]) >> 3 * shift; cells.empty() || cell != cells.back()) {
+  Runs(const VoxelGrid& grid, std::span<const std::uint32_t> voxel_indices, int shift) {
+    for (std::size_t i = 0; i < voxel_indices.size(); ++i)
+      if (const std::uint64_t cell = grid.key(voxel_indices[i]) >> 3 * shift; cells.empty() || cell != cells.back()) {
         cells.push_back(cell);
         first.push_back(static_cast<std::uint32_t>(i));
       }
-    first.push_back(static_cast<std::uint32_t>(ranks.size()));
+    first.push_back(static_cast<std::uint32_t>(voxel_indices.size()));
   }
 
   // Calls visit(number of the cell) for each cell, in parallel.
@@ -100,7 +100,7 @@ struct Runs {
   }
 
   std::vector<std::uint64_t> cells;  // Morton keys
-  std::vector<std::uint32_t> first;  // cell number c has ranks[first[c]] … ranks[first[c + 1] − 1]
+  std::vector<std::uint32_t> first;  // cell number c has voxel_indices[first[c]] … voxel_indices[first[c + 1] − 1]
 };
 
 using Numbers = std::unordered_map<std::uint64_t, std::uint32_t>;
@@ -171,11 +171,11 @@ class LargeFinder {
 };
 
 void add_large(std::span<Window> windows, const SceneData& scene, const VoxelGrid& grid,
-               std::span<const std::uint32_t> ranks, double window_m) {
+               std::span<const std::uint32_t> voxel_indices, double window_m) {
   // Narrower cells would repeat almost the same lists; wider ones would list many triangles that none of their windows
   // holds.
   const Cells cells = cells_of(grid, 0.7 * window_m);
-  const Runs runs(grid, ranks, cells.shift);
+  const Runs runs(grid, voxel_indices, cells.shift);
   const VoxelTriangles lists = triangle_lists(LargeFinder(scene, cells, runs, window_m / 2), runs.cells.size());
   runs.for_each([&](std::size_t c) {
     std::vector<Large> larges;
@@ -220,9 +220,9 @@ class SmallFinder {
 };
 
 void add_small(std::span<Window> windows, const SceneData& scene, const VoxelGrid& grid,
-               std::span<const std::uint32_t> ranks, double window_m) {
+               std::span<const std::uint32_t> voxel_indices, double window_m) {
   const Cells cells = cells_of(grid, window_m / 4);
-  const Runs runs(grid, ranks, cells.shift);
+  const Runs runs(grid, voxel_indices, cells.shift);
   // Neighbours that a window from within a cell reaches, by their position in a cube of cells.
   const auto reach = static_cast<std::int64_t>(std::ceil(window_m / 2 * cells.transform.inverse_size));
   const auto neighbours = [&](std::size_t run, const auto& visit) {
@@ -287,14 +287,15 @@ void add_small(std::span<Window> windows, const SceneData& scene, const VoxelGri
 
 }  // namespace
 
-std::vector<float> flat_shares(const SceneData& scene, const VoxelGrid& grid, std::span<const std::uint32_t> ranks,
-                               std::span<const VoxelSurface> surfaces, double window_m) {
+std::vector<float> flat_shares(const SceneData& scene, const VoxelGrid& grid,
+                               std::span<const std::uint32_t> voxel_indices, std::span<const VoxelSurface> surfaces,
+                               double window_m) {
   std::vector<float> shares;
-  shares.reserve(ranks.size());
+  shares.reserve(voxel_indices.size());
   std::vector<Window> windows;
-  for (std::size_t first = 0; first < ranks.size(); first += windows_at_once) {
-    const std::size_t some = std::min(windows_at_once, ranks.size() - first);
-    const std::span<const std::uint32_t> here = ranks.subspan(first, some);
+  for (std::size_t first = 0; first < voxel_indices.size(); first += windows_at_once) {
+    const std::size_t some = std::min(windows_at_once, voxel_indices.size() - first);
+    const std::span<const std::uint32_t> here = voxel_indices.subspan(first, some);
     windows.clear();
     for (const VoxelSurface& surface : surfaces.subspan(first, some))
       windows.push_back({point_of(surface.point), point_of(surface.normal), window_m / 2});

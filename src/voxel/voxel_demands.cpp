@@ -38,10 +38,10 @@ std::optional<std::vector<T>> foremost(const SceneData& scene, const VoxelGrid& 
   const bool whole = TriangleWalk(scene.positions, triangles, transform)
                          .for_each(transform, std::int64_t{1} << grid.depth(), progress, [&](std::size_t mesh) {
                            return [&, asked = own[mesh]](const TriangleCells::Cell& c) {
-                             const std::uint32_t rank = grid.find(morton_encode(static_cast<std::uint32_t>(c[0]),
-                                                                                static_cast<std::uint32_t>(c[1]),
-                                                                                static_cast<std::uint32_t>(c[2])));
-                             if (rank != no_voxel) bring_forward(found[rank], asked);
+                             const std::uint32_t voxel_index = grid.find(
+                                 morton_encode(static_cast<std::uint32_t>(c[0]), static_cast<std::uint32_t>(c[1]),
+                                               static_cast<std::uint32_t>(c[2])));
+                             if (voxel_index != no_voxel) bring_forward(found[voxel_index], asked);
                            };
                          });
   if (!whole) return std::nullopt;
@@ -59,14 +59,14 @@ T last_of(const SceneData& scene, std::span<const T> of_mesh, Before before) {
 
 }  // namespace
 
-std::uint32_t VoxelDemands::least_worth() const { return worths.empty() ? 1 : densest_worth; }
+std::uint32_t VoxelDemands::least_point_weight() const { return point_weights.empty() ? 1 : densest_point_weight; }
 
-VoxelDemands VoxelDemands::of(std::span<const std::uint32_t> ranks) const {
+VoxelDemands VoxelDemands::of(std::span<const std::uint32_t> voxel_indices) const {
   VoxelDemands some;
   if (!weights.empty())
-    for (const std::uint32_t rank : ranks) some.weights.push_back(weights[rank]);
-  if (!worths.empty())
-    for (const std::uint32_t rank : ranks) some.worths.push_back(worths[rank]);
+    for (const std::uint32_t voxel_index : voxel_indices) some.weights.push_back(weights[voxel_index]);
+  if (!point_weights.empty())
+    for (const std::uint32_t voxel_index : voxel_indices) some.point_weights.push_back(point_weights[voxel_index]);
   return some;
 }
 
@@ -85,13 +85,14 @@ double finest_spacing(const SceneData& scene, std::span<const double> spacings_m
   return finest;
 }
 
-std::optional<std::vector<std::uint32_t>> point_worths(const SceneData& scene, const VoxelGrid& grid,
-                                                       std::span<const double> spacings_m, const Progress& progress) {
+std::optional<std::vector<std::uint32_t>> point_weights(const SceneData& scene, const VoxelGrid& grid,
+                                                        std::span<const double> spacings_m, const Progress& progress) {
   const double finest = finest_spacing(scene, spacings_m);
   std::vector<std::uint32_t> of_mesh;
   for (const double spacing : spacings_m) {
     const double wide = std::min(spacing, grid.voxel_size()) / finest;
-    of_mesh.push_back(static_cast<std::uint32_t>(std::min(std::ceil(densest_worth * wide * wide), 4294967295.0)));
+    of_mesh.push_back(
+        static_cast<std::uint32_t>(std::min(std::ceil(densest_point_weight * wide * wide), 4294967295.0)));
   }
   const std::span<const std::uint32_t> all = of_mesh;
   return foremost(scene, grid, all, last_of(scene, all, std::less<>()), std::less<>(), progress);

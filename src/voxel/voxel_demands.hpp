@@ -17,20 +17,20 @@ class VoxelGrid;
 // Element k belongs to voxel index k, or to the k-th voxel of a sample; empty if all voxels are alike.
 struct VoxelDemands {
   std::vector<std::uint8_t> weights;  // weight of the voxel in coverage; empty: 1 each
-  // Point weight per voxel: `densest_worth` at the densest goal, more if fewer points suffice. A voxel is full once its
-  // point weights sum to those of the densest goal. Integers, so that sums do not depend on the order; rounded up, by
-  // less than 1 in `densest_worth`. Empty: all voxels have one goal and point weight 1.
-  std::vector<std::uint32_t> worths;
+  // Point weight per voxel: `densest_point_weight` at the densest goal, more if fewer points suffice. A voxel is full
+  // once its point weights sum to those of the densest goal. Integers, so that sums do not depend on the order; rounded
+  // up, by less than 1 in `densest_point_weight`. Empty: all voxels have one goal and point weight 1.
+  std::vector<std::uint32_t> point_weights;
 
   std::uint32_t weight(std::size_t k) const { return weights.empty() ? 1 : weights[k]; }
-  std::uint32_t worth(std::size_t k) const { return worths.empty() ? 1 : worths[k]; }
+  std::uint32_t point_weight(std::size_t k) const { return point_weights.empty() ? 1 : point_weights[k]; }
   // Point weight in a voxel of the densest goal.
-  std::uint32_t least_worth() const;
-  // Demands of a sample. REQUIRES: ranks below the number of voxels.
-  VoxelDemands of(std::span<const std::uint32_t> ranks) const;
+  std::uint32_t least_point_weight() const;
+  // Demands of a sample. REQUIRES: voxel_indices below the number of voxels.
+  VoxelDemands of(std::span<const std::uint32_t> voxel_indices) const;
 };
 
-inline constexpr std::uint32_t densest_worth = 4096;
+inline constexpr std::uint32_t densest_point_weight = 4096;
 
 // Per voxel index: largest weight of the surveyed meshes that touch the voxel. Empty if all surveyed meshes have equal
 // weights, since only ratios matter. No value if stopped. Parallel; the result does not depend on the number of
@@ -44,7 +44,7 @@ double finest_spacing(const SceneData& scene, std::span<const double> spacings_m
 // Per voxel index: point weight if surveyed meshes want different spacings; the finest of the meshes that touch the
 // voxel applies. Every voxel wants at least one point. Empty if all want the same; no value if stopped. Parallel; the
 // result does not depend on the number of threads.
-std::optional<std::vector<std::uint32_t>> point_worths(const SceneData& scene, const VoxelGrid& grid,
-                                                       std::span<const double> spacings_m, const Progress& progress);
+std::optional<std::vector<std::uint32_t>> point_weights(const SceneData& scene, const VoxelGrid& grid,
+                                                        std::span<const double> spacings_m, const Progress& progress);
 
 }  // namespace vantage

@@ -44,12 +44,12 @@ std::optional<VoxelGrid> VoxelGrid::build(const SceneData& scene, double user_si
   return grid;
 }
 
-std::uint64_t VoxelGrid::key(std::uint64_t rank) const {
+std::uint64_t VoxelGrid::key(std::uint64_t voxel_index) const {
   // Among bricks with the same `first`, only the last holds voxels.
-  const auto after = std::upper_bound(bricks_.begin(), bricks_.end(), rank,
+  const auto after = std::upper_bound(bricks_.begin(), bricks_.end(), voxel_index,
                                       [](std::uint64_t r, const VoxelBrick& b) { return r < b.first; });
   const VoxelBrick& brick = *std::prev(after);
-  auto left = static_cast<int>(rank - brick.first);
+  auto left = static_cast<int>(voxel_index - brick.first);
   std::uint32_t word = 0;
   for (int set = std::popcount(brick.mask[0]); left >= set; set = std::popcount(brick.mask[word])) {
     left -= set;
@@ -68,9 +68,9 @@ std::uint32_t VoxelGrid::find(std::uint64_t key) const {
   const auto bit = static_cast<std::uint32_t>(key & 511);
   const std::uint32_t word = bit / 32, flag = std::uint32_t{1} << (bit % 32);
   if (!(brick.mask[word] & flag)) return no_voxel;
-  auto rank = brick.first + static_cast<std::uint32_t>(std::popcount(brick.mask[word] & (flag - 1)));
-  for (std::uint32_t w = 0; w < word; ++w) rank += static_cast<std::uint32_t>(std::popcount(brick.mask[w]));
-  return rank;
+  auto voxel_index = brick.first + static_cast<std::uint32_t>(std::popcount(brick.mask[word] & (flag - 1)));
+  for (std::uint32_t w = 0; w < word; ++w) voxel_index += static_cast<std::uint32_t>(std::popcount(brick.mask[w]));
+  return voxel_index;
 }
 
 std::optional<std::array<std::uint32_t, 3>> VoxelGrid::cell_of(const Float3& p) const {
@@ -85,7 +85,7 @@ std::optional<std::array<std::uint32_t, 3>> VoxelGrid::cell_of(const Float3& p) 
   return cell;
 }
 
-std::uint32_t VoxelGrid::rank_of(const Float3& p) const {
+std::uint32_t VoxelGrid::index_of(const Float3& p) const {
   const auto cell = cell_of(p);
   return cell ? find(morton_encode((*cell)[0], (*cell)[1], (*cell)[2])) : no_voxel;
 }

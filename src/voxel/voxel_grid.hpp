@@ -38,12 +38,12 @@ class VoxelGrid {
   const std::array<float, 3>& min() const { return min_; }  // local frame; exactly what shaders use
   std::uint64_t size() const { return size_; }              // N_v
   // Sorted Morton key of the voxel with this index, and back.
-  std::uint64_t key(std::uint64_t rank) const;
+  std::uint64_t key(std::uint64_t voxel_index) const;
   std::uint32_t find(std::uint64_t key) const;  // index, or no_voxel
   // Voxel coordinates of a local-frame point, in float arithmetic: floor((p − min) · (1 / voxel_size)); empty outside
   // the cube.
   std::optional<std::array<std::uint32_t, 3>> cell_of(const Float3& p) const;
-  std::uint32_t rank_of(const Float3& p) const;  // find(morton(cell_of(p))), no_voxel outside
+  std::uint32_t index_of(const Float3& p) const;  // find(morton(cell_of(p))), no_voxel outside
 
   // Data for upload: bricks of 8³ voxels in Morton order and a hash table over them (shaders/shared/voxel_types.h).
   std::span<const VoxelBrick> bricks() const { return bricks_; }
@@ -52,7 +52,9 @@ class VoxelGrid {
   // Coverage's demands on each voxel, by index: weights from the scene; point weights once set.
   const VoxelDemands& demands() const { return demands_; }
   std::uint64_t total_weight() const { return total_weight_; }
-  void set_worths(std::vector<std::uint32_t> worths) { demands_.worths = std::move(worths); }
+  void set_point_weights(std::vector<std::uint32_t> point_weights) {
+    demands_.point_weights = std::move(point_weights);
+  }
 
  private:
   int depth_ = 0;

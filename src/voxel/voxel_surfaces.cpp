@@ -148,14 +148,14 @@ VoxelSurface surface_of(std::span<const Part> parts, const GridTransform& transf
 }  // namespace
 
 std::vector<VoxelSurface> voxel_surfaces(const SceneData& scene, const VoxelGrid& grid,
-                                         std::span<const std::uint32_t> ranks, double window_m) {
-  const VoxelTriangles touching = triangles_touching(scene, grid, ranks, 0);
+                                         std::span<const std::uint32_t> voxel_indices, double window_m) {
+  const VoxelTriangles touching = triangles_touching(scene, grid, voxel_indices, 0);
   const GridTransform transform{{grid.min()[0], grid.min()[1], grid.min()[2]}, grid.inverse_size()};
-  std::vector<VoxelSurface> surfaces(ranks.size());
+  std::vector<VoxelSurface> surfaces(voxel_indices.size());
   tbb::parallel_for(
-      tbb::blocked_range<std::size_t>(0, ranks.size()), [&](const tbb::blocked_range<std::size_t>& range) {
+      tbb::blocked_range<std::size_t>(0, voxel_indices.size()), [&](const tbb::blocked_range<std::size_t>& range) {
         for (std::size_t i = range.begin(); i != range.end(); ++i) {
-          const auto [x, y, z] = morton_decode(grid.key(ranks[i]));
+          const auto [x, y, z] = morton_decode(grid.key(voxel_indices[i]));
           const Point low(x, y, z);
           const auto triangles =
               std::span(touching.triangle).subspan(touching.offset[i], touching.offset[i + 1] - touching.offset[i]);
@@ -164,8 +164,8 @@ std::vector<VoxelSurface> voxel_surfaces(const SceneData& scene, const VoxelGrid
         }
       });
   if (window_m > grid.voxel_size()) {
-    const std::vector<float> shares = flat_shares(scene, grid, ranks, surfaces, window_m);
-    for (std::size_t i = 0; i < ranks.size(); ++i) surfaces[i].share = std::min(surfaces[i].share, shares[i]);
+    const std::vector<float> shares = flat_shares(scene, grid, voxel_indices, surfaces, window_m);
+    for (std::size_t i = 0; i < voxel_indices.size(); ++i) surfaces[i].share = std::min(surfaces[i].share, shares[i]);
   }
   return surfaces;
 }

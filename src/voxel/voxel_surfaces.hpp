@@ -29,8 +29,9 @@ struct VoxelSurface {
 // the larger counts. A plane has at most the area of its section with the cube, so a sheet modelled twice counts once.
 // A window of `window_m` metres around each plane's point, if wider than a voxel, reduces its share to the flat part at
 // that scale. Parallel; a voxel's surface depends neither on the other voxels nor on the number of threads. REQUIRES:
-// ranks ascending, without duplicates, below grid.size(). Throws Error out_of_memory as `triangles_touching` does.
+// voxel_indices ascending, without duplicates, below grid.size(). Throws Error out_of_memory as `triangles_touching`
+// does.
 std::vector<VoxelSurface> voxel_surfaces(const SceneData& scene, const VoxelGrid& grid,
-                                         std::span<const std::uint32_t> ranks, double window_m = 0);
+                                         std::span<const std::uint32_t> voxel_indices, double window_m = 0);
 
 }  // namespace vantage

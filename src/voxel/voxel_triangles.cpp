@@ -21,8 +21,8 @@ namespace {
 // bricks and testing the wanted voxels in each.
 constexpr std::uint64_t dense_share = 32;
 
-bool is_dense(std::span<const std::uint32_t> ranks, const VoxelGrid& grid) {
-  return ranks.size() >= grid.size() / dense_share;
+bool is_dense(std::span<const std::uint32_t> voxel_indices, const VoxelGrid& grid) {
+  return voxel_indices.size() >= grid.size() / dense_share;
 }
 
 constexpr int brick_shift = static_cast<int>(brick_bits);
@@ -96,28 +96,28 @@ class BrickFinder {
 // Finds every (triangle, voxel number) pair.
 class Finder {
  public:
-  Finder(const SceneData& scene, const VoxelGrid& grid, std::span<const std::uint32_t> ranks, double margin_m)
+  Finder(const SceneData& scene, const VoxelGrid& grid, std::span<const std::uint32_t> voxel_indices, double margin_m)
       : scene_(scene),
         grid_(grid),
-        ranks_(ranks),
+        voxel_indices_(voxel_indices),
         fine_(transform_of(grid)),
         margin_(margin_m / grid.voxel_size()),
-        dense_(is_dense(ranks, grid)) {
+        dense_(is_dense(voxel_indices, grid)) {
     if (dense_) {
       number_.assign(grid.size(), no_voxel);
-      for (std::size_t i = 0; i < ranks.size(); ++i) number_[ranks[i]] = static_cast<std::uint32_t>(i);
+      for (std::size_t i = 0; i < voxel_indices.size(); ++i) number_[voxel_indices[i]] = static_cast<std::uint32_t>(i);
       return;
     }
-    cells_.resize(ranks.size());
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, ranks.size()),
+    cells_.resize(voxel_indices.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, voxel_indices.size()),
                       [&](const tbb::blocked_range<std::size_t>& range) {
                         for (std::size_t i = range.begin(); i != range.end(); ++i)
-                          cells_[i] = morton_decode(grid.key(ranks[i]));
+                          cells_[i] = morton_decode(grid.key(voxel_indices[i]));
                       });
-    first_.resize(grid.bricks().size() + 1, static_cast<std::uint32_t>(ranks.size()));
+    first_.resize(grid.bricks().size() + 1, static_cast<std::uint32_t>(voxel_indices.size()));
     std::size_t i = 0;
     for (std::size_t b = 0; b < grid.bricks().size(); ++b) {
-      while (i < ranks.size() && ranks[i] < grid.bricks()[b].first) ++i;
+      while (i < voxel_indices.size() && voxel_indices[i] < grid.bricks()[b].first) ++i;
       first_[b] = static_cast<std::uint32_t>(i);
     }
   }
@@ -133,9 +133,9 @@ class Finder {
   void by_voxels(std::uint32_t t, const Found& found) const {
     const auto corners = fine_.corners(scene_.positions, scene_.triangles[t]);
     TriangleCells(corners, voxels_a_side(grid_), margin_).for_each([&](const TriangleCells::Cell& c) {
-      const std::uint32_t rank = grid_.find(morton_encode(
+      const std::uint32_t voxel_index = grid_.find(morton_encode(
           static_cast<std::uint32_t>(c[0]), static_cast<std::uint32_t>(c[1]), static_cast<std::uint32_t>(c[2])));
-      if (rank != no_voxel && number_[rank] != no_voxel) found(number_[rank], t);
+      if (voxel_index != no_voxel && number_[voxel_index] != no_voxel) found(number_[voxel_index], t);
     });
   }
 
@@ -151,7 +151,7 @@ class Finder {
 
   const SceneData& scene_;
   const VoxelGrid& grid_;
-  std::span<const std::uint32_t> ranks_;
+  std::span<const std::uint32_t> voxel_indices_;
   GridTransform fine_;
   double margin_;  // in voxels
   bool dense_;
@@ -162,26 +162,27 @@ class Finder {
 
 }  // namespace
 
-VoxelTriangles triangles_touching(const SceneData& scene, const VoxelGrid& grid, std::span<const std::uint32_t> ranks,
-                                  double margin_m) {
-  return triangle_lists(Finder(scene, grid, ranks, margin_m), ranks.size());
+VoxelTriangles triangles_touching(const SceneData& scene, const VoxelGrid& grid,
+                                  std::span<const std::uint32_t> voxel_indices, double margin_m) {
+  return triangle_lists(Finder(scene, grid, voxel_indices, margin_m), voxel_indices.size());
 }
 
 SampleTriangles::SampleTriangles(std::shared_ptr<const SceneData> scene, std::shared_ptr<const VoxelGrid> grid)
     : scene_(std::move(scene)), grid_(std::move(grid)) {}
 
-VoxelTriangles SampleTriangles::touching(std::span<const std::uint32_t> ranks, double margin_m) {
-  if (is_dense(ranks, *grid_)) return triangles_touching(*scene_, *grid_, ranks, margin_m);
-  const std::shared_ptr<const Bricks> bricks = bricks_for(ranks, margin_m);
-  return bricks ? by_bricks(*bricks, ranks, margin_m) : triangles_touching(*scene_, *grid_, ranks, margin_m);
+VoxelTriangles SampleTriangles::touching(std::span<const std::uint32_t> voxel_indices, double margin_m) {
+  if (is_dense(voxel_indices, *grid_)) return triangles_touching(*scene_, *grid_, voxel_indices, margin_m);
+  const std::shared_ptr<const Bricks> bricks = bricks_for(voxel_indices, margin_m);
+  return bricks ? by_bricks(*bricks, voxel_indices, margin_m)
+                : triangles_touching(*scene_, *grid_, voxel_indices, margin_m);
 }
 
-std::shared_ptr<const SampleTriangles::Bricks> SampleTriangles::bricks_for(std::span<const std::uint32_t> ranks,
+std::shared_ptr<const SampleTriangles::Bricks> SampleTriangles::bricks_for(std::span<const std::uint32_t> voxel_indices,
                                                                            double margin_m) {
   constexpr double to_spare = 1.5;  // of the margin, which grows with the distance of stations
   const std::lock_guard lock(mutex_);
-  if (first_.empty()) first_.assign(ranks.begin(), ranks.end());
-  if (std::ranges::equal(first_, ranks)) return nullptr;
+  if (first_.empty()) first_.assign(voxel_indices.begin(), voxel_indices.end());
+  if (std::ranges::equal(first_, voxel_indices)) return nullptr;
   if (!bricks_ || bricks_->margin_m < margin_m) {
     const double margin = to_spare * margin_m;
     // A thread that waits for this must not take up other work, which might wait here, too.
@@ -193,13 +194,13 @@ std::shared_ptr<const SampleTriangles::Bricks> SampleTriangles::bricks_for(std::
   return bricks_;
 }
 
-VoxelTriangles SampleTriangles::by_bricks(const Bricks& bricks, std::span<const std::uint32_t> ranks,
+VoxelTriangles SampleTriangles::by_bricks(const Bricks& bricks, std::span<const std::uint32_t> voxel_indices,
                                           double margin_m) const {
   const GridTransform fine = transform_of(*grid_);
   const double margin = margin_m / grid_->voxel_size();
-  std::vector<std::vector<std::uint32_t>> found(ranks.size());
-  tbb::parallel_for(std::size_t{0}, ranks.size(), [&](std::size_t i) {
-    const auto cell = morton_decode(grid_->key(ranks[i]));
+  std::vector<std::vector<std::uint32_t>> found(voxel_indices.size());
+  tbb::parallel_for(std::size_t{0}, voxel_indices.size(), [&](std::size_t i) {
+    const auto cell = morton_decode(grid_->key(voxel_indices[i]));
     const std::uint32_t brick =
         find_brick(grid_->slots(), cell[0] >> brick_shift, cell[1] >> brick_shift, cell[2] >> brick_shift);
     for (std::uint32_t k = bricks.triangles.offset[brick]; k < bricks.triangles.offset[brick + 1]; ++k) {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/philox.hpp"
-#include "trace/spread/pieces.hpp"
+#include "trace/spread/work_queue.hpp"
 
 namespace vantage::bench {
 namespace {
@@ -27,7 +27,7 @@ double seconds_a_population(const RanksModel& model, std::size_t ranks, std::siz
     s = model.network_s[std::min(
         model.network_s.size() - 1,
         static_cast<std::size_t>(random.uniform() * static_cast<double>(model.network_s.size())))];
-  Pieces pieces(population);
+  WorkQueue queue(population);
   Counter out, in, host;  // the two ways of rank 0's line, and its processor
   double end = 0;
   struct Event {
@@ -49,18 +49,18 @@ double seconds_a_population(const RanksModel& model, std::size_t ranks, std::siz
       now = host.serve(now, networks * model.letters_s / 2);
     }
     end = std::max(end, now);
-    if (pieces.empty()) continue;
-    const Piece piece = ranks == 1 ? pieces.take(1, true) : pieces.take(share, true);
+    if (queue.empty()) continue;
+    const Chunk chunk = ranks == 1 ? queue.take(1, true) : queue.take(share, true);
     double work = model.piece_s;
-    for (std::size_t k = piece.first; k < piece.end; ++k) work += seconds[k];
+    for (std::size_t k = chunk.first; k < chunk.end; ++k) work += seconds[k];
     if (event.rank == 0) {
       events.push({now + work, 0, 0});
       continue;
     }
-    const auto networks = static_cast<double>(piece.size());
+    const auto networks = static_cast<double>(chunk.size());
     now = host.serve(now, networks * model.letters_s / 2);
     now = out.serve(now, networks * model.ask_bytes / model.bytes_a_second);
-    events.push({now + model.round_trip_s + work, event.rank, piece.size()});
+    events.push({now + model.round_trip_s + work, event.rank, chunk.size()});
   }
   return end + static_cast<double>(population) * model.search_s;
 }

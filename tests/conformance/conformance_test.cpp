@@ -150,7 +150,7 @@ TEST_P(Conformance, PositionsAreRangeTimesDirectionToTheBit) {
                bits_apart(chunk.position[k].y, o.y + chunk.range[k] * d.y) +
                bits_apart(chunk.position[k].z, o.z + chunk.range[k] * d.z);
       if (chunk.voxel[k] != no_voxel) {
-        ASSERT_EQ(chunk.voxel[k], site.grid->rank_of(chunk.position[k])) << "ray " << k;
+        ASSERT_EQ(chunk.voxel[k], site.grid->index_of(chunk.position[k])) << "ray " << k;
       }
     }
     EXPECT_EQ(apart, 0);
@@ -438,13 +438,13 @@ NetworkCounts sampled_slowly(const TestSite& site, const VoxelField& field, cons
   VoxelField sample;
   const auto pick = [&](std::size_t first, std::size_t step) {
     sample = {};
-    std::vector<std::uint32_t> ranks;
+    std::vector<std::uint32_t> voxel_indices;
     for (std::size_t i = first; i < job.sample.size(); i += step) {
       sample.count.push_back(field.count[job.sample[i]]);
       if (job.masks) sample.stations.push_back(field.stations[job.sample[i]]);
-      ranks.push_back(job.sample[i]);
+      voxel_indices.push_back(job.sample[i]);
     }
-    return reference_counts(sample, stations, goal_density, site.grid->demands().of(ranks));
+    return reference_counts(sample, stations, goal_density, site.grid->demands().of(voxel_indices));
   };
   std::vector<NetworkCounts> groups;
   for (std::uint32_t g = 0; g < job.groups; ++g) groups.push_back(pick(g, job.groups));
@@ -456,7 +456,8 @@ NetworkCounts sampled_slowly(const TestSite& site, const VoxelField& field, cons
   }
   const VoxelDemands& demands = site.grid->demands();
   const auto filled = [&](std::size_t i) {
-    return std::min(1.0 * sample.count[i] * demands.worth(job.sample[i]) / (goal_density * counts.point_worth), 1.0);
+    return std::min(1.0 * sample.count[i] * demands.point_weight(job.sample[i]) / (goal_density * counts.point_weight),
+                    1.0);
   };
   for (std::size_t i = 1; i < sample.count.size(); ++i) {
     const double step = filled(i) - filled(i - 1);
@@ -509,7 +510,8 @@ TEST_P(Conformance, ASampleOfAllVoxelsIsTheExactEvaluation) {
 TEST_P(Conformance, EverySampledVoxelIsCountedAsTheExactEvaluationDoes) {
   for (const TestSite& site : sites()) {
     std::vector<std::uint32_t> sample;
-    for (std::uint32_t rank = 5; rank < site.grid->size(); rank += 29) sample.push_back(rank);
+    for (std::uint32_t voxel_index = 5; voxel_index < site.grid->size(); voxel_index += 29)
+      sample.push_back(voxel_index);
     const std::vector<std::vector<TraceStation>> networks{site.stations, random_stations(site, 6, 12)};
     const std::vector<std::uint32_t> sizes{4, 6};
     for (const bool noisy : {false, true}) {
@@ -582,8 +584,9 @@ TEST_P(Conformance, StationMasksOfASampleAreThoseOfTheVoxelField) {
 TEST_P(Conformance, RegistrationSumsAreThoseOfTheStationMasks) {
   for (const TestSite& site : sites()) {
     std::vector<std::uint32_t> sample;
-    for (std::uint32_t rank = 0; rank < std::min<std::uint32_t>(site.grid->size(), 30'000); rank += 5)
-      sample.push_back(rank);
+    for (std::uint32_t voxel_index = 0; voxel_index < std::min<std::uint32_t>(site.grid->size(), 30'000);
+         voxel_index += 5)
+      sample.push_back(voxel_index);
     std::vector<std::vector<TraceStation>> networks{
         site.stations, random_stations(site, 40, 7), {site.stations[0]}, random_stations(site, 17, 8)};
     networks[0].erase(networks[0].begin() + 1);  // an inactive station keeps its place
@@ -622,7 +625,7 @@ TEST_P(Conformance, RegistrationSumsAreThoseOfTheStationMasks) {
 TEST_P(Conformance, SamplesStopAtTheGoalOnlyWhereAsked) {
   const TestSite& site = sites()[2];
   std::vector<std::uint32_t> sample;
-  for (std::uint32_t rank = 0; rank < site.grid->size(); rank += 7) sample.push_back(rank);
+  for (std::uint32_t voxel_index = 0; voxel_index < site.grid->size(); voxel_index += 7) sample.push_back(voxel_index);
   std::vector<std::vector<TraceStation>> networks(1);
   for (std::uint32_t place = 0; place < 32; ++place) networks[0].push_back({site.stations[0].origin, place});
   const std::vector<std::uint32_t> sizes{32};
@@ -649,7 +652,8 @@ TEST_P(Conformance, SamplesStopAtTheGoalOnlyWhereAsked) {
 TEST_P(Conformance, WhatAStoppedSampleLeavesOutDoesNotShow) {
   for (const TestSite& site : sites()) {
     std::vector<std::uint32_t> sample;
-    for (std::uint32_t rank = 2; rank < site.grid->size(); rank += 5) sample.push_back(rank);
+    for (std::uint32_t voxel_index = 2; voxel_index < site.grid->size(); voxel_index += 5)
+      sample.push_back(voxel_index);
     const std::vector<std::vector<TraceStation>> networks{site.stations, random_stations(site, 12, 21)};
     const std::vector<std::uint32_t> sizes{4, 12};
     for (const bool noisy : {false, true}) {
@@ -680,7 +684,7 @@ TEST_P(Conformance, WhatAStoppedSampleLeavesOutDoesNotShow) {
 TEST_P(Conformance, SamplesDoNotDependOnOrderOrDispatches) {
   const TestSite& site = sites()[2];
   std::vector<std::uint32_t> sample;
-  for (std::uint32_t rank = 3; rank < site.grid->size(); rank += 31) sample.push_back(rank);
+  for (std::uint32_t voxel_index = 3; voxel_index < site.grid->size(); voxel_index += 31) sample.push_back(voxel_index);
   std::vector<std::vector<TraceStation>> networks;
   std::vector<std::uint32_t> sizes;
   for (std::uint32_t n = 0; n < 6; ++n) {
@@ -715,7 +719,7 @@ TEST_P(Conformance, SamplesDoNotDependOnOrderOrDispatches) {
 TEST_P(Conformance, SamplesDoNotDependOnWhatWasCountedBefore) {
   const TestSite& site = sites()[2];
   std::vector<std::uint32_t> sample;
-  for (std::uint32_t rank = 3; rank < site.grid->size(); rank += 7) sample.push_back(rank);
+  for (std::uint32_t voxel_index = 3; voxel_index < site.grid->size(); voxel_index += 7) sample.push_back(voxel_index);
   std::vector<TraceStation> far = site.stations;
   for (TraceStation& station : far) station.origin.x += 1000;
   const std::vector<std::vector<TraceStation>> near_ones{site.stations}, far_ones{far};
@@ -737,7 +741,7 @@ TEST_P(Conformance, SamplesDoNotDependOnWhatWasCountedBefore) {
 TEST_P(Conformance, SamplesKeepToTheLimitOfADispatch) {
   const TestSite& site = sites()[2];
   std::vector<std::uint32_t> sample;
-  for (std::uint32_t rank = 3; rank < site.grid->size(); rank += 31) sample.push_back(rank);
+  for (std::uint32_t voxel_index = 3; voxel_index < site.grid->size(); voxel_index += 31) sample.push_back(voxel_index);
   const std::vector<std::vector<TraceStation>> networks{site.stations};
   const std::vector<std::uint32_t> sizes{4};
   const auto first_report = [&](std::uint64_t max_rays) {

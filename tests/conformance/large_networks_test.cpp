@@ -39,10 +39,10 @@ VoxelField field_of_scans(Tracer& tracer, const TestSite& site, std::span<const 
   Tracer::RawChunk chunk;
   for (const TraceStation& station : stations) {
     tracer.scan(station, 0, site.rays(), Tracer::voxel, chunk);
-    for (const std::uint32_t rank : chunk.voxel) {
-      if (rank == no_voxel) continue;
-      ++field.count[rank];
-      field.stations[station.place / 64 * voxels + rank] |= std::uint64_t{1} << (station.place % 64);
+    for (const std::uint32_t voxel_index : chunk.voxel) {
+      if (voxel_index == no_voxel) continue;
+      ++field.count[voxel_index];
+      field.stations[station.place / 64 * voxels + voxel_index] |= std::uint64_t{1} << (station.place % 64);
     }
   }
   return field;

@@ -85,10 +85,10 @@ TEST_P(LargeNoiseConformance, SamplesAndExactCountsAreThePointsOfTheScans) {
 
   // Any triangle may affect any voxel, so only some voxels are tested.
   std::vector<std::uint32_t> sample, points, expected_points;
-  for (std::size_t rank = 0; rank < site.grid->size(); ++rank) {
-    if (expected.count[rank] == 0 && rank % 97 != 0) continue;
-    sample.push_back(static_cast<std::uint32_t>(rank));
-    expected_points.push_back(expected.count[rank]);
+  for (std::size_t voxel_index = 0; voxel_index < site.grid->size(); ++voxel_index) {
+    if (expected.count[voxel_index] == 0 && voxel_index % 97 != 0) continue;
+    sample.push_back(static_cast<std::uint32_t>(voxel_index));
+    expected_points.push_back(expected.count[voxel_index]);
   }
   Tracer::SampleJob job{sample, 20, true, 0};
   job.points = [&](std::size_t, std::span<const std::uint32_t> of) { points.assign(of.begin(), of.end()); };

@@ -152,9 +152,10 @@ TEST_P(PointLimitsConformance, ASampleOfAllVoxelsIsTheExactEvaluation) {
         const NetworkCounts& voxel = sampled[0].groups[v];
         const std::uint32_t count = field.count[v];
         const VoxelDemands& demands = site.grid->demands();
-        const std::uint64_t worth = std::uint64_t{count} * demands.worth(v);
-        const bool full = static_cast<double>(worth) >= goal_density * demands.least_worth();
-        differing += voxel.partial_points != (full ? 0 : worth * demands.weight(v)) || (voxel.saturated > 0) != full;
+        const std::uint64_t weighted_points = std::uint64_t{count} * demands.point_weight(v);
+        const bool full = static_cast<double>(weighted_points) >= goal_density * demands.least_point_weight();
+        differing +=
+            voxel.partial_points != (full ? 0 : weighted_points * demands.weight(v)) || (voxel.saturated > 0) != full;
       }
       EXPECT_EQ(differing, 0u);
     }

@@ -139,7 +139,7 @@ TestSite make_site(const std::string& name, std::shared_ptr<const SceneData> sce
   VoxelGrid grid = VoxelGrid::build(*site.scene, user_size_m);
   std::vector<double> spacings_m;
   for (const MeshInfo& mesh : site.scene->meshes) spacings_m.push_back(mesh.name == "tank" ? 0.031 : 0.01);
-  grid.set_worths(*point_worths(*site.scene, grid, spacings_m, {}));
+  grid.set_point_weights(*point_weights(*site.scene, grid, spacings_m, {}));
   site.grid = std::make_shared<const VoxelGrid>(std::move(grid));
   Scanner scanner;
   scanner.azimuth_step = scanner.zenith_step = Angle::degrees(step_degrees);

@@ -109,7 +109,7 @@ BruteForce brute_force_objectives(const VoxelGrid& grid, double goal_density,
   for (std::uint32_t v = 0; v < points.size(); ++v) {
     const auto weight = static_cast<double>(grid.demands().weight(v));
     const VoxelDemands& demands = grid.demands();
-    const double goal = goal_density * demands.least_worth() / demands.worth(v);
+    const double goal = goal_density * demands.least_point_weight() / demands.point_weight(v);
     result.coverage += weight * std::min(points[v] / goal, 1.0);
     weights += weight;
   }

@@ -104,9 +104,9 @@ double predicted_coverage(const Survey& original, const Survey& moved, const Mov
     for (std::size_t k = 0; k < original.points[s].size(); ++k) {
       if (original.voxels[s][k] == no_voxel) continue;
       const Vec3 p = move(original.point(s, k)) - data.origin;
-      const std::uint32_t rank =
-          grid.rank_of({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
-      if (rank != no_voxel) counts[rank] += 1;
+      const std::uint32_t voxel_index =
+          grid.index_of({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
+      if (voxel_index != no_voxel) counts[voxel_index] += 1;
     }
   }
   double sum = 0;

@@ -67,14 +67,14 @@ SweepFigures sweep_wall(const EngineInfo& engine, int axis, int steps) {
     simulator.evaluate({{on_axis(axis, axis == 2 ? place + 2.37 : place - 2.37, 0.11, 2.03)}},
                        {.overlap = false, .field = &field});
     double sum = 0, voxels = 0;
-    for (std::uint64_t rank = 0; rank < field.count.size(); ++rank) {
-      const Vec3 c = simulator.voxel_centre(rank);
+    for (std::uint64_t voxel_index = 0; voxel_index < field.count.size(); ++voxel_index) {
+      const Vec3 c = simulator.voxel_centre(voxel_index);
       const double second = component(c, axis == 0 ? 1 : 0), third = component(c, axis == 2 ? 1 : 2);
       // The wall's own voxels, one voxel in from its outline: all that it marks on either side of its plane.
       if (std::abs(component(c, axis) - place) > size || second < -1.53 + size || second > 1.57 - size ||
           third < 1.07 + size || third > 3.17 - size)
         continue;
-      sum += std::min(field.count[rank] / simulator.goal_density(), 1.0);
+      sum += std::min(field.count[voxel_index] / simulator.goal_density(), 1.0);
       voxels += 1;
     }
     figures.least = std::min(figures.least, sum / voxels);

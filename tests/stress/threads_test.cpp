@@ -102,7 +102,8 @@ TEST_P(Threads, ConstCallsOfOneSimulatorFromMany) {
     const std::vector<std::uint32_t> sample = engine.sampled_voxels(20 + k % 7);
     double sum = 0;
     for (const VoxelPatch& patch : engine.voxel_patches(sample)) sum += patch.point.x + patch.area_m2;
-    for (const std::uint32_t rank : sample) sum += engine.voxel_centre(rank).z * engine.voxel_weight(rank);
+    for (const std::uint32_t voxel_index : sample)
+      sum += engine.voxel_centre(voxel_index).z * engine.voxel_weight(voxel_index);
     return sum + engine.goal_density() + static_cast<double>(engine.voxel_count() + engine.engine().device.size());
   };
   constexpr std::uint64_t calls = 40;

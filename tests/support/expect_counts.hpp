@@ -14,7 +14,7 @@ inline void expect_equal_counts(const NetworkCounts& got, const NetworkCounts& e
   EXPECT_EQ(got.stations, expected.stations);
   EXPECT_EQ(got.saturated, expected.saturated);
   EXPECT_EQ(got.partial_points, expected.partial_points);
-  EXPECT_EQ(got.point_worth, expected.point_worth);
+  EXPECT_EQ(got.point_weight, expected.point_weight);
   EXPECT_EQ(got.seen, expected.seen);
   EXPECT_EQ(got.shared, expected.shared);
 }

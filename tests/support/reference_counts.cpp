@@ -8,14 +8,14 @@ NetworkCounts reference_counts(const VoxelField& field, std::uint32_t stations, 
   NetworkCounts counts;
   counts.voxels = field.count.size();
   counts.stations = stations;
-  counts.point_worth = demands.least_worth();
+  counts.point_weight = demands.least_point_weight();
   for (std::size_t k = 0; k < field.count.size(); ++k) {
-    const std::uint32_t n = field.count[k], weight = demands.weight(k), worth = demands.worth(k);
+    const std::uint32_t n = field.count[k], weight = demands.weight(k), point_weight = demands.point_weight(k);
     counts.weight += weight;
-    if (static_cast<double>(n) * worth >= goal_density * counts.point_worth) {
+    if (static_cast<double>(n) * point_weight >= goal_density * counts.point_weight) {
       counts.saturated += weight;
     } else {
-      counts.partial_points += std::uint64_t{n} * worth * weight;
+      counts.partial_points += std::uint64_t{n} * point_weight * weight;
     }
   }
   if (field.stations.empty()) return counts;

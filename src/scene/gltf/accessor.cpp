@@ -21,7 +21,7 @@ std::size_t component_size(int type) {
   }
 }
 
-// glTF aligns to the component, a broken file may not; its order is little endian, as ours.
+// glTF aligns to the component, but a broken file may not. Its order is little endian, as ours.
 template <class T>
 T load(const std::uint8_t* at) {
   T value;

@@ -14,21 +14,21 @@ namespace vantage::gltf {
 
 class Accessor {
  public:
-  // `user` names who reads it, for messages: "mesh 3 POSITION". `components` lists the allowed sizes, e.g. {3, 4}.
-  // Throws Error malformed_file: no such accessor, wrong type, or out of its buffer's range.
+  // Messages name the reader by `user`, e.g. "mesh 3 POSITION". `components`: allowed sizes, e.g. {3, 4}. Throws Error
+  // malformed_file: no such accessor, wrong type, or out of its buffer's range.
   Accessor(const File& file, int index, const std::string& user, std::initializer_list<int> components);
 
   std::size_t count() const { return count_; }
   int components() const { return components_; }
   bool is_float() const;
 
-  // `n` elements from `first` as doubles, components() each; integers as they are, or scaled to [0, 1] or [-1, 1] where
-  // the accessor is normalized. REQUIRES: first + n <= count(). Safe from several threads.
+  // Reads `n` elements from `first` as doubles, components() each. Integers are unchanged, or scaled to [0, 1] or [-1,
+  // 1] if the accessor is normalized. REQUIRES: first + n <= count(). Safe from several threads.
   void read(std::size_t first, std::size_t n, double* out) const;
   // All elements as unsigned integers. Throws Error malformed_file unless it holds unsigned scalars below `limit`.
   std::vector<std::uint32_t> read_indices(std::size_t limit) const;
 
-  // The accessor by number and user, for messages.
+  // Number and user of the accessor, for messages.
   const std::string& name() const { return name_; }
 
  private:

@@ -18,7 +18,7 @@ constexpr std::uint32_t kGlbMagic = 0x46546C67, kJsonChunk = 0x4E4F534A, kBinary
 constexpr int kDeepestJson = 128;  // readers recurse; real files nest about ten levels
 
 // Extensions that a file may require. Those that change positions are understood; the others only change how surfaces
-// look or carry information that no survey needs.
+// look, or carry information that a survey does not need.
 constexpr std::string_view kUnderstood[] = {"KHR_mesh_quantization", "EXT_mesh_gpu_instancing",
                                             "KHR_texture_transform"};
 constexpr std::string_view kWithoutEffect[] = {"KHR_materials_anisotropy",
@@ -53,13 +53,13 @@ std::uint32_t little_endian(Bytes bytes, std::size_t offset) {
          static_cast<std::uint32_t>(bytes[offset + 2]) << 16 | static_cast<std::uint32_t>(bytes[offset + 3]) << 24;
 }
 
-// Of a JSON text, told before it is parsed; brackets and commas inside strings do not count.
+// Outline of a JSON text before it is parsed; brackets and commas inside strings do not count.
 struct Outline {
   int deepest = 0;  // nesting of arrays and objects
   std::uint64_t containers = 0, values = 0, members = 0, strings = 0;
 
-  // What the parsed document takes at most. A value is a slot of an array that may have grown to twice what it needs;
-  // a member is a node of a map, with a name; containers and strings are allocated by themselves.
+  // Upper bound on the memory of the parsed document. A value is a slot of an array that may have grown to twice its
+  // size. A member is a node of a map, with a name. Containers and strings are separate allocations.
   std::uint64_t bytes(std::size_t text) const {
     return 24 * values + 64 * containers + 96 * members + 48 * strings + text;
   }
@@ -96,8 +96,8 @@ Outline outline_of(Bytes text) {
   return outline;
 }
 
-// A copy without what only this program looks at, in the document itself: tinygltf would make of each number in it an
-// object of a hundred bytes and more.
+// A copy without the parts that only this program reads; tinygltf would make an object of over a hundred bytes from
+// each number in them.
 json without_extras(const json& element) {
   const auto part = [](const json& value) { return value.is_structured() ? without_extras(value) : value; };
   if (element.is_array()) {
@@ -131,7 +131,7 @@ std::string percent_decoded(const std::string& uri) {
   return out;
 }
 
-// tinygltf takes a default where an integer is negative, fractional or too large; here each is an error.
+// tinygltf takes a default for integers that are negative, fractional or too large; here each is an error.
 void check_members(const File& file, const json& object, const std::string& where,
                    std::initializer_list<const char*> names) {
   for (const char* name : names) {
@@ -374,7 +374,7 @@ void File::load_buffers(Bytes glb_chunk) {
 }
 
 std::uint64_t File::model_bytes() const {
-  // Lists grow by doubling. A node is kept with its place and names, too (node_tree.hpp).
+  // Lists grow by doubling. A node is also kept with its place and names (node_tree.hpp).
   constexpr std::uint64_t kPlacedNode = 1000;
   std::uint64_t primitives = 0;
   if (const auto meshes = json_.find("meshes"); meshes != json_.end())
@@ -413,10 +413,10 @@ void File::read_structure() {
     error += problem.what();
   }
   while (!error.empty() && error.back() == '\n') error.pop_back();
-  // tinygltf makes texts of its parser's exceptions.
+  // tinygltf converts exceptions of its parser to text.
   if (!read && error.find(std::bad_alloc().what()) != std::string::npos) throw std::bad_alloc();
   if (!read) throw malformed(error.empty() ? "it is not a glTF" : error);
-  // tinygltf leaves out primitives that it cannot read.
+  // tinygltf skips primitives that it cannot read.
   for (std::size_t i = 0; i < model_.meshes.size(); ++i) {
     const auto primitives = json_["meshes"][i].find("primitives");
     if (primitives != json_["meshes"][i].end() && primitives->size() != model_.meshes[i].primitives.size())

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A glTF file in memory: its JSON, the structure that tinygltf read from it, and the bytes that its buffers and images
-// name.
+// A glTF file in memory: its JSON, the structure read by tinygltf, and the bytes of its buffers and images.
 #pragma once
 
 #include <cstddef>
@@ -25,25 +24,25 @@ namespace vantage::gltf {
 using Bytes = std::span<const std::uint8_t>;
 
 // tinygltf parses scenes, nodes, meshes, accessors and materials. Buffers and images are read here, where each can be
-// checked and named in a message; tinygltf never sees them. Nothing in `model` is trusted: indices and ranges are
-// checked where they are used.
+// checked and named in a message. Nothing in `model` is trusted: indices and ranges are checked on use.
 class File {
  public:
-  // Its buffers and images may lie below its own folder, or anywhere if `allow_outside`. Throws Error: io,
-  // malformed_file, out_of_memory where `budget`, which must outlive the file, has too little for what it takes.
+  // Buffers and images may lie below the file's own folder, or anywhere if `allow_outside`. `budget` must outlive the
+  // file. Throws Error: io, malformed_file, out_of_memory if the budget is too small.
   File(const std::filesystem::path& path, bool allow_outside, LoadBudget& budget);
-  // From memory; `name` opens messages. Its buffers and images lie in it. Throws Error: malformed_file, out_of_memory.
+  // From memory, with buffers and images inside; messages begin with `name`. Throws Error: malformed_file,
+  // out_of_memory.
   File(std::span<const std::uint8_t> bytes, const std::string& name, LoadBudget& budget);
 
   const tinygltf::Model& model() const { return model_; }
   const nlohmann::json& document() const { return json_; }
-  // Bytes of a buffer view. Throws Error malformed_file where it, or its buffer, does not exist or ends too early.
+  // Bytes of a buffer view. Throws Error malformed_file if it, or its buffer, does not exist or ends too early.
   Bytes view(int index, const std::string& user) const;
   // Encoded bytes of an image, in the file or in `own`. Throws Error: io, malformed_file.
   Bytes image(int index, std::vector<std::uint8_t>& own) const;
-  // Of an array of the document, such as "materials".
+  // Number of elements in an array of the document, such as "materials".
   std::size_t count(const char* array) const;
-  // A member of an element, e.g. ("nodes", 3, {"extras", "vantage"}); null where there is none.
+  // A member of an element, e.g. ("nodes", 3, {"extras", "vantage"}); null if absent.
   const nlohmann::json& find(const char* array, int index, std::initializer_list<const char*> path) const;
 
   // The same of the asset's extras.
@@ -71,12 +70,12 @@ class File {
   std::vector<std::uint8_t> bytes_;                     // the whole file; a GLB's buffer 0 stays in here
   std::vector<std::vector<std::uint8_t>> own_buffers_;  // the others
   std::vector<Bytes> buffers_;
-  std::uint64_t document_bytes_ = 0;  // that json_ takes at most
+  std::uint64_t document_bytes_ = 0;  // upper bound on the size of json_
   nlohmann::json json_;
   tinygltf::Model model_;
 };
 
-// "TEXT" in quotes, shortened where it is long, for messages.
+// "TEXT" in quotes, shortened if long, for messages.
 std::string quoted(const std::string& text);
 
 }  // namespace vantage::gltf

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a glTF file to a scene: places every mesh in the survey frame, sorts it by role, and hands all of it over to be
+// Loads a scene from a glTF file: places every mesh in the survey frame, assigns roles, and passes the result on to be
 // cleaned.
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -29,18 +29,18 @@ namespace {
 constexpr std::size_t kBlock = 4096;
 constexpr std::size_t kMostTriangles = std::size_t{1} << 31;
 
-// Bytes of a vertex and a triangle, until the scene is finished. Of a vertex: in double, in float, its new number and
-// back. Of a triangle: its corners, its entry among those that may be duplicates, whether it is kept; and among
-// triangles of both roles, its leaves of two trees and its list. Of one that is read: its indices, its corners.
+// Bytes per vertex and triangle until the scene is finished. Vertex: in double, in float, its new number and back.
+// Triangle: corners, entry among possible duplicates, whether it is kept; with both roles, also leaves of two trees and
+// its list. Triangle while read: indices, corners.
 constexpr double kVertex = 24 + 12 + 8, kTriangle = 12 + 16 + 1, kCoplanar = 100, kSearchVertex = 24 + 24 + 3 * 16 + 8,
                  kSearchTriangle = 3 * 12;
 constexpr std::uint64_t kTriangleRead = 12 + 3 * 12;
 
-// A mesh that is to be read: one primitive as one node places it.
+// A mesh to read: one primitive, placed by one node.
 struct Job {
   const PlacedMesh* placed = nullptr;
   std::size_t primitive = 0;
-  std::optional<Role> role;  // empty: nothing says
+  std::optional<Role> role;  // empty: unmarked
   double diffuse = 0;
   std::uint32_t weight = 1;
   double detail_mm = 0, accuracy_mm = 0;  // 0: any
@@ -67,7 +67,7 @@ void in_blocks(std::size_t count, Body&& body) {
                     });
 }
 
-// Makes an optional per-vertex array as long as the positions are, once some mesh has it.
+// Extends an optional per-vertex array to the length of the positions, once some mesh has it.
 template <class T>
 void extend(std::vector<T>& values, bool present, std::size_t size, T fallback) {
   if (present || !values.empty()) values.resize(size, fallback);
@@ -86,7 +86,7 @@ std::uint32_t packed_colour(const double* rgba, int components) {
 
 class Loader {
  public:
-  // Borrows all that it is given.
+  // Borrows all arguments.
   Loader(const File& file, const SceneOptions& options, LoadBudget& budget)
       : file_(file), options_(options), budget_(budget), materials_(file, budget, raw_.notes) {
     raw_.options = options;
@@ -184,9 +184,9 @@ class Loader {
     return jobs;
   }
 
-  // Makes room for all meshes, once it is known to be there.
+  // Allocates room for all meshes, after checking that it is available.
   void reserve(const std::vector<Job>& jobs) {
-    double vertices = 0, triangles = 0, search_vertices = 0, search_triangles = 0;  // products of what a file claims
+    double vertices = 0, triangles = 0, search_vertices = 0, search_triangles = 0;  // products of the file's claims
     std::uint64_t largest = 0;
     bool normals = false, colours = false, texcoords = false, roles[4] = {};
     for (const Job& job : jobs) {
@@ -268,7 +268,7 @@ class Loader {
     if (instances == 1) note_box(*job.placed, first);
   }
 
-  // The box of a node, over all primitives of its mesh.
+  // Adds the box of a node, over all primitives of its mesh.
   void note_box(const PlacedMesh& placed, std::size_t first_vertex) {
     if (boxed_ != &placed) boxes_.push_back({placed.name, {}});
     boxed_ = &placed;
@@ -297,7 +297,7 @@ class Loader {
     if (primitive.position->is_float()) measure_spacing(*primitive.position, world_from_mesh);
   }
 
-  // How far apart neighbouring float32 values lie at this primitive's coordinates, once the node has scaled them.
+  // Measures the spacing of float32 values at this primitive's coordinates, scaled by the node.
   void measure_spacing(const Accessor& position, const glm::dmat4& world_from_mesh) {
     double scale = 0;
     for (int c = 0; c < 3; ++c) scale = std::max(scale, length(glm::dvec3(world_from_mesh[c])));
@@ -328,7 +328,7 @@ class Loader {
         for (std::size_t i = 0; i < n; ++i) {
           const glm::dvec3 normal = map * glm::make_vec3(values + 3 * i);
           const double size = length(normal);
-          if (!(size > 0) || !std::isfinite(size)) continue;  // stays (0, 0, 0): none
+          if (!(size > 0) || !std::isfinite(size)) continue;  // stays (0, 0, 0): no normal
           raw_.normals[first + begin + i] = to_float3(normal * (1 / size));
         }
       });

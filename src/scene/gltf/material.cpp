@@ -16,7 +16,7 @@ double number_in(const json& object, const char* name, double fallback) {
   return it != object.end() && it->is_number() ? it->get<double>() : fallback;
 }
 
-// n numbers, or the fallback where the member is absent or something else.
+// n numbers, or the fallback if the member is absent or of another type.
 template <std::size_t N>
 std::array<double, N> numbers(const json& object, const char* name, std::array<double, N> fallback) {
   const auto it = object.find(name);
@@ -31,7 +31,7 @@ void read_uv_map(const json& transform, MaterialInfo& info) {
   const auto offset = numbers<2>(transform, "offset", {0, 0});
   const auto scale = numbers<2>(transform, "scale", {1, 1});
   const double angle = number_in(transform, "rotation", 0), c = std::cos(angle), s = std::sin(angle);
-  // translation · rotation · scale, as the extension defines it
+  // translation · rotation · scale, as the extension defines
   info.uv_map[0][0] = c * scale[0];
   info.uv_map[0][1] = s * scale[1];
   info.uv_map[0][2] = offset[0];

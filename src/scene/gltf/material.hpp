@@ -14,23 +14,23 @@
 
 namespace vantage::gltf {
 
-// A glTF material as far as points need it.
+// The parts of a glTF material that points need.
 struct MaterialInfo {
-  std::uint32_t index = 0;                       // into the table's materials
+  std::uint32_t index = 0;                       // index into the table's materials
   Marks marks;                                   // of its extras
-  std::optional<double> luminance;               // of the base colour factor, where the file gives one and no texture
+  std::optional<double> luminance;               // of the base colour factor, if the file gives one and no texture
   int texcoord_set = -1;                         // of the base colour texture; -1 without one
   double uv_map[2][3] = {{1, 0, 0}, {0, 1, 0}};  // KHR_texture_transform: uv' = map · (u, v, 1)
 };
 
-// Reads each material once, when it is first used, and each image likewise: images of the same bytes are one. An image
-// that cannot be read costs only colour: it is left out and noted.
+// Reads each material and each image once, on first use; images with equal bytes are shared. An image that cannot be
+// read costs only colour: it is left out, with a note.
 class MaterialTable {
  public:
   MaterialTable(const File& file, LoadBudget& budget, std::vector<std::string>& notes)
       : file_(file), budget_(budget), notes_(notes) {}
-  // REQUIRES: nothing; -1 is the default material. Throws Error: malformed_file, out_of_memory before an image is
-  // decoded that does not fit.
+  // -1 is the default material. Throws Error: malformed_file; out_of_memory, before decoding an image that does not
+  // fit.
   const MaterialInfo& get(int material);
 
   std::vector<Material> materials;
@@ -44,7 +44,7 @@ class MaterialTable {
   LoadBudget& budget_;
   std::vector<std::string>& notes_;
   std::map<int, MaterialInfo> read_;
-  std::map<int, std::int32_t> read_images_;                                         // by glTF image; -1: cannot be read
+  std::map<int, std::int32_t> read_images_;  // per glTF image; -1: cannot be read
   std::map<std::pair<const std::uint8_t*, std::size_t>, std::int32_t> read_bytes_;  // those of buffer views, likewise
 };
 

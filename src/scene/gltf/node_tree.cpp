@@ -15,12 +15,12 @@ namespace {
 
 constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
 
-// Patterns of names, what each says of the nodes that it matches, and whether it has matched one yet.
+// Patterns of names with their values for matching nodes, and whether each has matched.
 template <class Value>
 class Patterns {
  public:
   void add(const std::string& pattern, Value value) { entries_.push_back({pattern, value, letters_of(pattern)}); }
-  // Of those that match the node, the one with most letters of its own decides; of equals the last.
+  // Among patterns that match the node, the one with most letters wins; among equals, the last.
   std::optional<Value> find(const std::string& name) {
     const Entry* best = nullptr;
     for (Entry& entry : entries_) {
@@ -68,7 +68,7 @@ Patterns<Role> role_patterns(const SceneOptions& options) {
   return roles;
 }
 
-constexpr std::uint32_t kMostWeight = 255;  // a byte a voxel
+constexpr std::uint32_t kMostWeight = 255;  // a byte per voxel
 
 Patterns<std::uint32_t> weight_patterns(const SceneOptions& options) {
   Patterns<std::uint32_t> weights;
@@ -99,7 +99,7 @@ Patterns<double> length_patterns(const std::vector<std::pair<std::string, double
   return lengths;
 }
 
-// Cut between characters of UTF-8.
+// Cuts between characters of UTF-8.
 std::string cut_name(const std::string& name) {
   if (name.size() <= kLongestName) return name;
   constexpr std::string_view kMore = "…";
@@ -129,7 +129,7 @@ glm::dvec3 vec3(std::span<const double> values, double fallback) {
   return values.size() == 3 ? glm::dvec3{values[0], values[1], values[2]} : glm::dvec3(fallback);
 }
 
-// From x, y, z, w as a file has them. Divides by the length: GLM's normalize rounds otherwise.
+// From x, y, z, w of a file. Divides by the length, since GLM's normalize rounds differently.
 glm::dquat unit_quaternion(const double* q, const File& file, const std::string& where) {
   const double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
   if (!(length > 1e-6) || !std::isfinite(length)) throw file.malformed(where + ": its rotation is no unit quaternion");
@@ -193,7 +193,7 @@ std::vector<int> root_nodes(const File& file, const SceneOptions& options) {
     throw Error(Errc::invalid_argument, "scene " + std::to_string(*options.scene_index) +
                                             " was asked for; the file has " + std::to_string(model.scenes.size()) +
                                             ", numbered from 0");
-  if (model.scenes.empty()) {  // a library of nodes: take all that have no parent
+  if (model.scenes.empty()) {  // a library of nodes: take all without a parent
     std::vector<bool> has_parent(model.nodes.size());
     for (const auto& node : model.nodes)
       for (const int child : node.children)
@@ -274,7 +274,7 @@ std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& opti
     Marks marks;
     bool door = false, station_area = false;
   };
-  std::vector<Visit> stack;  // an own stack: node trees may be deeper than the thread's
+  std::vector<Visit> stack;  // an explicit stack: node trees may be deeper than the thread's stack
   const std::vector<int> roots = root_nodes(file, options);
   for (auto it = roots.rbegin(); it != roots.rend(); ++it)
     stack.push_back({*it, -1, survey_from_gltf, {}, {}, {}, {}, {}});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The nodes of one glTF scene, flattened: which mesh stands where, and what was said about it on the way down.
+// The nodes of one glTF scene, flattened: places of meshes, and the marks inherited from their nodes.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ namespace vantage::gltf {
 // Among SceneOptions::doors, says that doors are closed as the file has them.
 inline constexpr std::string_view kClosedDoors = "closed";
 
-// What extras say of an element.
+// Marks in the extras of an element.
 struct Marks {
   std::optional<Role> role;
   std::optional<double> diffuse;
@@ -25,23 +25,23 @@ struct Marks {
   std::optional<double> detail_mm, accuracy_mm;
   std::optional<bool> door;  // a leaf, open unless SceneOptions::doors says otherwise
 };
-// Throws Error malformed_file for an unknown role, a diffuse coefficient outside [0, 1], a weight outside 1 … 255, a
+// Throws Error malformed_file for an unknown role, a diffuse coefficient outside [0, 1], a weight outside 1 … 255, or a
 // detail or accuracy that is not above 0.
 Marks read_marks(const File& file, const char* array, int index, const std::string& name);
 
-// Names are cut to so many bytes: they are copied to every mesh, table and page.
+// Names are cut to this many bytes, since they are copied to every mesh, table and page.
 constexpr std::size_t kLongestName = 200;
 
-// A node that carries a mesh.
+// A node with a mesh.
 struct PlacedMesh {
   int node = 0, mesh = 0;
   std::string name;                         // the node's, else the mesh's, else "node N"; at most kLongestName bytes
   std::vector<glm::dmat4> world_from_mesh;  // affine, to the survey frame; several with EXT_mesh_gpu_instancing
-  std::optional<Role> pattern_role;         // by the nearest node whose name matches a pattern
+  std::optional<Role> pattern_role;         // from the nearest node whose name matches a pattern
   std::optional<std::uint32_t> pattern_weight;
   std::optional<double> pattern_detail_mm, pattern_accuracy_mm;
-  bool door = false, station_area = false;  // whether a pattern says so of it or of a node above it
-  Marks marks = {};                         // by the nearest node that has them
+  bool door = false, station_area = false;  // whether a pattern matches it or a node above it
+  Marks marks = {};                         // from the nearest node that has them
 };
 
 // Throws Error: malformed_file (cycles, nodes with two parents, matrices that are not finite or not affine),

@@ -6,7 +6,7 @@
 namespace vantage::gltf {
 namespace {
 
-// Triangles of the three modes; `at` gives the i-th of n indices. Strips and fans turn with repeated indices, which
+// Triangles of the three modes; `at` gives the i-th of n indices. Strips and fans restart by repeated indices, which
 // make no triangle.
 template <class At>
 std::vector<Triangle> triangulate(int mode, std::size_t n, At&& at) {

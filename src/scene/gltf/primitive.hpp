@@ -12,7 +12,7 @@
 
 namespace vantage::gltf {
 
-// Counters of what was left out, over all primitives.
+// Numbers of skipped parts, over all primitives.
 struct SkippedPrimitives {
   std::size_t points_or_lines = 0, without_positions = 0, morphed = 0, cut_short = 0;
 };
@@ -21,14 +21,14 @@ struct Primitive {
   std::string name;  // "mesh 3 primitive 0"
   int material = -1;
   std::vector<Triangle> triangles;
-  std::unique_ptr<Accessor> position, normal, colour;  // null where absent, but for position
+  std::unique_ptr<Accessor> position, normal, colour;  // null if absent, except position
   int texcoords[2] = {-1, -1};                         // accessors of TEXCOORD_0 and _1
 
-  // Reads TEXCOORD_`set`; null where the primitive has none.
+  // Reads TEXCOORD_`set`; null if the primitive has none.
   std::unique_ptr<Accessor> texcoord(const File& file, int set) const;
 };
 
-// Of a primitive, as its accessors say before they are checked or read: triangles at most.
+// Upper bounds for a primitive, from its accessors before they are checked or read.
 struct PrimitiveSize {
   std::uint64_t vertices = 0, triangles = 0;
   bool normals = false, colours = false;

@@ -1,4 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one place where tinygltf's code is compiled.
+// The only place that compiles tinygltf's code.
 #define TINYGLTF_IMPLEMENTATION
 #include "scene/gltf/file.hpp"

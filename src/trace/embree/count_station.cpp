@@ -10,13 +10,13 @@
 #include <vector>
 
 #include "core/target_clones.hpp"
-#include "trace/embree/tile_plan.hpp"
+#include "trace/embree/tile_selection.hpp"
 
 namespace vantage {
 namespace {
 
 VANTAGE_TARGET_CLONES
-StationTotals count_tile(const StationRays& station_rays, const TraceStation& station, const PlannedTile& planned,
+StationTotals count_tile(const StationRays& station_rays, const TraceStation& station, const SelectedTile& planned,
                          VoxelLookup& voxels, PointBuckets::Local& points, std::uint32_t shift) {
   const RayTile& tile = planned.tile;
   RayBundle rays;
@@ -45,12 +45,12 @@ StationTotals count_tile(const StationRays& station_rays, const TraceStation& st
     const DroppedPoints dropped = limited ? station_rays.dropped(rays, hits.slot[k]) : DroppedPoints{};
     if (dropped.points == 0) {
       voxels.add(point);
-    } else if (station_rays.grid().rank_of(point) != no_voxel) {
+    } else if (station_rays.grid().index_of(point) != no_voxel) {
       totals.dropped = totals.dropped + dropped;
     }
   }
-  voxels.each_rank([&](std::uint32_t rank) {
-    points.add(rank, shift);
+  voxels.each_index([&](std::uint32_t voxel_index) {
+    points.add(voxel_index, shift);
     ++totals.points_on_surveyed;
   });
   return totals;
@@ -62,7 +62,7 @@ bool count_station(const StationRays& rays, const TraceStation& station, bool sk
                    PointBuckets& points, StationTotals& totals, const Progress& progress) {
   // About a tenth of a second between checks of the stop token.
   const std::size_t chunk = 1024 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
-  const std::vector<PlannedTile> tiles = skip ? tiles_with_bricks(rays, station) : all_tiles(rays.pattern());
+  const std::vector<SelectedTile> tiles = skip ? tiles_with_bricks(rays, station) : all_tiles(rays.pattern());
   for (std::size_t first = 0; first < tiles.size(); first += chunk) {
     if (progress.stopped()) return false;
     const std::size_t end = std::min(tiles.size(), first + chunk);

@@ -68,7 +68,7 @@ class EmbreeTracer final : public Tracer {
   std::vector<StationRays> scanners_;
   EngineInfo info_;
   VoxelField field_;
-  Recent<SampledVoxels> samples_;
+  LruCache<SampledVoxels> samples_;
 };
 
 }  // namespace

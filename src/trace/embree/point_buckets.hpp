@@ -27,7 +27,7 @@ class PointBuckets {
   // The calling thread's buckets.
   class Local {
    public:
-    void add(std::uint32_t rank, std::uint32_t shift) { buckets_[rank >> shift].push_back(rank); }
+    void add(std::uint32_t voxel_index, std::uint32_t shift) { buckets_[voxel_index >> shift].push_back(voxel_index); }
 
    private:
     friend class PointBuckets;
@@ -41,10 +41,10 @@ class PointBuckets {
     const bool masks = !field.stations.empty();
     tbb::parallel_for(std::uint32_t{0}, count, [&](std::uint32_t b) {
       for (Local& local : local_) {
-        for (const std::uint32_t rank : local.buckets_[b]) {
-          std::uint32_t& n = field.count[rank];
+        for (const std::uint32_t voxel_index : local.buckets_[b]) {
+          std::uint32_t& n = field.count[voxel_index];
           n += n != std::numeric_limits<std::uint32_t>::max();
-          if (masks) field.stations[rank] |= bit;
+          if (masks) field.stations[voxel_index] |= bit;
         }
         local.buckets_[b].clear();
       }

@@ -19,8 +19,7 @@ namespace vantage {
 namespace {
 
 constexpr std::size_t block = SampledVoxelCounter::block;
-constexpr std::size_t pairs_at_once = std::size_t{1} << 22;  // (network, voxel) pairs, so that memory does not grow
-                                                             // with the population
+constexpr std::size_t pairs_at_once = std::size_t{1} << 22;  // (network, voxel) pairs, to bound memory
 
 // Upper bound on coordinates in sight, relative or absolute. A power of two, so that most calls keep the last call's
 // sample.
@@ -42,7 +41,7 @@ double magnitude(const VoxelGrid& grid, std::span<const std::vector<TraceStation
 std::vector<NetworkCounts> sample_networks(std::span<const StationRays> scanners,
                                            std::span<const std::vector<TraceStation>> networks,
                                            std::span<const std::uint32_t> station_counts, double goal_density,
-                                           const Tracer::SampleJob& job, Recent<SampledVoxels>& kept,
+                                           const Tracer::SampleJob& job, LruCache<SampledVoxels>& kept,
                                            const Progress& progress) {
   const SceneData& scene = scanners.front().scene();
   const VoxelGrid& grid = scanners.front().grid();

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "core/recent.hpp"
+#include "core/lru_cache.hpp"
 #include "trace/embree/sampled_voxels.hpp"
 #include "trace/embree/station_rays.hpp"
 
@@ -15,7 +15,7 @@ namespace vantage {
 std::vector<NetworkCounts> sample_networks(std::span<const StationRays> scanners,
                                            std::span<const std::vector<TraceStation>> networks,
                                            std::span<const std::uint32_t> station_counts, double goal_density,
-                                           const Tracer::SampleJob& job, Recent<SampledVoxels>& kept,
+                                           const Tracer::SampleJob& job, LruCache<SampledVoxels>& kept,
                                            const Progress& progress);
 
 }  // namespace vantage

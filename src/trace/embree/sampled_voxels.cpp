@@ -74,10 +74,14 @@ bool extend(Box& box, const ExactPlane& plane, double half) {
 }  // namespace
 
 SampledVoxels::SampledVoxels(const SceneData& scene, const VoxelGrid& grid, SampleTriangles& triangles,
-                             std::span<const std::uint32_t> ranks, double pad, double reach, double margin)
-    : pad_(pad), reach_(reach), ranks_(ranks.begin(), ranks.end()), offset_(ranks.size() + 1), crossing_(ranks.size()) {
-  const VoxelTriangles lists = triangles.touching(ranks, margin);
-  const std::size_t n = ranks.size();
+                             std::span<const std::uint32_t> voxel_indices, double pad, double reach, double margin)
+    : pad_(pad),
+      reach_(reach),
+      voxel_indices_(voxel_indices.begin(), voxel_indices.end()),
+      offset_(voxel_indices.size() + 1),
+      crossing_(voxel_indices.size()) {
+  const VoxelTriangles lists = triangles.touching(voxel_indices, margin);
+  const std::size_t n = voxel_indices.size();
   pieces_.resize(lists.triangle.size());
   std::vector<Plane> planes(lists.triangle.size());
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -90,7 +94,7 @@ SampledVoxels::SampledVoxels(const SceneData& scene, const VoxelGrid& grid, Samp
   const double half = side / 2 + pad, wide = half + reach + 2 * pad;
 
   tbb::parallel_for(std::size_t{0}, n, [&](std::size_t i) {
-    const std::array<std::uint32_t, 3> cell = morton_decode(grid.key(ranks[i]));
+    const std::array<std::uint32_t, 3> cell = morton_decode(grid.key(voxel_indices[i]));
     const Vec3 middle =
         Vec3{grid.min()[0], grid.min()[1], grid.min()[2]} + Vec3{cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5} * side;
     const std::uint32_t first = lists.offset[i], end = lists.offset[i + 1];
@@ -158,8 +162,8 @@ SampledVoxels::SampledVoxels(const SceneData& scene, const VoxelGrid& grid, Samp
   planes_.assign(planes.begin(), planes.begin() + offset_[n]);
 }
 
-bool SampledVoxels::made_for(std::span<const std::uint32_t> ranks, double pad, double reach) const {
-  return pad_ == pad && reach_ == reach && std::ranges::equal(ranks_, ranks);
+bool SampledVoxels::made_for(std::span<const std::uint32_t> voxel_indices, double pad, double reach) const {
+  return pad_ == pad && reach_ == reach && std::ranges::equal(voxel_indices_, voxel_indices);
 }
 
 }  // namespace vantage

@@ -42,10 +42,10 @@ class SampledVoxels {
   // `pad`: rounding_pad() of everything in sight. `reach`: how far noise moves a point. `margin`: how far outside its
   // voxel's cube a triangle's hit may lie whose point still counts in it. Metres.
   SampledVoxels(const SceneData& scene, const VoxelGrid& grid, SampleTriangles& triangles,
-                std::span<const std::uint32_t> ranks, double pad, double reach, double margin);
+                std::span<const std::uint32_t> voxel_indices, double pad, double reach, double margin);
 
-  bool made_for(std::span<const std::uint32_t> ranks, double pad, double reach) const;
-  std::size_t size() const { return ranks_.size(); }
+  bool made_for(std::span<const std::uint32_t> voxel_indices, double pad, double reach) const;
+  std::size_t size() const { return voxel_indices_.size(); }
   std::array<std::uint32_t, 3> cell(std::size_t i) const {
     return {static_cast<std::uint32_t>(places_.cell[0][i]), static_cast<std::uint32_t>(places_.cell[1][i]),
             static_cast<std::uint32_t>(places_.cell[2][i])};
@@ -60,7 +60,7 @@ class SampledVoxels {
 
  private:
   double pad_, reach_;
-  std::vector<std::uint32_t> ranks_;
+  std::vector<std::uint32_t> voxel_indices_;
   std::vector<std::uint32_t> offset_, crossing_;
   std::vector<Plane> planes_;
   std::vector<Piece> pieces_;

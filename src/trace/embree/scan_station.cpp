@@ -51,7 +51,7 @@ void scan_tile(const StationRays& station_rays, const TraceStation& station, con
     if (outputs & Tracer::voxel) {
       const bool counts =
           hit && surface.surveyed(triangle) && !(station_rays.limited() && station_rays.dropped(rays, slot).points > 0);
-      chunk.voxel[k] = counts ? station_rays.grid().rank_of(point) : no_voxel;
+      chunk.voxel[k] = counts ? station_rays.grid().index_of(point) : no_voxel;
     }
   }
 }

@@ -32,16 +32,17 @@ StationPoints::StationPoints(std::span<const std::uint32_t> counts, const Statio
   few_.resize(sum);
   each_chunk([&](std::size_t c, std::size_t begin, std::size_t end) {
     std::uint8_t* few = few_.data() + first_[c];
-    for (std::size_t rank = begin * word; rank < std::min(end * word, counts.size()); ++rank)
-      if (counts[rank] > 0) *few++ = static_cast<std::uint8_t>(std::min<std::uint32_t>(counts[rank], more));
+    for (std::size_t voxel_index = begin * word; voxel_index < std::min(end * word, counts.size()); ++voxel_index)
+      if (counts[voxel_index] > 0)
+        *few++ = static_cast<std::uint8_t>(std::min<std::uint32_t>(counts[voxel_index], more));
   });
   if (std::find(few_.begin(), few_.end(), more) == few_.end()) return;
-  for (std::uint32_t rank = 0; rank < counts.size(); ++rank)
-    if (counts[rank] >= more) many_.emplace_back(rank, counts[rank]);
+  for (std::uint32_t voxel_index = 0; voxel_index < counts.size(); ++voxel_index)
+    if (counts[voxel_index] >= more) many_.emplace_back(voxel_index, counts[voxel_index]);
 }
 
-std::uint32_t StationPoints::count_of(std::uint32_t rank) const {
-  return std::lower_bound(many_.begin(), many_.end(), std::pair{rank, 0u})->second;
+std::uint32_t StationPoints::count_of(std::uint32_t voxel_index) const {
+  return std::lower_bound(many_.begin(), many_.end(), std::pair{voxel_index, 0u})->second;
 }
 
 void StationPoints::add_to(VoxelField& field, std::uint64_t bit) const {
@@ -50,10 +51,10 @@ void StationPoints::add_to(VoxelField& field, std::uint64_t bit) const {
     const std::uint8_t* few = few_.data() + first_[c];
     for (std::size_t w = begin; w < end; ++w) {
       for (std::uint64_t left = seen_[w]; left != 0; left &= left - 1, ++few) {
-        const std::size_t rank = w * word + static_cast<std::size_t>(std::countr_zero(left));
-        const std::uint32_t points = *few == more ? count_of(static_cast<std::uint32_t>(rank)) : *few;
-        add_saturating(field.count[rank], points);
-        if (masks) field.stations[rank] |= bit;
+        const std::size_t voxel_index = w * word + static_cast<std::size_t>(std::countr_zero(left));
+        const std::uint32_t points = *few == more ? count_of(static_cast<std::uint32_t>(voxel_index)) : *few;
+        add_saturating(field.count[voxel_index], points);
+        if (masks) field.stations[voxel_index] |= bit;
       }
     }
   });

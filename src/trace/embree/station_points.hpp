@@ -27,7 +27,7 @@ class StationPoints {
 
   template <class F>
   void each_chunk(const F& f) const;
-  std::uint32_t count_of(std::uint32_t rank) const;
+  std::uint32_t count_of(std::uint32_t voxel_index) const;
 
   StationTotals totals_;
   std::vector<std::uint64_t> seen_;                            // a bit per voxel

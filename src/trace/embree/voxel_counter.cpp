@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // For each station in turn, look_from() bounds the rows and columns of rays that can cross each cube of the block, all
-// side by side. list_rays() walks this window of a voxel and gathers rays in the Fan. When that is full, fill_nearest()
-// intersects them with the voxel's surveyed planes and triangles, in float with margins for all errors. Each ray gets
-// the least distance at which its hit can count; if there is none, infinity, and list_fan() drops the ray.
-// The rays listed for a voxel form a Sight, with the distance of the last hit that may count. Once many are listed,
-// settle() probes one ray of each Sight up to its nearest hit that counts. A triangle in the way hides that ray, and
-// drop_hidden() removes all other rays of the Sight that it stops for certain. After `rounds` of that, cast() traces
-// every remaining ray to its nearest hit, in bundles. finish() counts those whose point, noise included, lies in the
-// voxel.
-// Only certain occlusion is used, so the counts are those of casting all rays.
+// side by side. list_rays() walks this window of a voxel and gathers rays in a RayBatch. When that is full,
+// fill_nearest() intersects them with the voxel's surveyed planes and triangles, in float with margins for all errors.
+// Each ray gets the least distance at which its hit can count; if there is none, infinity, and list_batch() drops the
+// ray. The rays listed for a voxel form a `VoxelRays`, with the distance of the last hit that may count. Once many are
+// listed, settle() probes one ray of each `VoxelRays` up to its nearest hit that counts. A triangle in the way hides
+// that ray, and drop_hidden() removes all other rays of the `VoxelRays` that it stops for certain. After `rounds` of
+// that, cast() traces every remaining ray to its nearest hit, in bundles. finish() counts those whose point, noise
+// included, lies in the voxel. Only certain occlusion is used, so the counts are those of casting all rays.
 #include "trace/embree/voxel_counter.hpp"
 
 #include <algorithm>
@@ -55,10 +54,10 @@ Vec3 relative(const Float3& p, const Vec3& head) { return Vec3{p.x, p.y, p.z} - 
 
 SampledVoxelCounter::SampledVoxelCounter(std::span<const StationRays> scanners, const SampledVoxels& voxels, double pad)
     : scanners_(scanners), voxels_(voxels), pad_(pad) {
-  listed_.resize(rays_at_once + Fan::capacity);
-  fan_.x.fill(1);
-  fan_.y.fill(1);
-  fan_.z.fill(1);
+  listed_.resize(rays_at_once + RayBatch::capacity);
+  batch_.x.fill(1);
+  batch_.y.fill(1);
+  batch_.z.fill(1);
 }
 
 void SampledVoxelCounter::count(std::span<const TraceStation> stations, std::size_t first, std::uint32_t stop_at,
@@ -107,16 +106,16 @@ void SampledVoxelCounter::look_from(std::size_t first, std::size_t n) {
   rays_of_boxes(rays_->pattern(), boxes_);
 }
 
-// Turns the fan with its scanner, and fills fan_.nearest.
+// Turns the batch with its scanner, and fills batch_.nearest.
 VANTAGE_TARGET_CLONES
 void SampledVoxelCounter::fill_nearest(std::span<const SampledVoxels::Plane> planes, const Cube& cube) {
-  Fan& fan = fan_;
-  const std::uint32_t n = (fan.size + 7) / 8 * 8;  // whole vectors; the surplus is never read
-  if (station_->turn) turn_all(*station_->turn, fan.x.data(), fan.y.data(), fan.z.data(), fan.size);
+  RayBatch& batch = batch_;
+  const std::uint32_t n = (batch.size + 7) / 8 * 8;  // whole vectors; the surplus is never read
+  if (station_->turn) turn_all(*station_->turn, batch.x.data(), batch.y.data(), batch.z.data(), batch.size);
   const auto trusted = static_cast<float>(1 - trust), pad = static_cast<float>(2 * pad_);
   const float cx = cube.centre.x, cy = cube.centre.y, cz = cube.centre.z, half = cube.half + pad,
               nearest_of_all = cube.nearest * trusted, slack = float_doubt * cube.farthest;
-  std::fill_n(fan.nearest.data(), n, planes.empty() ? nearest_of_all : infinity);
+  std::fill_n(batch.nearest.data(), n, planes.empty() ? nearest_of_all : infinity);
   for (std::size_t k = 0; k < planes.size(); ++k) {
     const SampledVoxels::Plane& plane = planes[k];
     const float nx = plane.normal.x, ny = plane.normal.y, nz = plane.normal.z, height = heights_[k],
@@ -124,17 +123,18 @@ void SampledVoxelCounter::fill_nearest(std::span<const SampledVoxels::Plane> pla
                 graze = grazing * plane.slenderness;
     std::uint32_t any = 0;
     for (std::uint32_t i = 0; i < n; ++i) {
-      const float slope = nx * fan.x[i] + ny * fan.y[i] + nz * fan.z[i], cosine = std::abs(slope), slant = 1 / cosine;
+      const float slope = nx * batch.x[i] + ny * batch.y[i] + nz * batch.z[i], cosine = std::abs(slope),
+                  slant = 1 / cosine;
       const float t = height / slope;
-      const float px = fan.x[i] * t - cx, py = fan.y[i] * t - cy, pz = fan.z[i] * t - cz;
+      const float px = batch.x[i] * t - cx, py = batch.y[i] * t - cy, pz = batch.z[i] * t - cz;
       const float beyond = std::max(std::max(std::abs(px), std::abs(py)), std::abs(pz)) - slack * slant;
-      fan.px[i] = px;
-      fan.py[i] = py;
-      fan.pz[i] = pz;
-      fan.slant[i] = slant;
+      batch.px[i] = px;
+      batch.py[i] = py;
+      batch.pz[i] = pz;
+      batch.slant[i] = slant;
       any |= beyond <= half ? 1u : 0u;
-      fan.candidate[i] = t * (cosine < steep ? trusted : steep_part) - pad + (beyond <= half ? 0.0f : infinity);
-      fan.nearest[i] = std::min(fan.nearest[i], nearest_of_all + (cosine >= graze ? infinity : 0.0f));
+      batch.candidate[i] = t * (cosine < steep ? trusted : steep_part) - pad + (beyond <= half ? 0.0f : infinity);
+      batch.nearest[i] = std::min(batch.nearest[i], nearest_of_all + (cosine >= graze ? infinity : 0.0f));
     }
     if (any == 0) continue;
     for (std::uint32_t p = plane.first; p < plane.end; ++p) {
@@ -145,11 +145,11 @@ void SampledVoxelCounter::fill_nearest(std::span<const SampledVoxels::Plane> pla
       const float bx = b.inwards.x, by = b.inwards.y, bz = b.inwards.z, bo = b.offset, bd = doubt * b.ratio;
       const float ex = c.inwards.x, ey = c.inwards.y, ez = c.inwards.z, eo = c.offset, ed = doubt * c.ratio;
       for (std::uint32_t i = 0; i < n; ++i) {
-        const float px = fan.px[i], py = fan.py[i], pz = fan.pz[i], slant = fan.slant[i];
+        const float px = batch.px[i], py = batch.py[i], pz = batch.pz[i], slant = batch.slant[i];
         const float outside = std::max(
             std::max(ao - ad * slant - (ax * px + ay * py + az * pz), bo - bd * slant - (bx * px + by * py + bz * pz)),
             eo - ed * slant - (ex * px + ey * py + ez * pz));
-        fan.nearest[i] = std::min(fan.nearest[i], fan.candidate[i] + (outside <= 0 ? 0.0f : infinity));
+        batch.nearest[i] = std::min(batch.nearest[i], batch.candidate[i] + (outside <= 0 ? 0.0f : infinity));
       }
     }
   }
@@ -194,72 +194,72 @@ void SampledVoxelCounter::list_rays(std::uint32_t i) {
   }
   if (window.empty() || (sure && planes.empty())) return;
 
-  Sight sight{i, listed_size_, 0, std::min(cube.farthest * static_cast<float>(1 + trust), pattern.max_range)};
+  VoxelRays rays{i, listed_size_, 0, std::min(cube.farthest * static_cast<float>(1 + trust), pattern.max_range)};
   const float *const cosines = pattern.cos_azimuth.data(), *const sines = pattern.sin_azimuth.data();
   for (const RayRanges::Range columns : window.columns) {
     for (std::uint32_t row = window.rows.begin; row < window.rows.end; ++row) {
       const float sine = pattern.sin_zenith[row], cosine = pattern.cos_zenith[row];
       for (std::uint32_t column = columns.begin; column < columns.end;) {
-        const std::uint32_t size = fan_.size;
+        const std::uint32_t size = batch_.size;
         const auto put = [&](std::uint32_t k) {
-          fan_.x[size + k] = sine * cosines[column + k];
-          fan_.y[size + k] = sine * sines[column + k];
-          fan_.z[size + k] = cosine;
-          fan_.row[size + k] = row;
-          fan_.column[size + k] = column + k;
+          batch_.x[size + k] = sine * cosines[column + k];
+          batch_.y[size + k] = sine * sines[column + k];
+          batch_.z[size + k] = cosine;
+          batch_.row[size + k] = row;
+          batch_.column[size + k] = column + k;
         };
-        std::uint32_t n = std::min({columns.end - column, Fan::capacity - size, Fan::step});
-        if (column + Fan::step <= pattern.columns()) {
-          for (std::uint32_t k = 0; k < Fan::step; ++k) put(k);
+        std::uint32_t n = std::min({columns.end - column, RayBatch::capacity - size, RayBatch::step});
+        if (column + RayBatch::step <= pattern.columns()) {
+          for (std::uint32_t k = 0; k < RayBatch::step; ++k) put(k);
         } else {
           n = 1;
           put(0);
         }
-        fan_.size += n;
+        batch_.size += n;
         column += n;
-        if (fan_.size < Fan::capacity) continue;
+        if (batch_.size < RayBatch::capacity) continue;
         fill_nearest(planes, cube);
-        list_fan(sight);
+        list_batch(rays);
         if (full(i)) return;
       }
     }
   }
   fill_nearest(planes, cube);
-  list_fan(sight);
-  sight.end = listed_size_;
-  if (sight.end == sight.begin) return;
+  list_batch(rays);
+  rays.end = listed_size_;
+  if (rays.end == rays.begin) return;
   // an occluder of the middle ray may hide all
-  std::swap(listed_[sight.begin], listed_[(sight.begin + sight.end) / 2]);
-  sights_.push_back(sight);
+  std::swap(listed_[rays.begin], listed_[(rays.begin + rays.end) / 2]);
+  voxel_rays_.push_back(rays);
 }
 
-// Empties the fan: lists those of its rays that may hit.
-void SampledVoxelCounter::list_fan(Sight& sight) {
+// Empties the batch: lists those of its rays that may hit.
+void SampledVoxelCounter::list_batch(VoxelRays& rays) {
   Ray* next = listed_.data() + listed_size_;
-  for (std::uint32_t k = 0; k < fan_.size; ++k) {
-    *next = {{fan_.x[k], fan_.y[k], fan_.z[k]}, fan_.nearest[k], fan_.row[k], fan_.column[k]};
-    next += fan_.nearest[k] < infinity;  // branch-free, since the branch is unpredictable
+  for (std::uint32_t k = 0; k < batch_.size; ++k) {
+    *next = {{batch_.x[k], batch_.y[k], batch_.z[k]}, batch_.nearest[k], batch_.row[k], batch_.column[k]};
+    next += batch_.nearest[k] < infinity;  // branch-free, since the branch is unpredictable
   }
   listed_size_ = static_cast<std::uint32_t>(next - listed_.data());
-  fan_.size = 0;
+  batch_.size = 0;
   if (listed_size_ < rays_at_once) return;
-  sight.end = listed_size_;
-  if (sight.end > sight.begin) sights_.push_back(sight);
+  rays.end = listed_size_;
+  if (rays.end > rays.begin) voxel_rays_.push_back(rays);
   settle();
-  sight.begin = 0;
+  rays.begin = 0;
 }
 
-// Drops rays from `sight` that a triangle stops for certain, before they come near the voxel.
-void SampledVoxelCounter::drop_hidden(Sight& sight, std::uint32_t by) {
-  if (sight.begin == sight.end) return;
+// Drops rays from `rays` that a triangle stops for certain, before they come near the voxel.
+void SampledVoxelCounter::drop_hidden(VoxelRays& rays, std::uint32_t by) {
+  if (rays.begin == rays.end) return;
   const SceneData& scene = rays_->scene();
   const Triangle& t = scene.triangles[by];
   const SeenTriangle triangle(relative(scene.positions[t[0]], head_), relative(scene.positions[t[1]], head_),
                               relative(scene.positions[t[2]], head_));
   // Nearer triangles may lie before the ray's start.
   const double nearest = static_cast<double>(bundle_.start) * (1 + SeenTriangle::distance_doubt);
-  std::uint32_t kept = sight.begin;
-  for (std::uint32_t k = sight.begin; k < sight.end; ++k) {
+  std::uint32_t kept = rays.begin;
+  for (std::uint32_t k = rays.begin; k < rays.end; ++k) {
     const Vec3 d{listed_[k].d.x, listed_[k].d.y, listed_[k].d.z};
     if (triangle.is_steep(d)) {
       const double own = triangle.distance(d);
@@ -269,7 +269,7 @@ void SampledVoxelCounter::drop_hidden(Sight& sight, std::uint32_t by) {
     }
     listed_[kept++] = listed_[k];
   }
-  sight.end = kept;
+  rays.end = kept;
 }
 
 // Traces the listed rays. Most are stopped before they come near the voxel, and any hit is found faster than the
@@ -277,10 +277,10 @@ void SampledVoxelCounter::drop_hidden(Sight& sight, std::uint32_t by) {
 // that counts, so the answer for the other rays is the same.
 void SampledVoxelCounter::settle() {
   visible_.clear();
-  for (int round = 0; round < rounds && !sights_.empty(); ++round) {
+  for (int round = 0; round < rounds && !voxel_rays_.empty(); ++round) {
     probes_.clear();
-    for (const Sight& sight : sights_)
-      probes_.push_back({listed_[sight.begin].d, std::min(listed_[sight.begin].nearest, sight.farthest)});
+    for (const VoxelRays& rays : voxel_rays_)
+      probes_.push_back({listed_[rays.begin].d, std::min(listed_[rays.begin].nearest, rays.farthest)});
     rays_->caster().any_hits(bundle_.origin, bundle_.start, probes_);
     traced_ += probes_.size();
     // In separate passes, so that many loads are in flight at once.
@@ -293,22 +293,22 @@ void SampledVoxelCounter::settle() {
       for (const std::uint32_t corner : scene.triangles[probe.hit]) __builtin_prefetch(&scene.positions[corner]);
     }
     std::size_t kept = 0;
-    for (std::size_t k = 0; k < sights_.size(); ++k) {
-      Sight sight = sights_[k];
+    for (std::size_t k = 0; k < voxel_rays_.size(); ++k) {
+      VoxelRays rays = voxel_rays_[k];
       if (probes_[k].hit == RayBundle::no_hit) {
-        sight.probed = true;
-        visible_.push_back(sight);
+        rays.probed = true;
+        visible_.push_back(rays);
         continue;
       }
-      ++sight.begin;
-      drop_hidden(sight, probes_[k].hit);
-      if (sight.begin < sight.end) sights_[kept++] = sight;
+      ++rays.begin;
+      drop_hidden(rays, probes_[k].hit);
+      if (rays.begin < rays.end) voxel_rays_[kept++] = rays;
     }
-    sights_.resize(kept);
+    voxel_rays_.resize(kept);
   }
-  visible_.insert(visible_.end(), sights_.begin(), sights_.end());
+  visible_.insert(visible_.end(), voxel_rays_.begin(), voxel_rays_.end());
   cast();
-  sights_.clear();
+  voxel_rays_.clear();
   listed_size_ = 0;
 }
 
@@ -318,29 +318,28 @@ void SampledVoxelCounter::cast() {
   bundle_.size = 0;
   if (stop_at_ != 0) {
     const std::uint32_t some = stop_at_ + stop_at_ / 4 + 1;
-    for (Sight& sight : visible_)
-      if (!full(sight.voxel))
-        cast(sight, std::min(counts_[sight.voxel] >= stop_at_ ? 1 : some, sight.end - sight.begin));
+    for (VoxelRays& rays : visible_)
+      if (!full(rays.voxel)) cast(rays, std::min(counts_[rays.voxel] >= stop_at_ ? 1 : some, rays.end - rays.begin));
     finish();
   }
-  for (Sight& sight : visible_)
-    if (!full(sight.voxel)) cast(sight, sight.end - sight.begin);
+  for (VoxelRays& rays : visible_)
+    if (!full(rays.voxel)) cast(rays, rays.end - rays.begin);
   finish();
 }
 
 // Takes the first `many` rays.
-void SampledVoxelCounter::cast(Sight& sight, std::uint32_t many) {
-  traced_ += many - (sight.probed && many > 0 ? 1 : 0);
-  sight.probed = false;
-  for (const std::uint32_t end = sight.begin + many; sight.begin < end; ++sight.begin) {
-    const Ray& ray = listed_[sight.begin];
+void SampledVoxelCounter::cast(VoxelRays& rays, std::uint32_t many) {
+  traced_ += many - (rays.probed && many > 0 ? 1 : 0);
+  rays.probed = false;
+  for (const std::uint32_t end = rays.begin + many; rays.begin < end; ++rays.begin) {
+    const Ray& ray = listed_[rays.begin];
     const std::uint32_t slot = bundle_.size++;
     bundle_.x[slot] = ray.d.x;
     bundle_.y[slot] = ray.d.y;
     bundle_.z[slot] = ray.d.z;
-    bundle_.end[slot] = sight.farthest;
-    cast_ray_[slot] = sight.begin;
-    cast_voxel_[slot] = sight.voxel;
+    bundle_.end[slot] = rays.farthest;
+    cast_ray_[slot] = rays.begin;
+    cast_voxel_[slot] = rays.voxel;
     if (bundle_.size == RayBundle::capacity) finish();
   }
 }

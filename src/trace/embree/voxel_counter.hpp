@@ -42,7 +42,7 @@ class SampledVoxelCounter {
     float nearest, farthest;  // bounds on the distance of such a hit
   };
   // Some of the rays that may cross a cube, as arrays.
-  struct Fan {
+  struct RayBatch {
     static constexpr std::uint32_t capacity = 64, step = 8;  // step: rays written at a time, even if fewer are needed
     std::uint32_t size = 0;
     alignas(64) std::array<float, capacity + step> x, y, z;
@@ -51,7 +51,7 @@ class SampledVoxelCounter {
     alignas(64) std::array<float, capacity> px, py, pz, slant, candidate;  // of the plane in work
   };
   // Rays that may leave a point in one voxel: listed_ from `begin` to `end`.
-  struct Sight {
+  struct VoxelRays {
     std::uint32_t voxel = 0;  // index in the block
     std::uint32_t begin = 0, end = 0;
     float farthest = 0;   // no hit that counts is farther
@@ -70,11 +70,11 @@ class SampledVoxelCounter {
   }
   void list_rays(std::uint32_t i);
   void fill_nearest(std::span<const SampledVoxels::Plane> planes, const Cube& cube);
-  void list_fan(Sight& sight);
+  void list_batch(VoxelRays& rays);
   void settle();
-  void drop_hidden(Sight& sight, std::uint32_t by);
+  void drop_hidden(VoxelRays& rays, std::uint32_t by);
   void cast();
-  void cast(Sight& sight, std::uint32_t many);
+  void cast(VoxelRays& rays, std::uint32_t many);
   void finish();
 
   std::span<const StationRays> scanners_;
@@ -92,11 +92,11 @@ class SampledVoxelCounter {
 
   BoxBatch boxes_;
   alignas(64) std::array<double, block> x_, y_, z_, distance_;  // middles of the cubes, relative to the head
-  Fan fan_;
+  RayBatch batch_;
   std::array<float, SampledVoxels::most_planes> heights_;  // of the head over the planes of the current voxel
   std::vector<Ray> listed_;
   std::uint32_t listed_size_ = 0;
-  std::vector<Sight> sights_, visible_;
+  std::vector<VoxelRays> voxel_rays_, visible_;
   std::vector<Probe> probes_;
   RayBundle bundle_;
   Hits hits_;                                                             // of the bundle

@@ -37,7 +37,7 @@ class BrickPrefixes {
   std::vector<std::array<std::uint16_t, words>> before_;
 };
 
-// VoxelGrid::rank_of for the points of a bundle, in steps over all of them. Arithmetic uses vector registers, and many
+// VoxelGrid::index_of for the points of a bundle, in steps over all of them. Arithmetic uses vector registers, and many
 // loads are in flight at once: at practical resolutions neither hash table nor bricks fit into a cache.
 class VoxelLookup {
  public:
@@ -64,7 +64,7 @@ class VoxelLookup {
   // Calls f with the index of the surveyed voxel of each point that lies in one, in order. Inlined, to be compiled for
   // the caller's target.
   template <class F>
-  [[gnu::always_inline]] void each_rank(const F& f) {
+  [[gnu::always_inline]] void each_index(const F& f) {
     find_cells();
     const std::uint32_t runs = find_runs();
     for (std::uint32_t r = 0; r < runs; ++r) find_brick(runs_[r]);

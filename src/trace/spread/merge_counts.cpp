@@ -44,7 +44,7 @@ void add_station_sums(NetworkCounts& counts, const NetworkCounts& part) {
 
 void add_voxels(NetworkCounts& counts, const NetworkCounts& part) {
   counts.stations = part.stations;
-  counts.point_worth = part.point_worth;
+  counts.point_weight = part.point_weight;
   counts.voxels += part.voxels;
   counts.weight += part.weight;
   counts.saturated += part.saturated;

@@ -10,7 +10,7 @@ class Rate {
  public:
   double items_a_second() const { return rate_; }  // 0: not measured yet
 
-  // Weighs large pieces more, since a fixed cost may dominate small ones. A piece of twice the size learned from
+  // Weighs large chunks more, since a fixed cost may dominate small ones. A chunk of twice the size learned from
   // replaces the rate; one of the same size counts half.
   void learn(std::size_t items, double seconds) {
     if (!(seconds > 0)) return;
@@ -21,7 +21,7 @@ class Rate {
   }
 
  private:
-  double rate_ = 0, size_ = 0;  // of the pieces learned from
+  double rate_ = 0, size_ = 0;  // of the chunks learned from
 };
 
 }  // namespace vantage

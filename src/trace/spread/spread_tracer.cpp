@@ -7,10 +7,10 @@
 #include <mutex>
 #include <utility>
 
+#include "trace/deliver_once.hpp"
 #include "trace/field_counts.hpp"
 #include "trace/sample_runs.hpp"
 #include "trace/spread/merge_counts.hpp"
-#include "trace/told_once.hpp"
 
 namespace vantage {
 namespace {
@@ -49,36 +49,36 @@ bool came_to_end(const std::vector<NetworkCounts>& counts) {
   return std::none_of(counts.begin(), counts.end(), [](const auto& c) { return c.cancelled; });
 }
 
-// Sets the summed counts of the members to what one tracer would return.
-void settle(std::vector<NetworkCounts>& all, bool finished, std::size_t members) {
+// Sets the summed counts of the workers to what one tracer would return.
+void settle(std::vector<NetworkCounts>& all, bool finished, std::size_t workers) {
   for (NetworkCounts& counts : all) {
     counts.cancelled = !finished;
-    counts.trace_seconds /= static_cast<double>(members);
+    counts.trace_seconds /= static_cast<double>(workers);
   }
 }
 
 }  // namespace
 
-SpreadTracer::SpreadTracer(std::vector<std::unique_ptr<Tracer>> tracers, const TraceScene& scene, Team::Warn warn,
+SpreadTracer::SpreadTracer(std::vector<std::unique_ptr<Tracer>> tracers, const TraceScene& scene, WorkerPool::Warn warn,
                            Options options)
     : info_(options.info ? *std::move(options.info) : info_of_all(tracers)),
       grid_(scene.grid),
       scanners_(scene.scanners),
-      team_(std::move(tracers), std::move(warn)),
+      pool_(std::move(tracers), std::move(warn)),
       split_(options.split),
       population_(options.population),
       merge_seconds_a_voxel_(first_merge_seconds_a_voxel) {}
 
 void SpreadTracer::set_goal_density(double goal) {
   Tracer::set_goal_density(goal);
-  for (std::size_t k = 0; k < team_.size(); ++k)
-    if (Tracer* const member = team_.member(k)) member->set_goal_density(goal);
+  for (std::size_t k = 0; k < pool_.size(); ++k)
+    if (Tracer* const worker = pool_.worker(k)) worker->set_goal_density(goal);
 }
 
 std::uint64_t SpreadTracer::preferred_scan_rays(std::uint32_t scanner) const {
   std::uint64_t sum = 0;
-  for (std::size_t k = 0; k < team_.size(); ++k)
-    if (const Tracer* const member = team_.member(k)) sum += member->preferred_scan_rays(scanner);
+  for (std::size_t k = 0; k < pool_.size(); ++k)
+    if (const Tracer* const worker = pool_.worker(k)) sum += worker->preferred_scan_rays(scanner);
   return sum;
 }
 
@@ -87,7 +87,7 @@ void SpreadTracer::scan(const TraceStation& station, std::uint64_t first_ray, st
   const std::uint64_t columns = scanners_[station.scanner].pattern->columns();
   std::mutex mutex;
   RawChunk whole;
-  team_.work(ray_count / columns, rows_, {}, [&](Tracer& tracer, const Piece& rows, const Progress&, const auto&) {
+  pool_.work(ray_count / columns, rows_, {}, [&](Tracer& tracer, const Chunk& rows, const Progress&, const auto&) {
     RawChunk part;
     const std::uint64_t at = rows.first * columns;
     tracer.scan(station, first_ray + at, rows.size() * columns, outputs, part);
@@ -115,17 +115,17 @@ NetworkCounts SpreadTracer::count(std::span<const TraceStation> stations, std::u
 }
 
 bool SpreadTracer::split_pays(std::size_t stations) const {
-  const auto members = static_cast<double>(team_.left());
-  if (members < 2 || stations < 2) return false;
+  const auto workers = static_cast<double>(pool_.left());
+  if (workers < 2 || stations < 2) return false;
   if (split_ == Split::always) return true;
   const double alone = seconds_a_station_ * static_cast<double>(stations);
-  return alone * (1 - 1 / members) > merge_seconds_a_voxel_ * static_cast<double>(grid_->size()) * members;
+  return alone * (1 - 1 / workers) > merge_seconds_a_voxel_ * static_cast<double>(grid_->size()) * workers;
 }
 
 NetworkCounts SpreadTracer::count_whole(std::span<const TraceStation> stations, std::uint32_t station_count,
                                         const CountOptions& options, const Progress& progress) {
   NetworkCounts counts;
-  team_.work(1, networks_, progress, [&](Tracer& tracer, const Piece&, const Progress& own, const auto&) {
+  pool_.work(1, networks_, progress, [&](Tracer& tracer, const Chunk&, const Progress& own, const auto&) {
     counts = tracer.count(stations, station_count, options, own);
     return !counts.cancelled;
   });
@@ -142,10 +142,10 @@ NetworkCounts SpreadTracer::count_by_station(std::span<const TraceStation> stati
   NetworkCounts sums;
   double tracing = 0, merging = 0;
   std::size_t merged = 0;
-  const auto one = [&](Tracer& tracer, const Piece& piece, const Progress& own, const auto&) {
+  const auto one = [&](Tracer& tracer, const Chunk& chunk, const Progress& own, const auto&) {
     VoxelField part;
     const auto begun = Clock::now();
-    const NetworkCounts counts = tracer.count(stations.subspan(piece.first, piece.size()), station_count,
+    const NetworkCounts counts = tracer.count(stations.subspan(chunk.first, chunk.size()), station_count,
                                               {.masks = options.masks, .skip = options.skip, .field = &part}, own);
     if (counts.cancelled) return false;
     const std::lock_guard lock(mutex);
@@ -157,14 +157,14 @@ NetworkCounts SpreadTracer::count_by_station(std::span<const TraceStation> stati
     ++merged;
     return true;
   };
-  const std::size_t members = team_.left();
-  const bool finished = team_.work(stations.size(), stations_, progress, one);
+  const std::size_t workers = pool_.left();
+  const bool finished = pool_.work(stations.size(), stations_, progress, one);
   field.count.resize(grid_->size());
   field.stations.resize(options.masks ? grid_->size() : 0);
   NetworkCounts counts = reduce_field(field.count, field.stations, station_count, goal_density_, grid_->demands());
   add_station_sums(counts, sums);
   counts.cancelled = !finished;
-  counts.trace_seconds = tracing / static_cast<double>(members);
+  counts.trace_seconds = tracing / static_cast<double>(workers);
   if (merged > 0) merge_seconds_a_voxel_ = merging / static_cast<double>(merged * grid_->size());
   if (options.field) *options.field = std::move(field);
   return counts;
@@ -173,16 +173,16 @@ NetworkCounts SpreadTracer::count_by_station(std::span<const TraceStation> stati
 std::vector<NetworkCounts> SpreadTracer::count_each(std::span<const std::vector<TraceStation>> networks,
                                                     std::span<const std::uint32_t> station_counts,
                                                     const CountOptions& options, const Progress& progress) {
-  if (networks.size() < team_.left()) return Tracer::count_each(networks, station_counts, options, progress);
+  if (networks.size() < pool_.left()) return Tracer::count_each(networks, station_counts, options, progress);
   std::vector<NetworkCounts> all(networks.size());
   for (NetworkCounts& counts : all) counts.cancelled = true;
-  team_.work(networks.size(), networks_, progress,
-             [&](Tracer& tracer, const Piece& piece, const Progress& own, const auto&) {
+  pool_.work(networks.size(), networks_, progress,
+             [&](Tracer& tracer, const Chunk& chunk, const Progress& own, const auto&) {
                const std::vector<NetworkCounts> counts =
-                   tracer.count_each(networks.subspan(piece.first, piece.size()),
-                                     station_counts.subspan(piece.first, piece.size()), options, own);
-               // Each piece has its own range of `all`.
-               std::copy(counts.begin(), counts.end(), all.begin() + static_cast<std::ptrdiff_t>(piece.first));
+                   tracer.count_each(networks.subspan(chunk.first, chunk.size()),
+                                     station_counts.subspan(chunk.first, chunk.size()), options, own);
+               // Each chunk has its own range of `all`.
+               std::copy(counts.begin(), counts.end(), all.begin() + static_cast<std::ptrdiff_t>(chunk.first));
                return came_to_end(counts);
              });
   return all;
@@ -193,7 +193,7 @@ std::vector<NetworkCounts> SpreadTracer::count_sampled(std::span<const std::vect
                                                        const SampleJob& job, const Progress& progress) {
   // The case of a search. Other outputs need a network's voxels together.
   const bool sums_alone = job.groups == 0 && !job.points && !job.station_masks && !job.registration;
-  return population_ == Population::by_voxels && sums_alone && !job.sample.empty() && team_.left() > 1
+  return population_ == Population::by_voxels && sums_alone && !job.sample.empty() && pool_.left() > 1
              ? count_by_voxels(networks, station_counts, job, progress)
              : count_by_networks(networks, station_counts, job, progress);
 }
@@ -204,10 +204,10 @@ std::vector<NetworkCounts> SpreadTracer::count_by_voxels(std::span<const std::ve
   std::mutex mutex;
   std::vector<NetworkCounts> all(networks.size());
   const SampleRuns runs(job.sample.size());
-  const std::size_t members = team_.left();
-  const bool finished = team_.work(
-      runs.size(), runs_, progress, [&](Tracer& tracer, const Piece& piece, const Progress& own, const auto&) {
-        const std::vector<std::uint32_t> voxels = runs.runs(job.sample, piece.first, piece.end);
+  const std::size_t workers = pool_.left();
+  const bool finished = pool_.work(
+      runs.size(), runs_, progress, [&](Tracer& tracer, const Chunk& chunk, const Progress& own, const auto&) {
+        const std::vector<std::uint32_t> voxels = runs.runs(job.sample, chunk.first, chunk.end);
         SampleJob part = job;
         part.sample = voxels;
         const std::vector<NetworkCounts> counts = tracer.count_sampled(networks, station_counts, part, own);
@@ -216,7 +216,7 @@ std::vector<NetworkCounts> SpreadTracer::count_by_voxels(std::span<const std::ve
         for (std::size_t n = 0; n < counts.size(); ++n) add_voxels(all[n], counts[n]);
         return true;
       });
-  settle(all, finished, members);
+  settle(all, finished, workers);
   return all;
 }
 
@@ -224,21 +224,21 @@ std::vector<NetworkCounts> SpreadTracer::count_by_networks(std::span<const std::
                                                            std::span<const std::uint32_t> station_counts,
                                                            const SampleJob& job, const Progress& progress) {
   std::vector<NetworkCounts> all(networks.size());
-  // A member that is dropped may have delivered networks that another then counts again.
-  ToldOnce told(job, networks.size());
-  const std::size_t members = team_.left();
+  // A worker that is dropped may have delivered networks that another then counts again.
+  DeliverOnce deliver(job, networks.size());
+  const std::size_t workers = pool_.left();
   const bool finished =
-      team_.work(networks.size(), samples_, progress,
-                 [&](Tracer& tracer, const Piece& piece, const Progress& own, const Team::OnCaller& ask) {
+      pool_.work(networks.size(), samples_, progress,
+                 [&](Tracer& tracer, const Chunk& chunk, const Progress& own, const WorkerPool::OnCaller& ask) {
                    std::vector<NetworkCounts> counts = tracer.count_sampled(
-                       networks.subspan(piece.first, piece.size()), station_counts.subspan(piece.first, piece.size()),
-                       told.piece(piece.first, ask), own);
+                       networks.subspan(chunk.first, chunk.size()), station_counts.subspan(chunk.first, chunk.size()),
+                       deliver.chunk(chunk.first, ask), own);
                    const bool done = came_to_end(counts);
-                   // Each piece has its own range of `all`.
-                   std::move(counts.begin(), counts.end(), all.begin() + static_cast<std::ptrdiff_t>(piece.first));
+                   // Each chunk has its own range of `all`.
+                   std::move(counts.begin(), counts.end(), all.begin() + static_cast<std::ptrdiff_t>(chunk.first));
                    return done;
                  });
-  settle(all, finished, members);
+  settle(all, finished, workers);
   return all;
 }
 

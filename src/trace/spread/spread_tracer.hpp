@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One tracer over several, each on its own device. Members pull pieces of sampled populations, networks of every ray,
-// and rows of a scan. A single network of every ray is split by stations if that gains more than merging costs. A piece
+// One tracer over several, each on its own device. Workers pull chunks of sampled populations, networks of every ray,
+// and rows of a scan. A single network of every ray is split by stations if that gains more than merging costs. A chunk
 // of a population is some of its networks, or some of the sample's voxels. All counts are integers, so the result does
 // not show who counted what.
 #pragma once
@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "trace/spread/team.hpp"
+#include "trace/spread/worker_pool.hpp"
 #include "trace/tracer.hpp"
 
 namespace vantage {
@@ -20,17 +20,18 @@ class SpreadTracer final : public Tracer {
  public:
   // When to split one network by its stations.
   enum class Split { where_it_pays, always };
-  // How a sampled population is cut. By voxels, each member sees all stations: suits GPUs, where rays from neighbouring
-  // stations to a voxel share their way, so half the stations are more than half the work. By networks, each member
-  // gets only the stations of its networks: suits members far away.
+  // How a sampled population is cut. By voxels, each worker sees all stations: suits GPUs, where rays from neighbouring
+  // stations to a voxel share their way, so half the stations are more than half the work. By networks, each worker
+  // gets only the stations of its networks: suits workers far away.
   enum class Population { by_networks, by_voxels };
   struct Options {
     Split split = Split::where_it_pays;
     Population population = Population::by_networks;
-    std::optional<EngineInfo> info = std::nullopt;  // name of the whole; empty: the members' devices
+    std::optional<EngineInfo> info = std::nullopt;  // name of the whole; empty: the workers' devices
   };
   // All tracers are of one scene. REQUIRES: at least one.
-  SpreadTracer(std::vector<std::unique_ptr<Tracer>> tracers, const TraceScene& scene, Team::Warn warn, Options options);
+  SpreadTracer(std::vector<std::unique_ptr<Tracer>> tracers, const TraceScene& scene, WorkerPool::Warn warn,
+               Options options);
 
   const EngineInfo& info() const override { return info_; }
   void set_goal_density(double goal) override;
@@ -63,11 +64,11 @@ class SpreadTracer final : public Tracer {
   EngineInfo info_;
   std::shared_ptr<const VoxelGrid> grid_;
   std::vector<TraceScanner> scanners_;
-  Team team_;
+  WorkerPool pool_;
   Split split_;
   Population population_;
-  TeamRates rows_, networks_, samples_, stations_;
-  TeamRates runs_{.of_rest = 1};
+  WorkerRates rows_, networks_, samples_, stations_;
+  WorkerRates runs_{.of_rest = 1};
   double seconds_a_station_ = 0;  // of networks counted whole, last measured; 0: not yet
   double merge_seconds_a_voxel_;
 };

@@ -31,15 +31,16 @@ std::string join(const std::vector<std::string>& parts) {
 
 }  // namespace
 
-const char* who_has(Needs needs) {
-  return needs == Needs::ray_query ? "VK_KHR_ray_query: a GPU with ray tracing, or mesa-vulkan-drivers >= 24.1 for the "
-                                     "software device"
-                                   : "Vulkan 1.2";
+const char* who_has(DeviceNeeds needs) {
+  return needs == DeviceNeeds::ray_query
+             ? "VK_KHR_ray_query: a GPU with ray tracing, or mesa-vulkan-drivers >= 24.1 for the "
+               "software device"
+             : "Vulkan 1.2";
 }
 
-std::string DeviceAbilities::refusal(Needs needs) const {
+std::string DeviceAbilities::refusal(DeviceNeeds needs) const {
   std::vector<std::string> lacks = compute_lacks;
-  if (needs == Needs::ray_query) lacks.insert(lacks.end(), ray_query_lacks.begin(), ray_query_lacks.end());
+  if (needs == DeviceNeeds::ray_query) lacks.insert(lacks.end(), ray_query_lacks.begin(), ray_query_lacks.end());
   if (lacks.empty()) return {};
   const bool newer_driver_has_it = software() && compute_lacks.empty();
   return "lacks " + join(lacks) + (newer_driver_has_it ? "; install mesa-vulkan-drivers >= 24.1" : "");

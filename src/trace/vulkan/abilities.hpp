@@ -11,12 +11,12 @@
 namespace vantage::vulkan {
 
 // Requirements of an engine on a device.
-enum class Needs {
+enum class DeviceNeeds {
   compute,    // Vulkan 1.2 with addresses, 64-bit integers and subgroups
   ray_query,  // VK_KHR_ray_query as well
 };
 // Devices that meet them, for messages.
-const char* who_has(Needs needs);
+const char* who_has(DeviceNeeds needs);
 
 struct DeviceAbilities {
   std::string name, driver;
@@ -28,7 +28,7 @@ struct DeviceAbilities {
   std::vector<std::string> ray_query_lacks;  // why no engine with ray queries runs on it, beyond compute_lacks
   bool software() const { return type == VK_PHYSICAL_DEVICE_TYPE_CPU; }
   // Why an engine with these needs does not run on it, and what helps; empty if it runs.
-  std::string refusal(Needs needs) const;
+  std::string refusal(DeviceNeeds needs) const;
   // Hardware before software, discrete before integrated, then the most memory.
   bool better_than(const DeviceAbilities& other) const;
 };

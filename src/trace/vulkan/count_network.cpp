@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <array>
 
-#include "trace/vulkan/count_plan.hpp"
+#include "trace/vulkan/count_schedule.hpp"
 #include "trace/vulkan/vulkan_tracer.hpp"
 
 namespace vantage::vulkan {
@@ -46,12 +46,12 @@ class VulkanTracer::ExactCount {
     for (bool first = true, last = false; !last; first = false) {
       result.cancelled = progress.stopped();
       const std::vector<CountPart> parts =
-          result.cancelled ? std::vector<CountPart>() : plan_->next(t_.exact_pace_.rays());
-      const std::size_t next = plan_->finished() ? next_scanner(scanner + 1) : scanner;
+          result.cancelled ? std::vector<CountPart>() : schedule_->next(t_.exact_sizer_.rays());
+      const std::size_t next = schedule_->finished() ? next_scanner(scanner + 1) : scanner;
       last = result.cancelled || next == stations_by_scanner_.size();
-      const auto rays = static_cast<double>(plan_->rays_of(parts));
+      const auto rays = static_cast<double>(schedule_->rays_of(parts));
       const double seconds = submit(parts, first, last);
-      t_.exact_pace_.saw(rays, seconds);
+      t_.exact_sizer_.observe(rays, seconds);
       result.trace_seconds += seconds;
       done_rays += rays;
       if (!result.cancelled) progress(done_rays / static_cast<double>(all_rays_));
@@ -74,12 +74,13 @@ class VulkanTracer::ExactCount {
     scanner_ = &t_.scanners_[scanner];
     stations_ = stations_by_scanner_[scanner];
     const RayPattern& pattern = scanner_->pattern();
-    plan_.emplace(static_cast<std::uint32_t>(stations_.size()), pattern.rows(), pattern.columns(),
-                  t_.rows_per_dispatch(pattern));
+    schedule_.emplace(static_cast<std::uint32_t>(stations_.size()), pattern.rows(), pattern.columns(),
+                      t_.rows_per_dispatch(pattern));
     if (!options_.skip) return;
-    t_.ensure(t_.tile_far_, std::uint64_t{plan_->tiles()} * CountPlan::stations_per_submission * word, "tile far");
-    t_.ensure(t_.tile_list_, plan_->list_words() * word, "tile list");
-    if (tile_pass_) t_.ensure(t_.tile_starts_, plan_->list_words() * tile_pass_->bytes_per_tile, "tile starts");
+    t_.ensure(t_.tile_far_, std::uint64_t{schedule_->tiles()} * CountSchedule::stations_per_submission * word,
+              "tile far");
+    t_.ensure(t_.tile_list_, schedule_->list_words() * word, "tile list");
+    if (tile_pass_) t_.ensure(t_.tile_starts_, schedule_->list_words() * tile_pass_->bytes_per_tile, "tile starts");
   }
 
   void ensure_buffers() {
@@ -88,7 +89,7 @@ class VulkanTracer::ExactCount {
     t_.ensure(t_.station_counters_, sizeof counters_, "station counters");
     t_.ensure_totals(1, 1, stride_);
     if (!options_.skip) return;
-    t_.ensure(t_.tile_dispatch_, CountPlan::parts_per_submission * dispatch_bytes, "tile dispatch",
+    t_.ensure(t_.tile_dispatch_, CountSchedule::parts_per_submission * dispatch_bytes, "tile dispatch",
               VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
     t_.ensure(t_.tile_rays_, sizeof tile_rays_, "tile rays");
   }
@@ -136,7 +137,7 @@ class VulkanTracer::ExactCount {
     r.shader_after_shader();
     const auto for_each_list = [&](Kernel each) {
       for (std::size_t k = 0; k < parts.size(); ++k)
-        r.dispatch(pipeline_of(each, parts[k]), tile_push(parts[k], k), groups_of(plan_->tiles_of(parts[k])));
+        r.dispatch(pipeline_of(each, parts[k]), tile_push(parts[k], k), groups_of(schedule_->tiles_of(parts[k])));
       r.shader_after_shader();
     };
     for_each_list(Kernel::tile_list);
@@ -145,7 +146,7 @@ class VulkanTracer::ExactCount {
 
   // Counts are sums, so the parts of a submission need no barriers between them.
   void record_part(const Recorder& r, const CountPart& part, std::size_t k) {
-    if (headroom_.clamp_before(plan_->rays_of({&part, 1}))) record_clamp(r);
+    if (headroom_.clamp_before(schedule_->rays_of({&part, 1}))) record_clamp(r);
     const BoundPipeline pipeline =
         pipeline_of(Kernel::count, part, {scanner_->noise(), scanner_->limits(), options_.masks, options_.skip});
     const CountPush push = count_push(part, k);
@@ -172,7 +173,7 @@ class VulkanTracer::ExactCount {
   // `k`: index of the part in its submission.
   TilePush tile_push(const CountPart& part, std::size_t k) const {
     TilePush push{};
-    push.tile_far = t_.tile_far_.address() + std::uint64_t{part.slot} * plan_->tiles() * word;
+    push.tile_far = t_.tile_far_.address() + std::uint64_t{part.slot} * schedule_->tiles() * word;
     push.tile_list = t_.tile_list_.address() + part.list * word;
     push.dispatch = t_.tile_dispatch_.address() + k * dispatch_bytes;
     push.rays = t_.tile_rays_.address();
@@ -249,7 +250,7 @@ class VulkanTracer::ExactCount {
   // Current scanner.
   const DeviceScanner* scanner_ = nullptr;
   std::span<const TraceStation> stations_;
-  std::optional<CountPlan> plan_;
+  std::optional<CountSchedule> schedule_;
   CountHeadroom headroom_;
   std::optional<Traversal::TilePass> tile_pass_;
   // Read back from the device.

@@ -10,10 +10,10 @@
 namespace vantage::vulkan {
 
 Device::Device(std::shared_ptr<Instance> instance, VkPhysicalDevice physical, const DeviceAbilities& abilities,
-               Needs needs)
+               DeviceNeeds needs)
     : instance_(std::move(instance)), abilities_(abilities) {
   const InstanceFunctions& vk = instance_->vk();
-  const bool ray_query = needs == Needs::ray_query;
+  const bool ray_query = needs == DeviceNeeds::ray_query;
   vk.vkGetPhysicalDeviceMemoryProperties(physical, &memory_);
   VkPhysicalDeviceAccelerationStructurePropertiesKHR acceleration{};
   acceleration.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_PROPERTIES_KHR;

@@ -13,7 +13,8 @@ namespace vantage::vulkan {
 class Device {
  public:
   // REQUIRES: the abilities lack nothing of the needs.
-  Device(std::shared_ptr<Instance> instance, VkPhysicalDevice physical, const DeviceAbilities& abilities, Needs needs);
+  Device(std::shared_ptr<Instance> instance, VkPhysicalDevice physical, const DeviceAbilities& abilities,
+         DeviceNeeds needs);
   ~Device();
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;

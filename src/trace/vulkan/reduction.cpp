@@ -26,9 +26,9 @@ void VulkanTracer::record_reduction(const Recorder& r, const Reduction& reductio
   push.totals = totals_.address();
   push.station_counts = station_counts_.address();
   push.weights = reduction.demands.weights;
-  push.worths = reduction.demands.worths;
+  push.point_weights = reduction.demands.point_weights;
   push.voxel_count = reduction.voxels;
-  push.goal = goal_worth();
+  push.goal = goal_point_weight();
   push.difference_shift = difference_shift(reduction.voxels);
   push.mask_words = reduction.mask_words;
   push.groups = reduction.groups;
@@ -43,13 +43,13 @@ void VulkanTracer::record_reduction(const Recorder& r, const Reduction& reductio
 void VulkanTracer::read_totals(std::span<NetworkCounts> counts, std::span<const std::uint32_t> station_counts,
                                std::span<const std::uint32_t> totals, const Reduction& reduction,
                                std::uint32_t stride) const {
-  const std::uint32_t point_worth = scene_.grid->demands().least_worth();
+  const std::uint32_t point_weight = scene_.grid->demands().least_point_weight();
   tbb::parallel_for(std::size_t{0}, counts.size(), [&](std::size_t n) {
     NetworkCounts& sum = counts[n];
     const std::uint32_t stations = station_counts[n], pairs = stations * (stations - 1) / 2;
     sum.voxels = reduction.voxels;
     sum.stations = stations;
-    sum.point_worth = point_worth;
+    sum.point_weight = point_weight;
     if (reduction.mask_words) {
       sum.seen.assign(stations, 0);
       sum.shared.assign(pairs, 0);
@@ -61,7 +61,7 @@ void VulkanTracer::read_totals(std::span<NetworkCounts> counts, std::span<const 
       group.voxels = (reduction.voxels + reduction.groups - 1 - g) / reduction.groups;
       group.stations = stations;
       group.weight = reduction.demands.weights ? reduction.weight[g] : group.voxels;
-      group.point_worth = point_worth;
+      group.point_weight = point_weight;
       group.saturated = t[totals_saturated] | std::uint64_t{t[totals_saturated + 1]} << 32;
       group.partial_points = t[totals_partial] | std::uint64_t{t[totals_partial + 1]} << 32;
       squares += t[totals_squares] | std::uint64_t{t[totals_squares + 1]} << 32;
@@ -80,7 +80,7 @@ void VulkanTracer::read_totals(std::span<NetworkCounts> counts, std::span<const 
     }
     // If one of two voxels is saturated, (1 − c / goal)² = 1 − 2 c / goal + c² / goal².
     const double unit =
-        std::ldexp(1.0, static_cast<int>(difference_shift(reduction.voxels))) / (goal_density_ * point_worth);
+        std::ldexp(1.0, static_cast<int>(difference_shift(reduction.voxels))) / (goal_density_ * point_weight);
     sum.successive_difference_sum = static_cast<double>(squares) * unit * unit -
                                     2 * static_cast<double>(edge_points) * unit + static_cast<double>(edges);
   });

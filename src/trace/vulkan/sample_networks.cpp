@@ -9,13 +9,13 @@
 #include <utility>
 
 #include "trace/sample_runs.hpp"
-#include "trace/vulkan/sample_plan.hpp"
+#include "trace/vulkan/pair_schedule.hpp"
 #include "trace/vulkan/vulkan_tracer.hpp"
 
 namespace vantage::vulkan {
 
 const VulkanTracer::DeviceSample& VulkanTracer::upload_sample(std::span<const std::uint32_t> sample) {
-  return samples_.get([&](const DeviceSample& one) { return std::ranges::equal(sample, one.ranks); },
+  return samples_.get([&](const DeviceSample& one) { return std::ranges::equal(sample, one.voxel_indices); },
                       [&] { return device_sample(sample); });
 }
 
@@ -35,7 +35,7 @@ VulkanTracer::DeviceSample VulkanTracer::device_sample(std::span<const std::uint
     const auto cell = morton_decode(grid.key(sample[k]));
     voxels[k] = {cell[0], cell[1], cell[2], static_cast<std::uint32_t>(k)};
   });
-  return {.ranks = {sample.begin(), sample.end()},
+  return {.voxel_indices = {sample.begin(), sample.end()},
           .voxels = to_device<SampleVoxel>(voxels, "sample voxels"),
           .in_order_of_chunks = to_device<SampleVoxel>(in_order_of_chunks(voxels), "voxels of chunks"),
           .demands = to_device(grid.demands().of(sample))};
@@ -43,8 +43,8 @@ VulkanTracer::DeviceSample VulkanTracer::device_sample(std::span<const std::uint
 
 // Networks go in batches that share counts and masks. Within a batch, stations go scanner by scanner, upright and
 // turned ones apart, so that a dispatch has one kind. They go in chunks whose rays fit one list, as many per submission
-// as are quick enough together (sample_plan.hpp). The last chunk of a batch brings its reduction; if some of it must be
-// repeated, so is the reduction.
+// as are quick enough together (pair_schedule.hpp). The last chunk of a batch brings its reduction; if some of it must
+// be repeated, so is the reduction.
 class VulkanTracer::SampledCount {
  public:
   SampledCount(VulkanTracer& tracer, std::span<const std::vector<TraceStation>> networks,
@@ -131,20 +131,20 @@ class VulkanTracer::SampledCount {
     for (const Run& run : batch.runs) {
       const std::uint32_t slots = run.end_slot - run.first_slot;
       const bool last_run = &run == &batch.runs.back();
-      SamplePlan plan(slots, voxels_, most_parts(run.scanner->pattern()), room_);
+      PairSchedule schedule(slots, voxels_, most_parts(run.scanner->pattern()), room_);
       for (bool first = &run == batch.runs.data(), more = true; more; first = false) {
         if (progress.stopped()) return false;
-        Submission submission{&run, plan.next(t_.sampled_pace_.rays(), t_.pairs_seen_, t_.sampled_pace_.rays()), first,
-                              false};
-        submission.last = last_run && plan.finished();
+        Submission submission{&run, schedule.next(t_.sampled_sizer_.rays(), t_.pairs_seen_, t_.sampled_sizer_.rays()),
+                              first, false};
+        submission.last = last_run && schedule.finished();
         const auto [tallies, taken] = submit(batch, submission);
         seconds_ += taken;
-        t_.sampled_pace_.saw(plan.settle(submission.chunks, tallies), taken);
+        t_.sampled_sizer_.observe(schedule.settle(submission.chunks, tallies), taken);
         learn_of_pairs(submission.chunks, tallies);
-        const double done = (slots_done + slots * plan.done()) / all_slots;
+        const double done = (slots_done + slots * schedule.done()) / all_slots;
         progress((static_cast<double>(batch.first) + static_cast<double>(batch.size()) * done) /
                  static_cast<double>(networks_.size()));
-        more = !plan.finished();
+        more = !schedule.finished();
       }
       slots_done += slots;
     }

@@ -59,7 +59,7 @@ class Traversal {
 // An engine, as listed in make_tracer.cpp.
 struct VulkanEngine {
   Engine engine;
-  Needs needs;
+  DeviceNeeds needs;
   std::unique_ptr<Traversal> (*build)(Device& device, Commands& commands, const TraversalScene& scene);
 };
 

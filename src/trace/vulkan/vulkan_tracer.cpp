@@ -35,9 +35,9 @@ VulkanTracer::VulkanTracer(const VulkanEngine& engine, const EngineInfo& info, s
       traversal_(build_traversal(engine)),
       scanners_(make_scanners()),
       kernels_(device_, *traversal_, scanners_.front().set()),
-      exact_pace_(seconds_per_exact_submission, first_share * static_cast<double>(rays_per_dispatch()), 1,
-                  static_cast<double>(rays_per_dispatch())),
-      sampled_pace_(seconds_per_sampled_submission, room_for_sample().rays, 1, 0.5 * room_for_sample().rays) {
+      exact_sizer_(seconds_per_exact_submission, first_share * static_cast<double>(rays_per_dispatch()), 1,
+                   static_cast<double>(rays_per_dispatch())),
+      sampled_sizer_(seconds_per_sampled_submission, room_for_sample().rays, 1, 0.5 * room_for_sample().rays) {
   std::ranges::copy(traversal_->binding().arrays, parameters_.traversal);
   upload_scene();
 }

@@ -18,16 +18,16 @@
 #include <span>
 #include <vector>
 
-#include "core/recent.hpp"
+#include "core/lru_cache.hpp"
 #include "shared/trace_types.h"
 #include "trace/registration_sums.hpp"
 #include "trace/tracer.hpp"
 #include "trace/vulkan/commands.hpp"
 #include "trace/vulkan/device_scanner.hpp"
+#include "trace/vulkan/dispatch_sizer.hpp"
 #include "trace/vulkan/groups.hpp"
 #include "trace/vulkan/kernels.hpp"
-#include "trace/vulkan/pace.hpp"
-#include "trace/vulkan/sample_plan.hpp"
+#include "trace/vulkan/pair_schedule.hpp"
 #include "trace/vulkan/traversal.hpp"
 
 namespace vantage::vulkan {
@@ -69,15 +69,17 @@ class VulkanTracer final : public Tracer {
   void upload_shading();
   // Coverage's demands on voxels, of all or of a sample. Without memory if all are alike.
   struct DemandAddresses {
-    std::uint64_t weights = 0, worths = 0;
+    std::uint64_t weights = 0, point_weights = 0;
   };
   struct DeviceDemands {
-    Buffer weights, worths;
-    DemandAddresses addresses() const { return {weights ? weights.address() : 0, worths ? worths.address() : 0}; }
+    Buffer weights, point_weights;
+    DemandAddresses addresses() const {
+      return {weights ? weights.address() : 0, point_weights ? point_weights.address() : 0};
+    }
   };
   // A sample in the kernels' format.
   struct DeviceSample {
-    std::vector<std::uint32_t> ranks;
+    std::vector<std::uint32_t> voxel_indices;
     Buffer voxels, in_order_of_chunks;
     DeviceDemands demands;
   };
@@ -91,13 +93,14 @@ class VulkanTracer final : public Tracer {
     return info_.software ? software_rays_per_dispatch : hardware_rays_per_dispatch;
   }
   // Sum of point weights that fills a voxel.
-  std::uint64_t goal_worth() const {
-    const double least = scene_.grid->demands().least_worth();
+  std::uint64_t goal_point_weight() const {
+    const double least = scene_.grid->demands().least_point_weight();
     return static_cast<std::uint64_t>(std::min(std::ceil(goal_density_ * least), count_limit * least));
   }
   // Shift that lets `voxels` squares of nearly the goal fit in 64 bits; 0 for every goal that scanners reach.
   std::uint32_t difference_shift(std::uint32_t voxels) const {
-    const int bits = 2 * static_cast<int>(std::bit_width(goal_worth())) + static_cast<int>(std::bit_width(voxels));
+    const int bits =
+        2 * static_cast<int>(std::bit_width(goal_point_weight())) + static_cast<int>(std::bit_width(voxels));
     return static_cast<std::uint32_t>(std::max(0, bits - 62) / 2);
   }
   std::uint32_t rows_per_dispatch(const RayPattern& pattern) const {
@@ -128,7 +131,8 @@ class VulkanTracer final : public Tracer {
     DeviceDemands made;
     demands.weights.resize((demands.weights.size() + 3) / 4 * 4);  // whole words, as shaders read them
     if (!demands.weights.empty()) made.weights = to_device<std::uint8_t>(demands.weights, "voxel weights");
-    if (!demands.worths.empty()) made.worths = to_device<std::uint32_t>(demands.worths, "worths of points");
+    if (!demands.point_weights.empty())
+      made.point_weights = to_device<std::uint32_t>(demands.point_weights, "point weights");
     return made;
   }
 
@@ -169,9 +173,9 @@ class VulkanTracer final : public Tracer {
   DeviceDemands demands_;                                                         // for all voxels
   Buffer counts_, masks_, station_counters_, totals_, station_counts_;
   Buffer tile_far_, tile_list_, tile_dispatch_, tile_rays_, tile_starts_;
-  Pace exact_pace_, sampled_pace_;
+  DispatchSizer exact_sizer_, sampled_sizer_;
 
-  Recent<DeviceSample> samples_;
+  LruCache<DeviceSample> samples_;
   Buffer sample_stations_, sample_pairs_, sample_rays_, sample_sights_, sample_items_, sample_control_, slot_rays_;
   std::shared_ptr<const Patches> patches_;  // contents of the next buffers
   std::shared_ptr<const NoiseModel> patch_noise_;

@@ -61,7 +61,8 @@ class BruteForce final : public Traversal {
 
 const VulkanEngine brute_force_engine{
     static_cast<Engine>(1000),  // engines of the library have an enumerator
-    Needs::compute, [](Device& device, Commands& commands, const TraversalScene& scene) -> std::unique_ptr<Traversal> {
+    DeviceNeeds::compute,
+    [](Device& device, Commands& commands, const TraversalScene& scene) -> std::unique_ptr<Traversal> {
       return std::make_unique<BruteForce>(device, commands, scene);
     }};
 

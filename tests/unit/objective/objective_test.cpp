@@ -142,11 +142,11 @@ TEST(Objective, TimeIsWhatTheRoundTakes) {
 
 TEST(Objective, ThoseOfASearchNeedWhatAnyNeeds) {
   const std::vector<Objective> all{make_objective("link"), make_objective("coverage")};
-  EXPECT_FALSE(needs_of({}).counts);
-  EXPECT_FALSE(needs_of(std::span(all).first(1)).counts);
-  EXPECT_TRUE(needs_of(std::span(all).first(1)).surroundings);
-  EXPECT_TRUE(needs_of(all).counts);
-  EXPECT_TRUE(needs_of(all).surroundings);
+  EXPECT_FALSE(required_inputs_of({}).counts);
+  EXPECT_FALSE(required_inputs_of(std::span(all).first(1)).counts);
+  EXPECT_TRUE(required_inputs_of(std::span(all).first(1)).surroundings);
+  EXPECT_TRUE(required_inputs_of(all).counts);
+  EXPECT_TRUE(required_inputs_of(all).surroundings);
 }
 
 TEST(Objective, FitnessIsEquation1) {

@@ -88,8 +88,8 @@ TEST(Simulator, DescribesItself) {
   EXPECT_NEAR(simulator.voxel_size_m(), 6.012 / 16, 1e-5);
   EXPECT_NEAR(simulator.goal_density(), std::pow(6.012 / 16 / 0.2, 2), 1e-3);
   EXPECT_GE(simulator.voxel_count(), 16u * 10u);
-  for (std::uint64_t rank = 0; rank < simulator.voxel_count(); ++rank) {
-    const Vec3 centre = simulator.voxel_centre(rank) - origin;
+  for (std::uint64_t voxel_index = 0; voxel_index < simulator.voxel_count(); ++voxel_index) {
+    const Vec3 centre = simulator.voxel_centre(voxel_index) - origin;
     EXPECT_NEAR(centre.x, 5, 0.51 * simulator.voxel_size_m());
     EXPECT_LT(std::abs(centre.y), 3.2);
     EXPECT_GT(centre.z, -1.7);
@@ -511,13 +511,13 @@ TEST(Evaluate, GoesByTheGoalOfEachVoxel) {
   const NetworkCounts counts = simulator.evaluate(network, {.field = &field});
   double sum = 0;
   std::array<int, 2> voxels{}, full{};
-  for (std::uint64_t rank = 0; rank < simulator.voxel_count(); ++rank) {
-    const bool coarse = simulator.voxel_centre(rank).x < 0;
+  for (std::uint64_t voxel_index = 0; voxel_index < simulator.voxel_count(); ++voxel_index) {
+    const bool coarse = simulator.voxel_centre(voxel_index).x < 0;
     const double goal = std::pow(simulator.voxel_size_m() / (coarse ? 0.2 : 0.08), 2);
-    EXPECT_NEAR(simulator.goal_density(rank), goal, goal / 4096);
-    sum += std::min(field.count[rank] / simulator.goal_density(rank), 1.0);
+    EXPECT_NEAR(simulator.goal_density(voxel_index), goal, goal / 4096);
+    sum += std::min(field.count[voxel_index] / simulator.goal_density(voxel_index), 1.0);
     ++voxels[coarse];
-    full[coarse] += field.count[rank] >= goal;
+    full[coarse] += field.count[voxel_index] >= goal;
   }
   EXPECT_NEAR(coverage(counts, simulator.goal_density()), sum / static_cast<double>(simulator.voxel_count()), 1e-12);
   // The same points fill one wall and not the other.

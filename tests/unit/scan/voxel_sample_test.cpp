@@ -14,9 +14,9 @@ namespace {
 TEST(VoxelSample, AllWhereAsManyAsThereAre) {
   for (const std::uint64_t n : {0u, 1u, 2u, 17u}) {
     for (const std::uint64_t more : {0u, 5u}) {
-      const auto ranks = voxel_sample(n, n + more, 3);
-      ASSERT_EQ(ranks.size(), n);
-      for (std::uint32_t k = 0; k < n; ++k) EXPECT_EQ(ranks[k], k);
+      const auto voxel_indices = voxel_sample(n, n + more, 3);
+      ASSERT_EQ(voxel_indices.size(), n);
+      for (std::uint32_t k = 0; k < n; ++k) EXPECT_EQ(voxel_indices[k], k);
     }
   }
 }
@@ -26,13 +26,13 @@ TEST(VoxelSample, DistinctAscendingAndNestedAtEverySize) {
        {2u, 3u, 10u, 97u, 128u, 360u, 1597u}) {  // Fibonacci, powers of two, many divisors
     std::vector<std::uint32_t> before;
     for (std::uint64_t size = 0; size <= population; ++size) {
-      const auto ranks = voxel_sample(population, size, 9);
-      ASSERT_EQ(ranks.size(), size);
-      ASSERT_TRUE(std::is_sorted(ranks.begin(), ranks.end()));
-      ASSERT_EQ(std::set(ranks.begin(), ranks.end()).size(), size);
-      ASSERT_TRUE(ranks.empty() || ranks.back() < population);
-      ASSERT_TRUE(std::includes(ranks.begin(), ranks.end(), before.begin(), before.end()));
-      before = ranks;
+      const auto voxel_indices = voxel_sample(population, size, 9);
+      ASSERT_EQ(voxel_indices.size(), size);
+      ASSERT_TRUE(std::is_sorted(voxel_indices.begin(), voxel_indices.end()));
+      ASSERT_EQ(std::set(voxel_indices.begin(), voxel_indices.end()).size(), size);
+      ASSERT_TRUE(voxel_indices.empty() || voxel_indices.back() < population);
+      ASSERT_TRUE(std::includes(voxel_indices.begin(), voxel_indices.end(), before.begin(), before.end()));
+      before = voxel_indices;
     }
   }
 }
@@ -41,12 +41,12 @@ TEST(VoxelSample, DistinctAscendingAndNestedAtEverySize) {
 TEST(VoxelSample, IsEvenAlongTheOrder) {
   for (const std::uint64_t population : {250'000ull, 1'000'003ull, 39'000'000ull, 4'294'967'290ull}) {
     for (std::uint64_t size = 100; size <= 200'000; size = size * 7 / 4) {
-      const auto ranks = voxel_sample(population, size, 1);
+      const auto voxel_indices = voxel_sample(population, size, 1);
       const double mean = static_cast<double>(population) / static_cast<double>(size);
-      std::uint64_t longest = population - ranks.back() + ranks.front(), shortest = longest;
-      for (std::size_t k = 1; k < ranks.size(); ++k) {
-        longest = std::max<std::uint64_t>(longest, ranks[k] - ranks[k - 1]);
-        shortest = std::min<std::uint64_t>(shortest, ranks[k] - ranks[k - 1]);
+      std::uint64_t longest = population - voxel_indices.back() + voxel_indices.front(), shortest = longest;
+      for (std::size_t k = 1; k < voxel_indices.size(); ++k) {
+        longest = std::max<std::uint64_t>(longest, voxel_indices[k] - voxel_indices[k - 1]);
+        shortest = std::min<std::uint64_t>(shortest, voxel_indices[k] - voxel_indices[k - 1]);
       }
       EXPECT_LE(static_cast<double>(longest), 2.5 * mean) << population << ", " << size;
       EXPECT_GE(static_cast<double>(shortest), 0.15 * mean) << population << ", " << size;
@@ -64,9 +64,9 @@ TEST(VoxelSample, EstimatesSmoothFieldsWell) {
   constexpr std::uint64_t population = 1'000'000;
   double squares = 0;
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
-    const auto ranks = voxel_sample(population, 2000, seed);
+    const auto voxel_indices = voxel_sample(population, 2000, seed);
     double sum = 0;
-    for (const auto rank : ranks) sum += std::sin(rank * 2e-5);
+    for (const auto voxel_index : voxel_indices) sum += std::sin(voxel_index * 2e-5);
     const double truth = (1 - std::cos(population * 2e-5)) / (population * 2e-5);
     squares += std::pow(sum / 2000 - truth, 2) / 50;
   }

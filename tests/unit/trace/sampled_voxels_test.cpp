@@ -16,8 +16,8 @@ SampledVoxels::Piece piece_of(const std::array<Float3, 3>& corners) {
   const auto scene = test::SceneBuilder().mesh(Role::surveyed, {corners[0], corners[1], corners[2]}).finish();
   const auto grid = std::make_shared<const VoxelGrid>(VoxelGrid::build(*scene, 100));
   SampleTriangles triangles(scene, grid);
-  const std::array<std::uint32_t, 1> ranks{0};
-  return SampledVoxels(*scene, *grid, triangles, ranks, 1e-5, 0, 1e-4).piece(0);
+  const std::array<std::uint32_t, 1> voxel_indices{0};
+  return SampledVoxels(*scene, *grid, triangles, voxel_indices, 1e-5, 0, 1e-4).piece(0);
 }
 
 // Uncertainty about a hit near an edge grows with the longest edge over that edge, whichever edge is the longest.

@@ -21,7 +21,7 @@ TEST(VoxelLookup, IsRankOfForEveryPoint) {
     std::size_t found = 0;
     for (int run = 0; run < 100; ++run) {
       lookup.clear();
-      std::vector<std::uint32_t> expected, ranks;
+      std::vector<std::uint32_t> expected, voxel_indices;
       const Float3 centre{test::between(random, -3.3, 3.3), test::between(random, -2.3, 2.3),
                           test::between(random, -0.3, 1.8)};
       const double spread = run % 3 == 0 ? 8 : 0.2;
@@ -33,11 +33,11 @@ TEST(VoxelLookup, IsRankOfForEveryPoint) {
         if (k % 50 == 9) p.z = 3e38f;
         if (k % 50 == 10) p = {grid.min()[0], grid.min()[1], grid.min()[2]};
         lookup.add(p);
-        if (grid.rank_of(p) != no_voxel) expected.push_back(grid.rank_of(p));
+        if (grid.index_of(p) != no_voxel) expected.push_back(grid.index_of(p));
       }
-      lookup.each_rank([&](std::uint32_t rank) { ranks.push_back(rank); });
-      ASSERT_EQ(ranks, expected);
-      found += ranks.size();
+      lookup.each_index([&](std::uint32_t voxel_index) { voxel_indices.push_back(voxel_index); });
+      ASSERT_EQ(voxel_indices, expected);
+      found += voxel_indices.size();
     }
     EXPECT_GT(found, 300u);
   }

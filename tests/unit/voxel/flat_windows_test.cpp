@@ -20,10 +20,11 @@ namespace {
 
 constexpr double window_m = 0.25, half = window_m / 2;
 
-std::vector<std::uint32_t> every_rank(const VoxelGrid& grid, std::uint32_t stride = 1) {
-  std::vector<std::uint32_t> ranks;
-  for (std::uint32_t rank = 0; rank < grid.size(); rank += stride) ranks.push_back(rank);
-  return ranks;
+std::vector<std::uint32_t> every_index(const VoxelGrid& grid, std::uint32_t stride = 1) {
+  std::vector<std::uint32_t> voxel_indices;
+  for (std::uint32_t voxel_index = 0; voxel_index < grid.size(); voxel_index += stride)
+    voxel_indices.push_back(voxel_index);
+  return voxel_indices;
 }
 
 // An open tube along Z, of `around` × `up` rectangles.
@@ -51,9 +52,9 @@ SceneData tube(double radius, double height, int around, int up) {
 double counted(const SceneData& scene, const VoxelGrid& grid, const RegistrationModel& model = {}) {
   RayPattern pattern;
   pattern.zenith_step = pattern.azimuth_step = 0.001;
-  const auto ranks = every_rank(grid);
-  const Patches patches = make_patches(scene, grid, ranks, pattern, model);
-  const auto surfaces = voxel_surfaces(scene, grid, ranks);
+  const auto voxel_indices = every_index(grid);
+  const Patches patches = make_patches(scene, grid, voxel_indices, pattern, model);
+  const auto surfaces = voxel_surfaces(scene, grid, voxel_indices);
   double some = 0, all = 0;
   for (std::size_t k = 0; k < surfaces.size(); ++k) {
     all += static_cast<double>(surfaces[k].extent);
@@ -71,7 +72,7 @@ TEST(FlatWindows, HoldNothingOfAPipeHoweverFineVoxelsAre) {
       const VoxelGrid grid = VoxelGrid::build(pipe, user_size);
       EXPECT_EQ(counted(pipe, grid), 0) << up;
       if (user_size == 0.02) {
-        const auto alone = voxel_surfaces(pipe, grid, every_rank(grid));
+        const auto alone = voxel_surfaces(pipe, grid, every_index(grid));
         EXPECT_GT(std::ranges::count_if(alone, [](const VoxelSurface& s) { return s.share > 0.9f; }),
                   static_cast<std::ptrdiff_t>(grid.size() / 2))
             << "by the voxel alone most are planes";
@@ -103,7 +104,7 @@ TEST(FlatWindows, OfAThinWallHoldBothFaces) {
       test::add_patch(scene, {-thickness, 0, 0}, {0, 0, 2}, {0, 2, 0}, cut, cut);
       const VoxelGrid grid = VoxelGrid::build(scene, 0.04);
       int front = 0, back = 0;
-      for (const VoxelSurface& surface : voxel_surfaces(scene, grid, every_rank(grid), window_m)) {
+      for (const VoxelSurface& surface : voxel_surfaces(scene, grid, every_index(grid), window_m)) {
         EXPECT_NEAR(surface.share, 1, 1e-6);
         (static_cast<double>(surface.point.x) > -thickness / 2 ? front : back)++;
       }
@@ -121,7 +122,7 @@ TEST(FlatWindows, OfAWallOnAFloorHoldMoreThanHalf) {
     test::add_patch(scene, {0, 0, 0}, {0, 2, 0}, {0, 0, 2}, cut, cut);
     const VoxelGrid grid = VoxelGrid::build(scene, 0.04);
     int near = 0;
-    for (const VoxelSurface& surface : voxel_surfaces(scene, grid, every_rank(grid), window_m)) {
+    for (const VoxelSurface& surface : voxel_surfaces(scene, grid, every_index(grid), window_m)) {
       const double x = static_cast<double>(surface.point.x), y = static_cast<double>(surface.point.y),
                    z = static_cast<double>(surface.point.z), up = std::max(x, z);
       if (up < grid.voxel_size() || up > 2 - half || y < half || y > 2 - half) continue;
@@ -143,11 +144,11 @@ TEST(FlatWindows, HaveTheSharesThatClippingLeaves) {
   test::add_mesh(scene, test::random_triangles(rng, 50, 1.0f, 0.4f), test::separate_triangles(150), Role::blocking);
   const VoxelGrid grid = VoxelGrid::build(scene, 0.05);
   for (const double side : {0.06, 0.25, 0.9}) {
-    const auto ranks = every_rank(grid, 37);
-    const auto surfaces = voxel_surfaces(scene, grid, ranks);
-    const auto shares = flat_shares(scene, grid, ranks, surfaces, side);
-    ASSERT_EQ(shares.size(), ranks.size());
-    for (std::size_t k = 0; k < ranks.size(); ++k) {
+    const auto voxel_indices = every_index(grid, 37);
+    const auto surfaces = voxel_surfaces(scene, grid, voxel_indices);
+    const auto shares = flat_shares(scene, grid, voxel_indices, surfaces, side);
+    ASSERT_EQ(shares.size(), voxel_indices.size());
+    for (std::size_t k = 0; k < voxel_indices.size(); ++k) {
       const auto& [px, py, pz] = surfaces[k].point;
       const Vec3 point{px, py, pz}, normal{surfaces[k].normal.x, surfaces[k].normal.y, surfaces[k].normal.z};
       double within = 0, other = 0, small = 0;
@@ -186,7 +187,7 @@ TEST(FlatWindows, HaveTheSharesThatClippingLeaves) {
           within += area;
       }
       if (small > 0 || surfaces[k].area == 0) continue;  // small triangles count by their middles
-      ASSERT_NEAR(shares[k], within / (within + other), 1e-4) << side << ' ' << ranks[k];
+      ASSERT_NEAR(shares[k], within / (within + other), 1e-4) << side << ' ' << voxel_indices[k];
     }
   }
 }
@@ -195,14 +196,14 @@ TEST(FlatWindows, DoNotDependOnOtherVoxelsOrThreads) {
   SceneData scene = tube(0.3, 1, 60, 12);
   test::add_patch(scene, {-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 3, 50);
   const VoxelGrid grid = VoxelGrid::build(scene, 0.03);
-  const auto all = voxel_surfaces(scene, grid, every_rank(grid), window_m);
+  const auto all = voxel_surfaces(scene, grid, every_index(grid), window_m);
   for (const std::uint32_t stride : {3u, 101u}) {
-    const auto some = every_rank(grid, stride);
+    const auto some = every_index(grid, stride);
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
     const auto few = voxel_surfaces(scene, grid, some, window_m);
     for (std::size_t k = 0; k < some.size(); ++k) ASSERT_EQ(few[k].share, all[some[k]].share);
   }
-  const auto of_voxels = voxel_surfaces(scene, grid, every_rank(grid));
+  const auto of_voxels = voxel_surfaces(scene, grid, every_index(grid));
   for (std::size_t k = 0; k < all.size(); ++k) {
     ASSERT_LE(all[k].share, of_voxels[k].share);
     ASSERT_EQ(all[k].area, of_voxels[k].area);
@@ -216,7 +217,7 @@ TEST(FlatWindows, MayBeWiderThanTheGrid) {
   test::add_patch(scene, {0, 0, 0}, {0.3, 0, 0}, {0, 0.3, 0}, 4, 4);
   test::add_patch(scene, {0, 0, 0}, {0, 0.3, 0}, {0, 0, 0.1});
   const VoxelGrid grid = VoxelGrid::build(scene, 0.05);
-  for (const VoxelSurface& surface : voxel_surfaces(scene, grid, every_rank(grid), 5)) {
+  for (const VoxelSurface& surface : voxel_surfaces(scene, grid, every_index(grid), 5)) {
     const bool floor = std::abs(surface.normal.z) > 0.9f;
     EXPECT_NEAR(surface.share, floor ? 0.75 : 0.25, 1e-6);
   }

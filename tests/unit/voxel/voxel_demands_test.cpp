@@ -30,16 +30,16 @@ TEST(VoxelWeights, AreTheLargestOfTheMeshesThatTouch) {
   const SceneData scene =
       scene_of_weights({{Role::surveyed, 2}, {Role::blocking, 200}, {Role::surveyed, 9}, {Role::surveyed, 5}});
   const VoxelGrid grid = VoxelGrid::build(scene, 0.1);
-  std::vector<std::uint32_t> ranks(grid.size());
-  std::iota(ranks.begin(), ranks.end(), 0u);
-  const VoxelTriangles touching = triangles_touching(scene, grid, ranks, 0);
+  std::vector<std::uint32_t> voxel_indices(grid.size());
+  std::iota(voxel_indices.begin(), voxel_indices.end(), 0u);
+  const VoxelTriangles touching = triangles_touching(scene, grid, voxel_indices, 0);
   std::uint64_t sum = 0;
   std::vector<int> met(10);
-  for (const std::uint32_t rank : ranks) {
+  for (const std::uint32_t voxel_index : voxel_indices) {
     std::uint32_t expected = 0;
-    for (std::uint32_t k = touching.offset[rank]; k < touching.offset[rank + 1]; ++k)
+    for (std::uint32_t k = touching.offset[voxel_index]; k < touching.offset[voxel_index + 1]; ++k)
       expected = std::max(expected, scene.meshes[scene.mesh_of(touching.triangle[k])].weight);
-    ASSERT_EQ(grid.demands().weight(rank), expected) << "voxel " << rank;
+    ASSERT_EQ(grid.demands().weight(voxel_index), expected) << "voxel " << voxel_index;
     sum += expected;
     ++met[expected];
   }
@@ -61,23 +61,23 @@ TEST(PointWorths, AreThoseOfTheFinestMeshThatTouches) {
       scene_of_weights({{Role::surveyed, 1}, {Role::blocking, 1}, {Role::surveyed, 1}, {Role::surveyed, 1}});
   const VoxelGrid grid = VoxelGrid::build(scene, 0.1);
   const std::vector<double> spacings{0.03, 0.001, 0.008, 5};
-  const auto worths = point_worths(scene, grid, spacings, {});
-  ASSERT_TRUE(worths);
-  ASSERT_EQ(worths->size(), grid.size());
-  std::vector<std::uint32_t> ranks(grid.size());
-  std::iota(ranks.begin(), ranks.end(), 0u);
-  const VoxelTriangles touching = triangles_touching(scene, grid, ranks, 0);
+  const auto weights_of_points = point_weights(scene, grid, spacings, {});
+  ASSERT_TRUE(weights_of_points);
+  ASSERT_EQ(weights_of_points->size(), grid.size());
+  std::vector<std::uint32_t> voxel_indices(grid.size());
+  std::iota(voxel_indices.begin(), voxel_indices.end(), 0u);
+  const VoxelTriangles touching = triangles_touching(scene, grid, voxel_indices, 0);
   const double densest = std::pow(grid.voxel_size() / 0.008, 2);
   std::array<int, 3> met{};
-  for (const std::uint32_t rank : ranks) {
+  for (const std::uint32_t voxel_index : voxel_indices) {
     double finest = 5;
-    for (std::uint32_t k = touching.offset[rank]; k < touching.offset[rank + 1]; ++k)
+    for (std::uint32_t k = touching.offset[voxel_index]; k < touching.offset[voxel_index + 1]; ++k)
       if (const std::uint32_t mesh = scene.mesh_of(touching.triangle[k]); scene.meshes[mesh].role == Role::surveyed)
         finest = std::min(finest, spacings[mesh]);
     const double goal = std::max(std::pow(grid.voxel_size() / finest, 2), 1.0);
-    const double told = densest * densest_worth / (*worths)[rank];
-    ASSERT_LE(told, goal * (1 + 1e-12)) << "voxel " << rank;
-    ASSERT_GE(told, goal * (1 - 1.0 / densest_worth)) << "voxel " << rank;
+    const double told = densest * densest_point_weight / (*weights_of_points)[voxel_index];
+    ASSERT_LE(told, goal * (1 + 1e-12)) << "voxel " << voxel_index;
+    ASSERT_GE(told, goal * (1 - 1.0 / densest_point_weight)) << "voxel " << voxel_index;
     ++met[finest == 0.008 ? 0 : finest == 0.03 ? 1 : 2];
   }
   for (const int count : met) EXPECT_GT(count, 100);
@@ -86,17 +86,17 @@ TEST(PointWorths, AreThoseOfTheFinestMeshThatTouches) {
 TEST(PointWorths, TakeNoMemoryWhereAllWantTheSame) {
   const SceneData scene = scene_of_weights({{Role::surveyed, 1}, {Role::blocking, 1}, {Role::surveyed, 1}});
   const VoxelGrid grid = VoxelGrid::build(scene, 0.1);
-  EXPECT_TRUE(point_worths(scene, grid, std::vector{0.01, 0.5, 0.01}, {})->empty());
-  EXPECT_EQ(grid.demands().worth(3), 1u);
-  EXPECT_EQ(grid.demands().least_worth(), 1u);
+  EXPECT_TRUE(point_weights(scene, grid, std::vector{0.01, 0.5, 0.01}, {})->empty());
+  EXPECT_EQ(grid.demands().point_weight(3), 1u);
+  EXPECT_EQ(grid.demands().least_point_weight(), 1u);
 }
 
 TEST(PointWorths, AreThoseOfASample) {
-  const VoxelDemands demands{.weights = {1, 2, 3, 4}, .worths = {10, 20, 30, 40}};
+  const VoxelDemands demands{.weights = {1, 2, 3, 4}, .point_weights = {10, 20, 30, 40}};
   const VoxelDemands some = demands.of(std::vector<std::uint32_t>{1, 3});
   EXPECT_EQ(some.weights, (std::vector<std::uint8_t>{2, 4}));
-  EXPECT_EQ(some.worths, (std::vector<std::uint32_t>{20, 40}));
-  EXPECT_TRUE(VoxelDemands().of(std::vector<std::uint32_t>{7}).worths.empty());
+  EXPECT_EQ(some.point_weights, (std::vector<std::uint32_t>{20, 40}));
+  EXPECT_TRUE(VoxelDemands().of(std::vector<std::uint32_t>{7}).point_weights.empty());
 }
 
 }  // namespace

@@ -58,10 +58,10 @@ TEST(VoxelGrid, RanksFollowTheKeysThereAndBack) {
   const VoxelGrid grid = VoxelGrid::build(random_scene(3), 0.05);
   ASSERT_GT(grid.size(), 1000u);
   std::uint64_t previous = 0;
-  for (std::uint64_t rank = 0; rank < grid.size(); ++rank) {
-    const std::uint64_t key = grid.key(rank);
-    ASSERT_TRUE(rank == 0 || previous < key);
-    ASSERT_EQ(grid.find(key), rank);
+  for (std::uint64_t voxel_index = 0; voxel_index < grid.size(); ++voxel_index) {
+    const std::uint64_t key = grid.key(voxel_index);
+    ASSERT_TRUE(voxel_index == 0 || previous < key);
+    ASSERT_EQ(grid.find(key), voxel_index);
     previous = key;
   }
 }
@@ -112,7 +112,7 @@ RC_GTEST_PROP(VoxelGrid, KeepsEquationTwoAndHoldsWhatIsSurveyed, ()) {
             min[2] < scene.local_bounds.min.z);
   RC_ASSERT(min[0] + side > scene.local_bounds.max.x && min[1] + side > scene.local_bounds.max.y &&
             min[2] + side > scene.local_bounds.max.z);
-  for (const Float3& p : scene.positions) RC_ASSERT(grid.rank_of(p) != no_voxel);
+  for (const Float3& p : scene.positions) RC_ASSERT(grid.index_of(p) != no_voxel);
 }
 
 TEST(VoxelGrid, CellsAreHalfOpenAndOutsideIsEmpty) {
@@ -123,7 +123,7 @@ TEST(VoxelGrid, CellsAreHalfOpenAndOutsideIsEmpty) {
   EXPECT_FALSE(grid.cell_of({m[0] + 10.03f, m[1], m[2]}));
   EXPECT_FALSE(grid.cell_of({NAN, 0, 0}));
   EXPECT_FALSE(grid.cell_of({0, INFINITY, 0}));
-  EXPECT_EQ(grid.rank_of({0, 0, 2}), no_voxel);  // inside the cube, but on no surface
+  EXPECT_EQ(grid.index_of({0, 0, 2}), no_voxel);  // inside the cube, but on no surface
 }
 
 TEST(VoxelGrid, OnlySurveyedMeshesMark) {
@@ -140,7 +140,7 @@ TEST(VoxelGrid, ASceneWithoutSurveyedMeshesHasNoVoxels) {
   test::add_patch(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1, 1, Role::blocking);
   const VoxelGrid grid = VoxelGrid::build(scene, 0.1);
   EXPECT_EQ(grid.size(), 0u);
-  EXPECT_EQ(grid.rank_of({0.5f, 0.5f, 0}), no_voxel);
+  EXPECT_EQ(grid.index_of({0.5f, 0.5f, 0}), no_voxel);
 }
 
 TEST(VoxelGrid, RefusesSizesThatMakeNoSense) {

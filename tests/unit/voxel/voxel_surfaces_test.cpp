@@ -14,9 +14,9 @@ namespace vantage {
 namespace {
 
 std::vector<VoxelSurface> all_surfaces(const SceneData& scene, const VoxelGrid& grid) {
-  std::vector<std::uint32_t> ranks(grid.size());
-  std::iota(ranks.begin(), ranks.end(), 0u);
-  return voxel_surfaces(scene, grid, ranks);
+  std::vector<std::uint32_t> voxel_indices(grid.size());
+  std::iota(voxel_indices.begin(), voxel_indices.end(), 0u);
+  return voxel_surfaces(scene, grid, voxel_indices);
 }
 
 double along(const Float3& a, const Vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
@@ -50,8 +50,8 @@ TEST(VoxelSurfaces, HaveTheAreaThatClippingLeaves) {
     test::add_mesh(scene, test::random_triangles(rng, 1, 2.0f, 1.0f), {{0, 1, 2}});
     const VoxelGrid grid = VoxelGrid::build(scene, 0.1);
     const auto surfaces = all_surfaces(scene, grid);
-    for (std::uint64_t rank = 0; rank < grid.size(); ++rank) {
-      const auto cell = morton_decode(grid.key(rank));
+    for (std::uint64_t voxel_index = 0; voxel_index < grid.size(); ++voxel_index) {
+      const auto cell = morton_decode(grid.key(voxel_index));
       test::Polygon<double> polygon;
       for (const Float3& p : scene.positions) polygon.push_back({p.x, p.y, p.z});
       for (int axis = 0; axis < 3 && !polygon.empty(); ++axis) {
@@ -63,7 +63,7 @@ TEST(VoxelSurfaces, HaveTheAreaThatClippingLeaves) {
         const auto at = [&](std::size_t c) { return Vec3{polygon[c][0], polygon[c][1], polygon[c][2]}; };
         sum = sum + cross(at(i) - at(0), at(i + 1) - at(0)) * 0.5;
       }
-      ASSERT_NEAR(surfaces[rank].area, std::sqrt(dot(sum, sum)), 1e-6);
+      ASSERT_NEAR(surfaces[voxel_index].area, std::sqrt(dot(sum, sum)), 1e-6);
     }
   }
 }
@@ -111,7 +111,7 @@ TEST(VoxelSurfaces, DoNotDependOnWindingOrOnOtherVoxels) {
   const VoxelGrid grid = VoxelGrid::build(scene, 0.2);
   const auto all = all_surfaces(scene, grid), other = all_surfaces(mixed, grid);
   std::vector<std::uint32_t> some;
-  for (std::uint32_t rank = 1; rank < grid.size(); rank += 3) some.push_back(rank);
+  for (std::uint32_t voxel_index = 1; voxel_index < grid.size(); voxel_index += 3) some.push_back(voxel_index);
   const auto few = voxel_surfaces(scene, grid, some);
   for (std::size_t k = 0; k < all.size(); ++k) {
     EXPECT_NEAR(all[k].area, other[k].area, 1e-7);

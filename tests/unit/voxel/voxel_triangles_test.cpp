@@ -26,10 +26,10 @@ SceneData scene_with_blocking() {
 
 // Lists of all voxels, by clipping each surveyed triangle against the cube.
 std::vector<std::vector<std::uint32_t>> clipped_lists(const SceneData& scene, const VoxelGrid& grid,
-                                                      std::span<const std::uint32_t> ranks, double margin) {
+                                                      std::span<const std::uint32_t> voxel_indices, double margin) {
   std::vector<std::vector<std::uint32_t>> lists;
-  for (const std::uint32_t rank : ranks) {
-    const auto cell = morton_decode(grid.key(rank));
+  for (const std::uint32_t voxel_index : voxel_indices) {
+    const auto cell = morton_decode(grid.key(voxel_index));
     std::array<double, 3> low, high;
     for (int axis = 0; axis < 3; ++axis) {
       low[axis] = grid.min()[axis] + cell[axis] * grid.voxel_size() - margin;
@@ -55,17 +55,17 @@ TEST(VoxelTriangles, EqualClippingForSparseAndDenseSamples) {
   const VoxelGrid grid = VoxelGrid::build(scene, 0.1);
   for (const double margin : {0.0, 1e-5, 0.03, 0.25})
     for (const std::uint32_t stride : {1u, 20u, 100u}) {
-      std::vector<std::uint32_t> ranks;
-      for (std::uint32_t r = stride / 2; r < grid.size(); r += stride * 7) ranks.push_back(r);
-      if (stride == 1) ranks.resize(std::min<std::size_t>(ranks.size(), grid.size() / 32 + 40));
-      const VoxelTriangles found = triangles_touching(scene, grid, ranks, margin);
-      const auto expected = clipped_lists(scene, grid, ranks, margin);
-      ASSERT_EQ(found.offset.size(), ranks.size() + 1);
+      std::vector<std::uint32_t> voxel_indices;
+      for (std::uint32_t r = stride / 2; r < grid.size(); r += stride * 7) voxel_indices.push_back(r);
+      if (stride == 1) voxel_indices.resize(std::min<std::size_t>(voxel_indices.size(), grid.size() / 32 + 40));
+      const VoxelTriangles found = triangles_touching(scene, grid, voxel_indices, margin);
+      const auto expected = clipped_lists(scene, grid, voxel_indices, margin);
+      ASSERT_EQ(found.offset.size(), voxel_indices.size() + 1);
       ASSERT_EQ(found.offset.back(), found.triangle.size());
-      for (std::size_t i = 0; i < ranks.size(); ++i) {
+      for (std::size_t i = 0; i < voxel_indices.size(); ++i) {
         const std::vector<std::uint32_t> list(found.triangle.begin() + found.offset[i],
                                               found.triangle.begin() + found.offset[i + 1]);
-        ASSERT_EQ(list, expected[i]) << "rank " << ranks[i] << " margin " << margin;
+        ASSERT_EQ(list, expected[i]) << "voxel_index " << voxel_indices[i] << " margin " << margin;
         ASSERT_FALSE(list.empty());
       }
     }
@@ -95,10 +95,10 @@ TEST(VoxelTriangles, OneSampleAfterAnotherFindsTheSame) {
     SampleTriangles triangles(scene, grid);
     for (const double margin : {0.004, 0.005, 0.0, 0.25, 0.01})
       for (std::uint32_t first : {3u, 3u, 40u, 117u}) {
-        std::vector<std::uint32_t> ranks;
-        for (std::uint32_t r = first; r < grid->size(); r += 211) ranks.push_back(r);
-        const VoxelTriangles found = triangles.touching(ranks, margin);
-        const VoxelTriangles expected = triangles_touching(*scene, *grid, ranks, margin);
+        std::vector<std::uint32_t> voxel_indices;
+        for (std::uint32_t r = first; r < grid->size(); r += 211) voxel_indices.push_back(r);
+        const VoxelTriangles found = triangles.touching(voxel_indices, margin);
+        const VoxelTriangles expected = triangles_touching(*scene, *grid, voxel_indices, margin);
         ASSERT_EQ(found.offset, expected.offset) << size << ' ' << margin << ' ' << first;
         ASSERT_EQ(found.triangle, expected.triangle) << size << ' ' << margin << ' ' << first;
       }

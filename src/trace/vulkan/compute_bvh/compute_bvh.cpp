@@ -38,7 +38,7 @@ class ComputeBvh final : public Traversal {
 }  // namespace
 
 const VulkanEngine compute_bvh_engine{
-    Engine::compute_bvh, Needs::compute,
+    Engine::compute_bvh, DeviceNeeds::compute,
     [](Device& device, Commands& commands, const TraversalScene& scene) -> std::unique_ptr<Traversal> {
       return std::make_unique<ComputeBvh>(device, commands, scene);
     }};

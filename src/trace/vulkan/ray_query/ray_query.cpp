@@ -31,7 +31,7 @@ class RayQuery final : public Traversal {
 }  // namespace
 
 const VulkanEngine ray_query_engine{
-    Engine::ray_query, Needs::ray_query,
+    Engine::ray_query, DeviceNeeds::ray_query,
     [](Device& device, Commands& commands, const TraversalScene& scene) -> std::unique_ptr<Traversal> {
       return std::make_unique<RayQuery>(device, commands, scene);
     }};

@@ -105,14 +105,15 @@ struct Site {
         network.push_back({{test::between(random, -2.5, 2.5), test::between(random, -2.5, 2.5), 1.5f}, place});
       sizes.push_back(static_cast<std::uint32_t>(network.size()));
     }
-    for (std::uint32_t rank = 0; rank < scene.grid->size(); rank += 3) sample.push_back(rank);
+    for (std::uint32_t voxel_index = 0; voxel_index < scene.grid->size(); voxel_index += 3)
+      sample.push_back(voxel_index);
   }
   std::unique_ptr<Tracer> one() const {
     auto tracer = make_embree_tracer(scene);
     tracer->set_goal_density(wanted);
     return tracer;
   }
-  std::unique_ptr<SpreadTracer> several(const std::vector<Frail::Manner>& manners, Team::Warn warn = {},
+  std::unique_ptr<SpreadTracer> several(const std::vector<Frail::Manner>& manners, WorkerPool::Warn warn = {},
                                         SpreadTracer::Options options = {
                                             .split = SpreadTracer::Split::always,
                                             .population = SpreadTracer::Population::by_voxels}) const {
@@ -244,7 +245,7 @@ INSTANTIATE_TEST_SUITE_P(SpreadTracer, Populations,
                            return of.param == SpreadTracer::Population::by_voxels ? "ByVoxels" : "ByNetworks";
                          });
 
-// Each member has some voxels and all networks, or all voxels and some networks.
+// Each worker has some voxels and all networks, or all voxels and some networks.
 TEST(SpreadTracer, SplitsAPopulationAsItIsTold) {
   const Site site;
   for (const auto population : {SpreadTracer::Population::by_networks, SpreadTracer::Population::by_voxels}) {

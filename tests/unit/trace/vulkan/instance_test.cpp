@@ -19,8 +19,8 @@ class Machine {
   explicit Machine(bool validation) : validation_(validation), instance_(std::make_shared<Instance>(validation)) {
     for (const VkPhysicalDevice physical : instance_->physical_devices()) {
       const DeviceAbilities abilities = abilities_of(*instance_, physical);
-      if (device_ || !abilities.refusal(Needs::compute).empty()) continue;
-      device_.emplace(instance_, physical, abilities, Needs::compute);
+      if (device_ || !abilities.refusal(DeviceNeeds::compute).empty()) continue;
+      device_.emplace(instance_, physical, abilities, DeviceNeeds::compute);
       commands_.emplace(*device_);
     }
   }

@@ -9,16 +9,16 @@
 
 namespace vantage {
 
-struct PlannedTile {
+struct SelectedTile {
   RayTile tile;
   float end = 0;  // rays need not be traced further
 };
 
 // All tiles of the pattern, to its full range.
-std::vector<PlannedTile> all_tiles(const RayPattern& pattern);
+std::vector<SelectedTile> all_tiles(const RayPattern& pattern);
 
 // Tiles in which a surveyed brick lies as seen from `station`. Rays left out, and parts of rays beyond their end, hold
 // no point that counts and no hit that hides one.
-std::vector<PlannedTile> tiles_with_bricks(const StationRays& rays, const TraceStation& station);
+std::vector<SelectedTile> tiles_with_bricks(const StationRays& rays, const TraceStation& station);
 
 }  // namespace vantage

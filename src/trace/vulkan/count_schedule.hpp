@@ -16,12 +16,12 @@ struct CountPart {
 };
 
 // Cuts all rows of all stations into parts, and parts into submissions, in order.
-class CountPlan {
+class CountSchedule {
  public:
   static constexpr std::uint32_t stations_per_submission = 16, parts_per_submission = 256;
 
   // REQUIRES: rows_per_part is a multiple of tile_side, so that no tile belongs to two parts.
-  CountPlan(std::uint32_t stations, std::uint32_t rows, std::uint32_t columns, std::uint32_t rows_per_part);
+  CountSchedule(std::uint32_t stations, std::uint32_t rows, std::uint32_t columns, std::uint32_t rows_per_part);
 
   // Returns the parts of the next submission: all that begin below `rays` rays, at least one unless finished. No part
   // has more rays than that, as far as whole tiles allow.

@@ -10,15 +10,15 @@
 
 namespace vantage {
 
-class ToldOnce {
+class DeliverOnce {
  public:
   // Borrows the job.
-  ToldOnce(const Tracer::SampleJob& job, std::size_t networks)
+  DeliverOnce(const Tracer::SampleJob& job, std::size_t networks)
       : job_(job), points_(job.points ? networks : 0), masks_(job.station_masks ? networks : 0) {}
 
   // Returns the job over the networks from `first` on. It delivers through `ask`, which calls on the caller's thread.
   using OnCaller = std::function<void(const std::function<void()>&)>;
-  Tracer::SampleJob piece(std::size_t first, const OnCaller& ask) {
+  Tracer::SampleJob chunk(std::size_t first, const OnCaller& ask) {
     Tracer::SampleJob part = job_;
     if (job_.points)
       part.points = [this, first, &ask](std::size_t k, std::span<const std::uint32_t> points) {
@@ -30,13 +30,13 @@ class ToldOnce {
       };
     if (job_.station_masks)
       part.station_masks = [this, first, &ask](std::size_t k, std::span<const std::uint64_t> masks) {
-        ask([&] { tell_masks(first + k, masks); });
+        ask([&] { deliver_masks(first + k, masks); });
       };
     return part;
   }
 
  private:
-  void tell_masks(std::size_t first, std::span<const std::uint64_t> masks) {
+  void deliver_masks(std::size_t first, std::span<const std::uint64_t> masks) {
     const std::size_t voxels = job_.sample.size(), end = masks.size() / voxels;
     for (std::size_t k = 0; k < end;) {
       std::size_t run = k;

@@ -6,15 +6,15 @@
 
 namespace vantage::vulkan {
 
-class Pace {
+class DispatchSizer {
  public:
   // Aims at submissions of about `seconds`. It begins with `first` rays, and never asks for fewer than `least`.
   // Submissions below `telling` rays, and below half of what was asked for, are too small to measure the speed.
-  Pace(double seconds, double first, double least, double telling)
+  DispatchSizer(double seconds, double first, double least, double telling)
       : seconds_(seconds), first_(first), least_(least), telling_(telling), rays_(first) {}
 
   double rays() const { return rays_; }
-  void saw(double rays, double seconds) {
+  void observe(double rays, double seconds) {
     if (!(seconds > 0)) return;
     if (rays >= std::min(telling_, 0.5 * rays_))
       // A fast small submission allows only a limited step.

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // Occlusion of a cube by a triangle in front of it, with margins above any engine's rounding. A part reported as hidden
 // is hidden on every engine; other parts may be hidden, too.
-#ifndef VANTAGE_LIB_BLOCKER
-#define VANTAGE_LIB_BLOCKER
+#ifndef VANTAGE_LIB_OCCLUDER
+#define VANTAGE_LIB_OCCLUDER
 #include "lib/cube.glsl"
 
 // A triangle as its station sees it: normals of the planes through the station and an edge. They are scaled so that no
 // engine's rounding matters if a unit vector's product with them is beyond ±1. The normal of an edge without length is
 // 0.
-struct Blocker {
+struct Occluder {
   vec3 sides[3];
 };
 
-const Blocker no_blocker = Blocker(vec3[3](vec3(0), vec3(0), vec3(0)));
+const Occluder no_blocker = Occluder(vec3[3](vec3(0), vec3(0), vec3(0)));
 
 struct Corners {
   vec3 a, b, c;  // relative to the station
@@ -27,38 +27,38 @@ Corners corners_of(uint triangle, vec3 origin) {
 
 float size_of(vec3 v) { return abs(v.x) + abs(v.y) + abs(v.z); }
 
-Blocker blocker_of(Corners t) {
+Occluder occluder_of(Corners t) {
   const vec3 ab = t.b - t.a, bc = t.c - t.b, ca = t.a - t.c;
   const vec3 far = vec3(size_of(t.a), size_of(t.b), size_of(t.c));
   const vec3 lengths = 65536.0 / max(max(far, far.yzx) * vec3(size_of(ab), size_of(bc), size_of(ca)), 1e-30);
-  return Blocker(vec3[3](cross(t.a, ab) * lengths.x, cross(t.b, bc) * lengths.y, cross(t.c, ca) * lengths.z));
+  return Occluder(vec3[3](cross(t.a, ab) * lengths.x, cross(t.b, bc) * lengths.y, cross(t.c, ca) * lengths.z));
 }
 
-vec3 products_of(Blocker blocker, vec3 v) {
-  return vec3(dot(blocker.sides[0], v), dot(blocker.sides[1], v), dot(blocker.sides[2], v));
+vec3 products_of(Occluder occluder, vec3 v) {
+  return vec3(dot(occluder.sides[0], v), dot(occluder.sides[1], v), dot(occluder.sides[2], v));
 }
 
 // Whether the ray meets the triangle. `direction`: a unit vector.
-bool stops(Blocker blocker, vec3 direction) {
-  const vec3 at = products_of(blocker, direction);
+bool stops(Occluder occluder, vec3 direction) {
+  const vec3 at = products_of(occluder, direction);
   return all(greaterThan(at, vec3(1))) || all(lessThan(at, vec3(-1)));
 }
 
-// Position of a cube relative to the planes of a blocker: inside a plane if `at` is above `wide`, outside if it is
+// Position of a cube relative to the planes of a occluder: inside a plane if `at` is above `wide`, outside if it is
 // below −wide, else cut by it.
 struct Place {
   vec3 at, wide;
 };
 
-Place place_of(Cube cube, Blocker blocker, float facing) {
-  return Place(facing * products_of(blocker, centre_of(cube)),
-               0.5 * cube.side * vec3(size_of(blocker.sides[0]), size_of(blocker.sides[1]), size_of(blocker.sides[2])) +
+Place place_of(Cube cube, Occluder occluder, float facing) {
+  return Place(facing * products_of(occluder, centre_of(cube)),
+               0.5 * cube.side * vec3(size_of(occluder.sides[0]), size_of(occluder.sides[1]), size_of(occluder.sides[2])) +
                    farthest_of(cube));
 }
 
 // Whether all rays through the cube meet the triangle.
-bool covers(Blocker blocker, Cube cube) {
-  const Place place = place_of(cube, blocker, 1.0);
+bool covers(Occluder occluder, Cube cube) {
+  const Place place = place_of(cube, occluder, 1.0);
   return all(greaterThan(place.at, place.wide)) || all(lessThan(place.at, -place.wide));
 }
 
@@ -99,9 +99,9 @@ bool patch_covers(uint triangle, vec3 origin, Cube cube) {
   for (uint m = 0u; m < count; ++m) {
     const uint member = members[m];
     const Corners corners = corners_of(member, origin);
-    const Blocker blocker = blocker_of(corners);
-    const float facing = dot(blocker.sides[0], corners.c) < 0.0 ? -1.0 : 1.0;
-    const Place place = place_of(cube, blocker, facing);
+    const Occluder occluder = occluder_of(corners);
+    const float facing = dot(occluder.sides[0], corners.c) < 0.0 ? -1.0 : 1.0;
+    const Place place = place_of(cube, occluder, facing);
     if (any(lessThan(place.at, -place.wide))) {  // not in the way
       if (m == 0u) return false;
       continue;
@@ -112,7 +112,7 @@ bool patch_covers(uint triangle, vec3 origin, Cube cube) {
       const uint other = parameters.neighbours.at[3u * member + k];
       if (other == no_primitive) return false;
       const vec3 beyond = corner_beyond(other, member, origin);
-      if (facing * dot(blocker.sides[k], beyond) >= -length(beyond)) return false;  // folded back
+      if (facing * dot(occluder.sides[k], beyond) >= -length(beyond)) return false;  // folded back
       bool known = false;
       for (uint i = 0u; i < count; ++i) known = known || members[i] == other;
       if (known) continue;

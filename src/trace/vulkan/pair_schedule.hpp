@@ -53,10 +53,10 @@ struct SampleTally {
 };
 
 // Work left in a batch.
-class SamplePlan {
+class PairSchedule {
  public:
   // `parts`: most parts of a pair's walk.
-  SamplePlan(std::uint32_t slots, std::uint32_t voxels, std::uint32_t parts, const SampleRoom& room);
+  PairSchedule(std::uint32_t slots, std::uint32_t voxels, std::uint32_t parts, const SampleRoom& room);
 
   // Returns the chunks of the next submission, in order, at least one unless nothing is left. By the figures seen, each
   // probably fits and has at most `at_once` rays, and all together have `rays`.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "trace/vulkan/memory_plan.hpp"
+#include "trace/vulkan/device_memory.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -7,8 +7,8 @@
 #include "shared/bvh_types.h"
 #include "shared/trace_types.h"
 #include "shared/voxel_types.h"
-#include "trace/vulkan/count_plan.hpp"
-#include "trace/vulkan/sample_plan.hpp"
+#include "trace/vulkan/count_schedule.hpp"
+#include "trace/vulkan/pair_schedule.hpp"
 
 namespace vantage::vulkan {
 namespace {
@@ -44,10 +44,10 @@ double surfaces(const DeviceLoad& load) {
 
 double tiles(const DeviceLoad& load) {
   if (load.rows == 0 || load.columns == 0) return 0;
-  const CountPlan plan(1, load.rows, load.columns, tile_side);
+  const CountSchedule schedule(1, load.rows, load.columns, tile_side);
   const double starts = load.engine == Engine::compute_bvh ? tile_starts * sizeof(TileStart) : 0;
-  return static_cast<double>(plan.list_words()) * (word_bytes + starts) +
-         double{CountPlan::stations_per_submission} * plan.tiles() * word_bytes;
+  return static_cast<double>(schedule.list_words()) * (word_bytes + starts) +
+         double{CountSchedule::stations_per_submission} * schedule.tiles() * word_bytes;
 }
 
 double lists(const DeviceLoad& load) {

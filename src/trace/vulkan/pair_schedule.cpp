@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "trace/vulkan/sample_plan.hpp"
+#include "trace/vulkan/pair_schedule.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -46,12 +46,12 @@ SampleRoom sample_room(bool software, std::uint64_t max_rays_per_dispatch) {
   return {room / rays_of_pair, room, room / rays_of_part};
 }
 
-SamplePlan::SamplePlan(std::uint32_t slots, std::uint32_t voxels, std::uint32_t parts, const SampleRoom& room)
+PairSchedule::PairSchedule(std::uint32_t slots, std::uint32_t voxels, std::uint32_t parts, const SampleRoom& room)
     : room_(room), parts_(parts), all_pairs_(static_cast<double>(slots) * voxels) {
   if (slots > 0 && voxels > 0) todo_.push_back({0, slots, 0, voxels, 0, parts});
 }
 
-std::vector<SampleChunk> SamplePlan::next(double rays, const PairsSeen& seen, double at_once) {
+std::vector<SampleChunk> PairSchedule::next(double rays, const PairsSeen& seen, double at_once) {
   constexpr double safety = 1.25;
   const double most_rays = std::min(at_once, static_cast<double>(room_.rays));
   const double most = std::min(most_rays / (seen.rays * safety), room_.pairs / (seen.open * safety));
@@ -72,7 +72,7 @@ std::vector<SampleChunk> SamplePlan::next(double rays, const PairsSeen& seen, do
   return chunks;
 }
 
-double SamplePlan::settle(std::span<const SampleChunk> chunks, std::span<const SampleTally> tallies) {
+double PairSchedule::settle(std::span<const SampleChunk> chunks, std::span<const SampleTally> tallies) {
   double traced = 0;
   for (std::size_t k = chunks.size(); k-- > 0;) {
     const SampleTally& tally = tallies[k];
@@ -95,6 +95,6 @@ double SamplePlan::settle(std::span<const SampleChunk> chunks, std::span<const S
   return traced;
 }
 
-double SamplePlan::done() const { return all_pairs_ > 0 ? std::min(done_pairs_ / all_pairs_, 1.0) : 1.0; }
+double PairSchedule::done() const { return all_pairs_ > 0 ? std::min(done_pairs_ / all_pairs_, 1.0) : 1.0; }
 
 }  // namespace vantage::vulkan

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "trace/embree/tile_plan.hpp"
+#include "trace/embree/tile_selection.hpp"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -30,8 +30,8 @@ void raise(float& value, float to) {
 
 }  // namespace
 
-std::vector<PlannedTile> all_tiles(const RayPattern& pattern) {
-  std::vector<PlannedTile> tiles;
+std::vector<SelectedTile> all_tiles(const RayPattern& pattern) {
+  std::vector<SelectedTile> tiles;
   for (std::uint32_t a = 0; a < tiles_across(pattern.rows()); ++a) {
     for (std::uint32_t b = 0; b < tiles_across(pattern.columns()); ++b)
       tiles.push_back({tile_at(pattern, a, b), pattern.max_range});
@@ -39,7 +39,7 @@ std::vector<PlannedTile> all_tiles(const RayPattern& pattern) {
   return tiles;
 }
 
-std::vector<PlannedTile> tiles_with_bricks(const StationRays& rays, const TraceStation& station) {
+std::vector<SelectedTile> tiles_with_bricks(const StationRays& rays, const TraceStation& station) {
   const RayPattern& pattern = rays.pattern();
   const VoxelGrid& grid = rays.grid();
   const double reach = static_cast<double>(rays.noise().reach());
@@ -76,7 +76,7 @@ std::vector<PlannedTile> tiles_with_bricks(const StationRays& rays, const TraceS
     }
   });
 
-  std::vector<PlannedTile> tiles;
+  std::vector<SelectedTile> tiles;
   for (std::uint32_t k = 0; k < ends.size(); ++k) {
     if (ends[k] > pattern.min_range)
       tiles.push_back({tile_at(pattern, k / wide, k % wide), std::min(ends[k], pattern.max_range)});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "trace/vulkan/count_plan.hpp"
+#include "trace/vulkan/count_schedule.hpp"
 
 #include <gtest/gtest.h>
 
@@ -24,13 +24,13 @@ class CountPlans : public testing::TestWithParam<Shape> {};
 
 TEST_P(CountPlans, EveryRowOfEveryStationComesOnceAndInOrder) {
   const Shape& shape = GetParam();
-  CountPlan plan(shape.stations, shape.rows, shape.columns, shape.rows_per_part);
+  CountSchedule schedule(shape.stations, shape.rows, shape.columns, shape.rows_per_part);
   std::uint32_t station = 0, row = 0;
   std::uint64_t rays = 0;
-  while (!plan.finished()) {
-    const std::vector<CountPart> parts = plan.next(shape.rays);
+  while (!schedule.finished()) {
+    const std::vector<CountPart> parts = schedule.next(shape.rays);
     ASSERT_FALSE(parts.empty());
-    rays += plan.rays_of(parts);
+    rays += schedule.rays_of(parts);
     for (const CountPart& part : parts) {
       EXPECT_EQ(part.station, station);
       EXPECT_EQ(part.first_row, row);
@@ -48,30 +48,30 @@ TEST_P(CountPlans, EveryRowOfEveryStationComesOnceAndInOrder) {
   }
   EXPECT_EQ(station, shape.stations);
   EXPECT_EQ(row, 0u);
-  EXPECT_EQ(rays, plan.all_rays());
-  EXPECT_TRUE(plan.next(shape.rays).empty());
+  EXPECT_EQ(rays, schedule.all_rays());
+  EXPECT_TRUE(schedule.next(shape.rays).empty());
 }
 
 TEST_P(CountPlans, ASubmissionKeepsItsBounds) {
   const Shape& shape = GetParam();
-  CountPlan plan(shape.stations, shape.rows, shape.columns, shape.rows_per_part);
-  while (!plan.finished()) {
-    const std::vector<CountPart> parts = plan.next(shape.rays);
+  CountSchedule schedule(shape.stations, shape.rows, shape.columns, shape.rows_per_part);
+  while (!schedule.finished()) {
+    const std::vector<CountPart> parts = schedule.next(shape.rays);
     ASSERT_FALSE(parts.empty());
-    EXPECT_LE(parts.size(), CountPlan::parts_per_submission);
-    EXPECT_LT(parts.back().slot, CountPlan::stations_per_submission);
+    EXPECT_LE(parts.size(), CountSchedule::parts_per_submission);
+    EXPECT_LT(parts.back().slot, CountSchedule::stations_per_submission);
     EXPECT_TRUE(parts.size() == 1 ||
-                static_cast<double>(plan.rays_of(std::span(parts).first(parts.size() - 1))) < shape.rays)
+                static_cast<double>(schedule.rays_of(std::span(parts).first(parts.size() - 1))) < shape.rays)
         << "the last part begins below what was asked for";
     std::uint64_t free = 0;  // lists are contiguous
     for (std::size_t k = 0; k < parts.size(); ++k) {
       EXPECT_EQ(parts[k].list, free);
-      free += 1 + plan.tiles_of(parts[k]);
+      free += 1 + schedule.tiles_of(parts[k]);
       if (k > 0) {
         EXPECT_EQ(parts[k].slot == parts[k - 1].slot, parts[k].station == parts[k - 1].station);
       }
     }
-    EXPECT_LE(free, plan.list_words());
+    EXPECT_LE(free, schedule.list_words());
   }
 }
 

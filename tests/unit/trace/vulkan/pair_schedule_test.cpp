@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "trace/vulkan/sample_plan.hpp"
+#include "trace/vulkan/pair_schedule.hpp"
 
 #include <gtest/gtest.h>
 
@@ -53,21 +53,21 @@ TEST(SampleRoom, KeepsToADispatchAndHoldsAPart) {
   }
 }
 
-TEST(SamplePlan, NothingToDoIsDone) {
+TEST(PairSchedule, NothingToDoIsDone) {
   for (const auto& [slots, voxels] : {std::pair{0u, 5u}, {5u, 0u}}) {
-    SamplePlan plan(slots, voxels, 10, {100, 100, 100});
-    EXPECT_TRUE(plan.finished());
-    EXPECT_TRUE(plan.next(1e9, {8, 1}, 1e9).empty());
-    EXPECT_EQ(plan.done(), 1);
+    PairSchedule schedule(slots, voxels, 10, {100, 100, 100});
+    EXPECT_TRUE(schedule.finished());
+    EXPECT_TRUE(schedule.next(1e9, {8, 1}, 1e9).empty());
+    EXPECT_EQ(schedule.done(), 1);
   }
 }
 
-TEST(SamplePlan, NoChunkHasMorePairsThanThereIsRoomFor) {
+TEST(PairSchedule, NoChunkHasMorePairsThanThereIsRoomFor) {
   const auto most_pairs = [](const SampleRoom& room, double open) {
-    SamplePlan plan(200'000, 20'000'000, 10, room);
+    PairSchedule schedule(200'000, 20'000'000, 10, room);
     std::uint64_t most = 0;
     for (int k = 0; k < 5; ++k) {
-      const std::vector<SampleChunk> chunks = plan.next(0, {1e-12, open}, 1e9);
+      const std::vector<SampleChunk> chunks = schedule.next(0, {1e-12, open}, 1e9);
       EXPECT_EQ(chunks.size(), 1u);
       for (const SampleChunk& chunk : chunks) most = std::max(most, chunk.pairs());
     }
@@ -80,41 +80,42 @@ TEST(SamplePlan, NoChunkHasMorePairsThanThereIsRoomFor) {
   EXPECT_LE(probes, 3000u) << "each may be probed";
 }
 
-TEST(SamplePlan, WhatOverflowsComesAgainInHalvesAndFirst) {
-  SamplePlan plan(4, 15, 8, {1000, 100, 10});
+TEST(PairSchedule, WhatOverflowsComesAgainInHalvesAndFirst) {
+  PairSchedule schedule(4, 15, 8, {1000, 100, 10});
   const std::vector<SampleChunk> chunks =
-      plan.next(1e9, {4, 1}, 1e9);  // at most 20 pairs: 80 rays, and a quarter more as reserve
+      schedule.next(1e9, {4, 1}, 1e9);  // at most 20 pairs: 80 rays, and a quarter more as reserve
   ASSERT_EQ(chunks.size(), 3u);
-  EXPECT_TRUE(plan.finished());
+  EXPECT_TRUE(schedule.finished());
   // The first fits; the second has too many rays, the last too many parts. Probed rays are traced anyway.
-  EXPECT_EQ(plan.settle(chunks, std::vector<SampleTally>{{20, 20, 100, 10, 3}, {20, 20, 101}, {20, 20, 0, 11}}), 163);
-  EXPECT_FALSE(plan.finished());
-  EXPECT_DOUBLE_EQ(plan.done(), 1.0 / 3);
-  const std::vector<SampleChunk> again = plan.next(1e9, {0.1, 1}, 1e9);
+  EXPECT_EQ(schedule.settle(chunks, std::vector<SampleTally>{{20, 20, 100, 10, 3}, {20, 20, 101}, {20, 20, 0, 11}}),
+            163);
+  EXPECT_FALSE(schedule.finished());
+  EXPECT_DOUBLE_EQ(schedule.done(), 1.0 / 3);
+  const std::vector<SampleChunk> again = schedule.next(1e9, {0.1, 1}, 1e9);
   std::array<SampleChunk, 2> second = chunks[1].halves(), last = chunks[2].halves();
   for (SampleChunk* half : {&second[0], &second[1], &last[0], &last[1]}) half->probed = true;
   EXPECT_EQ(again, (std::vector<SampleChunk>{second[0], second[1], last[0], last[1]}));
 }
 
-TEST(SamplePlan, AChunkIsNoMoreThanTheDeviceDoesInTime) {
-  SamplePlan plan(4, 1000, 8, {1u << 20, 1u << 20, 1u << 20});
-  for (const SampleChunk& chunk : plan.next(1e9, {8, 1}, 800)) EXPECT_LE(chunk.pairs() * 8, 800u);
-  EXPECT_TRUE(plan.finished());
+TEST(PairSchedule, AChunkIsNoMoreThanTheDeviceDoesInTime) {
+  PairSchedule schedule(4, 1000, 8, {1u << 20, 1u << 20, 1u << 20});
+  for (const SampleChunk& chunk : schedule.next(1e9, {8, 1}, 800)) EXPECT_LE(chunk.pairs() * 8, 800u);
+  EXPECT_TRUE(schedule.finished());
 }
 
-TEST(SamplePlan, MoreOpenPairsThanThereIsRoomForComeAgainWithAllTheirRays) {
-  SamplePlan plan(1, 100, 8, {10, 1000, 100});
-  const std::vector<SampleChunk> chunks = plan.next(1e9, {1, 0.1}, 1e9);
+TEST(PairSchedule, MoreOpenPairsThanThereIsRoomForComeAgainWithAllTheirRays) {
+  PairSchedule schedule(1, 100, 8, {10, 1000, 100});
+  const std::vector<SampleChunk> chunks = schedule.next(1e9, {1, 0.1}, 1e9);
   ASSERT_EQ(chunks.size(), 2u);
-  EXPECT_EQ(plan.settle(chunks, std::vector<SampleTally>{{11, 50}, {10, 50, 7}}), 107);
+  EXPECT_EQ(schedule.settle(chunks, std::vector<SampleTally>{{11, 50}, {10, 50, 7}}), 107);
   std::array<SampleChunk, 2> halves = chunks[0].halves();
   for (SampleChunk& half : halves) half.probed = true;
-  EXPECT_EQ(plan.next(1e9, {1, 0.1}, 1e9), (std::vector<SampleChunk>{halves[0], halves[1]}));
+  EXPECT_EQ(schedule.next(1e9, {1, 0.1}, 1e9), (std::vector<SampleChunk>{halves[0], halves[1]}));
 }
 
 // Pairs with unpredictable numbers of rays: every part of every pair is traced once, whatever the guess, and every pair
 // is probed first exactly once.
-TEST(SamplePlan, EveryPartOfEveryPairIsTracedOnce) {
+TEST(PairSchedule, EveryPartOfEveryPairIsTracedOnce) {
   constexpr std::uint32_t slots = 7, voxels = 23, parts = 16, most = 30;
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -122,13 +123,13 @@ TEST(SamplePlan, EveryPartOfEveryPairIsTracedOnce) {
     std::vector<std::uint32_t> rays(slots * voxels * parts);
     for (std::uint32_t& each : rays) each = static_cast<std::uint32_t>(most * std::pow(random.uniform(), 8));
     const SampleRoom room{5, 2 * most, 4};
-    SamplePlan plan(slots, voxels, parts, room);
+    PairSchedule schedule(slots, voxels, parts, room);
     std::vector<int> traced(rays.size()), probed(slots * voxels);
     double total = 0, done = 0;
-    for (int submissions = 0; !plan.finished(); ++submissions) {
+    for (int submissions = 0; !schedule.finished(); ++submissions) {
       ASSERT_LT(submissions, 10'000) << "it comes to no end";
       const std::vector<SampleChunk> chunks =
-          plan.next(200 * random.uniform(), {40 * random.uniform(), random.uniform()}, 100 * random.uniform());
+          schedule.next(200 * random.uniform(), {40 * random.uniform(), random.uniform()}, 100 * random.uniform());
       ASSERT_FALSE(chunks.empty());
       std::vector<SampleTally> wanted;
       for (const SampleChunk& chunk : chunks) {
@@ -159,14 +160,14 @@ TEST(SamplePlan, EveryPartOfEveryPairIsTracedOnce) {
           traced[k] += at_first ? !chunk.first_traced : list.rest <= room.rays;
         }
       }
-      total += plan.settle(chunks, wanted);
-      EXPECT_GE(plan.done(), done);
-      done = plan.done();
+      total += schedule.settle(chunks, wanted);
+      EXPECT_GE(schedule.done(), done);
+      done = schedule.done();
     }
     EXPECT_EQ(traced, std::vector<int>(rays.size(), 1));
     EXPECT_EQ(probed, std::vector<int>(probed.size(), 1));
     EXPECT_EQ(total, std::accumulate(rays.begin(), rays.end(), 0.0));
-    EXPECT_NEAR(plan.done(), 1, 1e-9);
+    EXPECT_NEAR(schedule.done(), 1, 1e-9);
   }
 }
 

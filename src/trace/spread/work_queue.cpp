@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "trace/spread/pieces.hpp"
+#include "trace/spread/work_queue.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -18,11 +18,11 @@ void follow_rates(std::vector<double>& shares, std::span<const double> rates) {
   for (std::size_t k = 0; k < rates.size(); ++k) shares[k] = fair(k);
 }
 
-Piece Pieces::take(double share, bool known) {
+Chunk WorkQueue::take(double share, bool known) {
   if (!returned_.empty()) {
-    const Piece piece = returned_.back();
+    const Chunk chunk = returned_.back();
     returned_.pop_back();
-    return piece;
+    return chunk;
   }
   constexpr double least = 1.0 / 16;  // lower bound, so that handing out stays cheap
   const auto share_of = [&](std::size_t items, double part) {
@@ -36,9 +36,9 @@ Piece Pieces::take(double share, bool known) {
     }
     wanted = std::max(wanted, std::min(share_of(round_, of_rest_), round_end_ - next_));
   }
-  const Piece piece{next_, std::min(items_, next_ + wanted)};
-  next_ = piece.end;
-  return piece;
+  const Chunk chunk{next_, std::min(items_, next_ + wanted)};
+  next_ = chunk.end;
+  return chunk;
 }
 
 }  // namespace vantage

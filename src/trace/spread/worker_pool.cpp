@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "trace/spread/team.hpp"
+#include "trace/spread/worker_pool.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -29,7 +29,7 @@ bool of_the_device(const Error& error) {
 
 }  // namespace
 
-Team::Team(std::vector<std::unique_ptr<Tracer>> tracers, Warn warn)
+WorkerPool::WorkerPool(std::vector<std::unique_ptr<Tracer>> tracers, Warn warn)
     : tracers_(std::move(tracers)), warn_(std::move(warn)) {
   assert(!tracers_.empty());
   for (const auto& tracer : tracers_)
@@ -37,46 +37,46 @@ Team::Team(std::vector<std::unique_ptr<Tracer>> tracers, Warn warn)
                      ", " + tracer->info().device);
 }
 
-std::size_t Team::left() const {
+std::size_t WorkerPool::left() const {
   return static_cast<std::size_t>(
       std::count_if(tracers_.begin(), tracers_.end(), [](const auto& tracer) { return tracer != nullptr; }));
 }
 
-std::size_t Team::fastest(const TeamRates& rates) const {
+std::size_t WorkerPool::fastest(const WorkerRates& rates) const {
   std::size_t best = tracers_.size();
   for (std::size_t k = 0; k < tracers_.size(); ++k)
     if (tracers_[k] &&
-        (best == tracers_.size() || rates.of_members[k].items_a_second() > rates.of_members[best].items_a_second()))
+        (best == tracers_.size() || rates.of_workers[k].items_a_second() > rates.of_workers[best].items_a_second()))
       best = k;
   return best;
 }
 
-void Team::drop(std::size_t k, const std::string& why) {
+void WorkerPool::drop(std::size_t k, const std::string& why) {
   tracers_[k] = nullptr;
   if (warn_) warn_(names_[k] + " is dropped, its work done again by the " + std::to_string(left()) + " left: " + why);
 }
 
-// One call of work() by several members: their shared state, behind one mutex.
-class Team::Shift {
+// One call of work() by several workers: their shared state, behind one mutex.
+class WorkerPool::Run {
  public:
-  Shift(Team& team, std::size_t items, TeamRates& rates, const Progress& progress, const Do& job)
-      : team_(team),
+  Run(WorkerPool& pool, std::size_t items, WorkerRates& rates, const Progress& progress, const Do& job)
+      : pool_(pool),
         job_(job),
         rates_(rates),
         progress_(progress),
         items_(items),
-        pieces_(items, rates.of_rest),
-        under_way_(team.size(), 0),
-        failures_(team.size()),
+        queue_(items, rates.of_rest),
+        under_way_(pool.size(), 0),
+        failures_(pool.size()),
         outside_(progress.stop, [this] { stop_.request_stop(); }) {}
 
   // Runs until nothing is left to take, or nobody to take it. Returns whether anything may be left.
-  bool run() {
+  bool run_workers() {
     std::vector<std::jthread> threads;
-    threads.reserve(team_.size());
+    threads.reserve(pool_.size());
     try {
-      for (std::size_t k = 0; k < team_.size(); ++k) {
-        if (!team_.member(k)) continue;
+      for (std::size_t k = 0; k < pool_.size(); ++k) {
+        if (!pool_.worker(k)) continue;
         set_working(+1);
         threads.emplace_back([this, k] { serve(k); });
       }
@@ -89,12 +89,12 @@ class Team::Shift {
     if (thrown_) std::rethrow_exception(thrown_);
     for (std::size_t k = 0; k < failures_.size(); ++k) {
       if (!failures_[k]) continue;
-      if (team_.left() == 1) throw *std::exchange(failures_[k], std::nullopt);
-      team_.drop(k, std::exchange(failures_[k], std::nullopt)->what());
+      if (pool_.left() == 1) throw *std::exchange(failures_[k], std::nullopt);
+      pool_.drop(k, std::exchange(failures_[k], std::nullopt)->what());
     }
-    return !pieces_.empty() && !stop_.stop_requested();
+    return !queue_.empty() && !stop_.stop_requested();
   }
-  bool finished() const { return pieces_.empty() && !cut_; }
+  bool finished() const { return queue_.empty() && !cut_; }
 
  private:
   struct Question {
@@ -112,21 +112,21 @@ class Team::Shift {
 
   void serve(std::size_t k) {
     try {
-      serve_pieces(k);
+      serve_chunks(k);
     } catch (...) {
       give_up(std::current_exception());
     }
     set_working(-1);
   }
 
-  void serve_pieces(std::size_t k) {
+  void serve_chunks(std::size_t k) {
     try {
-      for (std::optional<Piece> piece = next(k); piece; piece = next(k)) {
+      for (std::optional<Chunk> chunk = next(k); chunk; chunk = next(k)) {
         const auto start = Clock::now();
         const bool done =
-            job_(*team_.member(k), *piece, {[&](double part) { note(k, part, *piece); }, stop_.get_token()},
+            job_(*pool_.worker(k), *chunk, {[&](double part) { note(k, part, *chunk); }, stop_.get_token()},
                  [this](const std::function<void()>& what) { ask(what); });
-        finish(k, *piece, done, seconds_since(start));
+        finish(k, *chunk, done, seconds_since(start));
       }
     } catch (const QuestionThrew&) {
       stop_.request_stop();
@@ -135,36 +135,36 @@ class Team::Shift {
     }
   }
 
-  std::optional<Piece> next(std::size_t k) {
+  std::optional<Chunk> next(std::size_t k) {
     const std::lock_guard lock(mutex_);
-    if (pieces_.empty() || stop_.stop_requested()) return std::nullopt;
-    std::vector<double> rates(team_.size(), 0);
-    std::size_t members = 0;
+    if (queue_.empty() || stop_.stop_requested()) return std::nullopt;
+    std::vector<double> rates(pool_.size(), 0);
+    std::size_t workers = 0;
     bool known = true;
-    for (std::size_t i = 0; i < team_.size(); ++i) {
-      if (!team_.member(i) || failures_[i]) continue;
-      ++members;
-      rates[i] = rates_.of_members[i].items_a_second();
+    for (std::size_t i = 0; i < pool_.size(); ++i) {
+      if (!pool_.worker(i) || failures_[i]) continue;
+      ++workers;
+      rates[i] = rates_.of_workers[i].items_a_second();
       known &= rates[i] > 0;
     }
     if (known) follow_rates(rates_.shares, rates);
-    own_piece_[k] = pieces_.take(known ? rates_.shares[k] : 1.0 / static_cast<double>(members), known);
-    return own_piece_[k];
+    own_chunk_[k] = queue_.take(known ? rates_.shares[k] : 1.0 / static_cast<double>(workers), known);
+    return own_chunk_[k];
   }
 
-  void note(std::size_t k, double part, const Piece& piece) {
+  void note(std::size_t k, double part, const Chunk& chunk) {
     const std::lock_guard lock(mutex_);
-    under_way_[k] = part * static_cast<double>(piece.size());
+    under_way_[k] = part * static_cast<double>(chunk.size());
     news_ = true;
     wake_.notify_all();
   }
 
-  void finish(std::size_t k, const Piece& piece, bool done, double seconds) {
+  void finish(std::size_t k, const Chunk& chunk, bool done, double seconds) {
     const std::lock_guard lock(mutex_);
     under_way_[k] = 0;
     if (done) {
-      done_ += piece.size();
-      rates_.of_members[k].learn(piece.size(), seconds);
+      done_ += chunk.size();
+      rates_.of_workers[k].learn(chunk.size(), seconds);
     } else {
       cut_ = true;
     }
@@ -176,7 +176,7 @@ class Team::Shift {
     if (!of_the_device(error)) return give_up(std::make_exception_ptr(error));
     const std::lock_guard lock(mutex_);
     failures_[k] = error;
-    pieces_.give_back(own_piece_[k]);
+    queue_.give_back(own_chunk_[k]);
     under_way_[k] = 0;
   }
 
@@ -186,7 +186,7 @@ class Team::Shift {
     stop_.request_stop();
   }
 
-  // Called on a member's thread.
+  // Called on a worker's thread.
   void ask(const std::function<void()>& what) {
     Question question{&what, nullptr};
     std::unique_lock lock(mutex_);
@@ -198,7 +198,7 @@ class Team::Shift {
     throw QuestionThrew{};
   }
 
-  // Runs on the caller's thread until all members are done.
+  // Runs on the caller's thread until all workers are done.
   void answer() {
     std::unique_lock lock(mutex_);
     for (;;) {
@@ -232,17 +232,17 @@ class Team::Shift {
     }
   }
 
-  Team& team_;
+  WorkerPool& pool_;
   const Do& job_;
-  TeamRates& rates_;
+  WorkerRates& rates_;
   const Progress& progress_;
   std::size_t items_;
 
   std::mutex mutex_;
   std::condition_variable wake_;
-  Pieces pieces_;
-  std::vector<Piece> own_piece_ = std::vector<Piece>(team_.size());
-  std::vector<double> under_way_;  // items in each member's current piece
+  WorkQueue queue_;
+  std::vector<Chunk> own_chunk_ = std::vector<Chunk>(pool_.size());
+  std::vector<double> under_way_;  // items in each worker's current chunk
   std::vector<std::optional<Error>> failures_;
   std::deque<Question*> questions_;
   std::exception_ptr thrown_;
@@ -253,24 +253,24 @@ class Team::Shift {
   std::stop_callback<std::function<void()>> outside_;
 };
 
-bool Team::work(std::size_t items, TeamRates& rates, const Progress& progress, const Do& job) {
-  rates.of_members.resize(size());
+bool WorkerPool::work(std::size_t items, WorkerRates& rates, const Progress& progress, const Do& job) {
+  rates.of_workers.resize(size());
   if (items == 0) return true;
   if (items == 1 || left() == 1) return work_alone(items, rates, progress, job);
-  Shift shift(*this, items, rates, progress, job);
-  while (shift.run()) {
+  Run run(*this, items, rates, progress, job);
+  while (run.run_workers()) {
   }
-  return shift.finished();
+  return run.finished();
 }
 
-// Without threads, since one member does everything.
-bool Team::work_alone(std::size_t items, TeamRates& rates, const Progress& progress, const Do& job) {
+// Without threads, since one worker does everything.
+bool WorkerPool::work_alone(std::size_t items, WorkerRates& rates, const Progress& progress, const Do& job) {
   for (;;) {
     const std::size_t k = fastest(rates);
     try {
       const auto start = Clock::now();
       const bool done = job(*tracers_[k], {0, items}, progress, [](const std::function<void()>& what) { what(); });
-      if (done) rates.of_members[k].learn(items, seconds_since(start));
+      if (done) rates.of_workers[k].learn(items, seconds_since(start));
       return done;
     } catch (const Error& error) {
       if (!of_the_device(error) || left() == 1) throw;

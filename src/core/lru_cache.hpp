@@ -10,7 +10,7 @@ namespace vantage {
 
 // Least-recently-used cache of a few expensive objects.
 template <class T>
-class Recent {
+class LruCache {
  public:
   static constexpr std::size_t most = 4;
 
