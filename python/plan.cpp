@@ -310,31 +310,10 @@ void add_results(py::module_& m) {
 
 }  // namespace
 
-void write_evaluation_report(const std::filesystem::path& file, const Evaluation& evaluation, GuardedSimulator& guarded,
-                             const SearchArea& area, const ClashChecker* clash, const std::string& title,
-                             py::object progress) {
-  LongCall call(std::move(progress));
-  call.run([&] {
-    MissedVoxels missed;
-    if (clash && !evaluation.field.count.empty())
-      missed = missed_voxels(guarded.simulator, area, *clash, evaluation.field, {}, call.progress(0, 0.3));
-    if (!call.stop().stop_requested())
-      write_report(file, evaluation, guarded.simulator, area, {.title = title, .missed = &missed},
-                   call.progress(0.3, 1));
-    return 0;
-  });
-}
-
 void add_plans(py::module_& m) {
   add_progress(m);
   add_entries(m);
   add_results(m);
-  m.def("write_report", &write_evaluation_report, py::arg("file"), py::arg("evaluation"), py::arg("simulator"),
-        py::arg("area"), py::arg("clash") = py::none(), py::kw_only(), py::arg("title") = "Survey",
-        py::arg("progress") = py::none(),
-        "Writes report.html or report.pdf, by the file's extension, of a network evaluated by this simulator. With\n"
-        "clash, of one evaluated with field=True, it also says why surfaces are not captured.\n"
-        "Raises Error: io, invalid_argument (another extension, a build that writes no reports).");
   const py::object site = m.attr("Site");
   site.attr("plan") = py::cpp_function(
       &plan_site, py::name("plan"), py::is_method(site), py::arg("problem") = py::none(), py::kw_only(),

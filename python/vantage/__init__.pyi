@@ -616,6 +616,26 @@ class Site:
     def scanners(self) -> List[Scanner]: ...
     @property
     def choices(self) -> List[SiteChoice]: ...
+    def evaluate(
+        self,
+        stations: Stations,
+        *,
+        sample_voxels: int = 0,
+        overlap: bool = True,
+        skip: bool = False,
+        field: bool = False,
+        link: float = 0.3,
+        registration: Optional[RegistrationOptions] = None,
+        progress: Optional[Progress] = None,
+    ) -> Evaluation: ...
+    def write_report(
+        self,
+        file: Path,
+        evaluation: Evaluation,
+        *,
+        title: Optional[str] = None,
+        progress: Optional[Progress] = None,
+    ) -> None: ...
     def plan(
         self,
         problem: Optional[SurveyProblem] = None,
@@ -989,17 +1009,6 @@ class PlanResult:
     def to_dict(self) -> Dict[str, Any]: ...
     def write(self, folder: Path, crs: str = "") -> None: ...
     def write_report(self, file: Path, *, title: str = "Survey", progress: Optional[Progress] = None) -> None: ...
-
-def write_report(
-    file: Path,
-    evaluation: Evaluation,
-    simulator: Simulator,
-    area: SearchArea,
-    clash: Optional[ClashChecker] = None,
-    *,
-    title: str = "Survey",
-    progress: Optional[Progress] = None,
-) -> None: ...
 
 def plan(
     simulator: Simulator,

@@ -15,16 +15,16 @@
 namespace vantage {
 namespace {
 
-bool asks_for(const SurveyProblem& problem, std::string_view name) {
-  const auto named = [&](const Objective& objective) { return objective.name == name; };
-  return std::ranges::any_of(problem.objectives, named) ||
-         std::ranges::any_of(problem.requirements, named, &Requirement::objective);
+bool needs_attainable(const SurveyProblem& problem) {
+  const auto needs = [](const Objective& objective) { return objective.needs.attainable; };
+  return std::ranges::any_of(problem.objectives, needs) ||
+         std::ranges::any_of(problem.requirements, needs, &Requirement::objective);
 }
 
 // What a problem says, with the scale of the number of stations as it is, and `capture` of what can be seen.
 SurveyProblem settled(SurveyProblem problem) {
   const auto settle = [&](Objective& objective) {
-    if (objective.name == "capture") objective = make_objective("capture", problem.settings());
+    if (objective.needs.attainable) objective = make_objective(objective.name, problem.settings());
     if (!objective.by_alpha) return;
     objective.scale = {static_cast<double>(problem.kept.size() + problem.stations_min),
                        static_cast<double>(problem.kept.size() + problem.stations_max)};
@@ -32,7 +32,7 @@ SurveyProblem settled(SurveyProblem problem) {
   for (Objective& objective : problem.objectives) settle(objective);
   if (problem.visible)
     for (Requirement& requirement : problem.requirements)
-      if (requirement.objective.name == "capture") settle(requirement.objective);
+      if (requirement.objective.needs.attainable) settle(requirement.objective);
   return problem;
 }
 
@@ -76,7 +76,7 @@ PlanResult plan(Simulator& simulator, const SearchArea& area, const ClashChecker
   require_somewhere_to_stand(area, clash, heights);
   std::shared_ptr<const Candidates> candidates;
   double candidates_seconds = 0;
-  const bool limit_wanted = !problem.visible && asks_for(problem, "capture");
+  const bool limit_wanted = !problem.visible && needs_attainable(problem);
   if (problem.fewest || limit_wanted) {
     const auto report = [&](double done) {
       if (!watch.report) return;
