@@ -219,9 +219,10 @@ void add_evaluations(py::module_& m) {
           "trace_seconds", [](const Evaluation& e) { return e.counts.trace_seconds; }, "Time spent tracing.")
       .def_property_readonly(
           "cancelled", [](const Evaluation& e) { return e.counts.cancelled; },
-          "Stopped before its end: counts too little.")
+          "Stopped before its end: it counts too little, and its measures raise `vantage.Error`.")
       .def("to_dict", &values_of, "Plain values by the names that `vantage evaluate --json` gives them.")
       .def("__repr__", [](const Evaluation& e) {
+        if (e.counts.cancelled) return std::string("<vantage.Evaluation: cancelled>");
         return "<vantage.Evaluation of " + std::to_string(e.counts.stations) + " stations: coverage " +
                std::string(py::str(py::float_(coverage(e.counts, e.goal_density)))) + ">";
       });
