@@ -49,7 +49,7 @@ std::uint32_t finest(const Simulator& simulator, std::span<const std::uint32_t> 
 }
 
 // Of the time limit, for looking, choosing and searching. The rest is for tracing every ray of what was found.
-constexpr double kSearchShare = 0.8;
+constexpr double kSearchTimeShare = 0.8;
 // More are tried where it pays: around the stations that are chosen.
 constexpr std::size_t kMostCandidates = 512;
 // The front of more entries than this has its rounds worked out for the answer alone.
@@ -87,7 +87,7 @@ PlanResult plan(Simulator& simulator, const SearchArea& area, const ClashChecker
   const PlanConfig config = settled(wanted, asked, simulator.voxel_count(), simulator.config().seed);
   using Clock = std::chrono::steady_clock;
   const auto start = Clock::now();
-  const Deadline search_by(kSearchShare * config.max_seconds, given.stop), all_by(config.max_seconds, given.abort);
+  const Deadline search_by(kSearchTimeShare * config.max_seconds, given.stop), all_by(config.max_seconds, given.abort);
   const PlanWatch watch = limited(given, search_by, all_by);
   const auto since = [](Clock::time_point then) { return std::chrono::duration<double>(Clock::now() - then).count(); };
   SurveyProblem problem = asked;
@@ -109,7 +109,7 @@ PlanResult plan(Simulator& simulator, const SearchArea& area, const ClashChecker
                                                                      .scanner = finest(simulator, problem.scanners)},
                                                                     {.report = report, .stop = watch.stop}));
     candidates_seconds = since(start);
-    if (watch.report)
+    if (watch.report && candidates->ended() != "cancelled")
       watch.report({.evaluations = candidates->stations().size(),
                     .seconds_left = -1,
                     .phase = "look",
