@@ -68,11 +68,9 @@ Options<PlanConfig> plan_options() {
       .add("sample_voxels", &PlanConfig::sample_voxels, "Search with so many voxels; 0: chosen by the problem.")
       .add("renew_iterations", &PlanConfig::renew_iterations,
            "Draw other voxels every so many iterations; 0: never; None: chosen by the problem.")
-      .add("sample_from", &PlanConfig::sample_from,
-           "Where not 0: looked at with so many voxels first; the sample then grows to `sample_voxels` as it has to.")
       .add("start", &PlanConfig::start, "Heads (x, y, z) of an initial network; empty: random.")
       .add("redraws", &PlanConfig::redraws, "How often stations in holes or clashes are drawn again.")
-      .add("max_seconds", &PlanConfig::max_seconds, "Of the search; 0: no limit.")
+      .add("max_seconds", &PlanConfig::max_seconds, "Time limit of the whole call; 0: none.")
       .add("target_hypervolume", &PlanConfig::target_hypervolume, "Stop there; None: never.")
       .add("stagnation_iterations", &PlanConfig::stagnation_iterations, "Stop after so many without growth; 0: never.")
       .add("seed", &PlanConfig::seed, "Of everything that is drawn; None: the simulator's.")

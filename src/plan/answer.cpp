@@ -20,6 +20,13 @@ bool hangs_together(const PlanEntry& entry, const SurveyProblem& problem) {
   return entry.exact && connectivity(entry.overlap_matrix, problem.link_overlap).parts == 1;
 }
 
+// Whether all that can be seen was never looked at, though a requirement is a share of it.
+bool look_cut_short(const PlanResult& result) {
+  return result.candidates && result.candidates->ended() == "cancelled" &&
+         std::ranges::any_of(result.problem.requirements,
+                             [](const Requirement& requirement) { return requirement.objective.name == "capture"; });
+}
+
 // Of the scaled objectives to the best values of all of them. Unknown ones are as bad as the worst.
 double distance(const PlanEntry& entry, const SurveyProblem& problem) {
   std::vector<double> values;
@@ -46,7 +53,7 @@ std::size_t answer(const PlanResult& result) {
 bool met(const PlanResult& result) {
   if (result.front.empty()) return false;
   const PlanEntry& entry = result.front[answer(result)];
-  return entry.violation == 0 && (result.problem.requirements.empty() || entry.exact);
+  return entry.violation == 0 && (result.problem.requirements.empty() || entry.exact) && !look_cut_short(result);
 }
 
 std::vector<std::string> what_would_help(const PlanResult& result) {
@@ -54,8 +61,12 @@ std::vector<std::string> what_would_help(const PlanResult& result) {
   if (result.front.empty() || met(result)) return help;
   const PlanEntry& entry = result.front[answer(result)];
   const SurveyProblem& problem = result.problem;
+  if (look_cut_short(result))
+    help.push_back(
+        "more time: the look at what can be seen was cut short, so that capture is a share of less than that");
   if (entry.violation == 0) {
-    help.push_back("more time: no network was traced with every ray, so that what is told is an estimate");
+    if (!entry.exact)
+      help.push_back("more time: no network was traced with every ray, so that what is told is an estimate");
     return help;
   }
   const bool all_placed = entry.stations.size() - problem.kept.size() >= problem.stations_max;
