@@ -234,7 +234,7 @@ py::tuple problem_state(const Options<SurveyProblem>& options, const SurveyProbl
 }
 
 SurveyProblem problem_from(const Options<SurveyProblem>& options, const py::tuple& state) {
-  SurveyProblem problem = options.read(py::reinterpret_borrow<py::kwargs>(state[0]));
+  SurveyProblem problem = options.read(py::reinterpret_borrow<py::kwargs>(state[0].cast<py::dict>()));
   for (const auto& name : state[1])
     problem.objectives.push_back(make_objective(name.cast<std::string>(), problem.settings()));
   for (const auto& each : state[2]) {

@@ -186,6 +186,9 @@ void add_scans(py::module_& m) {
                std::to_string(scan.summary.rays) + " rays>";
       });
   add_pickle(type);
+}
+
+void add_clouds(py::module_& m) {
   m.def("write_point_cloud", &write_point_cloud, py::arg("file"), py::arg("simulator"), py::arg("stations"),
         py::kw_only(), py::arg("outputs") = std::vector<std::string>{"reflectivity"}, py::arg("crs") = "",
         py::arg("progress") = py::none(),

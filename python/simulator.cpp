@@ -206,6 +206,7 @@ void add_simulators(py::module_& m) {
                std::to_string(self.simulator.voxel_count()) + " voxels>";
       });
   refuse_pickle(type, "a Simulator owns a device and is not pickled; make another of its scene, scanners and options");
+  add_clouds(m);
 }
 
 }  // namespace vantage::python

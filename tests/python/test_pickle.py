@@ -24,7 +24,11 @@ def parts(value):
             part = str(error)
         if isinstance(part, np.ndarray):
             part = (part.shape, str(part.dtype), part.tobytes())
-        found[name] = part if isinstance(part, (str, tuple, int, float, bool, type(None))) else repr(part)
+        elif type(part).__module__.startswith("vantage"):
+            part = parts(part)
+        elif not isinstance(part, (bool, int)):
+            part = repr(part)
+        found[name] = part
     return found
 
 
