@@ -18,7 +18,7 @@ namespace vantage::python {
 
 inline auto members(RegistrationSums& s) { return std::tie(s.centre, s.radius_m, s.heads, s.pairs, s.surface); }
 inline auto members(NetworkCounts& c) {
-  return std::tie(c.voxels, c.weight, c.saturated, c.partial_points, c.point_worth, c.rays, c.stations, c.points,
+  return std::tie(c.voxels, c.weight, c.saturated, c.partial_points, c.point_weight, c.rays, c.stations, c.points,
                   c.points_on_surveyed, c.dropped, c.seen, c.shared, c.registration, c.groups,
                   c.successive_difference_sum, c.trace_seconds, c.cancelled);
 }
