@@ -5,6 +5,7 @@
 #   ./setup.sh            the program `vantage` and its library, in build/release
 #   ./setup.sh --tests    the same, with the tests, the benchmarks and the examples
 #   ./setup.sh --packages packages only, nothing is built
+#   ./setup.sh --ifc      what reading IFC takes: node, and web-ifc by npm
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
@@ -14,7 +15,7 @@ readonly packages=(
   libvulkan-dev libvulkan-volk-dev libvulkan1 glslang-tools spirv-tools spirv-headers
   libembree-dev libtbb-dev libeigen3-dev libglm-dev libtinygltf-dev nlohmann-json3-dev
   libstb-dev libturbojpeg0-dev libcli11-dev libspdlog-dev libcairo2-dev coinor-libclp-dev coinor-libcbc-dev libproj-dev
-  libjs-three libmeshoptimizer-dev zlib1g-dev libboost-dev
+  libassimp-dev libjs-three libmeshoptimizer-dev zlib1g-dev libboost-dev
 )
 readonly test_packages=(libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev vulkan-validationlayers clang-format proj-bin
   pybind11-dev python3-dev python3-pip python3-numpy python3-matplotlib libopenmpi-dev openmpi-bin)
@@ -24,7 +25,8 @@ case "${1-}" in
   "") ;;
   --tests) mode=tests ;;
   --packages) mode=packages ;;
-  *) echo "usage: $0 [--tests | --packages]" >&2; exit 2 ;;
+  --ifc) mode=ifc ;;
+  *) echo "usage: $0 [--tests | --packages | --ifc]" >&2; exit 2 ;;
 esac
 
 say() { printf 'setup: %s\n' "$*" >&2; }
@@ -55,12 +57,15 @@ if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
   exit 1
 fi
 
-wanted=("${packages[@]}")
+wanted=()
+[ "$mode" = ifc ] || wanted+=("${packages[@]}")
+# Whoever has these from elsewhere keeps those.
 if [ "$mode" != program ]; then
-  wanted+=("${test_packages[@]}")
-  # Whoever has them from elsewhere keeps those.
   command -v node >/dev/null || wanted+=(nodejs)
   command -v npm >/dev/null || wanted+=(npm)
+fi
+if [ "$mode" = tests ] || [ "$mode" = packages ]; then
+  wanted+=("${test_packages[@]}")
   command -v chromium >/dev/null || wanted+=(chromium)
 fi
 missing=()
@@ -68,10 +73,12 @@ for package in "${wanted[@]}"; do installed "$package" || missing+=("$package");
 
 builder=python3-scikit-build-core # of the Python module; Debian 12 has it in backports
 builder_needed=no
-if [ "$mode" != program ] && ! installed "$builder"; then builder_needed=yes; fi
+if { [ "$mode" = tests ] || [ "$mode" = packages ]; } && ! installed "$builder"; then builder_needed=yes; fi
 mesa=$(version_of mesa-vulkan-drivers)
 mesa_needed=no
-if ! installed mesa-vulkan-drivers || dpkg --compare-versions "$mesa" lt "$mesa_minimum"; then mesa_needed=yes; fi
+if [ "$mode" = ifc ]; then
+  mesa_needed=no
+elif ! installed mesa-vulkan-drivers || dpkg --compare-versions "$mesa" lt "$mesa_minimum"; then mesa_needed=yes; fi
 
 if [ ${#missing[@]} -gt 0 ] || [ "$builder_needed" = yes ] || [ "$mesa_needed" = yes ]; then
   if [ "$(id -u)" -ne 0 ]; then
@@ -115,6 +122,14 @@ if [ ${#missing[@]} -gt 0 ] || [ "$builder_needed" = yes ] || [ "$mesa_needed" =
   fi
 fi
 
+# npm_ci FOLDER WHAT: what the folder's lock file lists, unless it is there.
+npm_ci() {
+  if ! [ "$1/node_modules/.package-lock.json" -nt "$1/package-lock.json" ]; then
+    say "installing $2 (npm ci in $1)"
+    (cd "$1" && npm ci --silent)
+  fi
+}
+
 several=(-DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=12) # sources at a time: a third of the time
 case "$mode" in
   program)
@@ -124,9 +139,8 @@ case "$mode" in
   tests)
     cmake --preset release "${several[@]}" -DVANTAGE_BUILD_TESTS=ON -DVANTAGE_BUILD_EXAMPLES=ON >/dev/null
     cmake --build --preset release
-    if ! [ tests/clients/node_modules/.package-lock.json -nt tests/clients/package-lock.json ]; then
-      say "installing the programs that read back what vantage writes (npm ci in tests/clients)"
-      (cd tests/clients && npm ci --silent)
-    fi
+    npm_ci tests/clients "the programs that read back what vantage writes"
+    npm_ci src/import/ifc "the reader of IFC"
     ;;
+  ifc) npm_ci src/import/ifc "the reader of IFC" ;;
 esac

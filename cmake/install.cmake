@@ -3,7 +3,7 @@ include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)
 
 install(
-  TARGETS vantage
+  TARGETS vantage vantage_built_in_scenes
   EXPORT vantageTargets
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
@@ -11,6 +11,14 @@ install(
   FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 if(TARGET vantage-cli)
   install(TARGETS vantage-cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endif()
+# Importers are programs that vantage alone starts.
+if(TARGET vantage-cli)
+  set(VANTAGE_IMPORTERS_DIR ${CMAKE_INSTALL_LIBEXECDIR}/vantage)
+  if(TARGET vantage-import-mesh)
+    install(TARGETS vantage-import-mesh RUNTIME DESTINATION ${VANTAGE_IMPORTERS_DIR})
+  endif()
+  vantage_install_ifc(${VANTAGE_IMPORTERS_DIR})
 endif()
 # The presets are part of the library; the file is an example of their form.
 install(FILES ${PROJECT_SOURCE_DIR}/data/scanners.json DESTINATION ${CMAKE_INSTALL_DATADIR}/vantage)

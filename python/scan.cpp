@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scan.hpp"
 
+#include <limits>
+#include <numeric>
+
 #include "arrays.hpp"
 
 namespace vantage::python {
@@ -27,31 +30,33 @@ std::uint32_t bits_of(const std::vector<std::string>& names) {
   return bits;
 }
 
-// Appends what a chunk has of rays that hit, or of all of them.
-void append(Scan& scan, const ScanChunk& chunk, const Vec3& origin) {
-  const auto take = [](auto& to, const auto& from, std::uint64_t k) {
-    if (!from.empty()) to.push_back(from[k]);
-  };
-  for (std::uint64_t k = 0; k < chunk.ray_count; ++k) {
-    if (!scan.grid && !std::isfinite(chunk.range_m[k])) continue;
-    if (!scan.grid) scan.ray.push_back(chunk.first_ray + k);
-    take(scan.range_m, chunk.range_m, k);
-    take(scan.normal, chunk.normal, k);
-    take(scan.reflectivity, chunk.reflectivity, k);
-    take(scan.mesh, chunk.mesh, k);
-    take(scan.primitive, chunk.primitive, k);
-    take(scan.colour, chunk.colour, k);
-    take(scan.voxel, chunk.voxel, k);
-    if (!chunk.position.empty()) {
-      const auto& [x, y, z] = chunk.position[k];
-      scan.position.push_back(origin + Vec3{x, y, z});
-    }
-  }
+// Puts each value in its ray's place, and `none` in all others.
+template <class Value>
+void spread(std::vector<Value>& values, const std::vector<std::uint64_t>& ray, std::uint64_t rays, const Value& none) {
+  if (values.empty() && !ray.empty()) return;  // not asked for
+  std::vector<Value> all(rays, none);
+  for (std::size_t k = 0; k < values.size(); ++k) all[ray[k]] = values[k];
+  values = std::move(all);
+}
+
+void spread(Scan& scan) {
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+  constexpr std::uint32_t nothing = ~std::uint32_t{0};
+  const std::uint64_t rays = scan.summary.rays;
+  spread(scan.range_m, scan.ray, rays, std::numeric_limits<float>::infinity());
+  spread(scan.position, scan.ray, rays, Vec3{nan, nan, nan});
+  spread(scan.normal, scan.ray, rays, {0, 0, 0});
+  spread(scan.reflectivity, scan.ray, rays, 0.0F);
+  spread(scan.mesh, scan.ray, rays, -1);
+  spread(scan.primitive, scan.ray, rays, nothing);
+  spread(scan.colour, scan.ray, rays, std::uint32_t{0});
+  spread(scan.voxel, scan.ray, rays, nothing);
+  std::iota((scan.ray = std::vector<std::uint64_t>(rays)).begin(), scan.ray.end(), std::uint64_t{0});
 }
 
 // A member as an array, (points, ...) or (rows, columns, ...).
 template <class Number, class Value>
-py::array_t<Number> array_of(const py::object& self, std::vector<Value> Scan::*member, ScanOutput bit,
+py::array_t<Number> array_of(const py::object& self, std::vector<Value> ScanPoints::*member, ScanOutput bit,
                              const char* name) {
   const Scan& scan = self.cast<const Scan&>();
   if ((scan.outputs & bit) == 0)
@@ -65,10 +70,10 @@ py::array_t<Number> array_of(const py::object& self, std::vector<Value> Scan::*m
 }
 
 py::array_t<std::uint32_t> ray_part(const Scan& scan, const auto& part) {
-  const std::size_t count = scan.grid ? scan.range_m.size() : scan.ray.size();
-  std::vector<std::uint32_t> parts(count);
-  for (std::size_t k = 0; k < count; ++k) parts[k] = static_cast<std::uint32_t>(part(scan.grid ? k : scan.ray[k]));
-  py::array_t<std::uint32_t> flat = adopt<std::uint32_t>(std::move(parts), {static_cast<py::ssize_t>(count)});
+  std::vector<std::uint32_t> parts;
+  parts.reserve(scan.ray.size());
+  for (const std::uint64_t ray : scan.ray) parts.push_back(static_cast<std::uint32_t>(part(ray)));
+  py::array_t<std::uint32_t> flat = adopt<std::uint32_t>(std::move(parts), {static_cast<py::ssize_t>(scan.ray.size())});
   return scan.grid && !scan.summary.cancelled ? py::array_t<std::uint32_t>(flat.reshape({scan.rows, scan.columns}))
                                               : flat;
 }
@@ -78,12 +83,14 @@ py::array_t<std::uint32_t> ray_part(const Scan& scan, const auto& part) {
 Scan scan(GuardedSimulator& self, const Vec3& position, const std::vector<std::string>& outputs,
           const StationSetup& setup, bool grid, std::uint32_t place, py::object progress) {
   const Simulator& simulator = self.simulator;
-  Scan made{.outputs = bits_of(outputs), .grid = grid};
+  const std::uint32_t bits = bits_of(outputs);
   LongCall call(std::move(progress));
-  made.summary = call.run([&] {
-    return self.simulator.scan(
-        {.position = position, .setup = setup}, {.outputs = made.outputs, .place = place},
-        [&](const ScanChunk& chunk) { append(made, chunk, simulator.origin()); }, call.progress());
+  Scan made = call.run([&] {
+    Scan points{self.simulator.scan_points({.position = position, .setup = setup}, {.outputs = bits, .place = place},
+                                           call.progress())};
+    points.outputs = bits, points.grid = grid;
+    if (grid) spread(points);
+    return points;
   });
   const Scanner& scanner = simulator.scanners()[setup.scanner];  // there is one, or nothing was scanned
   made.rows = scanner.rows(), made.columns = scanner.columns();

@@ -16,18 +16,11 @@ void add_scans(py::module_& m);
 Scan scan(GuardedSimulator& self, const Vec3& position, const std::vector<std::string>& outputs,
           const StationSetup& setup, bool grid, std::uint32_t place, py::object progress);
 
-/// The points of a station, or with `grid` an element a ray. Arrays that were not asked for are empty.
-struct Scan {
-  ScanSummary summary = {};
+/// The points of a station, or with `grid` an element a ray.
+struct Scan : ScanPoints {
   std::uint32_t rows = 0, columns = 0;
   std::uint32_t outputs = 0;  ///< `ScanOutput` bits.
   bool grid = false;
-  std::vector<std::uint64_t> ray = {};
-  std::vector<float> range_m = {}, reflectivity = {};
-  std::vector<Vec3> position = {};  ///< Survey frame.
-  std::vector<std::array<float, 3>> normal = {};
-  std::vector<std::int32_t> mesh = {};
-  std::vector<std::uint32_t> primitive = {}, colour = {}, voxel = {};
 };
 
 }  // namespace vantage::python

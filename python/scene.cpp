@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <vantage/built_in_scenes.hpp>
+
 #include "arrays.hpp"
 #include "module.hpp"
 #include "options.hpp"
@@ -88,7 +90,8 @@ void add_scene(py::module_& m) {
             return Scene::load(file, how);
           },
           py::arg("file"),
-          ("Loads a .glb or .gltf file. Y up becomes Z up, (x, y, z) -> (x, -z, y), and other units become metres.\n"
+          ("Loads a glTF file, or a model of another format through the importer for it. Y up becomes Z up, (x, y, z) "
+           "-> (x, -z, y), and other units become metres.\n"
            "Raises Error: io, malformed_file, invalid_argument, out_of_memory." +
            options.doc())
               .c_str())

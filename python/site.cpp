@@ -36,7 +36,7 @@ void add_sites(py::module_& m) {
             return std::make_shared<GuardedSite>(GuardedSite{Site::open(file, std::move(options))});
           },
           py::arg("file"),
-          ("Reads a .glb or .gltf file and chooses what the settings leave open. Raises Error: io, malformed_file,\n"
+          ("Reads a model and chooses what the settings leave open. Raises Error: io, malformed_file,\n"
            "invalid_argument, out_of_memory." +
            settings_doc("Site.open", site_settings()))
               .c_str())

@@ -68,7 +68,9 @@ struct SceneOptions {
   std::vector<std::string> ignore = {};    ///< Nodes that are left out.
   /// Node patterns with the weight of their voxels in coverage. Precedence among patterns as with roles.
   std::vector<std::pair<std::string, std::uint32_t>> weights = {};
-  std::vector<std::string> doors = {};         ///< Nodes with `MeshInfo::door`.
+  /// Nodes with `MeshInfo::door`. Leaves that the file marks as doors, as those of IFC are, are open and left out,
+  /// except those that a pattern here or above names. The word `closed` here keeps all of them.
+  std::vector<std::string> doors = {};
   std::vector<std::string> station_area = {};  ///< Nodes with `MeshInfo::station_area`.
   /// Node patterns with the wanted detail and accuracy, in millimetres (`MeshInfo`). Precedence as with roles.
   std::vector<std::pair<std::string, double>> details_mm = {}, accuracies_mm = {};
@@ -91,12 +93,14 @@ Settings settings(const SceneOptions& options);
 /// Immutable triangle scene. Copies share storage. Safe to read from any thread.
 class Scene {
  public:
-  /// Loads a .glb or .gltf file. Y up becomes Z up: (x, y, z) ↦ (x, −z, y); other units become metres. Buffers and
-  /// images come from the file itself and from regular files below its folder, links followed; from elsewhere only if
-  /// `allow_outside`.
-  /// Throws Error: io, malformed_file (bad reference, unknown required extension, nothing to survey), invalid_argument
-  /// (a pattern that matches nothing, a scene index, weight or coefficient out of range), out_of_memory (estimated to
-  /// take more than `max_memory_bytes`).
+  /// Loads a glTF file (.glb, .gltf), or a model of another format (IFC, OBJ, STL, PLY, FBX, COLLADA, 3DS, X3D, DXF)
+  /// through the importer for it, a program of its own (docs/scenes.md). Y up becomes Z up: (x, y, z) ↦ (x, −z, y);
+  /// other units become metres. Buffers and images come from the file itself and from regular files below its folder,
+  /// links followed; from elsewhere only if `allow_outside`.
+  /// Throws Error: io (a missing importer included), malformed_file (bad reference, unknown required extension, nothing
+  /// to survey, no model, a file that its importer refuses or crashes on), invalid_argument (a pattern that matches
+  /// nothing, a scene index, weight or coefficient out of range), out_of_memory (estimated to take more than
+  /// `max_memory_bytes`).
   static Scene load(const std::filesystem::path& file, const SceneOptions& options = {});
 
   /// One surveyed mesh from an indexed triangle list in the survey frame. Throws Error: invalid_argument (an index or
@@ -126,13 +130,5 @@ class Scene {
  private:
   std::shared_ptr<const SceneData> data_;
 };
-
-/// Names of the scenes that `write_built_in_scene` can make.
-std::span<const std::string> built_in_scene_names() noexcept;
-
-/// Writes a built-in scene as GLB: `three-walls`, `four-walls` or `industrial`. `triangles` is the wished number for
-/// `industrial` (at least 20 000; met within 2 %); the others ignore it. The same arguments give the same bytes. Throws
-/// Error: invalid_argument, io.
-void write_built_in_scene(const std::string& name, std::size_t triangles, const std::filesystem::path& file);
 
 }  // namespace vantage

@@ -20,6 +20,8 @@
 
 namespace vantage {
 
+class TracerMaker;  // internal: see src/trace/tracer_maker.hpp
+
 struct SimulatorConfig {
   Engine engine = Engine::automatic;
   std::optional<std::uint32_t> device_index = std::nullopt;  ///< Empty: the best device that has the engine.
@@ -29,6 +31,8 @@ struct SimulatorConfig {
   /// Called, on the calling thread, with a device that failed and was dropped. The other devices repeat its work;
   /// failure of the last one is an `Error`.
   std::function<void(const std::string&)> warn = {};
+  /// Spans the work over other processes; made by the program's `vantage_ranks`. Null: this process works alone.
+  std::shared_ptr<TracerMaker> shared = nullptr;
   double user_size_m = 0.1;       ///< Upper bound of the voxel size (equation 2).
   double point_spacing_m = 0.01;  ///< Wanted spacing n of points; goal density = voxel_size² / n².
   /// Uses a mesh's detail (`MeshInfo::detail_m`) as the wanted spacing of its voxels, so goals may differ between
@@ -108,6 +112,20 @@ struct ScanSummary {
   std::uint64_t hits_on_surveyed = 0;    ///< Hits on a surveyed mesh, wherever noise then moved the point.
   double trace_seconds = 0;
   bool cancelled = false;
+};
+
+/// The points of one scan, in ray order: rays without a hit are left out. Arrays not asked for are empty.
+struct ScanPoints {
+  std::vector<std::uint64_t> ray;  ///< Row ray / columns and column ray % columns of the station's scanner.
+  std::vector<Vec3> position;      ///< Survey frame, metres.
+  std::vector<float> range_m;      ///< Metres from the head, noise included.
+  std::vector<std::array<float, 3>> normal;
+  std::vector<float> reflectivity;
+  std::vector<std::int32_t> mesh;        ///< Index into `Scene::meshes()`.
+  std::vector<std::uint32_t> primitive;  ///< Triangle of the scene (all meshes in order).
+  std::vector<std::uint32_t> colour;     ///< 0xAABBGGRR, sRGB.
+  std::vector<std::uint32_t> voxel;      ///< Index of the surveyed voxel; 2³²−1 if the point does not count.
+  ScanSummary summary;
 };
 
 /// How `Simulator::evaluate` works.
@@ -199,6 +217,9 @@ class Simulator {
   /// not exist, unknown outputs).
   ScanSummary scan(const Station& station, const ScanOptions& options,
                    const std::function<void(const ScanChunk&)>& sink, const Progress& progress = {});
+
+  /// The points of one station, all at once. `scan` needs less memory. Throws as `scan`.
+  ScanPoints scan_points(const Station& station, const ScanOptions& options = {}, const Progress& progress = {});
 
   /// Counts every ray of every station. Sets `cancelled` if stopped. REQUIRES: 1 to `max_stations` stations.
   NetworkCounts evaluate(const Network& network, const EvaluateOptions& options = {}, const Progress& progress = {});

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "vantage/evaluation.hpp"
 #include "vantage/placement.hpp"
 #include "vantage/progress.hpp"
 #include "vantage/scanner.hpp"
@@ -109,10 +110,18 @@ class Site {
   /// Throws Error invalid_argument where there is none.
   const SearchArea& area();
   const ClashChecker& clash();
+  /// Spans the simulator over other processes (`SimulatorConfig::shared`). Throws Error invalid_argument once it is
+  /// there.
+  void share(std::shared_ptr<TracerMaker> others);
   /// Makes the simulator unless it is there; false where it was stopped meanwhile. Throws as `Simulator`.
   bool build(const Progress& progress = {});
   Simulator& simulator();     ///< Built if need be.
   Simulator& surroundings();  ///< `surroundings_of(simulator())`.
+
+  /// Evaluates a network on this site: `evaluate_stations()` with scan overlaps if pairs are counted, and with the
+  /// round on site, which begins and ends where one enters, if there is ground. Throws Error as that does.
+  Evaluation evaluate(std::span<const PlacedStation> stations, const EvaluationOptions& options = {},
+                      const OnSiteOptions& on_site = {}, const Progress& progress = {});
 
  private:
   struct Impl;

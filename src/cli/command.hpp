@@ -41,6 +41,7 @@ void add_command(CLI::App& app, Program& program, const char* name, const char* 
 
 void add_info(CLI::App& app, Program& program);
 void add_generate(CLI::App& app, Program& program);
+void add_import(CLI::App& app, Program& program);
 void add_scan(CLI::App& app, Program& program);
 void add_evaluate(CLI::App& app, Program& program);
 void add_plan(CLI::App& app, Program& program);

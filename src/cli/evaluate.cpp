@@ -265,13 +265,7 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
     chosen.attainable = visible_share(
         site, simulator, options.sampled() ? std::min(chosen.sample_voxels, simulator.voxel_count()) : visible_sample,
         program);
-  std::optional<OnSite> on_site;
-  if (site.has_area())
-    on_site.emplace(site.area(), site.clash(), simulator.scanners(), on_site_of(site, options.on_site));
-  const Evaluation found = evaluate_stations({.simulator = simulator,
-                                              .surroundings = chosen.overlap ? &site.surroundings() : nullptr,
-                                              .on_site = on_site ? &*on_site : nullptr},
-                                             placed, chosen, progress);
+  const Evaluation found = site.evaluate(placed, chosen, options.on_site, progress);
   if (found.counts.cancelled) throw Stopped{};
 
   std::optional<MissedVoxels> judged;

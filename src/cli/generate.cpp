@@ -5,6 +5,7 @@
 
 #include "cli/command.hpp"
 #include "cli/options.hpp"
+#include "vantage/built_in_scenes.hpp"
 #include "vantage/error.hpp"
 #include "vantage/scene.hpp"
 

@@ -254,10 +254,9 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   const SurveyProblem problem = survey_problem(site, options.question);
   site.area();  // an error now, not behind the voxels
 
-  std::shared_ptr<void> shared;
   if (program.ranks)
-    shared = program.ranks->share([](const std::string& line) { spdlog::info("{}", line); },
-                                  [](const std::string& line) { spdlog::warn("{}", line); });
+    site.share(program.ranks->share([](const std::string& line) { spdlog::info("{}", line); },
+                                    [](const std::string& line) { spdlog::warn("{}", line); }));
   Simulator& simulator = build_simulator(site, program);
   if (program.ranks && !program.ranks->first()) program.ranks->serve(simulator);
   tell_engine(simulator);

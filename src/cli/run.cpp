@@ -40,6 +40,7 @@ void add_commands(CLI::App& app, Program& program) {
   app.require_subcommand(0, 1);
   add_info(app, program);
   add_generate(app, program);
+  add_import(app, program);
   add_scan(app, program);
   add_panorama(app, program);
   add_evaluate(app, program);

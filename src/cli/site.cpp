@@ -11,7 +11,8 @@
 namespace vantage::cli {
 
 void SiteArguments::add(CLI::App& command) {
-  command.add_option("scene", scene, "The site: a .glb or .gltf file")->type_name("SCENE");
+  command.add_option("scene", scene, "The site: glTF, IFC, OBJ, STL, PLY, FBX, COLLADA, 3DS, X3D or DXF")
+      ->type_name("SCENE");
   add_settings(command, site_settings(), given);
   add_text(command, "--config", "FILE", "JSON file of options, keyed by their long names; what is typed goes before it",
            config_file)
@@ -21,7 +22,7 @@ void SiteArguments::add(CLI::App& command) {
 Site open_site(CLI::App& command, SiteArguments& arguments) {
   if (arguments.config_file) apply_layer(command, read_json(*arguments.config_file), *arguments.config_file);
   if (arguments.scene.empty())
-    throw Error(Errc::invalid_argument, command.get_name() + ": which scene? Give a .glb or .gltf file");
+    throw Error(Errc::invalid_argument, command.get_name() + ": which scene? Give a model, as site.glb or site.ifc");
   arguments.given.log = [](const std::string& line) { spdlog::info("{}", line); };
   arguments.given.warn = [](const std::string& line) { spdlog::warn("{}", line); };
   Site site = Site::open(arguments.scene, arguments.given);
@@ -35,11 +36,6 @@ Site open_site(CLI::App& command, SiteArguments& arguments) {
 }
 
 std::string crs_text(const Site& site) { return site.crs().empty() ? "" : coordinate_system(site.crs()); }
-
-OnSiteOptions on_site_of(const Site& site, OnSiteOptions options) {
-  options.entrance = site.walkable().enter;
-  return options;
-}
 
 Simulator& build_simulator(Site& site, Program& program) {
   ProgressLine line(program.console, "voxels");

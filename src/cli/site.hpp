@@ -28,9 +28,6 @@ Site open_site(CLI::App& command, SiteArguments& arguments);
 // The well-known text of its coordinate system; empty where that is not known.
 std::string crs_text(const Site& site);
 
-// What a crew takes, with rounds that begin and end where one enters the site.
-OnSiteOptions on_site_of(const Site& site, OnSiteOptions options);
-
 // The site's simulator, with a line for as long as its voxels take. Throws Stopped.
 Simulator& build_simulator(Site& site, Program& program);
 

@@ -25,7 +25,7 @@ namespace http = boost::beast::http;
 using asio::ip::tcp;
 using ErrorCode = beast::error_code;
 
-constexpr std::chrono::seconds kRequestTime{5}, kResponseTime{60}, kFarewellTime{1};
+constexpr std::chrono::seconds kResponseTime{60}, kFarewellTime{1};
 constexpr std::size_t kThreads = 4;               // that answer
 constexpr std::size_t kUnreadBytes = 256 * 1024;  // of what was refused, taken and dropped so that the refusal arrives
 
@@ -45,8 +45,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
     parser_->body_limit(LocalServer::kBodyBytes);
   }
 
-  void start() {
-    stream_.expires_after(kRequestTime);  // for all of the request: a slow sender gets no more
+  void start(std::chrono::milliseconds request_time) {
+    stream_.expires_after(request_time);  // for all of the request: a slow sender gets no more
     http::async_read_header(stream_, buffer_, *parser_, [self = shared_from_this()](ErrorCode error, std::size_t) {
       if (error) return self->refuse(error);
       if (self->parser_->chunked()) return self->respond({411, "text/plain", "the length of the body is missing"});
@@ -137,6 +137,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
 }  // namespace
 
 struct LocalServer::Impl {
+  std::chrono::milliseconds request_time;
   asio::io_context context{1};
   tcp::acceptor acceptor{context};
   asio::steady_timer pause{context};
@@ -154,7 +155,7 @@ struct LocalServer::Impl {
       if (connections.size() < kConnections) {
         const auto connection = std::make_shared<Connection>(std::move(socket), workers, answer);
         connections.push_back(connection);
-        connection->start();
+        connection->start(request_time);
       }
       accept(workers, answer);
     });
@@ -173,7 +174,7 @@ struct LocalServer::Impl {
   }
 };
 
-LocalServer::LocalServer() : impl_(std::make_unique<Impl>()) {
+LocalServer::LocalServer(std::chrono::milliseconds request_time) : impl_(new Impl{request_time}) {
   ErrorCode error;
   const tcp::endpoint here(asio::ip::address_v4::loopback(), 0);
   auto& acceptor = impl_->acceptor;

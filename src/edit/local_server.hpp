@@ -2,6 +2,8 @@
 // HTTP on this machine, for this machine, with limits in front of it: anybody here may connect, whoever they are.
 #pragma once
 
+#include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -26,8 +28,9 @@ class LocalServer {
  public:
   static constexpr std::size_t kHeaderBytes = 8192, kBodyBytes = 4096, kConnections = 64;
 
-  // Listens on a port of 127.0.0.1 that the system chooses. Throws Error io where none can be had.
-  LocalServer();
+  // Listens on a port of 127.0.0.1 that the system chooses. `request_time`: of a request, from connecting to its last
+  // byte. Throws Error io where no port can be had.
+  explicit LocalServer(std::chrono::milliseconds request_time = std::chrono::seconds(5));
   ~LocalServer();
 
   std::uint16_t port() const;

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/part_of.hpp"
-#include "trace/shared_tracing.hpp"
+#include "trace/tracer_maker.hpp"
 
 namespace vantage {
 namespace {
@@ -29,7 +29,7 @@ std::optional<RegistrationModel> registered_around(const RequiredInputs& needs) 
 std::size_t SimulatorEvaluator::chunk() const {
   if (options_.sampled) return 0;
   const std::size_t devices = std::max<std::size_t>(simulator_.config().devices.size(), 1);
-  const TracerMaker* const shared = SharedTracing::maker();
+  const TracerMaker* const shared = simulator_.config().shared.get();
   return shared ? devices * shared->networks_at_once() : devices;
 }
 

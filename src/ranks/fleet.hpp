@@ -7,7 +7,7 @@
 
 #include "ranks/correspondence.hpp"
 #include "ranks/server.hpp"
-#include "trace/shared_tracing.hpp"
+#include "trace/tracer_maker.hpp"
 
 namespace vantage::ranks {
 

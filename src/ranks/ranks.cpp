@@ -18,14 +18,6 @@ std::string host_name() {
   return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "a host without a name";
 }
 
-template <class Maker>
-struct Share {
-  template <class... Arguments>
-  explicit Share(Arguments&&... arguments) : maker(std::forward<Arguments>(arguments)...), shared(maker) {}
-  Maker maker;
-  SharedTracing shared;
-};
-
 class Rank0 final : public Ranks {
  public:
   explicit Rank0(std::unique_ptr<MpiPost> post)
@@ -38,9 +30,9 @@ class Rank0 final : public Ranks {
 
   bool first() const override { return true; }
   int size() const override { return post_->size(); }
-  std::shared_ptr<void> share(std::function<void(const std::string&)> tell,
-                              std::function<void(const std::string&)> warn) override {
-    return std::make_shared<Share<FirstRank>>(letters_, std::move(tell), std::move(warn));
+  std::shared_ptr<TracerMaker> share(std::function<void(const std::string&)> tell,
+                                     std::function<void(const std::string&)> warn) override {
+    return std::make_shared<FirstRank>(letters_, std::move(tell), std::move(warn));
   }
   void serve(const Simulator&) override {}
   void fail(Errc code, const std::string& why) override { throw Error(code, why); }
@@ -59,9 +51,9 @@ class Other final : public Ranks {
 
   bool first() const override { return false; }
   int size() const override { return post_->size(); }
-  std::shared_ptr<void> share(std::function<void(const std::string&)>,
-                              std::function<void(const std::string&)>) override {
-    return std::make_shared<Share<OtherRank>>(server_);
+  std::shared_ptr<TracerMaker> share(std::function<void(const std::string&)>,
+                                     std::function<void(const std::string&)>) override {
+    return std::make_shared<OtherRank>(server_);
   }
   // Simulators that a plan makes besides its own are made here, too, on request.
   void serve(const Simulator& simulator) override {

@@ -23,8 +23,8 @@
 #include "scan/voxel_sample.hpp"
 #include "trace/passes.hpp"
 #include "trace/registration_sums.hpp"
-#include "trace/shared_tracing.hpp"
 #include "trace/tracer.hpp"
+#include "trace/tracer_maker.hpp"
 #include "vantage/error.hpp"
 #include "voxel/voxel_grid.hpp"
 #include "voxel/voxel_surfaces.hpp"
@@ -148,8 +148,7 @@ struct Simulator::Impl {
                             .sample_triangles = std::make_shared<SampleTriangles>(shared_scene, grid)};
     tracer = config.devices.empty() ? make_tracer(config.engine, config.device_index, shared, config.warn)
                                     : make_tracer(config.devices, shared, config.warn);
-    if (TracerMaker* const maker = SharedTracing::maker())
-      tracer = maker->make(std::move(tracer), shared, scene.fingerprint());
+    if (config.shared) tracer = config.shared->make(std::move(tracer), shared, scene.fingerprint());
     tracer->set_goal_density(goal);
   }
 

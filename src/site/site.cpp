@@ -353,6 +353,11 @@ const ClashChecker& Site::clash() {
   return *impl_->clash;
 }
 
+void Site::share(std::shared_ptr<TracerMaker> others) {
+  if (impl_->simulator)
+    throw Error(Errc::invalid_argument, "the site's simulator is made, and can no longer span other processes");
+  impl_->config.shared = std::move(others);
+}
 bool Site::build(const Progress& progress) {
   if (!impl_->simulator) impl_->simulator = Simulator::build(impl_->scene, impl_->scanners, impl_->config, progress);
   return impl_->simulator.has_value();
@@ -364,6 +369,19 @@ Simulator& Site::simulator() {
 Simulator& Site::surroundings() {
   if (!impl_->surroundings) impl_->surroundings = surroundings_of(simulator());
   return *impl_->surroundings;
+}
+
+Evaluation Site::evaluate(std::span<const PlacedStation> stations, const EvaluationOptions& options,
+                          const OnSiteOptions& on_site, const Progress& progress) {
+  OnSiteOptions round = on_site;
+  if (!round.entrance) round.entrance = walkable().enter;
+  std::optional<OnSite> walk;
+  if (has_area()) walk.emplace(area(), clash(), scanners(), round);
+  return evaluate_stations({.simulator = simulator(),
+                            .surroundings = options.overlap ? &surroundings() : nullptr,
+                            .on_site = walk ? &*walk : nullptr,
+                            .clash = &clash()},
+                           stations, options, progress);
 }
 
 }  // namespace vantage

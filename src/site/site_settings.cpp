@@ -161,7 +161,8 @@ void add_placement(Rows& rows) {
                   return Vec3{values[0], values[1], values[2]};
                 })
       .texts(
-          "doors", "PATTERN", "Nodes that are closed doors, which count as open for who walks",
+          "doors", "PATTERN",
+          "Nodes that are closed doors, which count as open for who walks; closed: keep the doors of an IFC closed",
           [](SiteOptions & o) -> auto& { return o.scene.doors; })
       .texts(
           "station-area", "PATTERN", "Nodes to stand on that stay what they are, as surveyed",

@@ -17,6 +17,7 @@
 #include "networks.hpp"
 #include "support/temporary_folder.hpp"
 #include "trace/vulkan/abilities.hpp"
+#include "vantage/built_in_scenes.hpp"
 #include "vantage/error.hpp"
 #include "vantage/export.hpp"
 #include "vantage/objective.hpp"

@@ -8,8 +8,8 @@ const names = ['/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/googl
 const executablePath = process.env.VANTAGE_BROWSER ?? names.find((name) => fs.existsSync(name));
 assert.ok(executablePath, `no browser: none of ${names.join(', ')} (Debian: chromium), and VANTAGE_BROWSER names none`);
 
-// Without a GPU WebGL is drawn by software; root has no sandbox.
-const args = ['--use-angle=swiftshader', '--enable-unsafe-swiftshader', ...(process.getuid() === 0 ? ['--no-sandbox'] : [])];
+// Without a GPU WebGL is drawn by software; root has no sandbox; one name leads here, as a stranger's may.
+const args = ['--host-resolver-rules=MAP rebound.example 127.0.0.1', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', ...(process.getuid() === 0 ? ['--no-sandbox'] : [])];
 export const launch = () => chromium.launch({ executablePath, args });
 
 // A page whose errors and requests are kept: `troubles` and `requests`.

@@ -58,9 +58,43 @@ for (const [what, status, where, options] of [
   ['no JSON', 400, `${url}change`, { ...post, body: '{' }],
 ]) assert.equal((await ask(where, options)).status, status, what);
 assert.match(JSON.parse((await ask(`${url}change`, post)).text).refused, /nothing to go back to/);
-assert.match((await ask(url)).headers['content-security-policy'], /default-src 'none'/);
+const policy = (await ask(url)).headers['content-security-policy'];
+assert.match(policy, /default-src 'none'.*frame-ancestors 'none'/);
+assert.doesNotMatch(policy, /unsafe|\*/);
 
 const browser = await launch();
+
+// A page of somebody else in the same browser knows even the address: it neither changes a station nor reads one.
+const stranger = http.createServer((request, response) => response.writeHead(200, { 'Content-Type': 'text/html' }).end('<!doctype html><title>stranger</title><body></body>'));
+await once(stranger.listen(0, '127.0.0.1'), 'listening');
+const untouched = (await ask(`${url}state`)).text;
+const hostile = await browser.newPage();
+await hostile.goto(`http://127.0.0.1:${stranger.address().port}/`);
+const got = await hostile.evaluate(async (address) => {
+  const change = '{"do":"add","to":[6,3,0]}', tried = {};
+  const attempt = async (name, what) => { tried[name] = await Promise.race([what().catch(() => 'refused'), new Promise((done) => { setTimeout(done, 5000, 'nothing'); })]); };
+  const text = async (response) => (response.type === 'opaque' ? 'refused' : response.text());
+  await attempt('read', async () => text(await fetch(`${address}state`)));
+  await attempt('read the page', async () => text(await fetch(address)));
+  await attempt('change', async () => text(await fetch(`${address}change`, { method: 'POST', body: change, headers: { 'Content-Type': 'application/json' } })));
+  await attempt('change unseen', async () => text(await fetch(`${address}change`, { method: 'POST', body: change, mode: 'no-cors' })));
+  await attempt('beacon', async () => { navigator.sendBeacon(`${address}change`, change); return 'refused'; });
+  const load = (node, key) => new Promise((done, failed) => { node.onload = () => done(node.contentDocument?.title ?? (node.tagName === 'IFRAME' ? 'refused' : 'loaded')); node.onerror = () => failed(); node[key] = address; document.body.append(node); });
+  await attempt('script', () => load(document.createElement('script'), 'src'));
+  await attempt('picture', () => load(new Image(), 'src'));
+  await attempt('frame', () => load(document.createElement('iframe'), 'src'));
+  return tried;
+}, url);
+for (const [what, outcome] of Object.entries(got)) assert.equal(outcome, 'refused', what);
+await hostile.setContent(`<form method="post" enctype="text/plain" action="${url}change"><input name='{"do":"add","to":[6,3,0],"' value='":0}'></form>`);
+const [answered] = await Promise.all([hostile.waitForResponse(`${url}change`), hostile.evaluate(() => document.forms[0].submit())]);
+assert.equal(answered.status(), 403, 'a form');
+const rebound = await hostile.goto(url.replace('127.0.0.1', 'rebound.example'));
+assert.equal(rebound.status(), 403, 'a name that leads here');
+await hostile.close();
+stranger.close();
+assert.equal((await ask(`${url}state`)).text, untouched, 'nothing came of it');
+
 const page = await watchedPage(browser, { width: 1280, height: 900 });
 await page.goto(url);
 await page.waitForSelector('html[data-ready]');

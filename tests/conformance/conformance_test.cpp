@@ -83,7 +83,7 @@ TEST_P(Conformance, ScansMatchADoublePrecisionReference) {
         rays += reference.size();
         if (HasFailure()) return;
       }
-      EXPECT_LE(static_cast<double>(undecided), std::ceil(undecided_share * static_cast<double>(rays))) << site.name;
+      EXPECT_LE(static_cast<double>(undecided), most_undecided(rays)) << site.name;
       RecordProperty(site.name + (noisy ? "_noisy" : ""), static_cast<int>(undecided));
     }
   }
@@ -101,7 +101,7 @@ TEST_P(Conformance, StationsFarOffAreNoLessExact) {
     SCOPED_TRACE("station " + std::to_string(s));
     Tracer::RawChunk chunk;
     tracer(site, false).scan(far[s], 0, site.rays(), all_outputs, chunk);
-    EXPECT_GT(std::ranges::count_if(chunk.range, [](float range) { return std::isfinite(range); }), 100);
+    EXPECT_GT(std::ranges::count_if(chunk.range, [](float range) { return std::isfinite(range); }), 20);
     std::size_t undecided = 0;
     compare_with_reference(*site.scene, references[s], chunk, undecided);
     EXPECT_LE(undecided, 2u);
@@ -130,7 +130,7 @@ TEST_P(Conformance, BarycentricWeightsGiveThePoint) {
     ASSERT_NEAR(mix(&Float3::y), chunk.position[k].y, 1e-4) << "ray " << k;
     ASSERT_NEAR(mix(&Float3::z), chunk.position[k].z, 1e-4) << "ray " << k;
   }
-  EXPECT_GT(hits, 10'000u);
+  EXPECT_GT(hits, site.rays() / 16);
 }
 
 // Points are computed from range, origin and direction without contraction: equal bits on every device.
@@ -170,7 +170,7 @@ TEST_P(Conformance, NoiseIsKeyedByRayAndPlace) {
     ASSERT_NEAR(noisy.range[k] - clean.range[k], expected, 2e-6) << "ray " << k;
     moved += noisy.range[k] != clean.range[k];
   }
-  EXPECT_GT(moved, 10'000u);
+  EXPECT_GT(moved, site.rays() / 16);
 
   TraceStation elsewhere = site.stations[0];
   elsewhere.place = 5;

@@ -9,6 +9,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "conformance/agreement.hpp"
 #include "conformance/engines_under_test.hpp"
 #include "conformance/sites.hpp"
 #include "support/expect_counts.hpp"
@@ -18,9 +19,8 @@ namespace vantage::test {
 namespace {
 
 constexpr double goal_density = 12.5;
-// Closer than this to an edge, a voxel's face or, relatively, a limit, rounding may decide differently; at most one ray
-// in 100 000 is.
-constexpr double undecided_m = 1e-4, undecided_part = 1e-5, undecided_share = 1e-5;
+// Relatively closer than this to a limit, rounding may decide differently, as at edges and faces.
+constexpr double undecided_part = 1e-5;
 
 class PointLimitsConformance : public testing::TestWithParam<EngineUnderTest> {
  protected:
@@ -86,7 +86,7 @@ TEST_P(PointLimitsConformance, ScansAndCountsMatchADoublePrecisionReference) {
         EXPECT_NEAR(static_cast<double>(counts.dropped[s].noise), static_cast<double>(dropped.noise), slack);
         all = all + counts.dropped[s];
       }
-      EXPECT_LE(static_cast<double>(undecided), std::ceil(undecided_share * static_cast<double>(rays)));
+      EXPECT_LE(static_cast<double>(undecided), most_undecided(rays));
       EXPECT_EQ(field.count, expected.count);
       EXPECT_EQ(field.stations, expected.stations);
       expect_equal_counts(counts, reference_counts(field, stations_of(site), goal_density, site.grid->demands()));

@@ -29,7 +29,8 @@ struct TestSite {
   const std::vector<ReferenceHit>& reference(std::size_t station, bool noisy, bool limited = false) const;
 };
 
-// three-walls, four-walls, boiler-house. Made once.
+// three-walls, four-walls, boiler-house. Made once. VANTAGE_WHOLE_SITES=1 has four times as many rays and voxels in
+// them.
 const std::vector<TestSite>& sites();
 
 }  // namespace vantage::test

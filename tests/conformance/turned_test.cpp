@@ -84,7 +84,20 @@ class TurnedConformance : public testing::TestWithParam<EngineUnderTest> {
     tracer->set_goal_density(goal_density);
     return tracer;
   }
-  static std::unique_ptr<Tracer> make(const TestSite& site, bool noisy) { return make(scene_of(site, noisy)); }
+
+  using Tracers = std::map<std::tuple<std::string, std::string, bool>, std::unique_ptr<Tracer>>;
+  static Tracers& tracers() {
+    static Tracers made;
+    return made;
+  }
+  static void TearDownTestSuite() { tracers().clear(); }
+
+  // Kept from test to test: building an engine costs more than most tests.
+  static Tracer* of(const TestSite& site, bool noisy) {
+    auto& kept = tracers()[{GetParam().name, site.name, noisy}];
+    if (!kept) kept = make(scene_of(site, noisy));
+    return kept.get();
+  }
   static std::uint64_t rays_of(const TraceScene& scene, const TraceStation& station) {
     const RayPattern& pattern = *scene.scanners[station.scanner].pattern;
     return std::uint64_t{pattern.rows()} * pattern.columns();
@@ -97,7 +110,7 @@ TEST_P(TurnedConformance, ScansMatchADoublePrecisionReference) {
       // shared by all engines
       static std::map<std::tuple<std::string, std::size_t, bool>, std::vector<ReferenceHit>> made;
       const TraceScene scene = scene_of(site, noisy);
-      const auto tracer = make(scene);
+      Tracer* const tracer = of(site, noisy);
       const std::vector<TraceStation> stations = stations_of(site);
       std::size_t undecided = 0, rays = 0;
       for (std::size_t s = 0; s < stations.size(); ++s) {
@@ -110,7 +123,7 @@ TEST_P(TurnedConformance, ScansMatchADoublePrecisionReference) {
         rays += reference.size();
         if (HasFailure()) return;
       }
-      EXPECT_LE(static_cast<double>(undecided), std::ceil(undecided_share * static_cast<double>(rays))) << site.name;
+      EXPECT_LE(static_cast<double>(undecided), most_undecided(rays)) << site.name;
     }
   }
 }
@@ -119,7 +132,7 @@ TEST_P(TurnedConformance, ScansMatchADoublePrecisionReference) {
 TEST_P(TurnedConformance, PositionsAreRangeTimesTurnedDirectionToTheBit) {
   const TestSite& site = sites()[2];
   const TraceScene scene = scene_of(site, true);
-  const auto tracer = make(scene);
+  Tracer* const tracer = of(site, true);
   for (const TraceStation& station : stations_of(site)) {
     const RayPattern& pattern = *scene.scanners[station.scanner].pattern;
     Tracer::RawChunk chunk;
@@ -138,7 +151,7 @@ TEST_P(TurnedConformance, PositionsAreRangeTimesTurnedDirectionToTheBit) {
                chunk.position[k].z != o.z + t * d.z;
     }
     EXPECT_EQ(apart, 0u) << "station " << station.place;
-    EXPECT_GT(hits, 5000u);
+    EXPECT_GT(hits, rays_of(scene, station) / 40);
   }
 }
 
@@ -147,7 +160,7 @@ TEST_P(TurnedConformance, CountsAreThePointsOfTheScans) {
     for (const bool noisy : {false, true}) {
       SCOPED_TRACE(site.name + (noisy ? ", noise" : ""));
       const TraceScene scene = scene_of(site, noisy);
-      const auto tracer = make(scene);
+      Tracer* const tracer = of(site, noisy);
       const std::vector<TraceStation> stations = stations_of(site);
       VoxelField expected, field;
       expected.count.resize(site.grid->size());
@@ -176,7 +189,7 @@ TEST_P(TurnedConformance, SkippingChangesNoVoxel) {
     const std::vector<TraceStation> stations = random_stations(site, 20, 5);
     for (const bool noisy : {false, true}) {
       SCOPED_TRACE(site.name + (noisy ? ", noise" : ""));
-      const auto tracer = make(site, noisy);
+      Tracer* const tracer = of(site, noisy);
       VoxelField all, skipped;
       const NetworkCounts expected = tracer->count(stations, 20, {true, false, &all}, {});
       const NetworkCounts counts = tracer->count(stations, 20, {true, true, &skipped}, {});
@@ -197,7 +210,7 @@ TEST_P(TurnedConformance, ASampleOfAllVoxelsIsTheExactEvaluation) {
     const std::vector<std::uint32_t> sizes{4, 10, 4};
     for (const bool noisy : {false, true}) {
       SCOPED_TRACE(site.name + (noisy ? ", noise" : ""));
-      const auto tracer = make(site, noisy);
+      Tracer* const tracer = of(site, noisy);
       std::vector<std::vector<std::uint32_t>> points(networks.size());
       std::vector<std::vector<std::uint64_t>> masks(networks.size());
       Tracer::SampleJob job{everything, 20, true, 0};
@@ -233,7 +246,7 @@ TEST_P(TurnedConformance, NetworksWithStationsInCommonAreCountedAsEachAlone) {
   const std::vector<std::vector<TraceStation>> networks{all, others, moved, {all[0], all[3]}, upright, all};
   const std::vector<std::uint32_t> sizes(networks.size(), 4);
   for (const bool noisy : {false, true}) {
-    const auto tracer = make(site, noisy);
+    Tracer* const tracer = of(site, noisy);
     for (const Tracer::CountOptions options : {Tracer::CountOptions{true, true, nullptr}, {false, false, nullptr}}) {
       const std::vector<NetworkCounts> each = tracer->count_each(networks, sizes, options, {});
       ASSERT_EQ(each.size(), networks.size());
@@ -256,7 +269,7 @@ TEST_P(TurnedConformance, NetworksWithStationsInCommonAreCountedAsEachAlone) {
 TEST_P(TurnedConformance, AQuarterTurnOfAFullCircleChangesNoCount) {
   const TestSite& site = sites()[2];
   ASSERT_EQ(site.pattern->columns() % 4, 0u);
-  const auto tracer = make(site, false);
+  Tracer* const tracer = of(site, false);
   std::vector<TraceStation> stations = site.stations;
   VoxelField upright, quarter;
   tracer->count(stations, 4, {true, true, &upright}, {});
@@ -269,7 +282,7 @@ TEST_P(TurnedConformance, AQuarterTurnOfAFullCircleChangesNoCount) {
 // So does any other multiple of its step, except for rounding: ray (i, j) goes where (i, j + k) went.
 TEST_P(TurnedConformance, AMultipleOfTheStepMovesColumns) {
   const TestSite& site = sites()[2];
-  const auto tracer = make(site, false);
+  Tracer* const tracer = of(site, false);
   const std::uint32_t columns = site.pattern->columns(), moved = 77;
   TraceStation station = site.stations[0];
   Tracer::RawChunk upright, turned_scan;

@@ -15,6 +15,7 @@
 
 #include "faults/open_layer.hpp"
 #include "faults/small_plan.hpp"
+#include "vantage/built_in_scenes.hpp"
 
 namespace vantage::test {
 namespace {

@@ -16,6 +16,7 @@
 #include "faults/open_layer.hpp"
 #include "scan/memory_estimate.hpp"
 #include "support/temporary_folder.hpp"
+#include "vantage/built_in_scenes.hpp"
 #include "vantage/vantage.hpp"
 
 namespace vantage::test {

@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <new>
 
+#include "vantage/built_in_scenes.hpp"
+
 namespace vantage::test {
 namespace {
 

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "support/temporary_folder.hpp"
+#include "vantage/built_in_scenes.hpp"
 #include "vantage/objective.hpp"
 #include "vantage/scene.hpp"
 #include "vantage/simulator.hpp"

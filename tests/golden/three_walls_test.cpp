@@ -11,6 +11,7 @@
 #include "golden/walls_in_double.hpp"
 #include "scan/noise_model.hpp"
 #include "support/temporary_folder.hpp"
+#include "vantage/built_in_scenes.hpp"
 #include "vantage/objective.hpp"
 #include "vantage/scene.hpp"
 #include "vantage/simulator.hpp"

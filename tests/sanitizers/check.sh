@@ -1,22 +1,25 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# tests/sanitizers/check.sh address|thread [program...]
-# Builds the programs of the unit, golden, conformance and stress suites (or only those named, as stress_test), in build/asan
-# (AddressSanitizer, its leak checker and UndefinedBehaviorSanitizer) or build/tsan (ThreadSanitizer, with a oneTBB of its own
-# that has it too), and runs as many at once as there are processors; NAME.log there keeps what each said. Fails if one does.
+# tests/sanitizers/check.sh address|undefined|thread [quick|program...]
+# Builds the programs of the unit, golden, conformance and stress suites, in build/asan (AddressSanitizer, its leak checker and part of
+# UndefinedBehaviorSanitizer), build/ubsan (all of that one) or build/tsan (ThreadSanitizer, with a oneTBB of its own that has it too), and
+# runs as many at once as there are processors; NAME.log there keeps what each said. Fails if one does.
+# `quick` takes only the suites of the modules that handle memory, files or devices themselves; named programs (stress_test) only those.
 set -eu
-kind=${1:?usage: $0 address|thread [program...]}
+kind=${1:?usage: $0 address|undefined|thread [quick|program...]}
 shift
 cd "$(dirname "$0")/../.."
 here=$PWD/tests/sanitizers
 case $kind in
   address) preset=asan ;;
+  undefined) preset=ubsan ;;
   thread) preset=tsan ;;
-  *) echo "usage: $0 address|thread [program...]" >&2; exit 2 ;;
+  *) echo "usage: $0 address|undefined|thread [quick|program...]" >&2; exit 2 ;;
 esac
 build=$PWD/build/$preset
 if [ -z "${CMAKE_CXX_COMPILER_LAUNCHER-}" ] && command -v ccache >/dev/null; then
   export CMAKE_CXX_COMPILER_LAUNCHER=ccache
+  export CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime # or it passes over precompiled headers
 fi
 if [ "$kind" = thread ]; then
   "$here/instrumented_tbb.sh" "$build/tbb"
@@ -24,7 +27,10 @@ if [ "$kind" = thread ]; then
 fi
 
 cmake --preset "$preset" -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=12 -DVANTAGE_BUILD_CLI=OFF -DVANTAGE_BUILD_EXAMPLES=OFF >/dev/null
-if [ $# = 0 ]; then
+slow=""
+if [ "${1-}" = quick ]; then
+  set -- trace_test scan_test export_test scene_test placement_test voxel_test trace_vulkan_test golden_test ranks_test image_test core_test
+elif [ $# = 0 ]; then
   # Plans of whole sites and the layout of structs have nothing more to show here. The longest first.
   # shellcheck disable=SC2046 # they are words
   set -- $(cmake --build "$build" --target help | sed -n 's/^\([a-z_]*_test\): phony$/\1/p' |
@@ -35,7 +41,7 @@ cmake --build "$build" --target "$@"
 
 # What repeats a few lines a million times for a statistic takes minutes here; other cases run the same lines. The
 # conformance suite's own engine differs from others by a shader, which has no sanitizer, and takes a third of its time.
-export GTEST_FILTER="${GTEST_FILTER--RegistrationError.StandardErrorsHold:NoiseStatistics.*:*/brute_force_*}"
+export GTEST_FILTER="${GTEST_FILTER--RegistrationError.StandardErrorsHold:NoiseStatistics.*:*/brute_force_*$slow}"
 export UBSAN_OPTIONS=print_stacktrace=1
 export LSAN_OPTIONS="suppressions=$here/leaks.txt:print_suppressions=0"
 export TSAN_OPTIONS="suppressions=$here/races.txt:second_deadlock_stack=1"

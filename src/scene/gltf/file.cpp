@@ -473,4 +473,13 @@ const nlohmann::json& File::find(const char* array, int index, std::initializer_
   return *at;
 }
 
+const nlohmann::json& File::asset_extras(const char* key) const {
+  static const json kNone;
+  const json& asset = json_.at("asset");
+  const auto extras = asset.find("extras");
+  if (extras == asset.end() || !extras->is_object()) return kNone;
+  const auto member = extras->find(key);
+  return member == extras->end() ? kNone : *member;
+}
+
 }  // namespace vantage::gltf

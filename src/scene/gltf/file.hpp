@@ -45,6 +45,9 @@ class File {
   // A member of an element, e.g. ("nodes", 3, {"extras", "vantage"}); null if absent.
   const nlohmann::json& find(const char* array, int index, std::initializer_list<const char*> path) const;
 
+  // The same of the asset's extras.
+  const nlohmann::json& asset_extras(const char* key) const;
+
   // An error in this file: "FILE: what".
   Error malformed(const std::string& what) const;
 

@@ -11,6 +11,7 @@
 #include <new>
 
 #include "core/text.hpp"
+#include "import/import.hpp"
 #include "scene/gltf/file.hpp"
 #include "scene/gltf/material.hpp"
 #include "scene/gltf/node_tree.hpp"
@@ -96,19 +97,20 @@ class Loader {
     std::vector<Job> jobs = list_jobs(placed);
     reserve(jobs);
     for (const Job& job : jobs) read(job);
+    if (raw_.triangles.empty() && raw_.search_triangles.empty() && skipped_.points_or_lines > 0)
+      throw file_.malformed("it holds points or lines alone; a survey is planned on surfaces: export triangles");
     settle_axes();
+    pass_notes_on();
     note_skipped();
     raw_.materials = std::move(materials_.materials);
     raw_.images = std::move(materials_.images);
-    const auto& asset = file_.document().at("asset");
-    const auto extras = asset.find("extras");
-    if (extras != asset.end() && extras->is_object() && extras->contains("vantage"))
-      raw_.defaults_json = (*extras)["vantage"].dump();
+    if (const auto& defaults = file_.asset_extras("vantage"); !defaults.is_null()) raw_.defaults_json = defaults.dump();
     return std::move(raw_);
   }
 
  private:
-  // A file marked for this program follows glTF's rule.
+  // A file marked for this program follows glTF's rule. A file that only declares some of its axes, as importers do, is
+  // examined for the others.
   bool prepared() const {
     const nlohmann::json& document = file_.document();
     const auto marked = [](const nlohmann::json& element) {
@@ -118,13 +120,26 @@ class Loader {
     for (const char* array : {"scenes", "nodes", "meshes", "materials"})
       if (const auto elements = document.find(array); elements != document.end())
         if (std::ranges::any_of(*elements, marked)) return true;
-    return marked(document.at("asset"));
+    return marked(document.at("asset")) && declared("unit").empty() && declared("up").empty();
+  }
+
+  // What `vantage` in the asset's extras says of unit or axis; empty where it says nothing.
+  std::string declared(const char* key) const {
+    const nlohmann::json& value = file_.asset_extras("vantage");
+    return value.is_object() && value.contains(key) && value[key].is_string() ? value[key].get<std::string>() : "";
   }
 
   void settle_axes() {
-    Recognised axes{options_.unit.value_or(Unit::metre), options_.up.value_or(UpAxis::y), {}};
-    if (!(options_.unit && options_.up) && !prepared())
-      axes = recognise(gather_evidence(raw_, boxes_), options_.unit, options_.up);
+    std::optional<Unit> unit = options_.unit;
+    std::optional<UpAxis> up = options_.up;
+    try {
+      if (const std::string text = declared("unit"); !unit && !text.empty()) unit = unit_from_string(text);
+      if (const std::string text = declared("up"); !up && !text.empty()) up = up_axis_from_string(text);
+    } catch (const Error& error) {
+      throw file_.malformed(std::string("asset.extras.vantage: ") + error.what());
+    }
+    Recognised axes{unit.value_or(Unit::metre), up.value_or(UpAxis::y), {}};
+    if (!(unit && up) && !prepared()) axes = recognise(gather_evidence(raw_, boxes_), unit, up);
     boxes_ = {};
     if (!axes.note.empty()) raw_.notes.push_back(axes.note);
     reinterpret_axes(raw_, axes.unit, axes.up);
@@ -163,6 +178,7 @@ class Loader {
         jobs.push_back(job);
       }
     }
+    leave_out_doors(jobs);
     for (Job& job : jobs)
       if (!job.role) job.role = some_surveyed ? Role::blocking : Role::surveyed;
     return jobs;
@@ -201,6 +217,23 @@ class Loader {
     if (texcoords) raw_.texcoords.reserve(whole(vertices));
     if (colours) raw_.colours.reserve(whole(vertices));
     raw_.spare_bytes = budget_.left();
+  }
+
+  // Leaves that the file marks are open: they stop neither rays nor people, unless a pattern names them.
+  void leave_out_doors(std::vector<Job>& jobs) {
+    if (std::ranges::count(options_.doors, kClosedDoors) > 0) return;
+    std::vector<std::string> names;
+    for (Job& job : jobs) {
+      if (!job.placed->marks.door.value_or(false) || job.placed->pattern_role || job.placed->door) continue;
+      job.role = Role::ignore;
+      if (names.empty() || names.back() != job.placed->name) names.push_back(job.placed->name);
+    }
+    if (names.empty()) return;
+    constexpr std::size_t kNamed = 3;
+    std::string some;
+    for (std::size_t i = 0; i < std::min(kNamed, names.size()); ++i) some += (i ? ", " : "") + gltf::quoted(names[i]);
+    raw_.notes.push_back(std::to_string(names.size()) + " doors are taken as open, their leaves left out: " + some +
+                         (names.size() > kNamed ? ", …" : ""));
   }
 
   void read(const Job& job) {
@@ -339,6 +372,14 @@ class Loader {
     for (std::size_t i = 0; i < count; ++i) raw_.search_uvs.push_back({values[2 * i], values[2 * i + 1]});
   }
 
+  // What an importer had to say.
+  void pass_notes_on() {
+    const nlohmann::json& notes = file_.asset_extras("notes");
+    if (!notes.is_array()) return;
+    for (const nlohmann::json& note : notes)
+      if (note.is_string()) raw_.notes.push_back(note.get<std::string>());
+  }
+
   void note_skipped() {
     const auto note = [&](std::size_t count, const std::string& what) {
       if (count > 0) raw_.notes.push_back(std::to_string(count) + " " + what);
@@ -370,16 +411,18 @@ class Loader {
 
 namespace {
 
-// `open` returns the glTF file.
+// `open` returns the glTF file; `note`, unless empty, becomes the scene's first.
 template <class Open>
-Scene load_scene(Open&& open, const std::string& name, const SceneOptions& options) {
+Scene load_scene(Open&& open, const std::string& name, const SceneOptions& options, const std::string& note = {}) {
   if (!(options.default_diffuse >= 0 && options.default_diffuse <= 1))
     throw Error(Errc::invalid_argument,
                 "default_diffuse must be in [0, 1]; " + std::to_string(options.default_diffuse) + " was given");
   try {
     LoadBudget budget(options.max_memory_bytes, name);
     const gltf::File file = open(budget);
-    return Scene(finish_scene(gltf::Loader(file, options, budget).load(), name));
+    RawScene raw = gltf::Loader(file, options, budget).load();
+    if (!note.empty()) raw.notes.insert(raw.notes.begin(), note);
+    return Scene(finish_scene(std::move(raw), name));
   } catch (const std::bad_alloc&) {
     throw Error(Errc::out_of_memory, name + ": the scene does not fit into memory");
   } catch (const std::length_error&) {
@@ -390,8 +433,14 @@ Scene load_scene(Open&& open, const std::string& name, const SceneOptions& optio
 }  // namespace
 
 Scene Scene::load(const std::filesystem::path& file, const SceneOptions& options) {
-  return load_scene([&](LoadBudget& budget) { return gltf::File(file, options.allow_outside, budget); }, file.string(),
-                    options);
+  const importers::Recognised recognised = importers::recognise(file);
+  if (!recognised.format->importer)
+    return load_scene([&](LoadBudget& budget) { return gltf::File(file, options.allow_outside, budget); },
+                      file.string(), options, recognised.note);
+  const std::vector<std::uint8_t> glb =
+      importers::as_glb(file, *recognised.format, {.memory = options.max_memory_bytes});
+  return load_scene([&](LoadBudget& budget) { return gltf::File(glb, file.string(), budget); }, file.string(), options,
+                    recognised.note);
 }
 
 Scene load_gltf(std::span<const std::uint8_t> bytes, const SceneOptions& options, const std::string& name) {

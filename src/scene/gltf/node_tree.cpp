@@ -254,6 +254,10 @@ Marks read_marks(const File& file, const char* array, int index, const std::stri
   };
   length("detail_mm", marks.detail_mm);
   length("accuracy_mm", marks.accuracy_mm);
+  if (const auto door = object.find("door"); door != object.end()) {
+    if (!door->is_boolean()) throw file.malformed(where + ".door is " + quoted(door->dump()) + "; use true or false");
+    marks.door = door->get<bool>();
+  }
   return marks;
 }
 
@@ -276,7 +280,9 @@ std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& opti
     stack.push_back({*it, -1, survey_from_gltf, {}, {}, {}, {}, {}});
   Patterns<Role> roles = role_patterns(options);
   Patterns<std::uint32_t> weights = weight_patterns(options);
-  Patterns<bool> doors = name_patterns(options.doors), station_areas = name_patterns(options.station_area);
+  std::vector<std::string> door_names = options.doors;
+  std::erase(door_names, kClosedDoors);
+  Patterns<bool> doors = name_patterns(door_names), station_areas = name_patterns(options.station_area);
   Patterns<double> details = length_patterns(options.details_mm, "detail"),
                    accuracies = length_patterns(options.accuracies_mm, "accuracy");
   std::vector<PlacedMesh> placed;
@@ -309,6 +315,7 @@ std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& opti
     if (own.weight) visit.marks.weight = own.weight;
     if (own.detail_mm) visit.marks.detail_mm = own.detail_mm;
     if (own.accuracy_mm) visit.marks.accuracy_mm = own.accuracy_mm;
+    if (own.door) visit.marks.door = own.door;
     const glm::dmat4 world_from_node = visit.world_from_parent * local_transform(file, node, where);
     if (!finite(world_from_node)) throw file.malformed(where + ": its transform is not finite");
     if (node.mesh >= 0) {

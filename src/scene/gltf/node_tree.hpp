@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/glm.hpp"
@@ -13,12 +14,16 @@
 
 namespace vantage::gltf {
 
+// Entry of SceneOptions::doors that keeps doors closed, as they are in the file.
+inline constexpr std::string_view kClosedDoors = "closed";
+
 // Marks in the extras of an element.
 struct Marks {
   std::optional<Role> role;
   std::optional<double> diffuse;
   std::optional<std::uint32_t> weight;
   std::optional<double> detail_mm, accuracy_mm;
+  std::optional<bool> door;  // a leaf, open unless SceneOptions::doors says otherwise
 };
 // Throws Error malformed_file for an unknown role, a diffuse coefficient outside [0, 1], a weight outside 1 … 255, or a
 // detail or accuracy that is not above 0.

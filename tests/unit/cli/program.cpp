@@ -10,6 +10,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "vantage/built_in_scenes.hpp"
 #include "vantage/scene.hpp"
 
 extern char** environ;

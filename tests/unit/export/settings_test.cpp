@@ -12,6 +12,7 @@
 #include "plan/checkpoint.hpp"
 #include "plan/identity.hpp"
 #include "plan/measures.hpp"
+#include "trace/tracer_maker.hpp"
 #include "unit/export/files.hpp"
 #include "vantage/error.hpp"
 
@@ -98,6 +99,11 @@ const std::vector<Change<SceneOptions>> kScene{
     {"max_memory_bytes", [](SceneOptions& o) { o.max_memory_bytes = std::uint64_t{1} << 40; }, false, false}};
 static_assert(member_count<SceneOptions>() == 15);
 
+struct Alone final : TracerMaker {
+  std::unique_ptr<Tracer> make(std::unique_ptr<Tracer> own, const TraceScene&, std::uint64_t) override { return own; }
+  std::size_t networks_at_once() const override { return 1; }
+};
+
 const std::vector<Change<SimulatorConfig>> kSimulation{
     {"engine", [](SimulatorConfig& c) { c.engine = Engine::automatic; }, false},
     {"device_index", [](SimulatorConfig& c) { c.device_index = 0; }, false},
@@ -107,6 +113,7 @@ const std::vector<Change<SimulatorConfig>> kSimulation{
      },
      false},
     {"warn", [](SimulatorConfig& c) { c.warn = [](const std::string&) {}; }, false, false},
+    {"shared", [](SimulatorConfig& c) { c.shared = std::make_shared<Alone>(); }, false, false},
     {"user_size_m", [](SimulatorConfig& c) { c.user_size_m = 0.4; }},
     {"point_spacing_m", [](SimulatorConfig& c) { c.point_spacing_m = 0.1; }},
     {"spacing_by_detail", [](SimulatorConfig& c) { c.spacing_by_detail = true; }},
@@ -117,7 +124,7 @@ const std::vector<Change<SimulatorConfig>> kSimulation{
     {"max_rays_per_dispatch", [](SimulatorConfig& c) { c.max_rays_per_dispatch = 1000; }, false},
     // What a machine has to spare is no part of what is computed on it.
     {"max_memory_bytes", [](SimulatorConfig& c) { c.max_memory_bytes = std::uint64_t{1} << 40; }, false, false}};
-static_assert(member_count<SimulatorConfig>() == 13);
+static_assert(member_count<SimulatorConfig>() == 14);
 
 const std::vector<Change<WalkableOptions>> kWalkable{
     {"max_slope", [](WalkableOptions& o) { o.max_slope = Angle::degrees(5); }},

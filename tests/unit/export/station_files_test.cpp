@@ -107,7 +107,7 @@ TEST(StationFiles, GeoJsonAndKmlNeedACoordinateSystem) {
   write_station_files(folder.path(), {stations, kNames}, {}, area(), "");
   EXPECT_EQ(test::entries(folder.path()), 1u);  // the drawing
   write_station_files(folder.path(), {stations, kNames}, {}, area(), kUtm32);
-  EXPECT_EQ(test::entries(folder.path()), has_projections() ? 3u : 1u);
+  EXPECT_EQ(test::entries(folder.path()), 3u);
 }
 
 // The middle meridian of zone 32 is 9° east, and the equator's northing 0; along it a degree of longitude is

@@ -14,6 +14,7 @@
 
 #include "core/philox.hpp"
 #include "unit/cli/program.hpp"
+#include "vantage/built_in_scenes.hpp"
 #include "vantage/scene.hpp"
 
 namespace vantage::test {

@@ -7,6 +7,7 @@
 
 #include "core/free_memory.hpp"
 #include "support/temporary_folder.hpp"
+#include "vantage/built_in_scenes.hpp"
 #include "vantage/error.hpp"
 #include "vantage/simulator.hpp"
 

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <memory>
 #include <stop_token>
 #include <string>
 #include <thread>
@@ -18,8 +19,10 @@
 #include <utility>
 
 #include "support/quad_scene.hpp"
+#include "trace/tracer_maker.hpp"
 #include "vantage/error.hpp"
 #include "vantage/objective.hpp"
+#include "voxel/voxel_grid.hpp"
 
 namespace vantage {
 namespace {
@@ -217,6 +220,42 @@ TEST(Scan, GivesOnlyWhatWasAskedFor) {
               simulator.scan({{0, 0, 0}}, {.outputs = 1u << 20}, {});
             }).find("unknown output"),
             std::string::npos);
+}
+
+// Of a room so far from the survey frame's origin that floats have steps of half a metre there.
+TEST(ScanPoints, AreTheHitsOfAScanInTheSurveyFrame) {
+  const Vec3 far{4'500'000, 5'300'000, 100};
+  Simulator simulator(wall_and_floor(far).scene(), coarse_scanner(2), config());
+  const Station station{far + Vec3{0.25, 0.125, 0}};
+  const ScanPoints points = simulator.scan_points(station, {.outputs = everything});
+  const ScanChunk all = whole_scan(simulator, station, 0, everything);
+  ASSERT_EQ(points.ray.size(), points.summary.points);
+  EXPECT_LT(points.summary.points, points.summary.rays);
+  EXPECT_EQ(points.summary.rays, all.ray_count);
+  std::size_t hit = 0;
+  for (std::uint64_t ray = 0; ray < all.ray_count; ++ray) {
+    if (all.mesh[ray] < 0) continue;
+    ASSERT_EQ(points.ray[hit], ray);
+    EXPECT_EQ(points.range_m[hit], all.range_m[ray]);
+    const auto& [x, y, z] = all.position[ray];
+    EXPECT_EQ(points.position[hit], (simulator.origin() + Vec3{x, y, z}));
+    const Vec3 from_head = points.position[hit] - station.position;
+    EXPECT_NEAR(std::sqrt(dot(from_head, from_head)), points.range_m[hit], 1e-4);
+    EXPECT_EQ(points.normal[hit], all.normal[ray]);
+    EXPECT_EQ(points.reflectivity[hit], all.reflectivity[ray]);
+    EXPECT_EQ(points.mesh[hit], all.mesh[ray]);
+    EXPECT_EQ(points.primitive[hit], all.primitive[ray]);
+    EXPECT_EQ(points.colour[hit], all.colour[ray]);
+    EXPECT_EQ(points.voxel[hit], all.voxel[ray]);
+    ++hit;
+  }
+  EXPECT_EQ(hit, points.ray.size());
+
+  const ScanPoints positions = simulator.scan_points(station);
+  EXPECT_EQ(positions.position, points.position);
+  EXPECT_TRUE(positions.range_m.empty() && positions.normal.empty() && positions.mesh.empty());
+  EXPECT_TRUE(simulator.scan_points({station.position, false}).ray.empty());
+  EXPECT_THROW(simulator.scan_points(station, {.outputs = 1024}), Error);
 }
 
 TEST(Scan, NoiseIsKeyedBySeedPlaceAndRay) {
@@ -669,6 +708,32 @@ TEST(Simulator, RefusesToBeCalledByACallbackOfItsOwnCall) {
   EXPECT_GE(refused, 1);
   EXPECT_EQ(counts.partial_points, callers.exact[0].partial_points);
   EXPECT_TRUE(callers.agrees(0));  // and it serves again
+}
+
+// As other processes would share the work, but it does all of it itself.
+struct Counted final : TracerMaker {
+  std::unique_ptr<Tracer> make(std::unique_ptr<Tracer> own, const TraceScene& scene,
+                               std::uint64_t fingerprint) override {
+    fingerprints.push_back(fingerprint);
+    voxels.push_back(scene.grid->size());
+    return own;
+  }
+  std::size_t networks_at_once() const override { return 1; }
+  std::vector<std::uint64_t> fingerprints, voxels;
+};
+
+TEST(Simulator, SharesItsTracingOnlyIfToldTo) {
+  const Scene scene = wall_and_floor().scene();
+  const auto maker = std::make_shared<Counted>();
+  SimulatorConfig sharing = config();
+  sharing.shared = maker;
+  Simulator simulator(scene, coarse_scanner(2), sharing), alone(scene, coarse_scanner(2), config());
+  EXPECT_EQ(maker->fingerprints, std::vector{scene.fingerprint()});
+  EXPECT_EQ(maker->voxels, std::vector{simulator.voxel_count()});
+  const Network network{{{0, 0, 0}}};
+  EXPECT_EQ(simulator.evaluate(network).partial_points, alone.evaluate(network).partial_points);
+  surroundings_of(simulator);
+  EXPECT_EQ(maker->fingerprints.size(), 2u);
 }
 
 }  // namespace

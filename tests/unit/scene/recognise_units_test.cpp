@@ -6,6 +6,7 @@
 
 #include "support/glb_builder.hpp"
 #include "support/temporary_folder.hpp"
+#include "vantage/built_in_scenes.hpp"
 #include "vantage/error.hpp"
 #include "vantage/scene.hpp"
 

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "import/import.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include "cli/command.hpp"
+#include "cli/options.hpp"
+#include "core/atomic_file.hpp"
+#include "vantage/error.hpp"
+#include "vantage/scene.hpp"
+
+namespace vantage::cli {
+namespace {
+
+struct ImportOptions {
+  std::string file;
+  std::optional<std::string> output;
+  bool json = false;
+
+  void add(CLI::App& command) {
+    command.add_option("file", file, "A model: IFC, OBJ, STL, PLY, FBX, COLLADA, 3DS, X3D or DXF")->type_name("FILE");
+    add_text(command, "-o,--output", "FILE", "Where to write the scene: a .glb file", output);
+    command.add_flag("--json", json, "Print one JSON object");
+  }
+};
+
+int import_model(CLI::App&, ImportOptions& options, Program& program) {
+  if (options.file.empty()) throw Error(Errc::invalid_argument, "import: which model? See vantage import --help");
+  if (!options.output) throw Error(Errc::invalid_argument, "import: say where to write it with -o site.glb");
+  const Scene scene = Scene::load(options.file, {.doors = {"closed"}});  // which says what is wrong with it
+  const importers::Format& format = *importers::recognise(options.file).format;
+  if (!format.importer)
+    throw Error(Errc::invalid_argument, "import: " + options.file + " is glTF already; the other commands read it");
+  const auto glb = importers::as_glb(options.file, format);
+  write_atomically(*options.output, {reinterpret_cast<const char*>(glb.data()), glb.size()});
+  for (const auto& note : scene.notes()) spdlog::info("{}: {}", options.file, note);
+  if (options.json)
+    program.console.print(nlohmann::json{{"format", format.name},
+                                         {"file", *options.output},
+                                         {"triangles", scene.triangle_count()},
+                                         {"meshes", scene.meshes().size()},
+                                         {"bytes", glb.size()}});
+  else
+    program.console.print(fmt::format("{}: {} triangles in {} meshes, {:.1f} MB\n", *options.output,
+                                      scene.triangle_count(), scene.meshes().size(),
+                                      static_cast<double>(glb.size()) * 1e-6));
+  return exit_ok;
+}
+
+}  // namespace
+
+void add_import(CLI::App& app, Program& program) {
+  add_command<ImportOptions>(app, program, "import", "Turn a model of another format into glTF", import_model);
+}
+
+}  // namespace vantage::cli

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+
+#include "core/closest_name.hpp"
+#include "generate/glb_writer.hpp"
+#include "generate/model.hpp"
+#include "vantage/built_in_scenes.hpp"
+#include "vantage/error.hpp"
+
+namespace vantage {
+
+std::span<const std::string> built_in_scene_names() noexcept {
+  static const std::array<std::string, 3> kNames{"three-walls", "four-walls", "industrial"};
+  return kNames;
+}
+
+void write_built_in_scene(const std::string& name, std::size_t triangles, const std::filesystem::path& file) {
+  if (name == "three-walls") return built_in::write_glb(built_in::three_walls(), file);
+  if (name == "four-walls") return built_in::write_glb(built_in::four_walls(), file);
+
+  if (name == "industrial") return built_in::write_glb(built_in::industrial(triangles), file);
+  throw Error(Errc::invalid_argument, "there is no built-in scene \"" + name +
+                                          "\"; use three-walls, four-walls or industrial" +
+                                          did_you_mean(name, built_in_scene_names()));
+}
+
+}  // namespace vantage

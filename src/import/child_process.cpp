@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "import/child_process.hpp"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <utility>
+
+#include "import/sandbox.hpp"
+#include "vantage/error.hpp"
+
+namespace vantage::importers {
+namespace {
+
+constexpr int kCannotStart = 127;
+constexpr std::size_t kMostErrors = 4096;
+
+class Descriptor {
+ public:
+  Descriptor() = default;
+  explicit Descriptor(int value) : value_(value) {}
+  Descriptor(Descriptor&& other) noexcept : value_(std::exchange(other.value_, -1)) {}
+  Descriptor& operator=(Descriptor&& other) noexcept {
+    std::swap(value_, other.value_);
+    return *this;
+  }
+  ~Descriptor() { reset(); }
+  void reset() {
+    if (value_ >= 0) close(value_);
+    value_ = -1;
+  }
+  int get() const { return value_; }
+
+ private:
+  int value_ = -1;
+};
+
+struct Pipe {
+  Pipe() {
+    int ends[2];
+    if (pipe2(ends, O_CLOEXEC) != 0)
+      throw Error(Errc::io, std::string("no pipe to an importer can be opened: ") + std::strerror(errno));
+    from = Descriptor(ends[0]);
+    to = Descriptor(ends[1]);
+  }
+  Descriptor from, to;
+};
+
+// At `most` there is a signal that tells which limit it was, at `hard` the end.
+void limit(__rlimit_resource_t resource, std::uint64_t most, std::uint64_t hard) noexcept {
+  rlimit now{};
+  getrlimit(resource, &now);
+  const rlimit wanted{std::min<rlim_t>(most, now.rlim_max), std::min<rlim_t>(hard, now.rlim_max)};
+  setrlimit(resource, &wanted);
+}
+
+// Behind the fork, where only system calls are safe. What a process may allocate is RLIMIT_DATA: unlike RLIMIT_AS it
+// does not count the address space that node reserves and never uses.
+[[noreturn]] void become(char* const* words, const Sandbox& sandbox, const Limits& limits, int nothing, int out,
+                         int err) noexcept {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (dup2(nothing, 0) < 0 || dup2(out, 1) < 0 || dup2(err, 2) < 0) _exit(kCannotStart);
+  sigset_t none;
+  sigemptyset(&none);
+  sigprocmask(SIG_SETMASK, &none, nullptr);
+  for (const int name : {SIGPIPE, SIGXFSZ, SIGXCPU, SIGINT, SIGTERM, SIGHUP}) signal(name, SIG_DFL);
+  limit(RLIMIT_CORE, 0, 0);
+  limit(RLIMIT_FSIZE, 0, 0);
+  limit(RLIMIT_CPU, limits.cpu_s, limits.cpu_s + 1);
+  if (limits.memory > 0) limit(RLIMIT_DATA, limits.memory, limits.memory);
+  sandbox.enter();
+  execv(words[0], words);
+  _exit(kCannotStart);
+}
+
+using Clock = std::chrono::steady_clock;
+
+// Reads both ends until they are closed; says why it stopped before.
+void listen(Pipe& out, Pipe& err, const Limits& limits, Ended& ended) {
+  const auto deadline = Clock::now() + std::chrono::seconds(limits.wall_s);
+  std::array<pollfd, 2> ends{pollfd{out.from.get(), POLLIN, 0}, pollfd{err.from.get(), POLLIN, 0}};
+  std::vector<char> block(std::size_t{1} << 18);
+  while (ends[0].fd >= 0 || ends[1].fd >= 0) {
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
+    if (left <= 0) {
+      ended.timed_out = true;
+      return;
+    }
+    const int ready = poll(ends.data(), ends.size(), static_cast<int>(std::min<long long>(left, 1000)));
+    if (ready < 0 && errno != EINTR) return;
+    if (ready <= 0) continue;
+    for (std::size_t e = 0; e < ends.size(); ++e) {
+      if (ends[e].fd < 0 || ends[e].revents == 0) continue;
+      const ssize_t got = read(ends[e].fd, block.data(), block.size());
+      if (got < 0 && errno == EINTR) continue;
+      if (got <= 0) {
+        ends[e].fd = -1;
+        continue;
+      }
+      const auto bytes = static_cast<std::size_t>(got);
+      if (e == 1) {
+        ended.errors.append(block.data(), std::min(bytes, kMostErrors - ended.errors.size()));
+      } else if (ended.output.size() + bytes > limits.output) {
+        ended.too_large = true;
+        return;
+      } else {
+        ended.output.insert(ended.output.end(), block.begin(), block.begin() + got);
+      }
+    }
+  }
+}
+
+// Waits until the process has ended; kills it where it goes on beyond the deadline.
+int wait_for(pid_t process, unsigned seconds, bool& timed_out) {
+  const auto deadline = Clock::now() + std::chrono::seconds(seconds);
+  int status = 0;
+  for (bool killed = false;;) {
+    const pid_t ended = waitpid(process, &status, killed ? 0 : WNOHANG);
+    if (ended == process || (ended < 0 && errno != EINTR)) return status;
+    if (!killed && Clock::now() > deadline) {
+      kill(process, SIGKILL);
+      killed = timed_out = true;
+    }
+    if (!killed) usleep(1000);
+  }
+}
+
+}  // namespace
+
+Ended run_limited(const std::vector<std::string>& words, const std::vector<std::filesystem::path>& readable,
+                  const Limits& limits) {
+  std::vector<std::string> copies = words;
+  std::vector<char*> argv;
+  for (std::string& word : copies) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  const Sandbox sandbox(readable);
+  Pipe out, err;
+  const Descriptor nothing(open("/dev/null", O_RDONLY | O_CLOEXEC));
+  const pid_t process = fork();
+  if (process < 0) throw Error(Errc::io, words.front() + " cannot be started: " + std::string(std::strerror(errno)));
+  if (process == 0) become(argv.data(), sandbox, limits, nothing.get(), out.to.get(), err.to.get());
+  out.to.reset();
+  err.to.reset();
+  Ended ended;
+  int status = 0;
+  try {
+    listen(out, err, limits, ended);
+  } catch (...) {  // not enough memory for its output
+    kill(process, SIGKILL);
+    waitpid(process, &status, 0);
+    throw;
+  }
+  if (ended.timed_out || ended.too_large) kill(process, SIGKILL);
+  status = wait_for(process, 10, ended.timed_out);  // one that has closed its output has nothing left to do
+  if (WIFEXITED(status)) ended.exit_code = WEXITSTATUS(status);
+  if (WIFSIGNALED(status)) ended.signal = WTERMSIG(status);
+  for (char& c : ended.errors)
+    if (c != '\n' && !(c >= ' ' && c <= '~')) c = '?';
+  return ended;
+}
+
+}  // namespace vantage::importers

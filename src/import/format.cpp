@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "import/format.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <fstream>
+#include <optional>
+#include <sstream>
+#include <string_view>
+
+#include "vantage/error.hpp"
+
+namespace vantage::importers {
+namespace {
+
+using std::string_view_literals::operator""sv;
+
+constexpr const char* kMesh = "vantage-import-mesh";
+constexpr Format kGltf{"glTF", ".glb .gltf ", nullptr};
+constexpr Format kIfc{"IFC", ".ifc ", "vantage-import-ifc"};
+constexpr Format kObj{"OBJ", ".obj ", kMesh}, kStl{"STL", ".stl ", kMesh}, kPly{"PLY", ".ply ", kMesh},
+    kFbx{"FBX", ".fbx ", kMesh}, kCollada{"COLLADA", ".dae ", kMesh}, k3ds{"3DS", ".3ds ", kMesh},
+    kX3d{"X3D", ".x3d ", kMesh}, kDxf{"DXF", ".dxf ", kMesh};
+constexpr std::array kFormats{&kGltf, &kIfc, &kObj, &kStl, &kPly, &kFbx, &kCollada, &k3ds, &kX3d, &kDxf};
+
+// What people take for a model, by its first bytes, and what to do about it.
+struct Mistaken {
+  std::string_view begins;
+  const char* is;
+};
+constexpr const char* kPointCloud = "a point cloud; make a mesh of it (e.g. with CloudCompare) and export that as PLY";
+constexpr const char* kPicture = "a picture; give the model";
+constexpr std::array kMistaken{
+    Mistaken{"version https://git-lfs"sv, "a Git LFS pointer, not the model itself; fetch it with git lfs pull"},
+    Mistaken{"PK\x03\x04"sv, "a zip archive; unpack it and give the model in it"},
+    Mistaken{"\x1F\x8B"sv, "packed with gzip; unpack it with gunzip and give what is in it"},
+    Mistaken{"7z\xBC\xAF"sv, "a 7z archive; unpack it and give the model in it"},
+    Mistaken{"Rar!"sv, "a RAR archive; unpack it and give the model in it"},
+    Mistaken{"%PDF"sv, "a PDF document; ask its author for the model"},
+    Mistaken{"\x89PNG"sv, kPicture},
+    Mistaken{"\xFF\xD8\xFF"sv, kPicture},
+    Mistaken{"LASF"sv, kPointCloud},
+    Mistaken{"ASTM-E57"sv, kPointCloud},
+    Mistaken{"# .PCD"sv, kPointCloud},
+    Mistaken{"AC10"sv, "a DWG drawing; export IFC, FBX, or DXF with faces"},
+    Mistaken{"\xD0\xCF\x11\xE0"sv, "a file of Revit, 3ds Max or an office program; export IFC or FBX"},
+    Mistaken{"\xFF\xFE\xFF\x0E"sv, "a SketchUp file; export glTF or COLLADA"},
+    Mistaken{"BLENDER"sv, "a Blender file; export glTF"},
+    Mistaken{"3D Geometry File Format"sv, "a Rhino file; export OBJ or FBX"},
+    Mistaken{"PXR-USDC"sv, "a USD file; export glTF"},
+    Mistaken{"#usda"sv, "a USD file; export glTF"},
+    Mistaken{"#VRML"sv, "a VRML file; export X3D (as XML) or glTF"},
+};
+
+std::string lower(std::string_view text) {
+  std::string out(text);
+  for (char& c : out)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return out;
+}
+
+bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\f' || c == '\v'; }
+
+std::string_view without_blanks(std::string_view text) {
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // UTF-8's byte order mark
+  while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
+  return text;
+}
+
+std::uint32_t little_endian_32(std::string_view bytes) {
+  std::uint32_t value = 0;
+  for (std::size_t i = 0; i < 4; ++i)
+    value |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[i])) << (8 * i);
+  return value;
+}
+
+// Lines of a text without blanks around them, but for empty ones.
+std::vector<std::string_view> first_lines(std::string_view text, std::size_t most) {
+  std::vector<std::string_view> lines;
+  while (!text.empty() && lines.size() < most) {
+    const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
+    std::string_view line = without_blanks(text.substr(0, end));
+    while (!line.empty() && is_space(line.back())) line.remove_suffix(1);
+    if (!line.empty()) lines.push_back(line);
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return lines;
+}
+
+std::string_view first_word(std::string_view line) { return line.substr(0, line.find_first_of(" \t")); }
+
+bool holds_obj(std::string_view text) {
+  constexpr std::array kWords{"v"sv, "vn"sv, "vt"sv, "vp"sv, "f"sv, "l"sv, "mtllib"sv, "usemtl"sv, "o"sv, "g"sv, "s"sv};
+  std::size_t known = 0, others = 0;
+  for (const std::string_view line : first_lines(text, 2000)) {
+    if (line.front() == '#') continue;
+    ++(std::ranges::find(kWords, first_word(line)) != kWords.end() ? known : others);
+  }
+  return known > 0 && known > 20 * others;
+}
+
+// Two lines of three numbers or more.
+bool holds_numbers(std::string_view text) {
+  const auto lines = first_lines(text, 2);
+  const auto numbers = [](std::string_view line) {
+    std::string words(line);
+    std::ranges::replace_if(
+        words, [](char c) { return c == ',' || c == ';'; }, ' ');
+    std::istringstream stream(words);
+    stream.imbue(std::locale::classic());
+    double value = 0;
+    std::size_t count = 0;
+    while (stream >> value) ++count;
+    return stream.eof() ? count : 0;
+  };
+  return lines.size() == 2 && std::ranges::all_of(lines, [&](std::string_view line) { return numbers(line) >= 3; });
+}
+
+// A PLY's header may say that it has no faces.
+bool ply_without_faces(std::string_view text) {
+  const std::size_t end = text.find("end_header");
+  if (end == std::string_view::npos) return false;
+  for (const std::string_view line : first_lines(text.substr(0, end), 1000))
+    if ((line.starts_with("element face") || line.starts_with("element tristrips")) && !line.ends_with(" 0"))
+      return false;
+  return true;
+}
+
+// The name of an XML document's root element, in lower case.
+std::string root_element(std::string_view text) {
+  for (std::size_t at = text.find('<'); at != std::string_view::npos; at = text.find('<', at + 1)) {
+    const std::string_view rest = text.substr(at + 1);
+    if (rest.starts_with("!--")) {
+      at = text.find("-->", at);
+      if (at == std::string_view::npos) return {};
+    } else if (!rest.empty() && rest.front() != '?' && rest.front() != '!') {
+      return lower(rest.substr(0, rest.find_first_of(" \t\r\n/>")));
+    }
+  }
+  return {};
+}
+
+struct Head {
+  std::string bytes;
+  std::uintmax_t size = 0;  // of the whole file
+};
+
+std::optional<Head> read_head(const std::filesystem::path& file) {
+  constexpr std::size_t kBytes = std::size_t{1} << 16;
+  std::error_code failure;
+  if (!std::filesystem::is_regular_file(file, failure)) return {};
+  Head head;
+  head.size = std::filesystem::file_size(file, failure);
+  std::ifstream stream(file, std::ios::binary);
+  if (failure || !stream) return {};
+  head.bytes.resize(kBytes);
+  stream.read(head.bytes.data(), kBytes);
+  head.bytes.resize(static_cast<std::size_t>(stream.gcount()));
+  return head;
+}
+
+// What is no model of surfaces, in words; empty where the content does not say so.
+std::string mistaken_for_a_model(const Head& head) {
+  if (head.bytes.empty()) return "empty; copy or export it again";
+  const std::string_view text = without_blanks(head.bytes);
+  for (const Mistaken& other : kMistaken)
+    if (std::string_view(head.bytes).starts_with(other.begins) || text.starts_with(other.begins)) return other.is;
+  if (text.starts_with("<")) {
+    const std::string root = root_element(text);
+    if (root == "html" || lower(text.substr(0, 14)) == "<!doctype html")
+      return "an HTML page, perhaps that from which the model is downloaded; download the model itself";
+    if (root.find("ifcxml") != std::string::npos || root.find("iso_10303_28") != std::string::npos)
+      return "ifcXML; export IFC as STEP text (.ifc)";
+    if (root.ends_with("citymodel")) return "CityGML; export glTF or OBJ";
+  }
+  if (text.starts_with("ISO-10303-21") && head.bytes.find("IFC") == std::string::npos)
+    return "a STEP file of a CAD program; export glTF, OBJ or IFC";
+  if (text.starts_with("ply") && ply_without_faces(text)) return kPointCloud;
+  if (holds_numbers(text)) return "a table of numbers, perhaps a point cloud; a model of surfaces is needed";
+  return {};
+}
+
+const Format* format_by_content(const Head& head) {
+  const std::string_view bytes = head.bytes, text = without_blanks(bytes);
+  if (bytes.starts_with("glTF") || text.starts_with("{")) return &kGltf;
+  if (text.starts_with("ISO-10303-21")) return &kIfc;
+  if (bytes.starts_with("Kaydara FBX Binary") || bytes.find("FBXHeaderExtension") != std::string_view::npos)
+    return &kFbx;
+  if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) return &kPly;
+  if (bytes.size() >= 84 && head.size == 84 + std::uintmax_t{50} * little_endian_32(bytes.substr(80))) return &kStl;
+  if (text.starts_with("solid") && text.find("facet") != std::string_view::npos) return &kStl;
+  if (bytes.size() >= 6 && bytes.starts_with("MM") && head.size == little_endian_32(bytes.substr(2))) return &k3ds;
+  if (bytes.starts_with("AutoCAD Binary DXF")) return &kDxf;
+  if (text.starts_with("<")) {
+    const std::string root = root_element(text);
+    if (root == "collada") return &kCollada;
+    if (root == "x3d") return &kX3d;
+    return nullptr;
+  }
+  if (bytes.find('\0') != std::string_view::npos) return nullptr;
+  auto lines = first_lines(text, 1000);
+  std::span<const std::string_view> rest = lines;
+  while (rest.size() >= 2 && rest[0] == "999") rest = rest.subspan(2);  // DXF's comments
+  if (rest.size() >= 2 && rest[0] == "0" && rest[1] == "SECTION") return &kDxf;
+  return holds_obj(text) ? &kObj : nullptr;
+}
+
+const Format* format_by_extension(const std::filesystem::path& file) {
+  const std::string extension = lower(file.extension().string()) + " ";
+  if (extension.size() < 2) return nullptr;
+  const auto found = std::ranges::find_if(kFormats, [&](const Format* format) {
+    return std::string_view(format->extensions).find(extension) != std::string_view::npos;
+  });
+  return found == kFormats.end() ? nullptr : *found;
+}
+
+}  // namespace
+
+Recognised recognise(const std::filesystem::path& file) {
+  const auto head = read_head(file);
+  if (!head) return {&kGltf};
+  const Format* by_extension = format_by_extension(file);
+  if (const Format* format = format_by_content(*head); format && format->importer == nullptr) {
+    if (!by_extension || by_extension == format) return {format};
+    return {format, std::string("it is named as ") + by_extension->name + ", but holds glTF, and is read as that"};
+  }
+  if (const std::string other = mistaken_for_a_model(*head); !other.empty())
+    throw Error(Errc::malformed_file, file.string() + ": this is " + other);
+  const Format* format = format_by_content(*head);
+  if (!format) format = by_extension;
+  if (!format) {
+    std::string names;
+    for (const Format* known : kFormats) names += std::string(names.empty() ? "" : ", ") + known->name;
+    throw Error(Errc::malformed_file,
+                file.string() + ": this is no model that vantage knows; it reads " + names + ": export one of these");
+  }
+  if (!by_extension || by_extension == format) return {format};
+  return {format, std::string("it is named as ") + by_extension->name + ", but holds " + format->name +
+                      ", and is read as that"};
+}
+
+}  // namespace vantage::importers

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// Affine maps as 16 numbers, column by column.
+
+export function transformed(m, x, y, z) {
+  return [m[0] * x + m[4] * y + m[8] * z + m[12], m[1] * x + m[5] * y + m[9] * z + m[13],
+    m[2] * x + m[6] * y + m[10] * z + m[14]];
+}
+
+export function product(a, b) {
+  const out = new Array(16).fill(0);
+  for (let column = 0; column < 4; ++column)
+    for (let row = 0; row < 4; ++row)
+      for (let k = 0; k < 4; ++k) out[4 * column + row] += a[4 * k + row] * b[4 * column + k];
+  return out;
+}
+
+// Null where it flattens space.
+export function inverse(m) {
+  const minor = (i, j) => {  // of the upper left 3 by 3, row i and column j
+    const rows = [0, 1, 2].filter((r) => r !== i), columns = [0, 1, 2].filter((c) => c !== j);
+    const at = (r, c) => m[4 * columns[c] + rows[r]];
+    return ((i + j) % 2 ? -1 : 1) * (at(0, 0) * at(1, 1) - at(0, 1) * at(1, 0));
+  };
+  const determinant = m[0] * minor(0, 0) + m[4] * minor(0, 1) + m[8] * minor(0, 2);
+  if (!(Math.abs(determinant) > 1e-12)) return null;
+  const out = [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1];
+  for (let row = 0; row < 3; ++row)
+    for (let column = 0; column < 3; ++column) out[4 * column + row] = minor(column, row) / determinant;
+  const [x, y, z] = transformed(out, m[12], m[13], m[14]);
+  [out[12], out[13], out[14]] = [-x, -y, -z];
+  return out;
+}

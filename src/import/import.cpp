@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "import/import.hpp"
+
+#include <signal.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "core/atomic_file.hpp"
+#include "core/free_memory.hpp"
+#include "core/hash.hpp"
+#include "core/read_file.hpp"
+#include "import/importers.hpp"
+#include "vantage/error.hpp"
+#include "vantage/version.hpp"
+
+namespace vantage::importers {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kRefused = 65, kUnavailable = 69, kMemory = 71;  // of sysexits.h: EX_DATAERR, EX_UNAVAILABLE, EX_OSERR
+
+// Whole GLB, as far as its header tells.
+bool is_glb(std::span<const std::uint8_t> bytes) {
+  if (bytes.size() < 20 || std::memcmp(bytes.data(), "glTF", 4) != 0) return false;
+  std::uint32_t length = 0;
+  std::memcpy(&length, bytes.data() + 8, sizeof length);
+  return length == bytes.size();
+}
+
+void add_file(Hash& hash, const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::vector<char> block(std::size_t{1} << 20);
+  while (stream) {
+    stream.read(block.data(), static_cast<std::streamsize>(block.size()));
+    hash.add_bytes(block.data(), static_cast<std::size_t>(stream.gcount()));
+  }
+  if (!stream.eof()) throw Error(Errc::io, file.string() + ": the model cannot be read");
+}
+
+// What else an importer reads: of these formats, OBJ alone names other files that matter, its tables of materials.
+void add_material_tables(Hash& hash, const fs::path& file) {
+  std::ifstream stream(file);
+  for (std::string line; std::getline(stream, line);) {
+    if (!line.starts_with("mtllib")) continue;
+    line.erase(0, std::min(line.find_first_not_of(" \t", 6), line.size()));
+    while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
+    std::error_code failure;
+    const fs::path table = file.parent_path() / line;
+    if (fs::is_regular_file(table, failure)) add_file(hash, table);
+  }
+}
+
+// Changes with the model, the importer and this program.
+std::string cache_key(const fs::path& file, const Format& format, const Importer& importer) {
+  Hash hash;
+  const std::string_view version = vantage::version(), name = format.name;
+  hash.add_bytes(version.data(), version.size());
+  hash.add_bytes(name.data(), name.size());
+  hash.add(fs::file_size(importer.program));
+  hash.add(fs::last_write_time(importer.program).time_since_epoch().count());
+  add_file(hash, file);
+  if (name == "OBJ") add_material_tables(hash, file);
+  char text[17];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash.value()));
+  return text;
+}
+
+// Empty where the user has none.
+fs::path cache_folder() {
+  const char* given = std::getenv("XDG_CACHE_HOME");
+  if (given && *given == '/') return fs::path(given) / "vantage/imports";
+  const char* home = std::getenv("HOME");
+  return home && *home == '/' ? fs::path(home) / ".cache/vantage/imports" : fs::path();
+}
+
+std::optional<std::vector<std::uint8_t>> cached(const fs::path& entry, const Limits& limits) {
+  try {
+    RegularFile file(entry);
+    if (file.size() > limits.output) return {};
+    std::vector<std::uint8_t> glb(file.size());
+    file.read(glb.data());
+    if (is_glb(glb)) return glb;
+  } catch (const Error&) {  // as good as not there
+  }
+  return {};
+}
+
+// A cache that cannot be written costs time and nothing else.
+void keep(const fs::path& entry, std::span<const std::uint8_t> glb) {
+  try {
+    fs::create_directories(entry.parent_path());
+    write_atomically(entry, {reinterpret_cast<const char*>(glb.data()), glb.size()});
+  } catch (const Error&) {
+  } catch (const fs::filesystem_error&) {
+  }
+}
+
+std::string last_line(std::string text) {
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  return text.substr(text.rfind('\n') + 1);
+}
+
+// Why an importer gave no GLB.
+Error failure_of(const Ended& ended, const std::string& file, const Format& format, const Limits& limits) {
+  const std::string who = file + ": the importer of " + format.name, said = last_line(ended.errors);
+  constexpr const char* kOtherwise = "; export the model again, or as glTF";
+  if (ended.timed_out)
+    return Error(Errc::malformed_file, who + " took more than " + std::to_string(limits.wall_s) + " s" + kOtherwise);
+  if (ended.signal == SIGXCPU)
+    return Error(Errc::malformed_file,
+                 who + " took more than " + std::to_string(limits.cpu_s) + " s of computing" + kOtherwise);
+  if (ended.too_large)
+    return Error(Errc::malformed_file, file + ": as glTF the model would take more than " + bytes_text(limits.output) +
+                                           "; export parts of it");
+  if (ended.exit_code == kRefused && !said.empty()) return Error(Errc::malformed_file, file + ": " + said);
+  if (ended.exit_code == kUnavailable && !said.empty()) return Error(Errc::io, file + ": " + said);
+  if (ended.exit_code == kMemory)
+    return Error(Errc::out_of_memory, who + " needs more memory than the " + bytes_text(limits.memory) +
+                                          " that are free; close other programs, or export parts of the model");
+  const std::string how = ended.signal > 0       ? "crashed (signal " + std::to_string(ended.signal) + ")"
+                          : ended.exit_code != 0 ? "failed (exit code " + std::to_string(ended.exit_code) + ")"
+                                                 : "gave no GLB";
+  return Error(Errc::malformed_file, who + " " + how + (said.empty() ? "" : ": " + said) +
+                                         "; the file may be damaged: export the model again, or as glTF");
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> as_glb(const fs::path& file, const Format& format, Limits limits) {
+  limits.memory = memory_limit(limits.memory);
+  limits.output = std::min(limits.output, limits.memory);
+  const fs::path absolute = fs::absolute(file);
+  Importer importer = [&] {
+    try {
+      return find_importer(format);
+    } catch (const Error& error) {
+      throw Error(error.code(), file.string() + ": " + error.what());
+    }
+  }();
+  const fs::path folder = cache_folder();
+  const fs::path entry = folder / (cache_key(absolute, format, importer) + ".glb");
+  if (!folder.empty())
+    if (auto glb = cached(entry, limits)) return std::move(*glb);
+  importer.words.push_back(absolute.string());
+  for (const fs::path& name : {absolute, fs::canonical(absolute)}) importer.readable.push_back(name.parent_path());
+  Ended ended = run_limited(importer.words, importer.readable, limits);
+  if (ended.exit_code != 0 || ended.timed_out || ended.too_large || !is_glb(ended.output))
+    throw failure_of(ended, file.string(), format, limits);
+  if (!folder.empty()) keep(entry, ended.output);
+  return std::move(ended.output);
+}
+
+}  // namespace vantage::importers

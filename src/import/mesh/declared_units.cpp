@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// Units and axes by format, and what assimp 5.2 has done about them: COLLADA's unit and axis are in the root's
+// transform already, and that of DXF and 3DS turns Z to Y; FBX is left as it is.
+#include "import/mesh/declared_units.hpp"
+
+#include <assimp/scene.h>
+
+#include <array>
+#include <cmath>
+#include <fstream>
+
+namespace vantage::import_mesh {
+namespace {
+
+// Z up becomes Y up; X up as well, by the axes' cyclic order.
+const aiMatrix4x4 kFromZ(1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1);
+const aiMatrix4x4 kFromX(0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1);
+
+void scale(Declared& declared, double metres) {
+  if (!(metres > 0) || !std::isfinite(metres)) return;
+  aiMatrix4x4 factor;
+  factor.a1 = factor.b2 = factor.c3 = static_cast<ai_real>(metres);
+  declared.gltf_from_file = factor * declared.gltf_from_file;
+  declared.unit = true;
+}
+
+Declared of_fbx(const aiScene& scene) {
+  Declared declared;
+  std::int32_t axis = 1;
+  if (scene.mMetaData && scene.mMetaData->Get("UpAxis", axis) && axis >= 0 && axis <= 2) {
+    declared.up = true;
+    declared.gltf_from_file = axis == 2 ? kFromZ : axis == 0 ? kFromX : aiMatrix4x4();
+  }
+  double centimetres = 0;  // assimp stores it as either
+  float narrow = 0;
+  if (scene.mMetaData && scene.mMetaData->Get("UnitScaleFactor", centimetres))
+    scale(declared, centimetres * 0.01);
+  else if (scene.mMetaData && scene.mMetaData->Get("UnitScaleFactor", narrow))
+    scale(declared, static_cast<double>(narrow) * 0.01);
+  return declared;
+}
+
+// Whether a text has a word within its first part, where headers are.
+bool mentions(const std::filesystem::path& file, const char* word) {
+  std::string head(std::size_t{1} << 16, '\0');
+  std::ifstream stream(file, std::ios::binary);
+  stream.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(stream.gcount()));
+  return head.find(word) != std::string::npos;
+}
+
+// $INSUNITS of a DXF's header, a group 70 behind its name; 0 where there is none.
+int insertion_units(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  std::string line, code, value;
+  const auto next = [&](std::string& out) {
+    if (!std::getline(stream, out)) return false;
+    out.erase(0, out.find_first_not_of(" \t"));
+    while (!out.empty() && (out.back() == '\r' || out.back() == ' ')) out.pop_back();
+    return true;
+  };
+  while (next(line) && line != "ENTITIES")
+    if (line == "$INSUNITS" && next(code) && next(value) && code == "70") return std::atoi(value.c_str());
+  return 0;
+}
+
+}  // namespace
+
+Declared declared_units(const aiScene& scene, const std::filesystem::path& file, const std::string& format) {
+  if (format == "fbx") return of_fbx(scene);
+  Declared declared;
+  if (format == "dae") {
+    declared.unit = mentions(file, "<unit");
+    declared.up = mentions(file, "<up_axis");
+  } else if (format == "x3d") {
+    declared.unit = declared.up = true;  // metres and Y up, by its standard
+  } else if (format == "3ds") {
+    declared.up = true;
+  } else if (format == "dxf") {
+    declared.up = true;
+    struct Code {
+      int code;
+      double metres;
+    };
+    constexpr std::array kCodes{Code{1, 0.0254}, Code{2, 0.3048}, Code{4, 0.001}, Code{5, 0.01}, Code{6, 1.0}};
+    const int given = insertion_units(file);
+    for (const Code& known : kCodes)
+      if (known.code == given) scale(declared, known.metres);
+  }
+  return declared;
+}
+
+}  // namespace vantage::import_mesh

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "import/mesh/glb.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <stdexcept>
+
+namespace vantage::import_mesh {
+namespace {
+
+using nlohmann::json;
+
+constexpr int kUnsignedByte = 5121, kUnsignedInt = 5125, kFloat = 5126;
+constexpr std::uint32_t kMagic = 0x46546C67, kJson = 0x4E4F534A, kBinary = 0x004E4942;
+
+void append_word(std::string& out, std::size_t value) {
+  for (int shift = 0; shift < 32; shift += 8) out += static_cast<char>((value >> shift) & 0xFF);
+}
+
+// How many bytes one character of UTF-8 has; 0 where there is none.
+std::size_t character_at(const std::string& text, std::size_t at) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned char first = byte(at);
+  const std::size_t size = first < 0x80                    ? 1
+                           : first >= 0xC2 && first < 0xE0 ? 2
+                           : first >= 0xE0 && first < 0xF0 ? 3
+                           : first >= 0xF0 && first < 0xF5 ? 4
+                                                           : 0;
+  if (size == 0 || at + size > text.size()) return 0;
+  for (std::size_t i = 1; i < size; ++i)
+    if ((byte(at + i) & 0xC0) != 0x80) return 0;
+  if (size < 3) return size;
+  const unsigned char second = byte(at + 1);
+  const bool overlong = (first == 0xE0 && second < 0xA0) || (first == 0xF0 && second < 0x90);
+  const bool surrogate = first == 0xED && second > 0x9F, beyond = first == 0xF4 && second > 0x8F;
+  return overlong || surrogate || beyond ? 0 : size;
+}
+
+}  // namespace
+
+json& Buffer::add(const void* data, std::size_t bytes, std::size_t count, int component, const char* type) {
+  const std::size_t offset = bytes_.size();
+  bytes_.append(static_cast<const char*>(data), bytes);
+  bytes_.resize((bytes_.size() + 3) / 4 * 4);
+  views_.push_back({{"buffer", 0}, {"byteOffset", offset}, {"byteLength", bytes}});
+  accessors_.push_back(
+      {{"bufferView", views_.size() - 1}, {"componentType", component}, {"count", count}, {"type", type}});
+  return accessors_.back();
+}
+
+int Buffer::add_positions(std::span<const float> xyz) {
+  std::array<float, 3> low, high;
+  low.fill(std::numeric_limits<float>::max());
+  high.fill(std::numeric_limits<float>::lowest());
+  for (std::size_t i = 0; i < xyz.size(); ++i) {
+    low[i % 3] = std::min(low[i % 3], xyz[i]);
+    high[i % 3] = std::max(high[i % 3], xyz[i]);
+  }
+  json& accessor = add(xyz.data(), xyz.size_bytes(), xyz.size() / 3, kFloat, "VEC3");
+  accessor["min"] = low;
+  accessor["max"] = high;
+  return last();
+}
+
+int Buffer::add_normals(std::span<const float> xyz) {
+  add(xyz.data(), xyz.size_bytes(), xyz.size() / 3, kFloat, "VEC3");
+  return last();
+}
+
+int Buffer::add_colours(std::span<const std::uint8_t> rgba) {
+  add(rgba.data(), rgba.size_bytes(), rgba.size() / 4, kUnsignedByte, "VEC4")["normalized"] = true;
+  return last();
+}
+
+int Buffer::add_indices(std::span<const std::uint32_t> indices) {
+  add(indices.data(), indices.size_bytes(), indices.size(), kUnsignedInt, "SCALAR");
+  return last();
+}
+
+std::string Buffer::finish(json document) const {
+  document["accessors"] = accessors_;
+  document["bufferViews"] = views_;
+  document["buffers"] = json::array({{{"byteLength", bytes_.size()}}});
+  std::string text = document.dump();
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  const std::size_t total = 12 + 8 + text.size() + 8 + bytes_.size();
+  if (total > std::numeric_limits<std::uint32_t>::max()) throw std::length_error("GLB");
+  std::string out;
+  out.reserve(total);
+  for (const std::size_t word : {std::size_t{kMagic}, std::size_t{2}, total, text.size(), std::size_t{kJson}})
+    append_word(out, word);
+  out += text;
+  append_word(out, bytes_.size());
+  append_word(out, kBinary);
+  return out += bytes_;
+}
+
+std::string utf8(const std::string& text) {
+  bool valid = true;
+  for (std::size_t at = 0; valid && at < text.size();) {
+    const std::size_t size = character_at(text, at);
+    valid = size > 0;
+    at += size;
+  }
+  if (valid) return text;
+  std::string out;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x80) {
+      out += c;
+    } else {
+      out += static_cast<char>(0xC0 | (byte >> 6));
+      out += static_cast<char>(0x80 | (byte & 0x3F));
+    }
+  }
+  return out;
+}
+
+}  // namespace vantage::import_mesh

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+
+namespace vantage::import_mesh {
+
+// Collects the binary chunk of a GLB, its views and its accessors.
+class Buffer {
+ public:
+  // Each returns the index of the accessor.
+  int add_positions(std::span<const float> xyz);
+  int add_normals(std::span<const float> xyz);
+  int add_colours(std::span<const std::uint8_t> rgba);
+  int add_indices(std::span<const std::uint32_t> indices);
+
+  // Puts the arrays `accessors`, `bufferViews` and `buffers` into the document and returns the file's bytes.
+  // Throws std::length_error where they are more than a GLB holds, 4 GiB.
+  std::string finish(nlohmann::json document) const;
+
+ private:
+  nlohmann::json& add(const void* data, std::size_t bytes, std::size_t count, int component, const char* type);
+  int last() const { return static_cast<int>(accessors_.size()) - 1; }
+
+  std::string bytes_;
+  nlohmann::json views_ = nlohmann::json::array(), accessors_ = nlohmann::json::array();
+};
+
+// Text as UTF-8: kept where it is that, else taken as Latin-1.
+std::string utf8(const std::string& text);
+
+}  // namespace vantage::import_mesh

@@ -1,0 +1,56 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# tests/nightly.sh [part...]
+# What takes too long for `ctest --preset release` and `.ci/run`, after `./setup.sh --tests`; without arguments, all parts, one after the other:
+#
+#   sites      conformance and stress on whole sites, with four times as many rays and voxels, every engine; 15 more random sites
+#   faults     every n of the faults of device, disk and process, and every number for every option
+#   address, undefined, thread
+#              every suite under that sanitizer (tests/sanitizers/check.sh)
+#   machine    all tests under each instruction set of Embree and each width of lavapipe's vectors
+#   fuzz       ten minutes of libFuzzer a reader; needs clang
+#   mutation   200 lines broken at random, and which of them no test notices: build/mutation/found/found.md
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+tests=build/release/tests
+export VANTAGE_VALIDATION=1
+
+# run COMMAND...: which must succeed, and the validation layer must be silent.
+run() {
+  echo "nightly: $*"
+  "$@" 2>&1 | tee build/nightly.log
+  ! grep -q "validation layer reports" build/nightly.log
+}
+
+sites() {
+  VANTAGE_WHOLE_SITES=1 run "$tests/conformance/conformance_test" --gtest_brief=1
+  VANTAGE_WHOLE_SITES=1 run "$tests/stress/stress_test" --gtest_brief=1
+  VANTAGE_SEEDS=5..20 run "$tests/conformance/conformance_test" --gtest_brief=1 --gtest_filter='*RandomSites*'
+}
+
+faults() {
+  for engine in ray_query compute_bvh; do run "$tests/faults/vantage-device-faults" $engine; done
+  VANTAGE_FAULTS=1000 run "$tests/disk/program_faults_test" --gtest_brief=1
+  VANTAGE_NUMBERS=all run "$tests/unit/cli/cli_numbers_test" --gtest_brief=1
+}
+
+address() { tests/sanitizers/check.sh address; }
+undefined() { tests/sanitizers/check.sh undefined; }
+thread() { tests/sanitizers/check.sh thread; }
+machine() { tests/machine/every_machine.sh build/release; }
+fuzz() { cmake --preset fuzz >/dev/null && cmake --build --preset fuzz && tests/fuzz/run.sh 600; }
+mutation() {
+  cmake -G Ninja -S . -B build/mutation -DCMAKE_BUILD_TYPE=Release -DBUILD_SHARED_LIBS=ON -DCMAKE_LINK_DEPENDS_NO_SHARED=ON \
+    -DCMAKE_CXX_FLAGS=-D_GLIBCXX_ASSERTIONS >/dev/null
+  ninja -C build/mutation
+  tests/mutation/mutate.py build/mutation --lines 200 -o build/mutation/found
+}
+
+parts=("$@")
+[ $# -gt 0 ] || parts=(sites faults address undefined thread machine fuzz mutation)
+for part in "${parts[@]}"; do
+  case $part in
+    sites | faults | address | undefined | thread | machine | fuzz | mutation) "$part" ;;
+    *) sed -n '3,/^set /p' "$0" | sed '$d' >&2; exit 2 ;;
+  esac
+done

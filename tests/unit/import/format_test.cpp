@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "import/format.hpp"
+
+#include <string>
+
+#include "import_fixture.hpp"
+
+namespace vantage::test {
+namespace {
+
+using namespace std::string_literals;
+
+using FormatTest = ImportTest;
+
+struct Sample {
+  const char* file;
+  std::string content;
+  const char* format;
+};
+
+std::string binary_stl(std::uint32_t triangles) {
+  std::string bytes(80, ' ');
+  for (int shift = 0; shift < 32; shift += 8) bytes += static_cast<char>(triangles >> shift & 0xFF);
+  return bytes + std::string(50 * triangles, '\0');
+}
+
+TEST_F(FormatTest, IsToldByContent) {
+  const Sample samples[] = {
+      {"a.glb", "glTF\2\0\0\0"s, "glTF"},
+      {"a.gltf", "  {\"asset\": {}}", "glTF"},
+      {"a.ifc", "ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('IFC4'));", "IFC"},
+      {"a.obj", "# by hand\nmtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "OBJ"},
+      {"a.stl", binary_stl(2), "STL"},
+      {"solid.stl", "solid " + binary_stl(2).substr(6), "STL"},
+      {"text.stl", "solid a\n facet normal 0 0 1\n", "STL"},
+      {"a.ply", "ply\nformat ascii 1.0\nelement vertex 3\nelement face 1\nend_header\n", "PLY"},
+      {"a.fbx", "Kaydara FBX Binary  \0\x1A\0"s, "FBX"},
+      {"text.fbx", "; FBX 7.3.0 project file\nFBXHeaderExtension:  {\n", "FBX"},
+      {"a.dae", "<?xml version=\"1.0\"?>\n<!-- made by hand -->\n<COLLADA xmlns=\"a\">", "COLLADA"},
+      {"a.3ds", "MM\x0A\0\0\0\x02\0\x0A\0"s, "3DS"},
+      {"a.x3d", "<?xml version=\"1.0\"?><!DOCTYPE X3D PUBLIC \"a\"><X3D>", "X3D"},
+      {"a.dxf", "999\nby hand\n  0\r\nSECTION\r\n  2\r\nHEADER\r\n", "DXF"},
+  };
+  for (const Sample& sample : samples) {
+    const auto recognised = importers::recognise(write(sample.file, sample.content));
+    EXPECT_STREQ(recognised.format->name, sample.format) << sample.file;
+    EXPECT_EQ(recognised.note, "") << sample.file;
+    // A wrong extension is told, and one of its own is no reason to refuse.
+    const auto renamed = importers::recognise(write("renamed.OBJ", sample.content));
+    EXPECT_STREQ(renamed.format->name, sample.format) << sample.file;
+    EXPECT_EQ(renamed.note.empty(), sample.format == "OBJ"s) << sample.file << ": " << renamed.note;
+    EXPECT_STREQ(importers::recognise(write("no_extension", sample.content)).format->name, sample.format);
+  }
+}
+
+TEST_F(FormatTest, ExtensionDecidesWhatContentDoesNot) {
+  EXPECT_STREQ(importers::recognise(write("cut.stl", binary_stl(2).substr(0, 120))).format->name, "STL");
+  EXPECT_STREQ(importers::recognise(write("cut.fbx", "Kaydara")).format->name, "FBX");
+  EXPECT_STREQ(importers::recognise(write("cut.glb", "glT")).format->name, "glTF");
+  EXPECT_STREQ(importers::recognise(folder_ / "not_there.obj").format->name, "glTF");  // whose loader says so
+}
+
+TEST_F(FormatTest, WhatIsNoModelIsRefusedByItsName) {
+  const struct {
+    const char* file;
+    std::string content;
+    const char* words;
+  } others[] = {
+      {"a.obj", "", "this is empty"},
+      {"a.glb", "PK\x03\x04rest", "a zip archive"},
+      {"a.ifc", "\x1F\x8B\x08rest", "packed with gzip"},
+      {"a.ifc", "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n", "Git LFS pointer"},
+      {"a.glb", "\n<!DOCTYPE html>\n<html><body>404</body></html>", "an HTML page"},
+      {"a.obj", "<html><head></head></html>", "an HTML page"},
+      {"a.las", "LASF\0\0"s, "a point cloud"},
+      {"a.e57", "ASTM-E57\1\0"s, "a point cloud"},
+      {"a.pcd", "# .PCD v0.7\n", "a point cloud"},
+      {"a.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nend_header\n", "a point cloud"},
+      {"a.ply", "ply\nformat ascii 1.0\nelement vertex 3\nelement face 0\nend_header\n", "a point cloud"},
+      {"a.xyz", "1.0 2.0 3.0\n1.5 2.5 3.5\n", "a table of numbers"},
+      {"a.csv", "1.0,2.0,3.0\n1.5,2.5,3.5\n", "a table of numbers"},
+      {"a.pdf", "%PDF-1.7\n", "a PDF document"},
+      {"a.jpg", "\xFF\xD8\xFF\xE0", "a picture"},
+      {"a.dwg", "AC1032\0"s, "a DWG drawing"},
+      {"a.rvt", "\xD0\xCF\x11\xE0\xA1\xB1\x1A\xE1", "Revit"},
+      {"a.step", "ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('AUTOMOTIVE_DESIGN'));", "a STEP file"},
+      {"a.ifcxml", "<?xml version=\"1.0\"?><ifc:ifcXML xmlns=\"a\">", "ifcXML"},
+      {"a.gml", "<?xml version=\"1.0\"?><core:CityModel>", "CityGML"},
+      {"a.txt", "What stands here is prose.\nNothing else.\n", "no model that vantage knows"},
+  };
+  for (const auto& other : others) {
+    const auto file = write(other.file, other.content);
+    const std::string message = expect_error(Errc::malformed_file, other.words, [&] { importers::recognise(file); });
+    EXPECT_EQ(message.find(file.string()), 0u) << message;
+  }
+}
+
+}  // namespace
+}  // namespace vantage::test
