@@ -15,6 +15,7 @@
 #include "cli/run_report.hpp"
 #include "cli/site.hpp"
 #include "cli/stations.hpp"
+#include "core/read_json.hpp"
 #include "edit/server.hpp"
 
 extern char** environ;

@@ -7,6 +7,7 @@
 
 #include "cli/options.hpp"
 #include "cli/station_scanners.hpp"
+#include "core/read_json.hpp"
 
 namespace vantage::cli {
 namespace {
