@@ -15,7 +15,7 @@
 
 namespace vantage::ranks {
 
-using Letter = std::string;
+using Message = std::string;
 
 template <class T>
 concept Plain = std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>;
@@ -24,17 +24,17 @@ class Writer {
  public:
   template <Plain T>
   void raw(const T& value) {
-    letter_.append(reinterpret_cast<const char*>(&value), sizeof value);
+    message_.append(reinterpret_cast<const char*>(&value), sizeof value);
   }
-  // Seven bits a byte, the lowest first: most counts are small.
+  // Seven bits per byte, lowest first, since most counts are small.
   void whole(std::uint64_t value) {
-    for (; value >= 0x80; value >>= 7) letter_.push_back(static_cast<char>(value | 0x80));
-    letter_.push_back(static_cast<char>(value));
+    for (; value >= 0x80; value >>= 7) message_.push_back(static_cast<char>(value | 0x80));
+    message_.push_back(static_cast<char>(value));
   }
   template <Plain T>
   void array(const std::vector<T>& values) {
     whole(values.size());
-    letter_.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
+    message_.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
   }
   void wholes(const std::vector<std::uint64_t>& values) {
     whole(values.size());
@@ -42,18 +42,18 @@ class Writer {
   }
   void text(std::string_view value) {
     whole(value.size());
-    letter_.append(value);
+    message_.append(value);
   }
-  Letter take() { return std::move(letter_); }
+  Message take() { return std::move(message_); }
 
  private:
-  Letter letter_;
+  Message message_;
 };
 
-// Borrows the letter. Throws Error device_failure where it is too short.
+// Borrows the message. Throws Error device_failure if it is too short.
 class Reader {
  public:
-  explicit Reader(std::string_view letter) : left_(letter) {}
+  explicit Reader(std::string_view message) : left_(message) {}
 
   template <Plain T>
   void raw(T& value) {
@@ -96,7 +96,7 @@ class Reader {
     text(value);
     return value;
   }
-  // Of a list whose elements take so many bytes at least: never more than the letter can hold.
+  // Length of a list whose elements take at least `least_bytes` each; never more than the message can hold.
   std::size_t size(std::size_t least_bytes) {
     const std::uint64_t many = whole();
     if (many > left_.size() / least_bytes) fail();
@@ -110,7 +110,7 @@ class Reader {
     left_.remove_prefix(bytes);
     return data;
   }
-  [[noreturn]] static void fail() { throw Error(Errc::device_failure, "a letter from another rank is cut short"); }
+  [[noreturn]] static void fail() { throw Error(Errc::device_failure, "a message from another rank is cut short"); }
 
   std::string_view left_;
 };

@@ -18,8 +18,8 @@ TEST(Wire, BringsBackWhatWasWritten) {
   writer.raw(-0.5);
   writer.array(std::vector<float>{1.5f, -2});
   writer.text("two\nlines");
-  const Letter letter = writer.take();
-  Reader reader(letter);
+  const Message message = writer.take();
+  Reader reader(message);
   for (const std::uint64_t value : wholes) EXPECT_EQ(reader.whole(), value);
   std::vector<std::uint64_t> read;
   reader.wholes(read);
@@ -45,16 +45,16 @@ TEST(Wire, ACutLetterIsRefused) {
   counts.groups = {counts, counts};
   Writer writer;
   write_counts(writer, {&counts, 1});
-  const Letter letter = writer.take();
-  for (std::size_t bytes = 0; bytes < letter.size(); ++bytes) {
-    Reader reader(std::string_view(letter).substr(0, bytes));
+  const Message message = writer.take();
+  for (std::size_t bytes = 0; bytes < message.size(); ++bytes) {
+    Reader reader(std::string_view(message).substr(0, bytes));
     EXPECT_THROW(read_counts(reader), Error) << bytes;
   }
-  Reader reader(letter);
+  Reader reader(message);
   EXPECT_EQ(read_counts(reader).at(0).groups.at(1).points_on_surveyed, counts.points_on_surveyed);
   Writer huge;
   huge.whole(std::uint64_t{1} << 62);
-  const Letter lie = huge.take();
+  const Message lie = huge.take();
   Reader liar(lie);
   std::vector<double> values;
   EXPECT_THROW(liar.array(values), Error);
