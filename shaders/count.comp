@@ -44,7 +44,8 @@ void main() {
     if (is_point && (hit.id & surveyed_bit) != 0u) {
       Look look = unseen;
       if (with_look) look = look_of(hit, direction);
-      const uint voxel_index = index_of(point_of(hit, look, push.origin, direction, ray_number(row, column), push.place));
+      const vec3 point = point_of(hit, look, push.origin, direction, ray_number(row, column), push.place);
+      const uint voxel_index = index_of(point);
       if (voxel_index != no_voxel_index) misses = misses_of(hit, look, direction);
       if (voxel_index != no_voxel_index && misses == 0u) {
         counted = true;

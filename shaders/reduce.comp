@@ -32,7 +32,8 @@ uvec2 pair_of(uint p, uint n) {
 }
 
 uint64_t weighted_points_of(uint voxel, uint count) {
-  return count == 0u || uint64_t(push.point_weights) == 0ul ? uint64_t(count) : uint64_t(count) * push.point_weights.at[voxel];
+  const bool alike = uint64_t(push.point_weights) == 0ul;
+  return count == 0u || alike ? uint64_t(count) : uint64_t(count) * push.point_weights.at[voxel];
 }
 
 // Adds to a 64-bit sum of the workgroup.

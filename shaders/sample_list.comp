@@ -91,7 +91,8 @@ void main() {
     walks[self] = Walk(window.row0, window.column0, window.column1, window.wrapped0, column_count_of(window), rays,
                        item.part * sample_part);
     probes[self] = pair.probe;
-    occluders[self] = pair.occluder == not_occluded ? no_blocker : occluder_of(corners_of(pair.occluder, station.origin));
+    occluders[self] =
+        pair.occluder == not_occluded ? no_occluder : occluder_of(corners_of(pair.occluder, station.origin));
   }
   // within the subgroup
   const uint first = subgroupMin(self), threads = subgroupAdd(1u), rank = subgroupExclusiveAdd(1u);

@@ -12,7 +12,7 @@ struct Occluder {
   vec3 sides[3];
 };
 
-const Occluder no_blocker = Occluder(vec3[3](vec3(0), vec3(0), vec3(0)));
+const Occluder no_occluder = Occluder(vec3[3](vec3(0), vec3(0), vec3(0)));
 
 struct Corners {
   vec3 a, b, c;  // relative to the station
@@ -51,9 +51,8 @@ struct Place {
 };
 
 Place place_of(Cube cube, Occluder occluder, float facing) {
-  return Place(facing * products_of(occluder, centre_of(cube)),
-               0.5 * cube.side * vec3(size_of(occluder.sides[0]), size_of(occluder.sides[1]), size_of(occluder.sides[2])) +
-                   farthest_of(cube));
+  const vec3 sizes = vec3(size_of(occluder.sides[0]), size_of(occluder.sides[1]), size_of(occluder.sides[2]));
+  return Place(facing * products_of(occluder, centre_of(cube)), 0.5 * cube.side * sizes + farthest_of(cube));
 }
 
 // Whether all rays through the cube meet the triangle.
@@ -62,9 +61,9 @@ bool covers(Occluder occluder, Cube cube) {
   return all(greaterThan(place.at, place.wide)) || all(lessThan(place.at, -place.wide));
 }
 
-// Whether rays through the cube hit the triangle beyond the scanner's least range, yet too far before the cube for points
-// in it. Computed from products with the normal n of the triangle's plane: a ray to q in the cube meets the plane at
-// (n·a / n·q) of the way.
+// Whether rays through the cube hit the triangle beyond the scanner's least range, yet too far before the cube for
+// points in it. Computed from products with the normal n of the triangle's plane: a ray to q in the cube meets the
+// plane at (n·a / n·q) of the way.
 bool is_before(Corners t, Cube cube) {
   const float nearest = length(max(max(cube.low, -high_of(cube)), vec3(0)));
   const vec3 ab = t.b - t.a, ca = t.a - t.c, normal = cross(ab, ca);

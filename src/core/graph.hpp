@@ -13,7 +13,7 @@ struct Components {
   std::size_t count = 0;
 };
 
-// Components of the undirected graph over nodes 0 to n − 1, in which `linked(i, j)` says whether two are neighbours.
+// Components of the undirected graph over nodes 0 to n − 1; `linked(i, j)` says whether two are neighbours.
 template <class Linked>
 Components components(std::size_t n, Linked linked) {
   Components found{.of = std::vector<std::size_t>(n, n)};
@@ -43,9 +43,9 @@ struct TreeEdge {
   double weight;
 };
 
-// The spanning tree whose weights have the largest sum, and so the largest minimum (Prim: Shortest Connection Networks
-// and Some Generalizations, 1957). Edges in the order in which they join the tree of node 0. `weight(i, j)` is
-// symmetric; where it is not above 0 there is no edge, and a node that none reaches joins by an edge of weight 0.
+// Spanning tree with the largest sum of weights, and so the largest minimum (Prim: Shortest Connection Networks and
+// Some Generalizations, 1957). Edges are in the order in which they join the tree of node 0. `weight(i, j)` is
+// symmetric; a weight not above 0 means no edge. An unreachable node joins by an edge of weight 0.
 template <class Weight>
 std::vector<TreeEdge> strongest_spanning_tree(std::size_t n, Weight weight) {
   std::vector<TreeEdge> tree, best(n);  // the strongest edge from the tree to each node

@@ -30,7 +30,7 @@ std::string_view trimmed_text(std::string_view text) {
 
 namespace {
 
-// from_chars takes no leading plus, which users do type.
+// from_chars accepts no leading plus, which users type.
 std::string_view without_plus(std::string_view text) {
   return text.size() > 1 && text[0] == '+' && text[1] != '-' ? text.substr(1) : text;
 }

@@ -13,7 +13,7 @@
 
 namespace vantage {
 
-// The numbers that a setting takes. Never NaN; infinite only where an end is.
+// Numbers that a setting accepts. Never NaN; infinite only if an end is.
 struct Interval {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
@@ -23,13 +23,13 @@ inline constexpr Interval any_number{};
 inline constexpr Interval positive{.low = 0, .low_included = false};
 inline constexpr Interval not_negative{.low = 0};
 
-// `what` opens the message: the name of the setting.
+// Messages begin with `what`, the name of the setting.
 double parse_number(std::string_view text, const std::string& what, const Interval& interval = any_number);
 std::uint64_t parse_count(std::string_view text, const std::string& what, std::uint64_t low = 0,
                           std::uint64_t high = std::numeric_limits<std::uint64_t>::max());
 // "true" or "false".
 bool parse_flag(std::string_view text, const std::string& what);
-// The text without the blanks around it.
+// The text without surrounding blanks.
 std::string_view trimmed_text(std::string_view text);
 std::vector<std::string_view> split(std::string_view text, char separator);
 // Comma-separated numbers, from `fewest` to `most` of them.
@@ -47,7 +47,7 @@ SampleSize parse_sample(std::string_view text, const std::string& what);
 // Devices, comma-separated: all, numbers, cpu.
 DeviceList parse_devices(std::string_view text, const std::string& what);
 
-// Seconds: a number, or one with s, min or h behind it.
+// Seconds: a number, optionally followed by s, min or h.
 double parse_duration(std::string_view text, const std::string& what);
 // "4G", "500 MiB", "2e9": bytes; K, M, G, T are powers of 1024.
 std::uint64_t parse_bytes(std::string_view text, const std::string& what);

@@ -21,7 +21,7 @@ std::string setting_text(const nlohmann::json& value, const std::string& what) {
 
 nlohmann::json read_json(const std::string& file) {
   const std::string text = read_file(file);
-  // Who reads it walks down by recursion.
+  // Readers walk the document by recursion.
   constexpr int kDeepest = 64;
   const auto shallow = [&](int depth, nlohmann::json::parse_event_t, const nlohmann::json&) {
     if (depth > kDeepest) throw Error(Errc::malformed_file, file + ": is nested too deeply");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes a table of settings, a call a row.
+// Makes a table of settings, one call per row.
 #pragma once
 
 #include <array>
@@ -22,12 +22,12 @@ class SettingRows {
   template <class Value>
   using Member = std::optional<Value> Options::*;
 
-  // Rows from here on stand under this heading.
+  // Starts a group: the next rows have this heading.
   SettingRows& group(std::string name) {
     group_ = std::move(name);
     return *this;
   }
-  // Of the row before.
+  // These change the last row.
   SettingRows& by_scene() { return last().by_scene = true, *this; }
   SettingRows& by_preset() { return last().by_preset = true, *this; }
   SettingRows& excludes(std::vector<std::string> names) { return last().excludes = std::move(names), *this; }
@@ -52,7 +52,7 @@ class SettingRows {
                       return Angle::degrees(parse_number(text, what, interval));
                     });
   }
-  // From `fewest` numbers on; the last stands for those that are not given.
+  // At least `fewest` numbers; the last one is repeated for those missing.
   template <std::size_t N>
   SettingRows& numbers(std::string name, std::string unit, std::string help, Member<std::array<double, N>> member,
                        std::size_t fewest, Interval interval) {
@@ -91,7 +91,7 @@ class SettingRows {
                     options.*member = parse_flag(text, what);
                   });
   }
-  // `parse` gives a value of the list `values` of the options.
+  // `parse` returns an element of the options' list `values`.
   template <class Values, class Parse>
   SettingRows& repeated(std::string name, std::string unit, std::string help, Values values, Parse parse) {
     custom(
@@ -109,7 +109,7 @@ class SettingRows {
                     [](const std::string& text, const std::string&) { return text; });
   }
 
-  // The rows of another table, whose options are the member `part`.
+  // Adds the rows of another table, whose options are the member `part`.
   template <class Part>
   SettingRows& include(const SettingTable<Part>& rows, Part Options::*part) {
     for (const SettingRow<Part>& row : rows) {
@@ -135,7 +135,7 @@ class SettingRows {
   SettingTable<Options> rows_;
 };
 
-// The same reading, with `what` in front of what it says.
+// Calls `read`, and prefixes its messages with `what`.
 template <class Read>
 auto named(const std::string& what, Read&& read) {
   try {

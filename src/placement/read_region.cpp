@@ -20,7 +20,7 @@ void add_rings(const nlohmann::json& polygon, PlanRegion& region) {
   for (const auto& line : polygon) {
     Ring ring;
     for (const auto& point : line) ring.push_back({point.at(0).get<double>(), point.at(1).get<double>()});
-    if (ring.size() > 1 && ring.front() == ring.back()) ring.pop_back();  // GeoJSON says it twice
+    if (ring.size() > 1 && ring.front() == ring.back()) ring.pop_back();  // GeoJSON repeats it
     region.rings.push_back(std::move(ring));
   }
 }
@@ -39,7 +39,7 @@ void add_geometry(const nlohmann::json& object, PlanRegion& region) {
     for (const auto& polygon : object.at("coordinates")) add_rings(polygon, region);
 }
 
-// Corners, x and y on each line, parted by commas, semicolons, tabs or blanks. A first line without numbers is a
+// Corners, one x and y per line, separated by commas, semicolons, tabs or blanks. A first line without numbers is a
 // header.
 PlanRegion read_corners(std::istream& in, const std::string& file) {
   Ring ring;
@@ -70,7 +70,8 @@ PlanRegion read_corners(std::istream& in, const std::string& file) {
     if (!any || text.front() == '#') continue;
     if (!readable && ring.empty() && line_number == 1) continue;
     if (!readable || numbers.size() < 2)
-      throw Error(Errc::malformed_file, file + ":" + std::to_string(line_number) + ": \"" + line + "\" is no corner x,y");
+      throw Error(Errc::malformed_file,
+                  file + ":" + std::to_string(line_number) + ": \"" + line + "\" is no corner x,y");
     ring.push_back({numbers[0], numbers[1]});
   }
   if (ring.size() > 1 && ring.front() == ring.back()) ring.pop_back();

@@ -7,8 +7,8 @@
 #include <list>
 #include <utility>
 
-#include "ranks/fleet.hpp"
-#include "ranks/mpi_post.hpp"
+#include "ranks/mpi_transport.hpp"
+#include "ranks/rank_tracers.hpp"
 
 namespace vantage::ranks {
 namespace {
@@ -20,40 +20,40 @@ std::string host_name() {
 
 class Rank0 final : public Ranks {
  public:
-  explicit Rank0(std::unique_ptr<MpiPost> post)
-      : post_(std::move(post)), letters_(std::make_shared<Correspondence>(*post_)) {}
+  explicit Rank0(std::unique_ptr<MpiTransport> transport)
+      : transport_(std::move(transport)), session_(std::make_shared<Session>(*transport_)) {}
   // The transport is destroyed first: until then it may deliver messages.
   ~Rank0() override {
-    letters_->end();
-    post_.reset();
+    session_->end();
+    transport_.reset();
   }
 
   bool first() const override { return true; }
-  int size() const override { return post_->size(); }
+  int size() const override { return transport_->size(); }
   std::shared_ptr<TracerMaker> share(std::function<void(const std::string&)> tell,
                                      std::function<void(const std::string&)> warn) override {
-    return std::make_shared<FirstRank>(letters_, std::move(tell), std::move(warn));
+    return std::make_shared<Coordinator>(session_, std::move(tell), std::move(warn));
   }
   void serve(const Simulator&) override {}
   void fail(Errc code, const std::string& why) override { throw Error(code, why); }
 
  private:
-  std::unique_ptr<MpiPost> post_;
-  std::shared_ptr<Correspondence> letters_;
+  std::unique_ptr<MpiTransport> transport_;
+  std::shared_ptr<Session> session_;
 };
 
 class Other final : public Ranks {
  public:
-  explicit Other(std::unique_ptr<MpiPost> post)
-      : post_(std::move(post)), server_(*post_, host_name(), [this] { post_->leave(0); }) {}
+  explicit Other(std::unique_ptr<MpiTransport> transport)
+      : transport_(std::move(transport)), server_(*transport_, host_name(), [this] { transport_->leave(0); }) {}
   // Waits in any case: rank 0 ends the job, and until then the transport delivers messages.
   ~Other() override { wait(); }
 
   bool first() const override { return false; }
-  int size() const override { return post_->size(); }
+  int size() const override { return transport_->size(); }
   std::shared_ptr<TracerMaker> share(std::function<void(const std::string&)>,
                                      std::function<void(const std::string&)>) override {
-    return std::make_shared<OtherRank>(server_);
+    return std::make_shared<Worker>(server_);
   }
   // Simulators that a plan makes besides its own are made here, too, on request.
   void serve(const Simulator& simulator) override {
@@ -74,7 +74,7 @@ class Other final : public Ranks {
     for (;;) pause();
   }
 
-  std::unique_ptr<MpiPost> post_;
+  std::unique_ptr<MpiTransport> transport_;
   Server server_;
 };
 
@@ -82,10 +82,10 @@ class Other final : public Ranks {
 
 std::unique_ptr<Ranks> join() {
   if (!started_as_job()) return nullptr;
-  std::unique_ptr<MpiPost> post = join_job();
-  if (post->size() == 1) return nullptr;
-  if (post->rank() == 0) return std::make_unique<Rank0>(std::move(post));
-  return std::make_unique<Other>(std::move(post));
+  std::unique_ptr<MpiTransport> transport = join_job();
+  if (transport->size() == 1) return nullptr;
+  if (transport->rank() == 0) return std::make_unique<Rank0>(std::move(transport));
+  return std::make_unique<Other>(std::move(transport));
 }
 
 }  // namespace vantage::ranks

@@ -21,30 +21,34 @@ bool same_scanners(const std::vector<PatchScanner>& a, const std::vector<PatchSc
 
 }  // namespace
 
-RemoteTracer::RemoteTracer(std::shared_ptr<Correspondence> post, int rank, std::uint32_t tracer, EngineInfo info,
+RemoteTracer::RemoteTracer(std::shared_ptr<Session> session, int rank, std::uint32_t tracer, EngineInfo info,
                            std::vector<std::uint64_t> scan_rays)
-    : post_(std::move(post)), rank_(rank), tracer_(tracer), info_(std::move(info)), scan_rays_(std::move(scan_rays)) {}
+    : session_(std::move(session)),
+      rank_(rank),
+      tracer_(tracer),
+      info_(std::move(info)),
+      scan_rays_(std::move(scan_rays)) {}
 
-Writer RemoteTracer::letter() const {
+Writer RemoteTracer::message() const {
   Writer writer;
   writer.raw(tracer_);
   return writer;
 }
 
-std::optional<Letter> RemoteTracer::asked(Kind kind, Letter body, const Progress& progress) {
-  return post_->answer(rank_, post_->ask(rank_, kind, body), progress);
+std::optional<Message> RemoteTracer::asked(Kind kind, Message body, const Progress& progress) {
+  return session_->answer(rank_, session_->request(rank_, kind, body), progress);
 }
 
 void RemoteTracer::set_goal_density(double goal) {
   Tracer::set_goal_density(goal);
-  Writer writer = letter();
+  Writer writer = message();
   writer.raw(goal);
-  post_->tell(rank_, Kind::goal, writer.take());
+  session_->send(rank_, Kind::goal, writer.take());
 }
 
 void RemoteTracer::scan(const TraceStation& station, std::uint64_t first_ray, std::uint64_t ray_count,
                         std::uint32_t outputs, RawChunk& chunk) {
-  Writer writer = letter();
+  Writer writer = message();
   pass(writer, station);
   writer.raw(first_ray), writer.raw(ray_count), writer.raw(outputs);
   const auto answer = asked(Kind::scan, writer.take(), {});
@@ -54,7 +58,7 @@ void RemoteTracer::scan(const TraceStation& station, std::uint64_t first_ray, st
 
 NetworkCounts RemoteTracer::count(std::span<const TraceStation> stations, std::uint32_t station_count,
                                   const CountOptions& options, const Progress& progress) {
-  Writer writer = letter();
+  Writer writer = message();
   const std::vector<TraceStation> network(stations.begin(), stations.end());
   write_networks(writer, {&network, 1}, {&station_count, 1});
   writer.raw(options.masks), writer.raw(options.skip), writer.raw(options.field != nullptr);
@@ -70,7 +74,7 @@ NetworkCounts RemoteTracer::count(std::span<const TraceStation> stations, std::u
 std::vector<NetworkCounts> RemoteTracer::count_each(std::span<const std::vector<TraceStation>> networks,
                                                     std::span<const std::uint32_t> station_counts,
                                                     const CountOptions& options, const Progress& progress) {
-  Writer writer = letter();
+  Writer writer = message();
   write_networks(writer, networks, station_counts);
   writer.raw(options.masks), writer.raw(options.skip);
   const auto answer = asked(Kind::count_each, writer.take(), progress);
@@ -81,18 +85,18 @@ std::vector<NetworkCounts> RemoteTracer::count_each(std::span<const std::vector<
 
 void RemoteTracer::send_sample(std::span<const std::uint32_t> sample) {
   if (sample_ && std::ranges::equal(*sample_, sample)) return;
-  sample_ = post_->kept(sample);
-  Writer writer = letter();
+  sample_ = session_->kept(sample);
+  Writer writer = message();
   writer.array(*sample_);
-  post_->tell(rank_, Kind::sample, writer.take());
+  session_->send(rank_, Kind::sample, writer.take());
 }
 
 void RemoteTracer::send_patches(const RegistrationJob& job) {
   if (patches_.patches == job.patches && same_scanners(patches_.scanners, job.scanners)) return;
   patches_ = job;
-  Writer writer = letter();
+  Writer writer = message();
   pass(writer, job);
-  post_->tell(rank_, Kind::patches, writer.take());
+  session_->send(rank_, Kind::patches, writer.take());
 }
 
 std::vector<NetworkCounts> RemoteTracer::count_sampled(std::span<const std::vector<TraceStation>> networks,
@@ -100,7 +104,7 @@ std::vector<NetworkCounts> RemoteTracer::count_sampled(std::span<const std::vect
                                                        const SampleJob& job, const Progress& progress) {
   send_sample(job.sample);
   if (job.registration) send_patches(*job.registration);
-  Writer writer = letter();
+  Writer writer = message();
   write_networks(writer, networks, station_counts);
   writer.whole(job.groups), writer.raw(job.masks), writer.whole(job.stop_at);
   writer.raw(static_cast<bool>(job.points)), writer.raw(static_cast<bool>(job.station_masks));

@@ -3,7 +3,7 @@
 // calls, the sample and the planes of its voxels, is sent once.
 #pragma once
 
-#include "ranks/correspondence.hpp"
+#include "ranks/session.hpp"
 #include "trace/tracer.hpp"
 
 namespace vantage::ranks {
@@ -11,7 +11,7 @@ namespace vantage::ranks {
 class RemoteTracer final : public Tracer {
  public:
   // `tracer`: the number that the rank gave it. `scan_rays`: a good chunk for scan(), as for the tracer here.
-  RemoteTracer(std::shared_ptr<Correspondence> post, int rank, std::uint32_t tracer, EngineInfo info,
+  RemoteTracer(std::shared_ptr<Session> session, int rank, std::uint32_t tracer, EngineInfo info,
                std::vector<std::uint64_t> scan_rays);
 
   const EngineInfo& info() const override { return info_; }
@@ -29,18 +29,18 @@ class RemoteTracer final : public Tracer {
                                            const Progress& progress) override;
 
  private:
-  Writer letter() const;
-  std::optional<Letter> asked(Kind kind, Letter body, const Progress& progress);
+  Writer message() const;
+  std::optional<Message> asked(Kind kind, Message body, const Progress& progress);
   void send_sample(std::span<const std::uint32_t> sample);
   void send_patches(const RegistrationJob& job);
 
-  std::shared_ptr<Correspondence> post_;
+  std::shared_ptr<Session> session_;
   int rank_;
   std::uint32_t tracer_;
   EngineInfo info_;
   std::vector<std::uint64_t> scan_rays_;
-  Correspondence::Sample sample_;  // sample that the rank has
-  RegistrationJob patches_;        // patches that the rank has
+  Session::Sample sample_;   // sample that the rank has
+  RegistrationJob patches_;  // patches that the rank has
 };
 
 }  // namespace vantage::ranks

@@ -9,7 +9,7 @@ namespace vantage::ranks {
 namespace {
 
 // Results beside the counts of a sample, kept until all are sent.
-struct Told {
+struct Delivered {
   std::size_t many = 0;
   Writer writer;
 
@@ -19,14 +19,14 @@ struct Told {
     writer.whole(network);
     writer.array(std::vector<T>(values.begin(), values.end()));
   }
-  void into(Letter& letter) {
+  void into(Message& message) {
     Writer head;
     head.whole(many);
-    letter += head.take() + writer.take();
+    message += head.take() + writer.take();
   }
 };
 
-Letter count(Tracer& tracer, Reader& reader, const Progress& progress) {
+Message count(Tracer& tracer, Reader& reader, const Progress& progress) {
   const Networks networks = read_networks(reader);
   Tracer::CountOptions options;
   reader.raw(options.masks), reader.raw(options.skip);
@@ -40,7 +40,7 @@ Letter count(Tracer& tracer, Reader& reader, const Progress& progress) {
   return writer.take();
 }
 
-Letter count_each(Tracer& tracer, Reader& reader, const Progress& progress) {
+Message count_each(Tracer& tracer, Reader& reader, const Progress& progress) {
   const Networks networks = read_networks(reader);
   Tracer::CountOptions options;
   reader.raw(options.masks), reader.raw(options.skip);
@@ -49,12 +49,12 @@ Letter count_each(Tracer& tracer, Reader& reader, const Progress& progress) {
   return writer.take();
 }
 
-Letter count_sampled(Tracer& tracer, std::span<const std::uint32_t> sample, RegistrationJob& registration,
-                     Reader& reader, const Progress& progress) {
+Message count_sampled(Tracer& tracer, std::span<const std::uint32_t> sample, RegistrationJob& registration,
+                      Reader& reader, const Progress& progress) {
   const Networks networks = read_networks(reader);
   Tracer::SampleJob job{.sample = sample};
   reader.whole(job.groups), reader.raw(job.masks), reader.whole(job.stop_at);
-  Told points, masks;
+  Delivered points, masks;
   const bool with_points = reader.raw<bool>(), with_masks = reader.raw<bool>();
   if (with_points) job.points = [&](std::size_t k, std::span<const std::uint32_t> told) { points.add(k, told); };
   if (with_masks) job.station_masks = [&](std::size_t k, std::span<const std::uint64_t> told) { masks.add(k, told); };
@@ -62,13 +62,13 @@ Letter count_sampled(Tracer& tracer, std::span<const std::uint32_t> sample, Regi
   reader.raw(registration.groups);
   Writer writer;
   write_counts(writer, tracer.count_sampled(networks.stations, networks.sizes, job, progress));
-  Letter letter = writer.take();
-  if (with_points) points.into(letter);
-  if (with_masks) masks.into(letter);
-  return letter;
+  Message message = writer.take();
+  if (with_points) points.into(message);
+  if (with_masks) masks.into(message);
+  return message;
 }
 
-Letter scan(Tracer& tracer, Reader& reader) {
+Message scan(Tracer& tracer, Reader& reader) {
   TraceStation station;
   pass(reader, station);
   const auto first = reader.raw<std::uint64_t>(), rays = reader.raw<std::uint64_t>();
@@ -81,15 +81,15 @@ Letter scan(Tracer& tracer, Reader& reader) {
 
 }  // namespace
 
-Server::Server(Post& post, std::string host, std::function<void()> on_end)
-    : post_(post), host_(std::move(host)), on_end_(std::move(on_end)) {
-  post.deliver_to([this](int, Letter letter) { receive(std::move(letter)); });
+Server::Server(Transport& transport, std::string host, std::function<void()> on_end)
+    : transport_(transport), host_(std::move(host)), on_end_(std::move(on_end)) {
+  transport.deliver_to([this](int, Message message) { receive(std::move(message)); });
 }
 
 void Server::offer(Tracer& tracer, const Identity& identity) { offered_.push_back({&tracer, identity}); }
 
-void Server::receive(Letter letter) {
-  Reader reader(letter);
+void Server::receive(Message message) {
+  Reader reader(message);
   const Head head = read_head(reader);
   {
     const std::lock_guard lock(mutex_);
@@ -100,7 +100,7 @@ void Server::receive(Letter letter) {
       given_up_ = head.serial;
       if (current_ <= given_up_) stop_.request_stop();
     } else {
-      letters_.push_back(std::move(letter));
+      messages_.push_back(std::move(message));
     }
   }
   wake_.notify_all();
@@ -108,14 +108,14 @@ void Server::receive(Letter letter) {
 }
 
 // Takes the next message that somebody waits for; returns false at the end.
-bool Server::next(Letter& letter, Head& head) {
+bool Server::next(Message& message, Head& head) {
   for (;;) {
     std::unique_lock lock(mutex_);
-    wake_.wait(lock, [&] { return ended_ || !letters_.empty(); });
+    wake_.wait(lock, [&] { return ended_ || !messages_.empty(); });
     if (ended_) return false;
-    letter = std::move(letters_.front());
-    letters_.pop_front();
-    Reader reader(letter);
+    message = std::move(messages_.front());
+    messages_.pop_front();
+    Reader reader(message);
     head = read_head(reader);
     if (head.serial > 0 && head.serial <= given_up_) continue;
     current_ = head.serial;
@@ -125,10 +125,10 @@ bool Server::next(Letter& letter, Head& head) {
 }
 
 void Server::serve(const More& more) {
-  Letter letter;
+  Message message;
   Head head;
-  while (next(letter, head)) {
-    Reader reader(letter);
+  while (next(message, head)) {
+    Reader reader(message);
     read_head(reader);
     const auto refuse = [&](Errc code, const std::string& why) {
       send(Kind::error, head.serial, [&](Writer& writer) { writer.raw(code), writer.text(why); });
@@ -177,7 +177,7 @@ void Server::handle(const Head& head, Reader& reader, const More& more) {
                                 send(Kind::progress, head.serial, [&](Writer& writer) { writer.raw(share); });
                               },
                           .stop = stop_.get_token()};
-  const Letter answered = answer(head.kind, offered, reader, progress);
+  const Message answered = answer(head.kind, offered, reader, progress);
   send(Kind::answer, head.serial, [&](Writer& writer) { writer.text(answered); });
 }
 
@@ -198,7 +198,7 @@ Opened Server::open(const Identity& asked, const More& more) {
           .engine = info.engine};
 }
 
-Letter Server::answer(Kind kind, Offered& offered, Reader& reader, const Progress& progress) {
+Message Server::answer(Kind kind, Offered& offered, Reader& reader, const Progress& progress) {
   switch (kind) {
     case Kind::scan: return scan(*offered.tracer, reader);
     case Kind::count: return count(*offered.tracer, reader, progress);
@@ -212,7 +212,7 @@ Letter Server::answer(Kind kind, Offered& offered, Reader& reader, const Progres
 void Server::send(Kind kind, std::uint64_t serial, const std::function<void(Writer&)>& write) {
   Writer writer = begin(kind, serial);
   write(writer);
-  post_.send(0, writer.take());
+  transport_.send(0, writer.take());
 }
 
 }  // namespace vantage::ranks

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "ranks/messages.hpp"
-#include "ranks/post.hpp"
+#include "ranks/transport.hpp"
 #include "trace/tracer.hpp"
 
 namespace vantage::ranks {
@@ -20,7 +20,7 @@ namespace vantage::ranks {
 class Server {
  public:
   // Borrows the transport. `on_end`: called on the transport's thread when rank 0 ends the job, whatever is under way.
-  Server(Post& post, std::string host, std::function<void()> on_end);
+  Server(Transport& transport, std::string host, std::function<void()> on_end);
 
   // Adds a tracer that rank 0 may use; the first is of the scene as loaded. Borrowed.
   void offer(Tracer& tracer, const Identity& identity);
@@ -38,21 +38,21 @@ class Server {
     std::vector<std::uint32_t> sample = {};
     RegistrationJob registration = {};
   };
-  void receive(Letter letter);
-  bool next(Letter& letter, Head& head);
+  void receive(Message message);
+  bool next(Message& message, Head& head);
   void handle(const Head& head, Reader& reader, const More& more);
   Opened open(const Identity& asked, const More& more);
-  Letter answer(Kind kind, Offered& offered, Reader& reader, const Progress& progress);
+  Message answer(Kind kind, Offered& offered, Reader& reader, const Progress& progress);
   void send(Kind kind, std::uint64_t serial, const std::function<void(Writer&)>& write);
 
-  Post& post_;
+  Transport& transport_;
   std::string host_;
   std::function<void()> on_end_;
   std::vector<Offered> offered_;
 
   std::mutex mutex_;
   std::condition_variable wake_;
-  std::deque<Letter> letters_;
+  std::deque<Message> messages_;
   std::uint64_t given_up_ = 0;  // the last abandoned request
   std::uint64_t current_ = 0;
   std::stop_source stop_;  // of the current request

@@ -9,14 +9,14 @@
 
 namespace vantage::ranks {
 
-using Letter = std::string;
+using Message = std::string;
 using Writer = ArchiveWriter;
 
-// Borrows the letter. Throws Error device_failure where it is too short.
+// Borrows the message. Throws Error device_failure where it is too short.
 class Reader : public ArchiveReader {
  public:
-  explicit Reader(std::string_view letter)
-      : ArchiveReader(letter, Errc::device_failure, "a letter from another rank is cut short") {}
+  explicit Reader(std::string_view message)
+      : ArchiveReader(message, Errc::device_failure, "a message from another rank is cut short") {}
 };
 
 }  // namespace vantage::ranks

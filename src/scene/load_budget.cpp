@@ -10,7 +10,7 @@
 namespace vantage {
 namespace {
 
-constexpr std::uint64_t kProgram = std::uint64_t{24} << 20;  // what the process holds before it loads anything
+constexpr std::uint64_t kProgram = std::uint64_t{24} << 20;  // memory of the process before loading
 
 }  // namespace
 

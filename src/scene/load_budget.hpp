@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Memory of loading a scene, asked for before it is taken: a small file may stand for a large scene.
+// Checks the memory for loading a scene before it is allocated, since a small file may describe a large scene.
 #pragma once
 
 #include <cstdint>
@@ -9,13 +9,12 @@ namespace vantage {
 
 class LoadBudget {
  public:
-  // `max_memory_bytes` of the whole process, 0: half of what is free. `source` opens messages.
+  // `max_memory_bytes` of the whole process; 0: half of the free memory. Messages begin with `source`.
   LoadBudget(std::uint64_t max_memory_bytes, std::string source);
 
-  // Bytes that stay taken until the scene is loaded. Throws Error out_of_memory where they do not fit; `what` takes
-  // them.
+  // Reserves bytes until the scene is loaded. Throws Error out_of_memory if they do not fit; `what` names their use.
   void keep(std::uint64_t bytes, const std::string& what);
-  // Bytes that are given back soon. Throws likewise.
+  // Checks for bytes that are freed soon. Throws likewise.
   void require(std::uint64_t bytes, const std::string& what) const;
   std::uint64_t left() const { return limit_ - kept_; }
 

@@ -14,8 +14,8 @@
 #include "core/philox.hpp"
 #include "core/text.hpp"
 #include "export/chart.hpp"
-#include "ranks/fleet.hpp"
-#include "ranks/mpi_post.hpp"
+#include "ranks/mpi_transport.hpp"
+#include "ranks/rank_tracers.hpp"
 #include "ranks_model.hpp"
 #include "vantage/error.hpp"
 #include "vantage/optimiser.hpp"
@@ -59,7 +59,7 @@ void measure_networks(RanksModel& model, const RanksOptions& options, NetworkCou
 
 // What travels for a network, and what rank 0 does for it and for a rank: the best of several, which other work of the
 // machine disturbs least.
-void measure_letters(RanksModel& model, const RanksOptions& options, const NetworkCounts& counts) {
+void measure_messages(RanksModel& model, const RanksOptions& options, const NetworkCounts& counts) {
   constexpr std::size_t many = 200;
   constexpr int rounds = 20, threads = 64;
   std::vector<TraceStation> stations;
@@ -70,18 +70,18 @@ void measure_letters(RanksModel& model, const RanksOptions& options, const Netwo
   const std::vector<std::vector<TraceStation>> networks(many, stations);
   const std::vector<std::uint32_t> sizes(many, static_cast<std::uint32_t>(stations.size()));
   const std::vector<NetworkCounts> all(many, counts);
-  model.letters_s = model.member_s = std::numeric_limits<double>::infinity();
+  model.messages_s = model.member_s = std::numeric_limits<double>::infinity();
   for (int round = 0; round < rounds; ++round) {
     Writer there;
     ranks::write_counts(there, all);
-    const ranks::Letter answer = there.take();
+    const ranks::Message answer = there.take();
     const Stopwatch watch;
     Writer writer;
     ranks::write_networks(writer, networks, sizes);
-    const ranks::Letter question = writer.take();
+    const ranks::Message question = writer.take();
     Reader reader(answer);
     ranks::read_counts(reader);
-    model.letters_s = std::min(model.letters_s, watch.seconds() / many);
+    model.messages_s = std::min(model.messages_s, watch.seconds() / many);
     model.ask_bytes = static_cast<double>(question.size()) / many;
     model.answer_bytes = static_cast<double>(answer.size()) / many;
   }
@@ -143,7 +143,7 @@ void draw(const RanksOptions& options, const RanksModel& model, const std::vecto
                       static_cast<double>(model.network_s.size());
   const Chart chart(canvas, {86, 76, kWidth - 86 - 210, kHeight - 76 - 70}, x, y, "How a search scales over ranks",
                     "simulated: " + fixed(1e3 * mean, 2) + " ms a network, " +
-                        fixed((model.ask_bytes + model.answer_bytes) / 1e3, 1) + " kB of letters, " +
+                        fixed((model.ask_bytes + model.answer_bytes) / 1e3, 1) + " kB of messages, " +
                         fixed(1e6 * model.round_trip_s, 0) + " µs there and back, " + fixed(options.gbit, 0) +
                         " Gbit/s at rank 0");
   const Pen ideal{.colour = style::faint, .width = 1.2, .dashes = {5, 4}};
@@ -194,38 +194,38 @@ class Sleeper final : public Tracer {
   std::size_t next_ = 0;
 };
 
-// What is there and back over the post between two ranks, the median of many.
-double round_trip_seconds(ranks::Correspondence& letters, const ranks::Letter& open) {
+// Median round trip between two ranks over the transport.
+double round_trip_seconds(ranks::Session& session, const ranks::Message& open) {
   std::vector<double> seconds;
   for (int k = 0; k < 101; ++k) {
     const Stopwatch watch;
-    letters.answer(1, letters.ask(1, ranks::Kind::open, open), {});
+    session.answer(1, session.request(1, ranks::Kind::open, open), {});
     seconds.push_back(watch.seconds());
   }
   std::ranges::nth_element(seconds, seconds.begin() + 50);
   return seconds[50];
 }
 
-// In a job, with the real letters and the real pulling.
+// In a job, with real messages and real pulling.
 void hold_against(RanksModel model, const RanksOptions& options, const NetworkCounts& counts) {
-  std::unique_ptr<ranks::MpiPost> post = ranks::join_job();
+  std::unique_ptr<ranks::MpiTransport> transport = ranks::join_job();
   const Network given = options.site.stations();
   const TracedSite site = options.site.traced(Scene::load(options.site.scene), given);
   constexpr std::uint64_t nobody_compares = 0;
-  if (post->rank() > 0) {
-    ranks::Server server(*post, "here", [&] { post->leave(0); });
-    ranks::OtherRank other(server);
+  if (transport->rank() > 0) {
+    ranks::Server server(*transport, "here", [&] { transport->leave(0); });
+    ranks::Worker other(server);
     const auto own = other.make(std::make_unique<Sleeper>(model, counts), site.scene, nobody_compares);
     server.serve([] {});
-    for (;;) std::this_thread::sleep_for(std::chrono::hours(1));  // for the post to end the process
+    for (;;) std::this_thread::sleep_for(std::chrono::hours(1));  // for the transport to end the process
   }
-  const auto letters = std::make_shared<ranks::Correspondence>(*post);
-  ranks::FirstRank first(
-      letters, [](const std::string&) {}, [](const std::string&) {});
+  const auto session = std::make_shared<ranks::Session>(*transport);
+  ranks::Coordinator first(
+      session, [](const std::string&) {}, [](const std::string&) {});
   const auto tracer = first.make(std::make_unique<Sleeper>(model, counts), site.scene, nobody_compares);
   Writer open;
   pass(open, ranks::identity_of(site.scene, nobody_compares));
-  model.round_trip_s = round_trip_seconds(*letters, open.take());
+  model.round_trip_s = round_trip_seconds(*session, open.take());
   model.bytes_a_second = 4e9;  // through memory
   std::printf("# %.0f µs there and back\nranks,population,simulated_s,measured_s\n", 1e6 * model.round_trip_s);
   const std::vector<std::uint32_t> sample(100);
@@ -239,12 +239,12 @@ void hold_against(RanksModel model, const RanksOptions& options, const NetworkCo
       if (round > 0) seconds.push_back(watch.seconds());  // the first shows how fast each is
     }
     std::ranges::nth_element(seconds, seconds.begin() + 2);
-    const auto ranks = static_cast<std::size_t>(post->size());
+    const auto ranks = static_cast<std::size_t>(transport->size());
     std::printf("%zu,%zu,%.4f,%.4f\n", ranks, population, mean_seconds(model, ranks, population), seconds[2]);
     std::fflush(stdout);
   }
-  letters->end();
-  post.reset();  // before what it hands letters to
+  session->end();
+  transport.reset();  // before what it hands messages to
 }
 
 }  // namespace
@@ -259,7 +259,7 @@ void RanksOptions::add(CLI::App& command) {
   command.add_option("--networks", networks, "Networks that are measured")->capture_default_str();
   command.add_option("--spread", spread_m, "How far stations move from where they are given, metres")
       ->capture_default_str();
-  command.add_option("--round-trip", round_trip_us, "Microseconds of a letter there and its answer back")
+  command.add_option("--round-trip", round_trip_us, "Microseconds of a message there and its answer back")
       ->capture_default_str();
   command.add_option("--gbit", gbit, "Gbit/s in and out of rank 0")->capture_default_str();
   command.add_option("--network-ms", network_ms, "Of a network, in place of what is measured here");
@@ -271,7 +271,7 @@ void run_ranks(const RanksOptions& options) {
   model.round_trip_s = 1e-6 * options.round_trip_us, model.bytes_a_second = options.gbit * 1e9 / 8;
   NetworkCounts counts;
   measure_networks(model, options, counts);
-  measure_letters(model, options, counts);
+  measure_messages(model, options, counts);
   const auto mean = [&] {
     return std::accumulate(model.network_s.begin(), model.network_s.end(), 0.0) /
            static_cast<double>(model.network_s.size());
@@ -285,9 +285,9 @@ void run_ranks(const RanksOptions& options) {
 
   const auto [least, most] = std::ranges::minmax(model.network_s);
   std::printf(
-      "# a network %.3f ms (%.3f to %.3f), a piece %.3f ms, letters %.0f + %.0f bytes and %.1f µs, a rank %.1f µs\n",
+      "# a network %.3f ms (%.3f to %.3f), a chunk %.3f ms, messages %.0f + %.0f bytes and %.1f µs, a rank %.1f µs\n",
       1e3 * mean(), 1e3 * least, 1e3 * most, 1e3 * model.piece_s, model.ask_bytes, model.answer_bytes,
-      1e6 * model.letters_s, 1e6 * model.member_s);
+      1e6 * model.messages_s, 1e6 * model.member_s);
   std::printf("population,search_us_a_network,ranks,networks_a_second,times_one,share_of_ideal\n");
   std::vector<Dot> dots;
   for (const std::size_t population : options.populations) {

@@ -46,7 +46,7 @@ double seconds_a_population(const RanksModel& model, std::size_t ranks, std::siz
     if (event.networks > 0) {
       const auto networks = static_cast<double>(event.networks);
       now = in.serve(now, networks * model.answer_bytes / model.bytes_a_second);
-      now = host.serve(now, networks * model.letters_s / 2);
+      now = host.serve(now, networks * model.messages_s / 2);
     }
     end = std::max(end, now);
     if (queue.empty()) continue;
@@ -58,7 +58,7 @@ double seconds_a_population(const RanksModel& model, std::size_t ranks, std::siz
       continue;
     }
     const auto networks = static_cast<double>(chunk.size());
-    now = host.serve(now, networks * model.letters_s / 2);
+    now = host.serve(now, networks * model.messages_s / 2);
     now = out.serve(now, networks * model.ask_bytes / model.bytes_a_second);
     events.push({now + model.round_trip_s + work, event.rank, chunk.size()});
   }

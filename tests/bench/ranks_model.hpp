@@ -13,7 +13,7 @@ struct RanksModel {
   std::vector<double> network_s;  // evaluation times of single networks, of which those of a population are drawn
   double piece_s = 0;             // what a rank spends on a piece whatever its size
   double search_s = 0;            // a network, on rank 0 between two populations: asked for, told
-  double letters_s = 0;           // a network, on rank 0: its letters written and read
+  double messages_s = 0;          // a network, on rank 0: its messages written and read
   double member_s = 0;            // a rank and population, on rank 0: its thread begun and ended
   double ask_bytes = 0, answer_bytes = 0;  // a network
   double round_trip_s = 0;

@@ -28,7 +28,7 @@ std::vector<EngineUnderTest> engines_under_test() {
                            tracers.push_back(make_tracer(device.engine, device.index, scene));
                          const bool gpus = device.engine != Engine::embree;
                          return std::make_unique<SpreadTracer>(
-                             std::move(tracers), scene, Team::Warn(),
+                             std::move(tracers), scene, WorkerPool::Warn(),
                              SpreadTracer::Options{.split = SpreadTracer::Split::always,
                                                    .population = gpus ? SpreadTracer::Population::by_voxels
                                                                       : SpreadTracer::Population::by_networks});

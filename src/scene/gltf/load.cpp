@@ -109,8 +109,8 @@ class Loader {
   }
 
  private:
-  // Who marked a file for this program knows what glTF says. A file that only declares some of its axes, as importers
-  // do, is asked for the others.
+  // A file marked for this program follows glTF's rule. A file that only declares some of its axes, as importers do, is
+  // examined for the others.
   bool prepared() const {
     const nlohmann::json& document = file_.document();
     const auto marked = [](const nlohmann::json& element) {
@@ -411,7 +411,7 @@ class Loader {
 
 namespace {
 
-// `open` gives the glTF file; `note`, unless it is empty, is the scene's first.
+// `open` returns the glTF file; `note`, unless empty, becomes the scene's first.
 template <class Open>
 Scene load_scene(Open&& open, const std::string& name, const SceneOptions& options, const std::string& note = {}) {
   if (!(options.default_diffuse >= 0 && options.default_diffuse <= 1))

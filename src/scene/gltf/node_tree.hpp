@@ -14,7 +14,7 @@
 
 namespace vantage::gltf {
 
-// Among SceneOptions::doors, says that doors are closed as the file has them.
+// Entry of SceneOptions::doors that keeps doors closed, as they are in the file.
 inline constexpr std::string_view kClosedDoors = "closed";
 
 // Marks in the extras of an element.

@@ -11,7 +11,7 @@
 namespace vantage {
 namespace {
 
-// Weights of all pairs, symmetric; 0: no edge.
+// Symmetric weights of all pairs; 0: no edge.
 std::vector<std::vector<double>> random_weights(std::size_t n, std::uint64_t seed, double density) {
   RandomStream random(seed);
   std::vector<std::vector<double>> weights(n, std::vector<double>(n, 0));
@@ -21,7 +21,7 @@ std::vector<std::vector<double>> random_weights(std::size_t n, std::uint64_t see
   return weights;
 }
 
-// Whether a path of edges of at least `least` leads from one node to the other (Warshall).
+// Whether a path of edges of at least `least` connects two nodes (Warshall).
 std::vector<std::vector<bool>> reachable(const std::vector<std::vector<double>>& weights, double least) {
   const std::size_t n = weights.size();
   std::vector<std::vector<bool>> reach(n, std::vector<bool>(n, false));

@@ -33,7 +33,7 @@ TEST(ReadFile, GivesAllBytes) {
   EXPECT_EQ(read_file(folder / "empty"), "");
 }
 
-// At once: a pipe that nobody writes would be waited for, and a device read for ever.
+// Rejected at once: reading a pipe without a writer would block, and a device never ends.
 TEST(ReadFile, RefusesWhatIsNoRegularFile) {
   const test::TemporaryFolder folder;
   ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);

@@ -5,8 +5,8 @@
 #include <map>
 #include <thread>
 
-#include "local_post.hpp"
-#include "ranks/fleet.hpp"
+#include "local_transport.hpp"
+#include "ranks/rank_tracers.hpp"
 #include "ranks/remote_tracer.hpp"
 #include "support/expect_counts.hpp"
 #include "support/trace_scenes.hpp"
@@ -32,23 +32,24 @@ class Job {
  public:
   explicit Job(const std::vector<TraceScene>& scenes, std::vector<std::uint64_t> fingerprints = {}) {
     fingerprints.resize(scenes.size(), fingerprint);
-    for (std::size_t k = 0; k < scenes.size(); ++k) posts_.push_back(std::make_unique<test::LocalPost>(k, posts_));
+    for (std::size_t k = 0; k < scenes.size(); ++k)
+      transports_.push_back(std::make_unique<test::LocalTransport>(k, transports_));
     for (std::size_t k = 1; k < scenes.size(); ++k)
       others_.emplace_back([this, k, scene = scenes[k], print = fingerprints[k]] {
-        Server server(*posts_[k], "host" + std::to_string(k), {});
-        const auto tracer = OtherRank(server).make(make_embree_tracer(scene), scene, print);
+        Server server(*transports_[k], "host" + std::to_string(k), {});
+        const auto tracer = Worker(server).make(make_embree_tracer(scene), scene, print);
         server.serve([] {});
-        posts_[k]->close();
+        transports_[k]->close();
       });
-    letters_ = std::make_shared<Correspondence>(*posts_[0]);
-    first_ = std::make_unique<FirstRank>(
-        letters_, [this](const std::string& line) { told_ = line; },
+    session_ = std::make_shared<Session>(*transports_[0]);
+    first_ = std::make_unique<Coordinator>(
+        session_, [this](const std::string& line) { told_ = line; },
         [this](const std::string& line) { warned_ += line; });
   }
   ~Job() {
-    letters_->end();
+    session_->end();
     others_.clear();
-    posts_[0]->close();
+    transports_[0]->close();
   }
 
   std::unique_ptr<Tracer> tracer(const TraceScene& scene) {
@@ -59,19 +60,19 @@ class Job {
   // Tracer of another rank, which does all the work.
   std::unique_ptr<Tracer> remote(const TraceScene& scene, std::uint32_t number = 0) {
     tracer(scene);
-    auto there = std::make_unique<RemoteTracer>(letters_, 1, number, EngineInfo{}, std::vector<std::uint64_t>{3600});
+    auto there = std::make_unique<RemoteTracer>(session_, 1, number, EngineInfo{}, std::vector<std::uint64_t>{3600});
     there->set_goal_density(goal);
     return there;
   }
-  std::size_t bytes(std::size_t rank) const { return posts_[rank]->bytes(); }
+  std::size_t bytes(std::size_t rank) const { return transports_[rank]->bytes(); }
   const std::string& told() const { return told_; }
   const std::string& warned() const { return warned_; }
 
  private:
-  std::vector<std::unique_ptr<test::LocalPost>> posts_;
+  std::vector<std::unique_ptr<test::LocalTransport>> transports_;
   std::vector<std::jthread> others_;
-  std::shared_ptr<Correspondence> letters_;
-  std::unique_ptr<FirstRank> first_;
+  std::shared_ptr<Session> session_;
+  std::unique_ptr<Coordinator> first_;
   std::string told_, warned_;
 };
 

@@ -15,9 +15,9 @@ TEST(Wire, ACutLetterIsRefused) {
   counts.groups = {counts, counts};
   Writer writer;
   write_counts(writer, {&counts, 1});
-  const Letter letter = writer.take();
-  for (std::size_t bytes = 0; bytes < letter.size(); ++bytes) {
-    Reader reader(std::string_view(letter).substr(0, bytes));
+  const Message message = writer.take();
+  for (std::size_t bytes = 0; bytes < message.size(); ++bytes) {
+    Reader reader(std::string_view(message).substr(0, bytes));
     try {
       read_counts(reader);
       ADD_FAILURE() << bytes;
@@ -25,7 +25,7 @@ TEST(Wire, ACutLetterIsRefused) {
       EXPECT_EQ(error.code(), Errc::device_failure);
     }
   }
-  Reader reader(letter);
+  Reader reader(message);
   EXPECT_EQ(read_counts(reader).at(0).groups.at(1).points_on_surveyed, counts.points_on_surveyed);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What loading takes is known before it is taken; names are cut.
+// Loading checks memory before allocating it, and cuts names.
 #include "scene/load_budget.hpp"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ Scene load_within(const GlbBuilder& builder, std::uint64_t max_memory_bytes) {
                    {.max_memory_bytes = max_memory_bytes}, "scene");
 }
 
-// One error with these words in it.
+// Expects one error with these words.
 void refuses(const GlbBuilder& builder, std::uint64_t max_memory_bytes, std::initializer_list<const char*> words) {
   try {
     load_within(builder, max_memory_bytes);

@@ -20,9 +20,9 @@ void PrintTo(const Shape& s, std::ostream* out) {
        << s.rays << " rays";
 }
 
-class CountPlans : public testing::TestWithParam<Shape> {};
+class CountSchedules : public testing::TestWithParam<Shape> {};
 
-TEST_P(CountPlans, EveryRowOfEveryStationComesOnceAndInOrder) {
+TEST_P(CountSchedules, EveryRowOfEveryStationComesOnceAndInOrder) {
   const Shape& shape = GetParam();
   CountSchedule schedule(shape.stations, shape.rows, shape.columns, shape.rows_per_part);
   std::uint32_t station = 0, row = 0;
@@ -52,7 +52,7 @@ TEST_P(CountPlans, EveryRowOfEveryStationComesOnceAndInOrder) {
   EXPECT_TRUE(schedule.next(shape.rays).empty());
 }
 
-TEST_P(CountPlans, ASubmissionKeepsItsBounds) {
+TEST_P(CountSchedules, ASubmissionKeepsItsBounds) {
   const Shape& shape = GetParam();
   CountSchedule schedule(shape.stations, shape.rows, shape.columns, shape.rows_per_part);
   while (!schedule.finished()) {
@@ -75,7 +75,7 @@ TEST_P(CountPlans, ASubmissionKeepsItsBounds) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Shapes, CountPlans,
+INSTANTIATE_TEST_SUITE_P(Shapes, CountSchedules,
                          testing::Values(Shape{15, 7200, 10000, 1856, 1e9}, Shape{1, 1, 1, tile_side, 1},
                                          Shape{40, 300, 600, tile_side, 1}, Shape{40, 33, 7, tile_side, 1e12},
                                          Shape{3, 20000, 5, tile_side, 1e12}, Shape{64, 100, 31, 64, 7777},

@@ -3,11 +3,11 @@
 
 #include <memory>
 
-#include "ranks/post.hpp"
+#include "ranks/transport.hpp"
 
 namespace vantage::ranks {
 
-class MpiPost : public Post {
+class MpiTransport : public Transport {
  public:
   // Ends the process with this exit code once all messages were sent and every rank has finished. Callable from any
   // thread, including that of `deliver_to`; returns at once.
@@ -17,6 +17,6 @@ class MpiPost : public Post {
 // Whether a launcher started this process as one of a job.
 bool started_as_job();
 // Joins the job. The destructor leaves it, and waits until every rank does. Once per process.
-std::unique_ptr<MpiPost> join_job();
+std::unique_ptr<MpiTransport> join_job();
 
 }  // namespace vantage::ranks

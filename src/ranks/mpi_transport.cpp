@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The only file that uses MPI. One thread makes all calls, so the library needs no locks of its own. It polls for
 // messages with growing pauses, since a blocking receive would keep a core busy.
-#include "ranks/mpi_post.hpp"
+#include "ranks/mpi_transport.hpp"
 
 #define OMPI_SKIP_MPICXX 1
 #include <mpi.h>
@@ -28,7 +28,7 @@ constexpr int tag_last = 0, tag_more = 1;
 
 constexpr std::chrono::microseconds shortest_pause{10}, longest_pause{200};
 
-class Joined final : public MpiPost {
+class Joined final : public MpiTransport {
  public:
   Joined() : thread_([this] { work(); }) { std::tie(rank_, size_) = joined_.get_future().get(); }
   ~Joined() override {
@@ -42,10 +42,10 @@ class Joined final : public MpiPost {
   int rank() const override { return rank_; }
   int size() const override { return size_; }
 
-  void send(int to, Letter letter) override {
+  void send(int to, Message message) override {
     {
       const std::lock_guard lock(mutex_);
-      outgoing_.emplace_back(to, std::move(letter));
+      outgoing_.emplace_back(to, std::move(message));
     }
     wake_.notify_all();
   }
@@ -68,7 +68,7 @@ class Joined final : public MpiPost {
 
  private:
   struct Sending {
-    Letter letter;
+    Message message;
     std::vector<MPI_Request> parts;
   };
 
@@ -99,19 +99,19 @@ class Joined final : public MpiPost {
   }
 
   bool send_waiting() {
-    std::deque<std::pair<int, Letter>> letters;
+    std::deque<std::pair<int, Message>> messages;
     {
       const std::lock_guard lock(mutex_);
-      letters.swap(outgoing_);
+      messages.swap(outgoing_);
     }
-    for (auto& [to, letter] : letters) {
+    for (auto& [to, message] : messages) {
       Sending& sending = sending_.emplace_back();
-      sending.letter = std::move(letter);
-      const std::size_t bytes = sending.letter.size();
+      sending.message = std::move(message);
+      const std::size_t bytes = sending.message.size();
       std::size_t at = 0;
       do {
         const std::size_t part = std::min(largest_part, bytes - at);
-        MPI_Isend(sending.letter.data() + at, static_cast<int>(part), MPI_BYTE, to,
+        MPI_Isend(sending.message.data() + at, static_cast<int>(part), MPI_BYTE, to,
                   at + part < bytes ? tag_more : tag_last, MPI_COMM_WORLD, &sending.parts.emplace_back());
         at += part;
       } while (at < bytes);
@@ -121,22 +121,22 @@ class Joined final : public MpiPost {
       MPI_Testall(static_cast<int>(sending.parts.size()), sending.parts.data(), &done, MPI_STATUSES_IGNORE);
       return done != 0;
     });
-    return !letters.empty();
+    return !messages.empty();
   }
 
   bool receive_one() {
     int there = 0;
-    MPI_Message message = MPI_MESSAGE_NULL;
+    MPI_Message probed = MPI_MESSAGE_NULL;
     MPI_Status status;
-    MPI_Improbe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &there, &message, &status);
+    MPI_Improbe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &there, &probed, &status);
     if (!there) return false;
     int bytes = 0;
     MPI_Get_count(&status, MPI_BYTE, &bytes);
-    Letter& letter = partial_[static_cast<std::size_t>(status.MPI_SOURCE)];
-    const std::size_t before = letter.size();
-    letter.resize(before + static_cast<std::size_t>(bytes));
-    MPI_Mrecv(letter.data() + before, bytes, MPI_BYTE, &message, MPI_STATUS_IGNORE);
-    if (status.MPI_TAG == tag_last) arrived_.emplace_back(status.MPI_SOURCE, std::exchange(letter, {}));
+    Message& message = partial_[static_cast<std::size_t>(status.MPI_SOURCE)];
+    const std::size_t before = message.size();
+    message.resize(before + static_cast<std::size_t>(bytes));
+    MPI_Mrecv(message.data() + before, bytes, MPI_BYTE, &probed, MPI_STATUS_IGNORE);
+    if (status.MPI_TAG == tag_last) arrived_.emplace_back(status.MPI_SOURCE, std::exchange(message, {}));
     return true;
   }
 
@@ -154,15 +154,15 @@ class Joined final : public MpiPost {
 
   std::mutex mutex_;
   std::condition_variable wake_;
-  std::deque<std::pair<int, Letter>> outgoing_;
+  std::deque<std::pair<int, Message>> outgoing_;
   Receive receive_;
   bool leaving_ = false;
   std::optional<int> exit_code_;
 
   // Used only by the thread.
   std::list<Sending> sending_;
-  std::vector<Letter> partial_;
-  std::deque<std::pair<int, Letter>> arrived_;
+  std::vector<Message> partial_;
+  std::deque<std::pair<int, Message>> arrived_;
 
   std::jthread thread_;  // last member: everything above outlives it
 };
@@ -176,6 +176,6 @@ bool started_as_job() {
   return false;
 }
 
-std::unique_ptr<MpiPost> join_job() { return std::make_unique<Joined>(); }
+std::unique_ptr<MpiTransport> join_job() { return std::make_unique<Joined>(); }
 
 }  // namespace vantage::ranks

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "ranks/fleet.hpp"
+#include "ranks/rank_tracers.hpp"
 
 #include <algorithm>
 #include <map>
@@ -10,18 +10,18 @@
 
 namespace vantage::ranks {
 
-FirstRank::FirstRank(std::shared_ptr<Correspondence> post, Tell tell, Tell warn)
-    : post_(std::move(post)), tell_(std::move(tell)), warn_(std::move(warn)) {}
+Coordinator::Coordinator(std::shared_ptr<Session> session, Tell tell, Tell warn)
+    : session_(std::move(session)), tell_(std::move(tell)), warn_(std::move(warn)) {}
 
-std::vector<Opened> FirstRank::open(const Identity& identity) {
+std::vector<Opened> Coordinator::open(const Identity& identity) {
   Writer writer;
   pass(writer, identity);
-  const Letter body = writer.take();
+  const Message body = writer.take();
   std::vector<std::uint64_t> asked;
-  for (int rank = 1; rank < post_->ranks(); ++rank) asked.push_back(post_->ask(rank, Kind::open, body));
+  for (int rank = 1; rank < session_->ranks(); ++rank) asked.push_back(session_->request(rank, Kind::open, body));
   std::vector<Opened> others(asked.size());
   for (std::size_t k = 0; k < others.size(); ++k) {
-    const auto answer = post_->answer(static_cast<int>(k) + 1, asked[k], {});
+    const auto answer = session_->answer(static_cast<int>(k) + 1, asked[k], {});
     Reader reader(*answer);
     pass(reader, others[k]);
   }
@@ -29,8 +29,8 @@ std::vector<Opened> FirstRank::open(const Identity& identity) {
 }
 
 // The first simulator is the plan's, and every rank must have it.
-void FirstRank::greet(const std::vector<Opened>& others, const Identity& identity, const EngineInfo& own) {
-  greeted_ = true;
+void Coordinator::handshake(const std::vector<Opened>& others, const Identity& identity, const EngineInfo& own) {
+  shook_hands_ = true;
   std::map<std::string, std::size_t> hosts;
   for (std::size_t k = 0; k < others.size(); ++k) {
     const Opened& other = others[k];
@@ -43,14 +43,14 @@ void FirstRank::greet(const std::vector<Opened>& others, const Identity& identit
   }
   std::string text;
   for (const auto& [host, many] : hosts) text += (text.empty() ? "" : "; ") + std::to_string(many) + " on " + host;
-  tell_(std::to_string(post_->ranks()) + " ranks share the work; beside this one " + text);
+  tell_(std::to_string(session_->ranks()) + " ranks share the work; beside this one " + text);
 }
 
-std::unique_ptr<Tracer> FirstRank::make(std::unique_ptr<Tracer> own, const TraceScene& scene,
-                                        std::uint64_t fingerprint) {
+std::unique_ptr<Tracer> Coordinator::make(std::unique_ptr<Tracer> own, const TraceScene& scene,
+                                          std::uint64_t fingerprint) {
   const Identity identity = identity_of(scene, fingerprint);
   const std::vector<Opened> others = open(identity);
-  if (!greeted_) greet(others, identity, own->info());
+  if (!shook_hands_) handshake(others, identity, own->info());
   // A simulator that the others do not make, such as a panorama's, works on this rank alone.
   if (!std::ranges::all_of(others, &Opened::known)) return own;
   std::vector<std::uint64_t> scan_rays;
@@ -61,14 +61,14 @@ std::unique_ptr<Tracer> FirstRank::make(std::unique_ptr<Tracer> own, const Trace
   for (std::size_t k = 0; k < others.size(); ++k) {
     EngineInfo there = info;
     there.engine = others[k].engine, there.device = others[k].device + " on " + others[k].host;
-    all.push_back(std::make_unique<RemoteTracer>(post_, static_cast<int>(k) + 1, others[k].tracer, there, scan_rays));
+    all.push_back(
+        std::make_unique<RemoteTracer>(session_, static_cast<int>(k) + 1, others[k].tracer, there, scan_rays));
   }
   // Output does not mention the helpers, so it is the same for any number of ranks.
   return std::make_unique<SpreadTracer>(std::move(all), scene, warn_, SpreadTracer::Options{.info = info});
 }
 
-std::unique_ptr<Tracer> OtherRank::make(std::unique_ptr<Tracer> own, const TraceScene& scene,
-                                        std::uint64_t fingerprint) {
+std::unique_ptr<Tracer> Worker::make(std::unique_ptr<Tracer> own, const TraceScene& scene, std::uint64_t fingerprint) {
   server_.offer(*own, identity_of(scene, fingerprint));
   return own;
 }

@@ -13,25 +13,25 @@
 #include <vector>
 
 #include "ranks/messages.hpp"
-#include "ranks/post.hpp"
+#include "ranks/transport.hpp"
 #include "vantage/progress.hpp"
 
 namespace vantage::ranks {
 
 // Bodies are messages without heads, which are added here.
-class Correspondence {
+class Session {
  public:
   // Borrows the transport.
-  explicit Correspondence(Post& post);
+  explicit Session(Transport& transport);
 
-  int ranks() const { return post_.size(); }
+  int ranks() const { return transport_.size(); }
   // Sends a message without an answer.
-  void tell(int rank, Kind kind, const Letter& body);
+  void send(int rank, Kind kind, const Message& body);
   // Sends a request and returns its number, for `answer`.
-  std::uint64_t ask(int rank, Kind kind, const Letter& body);
+  std::uint64_t request(int rank, Kind kind, const Message& body);
   // Waits for an answer. Empty if stopped, which abandons the request. Throws, as Error, what the other rank threw, and
   // its failure before it served.
-  std::optional<Letter> answer(int rank, std::uint64_t serial, const Progress& progress);
+  std::optional<Message> answer(int rank, std::uint64_t serial, const Progress& progress);
   // Ends all other ranks.
   void end();
 
@@ -43,12 +43,12 @@ class Correspondence {
   struct Inbox {
     std::mutex mutex;
     std::condition_variable wake;
-    std::deque<Letter> letters;
+    std::deque<Message> messages;
     std::uint64_t serial = 0;  // number of the last request
   };
-  void receive(int from, Letter letter);
+  void receive(int from, Message message);
 
-  Post& post_;
+  Transport& transport_;
   std::vector<std::unique_ptr<Inbox>> inboxes_;  // by rank; that of rank 0 stays empty
   std::mutex sample_mutex_;
   Sample sample_;

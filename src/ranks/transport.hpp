@@ -8,15 +8,15 @@
 
 namespace vantage::ranks {
 
-class Post {
+class Transport {
  public:
-  using Receive = std::function<void(int from, Letter letter)>;
+  using Receive = std::function<void(int from, Message message)>;
 
-  virtual ~Post() = default;
+  virtual ~Transport() = default;
   virtual int rank() const = 0;
   virtual int size() const = 0;
   // Callable from any thread; returns at once.
-  virtual void send(int to, Letter letter) = 0;
+  virtual void send(int to, Message message) = 0;
   // Sets the receiver of arriving messages, called on the transport's own thread. Earlier messages are kept for it.
   // Call once.
   virtual void deliver_to(Receive receive) = 0;
