@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Letters between processes of one program on machines of one byte order.
+// Messages between processes of one program on machines of one byte order.
 #pragma once
 
 #include <string>

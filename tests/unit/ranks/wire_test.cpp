@@ -9,7 +9,7 @@ namespace vantage::ranks {
 namespace {
 
 // A message cut anywhere is an error, and nothing is invented.
-TEST(Wire, ACutLetterIsRefused) {
+TEST(Wire, ACutMessageIsRefused) {
   NetworkCounts counts;
   counts.voxels = 1000, counts.stations = 3, counts.points_on_surveyed = {5, 600, 70000};
   counts.groups = {counts, counts};
