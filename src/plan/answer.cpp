@@ -24,7 +24,7 @@ bool hangs_together(const PlanEntry& entry, const SurveyProblem& problem) {
 bool look_cut_short(const PlanResult& result) {
   return result.candidates && result.candidates->ended() == "cancelled" &&
          std::ranges::any_of(result.problem.requirements,
-                             [](const Requirement& requirement) { return requirement.objective.name == "capture"; });
+                             [](const Requirement& r) { return r.objective.needs.attainable; });
 }
 
 // Of the scaled objectives to the best values of all of them. Unknown ones are as bad as the worst.

@@ -36,8 +36,8 @@ TEST_F(TimeLimit, EndsTheLookAndClaimsNothing) {
   EXPECT_EQ(result.candidates->ended(), "cancelled");
   EXPECT_FALSE(met(result));
   for (const PlanEntry& entry : result.front) {
-    EXPECT_FALSE(entry.confirmed);
-    EXPECT_TRUE(std::isnan(entry.values.at("coverage").exact));
+    EXPECT_FALSE(entry.exact);
+    EXPECT_TRUE(std::isnan(entry.value("coverage")));
   }
 }
 
@@ -50,7 +50,7 @@ TEST_F(TimeLimit, EndsTheSearchAndConfirmsWhatItFound) {
   EXPECT_GT(result.evaluations, 0u);
   EXPECT_LE(longest, 2);
   ASSERT_FALSE(result.front.empty());
-  for (const PlanEntry& entry : result.front) EXPECT_TRUE(entry.confirmed) << "there was a fifth of the time for it";
+  for (const PlanEntry& entry : result.front) EXPECT_TRUE(entry.exact) << "there was a fifth of the time for it";
 }
 
 TEST_F(TimeLimit, IsNotBlamedForAStopByTheCaller) {
