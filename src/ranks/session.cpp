@@ -64,7 +64,7 @@ std::optional<Message> Session::answer(int rank, std::uint64_t serial, const Pro
 }
 
 void Session::end() {
-  for (int rank = 1; rank < ranks(); ++rank) tell(rank, Kind::end, {});
+  for (int rank = 1; rank < ranks(); ++rank) send(rank, Kind::end, {});
 }
 
 Session::Sample Session::kept(std::span<const std::uint32_t> sample) {
