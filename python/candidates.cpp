@@ -81,7 +81,7 @@ void add_matrix(py::module_& m) {
           "(value, standard error) of equation 8 for a network of these; None: of all.");
   m.def(
       "sample_coverage",
-      [](GuardedSimulator& self, const std::vector<PlacedStation>& stations, std::uint64_t sample_voxels,
+      [](Simulators& self, const std::vector<PlacedStation>& stations, std::uint64_t sample_voxels,
          py::object progress) {
         LongCall call(std::move(progress));
         return call.run([&] { return sample_coverage(self.simulator, stations, sample_voxels, call.progress()); });
@@ -118,7 +118,7 @@ void add_graph(py::module_& m) {
           "The overlap of each pair: (n, n), read-only.");
   m.def(
       "overlap_graph",
-      [](GuardedSimulator& self, const std::vector<PlacedStation>& stations, std::uint64_t sample_voxels,
+      [](Simulators& self, const std::vector<PlacedStation>& stations, std::uint64_t sample_voxels,
          py::object progress) {
         LongCall call(std::move(progress));
         return call.run([&] { return overlap_graph(self.surroundings(), stations, sample_voxels, call.progress()); });
@@ -149,7 +149,7 @@ void add_finding(py::module_& m) {
           .add("max_seconds", &CandidateConfig::max_seconds, "Stop growing after so long; 0: no limit.");
   m.def(
       "find_candidates",
-      [options](GuardedSimulator& self, const SearchArea& area, const ClashChecker& clash, py::object progress,
+      [options](Simulators& self, const SearchArea& area, const ClashChecker& clash, py::object progress,
                 const py::kwargs& given) {
         const CandidateConfig config = options.read(given);
         LongCall call(std::move(progress));
@@ -281,7 +281,7 @@ void add_greedy(py::module_& m) {
                "Their StationSetups, one each; none: upright, with the first scanner.");
   m.def(
       "greedy_network",
-      [options](GuardedSimulator& self, const SearchArea& area, const ClashChecker& clash, std::size_t stations,
+      [options](Simulators& self, const SearchArea& area, const ClashChecker& clash, std::size_t stations,
                 py::object progress, const py::kwargs& given) {
         GreedyConfig config = options.read(given);
         config.stations = stations;
@@ -311,7 +311,7 @@ void add_exact(py::module_& m) {
           .add("existing", &ExactConfig::existing, "Heads of stations that are there already.");
   m.def(
       "exact_network",
-      [options](GuardedSimulator& self, const SearchArea& area, const ClashChecker& clash, std::size_t stations,
+      [options](Simulators& self, const SearchArea& area, const ClashChecker& clash, std::size_t stations,
                 py::object progress, const py::kwargs& given) {
         ExactConfig config = options.read(given);
         config.stations = stations;

@@ -63,7 +63,7 @@ void add_missed(py::module_& m) {
   const auto options = missed_options();
   m.def(
       "why_missed",
-      [options](GuardedSimulator& self, const SearchArea& area, const ClashChecker& clash, const Evaluation& evaluation,
+      [options](Simulators& self, const SearchArea& area, const ClashChecker& clash, const Evaluation& evaluation,
                 py::object progress, const py::kwargs& given) {
         const MissedOptions how = options.read(given);
         if (evaluation.field.count.size() != self.simulator.voxel_count())

@@ -38,7 +38,7 @@ struct Watched : PlanProgress {
 };
 
 Simulator& simulator_of(const Plan& plan) {
-  return plan.site ? plan.site->site.simulator() : plan.simulator.cast<GuardedSimulator&>().simulator;
+  return plan.site ? plan.site->site.simulator() : plan.simulator.cast<Simulators&>().simulator;
 }
 const SearchArea& area_of(const Plan& plan) {
   return plan.site ? plan.site->site.area() : plan.area.cast<const SearchArea&>();
@@ -83,20 +83,20 @@ Options<PlanConfig> plan_options() {
       .add("resume", &PlanConfig::resume, "Go on from the checkpoint; from the start where there is none yet.");
 }
 
-std::shared_ptr<Plan> plan_survey(GuardedSimulator& guarded, const SearchArea& area, const ClashChecker& clash,
+std::shared_ptr<Plan> plan_survey(Simulators& simulators, const SearchArea& area, const ClashChecker& clash,
                                   const SurveyProblem& problem, py::object progress, const Options<PlanConfig>& options,
                                   const py::kwargs& given) {
   const PlanConfig config = options.read(given);
   LongCall call(std::move(progress));
   PlanResult result = call.run([&] {
-    return plan(guarded.simulator, area, clash, problem, config,
+    return plan(simulators.simulator, area, clash, problem, config,
                 {.report = [&](const PlanProgress& now) { call.report([&] { return Watched(now); }); },
                  .stop = call.stop(),
                  .abort = call.abort()});
   });
-  return std::make_shared<Plan>(Plan{std::move(result), nullptr, py::cast(guarded, py::return_value_policy::reference),
-                                     py::cast(area, py::return_value_policy::reference),
-                                     py::cast(clash, py::return_value_policy::reference)});
+  return std::make_shared<Plan>(
+      Plan{std::move(result), nullptr, py::cast(simulators, py::return_value_policy::reference),
+           py::cast(area, py::return_value_policy::reference), py::cast(clash, py::return_value_policy::reference)});
 }
 
 // By the settings of a question and of a search; `problem` in place of the former.
@@ -329,8 +329,8 @@ void add_plans(py::module_& m) {
   const auto options = plan_options();
   m.def(
       "plan",
-      [options](GuardedSimulator& simulator, const SearchArea& area, const ClashChecker& clash,
-                const SurveyProblem& problem, py::object progress, const py::kwargs& given) {
+      [options](Simulators& simulator, const SearchArea& area, const ClashChecker& clash, const SurveyProblem& problem,
+                py::object progress, const py::kwargs& given) {
         return plan_survey(simulator, area, clash, problem, std::move(progress), options, given);
       },
       py::arg("simulator"), py::arg("area"), py::arg("clash"), py::arg("problem"), py::kw_only(),

@@ -78,7 +78,7 @@ py::array_t<std::uint32_t> ray_part(const Scan& scan, const auto& part) {
                                               : flat;
 }
 
-std::uint64_t write_point_cloud(const std::filesystem::path& file, GuardedSimulator& self, const py::object& stations,
+std::uint64_t write_point_cloud(const std::filesystem::path& file, Simulators& self, const py::object& stations,
                                 const std::vector<std::string>& outputs, const std::string& crs, py::object progress) {
   const std::vector<PlacedStation> placed = stations_of(stations);
   const std::vector<std::string> names = station_names(placed);
@@ -105,8 +105,8 @@ std::uint64_t write_point_cloud(const std::filesystem::path& file, GuardedSimula
 
 }  // namespace
 
-Scan scan(GuardedSimulator& self, const Vec3& position, const std::vector<std::string>& outputs,
-          const StationSetup& setup, bool grid, std::uint32_t place, py::object progress) {
+Scan scan(Simulators& self, const Vec3& position, const std::vector<std::string>& outputs, const StationSetup& setup,
+          bool grid, std::uint32_t place, py::object progress) {
   const Simulator& simulator = self.simulator;
   const std::uint32_t bits = bits_of(outputs, scan_range);
   LongCall call(std::move(progress));

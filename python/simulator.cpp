@@ -48,7 +48,7 @@ bool all_surfaces(const std::optional<RegistrationOptions>& registration) {
   return registration && registration->surfaces == RegistrationSurfaces::all;
 }
 
-Evaluation evaluate(GuardedSimulator& self, const py::object& stations, bool overlap, bool skip, bool field,
+Evaluation evaluate(Simulators& self, const py::object& stations, bool overlap, bool skip, bool field,
                     bool surroundings, const std::optional<RegistrationOptions>& registration, py::object progress) {
   const std::vector<PlacedStation> placed = stations_of(stations);
   LongCall call(std::move(progress));
@@ -60,7 +60,7 @@ Evaluation evaluate(GuardedSimulator& self, const py::object& stations, bool ove
   });
 }
 
-std::vector<Evaluation> evaluate_sampled(GuardedSimulator& self, const py::sequence& networks, std::uint64_t voxels,
+std::vector<Evaluation> evaluate_sampled(Simulators& self, const py::sequence& networks, std::uint64_t voxels,
                                          bool overlap, bool surroundings,
                                          const std::optional<RegistrationOptions>& registration, py::object progress) {
   if (voxels == 0) throw Error(Errc::invalid_argument, "evaluate_sampled: voxels: a sample has at least one");
@@ -75,14 +75,14 @@ std::vector<Evaluation> evaluate_sampled(GuardedSimulator& self, const py::seque
   });
 }
 
-py::array_t<double> voxel_centres(const GuardedSimulator& self) {
+py::array_t<double> voxel_centres(const Simulators& self) {
   std::vector<Vec3> centres(self.simulator.voxel_count());
   for (std::uint64_t voxel_index = 0; voxel_index < centres.size(); ++voxel_index)
     centres[voxel_index] = self.simulator.voxel_centre(voxel_index);
   return adopt(std::move(centres));
 }
 
-py::array_t<std::uint32_t> voxel_weights(const GuardedSimulator& self) {
+py::array_t<std::uint32_t> voxel_weights(const Simulators& self) {
   std::vector<std::uint32_t> weights(self.simulator.voxel_count());
   for (std::uint64_t voxel_index = 0; voxel_index < weights.size(); ++voxel_index)
     weights[voxel_index] = self.simulator.voxel_weight(voxel_index);
@@ -90,7 +90,7 @@ py::array_t<std::uint32_t> voxel_weights(const GuardedSimulator& self) {
   return adopt<std::uint32_t>(std::move(weights), {count});
 }
 
-py::array_t<double> goal_densities(const GuardedSimulator& self) {
+py::array_t<double> goal_densities(const Simulators& self) {
   std::vector<double> goals(self.simulator.voxel_count());
   for (std::uint64_t voxel_index = 0; voxel_index < goals.size(); ++voxel_index)
     goals[voxel_index] = self.simulator.goal_density(voxel_index);
@@ -132,7 +132,7 @@ void add_simulators(py::module_& m) {
   add_engines(m);
   add_scans(m);
   const auto options = simulator_options();
-  py::class_<GuardedSimulator> type(
+  py::class_<Simulators> type(
       m, "Simulator",
       ("Simulates a scanner in a scene, or several, of which each station has one (`StationSetup`). Other Python "
        "threads run while it traces; calls from several of them are done one after another, and a callback that calls "
@@ -147,32 +147,32 @@ void add_simulators(py::module_& m) {
              const SimulatorConfig config = options.read(given);
              const py::gil_scoped_release unlocked;
              const auto* several = std::get_if<std::vector<Scanner>>(&scanner);
-             return new GuardedSimulator{several ? Simulator(scene, *several, config)
-                                                 : Simulator(scene, std::get<Scanner>(scanner), config)};
+             return new Simulators{several ? Simulator(scene, *several, config)
+                                           : Simulator(scene, std::get<Scanner>(scanner), config)};
            }),
            py::arg("scene"), py::arg("scanner"))
       .def_property_readonly(
-          "engine", [](const GuardedSimulator& self) { return self.simulator.engine(); }, "The engine chosen.")
+          "engine", [](const Simulators& self) { return self.simulator.engine(); }, "The engine chosen.")
       .def_property_readonly(
-          "scanner", [](const GuardedSimulator& self) { return self.simulator.scanner(); },
+          "scanner", [](const Simulators& self) { return self.simulator.scanner(); },
           "A copy of its scanner, or of the first.")
       .def_property_readonly(
           "scanners",
-          [](const GuardedSimulator& self) {
+          [](const Simulators& self) {
             const auto scanners = self.simulator.scanners();
             return std::vector<Scanner>(scanners.begin(), scanners.end());
           },
           "Copies of all of them, which `StationSetup.scanner` counts from 0.")
       .def_property_readonly(
-          "scene", [](const GuardedSimulator& self) { return self.simulator.scene(); }, "Its scene.")
+          "scene", [](const Simulators& self) { return self.simulator.scene(); }, "Its scene.")
       .def_property_readonly(
-          "voxel_count", [](const GuardedSimulator& self) { return self.simulator.voxel_count(); },
+          "voxel_count", [](const Simulators& self) { return self.simulator.voxel_count(); },
           "Surveyed voxels, N_v of equation 8.")
       .def_property_readonly(
-          "voxel_size_m", [](const GuardedSimulator& self) { return self.simulator.voxel_size_m(); },
+          "voxel_size_m", [](const Simulators& self) { return self.simulator.voxel_size_m(); },
           "Side of a voxel, metres.")
       .def_property_readonly(
-          "goal_density", [](const GuardedSimulator& self) { return self.simulator.goal_density(); },
+          "goal_density", [](const Simulators& self) { return self.simulator.goal_density(); },
           "Points wanted in a voxel: where goals differ, the densest of them.")
       .def("voxel_centres", &voxel_centres, "Centres of the surveyed voxels, survey frame: (N_v, 3), metres.")
       .def("voxel_weights", &voxel_weights, "What each voxel counts in coverage: (N_v,).")
@@ -201,7 +201,7 @@ void add_simulators(py::module_& m) {
            py::arg("progress") = py::none(),
            "Several networks, each as for `evaluate`, on one sample of the surveyed voxels: an Evaluation each, with\n"
            "standard errors. voxels: of the sample; as many as there are: all of them.")
-      .def("__repr__", [](const GuardedSimulator& self) {
+      .def("__repr__", [](const Simulators& self) {
         return "<vantage.Simulator on " + name_of(self.simulator.engine().engine) + ", " +
                std::to_string(self.simulator.voxel_count()) + " voxels>";
       });

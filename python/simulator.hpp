@@ -9,7 +9,7 @@
 namespace vantage::python {
 
 /// A simulator, and the one over all surfaces that goes with it.
-struct GuardedSimulator {
+struct Simulators {
   Simulator simulator;
   std::once_flag made = {};
   std::optional<Simulator> of_all_surfaces = std::nullopt;

@@ -31,9 +31,9 @@ std::vector<PlacedStation> placed_on(Site& site, const py::object& stations) {
     if (station.ground != station.position || station.status == StationStatus::hole) continue;
     const StationSetup setup = station.setup;
     const bool skipped = !active(station);
-    station = place_head(site.has_area() ? &site.area() : nullptr, site.clash(), site.scanner().height_m,
-                         station.position)
-                  .station;
+    station =
+        place_head(site.has_area() ? &site.area() : nullptr, site.clash(), site.scanner().height_m, station.position)
+            .station;
     station.setup = setup;
     if (skipped) station.status = StationStatus::clash;
   }
@@ -56,8 +56,7 @@ void write_site_report(GuardedSite& guarded, const std::filesystem::path& file, 
     Site& site = guarded.site;
     MissedVoxels missed;
     if (!evaluation.field.count.empty())
-      missed =
-          missed_voxels(site.simulator(), site.area(), site.clash(), evaluation.field, {}, call.progress(0, 0.3));
+      missed = missed_voxels(site.simulator(), site.area(), site.clash(), evaluation.field, {}, call.progress(0, 0.3));
     if (!call.stop().stop_requested())
       write_report(file, evaluation, site.simulator(), site.area(),
                    {.title = title.value_or(site.name()), .missed = &missed}, call.progress(0.3, 1));
@@ -123,7 +122,8 @@ void add_sites(py::module_& m) {
           py::arg("stations"), py::kw_only(), py::arg("sample_voxels") = 0, py::arg("overlap") = true,
           py::arg("skip") = false, py::arg("field") = false, py::arg("link") = default_link,
           py::arg("registration") = py::none(), py::arg("progress") = py::none(),
-          "Evaluates a network as `vantage evaluate` does, with scan overlaps on all surfaces and the round on site.\n\n"
+          "Evaluates a network as `vantage evaluate` does, with scan overlaps on all surfaces and the round on "
+          "site.\n\n"
           "stations: as `Simulator.evaluate` takes them; heads are put on the ground below. sample_voxels: 0: every "
           "ray.\n"
           "link: scan overlap from which on two stations count as linked. The others: as `Simulator.evaluate` has "
