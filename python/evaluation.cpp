@@ -227,11 +227,12 @@ void add_evaluations(py::module_& m) {
           "trace_seconds", [](const Evaluation& e) { return e.counts.trace_seconds; }, "Time spent tracing.")
       .def_property_readonly(
           "cancelled", [](const Evaluation& e) { return e.counts.cancelled; },
-          "Stopped before its end: counts too little.")
+          "Stopped before its end: it counts too little, and its measures raise `vantage.Error`.")
       .def_property_readonly(
           "summary", [](const Evaluation& e) { return summary_text(e); }, "What it comes to, in plain words.")
       .def("to_dict", &values_of, "Plain values by the names that `vantage evaluate --json` gives them.")
       .def("__repr__", [](const Evaluation& e) {
+        if (e.counts.cancelled) return std::string("<vantage.Evaluation: cancelled>");
         return "<vantage.Evaluation of " + std::to_string(e.counts.stations) + " stations: coverage " +
                (e.counts.cancelled ? "cancelled" : std::string(py::str(py::float_(value_of(e, "coverage"))))) + ">";
       });

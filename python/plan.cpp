@@ -68,11 +68,9 @@ Options<PlanConfig> plan_options() {
       .add("sample_voxels", &PlanConfig::sample_voxels, "Search with so many voxels; 0: chosen by the problem.")
       .add("renew_iterations", &PlanConfig::renew_iterations,
            "Draw other voxels every so many iterations; 0: never; None: chosen by the problem.")
-      .add("sample_from", &PlanConfig::sample_from,
-           "Where not 0: looked at with so many voxels first; the sample then grows to `sample_voxels` as it has to.")
       .add("start", &PlanConfig::start, "Heads (x, y, z) of an initial network; empty: random.")
       .add("redraws", &PlanConfig::redraws, "How often stations in holes or clashes are drawn again.")
-      .add("max_seconds", &PlanConfig::max_seconds, "Of the search; 0: no limit.")
+      .add("max_seconds", &PlanConfig::max_seconds, "Time limit of the whole call; 0: none.")
       .add("target_hypervolume", &PlanConfig::target_hypervolume, "Stop there; None: never.")
       .add("stagnation_iterations", &PlanConfig::stagnation_iterations, "Stop after so many without growth; 0: never.")
       .add("seed", &PlanConfig::seed, "Of everything that is drawn; None: the simulator's.")
@@ -310,31 +308,10 @@ void add_results(py::module_& m) {
 
 }  // namespace
 
-void write_evaluation_report(const std::filesystem::path& file, const Evaluation& evaluation, GuardedSimulator& guarded,
-                             const SearchArea& area, const ClashChecker* clash, const std::string& title,
-                             py::object progress) {
-  LongCall call(std::move(progress));
-  call.run([&] {
-    MissedVoxels missed;
-    if (clash && !evaluation.field.count.empty())
-      missed = missed_voxels(guarded.simulator, area, *clash, evaluation.field, {}, call.progress(0, 0.3));
-    if (!call.stop().stop_requested())
-      write_report(file, evaluation, guarded.simulator, area, {.title = title, .missed = &missed},
-                   call.progress(0.3, 1));
-    return 0;
-  });
-}
-
 void add_plans(py::module_& m) {
   add_progress(m);
   add_entries(m);
   add_results(m);
-  m.def("write_report", &write_evaluation_report, py::arg("file"), py::arg("evaluation"), py::arg("simulator"),
-        py::arg("area"), py::arg("clash") = py::none(), py::kw_only(), py::arg("title") = "Survey",
-        py::arg("progress") = py::none(),
-        "Writes report.html or report.pdf, by the file's extension, of a network evaluated by this simulator. With\n"
-        "clash, of one evaluated with field=True, it also says why surfaces are not captured.\n"
-        "Raises Error: io, invalid_argument (another extension, a build that writes no reports).");
   const py::object site = m.attr("Site");
   site.attr("plan") = py::cpp_function(
       &plan_site, py::name("plan"), py::is_method(site), py::arg("problem") = py::none(), py::kw_only(),

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "site.hpp"
 
+#include "arrays.hpp"
+#include "long_call.hpp"
 #include "module.hpp"
 #include "settings.hpp"
 
@@ -12,6 +14,54 @@ SiteOptions site_options(const py::kwargs& given, const std::string& call) {
   SiteOptions options;
   read_settings(site_settings(), options, given);
   return options;
+}
+
+// One call at a time: what a site makes when it is first asked for, it makes once.
+std::unique_lock<std::mutex> taken(GuardedSite& guarded) {
+  std::unique_lock lock(guarded.mutex, std::try_to_lock);
+  if (!lock) throw Error(Errc::invalid_argument, "the site is in use by another call: open one for each thread");
+  return lock;
+}
+
+// What is given by heads alone is placed as the program does: on the ground below, with what stands in its way.
+std::vector<PlacedStation> placed_on(Site& site, const py::object& stations) {
+  std::vector<PlacedStation> placed = stations_of(stations);
+  for (PlacedStation& station : placed) {
+    if (station.ground != station.position || station.status == StationStatus::hole) continue;
+    const StationSetup setup = station.setup;
+    const bool skipped = !active(station);
+    station = place_head(site.has_area() ? &site.area() : nullptr, site.clash(), site.scanner().height_m,
+                         station.position)
+                  .station;
+    station.setup = setup;
+    if (skipped) station.status = StationStatus::clash;
+  }
+  return placed;
+}
+
+Evaluation evaluate(GuardedSite& guarded, const py::object& stations, const EvaluationOptions& options,
+                    py::object progress) {
+  const auto lock = taken(guarded);
+  const std::vector<PlacedStation> placed = placed_on(guarded.site, stations);
+  LongCall call(std::move(progress));
+  return call.run([&] { return guarded.site.evaluate(placed, options, {}, call.progress()); });
+}
+
+void write_site_report(GuardedSite& guarded, const std::filesystem::path& file, const Evaluation& evaluation,
+                       const std::optional<std::string>& title, py::object progress) {
+  const auto lock = taken(guarded);
+  LongCall call(std::move(progress));
+  call.run([&] {
+    Site& site = guarded.site;
+    MissedVoxels missed;
+    if (!evaluation.field.count.empty())
+      missed =
+          missed_voxels(site.simulator(), site.area(), site.clash(), evaluation.field, {}, call.progress(0, 0.3));
+    if (!call.stop().stop_requested())
+      write_report(file, evaluation, site.simulator(), site.area(),
+                   {.title = title.value_or(site.name()), .missed = &missed}, call.progress(0.3, 1));
+    return 0;
+  });
 }
 
 }  // namespace
@@ -56,6 +106,33 @@ void add_sites(py::module_& m) {
             return std::vector<SiteChoice>(self.site.choices().begin(), self.site.choices().end());
           },
           "What nobody gave and the site chose, with the reason.")
+      .def(
+          "evaluate",
+          [](GuardedSite& self, const py::object& stations, std::uint64_t sample_voxels, bool overlap, bool skip,
+             bool field, double link, const std::optional<RegistrationOptions>& registration, py::object progress) {
+            return evaluate(self, stations,
+                            {.sample_voxels = sample_voxels,
+                             .overlap = overlap,
+                             .skip = skip,
+                             .field = field,
+                             .registration = registration,
+                             .link = link},
+                            std::move(progress));
+          },
+          py::arg("stations"), py::kw_only(), py::arg("sample_voxels") = 0, py::arg("overlap") = true,
+          py::arg("skip") = false, py::arg("field") = false, py::arg("link") = default_link,
+          py::arg("registration") = py::none(), py::arg("progress") = py::none(),
+          "Evaluates a network as `vantage evaluate` does, with scan overlaps on all surfaces and the round on site.\n\n"
+          "stations: as `Simulator.evaluate` takes them; heads are put on the ground below. sample_voxels: 0: every "
+          "ray.\n"
+          "link: scan overlap from which on two stations count as linked. The others: as `Simulator.evaluate` has "
+          "them.\n"
+          "Raises Error invalid_argument.")
+      .def("write_report", &write_site_report, py::arg("file"), py::arg("evaluation"), py::kw_only(),
+           py::arg("title") = py::none(), py::arg("progress") = py::none(),
+           "Writes report.html or report.pdf, by the file's extension, of a network evaluated on this site; of one\n"
+           "evaluated with field=True also why surfaces are not captured. title: None: the site's name.\n"
+           "Raises Error: io, invalid_argument (another extension, a build that writes no reports).")
       .def("__repr__", [](const GuardedSite& self) { return "<vantage.Site " + self.site.name() + ">"; });
 }
 

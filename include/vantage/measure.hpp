@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Measures of a network from its counts: coverage (equation 8), overlap (equations 11 and 13), their standard errors,
-/// registration and connectivity.
+/// registration and connectivity. Whatever takes counts throws Error invalid_argument where these are `cancelled`.
 #pragma once
 
 #include <array>
@@ -74,7 +74,8 @@ PairMatrix overlap_standard_errors(const NetworkCounts& counts, std::uint64_t po
 
 /// Number of voxels that `evaluate_sampled` needs so that no standard error exceeds `wanted` on any of `networks`: of
 /// coverage and, with `overlap`, of overlap. Found on growing pilot samples; at most `simulator.voxel_count()`, whose
-/// error is 0. Throws Error invalid_argument unless wanted > 0.
+/// error is 0. A stopped call returns the size that it was about to try. Throws Error invalid_argument unless wanted >
+/// 0.
 std::uint64_t voxels_for_standard_error(Simulator& simulator, std::span<const Network> networks, double wanted,
                                         bool overlap = true, const Progress& progress = {});
 

@@ -45,6 +45,7 @@ struct RequiredInputs {
   /// `NetworkCounts::registration`, and with it `pairs`. What is measured together has one model.
   std::optional<RegistrationModel> registration = std::nullopt;
   bool surroundings_registration = false;  ///< That of `MeasuredNetwork::surroundings` too, by the same model.
+  bool attainable = false;                 ///< `ObjectiveSettings::visible`: a search makes it anew once that is known.
 };
 constexpr RequiredInputs operator|(const RequiredInputs& a, const RequiredInputs& b) {
   return {a.counts || b.counts,
@@ -53,7 +54,8 @@ constexpr RequiredInputs operator|(const RequiredInputs& a, const RequiredInputs
           a.surroundings || b.surroundings,
           a.time || b.time,
           a.registration ? a.registration : b.registration,
-          a.surroundings_registration || b.surroundings_registration};
+          a.surroundings_registration || b.surroundings_registration,
+          a.attainable || b.attainable};
 }
 
 /// The range of values that matter of an objective, in its unit, made by `minimise` or `maximise`. The search minimises
@@ -85,6 +87,13 @@ struct Objective {
   /// For the number of stations alone: where it is searched, the search minimises the decision variable α of equation 7
   /// in its place, which has no steps.
   bool by_alpha = false;
+  /// What a limit on it is to a choice of stations among candidates, which comes before a search for few stations. The
+  /// search keeps limits of every kind; the choice knows those on coverage, links, distances and time.
+  enum class Kind { other, coverage, link, distance, time };
+  Kind kind = Kind::other;
+  double coverage_of_one = 1;  ///< The coverage (equation 8) that a value of 1 is, for `Kind::coverage`.
+  /// What helps where a limit on it is not kept, after "to keep it, ": "allow more stations".
+  std::string advice = "search longer";
   /// What it was made with, as text: a run is resumed only under the same, and results tell it.
   std::string parameters = {};
 
@@ -114,6 +123,9 @@ struct Requirement {
   double missed_by(double measured) const;
 };
 std::string to_string(const Requirement&);  ///< "coverage >= 0.9"
+/// A sentence for a requirement that is not kept: "misses coverage >= 0.9: it has 0.853; to keep it, allow more
+/// stations, or ask for less". `measured`: the network's value; NaN: not known.
+std::string advice(const Requirement& requirement, double measured);
 
 /// Equation 7: rounded(N_min + α (N_max − N_min)), half up, α clamped to [0, 1].
 std::size_t station_count_from_alpha(double alpha, std::size_t n_min, std::size_t n_max);

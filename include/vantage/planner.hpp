@@ -98,20 +98,18 @@ struct PlanConfig {
   /// Search with so many of the surveyed voxels; 0: chosen by the problem and the site.
   std::uint64_t sample_voxels = 0;
   std::optional<double> sample_share = {};  ///< The same as a share of the surveyed voxels, above 0 and at most 1.
-  /// Where not 0: a network is looked at with so many voxels first, and with four times as many where it might be on
-  /// the front. That sample grows, by four each time, to `sample_voxels` when networks have come to differ by less than
-  /// it can tell; what is kept is then measured anew (docs/method.md).
-  std::uint64_t sample_from = 0;
-  /// Where not 0: every so many iterations other voxels are drawn, and what is kept is measured anew with them; at the
-  /// end with voxels that nothing was chosen by. All that is then kept is confirmed, but for what cannot be on the
-  /// front, and the front is chosen by every ray. 0: one sample for the whole search, and the front that it shows.
-  /// Empty: 20 for a front without a sample asked for, else 0.
+  /// Redraw the voxel sample every so many iterations and re-evaluate the archive on it; at the end once more, on
+  /// voxels that nothing was chosen by. Every ray then chooses the front from the whole archive, but for networks that
+  /// cannot be on it. 0: one sample for the whole search, and the front that it shows (docs/method.md). Empty: 20 for a
+  /// front without a sample asked for, else 0.
   std::optional<std::size_t> renew_iterations = {};
   /// Head positions of an initial network: the first mean of CMA-ES, a first member of MO-CMA-ES; empty: random. Where
   /// the number of stations is searched, the first N of them are a first member for each N that they suffice for.
   std::vector<Vec3> start = {};
   std::size_t redraws = 8;  ///< How often a candidate's stations in holes or clashes are drawn again.
-  double max_seconds = 0;   ///< Of this call's search; looked at between evaluations. 0: no limit.
+  /// Time limit of the whole call, in seconds; 0: none. After eight tenths of it looking, choosing and searching end,
+  /// and what was found is traced with every ray; entries that this does not reach in time have `confirmed` false.
+  double max_seconds = 0;
   std::optional<double> target_hypervolume = std::nullopt;
   std::size_t stagnation_iterations = 0;
   std::optional<std::uint64_t> seed = {};  ///< Empty: the site's.
@@ -213,7 +211,8 @@ PlanResult plan(Simulator& simulator, const SearchArea& area, const ClashChecker
 /// itself. Where none keeps the requirements, the one that misses least. Throws Error invalid_argument where the front
 /// is empty.
 std::size_t answer(const PlanResult& result);
-/// Whether the answer keeps all requirements. False where that is not known for sure: it was not confirmed.
+/// Whether the answer keeps all requirements. False where that is not known for sure: it was not confirmed, or the look
+/// at what can be seen was cut short where `capture` is required.
 bool met(const PlanResult& result);
 /// What would help where the answer does not keep the requirements, a sentence each.
 std::vector<std::string> what_would_help(const PlanResult& result);

@@ -616,6 +616,26 @@ class Site:
     def scanners(self) -> List[Scanner]: ...
     @property
     def choices(self) -> List[SiteChoice]: ...
+    def evaluate(
+        self,
+        stations: Stations,
+        *,
+        sample_voxels: int = 0,
+        overlap: bool = True,
+        skip: bool = False,
+        field: bool = False,
+        link: float = 0.3,
+        registration: Optional[RegistrationOptions] = None,
+        progress: Optional[Progress] = None,
+    ) -> Evaluation: ...
+    def write_report(
+        self,
+        file: Path,
+        evaluation: Evaluation,
+        *,
+        title: Optional[str] = None,
+        progress: Optional[Progress] = None,
+    ) -> None: ...
     def plan(
         self,
         problem: Optional[SurveyProblem] = None,
@@ -654,7 +674,6 @@ class Site:
         target_hypervolume: Setting = None,
         exact: Setting = None,
         sample: Setting = None,
-        sample_from: Setting = None,
         renew: Setting = None,
         save_every: Setting = None,
         resume: Setting = None,
@@ -990,17 +1009,6 @@ class PlanResult:
     def write(self, folder: Path, crs: str = "") -> None: ...
     def write_report(self, file: Path, *, title: str = "Survey", progress: Optional[Progress] = None) -> None: ...
 
-def write_report(
-    file: Path,
-    evaluation: Evaluation,
-    simulator: Simulator,
-    area: SearchArea,
-    clash: Optional[ClashChecker] = None,
-    *,
-    title: str = "Survey",
-    progress: Optional[Progress] = None,
-) -> None: ...
-
 def plan(
     simulator: Simulator,
     area: SearchArea,
@@ -1016,7 +1024,6 @@ def plan(
     exact: bool = False,
     sample_voxels: int = 0,
     renew_iterations: Optional[int] = None,
-    sample_from: int = 0,
     start: Sequence[Sequence[float]] = [],
     redraws: int = 8,
     max_seconds: float = 0.0,

@@ -7,7 +7,6 @@
 #include <filesystem>
 
 #include "cli/command.hpp"
-#include "cli/deadline.hpp"
 #include "cli/folder_lock.hpp"
 #include "cli/missed.hpp"
 #include "cli/options.hpp"
@@ -19,12 +18,16 @@
 #include "cli/site.hpp"
 #include "cli/stations.hpp"
 #include "core/atomic_file.hpp"
+#include "core/deadline.hpp"
 
 namespace vantage::cli {
 namespace {
 
 // A first network is chosen by no more voxels than this.
 constexpr std::uint64_t kStartSample = 20'000;
+
+// Of the time limit, for all but cartography and files.
+constexpr double kPlanShare = 0.9;
 
 struct PlanOptions {
   SiteArguments site;
@@ -173,7 +176,7 @@ std::string told(const PlanProgress& now) {
 }
 
 PlanResult run_plan(Site& site, const SurveyProblem& problem, const PlanConfig& config, Program& program,
-                    const Deadline& deadline) {
+                    const Deadline& all_by) {
   using Clock = std::chrono::steady_clock;
   constexpr std::chrono::seconds soon{3};  // before that, what a part of it takes is a guess
   constexpr double kWithResults = 1.1;     // what is missed and the files take about a tenth of the search
@@ -188,8 +191,8 @@ PlanResult run_plan(Site& site, const SurveyProblem& problem, const PlanConfig& 
                    now.evaluations);
     // What it will take is told as soon as it is known, of the whole, and of each part that takes long.
     if (now.whole_seconds_left) {
-      const double limit = deadline.seconds_to_search(), left = kWithResults * *now.whole_seconds_left;
-      spdlog::info("about {} more, in all", duration_text(limit > 0 ? std::min(limit, left) : left));
+      const double left = std::min(kWithResults * *now.whole_seconds_left, all_by.seconds_left());
+      spdlog::info("about {} more, in all", duration_text(left));
     }
     if (phase != told_phase && now.seconds_left > 1 && Clock::now() - begun > soon) {
       told_phase = phase;
@@ -199,15 +202,12 @@ PlanResult run_plan(Site& site, const SurveyProblem& problem, const PlanConfig& 
         now.iterations > 0 ? static_cast<double>(now.iteration) / static_cast<double>(now.iterations) : 0;
     line.update(done, told(now), now.seconds_left);
   };
-  PlanResult result =
-      plan(site, problem, config, {.report = report, .stop = deadline.stop(), .abort = deadline.abort()});
-  if (result.stop_reason == StopReason::cancelled && deadline.passed()) result.stop_reason = StopReason::max_time;
-  return result;
+  return plan(site, problem, config, {.report = report, .stop = program.stop, .abort = program.abort});
 }
 
 // Where the search starts, if not anywhere.
 void choose_start(Site& site, PlanOptions& options, const SurveyProblem& problem, PlanConfig& config, Program& program,
-                  const Deadline& deadline) {
+                  const Deadline& plan_by) {
   if (options.seed_with.empty()) return;
   if (!options.start.empty())
     throw Error(Errc::invalid_argument, "--seed-with and --start both say where to start: give one");
@@ -216,20 +216,20 @@ void choose_start(Site& site, PlanOptions& options, const SurveyProblem& problem
                 "--seed-with: the question for the fewest stations starts from its own "
                 "choice; give --stations and --objectives, or another --problem");
   config.start = options.seed_with == "greedy"
-                     ? greedy_start(site, problem, config, program, deadline.stop())
-                     : exact_start(site, problem, config, options.seed_seconds, program, deadline.stop());
+                     ? greedy_start(site, problem, config, program, plan_by.stop())
+                     : exact_start(site, problem, config, options.seed_seconds, program, plan_by.stop());
 }
 
 void write_results(const std::filesystem::path& folder, Site& site, const PlanOptions& options,
-                   const PlanResult& result, const std::string& crs, Program& program, const Deadline& deadline) {
+                   const PlanResult& result, const std::string& crs, Program& program, const Deadline& all_by) {
   Simulator& simulator = site.simulator();
   const PlanEntry& chosen = result.front[answer(result)];
-  const auto field = cartography(simulator, chosen, program, deadline.abort());
+  const auto field = cartography(simulator, chosen, program, all_by.stop());
   if (!field) spdlog::warn("stopped: {} is not written", (folder / "coverage.ply").string());
   spdlog::info("writing {}", folder.string());
   write_plan(folder, result, simulator, site.area(), field ? &*field : nullptr, crs);
   std::optional<MissedVoxels> judged;
-  if (field && !deadline.passed()) judged = judge_missed(site, simulator, *field, program);
+  if (field && result.stop_reason != StopReason::max_time) judged = judge_missed(site, simulator, *field, program);
   if (judged)
     write_missed(
         std::vector<std::filesystem::path>{folder / "missed.csv", folder / "missed.ply", folder / "missed.png"},
@@ -239,13 +239,14 @@ void write_results(const std::filesystem::path& folder, Site& site, const PlanOp
     write_reports(std::vector<std::filesystem::path>{folder / "report.html", folder / "report.pdf"}, result, simulator,
                   site.area(),
                   {.title = site.name(), .field = field ? &*field : nullptr, .missed = judged ? &*judged : nullptr},
-                  program, deadline.abort());
+                  program, all_by.stop());
   if (options.prove)
     prove(folder / "bound.json", site, simulator, chosen.stations, result.problem.kept.size(), program);
 }
 
 int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
-  const Deadline deadline(options.config.max_seconds, program.stop, program.abort);
+  const double limit = options.config.max_seconds;
+  const Deadline plan_by(kPlanShare * limit, program.stop), all_by(limit, program.abort);
   Site site = open_site(command, options.site);
   const std::filesystem::path folder = options.output ? *options.output : site.name() + "-plan";
   for (const PlacedStation& station : heads_of(site, options.start, "--start"))
@@ -263,7 +264,7 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   tell_grid(simulator);
   PlanConfig config = settled(options.config, problem, simulator.voxel_count(), site.simulator_config().seed);
   config.checkpoint = folder / "checkpoint.bin";
-  choose_start(site, options, problem, config, program, deadline);
+  choose_start(site, options, problem, config, program, plan_by);
 
   const nlohmann::json as_given = plan_options(site, options.question, problem, config);
   make_folder(folder);  // an hour's search must not end at a folder that cannot be written
@@ -283,10 +284,10 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   }
 
   const std::string crs = map_system(site);
-  // A search stops by its own clock too, so that it can say so.
-  config.max_seconds = deadline.seconds_to_search();
-  PlanResult result = run_plan(site, problem, config, program, deadline);
-  result.config.max_seconds = options.config.max_seconds;
+  constexpr double kMoment_s = 1e-3;  // 0 would be no limit
+  if (limit > 0) config.max_seconds = std::max(kMoment_s, plan_by.seconds_left());
+  PlanResult result = run_plan(site, problem, config, program, all_by);
+  result.config.max_seconds = limit;
   if (result.front.empty())
     throw Error(Errc::invalid_argument,
                 "there is nothing to write: the search ended before its first networks were evaluated");
@@ -306,7 +307,7 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   }
   make_folder(folder);  // it may have been removed meanwhile
   write_text(folder / "config.json", as_given.dump(2) + "\n");
-  write_results(folder, site, options, result, crs, program, deadline);
+  write_results(folder, site, options, result, crs, program, all_by);
   return show();
 }
 

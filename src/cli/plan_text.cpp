@@ -54,7 +54,7 @@ std::string plan_text(const PlanResult& result, std::size_t chosen, const std::s
       "\n" +
       station_table(entry.stations, station_names(entry.stations), entry.counts.points_on_surveyed, result.scanners) +
       "\n";
-  text += summary_text(entry, result.problem.requirements);
+  text += summary_text(entry);  // what requirements it violates follows, with what would help
   for (const std::string& help : what_would_help(result)) text += fmt::format("{:<11}{}\n", "would help", help);
   return text + "results in " + folder + "\n";
 }

@@ -18,7 +18,7 @@ struct MissedStyle {
 // What shows last, and so before all others, last: first what nothing helps. Any two are told apart by people who are
 // blind to red, to green or to blue, too.
 inline constexpr std::array<MissedStyle, why_missed_count> kMissedStyles{
-    {{WhyMissed::captured, {0.56, 0.75, 0.87}, "captured"},
+    {{WhyMissed::captured, {0.56, 0.75, 0.87}, "dense enough"},
      {WhyMissed::hidden, {0.29, 0.27, 0.33}, "hidden from everywhere"},
      {WhyMissed::far, {0.04, 0.48, 0.36}, "out of range"},
      {WhyMissed::flat, {0.79, 0.41, 0.63}, "seen only too flatly"},

@@ -76,16 +76,6 @@ std::vector<std::string> links_advice(const StationLinks& links, const std::vect
   return advice;
 }
 
-std::string advice_for(const Requirement& requirement) {
-  const std::string& name = requirement.objective.name;
-  if (name == "coverage" || name == "capture")
-    return "allow more stations (--stations), or more places to stand; coverage.ply shows what is missing";
-  if (name == "parts" || name == "weakest_link" || name == "link" || name == "overlap")
-    return "allow more stations (--stations), or ask for less overlap and tie scans together with targets";
-  if (name == "stations" || name == "time") return "ask for less to be captured, or allow more of it";
-  return "search longer (--iterations), or ask for less";
-}
-
 // A sentence for each station that is left out, or stands where none should.
 std::vector<std::string> stations_advice(const Evaluation& evaluation, const std::vector<std::string>& names) {
   std::vector<std::string> advice;
@@ -99,14 +89,12 @@ std::vector<std::string> stations_advice(const Evaluation& evaluation, const std
 }
 
 std::vector<std::string> requirements_advice(const Evaluation& evaluation, std::span<const Requirement> requirements) {
-  std::vector<std::string> advice;
+  std::vector<std::string> sentences;
   for (const Requirement& requirement : requirements) {
     const double value = evaluation.value(requirement.objective.name);
-    if (requirement.missed_by(value) > 0)
-      advice.push_back("misses " + to_string(requirement) + ": it has " + fixed(value, 3) + ": " +
-                       advice_for(requirement));
+    if (requirement.missed_by(value) > 0) sentences.push_back(advice(requirement, value));
   }
-  return advice;
+  return sentences;
 }
 
 }  // namespace
@@ -150,12 +138,8 @@ std::string unmet_text(const PlanResult& result) {
       if (missed < least) least = missed, best = value;
     }
     if (result.front.empty() || !(least > 0)) continue;
-    if (name == "parts")
-      text += "no network links all its stations by overlaps of at least " + number(result.problem.link_overlap) +
-              (best == best ? ": the best falls into " + fixed(best, 0) + " parts" : std::string()) + "\n";
-    else
-      text += "no network keeps " + to_string(requirement) +
-              (best == best ? ": the best has " + fixed(best, 3) : std::string()) + "\n";
+    text += "no network keeps " + to_string(requirement) +
+            (best == best ? ": the best has " + fixed(best, 3) : std::string()) + "\n";
   }
   return text;
 }

@@ -97,23 +97,27 @@ void write_glb(const Model& model, const std::filesystem::path& file) {
       attributes["TEXCOORD_0"] = buffer.add(part.mesh.uvs, part.mesh.uvs.size(), kFloat, "VEC2");
     const int indices = add_indices(buffer, part.mesh);
     roots.push_back(nodes.size());
-    json marks{{"role", role_name(part.role)}};
-    if (part.diffuse) marks["diffuse"] = *part.diffuse;
-    nodes.push_back({{"name", part.name}, {"mesh", meshes.size()}, {"extras", {{"vantage", marks}}}});
+    nodes.push_back({{"name", part.name}, {"mesh", meshes.size()}});
+    if (part.role) {
+      json marks{{"role", role_name(*part.role)}};
+      if (part.diffuse) marks["diffuse"] = *part.diffuse;
+      nodes.back()["extras"] = {{"vantage", marks}};
+    }
     meshes.push_back(
         {{"primitives", {{{"attributes", attributes}, {"indices", indices}, {"material", colour - colours.begin()}}}}});
   }
   while (buffer.bytes_.size() % 4 != 0) buffer.bytes_.push_back(0);
-  const json document{
-      {"asset", {{"version", "2.0"}, {"generator", "vantage"}, {"extras", {{"vantage", model.defaults}}}}},
-      {"scene", 0},
-      {"scenes", {{{"nodes", roots}}}},
-      {"nodes", nodes},
-      {"meshes", meshes},
-      {"materials", materials},
-      {"accessors", buffer.accessors_},
-      {"bufferViews", buffer.views_},
-      {"buffers", {{{"byteLength", buffer.bytes_.size()}}}}};
+  json asset{{"version", "2.0"}, {"generator", "vantage"}};
+  if (!model.defaults.is_null()) asset["extras"] = {{"vantage", model.defaults}};
+  const json document{{"asset", asset},
+                      {"scene", 0},
+                      {"scenes", {{{"nodes", roots}}}},
+                      {"nodes", nodes},
+                      {"meshes", meshes},
+                      {"materials", materials},
+                      {"accessors", buffer.accessors_},
+                      {"bufferViews", buffer.views_},
+                      {"buffers", {{{"byteLength", buffer.bytes_.size()}}}}};
   std::string text = document.dump();
   while (text.size() % 4 != 0) text += ' ';
   const std::size_t total = 12 + 8 + text.size() + 8 + buffer.bytes_.size();

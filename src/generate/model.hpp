@@ -28,7 +28,7 @@ struct Mesh {
 // One glTF node with one mesh.
 struct Part {
   std::string name;
-  Role role = Role::surveyed;
+  std::optional<Role> role = Role::surveyed;  // empty: the file says nothing
   std::optional<double> diffuse = {};
   std::array<float, 3> colour{0.8F, 0.8F, 0.8F};  // linear
   Mesh mesh = {};
@@ -36,7 +36,7 @@ struct Part {
 
 struct Model {
   std::vector<Part> parts;
-  nlohmann::json defaults;  // asset.extras.vantage
+  nlohmann::json defaults;  // asset.extras.vantage; null: none
 };
 
 // Scanner and evaluation parameters of a built-in scene, with keys as the program's options. Degrees and metres.

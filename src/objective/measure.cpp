@@ -4,9 +4,12 @@
 
 #include <algorithm>
 
+#include "objective/whole_counts.hpp"
+
 namespace vantage {
 
 double coverage(const NetworkCounts& counts, double goal_density) {
+  require_whole(counts, "coverage");
   if (counts.weight == 0) return 0;
   const double filled = static_cast<double>(counts.saturated) +
                         static_cast<double>(counts.partial_points) / (goal_density * counts.point_weight);
@@ -14,6 +17,7 @@ double coverage(const NetworkCounts& counts, double goal_density) {
 }
 
 OverlapMatrix overlap_matrix(const NetworkCounts& counts) {
+  require_whole(counts, "overlap");
   OverlapMatrix overlap(counts.stations);
   if (counts.seen.empty()) return overlap;
   for (std::size_t i = 0; i < counts.stations; ++i) {
@@ -27,6 +31,7 @@ OverlapMatrix overlap_matrix(const NetworkCounts& counts) {
 }
 
 ScanOverlapMatrix scan_overlap_matrix(const NetworkCounts& counts) {
+  require_whole(counts, "scan overlap");
   ScanOverlapMatrix overlap(counts.stations);
   if (counts.seen.empty()) return overlap;
   for (std::size_t i = 0; i < counts.stations; ++i)

@@ -82,6 +82,14 @@ std::string to_string(const Requirement& requirement) {
          number(requirement.limit);
 }
 
+std::string advice(const Requirement& requirement, double measured) {
+  const std::string what = "misses " + to_string(requirement) + ": it ";
+  if (std::isnan(measured)) return what + "was not measured before the search ended; search longer";
+  const std::string& unit = requirement.objective.unit;
+  return what + "has " + fixed(measured, 3) + (unit.empty() ? "" : " " + unit) + "; to keep it, " +
+         requirement.objective.advice + ", or ask for less";
+}
+
 std::span<const std::string> objective_names() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all;

@@ -13,6 +13,7 @@
 #include <string>
 
 #include "core/setting_list.hpp"
+#include "objective/whole_counts.hpp"
 #include "vantage/error.hpp"
 #include "vantage/measure.hpp"
 
@@ -274,6 +275,8 @@ RegistrationError registration_error(const NetworkCounts& counts, std::uint64_t 
                                      const RegistrationOptions& options, const NetworkCounts* surroundings,
                                      std::uint64_t surroundings_voxels) {
   check(options);
+  require_whole(counts, "registration");
+  if (surroundings) require_whole(*surroundings, "registration");
   const bool all = options.surfaces == RegistrationSurfaces::all;
   const auto summed = [&](const NetworkCounts* c) { return c && c->registration.heads.size() == counts.stations; };
   if (!summed(&counts)) throw Error(Errc::invalid_argument, "registration: the evaluation was not asked for its sums");

@@ -21,6 +21,7 @@ std::uint64_t voxels_for_standard_error(Simulator& simulator, std::span<const Ne
     double error = 0;
     for (const NetworkCounts& counts :
          simulator.evaluate_sampled(networks, {.voxels = size, .overlap = overlap}, progress)) {
+      if (counts.cancelled) return size;
       error = std::max(error, coverage_estimate(counts, simulator.goal_density(), population).standard_error);
       if (overlap) error = std::max(error, overlap_estimate(counts, population).standard_error);
     }

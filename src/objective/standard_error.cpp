@@ -7,6 +7,7 @@
 #include <functional>
 #include <vector>
 
+#include "objective/whole_counts.hpp"
 #include "vantage/objective.hpp"
 
 namespace vantage {
@@ -147,6 +148,8 @@ Estimate coverage_estimate(const NetworkCounts& counts, double goal_density, std
 }
 
 Estimate estimate(const Objective& objective, const MeasuredNetwork& measured) {
+  require_whole(measured.counts, objective.name.c_str());
+  if (measured.surroundings) require_whole(*measured.surroundings, objective.name.c_str());
   Estimate estimate{objective.value(measured), 0};
   const double scale = objective.scale.width();
   const NetworkCounts& counts = measured.counts;
@@ -226,6 +229,7 @@ Estimate registration_estimate(const NetworkCounts& counts, std::uint64_t voxels
 }
 
 PairMatrix overlap_standard_errors(const NetworkCounts& counts, std::uint64_t population) {
+  require_whole(counts, "standard errors of overlap");
   PairMatrix errors(counts.stations);
   const double unsampled = unsampled_share(counts, population);
   if (unsampled == 0 || counts.seen.empty()) return errors;

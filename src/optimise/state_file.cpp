@@ -4,100 +4,48 @@
 #include <cmath>
 #include <istream>
 #include <ostream>
+#include <utility>
 
 #include "vantage/error.hpp"
 
 namespace vantage::optimise {
 namespace {
 
-constexpr std::string_view kMagic = "vantage optimiser\n";
-constexpr std::uint64_t kVersion = 7;
-constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 32;
+constexpr ArchiveFormat kFormat{"vantage optimiser\n", 8};
 
-void append(std::string& bytes, std::uint64_t value) {
-  for (int i = 0; i < 8; ++i) bytes.push_back(static_cast<char>(value >> (8 * i)));
+std::string message(const std::string& why) {
+  return "optimiser state: " + why + "; start without it, or from an older checkpoint";
 }
+[[noreturn]] void malformed(const std::string& why) { throw Error(Errc::malformed_file, message(why)); }
 
-std::uint64_t parse(std::string_view bytes) {
-  std::uint64_t value = 0;
-  for (std::size_t i = 0; i < 8; ++i) value |= std::uint64_t{static_cast<unsigned char>(bytes[i])} << (8 * i);
-  return value;
-}
-
-// FNV-1a, 64 bits.
-std::uint64_t checksum(std::string_view bytes) {
-  std::uint64_t hash = 0xcbf29ce484222325u;
-  for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
-  return hash;
-}
-
-[[noreturn]] void malformed(const std::string& why) {
-  throw Error(Errc::malformed_file, "optimiser state: " + why + "; start without it, or from an older checkpoint");
-}
-
-std::string take(std::istream& in, std::uint64_t count) {
-  // In pieces, so that a damaged length does not ask for memory that the file cannot fill.
-  constexpr std::uint64_t kPiece = 1 << 20;
-  std::string bytes;
-  while (bytes.size() < count) {
-    const std::size_t begin = bytes.size(), wanted = static_cast<std::size_t>(std::min(kPiece, count - begin));
-    bytes.resize(begin + wanted);
-    in.read(bytes.data() + begin, static_cast<std::streamsize>(wanted));
-    if (static_cast<std::size_t>(in.gcount()) != wanted) malformed("it ends early");
+std::string payload_of(std::istream& in) {
+  Unsealed found = unseal(in, kFormat);
+  switch (found.state) {
+    case Unsealed::State::whole: return std::move(found.payload);
+    case Unsealed::State::foreign: malformed("it does not begin as one");
+    case Unsealed::State::damaged: malformed("it is damaged");
+    case Unsealed::State::other_version:
+      malformed("its version is " + std::to_string(found.version) + ", this library reads " +
+                std::to_string(kFormat.version));
   }
-  return bytes;
+  malformed("it is damaged");
 }
 
 }  // namespace
 
-void StateWriter::put(std::uint64_t value) { append(bytes_, value); }
-
-void StateWriter::put(std::span<const double> values) {
-  put(std::uint64_t{values.size()});
-  for (const double v : values) put(v);
-}
-
 void StateWriter::write(std::ostream& out, std::string_view kind) const {
-  std::string whole(kMagic);
-  append(whole, kVersion);
-  append(whole, kind.size());
-  whole += kind;
-  append(whole, bytes_.size());
-  whole += bytes_;
-  append(whole, checksum(whole));
+  ArchiveWriter payload;
+  payload.text(kind);
+  const std::string whole = sealed(kFormat, payload.take() + archive_.bytes());
   if (!out.write(whole.data(), static_cast<std::streamsize>(whole.size())))
     throw Error(Errc::io,
                 "optimiser state: cannot write " + std::to_string(whole.size()) + " bytes; is the disk full?");
 }
 
-StateReader::StateReader(std::istream& in, std::string_view kind) {
-  std::string whole = take(in, kMagic.size());
-  if (whole != kMagic) malformed("it does not begin as one");
-  const auto number = [&] {
-    const std::string bytes = take(in, 8);
-    whole += bytes;
-    return parse(bytes);
-  };
-  const std::uint64_t version = number();
-  if (version != kVersion)
-    malformed("its version is " + std::to_string(version) + ", this library reads " + std::to_string(kVersion));
-  const std::uint64_t kind_size = number();
-  if (kind_size > 64) malformed("its kind is damaged");
-  const std::string found = take(in, kind_size);
-  whole += found;
-  const std::uint64_t size = number();
-  if (size > kMaxBytes) malformed("its length is damaged");
-  bytes_ = take(in, size);
-  whole += bytes_;
-  if (parse(take(in, 8)) != checksum(whole)) malformed("its checksum is wrong, it is damaged");
+StateReader::StateReader(std::istream& in, std::string_view kind)
+    : payload_(payload_of(in)), archive_(payload_, Errc::malformed_file, message("it holds too little")) {
+  const std::string found = archive_.text();
   if (found != kind) malformed("it is of " + found + ", not of " + std::string(kind));
-}
-
-std::uint64_t StateReader::integer() {
-  if (left() < 8) malformed("it holds too little");
-  const std::uint64_t value = parse(std::string_view(bytes_).substr(position_, 8));
-  position_ += 8;
-  return value;
 }
 
 std::size_t StateReader::size(std::size_t limit) {
@@ -105,8 +53,6 @@ std::size_t StateReader::size(std::size_t limit) {
   if (value >= limit) malformed("a size of " + std::to_string(value) + " is not below " + std::to_string(limit));
   return static_cast<std::size_t>(value);
 }
-
-double StateReader::real() { return std::bit_cast<double>(integer()); }
 
 double StateReader::finite() {
   const double value = real();
@@ -122,9 +68,8 @@ double StateReader::positive() {
 }
 
 std::vector<double> StateReader::reals() {
-  const std::size_t count = size(left() / 8 + 1);
-  std::vector<double> values(count);
-  for (double& v : values) v = real();
+  std::vector<double> values;
+  archive_.array(values);
   return values;
 }
 
@@ -167,7 +112,7 @@ void StateReader::expect(std::span<const double> values, std::string_view what) 
 }
 
 void StateReader::end() const {
-  if (position_ != bytes_.size()) malformed("it holds too much");
+  if (!archive_.at_end()) malformed("it holds too much");
 }
 
 }  // namespace vantage::optimise

@@ -45,7 +45,7 @@ void StopRules::save(StateWriter& w) const {
 void StopRules::load(StateReader& r) {
   constexpr std::size_t kMany = std::size_t{1} << 62;
   iterations_ = r.size(kMany);
-  steps_.resize(r.size(r.left() / 16 + 1));
+  steps_.resize(r.length(9));
   for (Step& s : steps_) s = {r.size(kMany), r.finite()};
 }
 

@@ -20,6 +20,13 @@ bool hangs_together(const PlanEntry& entry, const SurveyProblem& problem) {
   return entry.exact && connectivity(entry.overlap_matrix, problem.link_overlap).parts == 1;
 }
 
+// Whether all that can be seen was never looked at, though a requirement is a share of it.
+bool look_cut_short(const PlanResult& result) {
+  return result.candidates && result.candidates->ended() == "cancelled" &&
+         std::ranges::any_of(result.problem.requirements,
+                             [](const Requirement& requirement) { return requirement.objective.name == "capture"; });
+}
+
 // Of the scaled objectives to the best values of all of them. Unknown ones are as bad as the worst.
 double distance(const PlanEntry& entry, const SurveyProblem& problem) {
   std::vector<double> values;
@@ -46,7 +53,7 @@ std::size_t answer(const PlanResult& result) {
 bool met(const PlanResult& result) {
   if (result.front.empty()) return false;
   const PlanEntry& entry = result.front[answer(result)];
-  return entry.violation == 0 && (result.problem.requirements.empty() || entry.exact);
+  return entry.violation == 0 && (result.problem.requirements.empty() || entry.exact) && !look_cut_short(result);
 }
 
 std::vector<std::string> what_would_help(const PlanResult& result) {
@@ -54,43 +61,28 @@ std::vector<std::string> what_would_help(const PlanResult& result) {
   if (result.front.empty() || met(result)) return help;
   const PlanEntry& entry = result.front[answer(result)];
   const SurveyProblem& problem = result.problem;
+  if (look_cut_short(result))
+    help.push_back(
+        "more time: the look at what can be seen was cut short, so that capture is a share of less than that");
   if (entry.violation == 0) {
-    help.push_back("more time: no network was traced with every ray, so that what is told is an estimate");
+    if (!entry.exact)
+      help.push_back("more time: no network was traced with every ray, so that what is told is an estimate");
     return help;
   }
-  const std::size_t placed = entry.stations.size() - problem.kept.size();
-  const bool more = placed < std::min(problem.stations_max, max_stations - problem.kept.size());
+  const bool all_placed = entry.stations.size() - problem.kept.size() >= problem.stations_max;
+  const auto minutes = limit_of(problem, Objective::Kind::time, Requirement::Bound::at_most);
   for (const Requirement& requirement : problem.requirements) {
-    const double value = entry.value(requirement.objective.name);
+    const Objective& objective = requirement.objective;
+    const double value = entry.value(objective.name);
     if (requirement.missed_by(value) == 0) continue;
-    const std::string& name = requirement.objective.name;
-    const std::string reached = std::isnan(value) ? "unknown" : fixed(value, 3);
-    if (name == "capture" || name == "coverage") {
-      if (placed >= problem.stations_max)
-        help.push_back("more stations than " + std::to_string(problem.stations_max) + " for " + to_string(requirement) +
-                       "; these reach " + reached);
-      else if (const auto most = limit_of(problem, "time", Requirement::Bound::at_most))
-        help.push_back("more time than " + number(*most) + " min on site, or a lower " + name + " than " +
-                       number(requirement.limit) + "; this reaches " + reached);
-      else
-        help.push_back("a lower " + name + " than " + number(requirement.limit) + "; this reaches " + reached +
-                       (problem.visible && name == "coverage" && requirement.limit > *problem.visible
-                            ? ", and all allowed positions together see no more than " + fixed(*problem.visible, 3)
-                            : ""));
-    } else if (name == "link") {
-      help.push_back(value > 0
-                         ? "a lower link than " + number(requirement.limit) + "; this reaches " + reached
-                         : std::string("doors or passages that scans can share, or a survey in parts: the network "
-                                       "falls into parts that share no surface"));
-    } else if (name == "time") {
-      help.push_back("more time than " + number(requirement.limit) +
-                     " min on site, a faster setting of the scanner, or "
-                     "a lower capture; this takes " +
-                     fixed(value, 0) + " min");
-    } else {
-      help.push_back("another limit than " + to_string(requirement) + "; this reaches " + reached +
-                     (more ? ", or more stations" : ""));
-    }
+    help.push_back(advice(requirement, value));
+    if (objective.kind != Objective::Kind::coverage) continue;
+    if (all_placed)
+      help.back() += "; it takes more stations than " + std::to_string(problem.stations_max);
+    else if (minutes)
+      help.back() += "; it takes more time than " + number(*minutes) + " min on site";
+    else if (problem.visible && requirement.limit * objective.coverage_of_one > *problem.visible)
+      help.back() += "; all allowed positions together see no more than " + fixed(*problem.visible, 3);
   }
   return help;
 }

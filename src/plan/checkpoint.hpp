@@ -11,19 +11,15 @@
 #include <string_view>
 #include <vector>
 
-#include "plan/growing_sample.hpp"
-#include "plan/sample_memory.hpp"
 #include "vantage/planner.hpp"
 
 namespace vantage {
 
 struct SearchSnapshot {
   std::string optimiser;  // as its save() wrote it; empty: not yet asked
+  std::string evaluator;  // as its state() gave it
   std::vector<PlanIteration> history;
   std::uint64_t drawn = 0, redrawn = 0;
-  GrowingSample::State sample;
-  double sample_error = 0;
-  SampleMemory::State memory;
 };
 
 struct Checkpoint {

@@ -163,7 +163,7 @@ ConfirmedFront confirm_front(const SearchOutcome& found, const DecisionSpace& sp
                               },
                           .stop = watch.abort};
   std::vector<std::optional<Evaluation>> confirmed = evaluator.confirm(networks, progress);
-  const double link = limit_of(problem, "link", Requirement::Bound::at_least).value_or(0);
+  const double link = limit_of(problem, Objective::Kind::link, Requirement::Bound::at_least).value_or(0);
   for (std::size_t k = 0; k < entries.size(); ++k) {
     PlanEntry& entry = entries[k];
     if (confirmed[k]) {

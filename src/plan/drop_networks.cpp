@@ -36,8 +36,8 @@ void drop_networks(std::vector<PlanEntry>& front, const SurveyProblem& problem) 
       left.push_back(std::move(entry));
   drop_unplaced(left, problem.kept.size());
   for (const Requirement& requirement : problem.requirements)
-    if (requirement.objective.name == "apart")
-      prefer(left, [&](const PlanEntry& entry) { return requirement.missed_by(entry.value("apart")) == 0; });
+    if (const Objective& objective = requirement.objective; objective.kind == Objective::Kind::distance)
+      prefer(left, [&](const PlanEntry& entry) { return requirement.missed_by(entry.value(objective.name)) == 0; });
   front = std::move(left);
 }
 

@@ -3,19 +3,19 @@
 
 #include <algorithm>
 #include <optional>
-#include <string_view>
 
 #include "vantage/planner.hpp"
 
 namespace vantage {
 
-// The strictest limit that is required of an objective from one side.
-inline std::optional<double> limit_of(const SurveyProblem& problem, std::string_view name, Requirement::Bound bound) {
+// The strictest limit of a kind from one side; of coverage as coverage, whatever share of it was asked for.
+inline std::optional<double> limit_of(const SurveyProblem& problem, Objective::Kind kind, Requirement::Bound bound) {
   std::optional<double> limit;
   for (const Requirement& r : problem.requirements) {
-    if (r.objective.name != name || r.bound != bound) continue;
-    const double here = limit.value_or(r.limit);
-    limit = bound == Requirement::Bound::at_least ? std::max(here, r.limit) : std::min(here, r.limit);
+    if (r.objective.kind != kind || r.bound != bound) continue;
+    const double own = kind == Objective::Kind::coverage ? r.limit * r.objective.coverage_of_one : r.limit;
+    const double here = limit.value_or(own);
+    limit = bound == Requirement::Bound::at_least ? std::max(here, own) : std::min(here, own);
   }
   return limit;
 }

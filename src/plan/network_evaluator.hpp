@@ -17,7 +17,7 @@ namespace vantage {
 
 using PlacedNetwork = std::vector<PlacedStation>;
 
-// So many voxels, from so far on in the draw. None: every ray.
+// A sample: `voxels` of them, from place `from` on in the draw. None: every ray.
 struct VoxelWindow {
   std::uint64_t voxels = 0, from = 0;
   friend bool operator==(const VoxelWindow&, const VoxelWindow&) = default;
@@ -26,7 +26,7 @@ struct VoxelWindow {
 class NetworkEvaluator {
  public:
   virtual ~NetworkEvaluator() = default;
-  // How many networks evaluate() takes best at once; 0: as many as there are.
+  // How many networks evaluate() takes best at once with every ray; 0: as many as there are.
   virtual std::size_t chunk() const = 0;
   // Values of the searched measures of each network, in order. Empty when stopped half way.
   virtual std::optional<std::vector<std::vector<double>>> evaluate(std::span<const PlacedNetwork> networks,
@@ -43,7 +43,7 @@ class NetworkEvaluator {
   virtual double trace_seconds() const = 0;
 };
 
-// Spares the evaluator networks met before.
+// Remembers the values of networks met before, with the same sample.
 class CachingEvaluator {
  public:
   explicit CachingEvaluator(NetworkEvaluator& evaluator) : evaluator_(evaluator) {}

@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "core/deadline.hpp"
 #include "plan/drop_networks.hpp"
 #include "plan/plan_context.hpp"
 #include "plan/plan_fewest.hpp"
@@ -15,16 +16,16 @@
 namespace vantage {
 namespace {
 
-bool asks_for(const SurveyProblem& problem, std::string_view name) {
-  const auto named = [&](const Objective& objective) { return objective.name == name; };
-  return std::ranges::any_of(problem.objectives, named) ||
-         std::ranges::any_of(problem.requirements, named, &Requirement::objective);
+bool needs_attainable(const SurveyProblem& problem) {
+  const auto needs = [](const Objective& objective) { return objective.needs.attainable; };
+  return std::ranges::any_of(problem.objectives, needs) ||
+         std::ranges::any_of(problem.requirements, needs, &Requirement::objective);
 }
 
 // What a problem says, with the scale of the number of stations as it is, and `capture` of what can be seen.
 SurveyProblem settled(SurveyProblem problem) {
   const auto settle = [&](Objective& objective) {
-    if (objective.name == "capture") objective = make_objective("capture", problem.settings());
+    if (objective.needs.attainable) objective = make_objective(objective.name, problem.settings());
     if (!objective.by_alpha) return;
     objective.scale = {static_cast<double>(problem.kept.size() + problem.stations_min),
                        static_cast<double>(problem.kept.size() + problem.stations_max)};
@@ -32,7 +33,7 @@ SurveyProblem settled(SurveyProblem problem) {
   for (Objective& objective : problem.objectives) settle(objective);
   if (problem.visible)
     for (Requirement& requirement : problem.requirements)
-      if (requirement.objective.name == "capture") settle(requirement.objective);
+      if (requirement.objective.needs.attainable) settle(requirement.objective);
   return problem;
 }
 
@@ -47,6 +48,8 @@ std::uint32_t finest(const Simulator& simulator, std::span<const std::uint32_t> 
   return *std::ranges::max_element(scanners, {}, [&](std::uint32_t k) { return simulator.scanners()[k].rays(); });
 }
 
+// Of the time limit, for looking, choosing and searching. The rest is for tracing every ray of what was found.
+constexpr double kSearchTimeShare = 0.8;
 // More are tried where it pays: around the stations that are chosen.
 constexpr std::size_t kMostCandidates = 512;
 // The front of more entries than this has its rounds worked out for the answer alone.
@@ -62,13 +65,30 @@ void work_out_rounds(PlanResult& result, PlanContext& context) {
   }
 }
 
+// Stopped by the limits too, and told no longer times than they leave.
+PlanWatch limited(const PlanWatch& watch, const Deadline& search_by, const Deadline& all_by) {
+  PlanWatch own{.report = {}, .stop = search_by.stop(), .abort = all_by.stop()};
+  if (watch.report) {
+    own.report = [&](const PlanProgress& now) {
+      PlanProgress told = now;
+      const Deadline& end = now.phase == "confirm" ? all_by : search_by;
+      told.seconds_left = std::min(now.seconds_left, end.seconds_left());
+      if (now.whole_seconds_left) told.whole_seconds_left = std::min(*now.whole_seconds_left, all_by.seconds_left());
+      watch.report(told);
+    };
+  }
+  return own;
+}
+
 }  // namespace
 
 PlanResult plan(Simulator& simulator, const SearchArea& area, const ClashChecker& clash, const SurveyProblem& asked,
-                const PlanConfig& wanted, const PlanWatch& watch) {
+                const PlanConfig& wanted, const PlanWatch& given) {
   const PlanConfig config = settled(wanted, asked, simulator.voxel_count(), simulator.config().seed);
   using Clock = std::chrono::steady_clock;
   const auto start = Clock::now();
+  const Deadline search_by(kSearchTimeShare * config.max_seconds, given.stop), all_by(config.max_seconds, given.abort);
+  const PlanWatch watch = limited(given, search_by, all_by);
   const auto since = [](Clock::time_point then) { return std::chrono::duration<double>(Clock::now() - then).count(); };
   SurveyProblem problem = asked;
   std::vector<double> heights{simulator.scanner().height_m};
@@ -76,7 +96,7 @@ PlanResult plan(Simulator& simulator, const SearchArea& area, const ClashChecker
   require_somewhere_to_stand(area, clash, heights);
   std::shared_ptr<const Candidates> candidates;
   double candidates_seconds = 0;
-  const bool limit_wanted = !problem.visible && asks_for(problem, "capture");
+  const bool limit_wanted = !problem.visible && needs_attainable(problem);
   if (problem.fewest || limit_wanted) {
     const auto report = [&](double done) {
       if (!watch.report) return;
@@ -89,7 +109,7 @@ PlanResult plan(Simulator& simulator, const SearchArea& area, const ClashChecker
                                                                      .scanner = finest(simulator, problem.scanners)},
                                                                     {.report = report, .stop = watch.stop}));
     candidates_seconds = since(start);
-    if (watch.report)
+    if (watch.report && candidates->ended() != "cancelled")
       watch.report({.evaluations = candidates->stations().size(),
                     .seconds_left = -1,
                     .phase = "look",
@@ -118,8 +138,9 @@ PlanResult plan(Simulator& simulator, const SearchArea& area, const ClashChecker
     result.seconds = found.seconds + since(searched);
     result.trace_seconds = found.trace_seconds + context.evaluator().trace_seconds() - searched_trace;
   }
+  if (result.stop_reason == StopReason::cancelled && search_by.passed()) result.stop_reason = StopReason::max_time;
   result.candidates = std::move(candidates);
-  work_out_rounds(result, context);
+  if (!watch.abort.stop_requested()) work_out_rounds(result, context);
   return result;
 }
 

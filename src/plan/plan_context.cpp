@@ -39,8 +39,7 @@ void PlanContext::ask(const SurveyProblem& problem) {
   evaluator_.emplace(
       simulator_, measures_,
       SimulatorEvaluator::Options{
-          .sampled = config_.sample_voxels > 0,
-          .kept = problem.kept.size(),
+          .existing = problem.kept.size(),
           .visible_parts =
               [this](const Network& network) { return visibility_parts(oracle_.sees, oracle_.range_m, network); },
           .surroundings = needs.surroundings ? &surroundings() : nullptr,
@@ -66,12 +65,13 @@ std::uint64_t PlanContext::surroundings_voxels() const { return std::min(config_
 SearchOutcome PlanContext::search(const SurveyProblem& narrowed, const PlanConfig& config,
                                   const std::vector<double>& start, const PlanWatch& watch) {
   const DecisionSpace space(oracle_, narrowed);
+  const std::unique_ptr<SearchEvaluator> searched = make_search_evaluator(*evaluator_, config, measures_.searched);
   const std::size_t batch = batch_of(simulator_, config);
   return vantage::search({.space = space,
                           .problem = narrowed,
                           .measures = measures_,
                           .config = config,
-                          .evaluator = *evaluator_,
+                          .evaluator = *searched,
                           .batch = batch,
                           .identity = identity(simulator_, oracle_, area_, clash_, narrowed, config,
                                                population_of(narrowed, config), batch),

@@ -52,8 +52,8 @@ constexpr std::size_t kTimedNetworks = 2, kTimedStations = 4;
 constexpr double kLaterRounds = 1.1, kListedShare = 0.7, kEveryRay = 4.5;
 
 // The limit of an at-least requirement, or 0.
-double least_of(const SurveyProblem& problem, std::string_view name) {
-  return std::max(0.0, limit_of(problem, name, Requirement::Bound::at_least).value_or(0));
+double least_of(const SurveyProblem& problem, Objective::Kind kind) {
+  return std::max(0.0, limit_of(problem, kind, Requirement::Bound::at_least).value_or(0));
 }
 
 class FewestPlan {
@@ -67,11 +67,10 @@ class FewestPlan {
         watch_(watch),
         problem_(context.problem()),
         most_(problem_.stations_max),
-        link_(least_of(problem_, "link")),
+        link_(least_of(problem_, Objective::Kind::link)),
         sample_(config.sample_voxels > 0 ? config.sample_voxels : simulator.voxel_count()),
         table_(make_table(sample_)) {
-    const double visible = problem_.visible.value_or(1);
-    coverage_ = std::max(least_of(problem_, "coverage"), visible * least_of(problem_, "capture"));
+    coverage_ = least_of(problem_, Objective::Kind::coverage);
     coverage_margin_ = kMarginErrors * candidates.visible().standard_error;
     look_seconds_ = candidates_seconds / static_cast<double>(std::max<std::size_t>(candidates.stations().size(), 1));
     station_seconds_ = look_seconds_;
@@ -106,10 +105,10 @@ class FewestPlan {
   bool stopped() const { return watch_.stop.stop_requested() || watch_.abort.stop_requested(); }
   CandidateTable make_table(std::uint64_t sample_voxels) {
     return {simulator_, link_ > 0 || wants_links() ? &context_.surroundings() : nullptr, sample_voxels,
-            surroundings_sample(), least_of(problem_, "apart")};
+            surroundings_sample(), least_of(problem_, Objective::Kind::distance)};
   }
   bool wants_links() const {
-    return std::ranges::any_of(problem_.objectives, [](const Objective& o) { return o.name == "link"; });
+    return std::ranges::any_of(problem_.objectives, [](const Objective& o) { return o.kind == Objective::Kind::link; });
   }
   std::uint64_t surroundings_sample() {
     const std::uint64_t sample = context_.surroundings_voxels();
@@ -219,7 +218,7 @@ class FewestPlan {
 
   // Where a round of as many as it takes lasts too long: the most that can be captured by as many as there is time for.
   void fit_time() {
-    const std::optional<double> most = limit_of(problem_, "time", Requirement::Bound::at_most);
+    const std::optional<double> most = limit_of(problem_, Objective::Kind::time, Requirement::Bound::at_most);
     if (!most) return;
     const double limit = *most;
     const std::size_t kept = problem_.kept.size();
@@ -340,10 +339,10 @@ class FewestPlan {
   SurveyProblem with_margins(SurveyProblem narrowed) const {
     for (Requirement& requirement : narrowed.requirements) {
       if (requirement.bound != Requirement::Bound::at_least) continue;
-      if (requirement.objective.name == "capture")
-        requirement.limit = std::min(1.0, requirement.limit + sample_off_ / problem_.visible.value_or(1));
-      if (requirement.objective.name == "coverage") requirement.limit = std::min(1.0, requirement.limit + sample_off_);
-      if (requirement.objective.name == "link") requirement.limit += link_margin_;
+      const Objective& objective = requirement.objective;
+      if (objective.kind == Objective::Kind::coverage)
+        requirement.limit = std::min(1.0, requirement.limit + sample_off_ / objective.coverage_of_one);
+      if (objective.kind == Objective::Kind::link) requirement.limit += link_margin_;
     }
     return narrowed;
   }
@@ -413,13 +412,15 @@ class FewestPlan {
     for (const PlanEntry& entry : entries_)
       if (entry.exact && (!nearest || entry.violation < nearest->violation)) nearest = &entry;
     if (!nearest || choice_.violation > 0) return false;
-    const auto shortfall = [&](std::string_view name) {
-      const auto found = nearest->values.find(std::string(name));
-      const double limit = least_of(problem_, name);
-      return limit > 0 && found != nearest->values.end() ? std::max(0.0, limit - found->second.value) : 0;
-    };
-    const double coverage = std::max(shortfall("coverage"), shortfall("capture") * problem_.visible.value_or(1));
-    const double link = shortfall("link");
+    double coverage = 0, link = 0;
+    for (const Requirement& requirement : problem_.requirements) {
+      const Objective& objective = requirement.objective;
+      if (requirement.bound != Requirement::Bound::at_least || !(requirement.limit > 0)) continue;
+      const double shortfall = requirement.limit - nearest->value(objective.name);
+      if (objective.kind == Objective::Kind::coverage)
+        coverage = std::max(coverage, shortfall * objective.coverage_of_one);
+      if (objective.kind == Objective::Kind::link) link = std::max(link, shortfall);
+    }
     if (coverage == 0 && link == 0) return false;
     coverage_margin_ += kBeyond * coverage, link_margin_ += kBeyond * link;
     nearly_.reset();

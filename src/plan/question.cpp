@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <string>
 #include <string_view>
 #include <utility>
 
+#include "core/seconds_since.hpp"
 #include "core/setting_table.hpp"
 #include "vantage/error.hpp"
 
@@ -185,14 +187,13 @@ SurveyProblem survey_problem(Site& site, const SurveyQuestion& question) {
 PlanConfig settled(const PlanConfig& config, const SurveyProblem& problem, std::uint64_t voxels, std::uint64_t seed) {
   PlanConfig all = config;
   const bool sample_given = config.sample_voxels > 0 || config.sample_share;
-  if (config.exact && (sample_given || config.sample_from > 0 || config.renew_iterations.value_or(0) > 0))
+  if (config.exact && (sample_given || config.renew_iterations.value_or(0) > 0))
     throw Error(Errc::invalid_argument, "exact: a search with every ray has no sample; give one of them");
   if (all.iterations == 0 && !problem.fewest) all.iterations = kUsualIterations;
   if (!all.seed) all.seed = seed;
   if (!all.renew_iterations) {
     const bool front = problem.objectives.size() > 1 && !problem.fewest && !config.optimiser;
-    all.renew_iterations =
-        front && !config.exact && !sample_given && config.sample_from == 0 ? kIterationsOfASample : 0;
+    all.renew_iterations = front && !config.exact && !sample_given ? kIterationsOfASample : 0;
   }
   if (config.exact)
     all.sample_voxels = 0;
@@ -207,8 +208,17 @@ PlanConfig settled(const PlanConfig& config, const SurveyProblem& problem, std::
 }
 
 PlanResult plan(Site& site, const SurveyProblem& problem, const PlanConfig& config, const PlanWatch& watch) {
+  // What the site still has to build is part of the time.
+  constexpr double kMoment_s = 1e-3;
+  const auto begun = std::chrono::steady_clock::now();
   Simulator& simulator = site.simulator();
-  return plan(simulator, site.area(), site.clash(), problem, config, watch);
+  const SearchArea& area = site.area();
+  const ClashChecker& clash = site.clash();
+  PlanConfig limited = config;
+  if (config.max_seconds > 0) limited.max_seconds = std::max(kMoment_s, config.max_seconds - seconds_since(begun));
+  PlanResult result = plan(simulator, area, clash, problem, limited, watch);
+  result.config.max_seconds = config.max_seconds;
+  return result;
 }
 
 PlanResult plan(Site& site, const SurveyQuestion& question, const PlanConfig& config, const PlanWatch& watch) {

@@ -209,11 +209,6 @@ const SettingTable<PlanConfig>& plan_settings() {
               },
               [](const Config& c) { return c.sample_voxels > 0 || c.sample_share; })
           .excludes({"exact"})
-          .count("sample-from", "N",
-                 "Look at networks with so many voxels first, and with more at those that might be kept; otherwise all "
-                 "are measured with the whole sample",
-                 &Config::sample_from, 1, std::numeric_limits<std::uint64_t>::max())
-          .excludes({"exact"})
           .optional("renew", "K",
                     "Draw other voxels every K iterations, so that nothing is kept for its luck, and choose the front "
                     "by every ray from all that is kept at the end",

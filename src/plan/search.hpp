@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The search loop: asks, draws stations out of holes, evaluates, tells, keeps the history and the checkpoint, and knows
-// when to stop.
+// The search loop: asks the optimiser for networks, evaluates them, tells it their values, and keeps history and
+// checkpoint, until the optimiser has enough or somebody stops it.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 #include "plan/decision_space.hpp"
 #include "plan/measures.hpp"
-#include "plan/network_evaluator.hpp"
+#include "plan/search_evaluator.hpp"
 
 namespace vantage {
 
@@ -20,24 +20,23 @@ struct SearchSetup {
   const SurveyProblem& problem;
   const Measures& measures;
   const PlanConfig& config;
-  NetworkEvaluator& evaluator;
+  SearchEvaluator& evaluator;
   std::size_t batch = 1;  // offspring at once in the steady state
   std::string identity = {};
   // A network to begin with that is evaluated as it stands, so that no front is worse; empty: what `config` says.
   std::vector<double> start = {};
   std::function<void(const PlanProgress&)> watch = {};
-  // Told what the search goes on without: a checkpoint that cannot be written, or is damaged. Where nobody is told, one
-  // that cannot be written is an Error.
+  // Called where a checkpoint cannot be written, or is damaged, and the search goes on without. If empty, one that
+  // cannot be written is an Error.
   std::function<void(const std::string&)> warn = {};
   std::stop_token stop = {};
 };
 
 struct SearchOutcome {
-  // Where the sample is drawn anew all that was kept: the front is chosen from it by every ray.
+  // The whole archive where it is evaluated again (SearchEvaluator::archive): every ray then chooses the front.
   std::vector<ParetoPoint> front;
-  // Of each, of the measures that were searched, by all its samples together; empty where there was one.
-  std::vector<std::vector<Estimate>> estimates = {};
-  VoxelWindow sample = {};  // by which it is told; no voxels: every ray
+  SearchEstimates estimates = {};  // of each, by all its samples together; empty where there was one
+  VoxelWindow sample = {};         // by which it is reported; no voxels: every ray
   std::vector<PlanIteration> history;
   double hypervolume = 0;
   std::uint64_t evaluations = 0, resumed_evaluations = 0;

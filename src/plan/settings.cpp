@@ -79,7 +79,6 @@ Settings settings(const PlanConfig& config) {
       .add("scheme", generational ? "generational" : "steady-state", {"scheme"})
       .add("batch", config.batch, {unless(config.batch == 0, "batch")})
       .add("sample_voxels", config.sample_voxels, {unless(config.sample_voxels == 0, "sample")})
-      .add("sample_from", config.sample_from, {unless(config.sample_from == 0, "sample-from")})
       .add("renew_iterations", config.renew_iterations.value_or(0),
            {unless(config.renew_iterations.value_or(0) == 0, "renew")})
       .add("start", config.start, {"start"})

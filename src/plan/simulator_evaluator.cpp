@@ -25,9 +25,8 @@ std::optional<RegistrationModel> registered_around(const RequiredInputs& needs) 
 
 }  // namespace
 
-// Of every ray as many as keep all devices busy: so it can be stopped, and saved, often.
+// As many as keep all devices busy with every ray: so a search can be stopped, and saved, often.
 std::size_t SimulatorEvaluator::chunk() const {
-  if (options_.sampled) return 0;
   const std::size_t devices = std::max<std::size_t>(simulator_.config().devices.size(), 1);
   const TracerMaker* const shared = simulator_.config().shared.get();
   return shared ? devices * shared->networks_at_once() : devices;
@@ -83,14 +82,14 @@ MeasuredNetwork SimulatorEvaluator::measured(const NetworkCounts& counts, const 
                                              const RequiredInputs& needs) const {
   return {.counts = counts,
           .stations = stations,
-          .kept = options_.kept,
+          .kept = options_.existing,
           .goal_density = simulator_.goal_density(),
           .voxels = simulator_.voxel_count(),
           .overlap = needs.pairs ? overlap_matrix(counts) : OverlapMatrix{},
           .visible_parts = needs.visibility ? options_.visible_parts(network) : 0,
           .surroundings = surroundings,
           .surroundings_voxels = surroundings ? options_.surroundings->voxel_count() : 0,
-          .minutes_on_site = needs.time ? options_.minutes(std::span(stations).subspan(options_.kept)) : 0};
+          .minutes_on_site = needs.time ? options_.minutes(std::span(stations).subspan(options_.existing)) : 0};
 }
 
 std::optional<std::vector<std::vector<double>>> SimulatorEvaluator::evaluate(std::span<const PlacedNetwork> placed,

@@ -12,15 +12,14 @@ namespace vantage {
 class SimulatorEvaluator final : public NetworkEvaluator {
  public:
   struct Options {
-    bool sampled = false;  // in the search; of every ray networks come one by one
-    std::size_t kept = 0;  // stations at the head of every network that were there before
+    std::size_t existing = 0;  // stations at the head of every network that are there already
     // Connected parts of the visibility graph; needed where a measure needs it.
     std::function<std::size_t(const Network&)> visible_parts = {};
     // Over all surfaces; needed where a measure needs it. With so many sampled voxels, or every ray.
     Simulator* surroundings = nullptr;
     std::uint64_t surroundings_voxels = 0;
     RegistrationOptions registration = {};  // of confirmed networks, where a measure needs it
-    // Minutes on site without the kept stations; needed where a measure needs it.
+    // Minutes on site without the existing stations; needed where a measure needs it.
     std::function<double(std::span<const PlacedStation>)> minutes = {};
   };
   // Borrows the simulators.

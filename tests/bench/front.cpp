@@ -22,17 +22,18 @@
 namespace vantage::bench {
 namespace {
 
+std::uint64_t number_of(std::string_view text) {
+  std::uint64_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size())
+    throw Error(Errc::invalid_argument, "\"" + std::string(text) + "\" is no number");
+  return value;
+}
+
 std::pair<std::uint64_t, std::uint64_t> range_of(const std::string& text) {
-  const auto number = [&](std::string_view part) {
-    std::uint64_t value = 0;
-    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), value);
-    if (error != std::errc() || end != part.data() + part.size())
-      throw Error(Errc::invalid_argument, "\"" + text + "\" is neither a number nor two with .. between them");
-    return value;
-  };
   const auto dots = text.find("..");
-  if (dots == std::string::npos) return {number(text), number(text)};
-  return {number(std::string_view(text).substr(0, dots)), number(std::string_view(text).substr(dots + 2))};
+  if (dots == std::string::npos) return {number_of(text), number_of(text)};
+  return {number_of(text.substr(0, dots)), number_of(text.substr(dots + 2))};
 }
 
 // A front at some time of a search.
@@ -164,8 +165,7 @@ void FrontOptions::add(CLI::App& command) {
   command.add_option("--batch", batch, "Offspring at once; 0: by the engine")->capture_default_str();
   command
       .add_option("--samples", samples,
-                  "Voxels to search with, N..M where the sample grows, N/R or N..M/R where it is drawn anew every R "
-                  "iterations; a curve each")
+                  "Voxels to search with, N/R where they are redrawn every R iterations; a curve each")
       ->delimiter(',')
       ->capture_default_str();
   command.add_option("--seeds", seeds, "A search of each sample with each")->delimiter(',')->capture_default_str();
@@ -193,10 +193,10 @@ void run_front(const FrontOptions& options) {
   for (const std::uint64_t seed : options.seeds)
     for (const std::string& sample : options.samples) {
       const auto slash = sample.find('/');
-      const auto [from, to] = range_of(sample.substr(0, slash));
-      const std::size_t renew = slash == std::string::npos ? 0 : range_of(sample.substr(slash + 1)).first;
+      const std::uint64_t voxels = number_of(sample.substr(0, slash));
+      const std::size_t renew = slash == std::string::npos ? 0 : number_of(sample.substr(slash + 1));
       PlanConfig search{.population = options.population, .iterations = options.iterations, .batch = options.batch};
-      search.sample_voxels = std::min(to, simulator.voxel_count()), search.sample_from = from < to ? from : 0;
+      search.sample_voxels = std::min(voxels, simulator.voxel_count());
       search.renew_iterations = renew;
       search.seed = seed;
       search.optimiser = [algorithm](std::size_t dimension, std::size_t count, const OptimiserConfig& config) {

@@ -15,7 +15,7 @@ struct FrontOptions {
   std::string problem = "coverage-overlap-fix", stations = "15";
   std::string algorithm = "mo_cma_es";
   std::size_t population = 250, iterations = 600, batch = 0;
-  std::vector<std::string> samples{"20000", "2000..20000"};  // voxels, or from..to where it grows
+  std::vector<std::string> samples{"20000", "5000/20"};  // voxels, /iterations between draws
   std::vector<std::uint64_t> seeds{1};
   std::vector<std::size_t> devices;  // empty: the best one
   double first_s = 1, ratio = 1.5;   // when the front is looked at: the first time, and how much later each time

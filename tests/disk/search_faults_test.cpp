@@ -35,11 +35,12 @@ class SearchOnABadDisk : public testing::Test {
     const PlacementOracle site = toy_site();
     const DecisionSpace space(site, problem);
     evaluator.measures = measures_of(problem);
+    const auto searched = make_search_evaluator(evaluator, config, evaluator.measures.searched);
     return bits_of(search({.space = space,
                            .problem = problem,
                            .measures = evaluator.measures,
                            .config = config,
-                           .evaluator = evaluator,
+                           .evaluator = *searched,
                            .batch = 4,
                            .identity = "toy\n",
                            .warn = warn_}));

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files that the program keeps for itself. Valid checksums are made, to reach the code behind them.
 #include <cmath>
-#include <cstring>
 #include <memory>
 #include <sstream>
 #include <vector>
 
-#include "core/hash.hpp"
+#include "core/archive.hpp"
 #include "core/read_file.hpp"
 #include "fuzz/target.hpp"
 #include "plan/checkpoint.hpp"
@@ -14,11 +13,6 @@
 
 namespace vantage::fuzz {
 namespace {
-
-template <class T>
-void append(std::string& bytes, T value) {
-  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-}
 
 std::unique_ptr<Optimiser> small_optimiser(std::size_t kind) {
   const OptimiserConfig config{
@@ -33,23 +27,14 @@ std::string saved(const Optimiser& optimiser) {
   return std::move(out).str();
 }
 
-// Header of a saved state up to the length of its payload, taken from one that the optimiser wrote: magic, version (8
-// bytes), length of the kind (8 bytes), kind.
-std::string head_of(const std::string& state) {
-  const std::size_t at = std::strlen("vantage optimiser\n") + 8;
-  std::uint64_t kind = 0;
-  std::memcpy(&kind, state.data() + at, 8);
-  return state.substr(0, at + 8 + kind);
-}
+constexpr ArchiveFormat state_format{"vantage optimiser\n", 8}, checkpoint_format{"vantage checkpoint\n", 5};
 
-std::string signed_state(const std::string& head, Bytes payload) {
-  std::string whole = head;
-  append(whole, std::uint64_t{payload.size()});
-  whole.append(payload.begin(), payload.end());
-  std::uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a, as in optimise/state_file.cpp
-  for (const char c : whole) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
-  append(whole, hash);
-  return whole;
+// What a seal holds.
+std::string payload_of(const std::string& whole, const ArchiveFormat& format) {
+  std::istringstream in(whole);
+  const Unsealed found = unseal(in, format);
+  require(found.state == Unsealed::State::whole, "what is saved has the seal that is known here");
+  return found.payload;
 }
 
 // Runs that many rounds of ask and tell.
@@ -81,18 +66,6 @@ std::string checkpoint_file(const Checkpoint& checkpoint) {
   return read_file(file);
 }
 
-// Magic and version.
-const std::size_t checkpoint_head = std::strlen("vantage checkpoint\n") + 4;
-
-std::string signed_checkpoint(const std::string& body) {
-  static const std::string head = checkpoint_file({}).substr(0, checkpoint_head);
-  Hash hash;
-  hash.add_bytes(body.data(), body.size());
-  std::string whole = head;
-  append(whole, std::uint64_t{body.size()}), append(whole, hash.value());
-  return whole + body;
-}
-
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> state_seeds() {
@@ -105,24 +78,20 @@ std::vector<std::pair<std::string, std::string>> state_seeds() {
     const auto optimiser = small_optimiser(kind);
     go_on(*optimiser, 2);
     const std::string state = saved(*optimiser);
-    const std::size_t head = head_of(state).size() + 8, sum = 8;
     seeds.emplace_back(std::string("optimiser_state/") + names[kind],
-                       static_cast<char>(kind) + state.substr(head, state.size() - head - sum));
+                       static_cast<char>(kind) + payload_of(state, state_format));
     if (kind == 1) checkpoint.snapshot.optimiser = state;
   }
   checkpoint.snapshot.drawn = 12, checkpoint.snapshot.redrawn = 1;
   checkpoint.snapshot.history = {{1, 6, 0.25, {{0.5, 0.25}}, 0.5}, {2, 12, 0.5, {{0.5, 0.125}, {0.25, 0.75}}, 1}};
   checkpoint.since = {{0.5, 0.25, 3}, {0.75, 0.125, 4}};
-  const std::string whole = checkpoint_file(checkpoint);
-  seeds.emplace_back("checkpoint/search", whole.substr(checkpoint_head + 16));  // behind length and sum
+  seeds.emplace_back("checkpoint/search", payload_of(checkpoint_file(checkpoint), checkpoint_format));
   return seeds;
 }
 
 void checkpoint(Bytes bytes) {
   accepts([&] { parse_checkpoint(text_of(bytes), "checkpoint.bin"); });
-  static const std::string real = checkpoint_file({});
-  require(signed_checkpoint(real.substr(checkpoint_head + 16)) == real, "checkpoints are signed as they are here");
-  const std::string whole = signed_checkpoint(text_of(bytes));
+  const std::string whole = sealed(checkpoint_format, text_of(bytes));
   accepts([&] {
     const Checkpoint found = parse_checkpoint(whole, "checkpoint.bin");
     const auto file = file_of({}, "again.bin");
@@ -131,14 +100,13 @@ void checkpoint(Bytes bytes) {
   });
 }
 
-// The first byte selects the optimiser, and whether the bytes are a whole file or the part behind the header.
+// The first byte says of which optimiser, and whether the bytes are a whole file or what its seal holds.
 void optimiser_state(Bytes bytes) {
   if (bytes.empty()) return;
   const std::size_t kind = bytes[0] % 2;
   const Bytes rest = bytes.subspan(1);
   if (bytes[0] & 4) return load_and_go_on(kind, text_of(rest));
-  static const std::string heads[] = {head_of(saved(*small_optimiser(0))), head_of(saved(*small_optimiser(1)))};
-  load_and_go_on(kind, signed_state(heads[kind], rest));
+  load_and_go_on(kind, sealed(state_format, text_of(rest)));
 }
 
 }  // namespace vantage::fuzz

@@ -140,7 +140,11 @@ class LongCalls(unittest.TestCase):
         simulator.evaluate(HEADS, progress=told.append)
         self.assertEqual(told, sorted(told))
         self.assertTrue(told and 0 <= told[0] and told[-1] <= 1)
-        self.assertTrue(simulator.evaluate(HEADS, progress=lambda done: False).cancelled)
+        cancelled = simulator.evaluate(HEADS, progress=lambda done: False)
+        self.assertTrue(cancelled.cancelled)
+        self.assertEqual(repr(cancelled), "<vantage.Evaluation: cancelled>")
+        with self.assertRaisesRegex(vantage.Error, "cancelled"):
+            cancelled.coverage
         scan = simulator.scan(HEADS[0], grid=True, progress=lambda done: False)
         self.assertTrue(scan.cancelled)
         self.assertEqual(scan.position.shape, (len(scan), 3))

@@ -6,7 +6,7 @@ import tempfile
 import unittest
 
 import vantage
-from sites import FOUR_WALLS, SOURCE, program
+from sites import FOUR_WALLS, SOURCE, program, program_json
 
 COARSE = {"step": 0.5, "user_size": 0.3, "spacing": 0.1, "engine": "embree", "seed": 7}
 
@@ -41,6 +41,35 @@ class Sites(unittest.TestCase):
 
     def test_the_surveyors_question_has_the_bytes_of_the_program(self):
         self.assert_same_as_the_program(FOUR_WALLS, COARSE, {"sample": 300})
+
+    def test_an_evaluation_has_every_figure_of_the_program(self):
+        heads = [[8, 0, 1.5], [9, 8, 1.5], [0, 12, 1.5]]
+        stations = [part for head in heads for part in ("--station", ",".join(map(str, head)))]
+        site = vantage.Site.open(FOUR_WALLS, **COARSE)
+        for more, settings in ((["--exact"], {}), (["--sample", 500], {"sample_voxels": 500})):
+            told = program_json("evaluate", FOUR_WALLS, *options(COARSE), *stations, *more, "--registration")
+            found = site.evaluate(heads, registration=vantage.RegistrationOptions(), **settings)
+            figures = found.to_dict()
+            for key in ("summary", "coverage", "coverage_se", "overlap", "overlap_se", "overlap_matrix",
+                        "scan_overlap_matrix", "minutes_on_site", "voxels", "goal_density", "rays", "sample"):
+                self.assertEqual(figures[key], told[key], key)
+            for key, value in figures["registration"].items():
+                self.assertEqual(value, told["registration"][key], key)
+            self.assertIsNotNone(told["minutes_on_site"])
+
+    def test_reports_are_written_without_the_program(self):
+        site = vantage.Site.open(FOUR_WALLS, **COARSE)
+        plan = site.plan(problem="coverage-overlap-fix", stations=3, population=4, iterations=2, sample=200)
+        found = site.evaluate([[8, 0, 1.5], [0, 12, 1.5]], field=True)
+        with tempfile.TemporaryDirectory() as folder:
+            for name, write in (("plan", plan.write_report), ("found", lambda file: site.write_report(file, found))):
+                for ending, first in ((".html", b"<!doctype html>"), (".pdf", b"%PDF-")):
+                    file = os.path.join(folder, name + ending)
+                    write(file)
+                    with open(file, "rb") as written:
+                        self.assertTrue(written.read(20).lower().startswith(first), file)
+            with self.assertRaisesRegex(vantage.Error, "neither .html nor .pdf"):
+                site.write_report(os.path.join(folder, "found.doc"), found)
 
     def test_it_chooses_what_nobody_gave_and_says_why(self):
         site = vantage.Site.open(os.path.join(SOURCE, "data", "industrial_20k.glb"), engine="embree", height=None)

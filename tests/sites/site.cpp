@@ -99,11 +99,11 @@ std::span<const char* const> site_names() {
 }
 
 Site make_site(const std::string& name, const Variant& variant) {
-  Site site = name == "office"   ? office()
-              : name == "house"  ? house()
-              : name == "street" ? street()
-              : name == "plant"  ? plant()
-                                 : throw std::invalid_argument("no site is called " + name);
+  Site site{name == "office"   ? sites::office()
+            : name == "house"  ? sites::house()
+            : name == "street" ? sites::street()
+            : name == "plant"  ? sites::plant()
+                               : throw std::invalid_argument("no site is called " + name)};
   site.name = name;
   if (variant.utm) site.offset = kUtm;
   site.entry = site.entry + site.offset;

@@ -17,6 +17,7 @@ Objective capture(const ObjectiveSettings& settings) {
   return {.name = "capture",
           .label = "Capture (share of what can be seen)",
           .scale = maximise(1, 0),
+          .needs = {.attainable = true},
           .value =
               [visible](const MeasuredNetwork& m) {
                 return std::min(1.0, vantage::coverage(m.counts, m.goal_density) / visible);
@@ -25,6 +26,9 @@ Objective capture(const ObjectiveSettings& settings) {
               [visible](const MeasuredNetwork& m) {
                 return coverage_estimate(m.counts, m.goal_density, m.voxels).standard_error / visible;
               },
+          .kind = Objective::Kind::coverage,
+          .coverage_of_one = visible,
+          .advice = "allow more stations, or more places to stand",
           .parameters = "of a coverage of " + number(visible)};
 }
 

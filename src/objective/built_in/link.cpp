@@ -10,9 +10,13 @@ Objective link(const ObjectiveSettings&) {
           .label = "Weakest link (share of the smaller scan, over all surfaces)",
           .scale = maximise(1, 0),
           .needs = {.counts = false, .surroundings = true},
-          .value = [](const MeasuredNetwork& m) {
-            return m.stations.size() == 1 ? 1 : connectivity(scan_overlap_matrix(*m.surroundings), 0).weakest_overlap;
-          }};
+          .value =
+              [](const MeasuredNetwork& m) {
+                return m.stations.size() == 1 ? 1
+                                              : connectivity(scan_overlap_matrix(*m.surroundings), 0).weakest_overlap;
+              },
+          .kind = Objective::Kind::link,
+          .advice = "allow more stations, or tie scans together with targets"};
 }
 
 }  // namespace vantage::built_in

@@ -9,7 +9,8 @@ Objective overlap(const ObjectiveSettings&) {
           .label = "Overlap (average clustering coefficient)",
           .scale = maximise(1, 0),
           .needs = {.pairs = true},
-          .value = [](const MeasuredNetwork& m) { return clustering_coefficient(m.overlap); }};
+          .value = [](const MeasuredNetwork& m) { return clustering_coefficient(m.overlap); },
+          .advice = "allow more stations, or tie scans together with targets"};
 }
 
 }  // namespace vantage::built_in

@@ -12,6 +12,7 @@ Objective parts(const ObjectiveSettings& settings) {
           .needs = {.pairs = true},
           .value = [least = settings.link_overlap](
                        const MeasuredNetwork& m) { return static_cast<double>(connectivity(m.overlap, least).parts); },
+          .advice = "allow more stations, or tie scans together with targets",
           .parameters = "links from " + number(settings.link_overlap) + " on"};
 }
 

@@ -9,7 +9,8 @@ Objective stations(const ObjectiveSettings& settings) {
           .scale = {static_cast<double>(settings.stations_min), static_cast<double>(settings.stations_max)},
           .needs = {.counts = false},
           .value = [](const MeasuredNetwork& m) { return static_cast<double>(m.stations.size()); },
-          .by_alpha = true};
+          .by_alpha = true,
+          .advice = "ask for less to be captured"};
 }
 
 }  // namespace vantage::built_in

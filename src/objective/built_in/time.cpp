@@ -11,7 +11,9 @@ Objective time(const ObjectiveSettings& settings) {
           // An hour per station, if the number is known: no survey exceeds this scale.
           .scale = minimise(0, 60 * static_cast<double>(settings.stations_max)),
           .needs = {.counts = false, .time = true},
-          .value = [](const MeasuredNetwork& m) { return m.minutes_on_site; }};
+          .value = [](const MeasuredNetwork& m) { return m.minutes_on_site; },
+          .kind = Objective::Kind::time,
+          .advice = "use a faster setting of the scanner, or ask for less to be captured"};
 }
 
 }  // namespace vantage::built_in

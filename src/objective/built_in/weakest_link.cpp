@@ -10,9 +10,11 @@ Objective weakest_link(const ObjectiveSettings&) {
           .label = "Weakest link (share of the smaller scan)",
           .scale = maximise(1, 0),
           .needs = {.pairs = true},
-          .value = [](const MeasuredNetwork& m) {
-            return m.stations.size() == 1 ? 1 : connectivity(scan_overlap_matrix(m.counts), 0).weakest_overlap;
-          }};
+          .value =
+              [](const MeasuredNetwork& m) {
+                return m.stations.size() == 1 ? 1 : connectivity(scan_overlap_matrix(m.counts), 0).weakest_overlap;
+              },
+          .advice = "allow more stations, or tie scans together with targets"};
 }
 
 }  // namespace vantage::built_in

@@ -204,7 +204,6 @@ const std::vector<Change<PlanConfig>> kPlan{
     {"scheme", [](PlanConfig& c) { c.scheme = MoCmaEsConfig::Scheme::generational; }},
     {"batch", [](PlanConfig& c) { c.batch = 3; }},
     {"sample_voxels", [](PlanConfig& c) { c.sample_voxels = 100; }},
-    {"sample_from", [](PlanConfig& c) { c.sample_from = 10; }},
     {"renew_iterations", [](PlanConfig& c) { c.renew_iterations = 10; }},
     {"start",
      [](PlanConfig& c) {
@@ -219,7 +218,7 @@ const std::vector<Change<PlanConfig>> kPlan{
     {"checkpoint", [](PlanConfig& c) { c.checkpoint = "elsewhere"; }, false, false},
     {"checkpoint_seconds", [](PlanConfig& c) { c.checkpoint_seconds = 5; }, false, false},
     {"resume", [](PlanConfig& c) { c.resume = true; }, false, false}};
-static_assert(member_count<PlanConfig>() == 18);
+static_assert(member_count<PlanConfig>() == 17);
 
 SearchMesh ground() {
   return {.positions = {{-5, -5, 0}, {5, -5, 0}, {5, 5, 0}, {-5, 5, 0}},

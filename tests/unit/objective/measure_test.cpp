@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/philox.hpp"
+#include "vantage/error.hpp"
 #include "vantage/objective.hpp"
 
 namespace vantage {
@@ -51,6 +52,36 @@ TEST(Coverage, IsEquation8) {
   counts.saturated = 10;
   counts.partial_points = 0;
   EXPECT_EQ(coverage(counts, 2.5), 1.0);
+}
+
+// What a cancelled evaluation counted would look like a measure that is too low.
+TEST(Measures, AreRefusedOfCancelledCounts) {
+  NetworkCounts counts;
+  counts.voxels = counts.weight = 10, counts.saturated = 4, counts.stations = 2;
+  counts.seen = {3, 4}, counts.shared = {2};
+  const NetworkCounts whole = counts;
+  counts.cancelled = true;
+  const auto refused = [](const auto& make) {
+    try {
+      make();
+      return false;
+    } catch (const Error& error) {
+      return error.code() == Errc::invalid_argument && std::string(error.what()).find("cancelled") != std::string::npos;
+    }
+  };
+  EXPECT_TRUE(refused([&] { coverage(counts, 1); }));
+  EXPECT_TRUE(refused([&] { overlap_matrix(counts); }));
+  EXPECT_TRUE(refused([&] { scan_overlap_matrix(counts); }));
+  EXPECT_TRUE(refused([&] { coverage_estimate(counts, 1, 10); }));
+  EXPECT_TRUE(refused([&] { overlap_estimate(counts, 10); }));
+  EXPECT_TRUE(refused([&] { overlap_standard_errors(counts, 10); }));
+  EXPECT_TRUE(refused([&] { registration_error(counts, 10); }));
+  EXPECT_TRUE(refused([&] { registration_estimate(counts, 10); }));
+  const Objective objective = make_objective("coverage");
+  const std::vector<PlacedStation> stations(2);
+  EXPECT_TRUE(refused([&] { estimate(objective, {.counts = counts, .stations = stations}); }));
+  EXPECT_TRUE(refused([&] { estimate(objective, {.counts = whole, .stations = stations, .surroundings = &counts}); }));
+  EXPECT_FALSE(refused([&] { estimate(objective, {.counts = whole, .stations = stations}); }));
 }
 
 TEST(Coverage, IsTheWeightedMean) {

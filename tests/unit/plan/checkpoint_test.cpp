@@ -6,6 +6,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "core/archive.hpp"
 #include "support/temporary_folder.hpp"
 #include "vantage/error.hpp"
 
@@ -16,6 +17,7 @@ Checkpoint sample() {
   Checkpoint c{
       .identity = "scene = 1\nseed = 2\n", .snapshot = {}, .since = {}, .seconds = 12.5, .trace_seconds = 3.25};
   c.snapshot.optimiser = std::string("bits \0 and bytes", 16);
+  c.snapshot.evaluator = std::string("a sample \0", 10);
   c.snapshot.drawn = 100, c.snapshot.redrawn = 7;
   c.snapshot.history = {
       {.iteration = 1, .evaluations = 20, .hypervolume = 0.1, .front = {{0.5, 0.25}, {0.25, 0.5}}, .seconds = 1},
@@ -38,6 +40,7 @@ TEST(Checkpoint, ReadsBackWhatWasWritten) {
   ASSERT_TRUE(back);
   EXPECT_EQ(back->identity, c.identity);
   EXPECT_EQ(back->snapshot.optimiser, c.snapshot.optimiser);
+  EXPECT_EQ(back->snapshot.evaluator, c.snapshot.evaluator);
   EXPECT_EQ(back->snapshot.drawn, 100u);
   EXPECT_EQ(back->snapshot.redrawn, 7u);
   EXPECT_EQ(back->seconds, 12.5);
@@ -71,6 +74,18 @@ TEST(Checkpoint, NoticesEveryFlippedBitAndEveryTruncation) {
     EXPECT_TRUE(refused(flipped)) << bit;
   }
   EXPECT_TRUE(refused(whole + "x"));
+}
+
+TEST(Checkpoint, NamesTheFormatOfAnotherVersion) {
+  const std::string old = sealed({"vantage checkpoint\n", 4}, "whatever");
+  try {
+    parse_checkpoint(old, "c");
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), Errc::malformed_file);
+    EXPECT_STREQ(e.what(),
+                 "checkpoint c has format 4, this is 5; resume with the vantage that wrote it, or start again");
+  }
 }
 
 TEST(Checkpoint, KeepsTheOneBefore) {

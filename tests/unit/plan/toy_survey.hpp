@@ -205,11 +205,12 @@ inline SearchOutcome toy_search(const SurveyProblem& problem, const PlanConfig& 
   const PlacementOracle site = toy_site();
   const DecisionSpace space(site, problem);
   evaluator.measures = measures_of(problem);
+  const auto searched = make_search_evaluator(evaluator, config, evaluator.measures.searched);
   return search({.space = space,
                  .problem = problem,
                  .measures = evaluator.measures,
                  .config = config,
-                 .evaluator = evaluator,
+                 .evaluator = *searched,
                  .batch = batch,
                  .identity = "toy = " + problem.name + "\nseed = " + std::to_string(config.seed.value_or(1)) + "\n",
                  .watch = std::move(watch),

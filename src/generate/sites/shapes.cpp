@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sites/shapes.hpp"
+#include "generate/sites/shapes.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-namespace vantage::test {
+namespace vantage::sites {
 namespace {
 
 std::uint32_t add_point(Part& part, const Vec3& p) {
@@ -245,4 +245,4 @@ void add_car(Site& site, const std::string& name, double x, double y, double z) 
     for (const double across : {0.02, 1.58}) add_cylinder(wheels, {x + along, y + across, z + 0.3}, 1, 0.3, 0.2, 12);
 }
 
-}  // namespace vantage::test
+}  // namespace vantage::sites

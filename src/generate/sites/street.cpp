@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A street of 60 × 30 m between two rows of three houses. The houses have no doors, so their floors and attics are
 // sealed.
-#include "sites/shapes.hpp"
+#include "generate/sites/shapes.hpp"
 
-namespace vantage::test {
+namespace vantage::sites {
 
 Site street() {
   constexpr double kKerb = 0.12, kWallTop = 5.6, kWall = 0.3;
@@ -54,4 +54,4 @@ Site street() {
   return site;
 }
 
-}  // namespace vantage::test
+}  // namespace vantage::sites

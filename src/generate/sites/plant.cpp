@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A small process plant on plain ground, 30 × 20 m: tanks, a pipe rack, pumps, and a platform with a stair.
-#include "sites/shapes.hpp"
+#include "generate/sites/shapes.hpp"
 
-namespace vantage::test {
+namespace vantage::sites {
 
 Site plant() {
   constexpr double kRise = 0.18, kGoing = 0.28, kDeck = 14 * kRise;
@@ -63,4 +63,4 @@ Site plant() {
   return site;
 }
 
-}  // namespace vantage::test
+}  // namespace vantage::sites

@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "sites/site.hpp"
+#include "generate/sites/site.hpp"
 
-namespace vantage::test {
+namespace vantage::sites {
 
 Box block(double x0, double x1, double y0, double y1, double z0, double z1);
 
@@ -38,4 +38,4 @@ constexpr std::array<float, 3> kPlaster{0.75F, 0.73F, 0.68F}, kConcrete{0.45F, 0
     kWood{0.42F, 0.26F, 0.13F}, kTiles{0.35F, 0.10F, 0.06F}, kGrass{0.12F, 0.25F, 0.06F}, kSteel{0.40F, 0.42F, 0.45F},
     kPaint{0.10F, 0.16F, 0.45F};
 
-}  // namespace vantage::test
+}  // namespace vantage::sites

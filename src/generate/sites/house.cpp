@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A house of two storeys, 10 × 8 m, in a garden of 26 × 22 m: a hall with a stair of 17 rises of 0.18 m, two rooms
 // below and three above, and a gabled roof over an inaccessible attic. The front door stands open.
-#include "sites/shapes.hpp"
+#include "generate/sites/shapes.hpp"
 
-namespace vantage::test {
+namespace vantage::sites {
 
 Site house() {
   constexpr double kX = 10, kY = 8, kOuter = 0.3, kInner = 0.12;
@@ -84,4 +84,4 @@ Site house() {
   return site;
 }
 
-}  // namespace vantage::test
+}  // namespace vantage::sites

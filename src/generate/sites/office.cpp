@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // One floor of an office, 24 × 15 m: a corridor with four rooms on either side, ceiling, plenum and a flat roof with a
 // parapet. The entrance is at the eastern end of the corridor.
-#include "sites/shapes.hpp"
+#include "generate/sites/shapes.hpp"
 
-namespace vantage::test {
+namespace vantage::sites {
 
 Site office() {
   constexpr double kX = 24, kY = 15, kClear = 2.8, kTop = 3.5, kOuter = 0.3, kInner = 0.12;
@@ -71,4 +71,4 @@ Site office() {
   return site;
 }
 
-}  // namespace vantage::test
+}  // namespace vantage::sites

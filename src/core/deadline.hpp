@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// A stop token that follows another one and the clock.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <stop_token>
+#include <thread>
+
+namespace vantage {
+
+class Deadline {
+ public:
+  // Stops so many seconds from now, or where `stop` does. 0: only where `stop` does.
+  Deadline(double seconds, std::stop_token stop);
+  Deadline(const Deadline&) = delete;
+  Deadline& operator=(const Deadline&) = delete;
+
+  std::stop_token stop() const { return stop_.get_token(); }
+  // Whether the clock stopped it first.
+  bool passed() const { return passed_; }
+  // Infinite without a limit.
+  double seconds_left() const;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void wait(const std::stop_token& ended);
+
+  Clock::time_point end_;  // max(): none
+  std::atomic<bool> passed_ = false;
+  std::stop_source stop_;
+  std::stop_callback<std::function<void()>> follow_;
+  std::mutex mutex_;
+  std::condition_variable_any never_;
+  std::jthread clock_;
+};
+
+}  // namespace vantage

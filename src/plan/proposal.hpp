@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// A batch of networks that an optimiser proposes, with their stations where they may stand.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "plan/decision_space.hpp"
+#include "plan/network_evaluator.hpp"
+#include "vantage/optimiser.hpp"
+
+namespace vantage {
+
+struct Proposal {
+  std::vector<double> xs;                // decision vectors, row-major
+  std::vector<PlacedNetwork> networks;   // of each
+  std::uint64_t drawn = 0, redrawn = 0;  // stations
+};
+
+// Asks for a batch and draws stations in holes and clashes again, `redraws` times at most. `first` takes the place of
+// the first vector; empty: as asked.
+Proposal propose(Optimiser& optimiser, const DecisionSpace& space, std::size_t redraws,
+                 std::span<const double> first = {});
+
+}  // namespace vantage

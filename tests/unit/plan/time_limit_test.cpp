@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// `PlanConfig::max_seconds` limits the whole call of plan().
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stop_token>
+
+#include "support/quad_scene.hpp"
+#include "vantage/planner.hpp"
+
+namespace vantage {
+namespace {
+
+class TimeLimit : public testing::Test {
+ protected:
+  static SearchArea ground() {
+    return SearchArea::from_mesh({.positions = {{0, -2, -1.5}, {3, -2, -1.5}, {3, 2, -1.5}, {0, 2, -1.5}},
+                                  .uvs = {{0, 0}, {1, 0}, {1, 1}, {0, 1}},
+                                  .triangles = {{0, 1, 2}, {0, 2, 3}}});
+  }
+  PlanResult plan(const SurveyProblem& problem, const PlanConfig& config, const PlanWatch& watch = {}) {
+    return vantage::plan(simulator_, area_, clash_, problem, config, watch);
+  }
+
+  Scene scene_ = test::wall_and_floor().scene();
+  Simulator simulator_{
+      scene_, test::coarse_scanner(), {.engine = Engine::embree, .user_size_m = 0.5, .point_spacing_m = 0.2}};
+  SearchArea area_ = ground();
+  ClashChecker clash_{scene_, {.radius_m = 0}};
+};
+
+TEST_F(TimeLimit, EndsTheLookAndClaimsNothing) {
+  const PlanResult result = plan(fewest_stations(0.9, 0, 1, 8, 0), {.sample_voxels = 200, .max_seconds = 1e-6});
+  EXPECT_EQ(result.stop_reason, StopReason::max_time);
+  ASSERT_TRUE(result.candidates);
+  EXPECT_EQ(result.candidates->ended(), "cancelled");
+  EXPECT_FALSE(met(result));
+  for (const PlanEntry& entry : result.front) {
+    EXPECT_FALSE(entry.confirmed);
+    EXPECT_TRUE(std::isnan(entry.values.at("coverage").exact));
+  }
+}
+
+TEST_F(TimeLimit, EndsTheSearchAndConfirmsWhatItFound) {
+  double longest = 0;
+  const PlanResult result = plan(
+      coverage_overlap_fix(3), {.population = 10, .iterations = 100'000'000, .sample_voxels = 200, .max_seconds = 2},
+      {.report = [&](const PlanProgress& now) { longest = std::max(longest, now.seconds_left); }});
+  EXPECT_EQ(result.stop_reason, StopReason::max_time);
+  EXPECT_GT(result.evaluations, 0u);
+  EXPECT_LE(longest, 2);
+  ASSERT_FALSE(result.front.empty());
+  for (const PlanEntry& entry : result.front) EXPECT_TRUE(entry.confirmed) << "there was a fifth of the time for it";
+}
+
+TEST_F(TimeLimit, IsNotBlamedForAStopByTheCaller) {
+  std::stop_source stop;
+  const PlanResult result =
+      plan(coverage_fix(3), {.iterations = 100'000'000, .sample_voxels = 200, .max_seconds = 1000},
+           {.report =
+                [&](const PlanProgress& now) {
+                  if (now.evaluations > 20) stop.request_stop();
+                },
+            .stop = stop.get_token()});
+  EXPECT_EQ(result.stop_reason, StopReason::cancelled);
+}
+
+// Where not all could be looked at, less can be seen than there is, and shares of it come out too high.
+TEST_F(TimeLimit, ALookCutShortLeavesCaptureUnknown) {
+  PlanResult result = plan(fewest_stations(0.5, 0, 1, 8, 0), {.iterations = 2, .sample_voxels = 200});
+  ASSERT_TRUE(met(result));
+  std::stop_source stop;
+  stop.request_stop();
+  result.candidates = std::make_shared<const Candidates>(
+      find_candidates(simulator_, area_, clash_, {}, {.report = {}, .stop = stop.get_token()}));
+  EXPECT_FALSE(met(result));
+  ASSERT_EQ(what_would_help(result).size(), 1u);
+  EXPECT_NE(what_would_help(result)[0].find("cut short"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace vantage
