@@ -12,7 +12,7 @@ namespace vantage::ranks {
 using Message = std::string;
 using Writer = ArchiveWriter;
 
-// Borrows the message. Throws Error device_failure where it is too short.
+// Borrows the message. Throws Error device_failure if it is too short.
 class Reader : public ArchiveReader {
  public:
   explicit Reader(std::string_view message)
