@@ -13,10 +13,10 @@ find_package(spdlog REQUIRED)
 find_package(Vulkan REQUIRED) # headers only: the loader is opened at run time, so that a machine without one still has Embree
 find_path(VANTAGE_VOLK_INCLUDE_DIR volk.h PATH_SUFFIXES Volk volk REQUIRED)
 find_path(VANTAGE_TINYGLTF_INCLUDE_DIR tiny_gltf.h REQUIRED)
-find_path(VANTAGE_STB_INCLUDE_DIR stb_image.h PATH_SUFFIXES stb REQUIRED)
 find_program(VANTAGE_GLSLANG NAMES glslangValidator glslang REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(cairo REQUIRED IMPORTED_TARGET cairo)
+pkg_check_modules(png REQUIRED IMPORTED_TARGET libpng)
 pkg_check_modules(turbojpeg REQUIRED IMPORTED_TARGET libturbojpeg)
 pkg_check_modules(cbc REQUIRED IMPORTED_TARGET cbc clp) # linear programs, and their integer solutions
 pkg_check_modules(proj REQUIRED IMPORTED_TARGET "proj>=7")

@@ -5,6 +5,12 @@
 
 namespace vantage::python {
 
+Doubles doubles_of(const py::object& given, const std::string& what) {
+  auto array = Doubles::ensure(given);
+  if (!array) throw py::type_error(what + ": " + std::string(py::repr(given)) + " is no array of numbers");
+  return array;
+}
+
 std::vector<std::array<std::uint32_t, 3>> triangles_of(const py::array& array) {
   const auto wrong = [](const std::string& text) { throw Error(Errc::invalid_argument, "triangles: " + text); };
   const char kind = array.dtype().kind();
@@ -12,7 +18,7 @@ std::vector<std::array<std::uint32_t, 3>> triangles_of(const py::array& array) {
   if (array.ndim() != 2 || array.shape(1) != 3)
     wrong("an array of shape (m, 3) is wanted, and this one's is " + shape_text(array));
   const auto indices = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>::ensure(array);
-  if (!indices) throw py::error_already_set();
+  if (!indices) wrong("they do not fit 64 bits");
   std::vector<std::array<std::uint32_t, 3>> triangles(static_cast<std::size_t>(array.shape(0)));
   const std::int64_t* next = indices.data();
   for (auto& triangle : triangles) {
@@ -54,8 +60,7 @@ std::vector<PlacedStation> stations_of(const py::object& stations) {
       return placed;
     }
   }
-  const auto heads = Doubles::ensure(stations);
-  if (!heads) throw py::error_already_set();
+  const Doubles heads = doubles_of(stations, "stations");
   for (const Vec3& head : rows_of<Vec3>(heads, "stations")) placed.push_back({.position = head, .ground = head});
   return placed;
 }

@@ -46,6 +46,9 @@ inline py::array_t<double> adopt(std::vector<Vec3>&& points) {
 /// Numbers as a caller gives them; converted where they are of another type or laid out otherwise.
 using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
+/// Throws TypeError for what is no array of numbers; `what` opens the message.
+Doubles doubles_of(const py::object& given, const std::string& what);
+
 inline std::string shape_text(const py::array& array) { return py::str(array.attr("shape")); }
 
 /// Rows of two or three numbers. Throws Error invalid_argument for another shape.

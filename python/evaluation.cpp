@@ -3,6 +3,7 @@
 
 #include "module.hpp"
 #include "options.hpp"
+#include "pickle.hpp"
 
 namespace vantage::python {
 namespace {
@@ -81,9 +82,10 @@ void add_registration(py::module_& m) {
       }))
       .def("__repr__", [options](const RegistrationOptions& o) { return options.repr(o); });
   options.attributes(type);
+  options.pickles(type);
 
-  py::class_<RegistrationError>(m, "RegistrationError", "Predicted error of a registered network, metres.")
-      .def_readonly("rms_m", &RegistrationError::rms_m, "Root mean square displacement over the covered surface.")
+  py::class_<RegistrationError> error(m, "RegistrationError", "Predicted error of a registered network, metres.");
+  error.def_readonly("rms_m", &RegistrationError::rms_m, "Root mean square displacement over the covered surface.")
       .def_readonly("worst_m", &RegistrationError::worst_m, "The same of the worst station.")
       .def_readonly("worst_station", &RegistrationError::worst_station, "Which that is, from 0.")
       .def_property_readonly(
@@ -104,16 +106,19 @@ void add_registration(py::module_& m) {
             return adopt<double>(std::move(covariances), {n, 3, 3});
           },
           "Covariances of the heads in the survey frame, square metres: (n, 3, 3).");
+  add_pickle(error);
 }
 
 void add_connectivity(py::module_& m) {
-  py::class_<Connectivity>(m, "Connectivity", "Which stations hang together, and by what. Stations count from 0.")
-      .def_readonly("parts", &Connectivity::parts, "How many connected parts.")
+  py::class_<Connectivity> connectivity(m, "Connectivity",
+                                        "Which stations hang together, and by what. Stations count from 0.");
+  connectivity.def_readonly("parts", &Connectivity::parts, "How many connected parts.")
       .def_readonly("part", &Connectivity::part, "Per station the part that it is in.")
       .def_readonly("bridges", &Connectivity::bridges, "Links without which a part falls in two.")
       .def_readonly("weakest_link", &Connectivity::weakest_link,
                     "Of one part: the weakest link of the strongest spanning tree.")
       .def_readonly("weakest_overlap", &Connectivity::weakest_overlap, "Its overlap.");
+  add_pickle(connectivity);
 }
 
 }  // namespace
@@ -121,11 +126,11 @@ void add_connectivity(py::module_& m) {
 void add_evaluations(py::module_& m) {
   add_registration(m);
   add_connectivity(m);
-  py::class_<Evaluation>(
+  py::class_<Evaluation> type(
       m, "Evaluation",
       "What a network of n stations leaves in the surveyed voxels: of every ray, or of a sample of the voxels, where\n"
-      "`coverage_se` and the like are standard errors. Measures that were not asked for raise Error.")
-      .def_property_readonly(
+      "`coverage_se` and the like are standard errors. Measures that were not asked for raise Error.");
+  type.def_property_readonly(
           "coverage", [](const Evaluation& e) { return value_of(e, "coverage"); },
           "Equation 8 of the paper, in [0, 1].")
       .def_property_readonly(
@@ -228,6 +233,7 @@ void add_evaluations(py::module_& m) {
       .def_property_readonly(
           "cancelled", [](const Evaluation& e) { return e.counts.cancelled; },
           "Stopped before its end: it counts too little, and its measures raise `vantage.Error`.")
+      .def_readonly("visit", &Evaluation::visit, "The round on site without existing stations; None unless known.")
       .def_property_readonly(
           "summary", [](const Evaluation& e) { return summary_text(e); }, "What it comes to, in plain words.")
       .def("to_dict", &values_of, "Plain values by the names that `vantage evaluate --json` gives them.")
@@ -236,6 +242,7 @@ void add_evaluations(py::module_& m) {
         return "<vantage.Evaluation of " + std::to_string(e.counts.stations) + " stations: coverage " +
                (e.counts.cancelled ? "cancelled" : std::string(py::str(py::float_(value_of(e, "coverage"))))) + ">";
       });
+  add_pickle(type);
 }
 
 }  // namespace vantage::python

@@ -43,8 +43,10 @@ PYBIND11_MODULE(_core, m) {
   add_scenes(m);
   add_scanners(m);
   add_placement(m);
+  add_on_site(m);
   add_evaluations(m);
   add_simulators(m);
+  add_missed(m);
   add_sites(m);
   add_candidates(m);
   add_problems(m);

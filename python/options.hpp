@@ -87,6 +87,22 @@ class Options {
                         member.doc.c_str());
   }
 
+  /// The members' values by their names.
+  py::dict values(const Struct& s) const {
+    py::dict values;
+    for (const Member& member : members_) values[py::str(member.name)] = member.get(s);
+    return values;
+  }
+
+  /// Lets values be pickled, by the names of their members.
+  template <class... Extra>
+  void pickles(py::class_<Struct, Extra...>& type) const {
+    type.def(py::pickle([options = *this](const Struct& s) { return options.values(s); },
+                        [options = *this](const py::dict& values) {
+                          return options.read(py::reinterpret_borrow<py::kwargs>(values));
+                        }));
+  }
+
   std::string repr(const Struct& s) const {
     std::string text;
     for (const Member& member : members_)

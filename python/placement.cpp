@@ -4,17 +4,12 @@
 #include "arrays.hpp"
 #include "module.hpp"
 #include "options.hpp"
+#include "pickle.hpp"
 
 namespace vantage::python {
 namespace {
 
 constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
-
-Doubles doubles_of(const py::object& given) {
-  auto array = Doubles::ensure(given);
-  if (!array) throw py::error_already_set();
-  return array;
-}
 
 // A function of each row.
 template <class Result, class Row, class Of>
@@ -81,7 +76,9 @@ void add_setups(py::module_& m) {
       .def("__repr__", [options](const StationSetup& self) { return options.repr(self); });
   setup.attr("__hash__") = py::none();
   options.attributes(setup);
-  py::class_<Station>(m, "Station", "A scanner's head, and how it is set up there.")
+  options.pickles(setup);
+  py::class_<Station> station(m, "Station", "A scanner's head, and how it is set up there.");
+  station
       .def(
           py::init([](const Vec3& position, const StationSetup& how, bool on) {
             return Station{.position = position, .active = on, .setup = how};
@@ -97,11 +94,12 @@ void add_setups(py::module_& m) {
                (s.setup == StationSetup() ? "" : ", " + std::string(py::repr(py::cast(s.setup)))) +
                (s.active ? "" : ", not active") + ">";
       });
+  add_pickle(station);
 }
 
 void add_stations(py::module_& m) {
-  py::class_<PlacedStation>(m, "PlacedStation", "A station, and what became of it.")
-      .def_readonly("uv", &PlacedStation::uv, "On the search area.")
+  py::class_<PlacedStation> placed(m, "PlacedStation", "A station, and what became of it.");
+  placed.def_readonly("uv", &PlacedStation::uv, "On the search area.")
       .def_readonly("position", &PlacedStation::position, "The scanner's head (x, y, z), survey frame, metres.")
       .def_readonly("ground", &PlacedStation::ground, "Where the tripod stands, survey frame, metres.")
       .def_property_readonly(
@@ -114,6 +112,7 @@ void add_stations(py::module_& m) {
         return "<vantage.PlacedStation at " + std::string(py::repr(py::cast(s.position))) + ", " + to_string(s.status) +
                ">";
       });
+  add_pickle(placed);
   m.def(
       "heads", [](const std::vector<PlacedStation>& stations) { return heads_of(stations); }, py::arg("stations"),
       "Heads of stations, survey frame: (n, 3), metres.");
@@ -159,7 +158,7 @@ void add_search_area(py::module_& m) {
       .def(
           "locate",
           [](const SearchArea& area, const py::object& uvs) {
-            const Doubles rows = doubles_of(uvs);
+            const Doubles rows = doubles_of(uvs, "uvs");
             std::vector<Vec3> found;
             for (const Uv& uv : rows_of<Uv>(rows, "uvs"))
               found.push_back(area.locate(uv).value_or(Vec3{kNowhere, kNowhere, kNowhere}));
@@ -169,7 +168,7 @@ void add_search_area(py::module_& m) {
       .def(
           "project",
           [](const SearchArea& area, const py::object& grounds) {
-            const Doubles rows = doubles_of(grounds);
+            const Doubles rows = doubles_of(grounds, "grounds");
             std::vector<Uv> found;
             for (const Vec3& ground : rows_of<Vec3>(rows, "grounds"))
               found.push_back(area.project(ground).value_or(Uv{kNowhere, kNowhere}));
@@ -201,7 +200,7 @@ void add_clash(py::module_& m) {
       .def(
           "clashes",
           [](const ClashChecker& clash, const py::object& grounds, std::optional<double> height_m) {
-            return for_each_row<bool, Vec3>(doubles_of(grounds), "grounds", [&](const Vec3& ground) {
+            return for_each_row<bool, Vec3>(doubles_of(grounds, "grounds"), "grounds", [&](const Vec3& ground) {
               return height_m ? clash.clashes(ground, *height_m) : clash.clashes(ground);
             });
           },
@@ -213,7 +212,7 @@ void add_clash(py::module_& m) {
       .def(
           "distance",
           [](const ClashChecker& clash, const py::object& points, double limit_m) {
-            return for_each_row<double, Vec3>(doubles_of(points), "points",
+            return for_each_row<double, Vec3>(doubles_of(points, "points"), "points",
                                               [&](const Vec3& point) { return clash.distance(point, limit_m); });
           },
           py::arg("points"), py::arg("limit_m"),

@@ -4,6 +4,7 @@
 #include "evaluation.hpp"
 #include "module.hpp"
 #include "options.hpp"
+#include "pickle.hpp"
 #include "settings.hpp"
 #include "simulator.hpp"
 #include "site.hpp"
@@ -144,8 +145,8 @@ void add_entries(py::module_& m) {
       .def_readonly("standard_error", &MeasuredValue::standard_error, "Of `searched`; 0 when exact.")
       .def_readonly("exact", &MeasuredValue::exact, "By every ray; NaN unless confirmed.")
       .def_property_readonly("best_known", &MeasuredValue::best_known, "The exact value where there is one.");
-  py::class_<Entry>(m, "PlanEntry", "One network of a front.")
-      .def_property_readonly(
+  py::class_<Entry> type(m, "PlanEntry", "One network of a front.");
+  type.def_property_readonly(
           "x",
           [](const Entry& e) {
             return py::array_t<double>(static_cast<py::ssize_t>(e.get().x.size()), e.get().x.data());
@@ -189,12 +190,15 @@ void add_entries(py::module_& m) {
       .def_property_readonly(
           "registration", [](const Entry& e) { return e.get().registration; },
           "Predicted error by every ray; None unless confirmed and a measure needs it.")
+      .def_property_readonly(
+          "visit", [](const Entry& e) { return e.get().visit; }, "The round on site; None unless it was worked out.")
       .def("__repr__", [](const Entry& e) {
         std::string text;
         for (const auto& [name, value] : e.get().values)
           text += ", " + name + " " + std::string(py::str(py::float_(value.value)));
         return "<vantage.PlanEntry of " + std::to_string(e.get().stations.size()) + " stations" + text + ">";
       });
+  refuse_pickle(type, "a PlanEntry refers to its PlanResult and is not pickled; take its stations and values");
 }
 
 py::list history_of(const Plan& plan) {
@@ -231,8 +235,8 @@ void write_plan_report(const Plan& plan, const std::filesystem::path& file, cons
 }
 
 void add_results(py::module_& m) {
-  py::class_<Plan, std::shared_ptr<Plan>>(m, "PlanResult", "What a search found.")
-      .def_property_readonly(
+  py::class_<Plan, std::shared_ptr<Plan>> type(m, "PlanResult", "What a search found.");
+  type.def_property_readonly(
           "front",
           [](const std::shared_ptr<Plan>& plan) {
             std::vector<Entry> entries;
@@ -304,6 +308,7 @@ void add_results(py::module_& m) {
         return "<vantage.PlanResult of " + std::to_string(plan.result.front.size()) + " networks, " +
                std::to_string(plan.result.evaluations) + " evaluations, " + to_string(plan.result.stop_reason) + ">";
       });
+  refuse_pickle(type, "a PlanResult refers to its simulator, which owns a device, and is not pickled; take to_dict()");
 }
 
 }  // namespace

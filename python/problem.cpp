@@ -2,6 +2,7 @@
 #include "evaluation.hpp"
 #include "module.hpp"
 #include "options.hpp"
+#include "pickle.hpp"
 
 namespace vantage::python {
 namespace {
@@ -100,14 +101,16 @@ void add_objectives(py::module_& m) {
       .def_readonly("minutes_on_site", &Measured::minutes_on_site, "Without kept stations; 0 unless needed.")
       .def_readonly("surroundings", &Measured::surroundings,
                     "Counts on all surfaces, surveyed or not; None unless needed.");
-  py::class_<Scale>(m, "Scale", "The range of values that matter of an objective; made by `minimise` or `maximise`.")
-      .def_readonly("best", &Scale::best, "Scaled to 0.")
+  py::class_<Scale> scale(m, "Scale",
+                          "The range of values that matter of an objective; made by `minimise` or `maximise`.");
+  scale.def_readonly("best", &Scale::best, "Scaled to 0.")
       .def_readonly("worst", &Scale::worst, "Scaled to 1: the reference point of the hypervolume.")
       .def("__repr__", [](const Scale& scale) {
         return std::string(scale.best > scale.worst ? "vantage.maximise(" : "vantage.minimise(") +
                py::str(py::float_(scale.best)).cast<std::string>() + ", " +
                py::str(py::float_(scale.worst)).cast<std::string>() + ")";
       });
+  add_pickle(scale);
   m.def("minimise", &minimise, py::arg("best"), py::arg("worst"),
         "Less is better: the Scale of an objective, in its unit. Raises Error unless best <= worst, both finite.");
   m.def("maximise", &maximise, py::arg("best"), py::arg("worst"),
@@ -192,6 +195,7 @@ Options<SurveyProblem> problem_options() {
       .add("heights_m", &SurveyProblem::heights_m, "Lowest and highest head above ground; None: the scanner's.")
       .add("link_overlap", &SurveyProblem::link_overlap, "Pairs of less overlap count as not linked.")
       .add("registration", &SurveyProblem::registration, "What scans register from.")
+      .add("on_site", &SurveyProblem::on_site, "OnSiteOptions: what a round takes.")
       .add("fewest", &SurveyProblem::fewest, "First the fewest stations that keep the requirements, then the best.")
       .add("visible", &SurveyProblem::visible, "The coverage that `capture` is a share of; None: found.")
       .add<py::iterable>(
@@ -202,6 +206,43 @@ Options<SurveyProblem> problem_options() {
           "requirements", [](const SurveyProblem& p) { return py::tuple(py::cast(p.requirements)); },
           [](SurveyProblem& p, const py::iterable& given) { p.requirements = requirements_from(given, p); },
           "What a network has to keep: Requirements, or texts like 'coverage >= 0.9'.");
+}
+
+// A built-in objective by its name. Throws TypeError for any other.
+std::string name_to_pickle(const Objective& objective, const SurveyProblem& problem) {
+  const auto names = objective_names();
+  if (std::ranges::find(names, objective.name) != names.end()) {
+    const Objective same = make_objective(objective.name, problem.settings());
+    if (same.parameters == objective.parameters && same.label == objective.label &&
+        same.scale.best == objective.scale.best && same.scale.worst == objective.scale.worst)
+      return objective.name;
+  }
+  throw py::type_error("SurveyProblem: the objective '" + objective.name +
+                       "' is one of your own, or was made with other settings, and is not pickled");
+}
+
+// Members by their names, but objectives and requirements by what makes them.
+py::tuple problem_state(const Options<SurveyProblem>& options, const SurveyProblem& problem) {
+  py::dict members = options.values(problem);
+  members.attr("pop")("objectives"), members.attr("pop")("requirements");
+  py::list objectives, requirements;
+  for (const Objective& objective : problem.objectives) objectives.append(name_to_pickle(objective, problem));
+  for (const Requirement& r : problem.requirements)
+    requirements.append(
+        py::make_tuple(name_to_pickle(r.objective, problem), r.bound == Requirement::Bound::at_least, r.limit));
+  return py::make_tuple(members, objectives, requirements);
+}
+
+SurveyProblem problem_from(const Options<SurveyProblem>& options, const py::tuple& state) {
+  SurveyProblem problem = options.read(py::reinterpret_borrow<py::kwargs>(state[0].cast<py::dict>()));
+  for (const auto& name : state[1])
+    problem.objectives.push_back(make_objective(name.cast<std::string>(), problem.settings()));
+  for (const auto& each : state[2]) {
+    const auto [name, at_least, limit] = each.cast<std::tuple<std::string, bool, double>>();
+    problem.requirements.push_back({make_objective(name, problem.settings()),
+                                    at_least ? Requirement::Bound::at_least : Requirement::Bound::at_most, limit});
+  }
+  return problem;
 }
 
 }  // namespace
@@ -223,6 +264,8 @@ void add_problems(py::module_& m) {
           "Its members by their names.")
       .def("__repr__", [options](const SurveyProblem& problem) { return options.repr(problem); });
   options.attributes(type);
+  type.def(py::pickle([options](const SurveyProblem& problem) { return problem_state(options, problem); },
+                      [options](const py::tuple& state) { return problem_from(options, state); }));
   const auto stations = py::arg("stations");
   const auto low = py::arg("stations_min"), high = py::arg("stations_max");
   m.def("coverage_fix", &coverage_fix, stations, "Table 2 of the paper: coverage of so many stations.");

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "arrays.hpp"
+#include "pickle.hpp"
 
 namespace vantage::python {
 namespace {
@@ -17,8 +18,7 @@ constexpr std::array<std::pair<const char*, ScanOutput>, 7> kOutputs{{{"position
                                                                       {"colour", scan_colour},
                                                                       {"voxel", scan_voxel}}};
 
-std::uint32_t bits_of(const std::vector<std::string>& names) {
-  std::uint32_t bits = scan_range;  // tells which rays hit
+std::uint32_t bits_of(const std::vector<std::string>& names, std::uint32_t bits) {
   for (const std::string& name : names) {
     const auto found = std::ranges::find(kOutputs, name, [](const auto& output) { return std::string(output.first); });
     if (found == kOutputs.end())
@@ -78,12 +78,37 @@ py::array_t<std::uint32_t> ray_part(const Scan& scan, const auto& part) {
                                               : flat;
 }
 
+std::uint64_t write_point_cloud(const std::filesystem::path& file, GuardedSimulator& self, const py::object& stations,
+                                const std::vector<std::string>& outputs, const std::string& crs, py::object progress) {
+  const std::vector<PlacedStation> placed = stations_of(stations);
+  const std::vector<std::string> names = station_names(placed);
+  const std::uint32_t bits = bits_of(outputs, scan_position);
+  LongCall call(std::move(progress));
+  return call.run([&]() -> std::uint64_t {
+    Simulator& simulator = self.simulator;
+    PointCloudWriter writer(file, simulator.origin(), bits, crs.empty() ? crs : coordinate_system(crs));
+    for (std::size_t k = 0; k < placed.size(); ++k) {
+      const StationSetup& setup = placed[k].setup;
+      if (setup.scanner < simulator.scanners().size() && active(placed[k]))
+        writer.begin_station({names[k], placed[k].position, simulator.scanners()[setup.scanner], setup});
+      const auto all = static_cast<double>(placed.size());
+      const ScanSummary scanned = simulator.scan(
+          {placed[k].position, active(placed[k]), setup}, {.outputs = bits, .place = static_cast<std::uint32_t>(k)},
+          [&](const ScanChunk& chunk) { writer.write(chunk, static_cast<std::uint16_t>(k + 1)); },
+          call.progress(static_cast<double>(k) / all, static_cast<double>(k + 1) / all));
+      if (scanned.cancelled) return 0;
+    }
+    writer.close();
+    return writer.points();
+  });
+}
+
 }  // namespace
 
 Scan scan(GuardedSimulator& self, const Vec3& position, const std::vector<std::string>& outputs,
           const StationSetup& setup, bool grid, std::uint32_t place, py::object progress) {
   const Simulator& simulator = self.simulator;
-  const std::uint32_t bits = bits_of(outputs);
+  const std::uint32_t bits = bits_of(outputs, scan_range);
   LongCall call(std::move(progress));
   Scan made = call.run([&] {
     Scan points{self.simulator.scan_points({.position = position, .setup = setup}, {.outputs = bits, .place = place},
@@ -98,11 +123,11 @@ Scan scan(GuardedSimulator& self, const Vec3& position, const std::vector<std::s
 }
 
 void add_scans(py::module_& m) {
-  py::class_<Scan>(
+  py::class_<Scan> type(
       m, "Scan",
       "What a scanner recorded from one station: n points, or with grid=True an element a ray, where arrays\n"
-      "have (rows, columns) in the place of (n,). Arrays are read-only and are no copies.")
-      .def_property_readonly(
+      "have (rows, columns) in the place of (n,). Arrays are read-only and are no copies.");
+  type.def_property_readonly(
           "row", [](const Scan& scan) { return ray_part(scan, [&](std::uint64_t ray) { return ray / scan.columns; }); },
           "Zenith step of each point: (n,).")
       .def_property_readonly(
@@ -160,6 +185,17 @@ void add_scans(py::module_& m) {
         return "<vantage.Scan of " + std::to_string(scan.summary.points) + " points from " +
                std::to_string(scan.summary.rays) + " rays>";
       });
+  add_pickle(type);
+}
+
+void add_clouds(py::module_& m) {
+  m.def("write_point_cloud", &write_point_cloud, py::arg("file"), py::arg("simulator"), py::arg("stations"),
+        py::kw_only(), py::arg("outputs") = std::vector<std::string>{"reflectivity"}, py::arg("crs") = "",
+        py::arg("progress") = py::none(),
+        "Scans stations and streams their points to a .ply, .las or .e57 file by its extension; returns how many.\n"
+        "E57 keeps stations apart, with their poses. stations: as `evaluate`. outputs: besides positions, as `scan`;\n"
+        "LAS has 'reflectivity' and 'colour'. crs: of the survey frame, as 'EPSG:25832'; '': none is said. A stopped\n"
+        "call writes nothing and returns 0. Raises Error: io, invalid_argument.");
 }
 
 }  // namespace vantage::python

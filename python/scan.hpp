@@ -12,6 +12,8 @@ struct Scan;
 
 /// The type `Scan`.
 void add_scans(py::module_& m);
+/// Points of simulators in files.
+void add_clouds(py::module_& m);
 
 Scan scan(GuardedSimulator& self, const Vec3& position, const std::vector<std::string>& outputs,
           const StationSetup& setup, bool grid, std::uint32_t place, py::object progress);

@@ -23,8 +23,7 @@ py::object noise_of(const NoiseTable& noise) {
 NoiseTable noise_from(const py::object& given) {
   if (given.is_none()) return {};
   const auto part = [&](const char* key) {
-    const auto numbers = Doubles::ensure(given[key]);
-    if (!numbers) throw py::error_already_set();
+    const Doubles numbers = doubles_of(given[key], std::string("noise: ") + key);
     return std::vector<double>(numbers.data(), numbers.data() + numbers.size());
   };
   return {.distances_m = part("distances_m"), .reflectivities = part("reflectivities"), .sigma_m = part("sigma_m")};
@@ -82,6 +81,7 @@ void add_scanners(py::module_& m) {
           "to_dict", [](const Scanner& scanner) { return to_dict(settings(scanner)); }, "Its members by their names.")
       .def("__repr__", [options](const Scanner& scanner) { return options.repr(scanner); });
   options.attributes(type);
+  options.pickles(type);
   m.def(
       "scanners",
       [](const std::filesystem::path& more) {

@@ -4,6 +4,7 @@
 #include "arrays.hpp"
 #include "module.hpp"
 #include "options.hpp"
+#include "pickle.hpp"
 
 namespace vantage::python {
 namespace {
@@ -25,6 +26,7 @@ Options<SceneOptions> scene_options() {
       .add("default_diffuse", &SceneOptions::default_diffuse, "Diffuse reflection R where the file gives none.")
       .add("unit", &SceneOptions::unit, "'m', 'cm', 'mm', 'in' or 'ft'; None: recognised.")
       .add("up", &SceneOptions::up, "'y' or 'z'; None: recognised.")
+      .add("max_memory_bytes", &SceneOptions::max_memory_bytes, "Refuse what may take more; 0: half of what is free.")
       .add("allow_outside", &SceneOptions::allow_outside, "Let the file name others outside of its own folder.");
 }
 
@@ -60,8 +62,8 @@ SceneMesh mesh_of(const Options<SceneMesh>& options, const Doubles& positions, c
 }
 
 void add_mesh_info(py::module_& m) {
-  py::class_<MeshInfo>(m, "MeshInfo", "One mesh of a scene.")
-      .def_readonly("name", &MeshInfo::name, "The node's name, or the mesh's where the node has none.")
+  py::class_<MeshInfo> type(m, "MeshInfo", "One mesh of a scene.");
+  type.def_readonly("name", &MeshInfo::name, "The node's name, or the mesh's where the node has none.")
       .def_property_readonly(
           "role", [](const MeshInfo& mesh) { return mesh.role; }, "'surveyed' or 'blocking'.")
       .def_readonly("diffuse", &MeshInfo::diffuse, "Diffuse reflection coefficient R, in [0, 1].")
@@ -75,6 +77,7 @@ void add_mesh_info(py::module_& m) {
         return "<vantage.MeshInfo '" + mesh.name + "', " + name_of(mesh.role) + ", " +
                std::to_string(mesh.triangle_count) + " triangles>";
       });
+  add_pickle(type);
 }
 
 void add_scene(py::module_& m) {

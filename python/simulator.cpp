@@ -6,15 +6,31 @@
 #include "evaluation.hpp"
 #include "module.hpp"
 #include "options.hpp"
+#include "pickle.hpp"
 #include "scan.hpp"
 
 namespace vantage::python {
 namespace {
 
+using Devices = std::vector<std::pair<Engine, std::uint32_t>>;
+
 Options<SimulatorConfig> simulator_options() {
   return Options<SimulatorConfig>("Simulator")
       .add("engine", &SimulatorConfig::engine, "'auto', 'ray_query', 'compute_bvh' or 'embree'.")
       .add("device_index", &SimulatorConfig::device_index, "Which device; None: the best that has the engine.")
+      .add<Devices>(
+          "devices",
+          [](const SimulatorConfig& c) {
+            Devices pairs;
+            for (const DeviceChoice& choice : c.devices) pairs.emplace_back(choice.engine, choice.device_index);
+            return pairs;
+          },
+          [](SimulatorConfig& c, const Devices& pairs) {
+            for (const auto& [engine, index] : pairs) c.devices.push_back({engine, index});
+          },
+          "Pairs (engine, device_index) that share the work, in place of those two, as `all_devices` lists them.")
+      .add("max_memory_bytes", &SimulatorConfig::max_memory_bytes,
+           "Refuse what may take more, before it is built; 0: half of what is free.")
       .add("user_size_m", &SimulatorConfig::user_size_m, "Upper bound of the voxel size (equation 2), metres.")
       .add("point_spacing_m", &SimulatorConfig::point_spacing_m,
            "Wanted spacing n of points, metres; goal density = voxel_size^2 / n^2.")
@@ -99,6 +115,15 @@ void add_engines(py::module_& m) {
       });
   m.def("list_engines", &list_engines, py::call_guard<py::gil_scoped_release>(),
         "All engines on all devices of this machine, usable or not.");
+  m.def(
+      "all_devices",
+      [](Engine engine) {
+        Devices pairs;
+        for (const DeviceChoice& choice : all_devices(engine)) pairs.emplace_back(choice.engine, choice.device_index);
+        return pairs;
+      },
+      py::arg("engine") = Engine::automatic, py::call_guard<py::gil_scoped_release>(),
+      "Pairs (engine, device_index) of all devices that have the engine, for `Simulator(devices=...)`.");
 }
 
 }  // namespace
@@ -107,7 +132,7 @@ void add_simulators(py::module_& m) {
   add_engines(m);
   add_scans(m);
   const auto options = simulator_options();
-  py::class_<GuardedSimulator>(
+  py::class_<GuardedSimulator> type(
       m, "Simulator",
       ("Simulates a scanner in a scene, or several, of which each station has one (`StationSetup`). Other Python "
        "threads run while it traces; calls from several of them are done one after another, and a callback that calls "
@@ -116,8 +141,8 @@ void add_simulators(py::module_& m) {
        "`progress` is called, where it is given, with the share done in [0, 1]; where it returns False the call ends\n"
        "early and its result says `cancelled`. Ctrl-C ends a call too, by KeyboardInterrupt." +
        options.doc())
-          .c_str())
-      .def(py::init([options](const Scene& scene, const std::variant<Scanner, std::vector<Scanner>>& scanner,
+          .c_str());
+  type.def(py::init([options](const Scene& scene, const std::variant<Scanner, std::vector<Scanner>>& scanner,
                               const py::kwargs& given) {
              const SimulatorConfig config = options.read(given);
              const py::gil_scoped_release unlocked;
@@ -180,6 +205,8 @@ void add_simulators(py::module_& m) {
         return "<vantage.Simulator on " + name_of(self.simulator.engine().engine) + ", " +
                std::to_string(self.simulator.voxel_count()) + " voxels>";
       });
+  refuse_pickle(type, "a Simulator owns a device and is not pickled; make another of its scene, scanners and options");
+  add_clouds(m);
 }
 
 }  // namespace vantage::python

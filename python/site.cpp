@@ -4,6 +4,7 @@
 #include "arrays.hpp"
 #include "long_call.hpp"
 #include "module.hpp"
+#include "pickle.hpp"
 #include "settings.hpp"
 
 namespace vantage::python {
@@ -74,11 +75,11 @@ void add_sites(py::module_& m) {
       .def("__repr__", [](const SiteChoice& choice) {
         return "<vantage.SiteChoice " + choice.setting + "=" + choice.value + ": " + choice.why + ">";
       });
-  py::class_<GuardedSite, std::shared_ptr<GuardedSite>>(
+  py::class_<GuardedSite, std::shared_ptr<GuardedSite>> type(
       m, "Site",
       "Scene, scanner, ground, clash checks and simulator, with every default that the program has. `vantage.plan`\n"
-      "takes one.")
-      .def_static(
+      "takes one.");
+  type.def_static(
           "open",
           [](const std::filesystem::path& file, const py::kwargs& given) {
             SiteOptions options = site_options(given, "Site.open");
@@ -134,6 +135,7 @@ void add_sites(py::module_& m) {
            "evaluated with field=True also why surfaces are not captured. title: None: the site's name.\n"
            "Raises Error: io, invalid_argument (another extension, a build that writes no reports).")
       .def("__repr__", [](const GuardedSite& self) { return "<vantage.Site " + self.site.name() + ">"; });
+  refuse_pickle(type, "a Site owns a device and is not pickled; open its file again with the same settings");
 }
 
 }  // namespace vantage::python

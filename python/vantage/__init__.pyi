@@ -61,6 +61,7 @@ class Scene:
         default_diffuse: float = 0.5,
         unit: Optional[Literal["m", "cm", "mm", "in", "ft"]] = None,
         up: Optional[Literal["y", "z"]] = None,
+        max_memory_bytes: int = 0,
         allow_outside: bool = False,
     ) -> Scene: ...
     @staticmethod
@@ -142,6 +143,7 @@ def load_gltf(
     default_diffuse: float = 0.5,
     unit: Optional[Literal["m", "cm", "mm", "in", "ft"]] = None,
     up: Optional[Literal["y", "z"]] = None,
+    max_memory_bytes: int = 0,
     allow_outside: bool = False,
 ) -> Scene: ...
 def built_in_scene_names() -> List[str]: ...
@@ -363,6 +365,8 @@ class Evaluation:
     @property
     def cancelled(self) -> bool: ...
     @property
+    def visit(self) -> Optional[Visit]: ...
+    @property
     def summary(self) -> str: ...
     def to_dict(self) -> Dict[str, Any]: ...
 
@@ -385,6 +389,80 @@ class EngineInfo:
     def reason(self) -> str: ...
 
 def list_engines() -> List[EngineInfo]: ...
+def all_devices(engine: EngineName = "auto") -> List[Tuple[EngineName, int]]: ...
+def write_point_cloud(
+    file: Path,
+    simulator: Simulator,
+    stations: Stations,
+    *,
+    outputs: Sequence[str] = ["reflectivity"],
+    crs: str = "",
+    progress: Optional[Progress] = None,
+) -> int: ...
+
+class OnSiteOptions:
+    set_up_min: float
+    walking_m_per_s: float
+    detour: float
+    entrance: Optional[Tuple[float, float, float]]
+    def __init__(
+        self,
+        *,
+        set_up_min: float = 3.0,
+        walking_m_per_s: float = 0.8,
+        detour: float = 1.5,
+        entrance: Optional[Sequence[float]] = None,
+    ) -> None: ...
+
+class Visit:
+    @property
+    def order(self) -> List[int]: ...
+    @property
+    def legs_m(self) -> List[float]: ...
+    @property
+    def walk_m(self) -> float: ...
+    @property
+    def scan_min(self) -> float: ...
+    @property
+    def set_up_min(self) -> float: ...
+    @property
+    def walk_min(self) -> float: ...
+    @property
+    def minutes(self) -> float: ...
+    @property
+    def unconnected(self) -> int: ...
+
+class OnSite:
+    def __init__(
+        self, area: SearchArea, clash: ClashChecker, scanners: Sequence[Scanner], options: OnSiteOptions = ...
+    ) -> None: ...
+    def way_m(self, start: Sequence[float], end: Sequence[float]) -> Optional[float]: ...
+    def visit(self, stations: Stations) -> Visit: ...
+
+class MissedVoxels:
+    @property
+    def voxels(self) -> npt.NDArray[np.uint32]: ...
+    @property
+    def points(self) -> npt.NDArray[np.uint32]: ...
+    @property
+    def why(self) -> npt.NDArray[np.uint8]: ...
+    @property
+    def reasons(self) -> List[str]: ...
+    @property
+    def shares(self) -> Dict[str, Dict[str, float]]: ...
+    @property
+    def candidates(self) -> int: ...
+
+def why_missed(
+    simulator: Simulator,
+    area: SearchArea,
+    clash: ClashChecker,
+    evaluation: Evaluation,
+    *,
+    progress: Optional[Progress] = None,
+    candidates: int = 256,
+    flat_deg: float = 80.0,
+) -> MissedVoxels: ...
 
 class Scan:
     @property
@@ -431,6 +509,8 @@ class Simulator:
         *,
         engine: EngineName = "auto",
         device_index: Optional[int] = None,
+        devices: Sequence[Tuple[EngineName, int]] = [],
+        max_memory_bytes: int = 0,
         user_size_m: float = 0.1,
         point_spacing_m: float = 0.01,
         spacing_by_detail: bool = False,
@@ -886,6 +966,7 @@ class SurveyProblem:
         heights_m: Optional[Tuple[float, float]] = None,
         link_overlap: float = 0.01,
         registration: RegistrationOptions = ...,
+        on_site: OnSiteOptions = ...,
         fewest: bool = False,
         visible: Optional[float] = None,
         objectives: Iterable[Union[str, Objective]] = (),
@@ -900,6 +981,7 @@ class SurveyProblem:
     heights_m: Optional[Tuple[float, float]]
     link_overlap: float
     registration: RegistrationOptions
+    on_site: OnSiteOptions
     fewest: bool
     visible: Optional[float]
     @property
@@ -920,7 +1002,7 @@ def fitness_min(
     stations_min: int, stations_max: int, coverage: float = 0.4, station_count: float = 0.4, visibility: float = 0.2
 ) -> SurveyProblem: ...
 def fewest_stations(
-    capture: float = 0.9, link: float = 0.3, stations_min: int = 1, stations_max: int = 64, apart_m: float = 1.0
+    capture: float = 0.9, link: float = 0.3, stations_min: int = 1, stations_max: int = 1024, apart_m: float = 1.0
 ) -> SurveyProblem: ...
 
 class PlanProgress:
@@ -975,6 +1057,8 @@ class PlanEntry:
     def overlap_matrix(self) -> Floats: ...
     @property
     def scan_overlap_matrix(self) -> Floats: ...
+    @property
+    def visit(self) -> Optional[Visit]: ...
     @property
     def registration(self) -> Optional[RegistrationError]: ...
 

@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <png.h>
+#include <turbojpeg.h>
+
+#include <memory>
+
 #include "core/atomic_file.hpp"
 #include "core/free_memory.hpp"
 #include "core/read_file.hpp"
@@ -6,15 +11,6 @@
 #include "image/encode.hpp"
 #include "vantage/error.hpp"
 #include "vantage/image.hpp"
-
-#define STB_IMAGE_WRITE_IMPLEMENTATION
-#define STB_IMAGE_WRITE_STATIC
-#define STBI_WRITE_NO_STDIO
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wunused-function"
-#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
-#include <stb_image_write.h>
-#pragma GCC diagnostic pop
 
 namespace vantage {
 
@@ -48,13 +44,16 @@ void require_pixels(const Image& image, const std::string& what) {
 
 void write_png(const std::filesystem::path& file, const Image& image) {
   require_pixels(image, "cannot write " + file.string());
+  png_image png{};
+  png.version = PNG_IMAGE_VERSION;
+  png.width = image.width, png.height = image.height;
+  png.format = PNG_FORMAT_RGBA;
+  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png);
+  std::vector<std::uint8_t> bytes(size);
+  if (!png_image_write_to_memory(&png, bytes.data(), &size, 0, image.rgba.data(), 0, nullptr))
+    throw Error(Errc::invalid_argument, "cannot write " + file.string() + ": " + png.message);
   AtomicFile out(file);
-  const auto append = [](void* context, void* data, int bytes) {
-    static_cast<AtomicFile*>(context)->write(data, static_cast<std::size_t>(bytes));
-  };
-  if (!stbi_write_png_to_func(append, &out, static_cast<int>(image.width), static_cast<int>(image.height), 4,
-                              image.rgba.data(), static_cast<int>(4 * image.width)))
-    throw Error(Errc::out_of_memory, "cannot write " + file.string() + ": not enough memory to compress it");
+  out.write(bytes.data(), size);
   out.commit();
 }
 
@@ -63,15 +62,16 @@ std::vector<std::uint8_t> encode_jpeg(const Image& image, int quality) {
   if (quality < 1 || quality > 100)
     throw Error(Errc::invalid_argument,
                 "encode_jpeg: the quality is " + std::to_string(quality) + ", but must be 1 to 100");
-  std::vector<std::uint8_t> bytes;
-  const auto append = [](void* context, void* data, int count) {
-    const auto* first = static_cast<const std::uint8_t*>(data);
-    auto* out = static_cast<std::vector<std::uint8_t>*>(context);
-    out->insert(out->end(), first, first + count);
-  };
-  if (!stbi_write_jpg_to_func(append, &bytes, static_cast<int>(image.width), static_cast<int>(image.height), 4,
-                              image.rgba.data(), quality))
-    throw Error(Errc::out_of_memory, "encode_jpeg: not enough memory");
+  const std::unique_ptr<void, int (*)(tjhandle)> encoder(tjInitCompress(), tjDestroy);
+  const auto width = static_cast<int>(image.width), height = static_cast<int>(image.height);
+  unsigned long size = tjBufSize(width, height, TJSAMP_420);
+  std::vector<std::uint8_t> bytes(size);
+  std::uint8_t* out = bytes.data();
+  if (!encoder || tjCompress2(encoder.get(), image.rgba.data(), width, 0, height, TJPF_RGBA, &out, &size, TJSAMP_420,
+                              quality, TJFLAG_NOREALLOC) != 0)
+    throw Error(Errc::invalid_argument,
+                std::string("encode_jpeg: ") + (encoder ? tjGetErrorStr2(encoder.get()) : "not enough memory"));
+  bytes.resize(size);
   return bytes;
 }
 

@@ -11,6 +11,9 @@
 namespace vantage::ranks {
 namespace {
 
+// Bytes that each takes at least in a message, so that a short one cannot ask for much memory.
+constexpr std::size_t kLeastCounts = 24, kLeastStation = sizeof(TraceStation::origin) + 3, kLeastScanner = 8;
+
 // Members of each struct, in the order in which they are sent. `Archive` is a Writer or a Reader.
 
 template <class Archive, class T>
@@ -167,7 +170,12 @@ void pass(Writer& writer, const NetworkCounts& counts) {
 
 void pass(Reader& reader, NetworkCounts& counts) {
   pass_counts(reader, counts);
-  counts.groups = read_counts(reader);
+  counts.groups.resize(reader.size(kLeastCounts));
+  for (NetworkCounts& group : counts.groups) {
+    pass_counts(reader, group);
+    // A reader that followed groups of groups would recurse as deeply as a message asks.
+    if (reader.whole() != 0) throw Error(Errc::device_failure, "a message from another rank has groups within groups");
+  }
 }
 
 void pass(Writer& writer, const RegistrationJob& job) {
@@ -183,7 +191,7 @@ void pass(Reader& reader, RegistrationJob& job) {
   auto patches = std::make_shared<Patches>();
   pass_patches(reader, *patches);
   job.patches = std::move(patches);
-  job.scanners.resize(reader.size(1));
+  job.scanners.resize(reader.size(kLeastScanner));
   for (PatchScanner& scanner : job.scanners) {
     auto noise = std::make_shared<NoiseModel>();
     pass_noise(reader, *noise);
@@ -204,10 +212,10 @@ void write_networks(Writer& writer, std::span<const std::vector<TraceStation>> s
 
 Networks read_networks(Reader& reader) {
   Networks networks;
-  networks.stations.resize(reader.size(1));
+  networks.stations.resize(reader.size(2));
   for (auto& stations : networks.stations) {
     reader.whole(networks.sizes.emplace_back());
-    stations.resize(reader.size(1));
+    stations.resize(reader.size(kLeastStation));
     for (TraceStation& station : stations) pass(reader, station);
   }
   return networks;
@@ -219,7 +227,7 @@ void write_counts(Writer& writer, std::span<const NetworkCounts> counts) {
 }
 
 std::vector<NetworkCounts> read_counts(Reader& reader) {
-  std::vector<NetworkCounts> counts(reader.size(1));
+  std::vector<NetworkCounts> counts(reader.size(kLeastCounts));
   for (NetworkCounts& each : counts) pass(reader, each);
   return counts;
 }

@@ -265,17 +265,6 @@ def grid_in_a_plane():
     return scene.glb()
 
 
-def slivers():
-    """Triangles without area to speak of, each through thousands of voxels."""
-    scene = Scene()
-    corners = []
-    for k in range(40000):
-        y, z = 0.7 * (k % 200), 0.7 * (k // 200)
-        corners += [(0, y, z), (200, y + 0.3, z + 0.3), (200, y + 0.3, z + 0.3001)]
-    marked(scene, "surveyed", corners)
-    return scene.glb()
-
-
 def sparse_file(folder, path):
     with open(path, "wb") as file:
         file.truncate(1 << 40)
@@ -313,7 +302,6 @@ FILES = {
     "data_uris.gltf": (data_uris, True),
     "overlaps_in_a_plane.glb": (overlaps_in_a_plane, False),
     "grid_in_a_plane.glb": (grid_in_a_plane, False),
-    "slivers.glb": (slivers, False),
     "sparse.glb": (sparse_file, False),
     "fifo.glb": (fifo, False),
     "device.glb": (device, False),

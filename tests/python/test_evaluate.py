@@ -184,6 +184,23 @@ class LongCalls(unittest.TestCase):
             thread.join()
         self.assertGreater(after, before)
 
+    def test_what_are_no_stations_is_told(self):
+        with self.assertRaisesRegex(TypeError, "stations: 'abc' is no array of numbers"):
+            self.simulator.evaluate("abc")
+        with self.assertRaisesRegex(TypeError, "stations: {'a': 1} is no array of numbers"):
+            self.simulator.evaluate({"a": 1})
+        with self.assertRaisesRegex(vantage.Error, r"stations: an array of shape \(n, 3\) is wanted"):
+            self.simulator.evaluate([[1, 2]])
+
+    def test_a_simulator_may_have_several_devices_and_a_limit_of_memory(self):
+        devices = vantage.all_devices("embree")
+        self.assertEqual([engine for engine, _ in devices], ["embree"] * len(devices))
+        shared = four_walls(devices=devices)
+        self.assertEqual(shared.evaluate(HEADS).coverage, self.simulator.evaluate(HEADS).coverage)
+        with self.assertRaises(vantage.Error) as raised:
+            four_walls(max_memory_bytes=1000)
+        self.assertEqual(raised.exception.code, "out_of_memory")
+
     def test_a_simulator_serves_threads_one_after_another(self):
         simulator = four_walls()
         alone = [simulator.evaluate([head]).coverage for head in HEADS]

@@ -10,7 +10,7 @@ import vantage
 from vantage import _core
 
 PACKAGE = os.path.dirname(vantage.__file__)
-UNSAID = {"SurveyProblem": {"registration", "objectives", "requirements", "kept"}}  # defaults that are no literals
+UNSAID = {"SurveyProblem": {"registration", "on_site", "objectives", "requirements", "kept"}}  # defaults that are no literals
 
 
 def parameters(function):
@@ -96,7 +96,7 @@ class Stubs(unittest.TestCase):
         self.assertLessEqual(set(defaults), checked)
 
     def test_attributes_are_the_options(self):
-        for name in ("Scanner", "StationSetup", "RegistrationOptions", "SurveyProblem"):
+        for name in ("Scanner", "StationSetup", "RegistrationOptions", "OnSiteOptions", "SurveyProblem"):
             made = getattr(vantage, name)()
             for option, default in _core._defaults[name].items():
                 self.assertEqual(repr(getattr(made, option)), repr(default), f"{name}.{option}")

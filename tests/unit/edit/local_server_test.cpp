@@ -8,10 +8,10 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <csignal>
+#include <atomic>
 #include <fstream>
-#include <mutex>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace vantage {
@@ -24,7 +24,6 @@ class LocalServerTest : public testing::Test {
     thread_ = std::jthread([this](std::stop_token stop) {
       server_.serve(
           [this](const HttpRequest& request) {
-            const std::lock_guard lock(mutex_);
             ++answered_;
             return HttpResponse{200, "text/plain", request.method + " " + request.target + " " + request.body, "p"};
           },
@@ -76,8 +75,7 @@ class LocalServerTest : public testing::Test {
   }
 
   LocalServer server_;
-  std::mutex mutex_;
-  int answered_ = 0;
+  std::atomic<int> answered_ = 0;
   std::jthread thread_;  // ends before what it uses
 };
 

@@ -84,7 +84,9 @@ TEST(ImageFile, RefusesPngsWhoseChunksClaimMoreThanThereIs) {
       read_image(folder / "b.png");
       FAIL() << "it was read";
     } catch (const Error& error) {
-      EXPECT_NE(std::string(error.what()).find("claims more bytes"), std::string::npos) << error.what();
+      EXPECT_EQ(error.code(), Errc::malformed_file) << error.what();
+      EXPECT_NE(std::string(error.what()).find("b.png is no PNG or JPEG that can be read: "), std::string::npos)
+          << error.what();
     }
   }
 }
@@ -100,7 +102,8 @@ TEST(ImageFile, TellsWhatDecodingTakesFromTheHeader) {
   };
   EXPECT_EQ(header(png).width, 40u);
   EXPECT_EQ(header(png).height, 20u);
-  EXPECT_GE(header(png).decoding_bytes, 2u * 4 * 40 * 20);
+  EXPECT_GE(header(png).decoding_bytes, 4u * 40 * 20);
+  EXPECT_LT(header(png).decoding_bytes, 10u << 20);
   EXPECT_EQ(header(jpeg).width, 48u);
   EXPECT_EQ(header(jpeg).decoding_bytes, 12u * 48 * 32);
   EXPECT_EQ(header(std::string("no picture")).decoding_bytes, 0u);

@@ -69,7 +69,7 @@ TEST(LoadBudget, ABufferViewIsDecodedOnce) {
   const auto jpeg = encode_jpeg({64, 32, std::vector<std::uint8_t>(64 * 32 * 4, 200)}, 90);
   const json one{{"bufferView", builder.view(jpeg.data(), jpeg.size())}},
       other{{"bufferView", builder.view(jpeg.data(), jpeg.size())}};
-  const Scene scene = load_within(textured({one, one, other, one}, builder), 0);
+  const Scene scene = load_within(textured(json::array({one, one, other, one}), builder), 0);
   EXPECT_EQ(scene.data().images.size(), 2u);
   std::vector<std::int32_t> used;
   for (const Material& material : scene.data().materials) used.push_back(material.image);
@@ -81,7 +81,7 @@ TEST(LoadBudget, PixelsAreCountedBeforeTheyAreDecoded) {
   const Image picture{2048, 2048, std::vector<std::uint8_t>(std::size_t{2048} * 2048 * 4, 100)};
   const auto jpeg = encode_jpeg(picture, 50);
   const json image{{"bufferView", builder.view(jpeg.data(), jpeg.size())}};
-  const GlbBuilder scene = textured({image}, builder);
+  const GlbBuilder scene = textured(json::array({image}), builder);
   EXPECT_EQ(load_within(scene, 100 * kMebibyte).data().images.size(), 1u);
   refuses(scene, 60 * kMebibyte, {"scene: decoding texture 0, of 2048 × 2048 pixels,", "the limit is 60 MiB"});
 }

@@ -1,13 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Colours of points: base colour, texture, vertex colours.
 #include <gtest/gtest.h>
-
-#define STB_IMAGE_WRITE_IMPLEMENTATION
-#define STB_IMAGE_WRITE_STATIC
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wunused-function"
-#include <stb_image_write.h>
-#pragma GCC diagnostic pop
+#include <png.h>
 
 #include <cmath>
 #include <numbers>
@@ -28,13 +22,13 @@ const std::vector<std::uint8_t> kPixels{255, 0, 0,   0, 255, 0,
 const std::vector<std::uint8_t> kRgba{255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 9, 8, 7, 255};
 
 std::vector<std::uint8_t> png() {
-  std::vector<std::uint8_t> out;
-  stbi_write_png_to_func(
-      [](void* to, void* data, int size) {
-        const auto* bytes = static_cast<const std::uint8_t*>(data);
-        static_cast<std::vector<std::uint8_t>*>(to)->assign(bytes, bytes + size);
-      },
-      &out, 2, 2, 3, kPixels.data(), 6);
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION, image.format = PNG_FORMAT_RGB;
+  image.width = image.height = 2;
+  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
+  std::vector<std::uint8_t> out(size);
+  EXPECT_TRUE(png_image_write_to_memory(&image, out.data(), &size, 0, kPixels.data(), 0, nullptr)) << image.message;
+  out.resize(size);
   return out;
 }
 

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+// Results of plain data as bytes and back, for Python's pickle. What a type holds is listed once, in `members`.
+#pragma once
+
+#include <cstring>
+#include <map>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "casters.hpp"
+#include "scan.hpp"
+
+namespace vantage::python {
+
+inline auto members(RegistrationSums& s) { return std::tie(s.centre, s.radius_m, s.heads, s.pairs, s.surface); }
+inline auto members(NetworkCounts& c) {
+  return std::tie(c.voxels, c.weight, c.saturated, c.partial_points, c.point_weight, c.rays, c.stations, c.points,
+                  c.points_on_surveyed, c.dropped, c.seen, c.shared, c.registration, c.groups,
+                  c.successive_difference_sum, c.trace_seconds, c.cancelled);
+}
+inline auto members(VoxelField& f) { return std::tie(f.count, f.stations); }
+inline auto members(RegistrationError& e) {
+  return std::tie(e.rms_m, e.worst_m, e.worst_station, e.stations, e.poses, e.centre, e.scale_m);
+}
+inline auto members(Visit& v) {
+  return std::tie(v.order, v.legs_m, v.walk_m, v.scan_min, v.set_up_min, v.walk_min, v.minutes, v.unconnected);
+}
+inline auto members(Evaluation& e) {
+  return std::tie(e.stations, e.names, e.exact, e.voxels, e.goal_density, e.counts, e.field, e.values, e.attainable,
+                  e.overlap_matrix, e.overlap_errors, e.scan_overlap_matrix, e.link_overlap, e.link, e.registration,
+                  e.visit, e.violation);
+}
+inline auto members(Connectivity& c) { return std::tie(c.parts, c.part, c.bridges, c.weakest_link, c.weakest_overlap); }
+inline auto members(MeshInfo& m) {
+  return std::tie(m.name, m.role, m.diffuse, m.triangle_count, m.weight, m.door, m.station_area, m.detail_m,
+                  m.accuracy_m);
+}
+inline auto members(MissedShare& s) { return std::tie(s.node, s.voxels, s.count); }
+inline auto members(MissedVoxels& m) { return std::tie(m.ranks, m.points, m.why, m.shares, m.candidates); }
+inline auto members(Scan& s) {
+  return std::tie(s.ray, s.position, s.range_m, s.normal, s.reflectivity, s.mesh, s.primitive, s.colour, s.voxel,
+                  s.summary, s.rows, s.columns, s.outputs, s.grid);
+}
+
+/// Writes values one after another, or reads them back in the same order. Throws Error malformed_file for bytes that
+/// end too early.
+class Archive {
+ public:
+  Archive() = default;
+  explicit Archive(std::string bytes) : bytes_(std::move(bytes)), reading_(true) {}
+  const std::string& bytes() const { return bytes_; }
+
+  template <class Value>
+  void pass(Value& value) {
+    if constexpr (requires { members(value); })
+      std::apply([&](auto&... member) { (pass(member), ...); }, members(value));
+    else if constexpr (std::is_base_of_v<PairMatrix, Value>)
+      pass_matrix(value);
+    else
+      pass_plain(value);
+  }
+
+ private:
+  void raw(void* data, std::size_t size) {
+    if (!reading_) {
+      bytes_.append(static_cast<const char*>(data), size);
+      return;
+    }
+    require(size);
+    std::memcpy(data, bytes_.data() + at_, size);
+    at_ += size;
+  }
+  void require(std::size_t size) const {
+    if (size > bytes_.size() - at_) throw Error(Errc::malformed_file, "a pickle of vantage is cut short");
+  }
+  // How many elements follow, of which each takes so many bytes at least.
+  std::size_t count(std::size_t size, std::size_t least) {
+    raw(&size, sizeof size);
+    if (reading_) {
+      require(size);
+      require(size * least);
+    }
+    return size;
+  }
+
+  template <class Value>
+  void pass_plain(Value& value) {
+    static_assert(std::is_trivially_copyable_v<Value> && !std::is_pointer_v<Value>);
+    raw(&value, sizeof value);
+  }
+  void pass_plain(std::string& text) {
+    text.resize(count(text.size(), 1));
+    raw(text.data(), text.size());
+  }
+  template <class A, class B>
+  void pass_plain(std::pair<A, B>& pair) {
+    pass(pair.first), pass(pair.second);
+  }
+  template <class Value>
+  void pass_plain(std::optional<Value>& value) {
+    bool there = value.has_value();
+    raw(&there, sizeof there);
+    if (reading_) value = there ? std::optional<Value>(std::in_place) : std::nullopt;
+    if (value) pass(*value);
+  }
+  template <class Value>
+  void pass_plain(std::vector<Value>& values) {
+    if constexpr (std::is_trivially_copyable_v<Value>) {
+      values.resize(count(values.size(), sizeof(Value)));
+      raw(values.data(), values.size() * sizeof(Value));
+    } else {
+      values.resize(count(values.size(), 1));
+      for (Value& value : values) pass(value);
+    }
+  }
+  template <class Key, class Value>
+  void pass_plain(std::map<Key, Value>& map) {
+    const std::size_t size = count(map.size(), 1);
+    if (!reading_)
+      for (const auto& [key, value] : map) {
+        Key name = key;
+        Value copy = value;
+        pass(name), pass(copy);
+      }
+    else
+      for (std::size_t k = 0; k < size; ++k) {
+        Key name;
+        pass(name);
+        pass(map[name]);
+      }
+  }
+  template <class Matrix>
+  void pass_matrix(Matrix& matrix) {
+    const std::size_t n = count(matrix.size(), sizeof(double));
+    if (reading_) require(n * n * sizeof(double)), matrix = Matrix(n);
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = 0; j < n; ++j) {
+        double value = matrix(i, j);
+        raw(&value, sizeof value);
+        matrix.set(i, j, value);
+      }
+  }
+
+  std::string bytes_;
+  std::size_t at_ = 0;
+  bool reading_ = false;
+};
+
+/// Lets values of a type of plain data be pickled; other versions of vantage do not read them.
+template <class Type, class... Extra>
+void add_pickle(py::class_<Type, Extra...>& type) {
+  type.def(py::pickle(
+      [](const Type& value) {
+        Archive archive;
+        archive.pass(const_cast<Type&>(value));  // writing changes nothing
+        return py::make_tuple(version(), py::bytes(archive.bytes()));
+      },
+      [](const py::tuple& state) {
+        const auto from = state[0].cast<std::string>();
+        if (from != version())
+          throw Error(Errc::invalid_argument, "a pickle of vantage " + from + " is not read by vantage " + version());
+        Archive archive(state[1].cast<std::string>());
+        Type value{};
+        archive.pass(value);
+        return value;
+      }));
+}
+
+/// Has pickle refuse a type with a TypeError that says why, and what to do.
+template <class Type, class... Extra>
+void refuse_pickle(py::class_<Type, Extra...>& type, const std::string& why) {
+  type.def("__reduce__", [why](const py::object&) -> py::object { throw py::type_error(why); });
+}
+
+}  // namespace vantage::python

@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Why points are missed, what a round takes, and clouds in files."""
+import os
+import struct
+import tempfile
+import unittest
+
+import numpy as np
+import vantage
+from sites import BEFORE_EACH_WALL, four_walls
+
+
+class AfterASearch(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.simulator = four_walls()
+        cls.area, cls.clash = vantage.SearchArea(cls.simulator.scene), vantage.ClashChecker(cls.simulator.scene)
+
+    def test_missed_voxels_have_a_reason(self):
+        seen = self.simulator.evaluate(BEFORE_EACH_WALL[:2], field=True)  # the walls in the north and south are not
+        missed = vantage.why_missed(self.simulator, self.area, self.clash, seen)
+        self.assertEqual(missed.reasons, ["captured", "hidden", "far", "flat", "sparse", "not_chosen"])
+        np.testing.assert_array_equal(missed.points, seen.voxel_points[missed.voxels])
+        np.testing.assert_array_equal(missed.why == 0, missed.points >= seen.goal_density)
+        counts = np.bincount(missed.why, minlength=6) / len(missed.why)
+        np.testing.assert_allclose([missed.shares[""][reason] for reason in missed.reasons], counts, atol=1e-12)
+        self.assertEqual(set(missed.shares), {""} | {mesh.name for mesh in self.simulator.scene.meshes})
+        self.assertGreater(missed.shares[""]["not_chosen"], 0.3)
+        self.assertEqual(missed.candidates, 256)
+        with self.assertRaisesRegex(vantage.Error, "evaluate with field=True"):
+            vantage.why_missed(self.simulator, self.area, self.clash, self.simulator.evaluate(BEFORE_EACH_WALL))
+
+    def test_a_round_adds_up(self):
+        options = vantage.OnSiteOptions(set_up_min=5, walking_m_per_s=1, entrance=(0, 0, 0))
+        on_site = vantage.OnSite(self.area, self.clash, self.simulator.scanners, options)
+        visit = on_site.visit(BEFORE_EACH_WALL)
+        self.assertEqual(sorted(visit.order), [0, 1, 2, 3])
+        self.assertEqual(len(visit.legs_m), 5)
+        self.assertAlmostEqual(sum(visit.legs_m), visit.walk_m)
+        self.assertAlmostEqual(visit.walk_min, visit.walk_m / 60)
+        self.assertAlmostEqual(visit.set_up_min, 4 * 5)
+        self.assertAlmostEqual(visit.minutes, visit.scan_min + visit.set_up_min + visit.walk_min)
+        straight = np.linalg.norm(np.subtract(BEFORE_EACH_WALL[0], BEFORE_EACH_WALL[2]))
+        self.assertGreaterEqual(on_site.way_m((8, 0, 0), (0, 8, 0)), straight - 0.5)
+        problem = vantage.SurveyProblem(objectives=["time"], on_site=options)
+        self.assertEqual(problem.on_site.set_up_min, 5)
+
+    def test_points_are_written_to_files(self):
+        stations = [vantage.Station(BEFORE_EACH_WALL[0]), vantage.Station(BEFORE_EACH_WALL[2], active=False),
+                    vantage.Station(BEFORE_EACH_WALL[3], vantage.StationSetup(heading_deg=40))]
+        scans = [self.simulator.scan(station.position, setup=station.setup, place=place)
+                 for place, station in enumerate(stations) if station.active]
+        expected = np.concatenate([scan.position for scan in scans])
+        with tempfile.TemporaryDirectory() as folder:
+            ply, las, e57 = (os.path.join(folder, "cloud." + kind) for kind in ("ply", "las", "e57"))
+            self.assertEqual(vantage.write_point_cloud(ply, self.simulator, stations, outputs=[]), len(expected))
+            with open(ply, "rb") as file:
+                header, body = file.read().split(b"end_header\n", 1)
+            self.assertIn(f"element vertex {len(expected)}\n".encode(), header)
+            row = len(body) // len(expected)
+            first = struct.unpack_from("<3d", body)
+            last = struct.unpack_from("<3d", body, row * (len(expected) - 1))
+            np.testing.assert_allclose([first, last], [expected[0], expected[-1]], atol=1e-4)
+            for file in (las, e57):
+                count = vantage.write_point_cloud(file, self.simulator, stations, crs="EPSG:25832")
+                self.assertEqual(count, len(expected))
+            with open(las, "rb") as file:
+                head = file.read(375)
+            self.assertEqual(head[:4], b"LASF")
+            self.assertEqual(struct.unpack_from("<Q", head, 247)[0], len(expected))
+            with open(e57, "rb") as file:
+                self.assertEqual(file.read(8), b"ASTM-E57")
+            stopped = os.path.join(folder, "stopped.las")
+            self.assertEqual(
+                vantage.write_point_cloud(stopped, self.simulator, stations, progress=lambda done: False), 0)
+            self.assertFalse(os.path.exists(stopped))
+            with self.assertRaisesRegex(vantage.Error, "extension"):
+                vantage.write_point_cloud(os.path.join(folder, "cloud.xyz"), self.simulator, stations)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// Messages that no rank of this program sends.
+#include "ranks/messages.hpp"
+
+#include <gtest/gtest.h>
+
+#include "vantage/error.hpp"
+
+namespace vantage::ranks {
+namespace {
+
+std::string message_of(const std::vector<NetworkCounts>& counts) {
+  Writer writer;
+  write_counts(writer, counts);
+  return writer.take();
+}
+
+TEST(Messages, GroupsTravelAndGroupsOfGroupsAreRefused) {
+  std::vector<NetworkCounts> counts(2);
+  counts[1].groups.resize(3);
+  counts[1].groups[2].voxels = 7;
+  const std::string whole = message_of(counts);
+  Reader reader(whole);
+  const auto back = read_counts(reader);
+  ASSERT_EQ(back.size(), 2u);
+  ASSERT_EQ(back[1].groups.size(), 3u);
+  EXPECT_EQ(back[1].groups[2].voxels, 7u);
+  counts[1].groups[2].groups.resize(1);
+  const std::string deep = message_of(counts);
+  Reader of_deep(deep);
+  EXPECT_THROW(read_counts(of_deep), Error);
+}
+
+// Of every length that a message may be cut to, and with more claimed than it has.
+TEST(Messages, ThatAreCutShortOrClaimMoreAreRefused) {
+  const std::string whole = message_of(std::vector<NetworkCounts>(2));
+  for (std::size_t bytes = 0; bytes < whole.size(); ++bytes) {
+    const std::string cut = whole.substr(0, bytes);
+    Reader reader(cut);
+    EXPECT_THROW(read_counts(reader), Error) << bytes;
+  }
+  for (const std::uint64_t many : {std::uint64_t{1} << 20, ~std::uint64_t{0}}) {
+    Writer writer;
+    writer.whole(many);
+    const std::string claims = writer.take() + std::string(1 << 20, '\0');
+    Reader of_counts(claims), of_networks(claims);
+    EXPECT_THROW(read_counts(of_counts), Error);
+    EXPECT_THROW(read_networks(of_networks), Error);
+  }
+}
+
+}  // namespace
+}  // namespace vantage::ranks
