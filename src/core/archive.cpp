@@ -10,8 +10,8 @@
 namespace vantage {
 namespace {
 
-// Empty where the stream ends before. In pieces, so that a damaged length asks for no memory that the stream cannot
-// fill.
+// Empty if the stream ends early. Reads in pieces, so that a damaged length allocates no more memory than the stream
+// can fill.
 std::optional<std::string> next_bytes(std::istream& in, std::uint64_t count) {
   constexpr std::uint64_t kPiece = 1 << 20;
   std::string bytes;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Values as bytes and back: states of optimisers, checkpoints, messages between ranks. Values keep the machine's byte
-// order. Writer and reader have the same calls, so one function template over both passes the members of a struct and
-// what is written is what is read.
+// Values as bytes and back, for states of optimisers, checkpoints, and messages between ranks. Values keep the
+// machine's byte order. Writer and reader have the same calls, so one function template over both passes a struct's
+// members, and reading matches writing.
 #pragma once
 
 #include <concepts>
@@ -29,7 +29,7 @@ class ArchiveWriter {
   void raw(const T& value) {
     bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
   }
-  // Seven bits a byte, the lowest first: most counts are small.
+  // Seven bits per byte, lowest first, since most counts are small.
   void whole(std::uint64_t value) {
     for (; value >= 0x80; value >>= 7) bytes_.push_back(static_cast<char>(value | 0x80));
     bytes_.push_back(static_cast<char>(value));
@@ -47,7 +47,7 @@ class ArchiveWriter {
     list(values, 1, [this](std::uint64_t value) { whole(value); });
   }
   void text(std::string_view value) { array(std::span<const char>(value)); }
-  // `each` writes one value; the reader's twin explains `least_bytes`.
+  // `each` writes one value; see the reader's list() for `least_bytes`.
   template <class T, class Each>
   void list(const std::vector<T>& values, [[maybe_unused]] std::size_t least_bytes, Each each) {
     whole(values.size());
@@ -60,8 +60,8 @@ class ArchiveWriter {
   std::string bytes_;
 };
 
-// Throws `Error(code, message)`, both given to the constructor, where bytes are missing or cannot be right. Never makes
-// room for more than the bytes that are left can hold.
+// Throws `Error(code, message)`, both given to the constructor, if bytes are missing or cannot be right. Never
+// allocates more than the remaining bytes can hold.
 class ArchiveReader {
  public:
   // Borrows the bytes.
@@ -113,13 +113,13 @@ class ArchiveReader {
     text(value);
     return value;
   }
-  // `each` reads one value, which takes `least_bytes` at least.
+  // `each` reads one value of at least `least_bytes`.
   template <class T, class Each>
   void list(std::vector<T>& values, std::size_t least_bytes, Each each) {
     values.resize(size(least_bytes));
     for (T& value : values) each(value);
   }
-  // The length of a list whose elements take so many bytes at least.
+  // Length of a list whose elements take at least `least_bytes` each.
   std::size_t size(std::size_t least_bytes) {
     const std::uint64_t many = whole();
     if (many > left_.size() / least_bytes) fail();
@@ -141,8 +141,8 @@ class ArchiveReader {
   std::string message_;
 };
 
-// A file's content: magic, version, length, payload, and a checksum (CRC-32C) over all of it, so that a change of any
-// bit is noticed.
+// Format of a sealed file: magic, version, length, payload, and a checksum (CRC-32C) over all of it, so that any
+// changed bit is detected.
 struct ArchiveFormat {
   std::string_view magic;
   std::uint32_t version;
@@ -152,9 +152,9 @@ std::string sealed(const ArchiveFormat& format, std::string_view payload);
 struct Unsealed {
   enum class State { whole, foreign, other_version, damaged } state = State::foreign;
   std::uint32_t version = 0;  // as found; 0: foreign
-  std::string payload = {};   // where whole
+  std::string payload = {};   // if whole
 };
-// Reads what sealed() made, and nothing behind it.
+// Reads the result of sealed(), and nothing after it.
 Unsealed unseal(std::istream& in, const ArchiveFormat& format);
 
 }  // namespace vantage

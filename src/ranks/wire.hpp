@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Messages between processes of one program on machines of one byte order.
+// Messages between processes of one program, on machines of one byte order.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@ namespace vantage::ranks {
 using Message = std::string;
 using Writer = ArchiveWriter;
 
-// Borrows the message. Throws Error device_failure where it is too short.
+// Borrows the message. Throws Error device_failure if it is too short.
 class Reader : public ArchiveReader {
  public:
   explicit Reader(std::string_view message)
