@@ -20,21 +20,3 @@ function(vantage_unity target)
   endforeach()
   set_target_properties(${target} PROPERTIES UNITY_BUILD_MODE GROUP)
 endfunction()
-
-# vantage_precompile(<target> <header>...): headers that most of a target's C++ sources read are compiled once, where several sources are
-# compiled at a time. Every source still includes what it uses: a build without this one finds what is missing.
-function(vantage_precompile target)
-  if(NOT CMAKE_UNITY_BUILD)
-    return()
-  endif()
-  list(TRANSFORM ARGN REPLACE "(.+)" "$<$<COMPILE_LANGUAGE:CXX>:<\\1$<ANGLE-R>>")
-  target_precompile_headers(${target} PRIVATE ${ARGN})
-  # What is compiled with options of its own cannot use them, and what was generated needs none.
-  get_target_property(sources ${target} SOURCES)
-  foreach(source IN LISTS sources)
-    get_source_file_property(options ${source} TARGET_DIRECTORY ${target} COMPILE_OPTIONS)
-    if(options OR source MATCHES "^${PROJECT_BINARY_DIR}/")
-      set_source_files_properties(${source} TARGET_DIRECTORY ${target} PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
-    endif()
-  endforeach()
-endfunction()

@@ -19,7 +19,6 @@ esac
 build=$PWD/build/$preset
 if [ -z "${CMAKE_CXX_COMPILER_LAUNCHER-}" ] && command -v ccache >/dev/null; then
   export CMAKE_CXX_COMPILER_LAUNCHER=ccache
-  export CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime # or it passes over precompiled headers
 fi
 if [ "$kind" = thread ]; then
   "$here/instrumented_tbb.sh" "$build/tbb"
@@ -27,7 +26,6 @@ if [ "$kind" = thread ]; then
 fi
 
 cmake --preset "$preset" -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=12 -DVANTAGE_BUILD_CLI=OFF -DVANTAGE_BUILD_EXAMPLES=OFF >/dev/null
-slow=""
 if [ "${1-}" = quick ]; then
   set -- trace_test scan_test export_test scene_test placement_test voxel_test trace_vulkan_test golden_test ranks_test image_test core_test
 elif [ $# = 0 ]; then
@@ -41,7 +39,7 @@ cmake --build "$build" --target "$@"
 
 # What repeats a few lines a million times for a statistic takes minutes here; other cases run the same lines. The
 # conformance suite's own engine differs from others by a shader, which has no sanitizer, and takes a third of its time.
-export GTEST_FILTER="${GTEST_FILTER--RegistrationError.StandardErrorsHold:NoiseStatistics.*:*/brute_force_*$slow}"
+export GTEST_FILTER="${GTEST_FILTER--RegistrationError.StandardErrorsHold:NoiseStatistics.*:*/brute_force_*}"
 export UBSAN_OPTIONS=print_stacktrace=1
 export LSAN_OPTIONS="suppressions=$here/leaks.txt:print_suppressions=0"
 export TSAN_OPTIONS="suppressions=$here/races.txt:second_deadlock_stack=1"
