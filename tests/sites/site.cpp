@@ -9,6 +9,28 @@
 
 #include "support/glb_builder.hpp"
 
+namespace vantage::sites {
+
+const char* to_string(Surface surface) {
+  switch (surface) {
+    case Surface::floor: return "floor";
+    case Surface::covered: return "covered";
+    case Surface::furniture: return "furniture";
+    case Surface::equipment: return "equipment";
+    case Surface::car: return "car";
+    case Surface::tree: return "tree";
+    case Surface::roof: return "roof";
+    case Surface::wall_top: return "wall top";
+    case Surface::sealed: return "sealed";
+    case Surface::inside: return "inside";
+    case Surface::air: return "air";
+    case Surface::outside: return "outside";
+  }
+  return "?";
+}
+
+}  // namespace vantage::sites
+
 namespace vantage::test {
 namespace {
 
@@ -42,24 +64,6 @@ std::vector<Crossing> crossings(const Part& part, const Vec3& p) {
 }
 
 }  // namespace
-
-const char* to_string(Surface surface) {
-  switch (surface) {
-    case Surface::floor: return "floor";
-    case Surface::covered: return "covered";
-    case Surface::furniture: return "furniture";
-    case Surface::equipment: return "equipment";
-    case Surface::car: return "car";
-    case Surface::tree: return "tree";
-    case Surface::roof: return "roof";
-    case Surface::wall_top: return "wall top";
-    case Surface::sealed: return "sealed";
-    case Surface::inside: return "inside";
-    case Surface::air: return "air";
-    case Surface::outside: return "outside";
-  }
-  return "?";
-}
 
 Standing Site::at(const Vec3& ground) const {
   const Vec3 p = ground - offset;

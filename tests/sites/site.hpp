@@ -12,12 +12,15 @@
 #include "generate/sites/site.hpp"
 #include "vantage/types.hpp"
 
+namespace vantage::sites {
+const char* to_string(Surface surface);
+}  // namespace vantage::sites
+
 namespace vantage::test {
 
 using sites::Part;
 using sites::Place;
 using sites::Surface;
-const char* to_string(Surface surface);
 
 constexpr double kUpright_m = 1.9;
 constexpr double kTouch_m = 0.05;

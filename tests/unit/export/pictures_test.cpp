@@ -247,7 +247,7 @@ TEST(Pictures, DrawResultsThatHoldLittle) {
   for (const std::string problem : {"coverage-fix", "coverage-overlap-fix", "coverage-min", "coverage-overlap-min"}) {
     PlanResult one = test::sample_result(problem, 1, problem.ends_with("-min") ? 64 : 1, 1);
     one.front[0].exact = false;
-    one.front[0].values["coverage"] = one.front[0].values["overlap"] = {0, 0, std::nan("")};
+    one.front[0].values["coverage"] = one.front[0].values["overlap"] = Estimate{std::nan(""), 0};
     one.history.resize(1);
     one.history[0].hypervolume = 0;
     const auto drawn = [&](auto draw) {
@@ -380,7 +380,7 @@ TEST(Pictures, NothingOfAPlanViewIsCutOff) {
   const test::TemporaryFolder folder;
   const std::string title(90, 'W');  // wider than the map
   const auto page = plan_view_pictures(
-      {.scene = room(), .area = floor_of_room(), .stations = {}, .names = {}, .overlap = {}, .title = title});
+      {.scene = room(), .area = floor_of_room(), .stations = {}, .names = {}, .links = {}, .title = title});
   ASSERT_EQ(page.size(), 1u);
   Canvas scratch(1, 1);
   EXPECT_GT(page[0].canvas->width(), 86 + scratch.text_width(title, {.size = 17, .bold = true}));

@@ -217,8 +217,11 @@ const std::vector<Change<PlanConfig>> kPlan{
     // Where a run leaves its checkpoint, and whether it takes one up, is no part of what it computes.
     {"checkpoint", [](PlanConfig& c) { c.checkpoint = "elsewhere"; }, false, false},
     {"checkpoint_seconds", [](PlanConfig& c) { c.checkpoint_seconds = 5; }, false, false},
-    {"resume", [](PlanConfig& c) { c.resume = true; }, false, false}};
-static_assert(member_count<PlanConfig>() == 17);
+    {"resume", [](PlanConfig& c) { c.resume = true; }, false, false},
+    // `sample_voxels` is what they come to.
+    {"exact", [](PlanConfig& c) { c.exact = true; }, false, false},
+    {"sample_share", [](PlanConfig& c) { c.sample_share = 0.5; }, false, false}};
+static_assert(member_count<PlanConfig>() == 19);
 
 SearchMesh ground() {
   return {.positions = {{-5, -5, 0}, {5, -5, 0}, {5, 5, 0}, {-5, 5, 0}},
