@@ -2,7 +2,7 @@
 #include <set>
 
 #include "core/text.hpp"
-#include "vantage/summary.hpp"
+#include "vantage/evaluation.hpp"
 
 namespace vantage {
 

@@ -34,18 +34,18 @@ std::unique_ptr<Optimiser> choose_optimiser(const DecisionSpace& space, const Su
                                             const PlanConfig& config, std::size_t batch,
                                             const std::vector<double>& start) {
   check(problem, config);
-  OptimiserConfig chosen{
-      .population = population_of(problem, config),
-      .sigma0 = config.sigma0,
-      .bounds = space.bounds(),
-      .blocks = space.blocks(),
-      .restarts = kRestarts,
-      .max_iterations = config.iterations,
-      .target_hypervolume = config.target_hypervolume,
-      .stagnation_iterations = config.stagnation_iterations,
-      .seed = config.seed.value_or(1),
-      .mo = {
-          .scheme = config.scheme, .batch = batch, .recalls = config.sample_voxels > 0 && config.renew_iterations.value_or(0) > 0}};
+  OptimiserConfig chosen{.population = population_of(problem, config),
+                         .sigma0 = config.sigma0,
+                         .bounds = space.bounds(),
+                         .blocks = space.blocks(),
+                         .restarts = kRestarts,
+                         .max_iterations = config.iterations,
+                         .target_hypervolume = config.target_hypervolume,
+                         .stagnation_iterations = config.stagnation_iterations,
+                         .seed = config.seed.value_or(1),
+                         .mo = {.scheme = config.scheme,
+                                .batch = batch,
+                                .recalls = config.sample_voxels > 0 && config.renew_iterations.value_or(0) > 0}};
   if (space.searches_number())
     chosen.blocks_in_use = [&space](std::span<const double> x) { return space.placed_count(x); };
   if (problem.objectives.size() == 1) {

@@ -5,16 +5,15 @@ namespace vantage::built_in {
 
 // Equation 8.
 Objective coverage(const ObjectiveSettings&) {
-  return {.name = "coverage",
-          .label = "Coverage (1: every surveyed voxel at its goal density)",
-          .scale = maximise(1, 0),
-          .value = [](const MeasuredNetwork& m) { return vantage::coverage(m.counts, m.goal_density); },
-          .standard_error =
-              [](const MeasuredNetwork& m) {
-                return coverage_estimate(m.counts, m.goal_density, m.voxels).standard_error;
-              },
-          .kind = Objective::Kind::coverage,
-          .advice = "allow more stations, or more places to stand"};
+  return {
+      .name = "coverage",
+      .label = "Coverage (1: every surveyed voxel at its goal density)",
+      .scale = maximise(1, 0),
+      .value = [](const MeasuredNetwork& m) { return vantage::coverage(m.counts, m.goal_density); },
+      .standard_error =
+          [](const MeasuredNetwork& m) { return coverage_estimate(m.counts, m.goal_density, m.voxels).standard_error; },
+      .kind = Objective::Kind::coverage,
+      .advice = "allow more stations, or more places to stand"};
 }
 
 }  // namespace vantage::built_in
