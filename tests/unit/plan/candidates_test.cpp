@@ -135,7 +135,7 @@ TEST(OverlapGraph, HasTheScanOverlapOfEachPair) {
   Simulator surroundings = surroundings_of(simulator);
   std::vector<PlacedStation> stations{at({0, 0, 0}), at({3, 2, 0}), at({-6, -6, 0})};
   const StationGraph graph = overlap_graph(surroundings, stations, surroundings.voxel_count());
-  const OverlapMatrix expected = scan_overlap_matrix(surroundings.evaluate(to_network(stations)));
+  const ScanOverlapMatrix expected = scan_overlap_matrix(surroundings.evaluate(to_network(stations)));
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t j = 0; j < 3; ++j)
       EXPECT_FLOAT_EQ(graph.overlap(i, j), static_cast<float>(expected(i, j))) << i << " and " << j;

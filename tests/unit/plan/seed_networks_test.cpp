@@ -99,7 +99,7 @@ TEST_F(SeedNetworks, GreedyStopsWhenTold) {
 
 // A greedy choice on the toy survey, each candidate tried again at every step.
 std::vector<Vec3> toy_seed(std::size_t stations) {
-  const Site site = test::toy_site();
+  const PlacementOracle site = test::toy_site();
   std::vector<PlacedStation> candidates;
   for (int i = 0; i < 16; ++i)
     for (int j = 0; j < 16; ++j) {
