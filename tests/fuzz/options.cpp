@@ -4,6 +4,7 @@
 
 #include "cli/command.hpp"
 #include "cli/stations.hpp"
+#include "core/read_json.hpp"
 #include "fuzz/target.hpp"
 
 namespace vantage::fuzz {
@@ -28,7 +29,7 @@ struct Commands {
 void configuration(Bytes bytes) {
   const std::string file = file_of(bytes, "config.json");
   accepts([&] {
-    const auto values = cli::read_json(file);
+    const auto values = read_json(file);
     Commands commands;
     for (const char* name : {"plan", "evaluate", "bound"})
       accepts([&] { cli::apply_layer(*commands.app.get_subcommand(name), values, file); });
