@@ -19,6 +19,7 @@
 #include "cli/stations.hpp"
 #include "core/atomic_file.hpp"
 #include "core/deadline.hpp"
+#include "plan/limits.hpp"
 
 namespace vantage::cli {
 namespace {
@@ -114,20 +115,16 @@ std::vector<Vec3> greedy_start(Site& site, const SurveyProblem& problem, const P
 // Heads of the best choice for the largest network that was found in time; empty where none was.
 std::vector<Vec3> exact_start(Site& site, const SurveyProblem& problem, const PlanConfig& config, double seconds,
                               Program& program, std::stop_token stop) {
-  const auto least = [&](std::string_view name) {
-    double limit = 0;
-    for (const Requirement& requirement : problem.requirements)
-      if (requirement.objective.name == name && requirement.bound == Requirement::Bound::at_least)
-        limit = requirement.limit;
-    return limit;
+  const auto least = [&](Objective::Kind kind) {
+    return limit_of(problem, kind, Requirement::Bound::at_least).value_or(0);
   };
-  const double link = least("link");
+  const double link = least(Objective::Kind::link);
   ProgressLine line(program.console, "exact");
   const ExactResult exact = exact_network(site.simulator(), site.area(), site.clash(),
                                           {.stations = problem.stations_max,
                                            .sample_voxels = std::min<std::uint64_t>(config.sample_voxels, kStartSample),
                                            .link = link,
-                                           .apart_m = least("apart"),
+                                           .apart_m = least(Objective::Kind::distance),
                                            .max_seconds = seconds,
                                            .existing = problem.kept},
                                           {.report = [&](double done) { line.update(done); }, .stop = std::move(stop)});
