@@ -173,7 +173,9 @@ TEST(StationsCsv, NoCellIsAFormulaAndTextsAreReadBackAsTheyWere) {
                                  "=a,\"b\";c", "say \"x\"", "\"\"", "Tür; links"}) {
     std::vector<Scanner> scanners(2);
     scanners[1].name = text;
-    write_stations_csv(folder / "s.csv", std::vector<PlacedStation>{{.setup = {.scanner = 1}}}, scanners);
+    std::vector<PlacedStation> stations(1);
+    stations[0].setup.scanner = 1;
+    write_stations_csv(folder / "s.csv", stations, scanners);
     EXPECT_EQ(read_stations_csv(folder / "s.csv")[0].scanner, text);
     std::vector<MissedShare> shares(2);
     shares[1].node = text;
