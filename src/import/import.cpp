@@ -63,8 +63,9 @@ std::string cache_key(const fs::path& file, const Format& format, const Importer
   const std::string_view version = vantage::version(), name = format.name;
   hash.add_bytes(version.data(), version.size());
   hash.add_bytes(name.data(), name.size());
-  hash.add(fs::file_size(importer.program));
-  hash.add(fs::last_write_time(importer.program).time_since_epoch().count());
+  std::error_code failure;  // then both are -1
+  hash.add(fs::file_size(importer.program, failure));
+  hash.add(fs::last_write_time(importer.program, failure).time_since_epoch().count());
   add_file(hash, file);
   if (name == "OBJ") add_material_tables(hash, file);
   char text[17];
@@ -124,6 +125,8 @@ Error failure_of(const Ended& ended, const std::string& file, const Format& form
   if (ended.exit_code == kMemory)
     return Error(Errc::out_of_memory, who + " needs more memory than the " + bytes_text(limits.memory) +
                                           " that are free; close other programs, or export parts of the model");
+  if (ended.signal == SIGINT || ended.signal == SIGTERM || ended.signal == SIGHUP)
+    return Error(Errc::io, who + " was stopped (signal " + std::to_string(ended.signal) + ")");
   const std::string how = ended.signal > 0       ? "crashed (signal " + std::to_string(ended.signal) + ")"
                           : ended.exit_code != 0 ? "failed (exit code " + std::to_string(ended.exit_code) + ")"
                                                  : "gave no GLB";
@@ -149,7 +152,10 @@ std::vector<std::uint8_t> as_glb(const fs::path& file, const Format& format, Lim
   if (!folder.empty())
     if (auto glb = cached(entry, limits)) return std::move(*glb);
   importer.words.push_back(absolute.string());
-  for (const fs::path& name : {absolute, fs::canonical(absolute)}) importer.readable.push_back(name.parent_path());
+  importer.readable.push_back(absolute.parent_path());
+  std::error_code failure;
+  if (const fs::path target = fs::canonical(absolute, failure); !failure)
+    importer.readable.push_back(target.parent_path());
   Ended ended = run_limited(importer.words, importer.readable, limits);
   if (ended.exit_code != 0 || ended.timed_out || ended.too_large || !is_glb(ended.output))
     throw failure_of(ended, file.string(), format, limits);

@@ -24,8 +24,14 @@ namespace {
 #ifdef LANDLOCK_CREATE_RULESET_VERSION
 constexpr std::uint64_t kReadFile = LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_EXECUTE;
 constexpr std::uint64_t kReadFolder = kReadFile | LANDLOCK_ACCESS_FS_READ_DIR;
-// All that the first version of Landlock knows.
-constexpr std::uint64_t kHandled = (LANDLOCK_ACCESS_FS_MAKE_SYM << 1) - 1;
+// All accesses to files that a version of Landlock knows: renames between folders since its second, truncation since
+// its third, which headers may not name yet.
+std::uint64_t known_accesses(long version) {
+  std::uint64_t last = LANDLOCK_ACCESS_FS_MAKE_SYM;
+  if (version >= 2) last <<= 1;
+  if (version >= 3) last <<= 1;
+  return (last << 1) - 1;
+}
 
 void allow_reading(int rules, const std::filesystem::path& path) {
   const int place = open(path.c_str(), O_PATH | O_CLOEXEC);
@@ -73,8 +79,10 @@ void deny_network() noexcept {
 
 Sandbox::Sandbox(const std::vector<std::filesystem::path>& readable) {
 #ifdef LANDLOCK_CREATE_RULESET_VERSION
+  const long version = syscall(SYS_landlock_create_ruleset, nullptr, 0, LANDLOCK_CREATE_RULESET_VERSION);
+  if (version < 1) return;
   landlock_ruleset_attr handled{};
-  handled.handled_access_fs = kHandled;
+  handled.handled_access_fs = known_accesses(version);
   rules_ = static_cast<int>(syscall(SYS_landlock_create_ruleset, &handled, sizeof handled, 0));
   if (rules_ < 0) return;
   for (const char* folder : {"/usr", "/lib", "/lib32", "/lib64", "/bin", "/sbin", "/etc", "/opt", "/nix", "/proc",

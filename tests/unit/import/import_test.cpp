@@ -109,6 +109,7 @@ TEST_F(ImporterTest, FailuresAreOneClearError) {
   };
   failing("kill -SEGV $$", Errc::malformed_file, "the importer of OBJ crashed (signal 11)");
   failing("echo 'it holds ink' >&2; exit 65", Errc::malformed_file, "model.obj: it holds ink");
+  failing("kill -INT $$", Errc::io, "was stopped (signal 2)");
   failing("exit 3", Errc::malformed_file, "failed (exit code 3)");
   failing("exit 71", Errc::out_of_memory, "needs more memory than the 3.0 GiB", {.memory = std::uint64_t{3} << 30});
   failing("echo 'reader is not installed' >&2; exit 69", Errc::io, "reader is not installed");
