@@ -12,7 +12,7 @@
 namespace vantage::python {
 namespace {
 
-using Devices = std::vector<std::pair<Engine, std::uint32_t>>;
+using Devices = std::vector<std::pair<Engine, std::optional<std::uint32_t>>>;
 
 Options<SimulatorConfig> simulator_options() {
   return Options<SimulatorConfig>("Simulator")
@@ -22,7 +22,7 @@ Options<SimulatorConfig> simulator_options() {
           "devices",
           [](const SimulatorConfig& c) {
             Devices pairs;
-            for (const DeviceChoice& choice : c.devices) pairs.emplace_back(choice.engine, choice.device_index);
+            for (const DeviceChoice& choice : c.devices) pairs.emplace_back(choice.engine, choice.index);
             return pairs;
           },
           [](SimulatorConfig& c, const Devices& pairs) {
@@ -119,7 +119,7 @@ void add_engines(py::module_& m) {
       "all_devices",
       [](Engine engine) {
         Devices pairs;
-        for (const DeviceChoice& choice : all_devices(engine)) pairs.emplace_back(choice.engine, choice.device_index);
+        for (const DeviceChoice& choice : all_devices(engine)) pairs.emplace_back(choice.engine, choice.index);
         return pairs;
       },
       py::arg("engine") = Engine::automatic, py::call_guard<py::gil_scoped_release>(),

@@ -83,7 +83,8 @@ void add_sites(py::module_& m) {
           [](const std::filesystem::path& file, const py::kwargs& given) {
             SiteOptions options = site_options(given, "Site.open");
             const py::gil_scoped_release unlocked;
-            return std::make_shared<GuardedSite>(GuardedSite{Site::open(file, std::move(options))});
+            return std::shared_ptr<GuardedSite>(
+                new GuardedSite{Site::open(file, std::move(options))});  // a mutex stays
           },
           py::arg("file"),
           ("Reads a model and chooses what the settings leave open. Raises Error: io, malformed_file,\n"

@@ -23,7 +23,7 @@ run() {
 }
 
 sites() {
-  VANTAGE_WHOLE_SITES=1 run "$tests/conformance/conformance_test" --gtest_brief=1
+  run "$tests/conformance/conformance_test" --gtest_brief=1
   VANTAGE_WHOLE_SITES=1 run "$tests/stress/stress_test" --gtest_brief=1
   VANTAGE_WHOLE_SITES=1 run "$tests/sites/sites_test" --gtest_brief=1 --gtest_filter='*Plans*'
   VANTAGE_SEEDS=5..20 run "$tests/conformance/conformance_test" --gtest_brief=1 --gtest_filter='*RandomSites*'

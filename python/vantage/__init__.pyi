@@ -389,7 +389,7 @@ class EngineInfo:
     def reason(self) -> str: ...
 
 def list_engines() -> List[EngineInfo]: ...
-def all_devices(engine: EngineName = "auto") -> List[Tuple[EngineName, int]]: ...
+def all_devices(engine: EngineName = "auto") -> List[Tuple[EngineName, Optional[int]]]: ...
 def write_point_cloud(
     file: Path,
     simulator: Simulator,
@@ -509,7 +509,7 @@ class Simulator:
         *,
         engine: EngineName = "auto",
         device_index: Optional[int] = None,
-        devices: Sequence[Tuple[EngineName, int]] = [],
+        devices: Sequence[Tuple[EngineName, Optional[int]]] = [],
         max_memory_bytes: int = 0,
         user_size_m: float = 0.1,
         point_spacing_m: float = 0.01,

@@ -2,6 +2,7 @@
 // Criteria for an engine's scan to agree with the reference.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -10,10 +11,9 @@
 
 namespace vantage::test {
 
-// Closer than this to an edge or a voxel face, rounding may decide differently; one ray in 100 000 is, and by chance a
-// few more.
+// Closer than this to an edge or a voxel face, rounding may decide differently; one ray in 100 000 is at most.
 inline constexpr double undecided_m = 1e-4;
-inline double most_undecided(std::size_t rays) { return 4 + 1e-5 * static_cast<double>(rays); }
+inline double most_undecided(std::size_t rays) { return std::ceil(1e-5 * static_cast<double>(rays)); }
 
 inline constexpr std::uint32_t all_outputs = Tracer::range | Tracer::position | Tracer::normal | Tracer::reflectivity |
                                              Tracer::primitive | Tracer::barycentric | Tracer::voxel;

@@ -2,7 +2,6 @@
 #include "conformance/sites.hpp"
 
 #include <cmath>
-#include <cstdlib>
 #include <map>
 #include <numbers>
 #include <tuple>
@@ -127,12 +126,8 @@ LimitModel some_limits(SceneData scene, Scanner scanner) {
   return make_limit_model(scene, scanner, {.max_incidence = Angle::degrees(50)});
 }
 
-// VANTAGE_WHOLE_SITES=1 has four times as many rays and voxels.
-double coarseness() { return std::getenv("VANTAGE_WHOLE_SITES") ? 1 : 2; }
-
 TestSite make_site(const std::string& name, std::shared_ptr<const SceneData> scene, double user_size_m,
                    double step_degrees, const std::vector<Vec3>& heads) {
-  user_size_m *= coarseness(), step_degrees *= coarseness();  // a voxel gets as many points either way
   TestSite site;
   site.name = name;
   site.scene = std::move(scene);

@@ -29,8 +29,7 @@ struct TestSite {
   const std::vector<ReferenceHit>& reference(std::size_t station, bool noisy, bool limited = false) const;
 };
 
-// three-walls, four-walls, boiler-house. Made once. VANTAGE_WHOLE_SITES=1 has four times as many rays and voxels in
-// them.
+// three-walls, four-walls, boiler-house. Made once.
 const std::vector<TestSite>& sites();
 
 }  // namespace vantage::test

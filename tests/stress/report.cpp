@@ -136,7 +136,6 @@ void edges(const std::vector<EngineInfo>&, double size) {
 }
 
 void reference(const std::vector<EngineInfo>& engines, double) {
-  setenv("VANTAGE_WHOLE_SITES", "1", 1);
   head({"site", "engine", "rays", "rays that differ", "range (m)", "σ (m)", "coverage", "pair overlap",
         "clustering coefficient"});
   for (const TestSite& site : sites()) {
