@@ -93,11 +93,13 @@ std::string_view first_word(std::string_view line) { return line.substr(0, line.
 bool holds_obj(std::string_view text) {
   constexpr std::array kWords{"v"sv, "vn"sv, "vt"sv, "vp"sv, "f"sv, "l"sv, "mtllib"sv, "usemtl"sv, "o"sv, "g"sv, "s"sv};
   std::size_t known = 0, others = 0;
+  bool vertices = false;  // a letter alone makes no model
   for (const std::string_view line : first_lines(text, 2000)) {
     if (line.front() == '#') continue;
     ++(std::ranges::find(kWords, first_word(line)) != kWords.end() ? known : others);
+    vertices |= line.starts_with("v ");
   }
-  return known > 0 && known > 20 * others;
+  return vertices && known > 20 * others;
 }
 
 // Two lines of three numbers or more.

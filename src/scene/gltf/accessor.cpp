@@ -7,8 +7,6 @@
 namespace vantage::gltf {
 namespace {
 
-constexpr std::size_t kLargestWithoutBuffer = std::size_t{1} << 26;  // nothing in the file bounds such an accessor
-
 std::size_t component_size(int type) {
   switch (type) {
     case TINYGLTF_COMPONENT_TYPE_BYTE:

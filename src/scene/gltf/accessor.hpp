@@ -12,6 +12,9 @@
 
 namespace vantage::gltf {
 
+// Elements of an accessor without a buffer view, which nothing in the file bounds, at most.
+inline constexpr std::size_t kLargestWithoutBuffer = std::size_t{1} << 26;
+
 class Accessor {
  public:
   // Messages name the reader by `user`, e.g. "mesh 3 POSITION". `components`: allowed sizes, e.g. {3, 4}. Throws Error

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/gltf/primitive.hpp"
 
+#include <algorithm>
 #include <limits>
 
 namespace vantage::gltf {
@@ -43,7 +44,13 @@ PrimitiveSize primitive_size(const File& file, int mesh, std::size_t index) {
   const auto count = [&](int accessor) -> std::uint64_t {
     const auto& accessors = file.model().accessors;
     const bool known = accessor >= 0 && static_cast<std::size_t>(accessor) < accessors.size();
-    return known ? accessors[static_cast<std::size_t>(accessor)].count : 0;
+    if (!known) return 0;
+    // No more than reading will accept: an accessor that claims more is refused there, by its name.
+    const tinygltf::Accessor& claimed = accessors[static_cast<std::size_t>(accessor)];
+    const auto& views = file.model().bufferViews;
+    const bool viewed = claimed.bufferView >= 0 && static_cast<std::size_t>(claimed.bufferView) < views.size();
+    return std::min(claimed.count,
+                    viewed ? views[static_cast<std::size_t>(claimed.bufferView)].byteLength : kLargestWithoutBuffer);
   };
   const auto position = primitive.attributes.find("POSITION");
   if (primitive.mode < TINYGLTF_MODE_TRIANGLES || position == primitive.attributes.end()) return {};

@@ -49,6 +49,10 @@ TEST_F(SeedNetworks, GreedyTakesWhatAddsMost) {
   for (std::size_t step = 0; step < 4; ++step) {
     double best = 0;
     for (const PlacedStation& candidate : candidates) {
+      const auto same = [&](const PlacedStation& one) {
+        return one.uv.u == candidate.uv.u && one.uv.v == candidate.uv.v;
+      };
+      if (std::ranges::any_of(network, same)) continue;  // a candidate is chosen once
       std::vector<PlacedStation> with = network;
       with.push_back(candidate);
       best = std::max(best, coverage_of(with));

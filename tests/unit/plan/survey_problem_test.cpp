@@ -104,11 +104,12 @@ TEST(ChooseOptimiser, RefusesWhatCannotBe) {
     const DecisionSpace space(site, problem);
     return refusal([&] { choose_optimiser(space, problem, config, 1); });
   };
-  EXPECT_NE(refused(coverage_fix(4), {.sigma0 = 0}).find("sigma0"), std::string::npos);
+  EXPECT_NE(refused(coverage_fix(4), {.iterations = 9, .sigma0 = 0}).find("sigma0"), std::string::npos);
   EXPECT_NE(refused(coverage_fix(4), {.iterations = 0}).find("iteration"), std::string::npos);
-  EXPECT_NE(refused(coverage_fix(4), {.max_seconds = -1}).find("max_seconds"), std::string::npos);
-  EXPECT_NE(refused(coverage_overlap_fix(4), {.population = 1}).find("population of 1"), std::string::npos);
-  EXPECT_EQ(refused(coverage_overlap_fix(4), {}), "accepted");
+  EXPECT_NE(refused(coverage_fix(4), {.iterations = 9, .max_seconds = -1}).find("max_seconds"), std::string::npos);
+  EXPECT_NE(refused(coverage_overlap_fix(4), {.population = 1, .iterations = 9}).find("population of 1"),
+            std::string::npos);
+  EXPECT_EQ(refused(coverage_overlap_fix(4), {.iterations = 9}), "accepted");
   EXPECT_EQ(population_of(coverage_fix(4), {}), 10u);
   EXPECT_EQ(population_of(fitness_min(4, 8), {}), 20u);
   EXPECT_EQ(population_of(coverage_min(4, 8), {}), 100u);
