@@ -159,8 +159,9 @@ TEST_P(WritePlan, TheSameSeedGivesTheSameFrontButForSeconds) {
 
 TEST(Plan, SampledOfEveryVoxelIsExact) {
   Survey survey;
-  PlanConfig config{.population = 6, .iterations = 3};
+  PlanConfig config{.population = 6, .iterations = 3, .exact = true};
   const PlanResult exact = plan(survey.simulator, survey.area, survey.clash, coverage_overlap_fix(3), config);
+  config.exact = false;
   config.batch = 1;  // as the exact search has it
   config.sample_voxels = survey.simulator.voxel_count();
   const PlanResult sampled = plan(survey.simulator, survey.area, survey.clash, coverage_overlap_fix(3), config);

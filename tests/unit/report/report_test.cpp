@@ -106,7 +106,7 @@ TEST(Report, OfANetworkThatNoPlanFoundHasItsFigures) {
   EXPECT_EQ(json["question"], "3 stations, as given");
   EXPECT_TRUE(json["axes"].empty());
   write_report(folder / "a.html", found, survey.simulator, survey.area, {.title = "A wall", .pictures = false});
-  EXPECT_EQ(count(read(folder / "a.html"), "<title>A wall</title>"), 1u);
+  EXPECT_EQ(count(read(folder / "a.html"), "<title>A wall – survey plan</title>"), 1u);
   EXPECT_THROW(write_report(folder / "a.txt", found, survey.simulator, survey.area), Error);
   EXPECT_TRUE(why_no_report().empty());
 }
