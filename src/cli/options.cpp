@@ -68,6 +68,11 @@ CLI::Option* add_switch(CLI::App& app, const std::string& names, const std::stri
       help);
 }
 
+std::string by_option(const CLI::App& command, const std::string& message) {
+  const std::string option = "--" + message.substr(0, message.find(':'));
+  return command.get_option_no_throw(option) ? "--" + message : message;
+}
+
 CLI::Option* add_number(CLI::App& app, const std::string& names, const std::string& unit, const std::string& help,
                         std::optional<double>& target, const Interval& interval) {
   return add_value(app, names, unit, help, [&target, interval](const std::string& text, const std::string& what) {

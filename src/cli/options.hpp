@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cli/parse.hpp"
+#include "vantage/error.hpp"
 #include "vantage/settings.hpp"
 
 namespace vantage::cli {
@@ -50,6 +51,19 @@ void add_settings(CLI::App& app, const SettingTable<Options>& table, Options& op
   for (const SettingRow<Options>& row : table)
     for (const std::string& other : row.excludes)
       app.get_option("--" + row.name)->excludes(app.get_option("--" + other));
+}
+
+// The message of a setting that was refused, by the option's name where it begins with the setting's.
+std::string by_option(const CLI::App& command, const std::string& message);
+// Calls `make`, with errors as by_option() words them.
+template <class Make>
+auto by_option(const CLI::App& command, const Make& make) -> decltype(make()) {
+  try {
+    return make();
+  } catch (const Error& error) {
+    throw Error(error.code(), by_option(command, std::string(error.what())),
+                {error.details().begin(), error.details().end()});
+  }
 }
 
 // Sets the options of `command` that `values` names and nothing above has set yet. Keys are long option names, with -

@@ -249,7 +249,7 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   for (const PlacedStation& station : heads_of(site, options.start, "--start"))
     options.config.start.push_back(station.position);
   keep(options.question, heads_of(site, options.keep, "--keep"));
-  const SurveyProblem problem = survey_problem(site, options.question);
+  const SurveyProblem problem = by_option(command, [&] { return survey_problem(site, options.question); });
   site.area();  // an error now, not behind the voxels
 
   if (program.ranks)

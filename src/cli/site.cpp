@@ -25,7 +25,7 @@ Site open_site(CLI::App& command, SiteArguments& arguments) {
     throw Error(Errc::invalid_argument, command.get_name() + ": which scene? Give a model, as site.glb or site.ifc");
   arguments.given.log = [](const std::string& line) { spdlog::info("{}", line); };
   arguments.given.warn = [](const std::string& line) { spdlog::warn("{}", line); };
-  Site site = Site::open(arguments.scene, arguments.given);
+  Site site = by_option(command, [&] { return Site::open(arguments.scene, arguments.given); });
   // A scene may bring stations to try, for commands that take some.
   const CLI::Option* station_file = command.get_option_no_throw("--stations");
   const bool own_stations = station_file && station_file->count() > 0;

@@ -103,7 +103,7 @@ TEST_F(Plan, ChoosesAStepForEachStation) {
   const auto same = json_of({"plan", scene_, "--engine", "embree", "--config", path("plan/config.json"), "--population",
                              "6", "--iterations", "3", "--sample", "200", "-o", path("again")});
   EXPECT_EQ(same["front"], front["front"]);
-  expect_refused(run_program(plan("other", {"--stations", "2", "--search-step", "1,3mm"})), 2, "--scanner PRESET");
+  expect_refused(run_program(plan("other", {"--stations", "2", "--search-step", "1,3mm"})), 2, "a scanner's preset");
 }
 
 TEST_F(Plan, ChoosesAStepForEachStationOfTheFewest) {
