@@ -172,10 +172,14 @@ void add_placement(Rows& rows) {
       .repeated(
           "within", "FILE", "Stations only within a polygon: GeoJSON, or a CSV file with x,y a line",
           [](SiteOptions & o) -> auto& { return o.within; },
-          [](const std::string& text, const std::string&) { return read_region(text); })
+          [](const std::string& text, const std::string& what) {
+            return named(what, [&] { return read_region(text); });
+          })
       .repeated(
           "without", "FILE", "No stations within a polygon", [](SiteOptions & o) -> auto& { return o.without; },
-          [](const std::string& text, const std::string&) { return read_region(text); });
+          [](const std::string& text, const std::string& what) {
+            return named(what, [&] { return read_region(text); });
+          });
 }
 
 void add_run(Rows& rows) {
