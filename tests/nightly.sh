@@ -3,7 +3,7 @@
 # tests/nightly.sh [part...]
 # What takes too long for `ctest --preset release` and `.ci/run`, after `./setup.sh --tests`; without arguments, all parts, one after the other:
 #
-#   sites      conformance and stress on every engine, with four times as many rays and voxels; plans of a street and a plant; more random sites
+#   sites      conformance and stress on every engine, with every case of the suite's own; plans of a street and a plant; more random sites
 #   faults     every n of the faults of device, disk and process, and every number for every option
 #   address, undefined, thread
 #              every suite under that sanitizer (tests/sanitizers/check.sh)
