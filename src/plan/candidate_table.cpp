@@ -4,37 +4,40 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace vantage {
 
-CandidateTable::CandidateTable(Simulator& simulator, Simulator* surroundings, std::uint64_t sample_voxels,
-                               std::uint64_t surroundings_voxels, double nearest_m)
-    : simulator_(&simulator),
-      surroundings_(surroundings),
-      sample_voxels_(sample_voxels),
-      surroundings_voxels_(surroundings_voxels),
-      nearest_m_(nearest_m),
-      coverage_(simulator, sample_voxels),
-      around_(surroundings ? SampledCoverage(*surroundings, surroundings_voxels) : SampledCoverage()) {}
-
-bool CandidateTable::add(std::span<const PlacedStation> stations, const Progress& progress) {
-  const SampledCoverage fresh = sample_coverage(*simulator_, stations, sample_voxels_, progress);
-  const bool whole = add(stations.first(std::min(stations.size(), fresh.size())), fresh, progress);
-  return whole && !fresh.cancelled();
+TraceColumns columns_of(Simulator& simulator, std::uint64_t sample_voxels) {
+  return [&simulator, sample_voxels](std::span<const PlacedStation> stations, const Progress& progress) {
+    return sample_coverage(simulator, stations, sample_voxels, progress).matrix();
+  };
 }
 
-bool CandidateTable::add(std::span<const PlacedStation> stations, const SampledCoverage& known,
+CandidateTable::CandidateTable(TraceColumns surveyed, TraceColumns surroundings, double nearest_m)
+    : surveyed_(std::move(surveyed)),
+      surroundings_(std::move(surroundings)),
+      nearest_m_(nearest_m),
+      matrix_(surveyed_({}, {})),
+      around_(surroundings_ ? surroundings_({}, {}) : CoverageMatrix()) {}
+
+bool CandidateTable::add(std::span<const PlacedStation> stations, const Progress& progress) {
+  const CoverageMatrix fresh = surveyed_(stations, progress);
+  const std::size_t count = std::min(stations.size(), fresh.candidates());
+  return add(stations.first(count), fresh, progress) && count == stations.size();
+}
+
+bool CandidateTable::add(std::span<const PlacedStation> stations, const CoverageMatrix& known,
                          const Progress& progress) {
-  std::size_t count = std::min(stations.size(), known.size());
+  std::size_t count = std::min(stations.size(), known.candidates());
   if (surroundings_) {
-    const SampledCoverage fresh = sample_coverage(*surroundings_, stations.first(count), surroundings_voxels_,
-                                                  {.report = {}, .stop = progress.stop});
+    const CoverageMatrix fresh = surroundings_(stations.first(count), {.report = {}, .stop = progress.stop});
     around_.append(fresh);
-    count = std::min(count, fresh.size());
+    count = std::min(count, fresh.candidates());
   }
-  coverage_.append(known, count);
+  matrix_.append(known, count);
   stations_.insert(stations_.end(), stations.begin(), stations.begin() + static_cast<std::ptrdiff_t>(count));
-  graph_ = StationGraph(around_.matrix(), stations_.size());
+  graph_ = StationGraph(around_, stations_.size());
   std::vector<Vec3> positions;
   for (const PlacedStation& station : stations_) positions.push_back(station.position);
   graph_.exclude_nearer(positions, nearest_m_);

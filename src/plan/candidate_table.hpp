@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -12,30 +13,32 @@
 
 namespace vantage {
 
+// Traces stations one by one: what each covers of a sample. A stopped call returns the columns of the first ones.
+using TraceColumns = std::function<CoverageMatrix(std::span<const PlacedStation>, const Progress&)>;
+// On a sample of so many voxels of a simulator, which it borrows.
+TraceColumns columns_of(Simulator& simulator, std::uint64_t sample_voxels);
+
 class CandidateTable {
  public:
-  // Borrows the simulators. `surroundings`: null where links do not matter. Stations nearer than `nearest_m` exclude
-  // each other.
-  CandidateTable(Simulator& simulator, Simulator* surroundings, std::uint64_t sample_voxels,
-                 std::uint64_t surroundings_voxels, double nearest_m);
+  // `surroundings`: over all surfaces; empty where links do not matter. Stations nearer than `nearest_m` exclude each
+  // other.
+  CandidateTable(TraceColumns surveyed, TraceColumns surroundings, double nearest_m);
 
-  // Traces stations; those whose coverage is known, over the surroundings alone. False where it was stopped: then the
-  // table has the stations that were traced in full.
+  // Traces stations; those of known columns, over the surroundings alone. False where it was stopped: then the table
+  // has the stations that were traced in full.
   bool add(std::span<const PlacedStation> stations, const Progress& progress);
-  bool add(std::span<const PlacedStation> stations, const SampledCoverage& known, const Progress& progress);
+  bool add(std::span<const PlacedStation> stations, const CoverageMatrix& known, const Progress& progress);
 
   const std::vector<PlacedStation>& stations() const { return stations_; }
-  const CoverageMatrix& matrix() const { return coverage_.matrix(); }
+  const CoverageMatrix& matrix() const { return matrix_; }
   // Made anew by each addition.
   const StationGraph& graph() const { return graph_; }
 
  private:
-  Simulator* simulator_;
-  Simulator* surroundings_;
-  std::uint64_t sample_voxels_, surroundings_voxels_;
+  TraceColumns surveyed_, surroundings_;
   double nearest_m_;
   std::vector<PlacedStation> stations_;
-  SampledCoverage coverage_, around_;
+  CoverageMatrix matrix_, around_;
   StationGraph graph_;
 };
 

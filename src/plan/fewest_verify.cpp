@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plan/fewest_verify.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "plan/decision_space.hpp"
+#include "plan/drop_networks.hpp"
+
+namespace vantage {
+namespace {
+
+// Margins are raised by what was short, times this.
+constexpr double kBeyond = 1.25;
+
+// What an entry is short of the least values that are required of it.
+Margins shortfall(const PlanEntry& entry, std::span<const Requirement> requirements) {
+  Margins margins;
+  for (const Requirement& requirement : requirements) {
+    const Objective& objective = requirement.objective;
+    if (requirement.bound != Requirement::Bound::at_least || !(requirement.limit > 0)) continue;
+    const double here = requirement.limit - entry.value(objective.name);
+    if (objective.kind == Objective::Kind::coverage)
+      margins.coverage = std::max(margins.coverage, here * objective.coverage_of_one);
+    if (objective.kind == Objective::Kind::link) margins.link = std::max(margins.link, here);
+  }
+  return margins;
+}
+
+}  // namespace
+
+SurveyProblem with_stations(SurveyProblem problem, std::size_t placed) {
+  problem.stations_min = problem.stations_max = placed;
+  const auto all = static_cast<double>(problem.kept.size() + placed);
+  for (Objective& objective : problem.objectives)
+    if (objective.by_alpha) objective.scale = minimise(all, all);
+  return problem;
+}
+
+VerifiedNetworks::VerifiedNetworks(const SurveyProblem& problem, const Measures& measures,
+                                   const PlacementOracle& oracle, NetworkEvaluator& evaluator,
+                                   std::uint64_t sample_voxels, const PlanWatch& watch)
+    : problem_(problem),
+      measures_(measures),
+      oracle_(oracle),
+      evaluator_(evaluator),
+      sample_voxels_(sample_voxels),
+      watch_(watch) {}
+
+void VerifiedNetworks::add(std::span<const PlacedStation> placed) {
+  const SurveyProblem narrowed = with_stations(problem_, placed.size());
+  SearchOutcome found;  // of one network, whose objectives are not known yet
+  found.front.push_back(
+      {.x = DecisionSpace(oracle_, narrowed).encode(placed), .f = std::vector<double>(problem_.objectives.size(), 2)});
+  add(found, placed.size());
+}
+
+void VerifiedNetworks::add(const SearchOutcome& found, std::size_t placed) {
+  if (found.front.empty()) return;
+  const SurveyProblem narrowed = with_stations(problem_, placed);
+  const DecisionSpace space(oracle_, narrowed);
+  for (PlanEntry& entry :
+       confirm_front(found, space, narrowed, measures_, sample_voxels_, evaluator_, watch_).entries) {
+    entry.violation = violation_of(entry, problem_.requirements);
+    entries_.push_back(std::move(entry));
+  }
+}
+
+const PlanEntry* VerifiedNetworks::best() const {
+  const PlanEntry* best = nullptr;
+  for (const PlanEntry& entry : entries_)
+    if (entry.exact && (!best || entry.violation < best->violation)) best = &entry;
+  return best;
+}
+
+std::vector<PlanEntry> VerifiedNetworks::front() const {
+  const bool any_exact = std::ranges::any_of(entries_, &PlanEntry::exact);
+  std::vector<PlanEntry> left;
+  for (const PlanEntry& entry : entries_)
+    if (entry.exact || !any_exact) left.push_back(entry);
+  drop_unplaced(left, problem_.kept.size());
+  const auto rank = [](const PlanEntry& entry) {
+    return std::pair{entry.violation, entry.violation > 0 ? std::size_t{0} : entry.stations.size()};
+  };
+  if (left.empty()) return left;
+  const auto best = rank(*std::ranges::min_element(left, {}, rank));
+  std::erase_if(left, [&](const PlanEntry& entry) { return rank(entry) != best; });
+
+  const std::size_t objectives = problem_.objectives.size();
+  std::vector<double> scaled;
+  for (const PlanEntry& entry : left)
+    for (const Objective& objective : problem_.objectives)
+      scaled.push_back(objective.scaled(entry.value(objective.name)));
+  const std::vector<std::size_t> ranks = non_dominated_ranks(scaled, objectives);
+  std::vector<PlanEntry> front;
+  for (std::size_t k = 0; k < left.size(); ++k) {
+    const bool doubled =
+        std::ranges::any_of(front, [&](const PlanEntry& other) { return same_places(other, left[k]); });
+    if (ranks[k] == 0 && !doubled && (objectives > 1 || front.empty())) front.push_back(std::move(left[k]));
+  }
+  return front;
+}
+
+double verify(const FewestChoice& choice, VerifiedNetworks& verified) {
+  verified.add(choice.placed_of(choice.network));
+  if (verified.entries().empty() || !verified.entries().back().exact) return choice.margins.coverage;
+  const PlanEntry& entry = verified.entries().back();
+  return entry.searched.at("coverage").value - entry.value("coverage");
+}
+
+bool repair(FewestChoice& choice, const VerifiedNetworks& verified, const std::stop_token& stop) {
+  const PlanEntry* best = verified.best();
+  if (!best || choice.network.violation > 0) return false;
+  const Margins missing = shortfall(*best, verified.problem().requirements);
+  if (missing.coverage == 0 && missing.link == 0) return false;
+  choice.margins.coverage += kBeyond * missing.coverage, choice.margins.link += kBeyond * missing.link;
+  choice.one_fewer.reset();
+  // From where it is, at this number, or else by what one more allows.
+  const CoverProblem asked = cover_problem(choice);
+  CoverSolution same = improve_weakest_link(asked, evaluate_cover(asked, choice.network.chosen), stop);
+  if (same.violation == 0)
+    choice.network = std::move(same);
+  else
+    choose_from(choice, std::move(same), stop);
+  choice.network = improve_weakest_link(asked, std::move(choice.network), stop);
+  return true;
+}
+
+bool choose_by_known_error(FewestChoice& choice, VerifiedNetworks& verified, double& overstated,
+                           const std::stop_token& stop) {
+  const PlanEntry& entry = verified.entries().back();
+  const auto exact = entry.values.find("coverage");
+  if (exact == entry.values.end() || !choice.one_fewer || choice.network.violation > 0) return false;
+  const double error = choice.network.coverage - exact->second.value;
+  if (error >= choice.margins.coverage) return false;
+  const double margin = std::exchange(choice.margins.coverage, error);
+  ConnectedCover found = min_connected_cover(cover_problem(choice), stop, *choice.one_fewer);
+  if (found.best.violation == 0 && found.best.chosen.size() <= choice.network.chosen.size()) {
+    CoverSolution before =
+        std::exchange(choice.network, improve_weakest_link(cover_problem(choice), std::move(found.best), stop));
+    const double now_overstated = verify(choice, verified);
+    const PlanEntry& now = verified.entries().back();
+    if (now.exact && now.violation == 0) {
+      choice.one_fewer = std::move(found.one_fewer);
+      overstated = now_overstated;
+      return true;
+    }
+    choice.network = std::move(before);
+  }
+  choice.margins.coverage = margin;
+  return false;
+}
+
+}  // namespace vantage

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plan/fewest_choice.hpp"
+
+#include <gtest/gtest.h>
+
+#include "unit/plan/floor_survey.hpp"
+
+namespace vantage {
+namespace {
+
+using test::floor_candidates;
+using test::floor_choice;
+using test::floor_columns;
+using test::floor_problem;
+
+// A choice among the lattice's candidates.
+FewestChoice chosen(const SurveyProblem& problem, int side, std::size_t step = 1) {
+  FewestChoice choice = floor_choice(problem, step);
+  const auto candidates = floor_candidates(side);
+  look(choice.table, {}, candidates, floor_columns(step)(candidates, {}), {}, {});
+  choose(choice, {}, {});
+  return choice;
+}
+
+TEST(FewestAsked, TakesTheStrictestLimits) {
+  SurveyProblem problem = fewest_stations(0.8, 0.25, 2, 9, 1.5);
+  problem.visible = 0.5;
+  for (Requirement& requirement : problem.requirements)
+    if (requirement.objective.name == "capture") requirement.objective = make_objective("capture", problem.settings());
+  problem.kept = {{1, 1, 4.5}};
+  FewestAsked asked = fewest_asked(problem);
+  EXPECT_EQ(asked.existing, 1u);
+  EXPECT_EQ(asked.fewest, 2u);
+  EXPECT_EQ(asked.most, 9u);
+  EXPECT_DOUBLE_EQ(asked.coverage, 0.4) << "of what can be seen";
+  EXPECT_EQ(asked.link, 0.25);
+  EXPECT_EQ(asked.apart_m, 1.5);
+  EXPECT_FALSE(asked.minutes);
+  problem.requirements.push_back({.objective = make_objective("coverage", problem.settings()), .limit = 0.45});
+  problem.requirements.push_back(
+      {.objective = make_objective("time", problem.settings()), .bound = Requirement::Bound::at_most, .limit = 90});
+  asked = fewest_asked(problem);
+  EXPECT_EQ(asked.coverage, 0.45);
+  EXPECT_EQ(asked.minutes, 90);
+}
+
+TEST(Look, TakesExistingStationsFirstAndFewCandidatesWhereTimeIsOver) {
+  const auto candidates = floor_candidates(16);
+  ASSERT_GT(candidates.size(), 150u);
+  const CoverageMatrix known = floor_columns()(candidates, {});
+  const PlacedStation existing = candidates.back();
+  const auto looked_at = [&](std::stop_token stop, std::stop_token abort) {
+    FewestChoice choice = floor_choice(floor_problem(0.5));
+    look(choice.table, {&existing, 1}, candidates, known, {.report = {}, .stop = std::move(stop)}, abort);
+    return choice.table;
+  };
+  std::stop_source stop, abort;
+  const CandidateTable all = looked_at({}, {});
+  EXPECT_EQ(all.stations().size(), candidates.size() + 1);
+  EXPECT_EQ(all.stations().front().position, existing.position);
+  EXPECT_GT(all.graph().overlap(1, 2), 0);
+  stop.request_stop();
+  EXPECT_EQ(looked_at(stop.get_token(), {}).stations().size(), 97u);
+  abort.request_stop();
+  EXPECT_EQ(looked_at(stop.get_token(), abort.get_token()).stations().size(), 0u);
+}
+
+TEST(Choose, KeepsWhatIsAskedAndNoStationFewerDoes) {
+  const FewestChoice choice = chosen(floor_problem(0.7), 12);
+  EXPECT_EQ(choice.network.violation, 0);
+  EXPECT_GE(choice.network.coverage, 0.7);
+  EXPECT_GE(choice.network.link, 0.1);
+  ASSERT_TRUE(choice.one_fewer);
+  EXPECT_EQ(choice.one_fewer->chosen.size() + 1, choice.placed());
+  const auto stations = choice.placed_of(choice.network);
+  for (std::size_t i = 0; i < stations.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) EXPECT_GE(test::apart_m(stations[i].position, stations[j].position), 1);
+}
+
+TEST(Choose, TakesAsManyAsThereIsTimeFor) {
+  const std::size_t without_limit = chosen(floor_problem(0.8), 12).placed();
+  ASSERT_GT(without_limit, 3u);
+  FewestChoice choice = floor_choice(floor_problem(0.8));
+  choice.asked.minutes = 35;
+  const auto candidates = floor_candidates(12);
+  look(choice.table, {}, candidates, floor_columns()(candidates, {}), {}, {});
+  // 10 minutes a station and 2 for the way to it.
+  const VisitTime visit{.each_min = 10, .minutes = [](std::span<const PlacedStation> placed) {
+                          return 12 * static_cast<double>(placed.size());
+                        }};
+  choose(choice, visit, {});
+  EXPECT_EQ(choice.placed(), 2u);
+  EXPECT_EQ(choice.asked.most, 2u);
+  EXPECT_GT(choice.network.violation, 0);
+}
+
+TEST(RefineAround, AddsAllowedPositionsNearTheChosen) {
+  FewestChoice choice = chosen(floor_problem(0.7), 7);
+  const std::size_t before = choice.table.stations().size(), placed = choice.placed();
+  std::vector<PlacedStation> from = choice.placed_of(choice.network);
+  const auto fewer = choice.placed_of(*choice.one_fewer);
+  from.insert(from.end(), fewer.begin(), fewer.end());
+  refine_around(choice, test::toy_site(), 0.8, {});
+  const auto& stations = choice.table.stations();
+  EXPECT_GT(stations.size(), before);
+  for (std::size_t k = before; k < stations.size(); ++k) {
+    EXPECT_EQ(stations[k].status, StationStatus::ok);
+    EXPECT_TRUE(std::ranges::any_of(from, [&](const PlacedStation& one) {
+      return test::apart_m(one.position, stations[k].position) <= 0.8 + 1e-9;
+    }));
+  }
+  EXPECT_EQ(choice.network.violation, 0);
+  EXPECT_LE(choice.placed(), placed);
+}
+
+TEST(RefineOnLargerSample, ChoosesByWhatALargerSampleShows) {
+  // Every 37th cell: what is chosen by so few of them seems better than it is.
+  const SurveyProblem problem = floor_problem(0.75);
+  FewestChoice choice = chosen(problem, 14, 37);
+  choice.margins = {.coverage = 0.02, .link = 0};
+  const std::size_t candidates = choice.table.stations().size();
+  const double seemed = choice.network.coverage;
+  const double really = test::FloorEvaluator::coverage_of(choice.stations_of(choice.network));
+  ASSERT_GT(seemed, really) << "or this shows nothing";
+  const std::size_t traced = refine_on_larger_sample(choice, floor_choice(problem).table, 0.001, {}, {});
+  EXPECT_EQ(traced, choice.table.stations().size());
+  EXPECT_GT(traced, 20u);
+  EXPECT_LT(traced, candidates) << "a short list";
+  EXPECT_EQ(choice.margins.coverage, 0.001);
+  EXPECT_EQ(choice.network.violation, 0);
+  EXPECT_NEAR(choice.network.coverage, test::FloorEvaluator::coverage_of(choice.stations_of(choice.network)), 1e-12);
+}
+
+TEST(RefineOnLargerSample, LeavesAChoiceThatItIsStoppedFor) {
+  const SurveyProblem problem = floor_problem(0.75);
+  FewestChoice choice = chosen(problem, 10, 5);
+  const auto before = choice.network.chosen;
+  std::stop_source stop;
+  stop.request_stop();
+  EXPECT_EQ(
+      refine_on_larger_sample(choice, floor_choice(problem).table, 0.001, {.report = {}, .stop = stop.get_token()}, {}),
+      0u);
+  EXPECT_EQ(choice.network.chosen, before);
+  EXPECT_EQ(choice.table.stations().size(), floor_candidates(10).size());
+}
+
+}  // namespace
+}  // namespace vantage

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plan/fewest_search.hpp"
+
+#include <gtest/gtest.h>
+
+#include "unit/plan/floor_survey.hpp"
+
+namespace vantage {
+namespace {
+
+double limit_on(const SurveyProblem& problem, std::string_view name) {
+  for (const Requirement& requirement : problem.requirements)
+    if (requirement.objective.name == name) return requirement.limit;
+  return -1;
+}
+
+TEST(FewestSearch, MovesRequirementsFurtherFromTheirLimits) {
+  SurveyProblem problem = fewest_stations(0.8, 0.3, 1, 9, 1);
+  problem.visible = 0.5;
+  for (Requirement& requirement : problem.requirements)
+    if (requirement.objective.name == "capture") requirement.objective = make_objective("capture", problem.settings());
+  const SurveyProblem moved = with_margins(problem, 0.02, 0.05);
+  EXPECT_DOUBLE_EQ(limit_on(moved, "capture"), 0.84);
+  EXPECT_DOUBLE_EQ(limit_on(moved, "link"), 0.35);
+  EXPECT_EQ(limit_on(moved, "apart"), limit_on(problem, "apart"));
+  EXPECT_EQ(limit_on(with_margins(problem, 0.2, 0), "capture"), 1) << "no more than all";
+}
+
+TEST(FewestSearch, TracesTwoStationsForEachCandidate) {
+  const SurveyProblem problem = with_stations(test::floor_problem(0.7), 5);
+  EXPECT_EQ(problem.stations_min, 5u);
+  EXPECT_EQ(problem.stations_max, 5u);
+  PlanConfig config{.population = 10, .iterations = 0};
+  EXPECT_EQ(refining_config(problem, config, 1000).iterations, 40u);  // 2 × 1000 / (10 × 5)
+  EXPECT_EQ(refining_config(problem, config, 10).iterations, 10u) << "at least";
+  EXPECT_EQ(refining_config(problem, config, 100'000).iterations, 100u) << "at most";
+  EXPECT_LT(refining_config(problem, config, 10).sigma0, config.sigma0);
+  config.iterations = 7;
+  EXPECT_EQ(refining_config(problem, config, 1000).iterations, 7u) << "as asked";
+}
+
+TEST(FewestSearch, ExpectsAtLeastWhatRoundsTook) {
+  const SurveyProblem problem = test::floor_problem(0.7);
+  const Measures measures = measures_of(problem);
+  test::FloorEvaluator evaluator(measures);
+  FewestChoice choice = test::floor_choice(problem);
+  const auto candidates = test::floor_candidates(8);
+  look(choice.table, {}, candidates, test::floor_columns()(candidates, {}), {}, {});
+  choose(choice, {}, {});
+  const SurveyProblem narrowed = with_stations(problem, choice.placed());
+  const PlanConfig config = refining_config(narrowed, {.iterations = 0}, candidates.size());
+  const StageTimes times{.look_s = 0.5, .station_s = 1, .round_s = 100, .round_stations = 40};
+  const auto seconds = expected_seconds(choice, narrowed, config, evaluator, times, {});
+  ASSERT_TRUE(seconds);
+  // Two rounds of 110 s; of the larger sample the choosing, 60 s, and 3 s for each of 64 candidates and 5.6 for each
+  // chosen station.
+  EXPECT_GE(*seconds, 220 + 60 + 3 * (64 + 5.6 * static_cast<double>(choice.placed())) - 1e-9);
+  std::stop_source stop;
+  stop.request_stop();
+  PlanWatch stopped;
+  stopped.stop = stop.get_token();
+  EXPECT_FALSE(expected_seconds(choice, narrowed, config, evaluator, times, stopped));
+}
+
+}  // namespace
+}  // namespace vantage

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plan/fewest_verify.hpp"
+
+#include <gtest/gtest.h>
+
+#include "unit/plan/floor_survey.hpp"
+
+namespace vantage {
+namespace {
+
+// A choice on the floor, and an evaluator that knows better.
+class FewestVerify : public testing::Test {
+ protected:
+  explicit FewestVerify(double coverage = 0.7) : problem(test::floor_problem(coverage)) {
+    const auto candidates = test::floor_candidates(10);
+    look(choice.table, {}, candidates, test::floor_columns()(candidates, {}), {}, {});
+    choose(choice, {}, {});
+  }
+  VerifiedNetworks networks() { return {problem, measures, oracle, evaluator, 100, watch}; }
+
+  SurveyProblem problem;
+  Measures measures = measures_of(problem);
+  PlacementOracle oracle = test::toy_site();
+  test::FloorEvaluator evaluator{measures};
+  PlanWatch watch;
+  FewestChoice choice = test::floor_choice(problem);
+};
+
+TEST_F(FewestVerify, SaysByHowMuchTheSampleOverstates) {
+  evaluator.overstated = 0.03;
+  VerifiedNetworks verified = networks();
+  EXPECT_NEAR(verify(choice, verified), 0.03, 1e-12);
+  ASSERT_EQ(verified.entries().size(), 1u);
+  EXPECT_TRUE(verified.entries()[0].exact);
+  EXPECT_EQ(verified.entries()[0].violation, 0);
+  EXPECT_NEAR(verified.entries()[0].value("coverage"), choice.network.coverage, 1e-12);
+  EXPECT_EQ(verified.best(), &verified.entries()[0]);
+}
+
+TEST_F(FewestVerify, FallsBackToTheMarginWhereItIsAborted) {
+  std::stop_source abort;
+  abort.request_stop();
+  watch.abort = abort.get_token();
+  choice.margins.coverage = 0.05;
+  VerifiedNetworks verified = networks();
+  EXPECT_EQ(verify(choice, verified), 0.05);
+  EXPECT_EQ(verified.best(), nullptr);
+  EXPECT_FALSE(repair(choice, verified, {}));
+}
+
+TEST_F(FewestVerify, RepairsWhatEveryRayShowsToBeShort) {
+  evaluator.penalty = [](const PlacedNetwork&) { return 0.04; };
+  VerifiedNetworks verified = networks();
+  verify(choice, verified);
+  ASSERT_GT(verified.best()->violation, 0);
+  const double short_of = 0.7 - (choice.network.coverage - 0.04);
+  ASSERT_TRUE(repair(choice, verified, {}));
+  EXPECT_NEAR(choice.margins.coverage, 1.25 * short_of, 1e-9);
+  EXPECT_EQ(choice.network.violation, 0);
+  EXPECT_GE(choice.network.coverage, 0.7 + 1.25 * short_of);
+  // The sample goes on to flatter, so that it may take more than one step.
+  for (int k = 0; k < 10 && verified.best()->violation > 0; ++k) {
+    verify(choice, verified);
+    repair(choice, verified, {});
+  }
+  EXPECT_EQ(verified.best()->violation, 0);
+  EXPECT_FALSE(repair(choice, verified, {})) << "nothing is short";
+}
+
+TEST_F(FewestVerify, TakesAStationFewerWhereTheSampleIsKnownToBeRight) {
+  // Chosen with a margin of a tenth, which is a station too many.
+  const std::size_t enough = choice.placed();
+  choice.margins.coverage = 0.1;
+  choose(choice, {}, {});
+  const std::size_t chosen = choice.placed();
+  ASSERT_GT(chosen, enough);
+  VerifiedNetworks verified = networks();
+  double overstated = verify(choice, verified);
+  ASSERT_TRUE(choose_by_known_error(choice, verified, overstated, {}));
+  EXPECT_LT(choice.placed(), chosen);
+  EXPECT_NEAR(choice.margins.coverage, 0, 1e-12);
+  const auto front = verified.front();
+  ASSERT_EQ(front.size(), 1u);
+  EXPECT_EQ(front[0].stations.size(), choice.placed());
+  EXPECT_FALSE(choose_by_known_error(choice, verified, overstated, {})) << "no margin is left";
+}
+
+TEST_F(FewestVerify, KeepsTheChoiceWhereAStationFewerDoesNotDo) {
+  const std::size_t enough = choice.placed();
+  choice.margins.coverage = 0.1;
+  choose(choice, {}, {});
+  // Every ray finds nothing wrong with this network, and much with smaller ones.
+  const std::size_t chosen = choice.placed();
+  evaluator.penalty = [=](const PlacedNetwork& network) { return network.size() < chosen ? 0.3 : 0.0; };
+  VerifiedNetworks verified = networks();
+  double overstated = verify(choice, verified);
+  const double before = overstated;
+  const auto network = choice.network.chosen;
+  ASSERT_TRUE(choice.one_fewer);
+  EXPECT_FALSE(choose_by_known_error(choice, verified, overstated, {}));
+  EXPECT_EQ(verified.entries().size(), 2u) << "it was tried";
+  EXPECT_EQ(choice.network.chosen, network);
+  EXPECT_EQ(choice.margins.coverage, 0.1);
+  EXPECT_EQ(overstated, before);
+  const auto front = verified.front();
+  ASSERT_EQ(front.size(), 1u);
+  EXPECT_EQ(front[0].stations.size(), chosen);
+  EXPECT_GT(chosen, enough);
+}
+
+TEST_F(FewestVerify, FrontIsOfFewestStationsThatDo) {
+  VerifiedNetworks verified = networks();
+  const auto placed = choice.placed_of(choice.network);
+  verified.add(std::span(placed).first(placed.size() - 1));  // does not do
+  verified.add(placed);
+  auto more = placed;
+  more.push_back(choice.table.stations().front());
+  verified.add(more);
+  ASSERT_EQ(verified.entries().size(), 3u);
+  const auto front = verified.front();
+  ASSERT_EQ(front.size(), 1u);
+  EXPECT_EQ(front[0].stations.size(), placed.size());
+}
+
+}  // namespace
+}  // namespace vantage
