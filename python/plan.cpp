@@ -105,12 +105,15 @@ std::shared_ptr<Plan> plan_site(const std::shared_ptr<GuardedSite>& guarded, con
   refuse_unknown(given, "Site.plan", question_settings(), plan_settings());
   SurveyQuestion question;
   PlanConfig config;
-  const std::size_t asked = read_settings(question_settings(), question, given);
+  std::size_t asked = read_settings(question_settings(), question, given);
+  // A problem by its name is a setting of the question.
+  const bool named = py::isinstance<py::str>(problem);
+  if (named) question.problem = problem.cast<std::string>(), ++asked;
   read_settings(plan_settings(), config, given);
-  if (!problem.is_none() && asked > 0)
+  const bool whole = !problem.is_none() && !named;
+  if (whole && asked > 0)
     throw py::type_error("Site.plan: a problem says all that is asked; give it or settings of a question");
-  const std::optional<SurveyProblem> own =
-      problem.is_none() ? std::nullopt : std::optional(problem.cast<SurveyProblem>());
+  const std::optional<SurveyProblem> own = whole ? std::optional(problem.cast<SurveyProblem>()) : std::nullopt;
   LongCall call(std::move(progress));
   PlanResult result = call.run([&] {
     const std::unique_lock lock(guarded->mutex, std::try_to_lock);
@@ -322,7 +325,8 @@ void add_plans(py::module_& m) {
       &plan_site, py::name("plan"), py::is_method(site), py::arg("problem") = py::none(), py::kw_only(),
       py::arg("progress") = py::none(),
       ("Plans a survey as the program does: with nothing given, the fewest stations that capture and link enough.\n\n"
-       "problem: a SurveyProblem in place of the settings of a question. progress: as `vantage.plan` takes it.\n"
+       "problem: the name of one, or a SurveyProblem in place of the settings of a question. progress: as "
+       "`vantage.plan` takes it.\n"
        "Raises Error: invalid_argument." +
        settings_doc("Site.plan", question_settings(), plan_settings()))
           .c_str());

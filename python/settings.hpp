@@ -67,6 +67,7 @@ std::string settings_doc(const std::string& call, const SettingTable<Options>&..
   py::dict defaults;
   const auto add = [&](const auto& table) {
     for (const auto& row : table) {
+      if (row.name == "problem") continue;  // a parameter of its own
       text += "    " + keyword(row.name) + ": " + row.help + ".\n";
       defaults[py::str(keyword(row.name))] = py::none();
     }

@@ -718,7 +718,7 @@ class Site:
     ) -> None: ...
     def plan(
         self,
-        problem: Optional[SurveyProblem] = None,
+        problem: Union[None, str, SurveyProblem] = None,
         *,
         progress: Optional[Callable[[PlanProgress], Any]] = None,
         set_up: Setting = None,
@@ -729,7 +729,6 @@ class Site:
         registration_heading: Setting = None,
         registration_tilt: Setting = None,
         registration_surfaces: Setting = None,
-        problem: Setting = None,
         capture: Setting = None,
         link: Setting = None,
         apart: Setting = None,
@@ -742,7 +741,6 @@ class Site:
         link_overlap: Setting = None,
         min_overlap: Setting = None,
         fitness: Setting = None,
-        algorithm: Setting = None,
         population: Setting = None,
         iterations: Setting = None,
         batch: Setting = None,

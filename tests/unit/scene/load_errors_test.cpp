@@ -137,8 +137,7 @@ TEST(LoadErrors, GlbChunksThatOverrunTheFile) {
 
 TEST(LoadErrors, NotAGltf) {
   const TemporaryFolder folder;
-  for (const char* text :
-       {"", "{", "[1, 2]", "{\"asset\": {}}", "{\"asset\": {\"version\": \"1.0\"}}", "\"glTF\""}) {
+  for (const char* text : {"", "{", "[1, 2]", "{\"asset\": {}}", "{\"asset\": {\"version\": \"1.0\"}}", "\"glTF\""}) {
     test::write_bytes(folder / "scene.gltf", text);
     EXPECT_EQ(failure(folder / "scene.gltf").code, Errc::malformed_file) << text;
   }
