@@ -51,7 +51,8 @@ void spread(Scan& scan) {
   spread(scan.primitive, scan.ray, rays, nothing);
   spread(scan.colour, scan.ray, rays, std::uint32_t{0});
   spread(scan.voxel, scan.ray, rays, nothing);
-  std::iota((scan.ray = std::vector<std::uint64_t>(rays)).begin(), scan.ray.end(), std::uint64_t{0});
+  scan.ray.resize(rays);
+  std::iota(scan.ray.begin(), scan.ray.end(), std::uint64_t{0});
 }
 
 // A member as an array, (points, ...) or (rows, columns, ...).
