@@ -196,7 +196,7 @@ class LongCalls(unittest.TestCase):
         devices = vantage.all_devices("embree")
         self.assertEqual([engine for engine, _ in devices], ["embree"] * len(devices))
         shared = four_walls(devices=devices)
-        self.assertEqual(shared.evaluate(HEADS).coverage, self.simulator.evaluate(HEADS).coverage)
+        self.assertEqual(shared.evaluate(HEADS).coverage, four_walls().evaluate(HEADS).coverage)
         with self.assertRaises(vantage.Error) as raised:
             four_walls(max_memory_bytes=1000)
         self.assertEqual(raised.exception.code, "out_of_memory")

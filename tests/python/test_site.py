@@ -63,7 +63,7 @@ class Sites(unittest.TestCase):
         found = site.evaluate([[8, 0, 1.5], [0, 12, 1.5]], field=True)
         with tempfile.TemporaryDirectory() as folder:
             for name, write in (("plan", plan.write_report), ("found", lambda file: site.write_report(file, found))):
-                for ending, first in ((".html", b"<!doctype html>"), (".pdf", b"%PDF-")):
+                for ending, first in ((".html", b"<!doctype html>"), (".pdf", b"%pdf-")):
                     file = os.path.join(folder, name + ending)
                     write(file)
                     with open(file, "rb") as written:
