@@ -26,7 +26,8 @@ area, clash = vantage.SearchArea(scene), vantage.ClashChecker(scene)
 
 stations = int(sys.argv[2])
 neighbour = vantage.Objective(
-    "neighbour", loneliest, label="What the loneliest scan shares with its neighbour", surroundings=True)
+    "neighbour", loneliest, vantage.maximise(1, 0), label="What the loneliest scan shares with its neighbour",
+    surroundings=True)
 problem = vantage.SurveyProblem(
     stations_min=stations, stations_max=stations, objectives=["coverage", neighbour], requirements=["coverage >= 0.5"])
 result = vantage.plan(

@@ -24,6 +24,6 @@ class Tour(unittest.TestCase):
         self.assertEqual(names["mixed"].stations, 2)
         self.assertEqual(names["several"][1].stations, 2)
         self.assertEqual((names["after"].bounds - names["before"].bounds).tolist(), [[0, 1, 0]] * 2)
-        self.assertLessEqual(names["bound"].reached[0], names["bound"].bound)
+        self.assertLessEqual(names["best"].coverage, names["best"].bound)
         self.assertIn("neighbour", names["result"].measures)
         self.assertEqual(names["everything"]["problem"], "coverage-overlap-fix")
