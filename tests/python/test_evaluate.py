@@ -186,11 +186,11 @@ class LongCalls(unittest.TestCase):
 
     def test_what_are_no_stations_is_told(self):
         with self.assertRaisesRegex(TypeError, "stations: 'abc' is no array of numbers"):
-            self.simulator.evaluate("abc")
+            four_walls().evaluate("abc")
         with self.assertRaisesRegex(TypeError, "stations: {'a': 1} is no array of numbers"):
-            self.simulator.evaluate({"a": 1})
+            four_walls().evaluate({"a": 1})
         with self.assertRaisesRegex(vantage.Error, r"stations: an array of shape \(n, 3\) is wanted"):
-            self.simulator.evaluate([[1, 2]])
+            four_walls().evaluate([[1, 2]])
 
     def test_a_simulator_may_have_several_devices_and_a_limit_of_memory(self):
         devices = vantage.all_devices("embree")
