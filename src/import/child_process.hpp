@@ -11,7 +11,7 @@ namespace vantage::importers {
 
 struct Limits {
   std::uint64_t memory = 0;  // bytes that it may allocate; 0: any
-  unsigned cpu_s = 15 * 60, wall_s = 20 * 60;
+  unsigned cpu_s = 15 * 60, wall_s = 60 * 60;
   std::uint64_t output = std::uint64_t{1} << 32;  // bytes
 };
 

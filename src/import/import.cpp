@@ -103,6 +103,15 @@ void keep(const fs::path& entry, std::span<const std::uint8_t> glb) {
   }
 }
 
+// What a reader needs grows with the file, at most like this on a slow machine. One that goes on has lost its way, as
+// those of damaged files do.
+unsigned seconds_for(const fs::path& file) {
+  constexpr double kLeast = 20, kEachMegabyte = 10;
+  std::error_code failure;
+  const auto bytes = static_cast<double>(fs::file_size(file, failure));
+  return static_cast<unsigned>(std::min(kLeast + kEachMegabyte * bytes / 1e6, 1e6));
+}
+
 std::string last_line(std::string text) {
   while (!text.empty() && text.back() == '\n') text.pop_back();
   return text.substr(text.rfind('\n') + 1);
@@ -138,6 +147,8 @@ Error failure_of(const Ended& ended, const std::string& file, const Format& form
 
 std::vector<std::uint8_t> as_glb(const fs::path& file, const Format& format, Limits limits) {
   limits.memory = memory_limit(limits.memory);
+  limits.cpu_s = std::min(limits.cpu_s, seconds_for(file));
+  limits.wall_s = std::min(limits.wall_s, 60 + 6 * limits.cpu_s);  // it may have to share the processors
   limits.output = std::min(limits.output, limits.memory);
   const fs::path absolute = fs::absolute(file);
   Importer importer = [&] {

@@ -4,6 +4,8 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "import/import.hpp"
+
 namespace vantage::test {
 
 ImportTest::ImportTest() {
@@ -27,6 +29,13 @@ void ImportTest::use_script(const std::string& body) const {
   const auto script = write("importers/vantage-import-mesh", "#!/bin/sh\n" + body + "\n");
   std::filesystem::permissions(script, std::filesystem::perms::owner_all);
   setenv("VANTAGE_IMPORTERS", script.parent_path().c_str(), 1);
+}
+
+Scene load_within(const std::filesystem::path& file, unsigned cpu_s) {
+  // The GLB is in the cache then.
+  if (const importers::Format& format = *importers::recognise(file).format; format.importer)
+    importers::as_glb(file, format, {.cpu_s = cpu_s});
+  return Scene::load(file);
 }
 
 }  // namespace vantage::test

@@ -10,6 +10,7 @@
 
 #include "support/temporary_folder.hpp"
 #include "vantage/error.hpp"
+#include "vantage/scene.hpp"
 
 namespace vantage::test {
 
@@ -26,6 +27,9 @@ class ImportTest : public testing::Test {
 
   TemporaryFolder folder_;
 };
+
+// As a scene; an importer gets so many seconds of computing.
+Scene load_within(const std::filesystem::path& file, unsigned cpu_s);
 
 // Runs `call`, which must throw an Error of that code with `words` in its message; returns the message.
 template <class Call>
