@@ -15,9 +15,10 @@ endif()
 # Importers are programs that vantage alone starts.
 if(TARGET vantage-cli)
   set(VANTAGE_IMPORTERS_DIR ${CMAKE_INSTALL_LIBEXECDIR}/vantage)
-  if(TARGET vantage-import-mesh)
-    install(TARGETS vantage-import-mesh RUNTIME DESTINATION ${VANTAGE_IMPORTERS_DIR})
-  endif()
+  get_property(importers GLOBAL PROPERTY VANTAGE_IMPORTERS)
+  foreach(importer IN LISTS importers)
+    install(TARGETS ${importer} RUNTIME DESTINATION ${VANTAGE_IMPORTERS_DIR})
+  endforeach()
   vantage_install_ifc(${VANTAGE_IMPORTERS_DIR})
 endif()
 # The presets are part of the library; the file is an example of their form.

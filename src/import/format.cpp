@@ -17,7 +17,8 @@ namespace {
 using std::string_view_literals::operator""sv;
 
 constexpr const char* kMesh = "vantage-import-mesh";
-constexpr Format kGltf{"glTF", ".glb .gltf ", nullptr};
+constexpr Format kGltf{"glTF", ".glb .gltf .b3dm ", nullptr};
+constexpr Format kPacked{"compressed glTF", ".gltf .gz ", "vantage-import-gltf"};
 constexpr Format kIfc{"IFC", ".ifc ", "vantage-import-ifc"};
 constexpr Format kObj{"OBJ", ".obj ", kMesh}, kStl{"STL", ".stl ", kMesh}, kPly{"PLY", ".ply ", kMesh},
     kFbx{"FBX", ".fbx ", kMesh}, kCollada{"COLLADA", ".dae ", kMesh}, k3ds{"3DS", ".3ds ", kMesh},
@@ -34,7 +35,6 @@ constexpr const char* kPicture = "a picture; give the model";
 constexpr std::array kMistaken{
     Mistaken{"version https://git-lfs"sv, "a Git LFS pointer, not the model itself; fetch it with git lfs pull"},
     Mistaken{"PK\x03\x04"sv, "a zip archive; unpack it and give the model in it"},
-    Mistaken{"\x1F\x8B"sv, "packed with gzip; unpack it with gunzip and give what is in it"},
     Mistaken{"7z\xBC\xAF"sv, "a 7z archive; unpack it and give the model in it"},
     Mistaken{"Rar!"sv, "a RAR archive; unpack it and give the model in it"},
     Mistaken{"%PDF"sv, "a PDF document; ask its author for the model"},
@@ -46,6 +46,9 @@ constexpr std::array kMistaken{
     Mistaken{"AC10"sv, "a DWG drawing; export IFC, FBX, or DXF with faces"},
     Mistaken{"\xD0\xCF\x11\xE0"sv, "a file of Revit, 3ds Max or an office program; export IFC or FBX"},
     Mistaken{"\xFF\xFE\xFF\x0E"sv, "a SketchUp file; export glTF or COLLADA"},
+    Mistaken{"pnts"sv, kPointCloud},
+    Mistaken{"i3dm"sv, "a 3D tile of instances; give their model"},
+    Mistaken{"cmpt"sv, "a 3D tile of several tiles; give them one by one"},
     Mistaken{"BLENDER"sv, "a Blender file; export glTF"},
     Mistaken{"3D Geometry File Format"sv, "a Rhino file; export OBJ or FBX"},
     Mistaken{"PXR-USDC"sv, "a USD file; export glTF"},
@@ -185,7 +188,7 @@ std::string mistaken_for_a_model(const Head& head) {
 
 const Format* format_by_content(const Head& head) {
   const std::string_view bytes = head.bytes, text = without_blanks(bytes);
-  if (bytes.starts_with("glTF") || text.starts_with("{")) return &kGltf;
+  if (bytes.starts_with("glTF") || bytes.starts_with("b3dm") || text.starts_with("{")) return &kGltf;
   if (text.starts_with("ISO-10303-21")) return &kIfc;
   if (bytes.starts_with("Kaydara FBX Binary") || bytes.find("FBXHeaderExtension") != std::string_view::npos)
     return &kFbx;
@@ -217,11 +220,43 @@ const Format* format_by_extension(const std::filesystem::path& file) {
   return found == kFormats.end() ? nullptr : *found;
 }
 
+// Whether a text has one of these within its first bytes.
+bool mentions(std::istream& stream, std::uint64_t most, std::span<const std::string_view> words) {
+  constexpr std::size_t kBlock = std::size_t{1} << 20, kOverlap = 64;  // no word is longer
+  std::string block;
+  while (stream && most > 0) {
+    const std::size_t kept = std::min(block.size(), kOverlap), wanted = std::min<std::uint64_t>(kBlock, most);
+    block.erase(0, block.size() - kept);
+    block.resize(kept + wanted);
+    stream.read(block.data() + kept, static_cast<std::streamsize>(wanted));
+    block.resize(kept + static_cast<std::size_t>(stream.gcount()));
+    most -= wanted;
+    if (std::ranges::any_of(words, [&](std::string_view word) { return block.find(word) != std::string::npos; }))
+      return true;
+  }
+  return false;
+}
+
+// A glTF whose meshes are compressed says so in its JSON; gzip may be around any file.
+bool is_packed(const std::filesystem::path& file, const Head& head) {
+  constexpr std::array kWords{"\"KHR_draco_mesh_compression\""sv, "\"EXT_meshopt_compression\""sv,
+                              "\"KHR_meshopt_compression\""sv};
+  if (head.bytes.starts_with("\x1F\x8B")) return true;
+  if (format_by_content(head) != &kGltf) return false;
+  // A GLB's JSON comes first; a tile's tables before that are short.
+  const bool glb = head.bytes.starts_with("glTF") && head.bytes.size() >= 20;
+  const std::uint64_t json =
+      glb ? 20 + std::uint64_t{little_endian_32(std::string_view(head.bytes).substr(12))} : head.size;
+  std::ifstream stream(file, std::ios::binary);
+  return mentions(stream, json, kWords);
+}
+
 }  // namespace
 
 Recognised recognise(const std::filesystem::path& file) {
   const auto head = read_head(file);
   if (!head) return {&kGltf};
+  if (is_packed(file, *head)) return {&kPacked};
   const Format* by_extension = format_by_extension(file);
   if (const Format* format = format_by_content(*head); format && format->importer == nullptr) {
     if (!by_extension || by_extension == format) return {format};

@@ -158,7 +158,10 @@ std::vector<std::uint8_t> as_glb(const fs::path& file, const Format& format, Lim
       throw Error(error.code(), file.string() + ": " + error.what());
     }
   }();
-  const fs::path folder = cache_folder();
+  // Of a glTF that is text, buffers lie in files of their own, which the key does not know.
+  const bool whole =
+      std::string_view(format.name) != "compressed glTF" || file.filename().string().find(".gltf") == std::string::npos;
+  const fs::path folder = whole ? cache_folder() : fs::path();
   const fs::path entry = folder / (cache_key(absolute, format, importer) + ".glb");
   if (!folder.empty())
     if (auto glb = cached(entry, limits)) return std::move(*glb);

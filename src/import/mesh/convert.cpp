@@ -12,10 +12,11 @@
 #include <map>
 #include <vector>
 
+#include "import/glb_bytes.hpp"
 #include "import/mesh/declared_units.hpp"
-#include "import/mesh/glb.hpp"
+#include "import/program.hpp"
 
-namespace vantage::import_mesh {
+namespace vantage::importer {
 namespace {
 
 using nlohmann::json;
@@ -207,4 +208,4 @@ std::string convert(const std::filesystem::path& file, const std::string& format
   return Converter(*scene, file, format).run();
 }
 
-}  // namespace vantage::import_mesh
+}  // namespace vantage::importer

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <fstream>
 
-namespace vantage::import_mesh {
+namespace vantage::importer {
 namespace {
 
 // Z up becomes Y up; X up as well, by the axes' cyclic order.
@@ -90,4 +90,4 @@ Declared declared_units(const aiScene& scene, const std::filesystem::path& file,
   return declared;
 }
 
-}  // namespace vantage::import_mesh
+}  // namespace vantage::importer

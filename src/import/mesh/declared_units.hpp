@@ -8,7 +8,7 @@
 
 struct aiScene;
 
-namespace vantage::import_mesh {
+namespace vantage::importer {
 
 // What a file says of its own lengths and axes.
 struct Declared {
@@ -19,4 +19,4 @@ struct Declared {
 // `format` by its extension: "fbx", "dae".
 Declared declared_units(const aiScene& scene, const std::filesystem::path& file, const std::string& format);
 
-}  // namespace vantage::import_mesh
+}  // namespace vantage::importer

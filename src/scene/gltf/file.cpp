@@ -14,13 +14,14 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::uint32_t kGlbMagic = 0x46546C67, kJsonChunk = 0x4E4F534A, kBinaryChunk = 0x004E4942;
+constexpr std::uint32_t kGlbMagic = 0x46546C67, kTileMagic = 0x6D643362, kJsonChunk = 0x4E4F534A,
+                        kBinaryChunk = 0x004E4942;
 constexpr int kDeepestJson = 128;  // readers recurse; real files nest about ten levels
 
 // Extensions that a file may require. Those that change positions are understood; the others only change how surfaces
 // look, or carry information that a survey does not need.
-constexpr std::string_view kUnderstood[] = {"KHR_mesh_quantization", "EXT_mesh_gpu_instancing",
-                                            "KHR_texture_transform"};
+constexpr std::string_view kUnderstood[] = {"KHR_mesh_quantization", "EXT_mesh_gpu_instancing", "KHR_texture_transform",
+                                            "KHR_node_visibility", "CESIUM_RTC"};
 constexpr std::string_view kWithoutEffect[] = {"KHR_materials_anisotropy",
                                                "KHR_materials_clearcoat",
                                                "KHR_materials_diffuse_transmission",
@@ -178,8 +179,36 @@ Error File::malformed(const std::string& what) const {
   return Error(Errc::malformed_file, path_.string() + ": " + what);
 }
 
+// A tile of 3D Tiles 1.0 (b3dm) is a header of 28 bytes, four tables whose lengths that states, and a GLB. Gives where
+// the GLB begins, and leaves the JSON of the first table in `features`.
+std::size_t File::skip_tile_header(Bytes all, Bytes& features) const {
+  constexpr std::size_t kHeader = 28;
+  if (all.size() < kHeader)
+    throw malformed("the tile's header is cut off after " + std::to_string(all.size()) + " bytes");
+  std::size_t at = kHeader;
+  for (std::size_t table = 0; table < 4; ++table) {
+    const std::size_t size = little_endian(all, 12 + 4 * table);
+    if (size > all.size() - at)
+      throw malformed("table " + std::to_string(table) + " of the tile announces " + std::to_string(size) + " bytes, " +
+                      std::to_string(all.size() - at) + " are left");
+    if (table == 0) features = all.subspan(at, size);
+    at += size;
+  }
+  return at;
+}
+
 Bytes File::open_container() {
-  const Bytes all = bytes_;
+  Bytes all = bytes_, features;
+  if (all.size() >= 4 && little_endian(all, 0) == kTileMagic) all = all.subspan(skip_tile_header(all, features));
+  const Bytes binary = open_glb(all);
+  if (features.empty()) return binary;
+  const json table = json::parse(features.begin(), features.end(), nullptr, false);
+  if (table.is_object() && table.contains("RTC_CENTER") && !json_.contains("extensions"))
+    json_["extensions"] = {{"CESIUM_RTC", {{"center", table["RTC_CENTER"]}}}};
+  return binary;
+}
+
+Bytes File::open_glb(Bytes all) {
   if (all.size() < 4 || little_endian(all, 0) != kGlbMagic) {
     parse(all);
     return {};
@@ -276,6 +305,9 @@ void File::check_integers() const {
   };
   each(json_, "accessors", "", [&](const json& accessor, const std::string& where) {
     check_members(*this, accessor, where, {"bufferView", "byteOffset", "componentType", "count"});
+    if (accessor.contains("bufferView") && accessor["bufferView"].get<std::size_t>() >= count("bufferViews"))
+      throw malformed("accessor" + where.substr(where.find(' ')) + " refers to buffer view " +
+                      accessor["bufferView"].dump() + "; there are " + std::to_string(count("bufferViews")));
     const auto sparse = accessor.find("sparse");
     if (sparse == accessor.end()) return;
     if (!sparse->is_object()) throw malformed(where + ": sparse is not an object");
@@ -328,11 +360,17 @@ void File::check_integers() const {
 std::vector<std::uint8_t> File::read_uri(const std::string& uri, const std::string& what) const {
   if (uri.starts_with("data:")) {
     budget_.keep(uri.size(), "the data URI of " + what);
-    budget_.require(2 * uri.size(), "decoding the data URI of " + what);
+    budget_.require(4 * uri.size(), "decoding the data URI of " + what);
+    // tinygltf knows few media types, and no parameters of theirs.
+    constexpr std::string_view kKnown = "data:application/octet-stream;base64,";
+    const std::size_t comma = uri.find(',');
+    if (comma == std::string::npos || !std::string_view(uri).substr(0, comma).ends_with(";base64"))
+      throw malformed(what + " has a data URI that is not base64: " + quoted(uri));
     std::vector<std::uint8_t> bytes;
     std::string type;
-    if (!tinygltf::IsDataURI(uri) || !tinygltf::DecodeDataURI(&bytes, type, uri, 0, false))
-      throw malformed(what + " has a data URI that is not base64 of a known kind: " + quoted(uri));
+    if (comma + 1 < uri.size() &&
+        !tinygltf::DecodeDataURI(&bytes, type, std::string(kKnown) + uri.substr(comma + 1), 0, false))
+      throw malformed(what + " has a data URI that is not base64: " + quoted(uri));
     return bytes;
   }
   if (uri.starts_with("file:"))
@@ -363,7 +401,7 @@ void File::load_buffers(Bytes glb_chunk) {
       if (!uri->is_string()) throw malformed(name + ": uri is not a string");
       own_buffers_[i] = read_uri(uri->get<std::string>(), name);
       bytes = own_buffers_[i];
-    } else if (i != 0 || glb_chunk.data() == nullptr) {
+    } else if (length > 0 && (i != 0 || glb_chunk.data() == nullptr)) {
       throw malformed(name + " has no uri, and there is no GLB chunk for it");
     }
     if (length > bytes.size())

@@ -54,6 +54,8 @@ class File {
  private:
   void read_bytes();
   Bytes open_container();
+  std::size_t skip_tile_header(Bytes all, Bytes& features) const;
+  Bytes open_glb(Bytes all);
   void parse(Bytes text);
   void check_version() const;
   void check_extensions() const;

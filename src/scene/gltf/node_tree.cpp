@@ -120,6 +120,20 @@ std::string node_name(const tinygltf::Model& model, int index) {
 // (x, y, z) ↦ (x, −z, y): glTF's Y up becomes the survey frame's Z up.
 constexpr glm::dmat4 survey_from_gltf{1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1};
 
+// CESIUM_RTC's centre, to which all positions are relative: with Z up, as in tiles. Everything else is the identity.
+glm::dmat4 origin_of(const File& file) {
+  const auto extensions = file.document().find("extensions");
+  if (extensions == file.document().end() || !extensions->contains("CESIUM_RTC")) return glm::dmat4(1);
+  const nlohmann::json& extension = (*extensions)["CESIUM_RTC"];
+  const nlohmann::json center = extension.is_object() ? extension.value("center", nlohmann::json()) : nlohmann::json();
+  if (!center.is_array() || center.size() != 3 ||
+      !std::ranges::all_of(center, [](const nlohmann::json& value) { return value.is_number(); }))
+    throw file.malformed("CESIUM_RTC: its center is not three numbers");
+  glm::dmat4 out(1);
+  for (int c = 0; c < 3; ++c) out[3][c] = center[static_cast<std::size_t>(c)].get<double>();
+  return out;
+}
+
 bool finite(const glm::dmat4& transform) {
   const double* values = glm::value_ptr(transform);
   return std::all_of(values, values + 16, [](double value) { return std::isfinite(value); });
@@ -277,7 +291,7 @@ std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& opti
   std::vector<Visit> stack;  // an explicit stack: node trees may be deeper than the thread's stack
   const std::vector<int> roots = root_nodes(file, options);
   for (auto it = roots.rbegin(); it != roots.rend(); ++it)
-    stack.push_back({*it, -1, survey_from_gltf, {}, {}, {}, {}, {}});
+    stack.push_back({*it, -1, origin_of(file) * survey_from_gltf, {}, {}, {}, {}, {}});
   Patterns<Role> roles = role_patterns(options);
   Patterns<std::uint32_t> weights = weight_patterns(options);
   std::vector<std::string> door_names = options.doors;
@@ -288,7 +302,7 @@ std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& opti
   std::vector<PlacedMesh> placed;
   std::vector<std::string> names;
   std::vector<bool> visited(model.nodes.size());
-  std::size_t skinned = 0;
+  std::size_t skinned = 0, hidden = 0;
   while (!stack.empty()) {
     Visit visit = std::move(stack.back());
     stack.pop_back();
@@ -302,6 +316,10 @@ std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& opti
     const std::string where = "node " + std::to_string(visit.node) + (node.name.empty() ? "" : " " + quoted(node.name));
     if (visited[index]) throw file.malformed(where + " is reached twice: a cycle, or a node with two parents");
     visited[index] = true;
+    if (file.find("nodes", visit.node, {"extensions", "KHR_node_visibility", "visible"}) == false) {
+      ++hidden;
+      continue;
+    }
     names.push_back(name);
     if (const auto role = roles.find(name)) visit.pattern_role = role;
     if (const auto weight = weights.find(name)) visit.pattern_weight = weight;
@@ -351,6 +369,8 @@ std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& opti
   station_areas.check(names);
   details.check(names);
   accuracies.check(names);
+  if (hidden > 0)
+    notes.push_back(std::to_string(hidden) + " nodes are hidden by the file, and are left out with all below them");
   if (skinned > 0)
     notes.push_back(std::to_string(skinned) + " skinned meshes stand as modelled: skins are not applied");
   return placed;

@@ -5,7 +5,6 @@
 #include <random>
 
 #include "ifc_house.hpp"
-#include "import/import.hpp"
 #include "import_fixture.hpp"
 #include "vantage/scene.hpp"
 

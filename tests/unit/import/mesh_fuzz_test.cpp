@@ -30,7 +30,7 @@ TEST_P(DamagedModel, GivesASceneOrOneError) {
   for (int k = 0; k < kTries; ++k) {
     const auto file = write(std::to_string(k) + GetParam().name, damaged(GetParam().content, random));
     try {
-      load_within(file, 2);
+      load_within(file, 1);
     } catch (const Error& error) {
       ++refused;
       EXPECT_EQ(std::string(error.what()).find(file.string()), 0u) << error.what();

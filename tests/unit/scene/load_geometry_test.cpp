@@ -303,6 +303,69 @@ TEST(LoadGeometry, ScenesAreChosen) {
   EXPECT_THROW(load(builder, options), Error);
 }
 
+TEST(LoadGeometry, HiddenNodesAreLeftOutWithTheirChildren) {
+  GlbBuilder builder;
+  builder.triangle("seen");
+  const int hidden = builder.triangle("hidden");
+  builder.json["nodes"][static_cast<std::size_t>(hidden)]["extensions"]["KHR_node_visibility"]["visible"] = false;
+  builder.child(hidden, {{"name", "below"}, {"mesh", 0}, {"translation", {5, 0, 0}}});
+  builder.json["extensionsRequired"] = {"KHR_node_visibility"};
+  const Scene scene = load(builder);
+  ASSERT_EQ(scene.meshes().size(), 1u);
+  EXPECT_EQ(scene.meshes()[0].name, "seen");
+  EXPECT_EQ(std::ranges::count(scene.notes(), "1 nodes are hidden by the file, and are left out with all below them"),
+            1);
+}
+
+// 3D Tiles put the centre of a tile into an extension, or into a table before the GLB; Z is up in it.
+TEST(LoadGeometry, TilesStandAroundTheirCentre) {
+  constexpr double kX = 1'215'000.25, kY = -4'736'000.5, kZ = 4'081'000.125;
+  GlbBuilder builder;
+  builder.node(
+      {{"mesh", builder.mesh({{"attributes", {{"POSITION", builder.positions({1, 2, 3, 4, 2, 3, 1, 7, 3})}}}})}});
+  GlbBuilder extended = builder;
+  extended.json["extensions"]["CESIUM_RTC"]["center"] = {kX, kY, kZ};
+  extended.json["extensionsUsed"] = extended.json["extensionsRequired"] = {"CESIUM_RTC"};
+  const SceneOptions as_glTF{.unit = Unit::metre, .up = UpAxis::y};
+  const Scene scene = load(extended, as_glTF);
+  expect_near(corners(scene, 0)[0], {kX + 1, kY - 3, kZ + 2});
+
+  const std::string glb = builder.glb();
+  const std::string features = R"({"BATCH_LENGTH":0,"RTC_CENTER":[1215000.25,-4736000.5,4081000.125]}  )";
+  std::string tile = "b3dm";
+  const auto word = [&](std::size_t value) {
+    for (int i = 0; i < 4; ++i) tile += static_cast<char>(value >> (8 * i) & 0xFF);
+  };
+  for (const std::size_t value : {std::size_t{1}, 28 + features.size() + glb.size(), features.size(), std::size_t{0},
+                                  std::size_t{0}, std::size_t{0}})
+    word(value);
+  tile += features + glb;
+  const test::TemporaryFolder folder;
+  test::write_bytes(folder / "tile.b3dm", tile);
+  EXPECT_EQ(Scene::load(folder / "tile.b3dm", as_glTF).fingerprint(), scene.fingerprint());
+  test::write_bytes(folder / "cut.b3dm", tile.substr(0, 40));
+  EXPECT_THROW(Scene::load(folder / "cut.b3dm"), Error);
+  extended.json["extensions"]["CESIUM_RTC"]["center"] = {kX, kY};
+  EXPECT_THROW(load(extended), Error);
+}
+
+TEST(LoadGeometry, DataUrisMayHaveParametersAndBuffersMayBeEmpty) {
+  GlbBuilder builder;
+  builder.triangle("part");
+  const Scene scene = load(builder);
+  const std::string data = test::base64(builder.binary);
+  for (const char* type : {"application/octet-stream", "application/gltf-buffer;charset=utf-8", "model/part;x=1"}) {
+    json document = builder.json;
+    document["buffers"] = {
+        {{"byteLength", builder.binary.size()}, {"uri", std::string("data:") + type + ";base64," + data}},
+        {{"byteLength", 0}, {"uri", "data:application/octet-stream;base64,"}},
+        {{"byteLength", 0}}};
+    const test::TemporaryFolder folder;
+    test::write_bytes(folder / "scene.gltf", document.dump());
+    EXPECT_EQ(Scene::load(folder / "scene.gltf").fingerprint(), scene.fingerprint()) << type;
+  }
+}
+
 TEST(LoadGeometry, DeepNodeChainsDoNotOverflowTheStack) {
   GlbBuilder builder;
   int parent = builder.node({{"name", "root"}});

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "import/mesh/glb.hpp"
+#include "import/glb_bytes.hpp"
 
 #include <algorithm>
 #include <array>
 #include <limits>
 #include <stdexcept>
 
-namespace vantage::import_mesh {
+namespace vantage::importer {
 namespace {
 
 using nlohmann::json;
@@ -81,19 +81,23 @@ int Buffer::add_indices(std::span<const std::uint32_t> indices) {
 std::string Buffer::finish(json document) const {
   document["accessors"] = accessors_;
   document["bufferViews"] = views_;
-  document["buffers"] = json::array({{{"byteLength", bytes_.size()}}});
-  std::string text = document.dump();
+  return glb_bytes(std::move(document), bytes_);
+}
+
+std::string glb_bytes(json document, const std::string& binary) {
+  document["buffers"] = json::array({{{"byteLength", binary.size()}}});
+  std::string text = document.dump(-1, ' ', false, json::error_handler_t::replace);
   text.resize((text.size() + 3) / 4 * 4, ' ');
-  const std::size_t total = 12 + 8 + text.size() + 8 + bytes_.size();
+  const std::size_t total = 12 + 8 + text.size() + 8 + binary.size();
   if (total > std::numeric_limits<std::uint32_t>::max()) throw std::length_error("GLB");
   std::string out;
   out.reserve(total);
   for (const std::size_t word : {std::size_t{kMagic}, std::size_t{2}, total, text.size(), std::size_t{kJson}})
     append_word(out, word);
   out += text;
-  append_word(out, bytes_.size());
+  append_word(out, binary.size());
   append_word(out, kBinary);
-  return out += bytes_;
+  return out += binary;
 }
 
 std::string utf8(const std::string& text) {
@@ -117,4 +121,4 @@ std::string utf8(const std::string& text) {
   return out;
 }
 
-}  // namespace vantage::import_mesh
+}  // namespace vantage::importer

@@ -6,7 +6,11 @@
 #include <span>
 #include <string>
 
-namespace vantage::import_mesh {
+namespace vantage::importer {
+
+// A GLB of a document, which `buffers` are added to, and its binary chunk. Throws std::length_error where they are more
+// than a GLB holds, 4 GiB.
+std::string glb_bytes(nlohmann::json document, const std::string& binary);
 
 // Collects the binary chunk of a GLB, its views and its accessors.
 class Buffer {
@@ -17,8 +21,7 @@ class Buffer {
   int add_colours(std::span<const std::uint8_t> rgba);
   int add_indices(std::span<const std::uint32_t> indices);
 
-  // Puts the arrays `accessors`, `bufferViews` and `buffers` into the document and returns the file's bytes.
-  // Throws std::length_error where they are more than a GLB holds, 4 GiB.
+  // Puts the arrays `accessors`, `bufferViews` and `buffers` into the document and returns the file's bytes, as above.
   std::string finish(nlohmann::json document) const;
 
  private:
@@ -32,4 +35,4 @@ class Buffer {
 // Text as UTF-8: kept where it is that, else taken as Latin-1.
 std::string utf8(const std::string& text);
 
-}  // namespace vantage::import_mesh
+}  // namespace vantage::importer

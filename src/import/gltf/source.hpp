@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace vantage::importer {
+
+// A glTF as it comes: its JSON, and the bytes of its buffers.
+struct Source {
+  nlohmann::json document;
+  std::vector<std::string> buffers;
+  std::filesystem::path folder;
+};
+
+// Throws Refused.
+Source read_source(const std::filesystem::path& file);
+
+// What a URI stands for, data or a file below the folder. Throws Refused.
+std::string read_uri(const Source& source, const std::string& uri);
+
+// A part of some bytes. Throws Refused where it is not all there.
+std::string_view part_of(std::string_view bytes, std::size_t offset, std::size_t length);
+
+}  // namespace vantage::importer
