@@ -25,6 +25,17 @@ class Loading(unittest.TestCase):
         with open(FOUR_WALLS, "rb") as file:
             self.assertEqual(vantage.load_gltf(file.read()).fingerprint, vantage.Scene.load(FOUR_WALLS).fingerprint)
 
+    def test_other_formats_go_through_their_importer(self):
+        with tempfile.TemporaryDirectory() as folder:
+            site = os.path.join(folder, "site.obj")
+            with open(site, "w") as file:
+                file.write("o wall\nv 0 0 0\nv 4 0 0\nv 0 3 0\nf 1 2 3\n")
+            os.environ["VANTAGE_IMPORTERS"] = os.path.dirname(os.environ["VANTAGE_PROGRAM"])
+            os.environ["XDG_CACHE_HOME"] = folder
+            scene = vantage.Scene.load(site)
+        self.assertEqual([mesh.name for mesh in scene.meshes], ["wall"])
+        np.testing.assert_array_equal(scene.bounds, [[0, 0, 0], [4, 0, 3]])
+
     def test_errors_have_the_programs_text_and_a_code(self):
         with self.assertRaises(vantage.Error) as raised:
             vantage.Scene.load("no_such_file.glb")
