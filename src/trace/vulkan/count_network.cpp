@@ -77,21 +77,21 @@ class VulkanTracer::ExactCount {
     schedule_.emplace(static_cast<std::uint32_t>(stations_.size()), pattern.rows(), pattern.columns(),
                       t_.rows_per_dispatch(pattern));
     if (!options_.skip) return;
-    t_.ensure(t_.tile_far_, std::uint64_t{schedule_->tiles()} * CountSchedule::stations_per_submission * word,
+    t_.ensure(t_.tiles_.far, std::uint64_t{schedule_->tiles()} * CountSchedule::stations_per_submission * word,
               "tile far");
-    t_.ensure(t_.tile_list_, schedule_->list_words() * word, "tile list");
-    if (tile_pass_) t_.ensure(t_.tile_starts_, schedule_->list_words() * tile_pass_->bytes_per_tile, "tile starts");
+    t_.ensure(t_.tiles_.list, schedule_->list_words() * word, "tile list");
+    if (tile_pass_) t_.ensure(t_.tiles_.starts, schedule_->list_words() * tile_pass_->bytes_per_tile, "tile starts");
   }
 
   void ensure_buffers() {
-    t_.ensure(t_.counts_, voxels_ * word, "counts");
-    if (mask_words_) t_.ensure(t_.masks_, masks_bytes(), "station masks");
-    t_.ensure(t_.station_counters_, sizeof counters_, "station counters");
+    t_.ensure(t_.sums_.counts, voxels_ * word, "counts");
+    if (mask_words_) t_.ensure(t_.sums_.masks, masks_bytes(), "station masks");
+    t_.ensure(t_.sums_.station_counters, sizeof counters_, "station counters");
     t_.ensure_totals(1, 1, stride_);
     if (!options_.skip) return;
-    t_.ensure(t_.tile_dispatch_, CountSchedule::parts_per_submission * dispatch_bytes, "tile dispatch",
+    t_.ensure(t_.tiles_.dispatch, CountSchedule::parts_per_submission * dispatch_bytes, "tile dispatch",
               VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
-    t_.ensure(t_.tile_rays_, sizeof tile_rays_, "tile rays");
+    t_.ensure(t_.tiles_.rays, sizeof tile_rays_, "tile rays");
   }
 
   // Submits the parts and waits. The first submission clears the sums, the last reads them back.
@@ -108,25 +108,25 @@ class VulkanTracer::ExactCount {
     };
     std::vector<Commands::Download> wanted;
     if (last) {
-      wanted.push_back({t_.totals_, totals_.data(), totals_.size() * word});
-      wanted.push_back({t_.station_counters_, counters_.data(), sizeof counters_});
-      if (options_.skip) wanted.push_back({t_.tile_rays_, &tile_rays_, sizeof tile_rays_});
+      wanted.push_back({t_.sums_.totals, totals_.data(), totals_.size() * word});
+      wanted.push_back({t_.sums_.station_counters, counters_.data(), sizeof counters_});
+      if (options_.skip) wanted.push_back({t_.tiles_.rays, &tile_rays_, sizeof tile_rays_});
     }
     return t_.commands_.run_and_download(record, wanted);
   }
 
   void record_start(const Recorder& r) {
-    r.zero(t_.counts_, 0, voxels_ * word);
-    if (mask_words_) r.zero(t_.masks_, 0, masks_bytes());
-    r.zero(t_.station_counters_);
-    if (options_.skip) r.zero(t_.tile_rays_);
+    r.zero(t_.sums_.counts, 0, voxels_ * word);
+    if (mask_words_) r.zero(t_.sums_.masks, 0, masks_bytes());
+    r.zero(t_.sums_.station_counters);
+    if (options_.skip) r.zero(t_.tiles_.rays);
     t_.record_totals_start(r, station_counts_);
   }
 
   void record_tile_start(const Recorder& r) {
-    r.zero(t_.tile_far_);
-    r.zero(t_.tile_list_);
-    r.zero(t_.tile_dispatch_);
+    r.zero(t_.tiles_.far);
+    r.zero(t_.tiles_.list);
+    r.zero(t_.tiles_.dispatch);
   }
 
   void record_tiles(const Recorder& r, std::span<const CountPart> parts) {
@@ -151,7 +151,7 @@ class VulkanTracer::ExactCount {
         pipeline_of(Kernel::count, part, {scanner_->noise(), scanner_->limits(), options_.masks, options_.skip});
     const CountPush push = count_push(part, k);
     if (options_.skip) {
-      r.dispatch_indirect(pipeline, push, t_.tile_dispatch_, k * dispatch_bytes);
+      r.dispatch_indirect(pipeline, push, t_.tiles_.dispatch, k * dispatch_bytes);
     } else {
       r.dispatch(pipeline, push, groups_of(scanner_->pattern().columns(), block_columns),
                  groups_of(part.row_count, block_rows));
@@ -165,7 +165,7 @@ class VulkanTracer::ExactCount {
   void record_clamp(const Recorder& r) {
     const std::uint32_t groups = groups_of(voxels_);
     r.shader_after_shader();
-    r.dispatch(t_.kernels_.get(Kernel::clamp), ClampPush{t_.counts_.address(), voxels_, 0},
+    r.dispatch(t_.kernels_.get(Kernel::clamp), ClampPush{t_.sums_.counts.address(), voxels_, 0},
                std::min(groups, groups_in_row), groups_of(groups, groups_in_row));
     r.shader_after_shader();
   }
@@ -173,11 +173,11 @@ class VulkanTracer::ExactCount {
   // `k`: index of the part in its submission.
   TilePush tile_push(const CountPart& part, std::size_t k) const {
     TilePush push{};
-    push.tile_far = t_.tile_far_.address() + std::uint64_t{part.slot} * schedule_->tiles() * word;
-    push.tile_list = t_.tile_list_.address() + part.list * word;
-    push.dispatch = t_.tile_dispatch_.address() + k * dispatch_bytes;
-    push.rays = t_.tile_rays_.address();
-    if (tile_pass_) push.starts = t_.tile_starts_.address() + part.list * tile_pass_->bytes_per_tile;
+    push.tile_far = t_.tiles_.far.address() + std::uint64_t{part.slot} * schedule_->tiles() * word;
+    push.tile_list = t_.tiles_.list.address() + part.list * word;
+    push.dispatch = t_.tiles_.dispatch.address() + k * dispatch_bytes;
+    push.rays = t_.tiles_.rays.address();
+    if (tile_pass_) push.starts = t_.tiles_.starts.address() + part.list * tile_pass_->bytes_per_tile;
     const Float3& origin = stations_[part.station].origin;
     push.origin = {origin.x, origin.y, origin.z};
     set_turn(push.turn, stations_[part.station]);
@@ -189,9 +189,9 @@ class VulkanTracer::ExactCount {
   CountPush count_push(const CountPart& part, std::size_t k) const {
     const TraceStation& station = stations_[part.station];
     CountPush push{};
-    push.counts = t_.counts_.address();
-    push.masks = mask_words_ ? t_.masks_.address() + std::uint64_t{station.bit() / 32} * voxels_ * word : 0;
-    push.counters = t_.station_counters_.address();
+    push.counts = t_.sums_.counts.address();
+    push.masks = mask_words_ ? t_.sums_.masks.address() + std::uint64_t{station.bit() / 32} * voxels_ * word : 0;
+    push.counters = t_.sums_.station_counters.address();
     push.origin = {station.origin.x, station.origin.y, station.origin.z};
     set_turn(push.turn, station);
     push.place = station.place;
@@ -207,9 +207,14 @@ class VulkanTracer::ExactCount {
   }
 
   Reduction reduction() const {
-    Reduction reduction{t_.counts_.address(),   mask_words_ ? t_.masks_.address() : 0, voxels_, 1, mask_words_, false,
-                        t_.demands_.addresses()};
-    if (t_.demands_.weights) reduction.weight = {t_.scene_.grid->total_weight()};
+    Reduction reduction{t_.sums_.counts.address(),
+                        mask_words_ ? t_.sums_.masks.address() : 0,
+                        voxels_,
+                        1,
+                        mask_words_,
+                        false,
+                        t_.device_scene_.demands().addresses()};
+    if (t_.device_scene_.demands().weights) reduction.weight = {t_.scene_.grid->total_weight()};
     return reduction;
   }
 
@@ -230,11 +235,11 @@ class VulkanTracer::ExactCount {
 
   void read_field(VoxelField& field) {
     field.count.resize(voxels_);
-    t_.commands_.download(t_.counts_, field.count.data(), voxels_ * word);
+    t_.commands_.download(t_.sums_.counts, field.count.data(), voxels_ * word);
     field.stations.assign(options_.masks ? voxels_ : 0, 0);
     std::vector<std::uint32_t> bits(voxels_);
     for (std::uint32_t w = 0; w < mask_words_; ++w) {
-      t_.commands_.download(t_.masks_, bits.data(), voxels_ * word, std::uint64_t{w} * voxels_ * word);
+      t_.commands_.download(t_.sums_.masks, bits.data(), voxels_ * word, std::uint64_t{w} * voxels_ * word);
       for (std::uint32_t v = 0; v < voxels_; ++v) field.stations[v] |= std::uint64_t{bits[v]} << (32 * w);
     }
   }

@@ -9,13 +9,13 @@
 namespace vantage::vulkan {
 
 void VulkanTracer::ensure_totals(std::size_t networks, std::uint32_t groups, std::uint32_t stride) {
-  ensure(totals_, networks * groups * stride * sizeof(std::uint32_t), "totals");
-  ensure(station_counts_, networks * sizeof(std::uint32_t), "station counts");
+  ensure(sums_.totals, networks * groups * stride * sizeof(std::uint32_t), "totals");
+  ensure(sums_.station_counts, networks * sizeof(std::uint32_t), "station counts");
 }
 
 void VulkanTracer::record_totals_start(const Recorder& r, std::span<const std::uint32_t> station_counts) {
-  r.update(station_counts_, station_counts.data(), station_counts.size_bytes());
-  r.zero(totals_);
+  r.update(sums_.station_counts, station_counts.data(), station_counts.size_bytes());
+  r.zero(sums_.totals);
 }
 
 void VulkanTracer::record_reduction(const Recorder& r, const Reduction& reduction, std::uint32_t first_network,
@@ -23,8 +23,8 @@ void VulkanTracer::record_reduction(const Recorder& r, const Reduction& reductio
   ReducePush push{};
   push.counts = reduction.counts;
   push.masks = reduction.masks;
-  push.totals = totals_.address();
-  push.station_counts = station_counts_.address();
+  push.totals = sums_.totals.address();
+  push.station_counts = sums_.station_counts.address();
   push.weights = reduction.demands.weights;
   push.point_weights = reduction.demands.point_weights;
   push.voxel_count = reduction.voxels;

@@ -14,7 +14,7 @@
 
 namespace vantage::vulkan {
 
-const VulkanTracer::DeviceSample& VulkanTracer::upload_sample(std::span<const std::uint32_t> sample) {
+const DeviceSample& VulkanTracer::upload_sample(std::span<const std::uint32_t> sample) {
   return samples_.get([&](const DeviceSample& one) { return std::ranges::equal(sample, one.voxel_indices); },
                       [&] { return device_sample(sample); });
 }
@@ -28,7 +28,7 @@ static std::vector<SampleVoxel> in_order_of_chunks(std::span<const SampleVoxel> 
   return ordered;
 }
 
-VulkanTracer::DeviceSample VulkanTracer::device_sample(std::span<const std::uint32_t> sample) {
+DeviceSample VulkanTracer::device_sample(std::span<const std::uint32_t> sample) {
   const VoxelGrid& grid = *scene_.grid;
   std::vector<SampleVoxel> voxels(sample.size());
   tbb::parallel_for(std::size_t{0}, sample.size(), [&](std::size_t k) {
@@ -36,9 +36,10 @@ VulkanTracer::DeviceSample VulkanTracer::device_sample(std::span<const std::uint
     voxels[k] = {cell[0], cell[1], cell[2], static_cast<std::uint32_t>(k)};
   });
   return {.voxel_indices = {sample.begin(), sample.end()},
-          .voxels = to_device<SampleVoxel>(voxels, "sample voxels"),
-          .in_order_of_chunks = to_device<SampleVoxel>(in_order_of_chunks(voxels), "voxels of chunks"),
-          .demands = to_device(grid.demands().of(sample))};
+          .voxels = make_device_buffer<SampleVoxel>(device_, commands_, voxels, "sample voxels"),
+          .in_order_of_chunks =
+              make_device_buffer<SampleVoxel>(device_, commands_, in_order_of_chunks(voxels), "voxels of chunks"),
+          .demands = make_device_demands(device_, commands_, grid.demands().of(sample))};
 }
 
 // Networks go in batches that share counts and masks. Within a batch, stations go scanner by scanner, upright and
@@ -65,8 +66,8 @@ class VulkanTracer::SampledCount {
         totals_(networks.size() * groups_ * stride_) {}
 
   std::vector<NetworkCounts> run(const Progress& progress) {
-    t_.upload_triangles();
-    t_.upload_neighbours();
+    t_.device_scene_.upload_triangles();
+    t_.device_scene_.upload_neighbours();
     sample_ = &t_.upload_sample(job_.sample);
     ensure_buffers();
     reduction_ = reduction();
@@ -111,20 +112,20 @@ class VulkanTracer::SampledCount {
 
   void ensure_buffers() {
     const std::uint64_t entries = std::uint64_t{voxels_} * batch_size_;
-    t_.ensure(t_.sample_pairs_, std::uint64_t{room_.pairs} * sizeof(SamplePair), "sample pairs");
-    t_.ensure(t_.sample_rays_, std::uint64_t{room_.rays} * sizeof(SampleRay), "sample rays");
-    t_.ensure(t_.sample_sights_, room_.parts * word, "sample sights");
-    t_.ensure(t_.sample_items_, std::uint64_t{room_.parts} * sizeof(SampleItem), "sample items");
-    t_.ensure(t_.counts_, entries * word, "counts");
-    if (mask_words_) t_.ensure(t_.masks_, entries * mask_words_ * word, "station masks");
+    t_.ensure(t_.sample_.pairs, std::uint64_t{room_.pairs} * sizeof(SamplePair), "sample pairs");
+    t_.ensure(t_.sample_.rays, std::uint64_t{room_.rays} * sizeof(SampleRay), "sample rays");
+    t_.ensure(t_.sample_.sights, room_.parts * word, "sample sights");
+    t_.ensure(t_.sample_.items, std::uint64_t{room_.parts} * sizeof(SampleItem), "sample items");
+    t_.ensure(t_.sums_.counts, entries * word, "counts");
+    if (mask_words_) t_.ensure(t_.sums_.masks, entries * mask_words_ * word, "station masks");
     t_.ensure_totals(networks_.size(), groups_, stride_);
   }
 
   // Returns false if the caller stopped it before the end.
   bool count_batch(Batch batch, const Progress& progress) {
     fill_slots(batch);
-    t_.ensure(t_.sample_stations_, batch.slots.size() * sizeof(SampleStation), "sample stations");
-    t_.ensure(t_.slot_rays_, batch.slots.size() * sizeof(std::uint64_t), "slot rays");
+    t_.ensure(t_.sample_.stations, batch.slots.size() * sizeof(SampleStation), "sample stations");
+    t_.ensure(t_.sample_.slot_rays, batch.slots.size() * sizeof(std::uint64_t), "slot rays");
     slot_rays_.resize(batch.slots.size());
     double slots_done = 0;
     const auto all_slots = static_cast<double>(std::max<std::size_t>(batch.slots.size(), 1));
@@ -203,7 +204,7 @@ class VulkanTracer::SampledCount {
 
   void hand_out_points(const Batch& batch) {
     std::vector<std::uint32_t> points(std::size_t{voxels_} * batch.size());
-    t_.commands_.download(t_.counts_, points.data(), points.size() * word);
+    t_.commands_.download(t_.sums_.counts, points.data(), points.size() * word);
     for (std::size_t n = 0; n < batch.size(); ++n)
       job_.points(batch.first + n, std::span(points).subspan(n * voxels_, voxels_));
   }
@@ -211,7 +212,7 @@ class VulkanTracer::SampledCount {
   std::vector<std::uint64_t> masks_of(const Batch& batch) {
     const std::size_t of_network = std::size_t{voxels_} * mask_words_;
     std::vector<std::uint32_t> words(of_network * batch.size());
-    t_.commands_.download(t_.masks_, words.data(), words.size() * word);
+    t_.commands_.download(t_.sums_.masks, words.data(), words.size() * word);
     std::vector<std::uint64_t> masks(std::size_t{voxels_} * batch.size());
     tbb::parallel_for(std::size_t{0}, batch.size(), [&](std::size_t n) {
       const std::uint32_t* low = words.data() + n * of_network;
@@ -247,17 +248,18 @@ class VulkanTracer::SampledCount {
   std::pair<std::vector<SampleTally>, double> submit(const Batch& batch, const Submission& submission) {
     const std::vector<SampleChunk>& chunks = submission.chunks;
     std::vector<std::uint32_t> control(std::max<std::size_t>(chunks.size(), 1) * control_words);
-    t_.ensure(t_.sample_control_, control.size() * word, "sample control", VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
-    std::vector<Commands::Download> wanted{{t_.sample_control_, control.data(), control.size() * word}};
-    if (submission.last) wanted.push_back({t_.slot_rays_, slot_rays_.data(), slot_rays_.size() * sizeof slot_rays_[0]});
+    t_.ensure(t_.sample_.control, control.size() * word, "sample control", VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
+    std::vector<Commands::Download> wanted{{t_.sample_.control, control.data(), control.size() * word}};
+    if (submission.last)
+      wanted.push_back({t_.sample_.slot_rays, slot_rays_.data(), slot_rays_.size() * sizeof slot_rays_[0]});
     if (submission.last && batch.end == networks_.size())
-      wanted.push_back({t_.totals_, totals_.data(), totals_.size() * word});
+      wanted.push_back({t_.sums_.totals, totals_.data(), totals_.size() * word});
     const auto record = [&](const Recorder& r) {
       if (submission.first) record_start(r, batch);
-      r.zero(t_.sample_control_);
+      r.zero(t_.sample_.control);
       if (submission.last) {
         const VkDeviceSize of_network = std::uint64_t{groups_} * stride_ * word;
-        r.zero(t_.totals_, batch.first * of_network, batch.size() * of_network);
+        r.zero(t_.sums_.totals, batch.first * of_network, batch.size() * of_network);
       }
       r.shader_after_transfer();
       for (std::size_t k = 0; k < chunks.size(); ++k) record_chunk(r, *submission.run, chunks[k], k);
@@ -280,11 +282,11 @@ class VulkanTracer::SampledCount {
   }
 
   void record_start(const Recorder& r, const Batch& batch) {
-    if (batch.first == 0) r.update(t_.station_counts_, station_counts_.data(), station_counts_.size_bytes());
-    r.update(t_.sample_stations_, batch.slots.data(), batch.slots.size() * sizeof(SampleStation));
-    r.zero(t_.slot_rays_);
-    r.zero(t_.counts_);
-    if (mask_words_) r.zero(t_.masks_);
+    if (batch.first == 0) r.update(t_.sums_.station_counts, station_counts_.data(), station_counts_.size_bytes());
+    r.update(t_.sample_.stations, batch.slots.data(), batch.slots.size() * sizeof(SampleStation));
+    r.zero(t_.sample_.slot_rays);
+    r.zero(t_.sums_.counts);
+    if (mask_words_) r.zero(t_.sums_.masks);
   }
 
   // Probes, lists and traces one chunk; its control words are number k of the submission.
@@ -304,7 +306,7 @@ class VulkanTracer::SampledCount {
       r.shader_after_shader();
       r.dispatch(pipeline(Kernel::sample_arguments), arguments, 1);
       r.shader_after_shader();
-      r.dispatch_indirect(kernel, push, t_.sample_control_, dispatch);
+      r.dispatch_indirect(kernel, push, t_.sample_.control, dispatch);
     };
     const std::uint32_t groups = groups_of(chunk.pairs());
     r.shader_after_shader();  // the previous chunk still reads the lists
@@ -322,15 +324,15 @@ class VulkanTracer::SampledCount {
   SamplePush push_of(const SampleChunk& chunk, std::size_t k) const {
     SamplePush push{};
     push.voxels = sample_->voxels.address();
-    push.stations = t_.sample_stations_.address();
-    push.pairs = t_.sample_pairs_.address();
-    push.rays = t_.sample_rays_.address();
-    push.sights = t_.sample_sights_.address();
-    push.items = t_.sample_items_.address();
-    push.control = t_.sample_control_.address() + k * control_words * word;
-    push.counts = t_.counts_.address();
-    push.masks = mask_words_ ? t_.masks_.address() : 0;
-    push.slot_rays = t_.slot_rays_.address();
+    push.stations = t_.sample_.stations.address();
+    push.pairs = t_.sample_.pairs.address();
+    push.rays = t_.sample_.rays.address();
+    push.sights = t_.sample_.sights.address();
+    push.items = t_.sample_.items.address();
+    push.control = t_.sample_.control.address() + k * control_words * word;
+    push.counts = t_.sums_.counts.address();
+    push.masks = mask_words_ ? t_.sums_.masks.address() : 0;
+    push.slot_rays = t_.sample_.slot_rays.address();
     push.voxel_count = voxels_;
     push.first_part = chunk.first_part;
     push.end_part = chunk.end_part;
@@ -362,8 +364,13 @@ class VulkanTracer::SampledCount {
   }
 
   Reduction reduction() const {
-    Reduction reduction{t_.counts_.address(), mask_words_ ? t_.masks_.address() : 0, voxels_, groups_, mask_words_,
-                        job_.groups > 0,      sample_->demands.addresses()};
+    Reduction reduction{t_.sums_.counts.address(),
+                        mask_words_ ? t_.sums_.masks.address() : 0,
+                        voxels_,
+                        groups_,
+                        mask_words_,
+                        job_.groups > 0,
+                        sample_->demands.addresses()};
     if (reduction.demands.weights) {
       reduction.weight.resize(groups_);
       for (std::size_t k = 0; k < job_.sample.size(); ++k)

@@ -11,7 +11,7 @@ void VulkanTracer::scan(const TraceStation& station, std::uint64_t first_ray, st
                         std::uint32_t outputs, RawChunk& chunk) {
   const DeviceScanner& scanner = scanners_[station.scanner];
   const std::uint32_t columns = scanner.pattern().columns();
-  if (outputs & (normal | reflectivity | barycentric)) upload_shading();
+  if (outputs & (normal | reflectivity | barycentric)) device_scene_.upload_shading();
   const auto rows = static_cast<std::uint32_t>(ray_count / columns);
 
   ScanPush push{};

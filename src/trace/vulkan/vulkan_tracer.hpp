@@ -2,7 +2,7 @@
 // A Vulkan device that traces: scene, the engine's Traversal, and buffers kept from call to call. Engines differ only
 // in the Traversal.
 //
-//   vulkan_tracer.cpp    uploads that are made once
+//   device_scene.hpp     uploads that are made once
 //   scan_station.cpp     points of one station
 //   count_network.cpp    every ray of a network
 //   sample_networks.cpp  rays of sampled voxels, for many networks
@@ -24,6 +24,7 @@
 #include "trace/tracer.hpp"
 #include "trace/vulkan/commands.hpp"
 #include "trace/vulkan/device_scanner.hpp"
+#include "trace/vulkan/device_scene.hpp"
 #include "trace/vulkan/dispatch_sizer.hpp"
 #include "trace/vulkan/groups.hpp"
 #include "trace/vulkan/kernels.hpp"
@@ -35,6 +36,35 @@ namespace vantage::vulkan {
 // Chosen so that a dispatch takes a fraction of a watchdog's limit even on a slow device of its kind.
 inline constexpr std::uint64_t hardware_rays_per_dispatch = std::uint64_t{1} << 26,
                                software_rays_per_dispatch = std::uint64_t{1} << 19;
+
+// A sample in the kernels' format.
+struct DeviceSample {
+  std::vector<std::uint32_t> voxel_indices;
+  Buffer voxels, in_order_of_chunks;
+  DeviceDemands demands;
+};
+
+// Counts and masks of voxels, and what they are reduced to.
+struct SumBuffers {
+  Buffer counts, masks, station_counters, totals, station_counts;
+};
+
+// Tiles of directions that an exact count with skipping visits.
+struct TileBuffers {
+  Buffer far, list, dispatch, rays, starts;
+};
+
+// Lists of a sampled count.
+struct SampleBuffers {
+  Buffer stations, pairs, rays, sights, items, control, slot_rays;
+};
+
+// What registration sums are made from, and the sums.
+struct RegistrationBuffers {
+  std::shared_ptr<const Patches> uploaded_patches;
+  std::shared_ptr<const NoiseModel> uploaded_noise;
+  Buffer patches, sigma, heads, sums;
+};
 
 class VulkanTracer final : public Tracer {
  public:
@@ -63,30 +93,9 @@ class VulkanTracer final : public Tracer {
 
   std::unique_ptr<Traversal> build_traversal(const VulkanEngine& engine);
   std::vector<DeviceScanner> make_scanners();
-  void upload_scene();
-  void upload_triangles();
-  void upload_neighbours();
-  void upload_shading();
-  // Coverage's demands on voxels, of all or of a sample. Without memory if all are alike.
-  struct DemandAddresses {
-    std::uint64_t weights = 0, point_weights = 0;
-  };
-  struct DeviceDemands {
-    Buffer weights, point_weights;
-    DemandAddresses addresses() const {
-      return {weights ? weights.address() : 0, point_weights ? point_weights.address() : 0};
-    }
-  };
-  // A sample in the kernels' format.
-  struct DeviceSample {
-    std::vector<std::uint32_t> voxel_indices;
-    Buffer voxels, in_order_of_chunks;
-    DeviceDemands demands;
-  };
   const DeviceSample& upload_sample(std::span<const std::uint32_t> sample);
   DeviceSample device_sample(std::span<const std::uint32_t> sample);
   SampleRoom room_for_sample() const { return sample_room(info_.software, scene_.max_rays_per_dispatch); }
-  void write_parameters();
   bool limited() const { return scanners_.front().limits(); }  // either all scanners are limited or none
   std::uint64_t rays_per_dispatch() const {
     if (scene_.max_rays_per_dispatch > 0) return scene_.max_rays_per_dispatch;
@@ -123,18 +132,6 @@ class VulkanTracer final : public Tracer {
       buffer = Buffer(device_, bytes, Buffer::Where::device, name, extra);
     }
   }
-  template <class T>
-  Buffer to_device(std::span<const T> values, const char* name) {
-    return make_device_buffer<T>(device_, commands_, values, name);
-  }
-  DeviceDemands to_device(VoxelDemands demands) {
-    DeviceDemands made;
-    demands.weights.resize((demands.weights.size() + 3) / 4 * 4);  // whole words, as shaders read them
-    if (!demands.weights.empty()) made.weights = to_device<std::uint8_t>(demands.weights, "voxel weights");
-    if (!demands.point_weights.empty())
-      made.point_weights = to_device<std::uint32_t>(demands.point_weights, "point weights");
-    return made;
-  }
 
   // Records the reduction of `networks` blocks of counts and masks, and reads totals back into counts.
   struct Reduction {
@@ -166,21 +163,17 @@ class VulkanTracer final : public Tracer {
   Commands commands_;
   std::unique_ptr<Traversal> traversal_;
   std::vector<DeviceScanner> scanners_;
-  TraceParameters parameters_{};  // except for each scanner's own part
+  DeviceScene device_scene_;
   Kernels kernels_;
-  Buffer bricks_, slots_;
-  Buffer positions_, normals_, triangles_, neighbours_, diffuse_, normal_table_;  // filled on first use
-  DeviceDemands demands_;                                                         // for all voxels
-  Buffer counts_, masks_, station_counters_, totals_, station_counts_;
-  Buffer tile_far_, tile_list_, tile_dispatch_, tile_rays_, tile_starts_;
   DispatchSizer exact_sizer_, sampled_sizer_;
-
-  LruCache<DeviceSample> samples_;
-  Buffer sample_stations_, sample_pairs_, sample_rays_, sample_sights_, sample_items_, sample_control_, slot_rays_;
-  std::shared_ptr<const Patches> patches_;  // contents of the next buffers
-  std::shared_ptr<const NoiseModel> patch_noise_;
-  Buffer registration_patches_, registration_sigma_, registration_heads_, registration_sums_;
   PairsSeen pairs_seen_{.rays = 8, .open = 1};  // sizes chunks, never affects results
+
+  // Kept from call to call, grown by ensure().
+  SumBuffers sums_;
+  TileBuffers tiles_;
+  SampleBuffers sample_;
+  LruCache<DeviceSample> samples_;
+  RegistrationBuffers registration_;
 };
 
 }  // namespace vantage::vulkan
