@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Positions to choose stations among, and what a station on each covers alone. Points of several stations in a voxel
-/// add up, so one pass over single stations answers all questions of which to take (vantage/cover.hpp).
+/// Candidate positions of stations, and the points that each alone leaves. Points of several stations in a voxel add
+/// up, so one pass over single stations answers all questions of choice (vantage/cover.hpp).
 #pragma once
 
 #include <cstddef>
@@ -19,33 +19,32 @@
 
 namespace vantage {
 
-/// What stations cover one by one of a sample of voxels: a coverage matrix, its elements the sampled voxels.
+/// Coverage matrix of single stations on a sample of the voxels; its elements are the sampled voxels.
 ///
-/// An amount is a station's points in a voxel. Where the goals of voxels differ, points count by
-/// `Simulator::point_weight`, up to the goal. A column is counted with its station as the only one of a network. Noise
-/// is keyed by a station's place in its network, so elsewhere in a network the same station draws other noise: without
-/// noise sums of columns are exactly what `Simulator::evaluate_sampled` counts, with noise they are another draw of the
-/// same distribution.
+/// An amount is a station's points in a voxel, up to the goal. If voxels have different goals, points count by
+/// `Simulator::point_weight`. Each column is counted as a network of one station. Noise is keyed by a station's place
+/// in its network, so the same station has other noise at another place. Without noise, sums of columns equal the
+/// counts of `Simulator::evaluate_sampled`; with noise they are another draw of the same distribution.
 class SampledCoverage {
  public:
   SampledCoverage() = default;
-  /// Of no stations yet.
+  /// Makes one without stations.
   SampledCoverage(const Simulator& simulator, std::uint64_t sample_voxels);
 
   const CoverageMatrix& matrix() const noexcept { return matrix_; }
   std::size_t size() const noexcept { return matrix_.candidates(); }             ///< Number of stations.
   const std::vector<std::uint32_t>& voxels() const noexcept { return voxels_; }  ///< Voxel of each element, ascending.
   std::uint64_t population() const noexcept { return population_; }              ///< Number of surveyed voxels.
-  std::uint64_t sample_voxels() const noexcept { return sample_voxels_; }        ///< As asked for.
-  bool cancelled() const noexcept { return cancelled_; }                         ///< The last stations are missing.
+  std::uint64_t sample_voxels() const noexcept { return sample_voxels_; }        ///< The requested number.
+  /// True if the last stations are missing.
+  bool cancelled() const noexcept { return cancelled_; }
 
-  /// Appends the first `most` stations of another one over the same sample. Throws Error invalid_argument where the
-  /// sample is another.
+  /// Appends the first `most` stations of another one. Throws Error invalid_argument if its sample differs.
   void append(const SampledCoverage& other, std::size_t most = std::numeric_limits<std::size_t>::max());
 
-  /// Equation 8 of a network of these stations, with the standard error of the sample.
+  /// Equation 8 for a network of these stations, with the standard error of the sample.
   Estimate coverage(std::span<const std::size_t> stations) const;
-  /// Of all stations.
+  /// The same for all stations.
   Estimate coverage() const;
 
  private:
@@ -61,47 +60,47 @@ class SampledCoverage {
 };
 
 /// Traces stations one by one on a sample of `sample_voxels`. A station that is not `StationStatus::ok` covers nothing.
-/// A cancelled call holds the first stations and says so.
+/// A cancelled call holds the first stations and has `cancelled()` set.
 SampledCoverage sample_coverage(Simulator& simulator, std::span<const PlacedStation> stations,
                                 std::uint64_t sample_voxels, const Progress& progress = {});
 
-/// Scan overlap of each pair (the share of the smaller scan that the other sees too), on a sample of `sample_voxels` of
-/// `surroundings`, which is a simulator of all surfaces (`surroundings_of()`). A stopped call knows overlaps of the
-/// first stations.
+/// Scan overlap of each pair (the shared surface as a share of the smaller scan), on a sample of `sample_voxels` of
+/// `surroundings`, the simulator of all surfaces (`surroundings_of()`). A stopped call has overlaps of the first
+/// stations.
 StationGraph overlap_graph(Simulator& surroundings, std::span<const PlacedStation> stations,
                            std::uint64_t sample_voxels = 10'000, const Progress& progress = {});
 
-/// Allowed positions (`StationStatus::ok`) at the scanner's height, `most` of them at most, spread evenly over the
-/// ground in square metres; so are the first n of them, for every n. Where most of it is forbidden there may be fewer.
-/// No random numbers. Throws Error invalid_argument where no position is allowed.
+/// Allowed positions (`StationStatus::ok`) at the scanner's height, at most `most`, spread evenly over the ground in
+/// square metres. The first n are spread evenly too, for every n. There may be fewer if most of the ground is
+/// forbidden. Uses no random numbers. Throws Error invalid_argument if no position is allowed.
 std::vector<PlacedStation> candidate_positions(const SearchArea& area, const ClashChecker& clash,
                                                const Scanner& scanner, std::size_t most);
 
 /// How candidates are found.
 struct CandidateConfig {
-  std::size_t first = 128;  ///< How many to begin with; then twice as many, and so on.
-  std::size_t most = 2048;  ///< And no more than this.
-  double change = 0.005;    ///< Enough once doubling them changes what all capture together by less, as a share of it.
+  std::size_t first = 128;               ///< Initial number; it is doubled until a limit holds.
+  std::size_t most = 2048;               ///< Largest number.
+  double change = 0.005;                 ///< Stops once doubling changes their common coverage by less than this share.
   std::uint64_t sample_voxels = 20'000;  ///< 0: every voxel.
-  std::uint32_t scanner = 0;             ///< Which of the simulator's scanners stands on each.
-  double max_seconds = 0;  ///< Stop growing after so long; 0: no limit. What is found then depends on the machine.
+  std::uint32_t scanner = 0;             ///< Scanner on each, an index into `Simulator::scanners()`.
+  double max_seconds = 0;  ///< Time limit for growing; 0: none. With a limit the result depends on the machine.
 };
 
 Settings settings(const CandidateConfig& config);
 
-/// Evenly spread allowed positions, and what stations on them cover.
+/// Evenly spread allowed positions, and the coverage of stations on them.
 class Candidates {
  public:
   const std::vector<PlacedStation>& stations() const noexcept { return stations_; }  ///< All are ok.
   const SampledCoverage& coverage() const noexcept { return coverage_; }             ///< Of these stations, in order.
-  /// What can be seen: coverage (equation 8) if every candidate had a station, with the standard error of the sample.
+  /// Attainable coverage (equation 8): that of a station on every candidate, with the standard error of the sample.
   const Estimate& visible() const noexcept { return visible_; }
-  /// By what share the last doubling changed it; 1 where there was none.
+  /// Relative change of it by the last doubling; 1 if there was none.
   double change() const noexcept { return change_; }
-  /// Why there are no more: "enough" (the change is below the wanted one), "all" (no further allowed position was
-  /// found), "most", "time", "cancelled".
+  /// Why growth ended: "enough" (the change is below the wanted one), "all" (there is no further allowed position),
+  /// "most", "time", "cancelled".
   const std::string& ended() const noexcept { return ended_; }
-  /// Typical distance between neighbours: the largest, over the allowed positions tried, to the nearest candidate.
+  /// Largest distance from a tried allowed position to its nearest candidate: typical of neighbours.
   double spacing_m() const noexcept { return spacing_m_; }
 
  private:
@@ -114,9 +113,9 @@ class Candidates {
   std::string ended_;
 };
 
-/// Allowed positions (`StationStatus::ok`), spread evenly over the ground in square metres, at the scanner's height,
-/// doubled in number until what all of them capture together hardly changes. The first n of them are spread evenly too,
-/// for every n; no random numbers. Throws Error invalid_argument where no position is allowed.
+/// Finds allowed positions (`StationStatus::ok`) at the scanner's height, spread evenly over the ground in square
+/// metres. Doubles their number until their common coverage hardly changes. The first n are spread evenly too, for
+/// every n. Uses no random numbers. Throws Error invalid_argument if no position is allowed.
 Candidates find_candidates(Simulator& simulator, const SearchArea& area, const ClashChecker& clash,
                            const CandidateConfig& config = {}, const Progress& progress = {});
 
