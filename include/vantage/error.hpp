@@ -15,7 +15,7 @@ enum class Errc {
   invalid_argument,    ///< A value from the caller is out of its range.
   io,                  ///< A file cannot be read or written.
   malformed_file,      ///< A file was read, but its content is not valid.
-  no_suitable_device,  ///< No device, or none with what was asked; `details()` lists why each was refused.
+  no_suitable_device,  ///< No device, or no suitable one; `details()` lists why each was refused.
   out_of_memory,       ///< The host or the device has not enough memory.
   device_failure,      ///< The device failed or was lost; the object that threw is unusable afterwards.
 };

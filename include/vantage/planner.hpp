@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Searches for networks of stations. The one header where optimiser and simulator meet.
+/// Searches for networks of stations: the one header where optimiser and simulator meet.
 #pragma once
 
 #include <array>
@@ -27,248 +27,248 @@
 
 namespace vantage {
 
-/// What is asked: how many stations, where they may be, what a network is searched for and what it has to keep.
+/// A planning problem: number of stations, allowed heights, objectives and requirements.
 struct SurveyProblem {
-  std::string name = "custom";  ///< For tables and pictures; "coverage-fix" and such for the method's own.
-  /// How many stations to place. Where the two differ, the number is searched too, by the decision variable α of
-  /// equation 7.
+  std::string name = "custom";  ///< For tables and pictures; e.g. "coverage-fix" for the method's own.
+  /// Number of stations to place. If the two differ, the number is searched too, by the decision variable α of equation
+  /// 7.
   std::size_t stations_min = 4, stations_max = 4;
-  std::vector<Vec3> kept = {};  ///< Heads of stations that are there already: the first of every network, on top.
-  /// How they are set up, one each; empty: upright, with the first scanner.
+  std::vector<Vec3> kept = {};  ///< Heads of existing stations: the first of every network, not counted above.
+  /// Their setups, one each; empty: upright, with the first scanner.
   std::vector<StationSetup> kept_setups = {};
-  /// Indices into `Simulator::scanners()` that each station chooses from, in the order in which they are tried: one
-  /// model with finer and finer steps, say. Empty: the first scanner.
+  /// Indices into `Simulator::scanners()` that each station chooses from, in their order, e.g. one model with finer and
+  /// finer steps. Empty: the first scanner.
   std::vector<std::uint32_t> scanners = {};
   /// Lowest and highest height of the head above the search area, searched per station; empty: the scanner's height.
   std::optional<std::array<double, 2>> heights_m = std::nullopt;
-  std::vector<Objective> objectives = {};      ///< At least one. One: the best network is searched; several: a front.
-  std::vector<Requirement> requirements = {};  ///< Networks that break one rank behind all that do not, by how much.
-  /// Pairs of less overlap count as not linked in reports and pictures.
+  std::vector<Objective> objectives = {};  ///< At least one. One: the best network is searched; several: a front.
+  /// Networks that violate one rank behind all that do not, by their violation.
+  std::vector<Requirement> requirements = {};
+  /// Least overlap of a link in reports and pictures.
   double link_overlap = default_link_overlap;
-  RegistrationOptions registration = {};  ///< What scans register from, and how well they have surfaces.
-  /// In two steps: first the fewest stations, of `stations_min` to `stations_max`, that keep the requirements on
-  /// `coverage`, `capture`, `link` and `apart`; then, at that number, the best by the objectives under all
-  /// requirements.
+  RegistrationOptions registration = {};  ///< Surfaces that scans register on, and their accuracy.
+  /// Searches in two steps. The first finds the fewest stations, of `stations_min` to `stations_max`, that meet the
+  /// requirements on `coverage`, `capture`, `link` and `apart`. The second finds the best network of that number by the
+  /// objectives under all requirements.
   bool fewest = false;
-  /// What can be seen: the coverage (equation 8) that `capture` is a share of. Empty: found by `find_candidates()`
-  /// where `capture` is asked for.
+  /// Attainable coverage (equation 8), the denominator of `capture`. Empty: found by `find_candidates()` if `capture`
+  /// is used.
   std::optional<double> visible = std::nullopt;
-  OnSiteOptions on_site = {};  ///< For the objective `time`, and the time on site that every plan tells.
+  OnSiteOptions on_site = {};  ///< For the objective `time`, and the time on site that every plan reports.
 
-  /// What the built-in objectives have to be told of this problem.
+  /// Parameters of the built-in objectives for this problem.
   ObjectiveSettings settings() const;
 };
 
 Settings settings(const SurveyProblem& problem);
 
-/// The problems of Table 2 of the method, by objectives: coverage; coverage and overlap; coverage and number of
-/// stations; all three. And the scalarised fitness of equation 1, a baseline.
+/// The problems of table 2 of the method, by objectives: coverage; coverage and overlap; coverage and number of
+/// stations; all three. Then the scalarised fitness of equation 1, a baseline.
 SurveyProblem coverage_fix(std::size_t stations);
 SurveyProblem coverage_overlap_fix(std::size_t stations);
 SurveyProblem coverage_min(std::size_t stations_min, std::size_t stations_max);
 SurveyProblem coverage_overlap_min(std::size_t stations_min, std::size_t stations_max);
 SurveyProblem fitness_min(std::size_t stations_min, std::size_t stations_max, const FitnessWeights& weights = {});
-/// The surveyor's question: the fewest stations that capture so much of what can be seen, all linked along some
-/// spanning tree by scan overlaps of at least `link`, `apart_m` or more from each other; then, at that number, the
-/// least registration error.
+/// The surveyor's question: the fewest stations that capture the share `capture` of attainable coverage, connected by
+/// scan overlaps of at least `link`, at least `apart_m` from each other; then, at that number, the least registration
+/// error.
 SurveyProblem fewest_stations(double capture = 0.9, double link = 0.3, std::size_t stations_min = 1,
                               std::size_t stations_max = max_stations, double apart_m = 1);
-/// One of `problem_names()`: "coverage-fix", "coverage-overlap-fix", "coverage-min", "coverage-overlap-min",
-/// "fitness-min". Throws Error invalid_argument and lists the names, or where a -fix problem is given a range or a -min
-/// problem none.
+/// A problem of `problem_names()`: "coverage-fix", "coverage-overlap-fix", "coverage-min", "coverage-overlap-min",
+/// "fitness-min". Throws Error invalid_argument and lists the names; also if a -fix problem has a range or a -min
+/// problem has none.
 SurveyProblem survey_problem(std::string_view name, std::size_t stations_min, std::size_t stations_max);
 std::span<const std::string> problem_names();
 /// A problem of built-in objectives.
 SurveyProblem survey_problem(std::span<const std::string> objectives, std::size_t stations_min,
                              std::size_t stations_max, double link_overlap = default_link_overlap);
 
-/// How to search.
+/// Settings of a search.
 struct PlanConfig {
-  std::size_t population = 0;  ///< 0: with one objective 10, or 20 where the number is searched; else 100.
-  /// Of `population` evaluations each. 0: 100; where the fewest stations are asked for, by the site, so that the search
-  /// traces about twice as many stations as looking at what can be seen did.
+  std::size_t population = 0;  ///< 0: with one objective 10, or 20 if the number is searched; else 100.
+  /// Number of iterations, of `population` evaluations each. 0: 100; for the fewest stations it depends on the site, so
+  /// that the search traces about twice as many stations as the look at attainable coverage.
   std::size_t iterations = 0;
   double sigma0 = 0.2;
   /// Makes the optimiser of problems with several objectives; empty: MO-CMA-ES. A checkpoint is resumed only with the
-  /// same.
+  /// same one.
   OptimiserMaker optimiser = {};
   MoCmaEsConfig::Scheme scheme = MoCmaEsConfig::Scheme::steady_state;
-  std::size_t batch = 0;  ///< Offspring at once in the steady state; 0: chosen by the engine.
-  bool exact = false;     ///< Search with every ray, the dearest way; `sample_voxels` is then 0.
-  /// Search with so many of the surveyed voxels; 0: chosen by the problem and the site.
+  std::size_t batch = 0;  ///< Offspring at once in the steady state; 0: depends on the engine.
+  bool exact = false;     ///< Search with every ray, the slowest way; `sample_voxels` is then 0.
+  /// Search with this many surveyed voxels; 0: depends on the problem and the site.
   std::uint64_t sample_voxels = 0;
   std::optional<double> sample_share = {};  ///< The same as a share of the surveyed voxels, above 0 and at most 1.
-  /// Redraw the voxel sample every so many iterations and re-evaluate the archive on it; at the end once more, on
-  /// voxels that nothing was chosen by. Every ray then chooses the front from the whole archive, but for networks that
-  /// cannot be on it. 0: one sample for the whole search, and the front that it shows (docs/method.md). Empty: 20 for a
-  /// front without a sample asked for, else 0.
+  /// Redraw the voxel sample every N iterations and re-evaluate the archive on it; at the end once more, on voxels that
+  /// no choice depended on. Every ray then chooses the front from the archive, without networks that cannot be on it.
+  /// 0: one sample for the whole search, whose values choose the front (docs/method.md). Empty: 20 for a front without
+  /// a given sample, else 0.
   std::optional<std::size_t> renew_iterations = {};
-  /// Head positions of an initial network: the first mean of CMA-ES, a first member of MO-CMA-ES; empty: random. Where
-  /// the number of stations is searched, the first N of them are a first member for each N that they suffice for.
+  /// Head positions of an initial network: the first mean of CMA-ES, a first member of MO-CMA-ES; empty: random. If the
+  /// number of stations is searched, the first N heads make a first member for each N up to their number.
   std::vector<Vec3> start = {};
-  std::size_t redraws = 8;  ///< How often a candidate's stations in holes or clashes are drawn again.
-  /// Time limit of the whole call, in seconds; 0: none. After eight tenths of it looking, choosing and searching end,
-  /// and what was found is traced with every ray; entries that this does not reach in time have `confirmed` false.
+  std::size_t redraws = 8;  ///< Attempts to redraw stations of a new network that are in holes or clashes.
+  /// Time limit of the whole call, in seconds; 0: none. Looking, choosing and searching end after eight tenths of it;
+  /// then the results are traced with every ray. Entries not reached in time have `exact` false.
   double max_seconds = 0;
   std::optional<double> target_hypervolume = std::nullopt;
   std::size_t stagnation_iterations = 0;
-  std::optional<std::uint64_t> seed = {};  ///< Empty: the site's.
+  std::optional<std::uint64_t> seed = {};  ///< Empty: that of the site.
   std::filesystem::path checkpoint = {};   ///< File to write; the one before stays as FILE.before. Empty: none.
-  double checkpoint_seconds = 60;          ///< How often.
-  /// Go on from the checkpoint, or the one before; where there is none begin. Limits (iterations, seconds, hypervolume,
-  /// stagnation) may differ from the run that wrote it, nothing else.
+  double checkpoint_seconds = 60;          ///< Interval between checkpoints.
+  /// Continue from the checkpoint, or the one before; begin anew if there is none. Only limits (iterations, seconds,
+  /// hypervolume, stagnation) may differ from the run that wrote it.
   bool resume = false;
 };
 
-/// All but an optimiser of the caller's own, and where the checkpoint is and how it is used, which no result depends
-/// on.
+/// All settings except a caller's own optimiser, and the checkpoint's, on which no result depends.
 Settings settings(const PlanConfig& config);
 
-/// One network of the front: its evaluation, and how it came there. `exact` once it is confirmed by every ray; until
-/// then its values are those of `searched`.
+/// One network of the front: its evaluation and its origin. `exact` once confirmed by every ray; until then its values
+/// are those of `searched`.
 struct PlanEntry : Evaluation {
-  /// Decision vector: u1, v1, …, uN, vN [, h1, …, hN] [, s1, …, sN] [, α]; s in [0, 1) chooses among
-  /// `SurveyProblem::scanners`, each as often as any other.
+  /// Decision vector: u1, v1, …, uN, vN [, h1, …, hN] [, s1, …, sN] [, α]. s in [0, 1) chooses among
+  /// `SurveyProblem::scanners`, each with the same share of the range.
   std::vector<double> x;
-  /// The figures as the search saw them, by measure's name, of `PlanResult::measures`; NaN where it kept none.
+  /// Figures of the search, by measure's name, of `PlanResult::measures`; NaN if it kept none.
   std::map<std::string, Estimate> searched;
-  /// Judged by every ray, another confirmed entry is as good in all objectives and better in one.
+  /// Another confirmed entry is, by every ray, as good in all objectives and better in one.
   bool dominated = false;
 };
 
-/// One line of the history, an iteration each.
+/// One line of the history, for one iteration.
 struct PlanIteration {
   std::size_t iteration = 0, evaluations = 0;
   double hypervolume = 0;
-  /// What the optimiser minimised: `scaled_objectives()` of each network of the front.
+  /// Values that the optimiser minimised: `scaled_objectives()` of each network of the front.
   std::vector<std::vector<double>> front;
-  double seconds = 0;  ///< Since the start. Never part of what must be reproducible.
+  double seconds = 0;  ///< Since the start; not reproducible.
 };
 
 struct PlanResult {
-  SurveyProblem problem;  ///< What was asked, and how it was searched.
+  SurveyProblem problem;  ///< The problem, and the settings of its search.
   PlanConfig config;
-  std::size_t population = 0, batch = 0;  ///< As chosen where the configuration left it open.
-  WalkableOptions walkable;               ///< What the search area was built with.
-  SecurityVolume security;                ///< What the clash checker was built with.
-  std::vector<Scanner> scanners;          ///< What `StationSetup::scanner` counts.
-  /// All that is told of a network: the objectives, then what requirements bound, then coverage and overlap.
+  std::size_t population = 0, batch = 0;  ///< In force, also if the configuration left them open.
+  WalkableOptions walkable;               ///< Settings of the search area.
+  SecurityVolume security;                ///< Setting of the clash checker.
+  std::vector<Scanner> scanners;          ///< Indexed by `StationSetup::scanner`.
+  /// Measures of every network: the objectives, then those of requirements, then coverage and overlap.
   std::vector<Objective> measures;
-  std::vector<PlanEntry> front;  ///< By the objectives in order, best first. One entry where there is one objective.
-  /// What can be seen, and where from: where `capture` is asked for, or the number of stations is decided first.
+  /// Sorted by the objectives in order, best first. One entry if there is one objective.
+  std::vector<PlanEntry> front;
+  /// Attainable coverage and its positions, if `capture` is used or the number of stations is decided first.
   std::shared_ptr<const Candidates> candidates;
   std::vector<PlanIteration> history;
-  /// Final, as the search saw it; reference point (1, …, 1) of scaled objectives. With one objective that is 1 less its
-  /// scaled value.
+  /// Final hypervolume of the search; reference point (1, …, 1) of scaled objectives. With one objective it is 1 less
+  /// its scaled value.
   double hypervolume = 0;
-  double exact_hypervolume = 0;  ///< The same by every ray; NaN where an abort left entries unconfirmed.
-  /// Networks that were kept to the end and not confirmed: another was better by more than the standard errors allow.
+  double exact_hypervolume = 0;  ///< The same by every ray; NaN if an abort left entries unconfirmed.
+  /// Networks in the final archive that were not confirmed: another was better by more than the standard errors allow.
   std::size_t spared = 0;
   std::uint64_t evaluations = 0;
-  std::uint64_t redrawn = 0, drawn = 0;   ///< Stations drawn again out of a hole or a clash, and all drawn.
-  std::uint64_t resumed_evaluations = 0;  ///< How many of the evaluations a checkpoint brought.
+  std::uint64_t redrawn = 0, drawn = 0;   ///< Stations redrawn out of holes or clashes, and all drawn.
+  std::uint64_t resumed_evaluations = 0;  ///< Number of evaluations taken from a checkpoint.
   StopReason stop_reason = StopReason::running;
   double seconds = 0, trace_seconds = 0;
 };
 
-/// A snapshot for whoever watches.
+/// Snapshot of a running plan.
 struct PlanProgress {
   std::size_t iteration = 0, iterations = 0;
   std::uint64_t evaluations = 0;
   double hypervolume = 0, evaluations_per_second = 0;
   double seconds_left = 0;  ///< Below 0: not known yet.
-  std::string phase;        ///< "look" (at what can be seen), "choose", "search" or "confirm".
-  /// The front as it is now, as the optimiser has it: decision vectors and `scaled_objectives()`, 1 and more where
-  /// requirements are missed. Valid for the call.
+  std::string phase;        ///< "look" (at attainable coverage), "choose", "search" or "confirm".
+  /// The present front of the optimiser: decision vectors and `scaled_objectives()`, 1 and more if requirements are
+  /// violated. Valid during the call.
   std::span<const ParetoPoint> front = {};
-  /// Told once, when it is known: the coverage that a head on every one of `evaluations` places all over the ground
-  /// would reach together.
+  /// Given once: the attainable coverage, that of a head on every one of `evaluations` places all over the ground.
   std::optional<double> visible = std::nullopt;
-  /// Told once where the fewest stations are asked for, when their number is about known: what all the rest will take,
-  /// from what these parts of it took so far.
+  /// Given once for the fewest stations, when their number is about known: estimated time of all the rest, from the
+  /// parts done so far.
   std::optional<double> whole_seconds_left = std::nullopt;
 };
 
 /// As `Progress`, for a search.
 struct PlanWatch {
   std::function<void(const PlanProgress&)> report = {};  ///< Called between evaluations, on the calling thread.
-  std::stop_token stop = {};                             ///< Ends the search; what was found so far is still confirmed.
-  std::stop_token abort = {};  ///< Ends the confirmation too: entries that it did not reach have `exact` false.
+  std::stop_token stop = {};                             ///< Ends the search; its results are still confirmed.
+  std::stop_token abort = {};  ///< Ends the confirmation too: entries not reached have `exact` false.
 };
 
-/// Runs the search. Borrows simulator, area and clash for the call. Same inputs, same seed: same result but for
-/// seconds. Throws Error: invalid_argument (no objective, more than `max_stations` stations, min above max, a
-/// checkpoint of another run, …), malformed_file (a damaged checkpoint) and what the simulator and the objectives
-/// throw; the checkpoint is written before an exception leaves.
+/// Runs the search. Borrows simulator, area and clash for the call. The same inputs and seed give the same result
+/// except for seconds. Throws Error: invalid_argument (no objective, more than `max_stations` stations, min above max,
+/// a checkpoint of another run, …), malformed_file (a damaged checkpoint), and as the simulator and the objectives do.
+/// The checkpoint is written before an exception leaves.
 PlanResult plan(Simulator& simulator, const SearchArea& area, const ClashChecker& clash, const SurveyProblem& problem,
                 const PlanConfig& config = {}, const PlanWatch& watch = {});
 
-/// The network that is the answer: of those that keep all requirements, with a question for few stations, those of
-/// fewest stations first; then the one whose scaled objectives are nearest to the best values by Euclidean distance
-/// (the utopia point of compromise programming: Zeleny, Compromise Programming, 1973). Where an objective looks at
-/// pairs and nothing is required, of those whose stations all hang together by the problem's `link_overlap`, as far as
-/// there are any confirmed: parts of a network cannot be registered with each other, however well each overlaps in
-/// itself. Where none keeps the requirements, the one that misses least. Throws Error invalid_argument where the front
-/// is empty.
+/// Index of the network that is the answer. The criteria apply in this order:
+/// - the least violation of requirements;
+/// - the fewest stations, if the question asks for few and no requirement is violated;
+/// - a connected network by the problem's `link_overlap`, confirmed, if an objective uses pairs and nothing is
+/// required: components cannot be registered with each other, however well each overlaps in itself;
+/// - the least Euclidean distance of the scaled objectives to the best values (the utopia point: Zeleny, Compromise
+/// Programming, 1973).
+/// Throws Error invalid_argument if the front is empty.
 std::size_t answer(const PlanResult& result);
-/// Whether the answer keeps all requirements. False where that is not known for sure: it was not confirmed, or the look
-/// at what can be seen was cut short where `capture` is required.
+/// Whether the answer meets all requirements. False if this is not certain: the answer was not confirmed, or `capture`
+/// is required and the look at attainable coverage was cut short.
 bool met(const PlanResult& result);
-/// What would help where the answer does not keep the requirements, a sentence each.
+/// Advice if the answer does not meet the requirements, a sentence each.
 std::vector<std::string> what_would_help(const PlanResult& result);
 
-/// What the search minimises of a network, in the order of `problem.objectives`: their scaled values; α for the number
-/// of stations where that is searched. `x`: its decision vector; `values`: of the objectives.
+/// Values that the search minimises, in the order of `problem.objectives`: scaled values; α for the number of stations
+/// if that is searched. `x`: decision vector; `values`: of the objectives.
 std::vector<double> scaled_objectives(const SurveyProblem& problem, std::span<const double> x,
                                       std::span<const double> values);
 
-/// How a first network is chosen among candidates.
+/// How greedy_network() chooses.
 struct GreedyConfig {
-  std::size_t stations = 4;              ///< How many to choose.
-  std::size_t candidates = 300;          ///< Positions to choose from, spread evenly over the ground.
-  std::uint64_t sample_voxels = 20'000;  ///< 0: every voxel.
-  std::vector<Vec3> existing = {};       ///< Heads of stations that are there already; neither counted nor returned.
+  std::size_t stations = 4;                        ///< Number of stations to choose.
+  std::size_t candidates = 300;                    ///< Positions to choose from, spread evenly over the ground.
+  std::uint64_t sample_voxels = 20'000;            ///< 0: every voxel.
+  std::vector<Vec3> existing = {};                 ///< Heads of existing stations; neither counted nor returned.
   std::vector<StationSetup> existing_setups = {};  ///< As `SurveyProblem::kept_setups`.
 };
 
-/// What `greedy_network` chose.
+/// Result of greedy_network().
 struct GreedyResult {
-  std::vector<PlacedStation> stations;  ///< In the order of choosing: the first k are the choice for k.
+  std::vector<PlacedStation> stations;  ///< In the order of choice: the first k are the choice for k.
   std::vector<double> coverage;         ///< After each, on the sample.
   bool cancelled = false;
 };
 
 /// A first network for `PlanConfig::start`, and a baseline: greedy() over candidates (vantage/cover.hpp). Once no
 /// candidate adds anything, the rest are the most evenly spread ones. Throws Error invalid_argument for more stations
-/// than candidates, and where no candidate can stand.
+/// than candidates, and if no candidate can stand.
 GreedyResult greedy_network(Simulator& simulator, const SearchArea& area, const ClashChecker& clash,
                             const GreedyConfig& config = {}, const Progress& progress = {});
 
-/// How the best network among candidates is chosen.
+/// How exact_network() chooses.
 struct ExactConfig {
-  std::size_t stations = 4;              ///< How many to choose.
+  std::size_t stations = 4;              ///< Number of stations to choose.
   std::size_t candidates = 256;          ///< Positions to choose from, spread evenly over the ground.
   std::uint64_t sample_voxels = 20'000;  ///< 0: every voxel.
-  double link = 0;          ///< Least scan overlap of links by which the network is connected; 0: it need not be.
+  double link = 0;          ///< Least scan overlap of the links that connect the network; 0: it need not be connected.
   double apart_m = 0;       ///< Least distance between heads.
-  double max_seconds = 60;  ///< Of branch and bound. What is found when they are over depends on the machine.
-  std::vector<Vec3> existing = {};  ///< Heads of stations that are there already; neither counted nor returned.
+  double max_seconds = 60;  ///< Time for branch and bound. If it ends first, the result depends on the machine.
+  std::vector<Vec3> existing = {};  ///< Heads of existing stations; neither counted nor returned.
 };
 
-/// What `exact_network` chose.
+/// Result of exact_network().
 struct ExactResult {
-  std::vector<PlacedStation> stations;  ///< Empty where no connected network was found.
-  CoverSolution choice;                 ///< The choice among candidates, and the most coverage that any has.
+  std::vector<PlacedStation> stations;  ///< Empty if no connected network was found.
+  CoverSolution choice;                 ///< The choice among candidates, and a bound on the coverage of any.
   bool cancelled = false;
 };
 
-/// The best network among candidates, by max_cover() with branch and bound. Without a gap it is the best there is among
-/// them. A baseline, and a first network for `PlanConfig::start`. Throws Error invalid_argument where no candidate can
-/// stand.
+/// The best network among candidates, by max_cover() with branch and bound; proven best among them if its gap is 0. A
+/// baseline, and a first network for `PlanConfig::start`. Throws Error invalid_argument if no candidate can stand.
 ExactResult exact_network(Simulator& simulator, const SearchArea& area, const ClashChecker& clash,
                           const ExactConfig& config = {}, const Progress& progress = {});
 
-/// Decision vector to stations: locate, raise by `height_m`, check for clashes.
+/// Turns a decision vector into stations: finds the ground, raises heads by `height_m`, checks for clashes.
 std::vector<PlacedStation> place_stations(const SearchArea& area, const ClashChecker& clash, double height_m,
                                           std::span<const double> uvs);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What a survey comes to, for people: report.html, a page that opens from disk in any browser, and report.pdf.
+/// Reports of a survey for people: report.html, a page that opens from disk in any browser, and report.pdf.
 #pragma once
 
 #include <filesystem>
@@ -14,24 +14,25 @@
 
 namespace vantage {
 
-/// Why this build writes no reports, and what to install for them; empty where it does.
+/// Why this build writes no reports, and what to install for them; empty if it does.
 std::string why_no_report();
 
-/// What a report shows besides the network, or the networks of a front.
+/// Content of a report besides the networks.
 struct ReportOptions {
-  std::string title = "Survey";          ///< What was surveyed.
-  std::string command = {};              ///< How the report was asked for, as it was typed.
-  const VoxelField* field = nullptr;     ///< Points of every voxel under the answer. Null: its own, or from a sample.
+  std::string title = "Survey";  ///< Name of the site.
+  std::string command = {};      ///< The command that made the report, as it was typed.
+  /// Points of every voxel under the answer. Null: the answer's own, or from a sample.
+  const VoxelField* field = nullptr;
   const MissedVoxels* missed = nullptr;  ///< Why voxels of the answer are not captured. Null: left out.
-  bool pictures = true;                  ///< Show in report.html what the answer's stations see.
+  bool pictures = true;                  ///< Show the views of the answer's stations in report.html.
 };
 
-/// Writes the front of a plan, its answer first, as a page (.html) or as four sheets A4 at most (.pdf). A page loads
+/// Writes the front of a plan, its answer first, as a page (.html) or on at most four A4 sheets (.pdf). A page loads
 /// nothing from anywhere. Borrows everything for the call. Throws Error: io; invalid_argument (an empty front, another
-/// extension, a build that writes no reports) and what the simulator throws.
+/// extension, a build that writes no reports); and as the simulator does.
 void write_report(const std::filesystem::path& file, const PlanResult& result, Simulator& simulator,
                   const SearchArea& area, const ReportOptions& options = {}, const Progress& progress = {});
-/// Writes the report of one network that no plan found. Throws as above.
+/// Writes the report of a single network, without a plan. Throws as above.
 void write_report(const std::filesystem::path& file, const Evaluation& evaluation, Simulator& simulator,
                   const SearchArea& area, const ReportOptions& options = {}, const Progress& progress = {});
 

@@ -22,19 +22,19 @@
 
 namespace vantage {
 
-/// What is known of a site. A value that is left empty is chosen by `Site`, from the scene's own defaults where it has
-/// some, and told by `Site::choices()`. Lengths in metres.
+/// Settings of a site. `Site` chooses values that are left empty, from the scene's own defaults if it has some;
+/// `Site::choices()` lists them. Lengths in metres.
 struct SiteOptions {
   SceneOptions scene = {};  ///< How the file is read.
 
   /// The scanners that stations choose from, complete. Empty: one, made of the members up to `points_per_second`.
   std::vector<Scanner> scanners = {};
-  std::optional<std::string> scanner = {};         ///< A preset, as `load_scanner()` takes it.
+  std::optional<std::string> scanner = {};         ///< A preset, in the form of `load_scanner()`.
   std::optional<std::array<Angle, 2>> steps = {};  ///< Azimuth and zenith.
   std::optional<Angle> heading = {}, horizontal_angle = {}, vertical_angle = {}, zenith_start = {};
   std::optional<double> height_m = {};
   std::optional<std::array<double, 2>> range_m = {};  ///< Nearest and farthest.
-  std::optional<std::string> noise = {};              ///< As `load_noise()` takes it.
+  std::optional<std::string> noise = {};              ///< In the form of `load_noise()`.
   std::optional<std::array<double, 2>> beam = {};     ///< Divergence in mrad, exit diameter in mm.
   std::optional<double> points_per_second = {};
 
@@ -42,7 +42,7 @@ struct SiteOptions {
   std::optional<double> spacing_m = {};    ///< Wanted distance between points.
   bool spacing_by_detail = false;          ///< As `SimulatorConfig::spacing_by_detail`.
   std::optional<Angle> max_incidence = {};
-  bool weigh_ground = true;  ///< Apply `ground_weights()` where nothing says what is surveyed. Scans can do without.
+  bool weigh_ground = true;  ///< Apply `ground_weights()` if nothing marks the surveyed surface. Scans do not need it.
 
   std::optional<std::array<double, 3>> security_m = {};  ///< `SecurityVolume`: lower, upper, radius.
   std::optional<Angle> max_slope = {};
@@ -56,70 +56,70 @@ struct SiteOptions {
   DeviceList devices = {};
   std::uint64_t seed = 1;
   bool validation = false;
-  std::uint64_t memory_bytes = 0;  ///< 0: half of what is free.
-  std::string crs = {};            ///< Coordinate system of the survey frame; empty: not known.
+  std::uint64_t memory_bytes = 0;  ///< 0: half of the free memory.
+  std::string crs = {};            ///< Coordinate system of the survey frame; empty: unknown.
 
-  /// Told, on the calling thread, what was found and chosen, a sentence each; and what one should be warned of.
+  /// Called on the calling thread with each fact and choice, a sentence each, and with each warning.
   std::function<void(const std::string&)> log = {}, warn = {};
 };
 
-/// One row a setting, in the order in which they are told.
+/// One row for each setting, in the order in which they are listed.
 const SettingTable<SiteOptions>& site_settings();
 
-/// Something that nobody gave, and `Site` chose.
+/// A setting that the user left open and `Site` chose.
 struct SiteChoice {
   std::string setting;  ///< Its name in `site_settings()`.
-  std::string value;    ///< As one would give it.
+  std::string value;    ///< In the form in which users give it.
   std::string why;
 };
 
-/// Scene, scanners, ground, clash checks and simulator, each made once. The owner of all of them; moved, not copied. Of
-/// one site, one call at a time.
+/// Owns scene, scanners, ground, clash checks and simulator, each made once. Moved, not copied. Only one call at a
+/// time.
 class Site {
  public:
   /// Reads the scene and chooses what the options leave open. Throws Error as `Scene::load`, and invalid_argument for a
   /// setting out of its range.
   static Site open(const std::filesystem::path& file, SiteOptions options = {});
-  /// The same of a scene that is there. `name`: for titles and messages.
+  /// Makes a site of an existing scene. `name`: for titles and messages.
   explicit Site(Scene scene, SiteOptions options = {}, std::string name = "site");
-  /// Of parts that the caller made. `options()` holds no more than defaults then.
+  /// Makes a site of parts made by the caller. `options()` then holds only defaults.
   Site(Simulator simulator, SearchArea area, ClashChecker clash, std::string name = "site");
   Site(Site&&) noexcept;
   Site& operator=(Site&&) noexcept;
   ~Site();
 
-  const std::string& name() const noexcept;  ///< The file's, without folder and extension.
-  const Scene& scene() const noexcept;       ///< With the weights that hold (`weigh_ground`).
+  const std::string& name() const noexcept;  ///< The file's name, without folder and extension.
+  const Scene& scene() const noexcept;       ///< With the weights in force (`weigh_ground`).
   const SiteOptions& options() const noexcept;
   std::span<const SiteChoice> choices() const noexcept;
   const Scanner& scanner() const noexcept;             ///< The first.
-  std::span<const Scanner> scanners() const noexcept;  ///< What `StationSetup::scanner` counts.
-  /// The place of a scanner in `scanners()`, where it is added if it is not there. Throws Error invalid_argument for
-  /// one that fails `Scanner::check`, or is new once the simulator is there.
+  std::span<const Scanner> scanners() const noexcept;  ///< Indexed by `StationSetup::scanner`.
+  /// Index of a scanner in `scanners()`, which it joins if it is new. Throws Error invalid_argument if it fails
+  /// `Scanner::check`, or is new once the simulator exists.
   std::uint32_t place_of(const Scanner& scanner);
-  /// What a scene smaller or larger than a site's has all lengths multiplied by; 1 from 2 m to 200 m.
+  /// Factor of default lengths for scenes of unusual size; 1 from 2 m to 200 m.
   double length_scale() const noexcept;
   const SimulatorConfig& simulator_config() const noexcept;
   const WalkableOptions& walkable() const noexcept;
   const SecurityVolume& security() const noexcept;
   const std::string& crs() const noexcept;
-  /// Everything as `Settings`, for results and configuration files.
+  /// All settings, for results and configuration files.
   Settings settings() const;
 
   bool has_area();  ///< Whether there is ground to stand on.
-  /// Throws Error invalid_argument where there is none.
+  /// Throws Error invalid_argument if there is none.
   const SearchArea& area();
   const ClashChecker& clash();
-  /// Spans the simulator over other processes (`SimulatorConfig::shared`). Throws Error invalid_argument once it is
-  /// there.
+  /// Spans the simulator over other processes (`SimulatorConfig::shared`). Throws Error invalid_argument once it
+  /// exists.
   void share(std::shared_ptr<TracerMaker> others);
-  /// Makes the simulator unless it is there; false where it was stopped meanwhile. Throws as `Simulator`.
+  /// Makes the simulator unless it exists; false if stopped meanwhile. Throws as `Simulator`.
   bool build(const Progress& progress = {});
-  Simulator& simulator();     ///< Built if need be.
+  Simulator& simulator();     ///< Made if needed.
   Simulator& surroundings();  ///< `surroundings_of(simulator())`.
 
   /// Evaluates a network on this site: `evaluate_stations()` with scan overlaps if pairs are counted, and with the
-  /// round on site, which begins and ends where one enters, if there is ground. Throws Error as that does.
+  /// round on site, from and to the entrance, if there is ground. Throws Error as that does.
   Evaluation evaluate(std::span<const PlacedStation> stations, const EvaluationOptions& options = {},
                       const OnSiteOptions& on_site = {}, const Progress& progress = {});
 

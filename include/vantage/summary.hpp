@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What a person wants to know of a network of stations, in plain words: how much is captured, whether the scans hang
-/// together, how long it takes, and what to do about what fails. As data first, so that any report can show it.
+/// Summary of a network of stations in plain words: captured surface, connection of the scans, time on site, and how to
+/// mend faults. Given as data first, for any report.
 #pragma once
 
 #include <cstdint>
@@ -14,24 +14,24 @@
 
 namespace vantage {
 
-/// A header and a line a station: its name, ground and head (survey frame, metres, to the millimetre), what became of
-/// it, and its points on surveyed meshes, where `points` has them. Where any is turned or has another scanner than the
-/// first also heading and tilt in degrees, its scanner and that one's step; `scanners` is what setups count.
+/// A header, and a line for each station: its name, ground and head (survey frame, metres, to the millimetre), its
+/// status, and its points on surveyed meshes if `points` has them. If any is turned, or has another scanner than the
+/// first, also heading and tilt in degrees, its scanner and that scanner's step. `scanners` are indexed by
+/// `StationSetup::scanner`.
 std::string station_table(std::span<const PlacedStation> stations, std::span<const std::string> names,
                           std::span<const std::uint64_t> points = {}, std::span<const Scanner> scanners = {});
 
-/// A line of a summary: "captured", "linked", "registered", "on site" or "to do", and what there is to say.
+/// A line of a summary: its heading ("captured", "linked", "registered", "on site" or "to do") and its text.
 struct SummaryLine {
   std::string heading = {}, text = {};
 };
-/// What is known of a network, in words; then what to do about stations that are left out, links that are missing, and
-/// requirements that it violates.
+/// Figures of a network in words, then advice on stations that are left out, missing links and violated requirements.
 std::vector<SummaryLine> summary_lines(const Evaluation& evaluation, std::span<const Requirement> requirements = {});
-/// The same for a terminal, with line ends.
+/// The same as lines for a terminal.
 std::string summary_text(const Evaluation& evaluation, std::span<const Requirement> requirements = {});
 
-/// A sentence for each requirement that no network of a front keeps, with how near one comes; empty where all are kept
-/// by some. Lines for a terminal.
+/// Lines for a terminal: a sentence for each requirement that no network of a front meets, with the nearest value.
+/// Empty if each is met by some network.
 std::string unmet_text(const PlanResult& result);
 
 }  // namespace vantage
