@@ -12,9 +12,9 @@
 namespace vantage {
 namespace {
 
-constexpr double kWeld_m = 1e-4;      // points so close are one
-constexpr double kOnEdge_m = 5e-4;    // so close to an edge a vertex lies on it
-constexpr double kStraight_m = 1e-3;  // so little off a straight line is no corner
+constexpr double kWeld_m = 1e-4;      // nearer points are one
+constexpr double kOnEdge_m = 5e-4;    // a nearer vertex lies on the edge
+constexpr double kStraight_m = 1e-3;  // smaller deviations from a straight line are no corner
 
 using Cell = std::array<std::int64_t, 3>;
 struct CellHash {
@@ -25,13 +25,13 @@ struct CellHash {
   }
 };
 
-// Points by the cells of a cubic lattice.
+// Points in the cells of a cubic lattice.
 class Lattice {
  public:
   explicit Lattice(double cell_m) : cell_m_(cell_m) {}
   Cell cell(const Vec3& p) const { return {along(p.x), along(p.y), along(p.z)}; }
   void add(const Vec3& p, std::uint32_t id) { points_[cell(p)].push_back(id); }
-  // Calls visit(id) for all points of the cells that the box around a and b, widened by `margin`, touches.
+  // Calls visit(id) for all points in cells that touch the box around a and b, widened by `margin`.
   template <class Visit>
   void around(const Vec3& a, const Vec3& b, double margin, const Visit& visit) const {
     const Vec3 m{margin, margin, margin};
@@ -85,7 +85,7 @@ Welded weld(const SearchMesh& mesh) {
   return welded;
 }
 
-// Edges that more triangles have on one side than on the other, by how many, parted wherever a vertex lies on them.
+// Edges with more triangles on one side than on the other, and the excess; split at vertices that lie on them.
 std::map<std::pair<std::uint32_t, std::uint32_t>, int> rim_of(const Welded& mesh) {
   double lengths = 0;
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;  // from the lower number: times up less times down
@@ -101,7 +101,7 @@ std::map<std::pair<std::uint32_t, std::uint32_t>, int> rim_of(const Welded& mesh
     }
   if (edges.empty()) return {};
 
-  // Only ends of edges that are left can lie on others that are left.
+  // Only ends of remaining edges can lie on other remaining edges.
   Lattice lattice(std::max(lengths / (3 * static_cast<double>(mesh.triangles.size())), 10 * kOnEdge_m));
   std::vector<std::uint32_t> ends;
   for (const auto& [edge, times] : edges) ends.insert(ends.end(), {edge.first, edge.second});
@@ -115,7 +115,7 @@ std::map<std::pair<std::uint32_t, std::uint32_t>, int> rim_of(const Welded& mesh
     const Vec3 a = mesh.points[edge.first], along = mesh.points[edge.second] - a;
     const double size = length(along);
     std::vector<std::pair<double, std::uint32_t>> on{{0, edge.first}, {1, edge.second}};
-    // In pieces, lest the box around a long slanting edge hold half of the site.
+    // In pieces, so that the box around a long slanting edge does not hold half of the site.
     const int pieces = std::clamp(
         static_cast<int>(size / (4 * kOnEdge_m + lengths / (3 * static_cast<double>(mesh.triangles.size())))), 1, 1000);
     for (int piece = 0; piece < pieces; ++piece)
@@ -133,7 +133,7 @@ std::map<std::pair<std::uint32_t, std::uint32_t>, int> rim_of(const Welded& mesh
   return parts;
 }
 
-// Without points that lie on the line between their neighbours.
+// Removes points that lie on the line between their neighbours.
 std::vector<Vec3> corners_of(const std::vector<Vec3>& ring) {
   std::vector<Vec3> corners;
   const std::size_t n = ring.size();
@@ -162,7 +162,7 @@ std::vector<std::vector<Vec3>> area_outline(const SearchMesh& mesh) {
     for (std::uint32_t at = first;;) {
       auto [low, high] = next.equal_range(at);
       if (low == high) break;
-      // Where rings touch in a point, the sharpest turn to the left keeps them apart.
+      // If rings touch in a point, the sharpest turn to the left keeps them apart.
       auto chosen = low;
       if (std::next(low) != high && ids.size() > 1) {
         const Vec3 here = welded.points[at], came = here - welded.points[ids[ids.size() - 2]];

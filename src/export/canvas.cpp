@@ -27,8 +27,8 @@ struct ContextDeleter {
 using Surface = std::unique_ptr<cairo_surface_t, SurfaceDeleter>;
 using Context = std::unique_ptr<cairo_t, ContextDeleter>;
 
-// Gives back, at its end, what was taken of a surface since: cairo 1.16 keeps a reference for good to a recording that
-// it wrote as SVG, and with it all that is drawn there.
+// Releases, at its end, the references to a surface taken since. cairo 1.16 keeps one for good to a recording that it
+// wrote as SVG, and with it everything drawn there.
 class HeldReferences {
  public:
   explicit HeldReferences(cairo_surface_t* surface)
@@ -54,7 +54,7 @@ void require(cairo_status_t status, const std::filesystem::path& file) {
               "cannot draw " + file.string() + ": " + cairo_status_to_string(status));
 }
 
-// cairo numbers surfaces and images over the life of the process; numbered from 0 in each file, equal pictures are
+// Renumbers surfaces and images from 0: cairo numbers them over the life of the process, and equal pictures must be
 // equal files.
 std::string with_own_numbers(const std::string& svg) {
   static const std::regex kName("([\"#(])(surface|image|mask|source|clip|pattern)([0-9]+)");
@@ -84,7 +84,7 @@ struct Canvas::Impl {
     cairo_stroke(context.get());
   }
   void trace(std::span<const Point> points) const {
-    cairo_new_path(context.get());  // text leaves its end behind as a point
+    cairo_new_path(context.get());  // text leaves a point at its end
     for (const Point& p : points) cairo_line_to(context.get(), p.x, p.y);
   }
   void font(const TextStyle& style) const {
@@ -99,7 +99,7 @@ Canvas::Canvas(double width, double height) : impl_(std::make_unique<Impl>()), w
   impl_->recording.reset(cairo_recording_surface_create(CAIRO_CONTENT_COLOR_ALPHA, &extents));
   impl_->context.reset(cairo_create(impl_->recording.get()));
   cairo_set_line_join(impl_->context.get(), CAIRO_LINE_JOIN_ROUND);
-  // Metrics must not depend on the device that the recording is played to.
+  // Metrics must not depend on the device that plays the recording.
   cairo_font_options_t* options = cairo_font_options_create();
   cairo_font_options_set_hint_metrics(options, CAIRO_HINT_METRICS_OFF);
   cairo_font_options_set_hint_style(options, CAIRO_HINT_STYLE_NONE);
@@ -168,7 +168,7 @@ void Canvas::text(Point at, const std::string& text, const TextStyle& style) {
   const double dx = style.across == Align::start    ? 0
                     : style.across == Align::middle ? -extents.x_advance / 2
                                                     : -extents.x_advance;
-  // By the height of capitals, so that words with and without descenders stand on one line.
+  // Capitals give the height, so that words with and without descenders stand on one line.
   const double capitals = 0.73 * style.size;
   const double dy = style.down == Align::start ? capitals : style.down == Align::middle ? capitals / 2 : 0;
   cairo_save(c);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A page to draw on, in pixels from the top left; kept as a recording, so that PNG and SVG come from the same strokes.
+// A page to draw on, in pixels from the top left. It is a recording, so PNG and SVG come from the same strokes.
 #pragma once
 
 #include <cstdint>
@@ -36,8 +36,8 @@ struct TextStyle {
   double size = 13;
   bool bold = false;
   Colour colour = {0.15, 0.15, 0.17};
-  Align across = Align::start;  // of x
-  Align down = Align::middle;   // of y; start: the text hangs below it
+  Align across = Align::start;  // in x
+  Align down = Align::middle;   // in y; start: the text hangs below it
   double turn = 0;              // radians, clockwise
   double halo = 0;              // width of a white rim, for text on pictures
 };
@@ -50,7 +50,7 @@ class Canvas {
   Canvas& operator=(const Canvas&) = delete;
   double width() const { return width_; }
   double height() const { return height_; }
-  // What lies below goes. REQUIRES: height <= height().
+  // Drops what lies below. REQUIRES: height <= height().
   void cut_to(double height) { height_ = height; }
 
   void line(Point a, Point b, const Pen& pen);
@@ -64,15 +64,15 @@ class Canvas {
   double text_width(const std::string& text, const TextStyle& style = {}) const;
   // Rows of 0xAARRGGBB from the top, premultiplied, stretched over the rectangle.
   void image(const Rect& r, std::span<const std::uint32_t> pixels, std::size_t columns);
-  // Another page, shrunk or stretched to the rectangle.
+  // Draws another page, scaled to the rectangle.
   void page(const Rect& r, const Canvas& other);
-  // Everything until the matching unclip() is cut off outside.
+  // Clips everything until the matching unclip().
   void clip(const Rect& r);
   void unclip();
 
-  // .png (two device pixels a unit) or .svg by extension. Throws Error: io, invalid_argument.
+  // Saves as .png (two device pixels a unit) or .svg by extension. Throws Error: io, invalid_argument.
   void save(const std::filesystem::path& file) const;
-  // A .pdf of these pages, a point a unit. Throws Error: io.
+  // Saves these pages as a .pdf, a point a unit. Throws Error: io.
   static void save_pages(const std::filesystem::path& file, std::span<const std::unique_ptr<Canvas>> pages,
                          const std::string& title);
 

@@ -9,11 +9,11 @@
 
 namespace vantage {
 
-// Ticks at multiples of 1, 2 or 5 times a power of ten inside [low, high], about `wanted` of them.
+// About `wanted` ticks inside [low, high], at multiples of 1, 2 or 5 times a power of ten.
 std::vector<double> nice_ticks(double low, double high, int wanted);
-// The text of ticks that belong together: as many digits after the point as the step needs.
+// Texts of ticks of one axis: as many decimals as the step needs.
 std::vector<std::string> tick_labels(const std::vector<double>& ticks);
-// Powers of ten inside [low, high], and where these are few their double and fivefold too. REQUIRES: low > 0.
+// Powers of ten inside [low, high]; if these are few, also twice and five times each. REQUIRES: low > 0.
 std::vector<double> logarithmic_ticks(double low, double high);
 // Each with the digits that it needs itself.
 std::vector<std::string> logarithmic_labels(const std::vector<double>& ticks);
@@ -26,12 +26,12 @@ struct Axis {
   bool logarithmic = false;  // low > 0
 };
 
-// Widens [low, high] by a margin, within [least, most] but where the data lie outside.
+// Widens [low, high] by a margin, within [least, most] unless the data lie outside.
 Axis axis_over(std::string label, double low, double high, double least, double most);
 
 class Chart {
  public:
-  // Draws title, frame, grid, ticks and labels. `area`: where the frame stands.
+  // Draws title, frame, grid, ticks and labels. `area` is the frame.
   Chart(Canvas& canvas, const Rect& area, Axis x, Axis y, const std::string& title, const std::string& subtitle = {});
   Point at(double x, double y) const;
   const Rect& area() const { return area_; }
@@ -41,8 +41,8 @@ class Chart {
   Axis x_, y_;
 };
 
-// Where a label of this width and height may stand beside `at`: the free place nearest to it, else the first tried.
-// `taken` grows by the place.
+// Place for a label of this width and height beside `at`: the nearest free one, else the first tried. Appended to
+// `taken`.
 Rect place_label(Point at, double gap, double width, double height, const Rect& inside, std::vector<Rect>& taken);
 
 namespace style {

@@ -23,10 +23,10 @@ constexpr Colour ramp(const std::array<Colour, N>& stops, double t) {
   return mix(stops[i], stops[i + 1], at - static_cast<double>(i));
 }
 
-// Coverage cartography: red (no point) over yellow to green (goal reached).
+// Coverage cartography: red (no point) through yellow to green (goal reached).
 constexpr std::array<Colour, 3> kCoverageRamp{{{0.84, 0.10, 0.11}, {1.00, 0.85, 0.25}, {0.10, 0.59, 0.25}}};
 
-// For quantities that rise: dark blue over green to yellow (viridis), readable without colour and by the colour-blind.
+// For rising quantities: dark blue through green to yellow (viridis), also readable in grey and by the colour-blind.
 constexpr std::array<Colour, 9> kRisingRamp{{{0.267, 0.005, 0.329},
                                              {0.279, 0.175, 0.483},
                                              {0.230, 0.322, 0.546},

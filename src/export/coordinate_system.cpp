@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Coordinate reference systems as LAS 1.4 wants them: well-known text after OGC 01-009 (Coordinate Transformation
-// Services, 2001), by PROJ from a code of the EPSG registry, or as given.
+// Coordinate reference systems for LAS 1.4: well-known text of OGC 01-009 (Coordinate Transformation Services, 2001),
+// from PROJ for a code of the EPSG registry, or as given.
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -42,7 +42,7 @@ std::optional<double> unit_of(const std::string& text) {
   return std::nullopt;
 }
 
-// One line, outside of quotes without blanks around its brackets and commas: line ends are no part of the text.
+// Joins the text to one line and removes blanks around brackets and commas outside of quotes.
 std::string one_line(const std::string& text) {
   std::string line;
   bool quoted = false, blank = false;

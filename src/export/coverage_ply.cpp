@@ -17,7 +17,7 @@ void write_coverage_ply(const std::filesystem::path& file, const Simulator& simu
                                             " counts, the scene " + std::to_string(voxels) + " surveyed voxels");
   const std::size_t words = voxels > 0 ? field.stations.size() / voxels : 0;
   std::vector<PlyProperty> more{{"float", "ratio"}, {"uint", "count"}};
-  // PLY knows no 64-bit integer: a bit a station, 1 to 32, and 33 to 64; of larger networks 65 to 96 and so on.
+  // PLY has no 64-bit integer: one word has bits of stations 1 to 32, the next of 33 to 64, and so on.
   for (std::size_t w = 0; w < words; ++w) {
     const std::string of = w == 0 ? "" : "_" + std::to_string(w + 1);
     more.push_back({"uint", "stations" + of + "_low"}), more.push_back({"uint", "stations" + of + "_high"});

@@ -8,8 +8,8 @@
 
 namespace vantage {
 
-// The floor to cut above (survey frame) where most of the search area lies under something, so that a view from above
-// would show roofs.
+// Height of the floor to cut above (survey frame) if most of the search area is covered, so that a plan view would show
+// roofs.
 std::optional<double> covered_floor(const SearchMesh& mesh, const HeightBuffer& heights, const SceneData& scene);
 
 }  // namespace vantage

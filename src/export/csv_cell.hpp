@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Text in cells of CSV files (RFC 4180). A spreadsheet takes a cell that begins with =, +, - or @ for a formula and
-// runs it; names come from scenes of other people. An apostrophe before it makes it text, and our own reader takes that
-// off.
+// Text in cells of CSV files (RFC 4180). A spreadsheet runs a cell that begins with =, +, - or @ as a formula, and
+// names come from other people's scenes. A leading apostrophe makes it text; our own reader removes it.
 #pragma once
 
 #include <string>
 
 namespace vantage {
 
-// Whether a spreadsheet would run it, but for apostrophes before it.
+// Whether a spreadsheet would run it without its leading apostrophes.
 inline bool is_formula(const std::string& text) {
   const std::size_t at = text.find_first_not_of('\'');
   return at != std::string::npos && std::string("=+-@\t\r").find(text[at]) != std::string::npos;
@@ -22,7 +21,7 @@ inline std::string csv_cell(const std::string& text) {
   return cell + "\"";
 }
 
-// Of a cell without its quotes, the text that it was made of.
+// Inverse: the original text of a cell without its quotes.
 inline std::string text_of_csv_cell(const std::string& cell) {
   return cell.starts_with('\'') && is_formula(cell) ? cell.substr(1) : cell;
 }

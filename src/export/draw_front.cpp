@@ -96,7 +96,7 @@ std::unique_ptr<Canvas> front_picture(const PlanResult& result) {
 
 std::unique_ptr<Canvas> history_picture(const PlanResult& result) {
   const FrontView view(result);
-  // Five moments, closer together at the start, where the front still moves.
+  // Five moments, closer together at the start, when the front still moves.
   std::vector<const PlanIteration*> moments;
   if (!result.history.empty()) {
     const double last = static_cast<double>(result.history.size() - 1);

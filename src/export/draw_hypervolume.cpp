@@ -50,7 +50,7 @@ std::unique_ptr<Canvas> hypervolume_picture(const PlanResult& result) {
   canvas.unclip();
   if (!curve.empty()) {
     canvas.disc(curve.back(), 4.5, style::blue);
-    // Below the end of a curve that rises, there is room.
+    // A rising curve leaves room below its end.
     canvas.text(
         {std::min(curve.back().x + 4, area.right() - 6), curve.back().y + 12},
         fixed(result.history.back().hypervolume, 4),

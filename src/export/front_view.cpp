@@ -11,7 +11,7 @@
 namespace vantage {
 namespace {
 
-// "weakest_link" as it is said.
+// "weakest_link" as readable words.
 std::string spoken(std::string name) {
   std::replace(name.begin(), name.end(), '_', ' ');
   return name;
@@ -45,7 +45,7 @@ Axis axis_of(const Objective& measure, const std::vector<FrontDot>& dots, bool w
 }  // namespace
 
 FrontView::FrontView(const PlanResult& result) : result_(result), measures_(result.measures) {
-  // A search that ended before it began has axes all the same.
+  // A search that ended before it began still needs axes.
   for (const char* name : {"coverage", "overlap"})
     if (measures_.size() < 2) measures_.push_back(make_objective(name));
   const std::size_t objectives = result.problem.objectives.size();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a problem's front is laid out on paper: which measure stands on which axis, which one is colour.
+// Layout of a problem's front on paper: the measure on each axis and the one shown by colour.
 #pragma once
 
 #include <optional>
@@ -15,11 +15,11 @@ namespace vantage {
 
 struct FrontDot {
   double x = 0, y = 0;
-  double colour = 0;  // of the third objective, where there is one
+  double colour = 0;  // the third objective, if any
 };
 
-// With one objective: that one to the right, the next measure up. With several: the first two, the third by colour; but
-// the number of stations to the right where there are two, and as colour where there are three.
+// With one objective: that one to the right, the next measure up. With several: the first two on the axes, the third by
+// colour. The number of stations is to the right with two objectives, and the colour with three.
 class FrontView {
  public:
   explicit FrontView(const PlanResult& result);
@@ -31,7 +31,7 @@ class FrontView {
   const Objective* third() const { return third_; }  // null: no colour
   FrontDot searched(const PlanEntry& entry) const;
   FrontDot confirmed(const PlanEntry& entry) const;
-  // Of a line of the history; empty where the network breaks a requirement.
+  // For a line of the history; empty if the network violates a requirement.
   std::optional<FrontDot> objectives(std::span<const double> f) const;
   Axis x_axis(const std::vector<FrontDot>& dots) const;
   Axis y_axis(const std::vector<FrontDot>& dots) const;

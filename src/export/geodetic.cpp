@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The survey frame on WGS 84 by PROJ (PROJ contributors: PROJ coordinate transformation software library, 2022).
+// Transforms from the survey frame to WGS 84 by PROJ (PROJ contributors: PROJ coordinate transformation software
+// library, 2022).
 #include "export/geodetic.hpp"
 
 #include <proj.h>
@@ -21,7 +22,7 @@ struct Destroy {
 using Operation = std::unique_ptr<PJ, Destroy>;
 using Context = std::unique_ptr<PJ_CONTEXT, Destroy>;
 
-// A context of one's own: PROJ's default is one for all threads. No network: a result must not hang on it.
+// A separate context, since PROJ's default is shared by all threads. No network: results must not depend on it.
 Context make_context() {
   Context context(proj_context_create());
   proj_context_set_enable_network(context.get(), 0);

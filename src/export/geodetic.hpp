@@ -5,7 +5,7 @@
 
 namespace vantage {
 
-// Well-known text (version 1, as GDAL writes it, in one line) of a code of the EPSG registry; empty if PROJ knows none.
+// Well-known text (version 1, as GDAL writes it, in one line) of an EPSG code; empty if PROJ does not know it.
 std::string epsg_text(int code);
 
 }  // namespace vantage

@@ -8,7 +8,7 @@ namespace vantage {
 namespace {
 
 constexpr std::size_t kPeriod = 22, kStripe = 4;  // pixels, along a row
-constexpr double kHidden_m = 0.3;                 // so far below what is seen from above it does not show
+constexpr double kHidden_m = 0.3;                 // ground lower than this below the topmost surface does not show
 
 }  // namespace
 

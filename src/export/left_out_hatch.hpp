@@ -14,8 +14,8 @@ namespace vantage {
 inline constexpr Colour kLeftOutTint{0.62, 0.20, 0.16};
 inline constexpr double kLeftOutOpacity = 0.30;
 
-// Hatches the pixels of a map where ground shows that a derived search area leaves out (roofs, furniture, what nothing
-// leads to); of one floor alone where `level` is given. Whether there were any. `origin_z`: of the local frame of
+// Hatches the pixels of a map that show ground left out of a derived search area (roofs, furniture, unreachable
+// ground), only of one floor if `level` is given. Returns whether there were any. `origin_z`: of the local frame of
 // `heights` in the survey frame.
 bool hatch_left_out(std::vector<std::uint32_t>& pixels, const HeightBuffer& heights, double origin_z,
                     std::span<const LeftOut> left_out, const PlanLevel* level);

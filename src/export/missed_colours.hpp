@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How reasons are shown, in pictures and clouds alike.
+// Colours of reasons, in pictures and clouds alike.
 #pragma once
 
 #include <array>
@@ -15,8 +15,8 @@ struct MissedStyle {
   const char* words;
 };
 
-// What shows last, and so before all others, last: first what nothing helps. Any two are told apart by people who are
-// blind to red, to green or to blue, too.
+// In the order of drawing, so the last shows on top; reasons beyond help come first. Any two differ for people with any
+// kind of colour blindness.
 inline constexpr std::array<MissedStyle, why_missed_count> kMissedStyles{
     {{WhyMissed::captured, {0.56, 0.75, 0.87}, "dense enough"},
      {WhyMissed::hidden, {0.29, 0.27, 0.33}, "hidden from everywhere"},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pictures before they are files: drawn once, saved as PNG and as SVG.
+// Pictures before they are files: drawn once, saved as PNG and as SVG.
 #pragma once
 
 #include <memory>
@@ -19,12 +19,12 @@ std::unique_ptr<Canvas> front_picture(const PlanResult& result);
 std::unique_ptr<Canvas> hypervolume_picture(const PlanResult& result);
 std::unique_ptr<Canvas> history_picture(const PlanResult& result);
 
-// A page of a plan view: all floors, and where there are several one more for each.
+// A page of a plan view: all floors, and for several floors one more for each.
 struct PlanPage {
   std::string suffix;  // of the file's name: "" or "-level-2"
   std::unique_ptr<Canvas> canvas;
 };
-// Throws Error invalid_argument where there is nothing to show, or the matrix is not the stations'.
+// Throws Error invalid_argument if there is nothing to show, or the matrix does not belong to the stations.
 std::vector<PlanPage> plan_view_pictures(const PlanView& view);
 
 }  // namespace vantage

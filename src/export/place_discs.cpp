@@ -9,12 +9,12 @@
 namespace vantage {
 namespace {
 
-constexpr double kSpot = 4;  // what is kept free around a true spot
+constexpr double kSpot = 4;  // kept free around a true position
 constexpr int kDirections = 24;
 
 double distance(Point a, Point b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
-// How far a spot is from the line between two others.
+// Distance of a point from the line between two others.
 double off_line(Point p, Point a, Point b) {
   const double dx = b.x - a.x, dy = b.y - a.y, length = dx * dx + dy * dy;
   const double t = length > 0 ? std::clamp(((p.x - a.x) * dx + (p.y - a.y) * dy) / length, 0.0, 1.0) : 0;
@@ -39,7 +39,7 @@ std::vector<Point> place_discs(std::span<const Point> anchors, double radius, co
     return holds(p);
   };
   const auto put = [&](std::size_t k, Point p) { discs[k] = p, placed[k] = true; };
-  // First those that can stay, so that none has to make way for one that moves anyway.
+  // Discs that can stay come first, so that none makes way for one that moves anyway.
   for (std::size_t k = 0; k < anchors.size(); ++k)
     if (free(k, anchors[k])) put(k, anchors[k]);
   for (std::size_t k = 0; k < anchors.size(); ++k) {
@@ -53,7 +53,7 @@ std::vector<Point> place_discs(std::span<const Point> anchors, double radius, co
         const double angle = 2 * std::numbers::pi * (d + 0.5) / kDirections;
         const Point p{anchors[k].x + away * std::cos(angle), anchors[k].y - away * std::sin(angle)};
         if (!free(k, p)) continue;
-        // leaders that run over other discs or spots are the last choice; of the others the least crowded
+        // leaders across other discs or positions are the last choice; of the others the least crowded
         double cost = 0;
         for (std::size_t other = 0; other < anchors.size(); ++other) {
           if (other == k) continue;

@@ -21,12 +21,12 @@
 namespace vantage {
 namespace {
 
-constexpr double kLeastWidth = 0.8, kMostWidth = 9;  // of links without overlap, and of the scale's last
+constexpr double kLeastWidth = 0.8, kMostWidth = 9;  // of links without overlap, and at the end of the scale
 constexpr std::size_t kPixelsPerUnit = 2, kSupersampling = 2;
 constexpr Colour kStation{0.10, 0.22, 0.45}, kKept{0.42, 0.16, 0.44}, kLink{0.16, 0.34, 0.66},
     kSkipped{0.72, 0.12, 0.12};
-// A plan is cut at 1.2 m above the floor, between window sills and lintels, under a scanner at 1.85 m; heads at other
-// heights, as in models of unusual size, move it in proportion.
+// A plan is cut at 1.2 m above the floor, between window sills and lintels, for a scanner at 1.85 m. Other head
+// heights, as in models of unusual size, scale it.
 constexpr double kCutHeight = 1.2, kCutShare = 1.2 / 1.85;
 
 double cut_above(std::span<const PlacedStation> stations) {
@@ -135,14 +135,14 @@ class Stations {
                 on_level(link.a) != on_level(link.b));
   }
 
-  // One sigma of each head in x and y, on a scale of their own.
+  // Draws one sigma of each head in x and y, on a separate scale.
   void draw_ellipses() {
     const double scale = view_.ellipse_scale();
     if (!(scale > 0)) return;
     for (std::size_t k = 0; k < shown_.size(); ++k) {
       if (!on_level(k) || !active(station(k))) continue;
       const auto& c = view_.errors[shown_[k]].covariance;
-      // the curve that a unit circle goes to under the square root of the covariance, by Cholesky's factor
+      // image of a unit circle under the square root of the covariance (Cholesky factor)
       const double a = std::sqrt(std::max(c[0], 0.0)), b = a > 0 ? c[1] / a : 0,
                    d = std::sqrt(std::max(c[4] - b * b, 0.0));
       std::vector<Point> curve;
@@ -156,7 +156,7 @@ class Stations {
     }
   }
 
-  // The ground's height beside each, and its name where that does not fit into the disc.
+  // Draws the ground's height beside each, and its name if that does not fit into the disc.
   void draw_labels() {
     const TextStyle style{.size = 10.5, .across = Align::middle, .halo = 2};
     std::vector<Rect> taken;
@@ -183,7 +183,7 @@ class Stations {
   std::vector<Point> spots_, discs_;
 };
 
-// The stations' own text goes into the disc where it fits, else their number does.
+// Puts a station's text into the disc if it fits, else its number.
 void disc_text(Canvas& canvas, Point at, const std::string& text, const Colour& colour) {
   canvas.text(at, text,
               {.size = text.size() > 2 ? 9.0 : 11.0, .bold = true, .colour = colour, .across = Align::middle});
@@ -278,7 +278,7 @@ PlanMapContent draw_plan_map(Canvas& canvas, const Rect& map, const PlanView& vi
 }
 
 void draw_station(Canvas& canvas, Point at, const std::string& text, const PlacedStation& station) {
-  const double r = kDisc, square = 0.94 * kDisc;  // kept ones are square
+  const double r = kDisc, square = 0.94 * kDisc;  // existing stations are square
   const auto mark = [&](double grow, const Colour& colour) {
     if (station.kept)
       canvas.fill({at.x - square - grow, at.y - square - grow, 2 * (square + grow), 2 * (square + grow)}, colour);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The header of a binary PLY whose number of vertices is only known at the end: it has the same length whatever the
-// number.
+// Header of a binary PLY whose number of vertices is only known at the end. Its length does not depend on the number.
 #pragma once
 
 #include <cstdint>
@@ -19,13 +18,13 @@ struct PlyProperty {
 
 class PlyHeader {
  public:
-  // `crs`: well-known text in one line, which stands in a comment, or nothing.
+  // `crs`: well-known text in one line, written as a comment, or empty.
   explicit PlyHeader(std::vector<PlyProperty> properties, std::string crs = {})
       : properties_(std::move(properties)), crs_(std::move(crs)) {}
 
   std::string text(std::uint64_t vertices) const {
     const std::string count = std::to_string(vertices);
-    // The comment makes up for the digits that the number lacks; leading zeros would be octal to some readers.
+    // The comment pads the digits that the number lacks; some readers take leading zeros as octal.
     std::string text = "ply\nformat binary_little_endian 1.0\ncomment vantage " + std::string(version()) + " " +
                        std::string(20 - count.size(), '.') + "\n" + (crs_.empty() ? "" : "comment crs " + crs_ + "\n") +
                        "element vertex " + count + "\n";

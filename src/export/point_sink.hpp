@@ -19,13 +19,13 @@ static_assert(std::endian::native == std::endian::little, "the point cloud write
 class PointSink {
  public:
   virtual ~PointSink() = default;
-  virtual void begin_station(const StationScan&) {}  // matters to formats that keep stations apart
+  virtual void begin_station(const StationScan&) {}  // used by formats that keep stations apart
   virtual void write(const ScanChunk& chunk, std::uint16_t station) = 0;
   virtual void close() = 0;
   virtual std::uint64_t points() const = 0;
 };
 
-// `crs`: well-known text in one line, or nothing.
+// `crs`: well-known text in one line, or empty.
 std::unique_ptr<PointSink> make_ply_sink(const std::filesystem::path& file, const Vec3& origin, std::uint32_t outputs,
                                          const std::string& crs);
 // Throws Error invalid_argument for outputs that LAS cannot hold.
@@ -41,8 +41,8 @@ void append(std::string& record, T value) {
   record.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-// Whether ray k of the chunk hit, by whatever the chunk carries: range, ids, else the position, which is finite for
-// hits alone.
+// Whether ray k of the chunk hit, by the first array that the chunk has: range, ids, else the position, finite for hits
+// only.
 inline bool hit(const ScanChunk& chunk, std::size_t k) {
   const auto finite = [](float value) { return value - value == 0; };
   if (!chunk.range_m.empty()) return finite(chunk.range_m[k]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tables of stations as people have them: from spreadsheets, field software and other programs.
+// Tables of stations from spreadsheets, field software and other programs.
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -19,7 +19,7 @@ namespace {
 
 enum class Column { east, north, head, ground, u, v, name, heading, tilt, scanner, step };
 
-// What columns are called; a name stands for one quantity alone.
+// Names of columns; each name means one quantity alone.
 const std::map<std::string, Column, std::less<>>& known_columns() {
   static const std::map<std::string, Column, std::less<>> names{{"x", Column::east},
                                                                 {"e", Column::east},
@@ -73,7 +73,7 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-// "; and the like between cells; a blank: any number of blanks. Within quotes two of them are one.
+// Splits a line at separators such as ";"; a blank stands for any number of blanks. In quotes, two quotes are one.
 std::vector<std::string> cells_of(std::string_view line, char separator) {
   std::vector<std::string> cells(1);
   bool quoted = false;
@@ -130,7 +130,7 @@ class Table {
     for (std::string line; std::getline(in, line);) {
       ++line_number_;
       std::string_view text = line;
-      if (line_number_ == 1 && text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // of spreadsheets
+      if (line_number_ == 1 && text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // written by spreadsheets
       if (line_number_ == 1 && (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")))
         refuse("the file is UTF-16; save it as UTF-8");
       if (trimmed(text).empty() || trimmed(text).front() == '#') continue;
@@ -177,7 +177,7 @@ class Table {
     const bool east = at_.contains(Column::east), north = at_.contains(Column::north);
     const bool height = at_.contains(Column::head) || at_.contains(Column::ground);
     const bool u = at_.contains(Column::u), v = at_.contains(Column::v);
-    // a column that is nearly a known one is no other column: it would be passed over without a word
+    // a near miss of a known column must not be ignored silently
     std::vector<std::string> known;
     for (const auto& [name, column] : known_columns()) known.push_back(name);
     std::string hint;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The predicted registration error where it is: on the surface.
+// Shows the predicted registration error on the surface.
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -18,10 +18,10 @@ namespace vantage {
 namespace {
 
 constexpr Colour kUnseen{0.86, 0.86, 0.87};
-// More than a picture has pixels for.
+// More voxels than a picture has pixels for.
 constexpr std::uint64_t kMostDrawn = 200'000;
 
-// Millimetres, root mean square over the stations that see the voxel; below 0 where none does.
+// Root mean square over the stations that see the voxel, millimetres; negative if none does.
 std::vector<float> errors_of(const Simulator& simulator, const VoxelField& field, const RegistrationError& error,
                              std::span<const std::uint32_t> ranks) {
   std::vector<float> found(ranks.size());
@@ -78,7 +78,7 @@ void draw_registration(const std::filesystem::path& file, const Simulator& simul
   const std::vector<std::uint32_t> ranks = simulator.sampled_voxels(std::min(kMostDrawn, simulator.voxel_count()));
   const std::vector<float> errors = errors_of(simulator, field, error, ranks);
   const double most = largest(errors);
-  // The worst on top: what lies over it must not hide it.
+  // The worst on top, so that nothing hides it.
   std::vector<std::size_t> order(ranks.size());
   for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
   std::ranges::stable_sort(order, {}, [&](std::size_t k) { return errors[k]; });

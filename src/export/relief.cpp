@@ -13,7 +13,7 @@ namespace vantage {
 namespace {
 
 constexpr std::uint32_t kNothing = 0xFFFFFFFFu;
-// Surfaces steeper than this show no area from above; they are drawn as lines, or walls without thickness would vanish.
+// Steeper surfaces have no area in plan view; they are drawn as lines, so that walls without thickness do not vanish.
 constexpr double kSteep = 0.1;
 // Width of such a line in pixels of the buffer: big walls stand out, small parts keep their shape.
 double line_width(double length) { return std::clamp(0.15 * length, 3.0, 14.0); }
@@ -69,7 +69,7 @@ std::array<double, 3> normal_of(const SceneData& scene, std::uint32_t triangle) 
   return n;
 }
 
-// Mean of z over a square of 2r + 1 pixels, by running sums; where there is nothing, `floor` stands in.
+// Mean of z over a square of 2r + 1 pixels, by running sums; `floor` replaces empty pixels.
 std::vector<float> box_mean(const HeightBuffer& heights, std::size_t r, float floor) {
   const std::size_t w = heights.window.columns, h = heights.window.rows;
   std::vector<double> sums((w + 1) * (h + 1), 0.0);
@@ -109,7 +109,7 @@ HeightBuffer look_from_above(const SceneData& scene, const MapWindow& window, do
       z[k] = p[k].z;
     }
     painter.triangle(c, z, t);
-    // What is cut through shows as its section.
+    // Parts in the cutting plane are drawn as its section.
     const bool below = z_cut - scene.origin.z >= std::max({z[0], z[1], z[2]});
     if (below && normal_of(scene, t)[2] < kSteep)
       for (std::size_t k = 0; k < 3; ++k) painter.line(c[k], c[(k + 1) % 3], z[k], z[(k + 1) % 3], t);
@@ -125,7 +125,7 @@ std::vector<std::uint32_t> shade(const SceneData& scene, const HeightBuffer& hei
   std::vector<std::uint32_t> pixels(w * h, 0);
   if (low > high) return pixels;
 
-  // Two scales of "lower than the surroundings": pipes among themselves, and tanks over the ground.
+  // Two scales of "lower than the surroundings": pipes among each other, and tanks above the ground.
   const double extent = static_cast<double>(std::max(w, h));
   const auto near = box_mean(heights, static_cast<std::size_t>(extent * 0.004) + 1, low);
   const auto far = box_mean(heights, static_cast<std::size_t>(extent * 0.02) + 1, low);

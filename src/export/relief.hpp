@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A site from straight above: what a map shows of it.
+// Shaded relief of a site in plan view.
 #pragma once
 
 #include <algorithm>
@@ -29,7 +29,7 @@ struct MapWindow {
   MapPoint at(const Vec3& p) const { return {(p.x - x_min) / pixel_m, (y_max - p.y) / pixel_m}; }
 };
 
-// Pixels of an axis of `size` whose centres lie between low and high.
+// Pixels of an axis with `size` pixels whose centres lie between low and high.
 inline std::pair<std::size_t, std::size_t> pixels_between(double low, double high, std::size_t size) {
   const double first = std::clamp(std::ceil(low - 0.5), 0.0, static_cast<double>(size));
   const double past = std::clamp(std::floor(high - 0.5) + 1, first, static_cast<double>(size));
@@ -55,24 +55,24 @@ void for_each_pixel(const MapWindow& window, const std::array<MapPoint, 3>& c, P
   }
 }
 
-// The topmost surface below `z_cut` (survey frame) under each pixel's centre. Steep surfaces, which cover no area, are
-// lines along their edges; but for those that the cut goes through, which section.hpp draws.
+// The topmost surface below `z_cut` (survey frame) under each pixel's centre. Steep surfaces cover no area and are
+// lines along their edges, except those that the cut crosses, which section.hpp draws.
 struct HeightBuffer {
   MapWindow window;
-  std::vector<float> z;                 // local frame; −infinity where there is nothing
-  std::vector<std::uint32_t> triangle;  // of the scene; 2^32 − 1 where there is nothing
+  std::vector<float> z;                 // local frame; −infinity in empty pixels
+  std::vector<std::uint32_t> triangle;  // of the scene; 2^32 − 1 in empty pixels
 };
 
 HeightBuffer look_from_above(const SceneData& scene, const MapWindow& window, double z_cut);
 
-// Shaded relief, light from the north-west, surveyed meshes tinted. 0xAARRGGBB, premultiplied; transparent where there
-// is nothing.
+// Shaded relief, light from the north-west, surveyed meshes tinted. 0xAARRGGBB, premultiplied; empty pixels are
+// transparent.
 std::vector<std::uint32_t> shade(const SceneData& scene, const HeightBuffer& heights);
 
 // A colour over an opaque pixel, or over white paper.
 std::uint32_t laid_over(std::uint32_t pixel, const Colour& colour, double opacity);
 
-// Halves both sides by averaging two by two. REQUIRES: even numbers of columns and rows.
+// Halves both sides by averaging two by two pixels. REQUIRES: even numbers of columns and rows.
 std::vector<std::uint32_t> halve(const std::vector<std::uint32_t>& pixels, std::size_t columns);
 
 }  // namespace vantage

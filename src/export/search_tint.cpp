@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kRim = 4;  // pixels
 
-constexpr double kHidden_m = 0.3;  // so far below what is seen from above the area does not show
+constexpr double kHidden_m = 0.3;  // an area lower than this below the topmost surface does not show
 
 enum Cover : std::uint8_t { none, hidden, shown };
 
@@ -30,7 +30,7 @@ std::vector<std::uint8_t> cover_of(const HeightBuffer& heights, double origin_z,
   return cover;
 }
 
-// Sets in `near` what lies less than `r` pixels, along its line, from one that is `wanted` or from the line's end.
+// Sets in `near` the pixels less than `r` pixels, along their line, from a `wanted` one or from the line's end.
 template <class Wanted>
 void spread_along(std::size_t lines, std::size_t line_step, std::size_t length, std::size_t step, std::size_t r,
                   Wanted&& wanted, std::vector<std::uint8_t>& near) {
@@ -46,8 +46,7 @@ void spread_along(std::size_t lines, std::size_t line_step, std::size_t length, 
   }
 }
 
-// Those of the set with another pixel that is not less than `r` columns and rows away, or with the map's border as
-// near.
+// Pixels of the set that are less than `r` columns and rows from a pixel outside of it, or from the map's border.
 std::vector<std::uint8_t> rim_of(const std::vector<std::uint8_t>& set, std::size_t columns, std::size_t r) {
   const std::size_t rows = set.size() / columns;
   std::vector<std::uint8_t> across(set.size(), 0), rim(set.size(), 0);

@@ -9,7 +9,7 @@
 namespace vantage {
 namespace {
 
-// Points that are one share a number, whatever face they belong to.
+// Gives equal points one number, whatever face they belong to.
 std::vector<std::uint32_t> welded(const SceneData& scene) {
   std::vector<std::uint32_t> order(scene.positions.size()), number(scene.positions.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -23,7 +23,7 @@ std::vector<std::uint32_t> welded(const SceneData& scene) {
   return number;
 }
 
-// Which surface each point belongs to: those that triangles connect.
+// Number of the connected surface of each point.
 std::vector<std::uint32_t> surfaces_of(const SceneData& scene) {
   std::vector<std::uint32_t> parent = welded(scene);
   const auto root = [&](std::uint32_t v) {
@@ -39,7 +39,7 @@ std::vector<std::uint32_t> surfaces_of(const SceneData& scene) {
   return parent;
 }
 
-// A segment of the cut with what is solid to its left, seen from above.
+// A segment of the cut with the solid to its left in plan view.
 struct Cut {
   MapPoint from, to;
   std::uint32_t surface;
@@ -76,7 +76,7 @@ std::vector<Cut> cuts_at(const SceneData& scene, const MapWindow& window, double
 struct Crossing {
   std::uint32_t surface;
   double column;
-  int winding;  // what it adds to the right of it
+  int winding;  // added to the right of it
 };
 
 // Fills a row of pixels by the crossings of its middle line.
@@ -113,7 +113,7 @@ Section section_at(const SceneData& scene, const MapWindow& window, double z) {
   std::vector<std::vector<Crossing>> rows(window.rows);
   for (const Cut& cut : cuts_at(scene, window, z)) {
     section.outlines.push_back({cut.from, cut.to});
-    // Rows count downward: what is solid lies to the left of the cut, so to the right of one that runs downward.
+    // Rows count downward: the solid lies to the left of the cut, so to the right of a downward one.
     const double top = std::min(cut.from.y, cut.to.y), bottom = std::max(cut.from.y, cut.to.y);
     const auto first =
         static_cast<std::size_t>(std::clamp(std::ceil(top - 0.5), 0.0, static_cast<double>(window.rows)));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A horizontal cut through a site: what a floor plan fills.
+// A horizontal cut through a site, which a floor plan fills.
 #pragma once
 
 #include <array>
@@ -11,13 +11,13 @@
 namespace vantage {
 
 struct Section {
-  std::vector<std::uint8_t> solid;                // a pixel of the window each: 1 within something solid
-  std::vector<std::array<MapPoint, 2>> outlines;  // where surfaces cross the plane, in pixels
+  std::vector<std::uint8_t> solid;                // one for each pixel of the window: 1 within a solid
+  std::vector<std::array<MapPoint, 2>> outlines;  // lines where surfaces cross the plane, in pixels
 };
 
-// At height `z` (survey frame). Solid is what closed surfaces whose triangles face outward wind around more often than
-// others, facing inward, wind back: walls as boxes, and as the space between an outer and an inner skin. A surface
-// that is not closed along a row of pixels, as a wall without thickness, is an outline alone.
+// Cuts the scene at height `z` (survey frame). A pixel is solid if outward closed surfaces wind around it more often
+// than inward ones: walls as boxes, and the space between an outer and an inner skin. A surface that is not closed
+// along a row of pixels, such as a wall without thickness, is only an outline.
 Section section_at(const SceneData& scene, const MapWindow& window, double z);
 
 }  // namespace vantage

@@ -7,7 +7,7 @@
 namespace vantage {
 namespace {
 
-constexpr std::size_t kTangle = 4, kStrongest = 2;  // links a station
+constexpr std::size_t kTangle = 4, kStrongest = 2;  // links for each station
 
 }  // namespace
 
@@ -20,7 +20,7 @@ std::vector<ShownLink> shown_links(std::vector<ShownLink> links, std::size_t sta
     while (part[k] != k) k = part[k] = part[part[k]];
     return k;
   };
-  // From the strongest on, as Kruskal does.
+  // Kruskal's algorithm: from the strongest on.
   std::vector<ShownLink> shown;
   for (auto link = links.rbegin(); link != links.rend(); ++link) {
     const std::size_t a = part_of(link->a), b = part_of(link->b);

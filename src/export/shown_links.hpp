@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which links of a network a picture shows: all of them, or where that would be a tangle those that matter.
+// Links of a network that a picture shows: all of them, or the important ones if all would be a tangle.
 #pragma once
 
 #include <cstddef>
@@ -10,11 +10,11 @@ namespace vantage {
 struct ShownLink {
   std::size_t a = 0, b = 0;
   double overlap = 0;
-  bool bridge = false;  // the only link of two parts
+  bool bridge = false;  // the only link between two components
 };
 
-// Of more than four links a station: the strongest spanning tree of each part, and the two strongest of each station.
-// By overlap, ascending, so that the strongest are drawn last.
+// With more than four links for each station, returns the maximum spanning tree of each component, and the two
+// strongest links of each station. Sorted by overlap, ascending, so that the strongest are drawn last.
 std::vector<ShownLink> shown_links(std::vector<ShownLink> links, std::size_t stations);
 
 }  // namespace vantage

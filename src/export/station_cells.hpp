@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A station in tables: the same columns wherever one is written.
+// Cells of a station in tables: the same columns in all of them.
 #pragma once
 
 #include <algorithm>
@@ -15,15 +15,15 @@ namespace vantage {
 
 inline constexpr const char* kStationColumns[] = {"name", "x", "y", "z", "ground_z", "u", "v", "status", "kept"};
 
-// Of how a station is set up, where a table says so.
+// Columns of a station's setup, in tables that need them.
 inline constexpr const char* kSetupColumns[] = {"heading", "tilt", "scanner", "step"};
 
-// Whether it has to: some station is turned, or has another scanner than the first.
+// Whether a table needs them: some station is turned, or has another scanner than the first.
 inline bool tells_setups(std::span<const PlacedStation> stations) {
   return std::ranges::any_of(stations, [](const PlacedStation& s) { return s.setup != StationSetup(); });
 }
 
-// Degrees; the scanner as load_scanner() takes it, and its step where both are one.
+// Degrees; the scanner in the form of load_scanner(), and its step if both are equal.
 inline std::string setup_cells(const StationSetup& setup, std::span<const Scanner> scanners) {
   std::string cells = number(setup.heading.in_degrees()) + "," + number(setup.tilt.in_degrees());
   if (setup.scanner >= scanners.size()) return cells + ",,";
@@ -32,8 +32,8 @@ inline std::string setup_cells(const StationSetup& setup, std::span<const Scanne
   return scanner.azimuth_step == scanner.zenith_step ? cells + number(scanner.azimuth_step.in_degrees()) : cells;
 }
 
-// One cell a column, with commas between them. A station in a hole has no position; empty cells keep a reader from
-// taking it for the origin.
+// One cell for each column, separated by commas. A station in a hole has no position; its empty cells keep a reader
+// from taking it for the origin.
 inline std::string station_cells(const PlacedStation& s, const std::string& name) {
   std::string cells = csv_cell(name);
   if (s.status == StationStatus::hole)

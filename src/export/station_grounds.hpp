@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What all files for the crew ask of stations.
+// Helpers of all files for the crew.
 #pragma once
 
 #include <string>
@@ -10,10 +10,10 @@
 
 namespace vantage {
 
-// Whether there is a place to go to.
+// Whether the station has a place to go to.
 inline bool has_ground(const PlacedStation& station) { return station.status != StationStatus::hole; }
 
-// The places of those that have one, in order. Throws Error invalid_argument where names are missing.
+// Grounds of the stations that have one, in order. Throws Error invalid_argument if names are missing.
 inline std::vector<Vec3> grounds_of(const NamedStations& named) {
   if (named.names.size() != named.stations.size())
     throw Error(Errc::invalid_argument, std::to_string(named.stations.size()) + " stations, but " +

@@ -10,11 +10,11 @@
 namespace vantage {
 namespace {
 
-// Of a table: its title, and a cell a station.
+// A column: its title, and a cell for each station.
 struct TableColumn {
   std::string title;
   std::vector<std::string> cells = {};
-  bool words = false;  // to the left, numbers to the right
+  bool words = false;  // left-aligned; numbers are right-aligned
 };
 
 std::string shortened(double value, int digits) {
@@ -22,7 +22,7 @@ std::string shortened(double value, int digits) {
   return fixed(std::round(scale * value) / scale + 0.0, digits);  // no "-0.000"
 }
 
-// Characters: UTF-8 goes on with bytes of 10xxxxxx.
+// Number of characters; UTF-8 continuation bytes are 10xxxxxx.
 std::size_t width_of(const std::string& text) {
   return static_cast<std::size_t>(std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; }));
 }

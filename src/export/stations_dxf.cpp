@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// DXF of release 12, in ASCII (Autodesk: Drawing Interchange File Formats, Release 12, 1992): of all releases the one
-// that every program reads.
+// DXF of release 12, in ASCII (Autodesk: Drawing Interchange File Formats, Release 12, 1992): the release that every
+// program reads.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -13,7 +13,7 @@
 namespace vantage {
 namespace {
 
-// Letters, numbers and signs as ASCII: others by their number, as programs that read them at all understand.
+// Writes letters, numbers and signs in ASCII, others as escapes by their number.
 std::string dxf_text(const std::string& utf8) {
   std::string text;
   for (std::size_t at = 0; at < utf8.size();) {
@@ -57,7 +57,7 @@ class Drawing {
 
 struct Layer {
   const char* name;
-  int colour;  // of AutoCAD's index: 1 red, 3 green, 5 blue, 7 black or white, 8 grey
+  int colour;  // AutoCAD colour index: 1 red, 3 green, 5 blue, 7 black or white, 8 grey
 };
 constexpr Layer kStations{"STATIONS", 5}, kKept{"STATIONS_KEPT", 3}, kLeftOut{"STATIONS_LEFT_OUT", 1},
     kNames{"STATION_NAMES", 7}, kLinks{"LINKS", 4}, kArea{"SEARCH_AREA", 8};
@@ -80,7 +80,7 @@ void put_tables(Drawing& drawing) {
 
 void put_ring(Drawing& drawing, const std::vector<Vec3>& ring) {
   drawing.entity("POLYLINE", kArea.name);
-  drawing.put(66, 1), drawing.put(10, Vec3{}), drawing.put(70, 1 + 8);  // closed, in space
+  drawing.put(66, 1), drawing.put(10, Vec3{}), drawing.put(70, 1 + 8);  // closed, 3D
   for (const Vec3& p : ring) drawing.entity("VERTEX", kArea.name), drawing.put(10, p), drawing.put(70, 32);
   drawing.entity("SEQEND", kArea.name);
 }
@@ -100,7 +100,7 @@ void write_stations_dxf(const std::filesystem::path& file, const NamedStations& 
   for (const auto& ring : rings)
     for (const Vec3& p : ring) box.extend(p);
   if (box.empty()) box.extend({});
-  // Signs that can be read on a sheet of the whole.
+  // Text that can be read on a sheet of the whole site.
   const double letter = std::clamp(std::max(box.size().x, box.size().y) / 80, 0.05, 5.0);
 
   Drawing drawing;

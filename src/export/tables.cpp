@@ -83,7 +83,7 @@ void write_fronts_csv(const std::filesystem::path& file, const PlanResult& resul
   text += "\n";
   for (const PlanIteration& line : result.history) {
     for (const auto& f : line.front) {
-      // Above 1 it breaks a requirement, and what it is worth was not kept.
+      // Above 1 the network violates a requirement, and its values were not kept.
       if (std::any_of(f.begin(), f.end(), [](double value) { return !(value <= 1); })) continue;
       text += number(line.iteration);
       for (std::size_t k = 0; k < objectives.size(); ++k) text += "," + number(objectives[k].unscaled(f[k]));

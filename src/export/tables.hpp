@@ -7,9 +7,9 @@
 
 namespace vantage {
 
-// A line an iteration; the one table with times in it.
+// Writes a line for each iteration; the only table with times.
 void write_history_csv(const std::filesystem::path& file, const PlanResult& result);
-// Every iteration's front, a line a network that keeps the requirements: the objectives.
+// Writes every iteration's front: a line with the objectives of each network that meets the requirements.
 void write_fronts_csv(const std::filesystem::path& file, const PlanResult& result);
 
 }  // namespace vantage

@@ -11,7 +11,7 @@ namespace vantage {
 namespace {
 
 constexpr std::size_t kFine = 2;  // pixels a unit of the canvas
-constexpr double kPanel = 264;    // holds the longest line of any legend, and a margin
+constexpr double kPanel = 264;    // the longest line of any legend, and a margin
 constexpr Colour kHead{0.10, 0.22, 0.45};
 
 std::uint32_t opaque(const Colour& colour) {

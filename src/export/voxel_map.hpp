@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Surveyed voxels from above in colours, with the stations: what a legend beside it explains.
+// Surveyed voxels in colours in plan view, with the stations and a legend beside them.
 #pragma once
 
 #include <cstdint>
@@ -19,8 +19,8 @@ struct ColouredVoxel {
   Colour colour;
 };
 
-// Later ones lie over earlier ones; each stands for its neighbours too where there are fewer than the site has.
-// `legend` draws below `at` and returns where it ends; the mark of a station is put there. REQUIRES: voxels.
+// Later voxels cover earlier ones; each stands for its neighbours too if there are fewer than the site has. `legend`
+// draws below `at` and returns where it ends; the mark of a station follows there. REQUIRES: voxels.
 void draw_voxel_map(const std::filesystem::path& file, const Simulator& simulator,
                     std::span<const ColouredVoxel> voxels, std::span<const PlacedStation> stations,
                     const std::string& title, const std::string& subtitle,

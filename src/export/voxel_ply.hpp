@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Voxels as a binary PLY: centre (survey frame) and colour of each, then what else a cloud tells of it.
+// Voxels as a binary PLY: centre (survey frame) and colour of each, then further properties.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@
 
 namespace vantage {
 
-// `vertex`: the k-th voxel's colour; it appends what `more` names, in that order. Throws Error io.
+// `vertex` returns the k-th voxel's colour and appends the properties named in `more`, in that order. Throws Error io.
 struct VoxelVertex {
   std::uint32_t rank;
   Colour colour;

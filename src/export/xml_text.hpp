@@ -6,7 +6,7 @@
 
 namespace vantage {
 
-// As content of an XML 1.0 element, which has no place for control characters.
+// Escapes text as content of an XML 1.0 element, which excludes control characters.
 inline std::string xml_text(std::string_view text) {
   std::string escaped;
   for (const char c : text)
