@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The library's arrays as numpy's and back, without a copy where one outlives the other.
+// Converts between the library's arrays and numpy's, without a copy if one outlives the other.
 #pragma once
 
 #include <pybind11/numpy.h>
@@ -18,7 +18,7 @@ static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(Uv) == 2 * sizeof(dou
 
 using Shape = std::vector<py::ssize_t>;
 
-/// Numbers that `owner` holds and never changes: read-only, and they keep it alive.
+/// Read-only view of numbers that `owner` holds and never changes; the view keeps it alive.
 template <class Number, class Value>
 py::array_t<Number> view(std::span<const Value> values, const py::object& owner, std::size_t width = 1) {
   static_assert(sizeof(Value) % sizeof(Number) == 0);
@@ -43,10 +43,10 @@ inline py::array_t<double> adopt(std::vector<Vec3>&& points) {
   return adopt<double>(std::move(points), {count, 3});
 }
 
-/// Numbers as a caller gives them; converted where they are of another type or laid out otherwise.
+/// Numbers from a caller; converted if they have another type or layout.
 using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-/// Throws TypeError for what is no array of numbers; `what` opens the message.
+/// Throws TypeError for anything except an array of numbers; the message begins with `what`.
 Doubles doubles_of(const py::object& given, const std::string& what);
 
 inline std::string shape_text(const py::array& array) { return py::str(array.attr("shape")); }
@@ -61,13 +61,13 @@ std::span<const Row> rows_of(const Doubles& array, const char* what) {
                                           ") is wanted, and this one's is " + shape_text(array));
 }
 
-/// Indices of corners. Throws Error invalid_argument: another shape, no integers, or none of 0 to 2³² − 1.
+/// Indices of corners. Throws Error invalid_argument for another shape, no integers, or values outside of 0 to 2³² − 1.
 std::vector<std::array<std::uint32_t, 3>> triangles_of(const py::array& array);
 
-/// Heads of stations as an array of (n, 3), or `Station`s or `PlacedStation`s, of which those that are not active keep
-/// their place. Of the former two the ground is not known, and is where the head is.
+/// Heads of stations as an array of (n, 3), or `Station`s or `PlacedStation`s; inactive ones keep their place. The
+/// ground of the former two is unknown and set to the head.
 std::vector<PlacedStation> stations_of(const py::object& stations);
-/// The same as a simulator takes them.
+/// The same in the form that simulators take.
 Network network_of(const py::object& stations);
 
 /// The heads of stations, one row each.

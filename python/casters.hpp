@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the library's plain values look in Python: points are tuples, angles degrees, enumerators their names.
+// Form of the library's plain values in Python: points are tuples, angles degrees, enumerators their names.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -17,7 +17,7 @@ namespace vantage::python {
 
 namespace py = pybind11;
 
-/// The names of an enumerator's values, where the library has no function for them.
+/// Names of an enumerator's values that the library has no function for.
 template <class Enum>
 struct Names;
 template <>
@@ -100,7 +100,7 @@ struct type_caster<vantage::RegistrationSurfaces> : vantage::python::NameCaster<
 template <>
 struct type_caster<vantage::MoCmaEsConfig::Scheme> : vantage::python::NameCaster<vantage::MoCmaEsConfig::Scheme> {};
 
-/// (x, y, z); any sequence of three numbers is taken.
+/// (x, y, z); any sequence of three numbers is accepted.
 template <>
 struct type_caster<vantage::Vec3> {
   PYBIND11_TYPE_CASTER(vantage::Vec3, const_name("Tuple[float, float, float]"));
@@ -130,7 +130,7 @@ struct type_caster<vantage::Uv> {
   static handle cast(const vantage::Uv& uv, return_value_policy, handle) { return make_tuple(uv.u, uv.v).release(); }
 };
 
-/// Degrees: whatever has an angle says so in its name, by `_deg`.
+/// Degrees: names of angles end in `_deg`.
 template <>
 struct type_caster<vantage::Angle> {
   PYBIND11_TYPE_CASTER(vantage::Angle, const_name("float"));
@@ -141,7 +141,7 @@ struct type_caster<vantage::Angle> {
     return true;
   }
   static handle cast(const vantage::Angle& angle, return_value_policy, handle) {
-    // What was typed comes back: 0.2, not 0.19999999999999998.
+    // The typed value comes back: 0.2, not 0.19999999999999998.
     return PyFloat_FromDouble(std::round(angle.in_degrees() * 1e12) / 1e12);
   }
 };

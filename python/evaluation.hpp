@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an evaluation holds, as arrays.
+// Arrays of an evaluation.
 #pragma once
 
 #include <memory>
@@ -8,7 +8,7 @@
 
 namespace vantage::python {
 
-/// A matrix of pairs as an array that takes its numbers over.
+/// A matrix of pairs as an array that takes over its numbers.
 inline py::array_t<double> matrix_of(PairMatrix matrix) {
   const auto n = static_cast<py::ssize_t>(matrix.size());
   if (n == 0) return py::array_t<double>(Shape{0, 0});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Calls that take long: other Python threads run meanwhile, and between chunks of work signals are seen and the
-// caller's function hears how far it is.
+// Calls that take long: other Python threads run meanwhile. Between chunks of work, signals are handled and the
+// caller's function gets the progress.
 #pragma once
 
 #include <exception>
@@ -13,20 +13,19 @@ namespace vantage::python {
 
 class LongCall {
  public:
-  /// `heard`: called with what is reported; None: nobody listens. Where it returns False the work is stopped, and its
-  /// result says so; where it raises, or a signal's handler does, as for Ctrl-C, it is stopped and the call raises
-  /// that.
+  /// `heard`: called with the progress; None: no one is. If it returns False, the work stops, and its result says so.
+  /// If it raises, or a signal's handler does (Ctrl-C), the work stops and the call raises that.
   explicit LongCall(py::object heard) : heard_(std::move(heard)) {}
 
   std::stop_token stop() const { return stop_.get_token(); }
-  /// Asked for in the second case alone: nobody waits for a result.
+  /// Requested in the second case only: the call then has no result.
   std::stop_token abort() const { return abort_.get_token(); }
-  /// Of a part of the work, from one share of it to another.
+  /// Progress of a part of the work, from one share of it to another.
   Progress progress(double from = 0, double to = 1) {
     return {.report = [=, this](double done) { report([=] { return from + done * (to - from); }); }, .stop = stop()};
   }
 
-  /// `told()` makes what is told, where anybody listens.
+  /// `told()` makes the report, only if there is a listener.
   template <class Told>
   void report(const Told& told) {
     if (raised_) return;

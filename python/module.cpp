@@ -33,10 +33,11 @@ void add_errors(py::module_& m) {
 
 PYBIND11_MODULE(_core, m) {
   using namespace vantage::python;
-  // pybind11 looks numpy up when the first array is made, and two objectives that make one at once would wait for each
-  // other: one for the lookup, which the other is at, and that one for the interpreter's lock.
+  // pybind11 imports numpy when the first array is made. Two objectives that make one at once would deadlock: one waits
+  // for the import, the other for the interpreter's lock.
   py::detail::npy_api::get();
-  // Everything belongs to the package, whose `__init__.py` takes it over: so say messages, signatures and pickles.
+  // Everything belongs to the package, whose `__init__.py` re-exports it; messages, signatures and pickles name the
+  // package.
   const py::object name = m.attr("__name__");
   m.attr("__name__") = "vantage";
   add_errors(m);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parts of the module `vantage`, in the order in which they are made: a later one names types of the earlier.
+// Parts of the module `vantage`, in the order of their making: a later one uses types of earlier ones.
 #pragma once
 
 #include <pybind11/pybind11.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The members of an option struct as keyword arguments: named once, for calls, attributes and docstrings alike.
+// Members of an option struct as keyword arguments: named once, for calls, attributes and docstrings alike.
 #pragma once
 
 #include <concepts>
@@ -11,7 +11,7 @@
 
 namespace vantage::python {
 
-/// Defaults of every table by the name of the call or class that takes them, for the test of the stubs.
+/// Defaults of every table by the name of its call or class, for the test of the stubs.
 inline std::vector<std::pair<std::string, py::dict>>& all_defaults() {
   static auto* defaults = new std::vector<std::pair<std::string, py::dict>>;
   return *defaults;
@@ -20,7 +20,7 @@ inline std::vector<std::pair<std::string, py::dict>>& all_defaults() {
 template <class Struct>
 class Options {
  public:
-  /// `name`: of the call or class, which opens messages.
+  /// `name`: the call or class, with which messages begin.
   explicit Options(std::string name) : name_(std::move(name)) {}
 
   template <class Value>
@@ -44,8 +44,7 @@ class Options {
     return *this;
   }
 
-  /// The struct that keyword arguments ask for; in the order of the table, whatever theirs. Throws TypeError for names
-  /// that are not in it.
+  /// Struct from keyword arguments, set in the order of the table. Throws TypeError for unknown names.
   Struct read(const py::kwargs& given) const {
     Struct made{};
     std::size_t taken = 0;
@@ -64,7 +63,7 @@ class Options {
     return made;
   }
 
-  /// "Options:" and a line for each, to end a docstring with.
+  /// "Options:" and a line for each, for the end of a docstring.
   std::string doc() const {
     const Struct usual{};
     std::string text = "\n\nOptions:\n";
@@ -94,7 +93,7 @@ class Options {
     return values;
   }
 
-  /// Lets values be pickled, by the names of their members.
+  /// Makes values picklable, by the names of their members.
   template <class... Extra>
   void pickles(py::class_<Struct, Extra...>& type) const {
     type.def(py::pickle([options = *this](const Struct& s) { return options.values(s); },

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Results of plain data as bytes and back, for Python's pickle. What a type holds is listed once, in `members`.
+// Converts results of plain data to bytes and back, for Python's pickle. `members` lists the content of a type once.
 #pragma once
 
 #include <cstring>
@@ -46,8 +46,8 @@ inline auto members(Scan& s) {
                   s.summary, s.rows, s.columns, s.outputs, s.grid);
 }
 
-/// Writes values one after another, or reads them back in the same order. Throws Error malformed_file for bytes that
-/// end too early.
+/// Writes values one after another, or reads them back in the same order. Throws Error malformed_file if bytes end too
+/// early.
 class Archive {
  public:
   Archive() = default;
@@ -77,7 +77,7 @@ class Archive {
   void require(std::size_t size) const {
     if (size > bytes_.size() - at_) throw Error(Errc::malformed_file, "a pickle of vantage is cut short");
   }
-  // How many elements follow, of which each takes so many bytes at least.
+  // Number of following elements, each of which takes at least this many bytes.
   std::size_t count(std::size_t size, std::size_t least) {
     raw(&size, sizeof size);
     if (reading_) {
@@ -150,7 +150,7 @@ class Archive {
   bool reading_ = false;
 };
 
-/// Lets values of a type of plain data be pickled; other versions of vantage do not read them.
+/// Makes values of a type of plain data picklable; other versions of vantage cannot read them.
 template <class Type, class... Extra>
 void add_pickle(py::class_<Type, Extra...>& type) {
   type.def(py::pickle(
@@ -170,7 +170,7 @@ void add_pickle(py::class_<Type, Extra...>& type) {
       }));
 }
 
-/// Has pickle refuse a type with a TypeError that says why, and what to do.
+/// Makes pickle refuse a type with a TypeError that says why, and what to do.
 template <class Type, class... Extra>
 void refuse_pickle(py::class_<Type, Extra...>& type, const std::string& why) {
   type.def("__reduce__", [why](const py::object&) -> py::object { throw py::type_error(why); });

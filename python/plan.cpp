@@ -12,18 +12,18 @@
 namespace vantage::python {
 namespace {
 
-/// A result, and what reports of it look at: the site's, or what was given.
+/// A result, and what its reports need: the site's parts, or given ones.
 struct Plan {
   PlanResult result;
   std::shared_ptr<GuardedSite> site = nullptr;
   py::object simulator = py::none(), area = py::none(), clash = py::none();
 };
-/// What became known of one measure of a network.
+/// Known values of one measure of a network.
 struct MeasuredValue {
   double searched, standard_error, exact;
   double best_known() const { return exact == exact ? exact : searched; }
 };
-/// A network of its front; shares the result.
+/// A network of a front; shares the result.
 struct Entry {
   std::shared_ptr<const Plan> plan;
   std::size_t index = 0;
@@ -99,7 +99,7 @@ std::shared_ptr<Plan> plan_survey(Simulators& simulators, const SearchArea& area
            py::cast(area, py::return_value_policy::reference), py::cast(clash, py::return_value_policy::reference)});
 }
 
-// By the settings of a question and of a search; `problem` in place of the former.
+// Takes the settings of a question and of a search, or `problem` in place of the former.
 std::shared_ptr<Plan> plan_site(const std::shared_ptr<GuardedSite>& guarded, const py::object& problem,
                                 py::object progress, const py::kwargs& given) {
   refuse_unknown(given, "Site.plan", question_settings(), plan_settings());

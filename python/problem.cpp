@@ -7,7 +7,7 @@
 namespace vantage::python {
 namespace {
 
-/// What an objective in Python looks at: a copy, so that it may be kept.
+/// Input of an objective in Python: a copy, so that it may be kept.
 struct Measured {
   Evaluation evaluation;
   std::vector<PlacedStation> stations = {};
@@ -16,7 +16,7 @@ struct Measured {
   std::optional<Evaluation> surroundings = std::nullopt;
 };
 
-// What counts say of the network, pairs where they have some.
+// Figures from a network's counts, with pairs if there are any.
 Evaluation figures_of(const MeasuredNetwork& network, const std::optional<RegistrationOptions>& registration) {
   static const std::vector<Objective> figures{make_objective("coverage"), make_objective("overlap")};
   const std::size_t known = network.counts.seen.empty() ? 1 : 2;
@@ -49,7 +49,7 @@ Measured copy_of(const MeasuredNetwork& network, const std::optional<Registratio
 
 using Measure = std::function<double(const MeasuredNetwork&)>;
 
-// Searches copy objectives, and call them, where they do not hold the interpreter's lock.
+// Searches copy and call objectives without holding the interpreter's lock.
 Measure measure_of(const py::function& function, const std::optional<RegistrationOptions>& registration) {
   std::shared_ptr<py::function> held(new py::function(function), [](py::function* kept) {
     const py::gil_scoped_acquire lock;
@@ -169,7 +169,7 @@ std::vector<Requirement> requirements_from(const py::iterable& given, const Surv
   return made;
 }
 
-// Lists come as tuples: what is appended to a copy would be lost without a word.
+// Lists become tuples: appending to a copy would be lost silently.
 Options<SurveyProblem> problem_options() {
   return Options<SurveyProblem>("SurveyProblem")
       .add("name", &SurveyProblem::name, "For tables and pictures.")
@@ -208,7 +208,7 @@ Options<SurveyProblem> problem_options() {
           "What a network has to keep: Requirements, or texts like 'coverage >= 0.9'.");
 }
 
-// A built-in objective by its name. Throws TypeError for any other.
+// Name of a built-in objective. Throws TypeError for any other.
 std::string name_to_pickle(const Objective& objective, const SurveyProblem& problem) {
   const auto names = objective_names();
   if (std::ranges::find(names, objective.name) != names.end()) {
@@ -221,7 +221,7 @@ std::string name_to_pickle(const Objective& objective, const SurveyProblem& prob
                        "' is one of your own, or was made with other settings, and is not pickled");
 }
 
-// Members by their names, but objectives and requirements by what makes them.
+// Members by their names; objectives and requirements by their makers.
 py::tuple problem_state(const Options<SurveyProblem>& options, const SurveyProblem& problem) {
   py::dict members = options.values(problem);
   members.attr("pop")("objectives"), members.attr("pop")("requirements");

@@ -33,7 +33,7 @@ std::uint32_t bits_of(const std::vector<std::string>& names, std::uint32_t bits)
 // Puts each value in its ray's place, and `none` in all others.
 template <class Value>
 void spread(std::vector<Value>& values, const std::vector<std::uint64_t>& ray, std::uint64_t rays, const Value& none) {
-  if (values.empty() && !ray.empty()) return;  // not asked for
+  if (values.empty() && !ray.empty()) return;  // not requested
   std::vector<Value> all(rays, none);
   for (std::size_t k = 0; k < values.size(); ++k) all[ray[k]] = values[k];
   values = std::move(all);
@@ -118,7 +118,7 @@ Scan scan(Simulators& self, const Vec3& position, const std::vector<std::string>
     if (grid) spread(points);
     return points;
   });
-  const Scanner& scanner = simulator.scanners()[setup.scanner];  // there is one, or nothing was scanned
+  const Scanner& scanner = simulator.scanners()[setup.scanner];  // exists, since something was scanned
   made.rows = scanner.rows(), made.columns = scanner.columns();
   return made;
 }

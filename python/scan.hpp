@@ -18,7 +18,7 @@ void add_clouds(py::module_& m);
 Scan scan(Simulators& self, const Vec3& position, const std::vector<std::string>& outputs, const StationSetup& setup,
           bool grid, std::uint32_t place, py::object progress);
 
-/// The points of a station, or with `grid` an element a ray.
+/// Points of a station; with `grid` one element for each ray.
 struct Scan : ScanPoints {
   std::uint32_t rows = 0, columns = 0;
   std::uint32_t outputs = 0;  ///< `ScanOutput` bits.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keyword arguments by the library's tables of settings: names, values and docstrings come from the rows.
+// Keyword arguments from the library's setting tables: names, values and docstrings come from the rows.
 #pragma once
 
 #include <algorithm>
@@ -30,7 +30,7 @@ inline std::string setting_text(const py::handle& value, const std::string& what
   throw py::type_error(what + ": " + std::string(py::repr(value)) + " is no number, text, truth value or sequence");
 }
 
-/// Sets what `given` names and the table has; returns how many that were. None leaves a setting open.
+/// Sets the settings of `given` that are in the table; returns their number. None leaves a setting open.
 template <class Options>
 std::size_t read_settings(const SettingTable<Options>& table, Options& options, const py::kwargs& given) {
   std::size_t taken = 0;
@@ -48,7 +48,7 @@ std::size_t read_settings(const SettingTable<Options>& table, Options& options, 
   return taken;
 }
 
-/// Throws TypeError with the first name that no table has.
+/// Throws TypeError with the first name that is in no table.
 template <class... Options>
 void refuse_unknown(const py::kwargs& given, const std::string& call, const SettingTable<Options>&... tables) {
   for (const auto& item : given) {
@@ -60,14 +60,14 @@ void refuse_unknown(const py::kwargs& given, const std::string& call, const Sett
   }
 }
 
-/// A line for each row, to end a docstring with, and the rows' names for the test of the stubs.
+/// A line for each row, for the end of a docstring, and the rows' names for the test of the stubs.
 template <class... Options>
 std::string settings_doc(const std::string& call, const SettingTable<Options>&... tables) {
   std::string text = "\n\nSettings, None where they are left open:\n";
   py::dict defaults;
   const auto add = [&](const auto& table) {
     for (const auto& row : table) {
-      if (row.name == "problem") continue;  // a parameter of its own
+      if (row.name == "problem") continue;  // a separate parameter
       text += "    " + keyword(row.name) + ": " + row.help + ".\n";
       defaults[py::str(keyword(row.name))] = py::none();
     }

@@ -8,13 +8,13 @@
 
 namespace vantage::python {
 
-/// A simulator, and the one over all surfaces that goes with it.
+/// A simulator, and its companion over all surfaces.
 struct Simulators {
   Simulator simulator;
   std::once_flag made = {};
   std::optional<Simulator> of_all_surfaces = std::nullopt;
 
-  /// Made when it is first asked for.
+  /// Made at first use.
   Simulator& surroundings() {
     std::call_once(made, [&] { of_all_surfaces = surroundings_of(simulator); });
     return *of_all_surfaces;

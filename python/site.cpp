@@ -17,14 +17,14 @@ SiteOptions site_options(const py::kwargs& given, const std::string& call) {
   return options;
 }
 
-// One call at a time: what a site makes when it is first asked for, it makes once.
+// One call at a time, since a site makes its parts at first use.
 std::unique_lock<std::mutex> taken(GuardedSite& guarded) {
   std::unique_lock lock(guarded.mutex, std::try_to_lock);
   if (!lock) throw Error(Errc::invalid_argument, "the site is in use by another call: open one for each thread");
   return lock;
 }
 
-// What is given by heads alone is placed as the program does: on the ground below, with what stands in its way.
+// Places stations given by heads alone as the program does: on the ground below, with checks.
 std::vector<PlacedStation> placed_on(Site& site, const py::object& stations) {
   std::vector<PlacedStation> placed = stations_of(stations);
   for (PlacedStation& station : placed) {
@@ -84,7 +84,7 @@ void add_sites(py::module_& m) {
             SiteOptions options = site_options(given, "Site.open");
             const py::gil_scoped_release unlocked;
             return std::shared_ptr<GuardedSite>(
-                new GuardedSite{Site::open(file, std::move(options))});  // a mutex stays
+                new GuardedSite{Site::open(file, std::move(options))});  // keeps the mutex in place
           },
           py::arg("file"),
           ("Reads a model and chooses what the settings leave open. Raises Error: io, malformed_file,\n"

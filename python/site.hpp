@@ -8,7 +8,7 @@
 
 namespace vantage::python {
 
-/// A site, which serves one call at a time. Results of its plans keep it.
+/// A site, which serves one call at a time. Results of its plans keep it alive.
 struct GuardedSite {
   Site site;
   std::mutex mutex = {};

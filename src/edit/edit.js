@@ -1,5 +1,5 @@
 'use strict';
-// Stations by hand: every change goes to the program, and what is shown is what it answers.
+// Stations by hand: every change goes to the program, and the page shows its answers.
 
 (async () => {
   const data = JSON.parse(document.getElementById('data').textContent);
@@ -14,7 +14,7 @@
   const ground = await groundOf(data.view.ground);
   view.scene.add(ground);
 
-  // Where stations may stand, laid over the floors.
+  // Ground where stations may stand, laid over the floors.
   async function groundOf(packed) {
     const geometry = new THREE.BufferGeometry();
     const positions = new Float32Array((await unpack(packed.positions)).buffer);
@@ -34,7 +34,7 @@
     view.draw();
   }
 
-  // One request at a time; of the places of a drag that come meanwhile the last alone is kept.
+  // One request at a time; of a drag's positions that arrive meanwhile only the last is kept.
   async function send(change) {
     if (sending) {
       const last = waiting[waiting.length - 1];
@@ -158,7 +158,7 @@
     button('Remove', { do: 'remove', id }).disabled = locked;
   }
 
-  // The ray through a place of the screen.
+  // The ray through a position on the screen.
   function ray(event) {
     const box = view.canvas.getBoundingClientRect(), caster = new THREE.Raycaster();
     caster.setFromCamera({ x: (2 * (event.clientX - box.left)) / box.width - 1, y: 1 - (2 * (event.clientY - box.top)) / box.height }, view.camera);
@@ -168,7 +168,7 @@
 
   // A station is dragged over the plane of its own ground.
   function grab(event, k) {
-    if (event.button !== 0 || state.busy || drag) return;  // one station at a time, whatever other fingers do
+    if (event.button !== 0 || state.busy || drag) return;  // one station at a time, even with several fingers
     const station = state.network.stations[k], label = view.labels[k];
     if (state.locked[k]) return;
     event.preventDefault();
@@ -218,7 +218,7 @@
     event.preventDefault();
   }
 
-  // The first surface that is shown below the pointer, or the ground where one may stand.
+  // First visible surface below the pointer, or the ground of the search area.
   function surfaceAt(event) {
     const [low, high] = view.slice;
     const hit = ray(event).intersectObjects([view.surface, ground]).find(({ point }) => point.z >= low && point.z <= high);

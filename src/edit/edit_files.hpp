@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files that the editor's page is made of besides those of the report, embedded when vantage is built.
+// Files of the editor's page besides those of the report, embedded when vantage is built.
 #pragma once
 
 #include "report/page_files.hpp"

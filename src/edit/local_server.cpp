@@ -26,8 +26,8 @@ using asio::ip::tcp;
 using ErrorCode = beast::error_code;
 
 constexpr std::chrono::seconds kResponseTime{60}, kFarewellTime{1};
-constexpr std::size_t kThreads = 4;               // that answer
-constexpr std::size_t kUnreadBytes = 256 * 1024;  // of what was refused, taken and dropped so that the refusal arrives
+constexpr std::size_t kThreads = 4;               // for answers
+constexpr std::size_t kUnreadBytes = 256 * 1024;  // of a refused request, read and dropped so that the refusal arrives
 
 using Answer = std::function<HttpResponse(const HttpRequest&)>;
 
@@ -36,7 +36,7 @@ int status_of(ErrorCode error) {
   return error == http::error::body_limit ? 413 : 400;
 }
 
-// All members but `answer` on the thread that serves.
+// All members except `answer` run on the thread that serves.
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
   Connection(tcp::socket socket, asio::thread_pool& workers, const Answer& answer)
@@ -46,14 +46,14 @@ class Connection : public std::enable_shared_from_this<Connection> {
   }
 
   void start(std::chrono::milliseconds request_time) {
-    stream_.expires_after(request_time);  // for all of the request: a slow sender gets no more
+    stream_.expires_after(request_time);  // for the whole request, however slowly it arrives
     http::async_read_header(stream_, buffer_, *parser_, [self = shared_from_this()](ErrorCode error, std::size_t) {
       if (error) return self->refuse(error);
       if (self->parser_->chunked()) return self->respond({411, "text/plain", "the length of the body is missing"});
       self->read_body();
     });
   }
-  // Whether it is the other side that keeps it: then it may go for a newer one.
+  // Whether the other side holds it up, so that a newer connection may replace it.
   bool waiting() const { return waiting_; }
   void close() { stream_.close(); }
 
@@ -114,7 +114,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     });
   }
 
-  // A socket that is closed with bytes unread takes back what was sent.
+  // A socket that is closed with unread bytes takes back what was sent.
   void drop_rest() {
     stream_.async_read_some(asio::buffer(dropped_), [self = shared_from_this()](ErrorCode error, std::size_t bytes) {
       self->unread_ += bytes;
@@ -141,7 +141,7 @@ struct LocalServer::Impl {
   asio::io_context context{1};
   tcp::acceptor acceptor{context};
   asio::steady_timer pause{context};
-  std::list<std::weak_ptr<Connection>> connections;  // in the order in which they came
+  std::list<std::weak_ptr<Connection>> connections;  // oldest first
 
   void accept(asio::thread_pool& workers, const Answer& answer) {
     acceptor.async_accept([&](ErrorCode error, tcp::socket socket) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// HTTP on this machine, for this machine, with limits in front of it: anybody here may connect, whoever they are.
+// HTTP server for this machine alone, with limits, since any user of the machine may connect.
 #pragma once
 
 #include <chrono>
@@ -21,20 +21,20 @@ struct HttpResponse {
   std::string policy = {};  // content security policy
 };
 
-// A connection carries one request and its response. A request has so many bytes and so much time, all in all; chunked
-// bodies are refused, and ranges not served. Where too many are connected, who has been sending its request for longest
-// goes.
+// A connection carries one request and its response. The size and the duration of a request are limited; chunked bodies
+// are refused, and ranges are not served. If there are too many connections, the one that has been sending its request
+// for longest is closed.
 class LocalServer {
  public:
   static constexpr std::size_t kHeaderBytes = 8192, kBodyBytes = 4096, kConnections = 64;
 
-  // Listens on a port of 127.0.0.1 that the system chooses. `request_time`: of a request, from connecting to its last
-  // byte. Throws Error io where no port can be had.
+  // Listens on a port of 127.0.0.1 that the system chooses. `request_time`: from connecting to the last byte of a
+  // request. Throws Error io if no port is available.
   explicit LocalServer(std::chrono::milliseconds request_time = std::chrono::seconds(5));
   ~LocalServer();
 
   std::uint16_t port() const;
-  // Until a stop is asked for. `answer` is called from several threads at once.
+  // Serves until stopped. `answer` is called from several threads at once.
   void serve(const std::function<HttpResponse(const HttpRequest&)>& answer, std::stop_token stop);
 
  private:

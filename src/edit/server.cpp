@@ -19,7 +19,7 @@ using nlohmann::json;
 using nlohmann::ordered_json;
 
 std::string random_token() {
-  std::random_device device;  // the system's own, not a generator with a seed
+  std::random_device device;  // the system's own, not a seeded generator
   std::string token;
   for (int k = 0; k < 32; ++k) token += "0123456789abcdef"[device() & 15];
   return token;
@@ -41,7 +41,7 @@ HttpResponse changed(EditSession& session, const std::string& body) {
   try {
     session.change(change);
   } catch (const Error& error) {
-    why = error.what();  // no error of the request: the page tells it, and shows what there is
+    why = error.what();  // no error of the request: the page shows the reason
   }
   ordered_json state = session.state();
   if (!why.empty()) state["refused"] = why;

@@ -18,7 +18,7 @@ using nlohmann::json;
 using nlohmann::ordered_json;
 
 constexpr std::size_t kMostUndo = 200;
-constexpr std::uint64_t kCellVoxels = 200'000;  // that say where cells are
+constexpr std::uint64_t kCellVoxels = 200'000;  // from which cells are made
 
 std::vector<std::uint8_t> bytes_of(const std::vector<float>& values) {
   const auto* first = reinterpret_cast<const std::uint8_t*>(values.data());
@@ -128,7 +128,7 @@ void EditSession::change(const json& request) {
   }
   bool dragging = false;
   if (what == "move") {
-    if (flag_of(request, "end")) keep_(stations_);  // of the drag so far, should it end off the ground
+    if (flag_of(request, "end")) keep_(stations_);  // the drag so far, in case it ends off the ground
     PlacedStation ground = on_ground(request.value("to", json()));
     EditStation& station = with_id(request);
     if (station.locked) throw Error(Errc::invalid_argument, "this station is locked");
@@ -217,7 +217,7 @@ void EditSession::measure() {
                               measures, std::nullopt);
   evaluation_.scan_overlap_matrix = scan_overlap_matrix(around_.counts());
   evaluation_.link = options_.link;
-  evaluation_.exact = false;  // links come from a sample, even where coverage does not
+  evaluation_.exact = false;  // links come from a sample, even if coverage does not
   colours_ = cell_colours(cells_, surveyed_.sample(), surveyed_.points(), surveyed_.seen_by(), simulator_);
 }
 
@@ -245,7 +245,7 @@ void EditSession::start(const std::string& what, std::function<void(const Progre
 }
 
 void EditSession::trace_exactly(const Progress& progress, const std::function<void(const Evaluation&)>& then) {
-  const auto stations = placed();  // nobody changes them while this is busy
+  const auto stations = placed();  // stays unchanged while this is busy
   if (std::ranges::none_of(stations, active)) throw Error(Errc::invalid_argument, "there is no station to trace");
   Evaluation exact = evaluate_stations({.simulator = simulator_, .surroundings = &surroundings_}, stations,
                                        {.field = true, .link = options_.link}, progress);
@@ -267,11 +267,11 @@ void EditSession::trace_exactly(const Progress& progress, const std::function<vo
   message_ = "saved";
 }
 
-// A short search from where the stations are, for more coverage and links no weaker than now, or than is asked for.
+// Searches briefly from the present stations for more coverage, with links no weaker than now or than required.
 void EditSession::improve(const Progress& progress) {
   std::vector<Vec3> kept, start;
   std::vector<StationSetup> kept_setups;
-  std::set<std::uint32_t> scanners;  // of those that may move
+  std::set<std::uint32_t> scanners;  // of the movable stations
   for (const EditStation& s : stations_) {
     (s.locked ? kept : start).push_back(s.placed.position);
     if (s.locked)
@@ -297,7 +297,7 @@ void EditSession::improve(const Progress& progress) {
                           .sample_voxels = surveyed_.sample().size(),
                           .start = start,
                           .max_seconds = options_.improve_seconds};
-  std::stop_source abort;  // what is found is measured here, on the sample
+  std::stop_source abort;  // results are measured here, on the sample
   const auto watch = [&](const PlanProgress& now) {
     if (now.phase == "confirm") abort.request_stop();
     if (progress.report && now.iterations > 0) progress.report(0);
@@ -311,7 +311,7 @@ void EditSession::improve(const Progress& progress) {
   };
   if (!best || best->violation > 0 || best->value("coverage") <= before) return nothing_better();
   const Stations now = stations_;
-  std::size_t next = kept.size();  // kept ones come first
+  std::size_t next = kept.size();  // existing ones come first
   for (EditStation& s : stations_) {
     if (s.locked) continue;
     PlacedStation placed = best->stations[next++];
@@ -319,7 +319,7 @@ void EditSession::improve(const Progress& progress) {
     s.placed = placed;
   }
   measure();
-  // The search had them upright, and where they have several scanners with the first.
+  // The search had them upright and, if they have several scanners, with the first one.
   const bool better = evaluation_.value("coverage") > before && parts_now() <= parts;
   std::vector<EditStation> found = std::exchange(stations_, now);
   if (!better) {

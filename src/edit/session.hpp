@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stations that people move by hand, and what they capture: the editor without its page.
+// Stations that people move by hand, and their evaluation: the editor without its page.
 #pragma once
 
 #include <atomic>
@@ -20,44 +20,43 @@
 namespace vantage {
 
 struct EditStation {
-  std::uint32_t id = 0;  // its own for as long as the session lasts
+  std::uint32_t id = 0;  // unique during the session
   PlacedStation placed;
   bool locked = false;  // neither moved nor removed, by hand or by search
 };
 
 struct EditOptions {
-  double link = default_link;         // scan overlap from which on two stations count as linked
-  std::uint64_t voxels = 40'000;      // of the sample that every change is measured on
-  std::uint64_t link_voxels = 4'000;  // of all surfaces, by which scan overlaps go until every ray is asked for
-  std::size_t cells = 20'000;         // of the colours, at most
+  double link = default_link;         // least scan overlap of a link
+  std::uint64_t voxels = 40'000;      // of the sample on which every change is evaluated
+  std::uint64_t link_voxels = 4'000;  // of all surfaces, for scan overlaps until every ray is requested
+  std::size_t cells = 20'000;         // of the coloured surface, at most
   double improve_seconds = 10;        // of one short search
 };
 
-// Borrows all that it is given. Every call is safe from any thread; what takes long runs on a thread of its own, and
-// changes are refused meanwhile.
+// Borrows all arguments. Every call is safe from any thread. Long work runs on a thread of its own, and changes are
+// refused meanwhile.
 class EditSession {
  public:
-  // Called after every change that is not one of many of a drag, with the stations as they are then.
+  // Called with the present stations after every change; after a drag only once.
   using Keep = std::function<void(const std::vector<EditStation>&)>;
-  // Writes the results of an exact evaluation with its field; on the session's own thread.
+  // Writes the results of an exact evaluation with its field; called on the session's own thread.
   using Save = std::function<void(const Evaluation&, const Progress&)>;
 
   EditSession(Simulator& simulator, const SearchArea& area, const ClashChecker& clash,
               const std::vector<EditStation>& stations, const EditOptions& options, Keep keep, Save save);
-  ~EditSession();  // stops what is under way
+  ~EditSession();  // stops running work
   EditSession(const EditSession&) = delete;
   EditSession& operator=(const EditSession&) = delete;
 
-  // What does not change: `site_json`, and the ground where stations may stand.
+  // The constant part: `site_json`, and the ground where stations may stand.
   nlohmann::ordered_json site() const;
   // version, network (as in a report), ids, locked, colours, busy{what, done}, undo, redo, exact, message.
   nlohmann::ordered_json state() const;
   std::uint64_t version() const { return version_; }
 
   // {"do": …}: "move" {"id", "to": [x, y, z], "begin"} to the ground above or below a point of the survey frame
-  // (`begin` false: goes on with a drag), "add" {"to"}, "remove" {"id"}, "lock" {"id", "locked"}, "undo", "redo",
-  // "exact", "improve", "save", "stop". Throws Error invalid_argument for what cannot be done, and changes nothing
-  // then.
+  // (`begin` false continues a drag), "add" {"to"}, "remove" {"id"}, "lock" {"id", "locked"}, "undo", "redo", "exact",
+  // "improve", "save", "stop". Throws Error invalid_argument, and changes nothing, if the request is impossible.
   void change(const nlohmann::json& request);
 
  private:
@@ -82,7 +81,7 @@ class EditSession {
   CoverageCells cells_;
   Simulator surroundings_;
 
-  mutable std::mutex mutex_;  // of all below
+  mutable std::mutex mutex_;  // guards all below
   Stations stations_;
   std::vector<Stations> undo_, redo_;
   std::uint32_t next_id_ = 1;

@@ -9,7 +9,7 @@
 namespace vantage {
 namespace {
 
-constexpr std::uint32_t kGroups = 20;  // of a sample, as the simulator makes them
+constexpr std::uint32_t kGroups = 20;  // of a sample, as in the simulator
 
 }  // namespace
 
@@ -19,7 +19,7 @@ TracedStations::TracedStations(Simulator& simulator, std::uint64_t voxels) : sim
     demands_.weights.push_back(static_cast<std::uint8_t>(simulator.voxel_weight(voxel_index)));
     demands_.point_weights.push_back(simulator.point_weight(voxel_index));
   }
-  // None where all are 1: as the simulator has it.
+  // Empty if all are 1, as in the simulator.
   const auto clear_ones = [](auto& of_voxels) {
     if (std::ranges::count(of_voxels, 1u) == std::ssize(of_voxels)) of_voxels.clear();
   };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What each station of a network left in the voxels of a sample, kept while it stands where it is.
+// Counts of each station of a network in the voxels of a sample, kept while the station stays.
 #pragma once
 
 #include <cstdint>
@@ -12,21 +12,22 @@
 
 namespace vantage {
 
-// Points add up, so after a change those stations alone are traced that have moved. Each keeps its place among the
-// others while it is, as its noise goes by that: all numbers are those of `Simulator::evaluate_sampled`, to the last
-// bit.
+// Points add up, so a change traces only the stations that moved. Each keeps its place among the others while it
+// exists, since the place keys its noise. All numbers equal those of `Simulator::evaluate_sampled`, to the last bit.
 class TracedStations {
  public:
-  // Of so many voxels, or as many as there are. Borrows the simulator.
+  // Samples `voxels` voxels, or all of them if there are fewer. Borrows the simulator.
   TracedStations(Simulator& simulator, std::uint64_t voxels);
 
-  // `ids`: a name of each station's own, for as long as it is there.
+  // Updates to a network. `ids`: a unique id of each station, constant while it exists.
   void follow(const Network& network, std::span<const std::uint32_t> ids);
 
   const std::vector<std::uint32_t>& sample() const { return sample_; }  // voxel indices, ascending
   const NetworkCounts& counts() const { return counts_; }               // with groups and pairs
-  const std::vector<std::uint32_t>& points() const { return points_; }  // of all stations, one each of the sample
-  const std::vector<Seer>& seen_by() const { return seen_by_; }         // likewise
+  const std::vector<std::uint32_t>& points() const {
+    return points_;
+  }                                                              // of all stations, one for each voxel of the sample
+  const std::vector<Seer>& seen_by() const { return seen_by_; }  // likewise
 
  private:
   struct Traced {

@@ -56,7 +56,7 @@ struct Pipe {
   Descriptor from, to;
 };
 
-// At `most` there is a signal that tells which limit it was, at `hard` the end.
+// At `most` a signal tells which limit was reached; at `hard` the process ends.
 void limit(__rlimit_resource_t resource, std::uint64_t most, std::uint64_t hard) noexcept {
   rlimit now{};
   getrlimit(resource, &now);
@@ -64,8 +64,8 @@ void limit(__rlimit_resource_t resource, std::uint64_t most, std::uint64_t hard)
   setrlimit(resource, &wanted);
 }
 
-// Behind the fork, where only system calls are safe. What a process may allocate is RLIMIT_DATA: unlike RLIMIT_AS it
-// does not count the address space that node reserves and never uses.
+// Runs after the fork, where only system calls are safe. Allocation is limited by RLIMIT_DATA: unlike RLIMIT_AS it does
+// not count the address space that node reserves and never uses.
 [[noreturn]] void become(char* const* words, const Sandbox& sandbox, const Limits& limits, int nothing, int out,
                          int err) noexcept {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -85,7 +85,7 @@ void limit(__rlimit_resource_t resource, std::uint64_t most, std::uint64_t hard)
 
 using Clock = std::chrono::steady_clock;
 
-// Reads both ends until they are closed; says why it stopped before.
+// Reads both ends until they are closed; records why it stopped earlier.
 void listen(Pipe& out, Pipe& err, const Limits& limits, Ended& ended) {
   const auto deadline = Clock::now() + std::chrono::seconds(limits.wall_s);
   std::array<pollfd, 2> ends{pollfd{out.from.get(), POLLIN, 0}, pollfd{err.from.get(), POLLIN, 0}};
@@ -120,7 +120,7 @@ void listen(Pipe& out, Pipe& err, const Limits& limits, Ended& ended) {
   }
 }
 
-// Waits until the process has ended; kills it where it goes on beyond the deadline.
+// Waits until the process has ended; kills it at the deadline.
 int wait_for(pid_t process, unsigned seconds, bool& timed_out) {
   const auto deadline = Clock::now() + std::chrono::seconds(seconds);
   int status = 0;
@@ -161,7 +161,7 @@ Ended run_limited(const std::vector<std::string>& words, const std::vector<std::
     throw;
   }
   if (ended.timed_out || ended.too_large) kill(process, SIGKILL);
-  status = wait_for(process, 10, ended.timed_out);  // one that has closed its output has nothing left to do
+  status = wait_for(process, 10, ended.timed_out);  // a process that closed its output has nothing left to do
   if (WIFEXITED(status)) ended.exit_code = WEXITSTATUS(status);
   if (WIFSIGNALED(status)) ended.signal = WTERMSIG(status);
   for (char& c : ended.errors)

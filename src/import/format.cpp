@@ -25,7 +25,7 @@ constexpr Format kObj{"OBJ", ".obj ", kMesh}, kStl{"STL", ".stl ", kMesh}, kPly{
     kX3d{"X3D", ".x3d ", kMesh}, kDxf{"DXF", ".dxf ", kMesh};
 constexpr std::array kFormats{&kGltf, &kIfc, &kObj, &kStl, &kPly, &kFbx, &kCollada, &k3ds, &kX3d, &kDxf};
 
-// What people take for a model, by its first bytes, and what to do about it.
+// A file that people take for a model, by its first bytes, and advice about it.
 struct Mistaken {
   std::string_view begins;
   const char* is;
@@ -78,7 +78,7 @@ std::uint32_t little_endian_32(std::string_view bytes) {
   return value;
 }
 
-// Lines of a text without blanks around them, but for empty ones.
+// Non-empty lines of a text, without surrounding blanks.
 std::vector<std::string_view> first_lines(std::string_view text, std::size_t most) {
   std::vector<std::string_view> lines;
   while (!text.empty() && lines.size() < most) {
@@ -105,7 +105,7 @@ bool holds_obj(std::string_view text) {
   return vertices && known > 20 * others;
 }
 
-// Two lines of three numbers or more.
+// Whether there are two lines of three numbers or more.
 bool holds_numbers(std::string_view text) {
   const auto lines = first_lines(text, 2);
   const auto numbers = [](std::string_view line) {
@@ -165,7 +165,7 @@ std::optional<Head> read_head(const std::filesystem::path& file) {
   return head;
 }
 
-// What is no model of surfaces, in words; empty where the content does not say so.
+// Describes content that is no model of surfaces; empty if the content does not show it.
 std::string mistaken_for_a_model(const Head& head) {
   if (head.bytes.empty()) return "empty; copy or export it again";
   const std::string_view text = without_blanks(head.bytes);
@@ -220,7 +220,7 @@ const Format* format_by_extension(const std::filesystem::path& file) {
   return found == kFormats.end() ? nullptr : *found;
 }
 
-// Whether a text has one of these within its first bytes.
+// Whether a text has one of these words within its first bytes.
 bool mentions(std::istream& stream, std::uint64_t most, std::span<const std::string_view> words) {
   constexpr std::size_t kBlock = std::size_t{1} << 20, kOverlap = 64;  // no word is longer
   std::string block;
@@ -237,7 +237,7 @@ bool mentions(std::istream& stream, std::uint64_t most, std::span<const std::str
   return false;
 }
 
-// A glTF whose meshes are compressed says so in its JSON; gzip may be around any file.
+// Whether its JSON says that meshes are compressed, or gzip is around the file.
 bool is_packed(const std::filesystem::path& file, const Head& head) {
   constexpr std::array kWords{"\"KHR_draco_mesh_compression\""sv, "\"EXT_meshopt_compression\""sv,
                               "\"KHR_meshopt_compression\""sv};

@@ -18,7 +18,7 @@ void append_word(std::string& out, std::size_t value) {
   for (int shift = 0; shift < 32; shift += 8) out += static_cast<char>((value >> shift) & 0xFF);
 }
 
-// How many bytes one character of UTF-8 has; 0 where there is none.
+// Number of bytes of the UTF-8 character at `at`; 0 if there is none.
 std::size_t character_at(const std::string& text, std::size_t at) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned char first = byte(at);

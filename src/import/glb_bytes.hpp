@@ -8,8 +8,8 @@
 
 namespace vantage::importer {
 
-// A GLB of a document, which `buffers` are added to, and its binary chunk. Throws std::length_error where they are more
-// than a GLB holds, 4 GiB.
+// Bytes of a GLB from a document, to which `buffers` are added, and its binary chunk. Throws std::length_error above 4
+// GiB, the limit of GLB.
 std::string glb_bytes(nlohmann::json document, const std::string& binary);
 
 // Collects the binary chunk of a GLB, its views and its accessors.
@@ -21,7 +21,7 @@ class Buffer {
   int add_colours(std::span<const std::uint8_t> rgba);
   int add_indices(std::span<const std::uint32_t> indices);
 
-  // Puts the arrays `accessors`, `bufferViews` and `buffers` into the document and returns the file's bytes, as above.
+  // Adds the arrays `accessors`, `bufferViews` and `buffers` to the document and returns the file's bytes, as above.
   std::string finish(nlohmann::json document) const;
 
  private:
@@ -32,7 +32,7 @@ class Buffer {
   nlohmann::json views_ = nlohmann::json::array(), accessors_ = nlohmann::json::array();
 };
 
-// Text as UTF-8: kept where it is that, else taken as Latin-1.
+// Text as UTF-8: unchanged if valid, else read as Latin-1.
 std::string utf8(const std::string& text);
 
 }  // namespace vantage::importer

@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 
 constexpr int kRefused = 65, kUnavailable = 69, kMemory = 71;  // of sysexits.h: EX_DATAERR, EX_UNAVAILABLE, EX_OSERR
 
-// Whole GLB, as far as its header tells.
+// Whether it is a whole GLB, by its header.
 bool is_glb(std::span<const std::uint8_t> bytes) {
   if (bytes.size() < 20 || std::memcmp(bytes.data(), "glTF", 4) != 0) return false;
   std::uint32_t length = 0;
@@ -44,7 +44,7 @@ void add_file(Hash& hash, const fs::path& file) {
   if (!stream.eof()) throw Error(Errc::io, file.string() + ": the model cannot be read");
 }
 
-// What else an importer reads: of these formats, OBJ alone names other files that matter, its tables of materials.
+// Adds other files that an importer reads: of these formats, only OBJ names some that matter, its material tables.
 void add_material_tables(Hash& hash, const fs::path& file) {
   std::ifstream stream(file);
   for (std::string line; std::getline(stream, line);) {
@@ -73,7 +73,7 @@ std::string cache_key(const fs::path& file, const Format& format, const Importer
   return text;
 }
 
-// Empty where the user has none.
+// Empty if the user has none.
 fs::path cache_folder() {
   const char* given = std::getenv("XDG_CACHE_HOME");
   if (given && *given == '/') return fs::path(given) / "vantage/imports";
@@ -88,12 +88,12 @@ std::optional<std::vector<std::uint8_t>> cached(const fs::path& entry, const Lim
     std::vector<std::uint8_t> glb(file.size());
     file.read(glb.data());
     if (is_glb(glb)) return glb;
-  } catch (const Error&) {  // as good as not there
+  } catch (const Error&) {  // treated as absent
   }
   return {};
 }
 
-// A cache that cannot be written costs time and nothing else.
+// A cache that cannot be written only costs time.
 void keep(const fs::path& entry, std::span<const std::uint8_t> glb) {
   try {
     fs::create_directories(entry.parent_path());
@@ -103,8 +103,7 @@ void keep(const fs::path& entry, std::span<const std::uint8_t> glb) {
   }
 }
 
-// What a reader needs grows with the file, at most like this on a slow machine. One that goes on has lost its way, as
-// those of damaged files do.
+// Upper bound of a reader's time, which grows with the file, on a slow machine. Readers of damaged files may never end.
 unsigned seconds_for(const fs::path& file) {
   constexpr double kLeast = 20, kEachMegabyte = 10;
   std::error_code failure;
@@ -158,7 +157,7 @@ std::vector<std::uint8_t> as_glb(const fs::path& file, const Format& format, Lim
       throw Error(error.code(), file.string() + ": " + error.what());
     }
   }();
-  // Of a glTF that is text, buffers lie in files of their own, which the key does not know.
+  // The buffers of a textual glTF are other files, which the key does not cover.
   const bool whole =
       std::string_view(format.name) != "compressed glTF" || file.filename().string().find(".gltf") == std::string::npos;
   const fs::path folder = whole ? cache_folder() : fs::path();

@@ -20,12 +20,12 @@ bool can_run(const fs::path& file) {
   return fs::is_regular_file(file, failure) && access(file.c_str(), X_OK) == 0;
 }
 
-// The folder of the executable or shared library that holds this function; empty where that cannot be told.
+// The folder of the executable or shared library with this function; empty if unknown.
 fs::path own_folder() {
   Dl_info info{};
   if (dladdr(reinterpret_cast<const void*>(&can_run), &info) == 0 || !info.dli_fname) return {};
   std::error_code failure;
-  // An executable may be known by the name that it was called by.
+  // The name of an executable may be the one by which it was called.
   fs::path file = fs::canonical(info.dli_fname, failure);
   if (failure) file = fs::read_symlink("/proc/self/exe", failure);
   return failure ? fs::path() : file.parent_path();

@@ -9,16 +9,16 @@
 
 namespace vantage::importers {
 
-// How the importer of a format is started, and what it must be able to read besides the model.
+// How to start the importer of a format, and the files that it must be able to read besides the model.
 struct Importer {
   std::filesystem::path program;   // its file, links followed
-  std::vector<std::string> words;  // the model's path comes behind them
+  std::vector<std::string> words;  // the model's path follows them
   std::vector<std::filesystem::path> readable;
 };
 
-// Looks in the folder that the environment variable VANTAGE_IMPORTERS names and nowhere else; without it beside the
-// program or library that this code is in, and where `cmake --install` puts importers. Throws Error io where there is
-// none, with what brings it.
+// Looks only in the folder named by the environment variable VANTAGE_IMPORTERS, if set. Otherwise it looks beside the
+// program or library with this code, and where `cmake --install` puts importers. Throws Error io, with how to install
+// it, if there is none.
 Importer find_importer(const Format& format);
 
 }  // namespace vantage::importers

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What importers written in C++ have in common: how they end.
+// Common end of importers written in C++.
 #pragma once
 
 #include <functional>
@@ -13,8 +13,8 @@ struct Refused : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// Writes what `convert` returns to standard output. The result is the exit code, of sysexits.h: 0, or 65 where the
-// model is at fault and 71 where memory is short, with a line on standard error that says so.
+// Writes the result of `convert` to standard output. Returns the exit code, of sysexits.h: 0; 65 if the model is at
+// fault, or 71 if memory is short, each with a line on standard error that says so.
 int run(const std::function<std::string()>& convert);
 
 }  // namespace vantage::importer

@@ -24,8 +24,8 @@ namespace {
 #ifdef LANDLOCK_CREATE_RULESET_VERSION
 constexpr std::uint64_t kReadFile = LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_EXECUTE;
 constexpr std::uint64_t kReadFolder = kReadFile | LANDLOCK_ACCESS_FS_READ_DIR;
-// All accesses to files that a version of Landlock knows: renames between folders since its second, truncation since
-// its third, which headers may not name yet.
+// All file accesses that a version of Landlock knows: renames between folders since version 2, truncation since version
+// 3. Headers may not name them yet.
 std::uint64_t known_accesses(long version) {
   std::uint64_t last = LANDLOCK_ACCESS_FS_MAKE_SYM;
   if (version >= 2) last <<= 1;
@@ -35,7 +35,7 @@ std::uint64_t known_accesses(long version) {
 
 void allow_reading(int rules, const std::filesystem::path& path) {
   const int place = open(path.c_str(), O_PATH | O_CLOEXEC);
-  if (place < 0) return;  // one of the system's folders that this system lacks
+  if (place < 0) return;  // a system folder that this system lacks
   struct stat status {};
   if (fstat(place, &status) == 0) {
     landlock_path_beneath_attr rule{};
@@ -47,7 +47,7 @@ void allow_reading(int rules, const std::filesystem::path& path) {
 }
 #endif
 
-// System calls that fail as if the system had none of them.
+// Makes network system calls fail as if the system did not have them.
 void deny_network() noexcept {
 #if defined(__x86_64__)
   constexpr std::uint32_t kArchitecture = AUDIT_ARCH_X86_64;
@@ -60,7 +60,7 @@ void deny_network() noexcept {
   constexpr auto load = [](std::size_t offset) {
     return sock_filter{BPF_LD | BPF_W | BPF_ABS, 0, 0, static_cast<std::uint32_t>(offset)};
   };
-  // Jumps of the filter skip the rest of what is compared, to the last line but one.
+  // Jumps of the filter skip the remaining comparisons, to the last line but one.
   std::array filter{load(offsetof(seccomp_data, arch)),
                     sock_filter{BPF_JMP | BPF_JEQ | BPF_K, 0, 6, kArchitecture},
                     load(offsetof(seccomp_data, nr)),

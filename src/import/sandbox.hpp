@@ -6,20 +6,20 @@
 
 namespace vantage::importers {
 
-// What a child process may reach, prepared before the fork, as only system calls are safe behind it.
+// Access of a child process, prepared before the fork, since only system calls are safe after it.
 class Sandbox {
  public:
-  // Files below the system's folders and these can be read and run; none can be written.
+  // Allows reading and running files below the system's folders and these; allows no writing.
   explicit Sandbox(const std::vector<std::filesystem::path>& readable);
   Sandbox(const Sandbox&) = delete;
   Sandbox& operator=(const Sandbox&) = delete;
   ~Sandbox();
 
-  // Holds for the calling process from here on, and for what it starts. Does what the kernel has to offer.
+  // Applies to the calling process from here on, and to its children, as far as the kernel supports it.
   void enter() const noexcept;
 
  private:
-  int rules_ = -1;  // -1: no Landlock here
+  int rules_ = -1;  // -1: no Landlock
 };
 
 }  // namespace vantage::importers

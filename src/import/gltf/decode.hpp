@@ -10,12 +10,12 @@
 
 namespace vantage::importer {
 
-// The bytes of a buffer view that meshoptimizer has packed, as its extension says. Throws Refused.
+// Unpacks a buffer view packed by meshoptimizer, as its extension says. Throws Refused.
 std::string decode_meshopt(const nlohmann::json& extension, std::string_view packed);
 
-// What Draco has packed of a primitive.
+// An attribute of a primitive packed by Draco.
 struct DracoAttribute {
-  int component_type = 0;  // as glTF numbers them
+  int component_type = 0;  // number in glTF
   int components = 0;
   std::string values;
 };
@@ -25,8 +25,8 @@ struct DracoMesh {
   std::map<std::string, DracoAttribute> attributes;
 };
 
-// `wanted` has Draco's number of each attribute by its name in glTF, `types` the component types that their accessors
-// state. Throws Refused.
+// `wanted`: Draco's number of each attribute by its name in glTF; `types`: the component types of their accessors.
+// Throws Refused.
 DracoMesh decode_draco(std::string_view packed, const std::map<std::string, std::uint32_t>& wanted,
                        const std::map<std::string, int>& types);
 

@@ -9,7 +9,7 @@ namespace {
 
 void filter(const std::string& name, std::string& bytes, std::size_t count, std::size_t stride) {
   if (name == "NONE") return;
-  // Rows that the filters are made for.
+  // Strides that the filters accept.
   const bool fits = name == "OCTAHEDRAL"    ? stride == 4 || stride == 8
                     : name == "QUATERNION"  ? stride == 8
                     : name == "EXPONENTIAL" ? stride % 4 == 0

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// vantage-import-gltf gltf FILE: writes a glTF that is compressed, as a whole or in its meshes, to standard output, as
-// a GLB that is not.
+// vantage-import-gltf gltf FILE: decompresses a glTF, compressed as a whole or in its meshes, and writes it to standard
+// output as GLB.
 #include <cstdio>
 
 #include "import/gltf/unpack.hpp"

@@ -48,7 +48,7 @@ std::string inflated(const std::string& packed) {
 }
 
 std::uint32_t word_at(std::string_view bytes, std::size_t offset) {
-  std::uint32_t value = 0;  // little endian, as ours
+  std::uint32_t value = 0;  // little endian, like the host
   std::memcpy(&value, part_of(bytes, offset, sizeof value).data(), sizeof value);
   return value;
 }
@@ -88,7 +88,7 @@ std::string percent_decoded(const std::string& uri) {
   return out;
 }
 
-// Leaves the binary chunk in `binary`.
+// Puts the binary chunk into `binary`.
 json read_container(std::string_view bytes, std::string& binary) {
   constexpr std::uint32_t kJson = 0x4E4F534A, kBinary = 0x004E4942;
   if (bytes.starts_with("b3dm")) {

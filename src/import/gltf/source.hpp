@@ -9,7 +9,7 @@
 
 namespace vantage::importer {
 
-// A glTF as it comes: its JSON, and the bytes of its buffers.
+// A glTF as read: its JSON, and the bytes of its buffers.
 struct Source {
   nlohmann::json document;
   std::vector<std::string> buffers;
@@ -19,10 +19,10 @@ struct Source {
 // Throws Refused.
 Source read_source(const std::filesystem::path& file);
 
-// What a URI stands for, data or a file below the folder. Throws Refused.
+// Bytes of a URI, either data or a file below the folder. Throws Refused.
 std::string read_uri(const Source& source, const std::string& uri);
 
-// A part of some bytes. Throws Refused where it is not all there.
+// A part of some bytes. Throws Refused if it is incomplete.
 std::string_view part_of(std::string_view bytes, std::size_t offset, std::size_t length);
 
 }  // namespace vantage::importer

@@ -56,7 +56,7 @@ class Unpacker {
                    where.at("byteLength").get<std::size_t>());
   }
 
-  // Where bytes lie that were added to the binary chunk.
+  // Position of bytes that were added to the binary chunk.
   json placed(std::string_view added) {
     binary_.resize((binary_.size() + 3) / 4 * 4);
     const json view{{"buffer", 0}, {"byteOffset", binary_.size()}, {"byteLength", added.size()}};
@@ -84,7 +84,7 @@ class Unpacker {
     view.update(placed(content));
   }
 
-  // A texture that is not there costs its colours alone, so the name stays for the loader to tell.
+  // A missing texture costs only its colours, so the name stays for the loader to report.
   void take_image(json& image) {
     if (!image.contains("uri")) return;
     const auto uri = image["uri"].get<std::string>();
@@ -116,7 +116,7 @@ class Unpacker {
     try {
       mesh = decode_draco(packed, wanted, types);
     } catch (const Refused&) {
-      // A file may have the same without Draco, for readers that know it not.
+      // A file may have the same primitive without Draco, for readers that do not know it.
       if (!has_fallback(primitive)) throw;
       return;
     }

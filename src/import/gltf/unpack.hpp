@@ -6,9 +6,9 @@
 
 namespace vantage::importer {
 
-// The bytes of a GLB with all that the glTF says, but nothing compressed and nothing outside: gzip around the file,
-// KHR_draco_mesh_compression, EXT_meshopt_compression, KHR_meshopt_compression. Throws Refused; what a broken file
-// makes of the JSON's types is an nlohmann::json::exception.
+// Returns the bytes of a GLB with the whole content of a glTF, uncompressed and without other files. Handles gzip
+// around the file, KHR_draco_mesh_compression, EXT_meshopt_compression and KHR_meshopt_compression. Throws Refused, and
+// nlohmann::json::exception if a broken file has JSON of unexpected types.
 std::string unpack(const std::filesystem::path& file);
 
 }  // namespace vantage::importer

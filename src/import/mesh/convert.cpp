@@ -21,7 +21,7 @@ namespace {
 
 using nlohmann::json;
 
-// Shows the file under a name with the extension of its format, by which assimp chooses what reads it.
+// Shows the file under a name with the extension of its format, by which assimp chooses the reader.
 class RenamedFile : public Assimp::DefaultIOSystem {
  public:
   RenamedFile(const std::filesystem::path& file, const std::string& format)
@@ -89,7 +89,7 @@ class Converter {
     if (indices.empty()) return {};
     triangles_ = true;
     json primitive{{"attributes", {{"POSITION", buffer_.add_positions(positions)}}}};
-    // Normals of STL and DXF are those of their faces, and tell nothing.
+    // Normals of STL and DXF are those of their faces and add nothing.
     if (mesh.HasNormals() && format_ != "stl" && format_ != "dxf") {
       for (std::size_t v = 0; v < mesh.mNumVertices; ++v)
         for (unsigned c = 0; c < 3; ++c) positions[3 * v + c] = finite(mesh.mNormals[v][c]);
@@ -112,7 +112,7 @@ class Converter {
     return buffer_.add_colours(rgba);
   }
 
-  // -1 where the file gives none: assimp makes one up.
+  // -1 if the file gives none; assimp then makes one up.
   int material_of(unsigned index) {
     const auto [known, is_new] = material_indices_.try_emplace(index, -1);
     if (!is_new || index >= scene_.mNumMaterials) return known->second;
@@ -124,9 +124,9 @@ class Converter {
     if (!coloured || name == aiString(AI_DEFAULT_MATERIAL_NAME)) return -1;
     float opacity = 1;
     given.Get(AI_MATKEY_OPACITY, opacity);
-    if (!(opacity > 0)) opacity = 1;  // what cannot be seen at all is a slip of its exporter
+    if (!(opacity > 0)) opacity = 1;  // full transparency is a slip of the exporter
     json material{{"name", utf8(name.C_Str())}, {"doubleSided", true}};
-    // The colour of a surface with a texture is the texture's, which is not carried over.
+    // The colour of a textured surface is in the texture, which is not carried over.
     if (given.GetTextureCount(aiTextureType_DIFFUSE) == 0) {
       const auto share = [](float value) { return std::clamp(finite(value), 0.0F, 1.0F); };
       material["pbrMetallicRoughness"] = {
@@ -160,7 +160,7 @@ class Converter {
     json out = json::object();
     std::string name = utf8(node.mName.C_Str());
     const int mesh = mesh_of(node);
-    // Names that assimp makes up are in angle brackets, or the file's.
+    // Names made up by assimp are in angle brackets, or the file's.
     if (name.empty() || name.front() == '<' || name == "model." + format_) {
       const std::string own = mesh >= 0 ? meshes_[static_cast<std::size_t>(mesh)].value("name", "") : "";
       name = own.empty() ? stem_ : own;
@@ -187,7 +187,7 @@ class Converter {
   const std::string format_, stem_;
   Declared declared_;
   Buffer buffer_;
-  std::vector<json> primitives_;  // an entry for each mesh of assimp's; null: none of triangles
+  std::vector<json> primitives_;  // one for each mesh of assimp; null: no triangles
   std::map<unsigned, int> material_indices_;
   std::map<std::vector<unsigned>, int> mesh_indices_;
   json nodes_ = json::array(), meshes_ = json::array(), materials_ = json::array();
@@ -200,7 +200,7 @@ class Converter {
 std::string convert(const std::filesystem::path& file, const std::string& format) {
   Assimp::Importer importer;
   auto* files = new RenamedFile(file, format);
-  importer.SetIOHandler(files);  // which owns it
+  importer.SetIOHandler(files);  // takes ownership
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);
   const aiScene* scene = importer.ReadFile(
       files->shown(), aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_JoinIdenticalVertices);

@@ -6,8 +6,8 @@
 
 namespace vantage::importer {
 
-// The bytes of a GLB with the model's nodes, names, transforms, meshes and materials. `format` is
-// the extension that files of its format have, without the point. Throws Refused.
+// Returns the bytes of a GLB with the model's nodes, names, transforms, meshes and materials. `format`: extension of
+// the format, without the dot. Throws Refused.
 std::string convert(const std::filesystem::path& file, const std::string& format);
 
 }  // namespace vantage::importer

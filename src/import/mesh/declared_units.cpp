@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Units and axes by format, and what assimp 5.2 has done about them: COLLADA's unit and axis are in the root's
-// transform already, and that of DXF and 3DS turns Z to Y; FBX is left as it is.
+// Units and axes by format, given what assimp 5.2 already applies: it puts COLLADA's unit and axis into the root's
+// transform, turns Z to Y for DXF and 3DS, and leaves FBX unchanged.
 #include "import/mesh/declared_units.hpp"
 
 #include <assimp/scene.h>
@@ -31,7 +31,7 @@ Declared of_fbx(const aiScene& scene) {
     declared.up = true;
     declared.gltf_from_file = axis == 2 ? kFromZ : axis == 0 ? kFromX : aiMatrix4x4();
   }
-  double centimetres = 0;  // assimp stores it as either
+  double centimetres = 0;  // assimp has two types for it
   float narrow = 0;
   if (scene.mMetaData && scene.mMetaData->Get("UnitScaleFactor", centimetres))
     scale(declared, centimetres * 0.01);
@@ -49,7 +49,7 @@ bool mentions(const std::filesystem::path& file, const char* word) {
   return head.find(word) != std::string::npos;
 }
 
-// $INSUNITS of a DXF's header, a group 70 behind its name; 0 where there is none.
+// $INSUNITS of a DXF's header, a group 70 after its name; 0 if there is none.
 int insertion_units(const std::filesystem::path& file) {
   std::ifstream stream(file);
   std::string line, code, value;

@@ -10,10 +10,10 @@ struct aiScene;
 
 namespace vantage::importer {
 
-// What a file says of its own lengths and axes.
+// Units and axes that a file declares.
 struct Declared {
-  bool unit = false, up = false;  // whether it says so
-  aiMatrix4x4 gltf_from_file;     // to metres and Y up, where they are declared
+  bool unit = false, up = false;  // whether it declares them
+  aiMatrix4x4 gltf_from_file;     // to metres and Y up, as far as declared
 };
 
 // `format` by its extension: "fbx", "dae".

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// vantage-import-mesh FORMAT FILE: writes what assimp reads of FILE to standard output, as GLB. FORMAT is the extension
-// of such files: obj, stl, ply, fbx, dae, 3ds, x3d or dxf.
+// vantage-import-mesh FORMAT FILE: reads FILE with assimp and writes it to standard output, as GLB. FORMAT is the
+// extension of such files: obj, stl, ply, fbx, dae, 3ds, x3d or dxf.
 #include <cstdio>
 
 #include "import/mesh/convert.hpp"
