@@ -24,7 +24,7 @@ double length(const std::string& text, const std::string& what) { return parse_n
 void add_scene(Rows& rows) {
   rows.group("Scene")
       .texts(
-          "surveyed", "PATTERN", "Nodes to survey, by name; * and ? stand for any text and any letter",
+          "surveyed", "PATTERN", "Nodes to survey, by name; * is any text, ? any letter",
           [](SiteOptions & o) -> auto& { return o.scene.surveyed; })
       .texts(
           "blocking", "PATTERN", "Nodes that only block rays and stations",
@@ -36,7 +36,7 @@ void add_scene(Rows& rows) {
           "ignore", "PATTERN", "Nodes to leave out", [](SiteOptions & o) -> auto& { return o.scene.ignore; })
       .repeated(
           "weight", "PATTERN=W",
-          "What a voxel of these nodes counts in coverage, 1 to 255, where others count 1; may be repeated",
+          "Weight of a voxel of these nodes in coverage, 1 to 255; others have 1; may be repeated",
           [](SiteOptions & o) -> auto& { return o.scene.weights; },
           wish("PATTERN=W", "facade*=5",
                [](const std::string& text, const std::string& what) {
@@ -44,31 +44,31 @@ void add_scene(Rows& rows) {
                }))
       .repeated(
           "detail", "PATTERN=MM",
-          "Widest footprint of the beam, in millimetres, of points that count on these nodes; may be repeated",
+          "Widest beam footprint, in millimetres, of points that count on these nodes; may be repeated",
           [](SiteOptions & o) -> auto& { return o.scene.details_mm; }, wish("PATTERN=MM", "pipe*=10", length))
       .repeated(
           "accuracy", "PATTERN=MM",
           "Largest range noise, in millimetres, of points that count on these nodes; may be repeated",
           [](SiteOptions & o) -> auto& { return o.scene.accuracies_mm; }, wish("PATTERN=MM", "flange*=1", length))
       .custom(
-          "unit", "UNIT", "What lengths in the file are: m, cm, mm, in or ft; recognised otherwise",
+          "unit", "UNIT", "Unit of lengths in the file: m, cm, mm, in or ft; recognised by default",
           [](SiteOptions& o, const std::string& text, const std::string& what) {
             o.scene.unit = named(what, [&] { return unit_from_string(text); });
           },
           [](const SiteOptions& o) { return o.scene.unit.has_value(); })
       .custom(
-          "up", "AXIS", "Which axis of the file points up: y or z; recognised otherwise",
+          "up", "AXIS", "Axis of the file that points up: y or z; recognised by default",
           [](SiteOptions& o, const std::string& text, const std::string& what) {
             o.scene.up = named(what, [&] { return up_axis_from_string(text); });
           },
           [](const SiteOptions& o) { return o.scene.up.has_value(); })
       .custom(
-          "scene-index", "N", "Which scene of the file; the file's own default otherwise",
+          "scene-index", "N", "Scene of the file; its own default otherwise",
           [](SiteOptions& o, const std::string& text, const std::string& what) {
             o.scene.scene_index = parse_count(text, what, 0, 0xFFFFFFFF);
           },
           [](const SiteOptions& o) { return o.scene.scene_index.has_value(); })
-      .custom("diffuse", "R", "Diffuse reflection coefficient where the file gives none, 0 to 1",
+      .custom("diffuse", "R", "Diffuse reflection coefficient if the file gives none, 0 to 1",
               [](SiteOptions& o, const std::string& text, const std::string& what) {
                 o.scene.default_diffuse = parse_number(text, what, {.low = 0, .high = 1});
               })
@@ -80,9 +80,10 @@ void add_scene(Rows& rows) {
 
 void add_scanner(Rows& rows) {
   rows.group("Scanner")
-      .text("scanner", "PRESET", "A scanner that `vantage info` lists, as rtc360 or rtc360@6mm", &SiteOptions::scanner)
+      .text("scanner", "PRESET", "A scanner that `vantage info` lists, such as rtc360 or rtc360@6mm",
+            &SiteOptions::scanner)
       .by_scene()
-      .optional("step", "DEG[,DEG]", "Angle between rays: both, or azimuth and zenith", &SiteOptions::steps,
+      .optional("step", "DEG[,DEG]", "Angle between rays: one for both, or azimuth and zenith", &SiteOptions::steps,
                 [](const std::string& text, const std::string& what) {
                   const auto values = parse_numbers(text, what, 1, 2, positive);
                   return std::array{Angle::degrees(values.front()), Angle::degrees(values.back())};
@@ -114,11 +115,11 @@ void add_scanner(Rows& rows) {
       .by_scene()
       .by_preset()
       .numbers("beam", "MRAD,MM",
-               "Full angle by which the beam widens, in milliradians, and its diameter at the exit, in millimetres",
+               "Full angle of the beam's divergence, in milliradians, and its diameter at the exit, in millimetres",
                &SiteOptions::beam, 2, not_negative)
       .by_scene()
       .by_preset()
-      .number("rate", "N", "Points measured a second, for the time on site; the preset's, or a million",
+      .number("rate", "N", "Points measured per second, for the time on site; that of the preset, or a million",
               &SiteOptions::points_per_second, positive)
       .by_preset();
 }
@@ -128,55 +129,55 @@ void add_measure(Rows& rows) {
       .number("user-size", "M", "Upper bound of the voxel size", &SiteOptions::user_size_m, positive)
       .by_scene()
       .degrees("incidence",
-               "Largest angle between ray and normal of points that count, 90: any; 60 where a detail or an accuracy "
-               "is wanted, else 90",
+               "Largest angle between ray and normal of points that count, 90: any; 60 if a detail or an accuracy "
+               "is set, else 90",
                &SiteOptions::max_incidence, {.low = 0, .high = 90, .low_included = false})
       .number("spacing", "M", "Wanted distance between points; sets the goal density", &SiteOptions::spacing_m,
               positive)
       .by_scene()
       .flag("spacing-by-detail",
-            "On nodes of which a detail is wanted that is the spacing; so where details differ and no spacing is given",
+            "Use the detail of nodes as their spacing; the default if details differ and no spacing is given",
             &SiteOptions::spacing_by_detail);
 }
 
 void add_placement(Rows& rows) {
   rows.group("Placement")
       .numbers("security", "H1,H2,R",
-               "Clear space a station needs: two spheres of radius R at heights H1 and H2 above the ground; R 0: none",
+               "Clear space of a station: two spheres of radius R at heights H1 and H2 above the ground; R 0: none",
                &SiteOptions::security_m, 3, not_negative)
       .by_scene()
-      .degrees("slope", "Steepest ground that counts as walkable, where the scene marks no search area",
-               &SiteOptions::max_slope, {.low = 0, .high = 90, .high_included = false})
+      .degrees("slope", "Steepest walkable ground, if the scene marks no search area", &SiteOptions::max_slope,
+               {.low = 0, .high = 90, .high_included = false})
       .by_scene()
-      .number("headroom", "M", "Clear height that walkable ground needs", &SiteOptions::headroom_m, not_negative)
+      .number("headroom", "M", "Clear height above walkable ground", &SiteOptions::headroom_m, not_negative)
       .by_scene()
       .number("min-area", "M2", "Smallest connected piece of walkable ground", &SiteOptions::min_area_m2, not_negative)
       .by_scene()
       .numbers("passage", "W,H", "Width and height of the narrowest opening that a person passes; 0.6,1.9",
                &SiteOptions::passage_m, 2, positive)
       .number("climb", "M", "Highest step that a person takes; 0.25", &SiteOptions::climb_m, not_negative)
-      .optional("enter", "X,Y,Z", "Where one enters the site; found by itself otherwise", &SiteOptions::enter,
+      .optional("enter", "X,Y,Z", "Entrance of the site; found automatically by default", &SiteOptions::enter,
                 [](const std::string& text, const std::string& what) {
                   const auto values = parse_numbers(text, what, 3, 3);
                   return Vec3{values[0], values[1], values[2]};
                 })
       .texts(
           "doors", "PATTERN",
-          "Nodes that are closed doors, which count as open for who walks; closed: keep the doors of an IFC closed",
+          "Nodes that are closed doors: open for people, closed for rays; closed: keep the doors of an IFC closed",
           [](SiteOptions & o) -> auto& { return o.scene.doors; })
       .texts(
-          "station-area", "PATTERN", "Nodes to stand on that stay what they are, as surveyed",
+          "station-area", "PATTERN", "Nodes to stand on that keep their role, such as surveyed",
           [](SiteOptions & o) -> auto& { return o.scene.station_area; })
       .numbers("levels", "LOW,HIGH", "Heights of ground between which stations may stand", &SiteOptions::levels_m, 2,
                any_number)
       .repeated(
-          "within", "FILE", "Stations only within a polygon: GeoJSON, or a CSV file with x,y a line",
+          "within", "FILE", "Polygon that all stations stand in: GeoJSON, or a CSV file with x,y on each line",
           [](SiteOptions & o) -> auto& { return o.within; },
           [](const std::string& text, const std::string& what) {
             return named(what, [&] { return read_region(text); });
           })
       .repeated(
-          "without", "FILE", "No stations within a polygon", [](SiteOptions & o) -> auto& { return o.without; },
+          "without", "FILE", "Polygon that no station stands in", [](SiteOptions & o) -> auto& { return o.without; },
           [](const std::string& text, const std::string& what) {
             return named(what, [&] { return read_region(text); });
           });
@@ -184,26 +185,26 @@ void add_placement(Rows& rows) {
 
 void add_run(Rows& rows) {
   rows.group("Run")
-      .custom("engine", "ENGINE", "auto, ray_query, compute_bvh or embree",
+      .custom("engine", "ENGINE", "Tracing engine: auto, ray_query, compute_bvh or embree",
               [](SiteOptions& o, const std::string& text, const std::string& what) {
                 o.engine = named(what, [&] { return engine_from_string(text); });
               })
       .custom("device", "LIST",
-              "Number of the device, as `vantage info` lists it; several that share the work: 0,1, or all, or 0,cpu",
+              "Number of the device in the list of `vantage info`; several share the work: 0,1, or all, or 0,cpu",
               [](SiteOptions& o, const std::string& text, const std::string& what) {
                 o.devices = parse_devices(text, what);
               })
       .count("seed", "N", "Seed of noise, samples and search; 1 otherwise", &SiteOptions::seed, 0,
              std::numeric_limits<std::uint64_t>::max())
       .custom("memory", "SIZE",
-              "Refuse what is estimated to take more memory: 4G, 500M; half of what is free otherwise",
+              "Memory limit: 4G, 500M; tasks with a larger estimate are refused; half of the free memory by default",
               [](SiteOptions& o, const std::string& text, const std::string& what) {
                 o.memory_bytes = parse_bytes(text, what);
               })
       .flag("validation", "Check every Vulkan call with the validation layer", &SiteOptions::validation)
       .custom(
           "crs", "EPSG:N|FILE",
-          "Coordinate system of the scene: EPSG:25832 and the like, or a .prj or .wkt file; point clouds carry it",
+          "Coordinate system of the scene: EPSG:25832 or the like, or a .prj or .wkt file; point clouds carry it",
           [](SiteOptions& o, const std::string& text, const std::string&) { o.crs = text; },
           [](const SiteOptions& o) { return !o.crs.empty(); })
       .by_scene();
