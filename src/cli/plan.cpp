@@ -277,7 +277,7 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
     if (std::filesystem::exists(config.checkpoint) || std::filesystem::exists(config.checkpoint.string() + ".before"))
       spdlog::info("resuming from {}", config.checkpoint.string());
     else
-      spdlog::info("{} holds nothing to resume: beginning", folder.string());
+      spdlog::info("{} holds no checkpoint: starting a new search", folder.string());
   }
 
   const std::string crs = map_system(site);

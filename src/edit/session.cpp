@@ -109,7 +109,7 @@ void EditSession::change(const json& request) {
   const std::scoped_lock lock(mutex_);
   const auto named = request.is_object() ? request.find("do") : request.end();
   if (!request.is_object() || named == request.end() || !named->is_string())
-    throw Error(Errc::invalid_argument, "a change is an object that says what to do");
+    throw Error(Errc::invalid_argument, "a change must be an object with \"do\"");
   const std::string what = named->get<std::string>();
   if (what == "stop") {
     stop_job_.request_stop();
@@ -157,7 +157,7 @@ void EditSession::change(const json& request) {
   } else if (what == "redo") {
     step(redo_, undo_);
   } else {
-    throw Error(Errc::invalid_argument, "'" + what + "' is nothing that can be done here");
+    throw Error(Errc::invalid_argument, "'" + what + "' is not possible here");
   }
   if (what != "lock") measure();
   ++version_;
@@ -195,7 +195,7 @@ void EditSession::remember() {
 }
 
 void EditSession::step(std::vector<Stations>& from, std::vector<Stations>& to) {
-  if (from.empty()) throw Error(Errc::invalid_argument, "there is nothing to go back to");
+  if (from.empty()) throw Error(Errc::invalid_argument, "there is nothing to undo or redo");
   to.push_back(std::move(stations_));
   stations_ = std::move(from.back());
   from.pop_back();

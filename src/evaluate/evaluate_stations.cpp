@@ -36,11 +36,12 @@ RequiredInputs required_inputs_of(const std::vector<Objective>& measures, const 
 
 void check(const EvaluationSite& site, const RequiredInputs& needs, const EvaluationOptions& options) {
   const auto refuse = [](const std::string& why) { throw Error(Errc::invalid_argument, "evaluate: " + why); };
-  if (needs.pairs && !options.overlap) refuse("what is measured looks at pairs of stations; count overlap too");
+  if (needs.pairs && !options.overlap) refuse("a measure needs pairs of stations; count overlap too");
   if (needs.surroundings && !site.surroundings)
-    refuse("what is measured looks at all surfaces; give the simulator of the surroundings too");
-  if (needs.visibility && !site.clash) refuse("what is measured looks at who sees whom; give the clash checker too");
-  if (needs.time && !site.on_site) refuse("what is measured looks at the time on site; give the rounds on site too");
+    refuse("a measure needs all surfaces; give the simulator of the surroundings too");
+  if (needs.visibility && !site.clash)
+    refuse("a measure needs lines of sight between stations; give the clash checker too");
+  if (needs.time && !site.on_site) refuse("a measure needs the time on site; give the rounds on site too");
   if (options.field && options.sample_voxels > 0)
     refuse("the points of every voxel were asked for, and so was a sample of the voxels; choose one");
 }

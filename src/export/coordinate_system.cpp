@@ -69,7 +69,8 @@ std::string checked(const std::string& written, const std::string& source) {
   if (begins({"GEOGCS", "GEOGCRS", "GEODCRS"}))
     refuse(source + ": longitude and latitude are angles; vantage's points are in metres: give a projected system");
   if (begins({"PROJCRS", "PROJECTEDCRS", "COMPOUNDCRS", "ENGCRS", "BOUNDCRS"}))
-    refuse(source + ": is well-known text 2, and LAS 1.4 takes version 1 (OGC 01-009), which begins with PROJCS");
+    refuse(source +
+           ": is well-known text of version 2; LAS 1.4 needs version 1 (OGC 01-009), which begins with PROJCS");
   if (!begins({"PROJCS[", "COMPD_CS[", "LOCAL_CS[", "GEOCCS["}))
     refuse(source + ": is no well-known text of a coordinate system; that begins with PROJCS[, COMPD_CS[, LOCAL_CS[ " +
            "or GEOCCS[");

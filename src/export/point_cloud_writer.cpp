@@ -26,8 +26,8 @@ PointCloudWriter::PointCloudWriter(const std::filesystem::path& file, const Vec3
   else if (extension == ".e57")
     impl_->sink = make_e57_sink(file, origin, outputs, crs);
   else
-    throw Error(Errc::invalid_argument, "cannot tell the format of " + file.string() + " from its extension \"" +
-                                            extension + "\"; use .ply, .las or .e57");
+    throw Error(Errc::invalid_argument, "unknown format of " + file.string() + " from its extension \"" + extension +
+                                            "\"; use .ply, .las or .e57");
 }
 
 PointCloudWriter::PointCloudWriter(PointCloudWriter&&) noexcept = default;

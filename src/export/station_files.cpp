@@ -15,8 +15,8 @@ void write_stations(const std::filesystem::path& file, const NamedStations& stat
   else if (extension == ".dxf")
     write_stations_dxf(file, stations, links, area);
   else
-    throw Error(Errc::invalid_argument, "cannot tell the format of " + file.string() + " from its extension \"" +
-                                            extension + "\"; use .geojson, .kml or .dxf");
+    throw Error(Errc::invalid_argument, "unknown format of " + file.string() + " from its extension \"" + extension +
+                                            "\"; use .geojson, .kml or .dxf");
 }
 
 void write_station_files(const std::filesystem::path& folder, const NamedStations& stations, const StationLinks& links,

@@ -174,7 +174,7 @@ std::string mistaken_for_a_model(const Head& head) {
   if (text.starts_with("<")) {
     const std::string root = root_element(text);
     if (root == "html" || lower(text.substr(0, 14)) == "<!doctype html")
-      return "an HTML page, perhaps that from which the model is downloaded; download the model itself";
+      return "an HTML page, perhaps the download page of the model; download the model itself";
     if (root.find("ifcxml") != std::string::npos || root.find("iso_10303_28") != std::string::npos)
       return "ifcXML; export IFC as STEP text (.ifc)";
     if (root.ends_with("citymodel")) return "CityGML; export glTF or OBJ";

@@ -79,7 +79,7 @@ Importer find_importer(const Format& format) {
       return found;
     }
     const fs::path node = fs::canonical(in_path("node"), failure);
-    if (failure) throw Error(Errc::io, missing(format, "node, which runs that, is not installed", remedy));
+    if (failure) throw Error(Errc::io, missing(format, "node, which runs it, is not installed", remedy));
     found.words.insert(found.words.begin(), node.string());
     found.readable.push_back(node.parent_path().parent_path());
     return found;

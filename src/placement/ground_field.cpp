@@ -420,8 +420,7 @@ void GroundField::reach(const MeshTree& tree, std::optional<glm::dvec3> enter) {
     }
     if (!start) {
       std::ostringstream text;
-      text << "there is no place with room for a person within " << within
-           << " m of where the site is to be entered (enter)";
+      text << "no place with room for a person lies within " << within << " m of the entrance (setting enter); move it";
       throw Error(Errc::invalid_argument, text.str());
     }
     access_[part_[*start]] = Access::reached;

@@ -96,8 +96,10 @@ GroundWeights ground_weights(const Scene& scene, const SearchArea& area) {
   if (found.ground.size() > 3) names += ", …";
   const std::string percent = fixed(100 * found.share, 0) + " %";
   if (!(others > 0)) {
-    found.told = "all that is surveyed is ground, or one mesh with it (" + names +
-                 "): what stands on it cannot be weighed apart; mark it with --surveyed, or give it a mesh of its own";
+    found.told =
+        "all of the surveyed surface is ground, or one mesh with it (" + names +
+        "), so things on the ground cannot weigh more; mark them with the setting surveyed, or give them a mesh "
+        "of their own";
     return found;
   }
   // ground / (ground + w · others) <= 1/3
@@ -107,9 +109,9 @@ GroundWeights ground_weights(const Scene& scene, const SearchArea& area) {
     if (!std::ranges::binary_search(found.ground, m)) found.weights[m] = weight;
   found.changes = weight > 1;
   found.weighted_share = ground / (ground + weight * others);
-  found.told = "nothing is marked surveyed, and " + percent + " of the surface is ground that one stands on (" + names +
-               "): all else weighs " + std::to_string(weight) + " in coverage, so that ground has " +
-               fixed(100 * found.weighted_share, 0) + " % of it; --weight or --surveyed settles it otherwise";
+  found.told = "nothing is marked as surveyed, and " + percent + " of the surface is ground to stand on (" + names +
+               "): everything else has the weight " + std::to_string(weight) + " in coverage, which leaves ground " +
+               fixed(100 * found.weighted_share, 0) + " % of it; the settings weight and surveyed change this";
   return found;
 }
 

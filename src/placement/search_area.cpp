@@ -98,8 +98,7 @@ SearchArea SearchArea::build(const Scene& scene, const WalkableOptions& options)
     LeftOut cut_off;
     surface.mesh = cut_to_limits(surface.mesh, limits, piece_spacing(options, bounds), cut_off);
     if (surface.mesh.triangles.empty())
-      throw Error(Errc::invalid_argument,
-                  "nothing of the search area lies within the levels and regions that were asked for");
+      throw Error(Errc::invalid_argument, "no part of the search area lies within the given levels and regions");
     if (cut_off.area_m2 > 0) surface.left_out.push_back(std::move(cut_off));
   }
   SearchArea area;

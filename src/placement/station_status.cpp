@@ -31,7 +31,7 @@ std::string explain(StationStatus status) {
 
 std::string to_string(LeftOutReason reason) {
   switch (reason) {
-    case LeftOutReason::unreachable: return "nothing leads there (roofs, furniture, tops of walls)";
+    case LeftOutReason::unreachable: return "not reachable (roofs, furniture, tops of walls)";
     case LeftOutReason::sealed: return "sealed, no opening leads there";
     case LeftOutReason::narrow: return "too narrow";
     case LeftOutReason::headroom: return "no headroom";

@@ -170,8 +170,7 @@ std::string place_text(const Vec3& p) {
 }
 
 [[noreturn]] void refuse_limits() {
-  throw Error(Errc::invalid_argument,
-              "nothing that one could stand on lies within the levels and regions that were asked for");
+  throw Error(Errc::invalid_argument, "no ground to stand on lies within the given levels and regions");
 }
 
 // Surfaces with room for a scanner, from `upward` triangles at places that the field reaches. With `any_access`, also
@@ -241,7 +240,7 @@ WalkableSurface use_station_area(const SceneData& scene, const MeshTree& tree, c
         "none of the surfaces that stations are to stand on has room for one: they are steep, covered, narrow or "
         "smaller than the smallest area");
   surface.derived = false;
-  surface.description = "the surfaces that were named for standing, where there is room: " + surface.description;
+  surface.description = "the surfaces of the station area, as far as there is room: " + surface.description;
   return surface;
 }
 

@@ -62,11 +62,9 @@ std::vector<std::string> what_would_help(const PlanResult& result) {
   const PlanEntry& entry = result.front[answer(result)];
   const SurveyProblem& problem = result.problem;
   if (look_cut_short(result))
-    help.push_back(
-        "more time: the look at what can be seen was cut short, so that capture is a share of less than that");
+    help.push_back("more time: the look at attainable coverage was cut short, so capture is a share of too little");
   if (entry.violation == 0) {
-    if (!entry.exact)
-      help.push_back("more time: no network was traced with every ray, so that what is told is an estimate");
+    if (!entry.exact) help.push_back("more time: no network was traced with every ray, so the figures are estimates");
     return help;
   }
   const bool all_placed = entry.stations.size() - problem.kept.size() >= problem.stations_max;

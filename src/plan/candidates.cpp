@@ -23,8 +23,8 @@ SpreadPositions spread_or_refuse(const SearchArea& area, const ClashChecker& cla
   SpreadPositions spread = spread_positions(site, area.mesh(), site.height_m, most);
   if (spread.stations.empty())
     throw Error(Errc::invalid_argument,
-                "no position of the search area is allowed: everywhere the scanner would stand too near to something "
-                "or not on the ground; see --security, --height and what the search area is made of");
+                "no position of the search area is allowed: the scanner would stand too near to something, or off the "
+                "ground, everywhere; check the settings security and height, and the search area");
   return spread;
 }
 

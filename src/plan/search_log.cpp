@@ -65,7 +65,7 @@ void SearchLog::save(double trace_seconds) {
     newest_is_ours_ = true;
   } catch (const Error& error) {
     if (!warn_) throw;
-    warn_(std::string(error.what()) + "; the search goes on without");
+    warn_(std::string(error.what()) + "; the search goes on without it");
   }
 }
 

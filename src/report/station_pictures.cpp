@@ -60,7 +60,7 @@ std::vector<std::vector<std::uint8_t>> station_pictures(const Simulator& simulat
     }
   } catch (const Error& error) {
     if (const auto& warn = simulator.config().warn)
-      warn(std::string("no pictures of what stations see: ") + error.what());
+      warn(std::string("no pictures of the stations' views: ") + error.what());
     return {};
   }
   return encoded(images);

@@ -473,11 +473,11 @@ Recognised recognise(const SceneEvidence& evidence, const std::optional<Unit>& u
     out.unit = choice.unit;
   }
   if (!choice.text.empty() && !up_text.empty())
-    out.note = choice.text + "; " + up_text + "; --unit and --up settle it";
+    out.note = choice.text + "; " + up_text + "; if that is wrong, give the settings unit and up";
   else if (!choice.text.empty())
-    out.note = choice.text + "; --unit settles it";
+    out.note = choice.text + "; if that is wrong, give the setting unit";
   else if (!up_text.empty())
-    out.note = up_text + "; --up settles it";
+    out.note = up_text + "; if that is wrong, give the setting up";
   return out;
 }
 

@@ -146,7 +146,7 @@ void log_area(const SearchArea& area, const Scene& scene, const std::function<vo
     std::string name = mesh.name;
     std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     if (name.find("door") == std::string::npos) continue;
-    log("what is sealed may lie behind closed doors, as \"" + mesh.name + "\": the setting doors opens them");
+    log("sealed parts may lie behind closed doors, such as \"" + mesh.name + "\"; the setting doors opens them");
     return;
   }
 }

@@ -76,9 +76,9 @@ std::vector<EngineInfo> list_engines() {
     const bool software = std::any_of(engines.begin(), engines.end(), [](const EngineInfo& e) {
       return e.software && e.usable && e.engine != Engine::embree;
     });
-    chosen.reason =
-        (software ? "Vulkan offers only a software device, which Embree outruns; " : "no Vulkan GPU is usable; ") +
-        chosen.reason;
+    chosen.reason = (software ? "no graphics card found, and Embree is faster than a software device; "
+                              : "no graphics card found; ") +
+                    chosen.reason;
   }
   return engines;
 }

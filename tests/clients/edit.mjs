@@ -57,7 +57,7 @@ for (const [what, status, where, options] of [
   ['too much', 413, `${url}change`, { ...post, body: JSON.stringify({ do: 'x'.repeat(10000) }) }],
   ['no JSON', 400, `${url}change`, { ...post, body: '{' }],
 ]) assert.equal((await ask(where, options)).status, status, what);
-assert.match(JSON.parse((await ask(`${url}change`, post)).text).refused, /nothing to go back to/);
+assert.match(JSON.parse((await ask(`${url}change`, post)).text).refused, /nothing to undo/);
 const policy = (await ask(url)).headers['content-security-policy'];
 assert.match(policy, /default-src 'none'.*frame-ancestors 'none'/);
 assert.doesNotMatch(policy, /unsafe|\*/);

@@ -43,7 +43,7 @@ std::string inflated(const std::string& packed) {
     if (status == Z_OK && left == 0 && stream.avail_out > 0) status = Z_BUF_ERROR;  // cut off
   }
   inflateEnd(&stream);
-  if (status != Z_STREAM_END) throw Refused("what gzip has packed is damaged or cut off; copy it again");
+  if (status != Z_STREAM_END) throw Refused("the gzip file is damaged or cut off; copy it again");
   return out;
 }
 
@@ -145,7 +145,7 @@ Source read_source(const std::filesystem::path& file) {
   if (packed) bytes = inflated(bytes);
   if (packed && !bytes.starts_with("glTF") && !bytes.starts_with("b3dm") &&
       bytes.find_first_not_of(" \t\r\n") != bytes.find('{'))
-    throw Refused("this is packed with gzip, and is no glTF; unpack it with gunzip and give what is in it");
+    throw Refused("this gzip file holds no glTF; unpack it with gunzip and give its content");
   Source source;
   source.folder = file.parent_path();
   source.document = read_container(bytes, binary);

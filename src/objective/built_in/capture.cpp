@@ -13,7 +13,7 @@ Objective capture(const ObjectiveSettings& settings) {
   const double visible = settings.visible;
   if (!(visible > 0 && visible <= 1))
     throw Error(Errc::invalid_argument,
-                "capture is told against what can be seen, a coverage above 0 and at most 1, not " + number(visible));
+                "capture is a share of attainable coverage, which is above 0 and at most 1, not " + number(visible));
   return {.name = "capture",
           .label = "Capture (share of what can be seen)",
           .scale = maximise(1, 0),

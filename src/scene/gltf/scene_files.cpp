@@ -32,8 +32,7 @@ fs::path locate(const fs::path& folder, const std::string& name, bool allow_outs
   if (!lies_below(home, file))
     throw Error(Errc::malformed_file, what + " lies outside the scene's folder: \"" + name + "\" leads to " +
                                           file.string() + ", and only files below " + home.string() +
-                                          " are read; move it there, or allow it with --allow-outside "
-                                          "(SceneOptions::allow_outside)");
+                                          " are read; move it there, or allow it with the setting allow-outside");
   return file;
 }
 

@@ -16,7 +16,7 @@ void check(VkResult result, const char* what) {
                         "the host ran out of memory" + where + "; use a larger voxel or a smaller scene");
     case VK_ERROR_OUT_OF_DEVICE_MEMORY:
       throw DeviceFault(Errc::out_of_memory, "the Vulkan device ran out of memory" + where +
-                                                 "; use a larger voxel, a smaller scene, or --engine embree");
+                                                 "; use a larger voxel, a smaller scene, or the engine embree");
     case VK_ERROR_DEVICE_LOST:
       throw DeviceFault(Errc::device_failure,
                         "the Vulkan device was lost" + where + "; its driver reset it or it was unplugged");

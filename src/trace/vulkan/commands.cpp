@@ -87,9 +87,10 @@ void Commands::wait() {
     result = vk.vkWaitForFences(device_.handle(), 1, &fence, VK_TRUE, wait_ns);
   if (result == VK_TIMEOUT) {
     device_.give_up();
-    throw Error(Errc::device_failure, "the Vulkan device " + device_.abilities().name +
-                                          " has not finished within ten minutes what takes seconds; it hangs. Start "
-                                          "again on another (--device), or with --engine embree");
+    throw Error(Errc::device_failure,
+                "the Vulkan device " + device_.abilities().name +
+                    " hangs: work of seconds has not ended after ten minutes. Start again on another "
+                    "device, or with the engine embree");
   }
   // Pending work must end before its buffers are destroyed.
   if (result != VK_SUCCESS) vk.vkDeviceWaitIdle(device_.handle());

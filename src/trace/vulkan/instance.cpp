@@ -49,9 +49,9 @@ Instance::Instance(bool validation) {
     throw Error(Errc::no_suitable_device,
                 "no Vulkan loader (libvulkan.so.1) on this machine; install it (Debian: libvulkan1, "
                 "mesa-vulkan-drivers >= 24.1) "
-                "or use --engine embree");
+                "or use the engine embree");
   if (vkEnumerateInstanceVersion == nullptr || volkGetInstanceVersion() < VK_API_VERSION_1_2)
-    throw Error(Errc::no_suitable_device, "the Vulkan loader is older than 1.2; update it or use --engine embree");
+    throw Error(Errc::no_suitable_device, "the Vulkan loader is older than 1.2; update it or use the engine embree");
 
   VkApplicationInfo application{
       VK_STRUCTURE_TYPE_APPLICATION_INFO, nullptr, "vantage", 0, version(), 0, VK_API_VERSION_1_2};
@@ -77,12 +77,12 @@ Instance::Instance(bool validation) {
   const VkResult result = vkCreateInstance(&info, nullptr, &instance_);
   if (result == VK_ERROR_LAYER_NOT_PRESENT)
     throw Error(Errc::no_suitable_device,
-                "the Vulkan validation layer is not installed (Debian: vulkan-validationlayers); install it or go "
-                "without --validation");
+                "the Vulkan validation layer is not installed (Debian: vulkan-validationlayers); install it or "
+                "switch validation off");
   if (result == VK_ERROR_INCOMPATIBLE_DRIVER)
     throw Error(
         Errc::no_suitable_device,
-        "no Vulkan driver on this machine; install one (Debian: mesa-vulkan-drivers >= 24.1) or use --engine embree");
+        "no Vulkan driver on this machine; install one (Debian: mesa-vulkan-drivers >= 24.1) or use the engine embree");
   check(result, "vkCreateInstance");
   vk_ = load_functions(instance_);
   if (!validation) return;

@@ -97,7 +97,7 @@ TEST_F(Layers, ASceneReachesForNoFileUnlessTheUserSaysSo) {
   write("scene.gltf", scene.dump());
   const std::vector<std::string> evaluate{"evaluate",  path("scene.gltf"), "--engine", "embree",
                                           "--station", "5,-5,1.5",         "--step",   "1"};
-  expect_refused(run_program(evaluate), 1, "--allow-outside");
+  expect_refused(run_program(evaluate), 1, "setting allow-outside");
   auto allowed = evaluate;
   allowed.push_back("--allow-outside");
   EXPECT_EQ(run_program(allowed).exit_code, 0);

@@ -62,7 +62,7 @@ TEST(RecogniseUnits, FindsTheUnitOfThingsByTheirNames) {
     EXPECT_EQ(found.unit, unit) << to_string(unit) << ": " << found.note;
     EXPECT_EQ(found.up, UpAxis::y);
     EXPECT_EQ(found.note.empty(), unit == Unit::metre) << found.note;
-    EXPECT_EQ(found.note.find("--unit settles it") != std::string::npos, unit != Unit::metre) << found.note;
+    EXPECT_EQ(found.note.find("give the setting unit") != std::string::npos, unit != Unit::metre) << found.note;
   }
 }
 
@@ -101,7 +101,7 @@ TEST(RecogniseUnits, TellsWhatNothingSettles) {
   const Recognised found = recognised(terrain);
   EXPECT_EQ(found.unit, Unit::metre);
   EXPECT_EQ(found.up, UpAxis::y);
-  EXPECT_NE(found.note.find("--unit settles it"), std::string::npos) << found.note;
+  EXPECT_NE(found.note.find("give the setting unit"), std::string::npos) << found.note;
 }
 
 TEST(RecogniseUnits, TakesAMachineAsMillimetres) {
@@ -128,7 +128,7 @@ TEST(RecogniseUnits, NamesOfPartsAreNotThoseOfTheWhole) {
 TEST(RecogniseUnits, ZIsUpByTwoSigns) {
   const Recognised bare = recognised(lying(bare_room()));
   EXPECT_EQ(bare.up, UpAxis::z) << bare.note;
-  EXPECT_NE(bare.note.find("--up settles it"), std::string::npos) << bare.note;
+  EXPECT_NE(bare.note.find("give the setting up"), std::string::npos) << bare.note;
   const Recognised both = recognised(lying(furnished_room(1000)));
   EXPECT_EQ(both.up, UpAxis::z);
   EXPECT_EQ(both.unit, Unit::millimetre);

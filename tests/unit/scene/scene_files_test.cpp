@@ -52,7 +52,7 @@ class SceneFiles : public testing::Test {
   void lies_outside(const std::string& uri, const std::string& name, const fs::path& leads_to) const {
     refuses(uri, Errc::malformed_file,
             {scene_.string(), "buffer 0", '"' + name + '"', fs::canonical(leads_to).string(),
-             fs::canonical(folder_ / "site").string(), "--allow-outside"});
+             fs::canonical(folder_ / "site").string(), "setting allow-outside"});
     EXPECT_EQ(load(uri, true).triangle_count(), 1u) << uri;
   }
 
@@ -93,9 +93,9 @@ TEST_F(SceneFiles, LinksAreFollowedBeforeTheyAreJudged) {
 
 // A refusal does not reveal whether the file exists.
 TEST_F(SceneFiles, OutsideThatAreNotThereAreRefusedAlike) {
-  refuses("../absent.bin", Errc::malformed_file, {"buffer 0", "absent.bin", "--allow-outside"});
+  refuses("../absent.bin", Errc::malformed_file, {"buffer 0", "absent.bin", "setting allow-outside"});
   refuses("../absent.bin", Errc::io, {"there is no file"}, true);
-  refuses("/etc/passwd", Errc::malformed_file, {"buffer 0", "/etc/passwd", "--allow-outside"});
+  refuses("/etc/passwd", Errc::malformed_file, {"buffer 0", "/etc/passwd", "setting allow-outside"});
 }
 
 TEST_F(SceneFiles, ThatAreNoRegularFilesAreRefusedAtOnce) {
@@ -103,7 +103,7 @@ TEST_F(SceneFiles, ThatAreNoRegularFilesAreRefusedAtOnce) {
   fs::create_symlink("/dev/zero", folder_ / "site/device.bin");
   refuses("pipe.bin", Errc::io, {"pipe.bin", "not a regular file"});
   refuses("pipe.bin", Errc::io, {"pipe.bin", "not a regular file"}, true);
-  refuses("device.bin", Errc::malformed_file, {"/dev/zero", "--allow-outside"});
+  refuses("device.bin", Errc::malformed_file, {"/dev/zero", "setting allow-outside"});
   refuses("device.bin", Errc::io, {"device.bin", "not a regular file"}, true);
   refuses("parts", Errc::io, {"not a regular file"});
   refuses("", Errc::io, {"not a regular file"});
@@ -136,7 +136,7 @@ TEST_F(SceneFiles, AnImageOutsideCostsOnlyColour) {
     const std::string& note = scene.notes()[0];
     EXPECT_NE(note.find("texture 0"), std::string::npos) << note;
     EXPECT_EQ(note.find("image 0 lies outside") != std::string::npos, !allow_outside) << note;
-    EXPECT_EQ(note.find("--allow-outside") != std::string::npos, !allow_outside) << note;
+    EXPECT_EQ(note.find("setting allow-outside") != std::string::npos, !allow_outside) << note;
   }
 }
 
