@@ -15,9 +15,10 @@ void check_candidates(const Chosen& chosen, std::size_t candidates) {
 }
 
 void add_matrix(py::module_& m) {
-  py::class_<CoverageMatrix>(m, "CoverageMatrix",
-                             "What each candidate adds to each element, sparse: candidates are columns. An element is\n"
-                             "covered once the amounts of the chosen candidates add up to the goal.")
+  py::class_<CoverageMatrix>(
+      m, "CoverageMatrix",
+      "Sparse matrix of the amount that each candidate adds to each element: candidates are columns. An element "
+      "is\ncovered once the amounts of the chosen candidates add up to the goal.")
       .def(py::init([](std::vector<std::uint32_t> weights, double goal,
                        const std::vector<std::vector<std::uint32_t>>& amounts) {
              if (!(goal > 0))
@@ -34,7 +35,7 @@ void add_matrix(py::module_& m) {
              return matrix;
            }),
            py::arg("weights"), py::arg("goal"), py::arg("amounts"),
-           "From a weight for each element, and for each candidate its amount in each element.")
+           "weights: one for each element. amounts: for each candidate its amount in each element.")
       .def("__len__", &CoverageMatrix::candidates)
       .def(
           "column",
@@ -43,13 +44,13 @@ void add_matrix(py::module_& m) {
             check_candidates({k}, matrix.candidates());
             return view<std::uint32_t>(matrix.column(k), self, 2);
           },
-          py::arg("candidate"), "Pairs (element, amount) of what a candidate covers: (m, 2), read-only.")
+          py::arg("candidate"), "Pairs (element, amount) of a candidate: (m, 2), read-only.")
       .def_property_readonly(
           "weights",
           [](const py::object& self) {
             return view<std::uint32_t>(std::span(self.cast<const CoverageMatrix&>().weights()), self);
           },
-          "What each element counts in coverage: read-only.")
+          "Weight of each element in coverage: read-only.")
       .def_property_readonly("goal", &CoverageMatrix::goal, "The amount that covers an element.")
       .def(
           "coverage",
@@ -57,10 +58,10 @@ void add_matrix(py::module_& m) {
             check_candidates(chosen, matrix.candidates());
             return matrix.coverage(chosen);
           },
-          py::arg("chosen"), "The share of all weight that these candidates cover.");
+          py::arg("chosen"), "Share of all weight that these candidates cover.");
   py::class_<SampledCoverage>(m, "SampledCoverage",
-                              "What stations cover one by one of a sample of voxels: points add up, so that one pass\n"
-                              "over single stations answers which of them to take.")
+                              "Points of single stations in a sample of the voxels. Points add up, so one pass over "
+                              "single stations answers\nwhich of them to take.")
       .def("__len__", &SampledCoverage::size)
       .def_property_readonly("matrix", &SampledCoverage::matrix, py::return_value_policy::reference_internal,
                              "CoverageMatrix: candidates are the stations, elements the voxels, amounts points.")
@@ -69,8 +70,8 @@ void add_matrix(py::module_& m) {
           [](const py::object& self) {
             return view<std::uint32_t>(std::span(self.cast<const SampledCoverage&>().voxels()), self);
           },
-          "The voxel of each element, by the order of `Simulator.voxel_centres`, ascending: read-only.")
-      .def_property_readonly("cancelled", &SampledCoverage::cancelled, "The last stations are missing.")
+          "Voxel of each element, in the order of `Simulator.voxel_centres`, ascending: read-only.")
+      .def_property_readonly("cancelled", &SampledCoverage::cancelled, "Whether the last stations are missing.")
       .def(
           "coverage",
           [](const SampledCoverage& sampled, const std::optional<Chosen>& stations) {
@@ -78,7 +79,7 @@ void add_matrix(py::module_& m) {
             return stations ? sampled.coverage(*stations) : sampled.coverage();
           },
           py::arg("stations") = py::none(),
-          "(value, standard error) of equation 8 for a network of these; None: of all.");
+          "(value, standard error) of equation 8 for a network of these stations; None: of all.");
   m.def(
       "sample_coverage",
       [](Simulators& self, const std::vector<PlacedStation>& stations, std::uint64_t sample_voxels,
@@ -87,11 +88,12 @@ void add_matrix(py::module_& m) {
         return call.run([&] { return sample_coverage(self.simulator, stations, sample_voxels, call.progress()); });
       },
       py::arg("simulator"), py::arg("stations"), py::kw_only(), py::arg("sample_voxels") = 20'000,
-      py::arg("progress") = py::none(), "Traces stations one by one; those that are not 'ok' cover nothing.");
+      py::arg("progress") = py::none(), "Traces stations one by one. Those that are not 'ok' cover nothing.");
 }
 
 void add_graph(py::module_& m) {
-  py::class_<StationGraph>(m, "StationGraph", "How much each two candidates overlap, and which two exclude each other.")
+  py::class_<StationGraph>(m, "StationGraph",
+                           "Overlap of each pair of candidates, and the pairs that exclude each other.")
       .def(py::init([](const Doubles& overlaps, const std::vector<std::array<std::size_t, 2>>& excluded) {
              if (overlaps.ndim() != 2 || overlaps.shape(0) != overlaps.shape(1))
                throw Error(
@@ -107,7 +109,7 @@ void add_graph(py::module_& m) {
              return graph;
            }),
            py::arg("overlaps"), py::arg("excluded") = std::vector<std::array<std::size_t, 2>>{},
-           "From the overlap of each pair, (n, n) and symmetric, and the pairs that no network may have.")
+           "overlaps: of each pair, (n, n) and symmetric. excluded: pairs that no network may have.")
       .def("__len__", &StationGraph::size)
       .def_property_readonly(
           "overlaps",
@@ -115,7 +117,7 @@ void add_graph(py::module_& m) {
             const auto& graph = self.cast<const StationGraph&>();
             return view<float>(graph.overlaps(), self, std::max<std::size_t>(graph.size(), 1));
           },
-          "The overlap of each pair: (n, n), read-only.");
+          "Overlap of each pair: (n, n), read-only.");
   m.def(
       "overlap_graph",
       [](Simulators& self, const std::vector<PlacedStation>& stations, std::uint64_t sample_voxels,
@@ -128,25 +130,26 @@ void add_graph(py::module_& m) {
 }
 
 void add_finding(py::module_& m) {
-  py::class_<Candidates>(m, "Candidates", "Evenly spread allowed positions, and what stations on them cover.")
+  py::class_<Candidates>(m, "Candidates", "Evenly spread allowed positions, and the coverage of stations on them.")
       .def_property_readonly("stations", &Candidates::stations, "The positions, all 'ok'.")
       .def_property_readonly("coverage", &Candidates::coverage, py::return_value_policy::reference_internal,
                              "SampledCoverage of these stations, in that order.")
       .def_property_readonly("visible", &Candidates::visible,
-                             "What can be seen: (coverage, standard error) with a station on every candidate.")
-      .def_property_readonly("change", &Candidates::change, "By what share the last doubling changed that.")
+                             "Attainable coverage: (coverage, standard error) with a station on every candidate.")
+      .def_property_readonly("change", &Candidates::change, "Relative change of it by the last doubling.")
       .def_property_readonly("ended", &Candidates::ended,
-                             "Why there are no more: 'enough', 'all', 'most', 'time' or 'cancelled'.")
+                             "Why growth ended: 'enough', 'all', 'most', 'time' or 'cancelled'.")
       .def_property_readonly("spacing_m", &Candidates::spacing_m, "Typical distance between neighbours.")
       .def("__len__", [](const Candidates& found) { return found.stations().size(); });
   const auto options =
       Options<CandidateConfig>("find_candidates")
-          .add("first", &CandidateConfig::first, "How many to begin with; then twice as many, and so on.")
-          .add("most", &CandidateConfig::most, "And no more than this.")
-          .add("change", &CandidateConfig::change, "Enough once doubling changes what all capture by less, as a share.")
+          .add("first", &CandidateConfig::first, "Initial number; it is doubled until a limit holds.")
+          .add("most", &CandidateConfig::most, "Largest number.")
+          .add("change", &CandidateConfig::change,
+               "Stops once doubling changes their common coverage by less than this share.")
           .add("sample_voxels", &CandidateConfig::sample_voxels, "0: every voxel.")
-          .add("scanner", &CandidateConfig::scanner, "Which of the simulator's scanners stands on each.")
-          .add("max_seconds", &CandidateConfig::max_seconds, "Stop growing after so long; 0: no limit.");
+          .add("scanner", &CandidateConfig::scanner, "Scanner on each, an index into `Simulator.scanners`.")
+          .add("max_seconds", &CandidateConfig::max_seconds, "Time limit for growing; 0: none.");
   m.def(
       "find_candidates",
       [options](Simulators& self, const SearchArea& area, const ClashChecker& clash, py::object progress,
@@ -156,42 +159,40 @@ void add_finding(py::module_& m) {
         return call.run([&] { return find_candidates(self.simulator, area, clash, config, call.progress()); });
       },
       py::arg("simulator"), py::arg("area"), py::arg("clash"), py::kw_only(), py::arg("progress") = py::none(),
-      ("Allowed positions at the scanner's height, spread evenly, doubled in number until what all of them capture\n"
-       "together hardly changes. Raises Error invalid_argument where none is allowed." +
+      ("Allowed positions at the scanner's height, spread evenly. Their number doubles until their common "
+       "coverage\nhardly changes. Raises Error invalid_argument if none is allowed." +
        options.doc())
           .c_str());
 }
 
 Options<BoundConfig> bound_options(const char* name) {
   return Options<BoundConfig>(name)
-      .add("tolerance", &BoundConfig::tolerance, "How exactly the relaxation is solved, in coverage.")
-      .add("max_seconds", &BoundConfig::max_seconds, "For each relaxation; 0: no limit.")
-      .add("exact_seconds", &BoundConfig::exact_seconds, "For branch and bound; 0: greedy and swaps only.");
+      .add("tolerance", &BoundConfig::tolerance, "Accuracy of the relaxation, in coverage.")
+      .add("max_seconds", &BoundConfig::max_seconds, "Time limit of each relaxation; 0: none.")
+      .add("exact_seconds", &BoundConfig::exact_seconds, "Time for branch and bound; 0: greedy and swaps only.");
 }
 
 void add_bounds(py::module_& m) {
-  py::class_<CoverSolution>(m, "CoverSolution", "A network of candidates, and what is known of others.")
-      .def_readonly("chosen", &CoverSolution::chosen, "Existing candidates, then those chosen; empty: none was found.")
-      .def_readonly("coverage", &CoverSolution::coverage, "Of the chosen.")
-      .def_readonly("link", &CoverSolution::link, "The weakest link of the strongest spanning tree.")
+  py::class_<CoverSolution>(m, "CoverSolution", "A network of candidates, and bounds on others.")
+      .def_readonly("chosen", &CoverSolution::chosen, "Existing candidates, then the others; empty: none was found.")
+      .def_readonly("coverage", &CoverSolution::coverage, "Coverage of `chosen`.")
+      .def_readonly("link", &CoverSolution::link, "Weakest link of the maximum spanning tree.")
       .def_readonly("violation", &CoverSolution::violation,
-                    "How far it is from what is wanted: the share of the coverage that is short, and 0.2 for each\n"
-                    "missing link.")
+                    "Missing share of the wanted coverage, and 0.2 for each missing link; 0: feasible.")
       .def_readonly("bound", &CoverSolution::bound,
-                    "By `max_cover`: no network of as many candidates has more coverage. Proven.")
-      .def_readonly("relaxation", &CoverSolution::relaxation, "Coverage of fractions of candidates.")
-      .def_readonly("complete", &CoverSolution::complete, "The relaxation came to its tolerance in time.")
-      .def_readonly("half_bound", &CoverSolution::half_bound, "The bound of the first half of the candidates.")
+                    "From `max_cover`: a proven upper bound on the coverage of as many candidates.")
+      .def_readonly("relaxation", &CoverSolution::relaxation, "Coverage of a fractional choice.")
+      .def_readonly("complete", &CoverSolution::complete, "Whether the relaxation reached its tolerance in time.")
+      .def_readonly("half_bound", &CoverSolution::half_bound, "Bound for the first half of the candidates.")
       .def_readonly("spacing_term", &CoverSolution::spacing_term,
-                    "What positions between candidates can add, measured: how much more the bound of all is.")
-      .def_property_readonly("gap", &CoverSolution::gap,
-                             "How much more coverage a network may have, as a share of this one's.");
-  py::class_<StationsBound>(m, "StationsBound", "How many stations a wanted coverage takes.")
-      .def_readonly("possible", &StationsBound::possible, "Whether all candidates together have the coverage.")
-      .def_readonly("at_least", &StationsBound::at_least, "No fewer further candidates have it. Proven.")
+                    "Growth of the bound from that half to all: measures what positions between candidates can add.")
+      .def_property_readonly("gap", &CoverSolution::gap, "Possible gain in coverage, as a share of this network's.");
+  py::class_<StationsBound>(m, "StationsBound", "Bound on the number of stations for a wanted coverage.")
+      .def_readonly("possible", &StationsBound::possible, "Whether all candidates together reach the coverage.")
+      .def_readonly("at_least", &StationsBound::at_least, "Proven lower bound on the number of further candidates.")
       .def_readonly("relaxation", &StationsBound::relaxation, "The bound before it is rounded up.")
-      .def_readonly("complete", &StationsBound::complete, "The relaxation came to its tolerance in time.")
-      .def_readonly("chosen", &StationsBound::chosen, "A network that has it, existing candidates first.");
+      .def_readonly("complete", &StationsBound::complete, "Whether the relaxation reached its tolerance in time.")
+      .def_readonly("chosen", &StationsBound::chosen, "A network that reaches it, existing candidates first.");
   const auto of_coverage = bound_options("max_cover"), of_number = bound_options("min_cover");
   m.def(
       "max_cover",
@@ -205,10 +206,9 @@ void add_bounds(py::module_& m) {
       },
       py::arg("matrix"), py::arg("stations"), py::arg("existing") = Chosen{}, py::kw_only(),
       py::arg("graph") = py::none(), py::arg("link") = 0.0, py::arg("progress") = py::none(),
-      ("The most coverage of `stations` candidates besides the existing ones: a good network, and a bound that none\n"
-       "exceeds (docs/bounds.md). `link`: least overlap in `graph` of links that connect the network; 0: it need not "
-       "be\n"
-       "connected." +
+      ("The most coverage of `stations` candidates besides the existing ones: a good network, and a bound for "
+       "all\nothers (docs/bounds.md). `link`: least overlap in `graph` of the links that connect the network; 0: it "
+       "need not\nbe connected." +
        of_coverage.doc())
           .c_str());
   m.def(
@@ -222,7 +222,7 @@ void add_bounds(py::module_& m) {
       },
       py::arg("matrix"), py::arg("coverage"), py::arg("existing") = Chosen{}, py::kw_only(),
       py::arg("progress") = py::none(),
-      ("How many candidates a coverage takes at least. Raises Error invalid_argument unless 0 < coverage <= 1." +
+      ("Least number of candidates for a coverage. Raises Error invalid_argument unless 0 < coverage <= 1." +
        of_number.doc())
           .c_str());
 }
@@ -235,8 +235,8 @@ void add_choices(py::module_& m) {
         return greedy({.matrix = matrix, .existing = existing, .most = stations});
       },
       py::arg("matrix"), py::arg("stations"), py::arg("existing") = Chosen{},
-      "Takes the candidate that adds most coverage, again and again: existing and chosen candidates, in order. Fewer\n"
-      "than `stations` where none adds anything.");
+      "Adds the candidate with the largest gain in coverage, again and again. Returns existing, then "
+      "chosen\ncandidates in order; fewer than `stations` if none adds anything.");
   m.def(
       "improve_by_swaps",
       [](const CoverageMatrix& matrix, const Chosen& chosen, const Chosen& existing, py::object progress) {
@@ -250,7 +250,7 @@ void add_choices(py::module_& m) {
       },
       py::arg("matrix"), py::arg("chosen"), py::arg("existing") = Chosen{}, py::kw_only(),
       py::arg("progress") = py::none(),
-      "Replaces one chosen candidate by another for as long as coverage grows. Existing ones, the first, stay.");
+      "Replaces one chosen candidate by another while coverage grows. Existing ones, the first, stay.");
   m.def(
       "min_connected_cover",
       [](const CoverageMatrix& matrix, double coverage, const StationGraph& graph, double link, const Chosen& existing,
@@ -263,20 +263,20 @@ void add_choices(py::module_& m) {
       },
       py::arg("matrix"), py::arg("coverage"), py::arg("graph"), py::arg("link"), py::arg("existing") = Chosen{},
       py::kw_only(), py::arg("most") = py::none(), py::arg("progress") = py::none(),
-      "A network of few candidates with that coverage, connected by overlaps of `link`, by tabu search; of at most\n"
-      "`most` besides the existing ones. `violation` is 0 where it has both.");
+      "A network of few candidates with that coverage, connected by overlaps of `link`, by tabu search; of at "
+      "most\n`most` besides the existing ones. `violation` is 0 if it has both.");
 }
 
 void add_greedy(py::module_& m) {
-  py::class_<GreedyResult>(m, "GreedyResult", "What `greedy_network` chose.")
-      .def_readonly("stations", &GreedyResult::stations, "In the order of choosing: the first k are the choice for k.")
-      .def_readonly("coverage", &GreedyResult::coverage, "After each.")
-      .def_readonly("cancelled", &GreedyResult::cancelled, "Stopped before its end.");
+  py::class_<GreedyResult>(m, "GreedyResult", "Result of `greedy_network`.")
+      .def_readonly("stations", &GreedyResult::stations, "In the order of choice: the first k are the choice for k.")
+      .def_readonly("coverage", &GreedyResult::coverage, "Coverage after each.")
+      .def_readonly("cancelled", &GreedyResult::cancelled, "Whether it was stopped before its end.");
   const auto options =
       Options<GreedyConfig>("greedy_network")
           .add("candidates", &GreedyConfig::candidates, "Positions to choose from, spread evenly over the ground.")
           .add("sample_voxels", &GreedyConfig::sample_voxels, "0: every voxel.")
-          .add("existing", &GreedyConfig::existing, "Heads of stations that are there already.")
+          .add("existing", &GreedyConfig::existing, "Heads of existing stations.")
           .add("existing_setups", &GreedyConfig::existing_setups,
                "Their StationSetups, one each; none: upright, with the first scanner.");
   m.def(
@@ -290,25 +290,25 @@ void add_greedy(py::module_& m) {
       },
       py::arg("simulator"), py::arg("area"), py::arg("clash"), py::arg("stations"), py::kw_only(),
       py::arg("progress") = py::none(),
-      ("Takes the candidate that adds most coverage, again and again: a baseline, and a first network for\n"
-       "`plan(start=...)`." +
+      ("Adds the candidate with the largest gain in coverage, again and again: a baseline, and a first network "
+       "for\n`plan(start=...)`." +
        options.doc())
           .c_str());
 }
 
 void add_exact(py::module_& m) {
-  py::class_<ExactResult>(m, "ExactResult", "What `exact_network` chose.")
-      .def_readonly("stations", &ExactResult::stations, "Empty where no connected network was found.")
-      .def_readonly("choice", &ExactResult::choice, "The choice among candidates, and the most coverage that any has.")
-      .def_readonly("cancelled", &ExactResult::cancelled, "Stopped before its end.");
+  py::class_<ExactResult>(m, "ExactResult", "Result of `exact_network`.")
+      .def_readonly("stations", &ExactResult::stations, "Empty if no connected network was found.")
+      .def_readonly("choice", &ExactResult::choice, "The choice among candidates, and a bound on the coverage of any.")
+      .def_readonly("cancelled", &ExactResult::cancelled, "Whether it was stopped before its end.");
   const auto options =
       Options<ExactConfig>("exact_network")
           .add("candidates", &ExactConfig::candidates, "Positions to choose from, spread evenly over the ground.")
           .add("sample_voxels", &ExactConfig::sample_voxels, "0: every voxel.")
-          .add("link", &ExactConfig::link, "Least scan overlap of links that connect it; 0: none.")
+          .add("link", &ExactConfig::link, "Least scan overlap of the links that connect it; 0: none.")
           .add("apart_m", &ExactConfig::apart_m, "Least distance between heads.")
-          .add("max_seconds", &ExactConfig::max_seconds, "Of branch and bound.")
-          .add("existing", &ExactConfig::existing, "Heads of stations that are there already.");
+          .add("max_seconds", &ExactConfig::max_seconds, "Time for branch and bound.")
+          .add("existing", &ExactConfig::existing, "Heads of existing stations.");
   m.def(
       "exact_network",
       [options](Simulators& self, const SearchArea& area, const ClashChecker& clash, std::size_t stations,
@@ -320,7 +320,7 @@ void add_exact(py::module_& m) {
       },
       py::arg("simulator"), py::arg("area"), py::arg("clash"), py::arg("stations"), py::kw_only(),
       py::arg("progress") = py::none(),
-      ("The best network among candidates, as an integer program: without a gap the best there is among them." +
+      ("The best network among candidates, as an integer program; proven best among them if its gap is 0." +
        options.doc())
           .c_str());
 }

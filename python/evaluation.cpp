@@ -61,19 +61,19 @@ void add_registration(py::module_& m) {
         .add<double>(
             "rho_m", [](const RegistrationOptions& o) { return o.model.rho_m; },
             [](RegistrationOptions& o, double value) { o.model.rho_m = value; },
-            "Modelling error along the normal, one sigma, one and the same over a patch; metres.")
+            "Modelling error along the normal, one sigma, the same over a patch; metres.")
         .add<double>(
             "patch_m", [](const RegistrationOptions& o) { return o.model.patch_m; },
             [](RegistrationOptions& o, double value) { o.model.patch_m = value; },
-            "Side of such a patch, metres; planes count where surface is flat over half of it.")
+            "Side of such a patch, metres; planes count if the surface is flat over half of it.")
         .add("position_m", &RegistrationOptions::position_m, "Sigma of a head before registration, in each axis.")
         .add("heading_deg", &RegistrationOptions::heading, "Sigma of the heading before registration.")
         .add("tilt_deg", &RegistrationOptions::tilt, "Sigma of each tilt; 0: exactly level.")
-        .add("surfaces", &RegistrationOptions::surfaces, "What holds scans together: 'surveyed' surfaces or 'all'.");
+        .add("surfaces", &RegistrationOptions::surfaces, "Surfaces that scans register on: 'surveyed' or 'all'.");
   }();
   py::class_<RegistrationOptions> type(
       m, "RegistrationOptions",
-      ("What registration starts from, and how well scans have the surface (docs/registration.md)." + options.doc())
+      ("Prior of registration, and how accurately scans have the surface (docs/registration.md)." + options.doc())
           .c_str());
   type.def(py::init([options](const py::kwargs& given) {
         const RegistrationOptions made = options.read(given);
@@ -86,8 +86,8 @@ void add_registration(py::module_& m) {
 
   py::class_<RegistrationError> error(m, "RegistrationError", "Predicted error of a registered network, metres.");
   error.def_readonly("rms_m", &RegistrationError::rms_m, "Root mean square displacement over the covered surface.")
-      .def_readonly("worst_m", &RegistrationError::worst_m, "The same of the worst station.")
-      .def_readonly("worst_station", &RegistrationError::worst_station, "Which that is, from 0.")
+      .def_readonly("worst_m", &RegistrationError::worst_m, "The same for the worst station.")
+      .def_readonly("worst_station", &RegistrationError::worst_station, "Index of the worst station, from 0.")
       .def_property_readonly(
           "station_rms_m",
           [](const RegistrationError& error) {
@@ -96,7 +96,7 @@ void add_registration(py::module_& m) {
             const auto n = static_cast<py::ssize_t>(rms.size());
             return adopt<double>(std::move(rms), {n});
           },
-          "Per station, over the surface that it sees: (n,).")
+          "Error of each station over the surface that it sees: (n,).")
       .def_property_readonly(
           "head_covariance_m2",
           [](const RegistrationError& error) {
@@ -110,13 +110,12 @@ void add_registration(py::module_& m) {
 }
 
 void add_connectivity(py::module_& m) {
-  py::class_<Connectivity> connectivity(m, "Connectivity",
-                                        "Which stations hang together, and by what. Stations count from 0.");
-  connectivity.def_readonly("parts", &Connectivity::parts, "How many connected parts.")
-      .def_readonly("part", &Connectivity::part, "Per station the part that it is in.")
-      .def_readonly("bridges", &Connectivity::bridges, "Links without which a part falls in two.")
+  py::class_<Connectivity> connectivity(m, "Connectivity", "Connectivity of a network. Stations count from 0.");
+  connectivity.def_readonly("parts", &Connectivity::parts, "Number of connected components.")
+      .def_readonly("part", &Connectivity::part, "Component of each station.")
+      .def_readonly("bridges", &Connectivity::bridges, "Links without which a component falls in two.")
       .def_readonly("weakest_link", &Connectivity::weakest_link,
-                    "Of one part: the weakest link of the strongest spanning tree.")
+                    "Weakest link of the maximum spanning tree, if there is one component.")
       .def_readonly("weakest_overlap", &Connectivity::weakest_overlap, "Its overlap.");
   add_pickle(connectivity);
 }
@@ -128,51 +127,49 @@ void add_evaluations(py::module_& m) {
   add_connectivity(m);
   py::class_<Evaluation> type(
       m, "Evaluation",
-      "What a network of n stations leaves in the surveyed voxels: of every ray, or of a sample of the voxels, where\n"
-      "`coverage_se` and the like are standard errors. Measures that were not asked for raise Error.");
+      "Evaluation of a network of n stations in the surveyed voxels: by every ray, or on a sample of the voxels "
+      "with\nstandard errors (`coverage_se` and the like). Measures that were not requested raise Error.");
   type.def_property_readonly(
           "coverage", [](const Evaluation& e) { return value_of(e, "coverage"); },
           "Equation 8 of the paper, in [0, 1].")
       .def_property_readonly(
           "coverage_se", [](const Evaluation& e) { return error_of(e, "coverage"); },
-          "Standard error; 0 where all voxels were counted.")
+          "Standard error; 0 if all voxels were counted.")
       .def_property_readonly(
           "overlap", [](const Evaluation& e) { return value_of(e, "overlap"); },
           "Average weighted clustering coefficient (equation 13), in [0, 1].")
       .def_property_readonly(
           "overlap_se", [](const Evaluation& e) { return error_of(e, "overlap"); },
-          "Standard error; 0 where all voxels were counted.")
+          "Standard error; 0 if all voxels were counted.")
       .def_property_readonly(
           "overlap_matrix",
           [](const Evaluation& e) { return matrix_of(with_pairs(e, "overlap_matrix").overlap_matrix); },
-          "Voxels shared over voxels seen by either (equation 11): (n, n), 0 on the diagonal.")
+          "Voxels seen by both over voxels seen by either (equation 11): (n, n), 0 on the diagonal.")
       .def_property_readonly(
           "overlap_matrix_se",
           [](const Evaluation& e) {
             const bool none = with_pairs(e, "overlap_matrix_se").overlap_errors.size() == 0;
             return matrix_of(none ? PairMatrix(e.counts.stations) : e.overlap_errors);
           },
-          "Standard errors of that: (n, n).")
+          "Standard errors of `overlap_matrix`: (n, n).")
       .def_property_readonly(
           "scan_overlap_matrix",
           [](const Evaluation& e) { return matrix_of(scan_overlaps_of(e, "scan_overlap_matrix")); },
-          "Voxels of all surfaces, surveyed or not, that both stations see, over those of the smaller scan, as "
-          "practice\n"
-          "states it: (n, n), 0 on the diagonal.")
+          "Voxels of all surfaces, surveyed or not, that both stations see, over those of the smaller scan, as usual "
+          "in\npractice: (n, n), 0 on the diagonal.")
       .def(
           "connectivity",
           [](const Evaluation& e, double min_overlap) {
             return connectivity(with_pairs(e, "connectivity").overlap_matrix, min_overlap);
           },
           py::arg("min_overlap") = default_link_overlap,
-          "How stations hang together by the overlaps (equation 11) of at least `min_overlap`.")
+          "Connectivity by overlaps (equation 11) of at least `min_overlap`.")
       .def(
           "scan_connectivity",
           [](const Evaluation& e, double min_overlap) {
             return connectivity(scan_overlaps_of(e, "scan_connectivity"), min_overlap);
           },
-          py::arg("min_overlap") = default_link,
-          "How stations hang together by the scan overlaps of at least `min_overlap`.")
+          py::arg("min_overlap") = default_link, "Connectivity by scan overlaps of at least `min_overlap`.")
       .def_property_readonly(
           "registration",
           [](const Evaluation& e) {
@@ -186,27 +183,28 @@ void add_evaluations(py::module_& m) {
             const Estimate& mm = estimate_of(e, "registration", "registration=RegistrationOptions()");
             return Estimate{mm.value / 1e3, mm.standard_error / 1e3};
           },
-          "(rms_m, its standard error), of a sample less its bias.")
+          "(rms_m, its standard error); for a sample less its bias.")
       .def_property_readonly(
           "seen",
           [](const py::object& self) {
             return view<std::uint64_t>(std::span(with_pairs(self.cast<const Evaluation&>(), "seen").counts.seen), self);
           },
-          "Per station, voxels with a point of it: (n,), read-only.")
-      .def_property_readonly("shared", &shared_voxels,
-                             "Voxels with points of both: (n, n), on the diagonal those of the station itself.")
+          "Voxels with a point of each station: (n,), read-only.")
+      .def_property_readonly(
+          "shared", &shared_voxels,
+          "Voxels with points of both stations: (n, n); on the diagonal those of the station itself.")
       .def_property_readonly(
           "points",
           [](const py::object& self) {
             return view<std::uint64_t>(std::span(self.cast<const Evaluation&>().counts.points), self);
           },
-          "Per station, points on all meshes: (n,), read-only; (0,) where they were not counted.")
+          "Points of each station on all meshes: (n,), read-only; (0,) if they were not counted.")
       .def_property_readonly(
           "points_on_surveyed",
           [](const py::object& self) {
             return view<std::uint64_t>(std::span(self.cast<const Evaluation&>().counts.points_on_surveyed), self);
           },
-          "Per station, points that count: (n,), read-only.")
+          "Points of each station that count: (n,), read-only.")
       .def_property_readonly(
           "voxel_points",
           [](const py::object& self) {
@@ -219,24 +217,25 @@ void add_evaluations(py::module_& m) {
             return view<std::uint64_t>(std::span(field_of(self.cast<const Evaluation&>(), "voxel_stations").stations),
                                        self);
           },
-          "Bit i: station i has a point in the voxel: (N_v,), read-only.")
+          "Station masks: bit i is set if station i has a point in the voxel: (N_v,), read-only.")
       .def_readonly("voxels", &Evaluation::voxels, "Surveyed voxels of the site, N_v.")
       .def_property_readonly(
-          "sample", [](const Evaluation& e) { return e.counts.voxels; }, "Voxels that were counted; `voxels`: all.")
+          "sample", [](const Evaluation& e) { return e.counts.voxels; },
+          "Voxels that were counted; equals `voxels` without a sample.")
       .def_readonly("goal_density", &Evaluation::goal_density, "Points wanted in a voxel.")
       .def_property_readonly(
-          "stations", [](const Evaluation& e) { return e.counts.stations; }, "How many.")
+          "stations", [](const Evaluation& e) { return e.counts.stations; }, "Number of stations.")
       .def_property_readonly(
           "rays", [](const Evaluation& e) { return e.counts.rays; }, "Rays that were traced.")
       .def_property_readonly(
           "trace_seconds", [](const Evaluation& e) { return e.counts.trace_seconds; }, "Time spent tracing.")
       .def_property_readonly(
           "cancelled", [](const Evaluation& e) { return e.counts.cancelled; },
-          "Stopped before its end: it counts too little, and its measures raise `vantage.Error`.")
-      .def_readonly("visit", &Evaluation::visit, "The round on site without existing stations; None unless known.")
+          "Whether it was stopped: its counts are then too low, and its measures raise `vantage.Error`.")
+      .def_readonly("visit", &Evaluation::visit, "The round on site without existing stations; None if unknown.")
       .def_property_readonly(
-          "summary", [](const Evaluation& e) { return summary_text(e); }, "What it comes to, in plain words.")
-      .def("to_dict", &values_of, "Plain values by the names that `vantage evaluate --json` gives them.")
+          "summary", [](const Evaluation& e) { return summary_text(e); }, "Summary in plain words.")
+      .def("to_dict", &values_of, "Plain values by their names in `vantage evaluate --json`.")
       .def("__repr__", [](const Evaluation& e) {
         if (e.counts.cancelled) return std::string("<vantage.Evaluation: cancelled>");
         return "<vantage.Evaluation of " + std::to_string(e.counts.stations) + " stations: coverage " +

@@ -11,8 +11,9 @@ namespace {
 
 Options<MissedOptions> missed_options() {
   return Options<MissedOptions>("why_missed")
-      .add("candidates", &MissedOptions::candidates, "Positions, spread over the ground, that lines are drawn from.")
-      .add("flat_deg", &MissedOptions::flat, "Incidence from which on a surface counts as seen too flatly.");
+      .add("candidates", &MissedOptions::candidates,
+           "Number of positions, spread over the ground, from which lines are drawn.")
+      .add("flat_deg", &MissedOptions::flat, "Largest incidence of a surface that is not seen too flatly.");
 }
 
 std::vector<std::string> reasons() {
@@ -34,31 +35,31 @@ std::map<std::string, std::map<std::string, double>> shares_of(const MissedVoxel
 }  // namespace
 
 void add_missed(py::module_& m) {
-  py::class_<MissedVoxels> type(m, "MissedVoxels", "What became of surveyed voxels, or of a sample of many.");
+  py::class_<MissedVoxels> type(m, "MissedVoxels", "Status of surveyed voxels, or of a sample of them.");
   type.def_property_readonly(
           "voxels",
           [](const py::object& self) {
             return view<std::uint32_t>(std::span(self.cast<const MissedVoxels&>().ranks), self);
           },
-          "Which voxels, in the order of `Simulator.voxel_centres`: (k,), ascending, read-only.")
+          "Voxel indices, in the order of `Simulator.voxel_centres`: (k,), ascending, read-only.")
       .def_property_readonly(
           "points",
           [](const py::object& self) {
             return view<std::uint32_t>(std::span(self.cast<const MissedVoxels&>().points), self);
           },
-          "Points that the network left in each: (k,), read-only.")
+          "Points of the network in each: (k,), read-only.")
       .def_property_readonly(
           "why",
           [](const py::object& self) {
             return view<std::uint8_t>(std::span(self.cast<const MissedVoxels&>().why), self);
           },
-          "What became of each, as an index into `reasons`: (k,), read-only.")
+          "Status of each, an index into `reasons`: (k,), read-only.")
       .def_property_readonly(
           "reasons", [](const MissedVoxels&) { return reasons(); },
           "'captured', 'hidden', 'far', 'flat', 'sparse' and 'not_chosen', in the order of the numbers of `why`.")
       .def_property_readonly("shares", &shares_of,
-                             "The share of its voxels by reason, for each node by its name; '': the whole site.")
-      .def_readonly("candidates", &MissedVoxels::candidates, "Positions that lines were drawn from.");
+                             "Share of voxels by reason, for each node by its name; '': the whole site.")
+      .def_readonly("candidates", &MissedVoxels::candidates, "Number of positions from which lines were drawn.");
   add_pickle(type);
   const auto options = missed_options();
   m.def(
@@ -75,9 +76,9 @@ void add_missed(py::module_& m) {
       },
       py::arg("simulator"), py::arg("area"), py::arg("clash"), py::arg("evaluation"), py::kw_only(),
       py::arg("progress") = py::none(),
-      ("Why voxels are not captured: what no allowed position can help, and what other stations would have captured.\n"
-       "Looks at 50 000 voxels, or at all if there are fewer. evaluation: with field=True. Empty if it was stopped.\n"
-       "Raises Error invalid_argument." +
+      ("Why voxels are not captured: those beyond any allowed position, and those that other stations would "
+       "have\ncaptured. Judges at most 50 000 voxels. evaluation: with field=True. Empty if it was stopped.\nRaises "
+       "Error invalid_argument." +
        options.doc())
           .c_str());
 }

@@ -10,11 +10,9 @@ namespace vantage::python {
 void add_errors(py::module_& m) {
   static PyObject* error = PyErr_NewExceptionWithDoc(
       "vantage.Error",
-      "What vantage raises: str(error) says what, where and what to do.\n\n"
-      "Attributes:\n"
-      "    code: 'invalid_argument', 'io', 'malformed_file', 'no_suitable_device', 'out_of_memory' or\n"
-      "        'device_failure'.\n"
-      "    details: a tuple of further lines, as why each device was refused.",
+      "Error of vantage: str(error) says what is wrong, where, and what to do.\n\nAttributes:\n    code: "
+      "'invalid_argument', 'io', 'malformed_file', 'no_suitable_device', 'out_of_memory' or\n        "
+      "'device_failure'.\n    details: a tuple of further lines, e.g. why each device was refused.",
       PyExc_RuntimeError, nullptr);
   m.add_object("Error", error);
   py::register_exception_translator([](std::exception_ptr thrown) {

@@ -10,31 +10,32 @@ namespace {
 
 Options<OnSiteOptions> on_site_options() {
   return Options<OnSiteOptions>("OnSiteOptions")
-      .add("set_up_min", &OnSiteOptions::set_up_min, "Minutes at each station besides the scan itself.")
-      .add("walking_m_per_s", &OnSiteOptions::walking_m_per_s, "With scanner and tripod in hand.")
-      .add("detour", &OnSiteOptions::detour, "Length over straight line of ways that the search area does not connect.")
+      .add("set_up_min", &OnSiteOptions::set_up_min, "Minutes at each station besides the scan.")
+      .add("walking_m_per_s", &OnSiteOptions::walking_m_per_s, "Walking speed with scanner and tripod in hand.")
+      .add("detour", &OnSiteOptions::detour,
+           "Length over straight line of paths that the search area does not connect.")
       .add("entrance", &OnSiteOptions::entrance,
-           "Ground (x, y, z) where one enters and leaves; None: at the first station.");
+           "Ground (x, y, z) where people enter and leave; None: at the first station.");
 }
 
 }  // namespace
 
 void add_on_site(py::module_& m) {
   const auto options = on_site_options();
-  py::class_<OnSiteOptions> type(m, "OnSiteOptions", ("What a person with a tripod takes." + options.doc()).c_str());
+  py::class_<OnSiteOptions> type(m, "OnSiteOptions", ("Times of a person with a tripod." + options.doc()).c_str());
   type.def(py::init([options](const py::kwargs& given) { return options.read(given); }))
       .def("__repr__", [options](const OnSiteOptions& o) { return options.repr(o); });
   options.attributes(type);
   options.pickles(type);
 
   py::class_<Visit> visit(m, "Visit", "One round: in at the entrance, to every station, and back out.");
-  visit.def_readonly("order", &Visit::order, "Of the stations, by index; those that cannot be used are left out.")
-      .def_readonly("legs_m", &Visit::legs_m, "The way to each in that order, then back out, metres.")
+  visit.def_readonly("order", &Visit::order, "Indices of the stations; unusable ones are left out.")
+      .def_readonly("legs_m", &Visit::legs_m, "Path to each in that order, then back out, metres.")
       .def_readonly("walk_m", &Visit::walk_m, "All legs together.")
       .def_readonly("scan_min", &Visit::scan_min, "Minutes of scanning.")
       .def_readonly("set_up_min", &Visit::set_up_min, "Minutes of setting up.")
       .def_readonly("walk_min", &Visit::walk_min, "Minutes of walking.")
-      .def_readonly("minutes", &Visit::minutes, "All three together.")
+      .def_readonly("minutes", &Visit::minutes, "Scan, set-up and walking together.")
       .def_readonly("unconnected", &Visit::unconnected, "Legs that the search area does not connect.")
       .def("__repr__", [](const Visit& v) {
         return "<vantage.Visit of " + std::to_string(v.order.size()) + " stations, " +
@@ -42,19 +43,20 @@ void add_on_site(py::module_& m) {
       });
   add_pickle(visit);
 
-  py::class_<OnSite>(m, "OnSite", "Ways over a site, and the time of a round.")
+  py::class_<OnSite>(m, "OnSite", "Paths over a site, and the time of a round.")
       .def(py::init([](const SearchArea& area, const ClashChecker& clash, const std::vector<Scanner>& scanners,
                        const OnSiteOptions& how) {
              const py::gil_scoped_release unlocked;
              return OnSite(area, clash, scanners, how);
            }),
            py::arg("area"), py::arg("clash"), py::arg("scanners"), py::arg("options") = OnSiteOptions{},
-           "scanners: a list, as `Simulator.scanners`. Raises Error invalid_argument.")
+           "scanners: a list, in the order of `Simulator.scanners`. Raises Error invalid_argument.")
       .def("way_m", &OnSite::way_m, py::arg("start"), py::arg("end"),
-           "Metres from one ground point (x, y, z) to another; None where the search area does not connect them.")
+           "Metres from one ground point (x, y, z) to another; None if the search area does not connect them.")
       .def(
           "visit", [](const OnSite& site, const py::object& stations) { return site.visit(stations_of(stations)); },
-          py::arg("stations"), "A good order of the stations, and what the round takes. stations: as `evaluate`.");
+          py::arg("stations"),
+          "A good order of the stations, and the time of the round. stations: in a form that `evaluate` accepts.");
 }
 
 }  // namespace vantage::python

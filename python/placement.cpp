@@ -33,13 +33,13 @@ Options<WalkableOptions> walkable_options() {
     return to;
   };
   return Options<WalkableOptions>("SearchArea")
-      .add("max_slope_deg", &WalkableOptions::max_slope, "Steepest ground that is walked on.")
-      .add("headroom_m", &WalkableOptions::headroom_m, "Clear height needed above it.")
+      .add("max_slope_deg", &WalkableOptions::max_slope, "Steepest walkable ground.")
+      .add("headroom_m", &WalkableOptions::headroom_m, "Clear height above walkable ground.")
       .add("min_area_m2", &WalkableOptions::min_area_m2, "Smaller connected parts are left out.")
-      .add("passage_width_m", &WalkableOptions::passage_width_m, "Of the narrowest opening that a person passes.")
-      .add("passage_height_m", &WalkableOptions::passage_height_m, "Of the lowest.")
-      .add("climb_m", &WalkableOptions::climb_m, "The highest step that a person takes.")
-      .add("enter", &WalkableOptions::enter, "Where one enters, (x, y, z); None: found.")
+      .add("passage_width_m", &WalkableOptions::passage_width_m, "Width of the narrowest opening that a person passes.")
+      .add("passage_height_m", &WalkableOptions::passage_height_m, "Height of the lowest opening that a person passes.")
+      .add("climb_m", &WalkableOptions::climb_m, "Highest step that a person takes.")
+      .add("enter", &WalkableOptions::enter, "Entrance of the site, (x, y, z); None: found automatically.")
       .add("levels", &WalkableOptions::levels, "Lowest and highest height of ground; None: any.")
       .add<std::vector<Rings>>(
           "within", [regions](const WalkableOptions& o) { return regions(o.within); },
@@ -58,18 +58,18 @@ py::array_t<double> rotation_of(const StationSetup& setup) {
 }
 
 void add_setups(py::module_& m) {
-  const auto options = Options<StationSetup>("StationSetup")
-                           .add("heading_deg", &StationSetup::heading, "About up, from +X towards +Y.")
-                           .add("tilt_deg", &StationSetup::tilt,
-                                "How far the scanner's axis leans from straight up towards the heading.")
-                           .add("scanner", &StationSetup::scanner, "Index into `Simulator.scanners`.");
+  const auto options =
+      Options<StationSetup>("StationSetup")
+          .add("heading_deg", &StationSetup::heading, "Turn about up, from +X towards +Y.")
+          .add("tilt_deg", &StationSetup::tilt, "Angle of the scanner's axis from straight up towards the heading.")
+          .add("scanner", &StationSetup::scanner, "Index into `Simulator.scanners`.");
   py::class_<StationSetup> setup(m, "StationSetup",
-                                 ("How a scanner is set up at a station: which one, and how it is turned. At a tilt of "
-                                  "90 degrees the\nhead lies, at 180 it hangs." +
+                                 ("Setup of a scanner at a station: which one, and how it is turned. At a tilt of 90 "
+                                  "degrees the\nhead lies, at 180 it hangs." +
                                   options.doc())
                                      .c_str());
   setup.def(py::init([options](const py::kwargs& given) { return options.read(given); }))
-      .def_property_readonly("turned", &StationSetup::turned, "Whether it does not stand as usual.")
+      .def_property_readonly("turned", &StationSetup::turned, "Whether it is turned or tilted.")
       .def("survey_from_scanner", &rotation_of,
            "Rz(heading) Ry(tilt), from the scanner's frame to the survey's: (3, 3). Quarter turns are exact.")
       .def("__eq__", [](const StationSetup& self, const StationSetup& other) { return self == other; })
@@ -77,17 +77,16 @@ void add_setups(py::module_& m) {
   setup.attr("__hash__") = py::none();
   options.attributes(setup);
   options.pickles(setup);
-  py::class_<Station> station(m, "Station", "A scanner's head, and how it is set up there.");
+  py::class_<Station> station(m, "Station", "A scanner's head, and its setup there.");
   station
-      .def(
-          py::init([](const Vec3& position, const StationSetup& how, bool on) {
-            return Station{.position = position, .active = on, .setup = how};
-          }),
-          py::arg("position"), py::arg("setup") = StationSetup{}, py::arg("active") = true,
-          "position: (x, y, z), survey frame, metres. active: whether it is simulated; one that is not keeps its place "
-          "in a\nnetwork.")
+      .def(py::init([](const Vec3& position, const StationSetup& how, bool on) {
+             return Station{.position = position, .active = on, .setup = how};
+           }),
+           py::arg("position"), py::arg("setup") = StationSetup{}, py::arg("active") = true,
+           "position: (x, y, z), survey frame, metres. active: whether it is simulated; an inactive one keeps its "
+           "place in\na network.")
       .def_readwrite("position", &Station::position, "The head (x, y, z), survey frame, metres.")
-      .def_readwrite("setup", &Station::setup, "How it is set up.")
+      .def_readwrite("setup", &Station::setup, "Setup of the scanner.")
       .def_readwrite("active", &Station::active, "Whether it is simulated.")
       .def("__repr__", [](const Station& s) {
         return "<vantage.Station at " + std::string(py::repr(py::cast(s.position))) +
@@ -98,16 +97,16 @@ void add_setups(py::module_& m) {
 }
 
 void add_stations(py::module_& m) {
-  py::class_<PlacedStation> placed(m, "PlacedStation", "A station, and what became of it.");
-  placed.def_readonly("uv", &PlacedStation::uv, "On the search area.")
+  py::class_<PlacedStation> placed(m, "PlacedStation", "A station, and its status.");
+  placed.def_readonly("uv", &PlacedStation::uv, "Point of the search area.")
       .def_readonly("position", &PlacedStation::position, "The scanner's head (x, y, z), survey frame, metres.")
-      .def_readonly("ground", &PlacedStation::ground, "Where the tripod stands, survey frame, metres.")
+      .def_readonly("ground", &PlacedStation::ground, "Ground below the tripod, survey frame, metres.")
       .def_property_readonly(
           "status", [](const PlacedStation& s) { return to_string(s.status); },
           "'ok', 'hole', 'clash', 'inside', 'off_ground' or 'outside'.")
-      .def_readonly("kept", &PlacedStation::kept, "Was there before the plan.")
-      .def_readonly("setup", &PlacedStation::setup, "How it is set up.")
-      .def_property_readonly("active", &active, "Whether it adds to what its network measures.")
+      .def_readonly("kept", &PlacedStation::kept, "Whether it is an existing station.")
+      .def_readonly("setup", &PlacedStation::setup, "Setup of the scanner.")
+      .def_property_readonly("active", &active, "Whether it adds to the measures of its network.")
       .def("__repr__", [](const PlacedStation& s) {
         return "<vantage.PlacedStation at " + std::string(py::repr(py::cast(s.position))) + ", " + to_string(s.status) +
                ">";
@@ -121,10 +120,9 @@ void add_stations(py::module_& m) {
 void add_search_area(py::module_& m) {
   const auto options = walkable_options();
   py::class_<SearchArea>(m, "SearchArea",
-                         ("Where a scanner may stand: maps (u, v) to the ground (section 4.2 of the paper). Made of "
-                          "what the scene marks, or\n"
-                          "else of the ground that a person with a tripod gets to.\n"
-                          "Raises Error invalid_argument: nothing to stand on, or an option out of its range." +
+                         ("The search area: maps (u, v) to the ground (section 4.2 of the paper). Made of the scene's "
+                          "marked area, else\nof the ground that a person with a tripod can reach.\nRaises Error "
+                          "invalid_argument: nothing to stand on, or an option out of its range." +
                           options.doc())
                              .c_str())
       .def(py::init([options](const Scene& scene, const py::kwargs& given) {
@@ -136,7 +134,7 @@ void add_search_area(py::module_& m) {
       .def_property_readonly("uv_min", &SearchArea::uv_min, "Lowest (u, v).")
       .def_property_readonly("uv_max", &SearchArea::uv_max, "Highest (u, v).")
       .def_property_readonly("derived", &SearchArea::derived, "Whether it was made from walkable surfaces.")
-      .def_property_readonly("description", &SearchArea::description, "Where it comes from, a sentence.")
+      .def_property_readonly("description", &SearchArea::description, "Its origin, a sentence.")
       .def_property_readonly(
           "positions",
           [](const py::object& self) {
@@ -183,8 +181,8 @@ void add_search_area(py::module_& m) {
 void add_clash(py::module_& m) {
   const auto options = Options<SecurityVolume>("ClashChecker")
                            .add("lower_m", &SecurityVolume::lower_m, "Height of the lower sphere's centre.")
-                           .add("upper_m", &SecurityVolume::upper_m, "Of the upper one's.")
-                           .add("radius_m", &SecurityVolume::radius_m, "Of both; 0 switches the check off.");
+                           .add("upper_m", &SecurityVolume::upper_m, "Height of the upper sphere's centre.")
+                           .add("radius_m", &SecurityVolume::radius_m, "Radius of both; 0 switches the check off.");
   py::class_<ClashChecker>(
       m, "ClashChecker",
       ("The security volume of section 4.3 of the paper, two spheres above the ground, against all meshes of a scene.\n"
@@ -205,8 +203,8 @@ void add_clash(py::module_& m) {
             });
           },
           py::arg("grounds"), py::arg("height_m") = py::none(),
-          "Whether something stands within the volume above each ground of (n, 3), survey frame, metres: (n,). With\n"
-          "height_m, of the head above the ground, mast and head are kept clear too.")
+          "Whether something is within the volume above each ground of (n, 3), survey frame, metres: (n,). "
+          "With\nheight_m, that of the head above the ground, mast and head are kept clear too.")
       .def("sees", &ClashChecker::sees, py::arg("a"), py::arg("b"),
            "Whether nothing stands between two points (x, y, z), survey frame.")
       .def(
@@ -228,7 +226,7 @@ void add_clash(py::module_& m) {
         return placed;
       },
       py::arg("area"), py::arg("clash"), py::arg("height_m"), py::arg("heads"),
-      "Stations by their heads (n, 3), survey frame, metres, or `Station`s, checked as those of a search are.");
+      "Stations by their heads (n, 3), survey frame, metres, or `Station`s, checked like those of a search.");
 }
 
 void add_ground(py::module_& m) {
@@ -240,9 +238,8 @@ void add_ground(py::module_& m) {
         return found.changes ? with_weights(scene, found.weights) : scene;
       },
       py::arg("scene"), py::arg("area"),
-      "The scene as the program evaluates it: where nothing says what is surveyed, ground that stations stand on "
-      "weighs\n"
-      "less, so that it makes a third of coverage at most. Otherwise the same scene.");
+      "The scene with the program's weights: if nothing marks the surveyed surface, ground to stand on weighs less, "
+      "so\nthat it has at most a third of coverage. Otherwise the same scene.");
 }
 
 }  // namespace

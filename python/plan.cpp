@@ -59,28 +59,28 @@ py::array_t<double> scaled_front(const Watched& now) {
 
 Options<PlanConfig> plan_options() {
   return Options<PlanConfig>("plan")
-      .add("population", &PlanConfig::population,
-           "0: 10 with one objective, 20 where the number is searched, else 100.")
-      .add("iterations", &PlanConfig::iterations, "Of `population` evaluations each; 0: 100.")
+      .add("population", &PlanConfig::population, "0: 10 with one objective, 20 if the number is searched, else 100.")
+      .add("iterations", &PlanConfig::iterations, "Number of iterations, of `population` evaluations each; 0: 100.")
       .add("sigma0", &PlanConfig::sigma0, "Initial step, as a share of the range.")
       .add("scheme", &PlanConfig::scheme, "'steady-state' or 'generational'.")
-      .add("batch", &PlanConfig::batch, "Offspring at once in the steady state; 0: chosen by the engine.")
-      .add("exact", &PlanConfig::exact, "Search with every ray, the dearest way.")
-      .add("sample_voxels", &PlanConfig::sample_voxels, "Search with so many voxels; 0: chosen by the problem.")
+      .add("batch", &PlanConfig::batch, "Offspring at once in the steady state; 0: depends on the engine.")
+      .add("exact", &PlanConfig::exact, "Search with every ray, the slowest way.")
+      .add("sample_voxels", &PlanConfig::sample_voxels, "Search with this many voxels; 0: depends on the problem.")
       .add("renew_iterations", &PlanConfig::renew_iterations,
-           "Draw other voxels every so many iterations; 0: never; None: chosen by the problem.")
+           "Redraw the voxels every N iterations; 0: never; None: depends on the problem.")
       .add("start", &PlanConfig::start, "Heads (x, y, z) of an initial network; empty: random.")
-      .add("redraws", &PlanConfig::redraws, "How often stations in holes or clashes are drawn again.")
+      .add("redraws", &PlanConfig::redraws, "Attempts to redraw stations in holes or clashes.")
       .add("max_seconds", &PlanConfig::max_seconds, "Time limit of the whole call; 0: none.")
-      .add("target_hypervolume", &PlanConfig::target_hypervolume, "Stop there; None: never.")
-      .add("stagnation_iterations", &PlanConfig::stagnation_iterations, "Stop after so many without growth; 0: never.")
-      .add("seed", &PlanConfig::seed, "Of everything that is drawn; None: the simulator's.")
+      .add("target_hypervolume", &PlanConfig::target_hypervolume, "Stop at this hypervolume; None: never.")
+      .add("stagnation_iterations", &PlanConfig::stagnation_iterations,
+           "Stop after this many iterations without growth; 0: never.")
+      .add("seed", &PlanConfig::seed, "Seed of all random numbers; None: the simulator's.")
       .add<std::filesystem::path>(
           "checkpoint", [](const PlanConfig& c) { return c.checkpoint.string(); },
           [](PlanConfig& c, std::filesystem::path file) { c.checkpoint = std::move(file); },
-          "File to write every so often and when the search ends; '': none.")
-      .add("checkpoint_seconds", &PlanConfig::checkpoint_seconds, "How often.")
-      .add("resume", &PlanConfig::resume, "Go on from the checkpoint; from the start where there is none yet.");
+          "File to write regularly and when the search ends; '': none.")
+      .add("checkpoint_seconds", &PlanConfig::checkpoint_seconds, "Interval between checkpoints.")
+      .add("resume", &PlanConfig::resume, "Continue from the checkpoint; begin anew if there is none.");
 }
 
 std::shared_ptr<Plan> plan_survey(Simulators& simulators, const SearchArea& area, const ClashChecker& clash,
@@ -112,7 +112,8 @@ std::shared_ptr<Plan> plan_site(const std::shared_ptr<GuardedSite>& guarded, con
   read_settings(plan_settings(), config, given);
   const bool whole = !problem.is_none() && !named;
   if (whole && asked > 0)
-    throw py::type_error("Site.plan: a problem says all that is asked; give it or settings of a question");
+    throw py::type_error(
+        "Site.plan: a problem contains the whole question; give either a problem or settings of a question");
   const std::optional<SurveyProblem> own = whole ? std::optional(problem.cast<SurveyProblem>()) : std::nullopt;
   LongCall call(std::move(progress));
   PlanResult result = call.run([&] {
@@ -127,34 +128,35 @@ std::shared_ptr<Plan> plan_site(const std::shared_ptr<GuardedSite>& guarded, con
 }
 
 void add_progress(py::module_& m) {
-  py::class_<Watched>(m, "PlanProgress", "How far a search is.")
-      .def_readonly("phase", &Watched::phase, "'look' (at what can be seen), 'choose', 'search' or 'confirm'.")
-      .def_readonly("iteration", &Watched::iteration, "Of `iterations`.")
-      .def_readonly("iterations", &Watched::iterations, "As asked for.")
+  py::class_<Watched>(m, "PlanProgress", "Progress of a search.")
+      .def_readonly("phase", &Watched::phase, "'look' (at attainable coverage), 'choose', 'search' or 'confirm'.")
+      .def_readonly("iteration", &Watched::iteration, "Number of the iteration, out of `iterations`.")
+      .def_readonly("iterations", &Watched::iterations, "The requested number.")
       .def_readonly("evaluations", &Watched::evaluations, "Networks that were evaluated.")
-      .def_readonly("evaluations_per_second", &Watched::evaluations_per_second, "How fast.")
-      .def_readonly("hypervolume", &Watched::hypervolume, "Of the front as it is now.")
-      .def_readonly("seconds_left", &Watched::seconds_left, "Below 0: not known yet.")
+      .def_readonly("evaluations_per_second", &Watched::evaluations_per_second, "Speed of evaluation.")
+      .def_readonly("hypervolume", &Watched::hypervolume, "Hypervolume of the present front.")
+      .def_readonly("seconds_left", &Watched::seconds_left, "Time left; negative: not known yet.")
       .def_readonly("whole_seconds_left", &Watched::whole_seconds_left,
-                    "What all the rest will take, told once by searches for the fewest stations; else None.")
-      .def_readonly("visible", &Watched::visible, "What can be seen, told once, when it is known; else None.")
-      .def_property_readonly("front", &scaled_front,
-                             "What the optimiser minimises of each network of the front, 0 best: (k, objectives).");
+                    "Time of all the rest, given once by searches for the fewest stations; else None.")
+      .def_readonly("visible", &Watched::visible, "Attainable coverage, given once, when it is known; else None.")
+      .def_property_readonly(
+          "front", &scaled_front,
+          "Values that the optimiser minimises for each network of the front, 0 best: (k, objectives).");
 }
 
 void add_entries(py::module_& m) {
-  py::class_<MeasuredValue>(m, "MeasuredValue", "What became known of one measure of a network.")
-      .def_readonly("searched", &MeasuredValue::searched, "As the search saw it; NaN where it kept none.")
-      .def_readonly("standard_error", &MeasuredValue::standard_error, "Of `searched`; 0 when exact.")
-      .def_readonly("exact", &MeasuredValue::exact, "By every ray; NaN unless confirmed.")
-      .def_property_readonly("best_known", &MeasuredValue::best_known, "The exact value where there is one.");
+  py::class_<MeasuredValue>(m, "MeasuredValue", "Known values of one measure of a network.")
+      .def_readonly("searched", &MeasuredValue::searched, "Value in the search; NaN if it kept none.")
+      .def_readonly("standard_error", &MeasuredValue::standard_error, "Standard error of `searched`; 0 when exact.")
+      .def_readonly("exact", &MeasuredValue::exact, "Value by every ray; NaN unless confirmed.")
+      .def_property_readonly("best_known", &MeasuredValue::best_known, "The exact value, if there is one.");
   py::class_<Entry> type(m, "PlanEntry", "One network of a front.");
   type.def_property_readonly(
           "x",
           [](const Entry& e) {
             return py::array_t<double>(static_cast<py::ssize_t>(e.get().x.size()), e.get().x.data());
           },
-          "Decision vector: u1, v1, ..., uN, vN, then heights, scanners and alpha where they are searched.")
+          "Decision vector: u1, v1, ..., uN, vN, then heights, scanners and alpha if they are searched.")
       .def_property_readonly(
           "stations", [](const Entry& e) { return e.get().stations; }, "Its stations.")
       .def_property_readonly(
@@ -181,9 +183,10 @@ void add_entries(py::module_& m) {
       .def_property_readonly(
           "confirmed", [](const Entry& e) { return e.get().exact; }, "Whether the exact values were computed.")
       .def_property_readonly(
-          "dominated", [](const Entry& e) { return e.get().dominated; }, "By another one, once every ray is traced.")
+          "dominated", [](const Entry& e) { return e.get().dominated; },
+          "Whether another one is better, once every ray is traced.")
       .def_property_readonly(
-          "missed", [](const Entry& e) { return e.get().violation; }, "By how much requirements are missed; 0: kept.")
+          "missed", [](const Entry& e) { return e.get().violation; }, "Violation of requirements; 0: all are met.")
       .def_property_readonly(
           "overlap_matrix", [](const Entry& e) { return matrix_of(e.get().overlap_matrix); },
           "Equation 11 by every ray: (n, n); (0, 0) unless confirmed.")
@@ -194,7 +197,7 @@ void add_entries(py::module_& m) {
           "registration", [](const Entry& e) { return e.get().registration; },
           "Predicted error by every ray; None unless confirmed and a measure needs it.")
       .def_property_readonly(
-          "visit", [](const Entry& e) { return e.get().visit; }, "The round on site; None unless it was worked out.")
+          "visit", [](const Entry& e) { return e.get().visit; }, "The round on site; None if it was not computed.")
       .def("__repr__", [](const Entry& e) {
         std::string text;
         for (const auto& [name, value] : e.get().values)
@@ -238,7 +241,7 @@ void write_plan_report(const Plan& plan, const std::filesystem::path& file, cons
 }
 
 void add_results(py::module_& m) {
-  py::class_<Plan, std::shared_ptr<Plan>> type(m, "PlanResult", "What a search found.");
+  py::class_<Plan, std::shared_ptr<Plan>> type(m, "PlanResult", "Result of a search.");
   type.def_property_readonly(
           "front",
           [](const std::shared_ptr<Plan>& plan) {
@@ -246,18 +249,18 @@ void add_results(py::module_& m) {
             for (std::size_t k = 0; k < plan->result.front.size(); ++k) entries.push_back({plan, k});
             return entries;
           },
-          "Its networks, by the objectives in order, best first; one where there is one objective.")
+          "Its networks, sorted by the objectives in order, best first; one if there is one objective.")
       .def_property_readonly(
           "answer",
           [](const std::shared_ptr<Plan>& plan) {
             return Entry{plan, answer(plan->result)};
           },
-          "The network that is the answer: nearest to the best values of those that keep all requirements.")
+          "The answer: the network nearest to the best values among those that meet all requirements.")
       .def_property_readonly(
-          "met", [](const Plan& plan) { return met(plan.result); }, "Whether the answer keeps all requirements.")
+          "met", [](const Plan& plan) { return met(plan.result); }, "Whether the answer meets all requirements.")
       .def_property_readonly(
           "what_would_help", [](const Plan& plan) { return what_would_help(plan.result); },
-          "Where it does not: a sentence each.")
+          "Advice if it does not, a sentence each.")
       .def_property_readonly(
           "measures",
           [](const Plan& plan) {
@@ -265,32 +268,33 @@ void add_results(py::module_& m) {
             for (const Objective& measure : plan.result.measures) names.push_back(measure.name);
             return names;
           },
-          "Names of all that is told of a network.")
+          "Names of the measures of every network.")
       .def_property_readonly(
           "scanners", [](const Plan& plan) { return plan.result.scanners; },
-          "Copies of the scanners that `StationSetup.scanner` counts from 0.")
+          "Copies of the scanners, indexed by `StationSetup.scanner`.")
       .def_property_readonly(
           "history", &history_of,
-          "A dict an iteration: iteration, evaluations, hypervolume, seconds, front (k, objectives).")
+          "A dict for each iteration: iteration, evaluations, hypervolume, seconds, front (k, objectives).")
       .def_property_readonly(
-          "hypervolume", [](const Plan& plan) { return plan.result.hypervolume; }, "As the search saw it.")
+          "hypervolume", [](const Plan& plan) { return plan.result.hypervolume; }, "Hypervolume of the search.")
       .def_property_readonly(
-          "exact_hypervolume", [](const Plan& plan) { return plan.result.exact_hypervolume; }, "By every ray.")
+          "exact_hypervolume", [](const Plan& plan) { return plan.result.exact_hypervolume; },
+          "Hypervolume by every ray.")
       .def_property_readonly(
           "evaluations", [](const Plan& plan) { return plan.result.evaluations; }, "Networks that were evaluated.")
       .def_property_readonly(
           "stop_reason", [](const Plan& plan) { return to_string(plan.result.stop_reason); }, "Why the search ended.")
       .def_property_readonly(
-          "seconds", [](const Plan& plan) { return plan.result.seconds; }, "What it took.")
+          "seconds", [](const Plan& plan) { return plan.result.seconds; }, "Time of the call.")
       .def_property_readonly(
           "summary",
           [](const Plan& plan) {
             return summary_text(plan.result.front.at(answer(plan.result)), plan.result.problem.requirements);
           },
-          "What the answer comes to, in plain words.")
+          "Summary of the answer in plain words.")
       .def(
           "to_dict", [](const Plan& plan) { return from_json(front_json(plan.result, simulator_of(plan))); },
-          "What front.json holds: the front, every parameter, engine, seed and version. Entries count from 1.")
+          "Content of front.json: the front, every parameter, engine, seed and version. Entries count from 1.")
       .def(
           "write",
           [](const Plan& plan, const std::filesystem::path& folder, const std::string& crs) {
@@ -301,12 +305,11 @@ void add_results(py::module_& m) {
           },
           py::arg("folder"), py::arg("crs") = "",
           "Writes the result folder: front.csv, front.json, stations.csv, the pictures (docs/files.md). crs: the "
-          "frame,\n"
-          "as 'EPSG:25832', for maps. Raises Error: io, invalid_argument.")
+          "coordinate\nsystem, such as 'EPSG:25832', for maps. Raises Error: io, invalid_argument.")
       .def("write_report", &write_plan_report, py::arg("file"), py::kw_only(), py::arg("title") = "Survey",
            py::arg("progress") = py::none(),
-           "Writes report.html or report.pdf by the file's extension, with what the answer captures and misses.\n"
-           "Raises Error: io, invalid_argument (another extension, a build that writes no reports).")
+           "Writes report.html or report.pdf by the file's extension, with the surfaces that the answer captures and "
+           "misses.\nRaises Error: io, invalid_argument (another extension, a build that writes no reports).")
       .def("__repr__", [](const Plan& plan) {
         return "<vantage.PlanResult of " + std::to_string(plan.result.front.size()) + " networks, " +
                std::to_string(plan.result.evaluations) + " evaluations, " + to_string(plan.result.stop_reason) + ">";
@@ -321,15 +324,14 @@ void add_plans(py::module_& m) {
   add_entries(m);
   add_results(m);
   const py::object site = m.attr("Site");
-  site.attr("plan") = py::cpp_function(
-      &plan_site, py::name("plan"), py::is_method(site), py::arg("problem") = py::none(), py::kw_only(),
-      py::arg("progress") = py::none(),
-      ("Plans a survey as the program does: with nothing given, the fewest stations that capture and link enough.\n\n"
-       "problem: the name of one, or a SurveyProblem in place of the settings of a question. progress: as "
-       "`vantage.plan` takes it.\n"
-       "Raises Error: invalid_argument." +
-       settings_doc("Site.plan", question_settings(), plan_settings()))
-          .c_str());
+  site.attr("plan") =
+      py::cpp_function(&plan_site, py::name("plan"), py::is_method(site), py::arg("problem") = py::none(),
+                       py::kw_only(), py::arg("progress") = py::none(),
+                       ("Plans a survey like the program: by default, the fewest connected stations that capture "
+                        "enough.\n\nproblem: its name, or a SurveyProblem in place of the settings of a question. "
+                        "progress: as for `vantage.plan`.\nRaises Error: invalid_argument." +
+                        settings_doc("Site.plan", question_settings(), plan_settings()))
+                           .c_str());
   const auto options = plan_options();
   m.def(
       "plan",
@@ -339,12 +341,10 @@ void add_plans(py::module_& m) {
       },
       py::arg("simulator"), py::arg("area"), py::arg("clash"), py::arg("problem"), py::kw_only(),
       py::arg("progress") = py::none(),
-      ("Searches for networks. Same inputs, same seed: same result but for seconds.\n\n"
-       "progress: called with a PlanProgress between evaluations; where it returns False the search ends, and what "
-       "was\n"
-       "found is confirmed and returned. Ctrl-C, and whatever progress or an objective raises, ends the call by that\n"
-       "exception; a checkpoint is written before.\n"
-       "Raises Error: invalid_argument, malformed_file (a damaged checkpoint)." +
+      ("Searches for networks. The same inputs and seed give the same result except for seconds.\n\nprogress: called "
+       "with a PlanProgress between evaluations. If it returns False, the search ends, and its results\nare confirmed "
+       "and returned. Ctrl-C, or an exception of progress or of an objective, ends the call with that\nexception; a "
+       "checkpoint is written before.\nRaises Error: invalid_argument, malformed_file (a damaged checkpoint)." +
        options.doc())
           .c_str());
 }

@@ -88,23 +88,22 @@ Objective objective_of(std::string name, const py::function& value, const Scale&
 }
 
 void add_objectives(py::module_& m) {
-  py::class_<Measured>(m, "MeasuredNetwork", "What an objective looks at. A copy: it may be kept.")
+  py::class_<Measured>(m, "MeasuredNetwork", "Input of an objective. A copy: it may be kept.")
       .def_readonly("evaluation", &Measured::evaluation,
-                    "Its counts, of every ray or of a sample; pairs where the objective needs them.")
-      .def_readonly("stations", &Measured::stations, "Its stations, kept ones first, skipped ones included.")
+                    "Its counts, by every ray or of a sample; with pairs if the objective needs them.")
+      .def_readonly("stations", &Measured::stations, "Its stations, existing ones first, skipped ones included.")
       .def_property_readonly(
           "heads", [](const Measured& network) { return heads_of(network.stations); },
           "Their heads, survey frame: (n, 3), metres.")
-      .def_readonly("kept", &Measured::kept, "How many of them were there before.")
+      .def_readonly("kept", &Measured::kept, "Number of existing stations.")
       .def_readonly("visible_parts", &Measured::visible_parts,
-                    "Connected parts of the stations that see each other; 0 unless needed.")
-      .def_readonly("minutes_on_site", &Measured::minutes_on_site, "Without kept stations; 0 unless needed.")
+                    "Connected components of the stations that see each other; 0 unless needed.")
+      .def_readonly("minutes_on_site", &Measured::minutes_on_site, "Time without existing stations; 0 unless needed.")
       .def_readonly("surroundings", &Measured::surroundings,
                     "Counts on all surfaces, surveyed or not; None unless needed.");
-  py::class_<Scale> scale(m, "Scale",
-                          "The range of values that matter of an objective; made by `minimise` or `maximise`.");
-  scale.def_readonly("best", &Scale::best, "Scaled to 0.")
-      .def_readonly("worst", &Scale::worst, "Scaled to 1: the reference point of the hypervolume.")
+  py::class_<Scale> scale(m, "Scale", "The relevant range of an objective's values; made by `minimise` or `maximise`.");
+  scale.def_readonly("best", &Scale::best, "Value scaled to 0.")
+      .def_readonly("worst", &Scale::worst, "Value scaled to 1: the reference point of the hypervolume.")
       .def("__repr__", [](const Scale& scale) {
         return std::string(scale.best > scale.worst ? "vantage.maximise(" : "vantage.minimise(") +
                py::str(py::float_(scale.best)).cast<std::string>() + ", " +
@@ -112,27 +111,25 @@ void add_objectives(py::module_& m) {
       });
   add_pickle(scale);
   m.def("minimise", &minimise, py::arg("best"), py::arg("worst"),
-        "Less is better: the Scale of an objective, in its unit. Raises Error unless best <= worst, both finite.");
+        "A scale on which less is better, in the objective's unit. Raises Error unless best <= worst, both finite.");
   m.def("maximise", &maximise, py::arg("best"), py::arg("worst"),
-        "More is better: the Scale of an objective, in its unit. Raises Error unless best >= worst, both finite.");
+        "A scale on which more is better, in the objective's unit. Raises Error unless best >= worst, both finite.");
   py::class_<Objective>(m, "Objective", "One measure of a network, to be searched for, required or reported.")
       .def(py::init(&objective_of), py::arg("name"), py::arg("value"), py::arg("scale"), py::kw_only(),
            py::arg("label") = "", py::arg("unit") = "", py::arg("counts") = true, py::arg("pairs") = false,
            py::arg("visibility") = false, py::arg("surroundings") = false, py::arg("time") = false,
            py::arg("registration") = py::none(), py::arg("standard_error") = py::none(), py::arg("parameters") = "",
-           "name: lower-case letters, digits, `_`. value: a function of a MeasuredNetwork, which gives the same for "
-           "the\n"
-           "same. scale: `minimise(best, worst)` or `maximise(best, worst)`, by which search and hypervolume go. "
-           "counts, pairs, visibility,\n"
-           "surroundings, time, registration (RegistrationOptions): what of the network it looks at; the rest is not\n"
-           "computed. standard_error: a function\n"
-           "as value; None: by the jackknife. parameters: what it was made with; runs resume only under the same.")
+           "name: lower-case letters, digits, `_`. value: a pure function of a MeasuredNetwork. scale: `minimise(best, "
+           "worst)`\nor `maximise(best, worst)`, for search and hypervolume. counts, pairs, visibility, surroundings, "
+           "time, registration\n(RegistrationOptions): inputs that it needs; others are not computed. standard_error: "
+           "a function like value; None:\nby the jackknife. parameters: its own parameters; runs resume only under the "
+           "same ones.")
       .def_readonly("name", &Objective::name, "Its key in tables and results.")
-      .def_readonly("label", &Objective::label, "For axes.")
+      .def_readonly("label", &Objective::label, "Text for axes.")
       .def_readonly("unit", &Objective::unit, "'mm'; empty: a plain number.")
       .def_readonly("scale", &Objective::scale, "From best to worst, in its unit.")
       .def("__repr__", [](const Objective& o) { return "<vantage.Objective '" + o.name + "'>"; });
-  py::class_<Requirement>(m, "Requirement", "A bound that a wanted network keeps.")
+  py::class_<Requirement>(m, "Requirement", "A bound on an objective.")
       .def(py::init([](Objective objective, const std::string& bound, double limit) {
              if (bound != ">=" && bound != "<=")
                throw Error(Errc::invalid_argument, "bound: '" + bound + "' is neither '>=' nor '<='");
@@ -140,8 +137,8 @@ void add_objectives(py::module_& m) {
                                 bound == ">=" ? Requirement::Bound::at_least : Requirement::Bound::at_most, limit};
            }),
            py::arg("objective"), py::arg("bound"), py::arg("limit"), "bound: '>=' or '<='.")
-      .def_readonly("objective", &Requirement::objective, "What is bounded.")
-      .def_readonly("limit", &Requirement::limit, "By what.")
+      .def_readonly("objective", &Requirement::objective, "The objective.")
+      .def_readonly("limit", &Requirement::limit, "The bound.")
       .def("__str__", [](const Requirement& r) { return to_string(r); })
       .def("__repr__", [](const Requirement& r) { return "<vantage.Requirement " + to_string(r) + ">"; });
   m.def(
@@ -174,11 +171,11 @@ Options<SurveyProblem> problem_options() {
   return Options<SurveyProblem>("SurveyProblem")
       .add("name", &SurveyProblem::name, "For tables and pictures.")
       .add("stations_min", &SurveyProblem::stations_min, "Fewest stations to place.")
-      .add("stations_max", &SurveyProblem::stations_max, "Most; where it differs from that, the number is searched.")
+      .add("stations_max", &SurveyProblem::stations_max, "Most; if it differs from the fewest, the number is searched.")
       .add<py::iterable>(
           "kept", [](const SurveyProblem& p) { return py::tuple(py::cast(p.kept)); },
           [](SurveyProblem& p, const py::iterable& given) { p.kept = py::list(given).cast<std::vector<Vec3>>(); },
-          "Heads (x, y, z) of stations that are there already, survey frame, metres.")
+          "Heads (x, y, z) of existing stations, survey frame, metres.")
       .add<py::iterable>(
           "kept_setups", [](const SurveyProblem& p) { return py::tuple(py::cast(p.kept_setups)); },
           [](SurveyProblem& p, const py::iterable& given) {
@@ -190,22 +187,21 @@ Options<SurveyProblem> problem_options() {
           [](SurveyProblem& p, const py::iterable& given) {
             p.scanners = py::list(given).cast<std::vector<std::uint32_t>>();
           },
-          "Indices into `Simulator.scanners` that each station chooses from, in the order in which they are tried; "
-          "none: the first.")
+          "Indices into `Simulator.scanners` that each station chooses from, in their order; none: the first.")
       .add("heights_m", &SurveyProblem::heights_m, "Lowest and highest head above ground; None: the scanner's.")
-      .add("link_overlap", &SurveyProblem::link_overlap, "Pairs of less overlap count as not linked.")
-      .add("registration", &SurveyProblem::registration, "What scans register from.")
-      .add("on_site", &SurveyProblem::on_site, "OnSiteOptions: what a round takes.")
-      .add("fewest", &SurveyProblem::fewest, "First the fewest stations that keep the requirements, then the best.")
-      .add("visible", &SurveyProblem::visible, "The coverage that `capture` is a share of; None: found.")
+      .add("link_overlap", &SurveyProblem::link_overlap, "Least overlap of a link.")
+      .add("registration", &SurveyProblem::registration, "Prior of registration.")
+      .add("on_site", &SurveyProblem::on_site, "OnSiteOptions: times of a round.")
+      .add("fewest", &SurveyProblem::fewest, "First the fewest stations that meet the requirements, then the best.")
+      .add("visible", &SurveyProblem::visible, "Attainable coverage, the denominator of `capture`; None: found.")
       .add<py::iterable>(
           "objectives", [](const SurveyProblem& p) { return py::tuple(py::cast(p.objectives)); },
           [](SurveyProblem& p, const py::iterable& given) { p.objectives = objectives_from(given, p); },
-          "What is searched for: Objectives, or names of built-in ones.")
+          "Objectives of the search, or names of built-in ones.")
       .add<py::iterable>(
           "requirements", [](const SurveyProblem& p) { return py::tuple(py::cast(p.requirements)); },
           [](SurveyProblem& p, const py::iterable& given) { p.requirements = requirements_from(given, p); },
-          "What a network has to keep: Requirements, or texts like 'coverage >= 0.9'.");
+          "Requirements, or texts like 'coverage >= 0.9'.");
 }
 
 // Name of a built-in objective. Throws TypeError for any other.
@@ -252,10 +248,9 @@ void add_problems(py::module_& m) {
   const auto options = problem_options();
   py::class_<SurveyProblem> type(
       m, "SurveyProblem",
-      ("What is asked: how many stations, where they may be, what a network is searched for and what it has to keep.\n"
-       "With one objective the best network is searched, with several a front. Names of built-in objectives are "
-       "looked\n"
-       "up when they are given: set the numbers of stations before." +
+      ("A planning problem: number of stations, allowed heights, objectives and requirements. With one objective "
+       "the\nbest network is searched, with several a front. Names of built-in objectives are resolved when they are "
+       "given:\nset the numbers of stations before." +
        options.doc())
           .c_str());
   type.def(py::init([options](const py::kwargs& given) { return options.read(given); }))
@@ -268,8 +263,8 @@ void add_problems(py::module_& m) {
                       [options](const py::tuple& state) { return problem_from(options, state); }));
   const auto stations = py::arg("stations");
   const auto low = py::arg("stations_min"), high = py::arg("stations_max");
-  m.def("coverage_fix", &coverage_fix, stations, "Table 2 of the paper: coverage of so many stations.");
-  m.def("coverage_overlap_fix", &coverage_overlap_fix, stations, "Coverage against overlap of so many stations.");
+  m.def("coverage_fix", &coverage_fix, stations, "Table 2 of the paper: coverage of a number of stations.");
+  m.def("coverage_overlap_fix", &coverage_overlap_fix, stations, "Coverage against overlap of a number of stations.");
   m.def("coverage_min", &coverage_min, low, high, "Coverage against the number of stations.");
   m.def("coverage_overlap_min", &coverage_overlap_min, low, high, "Coverage, overlap and number of stations.");
   m.def(
@@ -280,10 +275,11 @@ void add_problems(py::module_& m) {
       low, high, py::arg("coverage") = FitnessWeights{}.coverage,
       py::arg("station_count") = FitnessWeights{}.station_count, py::arg("visibility") = FitnessWeights{}.visibility,
       "The weighted fitness of equation 1 of the paper, a baseline.");
-  m.def("fewest_stations", &fewest_stations, py::arg("capture") = 0.9, py::arg("link") = 0.3,
-        py::arg("stations_min") = 1, py::arg("stations_max") = max_stations, py::arg("apart_m") = 1.0,
-        "The surveyor's question: the fewest stations that capture that share of what can be seen, all linked by scan\n"
-        "overlaps of at least `link`, apart_m metres or more from each other; then the strongest weakest link.");
+  m.def(
+      "fewest_stations", &fewest_stations, py::arg("capture") = 0.9, py::arg("link") = 0.3, py::arg("stations_min") = 1,
+      py::arg("stations_max") = max_stations, py::arg("apart_m") = 1.0,
+      "The surveyor's question: the fewest stations that capture that share of attainable coverage, connected by "
+      "scan\noverlaps of at least `link`, at least apart_m metres from each other; then the least registration error.");
 }
 
 }  // namespace vantage::python

@@ -124,10 +124,9 @@ Scan scan(Simulators& self, const Vec3& position, const std::vector<std::string>
 }
 
 void add_scans(py::module_& m) {
-  py::class_<Scan> type(
-      m, "Scan",
-      "What a scanner recorded from one station: n points, or with grid=True an element a ray, where arrays\n"
-      "have (rows, columns) in the place of (n,). Arrays are read-only and are no copies.");
+  py::class_<Scan> type(m, "Scan",
+                        "Recording of a scanner at one station: n points, or with grid=True one element for each ray, "
+                        "where arrays have\n(rows, columns) in the place of (n,). Arrays are read-only views.");
   type.def_property_readonly(
           "row", [](const Scan& scan) { return ray_part(scan, [&](std::uint64_t ray) { return ray / scan.columns; }); },
           "Zenith step of each point: (n,).")
@@ -138,11 +137,11 @@ void add_scans(py::module_& m) {
       .def_property_readonly(
           "range_m",
           [](const py::object& self) { return array_of<float>(self, &Scan::range_m, scan_range, "range_m"); },
-          "Metres from the head, noise included: (n,); infinite where a ray of a grid hit nothing in range.")
+          "Metres from the head, noise included: (n,); infinite if a ray of a grid hit nothing in range.")
       .def_property_readonly(
           "position",
           [](const py::object& self) { return array_of<double>(self, &Scan::position, scan_position, "position"); },
-          "Survey frame, metres: (n, 3); NaN where a ray of a grid hit nothing.")
+          "Survey frame, metres: (n, 3); NaN if a ray of a grid hit nothing.")
       .def_property_readonly(
           "normal", [](const py::object& self) { return array_of<float>(self, &Scan::normal, scan_normal, "normal"); },
           "Unit vectors towards the scanner: (n, 3).")
@@ -166,7 +165,7 @@ void add_scans(py::module_& m) {
       .def_property_readonly(
           "voxel",
           [](const py::object& self) { return array_of<std::uint32_t>(self, &Scan::voxel, scan_voxel, "voxel"); },
-          "Surveyed voxel that the point counts in: (n,); 2^32 - 1 where it does not count.")
+          "Surveyed voxel in which the point counts: (n,); 2^32 - 1 if it does not count.")
       .def_readonly("rows", &Scan::rows, "Zenith steps of its scanner.")
       .def_readonly("columns", &Scan::columns, "Azimuth steps of its scanner.")
       .def_property_readonly(
@@ -180,7 +179,7 @@ void add_scans(py::module_& m) {
           "trace_seconds", [](const Scan& scan) { return scan.summary.trace_seconds; }, "Time spent tracing.")
       .def_property_readonly(
           "cancelled", [](const Scan& scan) { return scan.summary.cancelled; },
-          "Stopped before its end: has the first points alone, as flat arrays.")
+          "Whether it was stopped: it then has only the first points, as flat arrays.")
       .def("__len__", [](const Scan& scan) { return scan.range_m.size(); })
       .def("__repr__", [](const Scan& scan) {
         return "<vantage.Scan of " + std::to_string(scan.summary.points) + " points from " +
@@ -193,10 +192,10 @@ void add_clouds(py::module_& m) {
   m.def("write_point_cloud", &write_point_cloud, py::arg("file"), py::arg("simulator"), py::arg("stations"),
         py::kw_only(), py::arg("outputs") = std::vector<std::string>{"reflectivity"}, py::arg("crs") = "",
         py::arg("progress") = py::none(),
-        "Scans stations and streams their points to a .ply, .las or .e57 file by its extension; returns how many.\n"
-        "E57 keeps stations apart, with their poses. stations: as `evaluate`. outputs: besides positions, as `scan`;\n"
-        "LAS has 'reflectivity' and 'colour'. crs: of the survey frame, as 'EPSG:25832'; '': none is said. A stopped\n"
-        "call writes nothing and returns 0. Raises Error: io, invalid_argument.");
+        "Scans stations and streams their points to a .ply, .las or .e57 file by its extension; returns their "
+        "number.\nE57 keeps stations apart, with their poses. stations: as for `evaluate`. outputs: besides positions, "
+        "as for `scan`;\nLAS has 'reflectivity' and 'colour'. crs: of the survey frame, such as 'EPSG:25832'; '': none "
+        "is written. A stopped\ncall writes nothing and returns 0. Raises Error: io, invalid_argument.");
 }
 
 }  // namespace vantage::python

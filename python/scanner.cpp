@@ -31,17 +31,17 @@ NoiseTable noise_from(const py::object& given) {
 
 Options<Scanner> scanner_options() {
   return Options<Scanner>("Scanner")
-      .add("name", &Scanner::name, "What it is called.")
+      .add("name", &Scanner::name, "Name of the model.")
       .add("heading_deg", &Scanner::heading, "Azimuth of the middle of the sweep, degrees from +X towards +Y.")
       .add("horizontal_angle_deg", &Scanner::horizontal_angle, "H, above 0 to 360.")
       .add("vertical_angle_deg", &Scanner::vertical_angle, "V, the mirror's sweep over both sides: zeniths to V/2.")
       .add("zenith_start_deg", &Scanner::zenith_start, "First zenith, from straight up.")
-      .add("azimuth_step_deg", &Scanner::azimuth_step, "Between columns.")
-      .add("zenith_step_deg", &Scanner::zenith_step, "Between rows.")
-      .add("height_m", &Scanner::height_m, "Of the head above the search area.")
+      .add("azimuth_step_deg", &Scanner::azimuth_step, "Angle between columns.")
+      .add("zenith_step_deg", &Scanner::zenith_step, "Angle between rows.")
+      .add("height_m", &Scanner::height_m, "Height of the head above the search area.")
       .add("min_range_m", &Scanner::min_range_m, "d_min.")
       .add("max_range_m", &Scanner::max_range_m, "d_max.")
-      .add("points_per_second", &Scanner::points_per_second, "How fast rays are measured, for the time on site.")
+      .add("points_per_second", &Scanner::points_per_second, "Measurement rate, for the time on site.")
       .add<py::object>(
           "noise", [](const Scanner& s) { return noise_of(s.noise); },
           [](Scanner& s, const py::object& noise) { s.noise = noise_from(noise); },
@@ -50,11 +50,11 @@ Options<Scanner> scanner_options() {
       .add<double>(
           "beam_divergence_mrad", [](const Scanner& s) { return s.beam_divergence.in_radians() * 1e3; },
           [](Scanner& s, double mrad) { s.beam_divergence = Angle::radians(mrad * 1e-3); },
-          "Full angle to 1/e^2; 0: not known.")
+          "Full angle of divergence, to 1/e^2; 0: not known.")
       .add<double>(
           "exit_diameter_mm", [](const Scanner& s) { return s.exit_diameter_m * 1e3; },
           [](Scanner& s, double mm) { s.exit_diameter_m = mm * 1e-3; },
-          "Diameter of the beam where it leaves the scanner, to 1/e^2; 0: not known.");
+          "Diameter of the beam at the exit, to 1/e^2; 0: not known.");
 }
 
 }  // namespace
@@ -71,8 +71,8 @@ void add_scanners(py::module_& m) {
       .def_static(
           "load", [](const std::string& name, const std::filesystem::path& more) { return load_scanner(name, more); },
           py::arg("name"), py::arg("more") = "",
-          "A preset by its key, as 'rtc360' or 'rtc360@6mm'. more: a file of further ones, as data/scanners.json.\n"
-          "Raises Error: io, malformed_file, invalid_argument (lists what exists).")
+          "A preset by its key, such as 'rtc360' or 'rtc360@6mm'. more: a file of further ones, in the form "
+          "of\ndata/scanners.json. Raises Error: io, malformed_file, invalid_argument (lists what exists).")
       .def_property_readonly("rows", &Scanner::rows, "Zenith steps.")
       .def_property_readonly("columns", &Scanner::columns, "Azimuth steps.")
       .def_property_readonly("rays", &Scanner::rays, "rows * columns.")

@@ -13,35 +13,36 @@ using Globs = std::vector<std::string>;
 
 Options<SceneOptions> scene_options() {
   return Options<SceneOptions>("Scene.load")
-      .add("surveyed", &SceneOptions::surveyed, "Patterns (`*`, `?`) of the nodes that are surveyed.")
+      .add("surveyed", &SceneOptions::surveyed, "Patterns (`*`, `?`) of surveyed nodes.")
       .add("blocking", &SceneOptions::blocking, "Nodes that only block.")
-      .add("search", &SceneOptions::search, "Nodes that form the search area.")
+      .add("search", &SceneOptions::search, "Nodes of the search area.")
       .add("ignore", &SceneOptions::ignore, "Nodes that are left out.")
       .add("weights", &SceneOptions::weights, "Pairs (pattern, weight of its voxels in coverage, 1 to 255).")
-      .add("details_mm", &SceneOptions::details_mm, "Pairs (pattern, widest footprint of the beam that counts, mm).")
-      .add("accuracies_mm", &SceneOptions::accuracies_mm, "Pairs (pattern, largest range noise that counts, mm).")
-      .add("doors", &SceneOptions::doors, "Leaves that count as open for who walks, and block rays.")
+      .add("details_mm", &SceneOptions::details_mm, "Pairs (pattern, widest beam footprint of points that count, mm).")
+      .add("accuracies_mm", &SceneOptions::accuracies_mm,
+           "Pairs (pattern, largest range noise of points that count, mm).")
+      .add("doors", &SceneOptions::doors, "Closed door leaves: open for people, closed for rays.")
       .add("station_area", &SceneOptions::station_area, "Nodes that stations may stand on.")
       .add("scene_index", &SceneOptions::scene_index, "Which glTF scene; None: the file's own.")
-      .add("default_diffuse", &SceneOptions::default_diffuse, "Diffuse reflection R where the file gives none.")
+      .add("default_diffuse", &SceneOptions::default_diffuse, "Diffuse reflection R if the file gives none.")
       .add("unit", &SceneOptions::unit, "'m', 'cm', 'mm', 'in' or 'ft'; None: recognised.")
       .add("up", &SceneOptions::up, "'y' or 'z'; None: recognised.")
-      .add("max_memory_bytes", &SceneOptions::max_memory_bytes, "Refuse what may take more; 0: half of what is free.")
-      .add("allow_outside", &SceneOptions::allow_outside, "Let the file name others outside of its own folder.");
+      .add("max_memory_bytes", &SceneOptions::max_memory_bytes, "Memory limit of the load; 0: half of the free memory.")
+      .add("allow_outside", &SceneOptions::allow_outside, "Let the file name others outside its own folder.");
 }
 
 Options<SceneMesh> mesh_options(const std::string& call) {
   return Options<SceneMesh>(call)
-      .add("name", &SceneMesh::name, "Opens messages.")
+      .add("name", &SceneMesh::name, "Beginning of messages.")
       .add("role", &SceneMesh::role,
            "'surveyed', 'blocking', 'search' (part of the search area) or 'ignore'; None: surveyed, or blocking once "
            "any mesh is marked surveyed.")
       .add("diffuse", &SceneMesh::diffuse, "Diffuse reflection coefficient R, in [0, 1].")
-      .add("weight", &SceneMesh::weight, "What a voxel of it counts in coverage, 1 to 255.")
-      .add("door", &SceneMesh::door, "A closed leaf that counts as open for who walks; it blocks rays.")
+      .add("weight", &SceneMesh::weight, "Weight of its voxels in coverage, 1 to 255.")
+      .add("door", &SceneMesh::door, "A closed door leaf: open for people, closed for rays.")
       .add("station_area", &SceneMesh::station_area, "Stations may stand on it, whatever its role.")
-      .add("detail_m", &SceneMesh::detail_m, "Widest footprint of the beam that counts, metres; 0: any.")
-      .add("accuracy_m", &SceneMesh::accuracy_m, "Largest range noise (sigma) that counts, metres; 0: any.")
+      .add("detail_m", &SceneMesh::detail_m, "Widest beam footprint of points that count, metres; 0: any.")
+      .add("accuracy_m", &SceneMesh::accuracy_m, "Largest range noise (sigma) of points that count, metres; 0: any.")
       .add("colour", &SceneMesh::colour, "Linear red, green, blue and alpha, in [0, 1].")
       .add<Vec3>(
           "translation", [](const SceneMesh& mesh) { return mesh.pose.translation; },
@@ -63,16 +64,17 @@ SceneMesh mesh_of(const Options<SceneMesh>& options, const Doubles& positions, c
 
 void add_mesh_info(py::module_& m) {
   py::class_<MeshInfo> type(m, "MeshInfo", "One mesh of a scene.");
-  type.def_readonly("name", &MeshInfo::name, "The node's name, or the mesh's where the node has none.")
+  type.def_readonly("name", &MeshInfo::name, "The node's name, or the mesh's if the node has none.")
       .def_property_readonly(
           "role", [](const MeshInfo& mesh) { return mesh.role; }, "'surveyed' or 'blocking'.")
       .def_readonly("diffuse", &MeshInfo::diffuse, "Diffuse reflection coefficient R, in [0, 1].")
-      .def_readonly("triangle_count", &MeshInfo::triangle_count, "How many triangles it has.")
-      .def_readonly("weight", &MeshInfo::weight, "What a voxel of it counts in coverage, 1 to 255.")
-      .def_readonly("door", &MeshInfo::door, "A closed leaf that counts as open for who walks.")
+      .def_readonly("triangle_count", &MeshInfo::triangle_count, "Number of triangles.")
+      .def_readonly("weight", &MeshInfo::weight, "Weight of its voxels in coverage, 1 to 255.")
+      .def_readonly("door", &MeshInfo::door, "A closed door leaf: open for people, closed for rays.")
       .def_readonly("station_area", &MeshInfo::station_area, "Stations may stand on it.")
-      .def_readonly("detail_m", &MeshInfo::detail_m, "Widest footprint of the beam that counts, metres; 0: any.")
-      .def_readonly("accuracy_m", &MeshInfo::accuracy_m, "Largest range noise (sigma) that counts, metres; 0: any.")
+      .def_readonly("detail_m", &MeshInfo::detail_m, "Widest beam footprint of points that count, metres; 0: any.")
+      .def_readonly("accuracy_m", &MeshInfo::accuracy_m,
+                    "Largest range noise (sigma) of points that count, metres; 0: any.")
       .def("__repr__", [](const MeshInfo& mesh) {
         return "<vantage.MeshInfo '" + mesh.name + "', " + name_of(mesh.role) + ", " +
                std::to_string(mesh.triangle_count) + " triangles>";
@@ -83,8 +85,8 @@ void add_mesh_info(py::module_& m) {
 void add_scene(py::module_& m) {
   const auto options = scene_options();
   py::class_<Scene>(m, "Scene",
-                    "The 3D model of a site: what is surveyed, what blocks, and where a scanner may stand. Immutable.\n"
-                    "The survey frame is right-handed with Z up, in metres.")
+                    "The 3D model of a site: surveyed and blocking surfaces, and the search area. Immutable.\nThe "
+                    "survey frame is right-handed with Z up, in metres.")
       .def_static(
           "load",
           [options](const std::filesystem::path& file, const py::kwargs& given) {
@@ -116,18 +118,17 @@ void add_scene(py::module_& m) {
       .def_property_readonly(
           "meshes",
           [](const Scene& scene) { return std::vector<MeshInfo>(scene.meshes().begin(), scene.meshes().end()); },
-          "What it is made of, by the numbers that scans give meshes.")
-      .def_property_readonly("triangle_count", &Scene::triangle_count, "Over all meshes.")
-      .def_property_readonly("has_search_area", &Scene::has_search_area,
-                             "Whether the file marks where stations may stand.")
+          "Its meshes, by the numbers that scans give them.")
+      .def_property_readonly("triangle_count", &Scene::triangle_count, "Number over all meshes.")
+      .def_property_readonly("has_search_area", &Scene::has_search_area, "Whether the file marks a search area.")
       .def_property_readonly(
           "notes",
           [](const Scene& scene) { return std::vector<std::string>(scene.notes().begin(), scene.notes().end()); },
-          "What was dropped or turned when it was loaded, a sentence each.")
+          "Notes of the load: parts that were dropped or turned, a sentence each.")
       .def_property_readonly(
           "defaults", [](const Scene& scene) { return from_json(scene.defaults_json()); },
-          "Parameters that a built-in scene brings along.")
-      .def_property_readonly("fingerprint", &Scene::fingerprint, "Hash of all that can change a result.")
+          "Default parameters of a built-in scene.")
+      .def_property_readonly("fingerprint", &Scene::fingerprint, "Hash of everything that can change a result.")
       .def("__repr__", [](const Scene& scene) {
         return "<vantage.Scene of " + std::to_string(scene.meshes().size()) + " meshes, " +
                std::to_string(scene.triangle_count()) + " triangles>";
@@ -138,7 +139,7 @@ void add_builder(py::module_& m) {
   const auto added = mesh_options("SceneBuilder.add"), replaced = mesh_options("SceneBuilder.replace");
   py::class_<SceneBuilder>(
       m, "SceneBuilder",
-      "Makes scenes of meshes from arrays, which may be moved and replaced between one `build` and the next.")
+      "Makes scenes of meshes from arrays; meshes may be moved and replaced between one `build` and the next.")
       .def(py::init<>())
       .def(
           "add",
@@ -157,18 +158,17 @@ void add_builder(py::module_& m) {
             builder.replace(mesh, mesh_of(replaced, positions, triangles, given));
           },
           py::arg("mesh"), py::arg("positions"), py::arg("triangles"),
-          ("Puts another mesh in the place of number `mesh`; the rest as `add`." + replaced.doc()).c_str())
+          ("Replaces mesh number `mesh`; the rest as in `add`." + replaced.doc()).c_str())
       .def(
           "move",
           [](SceneBuilder& builder, std::size_t mesh, const Vec3& translation, std::array<double, 4> rotation) {
             builder.move(mesh, {translation, rotation});
           },
           py::arg("mesh"), py::arg("translation") = Vec3{}, py::arg("rotation") = std::array<double, 4>{0, 0, 0, 1},
-          "Puts mesh number `mesh` elsewhere: metres, and a quaternion (x, y, z, w).")
+          "Moves mesh number `mesh`: metres, and a quaternion (x, y, z, w).")
       .def("build", &SceneBuilder::build,
            "The scene as it stands now. Raises Error malformed_file: nothing is surveyed.")
-      .def_property_readonly("rebuilt_all", &SceneBuilder::rebuilt_all,
-                             "Whether the last `build` made every mesh anew.")
+      .def_property_readonly("rebuilt_all", &SceneBuilder::rebuilt_all, "Whether the last `build` remade every mesh.")
       .def("__len__", &SceneBuilder::size);
 }
 
@@ -185,7 +185,7 @@ void add_scenes(py::module_& m) {
         return load_gltf({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, options.read(given), name);
       },
       py::arg("bytes"), py::arg("name") = "glTF in memory",
-      "Loads a scene from the bytes of a .glb or .gltf file; `name` opens messages. Options as `Scene.load`.");
+      "Loads a scene from the bytes of a .glb or .gltf file. Messages begin with `name`. Options as for `Scene.load`.");
   m.def(
       "built_in_scene_names",
       [] {
@@ -199,7 +199,7 @@ void add_scenes(py::module_& m) {
         write_built_in_scene(name, triangles, file);
       },
       py::arg("name"), py::arg("file"), py::arg("triangles") = 0, py::call_guard<py::gil_scoped_release>(),
-      "Writes a built-in scene as GLB. triangles: for 'industrial', 20 000 and up; the others take no heed of it.");
+      "Writes a built-in scene as GLB. triangles: for 'industrial', 20 000 and up; the others ignore it.");
 }
 
 }  // namespace vantage::python

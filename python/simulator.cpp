@@ -17,7 +17,8 @@ using Devices = std::vector<std::pair<Engine, std::optional<std::uint32_t>>>;
 Options<SimulatorConfig> simulator_options() {
   return Options<SimulatorConfig>("Simulator")
       .add("engine", &SimulatorConfig::engine, "'auto', 'ray_query', 'compute_bvh' or 'embree'.")
-      .add("device_index", &SimulatorConfig::device_index, "Which device; None: the best that has the engine.")
+      .add("device_index", &SimulatorConfig::device_index,
+           "Number of the device; None: the best one that has the engine.")
       .add<Devices>(
           "devices",
           [](const SimulatorConfig& c) {
@@ -28,18 +29,17 @@ Options<SimulatorConfig> simulator_options() {
           [](SimulatorConfig& c, const Devices& pairs) {
             for (const auto& [engine, index] : pairs) c.devices.push_back({engine, index});
           },
-          "Pairs (engine, device_index) that share the work, in place of those two, as `all_devices` lists them.")
+          "Pairs (engine, device_index) that share the work, in place of those two; `all_devices` lists them.")
       .add("max_memory_bytes", &SimulatorConfig::max_memory_bytes,
-           "Refuse what may take more, before it is built; 0: half of what is free.")
+           "Memory limit, checked before anything is built; 0: half of the free memory.")
       .add("user_size_m", &SimulatorConfig::user_size_m, "Upper bound of the voxel size (equation 2), metres.")
       .add("point_spacing_m", &SimulatorConfig::point_spacing_m,
            "Wanted spacing n of points, metres; goal density = voxel_size^2 / n^2.")
-      .add("spacing_by_detail", &SimulatorConfig::spacing_by_detail,
-           "Of a mesh that asks for a detail that is the wanted spacing.")
+      .add("spacing_by_detail", &SimulatorConfig::spacing_by_detail, "Use the detail of a mesh as its spacing.")
       .add("max_incidence_deg", &SimulatorConfig::max_incidence,
-           "Largest angle from the normal at which points count; None: 60 where meshes have limits, else any.")
+           "Largest angle from the normal of points that count; None: 60 if meshes have limits, else any.")
       .add("noise", &SimulatorConfig::noise, "Apply the scanner's noise table, if it has one.")
-      .add("seed", &SimulatorConfig::seed, "Of noise and of the voxel sample.")
+      .add("seed", &SimulatorConfig::seed, "Seed of noise and of the voxel sample.")
       .add("validation", &SimulatorConfig::validation, "Load the Vulkan validation layer.")
       .add("max_rays_per_dispatch", &SimulatorConfig::max_rays_per_dispatch, "0: chosen.");
 }
@@ -107,7 +107,7 @@ void add_engines(py::module_& m) {
       .def_readonly("device_index", &EngineInfo::device_index, "For `Simulator(device_index=...)`.")
       .def_readonly("usable", &EngineInfo::usable, "Whether it can be used.")
       .def_readonly("software", &EngineInfo::software, "A CPU behind a GPU interface.")
-      .def_readonly("chosen_by_default", &EngineInfo::chosen_by_default, "What 'auto' takes.")
+      .def_readonly("chosen_by_default", &EngineInfo::chosen_by_default, "Whether 'auto' takes it.")
       .def_readonly("reason", &EngineInfo::reason, "Why it was taken or refused.")
       .def("__repr__", [](const EngineInfo& info) {
         return "<vantage.EngineInfo " + name_of(info.engine) + " on " + info.device +
@@ -135,11 +135,10 @@ void add_simulators(py::module_& m) {
   py::class_<Simulators> type(
       m, "Simulator",
       ("Simulates a scanner in a scene, or several, of which each station has one (`StationSetup`). Other Python "
-       "threads run while it traces; calls from several of them are done one after another, and a callback that calls "
-       "the\n"
-       "simulator that called it gets an Error. Same inputs, seed and engine: same result, bit for bit.\n\n"
-       "`progress` is called, where it is given, with the share done in [0, 1]; where it returns False the call ends\n"
-       "early and its result says `cancelled`. Ctrl-C ends a call too, by KeyboardInterrupt." +
+       "threads\nrun while it traces. Calls from several threads run one after another; a callback that calls the "
+       "simulator that\ncalled it gets an Error. The same inputs, seed and engine give the same result, bit for "
+       "bit.\n\n`progress`, if given, is called with the share done in [0, 1]. If it returns False, the call ends "
+       "early, and its\nresult has `cancelled` set. Ctrl-C ends a call too, with KeyboardInterrupt." +
        options.doc())
           .c_str());
   type.def(py::init([options](const Scene& scene, const std::variant<Scanner, std::vector<Scanner>>& scanner,
@@ -152,7 +151,7 @@ void add_simulators(py::module_& m) {
            }),
            py::arg("scene"), py::arg("scanner"))
       .def_property_readonly(
-          "engine", [](const Simulators& self) { return self.simulator.engine(); }, "The engine chosen.")
+          "engine", [](const Simulators& self) { return self.simulator.engine(); }, "The chosen engine.")
       .def_property_readonly(
           "scanner", [](const Simulators& self) { return self.simulator.scanner(); },
           "A copy of its scanner, or of the first.")
@@ -162,7 +161,7 @@ void add_simulators(py::module_& m) {
             const auto scanners = self.simulator.scanners();
             return std::vector<Scanner>(scanners.begin(), scanners.end());
           },
-          "Copies of all of them, which `StationSetup.scanner` counts from 0.")
+          "Copies of all scanners, indexed by `StationSetup.scanner`.")
       .def_property_readonly(
           "scene", [](const Simulators& self) { return self.simulator.scene(); }, "Its scene.")
       .def_property_readonly(
@@ -173,34 +172,32 @@ void add_simulators(py::module_& m) {
           "Side of a voxel, metres.")
       .def_property_readonly(
           "goal_density", [](const Simulators& self) { return self.simulator.goal_density(); },
-          "Points wanted in a voxel: where goals differ, the densest of them.")
+          "Points wanted in a voxel; the densest goal if goals differ.")
       .def("voxel_centres", &voxel_centres, "Centres of the surveyed voxels, survey frame: (N_v, 3), metres.")
-      .def("voxel_weights", &voxel_weights, "What each voxel counts in coverage: (N_v,).")
+      .def("voxel_weights", &voxel_weights, "Weight of each voxel in coverage: (N_v,).")
       .def("goal_densities", &goal_densities, "Points wanted in each voxel: (N_v,).")
       .def("scan", &scan, py::arg("position"),
            py::arg("outputs") = std::vector<std::string>{"position", "reflectivity"}, py::kw_only(),
            py::arg("setup") = StationSetup{}, py::arg("grid") = false, py::arg("place") = 0,
            py::arg("progress") = py::none(),
-           "The points of one station, whose head is at `position` (x, y, z), survey frame, metres, set up as `setup` "
-           "says.\n\n"
-           "outputs: any of 'position', 'normal', 'reflectivity', 'mesh', 'primitive', 'colour', 'voxel'; row, column\n"
-           "and range_m are always there. grid: arrays of shape (rows, columns, ...), an element a ray, instead of\n"
-           "(points, ...). place: the station's in its network, which keys the noise.\n"
-           "Raises Error invalid_argument: a position that is not finite, an output that there is not.")
+           "Scans one station, whose head is at `position` (x, y, z), survey frame, metres, with this "
+           "setup.\n\noutputs: any of 'position', 'normal', 'reflectivity', 'mesh', 'primitive', 'colour', 'voxel'; "
+           "row, column\nand range_m are always there. grid: arrays of shape (rows, columns, ...), one element for "
+           "each ray, instead of\n(points, ...). place: the station's in its network, which keys the noise.\nRaises "
+           "Error invalid_argument: a position that is not finite, an unknown output.")
       .def("evaluate", &evaluate, py::arg("stations"), py::kw_only(), py::arg("overlap") = true, py::arg("skip") = true,
            py::arg("field") = false, py::arg("surroundings") = false, py::arg("registration") = py::none(),
            py::arg("progress") = py::none(),
-           "Every ray of every station. stations: heads (n, 3), survey frame, metres, or `Station`s or\n"
-           "`PlacedStation`s; n at most 1024. overlap: count pairs. skip: leave out rays that can reach no surveyed "
-           "voxel; counts do not change, but\n"
-           "`points` is not counted. field: keep the counts of every voxel. surroundings: look at all surfaces,\n"
-           "surveyed or not, for scan overlaps. registration: RegistrationOptions; predict its error.\n"
-           "Raises Error invalid_argument.")
+           "Evaluates a network with every ray of every station. stations: heads (n, 3), survey frame, metres, or "
+           "`Station`s or\n`PlacedStation`s; n at most 1024. overlap: count pairs. skip: leave out rays that can reach "
+           "no surveyed voxel; counts\ndo not change, but `points` is not counted. field: keep the counts of every "
+           "voxel. surroundings: count all surfaces\ntoo, surveyed or not, for scan overlaps. registration: "
+           "RegistrationOptions; predict its error.\nRaises Error invalid_argument.")
       .def("evaluate_sampled", &evaluate_sampled, py::arg("networks"), py::kw_only(), py::arg("voxels") = 20'000,
            py::arg("overlap") = true, py::arg("surroundings") = false, py::arg("registration") = py::none(),
            py::arg("progress") = py::none(),
-           "Several networks, each as for `evaluate`, on one sample of the surveyed voxels: an Evaluation each, with\n"
-           "standard errors. voxels: of the sample; as many as there are: all of them.")
+           "Evaluates several networks, each as in `evaluate`, on one sample of the surveyed voxels: an Evaluation "
+           "each, with\nstandard errors. voxels: size of the sample, at most all of them.")
       .def("__repr__", [](const Simulators& self) {
         return "<vantage.Simulator on " + name_of(self.simulator.engine().engine) + ", " +
                std::to_string(self.simulator.voxel_count()) + " voxels>";

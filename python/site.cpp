@@ -67,17 +67,16 @@ void write_site_report(GuardedSite& guarded, const std::filesystem::path& file, 
 }  // namespace
 
 void add_sites(py::module_& m) {
-  py::class_<SiteChoice>(m, "SiteChoice", "Something that nobody gave, and a site chose.")
-      .def_readonly("setting", &SiteChoice::setting, "Its name.")
-      .def_readonly("value", &SiteChoice::value, "As one would give it.")
-      .def_readonly("why", &SiteChoice::why, "A phrase.")
+  py::class_<SiteChoice>(m, "SiteChoice", "A setting that the user left open and the site chose.")
+      .def_readonly("setting", &SiteChoice::setting, "Name of the setting.")
+      .def_readonly("value", &SiteChoice::value, "Value, in the form in which users give it.")
+      .def_readonly("why", &SiteChoice::why, "Reason, a phrase.")
       .def("__repr__", [](const SiteChoice& choice) {
         return "<vantage.SiteChoice " + choice.setting + "=" + choice.value + ": " + choice.why + ">";
       });
-  py::class_<GuardedSite, std::shared_ptr<GuardedSite>> type(
-      m, "Site",
-      "Scene, scanner, ground, clash checks and simulator, with every default that the program has. `vantage.plan`\n"
-      "takes one.");
+  py::class_<GuardedSite, std::shared_ptr<GuardedSite>> type(m, "Site",
+                                                             "Scene, scanner, ground, clash checks and simulator, with "
+                                                             "all defaults of the program. `vantage.plan`\ntakes one.");
   type.def_static(
           "open",
           [](const std::filesystem::path& file, const py::kwargs& given) {
@@ -87,26 +86,26 @@ void add_sites(py::module_& m) {
                 new GuardedSite{Site::open(file, std::move(options))});  // keeps the mutex in place
           },
           py::arg("file"),
-          ("Reads a model and chooses what the settings leave open. Raises Error: io, malformed_file,\n"
-           "invalid_argument, out_of_memory." +
+          ("Reads a model and chooses the settings that are left open. Raises Error: io, "
+           "malformed_file,\ninvalid_argument, out_of_memory." +
            settings_doc("Site.open", site_settings()))
               .c_str())
       .def_property_readonly(
-          "name", [](const GuardedSite& self) { return self.site.name(); }, "The file's, without its extension.")
+          "name", [](const GuardedSite& self) { return self.site.name(); }, "The file's name without its extension.")
       .def_property_readonly(
-          "scene", [](const GuardedSite& self) { return self.site.scene(); }, "Its scene, with the weights that hold.")
+          "scene", [](const GuardedSite& self) { return self.site.scene(); }, "Its scene, with the weights in force.")
       .def_property_readonly(
           "scanners",
           [](const GuardedSite& self) {
             return std::vector<Scanner>(self.site.scanners().begin(), self.site.scanners().end());
           },
-          "Copies of its scanners, which `StationSetup.scanner` counts from 0.")
+          "Copies of its scanners, indexed by `StationSetup.scanner`.")
       .def_property_readonly(
           "choices",
           [](const GuardedSite& self) {
             return std::vector<SiteChoice>(self.site.choices().begin(), self.site.choices().end());
           },
-          "What nobody gave and the site chose, with the reason.")
+          "Settings that the user left open and the site chose, with the reasons.")
       .def(
           "evaluate",
           [](GuardedSite& self, const py::object& stations, std::uint64_t sample_voxels, bool overlap, bool skip,
@@ -123,18 +122,15 @@ void add_sites(py::module_& m) {
           py::arg("stations"), py::kw_only(), py::arg("sample_voxels") = 0, py::arg("overlap") = true,
           py::arg("skip") = false, py::arg("field") = false, py::arg("link") = default_link,
           py::arg("registration") = py::none(), py::arg("progress") = py::none(),
-          "Evaluates a network as `vantage evaluate` does, with scan overlaps on all surfaces and the round on "
-          "site.\n\n"
-          "stations: as `Simulator.evaluate` takes them; heads are put on the ground below. sample_voxels: 0: every "
-          "ray.\n"
-          "link: scan overlap from which on two stations count as linked. The others: as `Simulator.evaluate` has "
-          "them.\n"
-          "Raises Error invalid_argument.")
+          "Evaluates a network like `vantage evaluate`, with scan overlaps on all surfaces and the round on "
+          "site.\n\nstations: in a form that `Simulator.evaluate` takes; heads are put on the ground below. "
+          "sample_voxels: 0: every ray.\nlink: least scan overlap of a link. The others: as for "
+          "`Simulator.evaluate`.\nRaises Error invalid_argument.")
       .def("write_report", &write_site_report, py::arg("file"), py::arg("evaluation"), py::kw_only(),
            py::arg("title") = py::none(), py::arg("progress") = py::none(),
-           "Writes report.html or report.pdf, by the file's extension, of a network evaluated on this site; of one\n"
-           "evaluated with field=True also why surfaces are not captured. title: None: the site's name.\n"
-           "Raises Error: io, invalid_argument (another extension, a build that writes no reports).")
+           "Writes report.html or report.pdf, by the file's extension, of a network evaluated on this site; if "
+           "evaluated with\nfield=True, also why surfaces are not captured. title: None: the site's name.\nRaises "
+           "Error: io, invalid_argument (another extension, a build that writes no reports).")
       .def("__repr__", [](const GuardedSite& self) { return "<vantage.Site " + self.site.name() + ">"; });
   refuse_pickle(type, "a Site owns a device and is not pickled; open its file again with the same settings");
 }

@@ -86,7 +86,7 @@ class Sites(unittest.TestCase):
         site = vantage.Site.open(FOUR_WALLS, **COARSE)
         with self.assertRaisesRegex(vantage.Error, "^capture: "):
             site.plan(capture=2)
-        with self.assertRaisesRegex(TypeError, "says all that is asked"):
+        with self.assertRaisesRegex(TypeError, "contains the whole question"):
             site.plan(vantage.coverage_fix(3), stations=3)
 
     def test_a_list_is_given_value_by_value(self):
