@@ -626,7 +626,7 @@ class Candidates:
     def spacing_m(self) -> float: ...
     def __len__(self) -> int: ...
 
-# A setting as the program's option of that name takes it: a number, a text, a truth value, or a sequence of them.
+# Value of a setting, in the form of the option of that name: a number, a text, a truth value, or a sequence of them.
 Setting = Union[None, bool, float, str, Sequence[Any], "os.PathLike[str]"]
 
 class SiteChoice:
