@@ -26,13 +26,13 @@ using Clock = std::chrono::steady_clock;
 // More groups make cuts tighter and the linear program larger.
 constexpr std::size_t kMostGroups = 24;
 constexpr std::size_t kElementsPerGroup = 50;
-// A cut is dropped once it was slack for so many rounds.
+// A cut is dropped after this many slack rounds.
 constexpr std::size_t kIdleRounds = 6;
-// Error of a bound by branch and bound, from its tolerances.
+// Error of a bound from branch and bound, due to its tolerances.
 constexpr double kBoundSlack = 1e-6;
 // Rounding must not lose solutions as good as the known one.
 constexpr double kKnownSlack = 1e-7;
-// A cut is added where it is violated by this share of all weight.
+// A cut is added if it is violated by this share of all weight.
 constexpr double kViolated = 1e-9;
 
 }  // namespace
@@ -73,7 +73,7 @@ struct BendersMaster::Impl {
     for (double& b : base) b = std::min(b, 1.0);
   }
 
-  // Neighbours by number belong together: along a space-filling curve they are covered alike.
+  // Neighbouring numbers share a group: along a space-filling curve they are covered alike.
   std::size_t group_of(std::size_t element) const { return element * groups / weight.size(); }
   double share(const CoverageMatrix::Entry& one) const { return std::min(one.amount / matrix.goal(), 1.0); }
 
@@ -111,9 +111,8 @@ struct BendersMaster::Impl {
     return sum;
   }
 
-  // The bound that the duals of the cuts prove, by arithmetic of our own: with u_c >= 0 on the cuts of each group
-  // adding up to at most 1, F(y) <= Σ_c u_c constant_c + Σ_g (1 − Σ_{c of g} u_c) W_g + Σ_k y_k Σ_c u_c of_ck for every
-  // y.
+  // The bound that the duals of the cuts prove, computed here anew. With u_c >= 0 on the cuts of each group, with a sum
+  // of at most 1, F(y) <= Σ_c u_c constant_c + Σ_g (1 − Σ_{c of g} u_c) W_g + Σ_k y_k Σ_c u_c of_ck for every y.
   double proven(std::span<const double> dual, double stations) const {
     std::vector<double> used(groups), gain(candidates);
     std::vector<double> u(dual.begin(), dual.end());
@@ -132,11 +131,11 @@ struct BendersMaster::Impl {
     return std::min(sum, 1.0);
   }
 
-  // The fewest stations for which `proven` allows that much coverage.
+  // The least number of stations for which `proven` allows this coverage.
   double stations_proven(std::span<const double> dual, double wanted) const {
     double least = 0, most = static_cast<double>(candidates);
     if (proven(dual, most) < wanted) return most;
-    // It grows with the number and is linear between whole ones: halving to well below what a ceiling would notice.
+    // It grows with the number and is linear between whole ones: bisect to well below the effect on a ceiling.
     for (int step = 0; step < 50; ++step) {
       const double middle = 0.5 * (least + most);
       (proven(dual, middle) < wanted ? least : most) = middle;
@@ -144,8 +143,8 @@ struct BendersMaster::Impl {
     return least;
   }
 
-  // Columns and rows of a flow that connects the taken candidates: it enters at one of them with a unit for each; each
-  // keeps a unit and sends the others on along links to taken ones. Returns the columns that have to be integer.
+  // Adds columns and rows of a flow that connects the taken candidates. It enters at one of them with a unit for each;
+  // each keeps a unit and sends the others on along links to taken ones. Returns the columns that must be integer.
   std::vector<int> add_flow(ClpSimplex& lp, std::size_t stations) const;
   void add_exclusions(ClpSimplex& lp, std::size_t stations) const;
 
@@ -219,9 +218,9 @@ Relaxed BendersMaster::min_stations(double coverage, double tolerance, double se
   return impl_->solve(true, coverage, tolerance, seconds, progress);
 }
 
-// Both questions have the same cuts. For max_coverage() `limit` is the number of stations, and the master's solution is
-// always one of the relaxation, F(y) below its bound. For min_stations() it is the coverage, of which the master's
-// solution is short until there are enough cuts.
+// Both problems have the same cuts. For max_coverage() `limit` is the number of stations; each solution of the master
+// is one of the relaxation, with F(y) below its bound. For min_stations() it is the coverage, which the master's
+// solution misses until there are enough cuts.
 Relaxed BendersMaster::Impl::solve(bool fewest, double limit, double tolerance, double seconds,
                                    const Progress& progress) {
   const auto begun = Clock::now();
@@ -270,8 +269,8 @@ Relaxed BendersMaster::Impl::solve(bool fewest, double limit, double tolerance, 
     best.complete = apart <= tolerance;
     if (best.complete || progress.stopped() || (seconds > 0 && seconds_since(begun) > seconds)) return best;
 
-    // Cuts are deeper between the master's solution, which jumps about, and the best so far (Ben-Ameur and Neto:
-    // Acceleration of cutting-plane and column generation algorithms, Networks 49, 2007).
+    // Cuts are deeper between the master's solution, which jumps, and the best so far (Ben-Ameur and Neto: Acceleration
+    // of cutting-plane and column generation algorithms, Networks 49, 2007).
     for (std::size_t k = 0; k < candidates; ++k) between[k] = 0.5 * (y[k] + best.y[k]);
     std::vector<Cut> made = cuts_at(y);
     if (best.y != y)
@@ -293,7 +292,7 @@ std::vector<int> BendersMaster::Impl::add_flow(ClpSimplex& lp, std::size_t stati
     return lp.numberColumns() - 1;
   };
   std::vector<int> whole;
-  // The flow into each candidate, and that less the flow out of it.
+  // The flow into each candidate, and its excess over the outflow.
   struct Terms {
     std::vector<int> index;
     std::vector<double> value;
@@ -324,7 +323,7 @@ std::vector<int> BendersMaster::Impl::add_flow(ClpSimplex& lp, std::size_t stati
     if (there == 0) in[k].add(y, -all), net[k].add(y, -1);
     lp.addRow(static_cast<int>(in[k].index.size()), in[k].index.data(), in[k].value.data(), -COIN_DBL_MAX, there * all);
     lp.addRow(static_cast<int>(net[k].index.size()), net[k].index.data(), net[k].value.data(), there, there);
-    // Fractions of a flow reach far, so each taken candidate needs a taken neighbour, too.
+    // Fractional flows reach far, so each taken candidate needs a taken neighbour, too.
     Terms neighbours;
     bool existing_neighbour = there > 0;
     for (std::size_t l = 0; l < candidates; ++l) {
@@ -340,8 +339,8 @@ std::vector<int> BendersMaster::Impl::add_flow(ClpSimplex& lp, std::size_t stati
   return whole;
 }
 
-// At most one of two that exclude each other: one row for each candidate, none of the others beside it if it is taken.
-// Existing candidates stand together whatever excludes them.
+// At most one of two candidates that exclude each other. One row for each candidate: if it is taken, none of the others
+// is. Existing candidates are exempt.
 void BendersMaster::Impl::add_exclusions(ClpSimplex& lp, std::size_t stations) const {
   if (!problem.graph) return;
   const auto exists = [&](std::size_t k) { return std::ranges::find(existing, k) != existing.end(); };
@@ -385,7 +384,7 @@ BendersMaster::Choice BendersMaster::choose(std::size_t stations, double seconds
   model.setLogLevel(0);
   model.messageHandler()->setLogLevel(0);
   model.setMaximumSeconds(seconds);
-  // Cuts for fixed charges, as flows between stations have.
+  // Cuts for fixed charges, which flows between stations have.
   CglFlowCover flow_cover;
   CglMixedIntegerRounding2 rounding;
   CglGomory gomory;

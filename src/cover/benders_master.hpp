@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The linear relaxation of a covering problem, as a Benders master over the candidates alone.
 //
-// With y_k in [0, 1] how much of candidate k is taken, F(y) = Σ_e w_e min(b_e + Σ_k a_ke y_k, 1) is concave; a_ke is
-// min(amount / goal, 1), b_e what existing candidates give. A supergradient at any ŷ bounds F everywhere: for each
-// group g of elements θ_g <= Σ_{e covered at ŷ} w_e + Σ_{e not covered} w_e (b_e + Σ_k a_ke y_k). So elements never
-// enter the linear program, only such cuts do (Cordeau, Furini, Ljubić: Benders decomposition for very large scale
-// partial set covering and maximal covering location problems, European Journal of Operational Research 275, 2019).
-// Whatever cuts there are, the master's value is an upper bound.
+// With y_k in [0, 1] the taken share of candidate k, F(y) = Σ_e w_e min(b_e + Σ_k a_ke y_k, 1) is concave; a_ke is
+// min(amount / goal, 1), b_e the share from existing candidates. A supergradient at any ŷ bounds F everywhere: for each
+// group g of elements θ_g <= Σ_{e covered at ŷ} w_e + Σ_{e not covered} w_e (b_e + Σ_k a_ke y_k). Only such cuts enter
+// the linear program, never the elements (Cordeau, Furini, Ljubić: Benders decomposition for very large scale partial
+// set covering and maximal covering location problems, European Journal of Operational Research 275, 2019). With any
+// set of cuts the master's value is an upper bound.
 #pragma once
 
 #include <cstddef>
@@ -20,16 +20,16 @@ namespace vantage {
 
 // A linear program solved to some tolerance: the wanted value lies between `bound` and `reached`.
 struct Relaxed {
-  double bound = 1;       // no y has more coverage (or, of min_stations(), fewer stations)
-  double reached = 0;     // by `y`
+  double bound = 1;       // upper bound on coverage (for min_stations(), lower bound on the number)
+  double reached = 0;     // value of `y`
   std::vector<double> y;  // one for each candidate
   std::size_t rounds = 0;
-  bool complete = false;  // came to its tolerance
+  bool complete = false;  // reached its tolerance
 };
 
 class BendersMaster {
  public:
-  // Of the first `candidates` of the problem. Keeps a reference to it. REQUIRES: candidates <= matrix.candidates().
+  // Uses the first `candidates` of the problem. Keeps a reference to it. REQUIRES: candidates <= matrix.candidates().
   BendersMaster(const CoverProblem& problem, std::size_t candidates);
   BendersMaster(BendersMaster&&) noexcept;
   ~BendersMaster();
@@ -41,13 +41,13 @@ class BendersMaster {
 
   // max F(y) subject to Σ y <= stations, to `tolerance`. `seconds`: gives up after; 0: never.
   Relaxed max_coverage(double stations, double tolerance, double seconds, const Progress& progress = {});
-  // min Σ y subject to F(y) >= coverage, to `tolerance` in F: `bound` is a lower bound of the number, `reached` is Σ y
-  // of one whose coverage is short by no more than the tolerance. Infinite if all candidates have less.
+  // min Σ y subject to F(y) >= coverage, to `tolerance` in F. `bound` is a lower bound of the number; `reached` is Σ y
+  // of a solution whose coverage is short by at most the tolerance. Infinite if all candidates have less.
   Relaxed min_stations(double coverage, double tolerance, double seconds, const Progress& progress = {});
 
-  // The best integer y of at most so many stations, by branch and bound over the cuts so far; empty if none was found
-  // in time. `bound` is an upper bound for every choice of as many. Choices below `known` are not looked at. Links and
-  // exclusions of the problem hold, among existing candidates too for links.
+  // The best integer y of at most `stations` stations, by branch and bound over the cuts so far; empty if none was
+  // found in time. `bound` is an upper bound for every such choice. Choices below `known` are ignored. Links and
+  // exclusions of the problem apply; links also among existing candidates.
   struct Choice {
     std::vector<std::size_t> candidates;
     double bound = 1;

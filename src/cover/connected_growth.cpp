@@ -12,7 +12,7 @@
 namespace vantage {
 namespace {
 
-// Candidates of a path at most, and how many of the most promising paths are evaluated as a whole.
+// Largest number of candidates on a path, and number of the most promising paths that are evaluated as a whole.
 constexpr std::size_t kLongestPath = 4, kPathsTried = 24;
 
 using Path = std::vector<std::size_t>;
@@ -46,7 +46,7 @@ class Growth {
       Path path;
       if (along_links) path = best_path();
       if (path.empty()) {
-        // No path adds anything. What is left is coverage; the missing links are a violation.
+        // No path adds anything. Only coverage is left to gain; missing links are a violation.
         if (along_links && enough) break;
         along_links = false;
         const auto best = best_anywhere();
@@ -55,7 +55,7 @@ class Growth {
       }
       add(path);
     }
-    // The number that is asked for is kept even by candidates that add nothing.
+    // Candidates that add nothing fill up to the requested number.
     for (const std::size_t k : free_)
       if (network_.size() < std::min(most_, fewest) && may_stand(problem_, k, network_)) add({k});
     return std::move(network_);
@@ -67,7 +67,7 @@ class Growth {
       if (network_.size() < most_) network_.push_back(k), cover_.add(k);
   }
 
-  // Whether `k` may stand with all on the way back from `at`.
+  // Whether `k` may stand with all candidates on the way back from `at`.
   bool may_follow(std::size_t k, std::size_t at, std::span<const std::size_t> from) const {
     for (; from[at] < none_; at = from[at])
       if (!may_stand(problem_, k, {&at, 1})) return false;
@@ -83,10 +83,10 @@ class Growth {
   std::size_t none_;
   std::vector<std::size_t> free_, network_;
   PartialCover cover_;
-  std::size_t most_ = 0;  // of the network
+  std::size_t most_ = 0;  // largest number in the network
 };
 
-// The candidate that covers most, of the component of all candidates that together covers most.
+// The candidate with the most coverage in the component that covers most as a whole.
 std::optional<std::size_t> Growth::first_candidate() const {
   const Components parts =
       components(free_.size(), [&](std::size_t i, std::size_t j) { return linked(problem_, free_[i], free_[j]); });
@@ -117,7 +117,7 @@ std::optional<std::size_t> Growth::best_anywhere() const {
   return best;
 }
 
-// The path along links, from the network to a candidate worth going to, that gains most for each candidate on it.
+// The path along links, from the network to a promising candidate, with the largest gain for each candidate on it.
 Path Growth::best_path() const {
   std::vector<std::size_t> hops(none_, none_), from(none_, none_), now = network_, next;
   std::vector<double> gain(none_, 0);
@@ -125,7 +125,7 @@ Path Growth::best_path() const {
     if (may_stand(problem_, k, network_)) gain[k] = cover_.gain(k);
   for (const std::size_t k : network_) hops[k] = 0;
   struct End {
-    double score;  // no less than what the path gains for each candidate
+    double score;  // upper bound of the path's gain for each candidate
     std::size_t candidate;
   };
   std::vector<End> ends;
@@ -167,7 +167,7 @@ Path Growth::best_path() const {
   return best;
 }
 
-// The candidates between the first component and the one that fewest lead to; empty where links lead to none.
+// The candidates between the first component and the one with the shortest path to it; empty if links lead to none.
 Path Growth::path_between_components() const {
   const Components parts = components_of(problem_, network_, problem_.link);
   std::vector<std::size_t> from(none_, none_), open;

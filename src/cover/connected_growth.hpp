@@ -9,7 +9,7 @@
 
 namespace vantage {
 
-// `network` and further candidates until coverage and links are as wanted, or `problem.most` are there, or none helps.
+// Adds candidates to `network` until coverage and links are as wanted, `problem.most` are reached, or none helps.
 std::vector<std::size_t> grow_connected(const CoverProblem& problem, std::vector<std::size_t> network);
 
 }  // namespace vantage

@@ -7,7 +7,7 @@
 namespace vantage {
 namespace {
 
-// A candidate with what it was last known to add, which bounds what it adds to any larger network.
+// A candidate and its last known gain, an upper bound for its gain with any larger network.
 struct KnownGain {
   double gain;
   std::size_t candidate, network_size;  // of the network that it was computed for
@@ -25,7 +25,7 @@ std::vector<std::size_t> greedy(const CoverProblem& problem) {
   std::priority_queue<KnownGain> queue;
   for (const std::size_t k : free_candidates(problem)) queue.push({cover.gain(k), k, chosen.size()});
 
-  std::vector<KnownGain> refused;  // until the network has grown: then they may be allowed
+  std::vector<KnownGain> refused;  // not allowed now; may be once the network has grown
   const auto enough = [&] { return problem.coverage < 1 && cover.value() >= problem.coverage; };
   while (chosen.size() - problem.existing.size() < problem.most && !queue.empty() && !enough()) {
     const KnownGain best = queue.top();

@@ -15,7 +15,7 @@ namespace {
 
 using Candidates = std::vector<std::size_t>;
 
-// A network this near to its bound, in coverage, is the best: branch and bound has tolerances.
+// A network this near to its bound, in coverage, counts as the best: branch and bound has tolerances.
 constexpr double kClosed = 1e-5;
 
 std::vector<double> as_shares(std::span<const std::size_t> chosen, std::size_t candidates) {
@@ -25,7 +25,7 @@ std::vector<double> as_shares(std::span<const std::size_t> chosen, std::size_t c
   return y;
 }
 
-// The best network that heuristics find; empty if it has to be connected and none was met.
+// The best network of the heuristics; empty if it must be connected and none was found.
 Candidates heuristic_choice(const CoverProblem& problem, const std::stop_token& stop) {
   if (problem.link <= 0) return improve_by_swaps(problem, greedy(problem), stop);
   CoverProblem all = problem;
@@ -35,8 +35,8 @@ Candidates heuristic_choice(const CoverProblem& problem, const std::stop_token& 
   return improve_by_swaps(problem, std::move(chosen), stop);
 }
 
-// Branch and bound over the cuts. Cuts are added where a choice has less coverage than they say, until one has what the
-// bound allows.
+// Branch and bound over the cuts. Cuts are added while a choice has less coverage than they say, until one has the
+// coverage of the bound.
 void branch_and_bound(const CoverProblem& problem, BendersMaster& master, double seconds, CoverSolution& result,
                       const std::stop_token& stop) {
   const auto begun = std::chrono::steady_clock::now();

@@ -10,12 +10,12 @@
 namespace vantage {
 namespace {
 
-// How many networks of one candidate fewer a search begins at: those that lose least.
+// Number of starting networks of one candidate fewer: those that lose least.
 constexpr std::size_t kBeginnings = 3;
-// How much stronger a weakest link is asked for at a time.
+// Step by which the required weakest link grows.
 constexpr double kLinkStep = 0.02;
 
-// Places of the chosen candidates that may leave, the one whose leaving violates least first.
+// Places of the chosen candidates that may leave; the one with the least violation first.
 std::vector<std::size_t> places_by_loss(const CoverProblem& problem, const std::vector<std::size_t>& chosen) {
   struct Loss {
     double violation, coverage;
@@ -57,7 +57,7 @@ ConnectedCover min_connected_cover(const CoverProblem& problem, std::stop_token 
     best = evaluate_cover(problem, grow_connected(problem, std::move(best.chosen)));
     swap();
   }
-  // One fewer for as long as that is no worse, even where it is not what is wanted.
+  // One fewer while that is no worse, even if the network is not feasible.
   while (placed() > std::max<std::size_t>(problem.fewest, 1) && !stop.stop_requested()) {
     const std::vector<std::size_t> places = places_by_loss(problem, best.chosen);
     std::optional<CoverSolution> fewer;

@@ -12,8 +12,8 @@
 namespace vantage {
 namespace {
 
-// What a missing link counts, as a share of the wanted coverage: so much that no network in two parts is ever taken for
-// its coverage, and so little that a search may pass through one.
+// Violation of a missing link, as a share of the wanted coverage. It is so large that no network of two components wins
+// by its coverage, and so small that a search may pass through one.
 constexpr double kMissingLink = 0.2;
 
 double weakest_link(const CoverProblem& problem, std::span<const std::size_t> network) {

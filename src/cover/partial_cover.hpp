@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a set of candidates covers, kept up as candidates come and go.
+// Coverage of a set of candidates, updated as candidates come and go.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace vantage {
 
-// The amounts of a set S of candidates; one may be in it more than once.
+// The amounts of a set S of candidates; a candidate may be in it more than once.
 class PartialCover {
  public:
   // Keeps a reference to `matrix`.
@@ -20,7 +20,7 @@ class PartialCover {
   double gain(std::size_t candidate) const;  // F(S + candidate) − F(S)
   double loss(std::size_t candidate) const;  // F(S) − F(S − candidate). REQUIRES: in S
   double value() const;                      // F(S), summed anew
-  // How much of an element so much covers: min(amount / goal, 1).
+  // Covered share of an element with this amount: min(amount / goal, 1).
   double covered(std::uint64_t amount) const;
   std::uint64_t amount(std::size_t element) const { return amounts_[element]; }
 
@@ -29,8 +29,8 @@ class PartialCover {
   std::vector<std::uint64_t> amounts_;
 };
 
-// The columns of each element: the transposed matrix. What a swap changes is read where the candidate that leaves is
-// needed, instead of over whole columns.
+// Candidates of each element: the transposed matrix. A swap is evaluated over the elements that need the leaving
+// candidate instead of over whole columns.
 class ColumnIndex {
  public:
   // Keeps a reference to `matrix`.

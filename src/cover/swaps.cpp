@@ -10,7 +10,7 @@
 namespace vantage {
 namespace {
 
-// Coverage that a swap has to gain, so that rounding ends no search late.
+// Least gain of a swap, so that rounding does not keep a search going.
 constexpr double kLeastGain = 1e-9;
 
 // Local search over swaps. An upper bound of each candidate's gain, kept from swap to swap, spares most evaluations.
@@ -27,10 +27,10 @@ class SwapSearch {
     for (std::size_t k = 0; k < bound_.size(); ++k) bound_[k] = cover_.gain(k);
   }
 
-  // Until no candidate can be replaced, or stopped.
+  // Runs until no candidate can be replaced, or stopped.
   std::vector<std::size_t> run(const std::stop_token& stop) {
     const std::size_t first = problem_.existing.size();
-    std::size_t unchanged = 0;  // candidates, one after the other, that were not replaced
+    std::size_t unchanged = 0;  // consecutive candidates that were not replaced
     for (std::size_t at = first;
          chosen_.size() > first && unchanged < chosen_.size() - first && !stop.stop_requested();) {
       unchanged = replace(at) ? 0 : unchanged + 1;
@@ -40,7 +40,7 @@ class SwapSearch {
   }
 
  private:
-  // Replaces the candidate at `at` by the one that gains most. False where none gains.
+  // Replaces the candidate at `at` by the one with the largest gain. False if none gains.
   bool replace(std::size_t at) {
     const std::size_t out = chosen_[at];
     const double lost = cover_.loss(out);
@@ -61,7 +61,7 @@ class SwapSearch {
       for (double& one : bound_) one += lost;
       bound_[out] = lost;
     }
-    // What a candidate adds shrinks when another is added.
+    // Gains shrink when another candidate is added.
     for (std::size_t i = 0; i < looked_at; ++i) bound_[order[i]] = std::min(bound_[order[i]], known_[order[i]]);
     return best != out;
   }
@@ -79,7 +79,7 @@ class SwapSearch {
   std::vector<std::size_t> chosen_;
   PartialCover cover_;
   std::vector<char> in_;
-  std::vector<double> bound_, known_;  // of each candidate's gain: an upper bound, and the last one computed
+  std::vector<double> bound_, known_;  // of each candidate's gain: an upper bound, and the last computed value
 };
 
 }  // namespace

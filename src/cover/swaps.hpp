@@ -9,9 +9,9 @@
 
 namespace vantage {
 
-// One candidate fewer for as long as the wanted coverage is kept: drops the one whose loss is least, and where that is
-// too much makes up for it by swaps. Deterministic unless stopped. REQUIRES: `chosen` begins with the existing
-// candidates and has the wanted coverage.
+// Drops one candidate after the other while the wanted coverage holds: the one with the least loss; if that is too
+// much, swaps make up for it. Deterministic unless stopped. REQUIRES: `chosen` begins with the existing candidates and
+// has the wanted coverage.
 std::vector<std::size_t> drop_and_swap(const CoverProblem& problem, std::vector<std::size_t> chosen,
                                        std::stop_token stop = {});
 

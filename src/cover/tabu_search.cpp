@@ -9,8 +9,8 @@
 namespace vantage {
 namespace {
 
-// Swaps without a network of less violation before a search gives up, and swaps for which a candidate that left may not
-// come back; one that came may leave again after half as many.
+// Swaps without a network of less violation before a search gives up, and swaps before a candidate that left may
+// return. A candidate that came may leave again after half as many.
 constexpr std::size_t kPatience = 40, kTabu = 7;
 
 }  // namespace
@@ -27,8 +27,8 @@ struct TabuSearch::State {
   std::vector<std::size_t> chosen;
   PartialCover cover;
   double link;
-  Swap best;                            // how good the best network met is
-  std::vector<std::size_t> tabu_until;  // by candidate: neither out nor in before that swap
+  Swap best;                            // quality of the best network found
+  std::vector<std::size_t> tabu_until;  // by candidate: may neither leave nor return before that swap
   std::vector<double> gains = {};       // by candidate, to the chosen
   std::size_t swap = 1;
 };
@@ -36,7 +36,7 @@ struct TabuSearch::State {
 TabuSearch::TabuSearch(const CoverProblem& problem, std::stop_token stop)
     : problem_(problem), stop_(std::move(stop)), free_(free_candidates(problem)) {}
 
-// The best swap of one chosen candidate. A tabu one counts where it leads to less violation than any network met.
+// The best swap of one chosen candidate. A tabu one counts if it leads to less violation than any network so far.
 TabuSearch::Swap TabuSearch::best_swap_at(const State& state, std::size_t at, double coverage) const {
   const std::size_t leaving = state.chosen[at];
   const bool may_leave = state.tabu_until[leaving] <= state.swap;

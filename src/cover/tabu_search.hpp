@@ -17,12 +17,12 @@ class TabuSearch {
   // Keeps a reference to the problem.
   explicit TabuSearch(const CoverProblem& problem, std::stop_token stop = {});
 
-  // Makes the best swap each time, even a worse network, and returns the best network met. Ends where nothing is
-  // violated any more. `link` takes the place of the problem's.
+  // Makes the best swap each time, even to a worse network, and returns the best network found. Ends once nothing is
+  // violated. `link` replaces that of the problem.
   std::vector<std::size_t> run(std::vector<std::size_t> start, double link);
 
  private:
-  // A chosen candidate, by its place, that leaves for another one; and the network after it.
+  // A chosen candidate, by its place, that another one replaces; and the resulting network.
   struct Swap;
   struct State;
   Swap best_swap(const State& state) const;
