@@ -15,11 +15,11 @@ namespace vantage {
 namespace {
 
 constexpr double kMostPlaces = 20'000, kFinest_m = 0.25;
-// Two places in one column are two levels where they are further apart.
+// Places in one column that are further apart are on different levels.
 constexpr double kSameLevel_m = 0.4;
-// A step, and a stair of 45 degrees.
+// A step, and the slope of a stair of 45 degrees.
 constexpr double kStep_m = 0.35, kSteepest = 1.0;
-// Of one network's stations, some hundred networks' worth.
+// Cached stations, some hundred networks' worth.
 constexpr std::size_t kMostKnown = 1'000;
 
 std::uint64_t cell_key(std::int64_t x, std::int64_t y) {
@@ -30,7 +30,7 @@ double plan_area(const Vec3& a, const Vec3& b, const Vec3& c) {
   return std::abs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)) / 2;
 }
 
-// Height of a triangle's plane over a point of its plan; empty outside it.
+// Height of a triangle's plane at a point of its plan; empty outside it.
 std::optional<double> height_at(const std::array<Vec3, 3>& t, double x, double y) {
   const double area = (t[1].x - t[0].x) * (t[2].y - t[0].y) - (t[1].y - t[0].y) * (t[2].x - t[0].x);
   if (area == 0) return std::nullopt;
@@ -109,7 +109,7 @@ Ways::Ways(const SearchMesh& ground, const std::function<bool(const Vec3&, const
   for (std::uint32_t k = 0; k < places_.size(); ++k)
     for (const auto& to : ahead[k])
       if (to && !linked(k, *to)) link(k, *to);
-  // Ways of eight directions alone are up to 8 % too long; with a knight's moves, where both ways round are free, 3 %.
+  // Paths in eight directions are up to 8 % too long; with knight's moves, if both ways round are free, 3 %.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> knights;
   for (std::uint32_t k = 0; k < places_.size(); ++k) {
     for (const auto& [di, dj] : std::array<std::pair<int, int>, 4>{{{2, 1}, {1, 2}, {2, -1}, {1, -2}}}) {
@@ -137,7 +137,7 @@ std::optional<std::uint32_t> Ways::nearest(const Vec3& ground) const {
       for (const std::uint32_t place : found->second) {
         const Vec3 away = places_[place] - ground;
         if (std::abs(away.z) > kStep_m + kSteepest * spacing_ * 2 * reach) continue;
-        // Another level is further than it looks.
+        // Another level counts as further than it looks.
         const double distance = std::hypot(away.x, away.y) + 4 * std::abs(away.z);
         if (distance < least) least = distance, best = place;
       }
@@ -176,7 +176,7 @@ std::optional<double> Ways::between(const Vec3& from, const Vec3& to) const {
   if (!a || !b) return std::nullopt;
   const auto length = [](const Vec3& v) { return std::sqrt(dot(v, v)); };
   if (*a == *b) return length(to - from);
-  // From the place with the smaller number, so that the way back is as long to the last bit.
+  // From the place with the smaller number, so that both directions have the same length to the last bit.
   const double metres = static_cast<double>((*distances_from(std::min(*a, *b)))[std::max(*a, *b)]);
   if (!std::isfinite(metres)) return std::nullopt;
   return length(places_[*a] - from) + metres + length(to - places_[*b]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shortest ways over a search area, on a graph of places spread evenly over it.
+// Shortest paths over a search area, on a graph of evenly spread places.
 #pragma once
 
 #include <cstdint>
@@ -16,10 +16,10 @@ namespace vantage {
 
 class Ways {
  public:
-  // `sees`: whether one can go straight from one ground point to the other.
+  // `sees`: whether a person can go straight from one ground point to the other.
   Ways(const SearchMesh& ground, const std::function<bool(const Vec3&, const Vec3&)>& sees);
 
-  // Metres along the graph; empty where it does not connect them, or has no place near one of them.
+  // Metres along the graph; empty if it does not connect them, or has no place near one of them.
   std::optional<double> between(const Vec3& from, const Vec3& to) const;
   double spacing_m() const { return spacing_; }
   std::size_t places() const { return places_.size(); }
@@ -36,7 +36,7 @@ class Ways {
   std::vector<Vec3> places_;
   std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cells_;
   std::vector<std::vector<Link>> links_;
-  // Of places asked for before, and no more than some: networks of a search share stations.
+  // Cache of places asked for before, limited in size: networks of a search share stations.
   mutable std::mutex mutex_;
   mutable std::unordered_map<std::uint32_t, std::shared_ptr<const std::vector<float>>> known_;
 };
