@@ -20,14 +20,14 @@ bool hangs_together(const PlanEntry& entry, const SurveyProblem& problem) {
   return entry.exact && connectivity(entry.overlap_matrix, problem.link_overlap).parts == 1;
 }
 
-// Whether all that can be seen was never looked at, though a requirement is a share of it.
+// Whether attainable coverage was never computed, though a requirement is a share of it.
 bool look_cut_short(const PlanResult& result) {
   return result.candidates && result.candidates->ended() == "cancelled" &&
          std::ranges::any_of(result.problem.requirements,
                              [](const Requirement& r) { return r.objective.needs.attainable; });
 }
 
-// Of the scaled objectives to the best values of all of them. Unknown ones are as bad as the worst.
+// Distance of the scaled objectives from the best values. Unknown ones count as the worst.
 double distance(const PlanEntry& entry, const SurveyProblem& problem) {
   std::vector<double> values;
   for (const Objective& objective : problem.objectives) values.push_back(entry.value(objective.name));

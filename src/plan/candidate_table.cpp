@@ -46,7 +46,7 @@ bool CandidateTable::add(std::span<const PlacedStation> stations, const Coverage
 
 std::vector<PlacedStation> positions_around(const PlacementOracle& site, std::span<const PlacedStation> stations,
                                             std::size_t each, double radius_m) {
-  // A sunflower's seeds: turned on by the golden angle, each disc's area shared evenly (Vogel: A Better Way to
+  // Sunflower seeds: each is turned on by the golden angle and has an equal share of the disc (Vogel: A Better Way to
   // Construct the Sunflower Head, 1979).
   const double golden = 2 * std::numbers::pi * (2 - std::numbers::phi);
   std::vector<PlacedStation> found;
@@ -58,7 +58,7 @@ std::vector<PlacedStation> positions_around(const PlacementOracle& site, std::sp
       if (!uv) continue;
       PlacedStation placed = place_station(site, *uv, site.height_m);
       placed.setup = station.setup;
-      // Not the floor below, where a station would see all else.
+      // Excludes the floor below, where a station would see everything else.
       if (placed.status == StationStatus::ok && std::abs(placed.ground.z - station.ground.z) <= radius_m)
         found.push_back(placed);
     }

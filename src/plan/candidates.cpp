@@ -14,7 +14,7 @@
 namespace vantage {
 namespace {
 
-// Candidates between two looks at the clock.
+// Candidates between two checks of the clock.
 constexpr std::size_t chunk = 64;
 
 SpreadPositions spread_or_refuse(const SearchArea& area, const ClashChecker& clash, const Scanner& scanner,

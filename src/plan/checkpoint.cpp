@@ -46,7 +46,7 @@ void write_checkpoint(const std::filesystem::path& file, const Checkpoint& check
   AtomicFile out(file);
   out.write(sealed(kFormat, payload.bytes()));
   out.settle();
-  std::error_code ignored;  // one less to fall back on
+  std::error_code ignored;  // if this fails, there is one checkpoint less to fall back on
   if (keep_before) std::filesystem::rename(file, checkpoint_before(file), ignored);
   out.commit();
 }

@@ -18,7 +18,7 @@ void check(const SurveyProblem& problem, const PlanConfig& config) {
 }
 
 constexpr std::size_t kRestarts = 1'000'000;  // enough to spend any budget
-// When one objective is at rest: less is to be gained than a sample's standard error, or stations move by less than
+// One objective has converged if the possible gain is below a sample's standard error, or stations move by less than
 // 1/250 of the search area.
 constexpr double kCoverageTolerance = 1e-3, kStepTolerance = 0.02;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The optimiser that suits a problem.
+// Chooses the optimiser of a problem.
 #pragma once
 
 #include <memory>
@@ -12,8 +12,8 @@ namespace vantage {
 // Never 0.
 std::size_t population_of(const SurveyProblem& problem, const PlanConfig& config);
 
-// With the limits of `config`, but for those of time. Borrows the space. `batch`: see PlanConfig. `start`: where to
-// begin in place of what `config` says; may be empty.
+// With the limits of `config` except those of time. Borrows the space. `batch`: see PlanConfig. `start`: replaces the
+// start of `config`; may be empty.
 std::unique_ptr<Optimiser> choose_optimiser(const DecisionSpace& space, const SurveyProblem& problem,
                                             const PlanConfig& config, std::size_t batch,
                                             const std::vector<double>& start = {});

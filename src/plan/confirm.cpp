@@ -16,11 +16,11 @@ namespace vantage {
 namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-// By how many standard errors of the difference one network must be better, so that the other need not be confirmed.
-// That both were counted on the same voxels makes the difference better known than that.
+// Standard errors of the difference by which one network must be better, so that the other need not be confirmed. The
+// difference is known even better, since both were counted on the same voxels.
 constexpr double kBeyondDoubt = 3;
 
-// What the optimiser kept of a network: its objectives, and nothing where it breaks a requirement.
+// Takes the objectives that the optimiser kept of a network; none if it violates a requirement.
 void take_objectives(PlanEntry& entry, const ParetoPoint& point, const SurveyProblem& problem) {
   for (std::size_t k = 0; k < problem.objectives.size(); ++k) {
     const Objective& objective = problem.objectives[k];
@@ -35,7 +35,7 @@ std::vector<double> best_known(const PlanEntry& entry, const Measures& measures)
   return values;
 }
 
-// Falling by the objectives in their order, then by x. What is not known comes last, or it would be no order.
+// Sorted by the objectives in order, then by x. Unknown values come last, or the order would be none.
 bool comes_before(const PlanEntry& a, const PlanEntry& b, const Measures& measures) {
   for (const Objective& measure : measures.all) {
     const auto cost = [&](const PlanEntry& entry) {
@@ -47,7 +47,7 @@ bool comes_before(const PlanEntry& a, const PlanEntry& b, const Measures& measur
   return a.x < b.x;
 }
 
-// What an optimiser would be told of each by what is best known of it, row-major.
+// Scaled objectives of each entry from its best known values, row-major.
 std::vector<double> scaled_rows(std::span<const PlanEntry> entries, const SurveyProblem& problem,
                                 const Measures& measures) {
   const std::size_t m = problem.objectives.size();
@@ -60,7 +60,7 @@ std::vector<double> scaled_rows(std::span<const PlanEntry> entries, const Survey
   return scaled;
 }
 
-// Entries than which another is better in all objectives beyond doubt.
+// Entries for which another is better in all objectives beyond doubt.
 std::vector<bool> beaten(std::span<const PlanEntry> entries, const SurveyProblem& problem, const Measures& measures) {
   const std::size_t m = problem.objectives.size();
   const std::vector<double> scaled = scaled_rows(entries, problem, measures);
@@ -88,7 +88,7 @@ std::vector<bool> beaten(std::span<const PlanEntry> entries, const SurveyProblem
   return found;
 }
 
-// Without those for which it is said.
+// Removes the marked elements.
 template <class T>
 void erase_said(std::vector<T>& all, const std::vector<bool>& said) {
   std::size_t k = 0;
@@ -113,7 +113,7 @@ ConfirmedFront confirm_front(const SearchOutcome& found, const DecisionSpace& sp
     networks.push_back(entry.stations);
   }
 
-  // A search that samples did not keep its standard errors, nor what is no objective. The same sample is drawn again.
+  // A sampled search did not keep standard errors, nor measures that are no objectives. The same sample is drawn again.
   const bool sampled = sample_voxels > 0;
   if (sampled && !networks.empty()) {
     if (const auto estimates =
@@ -126,7 +126,7 @@ ConfirmedFront confirm_front(const SearchOutcome& found, const DecisionSpace& sp
         }
         entries[k].values = entries[k].searched;
       }
-      // Requirements may be missed by one voxel that only every ray sees.
+      // One voxel that only every ray sees may decide whether a requirement is violated.
       if (problem.requirements.empty()) {
         const std::vector<bool> need_not = beaten(entries, problem, measures);
         erase_said(entries, need_not);
@@ -142,8 +142,8 @@ ConfirmedFront confirm_front(const SearchOutcome& found, const DecisionSpace& sp
     if (!watch.report) return;
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
     const double rate = seconds > 0 ? (static_cast<double>(done) + part) / seconds : 0;
-    // Stations differ several times in what they take, and an engine may trace those of the first network for others,
-    // too: a part of it tells nothing yet of all.
+    // The times of stations differ severalfold, and an engine may trace those of the first network along with others. A
+    // part of it tells nothing yet about the whole.
     const bool telling = rate > 0 && (done > 0 || entries.size() == 1);
     watch.report({.iteration = done,
                   .iterations = entries.size(),

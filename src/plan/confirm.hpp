@@ -10,20 +10,20 @@ namespace vantage {
 
 struct ConfirmedFront {
   std::vector<PlanEntry> entries;
-  std::size_t spared = 0;  // networks that are no entries: others are better by more than their standard errors allow
+  std::size_t spared = 0;  // networks without entries: others are better by more than the standard errors allow
 };
 
-// The front as entries, best first: what the search saw with its standard errors, and beside it the exact values.
+// The front as entries, best first: values of the search with standard errors, and the exact values.
 ConfirmedFront confirm_front(const SearchOutcome& found, const DecisionSpace& space, const SurveyProblem& problem,
                              const Measures& measures, std::uint64_t sample_voxels, NetworkEvaluator& evaluator,
                              const PlanWatch& watch);
 
-// Drops those that another's values dominate, and all but the first of equals: exact values, or where a confirmation
-// was cut short what is known.
+// Drops entries dominated by another, and all but the first of equal ones, by exact values, or by known values if a
+// confirmation was cut short.
 void keep_undominated(std::vector<PlanEntry>& entries, const SurveyProblem& problem, const Measures& measures);
 
-// Says of entries by how much their exact values miss the requirements, and marks those that another's dominate.
-// Returns the hypervolume of the exact values, NaN unless all entries are confirmed.
+// Sets the violation of each entry by its exact values, and marks dominated ones. Returns the hypervolume of the exact
+// values, NaN unless all entries are confirmed.
 double judge_by_every_ray(std::vector<PlanEntry>& entries, const SurveyProblem& problem, const Measures& measures);
 
 }  // namespace vantage

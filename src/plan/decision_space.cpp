@@ -36,7 +36,7 @@ DecisionSpace::DecisionSpace(const PlacementOracle& oracle, const SurveyProblem&
       scanners_(problem.scanners) {
   check(problem);
   if (heights_) height_bounds_ = *problem.heights_m;
-  // An existing station was scanned from where it stands, whatever the search area says; its (u, v) is for the reader.
+  // An existing station was scanned from its position, whatever the search area; its (u, v) is only for the reader.
   existing_ = existing_stations(oracle, problem.kept, problem.kept_setups);
 }
 

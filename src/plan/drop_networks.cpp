@@ -7,7 +7,7 @@
 namespace vantage {
 namespace {
 
-// Keeps those for which it holds, unless it holds for none.
+// Keeps the entries for which the condition holds, unless it holds for none.
 template <class Holds>
 void prefer(std::vector<PlanEntry>& entries, const Holds& holds) {
   if (std::ranges::any_of(entries, holds))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Networks that are no plan beside others: they are not shown.
+// Removes networks from a front that are no useful plans beside others.
 #pragma once
 
 #include <cstddef>
@@ -11,11 +11,11 @@ namespace vantage {
 
 bool same_places(const PlanEntry& a, const PlanEntry& b);
 
-// Those with a station that found nowhere to stand, after the `kept` ones, where there are others.
+// Removes networks with a station, after the `kept` ones, that found no allowed position, if there are others.
 void drop_unplaced(std::vector<PlanEntry>& entries, std::size_t kept);
 
-// Those of a front that stand where another does, and, where any keeps its stations apart and on allowed ground, those
-// that do not. The problems of the method, by name, keep their fronts as they are.
+// Removes networks that repeat another's positions. If some networks keep their stations apart and on allowed ground,
+// removes those that do not. The problems of the method, by name, keep their fronts unchanged.
 void drop_networks(std::vector<PlanEntry>& front, const SurveyProblem& problem);
 
 }  // namespace vantage

@@ -11,18 +11,18 @@
 namespace vantage {
 namespace {
 
-// Candidates that are looked at though the time is over: a connected network is worth more than one chosen from many.
+// Candidates that are traced even after the time is over: a connected network is worth more than one chosen from many.
 constexpr std::size_t kLateCandidates = 96;
 // Further candidates around each chosen station.
 constexpr std::size_t kAround = 8;
-// How many times as long the second short list is.
+// Length of the second short list, in multiples of the first.
 constexpr std::size_t kLongerList = 4;
 
 void stronger(FewestChoice& choice, const std::stop_token& stop) {
   choice.network = improve_weakest_link(cover_problem(choice), std::move(choice.network), stop);
 }
 
-// The most that can be covered by as many stations as there is time for.
+// Finds the most coverage of as many stations as there is time for.
 void fit_time(FewestChoice& choice, const VisitTime& visit, const std::stop_token& stop) {
   if (!choice.asked.minutes) return;
   const double limit = *choice.asked.minutes;
@@ -36,13 +36,13 @@ void fit_time(FewestChoice& choice, const VisitTime& visit, const std::stop_toke
   }
 }
 
-// Candidates that may be worth having in a network like the chosen one: it, the best one of a station fewer, and
-// `times` as many as a short list has of the best replacements and additions. By rising number.
+// Candidates that may improve the network, in ascending order: the network itself, the best one of a station fewer, and
+// `times` the usual numbers of the best replacements and additions.
 std::vector<std::size_t> short_list(const FewestChoice& choice, std::size_t times) {
   const CoverageMatrix& matrix = choice.table.matrix();
   const std::vector<std::size_t>& chosen = choice.network.chosen;
   std::vector<char> listed(matrix.candidates(), 0);
-  // One after the other: those that add most at first are near each other.
+  // One after the other: those with the largest gains at first are near each other.
   for (const std::size_t k :
        greedy({.matrix = matrix, .graph = &choice.table.graph(), .existing = chosen, .most = times * kBestAdditions}))
     listed[k] = 1;
@@ -109,7 +109,7 @@ CoverProblem cover_problem(const FewestAsked& asked, const CandidateTable& table
 void look(CandidateTable& table, std::span<const PlacedStation> existing, std::span<const PlacedStation> candidates,
           const CoverageMatrix& known, const Progress& progress, const std::stop_token& abort) {
   const Progress at_once{.report = {}, .stop = abort};
-  // Existing stations come first in every network, so they are traced even where time is short.
+  // Existing stations come first in every network, so they are traced even if time is short.
   if (!existing.empty()) table.add(existing, at_once);
   if (progress.stopped() || abort.stop_requested())
     table.add(candidates.first(std::min(candidates.size(), kLateCandidates)), known, at_once);

@@ -10,15 +10,15 @@
 namespace vantage {
 namespace {
 
-// The search may trace so many stations for each candidate that was looked at.
+// Stations that the search may trace for each traced candidate.
 constexpr double kSearchShare = 2;
 constexpr std::size_t kLeastIterations = 10, kMostIterations = 100;
 // First steps: about the distance between candidates, not the size of the site.
 constexpr double kRefiningSigma = 0.03;
-// What is timed: so many networks as a search evaluates them, and so many stations by every ray.
+// Timed samples: sampled networks, and stations by every ray.
 constexpr std::size_t kTimedNetworks = 2, kTimedStations = 4;
-// Measured on the sites of docs/examples.md: how much longer later rounds take, the share of a short list that is not
-// listed twice, and how many choices are verified.
+// Measured on the sites of docs/examples.md: relative time of later rounds, share of a short list that is not listed
+// twice, and number of verified choices.
 constexpr double kLaterRounds = 1.1, kListedShare = 0.7, kVerified = 4.5;
 
 template <class Work>
@@ -56,7 +56,7 @@ std::optional<double> expected_seconds(const FewestChoice& choice, const SurveyP
                                        const PlanWatch& watch) {
   const std::vector<PlacedStation> chosen = choice.stations_of(choice.network);
   const Progress silent{.report = {}, .stop = watch.stop};
-  // The first call sets up what later ones use again, so it may take longer.
+  // The first call sets up structures that later ones reuse, so it may take longer.
   const auto sampled = [&](std::size_t copies) {
     const std::vector<PlacedNetwork> some(copies, chosen);
     return seconds_of([&] { evaluator.evaluate(some, {.voxels = config.sample_voxels}, silent); }) /

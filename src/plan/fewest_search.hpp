@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The fewest stations, second half: where. What is asked of the search that begins at the chosen network, and how long
-// it will take.
+// The fewest stations, second half: where. Sets up the search from the chosen network, and predicts its time.
 #pragma once
 
 #include <cstddef>
@@ -12,28 +11,28 @@
 
 namespace vantage {
 
-// Rounds of refinement around the chosen stations, and how many times as large the sample after them is.
+// Rounds of refinement around the chosen stations, and the size of the sample after them, in multiples of the first.
 inline constexpr std::size_t kRounds = 3;
 inline constexpr std::uint64_t kLargerSample = 5;
 
-// Requirements moved further from their limits by what is known of the sample of the search: by how much it overstates
-// the coverage of the network it begins at.
+// Moves requirements away from their limits by the known error of the search's sample: the overstatement of the
+// coverage of its first network.
 SurveyProblem with_margins(SurveyProblem problem, double overstated, double link_margin);
 
-// Small first steps, and where no number of iterations is given, as many as let the search trace so many stations for
-// each candidate that was looked at.
+// Small first steps. If no number of iterations is given, it limits the stations that the search traces for each traced
+// candidate.
 PlanConfig refining_config(const SurveyProblem& problem, PlanConfig config, std::size_t candidates);
 
-// What the first stages took.
+// Durations of the first stages.
 struct StageTimes {
-  double look_s = 0;               // a station on the sample
-  double station_s = 0;            // a station of the table: with the surroundings
-  double round_s = 0;              // a round of refinement around the chosen stations
+  double look_s = 0;               // of a station on the sample
+  double station_s = 0;            // of a station of the table, with the surroundings
+  double round_s = 0;              // of a round of refinement around the chosen stations
   std::size_t round_stations = 0;  // traced in that round
 };
 
-// Seconds that all the rest will take, from the first round of refinement on: further rounds, the larger sample, the
-// search by `config`, and every ray. Times the evaluator on the chosen network. Empty where it was stopped.
+// Predicted seconds of the rest, from the first round of refinement on: further rounds, the larger sample, the search
+// by `config`, and every ray. Times the evaluator on the chosen network. Empty if stopped.
 std::optional<double> expected_seconds(const FewestChoice& choice, const SurveyProblem& problem,
                                        const PlanConfig& config, NetworkEvaluator& evaluator, const StageTimes& times,
                                        const PlanWatch& watch);

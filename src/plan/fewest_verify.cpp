@@ -10,10 +10,10 @@
 namespace vantage {
 namespace {
 
-// Margins are raised by what was short, times this.
+// Factor from a shortfall to the increase of its margin.
 constexpr double kBeyond = 1.25;
 
-// What an entry is short of the least values that are required of it.
+// Shortfall of an entry below its required least values.
 Margins shortfall(const PlanEntry& entry, std::span<const Requirement> requirements) {
   Margins margins;
   for (const Requirement& requirement : requirements) {
@@ -49,7 +49,7 @@ VerifiedNetworks::VerifiedNetworks(const SurveyProblem& problem, const Measures&
 
 void VerifiedNetworks::add(std::span<const PlacedStation> placed) {
   const SurveyProblem narrowed = with_stations(problem_, placed.size());
-  SearchOutcome found;  // of one network, whose objectives are not known yet
+  SearchOutcome found;  // one network, whose objectives are not known yet
   found.front.push_back(
       {.x = DecisionSpace(oracle_, narrowed).encode(placed), .f = std::vector<double>(problem_.objectives.size(), 2)});
   add(found, placed.size());
@@ -115,7 +115,7 @@ bool repair(FewestChoice& choice, const VerifiedNetworks& verified, const std::s
   if (missing.coverage == 0 && missing.link == 0) return false;
   choice.margins.coverage += kBeyond * missing.coverage, choice.margins.link += kBeyond * missing.link;
   choice.one_fewer.reset();
-  // From where it is, at this number, or else by what one more allows.
+  // From the present network, at this number, or else with one more.
   const CoverProblem asked = cover_problem(choice);
   CoverSolution same = improve_weakest_link(asked, evaluate_cover(asked, choice.network.chosen), stop);
   if (same.violation == 0)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The fewest stations, by every ray: networks that a sample chose are evaluated in full, and chosen anew where that
-// shows the sample to be wrong.
+// The fewest stations, by every ray: networks chosen on a sample are evaluated in full, and chosen again if the sample
+// proves wrong.
 #pragma once
 
 #include <cstddef>
@@ -19,21 +19,21 @@ namespace vantage {
 // Networks of a problem that were evaluated with every ray, as entries of a plan.
 class VerifiedNetworks {
  public:
-  // Borrows all. `sample_voxels`: of a search, by which entries tell what they seemed to be; 0: every ray.
+  // Borrows all. `sample_voxels`: sample of the search, for the entries' searched values; 0: every ray.
   VerifiedNetworks(const SurveyProblem& problem, const Measures& measures, const PlacementOracle& oracle,
                    NetworkEvaluator& evaluator, std::uint64_t sample_voxels, const PlanWatch& watch);
 
-  // Evaluates a network of these stations besides the existing ones, or the front of a search for so many of them.
+  // Evaluates a network of these stations besides the existing ones, or the front of a search for as many stations.
   void add(std::span<const PlacedStation> placed);
   void add(const SearchOutcome& found, std::size_t placed);
 
   const SurveyProblem& problem() const { return problem_; }
   const std::vector<PlanEntry>& entries() const { return entries_; }
-  // Of those evaluated in full the one that violates least; null if there is none.
+  // The network with the least violation among those evaluated in full; null if there is none.
   const PlanEntry* best() const;
 
-  // Of the networks evaluated in full, or of all if none was: those of fewest stations that keep what is required, else
-  // those that violate it least; and of these, those that no other one dominates.
+  // Among the networks evaluated in full, or all if none was: those of fewest stations that meet the requirements, else
+  // those with the least violation; of these, the non-dominated ones.
   std::vector<PlanEntry> front() const;
 
  private:
@@ -46,19 +46,19 @@ class VerifiedNetworks {
   std::vector<PlanEntry> entries_;
 };
 
-// The problem with so many stations to place.
+// The problem with exactly `placed` stations to place.
 SurveyProblem with_stations(SurveyProblem problem, std::size_t placed);
 
-// Verifies the chosen network. Returns by how much the sample of a search overstates its coverage; the coverage margin
-// where that is not known.
+// Verifies the chosen network. Returns the overstatement of its coverage by the sample of a search, or the coverage
+// margin if that is not known.
 double verify(const FewestChoice& choice, VerifiedNetworks& verified);
 
-// Chooses anew with margins raised by what the best verified network is short of. False where that cannot help.
+// Chooses again with margins raised by the shortfall of the best verified network. False if that cannot help.
 bool repair(FewestChoice& choice, const VerifiedNetworks& verified, const std::stop_token& stop);
 
-// Once the chosen network is verified, the sample's error is known: where it is less than the margin, a station fewer
-// may do, or as many may be linked better. Chooses and verifies such a network, and keeps it, with the new
-// `overstated`, if it keeps what is required. False where it does not, and then the choice is as it was.
+// Uses the sample's error, known once the chosen network is verified. If it is below the margin, a station fewer may
+// do, or as many may be linked better. Chooses and verifies such a network, and keeps it, with the new `overstated`, if
+// it meets the requirements. Otherwise returns false and leaves the choice unchanged.
 bool choose_by_known_error(FewestChoice& choice, VerifiedNetworks& verified, double& overstated,
                            const std::stop_token& stop);
 

@@ -42,7 +42,7 @@ Hash hash_of(std::span<const Vec3> points) {
   return hash;
 }
 
-// What the search can see of ground and security volume: the answers on a grid of (u, v).
+// Hash of ground and security volume as the search sees them: the answers on a grid of (u, v).
 Hash hash_of(const PlacementOracle& oracle) {
   constexpr int kSide = 33;
   Hash hash;

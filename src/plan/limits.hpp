@@ -8,7 +8,7 @@
 
 namespace vantage {
 
-// The strictest limit of a kind from one side; of coverage as coverage, whatever share of it was asked for.
+// The strictest limit of a kind from one side; limits on coverage in units of coverage, even if given as a share.
 inline std::optional<double> limit_of(const SurveyProblem& problem, Objective::Kind kind, Requirement::Bound bound) {
   std::optional<double> limit;
   for (const Requirement& r : problem.requirements) {

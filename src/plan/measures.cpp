@@ -18,7 +18,7 @@ void check(const Objective& objective) {
     refuse("the objective " + objective.name + " has no scale; give it minimise(best, worst) or maximise(best, worst)");
 }
 
-// Where it stands; added where it is new.
+// Its index; appends it if it is new.
 std::size_t place_of(std::vector<Objective>& all, const Objective& objective) {
   check(objective);
   const auto found = std::find_if(all.begin(), all.end(), [&](const Objective& o) { return o.name == objective.name; });

@@ -14,15 +14,15 @@
 namespace vantage {
 namespace {
 
-// Voxels between two looks at whether to stop.
+// Voxels between two checks for a stop.
 constexpr std::size_t voxels_at_once = 4096;
 // Enough for shares to a tenth of a percent, few enough for seconds.
 constexpr std::uint64_t kJudgedVoxels = 50'000;
 
 double length(const Vec3& v) { return std::sqrt(dot(v, v)); }
 
-// The part of the way from `from` to `to` that is left where it enters the cube of half the side `half` around
-// `centre`; 0 where `from` lies inside.
+// Share of the way from `from` to `to` before it enters the cube of half side `half` around `centre`; 0 if `from` lies
+// inside.
 double entry(const Vec3& from, const Vec3& to, const Vec3& centre, double half) {
   double in = 0;
   const auto clip = [&](double a, double b, double middle) {
@@ -62,7 +62,7 @@ class Judge {
     const Scanner& scanner = simulator_.scanner();
     const Vec3 centre = simulator_.voxel_centre(rank);
     const double half = simulator_.voxel_size_m() / 2;
-    // The nearest first: most voxels are settled by few lines.
+    // The nearest first: few lines decide most voxels.
     std::vector<std::pair<double, std::size_t>> order(candidates_.size());
     for (std::size_t k = 0; k < order.size(); ++k) order[k] = {length(patch.point - candidates_[k].position), k};
     std::sort(order.begin(), order.end());
@@ -71,7 +71,7 @@ class Judge {
     for (const auto& [range, k] : order) {
       const Vec3 head = candidates_[k].position, way = patch.point - head;
       const bool reached = range >= scanner.min_range_m && range <= scanner.max_range_m;
-      // What cannot change the answer any more needs no line.
+      // A line that cannot change the answer is not traced.
       if (free_line && !reached) continue;
       if (!clash_.sees(head, head + way * entry(head, patch.point, centre, half))) continue;
       free_line = true;

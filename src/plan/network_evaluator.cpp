@@ -4,7 +4,7 @@
 namespace vantage {
 namespace {
 
-// The exact bytes of all that an objective may look at. A skipped station keeps its place: places key the noise, and
+// The exact bytes of everything that an objective may use. A skipped station keeps its place: places key the noise, and
 // their number divides the overlap.
 std::string key_of(const PlacedNetwork& network) {
   std::string key;

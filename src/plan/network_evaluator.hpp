@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The seam between search and simulation: networks in, values of measures out.
+// Interface between search and simulation: networks in, values of measures out.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +17,7 @@ namespace vantage {
 
 using PlacedNetwork = std::vector<PlacedStation>;
 
-// A sample: `voxels` of them, from place `from` on in the draw. None: every ray.
+// A sample of `voxels` voxels, from place `from` on in the draw. No voxels: every ray.
 struct VoxelWindow {
   std::uint64_t voxels = 0, from = 0;
   friend bool operator==(const VoxelWindow&, const VoxelWindow&) = default;
@@ -26,9 +26,9 @@ struct VoxelWindow {
 class NetworkEvaluator {
  public:
   virtual ~NetworkEvaluator() = default;
-  // How many networks evaluate() takes best at once with every ray; 0: as many as there are.
+  // Best number of networks for one call of evaluate() with every ray; 0: any.
   virtual std::size_t chunk() const = 0;
-  // Values of the searched measures of each network, in order. Empty when stopped half way.
+  // Values of the searched measures of each network, in order. Empty if stopped.
   virtual std::optional<std::vector<std::vector<double>>> evaluate(std::span<const PlacedNetwork> networks,
                                                                    const VoxelWindow& sample,
                                                                    const Progress& progress) = 0;
@@ -37,13 +37,13 @@ class NetworkEvaluator {
   virtual std::optional<std::vector<std::vector<Estimate>>> estimate(std::span<const PlacedNetwork> networks,
                                                                      const VoxelWindow& sample, Which measures,
                                                                      const Progress& progress) = 0;
-  // All measures with every ray; empty for networks that were not reached before it was stopped.
+  // All measures with every ray; empty for networks not reached before a stop.
   virtual std::vector<std::optional<Evaluation>> confirm(std::span<const PlacedNetwork> networks,
                                                          const Progress& progress) = 0;
   virtual double trace_seconds() const = 0;
 };
 
-// Remembers the values of networks met before, with the same sample.
+// Caches the values of networks on the present sample.
 class CachingEvaluator {
  public:
   explicit CachingEvaluator(NetworkEvaluator& evaluator) : evaluator_(evaluator) {}

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tells the search where stations may stand. SearchArea and ClashChecker stand behind functions, so that tests can
-// search on sites made of formulas. The functions must be safe to call from several threads.
+// Allowed positions as the search sees them. Functions hide SearchArea and ClashChecker, so that tests can search on
+// sites made of formulas. The functions must be safe to call from several threads.
 #pragma once
 
 #include <functional>
@@ -19,9 +19,9 @@ struct PlacementOracle {
   std::function<std::optional<Uv>(const Vec3&)> project;  // (u, v) of a ground point
   std::function<bool(const Vec3&, double)> clashes;       // ground point; height of the head above it
   std::function<PlacedStation(const Vec3&)> check_head;   // a station given by its head
-  std::function<bool(const Vec3&, const Vec3&)> sees;     // one head the other, nothing between
+  std::function<bool(const Vec3&, const Vec3&)> sees;     // whether one head sees the other
   double height_m = 0;                                    // of the scanner's head
-  double range_m = 0;                                     // how far a scanner sees
+  double range_m = 0;                                     // of a scanner
 };
 
 // Borrows both.
@@ -29,7 +29,7 @@ PlacementOracle make_placement_oracle(const SearchArea& area, const ClashChecker
 
 PlacedStation place_station(const PlacementOracle& oracle, Uv uv, double height_m);
 
-// Stations that are there already. `setups`: one each, or none. Throws Error invalid_argument for another number.
+// Existing stations. `setups`: one each, or none. Throws Error invalid_argument for another number.
 std::vector<PlacedStation> existing_stations(const PlacementOracle& oracle, std::span<const Vec3> heads,
                                              std::span<const StationSetup> setups);
 

@@ -22,7 +22,7 @@ bool needs_attainable(const SurveyProblem& problem) {
          std::ranges::any_of(problem.requirements, needs, &Requirement::objective);
 }
 
-// What a problem says, with the scale of the number of stations as it is, and `capture` of what can be seen.
+// The problem with the scale of the number of stations in force, and `capture` as a share of attainable coverage.
 SurveyProblem settled(SurveyProblem problem) {
   const auto settle = [&](Objective& objective) {
     if (objective.needs.attainable) objective = make_objective(objective.name, problem.settings());
@@ -37,7 +37,7 @@ SurveyProblem settled(SurveyProblem problem) {
   return problem;
 }
 
-// Of the scanners to choose among the one that sees most: what it cannot capture, none can.
+// The scanner that sees most: what it cannot capture, none can.
 std::uint32_t finest(const Simulator& simulator, std::span<const std::uint32_t> scanners) {
   if (scanners.empty()) return 0;
   for (const std::uint32_t k : scanners)
@@ -48,11 +48,11 @@ std::uint32_t finest(const Simulator& simulator, std::span<const std::uint32_t> 
   return *std::ranges::max_element(scanners, {}, [&](std::uint32_t k) { return simulator.scanners()[k].rays(); });
 }
 
-// Of the time limit, for looking, choosing and searching. The rest is for tracing every ray of what was found.
+// Share of the time limit for looking, choosing and searching. The rest is for tracing every ray of the results.
 constexpr double kSearchTimeShare = 0.8;
-// More are tried where it pays: around the stations that are chosen.
+// More are tried only around the chosen stations.
 constexpr std::size_t kMostCandidates = 512;
-// The front of more entries than this has its rounds worked out for the answer alone.
+// A front with more entries gets a round only for its answer.
 constexpr std::size_t kMostRounds = 16;
 
 void work_out_rounds(PlanResult& result, PlanContext& context) {
@@ -65,7 +65,7 @@ void work_out_rounds(PlanResult& result, PlanContext& context) {
   }
 }
 
-// Stopped by the limits too, and told no longer times than they leave.
+// Stops at the limits too, and reports no longer times than they leave.
 PlanWatch limited(const PlanWatch& watch, const Deadline& search_by, const Deadline& all_by) {
   PlanWatch own{.report = {}, .stop = search_by.stop(), .abort = all_by.stop()};
   if (watch.report) {
@@ -114,7 +114,7 @@ PlanResult plan(Simulator& simulator, const SearchArea& area, const ClashChecker
                     .seconds_left = -1,
                     .phase = "look",
                     .visible = candidates->visible().value});
-    // Nothing seen at all: every network captures all of nothing.
+    // Nothing is attainable: every network captures all of it.
     if (limit_wanted) problem.visible = candidates->visible().value > 0 ? candidates->visible().value : 1;
   }
   problem = settled(std::move(problem));

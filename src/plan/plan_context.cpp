@@ -15,8 +15,8 @@ constexpr std::uint64_t kSurroundingsVoxels = 10'000;
 
 }  // namespace
 
-// Every one more is a step further from the textbook's one at a time, so no more than the engine needs to be kept busy:
-// a whole network with every ray keeps any engine busy, a sampled one only a CPU.
+// Each further one departs from the textbook's one at a time, so there are no more than keep the engine busy. A whole
+// network with every ray keeps any engine busy, a sampled one only a CPU.
 std::size_t batch_of(const Simulator& simulator, const PlanConfig& config) {
   if (config.batch > 0) return config.batch;
   if (config.sample_voxels == 0) return 1;

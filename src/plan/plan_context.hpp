@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What all searches of one plan share: the simulator of the surroundings, the walking graph, the evaluator.
+// Shared parts of all searches of one plan: simulator of the surroundings, walking graph, evaluator.
 #pragma once
 
 #include <memory>
@@ -15,26 +15,26 @@ namespace vantage {
 
 class PlanContext {
  public:
-  // Borrows all. The problem is settled: its `capture` knows what can be seen.
+  // Borrows all. The problem is settled: its `capture` knows the attainable coverage.
   PlanContext(Simulator& simulator, const SearchArea& area, const ClashChecker& clash, const PlanConfig& config);
 
-  // Networks are judged by this problem's measures from now on.
+  // From now on, networks are evaluated with this problem's measures.
   void ask(const SurveyProblem& problem);
   const SurveyProblem& problem() const { return problem_; }
   const Measures& measures() const { return measures_; }
   const PlacementOracle& oracle() const { return oracle_; }
   const SearchArea& area() const { return area_; }
   SimulatorEvaluator& evaluator() { return *evaluator_; }
-  // Made when first needed.
+  // Made at first use.
   Simulator& surroundings();
   const OnSite& on_site();
   std::uint64_t surroundings_voxels() const;
 
-  // With the asked problem narrowed to so many stations, other limits, or left as it is.
+  // Searches the present problem, perhaps narrowed to a number of stations or with other limits.
   SearchOutcome search(const SurveyProblem& narrowed, const PlanConfig& config, const std::vector<double>& start,
                        const PlanWatch& watch);
   ConfirmedFront confirm(const SearchOutcome& found, const SurveyProblem& narrowed, const PlanWatch& watch);
-  // Everything of a result but its front, as found.
+  // The result except its front.
   PlanResult result(const SearchOutcome& found) const;
 
  private:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// How many, then where. Candidates are looked at, the fewest stations chosen among them, more candidates tried around
-// these, and the choice verified by every ray; from there the optimiser searches for the best network of that number.
-// Whatever was evaluated with every ray is kept, and the best of it is the answer.
+// First how many, then where. The plan traces candidates, chooses the fewest stations among them, tries more candidates
+// around these, and verifies the choice by every ray. From there the optimiser searches for the best network of that
+// number. The answer is the best network that was evaluated with every ray.
 #include "plan/plan_fewest.hpp"
 
 #include <algorithm>
@@ -20,12 +20,12 @@ namespace {
 
 // Margin of a choice, in standard errors of the sample's coverage, so that most choices hold with every ray.
 constexpr double kMarginErrors = 1;
-// Radius of the first round of refinement, in distances between candidates; halved each round.
+// Radius of the first round of refinement, in distances between candidates; halved in each round.
 constexpr double kAroundRadius = 0.8;
-// How often a choice is repaired, and how often it is chosen anew by the known error of the sample.
+// Largest number of repairs of a choice, and of new choices by the known error of the sample.
 constexpr std::size_t kRepairs = 3;
 
-// Makes tables of stations, with a column for each over a sample of so many voxels.
+// Makes tables of stations, with a column for each on a sample of this many voxels.
 class TableMaker {
  public:
   TableMaker(PlanContext& context, Simulator& simulator) : simulator_(simulator) {
@@ -47,7 +47,7 @@ class TableMaker {
   double apart_m_ = 0;
 };
 
-// Tells how far the plan is.
+// Reports the progress of the plan.
 class FewestReport {
  public:
   explicit FewestReport(const PlanWatch& watch) : watch_(watch) {}
@@ -69,13 +69,13 @@ class FewestReport {
 };
 
 VisitTime visit_time(PlanContext& context, const FewestAsked& asked) {
-  if (!asked.minutes) return {};  // or the walking graph would be made for nothing
+  if (!asked.minutes) return {};  // avoids making the walking graph for nothing
   const OnSite& on_site = context.on_site();
   return {.each_min = on_site.minutes_per_scan() + on_site.options().set_up_min,
           .minutes = [&on_site](std::span<const PlacedStation> placed) { return on_site.visit(placed).minutes; }};
 }
 
-// Looks, chooses and refines. Without stations to place where the time was over first.
+// Looks, chooses and refines. Returns no stations if the time was over before.
 FewestChoice choose_number(PlanContext& context, Simulator& simulator, const Candidates& candidates,
                            double candidates_seconds, const PlanConfig& config, const PlanWatch& watch,
                            FewestReport& report) {
@@ -123,8 +123,8 @@ FewestChoice choose_number(PlanContext& context, Simulator& simulator, const Can
   return choice;
 }
 
-// Verifies the choice, repairs it where every ray shows that it is not what is wanted, and else tries whether fewer
-// stations do. Returns by how much the sample of a search overstates its coverage.
+// Verifies the choice and repairs it if it is not feasible by every ray; otherwise tries fewer stations. Returns the
+// overstatement of its coverage by the sample of a search.
 double verify_and_repair(FewestChoice& choice, VerifiedNetworks& verified, const PlanWatch& watch,
                          const FewestReport& report) {
   const auto least_violation = [&] {
@@ -141,7 +141,7 @@ double verify_and_repair(FewestChoice& choice, VerifiedNetworks& verified, const
   return overstated;
 }
 
-// Searches for the best network of as many stations, from the chosen one.
+// Searches for the best network with the number of stations of the chosen one, starting from it.
 SearchOutcome search_from(const FewestChoice& choice, PlanContext& context, double overstated, std::size_t candidates,
                           const PlanConfig& config, const PlanWatch& watch, const FewestReport& report) {
   SearchOutcome found;
@@ -153,7 +153,7 @@ SearchOutcome search_from(const FewestChoice& choice, PlanContext& context, doub
   return found;
 }
 
-// Time ran out before anything was traced: an allowed position, of which nothing is known.
+// Fallback if time ran out before anything was traced: an allowed position without figures.
 std::vector<PlanEntry> any_position(const PlanContext& context, const Candidates& candidates,
                                     VerifiedNetworks& verified) {
   std::vector<PlacedStation> one = candidates.stations();

@@ -10,7 +10,7 @@
 namespace vantage {
 namespace {
 
-// Coordinates of the stations that may not stand where they are.
+// Coordinates of the stations in holes and clashes.
 std::vector<std::size_t> misplaced(const PlacedNetwork& network, const DecisionSpace& space, std::uint64_t& stations) {
   std::vector<std::size_t> coordinates;
   for (std::size_t i = space.existing(); i < network.size(); ++i) {

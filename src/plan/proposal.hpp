@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A batch of networks that an optimiser proposes, with their stations where they may stand.
+// A batch of networks that an optimiser proposes, with stations at allowed positions.
 #pragma once
 
 #include <cstddef>
@@ -19,8 +19,8 @@ struct Proposal {
   std::uint64_t drawn = 0, redrawn = 0;  // stations
 };
 
-// Asks for a batch and draws stations in holes and clashes again, `redraws` times at most. `first` takes the place of
-// the first vector; empty: as asked.
+// Asks for a batch and redraws stations in holes and clashes, at most `redraws` times. `first` replaces the first
+// vector, unless it is empty.
 Proposal propose(Optimiser& optimiser, const DecisionSpace& space, std::size_t redraws,
                  std::span<const double> first = {});
 

@@ -17,7 +17,7 @@ namespace {
 
 constexpr const char* kSurvey = "survey";
 
-// Adds a requirement in place of one on the same objective from the same side.
+// Adds a requirement; replaces one on the same objective from the same side.
 void require(SurveyProblem& problem, const std::string& text) {
   Requirement requirement = make_requirement(text, problem.settings());
   for (Requirement& known : problem.requirements)
@@ -48,7 +48,7 @@ std::array<std::size_t, 2> station_range(const SurveyQuestion& question) {
   return range;
 }
 
-// Overlap from which on stations count as linked.
+// Least overlap of a link.
 double linked_from(const SurveyQuestion& question) {
   if (question.min_overlap && question.link_overlap && *question.min_overlap != *question.link_overlap)
     throw Error(Errc::invalid_argument, "min-overlap and link-overlap differ; give one of them");
@@ -88,7 +88,7 @@ std::optional<double> number_in(const std::string& text) {
   return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
 }
 
-// The site's scanner with each of these steps, as places among the site's scanners.
+// Makes the site's scanner with each of these steps; returns indices into the site's scanners.
 std::vector<std::uint32_t> scanners_with(Site& site, const std::vector<std::string>& steps) {
   std::vector<std::uint32_t> places;
   for (const std::string& step : steps) {
@@ -114,16 +114,16 @@ std::vector<std::uint32_t> scanners_with(Site& site, const std::vector<std::stri
   return places;
 }
 
-// What a sampled search needs for errors of .002 in coverage, and of .007 in overlap, on large sites
+// Sample sizes of a search, for errors of .002 in coverage, and of .007 in overlap, on large sites
 // (docs/benchmarks.md).
 constexpr std::uint64_t kSampleForCoverage = 20'000, kSampleForOverlap = 100'000;
-// A front is searched with fewer, others after every so many iterations: so nothing is kept for its luck, which no
-// fixed sample keeps out, and every ray judges what is kept (docs/cases.md).
+// A front is searched with fewer voxels, redrawn regularly, so that no network survives by luck, as with a fixed
+// sample; every ray then judges the archive (docs/cases.md).
 constexpr std::uint64_t kSampleRedrawn = 5'000;
 constexpr std::size_t kIterationsOfASample = 20;
-// Where every candidate is looked at: errors of .004, which the choice keeps as a margin and every ray then judges.
+// For tracing every candidate: errors of .004, which the choice keeps as a margin and every ray then judges.
 constexpr std::uint64_t kSampleForFewest = 5'000;
-// On small sites a quarter of the voxels does; but some thousands it should be.
+// A quarter of the voxels is enough on small sites, but at least some thousands.
 constexpr std::uint64_t kLeastSample = 5'000;
 constexpr std::size_t kUsualIterations = 100;
 
@@ -166,7 +166,7 @@ SurveyProblem survey_problem(Site& site, const SurveyQuestion& question) {
   if (!survey) {
     require_at_least(asked, "capture", question.capture.value_or(0));
     require_at_least(asked, "link", question.link.value_or(0));
-    // The problems of the method know no such distance; others are kept from stations on one spot.
+    // The problems of the method have no such distance; in others two stations must not stand at one place.
     require_at_least(asked, "apart", question.objectives.empty() ? question.apart_m.value_or(0) : apart);
   }
   if (question.minutes_on_site) {
@@ -208,7 +208,7 @@ PlanConfig settled(const PlanConfig& config, const SurveyProblem& problem, std::
 }
 
 PlanResult plan(Site& site, const SurveyProblem& problem, const PlanConfig& config, const PlanWatch& watch) {
-  // What the site still has to build is part of the time.
+  // Building the site's missing parts is part of the time.
   constexpr double kMoment_s = 1e-3;
   const auto begun = std::chrono::steady_clock::now();
   Simulator& simulator = site.simulator();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a plan turns down what it cannot do.
+// Errors of a plan about impossible requests.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which voxels a search evaluates with: others every so many iterations, before it has learnt what flatters by these.
+// Schedule of the voxel samples of a search: each is replaced before the search has adapted to it.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@ namespace vantage {
 
 class SampleSchedule {
  public:
-  // The last sample is so many times as large: it says how good the front is.
+  // Size of the last sample, in multiples of the others; it measures the front.
   static constexpr std::uint64_t kVerification = 4;
 
   // Samples of `voxels`, another one after every `period` iterations.
@@ -25,7 +25,7 @@ class SampleSchedule {
     return next;
   }
 
-  // As a checkpoint keeps it.
+  // State in a checkpoint.
   struct State {
     std::uint64_t from = 0;      // where the sample begins in the draw
     std::uint64_t drawn_at = 0;  // iterations

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Means over all samples that a search evaluated the networks of its archive with.
+// Means over all samples on which a search evaluated the networks of its archive.
 #pragma once
 
 #include <cstddef>
@@ -20,27 +20,27 @@ class SampleStatistics {
     std::vector<double> sum;  // by measure
     std::uint64_t count = 0;
   };
-  // As a checkpoint keeps it.
+  // State in a checkpoint.
   struct State {
     std::map<std::vector<double>, Sums> known;  // by x
-    std::vector<double> shift;                  // by measure: what correct() adds
+    std::vector<double> shift;                  // by measure: added by correct()
   };
 
   explicit SampleStatistics(std::size_t measures) { state_.shift.resize(measures); }
   const State& state() const { return state_; }
   void restore(State state) { state_ = std::move(state); }
 
-  // Takes off what the present sample is off by on average, so that newcomers compare with the archive's means.
+  // Subtracts the average error of the present sample, so that newcomers compare with the archive's means.
   void correct(std::vector<double>& values) const;
 
   void keep_only(std::span<const ParetoPoint> archive);
-  // Adds the values that a new sample gave the archive, rows in its order, and replaces them by means over samples: so
-  // no sample drives out what earlier ones found good. The sample that a network was taken in by does not count for it:
-  // among many it was the one that flattered the network.
+  // Adds the archive's values on a new sample, rows in its order, and replaces them by means over samples, so that no
+  // sample drives out networks that earlier ones found good. The sample on which a network entered does not count for
+  // it: it favoured that network among many.
   void average(std::span<const ParetoPoint> archive, std::vector<std::vector<double>>& values);
-  // Pools a last sample, by which nothing was chosen and `times_as_large`, with the earlier ones. The earlier means are
-  // first moved by their average difference from the last sample. The level and the standard errors are thus the last
-  // sample's, while all samples say how networks compare.
+  // Pools a last sample, on which no choice depended and which is `times_as_large`, with the earlier ones. First the
+  // earlier means are moved by their average difference from the last sample. Level and standard errors are thus the
+  // last sample's, while all samples decide how networks compare.
   std::vector<std::vector<Estimate>> pooled(std::span<const ParetoPoint> archive,
                                             std::vector<std::vector<Estimate>> last, double times_as_large) const;
 

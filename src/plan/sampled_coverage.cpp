@@ -47,7 +47,7 @@ void SampledCoverage::append(const SampledCoverage& other, std::size_t most) {
 }
 
 Estimate SampledCoverage::coverage_of(std::span<const std::uint32_t> amounts) const {
-  // The engines' weights are bytes, and a coverage does not change where all of them are 1.
+  // The engines' weights are bytes; if all are 1, coverage does not need them.
   VoxelDemands demands;
   if (std::ranges::any_of(matrix_.weights(), [](std::uint32_t w) { return w != 1; }))
     demands.weights.assign(matrix_.weights().begin(), matrix_.weights().end());
@@ -77,7 +77,7 @@ SampledCoverage sample_coverage(Simulator& simulator, std::span<const PlacedStat
     std::vector<Network> networks;
     for (const PlacedStation& station : stations.subspan(first, here))
       networks.push_back(to_network(std::span(&station, 1)));
-    // Networks come in any order, columns must not: they are kept until all are there.
+    // Networks come in any order; columns must be in order, so they are collected first.
     std::vector<std::vector<CoverageMatrix::Entry>> columns(here);
     SampleOptions options{.voxels = sample_voxels, .overlap = false, .stop_at_goal = false};
     std::size_t counted = 0;

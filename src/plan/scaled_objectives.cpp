@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Feasibility first (Deb: An Efficient Constraint Handling Method for Genetic Algorithms, 2000). But what breaks a
-// requirement keeps its objectives beside the violation: told by the violation alone, a population on its way to the
-// first network that keeps them all loses the variety that a front is made of.
+// Feasibility first (Deb: An Efficient Constraint Handling Method for Genetic Algorithms, 2000), but infeasible
+// networks keep their objectives beside the violation. With the violation alone, a population on its way to the first
+// feasible network loses the variety of a front.
 #include "plan/scaled_objectives.hpp"
 
 namespace vantage {
 namespace {
 
-// A tenth of a scale that is missed outweighs all that an objective can gain: with 1 a search for few stations prefers
-// fewer to keeping a coverage that it has to, with much more it finds worse fronts.
+// A violation of a tenth of a scale outweighs any gain in an objective. With 1, a search for few stations prefers fewer
+// to a required coverage; with much more, it finds worse fronts.
 constexpr double kWeight = 10;
 
 }  // namespace

@@ -7,7 +7,7 @@
 
 namespace vantage {
 
-// scaled_objectives() into `f`; with requirements that are missed by `missed` above 0, behind all that keep them.
+// Writes scaled_objectives() to `f`; with a violation `missed` above 0, behind all feasible ones.
 void scale_objectives(const SurveyProblem& problem, std::span<const double> x, std::span<const double> values,
                       double missed, std::span<double> f);
 

@@ -43,19 +43,19 @@ class Search {
     } catch (...) {
       const auto lost = std::current_exception();
       try {
-        save();                 // hours of work must not go down with a lost device
-      } catch (const Error&) {  // what ended the search is what matters
+        save();                 // a lost device must not take hours of work with it
+      } catch (const Error&) {  // the error that ended the search matters more
       }
       std::rethrow_exception(lost);
     }
     save();
-    // Not saved: a search that goes on does so by the archive as it was.
+    // Not saved: a resumed search continues from the archive before this.
     if (reason != StopReason::cancelled && !verify()) reason = StopReason::cancelled;
     return outcome(reason);
   }
 
  private:
-  // One batch: ask, place, evaluate, tell. False when stopped half way.
+  // One batch: ask, place, evaluate, tell. False if stopped.
   bool iterate() {
     const bool first = optimiser_->evaluations() == 0;
     const Proposal batch = propose(*optimiser_, setup_.space, setup_.config.redraws,
@@ -73,7 +73,7 @@ class Search {
     return true;
   }
 
-  // Empty when stopped half way.
+  // Empty if stopped.
   std::optional<SearchValues> evaluate(std::span<const PlacedNetwork> networks) {
     SearchValues values = log_.replay(networks.size());
     resumed_ += values.size(), evaluated_ += values.size();
@@ -94,7 +94,7 @@ class Search {
     return values;
   }
 
-  // What the optimiser is told of networks, row-major. `x_of`: the decision vector of row k.
+  // Scaled objectives of networks, row-major. `x_of`: the decision vector of row k.
   template <class X>
   std::vector<double> scaled(const SearchValues& values, const X& x_of) const {
     const SurveyProblem& problem = setup_.problem;
@@ -131,7 +131,7 @@ class Search {
     front_ = optimiser_->front();
   }
 
-  // Evaluates the archive again where that is due. False when stopped half way.
+  // Re-evaluates the archive if that is due. False if stopped.
   bool refresh_archive() {
     ArchiveEvaluator* const evaluator = setup_.evaluator.archive();
     if (!evaluator || !evaluator->due(optimiser_->population(), history_.size())) return true;
@@ -139,12 +139,12 @@ class Search {
     const auto values = evaluator->re_evaluate(members, history_.size(), {.report = {}, .stop = setup_.stop});
     if (!values) return false;
     reassess(members, *values);
-    // What is replayed from here on was told to an archive of these values.
+    // From here on the replayed values belong to an archive with these values.
     if (log_.has_file()) take_snapshot();
     return true;
   }
 
-  // Evaluates the archive for the last time. False when stopped half way.
+  // Evaluates the archive for the last time. False if stopped.
   bool verify() {
     ArchiveEvaluator* const evaluator = setup_.evaluator.archive();
     if (!evaluator) return true;
@@ -160,7 +160,7 @@ class Search {
     return true;
   }
 
-  // Replays what a checkpoint brought before anything else stops the search, so that it stands where it was left.
+  // Values of a checkpoint are replayed before anything else can stop the search, so that it continues where it ended.
   StopReason reason_to_stop() const {
     if (optimiser_->stop_reason() != StopReason::running) return optimiser_->stop_reason();
     return setup_.stop.stop_requested() && !log_.replaying() ? StopReason::cancelled : StopReason::running;
@@ -185,7 +185,7 @@ class Search {
   // REQUIRES: no batch is open.
   void take_snapshot() {
     std::ostringstream state;
-    state.exceptions(std::ios::badbit);  // it runs out of memory, not of a disk
+    state.exceptions(std::ios::badbit);  // fails for lack of memory, never of disk space
     optimiser_->save(state);
     log_.take({.optimiser = std::move(state).str(),
                .evaluator = setup_.evaluator.state(),
@@ -224,7 +224,7 @@ class Search {
             .trace_seconds = log_.trace_seconds(setup_.evaluator.trace_seconds())};
   }
 
-  // MO-CMA-ES has a start among its first points; CMA-ES only draws around it, and might never come back to it.
+  // MO-CMA-ES has a start among its first points; CMA-ES only draws around it, and might never return to it.
   std::vector<double> first_network() const {
     if (!setup_.start.empty() || setup_.config.start.empty() || setup_.problem.objectives.size() > 1)
       return setup_.start;

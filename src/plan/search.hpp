@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The search loop: asks the optimiser for networks, evaluates them, tells it their values, and keeps history and
-// checkpoint, until the optimiser has enough or somebody stops it.
+// The search loop: asks the optimiser for networks, evaluates them and tells it their values. It keeps history and
+// checkpoint, until a stop rule holds or it is stopped.
 #pragma once
 
 #include <cstddef>
@@ -23,20 +23,20 @@ struct SearchSetup {
   SearchEvaluator& evaluator;
   std::size_t batch = 1;  // offspring at once in the steady state
   std::string identity = {};
-  // A network to begin with that is evaluated as it stands, so that no front is worse; empty: what `config` says.
+  // First network, evaluated unchanged, so that no front is worse; empty: that of `config`.
   std::vector<double> start = {};
   std::function<void(const PlanProgress&)> watch = {};
-  // Called where a checkpoint cannot be written, or is damaged, and the search goes on without. If empty, one that
-  // cannot be written is an Error.
+  // Called if a checkpoint cannot be written, or is damaged, and the search goes on without it. If empty, failure to
+  // write is an Error.
   std::function<void(const std::string&)> warn = {};
   std::stop_token stop = {};
 };
 
 struct SearchOutcome {
-  // The whole archive where it is evaluated again (SearchEvaluator::archive): every ray then chooses the front.
+  // The whole archive if it is re-evaluated (SearchEvaluator::archive): every ray then chooses the front.
   std::vector<ParetoPoint> front;
-  SearchEstimates estimates = {};  // of each, by all its samples together; empty where there was one
-  VoxelWindow sample = {};         // by which it is reported; no voxels: every ray
+  SearchEstimates estimates = {};  // of each, by all its samples together; empty if there was one
+  VoxelWindow sample = {};         // sample of the report; no voxels: every ray
   std::vector<PlanIteration> history;
   double hypervolume = 0;
   std::uint64_t evaluations = 0, resumed_evaluations = 0;

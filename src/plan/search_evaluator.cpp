@@ -38,7 +38,7 @@ class ExactEvaluator final : public SampledEvaluator {
   std::size_t chunk() const override { return evaluator_.chunk(); }
 };
 
-// Another sample every so many iterations.
+// Redraws the sample regularly.
 class ResampledEvaluator final : public SearchEvaluator, public ArchiveEvaluator {
  public:
   ResampledEvaluator(NetworkEvaluator& evaluator, const PlanConfig& config, std::size_t measures)
@@ -71,7 +71,7 @@ class ResampledEvaluator final : public SearchEvaluator, public ArchiveEvaluator
     statistics_.average(archive.points, *values);
     return values;
   }
-  // Nothing was chosen by these voxels.
+  // No choice depended on these voxels.
   std::optional<SearchEstimates> verify(const SearchArchive& archive, std::uint64_t iterations,
                                         const Progress& progress) override {
     const SampleSchedule next = schedule_.redrawn(iterations);

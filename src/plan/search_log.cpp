@@ -50,7 +50,7 @@ bool SearchLog::due() const { return has_file() && seconds_since(saved_) >= conf
 
 void SearchLog::save(double trace_seconds) {
   if (!has_file()) return;
-  // A run that stops while it still replays must not forget what it has not come to.
+  // A run that stops during its replay must keep the values not yet replayed.
   Values since = since_;
   since.insert(since.end(), replay_.begin() + static_cast<std::ptrdiff_t>(replayed_), replay_.end());
   saved_ = Clock::now();

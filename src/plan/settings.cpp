@@ -54,7 +54,7 @@ Settings settings(const SurveyProblem& problem) {
                       .add("detour", problem.on_site.detour)
                       .add("entrance", problem.on_site.entrance)
                       .take();
-  // Of stations that are not set up as all others, where there are any.
+  // Setups of the existing stations, if any differs from the usual one.
   SettingList setups;
   if (!problem.kept_setups.empty()) setups.add("kept_setups", problem.kept_setups);
   if (!problem.scanners.empty()) setups.add("scanners", problem.scanners);

@@ -18,14 +18,14 @@ std::vector<Network> to_networks(std::span<const PlacedNetwork> placed) {
   return networks;
 }
 
-// The model by which scans are held together by all surfaces, where they are.
+// The model of registration on all surfaces, if that is used.
 std::optional<RegistrationModel> registered_around(const RequiredInputs& needs) {
   return needs.surroundings_registration ? needs.registration : std::nullopt;
 }
 
 }  // namespace
 
-// As many as keep all devices busy with every ray: so a search can be stopped, and saved, often.
+// As many as keep all devices busy with every ray, so that a search can be stopped, and saved, often.
 std::size_t SimulatorEvaluator::chunk() const {
   const std::size_t devices = std::max<std::size_t>(simulator_.config().devices.size(), 1);
   const TracerMaker* const shared = simulator_.config().shared.get();

@@ -12,14 +12,14 @@ namespace vantage {
 class SimulatorEvaluator final : public NetworkEvaluator {
  public:
   struct Options {
-    std::size_t existing = 0;  // stations at the head of every network that are there already
-    // Connected parts of the visibility graph; needed where a measure needs it.
+    std::size_t existing = 0;  // number of existing stations, the first of every network
+    // Connected components of the visibility graph; required if a measure needs it.
     std::function<std::size_t(const Network&)> visible_parts = {};
-    // Over all surfaces; needed where a measure needs it. With so many sampled voxels, or every ray.
+    // All surfaces; required if a measure needs them. With a number of sampled voxels, or every ray.
     Simulator* surroundings = nullptr;
     std::uint64_t surroundings_voxels = 0;
-    RegistrationOptions registration = {};  // of confirmed networks, where a measure needs it
-    // Minutes on site without the existing stations; needed where a measure needs it.
+    RegistrationOptions registration = {};  // of confirmed networks, if a measure needs it
+    // Minutes on site without the existing stations; required if a measure needs it.
     std::function<double(std::span<const PlacedStation>)> minutes = {};
   };
   // Borrows the simulators.
@@ -39,12 +39,12 @@ class SimulatorEvaluator final : public NetworkEvaluator {
 
  private:
   struct Counted {
-    std::vector<NetworkCounts> surveyed, surroundings;  // the latter empty where nothing needs them
+    std::vector<NetworkCounts> surveyed, surroundings;  // the latter empty if not needed
   };
-  // `errors`: whether standard errors are wanted of them.
+  // `errors`: whether standard errors are needed.
   std::optional<Counted> count(std::span<const Network> networks, const VoxelWindow& sample,
                                const RequiredInputs& needs, bool errors, const Progress& progress);
-  // Of no voxels: with every ray.
+  // A window without voxels means every ray.
   std::optional<std::vector<NetworkCounts>> count_with(Simulator& simulator, std::span<const Network> networks,
                                                        const SampleOptions& sample, const Progress& progress);
   MeasuredNetwork measured(const NetworkCounts& counts, const NetworkCounts* surroundings,

@@ -23,8 +23,8 @@ void require_somewhere_to_stand(const SearchArea& area, const ClashChecker& clas
   const SearchMesh& mesh = area.mesh();
   double total = 0;
   for (const auto& t : mesh.triangles) total += area_of(mesh, t);
-  // Places come at equal shares of the area along the list of triangles; within one they follow two sequences without
-  // a common period.
+  // Places lie at equal shares of the area along the list of triangles; within a triangle they follow two sequences
+  // without a common period.
   const double share = total / static_cast<double>(kPlaces);
   double due = 0.5 * share, passed = 0;
   std::size_t places = 0, holes = 0, k = 0;

@@ -5,9 +5,9 @@
 
 namespace vantage {
 
-// Throws Error malformed_file where no place of the search area, out of some thousands spread over its true area, is
-// free of clashes: a search there would draw until its end. `heights_m`: of the head above the ground, any of which
-// will do.
+// Throws Error malformed_file if no place of the search area, out of some thousands spread over its true area, is free
+// of clashes: a search there would redraw forever. `heights_m`: heights of the head above the ground; one of them is
+// enough.
 void require_somewhere_to_stand(const SearchArea& area, const ClashChecker& clash, std::span<const double> heights_m);
 
 }  // namespace vantage

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The pool: evenly spread points of the unit square (Roberts: The Unreasonable Effectiveness of Quasirandom Sequences,
 // 2018), mapped to the triangles by area. The order: farthest point first (Gonzalez: Clustering to Minimize the Maximum
-// Intercluster Distance, 1985), which for every n comes within a factor of two of the densest cover by n points.
+// Intercluster Distance, 1985), for every n within a factor of two of the densest cover by n points.
 #include "plan/spread_positions.hpp"
 
 #include <tbb/parallel_for.h>
@@ -14,7 +14,7 @@ namespace vantage {
 namespace {
 
 constexpr std::size_t pool_per_position = 4;
-constexpr std::size_t tries_per_position = 48;  // where most of the ground is too near to something
+constexpr std::size_t tries_per_position = 48;  // for sites with mostly forbidden ground
 constexpr std::size_t tries_at_once = 4096;
 
 double fraction(double x) { return x - std::floor(x); }
@@ -33,7 +33,7 @@ class GroundByArea {
   }
   double area() const { return below_.back(); }
 
-  // (u, v) of a point of the unit square: the triangles lie side by side along s, as wide as their areas.
+  // (u, v) of a point of the unit square: the triangles lie side by side along s, each as wide as its area.
   Uv at(double s, double t) const {
     const double along = s * area();
     const auto next = std::upper_bound(below_.begin() + 1, below_.end() - 1, along);
@@ -47,7 +47,7 @@ class GroundByArea {
 
  private:
   const SearchMesh& mesh_;
-  std::vector<double> below_;  // area of all triangles before each, and of all
+  std::vector<double> below_;  // area of all triangles before each, and of all together
 };
 
 std::vector<PlacedStation> allowed_positions(const PlacementOracle& site, const SearchMesh& mesh, double height_m,
@@ -76,7 +76,7 @@ SpreadPositions spread_positions(const PlacementOracle& site, const SearchMesh& 
   const std::vector<PlacedStation> pool =
       allowed_positions(site, mesh, height_m, pool_per_position * most, tries_per_position * most);
   SpreadPositions spread;
-  std::vector<double> square(pool.size(), std::numeric_limits<double>::infinity());  // to the nearest taken
+  std::vector<double> square(pool.size(), std::numeric_limits<double>::infinity());  // to the nearest taken position
   std::size_t next = 0;
   while (spread.stations.size() < std::min(most, pool.size())) {
     spread.stations.push_back(pool[next]);
@@ -87,7 +87,7 @@ SpreadPositions spread_positions(const PlacementOracle& site, const SearchMesh& 
     }
     next = static_cast<std::size_t>(std::max_element(square.begin(), square.end()) - square.begin());
     spread.spacing_m.push_back(std::sqrt(square[next]));
-    if (square[next] == 0) break;  // all that is left lies on one that is taken
+    if (square[next] == 0) break;  // all others coincide with taken ones
   }
   return spread;
 }

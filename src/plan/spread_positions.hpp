@@ -11,13 +11,13 @@ namespace vantage {
 
 struct SpreadPositions {
   std::vector<PlacedStation> stations;  // all ok; the first n are spread evenly for every n
-  // For each n, the largest distance from an allowed position tried to the nearest of the first n; spacing_m[0] is of
+  // For each n, the largest distance from a tried allowed position to the nearest of the first n; spacing_m[0] is for
   // the first alone.
   std::vector<double> spacing_m;
 };
 
-// At most `most`, out of a pool of several times as many that fills the ground evenly by area. No random numbers; the
-// pool depends on `most`. Fewer where the pool has no more allowed positions.
+// At most `most` positions, out of a pool of several times as many that fills the ground evenly by area. Uses no random
+// numbers; the pool depends on `most`. Fewer if the pool has no more allowed positions.
 SpreadPositions spread_positions(const PlacementOracle& site, const SearchMesh& mesh, double height_m,
                                  std::size_t most);
 
