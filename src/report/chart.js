@@ -1,5 +1,5 @@
 'use strict';
-// The front as a chart of dots to pick from: a radio group for keyboard and screen reader.
+// The front as a chart of selectable dots: a radio group for keyboard and screen reader.
 
 function svg(name, attributes, text) {
   const node = document.createElementNS('http://www.w3.org/2000/svg', name);
@@ -69,7 +69,7 @@ function frontChart(holder, report, pick) {
       chart.append(svg('text', { x: width - right + 44, y: top + 37 + 24 * k }, value.toFixed(third.count ? 0 : 3)));
     });
   }
-  // In the order in which arrows lead through them: to the right.
+  // In the order of the arrow keys: to the right.
   dots.sort((a, b) => a.x - b.x || b.y - a.y);
   dots.forEach((dot, place) => {
     const network = report.networks[dot.k], isAnswer = dot.k === report.answer;

@@ -13,7 +13,7 @@ namespace {
 
 using Place = std::array<std::uint32_t, 3>;  // of a voxel, in voxels from the lowest
 
-// Fewest voxels along a cell's side with which `most` cells hold all places.
+// Smallest side of a cell, in voxels, with which `most` cells hold all places.
 std::uint32_t fitting_side(const std::vector<Place>& places, std::size_t most) {
   Place last{};
   for (const Place& p : places)
@@ -80,8 +80,8 @@ CoverageCells coverage_cells(const Simulator& simulator, std::uint64_t voxels, s
 
 namespace {
 
-// Calls give(from, to) for each cell that is not known, ring by ring around those that are; cells that none leads to
-// follow the one before them in order.
+// Calls give(from, to) for each unknown cell, ring by ring around the known ones. Cells that cannot be reached follow
+// the one before them in order.
 template <class Give>
 void spread(const CoverageCells& cells, std::vector<bool> known, Give&& give) {
   std::vector<std::uint32_t> queue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arrays as text within a page: deflated (RFC 1950), then base64 (RFC 4648). A browser undoes both by itself.
+// Arrays as text within a page: deflated (RFC 1950), then base64 (RFC 4648). Browsers can undo both.
 #pragma once
 
 #include <concepts>
@@ -15,7 +15,8 @@ std::string base64(std::span<const std::uint8_t> bytes);
 // Throws Error out_of_memory.
 std::string packed(std::span<const std::uint8_t> bytes);
 
-// Little-endian values byte by byte: first all lowest bytes, then all next ones. What changes little deflates well so.
+// Little-endian values by bytes: first all lowest bytes, then all next ones. Slowly changing values deflate well in
+// this order.
 template <std::unsigned_integral T>
 std::vector<std::uint8_t> byte_planes(std::span<const T> values) {
   std::vector<std::uint8_t> bytes;

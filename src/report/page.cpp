@@ -12,7 +12,7 @@
 namespace vantage {
 namespace {
 
-// As the content of a script element: nothing in it ends that, or begins a comment.
+// JSON as content of a script element: nothing in it ends the element or begins a comment.
 std::string within_script(const nlohmann::ordered_json& json) {
   std::string text;
   for (const char c : json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace))
@@ -52,7 +52,7 @@ std::string make_page(const PageText& html, std::span<const PageText> styles, st
       {"title", within_html(title)}, {"policy", page_policy(styles, scripts)}, {"data", within_script(data)}};
   for (const PageText& part : styles) parts["styles"] += std::string("<style>") + part.text + "</style>\n";
   for (const PageText& part : scripts) parts["scripts"] += std::string("<script>") + part.text + "</script>\n";
-  // Marks of the markup alone: what is put in may hold some, too.
+  // Replaces marks of the markup only: inserted parts may contain some, too.
   std::string page;
   for (std::string_view rest = html.text; !rest.empty();) {
     const std::size_t begin = std::min(rest.find("{{"), rest.size()), end = rest.find("}}", begin);

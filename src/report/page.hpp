@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A page of its parts: markup with places for the others, style, scripts and data.
+// Makes a page from its parts: markup with placeholders, style, scripts and data.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -10,12 +10,11 @@
 
 namespace vantage {
 
-// Content security policy of a page of these parts: they run, and nothing else does, wherever it came from. Nothing is
-// loaded, sent or submitted.
+// Content security policy of a page: only these parts run. Nothing is loaded, sent or submitted.
 std::string page_policy(std::span<const PageText> styles, std::span<const PageText> scripts);
 
-// `html` holds {{title}}, {{policy}}, {{styles}}, {{scripts}} and {{data}}, or some of them. Nothing in title or data
-// ends the element that it stands in.
+// `html` has some of {{title}}, {{policy}}, {{styles}}, {{scripts}} and {{data}}. Nothing in title or data ends its
+// element.
 std::string make_page(const PageText& html, std::span<const PageText> styles, std::span<const PageText> scripts,
                       const std::string& title, const nlohmann::ordered_json& data);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files that pages are made of, embedded when vantage is built.
+// Files of the pages, embedded when vantage is built.
 #pragma once
 
 namespace vantage {

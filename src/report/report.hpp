@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a report shows, gathered before it is a page or sheets.
+// Content of a report, gathered before it becomes a page or sheets.
 #pragma once
 
 #include <cstddef>
@@ -12,29 +12,29 @@
 
 namespace vantage {
 
-// Borrows what it shows.
+// Borrows its content.
 struct Report {
   struct Network {
     const Evaluation& evaluation;
     bool dominated = false;
   };
   ReportOptions options = {};
-  std::string question = {};  // what was asked of it
+  std::string question = {};  // question that the plan answers
   std::vector<Network> networks = {};
-  std::size_t answer = 0;                      // of the networks
-  std::vector<Requirement> requirements = {};  // that networks have to keep
-  std::vector<Objective> measures = {};        // all that is told of a network
-  std::vector<Objective> front_axes = {};  // to the right, up, and by colour where there is a third; empty: no front
-  std::string parameters = "{}";           // JSON text of an object
-  // What the answer's stations see: a JPEG each, empty where there is none; or none at all.
+  std::size_t answer = 0;                      // index of the network
+  std::vector<Requirement> requirements = {};  // on the networks
+  std::vector<Objective> measures = {};        // of every network
+  std::vector<Objective> front_axes = {};      // to the right, up, and by colour if there is a third; empty: no front
+  std::string parameters = "{}";               // JSON text of an object
+  // Views of the answer's stations: a JPEG each, empty if there is none; or none at all.
   std::vector<std::vector<std::uint8_t>> pictures = {};
 
   const Evaluation& shown() const { return networks[answer].evaluation; }
 };
 
-// Of a plan: a network for each entry of the front, numbered as in front.json.
+// Report of a plan: a network for each entry of the front, numbered as in front.json.
 Report report_of(const PlanResult& result, const Simulator& simulator, const ReportOptions& options);
-// Of stations that were given.
+// Report of given stations.
 Report report_of(const Evaluation& evaluation, const Simulator& simulator, const ReportOptions& options);
 
 void write_report_html(const std::filesystem::path& file, const Report& report, Simulator& simulator,

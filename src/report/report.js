@@ -1,5 +1,5 @@
 'use strict';
-// Puts the page together: one network is shown at a time, and everything follows it.
+// Assembles the page: it shows one network at a time, and everything follows it.
 
 (async () => {
   const report = JSON.parse(document.getElementById('report').textContent);
@@ -25,7 +25,7 @@
     card();
   }
   function card() {
-    // By cells: a station's own among all that are shown.
+    // By cells: a station's own among all shown ones.
     const share = only && selected !== null ? only.reduce((n, v) => n + (v === selected + 1), 0) / only.length : null;
     stationCard(at('station'), network, selected, share, { pick, stand: view ? stand : null });
   }

@@ -41,7 +41,8 @@ ordered_json stations_json(const Evaluation& network) {
   return stations;
 }
 
-// A station between others is linked to a station of the same part only; what joins two parts of it alone is a bridge.
+// A station between others is linked only to one of the same component; the only link between two components is a
+// bridge.
 ordered_json links_json(const StationLinks& links) {
   ordered_json json = ordered_json::array();
   const Connectivity graph = connectivity(links.values, links.least);

@@ -20,7 +20,7 @@ constexpr Colour kFaint{0.36, 0.38, 0.42}, kRule{0.80, 0.81, 0.83}, kAlert{0.72,
 
 std::string percent(double share) { return fixed(100 * share, 1) + " %"; }
 
-// A sheet that is written from the top.
+// A sheet, written from the top.
 struct Sheet {
   std::unique_ptr<Canvas> canvas = std::make_unique<Canvas>(kWidth, kHeight);
   double y = kMargin;
@@ -30,7 +30,7 @@ struct Sheet {
     canvas->text({kMargin, y + 10}, text, {.size = 13, .bold = true});
     y += 28;
   }
-  // In lines no wider than the sheet.
+  // Writes text in lines no wider than the sheet.
   void words(double x, const std::string& text, const TextStyle& style) {
     std::string line;
     const auto put = [&] {
@@ -68,7 +68,7 @@ struct Column {
   Align across = Align::end;
 };
 
-// As many rows as there is room for; a line says how many more there are, and where.
+// Writes as many rows as fit; a line tells how many more there are, and where.
 void table(Sheet& sheet, const std::vector<Column>& columns, std::size_t rows, const std::string& where,
            const std::function<std::vector<std::string>(std::size_t)>& cells) {
   const auto line = [&](const std::vector<std::string>& texts, TextStyle style) {
@@ -159,7 +159,7 @@ struct Link {
   bool bridge;
 };
 
-// Those that matter most first: bridges, then the weakest.
+// The most important first: bridges, then the weakest.
 std::vector<Link> links_of(const StationLinks& network) {
   std::vector<Link> links;
   const Connectivity graph = connectivity(network.values, network.least);
@@ -247,7 +247,7 @@ void write_report_pdf(const std::filesystem::path& file, const Report& report, c
   const std::vector<std::string> names = station_names(network.stations, network.names);
   std::vector<Sheet> sheets;
   sheets.push_back(summary_sheet(report, simulator, area));
-  // On the sheet before, where there is room for all of it.
+  // Continues on the previous sheet if all of it fits there.
   const auto sheet_for = [&](std::size_t rows) -> Sheet& {
     if (sheets.back().left() < 90 + kLine * static_cast<double>(rows)) sheets.emplace_back();
     return sheets.back();

@@ -2,7 +2,8 @@
 // The site in three dimensions: its surfaces in false colours, stations and links. Local frame, Z up, metres.
 
 const VIEW_COLOURS = {
-  // From nothing to the wanted density: orange over pale to blue, which all eyes tell apart.
+  // From no point to the goal density: orange through pale to blue, distinct for people with any kind of colour
+  // blindness.
   ramp: ['#d8570b', '#f2a65a', '#f4ead2', '#8fbfdd', '#2c7bb6'],
   unseen: '#4a4453',  // with stripes
   blocking: '#d6d3cd',
@@ -71,14 +72,14 @@ const fragmentShader = `
     vec3 normal = normalize(cross(dFdx(vAt), dFdy(vAt)));
     vec3 colour = blocking;
     bool surveyed = mod(vKind + 0.5, 2.0) > 1.0, solid = vKind > 1.5;
-    if (solid && !gl_FrontFacing) {  // cut open: the inside of something
+    if (solid && !gl_FrontFacing) {  // cut open: the inside of a solid
       gl_FragColor = vec4(0.30, 0.32, 0.36, 1.0);
       return;
     }
     uvec4 value;
     if (surveyed && mode != 2 &&
         (find(vAt, value) || find(vAt + 0.4 * side * normal, value) || find(vAt - 0.4 * side * normal, value))) {
-      bool striped = value.g >= 1u && value.g <= 4u && value.r < 13u;  // no point, and no place that could help
+      bool striped = value.g >= 1u && value.g <= 4u && value.r < 13u;  // no point, and no allowed position could help
       if (mode == 1 && value.g < 6u) {
         for (int k = 0; k < 6; ++k) if (int(value.g) == k) colour = reasons[k];
         striped = false;
@@ -141,7 +142,7 @@ class CellTable {
     return texture;
   }
 
-  // A byte a cell each; `channel` 0: coverage, 1: reason, 2: the only station.
+  // A byte for each cell; `channel` 0: coverage, 1: reason, 2: the only station.
   set(channel, bytes, otherwise) {
     this.slot.forEach((slot, k) => { this.bytes[4 * slot + channel] = bytes ? bytes[k] : otherwise; });
     this.values.needsUpdate = true;
@@ -149,7 +150,7 @@ class CellTable {
 }
 
 class SiteView {
-  // `view`: of the report's data. Calls onPick(k) when a station is picked by its label.
+  // `view`: from the report's data. Calls onPick(k) when a station is picked by its label.
   constructor(holder, view, onPick) {
     this.holder = holder;
     this.view = view;
@@ -221,7 +222,7 @@ class SiteView {
     this.oblique();
   }
 
-  // Where surfaces meet at an angle, as far as that does not take long.
+  // Adds lines where surfaces meet at an angle, unless that takes long.
   addEdges(positions, indices) {
     if (indices.length > 3 * 80000) return;
     const geometry = new THREE.BufferGeometry();
@@ -237,7 +238,7 @@ class SiteView {
 
   local(point) { return new THREE.Vector3(...point.map((v, k) => v - this.view.origin[k])); }
 
-  // `stations` and `links` as in the report.
+  // `stations` and `links` in the form of the report.
   setNetwork(stations, links) {
     this.stations = stations;
     this.links = links;
@@ -257,7 +258,7 @@ class SiteView {
     this.drawMarks();
   }
 
-  // The same stations elsewhere.
+  // The same stations at other positions.
   moveStations(stations, links) {
     this.stations = stations;
     this.links = links;
@@ -311,7 +312,7 @@ class SiteView {
 
   shown(at) { return at.z >= this.slice[0] - 0.5 && at.z <= this.slice[1] + 0.5; }
 
-  // A byte a cell each; null: not known.
+  // A byte for each cell; null: unknown.
   setColours(coverage, only) {
     this.known = Boolean(coverage);
     this.table.set(0, coverage, 255);
@@ -325,7 +326,7 @@ class SiteView {
     this.draw();
   }
 
-  // Local heights between which surfaces are shown.
+  // Range of local heights in which surfaces are shown.
   setSlice(low, high) {
     this.slice = [low, high];
     this.uniforms.low.value = low;
@@ -340,7 +341,7 @@ class SiteView {
     this.drawMarks();
   }
 
-  // What the camera has to hold: surveyed surfaces and stations, as far as the slice leaves them.
+  // Extent for the camera: surveyed surfaces and stations within the slice.
   frame(direction) {
     this.leave();
     const [low, high] = this.focus.map((corner) => corner.clone().setZ(Math.min(Math.max(corner.z, this.slice[0]), this.slice[1])));
@@ -354,7 +355,7 @@ class SiteView {
     const towards = direction.clone().normalize();
     const up = Math.tan(THREE.Math.degToRad(this.camera.fov / 2)), across = up * this.camera.aspect;
     let distance = 0;
-    // As near as all corners allow, then what is seen into the middle; a few rounds of it settle.
+    // As near as all corners allow, then centre the visible part; this converges in a few rounds.
     for (let round = 0; round < 6; ++round) {
       this.camera.position.copy(target).add(towards);
       this.camera.lookAt(target);
@@ -468,7 +469,7 @@ class SiteView {
     });
   }
 
-  // What is on the screen, with the stations' names, for paper.
+  // The screen's content with the stations' names, for paper.
   picture() {
     this.drawNow();
     const page = document.createElement('canvas'), scale = this.canvas.width / this.width;
@@ -494,8 +495,8 @@ class SiteView {
   }
 }
 
-// The page's controls of the storey that is shown and of the height of its cut. `origin`: the local frame's height;
-// `first`: a station whose storey is shown at first.
+// The page's controls for the shown storey and the height of its cut. `origin`: the local frame's height; `first`: a
+// station whose storey is shown first.
 function sliceTools(view, levels, origin, first) {
   const [level, cut, height] = ['level', 'cut', 'cut-height'].map((id) => document.getElementById(id));
   document.getElementById('level-label').hidden = levels.length === 0;

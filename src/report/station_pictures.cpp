@@ -12,7 +12,7 @@ namespace vantage {
 namespace {
 
 constexpr std::uint32_t kWidest = 512, kNarrowest = 64;
-constexpr std::size_t kOfWidest = 24;  // stations; more share their pixels
+constexpr std::size_t kOfWidest = 24;  // stations; if there are more, they share the pixels
 constexpr std::size_t kMostBytes = 1'200'000;
 
 std::uint32_t width_for(std::size_t stations) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What stations see, as small pictures for a report.
+// Views of the stations, as small pictures for a report.
 #pragma once
 
 #include <cstdint>
@@ -12,9 +12,9 @@
 
 namespace vantage {
 
-// A JPEG a station, all around with the middle of the site in its middle; smaller ones where there are many stations,
-// so that all together stay within 1.2 MB and take about the same time. Empty for a station without a place, and for
-// all where they were stopped, or cannot be made: the simulator's configuration is warned then.
+// Returns a JPEG for each station, all around, with the middle of the site in its centre. Many stations get smaller
+// ones, so that all together stay within 1.2 MB and take about the same time. Empty for a station without a place; all
+// are empty if stopped or impossible, with a warning by the simulator's configuration.
 std::vector<std::vector<std::uint8_t>> station_pictures(const Simulator& simulator,
                                                         std::span<const PlacedStation> stations, std::stop_token stop);
 

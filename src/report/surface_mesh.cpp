@@ -15,7 +15,7 @@ namespace {
 constexpr float kMostError = 0.02F;      // of an edge collapse, as a share of the site's extent
 constexpr float kMostClustered = 0.05F;  // of clusters, likewise
 
-// Vertices by place and role alone; `indices` into them.
+// Vertices distinguished by place and role alone; `indices` into them.
 struct Welded {
   std::vector<Float3> positions;
   std::vector<std::uint8_t> kinds;
@@ -51,8 +51,8 @@ Welded weld(const SceneData& scene) {
   return welded;
 }
 
-// Marks the vertices of closed surfaces: connected triangles of which every edge is passed as often in one direction as
-// in the other.
+// Marks the vertices of closed surfaces: connected triangles that pass every edge as often in one direction as in the
+// other.
 void mark_solids(Welded& mesh) {
   std::vector<std::uint32_t> parent(mesh.positions.size());
   std::iota(parent.begin(), parent.end(), 0u);
@@ -81,7 +81,7 @@ void mark_solids(Welded& mesh) {
     if (!open[root(v)]) mesh.kinds[v] |= kSolidVertex;
 }
 
-// Meshoptimizer knows no kinds: each is made simpler by itself, to its share of the triangles.
+// Meshoptimizer knows no kinds: each is simplified separately, to its share of the triangles.
 std::vector<std::uint32_t> simplified(const Welded& mesh, std::size_t triangles, double& error_m) {
   const std::size_t all = mesh.indices.size() / 3;
   if (all <= triangles) return mesh.indices;

@@ -1,10 +1,10 @@
 'use strict';
-// Tables and words. All text goes in as text, never as markup.
+// Tables and words. All text is inserted as text, never as markup.
 
 function element(name, attributes = {}, ...children) {
   const node = document.createElement(name);
   for (const [key, value] of Object.entries(attributes)) {
-    if (key === 'style') node.style.cssText = value; // the page's policy takes no attribute of that name
+    if (key === 'style') node.style.cssText = value; // the page's policy forbids the attribute of that name
     else node.setAttribute(key, value);
   }
   node.append(...children.filter((child) => child !== null && child !== undefined));
@@ -30,7 +30,7 @@ function table(titles, rows, textColumns = []) {
     element('tbody', {}, ...rows.map((row) => element('tr', {}, ...row.map((c, k) => cell('td', c, k))))));
 }
 
-// A link is weak where it is within a quarter of what counts as one at all.
+// A link is weak within a quarter above the least value of a link.
 const weak = (network, link) => link.value < 1.25 * network.least_link;
 
 function figures(holder, network) {
@@ -51,14 +51,14 @@ function figures(holder, network) {
   holder.replaceChildren(...tiles);
 }
 
-// "57.2 % hidden from everywhere, 2.1 % …", what there is most of first; of all surfaces of the proposed network.
+// "57.2 % hidden from everywhere, 2.1 % …", the largest share first; of all surfaces of the proposed network.
 function missedWords(missed) {
   const { shares } = missed.nodes[0];
   return missed.reasons.map((r, k) => [shares[k], r.words]).slice(1).filter(([s]) => s >= 5e-4).sort((a, b) => b[0] - a[0])
     .map(([s, text]) => `${percent(s)} ${text}`).join(', ');
 }
 
-// `missed`: of this network, or null. What is captured in part is in both lines, so the second says what it divides.
+// `missed`: of this network, or null. Both lines contain partly captured surface, so the second names its denominator.
 function words(holder, network, missed) {
   const lines = [...network.summary];
   const told = missed ? missedWords(missed) : '';
@@ -142,7 +142,7 @@ function parameterTable(holder, parameters) {
   holder.append(table(['Parameter', 'Value'], rows, [1]));
 }
 
-// The card beside the view: one station, or what one can do.
+// The card beside the view: one station, or the controls.
 function stationCard(holder, network, k, only, { pick, stand }) {
   if (k === null) {
     holder.replaceChildren(element('h3', {}, 'Stations'), element('p', { class: 'muted' },

@@ -1,5 +1,5 @@
 'use strict';
-// The other end of packed.hpp and view_json.cpp.
+// Inverse of packed.hpp and view_json.cpp.
 
 async function unpack(text) {
   const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));

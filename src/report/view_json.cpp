@@ -14,14 +14,14 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// What keeps a page of a large site below 5 MB, whatever it shows (docs/files.md).
+// Limits that keep a page of a large site below 5 MB (docs/files.md).
 constexpr std::size_t kTriangles = 200'000, kCells = 250'000, kNetworks = 16;
-constexpr std::uint64_t kVoxels = 1'000'000;     // that cells stand for
+constexpr std::uint64_t kVoxels = 1'000'000;     // represented by cells
 constexpr std::uint64_t kSampled = 400'000;      // voxels traced for all networks together, at most
 constexpr std::uint64_t kLeastSampled = 10'000;  // and for each, at least
 
 ordered_json mesh_json(const SurfaceMesh& mesh) {
-  // Neighbours differ little: each coordinate as what it adds to the one before, modulo 2^16.
+  // Neighbours differ little: each coordinate is stored as its difference from the one before, modulo 2^16.
   std::vector<std::uint16_t> steps;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     std::uint16_t last = 0;
@@ -30,7 +30,7 @@ ordered_json mesh_json(const SurfaceMesh& mesh) {
       last = p[axis];
     }
   }
-  // An index as how far it lies below the first that was not used yet: 0 for a new vertex.
+  // An index is stored as its distance below the first unused one: 0 for a new vertex.
   std::vector<std::uint32_t> back;
   std::uint32_t fresh = 0;
   for (const std::uint32_t index : mesh.triangles) {
@@ -49,7 +49,7 @@ ordered_json mesh_json(const SurfaceMesh& mesh) {
           {"indices", packed(byte_planes<std::uint32_t>(back))}};
 }
 
-// What each station alone leaves in a sample of the voxels: the sum is the network's.
+// Traces each station alone on a sample of the voxels; the sum is the network's.
 CellColours sampled_colours(const CoverageCells& cells, std::span<const PlacedStation> stations,
                             std::span<const std::uint32_t> ranks, Simulator& simulator, std::stop_token stop,
                             bool& cancelled) {
@@ -95,7 +95,7 @@ std::vector<std::size_t> coloured_networks(const Report& report) {
   return chosen;
 }
 
-// One byte object a network; null where its colours are not kept.
+// An object for each network; null if its colours are not kept.
 ordered_json colours_json(const Report& report, Simulator& simulator, const CoverageCells& cells,
                           const Progress& progress) {
   ordered_json colours = ordered_json::array();
@@ -120,7 +120,7 @@ ordered_json colours_json(const Report& report, Simulator& simulator, const Cove
   return colours;
 }
 
-// The storeys of a site under roofs, each a slice that shows its walls and heads and no ceiling. Empty: an open site.
+// Storeys of a covered site, each a slice with its walls and heads and without ceilings. Empty: an open site.
 ordered_json levels_json(const Simulator& simulator, const SearchArea& area, std::span<const PlacedStation> stations) {
   const SearchMesh& ground = area.mesh();
   std::vector<PlanLevel> levels = plan_levels(ground);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where vantage is built without what a report takes.
+// Replaces the report in builds without its libraries.
 #include "vantage/error.hpp"
 #include "vantage/report.hpp"
 
