@@ -23,7 +23,7 @@ std::string number(double value, int digits = 3) {
   return buffer.data();
 }
 
-// The detail that all surveyed meshes ask for; empty where they ask for none or differ.
+// The common detail of all surveyed meshes; empty if they have none or differ.
 std::optional<double> common_detail(const Scene& scene) {
   std::optional<double> common;
   for (const MeshInfo& mesh : scene.meshes()) {
@@ -39,7 +39,7 @@ bool asks_for_detail(const Scene& scene) {
                              [](const MeshInfo& mesh) { return mesh.role == Role::surveyed && mesh.detail_m > 0; });
 }
 
-// For a scene whose size is unlike a site's: 1 from 2 m to 200 m; otherwise the largest extent over 20 m, with two
+// Length scale of a scene of unusual size: 1 from 2 m to 200 m; otherwise the largest extent over 20 m, with two
 // significant digits.
 double scale_of(const Box& bounds) {
   const Vec3 size = bounds.size();
@@ -50,16 +50,16 @@ double scale_of(const Box& bounds) {
   return std::round(scale / unit) * unit;
 }
 
-// Where nobody asks for a spacing: as dense as the scanner's own steps are square on at 10 m, the distance that makers
-// state resolutions at, so that one station can give it. Not below the library's, whose goal a fine pattern meets with
-// ease; nor so wide that a voxel would want less than a point.
+// Default spacing: the distance of the scanner's rays at 10 m, square on, the distance at which manufacturers state
+// resolutions, so one station can reach it. Not below the library's default, whose goal a fine pattern reaches easily;
+// not so wide that a voxel would need less than a point.
 double usual_spacing(const Scanner& scanner, const SimulatorConfig& config, double scale) {
   const double step = std::max(scanner.azimuth_step.in_radians(), scanner.zenith_step.in_radians());
   const double usual = config.point_spacing_m * scale;
   return std::max(usual, std::min(10 * step * scale, config.user_size_m / 2));
 }
 
-// Gives the settings that nobody gave the scene's own defaults. Throws Error as the settings' reading does.
+// Sets open settings from the scene's own defaults. Throws Error as their parser does.
 void take_scene_defaults(SiteOptions& options, const Scene& scene, const std::string& source) {
   const auto defaults = nlohmann::json::parse(scene.defaults_json());
   const bool preset = options.scanner.has_value();
@@ -76,7 +76,7 @@ void take_scene_defaults(SiteOptions& options, const Scene& scene, const std::st
           value.is_null())
         continue;
       const std::string text = setting_text(value, source + ": " + key);
-      // What a scene names goes to no file of this machine.
+      // Names in a scene never refer to files of this machine.
       if (name == "noise" && text.ends_with(".csv"))
         throw Error(Errc::malformed_file, source + ": its defaults name the file \"" + text +
                                               "\" for noise, and a scene may name scanners only; give it as a setting");
@@ -93,7 +93,7 @@ void take_scene_defaults(SiteOptions& options, const Scene& scene, const std::st
   apply(defaults, apply);
 }
 
-// One device is named as ever; several are listed. The processor is one by the name of its engine.
+// A single device keeps its usual name; several are listed. The processor is one by the name of its engine.
 void choose_devices(SimulatorConfig& config, const SiteOptions& options) {
   config.engine = options.engine;
   if (options.devices.all) config.devices = all_devices(options.engine);
@@ -131,7 +131,7 @@ WalkableOptions walkable_of(const SiteOptions& options, double scale) {
   return walkable;
 }
 
-// What was left out of the search area, and a hint at closed doors.
+// Logs parts left out of the search area, and a hint at closed doors.
 void log_area(const SearchArea& area, const Scene& scene, const std::function<void(const std::string&)>& log) {
   log("search area: " + area.description());
   std::string left_out;
@@ -216,7 +216,7 @@ struct Site::Impl {
         number(config.point_spacing_m) + " m");
   }
 
-  // One line on what was made up for a scene of unusual size.
+  // Logs the values scaled for a scene of unusual size in one line.
   void log_scaled() const {
     const bool small = scale < 1;
     std::string made_up;
@@ -259,7 +259,7 @@ struct Site::Impl {
     }
   }
 
-  // Gives all but the ground so much weight that ground has a third of coverage at most.
+  // Raises the weight of everything except the ground, so that ground has a third of coverage at most.
   void weigh_ground() {
     if (!options.weigh_ground || !has_area() || !ground_is_unmarked(scene, search_area())) return;
     const GroundWeights found = ground_weights(scene, search_area());

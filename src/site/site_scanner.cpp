@@ -10,7 +10,7 @@
 namespace vantage {
 namespace {
 
-// A step that went through a table of degrees and back may differ in its last digit.
+// A step read back from a table in degrees may differ in its last digit.
 bool near(Angle a, Angle b) { return std::abs(a.in_radians() - b.in_radians()) <= 1e-12 * a.in_radians(); }
 
 bool same(const Scanner& a, Scanner b) {

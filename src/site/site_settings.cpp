@@ -7,7 +7,7 @@ namespace {
 
 using Rows = SettingRows<SiteOptions>;
 
-// PATTERN=VALUE, its value as `parse` reads it.
+// PATTERN=VALUE, with the value read by `parse`.
 template <class Parse>
 auto wish(std::string unit, std::string example, Parse parse) {
   return
