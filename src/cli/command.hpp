@@ -12,19 +12,19 @@
 
 namespace vantage::cli {
 
-// exit_unmet: results are there, but no network keeps what was required.
+// exit_unmet: there are results, but no network meets the requirements.
 enum ExitCode : int { exit_ok = 0, exit_failed = 1, exit_usage = 2, exit_unmet = 3 };
 
-// What a command finds around it.
+// Surroundings of a command.
 struct Program {
   Console& console;
   std::stop_token stop, abort;
   std::string command = {};            // as it was typed
-  ranks::Ranks* ranks = nullptr;       // where this process is one of several
+  ranks::Ranks* ranks = nullptr;       // if this process is one of several
   std::function<int()> selected = {};  // set by the command that the user named
 };
 
-// Thrown where a command was stopped before it had anything to show.
+// Thrown if a command was stopped before it had a result.
 struct Stopped {};
 
 // A subcommand whose options live as long as the program; `run` is called after parsing and returns the exit code.
@@ -48,10 +48,10 @@ void add_plan(CLI::App& app, Program& program);
 void add_edit(CLI::App& app, Program& program);
 void add_bound(CLI::App& app, Program& program);
 
-// All of them, with every option.
+// All commands, with every option.
 void add_commands(CLI::App& app, Program& program);
 
-// The program: reads the command line, runs the command, says what went wrong. Returns the exit code.
+// The program: reads the command line, runs the command, reports errors. Returns the exit code.
 int run(int argc, char** argv);
 void add_panorama(CLI::App& app, Program& program);
 

@@ -18,7 +18,7 @@ namespace vantage::cli {
 
 std::string printable(std::string_view text) {
   std::string out;
-  // How many bytes of UTF-8 begin at `k` with a character that moves the cursor or the order of others, and its code.
+  // Length in bytes of a UTF-8 character at `k` that moves the cursor or changes the order of others, and its code.
   const auto control = [&](std::size_t k) -> std::pair<std::size_t, unsigned> {
     const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
     const unsigned a = byte(k), b = byte(k + 1), c = byte(k + 2);
@@ -47,7 +47,7 @@ class TerminalSink : public spdlog::sinks::base_sink<std::mutex> {
   void set_status(const std::string& line) {
     const std::scoped_lock lock(mutex_);
     if (!interactive || line == status_) return;
-    // A line that wraps could not be taken back.
+    // A wrapped line could not be erased.
     winsize window{};
     const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &window) == 0 && window.ws_col > 1;
     status_ = known ? line.substr(0, window.ws_col - 1u) : line;
@@ -86,7 +86,7 @@ void Console::set_status(const std::string& line) { sink_->set_status(printable(
 void Console::print(const std::string& what) {
   const std::string text = printable(what);
   if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0) return;
-  if (errno == EPIPE) return;  // who reads has had enough, as `head` does
+  if (errno == EPIPE) return;  // the reader has had enough, as `head` does
   throw Error(Errc::io, "cannot write to standard output: " + std::generic_category().message(errno));
 }
 

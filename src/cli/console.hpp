@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the program says: logs and progress on standard error, results on standard output.
+// Output of the program: logs and progress on standard error, results on standard output.
 #pragma once
 
 #include <spdlog/spdlog.h>
@@ -12,13 +12,13 @@
 
 namespace vantage::cli {
 
-// Names come from scenes of other people: characters that a terminal obeys, or that turn the order of others, become
-// \u escapes, as in JSON. Lines and tabs stay.
+// Escapes characters that control a terminal or change the order of others as \u, as in JSON, since names come from
+// other people's scenes. Line ends and tabs stay.
 std::string printable(std::string_view text);
 
 class TerminalSink;
 
-// The standard logger's owner. Log through spdlog::info and its like; a progress line is kept out of their way.
+// Owner of the standard logger. Log through spdlog::info and the like; the progress line stays clear of them.
 class Console {
  public:
   Console();
@@ -28,14 +28,14 @@ class Console {
 
   bool interactive() const;                  // standard error is a terminal
   void set_status(const std::string& line);  // the last line of a terminal; empty: none
-  void print(const std::string& text);       // standard output, printable; throws Error io where that is closed or full
+  void print(const std::string& text);       // standard output, printable; throws Error io if that is closed or full
   void print(const nlohmann::json& object);
 
  private:
   std::shared_ptr<TerminalSink> sink_;
 };
 
-// A bar with the time left on a terminal, a line now and then elsewhere.
+// A bar with the time left on a terminal, occasional lines elsewhere.
 class ProgressLine {
  public:
   ProgressLine(Console& console, std::string label);
@@ -43,7 +43,7 @@ class ProgressLine {
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  // `done` in [0, 1]; `seconds_left` < 0: judged by the time passed. `note` stands behind the numbers.
+  // `done` in [0, 1]; `seconds_left` < 0: estimated from the elapsed time. `note` follows the numbers.
   void update(double done, const std::string& note = {}, double seconds_left = -1);
   void set_label(std::string label) { label_ = std::move(label); }
 

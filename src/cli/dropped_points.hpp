@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How many points were not good enough to count, and why.
+// Number of points beyond a limit, and which limits.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -10,7 +10,7 @@
 namespace vantage::cli {
 
 nlohmann::json dropped_json(const DroppedPoints& dropped);
-// One line, as shares of the points in surveyed voxels. REQUIRES: counts.dropped is not empty.
+// One line, with shares of the points in surveyed voxels. REQUIRES: counts.dropped is not empty.
 std::string dropped_text(const NetworkCounts& counts);
 
 }  // namespace vantage::cli

@@ -49,7 +49,7 @@ struct EditCommandOptions {
   }
 };
 
-// What every change leaves behind, so that nothing is lost whatever ends the program.
+// State saved at every change, so that nothing is lost, however the program ends.
 struct Keeper {
   std::filesystem::path file;
   std::string scene;
@@ -63,7 +63,7 @@ struct Keeper {
     write_text(file, nlohmann::json{{"scene", scene}, {"stations", rows}}.dump(2) + "\n");
   }
 
-  // Where the scene is another, nothing.
+  // Empty if the scene differs.
   std::vector<EditStation> restored(Site& site) const {
     std::error_code ignored;
     if (!std::filesystem::exists(file, ignored)) return {};
@@ -87,8 +87,8 @@ struct Keeper {
   }
 };
 
-// Opens a browser on the address without telling it to other programs: who lists processes sees their arguments. The
-// browser gets a page of this user's own that leads there, and that goes with this.
+// Opens a browser without showing the address to other programs, which can list the arguments of processes. The browser
+// gets a page, readable by this user only, that leads there; it is removed with this object.
 class Browser {
  public:
   Browser(const std::filesystem::path& folder, const std::string& address) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where vantage was built without what the editor takes.
+// Replaces the editor in builds without its libraries.
 #include "cli/command.hpp"
 #include "vantage/error.hpp"
 

@@ -5,11 +5,11 @@
 
 namespace vantage::cli {
 
-// One run at a time writes into a folder. The lock is on the folder itself: it ends with the process, and leaves
-// nothing behind. On file systems without locks it does nothing.
+// Lets one run at a time write into a folder. The lock is on the folder itself: it ends with the process, and leaves
+// nothing behind. Without effect on file systems without locks.
 class FolderLock {
  public:
-  // Throws Error io where another process has it.
+  // Throws Error io if another process holds it.
   explicit FolderLock(const std::filesystem::path& folder);
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;

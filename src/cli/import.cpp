@@ -27,7 +27,7 @@ struct ImportOptions {
 int import_model(CLI::App&, ImportOptions& options, Program& program) {
   if (options.file.empty()) throw Error(Errc::invalid_argument, "import: which model? See vantage import --help");
   if (!options.output) throw Error(Errc::invalid_argument, "import: say where to write it with -o site.glb");
-  const Scene scene = Scene::load(options.file, {.doors = {"closed"}});  // which says what is wrong with it
+  const Scene scene = Scene::load(options.file, {.doors = {"closed"}});  // reports what is wrong with it
   const importers::Format& format = *importers::recognise(options.file).format;
   if (!format.importer)
     throw Error(Errc::invalid_argument, "import: " + options.file + " is glTF already; the other commands read it");

@@ -40,10 +40,10 @@ Interrupts::Interrupts() {
   sigemptyset(&signals);
   sigaddset(&signals, SIGINT);
   sigaddset(&signals, SIGTERM);
-  // A blocked signal arrives even where it is ignored, as by nohup.
+  // A blocked signal arrives even if it is ignored, as by nohup.
   struct sigaction hang_up {};
   if (sigaction(SIGHUP, nullptr, &hang_up) == 0 && hang_up.sa_handler != SIG_IGN) sigaddset(&signals, SIGHUP);
-  // A pipe that nobody reads any more and a file that has reached its limit are errors of the write, not of the run.
+  // A closed pipe, or a file at its size limit, is an error of the write only.
   signal(SIGPIPE, SIG_IGN);
   signal(SIGXFSZ, SIG_IGN);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);

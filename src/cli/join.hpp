@@ -7,8 +7,8 @@
 
 namespace vantage::cli {
 
-// Joins the job that this process was started in; null where it stands alone. Throws Error invalid_argument where it
-// was started as one of several and cannot be.
+// Joins the job of this process; null if it is not part of one. Throws Error invalid_argument if it was started in a
+// job but cannot join it.
 std::unique_ptr<ranks::Ranks> join_ranks();
 
 }  // namespace vantage::cli

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where vantage was built without MPI. Started by a launcher of MPI all the same, each process would plan the whole,
-// and all would write the same files.
+// Replaces ranks in builds without MPI. Under an MPI launcher each process would plan everything, and all would write
+// the same files.
 #include <cstdlib>
 #include <string_view>
 

@@ -7,7 +7,7 @@
 int main(int argc, char** argv) {
   try {
     return vantage::cli::run(argc, argv);
-  } catch (const std::bad_alloc&) {  // no logger: it would want memory
+  } catch (const std::bad_alloc&) {  // no logger: it needs memory
     std::fputs(
         "vantage: error: this machine has not enough memory for it; coarser voxels (--user-size) or a smaller scene "
         "need less, and a plan goes on from its checkpoint with --resume\n",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Why voxels are not captured, as commands ask for it.
+// The option --missed, shared by commands.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -14,20 +14,20 @@
 
 namespace vantage::cli {
 
-// The option --missed FILE, of commands that have a network's voxel field.
+// Files of --missed, for commands that have a network's voxel field.
 struct MissedFiles {
   std::vector<std::string> files;
 
   void add(CLI::App& command);
-  // Throws Error invalid_argument for an extension that no writer has.
+  // Throws Error invalid_argument for an unknown extension.
   void check() const;
 };
 
-// `missed_voxels()` with its progress and a line of what it found. Empty where it was stopped, or nothing is surveyed.
+// `missed_voxels()` with progress and a line of results. Empty if stopped, or if nothing is surveyed.
 std::optional<MissedVoxels> judge_missed(Site& site, const Simulator& simulator, const VoxelField& field,
                                          Program& program);
 
-// Writes each file by its extension: .csv a table by node, .ply a cloud, .png or .svg a picture from above.
+// Writes each file by its extension: .csv a table by node, .ply a cloud, .png or .svg a picture in plan view.
 void write_missed(std::span<const std::filesystem::path> files, const MissedVoxels& judged, const Simulator& simulator,
                   std::span<const PlacedStation> stations);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What to say of words on the command line that mean nothing.
+// Messages about unknown words on the command line.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -11,8 +11,8 @@ namespace vantage::cli {
 // Long names of a command's options, as "--stations".
 std::vector<std::string> option_names(const CLI::App& command);
 
-// Of the first word that a parse left over: that there is no such option or command, and which may have been meant.
-// REQUIRES: a parse that left words over.
+// Message about the first unparsed word: no such option or command, and the nearest known one. REQUIRES: a parse that
+// left words over.
 std::string explain_leftover(const CLI::App& app);
 
 }  // namespace vantage::cli

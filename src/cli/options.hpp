@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Options as one table: each can be given on the command line, by a configuration file or by a scene, and is read by
-// the same code.
+// Options as one table: the same code reads each from the command line, a configuration file or a scene.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -16,12 +15,12 @@
 
 namespace vantage::cli {
 
-// `set(text, what)` reads the value; `what` is the option's long name, to open an error message with.
+// `set(text, what)` reads the value; `what` is the option's long name, with which error messages begin.
 using Setter = std::function<void(const std::string& text, const std::string& what)>;
 
 CLI::Option* add_value(CLI::App& app, const std::string& names, const std::string& unit, const std::string& help,
                        Setter set);
-// May be given again and again; each time takes one value.
+// May be repeated; each time takes one value.
 CLI::Option* add_values(CLI::App& app, const std::string& names, const std::string& unit, const std::string& help,
                         Setter set);
 
@@ -35,7 +34,7 @@ CLI::Option* add_text(CLI::App& app, const std::string& names, const std::string
 CLI::Option* add_texts(CLI::App& app, const std::string& names, const std::string& unit, const std::string& help,
                        std::vector<std::string>& target);
 
-// An option for each row of a table, under the heading `group` where one is given.
+// Adds an option for each row of a table, under the heading `group`, if given.
 template <class Options>
 void add_settings(CLI::App& app, const SettingTable<Options>& table, Options& options, const std::string& group = "") {
   for (const SettingRow<Options>& row : table) {
@@ -53,9 +52,9 @@ void add_settings(CLI::App& app, const SettingTable<Options>& table, Options& op
       app.get_option("--" + row.name)->excludes(app.get_option("--" + other));
 }
 
-// The message of a setting that was refused, by the option's name where it begins with the setting's.
+// The message of a refused setting, with the option's name in place of the setting's at its beginning.
 std::string by_option(const CLI::App& command, const std::string& message);
-// Calls `make`, with errors as by_option() words them.
+// Calls `make`; errors are reworded by by_option().
 template <class Make>
 auto by_option(const CLI::App& command, const Make& make) -> decltype(make()) {
   try {
@@ -66,9 +65,9 @@ auto by_option(const CLI::App& command, const Make& make) -> decltype(make()) {
   }
 }
 
-// Sets the options of `command` that `values` names and nothing above has set yet. Keys are long option names, with -
-// or _ between words; an object groups options, for one command alone where its key is that command's name. `accepts`
-// filters keys; one that it lets through and no command of the program knows is an error. `source` opens messages.
+// Sets the options of `command` that are in `values` and not yet set by a higher layer. Keys are long option names,
+// with - or _ between words. An object groups options, for one command alone if its key is that command's name.
+// `accepts` filters keys; an accepted key that no command knows is an error. Messages begin with `source`.
 void apply_layer(CLI::App& command, const nlohmann::json& values, const std::string& source,
                  const std::function<bool(const std::string& key)>& accepts = {});
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A station as users type it. Numbers and the like: core/parse.hpp.
+// Parses stations from users. Numbers and the like: core/parse.hpp.
 #pragma once
 
 #include <array>
@@ -13,9 +13,9 @@
 
 namespace vantage::cli {
 
-// A station as it is typed: X,Y,Z of the scanner's head, u,v on the search area, or with its quantities named:
-// x=5,y=3.6 (the ground there is looked for), x=5,y=3.6,z=1.85, x=5,y=3.6,ground=0, u=0.25,v=0.5; and with those how it
-// is set up: heading=30,tilt=90,step=0.1,scanner=rtc360@6mm.
+// A station from a user: X,Y,Z of the scanner's head, or u,v on the search area. Or named quantities: x=5,y=3.6 (the
+// ground there is found), x=5,y=3.6,z=1.85, x=5,y=3.6,ground=0, u=0.25,v=0.5. With names also its setup:
+// heading=30,tilt=90,step=0.1,scanner=rtc360@6mm.
 struct StationText {
   std::optional<Vec3> position = {};  // the head
   std::optional<Uv> uv = {};

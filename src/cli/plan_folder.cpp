@@ -12,14 +12,14 @@
 namespace vantage::cli {
 namespace {
 
-// As --keep takes it.
+// In the form of --keep.
 std::string typed(const Vec3& head, const StationSetup& setup, const Scanner& scanner) {
   return fmt::format("x={},y={},z={},heading={},tilt={},step={},scanner={}", head.x, head.y, head.z,
                      setup.heading.in_degrees(), setup.tilt.in_degrees(), scanner.azimuth_step.in_degrees(),
                      scanner.name);
 }
 
-// The requirements that a survey has by itself go by their own options, so that 0 can take one away.
+// The default requirements of a survey have their own options, so that 0 can remove one.
 void add_requirements(nlohmann::json& options, const SurveyProblem& problem) {
   nlohmann::json further = nlohmann::json::array();
   for (const char* own : {"capture", "link", "apart"}) options[own] = 0;
@@ -64,7 +64,7 @@ EarlierResults earlier_results(const std::filesystem::path& folder, const nlohma
     try {
       return read_json(file.string());
     } catch (const Error&) {
-      return nlohmann::json();  // damaged, or none of ours: nothing to go by
+      return nlohmann::json();  // damaged, or not a plan's: ignored
     }
   };
   if (std::filesystem::exists(folder / "config.json", ignored))

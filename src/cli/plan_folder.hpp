@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The folder that a plan's results lie in: what made them, and whether they may be replaced.
+// The folder of a plan's results: how they were made, and whether they may be replaced.
 #pragma once
 
 #include <cstdint>
@@ -10,14 +10,14 @@
 
 namespace vantage::cli {
 
-// Everything that a plan goes by, as options that --config takes again.
+// All settings of a plan, as options for --config.
 nlohmann::json plan_options(const Site& site, const SurveyQuestion& question, const SurveyProblem& problem,
                             const PlanConfig& config);
 
-// What a folder holds already.
+// Existing results in a folder.
 struct EarlierResults {
   bool another_run = false;
-  std::uint64_t evaluations = 0, confirmed = 0;  // of the results; 0: there are none
+  std::uint64_t evaluations = 0, confirmed = 0;  // 0: there are none
 };
 EarlierResults earlier_results(const std::filesystem::path& folder, const nlohmann::json& options);
 

@@ -10,7 +10,7 @@
 namespace vantage::cli {
 namespace {
 
-// What it misses, and where it does not hang together.
+// Its violations, and missing links.
 std::string remarks(const PlanEntry& entry, const PlanResult& result) {
   std::string text;
   const auto pairs = [](const Objective& objective) { return objective.needs.pairs; };
@@ -54,7 +54,7 @@ std::string plan_text(const PlanResult& result, std::size_t chosen, const std::s
       "\n" +
       station_table(entry.stations, station_names(entry.stations), entry.counts.points_on_surveyed, result.scanners) +
       "\n";
-  text += summary_text(entry);  // what requirements it violates follows, with what would help
+  text += summary_text(entry);  // violated requirements follow, with advice
   for (const std::string& help : what_would_help(result)) text += fmt::format("{:<11}{}\n", "would help", help);
   return text + "results in " + folder + "\n";
 }

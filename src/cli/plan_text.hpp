@@ -8,7 +8,7 @@
 
 namespace vantage::cli {
 
-// What a plan says on a terminal: the front, the chosen network's stations and its summary.
+// Text of a plan for a terminal: the front, the chosen network's stations and its summary.
 std::string plan_text(const PlanResult& result, std::size_t chosen, const std::string& folder);
 
 }  // namespace vantage::cli

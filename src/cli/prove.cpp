@@ -23,7 +23,7 @@ void prove(const std::filesystem::path& file, Site& site, Simulator& simulator, 
     spdlog::warn("stopped: {} is not written", file.string());
     return;
   }
-  // The plan itself on the voxels of the bound, so that the sample favours neither.
+  // The plan is evaluated on the voxels of the bound, so that the sample favours neither.
   std::vector<std::size_t> plan(stations.size()), existing(kept);
   std::iota(plan.begin(), plan.end(), first);
   std::iota(existing.begin(), existing.end(), first);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How near a plan comes to the best that its number of stations can do.
+// Distance of a plan from the best with its number of stations.
 #pragma once
 
 #include <filesystem>
@@ -9,8 +9,8 @@
 
 namespace vantage::cli {
 
-// Bounds what any network of as many stations captures, the first `kept` of `stations` given, says how near these come,
-// and writes it to `file` as JSON.
+// Bounds the coverage of any network of as many stations with the first `kept` of `stations`, reports how near the plan
+// comes, and writes the result to `file` as JSON.
 void prove(const std::filesystem::path& file, Site& site, Simulator& simulator, std::span<const PlacedStation> stations,
            std::size_t kept, Program& program);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The report, as commands write it.
+// Writing of reports, shared by commands.
 #pragma once
 
 #include <filesystem>
@@ -12,7 +12,7 @@
 
 namespace vantage::cli {
 
-// Writes each file by its extension, with a line for as long as it takes. `shown`: a PlanResult or an Evaluation.
+// Writes each file by its extension, with a progress line. `shown`: a PlanResult or an Evaluation.
 template <class Shown>
 void write_reports(std::span<const std::filesystem::path> files, const Shown& shown, Simulator& simulator,
                    const SearchArea& area, ReportOptions options, Program& program, std::stop_token stop) {

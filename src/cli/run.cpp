@@ -16,7 +16,7 @@
 namespace vantage::cli {
 namespace {
 
-// As a shell takes it back.
+// The command line in a form that a shell accepts.
 std::string typed(int argc, char** argv) {
   std::string text = "vantage";
   for (int k = 1; k < argc; ++k) {
@@ -57,7 +57,7 @@ int run(int argc, char** argv) {
   CLI::App app{"vantage plans terrestrial LiDAR surveys: where should the scanner stand?", "vantage"};
   add_commands(app, program);
   std::unique_ptr<ranks::Ranks> ranks;
-  // Of all ranks, the first speaks.
+  // Only the first rank reports.
   const auto refuse = [&](int exit_code, Errc code, const std::string& why) {
     if (ranks && !ranks->first()) ranks->fail(code, why);
     spdlog::error("{}", why);
@@ -89,7 +89,7 @@ int run(int argc, char** argv) {
   } catch (const Stopped&) {
     return refuse(exit_failed, Errc::io, "stopped before the end; nothing was written");
   } catch (const std::bad_alloc&) {
-    if (!ranks) throw;  // for main(), which has no need of any
+    if (!ranks) throw;  // main() handles it without ranks
     return refuse(exit_failed, Errc::out_of_memory, "this machine has not enough memory for it");
   } catch (const std::exception& error) {
     return refuse(exit_failed, Errc::device_failure, error.what());

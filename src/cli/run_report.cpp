@@ -12,7 +12,7 @@ namespace vantage::cli {
 
 void tell_engine(const Simulator& simulator) {
   const EngineInfo& info = simulator.engine();
-  // Of Embree also where it was asked for: whether this processor gives what all others do.
+  // For Embree always, also if requested: its reason tells whether this processor agrees with others.
   std::string reason = info.engine == Engine::embree ? ": " + info.reason : "";
   const SimulatorConfig& config = simulator.config();
   if (config.engine == Engine::automatic && !config.device_index && config.devices.empty())

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every result names: how long it took and what it was traced with.
+// Facts in every result: duration and engine.
 #pragma once
 
 #include <chrono>
@@ -22,11 +22,11 @@ inline nlohmann::json seconds_json(const Stopwatch& watch, double trace_seconds)
   return {{"total", watch.seconds()}, {"trace", trace_seconds}};
 }
 
-// The engine's line: always said, so that no result hides what made it.
+// Logs the engine, always, so that every result shows what made it.
 void tell_engine(const Simulator& simulator);
 void tell_grid(const Simulator& simulator);
 
-// Makes the folder and tries it out. Throws Error io where nothing can be written to it.
+// Makes the folder and tests it. Throws Error io if it is not writable.
 void make_folder(const std::filesystem::path& folder);
 
 }  // namespace vantage::cli

@@ -62,7 +62,7 @@ int scan(CLI::App& command, ScanCommandOptions& options, Program& program) {
   const Stopwatch watch;
   options.site.given.weigh_ground = false;  // nothing here measures coverage
   Site site = open_site(command, options.site);
-  const auto typed = options.stations.read(65535);  // what a LAS point source id can tell apart, from 1
+  const auto typed = options.stations.read(65535);  // range of a LAS point source id, from 1
   const auto stations = place(site, typed);
   const auto names = names_of(stations);
   if (options.panoramas.size() > stations.size())

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The site that most commands work on.
+// The site of most commands.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -13,7 +13,7 @@ namespace vantage::cli {
 
 struct Program;
 
-// What was typed of a site. add() registers it with a command; the object must outlive the parsing.
+// Options of a site. add() registers it with a command; the object must outlive the parsing.
 struct SiteArguments {
   std::string scene;
   SiteOptions given;
@@ -25,10 +25,10 @@ struct SiteArguments {
 // Applies the layers below the command line to all options of `command`, and opens the site.
 Site open_site(CLI::App& command, SiteArguments& arguments);
 
-// The well-known text of its coordinate system; empty where that is not known.
+// The well-known text of its coordinate system; empty if unknown.
 std::string crs_text(const Site& site);
 
-// The site's simulator, with a line for as long as its voxels take. Throws Stopped.
+// Makes the site's simulator, with a progress line. Throws Stopped.
 Simulator& build_simulator(Site& site, Program& program);
 
 }  // namespace vantage::cli

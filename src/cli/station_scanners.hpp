@@ -10,8 +10,8 @@
 
 namespace vantage::cli {
 
-// The place of a station's scanner in `site.scanners()`, where it is added if need be. `name`: a preset, at the site's
-// height; empty or the site's own: the site's. `step`: of azimuth and zenith; empty: its own. Throws Error
+// Index of a station's scanner in `site.scanners()`, to which it is appended if it is new. `name`: a preset, at the
+// site's height; empty or the site's own: the site's. `step`: of azimuth and zenith; empty: its own. Throws Error
 // invalid_argument.
 std::uint32_t scanner_of(Site& site, const std::string& name, std::optional<Angle> step);
 

@@ -91,7 +91,7 @@ std::vector<StationText> StationOptions::read(std::size_t most) const {
 
 namespace {
 
-// The ground at x, y. Throws Error invalid_argument where there is none, or where floors lie above each other.
+// The ground at x, y. Throws Error invalid_argument if there is none, or if floors lie above each other.
 Vec3 ground_at(Site& site, const std::array<double, 2>& xy) {
   constexpr double same_floor_m = 0.5, far = 1e6;  // beyond any site
   const auto at = fmt::format("x,y = {},{}", xy[0], xy[1]);
@@ -111,7 +111,7 @@ Vec3 ground_at(Site& site, const std::array<double, 2>& xy) {
   return {xy[0], xy[1], low->z};
 }
 
-// Two numbers without names are (u, v) where nothing else can be meant.
+// Two numbers without names are (u, v) if they cannot be anything else.
 Uv uv_of_pair(Site& site, const std::array<double, 2>& pair) {
   const SearchArea& area = site.area();
   const Uv low = area.uv_min(), high = area.uv_max();
@@ -126,7 +126,7 @@ Uv uv_of_pair(Site& site, const std::array<double, 2>& pair) {
                           pair[0], pair[1], site.scanner().height_m, low.u, high.u, low.v, high.v));
 }
 
-// The same with a head or (u, v).
+// Completes a station to a head or (u, v).
 StationText settled(Site& site, StationText station) {
   if (station.pair) station.uv = uv_of_pair(site, *station.pair);
   if (!station.position && !station.ground && station.xy) station.ground = ground_at(site, *station.xy);

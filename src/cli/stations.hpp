@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which stations a command works on: typed, read from a table, or taken from a plan's front.
+// Stations of a command: typed, read from a table, or taken from a plan's front.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -21,31 +21,30 @@ struct StationOptions {
   std::optional<std::uint64_t> entry;
 
   void add(CLI::App& command);
-  // From 1 to `most` stations, in the order given, typed ones first. Throws Error: io, malformed_file,
-  // invalid_argument.
+  // Returns 1 to `most` stations, typed ones first, in their order. Throws Error: io, malformed_file, invalid_argument.
   std::vector<StationText> read(std::size_t most) const;
 };
 
 struct SiteStation {
   PlacedStation placed;
-  bool has_uv = false;    // false: the head was given and no search area lies under it
-  std::string name = {};  // as its owner calls it; empty where nothing is said
+  bool has_uv = false;    // false: the head was given and no search area lies below it
+  std::string name = {};  // the user's name; empty if there is none
 };
 
-// Heads stay where they are given; (u, v) go to the ground below and up by the scanner's height. Both are checked for
-// clashes, heads also for what they stand on. Scanners of their own join those of the site.
+// Heads keep their position; (u, v) go to the ground below and up by the scanner's height. Both are checked for
+// clashes, heads also for their footing. Scanners of single stations join those of the site.
 std::vector<SiteStation> place(Site& site, const std::vector<StationText>& stations);
 
 Network to_network(const std::vector<SiteStation>& stations);
 std::vector<PlacedStation> placed_of(const std::vector<SiteStation>& stations);
-// As in all tables and pictures.
+// The same names as in all tables and pictures.
 std::vector<std::string> names_of(const std::vector<SiteStation>& stations);
-// {name, position, ground, uv, status}; null where there is none. And {heading, tilt, scanner, step} of a station that
-// is not set up as usual. `scanners`: the site's.
+// {name, position, ground, uv, status}; null for missing values. For a station with an unusual setup also {heading,
+// tilt, scanner, step}. `scanners`: the site's.
 nlohmann::json to_json(const SiteStation& station, const std::string& name, std::span<const Scanner> scanners);
-// The same read again. Throws nlohmann::json::exception for what is of another type.
+// The inverse. Throws nlohmann::json::exception for another type.
 StationText station_of_json(const nlohmann::json& json);
-// One warning a station that is not where a scanner could be.
+// A warning for each unusable station.
 void warn_of_unusable(const std::vector<SiteStation>& stations);
 
 }  // namespace vantage::cli
