@@ -26,7 +26,7 @@ struct BoundOptions {
 
   void add(CLI::App& command) {
     site.add(command);
-    add_values(command, "--stations", "N[,N]", "So many stations: what do they capture at most? May be repeated",
+    add_values(command, "--stations", "N[,N]", "Number of stations: the most that they can capture; may be repeated",
                [this](const std::string& text, const std::string& what) {
                  for (const std::string_view one : split(text, ','))
                    stations.push_back(parse_count(one, what, 1, 1'000'000));
@@ -34,32 +34,32 @@ struct BoundOptions {
         ->group("Bound");
     add_values(
         command, "--capture", "C[,C]",
-        "Such a share of what can be seen: how many stations does it take at least? May be repeated",
+        "Share of what can be seen: the least number of stations that captures it; may be repeated",
         [this](const std::string& text, const std::string& what) {
           for (const double one : parse_numbers(text, what, 1, 1000, {.low = 0, .high = 1, .low_included = false}))
             captures.push_back(one);
         })
         ->group("Bound");
-    add_value(command, "--candidates", "N",
-              "Positions at most, spread evenly over the ground; 1024 otherwise, fewer where they show all there is",
-              [this](const std::string& text, const std::string& what) {
-                candidates.most = parse_count(text, what, 1, 1'000'000);
-                candidates.first = candidates.most;
-              })
+    add_value(
+        command, "--candidates", "N",
+        "Largest number of positions, spread evenly over the ground; 1024 otherwise, fewer if they show all there is",
+        [this](const std::string& text, const std::string& what) {
+          candidates.most = parse_count(text, what, 1, 1'000'000);
+          candidates.first = candidates.most;
+        })
         ->group("Bound");
-    add_value(command, "--sample", "N|P%", "Surveyed voxels looked at, or that share of them; 20000 otherwise",
+    add_value(command, "--sample", "N|P%", "Number or share of surveyed voxels to use; 20000 otherwise",
               [this](const std::string& text, const std::string& what) { sample = parse_sample(text, what); })
         ->group("Bound");
     add_value(
-        command, "--max-time", "T", "For each linear program: 90, 90s, 2min; 2min otherwise",
+        command, "--max-time", "T", "Time limit of each linear program: 90, 90s, 2min; 2min otherwise",
         [this](const std::string& text, const std::string& what) { bound.max_seconds = parse_duration(text, what); })
         ->group("Bound");
     add_value(
         command, "--branch", "T", "Time for branch and bound towards the best choice itself; none otherwise",
         [this](const std::string& text, const std::string& what) { bound.exact_seconds = parse_duration(text, what); })
         ->group("Bound");
-    add_number(command, "--link", "SHARE",
-               "Of --stations, count those networks alone whose scans overlap by so much along some spanning tree",
+    add_number(command, "--link", "SHARE", "Least scan overlap of the links that connect the networks of --stations",
                link, {.low = 0, .high = 1, .low_included = false})
         ->group("Bound");
     command.add_flag("--json", json, "Print one JSON object");
@@ -105,7 +105,7 @@ int bound(CLI::App& command, BoundOptions& options, Program& program) {
   const Stopwatch watch;
   Site site = open_site(command, options.site);
   if (options.stations.empty() && options.captures.empty())
-    throw Error(Errc::invalid_argument, "bound: of what? Give --stations N, --capture C or both");
+    throw Error(Errc::invalid_argument, "bound: nothing to bound; give --stations N, --capture C or both");
   Simulator& simulator = build_simulator(site, program);
   tell_engine(simulator);
   tell_grid(simulator);
@@ -115,7 +115,7 @@ int bound(CLI::App& command, BoundOptions& options, Program& program) {
   const Candidates candidates = find_candidates(simulator, site.area(), site.clash(), options.candidates, progress);
   const double visible = candidates.visible().value;
   if (program.stop.stop_requested() || !(visible > 0)) {
-    spdlog::error(visible > 0 ? "stopped before the end" : "nothing that is surveyed can be seen from any candidate");
+    spdlog::error(visible > 0 ? "stopped before the end" : "no surveyed surface can be seen from any candidate");
     return exit_failed;
   }
   std::string text = fmt::format(
@@ -188,7 +188,8 @@ int bound(CLI::App& command, BoundOptions& options, Program& program) {
 }  // namespace
 
 void add_bound(CLI::App& app, Program& program) {
-  add_command<BoundOptions>(app, program, "bound", "How much stations capture at most, and how many it takes", bound);
+  add_command<BoundOptions>(app, program, "bound",
+                            "Bound the coverage of a number of stations, and the number for a coverage", bound);
 }
 
 }  // namespace vantage::cli

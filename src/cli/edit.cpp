@@ -35,13 +35,12 @@ struct EditCommandOptions {
   void add(CLI::App& command) {
     site.add(command);
     stations.add(command);
-    add_value(command, "--sample", "N|P%", "Measure on so many voxels; 40000 otherwise",
+    add_value(command, "--sample", "N|P%", "Number or share of voxels for every evaluation; 40000 otherwise",
               [this](const std::string& text, const std::string& what) { sample = parse_sample(text, what); })
         ->group("Evaluation");
-    add_number(
-        command, "--link", "SHARE",
-        fmt::format("Scan overlap from which on two stations count as linked, 0 to 1; {} otherwise", default_link),
-        link, {.low = 0, .high = 1})
+    add_number(command, "--link", "SHARE",
+               fmt::format("Least scan overlap of a link, 0 to 1; {} otherwise", default_link), link,
+               {.low = 0, .high = 1})
         ->group("Results");
     add_text(command, "-o,--output", "DIR", "Folder for the results; the scene's name and -edit otherwise", output)
         ->group("Results");
@@ -71,7 +70,7 @@ struct Keeper {
     try {
       const auto json = read_json(file.string());
       if (json.at("scene") != scene) {
-        spdlog::warn("{} is of another scene, and is left aside", file.string());
+        spdlog::warn("{} belongs to another scene and is ignored", file.string());
         return {};
       }
       for (const auto& row : json.at("stations")) {
@@ -80,7 +79,7 @@ struct Keeper {
         stations.push_back({.placed = place(site, {text}).front().placed, .locked = row.at("locked")});
       }
     } catch (const nlohmann::json::exception& error) {
-      throw Error(Errc::malformed_file, file.string() + ": is not what the editor keeps: " + error.what());
+      throw Error(Errc::malformed_file, file.string() + ": is no file of the editor: " + error.what());
     }
     spdlog::info("going on with the {} stations of {}", stations.size(), file.string());
     return stations;
@@ -107,7 +106,7 @@ class Browser {
     char* const arguments[] = {command.data(), argument.data(), nullptr};
     pid_t child = 0;
     if (!written || posix_spawnp(&child, "xdg-open", nullptr, nullptr, arguments, environ) != 0)
-      spdlog::warn("no browser can be opened by xdg-open; open the address by hand");
+      spdlog::warn("xdg-open cannot open a browser; open the address yourself");
   }
   ~Browser() {
     std::error_code ignored;
@@ -158,7 +157,7 @@ int edit(CLI::App& command, EditCommandOptions& options, Program& program) {
       session, title,
       [&](const std::string& address) {
         program.console.print(address + "\n");
-        spdlog::info("the editor is at this address until Ctrl-C; {} has the stations at any time",
+        spdlog::info("the editor is at this address until Ctrl-C; {} always has the present stations",
                      keeper.file.string());
         if (!options.no_browser) browser.emplace(folder, address);
       },

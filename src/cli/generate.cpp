@@ -22,18 +22,19 @@ struct GenerateOptions {
     std::string names;
     for (const auto& scene : built_in_scene_names()) names += (names.empty() ? "" : ", ") + scene;
     command.add_option("name", name, names)->type_name("NAME");
-    add_value(command, "--triangles", "N", "Wished number of triangles of industrial, 20000 and up; 20000 otherwise",
+    add_value(command, "--triangles", "N", "Wanted number of triangles of industrial, 20000 and up; 20000 otherwise",
               [this](const std::string& text, const std::string& what) {
                 triangles = parse_count(text, what, 1, 1'000'000'000);
               });
-    add_text(command, "-o,--output", "FILE", "Where to write the scene: a .glb file", output);
+    add_text(command, "-o,--output", "FILE", "File to write: .glb", output);
     command.add_flag("--json", json, "Print one JSON object");
   }
 };
 
 int generate(CLI::App&, GenerateOptions& options, Program& program) {
-  if (options.name.empty()) throw Error(Errc::invalid_argument, "generate: which scene? See vantage generate --help");
-  if (!options.output) throw Error(Errc::invalid_argument, "generate: say where to write it with -o scene.glb");
+  if (options.name.empty())
+    throw Error(Errc::invalid_argument, "generate: no scene given; see vantage generate --help");
+  if (!options.output) throw Error(Errc::invalid_argument, "generate: no file to write; give one with -o scene.glb");
   write_built_in_scene(options.name, options.triangles, *options.output);
   const Scene scene = Scene::load(*options.output);
   const auto bytes = std::filesystem::file_size(*options.output);

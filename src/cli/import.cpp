@@ -19,14 +19,14 @@ struct ImportOptions {
 
   void add(CLI::App& command) {
     command.add_option("file", file, "A model: IFC, OBJ, STL, PLY, FBX, COLLADA, 3DS, X3D or DXF")->type_name("FILE");
-    add_text(command, "-o,--output", "FILE", "Where to write the scene: a .glb file", output);
+    add_text(command, "-o,--output", "FILE", "File to write: .glb", output);
     command.add_flag("--json", json, "Print one JSON object");
   }
 };
 
 int import_model(CLI::App&, ImportOptions& options, Program& program) {
-  if (options.file.empty()) throw Error(Errc::invalid_argument, "import: which model? See vantage import --help");
-  if (!options.output) throw Error(Errc::invalid_argument, "import: say where to write it with -o site.glb");
+  if (options.file.empty()) throw Error(Errc::invalid_argument, "import: no model given; see vantage import --help");
+  if (!options.output) throw Error(Errc::invalid_argument, "import: no file to write; give one with -o site.glb");
   const Scene scene = Scene::load(options.file, {.doors = {"closed"}});  // reports what is wrong with it
   const importers::Format& format = *importers::recognise(options.file).format;
   if (!format.importer)
@@ -50,7 +50,7 @@ int import_model(CLI::App&, ImportOptions& options, Program& program) {
 }  // namespace
 
 void add_import(CLI::App& app, Program& program) {
-  add_command<ImportOptions>(app, program, "import", "Turn a model of another format into glTF", import_model);
+  add_command<ImportOptions>(app, program, "import", "Convert a model of another format to glTF", import_model);
 }
 
 }  // namespace vantage::cli

@@ -18,7 +18,7 @@ struct InfoOptions {
   bool allow_outside = false, json = false;
 
   void add(CLI::App& command) {
-    add_text(command, "--measure", "SCENE", "Trace a little of this scene with every usable engine and rank them",
+    add_text(command, "--measure", "SCENE", "Trace a few rays of this scene with every usable engine and rank them",
              scene);
     command.add_flag("--allow-outside", allow_outside, "Let it name buffers and images outside its own folder");
     command.add_flag("--json", json, "Print one JSON object");

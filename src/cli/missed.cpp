@@ -39,7 +39,7 @@ std::optional<MissedVoxels> judge_missed(Site& site, const Simulator& simulator,
   const MissedShare& all = judged.shares.front();
   const auto percent = [&](WhyMissed why) { return 100 * all.share(why); };
   spdlog::info(
-      "{:.1f} % of the surveyed voxels are dense enough, {:.1f} % would be with other stations; {:.1f} % are hidden "
+      "{:.1f} % of the surveyed voxels are captured, {:.1f} % would be by other stations; {:.1f} % are hidden "
       "from {} positions all over the ground, {:.1f} % out of range, {:.1f} % seen too flatly, {:.1f} % too "
       "sparsely",
       percent(WhyMissed::captured), percent(WhyMissed::not_chosen), percent(WhyMissed::hidden), judged.candidates,

@@ -33,7 +33,7 @@ struct PanoramaCommandOptions {
               [this](const std::string& text, const std::string& what) {
                 picture.width = static_cast<std::uint32_t>(parse_count(text, what, 2, 65536));
               });
-    add_value(command, "--supersample", "N", "Rays a pixel and direction, 1 to 8; 2 otherwise",
+    add_value(command, "--supersample", "N", "Rays per pixel and direction, 1 to 8; 2 otherwise",
               [this](const std::string& text, const std::string& what) {
                 picture.supersample = static_cast<std::uint32_t>(parse_count(text, what, 1, 8));
               });
@@ -47,7 +47,8 @@ int panorama(CLI::App& command, PanoramaCommandOptions& options, Program& progra
   Site site = open_site(command, options.site);
   const auto stations = place(site, options.stations.read(max_stations));
   const auto names = names_of(stations);
-  if (!options.output) throw Error(Errc::invalid_argument, "panorama: say where the pictures go with -o DIR");
+  if (!options.output)
+    throw Error(Errc::invalid_argument, "panorama: no folder for the pictures; give one with -o DIR");
   if (options.views.empty()) options.views.assign(panorama_views().begin(), panorama_views().end());
   for (const auto& station : stations)
     if (station.placed.status == StationStatus::hole)
@@ -104,8 +105,8 @@ int panorama(CLI::App& command, PanoramaCommandOptions& options, Program& progra
 }  // namespace
 
 void add_panorama(CLI::App& app, Program& program) {
-  add_command<PanoramaCommandOptions>(app, program, "panorama", "Draw what stations see, as equirectangular pictures",
-                                      panorama);
+  add_command<PanoramaCommandOptions>(app, program, "panorama",
+                                      "Draw the views of stations as equirectangular pictures", panorama);
 }
 
 }  // namespace vantage::cli

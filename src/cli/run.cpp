@@ -70,8 +70,9 @@ int run(int argc, char** argv) {
     if (ranks && !ranks->first()) spdlog::set_level(spdlog::level::off);
     app.parse(argc, argv);
     if (ranks && program.selected && !app.got_subcommand("plan"))
-      throw Error(Errc::invalid_argument, "several ranks share the work of `vantage plan` alone: start this without");
-    if (!program.selected) throw Error(Errc::invalid_argument, "which command? See vantage --help");
+      throw Error(Errc::invalid_argument,
+                  "only `vantage plan` shares its work among ranks; start this command without a launcher");
+    if (!program.selected) throw Error(Errc::invalid_argument, "no command given; see vantage --help");
     return program.selected();
   } catch (const CLI::Success& help_or_version) {
     return ranks && !ranks->first() ? exit_ok : app.exit(help_or_version);

@@ -24,7 +24,7 @@ void tell_engine(const Simulator& simulator) {
 void tell_grid(const Simulator& simulator) {
   const char* const goal =
       simulator.config().spacing_by_detail ? "goals up to {:.1f} points" : "goal {:.1f} points each";
-  spdlog::info("{} surveyed voxels of {:.4g} m, {}; {} rays a station", simulator.voxel_count(),
+  spdlog::info("{} surveyed voxels of {:.4g} m, {}; {} rays per station", simulator.voxel_count(),
                simulator.voxel_size_m(), fmt::format(fmt::runtime(goal), simulator.goal_density()),
                simulator.scanner().rays());
 }
@@ -38,7 +38,7 @@ void make_folder(const std::filesystem::path& folder) {
       write_text(probe, "");
       std::filesystem::remove(probe, error);
     } catch (const Error& failure) {
-      throw Error(Errc::io, folder.string() + ": cannot be written to", {failure.what()});
+      throw Error(Errc::io, folder.string() + : is not writable", {failure.what()});
     }
   }
   if (error) throw Error(Errc::io, folder.string() + ": cannot be made: " + error.message());

@@ -35,10 +35,9 @@ struct ScanCommandOptions {
   void add(CLI::App& command) {
     site.add(command);
     stations.add(command);
-    add_text(command, "-o,--output", "FILE",
-             "Where to write the points: .ply, .las or .e57; nothing is written otherwise", output);
+    add_text(command, "-o,--output", "FILE", "File for the points: .ply, .las or .e57; none otherwise", output);
     add_value(command, "--outputs", "LIST",
-              "What each point carries: any of range,normal,reflectivity,ids,colour; reflectivity,colour otherwise",
+              "Attributes of points: any of range,normal,reflectivity,ids,colour; reflectivity,colour otherwise",
               [this](const std::string& text, const std::string& what) {
                 outputs = scan_position;
                 for (const auto part : split(text, ',')) {

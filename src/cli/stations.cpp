@@ -47,16 +47,15 @@ void StationOptions::add(CLI::App& command) {
   add_values(
       command, "--station", "X,Y,Z|U,V",
       "A station: the scanner's head, or a point of the search area; x=,y= finds the ground; with heading=,tilt=,"
-      "scanner=,step= where it is not set up as usual; may be repeated",
+      "scanner=,step= for another setup; may be repeated",
       [this](const std::string& text, const std::string& what) { typed.push_back(parse_station(text, what)); })
       ->group("Stations");
-  add_text(
-      command, "--stations", "FILE",
-      "Stations from a table with columns x,y,z or Easting,Northing,Height or u,v, and where wanted heading, tilt, "
-      "scanner and step; or from a plan's front.json",
-      file)
+  add_text(command, "--stations", "FILE",
+           "Stations from a table with columns x,y,z or Easting,Northing,Height or u,v, optionally heading, tilt, "
+           "scanner and step; or from a plan's front.json",
+           file)
       ->group("Stations");
-  add_value(command, "--entry", "K", "Which entry of front.json, counted from 1; 1 otherwise",
+  add_value(command, "--entry", "K", "Entry of front.json, counted from 1; 1 otherwise",
             [this](const std::string& text, const std::string& what) {
               if (text == "0") throw Error(Errc::invalid_argument, what + ": entries are counted from 1");
               entry = parse_count(text, what, 1);
@@ -69,7 +68,7 @@ std::vector<StationText> StationOptions::read(std::size_t most) const {
   if (file && file->ends_with(".json")) {
     for (const auto& station : read_front(*file, entry.value_or(1))) stations.push_back(station);
   } else if (entry) {
-    throw Error(Errc::invalid_argument, "--entry goes with --stations front.json");
+    throw Error(Errc::invalid_argument, "--entry needs --stations front.json");
   } else if (file) {
     for (const auto& row : read_stations_csv(*file))
       stations.push_back({.position = row.position,

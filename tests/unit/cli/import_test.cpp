@@ -33,8 +33,8 @@ TEST_F(ImportCommandTest, OtherCommandsTakeModelsAsTheyAre) {
 }
 
 TEST_F(ImportCommandTest, SaysWhatItWants) {
-  expect_refused(run_program({"import", path("site.obj")}), 2, "say where to write it");
-  expect_refused(run_program({"import"}), 2, "which model?");
+  expect_refused(run_program({"import", path("site.obj")}), 2, "no file to write");
+  expect_refused(run_program({"import"}), 2, "no model given");
   expect_refused(run_program({"import", scene_, "-o", path("out.glb")}), 2, "is glTF already");
   write("cloud.xyz", "1 2 3\n4 5 6\n");
   expect_refused(run_program({"import", path("cloud.xyz"), "-o", path("out.glb")}), 1, "a table of numbers");

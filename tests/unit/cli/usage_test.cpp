@@ -25,7 +25,7 @@ TEST_F(Usage, HelpAndVersionSucceed) {
 }
 
 TEST_F(Usage, CommandsAndOptionsMustExist) {
-  expect_refused(run_program({}), 2, "which command?");
+  expect_refused(run_program({}), 2, "no command given");
   expect_refused(run_program({"survey"}), 2, "survey");
   expect_refused(run_program({"evaluate", scene_, "--frobnicate"}), 2, "--frobnicate");
   expect_refused(run_program({"evaluate", scene_, "--height"}), 2, "--height");
