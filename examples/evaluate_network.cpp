@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a set of stations captures of a site, exactly and from a sample: evaluate_network SCENE X Y Z [X Y Z ...]
+// Coverage and overlap of stations, exactly and from a sample: evaluate_network SCENE X Y Z [X Y Z ...]
 #include <cstdio>
 #include <cstdlib>
 #include <vantage/vantage.hpp>

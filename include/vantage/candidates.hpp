@@ -92,7 +92,7 @@ Settings settings(const CandidateConfig& config);
 class Candidates {
  public:
   const std::vector<PlacedStation>& stations() const noexcept { return stations_; }  ///< All are ok.
-  const SampledCoverage& coverage() const noexcept { return coverage_; }             ///< Of these stations, in order.
+  const SampledCoverage& coverage() const noexcept { return coverage_; }             ///< All 'ok'.
   /// Attainable coverage (equation 8): that of a station on every candidate, with the standard error of the sample.
   const Estimate& visible() const noexcept { return visible_; }
   /// Relative change of it by the last doubling; 1 if there was none.

@@ -29,7 +29,7 @@ std::vector<std::string> station_names(std::span<const PlacedStation> stations,
 /// The stations in the form that simulators take.
 Network to_network(std::span<const PlacedStation> stations);
 
-/// What links two stations.
+/// Measure that links two stations.
 enum class LinkMeasure {
   overlap,       ///< Equation 11, on surveyed voxels.
   scan_overlap,  ///< The share of the smaller scan, on all surfaces.
@@ -94,7 +94,7 @@ Evaluation evaluation_of(const MeasuredNetwork& measured, std::span<const Object
 /// Sum of the requirements' violations. REQUIRES: values of their objectives.
 double violation_of(const Evaluation& evaluation, std::span<const Requirement> requirements);
 
-/// What an evaluation uses. Borrows all of it.
+/// Parts that an evaluation uses. Borrows all of it.
 struct EvaluationSite {
   Simulator& simulator;
   Simulator* surroundings = nullptr;    ///< `surroundings_of(simulator)`, for scan overlaps. Null: none.

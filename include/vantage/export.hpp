@@ -86,7 +86,7 @@ struct StationRow {
   std::string name;                          ///< The user's name; empty if the file has none.
   StationSetup setup = {};                   ///< Heading and tilt.
   std::string scanner = {};                  ///< In the form of `load_scanner()`; empty: not given.
-  std::optional<Angle> step = std::nullopt;  ///< Of azimuth and zenith.
+  std::optional<Angle> step = std::nullopt;  ///< Azimuth and zenith step.
 };
 /// Reads a table with a header. Columns may have any order, and others are ignored: x, y, z (of the head), or E, N, Z,
 /// or Easting, Northing, Height; ground_z for the ground's height; u, v; name; heading, tilt and step in degrees;

@@ -20,7 +20,7 @@ namespace vantage {
 
 /// Everything that an objective may use of one network. Refers to counts and stations; valid during the call.
 struct MeasuredNetwork {
-  const NetworkCounts& counts;              ///< By every ray, or on a sample of the voxels.
+  const NetworkCounts& counts;              ///< Exact, or on a sample of the voxels.
   std::span<const PlacedStation> stations;  ///< N_stations of them, existing ones first, skipped ones included.
   std::size_t kept = 0;                     ///< Number of existing stations.
   double goal_density = 1;                  ///< Points wanted in a voxel.

@@ -68,8 +68,8 @@ struct MoCmaEsConfig {
   /// variance each. Otherwise one covariance serves all, which takes n² doubles a member.
   std::size_t full_covariance = 160;
   /// For noisy values that reassess() changes from time to time, in the steady state. Members removed since the last
-  /// call stay in population(), behind the current ones; reassess() chooses the members among all of them. So a merely
-  /// lucky point cannot replace a better one for good.
+  /// call stay in population(), behind the current ones; reassess() chooses the members among all of them. A merely
+  /// lucky point thus cannot replace a better one for good.
   bool recalls = false;
 };
 
@@ -129,7 +129,7 @@ class Optimiser {
   /// dominated by all points with finite values.
   virtual void tell(std::span<const double> values) = 0;
   /// Between tell() and ask(): replaces the objectives of the points of population(), row-major, in its order, e.g. by
-  /// more accurate values. What the search learnt from the old ones stays; stagnation counts anew. Afterwards
+  /// more accurate values. The search keeps what it learnt from the old ones; stagnation counts anew. Afterwards
   /// population() may be in another order, and smaller (`MoCmaEsConfig::recalls`).
   virtual void reassess(std::span<const double> values) = 0;
   /// Precedence among several: the search's own reason, then the limits, the target, stagnation.
@@ -152,7 +152,7 @@ class Optimiser {
   virtual void load(std::istream&) = 0;
 };
 
-/// Makes an optimiser of so many coordinates and objectives.
+/// Makes an optimiser for `dimension` coordinates and `objectives` objectives.
 using OptimiserMaker = std::function<std::unique_ptr<Optimiser>(std::size_t dimension, std::size_t objectives,
                                                                 const OptimiserConfig& config)>;
 

@@ -40,7 +40,7 @@ class Panorama {
   Angle heading_;
 };
 
-/// What a rendered panorama shows (figure 2).
+/// View of a rendered panorama (figure 2).
 enum class PanoramaView {
   colour,        ///< Material colours, shaded by a lamp at the station, so that form shows.
   range,         ///< Distance on a logarithmic scale.

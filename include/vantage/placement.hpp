@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Where a scanner may stand: the search area in (u, v) and the security volume (sections 4.2 and 4.3).
+/// Positions of a scanner: the search area in (u, v) and the security volume (sections 4.2 and 4.3).
 #pragma once
 
 #include <array>

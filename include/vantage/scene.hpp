@@ -20,7 +20,7 @@ namespace vantage {
 
 struct SceneData;  // internal: flat arrays in the local frame, see src/scene/scene_data.hpp
 
-/// What a mesh is for (section 4.1 of the method).
+/// Purpose of a mesh (section 4.1 of the method).
 enum class Role {
   surveyed,  ///< Hit by rays; its points count towards coverage and overlap.
   blocking,  ///< Hit by rays and kept clear of by stations; its points do not count.

@@ -137,7 +137,7 @@ struct EvaluateOptions {
   std::optional<RegistrationModel> registration = std::nullopt;
 };
 
-/// What a sampled evaluation draws.
+/// Sample and outputs of a sampled evaluation.
 struct SampleOptions {
   std::uint64_t voxels = 20'000;  ///< Number of surveyed voxels, capped at all of them.
   /// Number of voxels passed over first, in the order of the draw. Samples of n voxels from 0, n, 2n, … are disjoint

@@ -55,8 +55,8 @@ inline constexpr std::size_t mask_bits = 64;
 /// Words of such a mask.
 constexpr std::size_t mask_words(std::size_t stations) { return (stations + mask_bits - 1) / mask_bits; }
 
-/// How accurately one scan has a surface, apart from range noise: a modelling error ρ that is constant over a patch of
-/// side L. So a huge wall does not count as a million independent measurements.
+/// Accuracy of a surface in one scan, apart from range noise: a modelling error ρ that is constant over a patch of side
+/// L. A huge wall therefore does not count as a million independent measurements.
 struct RegistrationModel {
   double rho_m = 0.0015;  ///< ρ, one standard deviation along the surface's normal; above 0.
   double patch_m = 0.5;   ///< L, above 0. A plane counts if the surface is flat over half of it.

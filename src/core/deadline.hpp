@@ -14,7 +14,7 @@ namespace vantage {
 
 class Deadline {
  public:
-  // Stops so many seconds from now, or where `stop` does. 0: only where `stop` does.
+  // Stops after `seconds` seconds, or when `stop` does. 0: only when `stop` does.
   Deadline(double seconds, std::stop_token stop);
   Deadline(const Deadline&) = delete;
   Deadline& operator=(const Deadline&) = delete;

@@ -166,7 +166,7 @@ Visit OnSite::visit(std::span<const PlacedStation> stations) const {
     if (!connected[a][b]) ++visit.unconnected;
   }
   const auto count = static_cast<double>(station_of.size());
-  // By scanner, so that equal stations make a product, without rounding of a sum.
+  // Sums by scanner, so that equal stations make a product, without rounding of a sum.
   std::vector<double> scans(impl_->scan_min.size());
   for (const std::size_t i : station_of) scans.at(stations[i].setup.scanner) += 1;
   for (std::size_t k = 0; k < scans.size(); ++k) visit.scan_min += scans[k] * impl_->scan_min[k];

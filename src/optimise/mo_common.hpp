@@ -100,8 +100,8 @@ std::vector<double> fitness_of(const Members& members) {
 }
 
 // The reference point, moved outwards along each objective in which fitness vectors (row-major) lie on or beyond it, by
-// a tenth of their range beyond the worst. So a front spreads before it reaches the reference, and a front that reached
-// it at one end does not lose the other.
+// a tenth of their range beyond the worst. A front thus spreads before it reaches the reference, and keeps its other
+// end once it has reached it at one.
 std::vector<double> reach_over(std::span<const double> fitness, std::span<const double> reference);
 // Which `count` of a set of mutually non-dominated fitness vectors to drop: the least contributors against
 // reach_over().

@@ -15,7 +15,7 @@
 
 namespace vantage {
 
-// What keeps a person from a place.
+// Obstacle between a person and a place.
 enum class Access : std::uint8_t {
   reached,      // nothing
   narrow,       // something stands beside it
@@ -55,7 +55,7 @@ class GroundField {
   // Access of the sample at this place, or of its nearest neighbour; narrow if there is none. REQUIRES: reach() was
   // called.
   Access at(const glm::dvec3& place) const;
-  // Where people enter; empty if nothing is reached.
+  // Entrance of the reached part; empty if nothing is reached.
   std::optional<glm::dvec3> entry() const { return entry_; }
   // Area, seen from above and up to this height, of the surfaces that continue the reached ones, with or without room.
   double ground_area(double highest_z) const;

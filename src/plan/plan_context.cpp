@@ -10,7 +10,7 @@
 namespace vantage {
 namespace {
 
-// Scan overlap is a share of what a scan sees, some thousand voxels of so many: known to 0.01.
+// Scan overlap is a share of a scan, some thousand voxels of this number: known to 0.01.
 constexpr std::uint64_t kSurroundingsVoxels = 10'000;
 
 }  // namespace

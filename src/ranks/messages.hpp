@@ -38,7 +38,7 @@ struct Head {
 Writer begin(Kind kind, std::uint64_t serial);
 Head read_head(Reader& reader);
 
-// What ranks compare to know that they trace the same; every part must be equal.
+// Properties that ranks compare to know that they trace the same; every part must be equal.
 struct Identity {
   std::string version;
   std::uint64_t fingerprint = 0;  // of the scene

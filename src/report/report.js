@@ -25,7 +25,7 @@
     card();
   }
   function card() {
-    // By cells: a station's own among all shown ones.
+    // A station's own cells among all shown ones.
     const share = only && selected !== null ? only.reduce((n, v) => n + (v === selected + 1), 0) / only.length : null;
     stationCard(at('station'), network, selected, share, { pick, stand: view ? stand : null });
   }

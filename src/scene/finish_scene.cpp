@@ -50,8 +50,8 @@ std::uint64_t hash(const std::array<Float3, 3>& corners) {
   return h;
 }
 
-// Of several triangles over the same points the first stays, surveyed ones before blocking ones: a ray meets them at
-// the same distance, and its point counts.
+// Drops all but the first of several triangles over the same points, with surveyed ones before blocking ones: a ray
+// meets them at the same distance, and its point counts.
 std::size_t drop_duplicates(RawScene& raw, const std::vector<Float3>& positions) {
   struct Entry {
     std::uint64_t hash;

@@ -35,19 +35,19 @@ struct RawScene {
   SceneOptions options = {};
 };
 
-// Drops triangles that no ray can meet soundly (not finite, absurdly far, without area, exact duplicates), takes off
-// the local origin in double, rounds to float, cuts blocking triangles back where surveyed ones lie in their plane and
-// removes unused vertices. What was dropped is said in the notes.
-// Throws Error: malformed_file, prefixed with `source`, where no surveyed triangle is left; out_of_memory where more
-// blocking triangles lie in one plane with surveyed ones than can be cut.
+// Drops triangles that no ray can meet soundly (not finite, absurdly far, without area, exact duplicates), subtracts
+// the local origin in double, rounds to float, cuts blocking triangles back from surveyed ones in their plane, and
+// removes unused vertices. Notes report what was dropped. Throws Error, prefixed with `source`: malformed_file if no
+// surveyed triangle is left; out_of_memory if more blocking triangles lie in one plane with surveyed ones than can be
+// cut.
 std::shared_ptr<const SceneData> finish_scene(RawScene&& raw, const std::string& source);
 
 // Removes meshes without triangles; sets the other meshes' counts from their ranges.
 void drop_empty_meshes(RawScene& raw);
 
 // Local origin for a box of coordinates: its centre, rounded to a multiple of the smallest power of ten not below the
-// largest extent. So a site modelled around 0 keeps 0, and one shifted by kilometres gets the same local coordinates as
-// the unshifted one. No local coordinate exceeds 5.5 times the extent.
+// largest extent. A site modelled around 0 therefore keeps 0, and one shifted by kilometres gets the same local
+// coordinates as the unshifted one. No local coordinate exceeds 5.5 times the extent.
 Vec3 local_origin(const Box& bounds);
 
 }  // namespace vantage

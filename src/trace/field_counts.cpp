@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs are counted on bit planes. The masks of 64 voxels, a word each, are transposed into a word a station (Warren:
-// Hacker's Delight, 2nd edition, 2012, section 7-3). So one AND and one population count serve 64 voxels.
+// Pairs are counted on bit planes. The masks of 64 voxels, a word each, are transposed into a word for each station
+// (Warren: Hacker's Delight, 2nd edition, 2012, section 7-3), so one AND and one population count serve 64 voxels.
 #include "trace/field_counts.hpp"
 
 #include <tbb/blocked_range.h>

@@ -24,7 +24,7 @@ constexpr double least_share = 0.5;       // smallest share of one plane in a vo
 constexpr double least_area = 1e-3;       // in faces; anything smaller is a corner that no scan resolves
 constexpr double points_of_a_plane = 10;  // within a patch; a scan with fewer has no normal to register by
 // Distance, as a share of a patch's side, within which a surface must be flat. A scan's normal is fitted to points
-// around it, within the patch of constant error. So a pipe thinner than that has no normal, however fine the voxels.
+// around it, within the patch of constant error; a pipe thinner than that has no normal, however fine the voxels.
 constexpr double flat_part = 0.5;
 constexpr double widest_fit_m = 1;  // largest surface for a normal's fit, however large patches are
 

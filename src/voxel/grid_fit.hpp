@@ -22,8 +22,8 @@ struct GridFit {
 // number of (p − min) · inverse_size. Double evaluates this without error for nearly all float coordinates, float with
 // two roundings.
 //
-// A plane on a face would mark the voxels on both sides of it, while rounding scatters its points between them. So the
-// cube is moved along each axis, by as little as possible, until no axis-aligned surveyed plane lies within
+// A plane on a face would mark the voxels on both sides of it, while rounding scatters its points between them. The
+// cube is therefore moved along each axis, by as little as possible, until no axis-aligned surveyed plane lies within
 // `face_clearance` of a face. If there are too many planes for that, their area within it is minimised.
 GridFit fit_grid(const SceneData& scene, std::span<const std::span<const Triangle>> surveyed, double user_size_m);
 

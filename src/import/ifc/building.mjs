@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// A building as web-ifc gives it, turned into the nodes, meshes and materials of a glTF.
+// Converts a building from web-ifc to the nodes, meshes and materials of a glTF.
 import { Glb } from "./glb.mjs";
 import { inverse, product, transformed } from "./matrix.mjs";
 import { box, footprint } from "./rooms.mjs";
 
-// Products that are no body: what is cut away, air, drawing.
+// Products without a body: openings, air, drawings.
 const NO_BODY = new Set(["IfcOpeningElement", "IfcOpeningStandardCase", "IfcVoidingFeature", "IfcSpace", "IfcSpatialZone",
   "IfcExternalSpatialElement", "IfcVirtualElement", "IfcAnnotation", "IfcGrid"]);
 const DOORS = new Set(["IfcDoor", "IfcDoorStandardCase"]);
@@ -20,7 +20,7 @@ export class Building {
     this.materials = [];
     this.nodeOf = new Map();      // by express id
     this.shapes = new Map();      // mesh and place, by node
-    this.meshOf = new Map();      // by what it is made of
+    this.meshOf = new Map();      // by content
     this.materialOf = new Map();  // by colour
     this.roots = [];
     this.parents = this.#parents();
@@ -44,7 +44,7 @@ export class Building {
     });
   }
 
-  // The whole, storey or building that each thing belongs to.
+  // Parent of each element: its whole, storey or building.
   #parents() {
     const { ifc, api, model } = this, parents = new Map();
     const collect = (type, whole, parts) => each(api.GetLineIDsWithType(model, type), (id) => {
@@ -62,7 +62,7 @@ export class Building {
     return this.api.GetNameFromTypeCode(this.api.GetLineType(this.model, id));
   }
 
-  // The node of a thing, below those of what it belongs to.
+  // Node of an element, below those of its parents.
   #node(id, visiting = new Set()) {
     if (this.nodeOf.has(id)) return this.nodeOf.get(id);
     visiting.add(id);
@@ -93,7 +93,7 @@ export class Building {
       place: Array.from(part.flatTransformation),
     }));
     if (parts.length === 0 || !parts.every((part) => part.place.every(Number.isFinite))) return false;
-    // Equal products share a mesh: their parts lie equally to the first.
+    // Equal products share a mesh if their parts lie equally to the first.
     const back = inverse(parts[0].place);
     const place = back ? parts[0].place : [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, ...parts[0].place.slice(12)];
     const toFirst = back ?? inverse(place);
@@ -104,7 +104,7 @@ export class Building {
     return true;
   }
 
-  // A whole hands no transform down to its parts: its own shape, where it has one, is a node below it.
+  // A whole passes no transform to its parts: its own shape, if any, is a node below it.
   #addShapes() {
     for (const [index, shape] of this.shapes) {
       const node = this.nodes[index];
@@ -135,7 +135,7 @@ export class Building {
     return index;
   }
 
-  // Vertices come with a normal each, and are placed.
+  // Vertices come with a normal each, already placed.
   #geometry(id, place) {
     const { api, model } = this, geometry = api.GetGeometry(model, id);
     const vertices = api.GetVertexArray(geometry.GetVertexData(), geometry.GetVertexDataSize());
@@ -147,7 +147,7 @@ export class Building {
     return sound ? { positions, indices } : { positions: [], indices: [] };
   }
 
-  // -1 where the product has no colour of its own: web-ifc makes that white.
+  // -1 if the product has no colour of its own: web-ifc makes that white.
   #material(colour) {
     if (colour.every((value) => value === 1)) return -1;
     const key = colour.join(" ");
@@ -162,7 +162,7 @@ export class Building {
     return index;
   }
 
-  // Rooms are nodes without a mesh: their box and outline stand in the extras, in metres, Y up.
+  // Rooms are nodes without a mesh: the extras have their box and outline, in metres, Y up.
   #addRooms() {
     const { ifc, api, model } = this;
     each(api.GetLineIDsWithType(model, ifc.IFCSPACE), (id) => {
@@ -177,7 +177,7 @@ export class Building {
     });
   }
 
-  // What was lost on the way.
+  // Notes on parts that were lost.
   #notes(shown) {
     const { ifc, api, model } = this, lost = [];
     each(api.GetLineIDsWithType(model, ifc.IFCELEMENT, true), (id) => {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Collects what a GLB holds and gives its bytes.
+// Collects the content of a GLB and returns its bytes.
 
 const FLOAT = 5126, UNSIGNED_INT = 5125;
 

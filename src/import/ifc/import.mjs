@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// node import.mjs FILE: writes an IFC model to standard output, as GLB. Exit codes are those of sysexits.h: 65 where
-// the model is at fault, 69 where web-ifc is not installed, each with a line that says so.
+// node import.mjs FILE: writes an IFC model to standard output, as GLB. Exit codes are those of sysexits.h: 65 if the
+// model is at fault, 69 if web-ifc is not installed, each with a line that says so.
 import fs from "node:fs";
 import { createRequire } from "node:module";
 import { fileURLToPath } from "node:url";

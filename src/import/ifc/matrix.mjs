@@ -14,7 +14,7 @@ export function product(a, b) {
   return out;
 }
 
-// Null where it flattens space.
+// Null if it flattens space.
 export function inverse(m) {
   const minor = (i, j) => {  // of the upper left 3 by 3, row i and column j
     const rows = [0, 1, 2].filter((r) => r !== i), columns = [0, 1, 2].filter((c) => c !== j);

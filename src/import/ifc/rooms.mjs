@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a room's body says of it.
+// Outline and heights of a room from its body.
 
 const MILLIMETRES = 1000;
 
-// The loops around the triangles that lie at the body's foot: lists of [x, z], in metres. `triangles` are triples of
-// points [x, y, z], Y up.
+// The loops around the triangles at the body's foot: lists of [x, z], in metres. `triangles` are triples of points [x,
+// y, z], Y up.
 export function footprint(triangles) {
   let foot = Infinity;
   for (const triangle of triangles) for (const [, y] of triangle) foot = Math.min(foot, y);
   const key = ([x, , z]) => `${Math.round(x * MILLIMETRES)} ${Math.round(z * MILLIMETRES)}`;
-  const places = new Map(), edges = new Map();  // edges by the place they start at
+  const places = new Map(), edges = new Map();  // edges by their starting place
   for (const triangle of triangles) {
     if (triangle.some(([, y]) => y > foot + 1 / MILLIMETRES)) continue;
     const keys = triangle.map(key);

@@ -123,7 +123,7 @@ class Loader {
     return marked(document.at("asset")) && declared("unit").empty() && declared("up").empty();
   }
 
-  // What `vantage` in the asset's extras says of unit or axis; empty where it says nothing.
+  // Unit or axis that `vantage` in the asset's extras declares; empty if it does not.
   std::string declared(const char* key) const {
     const nlohmann::json& value = file_.asset_extras("vantage");
     return value.is_object() && value.contains(key) && value[key].is_string() ? value[key].get<std::string>() : "";
@@ -372,7 +372,7 @@ class Loader {
     for (std::size_t i = 0; i < count; ++i) raw_.search_uvs.push_back({values[2 * i], values[2 * i + 1]});
   }
 
-  // What an importer had to say.
+  // Adds the notes of an importer.
   void pass_notes_on() {
     const nlohmann::json& notes = file_.asset_extras("notes");
     if (!notes.is_array()) return;

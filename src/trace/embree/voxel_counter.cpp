@@ -273,8 +273,8 @@ void SampledVoxelCounter::drop_hidden(VoxelRays& rays, std::uint32_t by) {
 }
 
 // Traces the listed rays. Most are stopped before they come near the voxel, and any hit is found faster than the
-// nearest. So occluders are looked for first, and nearest hits only for the other rays. An occluder comes before all
-// that counts, so the answer for the other rays is the same.
+// nearest. Occluders are therefore sought first, and nearest hits only for the other rays. An occluder comes before
+// everything that counts, so the answer for the other rays is the same.
 void SampledVoxelCounter::settle() {
   visible_.clear();
   for (int round = 0; round < rounds && !voxel_rays_.empty(); ++round) {

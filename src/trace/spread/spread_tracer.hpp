@@ -20,9 +20,9 @@ class SpreadTracer final : public Tracer {
  public:
   // When to split one network by its stations.
   enum class Split { where_it_pays, always };
-  // How a sampled population is cut. By voxels, each worker sees all stations: suits GPUs, where rays from neighbouring
-  // stations to a voxel share their way, so half the stations are more than half the work. By networks, each worker
-  // gets only the stations of its networks: suits workers far away.
+  // Division of a sampled population. With voxels, each worker sees all stations. This suits GPUs: rays from
+  // neighbouring stations to a voxel share their way, so half the stations are more than half the work. With networks,
+  // each worker gets only the stations of its networks, which suits workers far away.
   enum class Population { by_networks, by_voxels };
   struct Options {
     Split split = Split::where_it_pays;

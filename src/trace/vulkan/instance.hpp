@@ -31,7 +31,7 @@ namespace vantage::vulkan {
 // clang-format on
 
 // Functions of one instance. volk's global table holds those of the instance loaded last, with null for any that it
-// lacks. So nothing here loads it; each instance and each device keeps its own table.
+// lacks; therefore nothing here loads it, and each instance and each device keeps its own table.
 struct InstanceFunctions {
 #define VANTAGE_FUNCTION(name) PFN_##name name = nullptr;
   VANTAGE_INSTANCE_FUNCTIONS(VANTAGE_FUNCTION)

@@ -58,8 +58,8 @@ class PairSchedule {
   // `parts`: most parts of a pair's walk.
   PairSchedule(std::uint32_t slots, std::uint32_t voxels, std::uint32_t parts, const SampleRoom& room);
 
-  // Returns the chunks of the next submission, in order, at least one unless nothing is left. By the figures seen, each
-  // probably fits and has at most `at_once` rays, and all together have `rays`.
+  // Returns the chunks of the next submission, in order, at least one unless nothing is left. According to the figures
+  // so far, each probably fits and has at most `at_once` rays, and all together have `rays`.
   std::vector<SampleChunk> next(double rays, const PairsSeen& seen, double at_once);
   bool finished() const { return todo_.empty(); }
 

@@ -19,9 +19,9 @@ constexpr std::uint32_t max_leaf = 2;
 constexpr int bins = 32;
 // From this depth on, items are halved by count.
 constexpr std::uint32_t max_sah_depth = 34;
-// Halving n items takes bit_width(n − 1) − 1 steps until each part is a leaf of two, and n < bvh_leaf_first_mask. So an
-// inner node has fewer than max_sah_depth + most_halvings nodes above it. A traversal leaves on its stack at most one
-// child for each of these, one of the node's own, and an end mark.
+// Halving n items takes bit_width(n − 1) − 1 steps until each part is a leaf of two, and n < bvh_leaf_first_mask. An
+// inner node thus has fewer than max_sah_depth + most_halvings nodes above it. A traversal leaves on its stack at most
+// one child for each of these, one of the node's own, and an end mark.
 constexpr std::uint32_t most_halvings = std::bit_width(bvh_leaf_first_mask) - 1;
 static_assert(max_leaf == 2 && max_sah_depth + most_halvings < bvh_stack_size);
 constexpr std::size_t parallel_grain = 8192;
