@@ -38,7 +38,7 @@ void make_folder(const std::filesystem::path& folder) {
       write_text(probe, "");
       std::filesystem::remove(probe, error);
     } catch (const Error& failure) {
-      throw Error(Errc::io, folder.string() + : is not writable", {failure.what()});
+      throw Error(Errc::io, folder.string() + ": is not writable", {failure.what()});
     }
   }
   if (error) throw Error(Errc::io, folder.string() + ": cannot be made: " + error.message());

@@ -59,7 +59,7 @@ struct SampleBuffers {
   Buffer stations, pairs, rays, sights, items, control, slot_rays;
 };
 
-// What registration sums are made from, and the sums.
+// Inputs of registration sums, and the sums.
 struct RegistrationBuffers {
   std::shared_ptr<const Patches> uploaded_patches;
   std::shared_ptr<const NoiseModel> uploaded_noise;
