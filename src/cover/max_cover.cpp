@@ -75,7 +75,7 @@ CoverSolution max_cover(const CoverProblem& asked, const BoundConfig& config, co
   const std::size_t candidates = asked.matrix.candidates();
   if (candidates == 0) throw Error(Errc::invalid_argument, "cover: there are no candidates");
   if (asked.most < 1 || asked.most == std::numeric_limits<std::size_t>::max())
-    throw Error(Errc::invalid_argument, "cover: the most coverage of how many stations? Give 1 or more");
+    throw Error(Errc::invalid_argument, "cover: give the number of stations, 1 or more");
   CoverProblem problem = asked;
   problem.coverage = 1;  // as much as there is
   CoverSolution result;

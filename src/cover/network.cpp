@@ -32,7 +32,7 @@ void check(const CoverProblem& problem) {
   for (const std::size_t k : problem.existing)
     if (k >= candidates)
       throw Error(Errc::invalid_argument, "cover: candidate " + std::to_string(k) +
-                                              " is said to exist, but there are " + std::to_string(candidates) +
+                                              " is listed as existing, but there are " + std::to_string(candidates) +
                                               ", counted from 0");
   if (problem.graph && problem.graph->size() != candidates)
     throw Error(Errc::invalid_argument, "cover: a graph of " + std::to_string(problem.graph->size()) +

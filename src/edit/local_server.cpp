@@ -181,7 +181,7 @@ LocalServer::LocalServer(std::chrono::milliseconds request_time) : impl_(new Imp
   acceptor.open(here.protocol(), error);
   if (!error) acceptor.bind(here, error);
   if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);
-  if (error) throw Error(Errc::io, "no port of 127.0.0.1 can be had to serve the page: " + error.message());
+  if (error) throw Error(Errc::io, "no port of 127.0.0.1 is available for the page: " + error.message());
 }
 
 LocalServer::~LocalServer() = default;

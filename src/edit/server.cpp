@@ -66,7 +66,7 @@ void serve_editor(EditSession& session, const std::string& title, const std::fun
     const bool get = request.method == "GET", post = request.method == "POST";
     if (request.host != host) return refused(403, "this page is served to " + host + " alone");
     if ((!get || !request.origin.empty()) && request.origin != origin)
-      return refused(403, "this page takes nothing from other pages");
+      return refused(403, "requests from other pages are refused");
     if (!request.target.starts_with(root)) return refused(404, "there is nothing here");
     const std::string what = request.target.substr(root.size());
     if (get && what.empty()) return {200, "text/html; charset=utf-8", page, policy};

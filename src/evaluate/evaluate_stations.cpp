@@ -43,7 +43,7 @@ void check(const EvaluationSite& site, const RequiredInputs& needs, const Evalua
     refuse("a measure needs lines of sight between stations; give the clash checker too");
   if (needs.time && !site.on_site) refuse("a measure needs the time on site; give the rounds on site too");
   if (options.field && options.sample_voxels > 0)
-    refuse("the points of every voxel were asked for, and so was a sample of the voxels; choose one");
+    refuse("a sample has no points of every voxel; choose either the field or a sample");
 }
 
 std::vector<NetworkCounts> count(Simulator& simulator, std::span<const Network> networks, const RequiredInputs& needs,

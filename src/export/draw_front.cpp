@@ -87,8 +87,8 @@ std::unique_ptr<Canvas> front_picture(const PlanResult& result) {
     if (!view.single())
       legend.push_back({LegendItem::Mark::ring, style::orange,
                         result.problem.requirements.empty() ? "answer: nearest to the best of all"
-                        : met(result)                       ? "answer: keeps what is required"
-                                                            : "nearest to what is required"});
+                        : met(result)                       ? "answer: meets all requirements"
+                                                            : "nearest to the requirements"});
   }
   draw_legend(canvas, {area.x, kHeight - 24}, legend);
   return page;
