@@ -473,7 +473,7 @@ Recognised recognise(const SceneEvidence& evidence, const std::optional<Unit>& u
     out.unit = choice.unit;
   }
   if (!choice.text.empty() && !up_text.empty())
-    out.note = choice.text + "; " + up_text + "; if that is wrong, give the settings unit and up";
+    out.note = choice.text + "; " + up_text + "; if that is wrong, give the setting unit and the setting up";
   else if (!choice.text.empty())
     out.note = choice.text + "; if that is wrong, give the setting unit";
   else if (!up_text.empty())

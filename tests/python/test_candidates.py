@@ -54,7 +54,7 @@ class CandidatesAndBounds(unittest.TestCase):
         wanted = vantage.min_cover(sampled.matrix, 0.9 * self.found.visible[0])
         self.assertTrue(wanted.possible)
         self.assertLessEqual(wanted.at_least, len(wanted.chosen))
-        with self.assertRaisesRegex(vantage.Error, "how many stations"):
+        with self.assertRaisesRegex(vantage.Error, "number of stations"):
             vantage.max_cover(sampled.matrix, 0)
 
     def test_greedy_and_swaps_keep_what_exists(self):

@@ -53,8 +53,8 @@ TEST_P(RecognisedSites, InEveryVariant) {
         const Scene scene = load(variant);
         const std::string what = std::to_string(per_metre) + (z_up ? " Z up" : " Y up") + (utm ? " UTM: " : ": ");
         expect_box(scene.bounds(), bounds(test::make_site(GetParam(), variant)), what + text(scene));
-        EXPECT_EQ(text(scene).find("--unit") != std::string::npos, per_metre != 1) << what << text(scene);
-        EXPECT_EQ(text(scene).find("--up") != std::string::npos, z_up) << what << text(scene);
+        EXPECT_EQ(text(scene).find("setting unit") != std::string::npos, per_metre != 1) << what << text(scene);
+        EXPECT_EQ(text(scene).find("setting up") != std::string::npos, z_up) << what << text(scene);
       }
 }
 

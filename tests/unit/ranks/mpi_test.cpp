@@ -118,7 +118,7 @@ TEST_F(Mpi, WhatARankLacksIsToldByRank0) {
 
 TEST_F(Mpi, UsageIsToldOnce) {
   expect_refused(run_program(on(3, plan("plan", {"--stationz", "3"}))), 2, "--stationz");
-  expect_refused(run_program(on(2, coarse("evaluate", {"--station", "0,-8,1.5"}))), 2, "`vantage plan` alone");
+  expect_refused(run_program(on(2, coarse("evaluate", {"--station", "0,-8,1.5"}))), 2, "only `vantage plan`");
   const Outcome version = run_program(on(3, {"--version"}));
   EXPECT_EQ(version.exit_code, 0) << version.err;
   EXPECT_EQ(std::ranges::count(version.out, '\n'), 1) << version.out;

@@ -132,7 +132,7 @@ TEST(RecogniseUnits, ZIsUpByTwoSigns) {
   const Recognised both = recognised(lying(furnished_room(1000)));
   EXPECT_EQ(both.up, UpAxis::z);
   EXPECT_EQ(both.unit, Unit::millimetre);
-  EXPECT_NE(both.note.find("--unit and --up settle it"), std::string::npos) << both.note;
+  EXPECT_NE(both.note.find("give the setting unit and the setting up"), std::string::npos) << both.note;
 }
 
 // A wall that fills the picture is as flat as a floor; only glTF's rule can distinguish them.
