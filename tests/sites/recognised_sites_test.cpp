@@ -62,14 +62,14 @@ TEST_P(RecognisedSites, AsAreNamelessOnesThatKeepToGltf) {
   const Variant variant{.nameless = true};
   const Scene scene = load(variant);
   expect_box(scene.bounds(), bounds(test::make_site(GetParam(), variant)), text(scene));
-  EXPECT_EQ(text(scene).find("--u"), std::string::npos) << text(scene);
+  EXPECT_EQ(text(scene).find("setting u"), std::string::npos) << text(scene);
 }
 
 TEST_P(RecognisedSites, AndOptionsSayTheSame) {
   const Variant variant{.millimetres = true, .z_up = true};
   const Scene asked = load(variant), told = load(variant, {.unit = Unit::millimetre, .up = UpAxis::z});
   EXPECT_EQ(asked.fingerprint(), told.fingerprint());
-  EXPECT_EQ(text(told).find("--u"), std::string::npos) << text(told);
+  EXPECT_EQ(text(told).find("setting u"), std::string::npos) << text(told);
 }
 
 }  // namespace
