@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the `embree` engine costs beyond Embree itself: its counting against a loop that traces the same rays and does
+// Cost of the `embree` engine beyond Embree itself: its counting against a loop that traces the same rays and does
 // nothing with them.
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every benchmark of tracing starts from: a scene, its stations, a scanner, and the engines to compare.
+// Common start of all benchmarks of tracing: a scene, its stations, a scanner, and the engines to compare.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -16,7 +16,7 @@
 
 namespace vantage::bench {
 
-// What an engine is built from, for benchmarks of engines alone.
+// Inputs of an engine, for benchmarks of engines alone.
 struct TracedSite {
   TraceScene scene;
   std::vector<TraceStation> stations;
@@ -41,7 +41,7 @@ struct SiteOptions {
   TracedSite traced(const Scene& site, const Network& network) const;
   // The usable ones among those named.
   std::vector<EngineInfo> engines_here() const;
-  // By the first of these; on those of the devices that have it, counted as they are found, or else on the best one.
+  // With the first engine; on the given ones of the devices that have it, or else on the best one.
   Simulator simulator(const Scene& site, std::span<const std::size_t> devices = {}) const;
 };
 

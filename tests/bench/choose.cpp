@@ -18,7 +18,7 @@ namespace {
 CoverageMatrix floor_matrix(const ChooseOptions& options) {
   RandomStream random(options.seed);
   const auto side = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(options.voxels))));
-  // So far that the stations' discs cover the floor once.
+  // Radius at which the stations' discs cover the floor once.
   const double reach = std::sqrt(static_cast<double>(side * side) / 3.14159 / static_cast<double>(options.stations));
   constexpr double goal = 100;
   CoverageMatrix matrix(std::vector<std::uint32_t>(side * side, 1), goal);

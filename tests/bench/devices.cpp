@@ -15,7 +15,7 @@
 namespace vantage::bench {
 namespace {
 
-// So many networks of so many stations around the given ones, which come again where there are too few.
+// `networks` networks of `stations` stations around the given ones, which repeat if there are too few.
 std::vector<Network> networks_around(const Network& given, std::size_t networks, std::size_t stations,
                                      double spread_m) {
   RandomStream random(1);

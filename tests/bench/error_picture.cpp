@@ -64,7 +64,7 @@ void keep_clear(const std::vector<Point>& line, std::vector<Rect>& taken) {
   }
 }
 
-// What has no error has no height: a line at its time, its name written along it where there is room.
+// A method without error has no height: a line at its time, with its name along it if there is room.
 void draw_exact(Canvas& canvas, const Chart& chart, const std::vector<ErrorDot>& dots, const Axis& y,
                 std::vector<Rect>& taken) {
   const Rect& area = chart.area();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a searched front is worth by every ray, second by second, and how far that is from what the search saw.
+// Value of a searched front by every ray, second by second, and its difference from the search's own value.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What can be captured at best, and what a choice captures, over the number of candidates.
+// Bound and achieved coverage, over the number of candidates.
 #pragma once
 
 #include <cstdint>

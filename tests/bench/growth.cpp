@@ -79,8 +79,8 @@ double process_mib(const std::string& key) {
   return 0;
 }
 
-// What this process holds of the device's own memory, MiB; nothing where the driver keeps no account. A software device
-// has none of its own: it is in the process.
+// Device memory of this process, MiB; empty if the driver keeps no account. A software device uses the memory of the
+// process.
 double device_mib(const EngineInfo& info) {
   if (info.engine == Engine::embree || info.software) return 0;
   const auto instance = vulkan::Instance::get(false);

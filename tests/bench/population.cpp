@@ -33,7 +33,7 @@ std::vector<Network> population_around(const Network& stations, const ClashCheck
   return networks;
 }
 
-// What a search asks of every network.
+// Kind of evaluation that a search needs.
 struct Kind {
   bool overlap, registration;
 };

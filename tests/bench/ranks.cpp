@@ -57,8 +57,8 @@ void measure_networks(RanksModel& model, const RanksOptions& options, NetworkCou
   std::printf("# %s on %s\n", to_string(simulator.engine().engine).c_str(), simulator.engine().device.c_str());
 }
 
-// What travels for a network, and what rank 0 does for it and for a rank: the best of several, which other work of the
-// machine disturbs least.
+// Message sizes for a network, and rank 0's work for it and for a rank: the best of several, least disturbed by other
+// work of the machine.
 void measure_messages(RanksModel& model, const RanksOptions& options, const NetworkCounts& counts) {
   constexpr std::size_t many = 200;
   constexpr int rounds = 20, threads = 64;
@@ -94,8 +94,8 @@ void measure_messages(RanksModel& model, const RanksOptions& options, const Netw
   }
 }
 
-// What the search itself does: MO-CMA-ES asks and is told, of two objectives that cost nothing. In processor time, as
-// an iteration is too long to slip past what else the machine does.
+// Work of the search itself: MO-CMA-ES, with two objectives that cost nothing. In processor time, since an iteration is
+// too long to avoid other work of the machine.
 double search_seconds(std::size_t stations, std::size_t population) {
   const std::size_t dimension = 2 * stations;
   OptimiserConfig config{.population = population, .bounds = Bounds::uniform(dimension, 0, 1)};

@@ -8,7 +8,7 @@
 
 namespace vantage::bench {
 
-// What it goes by, in seconds and bytes; measured, but for the network's figures, which are given.
+// Inputs of the model, in seconds and bytes; measured, except the network's figures, which are given.
 struct RanksModel {
   std::vector<double> network_s;  // evaluation times of single networks, of which those of a population are drawn
   double piece_s = 0;             // what a rank spends on a piece whatever its size

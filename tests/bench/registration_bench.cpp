@@ -74,7 +74,7 @@ double quantile(std::vector<double> values, double share) {
   return values[low] + (values[high] - values[low]) * (at - static_cast<double>(low));
 }
 
-// What practice and the method say of overlap; more is better for each.
+// Measures of overlap, of practice and of the method; more is better for each.
 struct Figures {
   static constexpr std::array<const char*, 6> names{"lambda2",      "weakest_link", "weakest_share",
                                                     "mean_overlap", "min_overlap",  "clustering"};

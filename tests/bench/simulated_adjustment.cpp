@@ -209,7 +209,7 @@ std::vector<PoseError> adjust(const ScanNetwork& network, const AdjustmentTruth&
     shift[i] = shift0[i] = disturbance(truth.position_m, truth.position_m, truth.position_m);
     turn[i] = rotation(turn0[i]);
   }
-  // What each scan has wrong along a point's normal.
+  // Error of each scan along a point's normal.
   std::vector<std::vector<float>> wrong(n);
   for (std::size_t i = 0; i < n; ++i) wrong[i].assign(scans[i]->points.size(), std::numeric_limits<float>::quiet_NaN());
   const auto wrong_by = [&](std::size_t i, std::uint32_t k) -> double {

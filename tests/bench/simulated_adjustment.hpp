@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What registration makes of a network: simulated scans, moved off their places, matched with each other and adjusted
-// together. The truth that predicted errors are held against, so it shares no code with them.
+// Simulated registration of a network: scans are moved off their places, matched with each other and adjusted together.
+// It is the truth for predicted errors, so it shares no code with them.
 #pragma once
 
 #include <Eigen/Dense>
@@ -13,7 +13,7 @@
 
 namespace vantage::bench {
 
-// What scans have wrong, and what is known before.
+// Errors of scans, and their prior.
 struct AdjustmentTruth {
   double rho_m = 0.0015, patch_m = 0.5;  // modelling error of a scan, and over how far it is the same
   double position_m = 0.03, heading = 0.2 * 0.017453292519943295, tilt = 15.0 / 3600 * 0.017453292519943295;
@@ -31,7 +31,7 @@ struct ThinnedScan {
   std::vector<std::uint32_t> voxels;  // that the scan has points in, ascending
 };
 
-// By every ray; normals are fitted to the points, as a registration has to.
+// Scans with every ray; normals are fitted to the points, as in a registration.
 ThinnedScan thinned_scan(Simulator& simulator, const Vec3& head);
 
 // Finds a scan's planar point next to a place.

@@ -113,7 +113,7 @@ std::shared_ptr<const Survey> make_survey(const std::string& name) {
   return survey;
 }
 
-// Of the heads that see each other past the boxes, all of which reach above the heads' height.
+// Connected components of the heads that see each other past the boxes, all of which are higher than the heads.
 std::size_t connected_parts(const Survey& survey, const std::vector<std::array<double, 2>>& heads) {
   const auto sees = [&](const std::array<double, 2>& a, const std::array<double, 2>& b) {
     const Patch target{b[0], b[1], kHead, 0, 0, survey.prisms.size()};

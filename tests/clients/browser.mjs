@@ -23,7 +23,7 @@ export async function watchedPage(browser, viewport, more = {}) {
   return page;
 }
 
-// What is seen of an element, as colours: how many there are, and the share of pixels that `wanted(r, g, b)` holds for.
+// Colours of an element on the screen: their number, and the share of pixels for which `wanted(r, g, b)` holds.
 export async function coloursOf(page, selector, wanted) {
   const png = (await page.locator(selector).screenshot()).toString('base64');
   const reader = await page.context().browser().newPage();  // where no policy of the page's own holds

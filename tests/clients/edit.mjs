@@ -152,7 +152,7 @@ await checkNumbers(['--sample', '2000']);
 await changed(() => page.locator('#undo').click());
 assert.deepEqual(await rows(), placed);
 
-// By keys: a step to the east, a lock that holds, a third station, one less.
+// Keys: a step to the east, a lock that holds, a third station, one less.
 const label = page.locator('.label').nth(1);
 await label.focus();
 await changed(() => page.keyboard.press('Shift+ArrowRight'));
@@ -178,7 +178,7 @@ await second.waitForFunction(() => document.querySelectorAll('#stations tbody tr
 assert.deepEqual(second.troubles, []);
 await second.close();
 
-// By touch: a finger on a name moves the station and nothing else, one in the view turns it, two go further away.
+// Touch: a finger on a name moves the station and nothing else, one in the view turns it, two go further away.
 const phone = await watchedPage(browser, { width: 390, height: 844 }, { hasTouch: true, isMobile: true });
 await phone.goto(url);
 await phone.waitForSelector('html[data-ready]');

@@ -279,7 +279,7 @@ TEST_P(TurnedConformance, AQuarterTurnOfAFullCircleChangesNoCount) {
   EXPECT_EQ(quarter.stations, upright.stations);
 }
 
-// So does any other multiple of its step, except for rounding: ray (i, j) goes where (i, j + k) went.
+// The same holds for any other multiple of its step, except for rounding: ray (i, j) goes where (i, j + k) went.
 TEST_P(TurnedConformance, AMultipleOfTheStepMovesColumns) {
   const TestSite& site = sites()[2];
   Tracer* const tracer = of(site, false);

@@ -29,7 +29,7 @@ std::string saved(const Optimiser& optimiser) {
 
 constexpr ArchiveFormat state_format{"vantage optimiser\n", 8}, checkpoint_format{"vantage checkpoint\n", 5};
 
-// What a seal holds.
+// The content of a seal.
 std::string payload_of(const std::string& whole, const ArchiveFormat& format) {
   std::istringstream in(whole);
   const Unsealed found = unseal(in, format);

@@ -63,7 +63,7 @@ TEST(Registration, OfASampleIsAsFarOffAsItsStandardErrorSays) {
   }
   RecordProperty("percent_off", std::to_string(100 * std::sqrt(squares) / truth));
   EXPECT_LT(std::sqrt(squares), 0.2 * truth);
-  // Of twenty, 19 should lie within 1.96, and the middle one at 0.67, known to some 0.2. Variances say less: if the
+  // 19 of twenty should lie within 1.96, and the middle one at 0.67, known to some 0.2. Variances say less: if the
   // weakest link rests on voxels of one group, one draw's is as large as those of all others together.
   std::ranges::sort(off);
   EXPECT_LT(off[16], 1.96);

@@ -139,7 +139,7 @@ class RayTest {
     if (hit.dropped.points > 0) hit.voxel = no_voxel;
   }
 
-  // By angle, length and standard deviation themselves.
+  // Uses angle, length and standard deviation themselves.
   void hold_to_limits(ReferenceHit& hit) const {
     const LimitModel& model = *scanner_.limits;
     const LimitModel::Limits& limits = model.meshes[s_.scene->mesh_of(hit.triangle)];

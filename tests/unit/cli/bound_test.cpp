@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What can be captured at best, and why the rest is not.
+// Bounds on coverage, and reasons for missed surface.
 #include <sstream>
 
 #include "program.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a value comes from: typed, configuration file, scene, preset, built in; in this order.
+// Sources of values: typed, configuration file, scene, preset, built in; in this order.
 #include <fstream>
 
 #include "program.hpp"

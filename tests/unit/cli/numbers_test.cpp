@@ -109,7 +109,7 @@ std::optional<std::string> refused(const std::string& command, const std::string
 // Options that name a file or a view: their messages say what was not found.
 bool names_something(const std::string& option) { return option == "panorama" || option == "views"; }
 
-// What no option that wants a number takes.
+// Values that every numeric option refuses.
 bool wants_numbers(const std::string& command, const std::string& option) {
   return refused(command, option, "frobnicate").has_value();
 }

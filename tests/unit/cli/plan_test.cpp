@@ -195,7 +195,7 @@ TEST_F(Plan, ShowsTheRegistrationErrorWhereItIsAskedFor) {
   for (const char* name : {"registration.ply", "registration.png", "registration.svg"})
     EXPECT_GT(read(std::string("plan/") + name).size(), 0u) << name;
   EXPECT_NE(read("plan/plan.svg").size(), 0u);
-  // By every ray, as evaluate has it.
+  // Exact, as in evaluate.
   const auto& entry = front["front"][0];
   const auto again =
       json_of({"evaluate", scene_, "--engine", "embree", "--config", path("plan/config.json"), "--registration",

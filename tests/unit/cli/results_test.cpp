@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What scan, evaluate and the small commands hand out.
+// Results of scan, evaluate and the small commands.
 #include <sys/resource.h>
 
 #include <filesystem>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What anybody on this machine can do to a port: the server goes on for others, and takes no memory for it.
+// Attacks of other users on a port: the server goes on for others, and takes no memory for them.
 #include "edit/local_server.hpp"
 
 #include <arpa/inet.h>

@@ -74,7 +74,7 @@ struct Bench {
   State finished() const { return vantage::finished(session); }
 };
 
-// What `vantage evaluate --sample` and `--exact` say of the same stations, to the last bit.
+// The numbers of `vantage evaluate --sample` and `--exact` for the same stations, to the last bit.
 TEST(EditSession, ShowsTheNumbersOfTheProgram) {
   Bench bench;
   bench.add(2, -1);

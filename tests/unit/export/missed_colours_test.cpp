@@ -19,7 +19,7 @@ Triple times(const Matrix& m, const Triple& v) {
   return product;
 }
 
-// What the three kinds of dichromats see of linear sRGB (Machado, Oliveira, Fernandes: A physiologically-based model
+// Colours as the three kinds of dichromats see linear sRGB (Machado, Oliveira, Fernandes: A physiologically-based model
 // for simulation of color vision deficiency, 2009; severity 1.0).
 constexpr Matrix kUsual{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 constexpr Matrix kProtan{

@@ -338,7 +338,7 @@ TEST(Pictures, PlanViewDrawsStandardEllipses) {
   EXPECT_THROW(red("wrong.png", std::span(errors).first(1)), Error);
 }
 
-// Of two stations, and of two among so many that their bits stand in two words.
+// Maps of two stations, alone and among so many that their bits are in two words.
 class RegistrationMaps : public testing::TestWithParam<std::size_t> {};
 INSTANTIATE_TEST_SUITE_P(Pictures, RegistrationMaps, testing::Values(2, 67));
 TEST_P(RegistrationMaps, ShowTheErrorWhereItIs) {

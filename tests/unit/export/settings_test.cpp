@@ -68,7 +68,7 @@ const std::vector<Change<Scanner>> kScanner{
     {"exit_diameter_m", [](Scanner& s) { s.exit_diameter_m = 0.004; }}};
 static_assert(member_count<Scanner>() == 14);
 
-// Of the file that is read; a scene's own fingerprint tells runs apart.
+// The file's settings; a scene's own fingerprint tells runs apart.
 const std::vector<Change<SceneOptions>> kScene{
     {"surveyed", [](SceneOptions& o) { o.surveyed = {"wall*"}; }, false},
     {"blocking", [](SceneOptions& o) { o.blocking = {"nothing"}; }, false},
@@ -122,7 +122,7 @@ const std::vector<Change<SimulatorConfig>> kSimulation{
     {"seed", [](SimulatorConfig& c) { c.seed = 2; }},
     {"validation", [](SimulatorConfig& c) { c.validation = true; }, false},
     {"max_rays_per_dispatch", [](SimulatorConfig& c) { c.max_rays_per_dispatch = 1000; }, false},
-    // What a machine has to spare is no part of what is computed on it.
+    // The free memory of a machine does not change results.
     {"max_memory_bytes", [](SimulatorConfig& c) { c.max_memory_bytes = std::uint64_t{1} << 40; }, false, false}};
 static_assert(member_count<SimulatorConfig>() == 14);
 
@@ -214,7 +214,7 @@ const std::vector<Change<PlanConfig>> kPlan{
     {"target_hypervolume", [](PlanConfig& c) { c.target_hypervolume = 0.5; }, false},
     {"stagnation_iterations", [](PlanConfig& c) { c.stagnation_iterations = 3; }, false},
     {"seed", [](PlanConfig& c) { c.seed = 3; }},
-    // Where a run leaves its checkpoint, and whether it takes one up, is no part of what it computes.
+    // The place and use of a checkpoint do not change results.
     {"checkpoint", [](PlanConfig& c) { c.checkpoint = "elsewhere"; }, false, false},
     {"checkpoint_seconds", [](PlanConfig& c) { c.checkpoint_seconds = 5; }, false, false},
     {"resume", [](PlanConfig& c) { c.resume = true; }, false, false},
@@ -229,7 +229,7 @@ SearchMesh ground() {
           .triangles = {{0, 1, 2}, {0, 2, 3}}};
 }
 
-// What a run is known by, and what its results tell.
+// Identity of a run, and the settings in its results.
 struct Told {
   std::string identity, json;
 };

@@ -13,7 +13,7 @@ namespace {
 
 class IfcTest : public ImportTest {
  protected:
-  // What the importer makes of it, as JSON.
+  // The importer's output, as JSON.
   nlohmann::json document(const std::filesystem::path& file) const {
     const auto glb = importers::as_glb(file, *importers::recognise(file).format);
     std::uint32_t length = 0;

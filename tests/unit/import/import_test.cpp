@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the library makes of importers, played by scripts: errors, and the cache.
+// The library's handling of importers, played by scripts: errors, and the cache.
 #include "import/import.hpp"
 
 #include <cstdlib>

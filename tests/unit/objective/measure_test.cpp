@@ -54,7 +54,7 @@ TEST(Coverage, IsEquation8) {
   EXPECT_EQ(coverage(counts, 2.5), 1.0);
 }
 
-// What a cancelled evaluation counted would look like a measure that is too low.
+// Counts of a cancelled evaluation would look like a measure that is too low.
 TEST(Measures, AreRefusedOfCancelledCounts) {
   NetworkCounts counts;
   counts.voxels = counts.weight = 10, counts.saturated = 4, counts.stations = 2;

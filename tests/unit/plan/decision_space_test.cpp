@@ -91,7 +91,7 @@ TEST(DecisionSpace, ChoosesScannersInEqualShares) {
   EXPECT_EQ(space.decode(space.encode(placed)).at(2).setup, placed[2].setup);
   const std::vector<Vec3> heads{{1, 2, 4.5}};
   EXPECT_EQ(space.decode(space.encode(heads)).at(0).setup.scanner, 4u) << "the first of them where nobody says";
-  // Of one there is nothing to choose.
+  // A single scanner leaves no choice.
   config.scanners = {2};
   const DecisionSpace one(site, config);
   EXPECT_EQ(one.dimension(), 10u);

@@ -76,7 +76,7 @@ TEST(SearchStep, IsCoarseWhereSurfacesAreNearAndFineWhereTheyAreFar) {
   Simulator simulator(scene, both, {.engine = Engine::embree, .user_size_m = 0.5, .point_spacing_m = 0.2});
   const ClashChecker clash(scene, {.radius_m = 0});
 
-  // What each choice captures, from the middles.
+  // Coverage of each choice, from the middles.
   const auto captured = [&](std::uint32_t in_closet, std::uint32_t in_hall) {
     const NetworkCounts counts =
         simulator.evaluate({{closet, true, {.scanner = in_closet}}, {hall, true, {.scanner = in_hall}}});

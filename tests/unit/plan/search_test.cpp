@@ -157,8 +157,8 @@ TEST_P(EveryProblem, EndsWithVoxelsThatNothingWasChosenBy) {
   }
 }
 
-// What is kept of many draws is kept for what it is: by every ray it comes to what the search says, where one draw
-// flatters what was chosen by it.
+// A network that stays over many draws is as good by every ray as the search says; a single draw favours the networks
+// that it chose.
 TEST(Search, SamplesDrawnAnewDoNotFlatter) {
   const SurveyProblem problem = test::toy_problem("coverage-overlap-fix");
   double flattered = 0, left = 0;

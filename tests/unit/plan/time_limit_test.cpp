@@ -43,7 +43,7 @@ TEST_F(TimeLimit, EndsTheLookAndClaimsNothing) {
 
 TEST_F(TimeLimit, EndsTheSearchAndConfirmsWhatItFound) {
   double longest = 0;
-  // So few rays that networks differ: with more all capture all, and the search ends by itself.
+  // Few rays, so that networks differ: with more, all capture everything, and the search ends by itself.
   Simulator few_rays(scene_, test::coarse_scanner(5),
                      {.engine = Engine::embree, .user_size_m = 0.5, .point_spacing_m = 0.2});
   const PlanResult result =
@@ -69,7 +69,7 @@ TEST_F(TimeLimit, IsNotBlamedForAStopByTheCaller) {
   EXPECT_EQ(result.stop_reason, StopReason::cancelled);
 }
 
-// Where not all could be looked at, less can be seen than there is, and shares of it come out too high.
+// If the look is cut short, attainable coverage is too low, and shares of it are too high.
 TEST_F(TimeLimit, ALookCutShortLeavesCaptureUnknown) {
   PlanResult result = plan(fewest_stations(0.5, 0, 1, 8, 0), {.iterations = 2, .sample_voxels = 200});
   ASSERT_TRUE(met(result));

@@ -192,7 +192,7 @@ inline std::string bits_of(const SearchOutcome& outcome) {
 inline constexpr const char* kProblems[] = {"coverage-fix", "coverage-overlap-fix", "coverage-min",
                                             "coverage-overlap-min"};
 
-// Of 4 stations, or 4 to 8 where the number is searched.
+// With 4 stations, or 4 to 8 if the number is searched.
 inline SurveyProblem toy_problem(const std::string& name) {
   return survey_problem(name, 4, name.ends_with("-min") ? 8 : 4);
 }

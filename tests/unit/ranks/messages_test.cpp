@@ -31,7 +31,7 @@ TEST(Messages, GroupsTravelAndGroupsOfGroupsAreRefused) {
   EXPECT_THROW(read_counts(of_deep), Error);
 }
 
-// Of every length that a message may be cut to, and with more claimed than it has.
+// Messages cut to every length, and messages that claim more than they have.
 TEST(Messages, ThatAreCutShortOrClaimMoreAreRefused) {
   const std::string whole = message_of(std::vector<NetworkCounts>(2));
   for (std::size_t bytes = 0; bytes < whole.size(); ++bytes) {

@@ -73,7 +73,7 @@ TEST(CoverageCells, TellWhetherOneStationSeesAlone) {
 TEST(CoverageCells, AreAsTheNearestWhereNothingWasCounted) {
   Site site;
   const CoverageCells cells = coverage_cells(site.simulator, 100'000, 100'000);
-  // Of the voxels of one end alone: all others take what the edge of the known ones has.
+  // Only voxels of one end are known: all others copy the edge of the known ones.
   std::vector<std::uint32_t> ranks, counts;
   std::vector<Seer> seen_by;
   for (const std::uint32_t rank : cells.ranks) {

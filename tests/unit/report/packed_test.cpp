@@ -9,7 +9,7 @@
 namespace vantage {
 namespace {
 
-// By the definition of base64, and zlib's own inflate.
+// Decodes by the definition of base64, and zlib's own inflate.
 std::vector<std::uint8_t> unpacked(const std::string& text, std::size_t size) {
   static const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::vector<std::uint8_t> bytes;

@@ -222,7 +222,7 @@ TEST(Scan, GivesOnlyWhatWasAskedFor) {
             std::string::npos);
 }
 
-// Of a room so far from the survey frame's origin that floats have steps of half a metre there.
+// A room so far from the survey frame's origin that floats have steps of half a metre there.
 TEST(ScanPoints, AreTheHitsOfAScanInTheSurveyFrame) {
   const Vec3 far{4'500'000, 5'300'000, 100};
   Simulator simulator(wall_and_floor(far).scene(), coarse_scanner(2), config());

@@ -150,7 +150,7 @@ TEST(LoadErrors, NotAGltf) {
 TEST(LoadErrors, ExtensionsThatAreRequired) {
   expect_malformed([](GlbBuilder& b) { b.json["extensionsRequired"] = {"ACME_secret_mesh"}; },
                    {"ACME_secret_mesh", "does not know"});
-  // Of compressed meshes a file goes to an importer; in memory there is none.
+  // A file with compressed meshes goes to an importer; in memory there is none.
   for (const char* name : {"KHR_draco_mesh_compression", "EXT_meshopt_compression"}) {
     GlbBuilder compressed = square();
     compressed.json["extensionsRequired"] = {name};

@@ -87,7 +87,7 @@ TEST(SettingTables, ReadWhatTheyDescribe) {
   EXPECT_EQ(config.sample_voxels, 0u);
 }
 
-// What a result lists can be given again by the same name.
+// Settings listed in a result can be given again by the same name.
 TEST(SettingTables, HaveTheOptionsOfResults) {
   const std::vector<Vec3> corners{{0, 0, 0}, {8, 0, 0}, {8, 8, 0}, {0, 8, 0}};
   const std::vector<std::array<std::uint32_t, 3>> triangles{{0, 1, 2}, {0, 2, 3}};
