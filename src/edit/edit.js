@@ -64,7 +64,7 @@
   }
   function offline() {
     connected = false;
-    tell('The program does not answer. What was changed is kept in its folder: start it again with the same command.', true);
+    tell('The program does not answer. All changes are in its folder: start it again with the same command.', true);
   }
   function online() {
     if (!connected) tell('');
@@ -144,7 +144,7 @@
     const share = selected === null ? null : view.only.reduce((n, v) => n + (v === selected + 1), 0) / view.only.length;
     stationCard(at('station'), state.network, selected, share, { pick, stand: null });
     if (selected === null) {
-      if (!state.ids.length) at('station').append(element('p', {}, 'There is no station yet: add one, then say where.'));
+      if (!state.ids.length) at('station').append(element('p', {}, 'There is no station yet: add one, then click its position.'));
       return;
     }
     const id = state.ids[selected], locked = state.locked[selected];
@@ -228,7 +228,7 @@
     adding = on;
     at('add').setAttribute('aria-pressed', String(on));
     at('canvas').classList.toggle('adding', on);
-    if (on) tell('Click where the station is to stand; Enter puts it in the middle of the view, Escape leaves it.');
+    if (on) tell('Click the position of the station; Enter puts it in the middle of the view, Escape leaves it.');
     showGround();
   }
   let pressed = null;
@@ -238,7 +238,7 @@
     const place = surfaceAt(event);
     setAdding(false);
     if (place) send({ do: 'add', to: place });
-    else tell('There is nothing to stand on.', true);
+    else tell('There is no ground to stand on here.', true);
   });
   document.addEventListener('keydown', (event) => {
     if (event.key === 'Escape' && adding) setAdding(false);
