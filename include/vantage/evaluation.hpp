@@ -17,6 +17,7 @@
 #include "vantage/placement.hpp"
 #include "vantage/progress.hpp"
 #include "vantage/simulator.hpp"
+#include "vantage/targets.hpp"
 
 namespace vantage {
 
@@ -75,7 +76,9 @@ struct Evaluation {
   ScanOverlapMatrix scan_overlap_matrix = {};  ///< On all surfaces, surveyed or not; empty: not computed.
   double link_overlap = default_link_overlap;  ///< Least overlap of a link,
   double link = default_link;                  ///< or least scan overlap, if that is known.
-  std::optional<RegistrationError> registration = std::nullopt;  ///< Predicted, if it was asked for.
+  std::optional<RegistrationError> registration = std::nullopt;  ///< Predicted, if it was asked for; by `targets` too.
+  std::vector<Target> targets = {};                              ///< As given, with the stations that measure each.
+  AccuracyClass accuracy_class = AccuracyClass::loa30;           ///< Judges the registration error.
   std::optional<Visit> visit = std::nullopt;                     ///< The round on site without existing stations.
   /// Sum of the violations of requirements, as shares of their objectives' scales; 0: all are met.
   double violation = 0;
@@ -87,10 +90,11 @@ struct Evaluation {
 };
 
 /// Makes the figures of a measured network: the measures with standard errors, overlaps, and the registration error if
-/// `registration` is given. Links, attainable coverage and the round are left to the caller. REQUIRES: counts of all
-/// that measures and registration need.
+/// `registration` is given, by surfaces and `targets`. Links, attainable coverage and the round are left to the caller.
+/// REQUIRES: counts of all that measures and registration need.
 Evaluation evaluation_of(const MeasuredNetwork& measured, std::span<const Objective> measures,
-                         const std::optional<RegistrationOptions>& registration = std::nullopt);
+                         const std::optional<RegistrationOptions>& registration = std::nullopt,
+                         std::span<const RegistrationTarget> targets = {});
 /// Sum of the requirements' violations. REQUIRES: values of their objectives.
 double violation_of(const Evaluation& evaluation, std::span<const Requirement> requirements);
 
@@ -99,7 +103,7 @@ struct EvaluationSite {
   Simulator& simulator;
   Simulator* surroundings = nullptr;    ///< `surroundings_of(simulator)`, for scan overlaps. Null: none.
   const OnSite* on_site = nullptr;      ///< Makes rounds on site. Null: none.
-  const ClashChecker* clash = nullptr;  ///< Needed by measures of lines of sight between stations. Null: none of these.
+  const ClashChecker* clash = nullptr;  ///< Needed by targets and by lines of sight between stations. Null: none.
 };
 
 struct EvaluationOptions {
@@ -110,6 +114,8 @@ struct EvaluationOptions {
   std::vector<Objective> measures = {};                            ///< Measures besides coverage and overlap.
   std::vector<Requirement> requirements = {};                      ///< Their objectives are measured too.
   std::optional<RegistrationOptions> registration = std::nullopt;  ///< Predict the error of the registered scans.
+  std::vector<Target> targets = {};  ///< Targets and control points that tie scans together, for `registration`.
+  TargetOptions target = {};
   /// Attainable coverage; measures `capture` too, as a share of it.
   std::optional<Estimate> attainable = std::nullopt;
   double link_overlap = default_link_overlap, link = default_link;  ///< As in `Evaluation`.

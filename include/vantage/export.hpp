@@ -87,6 +87,8 @@ struct StationRow {
   StationSetup setup = {};                   ///< Heading and tilt.
   std::string scanner = {};                  ///< In the form of `load_scanner()`; empty: not given.
   std::optional<Angle> step = std::nullopt;  ///< Azimuth and zenith step.
+  /// Standard deviation of a control point's coordinates, in metres (`read_targets_csv()`).
+  std::optional<double> sigma_m = std::nullopt;
 };
 /// Reads a table with a header. Columns may have any order, and others are ignored: x, y, z (of the head), or E, N, Z,
 /// or Easting, Northing, Height; ground_z for the ground's height; u, v; name; heading, tilt and step in degrees;

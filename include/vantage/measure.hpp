@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -103,6 +104,17 @@ Settings settings(const RegistrationOptions& options);
 /// Throws Error invalid_argument with the member and its value.
 void check(const RegistrationOptions& options);
 
+/// A point that scans measure one by one, such as the centre of a target. It ties scans together where surfaces do not.
+struct RegistrationTarget {
+  Vec3 centre;           ///< Local frame (survey frame less `Simulator::origin()`).
+  double control_m = 0;  ///< Standard deviation of known coordinates, in each axis; 0: they are not known.
+  struct Sighting {
+    std::size_t station;  ///< Its place in the network.
+    double sigma_m;       ///< Standard deviation of the centre in that scan, in each axis; above 0.
+  };
+  std::vector<Sighting> seen_by = {};  ///< A station at most once.
+};
+
 /// Effect of the error of one station's pose.
 struct StationError {
   double rms_m = 0;  ///< Root mean square over the surface that it sees; 0 if it sees none.
@@ -117,6 +129,8 @@ struct RegistrationError {
   double rms_m = 0;    ///< Root mean square displacement of the points of the covered surface.
   double worst_m = 0;  ///< `rms_m` of the worst station.
   std::size_t worst_station = 0;
+  /// As `rms_m`, in the site's frame and not in the survey's own; known if a station sees a control point.
+  std::optional<double> absolute_rms_m = std::nullopt;
   std::vector<StationError> stations;
   /// Per station: covariance of [turn · scale_m, shift], 6 × 6 row-major. The displacement at p is shift + turn × (p −
   /// centre).
@@ -133,16 +147,17 @@ struct RegistrationError {
 /// registration. A sample of a site of `voxels` voxels gives the error that the whole site would give. Components that
 /// share nothing keep their prior error. If nothing is covered, the result is the error of a position.
 /// `surroundings` are the same network's counts by `surroundings_of()`, of a site of `surroundings_voxels`; used if
-/// `options.surfaces` is `all`. Throws Error invalid_argument unless `registration` was filled in all counts used.
+/// `options.surfaces` is `all`. `targets` tie stations in all three axes, besides surfaces.
+/// Throws Error invalid_argument unless `registration` was filled in all counts used.
 /// REQUIRES: with `options.model`.
 RegistrationError registration_error(const NetworkCounts& counts, std::uint64_t voxels,
                                      const RegistrationOptions& options = {},
-                                     const NetworkCounts* surroundings = nullptr,
-                                     std::uint64_t surroundings_voxels = 0);
+                                     const NetworkCounts* surroundings = nullptr, std::uint64_t surroundings_voxels = 0,
+                                     std::span<const RegistrationTarget> targets = {});
 /// `registration_error(…).rms_m`, less its bias for a sample, and the standard error, by the jackknife over its groups.
 Estimate registration_estimate(const NetworkCounts& counts, std::uint64_t voxels,
                                const RegistrationOptions& options = {}, const NetworkCounts* surroundings = nullptr,
-                               std::uint64_t surroundings_voxels = 0);
+                               std::uint64_t surroundings_voxels = 0, std::span<const RegistrationTarget> targets = {});
 
 /// Connectivity of the overlap graph, for registration.
 struct Connectivity {

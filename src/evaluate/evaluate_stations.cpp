@@ -41,6 +41,9 @@ void check(const EvaluationSite& site, const RequiredInputs& needs, const Evalua
     refuse("a measure needs all surfaces; give the simulator of the surroundings too");
   if (needs.visibility && !site.clash)
     refuse("a measure needs lines of sight between stations; give the clash checker too");
+  if (!options.targets.empty() && !options.registration)
+    refuse("targets were given, but the registration error was not requested; request it too");
+  if (!options.targets.empty() && !site.clash) refuse("targets were given without the clash checker; give it too");
   if (needs.time && !site.on_site) refuse("a measure needs the time on site; give the rounds on site too");
   if (options.field && options.sample_voxels > 0)
     refuse("a sample has no points of every voxel; choose either the field or a sample");
@@ -105,10 +108,14 @@ std::vector<Evaluation> evaluate_networks(const EvaluationSite& site,
         .surroundings = has_around ? &around[k] : nullptr,
         .surroundings_voxels = has_around ? site.surroundings->voxel_count() : 0,
         .minutes_on_site = visit ? visit->minutes : 0};
-    Evaluation& one = made.emplace_back(evaluation_of(measured, measures, options.registration));
+    std::vector<Target> targets = options.targets;
+    std::vector<RegistrationTarget> sighted;
+    if (!targets.empty()) sighted = sight_targets(site.simulator, *site.clash, stations[k], targets, options.target);
+    Evaluation& one = made.emplace_back(evaluation_of(measured, measures, options.registration, sighted));
+    one.targets = std::move(targets), one.accuracy_class = options.target.wanted;
     if (options.registration) {
       const Estimate rms = registration_estimate(counts[k], measured.voxels, *options.registration,
-                                                 measured.surroundings, measured.surroundings_voxels);
+                                                 measured.surroundings, measured.surroundings_voxels, sighted);
       one.values["registration"] = {kMillimetres * rms.value, kMillimetres * rms.standard_error};
     }
     one.names = options.names, one.visit = std::move(visit), one.attainable = options.attainable;

@@ -19,7 +19,8 @@ double violation_of(const Evaluation& evaluation, std::span<const Requirement> r
 }
 
 Evaluation evaluation_of(const MeasuredNetwork& measured, std::span<const Objective> measures,
-                         const std::optional<RegistrationOptions>& registration) {
+                         const std::optional<RegistrationOptions>& registration,
+                         std::span<const RegistrationTarget> targets) {
   const NetworkCounts& counts = measured.counts;
   Evaluation made{.stations = {measured.stations.begin(), measured.stations.end()},
                   .exact = counts.voxels >= measured.voxels,
@@ -33,8 +34,8 @@ Evaluation evaluation_of(const MeasuredNetwork& measured, std::span<const Object
   }
   if (measured.surroundings) made.scan_overlap_matrix = scan_overlap_matrix(*measured.surroundings);
   if (registration)
-    made.registration =
-        registration_error(counts, measured.voxels, *registration, measured.surroundings, measured.surroundings_voxels);
+    made.registration = registration_error(counts, measured.voxels, *registration, measured.surroundings,
+                                           measured.surroundings_voxels, targets);
   made.counts.groups.clear();
   made.counts.registration = {};
   return made;

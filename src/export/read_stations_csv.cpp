@@ -13,11 +13,12 @@
 #include "export/csv_cell.hpp"
 #include "vantage/error.hpp"
 #include "vantage/export.hpp"
+#include "vantage/targets.hpp"
 
 namespace vantage {
 namespace {
 
-enum class Column { east, north, head, ground, u, v, name, heading, tilt, scanner, step };
+enum class Column { east, north, head, ground, u, v, name, heading, tilt, scanner, step, sigma };
 
 // Names of columns; each name means one quantity alone.
 const std::map<std::string, Column, std::less<>>& known_columns() {
@@ -58,7 +59,8 @@ const std::map<std::string, Column, std::less<>>& known_columns() {
                                                                 {"heading", Column::heading},
                                                                 {"tilt", Column::tilt},
                                                                 {"scanner", Column::scanner},
-                                                                {"step", Column::step}};
+                                                                {"step", Column::step},
+                                                                {"sigma", Column::sigma}};
   return names;
 }
 
@@ -214,6 +216,7 @@ class Table {
       case Column::tilt: return "the tilt: leave one of them out";
       case Column::scanner: return "the scanner: leave one of them out";
       case Column::step: return "the step: leave one of them out";
+      case Column::sigma: return "the standard deviation: leave one of them out";
     }
     return "";
   }
@@ -259,6 +262,7 @@ class Table {
     row.setup.heading = angle(Column::heading).value_or(Angle());
     row.setup.tilt = angle(Column::tilt).value_or(Angle());
     row.step = angle(Column::step);
+    row.sigma_m = value(Column::sigma);
     return row;
   }
 
@@ -287,5 +291,20 @@ class Table {
 }  // namespace
 
 std::vector<StationRow> read_stations_csv(const std::filesystem::path& file) { return Table(file).read(); }
+
+std::vector<Target> read_targets_csv(const std::filesystem::path& file) {
+  std::vector<Target> targets;
+  for (const StationRow& row : Table(file).read()) {
+    const std::string name = row.name.empty() ? "target " + std::to_string(targets.size() + 1) : row.name;
+    const auto refuse = [&](const std::string& what) {
+      throw Error(Errc::malformed_file, file.string() + ": " + name + " " + what);
+    };
+    if (!row.position) refuse("has no x, y and z of its centre");
+    if (row.sigma_m && !(*row.sigma_m > 0 && *row.sigma_m <= 1))
+      refuse("has a sigma that is not above 0 and at most 1 m; leave it empty unless its coordinates are known");
+    targets.push_back({.name = name, .centre = *row.position, .control_m = row.sigma_m.value_or(0)});
+  }
+  return targets;
+}
 
 }  // namespace vantage

@@ -76,6 +76,30 @@ std::vector<std::string> links_advice(const StationLinks& links, const std::vect
   return advice;
 }
 
+// "to about 28.5 mm, as predicted; at 95 % 56 mm, where LOA30 allows 15"
+std::string registered_text(const Evaluation& evaluation, double rms_mm) {
+  std::string text = "to about " + fixed(rms_mm, 2) + " mm, as predicted";
+  const auto by = static_cast<std::size_t>(
+      std::ranges::count_if(evaluation.targets, [](const Target& target) { return target.stations.size() > 1; }));
+  if (!evaluation.targets.empty())
+    text += " with " + std::to_string(by) + (by == 1 ? " target" : " targets") + " that tie scans together";
+  if (evaluation.registration && evaluation.registration->absolute_rms_m)
+    text += ", and to " + fixed(1000 * *evaluation.registration->absolute_rms_m, 2) + " mm in the site's frame";
+  const double error = error_at_95_percent(rms_mm / 1000), most = largest_error_m(evaluation.accuracy_class);
+  const std::string name = to_string(evaluation.accuracy_class), bound = number(1000 * most) + " mm at 95 %";
+  return text + (error <= most
+                     ? "; " + name + " (" + bound + ") is met"
+                     : "; " + fixed(1000 * error, 0) + " mm at 95 %, more than " + name + " allows (" + bound + ")");
+}
+
+// A registration that misses its class, if targets were not looked at.
+std::vector<std::string> registration_advice(const Evaluation& evaluation, double rms_mm) {
+  if (error_at_95_percent(rms_mm / 1000) <= largest_error_m(evaluation.accuracy_class)) return {};
+  if (std::ranges::any_of(evaluation.targets, &Target::proposed)) return {};
+  return {"surfaces do not hold the scans together to " + to_string(evaluation.accuracy_class) +
+          ": let targets be proposed, or add stations that share more walls"};
+}
+
 // A sentence for each station that is left out, or stands where none should.
 std::vector<std::string> stations_advice(const Evaluation& evaluation, const std::vector<std::string>& names) {
   std::vector<std::string> advice;
@@ -106,13 +130,15 @@ std::vector<SummaryLine> summary_lines(const Evaluation& evaluation, std::span<c
   if (links) lines.push_back({"linked", links_text(*links, names)});
   const auto registered = evaluation.values.find("registration");
   if (registered != evaluation.values.end() && std::isfinite(registered->second.value))
-    lines.push_back({"registered", "to about " + fixed(registered->second.value, 2) + " mm, as predicted"});
+    lines.push_back({"registered", registered_text(evaluation, registered->second.value)});
   if (evaluation.visit) lines.push_back({"on site", "about " + duration(60 * evaluation.visit->minutes)});
   const auto to_do = [&](const std::vector<std::string>& advice) {
     for (const std::string& text : advice) lines.push_back({"to do", text});
   };
   if (links) to_do(links_advice(*links, names));
   to_do(stations_advice(evaluation, names));
+  if (registered != evaluation.values.end() && std::isfinite(registered->second.value))
+    to_do(registration_advice(evaluation, registered->second.value));
   to_do(requirements_advice(evaluation, requirements));
   return lines;
 }

@@ -204,9 +204,10 @@ Estimate overlap_estimate(const NetworkCounts& counts, std::uint64_t population)
 }
 
 Estimate registration_estimate(const NetworkCounts& counts, std::uint64_t voxels, const RegistrationOptions& options,
-                               const NetworkCounts* surroundings, std::uint64_t surroundings_voxels) {
+                               const NetworkCounts* surroundings, std::uint64_t surroundings_voxels,
+                               std::span<const RegistrationTarget> targets) {
   const auto error = [&](const NetworkCounts& surveyed, const NetworkCounts* around) {
-    return registration_error(surveyed, voxels, options, around, surroundings_voxels).rms_m;
+    return registration_error(surveyed, voxels, options, around, surroundings_voxels, targets).rms_m;
   };
   const double seen = error(counts, surroundings);
   Estimate estimate{seen, 0};

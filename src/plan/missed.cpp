@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 
 #include "core/setting_list.hpp"
+#include "evaluate/field_of_view.hpp"
 #include "vantage/error.hpp"
 
 namespace vantage {
@@ -34,17 +34,6 @@ double entry(const Vec3& from, const Vec3& to, const Vec3& centre, double half) 
   clip(from.y, to.y, centre.y);
   clip(from.z, to.z, centre.z);
   return std::clamp(in, 0.0, 1.0);
-}
-
-// Whether the pattern has rays in that direction.
-bool in_field_of_view(const Scanner& scanner, const Vec3& way, double range) {
-  const double zenith = std::acos(std::clamp(way.z / range, -1.0, 1.0));
-  const double first = scanner.zenith_start.in_radians();
-  if (zenith < first || zenith > first + scanner.vertical_angle.in_radians() / 2) return false;
-  const double sweep = scanner.horizontal_angle.in_radians();
-  if (sweep >= 2 * std::numbers::pi - 1e-9) return true;
-  const double turn = std::atan2(way.y, way.x) - scanner.heading.in_radians();
-  return std::abs(std::remainder(turn, 2 * std::numbers::pi)) <= sweep / 2;
 }
 
 class Judge {

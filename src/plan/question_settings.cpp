@@ -50,6 +50,35 @@ const SettingTable<OnSiteOptions>& on_site_settings() {
   return table;
 }
 
+const SettingTable<TargetOptions>& target_settings() {
+  using Options = TargetOptions;
+  static const SettingTable<Options> table = [] {
+    const Options usual;
+    const auto number = [](double Options::*member, Interval interval) {
+      return [member, interval](Options& options, const std::string& text, const std::string& what) {
+        options.*member = parse_number(text, what, interval);
+      };
+    };
+    return SettingRows<Options>()
+        .group("Targets")
+        .custom("target-diameter", "M", otherwise("Diameter of a target, a sphere or checkerboard", usual.diameter_m),
+                number(&Options::diameter_m, {.low = 0.01, .high = 2}))
+        .custom("target-height", "M",
+                otherwise("Height of a proposed target's centre above the ground", usual.height_m),
+                number(&Options::height_m, {.low = 0.05, .high = 10}))
+        .custom("target-sigma", "M",
+                otherwise("Standard deviation of a target's centre in a scan, besides range noise", usual.sigma_m),
+                number(&Options::sigma_m, {.low = 1e-5, .high = 0.1}))
+        .custom("accuracy-class", "LOA20|LOA30|LOA40|LOA50",
+                "What the registration error is judged by, at 95 %: 50, 15, 5 or 1 mm; LOA30 otherwise",
+                [](Options& options, const std::string& text, const std::string&) {
+                  options.wanted = accuracy_class_from_string(text);
+                })
+        .take();
+  }();
+  return table;
+}
+
 const SettingTable<RegistrationOptions>& registration_settings() {
   static const SettingTable<RegistrationOptions> table = [] {
     using Options = RegistrationOptions;

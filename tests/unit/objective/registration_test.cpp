@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
 
+#include <Eigen/Dense>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "core/philox.hpp"
+#include "objective/registration_adjustment.hpp"
 #include "scan/voxel_sample.hpp"
 #include "trace/registration_sums.hpp"
 #include "vantage/error.hpp"
@@ -501,6 +503,75 @@ TEST(Registration, SumsOfLargeNetworksAreThoseOfTheSameStationsInASmallOne) {
     EXPECT_EQ(sums[g].surface, surface);
     EXPECT_GT(*std::ranges::max_element(small[g].pairs), 0);
   }
+}
+
+// Stations along a corridor that is free to slide along X, and targets that some of them measure.
+struct Tied {
+  Made made{.heads = {{-6, 0.4, 0}, {0, -0.3, 0.2}, {5, 0, 0}}};
+  std::vector<RegistrationTarget> targets{
+      {.centre = {-3, 1, 0.5}, .seen_by = {{0, 0.002}, {1, 0.001}}},
+      {.centre = {2, -1, 0}, .seen_by = {{0, 0.004}, {1, 0.002}, {2, 0.001}}},
+      {.centre = {4, 0.5, -0.5}, .control_m = 0.003, .seen_by = {{1, 0.002}, {2, 0.002}}},
+      {.centre = {9, 0.5, -0.5}, .control_m = 0.005, .seen_by = {{2, 0.003}}}};
+  RegistrationOptions options{
+      .model = model, .position_m = 0.05, .heading = Angle::degrees(0.5), .tilt = Angle::degrees(0.05)};
+  Tied() {
+    for (const double s : {-1.0, 1.0}) {
+      made.patch(Y * (s * 1.5), X * 14, Z * 2, 20, 7);
+      made.patch(Z * (s * 1.5), Y * 2, X * 14, 20, 7);
+    }
+  }
+};
+
+TEST(RegistrationError, WithTargetsIsThatOfAnAdjustmentWithTheirCentresAmongTheUnknowns) {
+  for (const double tilt : {0.05, 0.0}) {
+    Tied tied;
+    tied.options.tilt = Angle::degrees(tilt);
+    const NetworkCounts counts = tied.made.counts();
+    const RegistrationInputs inputs = registration_inputs(counts, counts.voxels, tied.options, nullptr, 0);
+    const auto adjustment = [&](std::span<const RegistrationTarget> targets) {
+      return RegistrationAdjustment(inputs.held_by, inputs.share, inputs.covered, tied.options, targets);
+    };
+    const RegistrationAdjustment bare = adjustment({}), with = adjustment(tied.targets);
+    // Normal equations with three more unknowns a target: a station measures centre + its own displacement there.
+    const Eigen::MatrixXd stations = bare.covariance().inverse();
+    const Eigen::Index d = bare.unknowns(), n = stations.rows(), more = 3 * std::ssize(tied.targets);
+    Eigen::MatrixXd all = Eigen::MatrixXd::Zero(n + more, n + more);
+    all.topLeftCorner(n, n) = stations;
+    for (std::size_t t = 0; t < tied.targets.size(); ++t) {
+      const RegistrationTarget& target = tied.targets[t];
+      const Eigen::Index at = n + 3 * static_cast<Eigen::Index>(t);
+      if (target.control_m > 0)
+        all.block(at, at, 3, 3) += Eigen::Matrix3d::Identity() / (target.control_m * target.control_m);
+      for (const RegistrationTarget::Sighting& seen : target.seen_by) {
+        Eigen::MatrixXd row = Eigen::MatrixXd::Zero(3, n + more);
+        row.middleCols(static_cast<Eigen::Index>(seen.station) * d, d) = bare.displacement_at(target.centre);
+        row.middleCols(at, 3) = Eigen::Matrix3d::Identity();
+        all += row.transpose() * row / (seen.sigma_m * seen.sigma_m);
+      }
+    }
+    const Eigen::MatrixXd expected = all.inverse().topLeftCorner(n, n), found = with.covariance();
+    EXPECT_LT((found - expected).cwiseAbs().maxCoeff(), 1e-9 * expected.cwiseAbs().maxCoeff());
+    const double rms = registration_error(counts, counts.voxels, tied.options, nullptr, 0, tied.targets).rms_m;
+    EXPECT_NEAR(rms * rms, (bare.metric() * expected).trace(), 1e-9 * rms * rms);
+  }
+}
+
+TEST(RegistrationError, IsAbsoluteWhereAControlPointIsSeen) {
+  Tied tied;
+  const NetworkCounts counts = tied.made.counts();
+  const auto error = [&](std::span<const RegistrationTarget> targets) {
+    return registration_error(counts, counts.voxels, tied.options, nullptr, 0, targets);
+  };
+  EXPECT_FALSE(error({}).absolute_rms_m);
+  EXPECT_FALSE(error(std::span(tied.targets).first(2)).absolute_rms_m);
+  const RegistrationError tied_in = error(tied.targets);
+  ASSERT_TRUE(tied_in.absolute_rms_m);
+  EXPECT_GT(*tied_in.absolute_rms_m, tied_in.rms_m);
+  EXPECT_LT(*tied_in.absolute_rms_m, 0.05);
+  EXPECT_LT(tied_in.rms_m, 0.5 * error({}).rms_m) << "targets hold what slides along the corridor";
+  tied.targets.back().seen_by.clear(), tied.targets[2].seen_by.clear();
+  EXPECT_FALSE(error(tied.targets).absolute_rms_m);
 }
 
 }  // namespace

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Targets and control points: spheres or checkerboards that scans are registered by where surfaces do not hold them
+/// together, and points that tie a survey to the site's frame. Placing them after Jia and Lichti, A Model-Based Design
+/// System for Terrestrial Laser Scanning Networks in Complex Sites, 2019.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "vantage/measure.hpp"
+#include "vantage/placement.hpp"
+#include "vantage/progress.hpp"
+#include "vantage/settings.hpp"
+#include "vantage/simulator.hpp"
+
+namespace vantage {
+
+class Site;
+
+/// Levels of accuracy (U.S. Institute of Building Documentation, Level of Accuracy Specification Guide, 2016): a bound
+/// of the error at 95 %.
+enum class AccuracyClass { loa20, loa30, loa40, loa50 };
+std::string to_string(AccuracyClass);  ///< "LOA30"
+/// Throws Error invalid_argument for any other text; case is ignored.
+AccuracyClass accuracy_class_from_string(const std::string& text);
+double largest_error_m(AccuracyClass) noexcept;  ///< At 95 %: 0.05, 0.015, 0.005 and 0.001.
+/// Error at 95 % of a registered surface whose root mean square error is `rms_m`: 1.96 times that, as of one axis.
+double error_at_95_percent(double rms_m) noexcept;
+
+/// A target on its stand or mark. Lengths in metres, survey frame.
+struct Target {
+  std::string name = {};
+  Vec3 centre;
+  double control_m = 0;  ///< Standard deviation of known coordinates, in each axis; 0: no control point.
+  bool proposed = false;
+  /// Stations that measure it, ascending, by their places in the network.
+  std::vector<std::size_t> stations = {};
+};
+
+/// What a scan needs of a target, and where new ones may stand.
+struct TargetOptions {
+  double diameter_m = 0.145;  ///< Of a sphere, or width of a checkerboard; above 0.
+  double height_m = 1.5;      ///< Centre of a proposed one above the ground.
+  /// Standard deviation of a fitted centre in each axis, besides range noise; above 0.
+  double sigma_m = 0.001;
+  std::size_t least_points = 60;                ///< A scan with fewer points on a target does not measure it.
+  std::size_t most = 40;                        ///< Proposed targets.
+  AccuracyClass wanted = AccuracyClass::loa30;  ///< Proposals end once the predicted registration error meets it.
+};
+Settings settings(const TargetOptions& options);
+/// Throws Error invalid_argument with the member and its value.
+void check(const TargetOptions& options);
+
+/// Fills `Target::stations`, and returns the targets as `registration_error()` takes them. A station measures a target
+/// if the line between them is free, it lies within the scanner's field and range, and enough points fall on it: the
+/// target's disc over range² · Δazimuth · Δzenith · sin zenith. The variance of a centre is sigma² + 3 σ²/N for N
+/// points of range noise σ. Throws Error invalid_argument.
+std::vector<RegistrationTarget> sight_targets(const Simulator& simulator, const ClashChecker& clash,
+                                              std::span<const PlacedStation> stations, std::vector<Target>& targets,
+                                              const TargetOptions& options = {});
+
+/// Largest distance at which a scanner measures a target of its own height.
+double target_reach_m(const Scanner& scanner, const TargetOptions& options = {});
+
+/// Targets that a network wants, and what they bring. Errors are predicted from a sample of the voxels.
+struct TargetProposal {
+  std::vector<Target> targets;  ///< The given ones, then the proposed ones, the most useful first.
+  RegistrationError without = {}, with = {};
+  double reach_m = 0;  ///< `target_reach_m()` of the first scanner.
+};
+
+/// Proposes as few targets as bring the predicted error to `TargetOptions::wanted`: each time the one of some
+/// 400 places on reached ground, off passages and stations, that lowers the mean square error over the covered surface
+/// most; it ends early where another one would gain less than a fifth of a station's share of that error. `given`:
+/// targets and control points that are there. No random numbers. Returns nothing if it was stopped. Throws Error
+/// invalid_argument, and what the simulator throws.
+std::optional<TargetProposal> propose_targets(Site& site, std::span<const PlacedStation> stations,
+                                              const RegistrationOptions& registration = {},
+                                              const TargetOptions& options = {}, std::vector<Target> given = {},
+                                              const Progress& progress = {});
+
+/// Reads targets from a table as `read_stations_csv()` does, with columns name, x, y, z of the centre, and for control
+/// points sigma, in metres. Throws Error: io, malformed_file.
+std::vector<Target> read_targets_csv(const std::filesystem::path& file);
+/// Writes name, x, y, z, sigma, and the names of the stations that measure each. Throws Error io.
+void write_targets_csv(const std::filesystem::path& file, std::span<const Target> targets,
+                       std::span<const std::string> station_names);
+
+}  // namespace vantage

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "vantage/scanner.hpp"
+#include "vantage/types.hpp"
+
+namespace vantage {
+
+// Whether an upright scanner has rays in the direction of `line`, which is `range` long.
+bool in_field_of_view(const Scanner& scanner, const Vec3& line, double range);
+
+}  // namespace vantage

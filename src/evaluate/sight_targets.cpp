@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <numbers>
+#include <sstream>
+
+#include "core/setting_list.hpp"
+#include "evaluate/field_of_view.hpp"
+#include "scan/noise_model.hpp"
+#include "vantage/error.hpp"
+#include "vantage/targets.hpp"
+
+namespace vantage {
+namespace {
+
+constexpr double kDiffuse = 0.8;  // of spheres and checkerboards, which are made white
+
+struct ClassBound {
+  const char* name;
+  double error_m;
+};
+constexpr std::array<ClassBound, 4> kClasses{{{"LOA20", 0.05}, {"LOA30", 0.015}, {"LOA40", 0.005}, {"LOA50", 0.001}}};
+
+// On a target at the scanner's own height.
+double points_at(const Scanner& scanner, double range, const TargetOptions& options) {
+  const double disc = std::numbers::pi / 4 * options.diameter_m * options.diameter_m;
+  return disc / (range * range * scanner.azimuth_step.in_radians() * scanner.zenith_step.in_radians());
+}
+
+// Standard deviation of a target's centre in a scan; empty if the scan does not measure it.
+std::optional<double> sigma_of(const Scanner& scanner, const PlacedStation& station, const Vec3& centre,
+                               const TargetOptions& options) {
+  const Vec3 level = centre - station.position;
+  const std::array<Vec3, 3> turn = station.setup.survey_from_scanner();
+  const Vec3 line = turn[0] * level.x + turn[1] * level.y + turn[2] * level.z;  // in the scanner's frame
+  const double range = std::sqrt(dot(line, line));
+  if (range < scanner.min_range_m || range > scanner.max_range_m) return std::nullopt;
+  if (!in_field_of_view(scanner, line, range)) return std::nullopt;
+  const double sin_zenith = std::sqrt(std::max(line.x * line.x + line.y * line.y, 1e-12)) / range;
+  const double disc = std::numbers::pi / 4 * options.diameter_m * options.diameter_m;
+  const double points =
+      disc / (range * range * scanner.azimuth_step.in_radians() * scanner.zenith_step.in_radians() * sin_zenith);
+  if (points < static_cast<double>(options.least_points)) return std::nullopt;
+  double variance = options.sigma_m * options.sigma_m;
+  if (!scanner.noise.empty()) {
+    const double noise = table_sigma(scanner.noise, range, kDiffuse);
+    variance += 3 * noise * noise / points;
+  }
+  return std::sqrt(variance);
+}
+
+}  // namespace
+
+std::string to_string(AccuracyClass accuracy) { return kClasses[static_cast<std::size_t>(accuracy)].name; }
+
+AccuracyClass accuracy_class_from_string(const std::string& text) {
+  std::string upper = text;
+  for (char& c : upper) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  for (std::size_t k = 0; k < kClasses.size(); ++k)
+    if (upper == kClasses[k].name) return static_cast<AccuracyClass>(k);
+  throw Error(Errc::invalid_argument, "'" + text + "' is no class of accuracy: LOA20, LOA30, LOA40 or LOA50");
+}
+
+double largest_error_m(AccuracyClass accuracy) noexcept { return kClasses[static_cast<std::size_t>(accuracy)].error_m; }
+
+double error_at_95_percent(double rms_m) noexcept { return 1.96 * rms_m; }
+
+Settings settings(const TargetOptions& options) {
+  return SettingList()
+      .add("target_diameter_m", options.diameter_m, {"target-diameter"})
+      .add("target_height_m", options.height_m, {"target-height"})
+      .add("target_sigma_m", options.sigma_m, {"target-sigma"})
+      .add("target_points", options.least_points, {"target-points"})
+      .add("target_most", options.most, {"target-most"})
+      .add("accuracy_class", to_string(options.wanted), {"accuracy-class"})
+      .take();
+}
+
+void check(const TargetOptions& options) {
+  const auto above_zero = [](const char* what, double value) {
+    if (std::isfinite(value) && value > 0) return;
+    std::ostringstream text;
+    text << "targets: " << what << " is " << value << ", but must be above 0";
+    throw Error(Errc::invalid_argument, text.str());
+  };
+  above_zero("diameter_m", options.diameter_m);
+  above_zero("height_m", options.height_m);
+  above_zero("sigma_m", options.sigma_m);
+}
+
+double target_reach_m(const Scanner& scanner, const TargetOptions& options) {
+  check(options);
+  const double points = std::max(static_cast<double>(options.least_points), 1.0);
+  return std::min(std::sqrt(points_at(scanner, 1, options) / points), scanner.max_range_m);
+}
+
+std::vector<RegistrationTarget> sight_targets(const Simulator& simulator, const ClashChecker& clash,
+                                              std::span<const PlacedStation> stations, std::vector<Target>& targets,
+                                              const TargetOptions& options) {
+  check(options);
+  std::vector<RegistrationTarget> sighted;
+  for (Target& target : targets) {
+    const auto finite = std::isfinite(target.centre.x + target.centre.y + target.centre.z);
+    if (!finite || !(target.control_m >= 0 && std::isfinite(target.control_m)))
+      throw Error(Errc::invalid_argument, "targets: " + target.name + " has a coordinate or sigma that is no number");
+    RegistrationTarget one{.centre = target.centre - simulator.origin(), .control_m = target.control_m};
+    target.stations.clear();
+    for (std::size_t k = 0; k < stations.size(); ++k) {
+      if (!active(stations[k])) continue;
+      const Scanner& scanner = simulator.scanners()[stations[k].setup.scanner];
+      const std::optional<double> sigma = sigma_of(scanner, stations[k], target.centre, options);
+      if (!sigma || !clash.sees(stations[k].position, target.centre)) continue;
+      one.seen_by.push_back({k, *sigma});
+      target.stations.push_back(k);
+    }
+    sighted.push_back(std::move(one));
+  }
+  return sighted;
+}
+
+}  // namespace vantage
