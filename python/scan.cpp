@@ -195,7 +195,8 @@ void add_clouds(py::module_& m) {
         "Scans stations and streams their points to a .ply, .las or .e57 file by its extension; returns their "
         "number.\nE57 keeps stations apart, with their poses. stations: as for `evaluate`. outputs: besides positions, "
         "as for `scan`;\nLAS has 'reflectivity' and 'colour', and like E57 always the first, as intensity. crs: of the "
-        "survey frame, such as 'EPSG:25832'; '': none is written. A stopped\ncall writes nothing and returns 0. Raises Error: io, invalid_argument.");
+        "survey frame, such as 'EPSG:25832'; '': none is written. A stopped\ncall writes nothing and returns 0. Raises "
+        "Error: io, invalid_argument.");
 }
 
 }  // namespace vantage::python

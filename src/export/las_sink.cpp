@@ -22,7 +22,8 @@ constexpr std::size_t kHeaderBytes = 375, kVariableHeaderBytes = 54, kRecordByte
 constexpr std::uint16_t kWktBit = 1 << 4, kWktRecord = 2112;
 // Point formats from 6 on have a system as well-known text, whatever is known of it; readers refuse files without.
 constexpr const char* kLocalSystem =
-    "LOCAL_CS[\"survey frame\",LOCAL_DATUM[\"survey frame\",32767],UNIT[\"metre\",1],AXIS[\"X\",EAST],AXIS[\"Y\",NORTH]]";
+    "LOCAL_CS[\"survey frame\",LOCAL_DATUM[\"survey "
+    "frame\",32767],UNIT[\"metre\",1],AXIS[\"X\",EAST],AXIS[\"Y\",NORTH]]";
 
 // What a record of format 7 has a place for.
 constexpr std::uint32_t kHeld = scan_position | scan_reflectivity | scan_colour;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Messages between ranks.
+#include "ranks/messages.hpp"
+
 #include <array>
 #include <memory>
 
 #include "fuzz/target.hpp"
-#include "ranks/messages.hpp"
 
 namespace vantage::fuzz {
 namespace {
@@ -78,7 +79,9 @@ constexpr std::array kContents{
               Reader reader(bytes);
               return written_networks(read_networks(reader));
             },
-            [] { return written_networks({.stations = {{TraceStation{}, TraceStation{}}, {}}, .sizes = {2, 0}}); }}};
+            [] {
+              return written_networks({.stations = {{TraceStation{}, TraceStation{}}, {}}, .sizes = {2, 0}});
+            }}};
 
 }  // namespace
 

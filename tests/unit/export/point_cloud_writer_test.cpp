@@ -101,7 +101,7 @@ TEST(PointCloudWriter, LasIsFormat7Of14) {
   EXPECT_EQ(bytes.substr(375 + 54, 24), "LOCAL_CS[\"survey frame\",");
   EXPECT_EQ(get(std::uint8_t{}, 24), 1);
   EXPECT_EQ(get(std::uint8_t{}, 25), 4);
-  EXPECT_EQ(get(std::uint16_t{}, 94), 375);   // header size
+  EXPECT_EQ(get(std::uint16_t{}, 94), 375);  // header size
   EXPECT_EQ(get(std::uint32_t{}, 96), points);
   EXPECT_EQ(get(std::uint32_t{}, 100), 1u);  // variable length records
   EXPECT_EQ(get(std::uint8_t{}, 104), 7);
@@ -180,8 +180,7 @@ TEST(PointCloudWriter, LasRefusesOutputsThatItHasNoPlaceFor) {
 
 TEST(PointCloudWriter, LasAndE57AlwaysHaveAnIntensity) {
   EXPECT_EQ(point_cloud_outputs("a.las", scan_position), scan_position | scan_reflectivity);
-  EXPECT_EQ(point_cloud_outputs("a.e57", scan_position | scan_colour),
-            scan_position | scan_reflectivity | scan_colour);
+  EXPECT_EQ(point_cloud_outputs("a.e57", scan_position | scan_colour), scan_position | scan_reflectivity | scan_colour);
   EXPECT_EQ(point_cloud_outputs("a.ply", scan_position), scan_position);
 }
 

@@ -87,7 +87,9 @@ TEST(Checkpoint, TakesMemoryInProportionToItsBytes) {
     return sealed(format, writer.take() + std::string(1 << 20, '\0'));
   };
   for (const auto& [lines, vectors] : {std::pair<std::uint64_t, std::uint64_t>{std::uint64_t{1} << 40, 0},
-                                       {0, ~std::uint64_t{0}}, {0, 1 << 20}, {0, (1 << 20) / 9 + 1}}) {
+                                       {0, ~std::uint64_t{0}},
+                                       {0, 1 << 20},
+                                       {0, (1 << 20) / 9 + 1}}) {
     try {
       parse_checkpoint(forged(lines, vectors), "c");
       ADD_FAILURE() << lines << " " << vectors;
