@@ -48,7 +48,9 @@ packages() {
   run mkdocs build
   packaging/deb.sh
   run lintian --fail-on error build/packages/*.deb
-  run packaging/try_deb.sh
+  local tried=0
+  packaging/try_deb.sh || tried=$?
+  [ $tried = 0 ] || [ $tried = 77 ] # it has said what is missing
 }
 fuzz() { cmake --preset fuzz >/dev/null && cmake --build --preset fuzz && tests/fuzz/run.sh 600; }
 mutation() {
