@@ -266,6 +266,17 @@ def grid_in_a_plane():
     return scene.glb()
 
 
+def needles():
+    """Triangles without area to speak of, each through as many voxels as the site is long, and none where another is."""
+    scene, side, corners = Scene(), 200, []
+    for k in range(600):
+        y, z = side * (k * 0.618034 % 1), side * (k * 0.754878 % 1)
+        corners += [(0, y, z), (side, side - y, side - z), (side, side - y + 1e-4, side - z)]
+    marked(scene, "surveyed", corners)
+    scene.json["asset"]["extras"] = {"vantage": {"user-size": 0.002, "spacing": 0.001}}
+    return scene.glb()
+
+
 def sparse_file(folder, path):
     with open(path, "wb") as file:
         file.truncate(1 << 40)
@@ -460,6 +471,7 @@ FILES = {
     "data_uris.gltf": (data_uris, False),
     "overlaps_in_a_plane.glb": (overlaps_in_a_plane, True),
     "grid_in_a_plane.glb": (grid_in_a_plane, False),
+    "needles.glb": (needles, False),
     "doubles.dae": (collada_doubles, False),
     "holds_itself.dae": (collada_holds_itself, False),
     "deep.dae": (collada_deep, False),
