@@ -5,33 +5,33 @@ include(GNUInstallDirs)
 install(
   TARGETS vantage vantage_built_in_scenes
   EXPORT vantageTargets
-  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
-  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
-  RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR}
-  FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
+  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
+  RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT development
+  FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
 if(TARGET vantage-cli)
-  install(TARGETS vantage-cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  install(TARGETS vantage-cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
 endif()
 # Importers are programs that vantage alone starts.
 if(TARGET vantage-cli)
   set(VANTAGE_IMPORTERS_DIR ${CMAKE_INSTALL_LIBEXECDIR}/vantage)
   get_property(importers GLOBAL PROPERTY VANTAGE_IMPORTERS)
   foreach(importer IN LISTS importers)
-    install(TARGETS ${importer} RUNTIME DESTINATION ${VANTAGE_IMPORTERS_DIR})
+    install(TARGETS ${importer} RUNTIME DESTINATION ${VANTAGE_IMPORTERS_DIR} COMPONENT program)
   endforeach()
-  vantage_install_ifc(${VANTAGE_IMPORTERS_DIR})
+  vantage_install_ifc(${VANTAGE_IMPORTERS_DIR} COMPONENT program)
 endif()
 # The presets are part of the library; the file is an example of their form.
-install(FILES ${PROJECT_SOURCE_DIR}/data/scanners.json DESTINATION ${CMAKE_INSTALL_DATADIR}/vantage)
+install(FILES ${PROJECT_SOURCE_DIR}/data/scanners.json DESTINATION ${CMAKE_INSTALL_DATADIR}/vantage COMPONENT program)
 
 set(VANTAGE_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/vantage)
-install(EXPORT vantageTargets NAMESPACE vantage:: DESTINATION ${VANTAGE_PACKAGE_DIR})
+install(EXPORT vantageTargets NAMESPACE vantage:: DESTINATION ${VANTAGE_PACKAGE_DIR} COMPONENT development)
 set(VANTAGE_EMBREE_MAJOR ${embree_VERSION_MAJOR})
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/vantageConfig.cmake.in ${PROJECT_BINARY_DIR}/vantageConfig.cmake
                               INSTALL_DESTINATION ${VANTAGE_PACKAGE_DIR})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/vantageConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/vantageConfig.cmake ${PROJECT_BINARY_DIR}/vantageConfigVersion.cmake
-        DESTINATION ${VANTAGE_PACKAGE_DIR})
+        DESTINATION ${VANTAGE_PACKAGE_DIR} COMPONENT development)
 
 # Paths in the .pc hang on its own place, so that an installed tree can be moved.
 file(RELATIVE_PATH VANTAGE_PC_PREFIX ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
@@ -44,4 +44,4 @@ if(VANTAGE_HAVE_REPORT)
   set(VANTAGE_PC_MESHOPTIMIZER " -lmeshoptimizer")
 endif()
 configure_file(${PROJECT_SOURCE_DIR}/cmake/vantage.pc.in ${PROJECT_BINARY_DIR}/vantage.pc @ONLY)
-install(FILES ${PROJECT_BINARY_DIR}/vantage.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+install(FILES ${PROJECT_BINARY_DIR}/vantage.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)

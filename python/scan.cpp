@@ -83,7 +83,7 @@ std::uint64_t write_point_cloud(const std::filesystem::path& file, Simulators& s
                                 const std::vector<std::string>& outputs, const std::string& crs, py::object progress) {
   const std::vector<PlacedStation> placed = stations_of(stations);
   const std::vector<std::string> names = station_names(placed);
-  const std::uint32_t bits = bits_of(outputs, scan_position);
+  const std::uint32_t bits = point_cloud_outputs(file, bits_of(outputs, scan_position));
   LongCall call(std::move(progress));
   return call.run([&]() -> std::uint64_t {
     Simulator& simulator = self.simulator;
@@ -194,8 +194,9 @@ void add_clouds(py::module_& m) {
         py::arg("progress") = py::none(),
         "Scans stations and streams their points to a .ply, .las or .e57 file by its extension; returns their "
         "number.\nE57 keeps stations apart, with their poses. stations: as for `evaluate`. outputs: besides positions, "
-        "as for `scan`;\nLAS has 'reflectivity' and 'colour'. crs: of the survey frame, such as 'EPSG:25832'; '': none "
-        "is written. A stopped\ncall writes nothing and returns 0. Raises Error: io, invalid_argument.");
+        "as for `scan`;\nLAS has 'reflectivity' and 'colour', and like E57 always the first, as intensity. crs: of the "
+        "survey frame, such as 'EPSG:25832'; '': none is written. A stopped\ncall writes nothing and returns 0. Raises "
+        "Error: io, invalid_argument.");
 }
 
 }  // namespace vantage::python

@@ -36,6 +36,9 @@ struct StationScan {
   StationSetup setup = {};  ///< How it is turned.
 };
 
+/// Returns `outputs` and what such a file always has: the reflectivity, as intensity, in .las and .e57.
+std::uint32_t point_cloud_outputs(const std::filesystem::path& file, std::uint32_t outputs);
+
 /// Streams a point cloud to a file in constant memory. The extension decides the format: .ply (binary little endian),
 /// .las (1.4) or .e57 (ASTM E2807: a scan for each station, with its pose, points in the scanner's own frame). The file
 /// gets its name at close(); if the writer is destroyed before, no file remains.

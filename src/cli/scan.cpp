@@ -80,7 +80,10 @@ int scan(CLI::App& command, ScanCommandOptions& options, Program& program) {
   tell_grid(simulator);
 
   std::optional<PointCloudWriter> writer;
-  if (options.output) writer.emplace(*options.output, simulator.origin(), options.outputs, crs_text(site));
+  if (options.output) {
+    options.outputs = point_cloud_outputs(*options.output, options.outputs);
+    writer.emplace(*options.output, simulator.origin(), options.outputs, crs_text(site));
+  }
   ScanSummary sum;
   nlohmann::json rows = nlohmann::json::array();
   ProgressLine line(program.console, "scan");

@@ -42,7 +42,8 @@ bool write_all(int descriptor, const char* data, std::size_t bytes, off_t offset
 
 // Whether no process writes the file any more: a writer holds a lock on it.
 bool abandoned(const std::filesystem::path& temporary) {
-  const int descriptor = ::open(temporary.c_str(), O_RDWR | O_CLOEXEC);
+  // No link: it may lead to what only looks like a file.
+  const int descriptor = ::open(temporary.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
   if (descriptor < 0) return false;
   const bool free = ::flock(descriptor, LOCK_EX | LOCK_NB) == 0;
   ::close(descriptor);

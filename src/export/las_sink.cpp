@@ -20,6 +20,10 @@ namespace {
 constexpr double kScale = 1e-4;
 constexpr std::size_t kHeaderBytes = 375, kVariableHeaderBytes = 54, kRecordBytes = 36;
 constexpr std::uint16_t kWktBit = 1 << 4, kWktRecord = 2112;
+// Point formats from 6 on have a system as well-known text, whatever is known of it; readers refuse files without.
+constexpr const char* kLocalSystem =
+    "LOCAL_CS[\"survey frame\",LOCAL_DATUM[\"survey "
+    "frame\",32767],UNIT[\"metre\",1],AXIS[\"X\",EAST],AXIS[\"Y\",NORTH]]";
 
 // What a record of format 7 has a place for.
 constexpr std::uint32_t kHeld = scan_position | scan_reflectivity | scan_colour;
@@ -35,7 +39,7 @@ std::string names_of(std::uint32_t outputs) {
 class LasSink final : public PointSink {
  public:
   LasSink(const std::filesystem::path& file, const Vec3& origin, std::uint32_t outputs, const std::string& crs)
-      : file_(file), origin_(origin), outputs_(outputs), crs_(crs) {
+      : file_(file), origin_(origin), outputs_(outputs), crs_(crs.empty() ? kLocalSystem : crs) {
     offset_ = {std::floor(origin.x), std::floor(origin.y), std::floor(origin.z)};
     low_.fill(std::numeric_limits<std::int32_t>::max());
     high_.fill(std::numeric_limits<std::int32_t>::min());
@@ -95,18 +99,17 @@ class LasSink final : public PointSink {
       h.append(value.substr(0, width)).append(width - std::min(width, value.size()), '\0');
     };
     h += "LASF";
-    append(h, std::uint16_t{0});                                        // file source id
-    append(h, static_cast<std::uint16_t>(crs_.empty() ? 0 : kWktBit));  // a coordinate system, as text
-    text("", 16);                                                       // project id
+    append(h, std::uint16_t{0});  // file source id
+    append(h, kWktBit);           // a coordinate system, as text
+    text("", 16);                 // project id
     append(h, std::uint8_t{1}), append(h, std::uint8_t{4});
     text("simulated terrestrial scan", 32);
     text("vantage " + std::string(version()), 32);
     // creation day and year: unset, so equal runs give equal files
     append(h, std::uint16_t{0}), append(h, std::uint16_t{0});
     append(h, static_cast<std::uint16_t>(kHeaderBytes));
-    const std::size_t record = crs_.empty() ? 0 : kVariableHeaderBytes + crs_.size() + 1;
-    append(h, static_cast<std::uint32_t>(kHeaderBytes + record));  // offset to point data
-    append(h, std::uint32_t{crs_.empty() ? 0u : 1u});              // variable length records
+    append(h, static_cast<std::uint32_t>(kHeaderBytes + kVariableHeaderBytes + crs_.size() + 1));  // offset to points
+    append(h, std::uint32_t{1});  // variable length records
     append(h, std::uint8_t{7}), append(h, static_cast<std::uint16_t>(kRecordBytes));
     append(h, std::uint32_t{0});  // legacy counts are 0 for formats 6 and up
     text("", 5 * 4);
@@ -120,7 +123,6 @@ class LasSink final : public PointSink {
     append(h, std::uint64_t{0}), append(h, std::uint32_t{0});  // extended records
     append(h, points_), append(h, points_);                    // in all, and of first returns
     text("", 14 * 8);
-    if (crs_.empty()) return h;
     append(h, std::uint16_t{0});
     text("LASF_Projection", 16);
     append(h, kWktRecord), append(h, static_cast<std::uint16_t>(crs_.size() + 1));

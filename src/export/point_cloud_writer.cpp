@@ -13,6 +13,11 @@ struct PointCloudWriter::Impl {
   bool open = true;
 };
 
+std::uint32_t point_cloud_outputs(const std::filesystem::path& file, std::uint32_t outputs) {
+  const auto extension = file.extension();
+  return extension == ".las" || extension == ".e57" ? outputs | scan_reflectivity : outputs;
+}
+
 PointCloudWriter::PointCloudWriter(const std::filesystem::path& file, const Vec3& origin, std::uint32_t outputs,
                                    const std::string& crs)
     : impl_(std::make_unique<Impl>()) {

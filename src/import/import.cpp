@@ -24,6 +24,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// What a process takes besides what it allocates: code, above all.
+constexpr std::uint64_t kCode = std::uint64_t{32} << 20;
 constexpr int kRefused = 65, kUnavailable = 69, kMemory = 71;  // of sysexits.h: EX_DATAERR, EX_UNAVAILABLE, EX_OSERR
 
 // Whether it is a whole GLB, by its header.
@@ -146,6 +148,7 @@ Error failure_of(const Ended& ended, const std::string& file, const Format& form
 
 std::vector<std::uint8_t> as_glb(const fs::path& file, const Format& format, Limits limits) {
   limits.memory = memory_limit(limits.memory);
+  limits.memory -= std::min(limits.memory / 8, kCode);
   limits.cpu_s = std::min(limits.cpu_s, seconds_for(file));
   limits.wall_s = std::min(limits.wall_s, 60 + 6 * limits.cpu_s);  // it may have to share the processors
   limits.output = std::min(limits.output, limits.memory);

@@ -95,15 +95,16 @@ class ResampledEvaluator final : public SearchEvaluator, public ArchiveEvaluator
     ArchiveReader reader(state, Errc::malformed_file, "the checkpoint's samples are damaged; start again without it");
     schedule_.restore(reader.raw<SampleSchedule::State>());
     SampleStatistics::State statistics;
-    for (std::size_t left = reader.size(3); left > 0; --left) {
+    const std::size_t measures = statistics_.state().shift.size();
+    for (std::size_t left = reader.size(3 + measures * sizeof(double)); left > 0; --left) {
       std::vector<double> x;
       reader.array(x);
       SampleStatistics::Sums& sums = statistics.known[std::move(x)];
       reader.array(sums.sum), reader.whole(sums.count);
-      if (sums.sum.size() != statistics_.state().shift.size()) reader.fail();
+      if (sums.sum.size() != measures) reader.fail();
     }
     reader.array(statistics.shift);
-    if (statistics.shift.size() != statistics_.state().shift.size() || !reader.at_end()) reader.fail();
+    if (statistics.shift.size() != measures || !reader.at_end()) reader.fail();
     statistics_.restore(std::move(statistics));
   }
 

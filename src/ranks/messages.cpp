@@ -12,7 +12,10 @@ namespace vantage::ranks {
 namespace {
 
 // Bytes that each takes at least in a message, so that a short one cannot ask for much memory.
-constexpr std::size_t kLeastCounts = 24, kLeastStation = sizeof(TraceStation::origin) + 3, kLeastScanner = 8;
+constexpr std::size_t kLeastCounts = 31, kLeastStation = sizeof(TraceStation::origin) + 3,
+                      kLeastScanner = 1 + sizeof(NoiseModel::min_range) + sizeof(NoiseModel::inverse_span) +
+                                      sizeof(NoiseModel::seed) + sizeof(NoiseModel::reach) +
+                                      sizeof(PatchScanner::density);
 
 // Members of each struct, in the order in which they are sent. `Archive` is a Writer or a Reader.
 

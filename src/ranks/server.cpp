@@ -2,6 +2,7 @@
 #include "ranks/server.hpp"
 
 #include <chrono>
+#include <exception>
 #include <new>
 #include <utility>
 
@@ -89,8 +90,17 @@ Server::Server(Transport& transport, std::string host, std::function<void()> on_
 void Server::offer(Tracer& tracer, const Identity& identity) { offered_.push_back({&tracer, identity}); }
 
 void Server::receive(Message message) {
-  Reader reader(message);
-  const Head head = read_head(reader);
+  // This is the transport's thread, which has nobody to throw at: serve() does.
+  Head head;
+  try {
+    Reader reader(message);
+    head = read_head(reader);
+  } catch (const Error&) {
+    const std::lock_guard lock(mutex_);
+    broken_ = std::current_exception();
+    wake_.notify_all();
+    return;
+  }
   {
     const std::lock_guard lock(mutex_);
     if (head.kind == Kind::end) {
@@ -111,7 +121,8 @@ void Server::receive(Message message) {
 bool Server::next(Message& message, Head& head) {
   for (;;) {
     std::unique_lock lock(mutex_);
-    wake_.wait(lock, [&] { return ended_ || !messages_.empty(); });
+    wake_.wait(lock, [&] { return ended_ || broken_ || !messages_.empty(); });
+    if (broken_) std::rethrow_exception(broken_);
     if (ended_) return false;
     message = std::move(messages_.front());
     messages_.pop_front();

@@ -4,6 +4,7 @@
 
 #include <condition_variable>
 #include <deque>
+#include <exception>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -26,7 +27,7 @@ class Server {
   void offer(Tracer& tracer, const Identity& identity);
   // Called for a tracer that is requested but was not offered; it makes and offers it.
   using More = std::function<void()>;
-  // Serves until the job ends.
+  // Serves until the job ends. Throws Error device_failure for a message that cannot be rank 0's.
   void serve(const More& more);
   // Replaces serve() if there is nothing to serve: tells rank 0 why.
   void fail(Errc code, const std::string& why);
@@ -57,6 +58,7 @@ class Server {
   std::uint64_t current_ = 0;
   std::stop_source stop_;  // of the current request
   bool ended_ = false;
+  std::exception_ptr broken_;  // a message that has no head
 };
 
 }  // namespace vantage::ranks

@@ -4,6 +4,7 @@
 #include <tbb/info.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -45,6 +46,101 @@ Surface surface_of(const SceneData& scene) {
     }
   if (surface.cells_m2 > 0) surface.extent_m = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
   return surface;
+}
+
+// Triangles that are long and have hardly any area: each is a row of voxels, which its area does not tell.
+struct Slivers {
+  double cells_m2 = 0;            // their share of the surface's
+  double voxels = 0, bricks = 0;  // that they pass through, each once
+};
+
+// Of a brick that hardly anything but a sliver passes through: itself, and its place in the hash table.
+constexpr double kBrickBytes = 144;
+
+struct Sliver {
+  glm::dvec3 begin, along;  // its longest edge, in voxels
+};
+
+// Those of all surveyed triangles, and their share of the surface.
+std::vector<Sliver> find_slivers(const SceneData& scene, double voxel_size, double& cells_m2) {
+  constexpr double kLong = 8, kThin = 0.25;  // voxels; share of those that it passes through
+  const double least = kLong * voxel_size * kLong * voxel_size;
+  std::vector<Sliver> found;
+  for (const auto& mesh : surveyed_triangles(scene))
+    for (const Triangle& t : mesh) {
+      const auto corner = [&](std::size_t k) {
+        const Float3& p = scene.positions[t[k]];
+        return glm::dvec3(p.x, p.y, p.z);
+      };
+      const std::array<glm::dvec3, 3> p{corner(0), corner(1), corner(2)}, edges{p[1] - p[0], p[2] - p[1], p[0] - p[2]};
+      const std::array<double, 3> squares{dot(edges[0], edges[0]), dot(edges[1], edges[1]), dot(edges[2], edges[2])};
+      const auto longest = static_cast<std::size_t>(std::ranges::max_element(squares) - squares.begin());
+      if (squares[longest] <= least) continue;
+      const glm::dvec3 normal = cross(edges[0], edges[1]);
+      const double area = 0.5 * (std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z));
+      if (area >= kThin * voxel_size * std::sqrt(squares[longest])) continue;
+      found.push_back({p[longest] / voxel_size, edges[longest] / voxel_size});
+      cells_m2 += area;
+    }
+  return found;
+}
+
+// The first step, from step k on, behind the brick that step k is in.
+double behind_brick(const std::array<std::int64_t, 3>& brick, const glm::dvec3& at, const glm::dvec3& step, double k) {
+  constexpr double kSide = 8;
+  double leaves = INFINITY;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double low = kSide * static_cast<double>(brick[static_cast<std::size_t>(axis)]);
+    if (step[axis] > 0) leaves = std::min(leaves, (low + kSide - at[axis]) / step[axis]);
+    if (step[axis] < 0) leaves = std::min(leaves, (low - at[axis]) / step[axis]);
+  }
+  return k + std::max(1.0, std::ceil(leaves));
+}
+
+// Follows every sliver, and counts the voxels that some pass through in a share of the bricks, chosen by their places.
+Slivers slivers_of(const SceneData& scene, double voxel_size) {
+  constexpr double kCounted = 0x1p20, kTooMany = 0x1p31;
+  const auto steps_of = [](const Sliver& sliver) {
+    return std::ceil(std::abs(sliver.along.x) + std::abs(sliver.along.y) + std::abs(sliver.along.z));
+  };
+  Slivers found;
+  const std::vector<Sliver> slivers = find_slivers(scene, voxel_size, found.cells_m2);
+  double steps = 0;
+  for (const Sliver& sliver : slivers) steps += steps_of(sliver);
+  if (!(steps < kTooMany)) {  // more than any site has
+    found.voxels = found.bricks = steps;
+    return found;
+  }
+  const auto one_of = static_cast<std::uint64_t>(std::max(1.0, steps / kCounted));
+  std::vector<std::uint64_t> voxels;
+  for (const Sliver& sliver : slivers) {
+    const double count = steps_of(sliver);
+    const glm::dvec3 step = sliver.along / count;
+    for (double k = 0; k < count;) {
+      const glm::dvec3 at = sliver.begin + step * (k + 0.5);
+      std::array<std::int64_t, 3> brick{};
+      std::uint64_t place = 0, inner = 0;  // 18 bits of an axis are as many as a grid has
+      for (int axis = 0; axis < 3; ++axis) {
+        const auto cell = static_cast<std::int64_t>(std::floor(at[axis]));
+        brick[static_cast<std::size_t>(axis)] = cell >> 3;
+        place = place << 18 | (static_cast<std::uint64_t>(cell >> 3) & 0x3FFFF);
+        inner = inner << 3 | (static_cast<std::uint64_t>(cell) & 7);
+      }
+      constexpr std::uint64_t kMix = 0x9E3779B97F4A7C15u;
+      if (((place * kMix) >> 32) % one_of == 0)
+        voxels.push_back(place << 9 | inner), ++k;
+      else
+        k = behind_brick(brick, at, step, k);
+    }
+  }
+  std::ranges::sort(voxels);
+  for (std::size_t k = 0; k < voxels.size(); ++k) {
+    if (k > 0 && voxels[k] == voxels[k - 1]) continue;
+    ++found.voxels;
+    if (k == 0 || voxels[k] >> 9 != voxels[k - 1] >> 9) ++found.bricks;
+  }
+  found.voxels *= static_cast<double>(one_of), found.bricks *= static_cast<double>(one_of);
+  return found;
 }
 
 // Equation 2: side of a voxel.
@@ -91,8 +187,12 @@ class Estimator {
   }
 
   SimulatorMemory operator()(double user_size_m, const std::vector<ChosenDevice>& devices) const {
-    const double side = voxel_size(surface_.extent_m, user_size_m), voxels = surface_.cells_m2 / (side * side);
-    double host = host_bytes(load_.triangles, voxels, stations_) + demands_ * voxels, device = 0;
+    const double side = voxel_size(surface_.extent_m, user_size_m), cell_m2 = side * side;
+    const Slivers slivers = slivers_of(scene_, side);
+    const double of_slivers = std::max(slivers.cells_m2 / cell_m2, slivers.voxels);
+    const double voxels = (surface_.cells_m2 - slivers.cells_m2) / cell_m2 + of_slivers;
+    const double bricks_bytes = kBrickBytes * std::max(0.0, slivers.bricks - of_slivers / kVoxelsOfABrick);
+    double host = host_bytes(load_.triangles, voxels, stations_) + demands_ * voxels + bricks_bytes, device = 0;
     const auto on_cpu = [](const ChosenDevice& each) { return each.engine == Engine::embree; };
     if (devices.empty() || std::ranges::any_of(devices, on_cpu)) host += kTree * load_.triangles;
     for (const ChosenDevice& each : devices) {

@@ -14,8 +14,9 @@ const coarse = ['--step', '1', '--user-size', '0.2', '--spacing', '0.05', '--eng
 vantage('generate', 'four-walls', '-o', 'walls.glb');
 
 // The editor's process, and its address once it is said.
-async function start(...args) {
-  const editor = spawn(program, ['edit', 'walls.glb', ...coarse, '--sample', '2000', '-o', 'edited', '--no-browser', ...args], { cwd: folder });
+const start = (...args) => startAs({}, '--no-browser', ...args);
+async function startAs(environment, ...args) {
+  const editor = spawn(program, ['edit', 'walls.glb', ...coarse, '--sample', '2000', '-o', 'edited', ...args], { cwd: folder, env: { ...process.env, ...environment } });
   let log = '';
   editor.stderr.on('data', (text) => { log += text; });
   process.on('exit', () => editor.kill('SIGKILL'));
@@ -256,4 +257,26 @@ assert.equal((await again.locator('#figures dd small').first().innerText()).matc
 if (process.env.VANTAGE_SCREENSHOTS) await again.screenshot({ path: `${process.env.VANTAGE_SCREENSHOTS}/edit.png` });
 assert.deepEqual(again.troubles, []);
 await stop(editor);  // with the tab still open
+
+// The desktop's browser is given a page of this user's own, which leads to the editor: the token is in no program's arguments, where
+// others see it. The page takes a link's place and goes with the editor.
+fs.mkdirSync(at('bin'));
+fs.writeFileSync(at('bin/xdg-open'), '#!/bin/sh\nprintf %s "$*" >opened.part && mv opened.part opened\n', { mode: 0o755 });
+fs.writeFileSync(at('elsewhere'), 'untouched');
+fs.symlinkSync(at('elsewhere'), at('edited/open-editor.html'));
+({ editor, url } = await startAs({ DISPLAY: ':0', PATH: `${at('bin')}:${process.env.PATH}` }));
+for (let k = 0; k < 100 && !fs.existsSync(at('opened')); ++k) await new Promise((done) => { setTimeout(done, 100); });
+const opened = read('opened').toString(), status = fs.lstatSync(opened);
+assert.equal(fs.realpathSync(opened), fs.realpathSync(at('edited/open-editor.html')));
+assert.ok(status.isFile());
+assert.equal(status.mode & 0o777, 0o600);
+assert.equal(read('elsewhere').toString(), 'untouched');
+const desktop = await watchedPage(browser, { width: 820, height: 1180 });
+await desktop.goto(`file://${opened}`);
+await desktop.waitForSelector('html[data-ready]');
+assert.equal(desktop.url(), url);
+assert.equal(await desktop.evaluate(() => document.referrer), '');
+assert.deepEqual(desktop.troubles, []);
+await stop(editor);
+assert.ok(!fs.existsSync(opened), 'the page goes with the editor');
 await browser.close();

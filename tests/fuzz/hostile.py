@@ -22,6 +22,7 @@ import zlib
 MEMORY = 512 << 20  # of --memory
 SLACK = 1 << 30  # of the address space besides: libraries, stacks and heaps of two threads, which are hardly touched
 SECONDS = 10
+SECONDS_OF_IMPORTER = 25  # of a file below a megabyte (src/import/import.cpp)
 
 FLOAT, UINT, UBYTE = 5126, 5125, 5121
 
@@ -265,6 +266,17 @@ def grid_in_a_plane():
     return scene.glb()
 
 
+def needles():
+    """Triangles without area to speak of, each through as many voxels as the site is long, and none where another is."""
+    scene, side, corners = Scene(), 200, []
+    for k in range(600):
+        y, z = side * (k * 0.618034 % 1), side * (k * 0.754878 % 1)
+        corners += [(0, y, z), (side, side - y, side - z), (side, side - y + 1e-4, side - z)]
+    marked(scene, "surveyed", corners)
+    scene.json["asset"]["extras"] = {"vantage": {"user-size": 0.002, "spacing": 0.001}}
+    return scene.glb()
+
+
 def sparse_file(folder, path):
     with open(path, "wb") as file:
         file.truncate(1 << 40)
@@ -276,6 +288,163 @@ def fifo(folder, path):
 
 def device(folder, path):
     os.symlink("/dev/zero", path)
+
+
+DOUBLINGS = 40  # of what holds twice what holds twice …
+
+
+def dae(nodes, root):
+    return f"""<?xml version="1.0"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><unit name="meter" meter="1"/><up_axis>Z_UP</up_axis></asset>
+<library_geometries><geometry id="g"><mesh><source id="p"><float_array id="pa" count="9">0 0 0 4 0 0 0 4 0</float_array>
+<technique_common><accessor source="#pa" count="3" stride="3"><param name="X" type="float"/>
+<param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<triangles count="1"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles></mesh></geometry>
+</library_geometries><library_nodes>{nodes}</library_nodes>
+<library_visual_scenes><visual_scene id="s">{root}</visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#s"/></scene></COLLADA>""".encode()
+
+
+def collada_doubles():
+    nodes = '<node id="n0"><instance_geometry url="#g"/></node>' + "".join(
+        f'<node id="n{k + 1}">' + f'<instance_node url="#n{k}"/>' * 2 + "</node>" for k in range(DOUBLINGS))
+    return dae(nodes, f'<node id="top"><instance_node url="#n{DOUBLINGS}"/></node>')
+
+
+def collada_holds_itself():
+    return dae('<node id="n0"><instance_geometry url="#g"/><instance_node url="#n0"/></node>',
+               '<node id="top"><instance_node url="#n0"/></node>')
+
+
+def collada_deep():
+    return dae("", "<node>" * 100000 + '<instance_geometry url="#g"/>' + "</node>" * 100000)
+
+
+def x3d(text, doctype=""):
+    return (f'<?xml version="1.0" encoding="UTF-8"?>{doctype}\n<X3D version="3.0" profile="Interchange"><Scene>{text}'
+            "</Scene></X3D>").encode()
+
+
+X3D_SHAPE = ('<Shape><IndexedFaceSet coordIndex="0 1 2 -1" solid="false"><Coordinate point="0 0 0 4 0 0 0 0 4"/>'
+             "</IndexedFaceSet></Shape>")
+
+
+def x3d_doubles():
+    return x3d(f'<Group DEF="g0">{X3D_SHAPE}</Group>' + "".join(
+        f'<Group DEF="g{k + 1}">' + f'<Group USE="g{k}"/>' * 2 + "</Group>" for k in range(DOUBLINGS)))
+
+
+def x3d_entities():
+    """Text that stands for twice the text that stands for twice …"""
+    entities = "".join(f'<!ENTITY e{k + 1} "&e{k};&e{k};">' for k in range(DOUBLINGS))
+    return x3d(f"{X3D_SHAPE}&e{DOUBLINGS};", f'<!DOCTYPE X3D [<!ENTITY e0 "0 0 0 ">{entities}]>')
+
+
+def dxf_doubles():
+    def block(name, content):
+        return f"0\nBLOCK\n8\n0\n2\n{name}\n70\n0\n10\n0\n20\n0\n30\n0\n3\n{name}\n{content}0\nENDBLK\n8\n0\n"
+
+    def insert(name):
+        return f"0\nINSERT\n8\n0\n2\n{name}\n10\n0\n20\n0\n30\n0\n"
+    face = "0\n3DFACE\n8\n0\n10\n0\n20\n0\n30\n0\n11\n4\n21\n0\n31\n0\n12\n0\n22\n4\n32\n0\n13\n0\n23\n4\n33\n0\n"
+    blocks = block("b0", face) + "".join(block(f"b{k + 1}", insert(f"b{k}") * 2) for k in range(DOUBLINGS))
+    return (f"0\nSECTION\n2\nBLOCKS\n{blocks}0\nENDSEC\n0\nSECTION\n2\nENTITIES\n{insert(f'b{DOUBLINGS}')}"
+            "0\nENDSEC\n0\nEOF\n").encode()
+
+
+def fbx(objects, connections):
+    return (f"; FBX 7.3.0 project file\nFBXHeaderExtension:  {{\n\tFBXHeaderVersion: 1003\n\tFBXVersion: 7300\n}}\n"
+            f"Objects:  {{\n{objects}}}\nConnections:  {{\n{connections}}}\n").encode()
+
+
+FBX_SHAPE = ('\tGeometry: 10, "Geometry::g", "Mesh" {\n\t\tVertices: *9 {\n\t\t\ta: 0,0,0,4,0,0,0,0,4\n\t\t}\n'
+             "\t\tPolygonVertexIndex: *3 {\n\t\t\ta: 0,1,-3\n\t\t}\n\t\tGeometryVersion: 124\n\t}\n")
+
+
+def fbx_doubles():
+    """Each model below the next one, twice."""
+    models = "".join(f'\tModel: {100 + k}, "Model::m{k}", "Mesh" {{\n\t\tVersion: 232\n\t}}\n' for k in range(DOUBLINGS + 1))
+    below = "".join(f'\tC: "OO",{100 + k},{101 + k}\n' * 2 for k in range(DOUBLINGS))
+    return fbx(FBX_SHAPE + models, f'\tC: "OO",10,100\n{below}\tC: "OO",{100 + DOUBLINGS},0\n')
+
+
+def fbx_claims():
+    return fbx(FBX_SHAPE.replace("*9 {", "*4000000000 {"), '\tC: "OO",10,0\n')
+
+
+def ply_claims():
+    return (b"ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\nproperty float y\n"
+            b"property float z\nelement face 4000000000\nproperty list uint int vertex_indices\nend_header\n" + b"\xff" * 1000)
+
+
+def obj_long_face():
+    return b"v 0 0 0\nv 4 0 0\nv 0 0 4\nf" + b" 1 2 3" * 20000 + b"\n"
+
+
+def ifc_doubles():
+    """A shape that is mapped twice in a shape that is mapped twice …"""
+    lines = ["IFCCARTESIANPOINT((0.,0.,0.))", "IFCAXIS2PLACEMENT3D(#1,$,$)",
+             "IFCGEOMETRICREPRESENTATIONCONTEXT($,'Model',3,1.E-05,#2,$)", "IFCSIUNIT(*,.LENGTHUNIT.,$,.METRE.)",
+             "IFCUNITASSIGNMENT((#4))", "IFCPROJECT('0Vantage00000000000001',$,'p',$,$,$,$,(#3),#5)",
+             "IFCLOCALPLACEMENT($,#2)", "IFCSITE('0Vantage00000000000002',$,'s',$,$,#7,$,$,.ELEMENT.,$,$,$,$,$)",
+             "IFCRELAGGREGATES('0Vantage00000000000003',$,$,$,#6,(#8))", "IFCDIRECTION((0.,0.,1.))",
+             "IFCCARTESIANPOINT((2.,2.))", "IFCAXIS2PLACEMENT2D(#11,$)", "IFCRECTANGLEPROFILEDEF(.AREA.,$,#12,4.,4.)",
+             "IFCEXTRUDEDAREASOLID(#13,#2,#10,1.)", "IFCCARTESIANTRANSFORMATIONOPERATOR3D($,$,#1,$,$)",
+             "IFCSHAPEREPRESENTATION(#3,'Body','SweptSolid',(#14))"]
+    for _ in range(DOUBLINGS):
+        last = len(lines)
+        lines += [f"IFCREPRESENTATIONMAP(#2,#{last})", f"IFCMAPPEDITEM(#{last + 1},#15)", f"IFCMAPPEDITEM(#{last + 1},#15)",
+                  f"IFCSHAPEREPRESENTATION(#3,'Body','MappedRepresentation',(#{last + 2},#{last + 3}))"]
+    last = len(lines)
+    lines += [f"IFCPRODUCTDEFINITIONSHAPE($,$,(#{last}))",
+              f"IFCBUILDINGELEMENTPROXY('0Vantage00000000000004',$,'x',$,$,#7,#{last + 1},$,$)",
+              f"IFCRELCONTAINEDINSPATIALSTRUCTURE('0Vantage00000000000005',$,$,$,(#{last + 2}),#8)"]
+    data = "".join(f"#{k + 1}={line};\n" for k, line in enumerate(lines))
+    return ("ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\nFILE_NAME('','',(''),(''),'','','');\n"
+            f"FILE_SCHEMA(('IFC2X3'));\nENDSEC;\nDATA;\n{data}ENDSEC;\nEND-ISO-10303-21;\n").encode()
+
+
+def meshopt_claims():
+    scene = Scene()
+    scene.json["bufferViews"].append({"buffer": 0, "byteLength": 3 << 30, "extensions": {"EXT_meshopt_compression": {
+        "buffer": 0, "byteOffset": 0, "byteLength": 36, "byteStride": 12, "count": 1 << 28, "mode": "ATTRIBUTES"}}})
+    scene.json["extensionsUsed"] = scene.json["extensionsRequired"] = ["EXT_meshopt_compression"]
+    scene.node(mesh=scene.mesh({"attributes": {"POSITION": scene.accessor(
+        1 << 28, FLOAT, "VEC3", len(scene.json["bufferViews"]) - 1)}}))
+    return scene.glb()
+
+
+def draco_claims():
+    """The header of a mesh that says to have four thousand million faces."""
+    scene = Scene()
+    packed = b"DRACO\2\2\1\0\0\0" + b"\xff\xff\xff\xff\x0f" * 2 + b"\1\0" + b"\xff" * 64
+    scene.node(mesh=scene.mesh({
+        "attributes": {"POSITION": scene.accessor(3, FLOAT, "VEC3")}, "indices": scene.accessor(3, UINT, "SCALAR"),
+        "extensions": {"KHR_draco_mesh_compression": {"bufferView": scene.view(packed), "attributes": {"POSITION": 0}}}}))
+    scene.json["extensionsUsed"] = scene.json["extensionsRequired"] = ["KHR_draco_mesh_compression"]
+    return scene.glb()
+
+
+def gzip_bomb():
+    """Blanks, deflated, before a scene."""
+    packer = zlib.compressobj(9, zlib.DEFLATED, 31)
+    return packer.compress(b" " * (1 << 30)) + packer.compress(b"{}") + packer.flush()
+
+
+def table(text):
+    return lambda: text.encode(errors="surrogateescape")
+
+
+NAME_FOR_OTHERS = "\x1b]0;owned\x07\x1b[2J\u202egnp"
+
+
+def scanners():
+    with open(os.path.join(os.path.dirname(__file__), "../../data/scanners.json"), encoding="utf-8") as file:
+        document = json.load(file)
+    document["scanners"] = {"mine": {**document["scanners"]["rtc360"], "name": NAME_FOR_OTHERS + "n" * 1000000}}
+    return json.dumps(document).encode()
 
 
 STATION = ["--station", "1,-1,1.5"]
@@ -302,6 +471,30 @@ FILES = {
     "data_uris.gltf": (data_uris, False),
     "overlaps_in_a_plane.glb": (overlaps_in_a_plane, True),
     "grid_in_a_plane.glb": (grid_in_a_plane, False),
+    "needles.glb": (needles, False),
+    "doubles.dae": (collada_doubles, False),
+    "holds_itself.dae": (collada_holds_itself, False),
+    "deep.dae": (collada_deep, False),
+    "doubles.x3d": (x3d_doubles, False),
+    "entities.x3d": (x3d_entities, True),
+    "doubles.dxf": (dxf_doubles, False),
+    "doubles.fbx": (fbx_doubles, False),
+    "claims.fbx": (fbx_claims, False),
+    "claims.ply": (ply_claims, False),
+    "long_face.obj": (obj_long_face, True),
+    "doubles.ifc": (ifc_doubles, False),
+    "meshopt_claims.glb": (meshopt_claims, False),
+    "draco_claims.glb": (draco_claims, False),
+    "gzip_bomb.gltf.gz": (gzip_bomb, False),
+    "many_fields.csv": (table("x,y,z" + ",name" * 2000000 + "\n1,2,3\n"), False),
+    "name_for_others.csv": (table(f"x,y,z,name\n1,-1,1.5,{NAME_FOR_OTHERS}\n"), True),
+    "scanner_for_others.csv": (table(f"x,y,z,scanner\n1,-1,1.5,{NAME_FOR_OTHERS}\n"), False),
+    "column_for_others.csv": (table(f"x,y,z,{NAME_FOR_OTHERS}\n1,-1,1.5,1\n"), False),
+    "scanners.json": (scanners, True),
+    "system.prj": (table('PROJCS["' + NAME_FOR_OTHERS + '",' * 100000), False),
+    "deep.prj": (table("GEOGCS[" * 200000), False),
+    "sparse.prj": (sparse_file, False),
+    "fifo.prj": (fifo, False),
     "sparse.glb": (sparse_file, False),
     "fifo.glb": (fifo, False),
     "device.glb": (device, False),
@@ -329,15 +522,27 @@ def arguments(folder, path):
     site = os.path.join(folder, "site.glb")
     if path.endswith(".csv"):
         return [site, "--stations", path]
+    if path.endswith(".prj"):
+        return [site, "--crs", path] + STATION
+    if path.endswith("scanners.json"):
+        return [site, "--scanner", "mine"] + STATION
     if path.endswith(".json"):
         return [site, "--config", path] + STATION
     return [path] + STATION
 
 
-def limit():
-    resource.setrlimit(resource.RLIMIT_AS, (MEMORY + SLACK, MEMORY + SLACK))
-    resource.setrlimit(resource.RLIMIT_CPU, (SECONDS, SECONDS))
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+FOREIGN = (".dae", ".x3d", ".dxf", ".fbx", ".ply", ".obj", ".ifc", ".gz", "meshopt_claims.glb", "draco_claims.glb")
+
+
+def limit(foreign):
+    """An importer has limits of its own, by which the program sets it; node reserves address space that it never uses."""
+    def set_limits():
+        seconds = SECONDS_OF_IMPORTER if foreign else SECONDS
+        if not foreign:
+            resource.setrlimit(resource.RLIMIT_AS, (MEMORY + SLACK, MEMORY + SLACK))
+        resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    return set_limits
 
 
 def complaints(program, folder, name):
@@ -345,7 +550,9 @@ def complaints(program, folder, name):
     command = [program, "evaluate"] + arguments(folder, path) + [
         "--engine", "embree", "--step", "2", "--memory", str(MEMORY), "--json"]
     process = subprocess.Popen(command, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                               stderr=subprocess.STDOUT, preexec_fn=limit)
+                               stderr=subprocess.STDOUT, preexec_fn=limit(name.endswith(FOREIGN)),
+                               env={**os.environ, "XDG_CACHE_HOME": os.path.join(folder, "cache"),
+                                    "VANTAGE_DATA": folder if name == "scanners.json" else ""})
     text = process.stdout.read().decode(errors="replace")
     process.stdout.close()
     _, status, usage = os.wait4(process.pid, 0)

@@ -86,6 +86,7 @@ std::vector<std::pair<std::string, std::string>> state_seeds() {
   checkpoint.snapshot.history = {{1, 6, 0.25, {{0.5, 0.25}}, 0.5}, {2, 12, 0.5, {{0.5, 0.125}, {0.25, 0.75}}, 1}};
   checkpoint.since = {{0.5, 0.25, 3}, {0.75, 0.125, 4}};
   seeds.emplace_back("checkpoint/search", payload_of(checkpoint_file(checkpoint), checkpoint_format));
+  for (const auto& seed : message_seeds()) seeds.push_back(seed);
   return seeds;
 }
 

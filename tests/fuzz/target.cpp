@@ -29,6 +29,7 @@ constexpr Target kTargets[] = {{"gltf", gltf},
                                {"crs", crs},
                                {"checkpoint", checkpoint},
                                {"optimiser_state", optimiser_state},
+                               {"message", message},
                                {"reference", reference},
                                {"simulator", simulator}};
 

@@ -79,6 +79,7 @@ class Source {
 
 // Files below seeds/ and their contents: states that nobody writes by hand.
 std::vector<std::pair<std::string, std::string>> state_seeds();
+std::vector<std::pair<std::string, std::string>> message_seeds();  // among those
 
 // The targets, one file per kind.
 void gltf(Bytes);
@@ -95,6 +96,7 @@ void region_csv(Bytes);
 void crs(Bytes);
 void checkpoint(Bytes);
 void optimiser_state(Bytes);
+void message(Bytes);
 void reference(Bytes);
 void simulator(Bytes);
 

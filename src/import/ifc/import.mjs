@@ -32,6 +32,6 @@ try {
   const glb = new Building(ifc, api, model).toGlb();
   for (let at = 0; at < glb.length;) at += fs.writeSync(1, glb, at);
 } catch (error) {
-  fail(DATA, `it cannot be read as IFC: ${error?.message ?? error}`.split("\n")[0]);
+  fail(DATA, `it cannot be read as IFC: ${error?.message ?? "web-ifc gives it up, as too large or damaged"}`.split("\n")[0]);
 }
 process.exit(0);

@@ -10,6 +10,7 @@
 #include <assimp/Importer.hpp>
 #include <cmath>
 #include <map>
+#include <new>
 #include <vector>
 
 #include "import/glb_bytes.hpp"
@@ -204,7 +205,11 @@ std::string convert(const std::filesystem::path& file, const std::string& format
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);
   const aiScene* scene = importer.ReadFile(
       files->shown(), aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_JoinIdenticalVertices);
-  if (!scene || !scene->mRootNode) throw Refused(std::string("it cannot be read: ") + importer.GetErrorString());
+  if (!scene || !scene->mRootNode) {
+    const std::string why = importer.GetErrorString();
+    if (why.find("bad_alloc") != std::string::npos) throw std::bad_alloc();  // which assimp has caught
+    throw Refused("it cannot be read: " + why);
+  }
   return Converter(*scene, file, format).run();
 }
 

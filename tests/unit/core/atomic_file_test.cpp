@@ -68,6 +68,21 @@ TEST(AtomicFile, LeavesTemporariesOfOthersAtWork) {
   EXPECT_EQ(content(folder / "a.txt"), "x");
 }
 
+// Whoever may write to the folder chooses where a link leads.
+TEST(AtomicFile, TakesTheLinksPlaceAndFollowsNone) {
+  const test::TemporaryFolder folder;
+  const auto file = folder / "front.json", elsewhere = folder / "elsewhere";
+  std::ofstream(elsewhere) << "kept";
+  std::filesystem::create_symlink(elsewhere, file);
+  std::filesystem::create_symlink(elsewhere, folder / ".front.json.1-0.partial");
+  AtomicFile::remove_leftovers(file);
+  write_atomically(file, "new");
+  EXPECT_FALSE(std::filesystem::is_symlink(file));
+  EXPECT_EQ(content(file), "new");
+  EXPECT_EQ(content(elsewhere), "kept");
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / ".front.json.1-0.partial"));
+}
+
 TEST(AtomicFile, RemovesOnlyItsOwnLeftovers) {
   const test::TemporaryFolder folder;
   for (const char* name : {".a.ckpt.12-0.partial", ".ab.ckpt.12-0.partial", ".a.ckpt.notes", "a.ckpt"})

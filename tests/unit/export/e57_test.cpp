@@ -162,30 +162,36 @@ TEST(E57, PosesOfTurnedHeadsLeadBackToTheSurvey) {
   }
 }
 
+// As stored, and so in the scanner's frame however that is turned.
 TEST(E57, BoundsAreThoseOfThePoints) {
   const test::TemporaryFolder folder;
   PointCloudWriter writer(folder / "a.e57", kSurveyOrigin, kHeld);
   writer.begin_station({"S1", kSurveyOrigin, scanner_of(1, 77)});
   writer.write(chunk_of(720, 4'000), 1);
+  writer.begin_station({"S2", kSurveyOrigin + Vec3{4, 5, 6}, scanner_of(1, 77),
+                        StationSetup{.heading = Angle::degrees(200), .tilt = Angle::degrees(64)}});
+  writer.write(chunk_of(720, 4'000), 2);
   writer.close();
-  const auto scan = read_e57(content(folder / "a.e57")).scans.at(0);
-  const auto extremes = [&](const char* field) {
-    const auto& values = scan.fields.at(field);
-    return std::pair(*std::min_element(values.begin(), values.end()), *std::max_element(values.begin(), values.end()));
-  };
-  for (const auto& [field, bound] : {std::pair{"cartesianX", "cartesianBounds/x"},
-                                     {"cartesianY", "cartesianBounds/y"},
-                                     {"cartesianZ", "cartesianBounds/z"},
-                                     {"rowIndex", "indexBounds/row"},
-                                     {"columnIndex", "indexBounds/column"}}) {
-    EXPECT_EQ(scan.number(std::string(bound) + "Minimum"), extremes(field).first) << field;
-    EXPECT_EQ(scan.number(std::string(bound) + "Maximum"), extremes(field).second) << field;
-  }
-  EXPECT_EQ(scan.number("intensityLimits/intensityMinimum"), 0);
-  EXPECT_EQ(scan.number("intensityLimits/intensityMaximum"), 1);
-  for (const char* colour : {"Red", "Green", "Blue"}) {
-    EXPECT_EQ(scan.number("colorLimits/color" + std::string(colour) + "Minimum"), 0);
-    EXPECT_EQ(scan.number("colorLimits/color" + std::string(colour) + "Maximum"), 255);
+  for (const auto& scan : read_e57(content(folder / "a.e57")).scans) {
+    const auto extremes = [&](const char* field) {
+      const auto& values = scan.fields.at(field);
+      return std::pair(*std::min_element(values.begin(), values.end()),
+                       *std::max_element(values.begin(), values.end()));
+    };
+    for (const auto& [field, bound] : {std::pair{"cartesianX", "cartesianBounds/x"},
+                                       {"cartesianY", "cartesianBounds/y"},
+                                       {"cartesianZ", "cartesianBounds/z"},
+                                       {"rowIndex", "indexBounds/row"},
+                                       {"columnIndex", "indexBounds/column"}}) {
+      EXPECT_EQ(scan.number(std::string(bound) + "Minimum"), extremes(field).first) << field;
+      EXPECT_EQ(scan.number(std::string(bound) + "Maximum"), extremes(field).second) << field;
+    }
+    EXPECT_EQ(scan.number("intensityLimits/intensityMinimum"), 0);
+    EXPECT_EQ(scan.number("intensityLimits/intensityMaximum"), 1);
+    for (const char* colour : {"Red", "Green", "Blue"}) {
+      EXPECT_EQ(scan.number("colorLimits/color" + std::string(colour) + "Minimum"), 0);
+      EXPECT_EQ(scan.number("colorLimits/color" + std::string(colour) + "Maximum"), 255);
+    }
   }
 }
 

@@ -93,14 +93,17 @@ TEST(PointCloudWriter, LasIsFormat7Of14) {
   writer.write(chunk_of(kOfLas), 7);
   writer.close();
   const std::string bytes = content(folder / "a.las");
-  ASSERT_EQ(bytes.size(), 375u + 2 * 36);
   EXPECT_EQ(bytes.substr(0, 4), "LASF");
   const auto get = [&](auto value, std::size_t at) { return take<decltype(value)>(bytes, at); };
-  EXPECT_EQ(get(std::uint16_t{}, 6), 0);  // no coordinate system, so no bit that promises one
+  EXPECT_EQ(get(std::uint16_t{}, 6), 16);  // formats from 6 on have a system as text: here a local one
+  const std::size_t points = 375 + 54 + get(std::uint16_t{}, 375 + 20);
+  ASSERT_EQ(bytes.size(), points + 2 * 36);
+  EXPECT_EQ(bytes.substr(375 + 54, 24), "LOCAL_CS[\"survey frame\",");
   EXPECT_EQ(get(std::uint8_t{}, 24), 1);
   EXPECT_EQ(get(std::uint8_t{}, 25), 4);
-  EXPECT_EQ(get(std::uint16_t{}, 94), 375);   // header size
-  EXPECT_EQ(get(std::uint32_t{}, 96), 375u);  // offset to points
+  EXPECT_EQ(get(std::uint16_t{}, 94), 375);  // header size
+  EXPECT_EQ(get(std::uint32_t{}, 96), points);
+  EXPECT_EQ(get(std::uint32_t{}, 100), 1u);  // variable length records
   EXPECT_EQ(get(std::uint8_t{}, 104), 7);
   EXPECT_EQ(get(std::uint16_t{}, 105), 36);
   EXPECT_EQ(get(std::uint32_t{}, 107), 0u);  // legacy count
@@ -113,14 +116,14 @@ TEST(PointCloudWriter, LasIsFormat7Of14) {
   EXPECT_NEAR(get(double{}, 219), 101.875, 1e-9);  // min z
   EXPECT_EQ(get(std::uint64_t{}, 247), 2u);
   EXPECT_EQ(get(std::uint64_t{}, 255), 2u);
-  EXPECT_NEAR(get(std::int32_t{}, 375) * 1e-4 + offset_x, 500'124.75, 5.1e-5);
-  EXPECT_NEAR(get(std::int32_t{}, 379) * 1e-4 + offset_y, 4'500'319.25, 5.1e-5);
-  EXPECT_NEAR(get(std::int32_t{}, 383) * 1e-4 + offset_z, 101.875, 5.1e-5);
-  EXPECT_EQ(get(std::uint16_t{}, 387), 16384);  // intensity .25
-  EXPECT_EQ(get(std::uint8_t{}, 389), 0x11);
-  EXPECT_EQ(get(std::uint16_t{}, 375 + 20), 7);  // point source id
-  EXPECT_EQ(get(std::uint16_t{}, 375 + 30), 257);
-  EXPECT_EQ(get(std::uint16_t{}, 375 + 36 + 30), 65535);
+  EXPECT_NEAR(get(std::int32_t{}, points) * 1e-4 + offset_x, 500'124.75, 5.1e-5);
+  EXPECT_NEAR(get(std::int32_t{}, points + 4) * 1e-4 + offset_y, 4'500'319.25, 5.1e-5);
+  EXPECT_NEAR(get(std::int32_t{}, points + 8) * 1e-4 + offset_z, 101.875, 5.1e-5);
+  EXPECT_EQ(get(std::uint16_t{}, points + 12), 16384);  // intensity .25
+  EXPECT_EQ(get(std::uint8_t{}, points + 14), 0x11);
+  EXPECT_EQ(get(std::uint16_t{}, points + 20), 7);  // point source id
+  EXPECT_EQ(get(std::uint16_t{}, points + 30), 257);
+  EXPECT_EQ(get(std::uint16_t{}, points + 36 + 30), 65535);
 }
 
 TEST(PointCloudWriter, LasWithoutPointsIsValid) {
@@ -128,8 +131,9 @@ TEST(PointCloudWriter, LasWithoutPointsIsValid) {
   PointCloudWriter writer(folder / "a.las", {}, scan_position);
   writer.close();
   const std::string bytes = content(folder / "a.las");
-  ASSERT_EQ(bytes.size(), 375u);
-  std::size_t at = 179;
+  std::size_t at = 96;
+  ASSERT_EQ(bytes.size(), take<std::uint32_t>(bytes, at));
+  at = 179;
   EXPECT_EQ(take<double>(bytes, at), 0);
 }
 
@@ -172,6 +176,12 @@ TEST(PointCloudWriter, LasRefusesOutputsThatItHasNoPlaceFor) {
     EXPECT_NE(std::string(error.what()).find("but no range, normal"), std::string::npos) << error.what();
   }
   EXPECT_EQ(test::entries(folder.path()), 0u);
+}
+
+TEST(PointCloudWriter, LasAndE57AlwaysHaveAnIntensity) {
+  EXPECT_EQ(point_cloud_outputs("a.las", scan_position), scan_position | scan_reflectivity);
+  EXPECT_EQ(point_cloud_outputs("a.e57", scan_position | scan_colour), scan_position | scan_reflectivity | scan_colour);
+  EXPECT_EQ(point_cloud_outputs("a.ply", scan_position), scan_position);
 }
 
 TEST(PointCloudWriter, PlySaysItsCoordinateSystemInAComment) {

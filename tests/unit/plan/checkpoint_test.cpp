@@ -76,6 +76,29 @@ TEST(Checkpoint, NoticesEveryFlippedBitAndEveryTruncation) {
   EXPECT_TRUE(refused(whole + "x"));
 }
 
+// With a valid checksum, from somebody who means harm: a megabyte of lengths would be so many vectors of nothing.
+TEST(Checkpoint, TakesMemoryInProportionToItsBytes) {
+  const ArchiveFormat format{"vantage checkpoint\n", 5};
+  const auto forged = [&](std::uint64_t lines, std::uint64_t vectors) {
+    ArchiveWriter writer;
+    writer.text(""), writer.raw(1.0), writer.raw(1.0);
+    writer.text(""), writer.text(""), writer.whole(0), writer.whole(0);
+    writer.whole(lines), writer.whole(vectors);
+    return sealed(format, writer.take() + std::string(1 << 20, '\0'));
+  };
+  for (const auto& [lines, vectors] : {std::pair<std::uint64_t, std::uint64_t>{std::uint64_t{1} << 40, 0},
+                                       {0, ~std::uint64_t{0}},
+                                       {0, 1 << 20},
+                                       {0, (1 << 20) / 9 + 1}}) {
+    try {
+      parse_checkpoint(forged(lines, vectors), "c");
+      ADD_FAILURE() << lines << " " << vectors;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), Errc::malformed_file);
+    }
+  }
+}
+
 TEST(Checkpoint, NamesTheFormatOfAnotherVersion) {
   const std::string old = sealed({"vantage checkpoint\n", 4}, "whatever");
   try {

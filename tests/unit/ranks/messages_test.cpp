@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
+
 #include "vantage/error.hpp"
 
 namespace vantage::ranks {
@@ -46,6 +48,23 @@ TEST(Messages, ThatAreCutShortOrClaimMoreAreRefused) {
     Reader of_counts(claims), of_networks(claims);
     EXPECT_THROW(read_counts(of_counts), Error);
     EXPECT_THROW(read_networks(of_networks), Error);
+  }
+}
+
+// Lists ask for as many bytes as their shortest elements take, so that a message takes memory in proportion to it.
+TEST(Messages, TheShortestElementsFitIntoTheirLists) {
+  for (const std::size_t many : {1u, 1000u}) {
+    const std::string whole = message_of(std::vector<NetworkCounts>(many));
+    Reader reader(whole);
+    EXPECT_EQ(read_counts(reader).size(), many);
+    EXPECT_TRUE(reader.at_end());
+    RegistrationJob job{.patches = std::make_shared<const Patches>(), .scanners = {}};
+    for (std::size_t k = 0; k < many; ++k) job.scanners.push_back({.noise = std::make_shared<const NoiseModel>()});
+    Writer writer;
+    pass(writer, job);
+    Reader of_job(writer.bytes());
+    pass(of_job, job);
+    EXPECT_EQ(job.scanners.size(), many);
   }
 }
 

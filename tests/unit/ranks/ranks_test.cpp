@@ -76,6 +76,23 @@ class Job {
   std::string told_, warned_;
 };
 
+// From nobody of this program: the server says so, and neither waits nor ends its process.
+TEST(Ranks, AMessageWithoutAHeadEndsTheServer) {
+  std::vector<std::unique_ptr<test::LocalTransport>> transports;
+  for (int k = 0; k < 2; ++k) transports.push_back(std::make_unique<test::LocalTransport>(k, transports));
+  {
+    Server server(*transports[1], "host", {});
+    transports[0]->send(1, Message());
+    try {
+      server.serve([] {});
+      ADD_FAILURE() << "served";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), Errc::device_failure);
+    }
+    transports[1]->close();
+  }
+}
+
 struct Work {
   std::vector<std::vector<TraceStation>> networks;
   std::vector<std::uint32_t> sizes, sample;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <regex>
 #include <string>
@@ -9,6 +10,7 @@
 #include "support/temporary_folder.hpp"
 #include "vantage/built_in_scenes.hpp"
 #include "vantage/error.hpp"
+#include "vantage/scene_builder.hpp"
 #include "vantage/simulator.hpp"
 
 namespace vantage {
@@ -38,6 +40,40 @@ TEST(MemoryEstimate, KnowsTheNumberOfVoxels) {
       const auto voxels = static_cast<double>(simulator(scene, size).voxel_count());
       const auto estimate = static_cast<double>(estimate_memory(scene, size).voxels);
       EXPECT_NEAR(estimate / voxels, 1, 0.2) << name << ", " << size << " m: " << voxels << " voxels";
+    }
+  }
+}
+
+// Long triangles of hardly any area, crossways through a site, and as the strips of a pole.
+TEST(MemoryEstimate, KnowsTheVoxelsOfSlivers) {
+  SceneMesh needles, pole;
+  const auto add = [](SceneMesh& mesh, const std::array<Vec3, 3>& corners) {
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    mesh.positions.insert(mesh.positions.end(), corners.begin(), corners.end());
+    mesh.triangles.push_back({first, first + 1, first + 2});
+  };
+  for (int k = 0; k < 200; ++k) {
+    const double y = 20 * std::fmod(k * 0.618034, 1), z = 20 * std::fmod(k * 0.754878, 1);
+    add(needles, {{{0, y, z}, {20, 20 - y, 20 - z}, {20, 20 - y + 1e-3, 20 - z}}});
+  }
+  constexpr int kStrips = 64;
+  const auto at = [](int k, double z) {
+    const double angle = 2 * M_PI * k / kStrips;
+    return Vec3{0.3 * std::cos(angle), 0.3 * std::sin(angle), z};
+  };
+  for (int k = 0; k < kStrips; ++k) {
+    add(pole, {at(k, 0), at(k + 1, 0), at(k + 1, 20)});
+    add(pole, {at(k, 0), at(k + 1, 20), at(k, 20)});
+  }
+  for (const SceneMesh& mesh : {needles, pole}) {
+    SceneBuilder builder;
+    builder.add(mesh);
+    const Scene scene = builder.build();
+    for (const double size : {0.3, 0.1}) {
+      const auto voxels = static_cast<double>(simulator(scene, size).voxel_count());
+      const auto estimate = static_cast<double>(estimate_memory(scene, size).voxels);
+      EXPECT_GT(estimate / voxels, 0.5) << size << " m: " << voxels << " voxels";
+      EXPECT_LT(estimate / voxels, 1.5) << size << " m: " << voxels << " voxels";
     }
   }
 }

@@ -1,0 +1,109 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""check.py PROGRAM SCHEMAS MANUAL: front.json, config.json and stations.csv of plans against the schemas that are shipped, and the manual
+pages and completions against the program's own --help."""
+import csv
+import gzip
+import json
+import os
+import re
+import subprocess
+import sys
+import tempfile
+
+try:
+    from jsonschema import Draft202012Validator
+except ImportError:
+    sys.exit("python3-jsonschema is not installed (setup.sh --tests does it)")
+
+PROGRAM, SCHEMAS, MANUAL = (os.path.abspath(path) for path in sys.argv[1:4])
+QUICK = ["--engine", "embree", "--step", "2", "--user-size", "0.4", "--no-report"]
+SEARCH = ["--population", "6", "--iterations", "2", "--sample", "200"]
+PLANS = {
+    "front": ["--problem", "coverage-overlap-fix", "--stations", "3", *SEARCH],
+    "required": ["--objectives", "coverage,registration", "--require", "parts<=1", "--stations", "2..4", *SEARCH],
+    "kept": ["--problem", "coverage-fix", "--stations", "2", "--keep", "x=8,y=3,z=1.5,heading=30,tilt=80,scanner=rtc360,step=2.5", *SEARCH],
+    "survey": ["--capture", "0.5", "--max-time", "5s"],
+}
+
+
+def run(folder, *arguments, expected=(0,)):
+    done = subprocess.run([PROGRAM, *arguments], cwd=folder, capture_output=True, text=True)
+    assert done.returncode in expected, f"{arguments}: {done.returncode}\n{done.stderr}"
+    return done.stdout
+
+
+def validator(path):
+    with open(path, encoding="utf-8") as file:
+        schema = json.load(file)
+    Draft202012Validator.check_schema(schema)
+    return Draft202012Validator(schema)
+
+
+def require(holds, value, what):
+    errors = [f"{what}: {'/'.join(map(str, e.absolute_path))}: {e.message[:300]}" for e in holds.iter_errors(value)]
+    assert not errors, "\n".join(errors)
+
+
+def rows(path):
+    """With the types of the schema's columns."""
+    def typed(name, cell):
+        return cell if name in ("name", "scanner", "status") else json.loads(cell)
+    with open(path, encoding="utf-8", newline="") as file:
+        for row in csv.DictReader(file):
+            yield {name: typed(name, cell) for name, cell in row.items() if cell != ""}
+
+
+def check_files(folder):
+    front, stations = (validator(os.path.join(SCHEMAS, f"{name}.schema.json")) for name in ("front", "stations"))
+    config = validator(os.path.join(MANUAL, "schemas/config.schema.json"))
+    run(folder, "generate", "four-walls", "-o", "walls.glb")
+    for name, how in PLANS.items():
+        run(folder, "plan", "walls.glb", *QUICK, *how, "-o", name, expected=(0, 3))
+        with open(os.path.join(folder, name, "front.json"), encoding="utf-8") as file:
+            written = json.load(file)
+        require(front, written, f"{name}/front.json")
+        with open(os.path.join(folder, name, "config.json"), encoding="utf-8") as file:
+            require(config, json.load(file), f"{name}/config.json")
+        table = list(rows(os.path.join(folder, name, "stations.csv")))
+        assert len(table) == len(written["front"][written["answer"] - 1]["stations"])
+        for row in table:
+            require(stations, row, f"{name}/stations.csv")
+        # What a schema lets through must not be just anything.
+        for broken in ({**written, "more": 1}, {**written, "front": []}, {k: v for k, v in written.items() if k != "seed"}):
+            assert not front.is_valid(broken)
+    assert not config.is_valid({"user-sise": 0.1})
+    assert not stations.is_valid({**table[0], "status": "perhaps"})
+
+
+def check_manual(folder):
+    commands = re.findall(r"^  ([a-z]+) {2,}\S", run(folder, "--help").split("Subcommands:")[1], re.M)
+    assert len(commands) > 5
+    with open(os.path.join(MANUAL, "bash/vantage"), encoding="utf-8") as file:
+        bash = file.read()
+    with open(os.path.join(MANUAL, "zsh/_vantage"), encoding="utf-8") as file:
+        zsh = file.read()
+    for command in commands:
+        options = set(re.findall(r"(?<!\S)(--[a-z][a-z0-9-]*)", "\n".join(
+            re.findall(r"^  ((?:-\w,)?--\S+)", run(folder, command, "--help").replace(",--", ", --"), re.M))))
+        options |= set(re.findall(r"^  -\w,(--[a-z0-9-]+)", run(folder, command, "--help"), re.M))
+        assert "--help" in options, options
+        with gzip.open(os.path.join(MANUAL, f"man1/vantage-{command}.1.gz"), "rt", encoding="utf-8") as file:
+            page = file.read()
+        for option in options:
+            assert r"\fB" + option.replace("-", r"\-") + r"\fR" in page, f"vantage-{command}(1) lacks {option}"
+        assert set(re.search(rf"^    {command}\) options='([^']*)'", bash, re.M)[1].split()) >= options
+        assert all(f"){option}[" in zsh or f"*{option}[" in zsh for option in options)
+    # A shell takes it, and completes by it.
+    done = subprocess.run(["bash", "-c", bash + 'COMP_WORDS=(vantage plan --capt) COMP_CWORD=2; _vantage 2>/dev/null; echo "${COMPREPLY[@]}"'],
+                          capture_output=True, text=True)
+    assert done.stdout == "--capture\n", (done.stdout, done.stderr)
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        check_files(folder)
+        check_manual(folder)
+
+
+main()
