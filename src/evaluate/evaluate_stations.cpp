@@ -19,8 +19,7 @@ std::vector<Objective> measures_of(const EvaluationOptions& options) {
   if (options.overlap) add(make_objective("overlap"));
   for (const Objective& measure : options.measures) add(measure);
   for (const Requirement& requirement : options.requirements) add(requirement.objective);
-  if (options.attainable && options.attainable->value > 0)
-    add(make_objective("capture", {.visible = options.attainable->value}));
+  if (options.attainable) add(make_objective("capture"));
   return all;
 }
 
@@ -80,10 +79,21 @@ std::vector<Evaluation> evaluate_networks(const EvaluationSite& site,
         networks, {.registration = needs.surroundings_registration ? needs.registration : std::nullopt},
         {.report = {}, .stop = progress.stop});
 
+  AttainableCounts attainable;
+  std::vector<Estimate> captured;
+  if (options.attainable) {
+    attainable = *options.attainable;
+    const Progress silent{.report = {}, .stop = progress.stop};
+    bool whole = true;
+    for (const Network& network : networks) whole = whole && raise_attainable(attainable, site.simulator, network, silent);
+    if (whole) captured = captured_shares(site.simulator, attainable, networks, silent);
+  }
+
   std::vector<Evaluation> made;
   for (std::size_t k = 0; k < networks.size(); ++k) {
     const bool has_around = site.surroundings && options.overlap;
-    if (counts[k].cancelled || (has_around && (around.empty() || around[k].cancelled))) {
+    if (counts[k].cancelled || (has_around && (around.empty() || around[k].cancelled)) ||
+        (options.attainable && captured.empty())) {
       made.push_back({.stations = stations[k]});
       made.back().counts.cancelled = true;
       continue;
@@ -91,7 +101,7 @@ std::vector<Evaluation> evaluate_networks(const EvaluationSite& site,
     const auto existing = static_cast<std::size_t>(std::ranges::count(stations[k], true, &PlacedStation::kept));
     std::optional<Visit> visit;
     if (site.on_site) visit = site.on_site->visit(std::span(stations[k]).subspan(existing));
-    const MeasuredNetwork measured{
+    MeasuredNetwork measured{
         .counts = counts[k],
         .stations = stations[k],
         .kept = existing,
@@ -105,13 +115,15 @@ std::vector<Evaluation> evaluate_networks(const EvaluationSite& site,
         .surroundings = has_around ? &around[k] : nullptr,
         .surroundings_voxels = has_around ? site.surroundings->voxel_count() : 0,
         .minutes_on_site = visit ? visit->minutes : 0};
+    if (options.attainable) measured.captured = captured[k];
     Evaluation& one = made.emplace_back(evaluation_of(measured, measures, options.registration));
     if (options.registration) {
       const Estimate rms = registration_estimate(counts[k], measured.voxels, *options.registration,
                                                  measured.surroundings, measured.surroundings_voxels);
       one.values["registration"] = {kMillimetres * rms.value, kMillimetres * rms.standard_error};
     }
-    one.names = options.names, one.visit = std::move(visit), one.attainable = options.attainable;
+    one.names = options.names, one.visit = std::move(visit);
+    if (options.attainable) one.attainable = attainable.coverage();
     one.link_overlap = options.link_overlap, one.link = options.link;
     one.violation = violation_of(one, options.requirements);
   }
