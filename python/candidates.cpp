@@ -134,9 +134,11 @@ void add_finding(py::module_& m) {
       .def_property_readonly("stations", &Candidates::stations, "The positions, all 'ok'.")
       .def_property_readonly("coverage", &Candidates::coverage, py::return_value_policy::reference_internal,
                              "SampledCoverage of these stations, in that order.")
-      .def_property_readonly("visible", &Candidates::visible,
-                             "Attainable coverage: (coverage, standard error) with a station on every candidate.")
-      .def_property_readonly("change", &Candidates::change, "Relative change of it by the last doubling.")
+      .def_property_readonly("attainable", &Candidates::attainable,
+                             "Attainable coverage, with its standard error: by the best candidate for each voxel.")
+      .def_property_readonly("captured_matrix", &Candidates::captured_matrix,
+                             "Coverage matrix of the share of what is attainable.")
+      .def_property_readonly("change", &Candidates::change, "By what share the last doubling raised that.")
       .def_property_readonly("ended", &Candidates::ended,
                              "Why growth ended: 'enough', 'all', 'most', 'time' or 'cancelled'.")
       .def_property_readonly("spacing_m", &Candidates::spacing_m, "Typical distance between neighbours.")

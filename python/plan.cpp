@@ -138,7 +138,7 @@ void add_progress(py::module_& m) {
       .def_readonly("seconds_left", &Watched::seconds_left, "Time left; negative: not known yet.")
       .def_readonly("whole_seconds_left", &Watched::whole_seconds_left,
                     "Time of all the rest, given once by searches for the fewest stations; else None.")
-      .def_readonly("visible", &Watched::visible, "Attainable coverage, given once, when it is known; else None.")
+      .def_readonly("attainable", &Watched::attainable, "Attainable coverage, given once, when it is known; else None.")
       .def_property_readonly(
           "front", &scaled_front,
           "Values that the optimiser minimises for each network of the front, 0 best: (k, objectives).");

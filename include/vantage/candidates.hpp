@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "vantage/attainable.hpp"
 #include "vantage/cover.hpp"
 #include "vantage/measure.hpp"
 #include "vantage/placement.hpp"
@@ -24,7 +25,7 @@ namespace vantage {
 /// An amount is a station's points in a voxel, up to the goal. If voxels have different goals, points count by
 /// `Simulator::point_weight`. Each column is counted as a network of one station. Noise is keyed by a station's place
 /// in its network, so the same station has other noise at another place. Without noise, sums of columns equal the
-/// counts of `Simulator::evaluate_sampled`; with noise they are another draw of the same distribution.
+/// counts of `Simulator::evaluate_sampled`, up to the goal; with noise they are another draw of the same distribution.
 class SampledCoverage {
  public:
   SampledCoverage() = default;
@@ -79,8 +80,8 @@ std::vector<PlacedStation> candidate_positions(const SearchArea& area, const Cla
 /// How candidates are found.
 struct CandidateConfig {
   std::size_t first = 128;               ///< Initial number; it is doubled until a limit holds.
-  std::size_t most = 2048;               ///< Largest number.
-  double change = 0.005;                 ///< Stops once doubling changes their common coverage by less than this share.
+  std::size_t most = 4096;               ///< Largest number.
+  double change = 0.01;                  ///< Stops once doubling raises attainable coverage by less than this share.
   std::uint64_t sample_voxels = 20'000;  ///< 0: every voxel.
   std::uint32_t scanner = 0;             ///< Scanner on each, an index into `Simulator::scanners()`.
   double max_seconds = 0;  ///< Time limit for growing; 0: none. With a limit the result depends on the machine.
@@ -92,9 +93,13 @@ Settings settings(const CandidateConfig& config);
 class Candidates {
  public:
   const std::vector<PlacedStation>& stations() const noexcept { return stations_; }  ///< All are ok.
-  const SampledCoverage& coverage() const noexcept { return coverage_; }             ///< All 'ok'.
-  /// Attainable coverage (equation 8): that of a station on every candidate, with the standard error of the sample.
-  const Estimate& visible() const noexcept { return visible_; }
+  const SampledCoverage& coverage() const noexcept { return coverage_; }             ///< Of these stations, in order.
+  /// The most points that a station on one of them leaves in each voxel of the sample.
+  const AttainableCounts& attainable_counts() const noexcept { return attainable_counts_; }
+  /// The coverage matrix with attainable counts as goals: its F is the share of what is attainable.
+  CoverageMatrix captured_matrix() const;
+  /// Attainable coverage, with the standard error of the sample.
+  const Estimate& attainable() const noexcept { return attainable_; }
   /// Relative change of it by the last doubling; 1 if there was none.
   double change() const noexcept { return change_; }
   /// Why growth ended: "enough" (the change is below the wanted one), "all" (there is no further allowed position),
@@ -108,14 +113,15 @@ class Candidates {
                                     const Progress&);
   std::vector<PlacedStation> stations_;
   SampledCoverage coverage_;
-  Estimate visible_;
+  AttainableCounts attainable_counts_;
+  Estimate attainable_;
   double change_ = 1, spacing_m_ = 0;
   std::string ended_;
 };
 
 /// Finds allowed positions (`StationStatus::ok`) at the scanner's height, spread evenly over the ground in square
-/// metres. Doubles their number until their common coverage hardly changes. The first n are spread evenly too, for
-/// every n. Uses no random numbers. Throws Error invalid_argument if no position is allowed.
+/// metres. Doubles their number until attainable coverage hardly rises. The first n are spread evenly too, for every n.
+/// Uses no random numbers. Throws Error invalid_argument if no position is allowed.
 Candidates find_candidates(Simulator& simulator, const SearchArea& area, const ClashChecker& clash,
                            const CandidateConfig& config = {}, const Progress& progress = {});
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Chooses stations from a finite set of candidates: covering problems on plain arrays.
 ///
-/// A candidate is a column of a sparse matrix. Its entries are the amounts that it adds to elements; an element is
-/// covered once it has the goal. With a_ke the amount of candidate k in element e and w_e its weight, a set S has the
-/// coverage F(S) = Σ_e w_e min(Σ_{k ∈ S} a_ke / goal, 1) / Σ_e w_e. F is monotone and submodular: it grows with S, and
-/// its gains shrink.
+/// A candidate is a column of a sparse matrix. Its entries are the amounts that it adds to elements, each of which is
+/// covered once it has its goal g_e. With a_ke the amount of candidate k in element e and w_e its weight, a set S has
+/// the coverage F(S) = Σ_e w_e min(Σ_{k ∈ S} a_ke, g_e) / Σ_e w_e g_e. F grows with S and its gains shrink: it is
+/// monotone and submodular.
 /// Two problems of the literature on facility location are solved: the most coverage of N candidates (maximal covering:
 /// Church, ReVelle: The Maximal Covering Location Problem, 1974) and the fewest candidates of some coverage (partial
 /// set cover). Candidates may have to form one connected network, and pairs may be excluded. In a survey a candidate is
@@ -13,6 +13,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
@@ -45,14 +46,22 @@ class CoverageMatrix {
     return std::span(entries_).subspan(offsets_[candidate], offsets_[candidate + 1] - offsets_[candidate]);
   }
   const std::vector<std::uint32_t>& weights() const noexcept { return weights_; }
-  double total_weight() const noexcept { return total_weight_; }
-  double goal() const noexcept { return goal_; }  ///< The amount that covers an element.
+  double goal() const noexcept { return goal_; }  ///< The amount that covers an element where all have one goal.
+  /// The amount that covers an element. REQUIRES: element < elements().
+  double goal(std::size_t element) const { return goals_.empty() ? goal_ : goals_[element]; }
+  /// w_e g_e, as a multiple of the common goal: what covering an element adds to F, times total_weight().
+  double weight(std::size_t element) const { return goals_.empty() ? weights_[element] : shares_[element]; }
+  double total_weight() const noexcept { return total_weight_; }  ///< Σ_e weight(e).
+
+  /// Gives each element a goal of its own. An element whose goal is 0 no longer counts. Throws Error invalid_argument
+  /// unless there is one for each, none below 0.
+  void set_goals(std::span<const double> goals);
 
   /// Appends a candidate by its amount in each element. REQUIRES: amounts.size() == elements().
   void add(std::span<const std::uint32_t> amounts);
   /// Appends a candidate by its entries. REQUIRES: rising elements, amounts above 0.
   void add(std::span<const Entry> column);
-  /// Appends the first `most` candidates of another matrix. Throws Error invalid_argument unless its weights and goal
+  /// Appends the first `most` candidates of another matrix. Throws Error invalid_argument unless its weights and goals
   /// are the same.
   void append(const CoverageMatrix& other, std::size_t most = std::numeric_limits<std::size_t>::max());
 
@@ -62,6 +71,7 @@ class CoverageMatrix {
  private:
   std::vector<std::uint32_t> weights_;
   double total_weight_ = 0, goal_ = 1;
+  std::vector<double> goals_, shares_;  // by element; empty: the common goal
   std::vector<std::size_t> offsets_{0};
   std::vector<Entry> entries_;
 };
@@ -94,6 +104,10 @@ class StationGraph {
   void exclude(std::size_t i, std::size_t j);
   /// Excludes all pairs whose positions are less than `least_m` apart. REQUIRES: a position for each candidate.
   void exclude_nearer(std::span<const Vec3> positions, double least_m);
+  /// Excludes the pairs that are nearer than the smaller of their two distances, and between which nothing stands.
+  /// `parted`: whether something stands between two candidates. REQUIRES: a position and a distance for each candidate.
+  void exclude_nearer(std::span<const Vec3> positions, std::span<const double> least_m,
+                      const std::function<bool(std::size_t, std::size_t)>& parted);
 
  private:
   std::size_t size_ = 0;

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "vantage/attainable.hpp"
 #include "vantage/measure.hpp"
 #include "vantage/objective.hpp"
 #include "vantage/on_site.hpp"
@@ -69,7 +70,7 @@ struct Evaluation {
   VoxelField field = {};  ///< Points of every voxel, if they were asked for.
   /// Figures by the names of their measures, e.g. "coverage", in the measures' units. NaN: not known.
   std::map<std::string, Estimate> values = {};
-  /// Attainable coverage, that of heads on all allowed positions together, if known; `capture` is a share of it.
+  /// Attainable coverage, if it is known; `capture` is a share of it.
   std::optional<Estimate> attainable = std::nullopt;
   OverlapMatrix overlap_matrix = {};           ///< Equation 11; empty: pairs were not counted.
   PairMatrix overlap_errors = {};              ///< Their standard errors; empty for exact ones.
@@ -116,8 +117,8 @@ struct EvaluationOptions {
   std::optional<RegistrationOptions> registration = std::nullopt;  ///< Predict the error of the registered scans.
   std::vector<Target> targets = {};  ///< Targets and control points that tie scans together, for `registration`.
   TargetOptions target = {};
-  /// Attainable coverage; measures `capture` too, as a share of it.
-  std::optional<Estimate> attainable = std::nullopt;
+  /// Measures `capture` too. The evaluated stations raise these counts where one alone sees more. Null: not.
+  const AttainableCounts* attainable = nullptr;
   double link_overlap = default_link_overlap, link = default_link;  ///< As in `Evaluation`.
   std::vector<std::string> names = {};                              ///< The stations' names, one each, or none.
 };

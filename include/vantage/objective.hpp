@@ -33,7 +33,9 @@ struct MeasuredNetwork {
   /// objective needs them. `surroundings_voxels`: the number of its voxels.
   const NetworkCounts* surroundings = nullptr;
   std::uint64_t surroundings_voxels = 0;
-  double minutes_on_site = 0;  ///< From `OnSite`, without existing stations; 0 if no objective needs it.
+  double minutes_on_site = 0;  ///< By `OnSite`, without kept stations; 0 where no objective needs it.
+  /// Share of what is attainable that the network captures (vantage/attainable.hpp); NaN where no objective needs it.
+  Estimate captured = {std::numeric_limits<double>::quiet_NaN(), 0};
 };
 
 /// Inputs of an objective besides the stations. Inputs that no objective needs are not computed.
@@ -45,8 +47,9 @@ struct RequiredInputs {
   bool time = false;          ///< `MeasuredNetwork::minutes_on_site`.
   /// `NetworkCounts::registration`, and with it `pairs`. Measures taken together share one model.
   std::optional<RegistrationModel> registration = std::nullopt;
-  bool surroundings_registration = false;  ///< The same of `MeasuredNetwork::surroundings`, with the same model.
-  /// `ObjectiveSettings::visible`; a search remakes the objective once that is known.
+  bool surroundings_registration = false;  ///< That of `MeasuredNetwork::surroundings` too, by the same model.
+  /// `MeasuredNetwork::captured`, and with it `ObjectiveSettings::attainable`: a search makes the objective anew once
+  /// that is known.
   bool attainable = false;
 };
 constexpr RequiredInputs operator|(const RequiredInputs& a, const RequiredInputs& b) {
@@ -93,8 +96,8 @@ struct Objective {
   /// handles limits of every kind; the choice knows those on coverage, links, distances and time.
   enum class Kind { other, coverage, link, distance, time };
   Kind kind = Kind::other;
-  double coverage_of_one = 1;  ///< For `Kind::coverage`: the coverage (equation 8) of a value of 1.
-  /// Advice if a limit on it is violated, after "to keep it, ": "allow more stations".
+  double coverage_of_one = 1;  ///< The coverage (equation 8) that a value of 1 has at least, for `Kind::coverage`.
+  /// What helps where a limit on it is not kept, after "to keep it, ": "allow more stations".
   std::string advice = "search longer";
   /// Its parameters as text. Results state them, and a run is resumed only under the same ones.
   std::string parameters = {};
@@ -144,7 +147,7 @@ struct ObjectiveSettings {
   double link_overlap = default_link_overlap;                 ///< `parts`: least overlap of a link.
   FitnessWeights fitness = {};
   RegistrationOptions registration = {};  ///< `registration`, `registration_worst`.
-  double visible = 1;                     ///< `capture`: attainable coverage, that of all allowed positions together.
+  double attainable = 1;                  ///< `capture`: attainable coverage, which a capture of 1 has at least.
 };
 /// Names of the built-in objectives: "coverage", "overlap", "stations", ….
 std::span<const std::string> objective_names();

@@ -51,10 +51,10 @@ struct SurveyProblem {
   /// requirements on `coverage`, `capture`, `link` and `apart`. The second finds the best network of that number by the
   /// objectives under all requirements.
   bool fewest = false;
-  /// Attainable coverage (equation 8), the denominator of `capture`. Empty: found by `find_candidates()` if `capture`
-  /// is used.
-  std::optional<double> visible = std::nullopt;
-  OnSiteOptions on_site = {};  ///< For the objective `time`, and the time on site that every plan reports.
+  /// Attainable coverage (vantage/attainable.hpp), which `capture` is a share of: told by a plan's result where
+  /// `capture` is asked for. A plan finds it anew, whatever is given.
+  std::optional<double> attainable = std::nullopt;
+  OnSiteOptions on_site = {};  ///< For the objective `time`, and the time on site that every plan tells.
 
   /// Parameters of the built-in objectives for this problem.
   ObjectiveSettings settings() const;
@@ -69,9 +69,9 @@ SurveyProblem coverage_overlap_fix(std::size_t stations);
 SurveyProblem coverage_min(std::size_t stations_min, std::size_t stations_max);
 SurveyProblem coverage_overlap_min(std::size_t stations_min, std::size_t stations_max);
 SurveyProblem fitness_min(std::size_t stations_min, std::size_t stations_max, const FitnessWeights& weights = {});
-/// The surveyor's question: the fewest stations that capture the share `capture` of attainable coverage, connected by
-/// scan overlaps of at least `link`, at least `apart_m` from each other; then, at that number, the least registration
-/// error.
+/// The surveyor's question: the fewest stations that capture so much of what is attainable, all linked along some
+/// spanning tree by scan overlaps of at least `link`, `apart_m` or more from each other; then, at that number, the
+/// least registration error.
 SurveyProblem fewest_stations(double capture = 0.9, double link = 0.3, std::size_t stations_min = 1,
                               std::size_t stations_max = max_stations, double apart_m = 1);
 /// A problem of `problem_names()`: "coverage-fix", "coverage-overlap-fix", "coverage-min", "coverage-overlap-min",
@@ -85,9 +85,9 @@ SurveyProblem survey_problem(std::span<const std::string> objectives, std::size_
 
 /// Settings of a search.
 struct PlanConfig {
-  std::size_t population = 0;  ///< 0: with one objective 10, or 20 if the number is searched; else 100.
-  /// Number of iterations, of `population` evaluations each. 0: 100; for the fewest stations it depends on the site, so
-  /// that the search traces about twice as many stations as the look at attainable coverage.
+  std::size_t population = 0;  ///< 0: with one objective 10, or 20 where the number is searched; else 100.
+  /// Of `population` evaluations each. 0: 100; where the fewest stations are asked for, by the site, so that the search
+  /// traces about twice as many stations as there are candidates.
   std::size_t iterations = 0;
   double sigma0 = 0.2;
   /// Makes the optimiser of problems with several objectives; empty: MO-CMA-ES. A checkpoint is resumed only with the
@@ -136,7 +136,16 @@ struct PlanEntry : Evaluation {
   bool dominated = false;
 };
 
-/// One line of the history, for one iteration.
+/// A point of the trade-off: the best network found of so many stations.
+struct TradeOffPoint {
+  std::vector<PlacedStation> stations = {};      ///< Existing ones first.
+  std::map<std::string, Estimate> values = {};   ///< By the names of their measures, as an entry's.
+  std::optional<double> minutes_on_site = {};    ///< Without existing stations.
+  bool answer = false;                           ///< The plan's answer.
+  bool knee = false;  ///< The point farthest above the line from the first to the last.
+};
+
+/// One line of the history, an iteration each.
 struct PlanIteration {
   std::size_t iteration = 0, evaluations = 0;
   double hypervolume = 0;
@@ -156,8 +165,14 @@ struct PlanResult {
   std::vector<Objective> measures;
   /// Sorted by the objectives in order, best first. One entry if there is one objective.
   std::vector<PlanEntry> front;
-  /// Attainable coverage and its positions, if `capture` is used or the number of stations is decided first.
+  /// Candidates, if `capture` is used or the number of stations is decided first.
   std::shared_ptr<const Candidates> candidates;
+  /// Attainable coverage of the candidates and the stations of the front, the denominator of `capture`. Measured on
+  /// voxels by which nothing was chosen, unless the site has few. Empty if `capture` is not used.
+  std::optional<Estimate> attainable = std::nullopt;
+  /// Stations against what they capture, from one to a few beyond the answer, if `capture` decides their number.
+  /// Estimated on the voxels of `attainable`, except for the answer.
+  std::vector<TradeOffPoint> trade_off;
   std::vector<PlanIteration> history;
   /// Final hypervolume of the search; reference point (1, …, 1) of scaled objectives. With one objective it is 1 less
   /// its scaled value.
@@ -182,8 +197,8 @@ struct PlanProgress {
   /// The present front of the optimiser: decision vectors and `scaled_objectives()`, 1 and more if requirements are
   /// violated. Valid during the call.
   std::span<const ParetoPoint> front = {};
-  /// Given once: the attainable coverage, that of a head on every one of `evaluations` places all over the ground.
-  std::optional<double> visible = std::nullopt;
+  /// Given once: attainable coverage, from `evaluations` places all over the ground.
+  std::optional<double> attainable = std::nullopt;
   /// Given once for the fewest stations, when their number is about known: estimated time of all the rest, from the
   /// parts done so far.
   std::optional<double> whole_seconds_left = std::nullopt;

@@ -30,6 +30,10 @@ std::vector<SummaryLine> summary_lines(const Evaluation& evaluation, std::span<c
 /// The same as lines for a terminal.
 std::string summary_text(const Evaluation& evaluation, std::span<const Requirement> requirements = {});
 
+/// Lines for a terminal: the trade-off of a plan as a table of about five lines, with captured share, registration error
+/// and time on site of each number of stations. Empty if the plan has none.
+std::string trade_off_text(const PlanResult& result);
+
 /// Lines for a terminal: a sentence for each requirement that no network of a front meets, with the nearest value.
 /// Empty if each is met by some network.
 std::string unmet_text(const PlanResult& result);

@@ -2,6 +2,7 @@
 /// All of vantage.
 #pragma once
 
+#include "vantage/attainable.hpp"
 #include "vantage/candidates.hpp"
 #include "vantage/cover.hpp"
 #include "vantage/error.hpp"

@@ -617,7 +617,9 @@ class Candidates:
     @property
     def coverage(self) -> SampledCoverage: ...
     @property
-    def visible(self) -> Estimate: ...
+    def attainable(self) -> Estimate: ...
+    @property
+    def captured_matrix(self) -> CoverageMatrix: ...
     @property
     def change(self) -> float: ...
     @property
@@ -966,7 +968,7 @@ class SurveyProblem:
         registration: RegistrationOptions = ...,
         on_site: OnSiteOptions = ...,
         fewest: bool = False,
-        visible: Optional[float] = None,
+        attainable: Optional[float] = None,
         objectives: Iterable[Union[str, Objective]] = (),
         requirements: Iterable[Union[str, Requirement]] = (),
     ) -> None: ...
@@ -981,7 +983,7 @@ class SurveyProblem:
     registration: RegistrationOptions
     on_site: OnSiteOptions
     fewest: bool
-    visible: Optional[float]
+    attainable: Optional[float]
     @property
     def objectives(self) -> Tuple[Objective, ...]: ...
     @objectives.setter
@@ -1021,7 +1023,7 @@ class PlanProgress:
     @property
     def whole_seconds_left(self) -> Optional[float]: ...
     @property
-    def visible(self) -> Optional[float]: ...
+    def attainable(self) -> Optional[float]: ...
     @property
     def front(self) -> Floats: ...
 

@@ -7,6 +7,7 @@
 
 #include "cli/command.hpp"
 #include "cli/options.hpp"
+#include "cli/prove.hpp"
 #include "cli/run_report.hpp"
 #include "cli/site.hpp"
 #include "vantage/candidates.hpp"
@@ -34,7 +35,7 @@ struct BoundOptions {
         ->group("Bound");
     add_values(
         command, "--capture", "C[,C]",
-        "Share of what can be seen: the least number of stations that captures it; may be repeated",
+        "Share of what is attainable: the least number of stations that captures it; may be repeated",
         [this](const std::string& text, const std::string& what) {
           for (const double one : parse_numbers(text, what, 1, 1000, {.low = 0, .high = 1, .low_included = false}))
             captures.push_back(one);
@@ -77,26 +78,21 @@ nlohmann::json heads_json(const Candidates& candidates, const std::vector<std::s
 
 std::string percent(double share) { return fmt::format("{:.1f} %", 100 * share); }
 
-std::string text_of(const CoverSolution& best, std::size_t stations, const Estimate& reached, double visible) {
-  if (best.chosen.empty())
-    return fmt::format(
-        "{:>3} stations  capture at most {:.4f} of what can be seen (coverage {:.4f}); no connected network of them "
-        "was "
-        "found\n",
-        stations, std::min(best.bound / visible, 1.0), best.bound);
-  std::string text = fmt::format(
-      "{:>3} stations  capture at most {:.4f} of what can be seen (coverage {:.4f}); found {:.4f} (coverage {:.4f} ± "
-      "{:.4f}), within {} of the best that any {} candidates can do\n",
-      stations, std::min(best.bound / visible, 1.0), best.bound, reached.value / visible, reached.value,
-      reached.standard_error, percent(CoverSolution::relative_gap(best.bound, reached.value)), stations);
-  text += fmt::format("              twice as many candidates raised the bound by {:.4f}{}\n", best.spacing_term,
-                      best.complete ? "" : "; the linear program was cut short");
-  return text;
+std::string text_of(const CoverSolution& best, std::size_t stations, const Estimate& captured) {
+  const std::string at_most = fmt::format("{:>3} stations  capture at most {} of what is attainable", stations,
+                                          percent(std::min(best.bound, 1.0)));
+  if (best.chosen.empty()) return at_most + "; no connected network of them was found\n";
+  return fmt::format(
+      "{}; found {} ± {}, within {} of the best that any {} candidates can do\n"
+      "              twice as many candidates raised the bound by {:.4f}{}\n",
+      at_most, percent(captured.value), percent(captured.standard_error),
+      percent(CoverSolution::relative_gap(best.bound, captured.value)), stations, best.spacing_term,
+      best.complete ? "" : "; the linear program was cut short");
 }
 
 std::string text_of(const StationsBound& bound, double capture) {
-  if (!bound.possible) return fmt::format("{:.4g} of what can be seen cannot be captured\n", capture);
-  return fmt::format("{:.4g} of what can be seen takes at least {} stations among the candidates ({:.2f}){}\n", capture,
+  if (!bound.possible) return fmt::format("{:.4g} of what is attainable cannot be captured\n", capture);
+  return fmt::format("{:.4g} of what is attainable takes at least {} stations among the candidates ({:.2f}){}\n", capture,
                      bound.at_least, bound.relaxation,
                      bound.chosen.empty() ? "" : fmt::format("; {} are enough", bound.chosen.size()));
 }
@@ -113,15 +109,16 @@ int bound(CLI::App& command, BoundOptions& options, Program& program) {
   ProgressLine line(program.console, "candidates");
   const Progress progress{.report = [&](double done) { line.update(done); }, .stop = program.stop};
   const Candidates candidates = find_candidates(simulator, site.area(), site.clash(), options.candidates, progress);
-  const double visible = candidates.visible().value;
-  if (program.stop.stop_requested() || !(visible > 0)) {
-    spdlog::error(visible > 0 ? "stopped before the end" : "no surveyed surface can be seen from any candidate");
+  const Estimate attainable = candidates.attainable();
+  if (program.stop.stop_requested() || !(attainable.value > 0)) {
+    spdlog::error(attainable.value > 0 ? "stopped before the end"
+                                       : "nothing that is surveyed can be captured from any candidate");
     return exit_failed;
   }
   std::string text = fmt::format(
-      "visible {:.4f} ± {:.4f} of what is surveyed, from {} candidates, no allowed position farther than "
+      "attainable {:.4f} ± {:.4f} of what is surveyed, from {} candidates, no allowed position farther than "
       "{:.2f} m from one\n",
-      visible, candidates.visible().standard_error, candidates.stations().size(), candidates.spacing_m());
+      attainable.value, attainable.standard_error, candidates.stations().size(), candidates.spacing_m());
   nlohmann::json by_number = nlohmann::json::array(), by_capture = by_number;
   StationGraph graph;
   if (options.link) {
@@ -131,14 +128,15 @@ int bound(CLI::App& command, BoundOptions& options, Program& program) {
   }
   line.set_label("bound");
   const SampledCoverage& sampled = candidates.coverage();
+  const CoverageMatrix matrix = candidates.captured_matrix();
   for (const std::size_t stations : options.stations) {
-    const CoverSolution found = max_cover({.matrix = sampled.matrix(),
+    const CoverSolution found = max_cover({.matrix = matrix,
                                            .graph = options.link ? &graph : nullptr,
                                            .most = stations,
                                            .link = options.link.value_or(0)},
                                           options.bound, progress);
-    const Estimate reached = sampled.coverage(found.chosen);
-    text += text_of(found, stations, reached, visible);
+    const Estimate reached = captured_by(candidates.attainable_counts(), matrix, found.chosen);
+    text += text_of(found, stations, reached);
     by_number.push_back({{"stations", stations},
                          {"bound", found.bound},
                          {"relaxation", found.relaxation},
@@ -154,7 +152,7 @@ int bound(CLI::App& command, BoundOptions& options, Program& program) {
   for (const double capture : options.captures) {
     if (program.stop.stop_requested()) break;
     const StationsBound found =
-        min_cover({.matrix = sampled.matrix(), .coverage = capture * visible}, options.bound, progress);
+        min_cover({.matrix = matrix, .coverage = capture}, options.bound, progress);
     text += text_of(found, capture);
     by_capture.push_back({{"capture", capture},
                           {"possible", found.possible},
@@ -167,8 +165,9 @@ int bound(CLI::App& command, BoundOptions& options, Program& program) {
     program.console.print(text);
     return exit_ok;
   }
-  program.console.print(nlohmann::json{{"visible", visible},
-                                       {"visible_se", candidates.visible().standard_error},
+  program.console.print(nlohmann::json{{"attainable", attainable.value},
+                                       {"attainable_se", attainable.standard_error},
+                                       {"last_doubling", candidates.change()},
                                        {"candidates", candidates.stations().size()},
                                        {"candidates_ended", candidates.ended()},
                                        {"spacing", candidates.spacing_m()},

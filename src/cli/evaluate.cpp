@@ -16,8 +16,8 @@
 namespace vantage::cli {
 namespace {
 
-// Of voxels, for what can be seen at all: known to .004.
-constexpr std::uint64_t visible_sample = 20'000;
+// Of voxels, for what is attainable: known to .004, and what is captured of it to .002.
+constexpr std::uint64_t kAttainableSample = 20'000;
 
 struct EvaluateCommandOptions {
   SiteArguments site;
@@ -26,7 +26,7 @@ struct EvaluateCommandOptions {
   OnSiteOptions on_site;
   TargetOptions target;
   std::optional<std::string> targets, proposed_targets;
-  bool exact = false, skip = false, no_overlap = false, with_registration = false, visible = false;
+  bool exact = false, skip = false, no_overlap = false, with_registration = false, attainable = false;
   std::optional<SampleSize> sample;
   std::optional<double> error, link, link_overlap;
   std::optional<std::string> cartography, matrix, picture;
@@ -74,8 +74,9 @@ struct EvaluateCommandOptions {
         ->group("Targets");
     add_settings(command, target_settings(), target);
     command
-        .add_flag("--visible", visible,
-                  "Tell it as a share of what can be seen at all, too: takes as long as some hundred sampled stations")
+        .add_flag("--attainable", attainable,
+                  "Tell what is captured as a share of what is attainable, too: takes as long as some hundred sampled "
+                  "stations")
         ->group("Evaluation");
     add_number(
         command, "--link", "SHARE",
@@ -111,11 +112,11 @@ struct EvaluateCommandOptions {
 };
 
 // As `plan` looks at it before it searches.
-Estimate visible_share(Site& site, Simulator& simulator, std::uint64_t sample, Program& program) {
+AttainableCounts attainable_counts(Site& site, Simulator& simulator, std::uint64_t sample, Program& program) {
   ProgressLine line(program.console, "look");
-  return find_candidates(simulator, site.area(), site.clash(), {.most = 512, .sample_voxels = sample},
+  return find_candidates(simulator, site.area(), site.clash(), {.sample_voxels = sample},
                          {.report = [&](double done) { line.update(done); }, .stop = program.stop})
-      .visible();
+      .attainable_counts();
 }
 
 // Throws Error invalid_argument for options that do not go together, and files that no writer has.
@@ -153,7 +154,7 @@ void check(const EvaluateCommandOptions& options, const Site& site) {
     refuse("--registration: looks at what scans share, which --no-overlap leaves out");
 }
 
-// How the network is evaluated, but for its names and what can be seen.
+// How the network is evaluated, but for its names and what is attainable.
 EvaluationOptions evaluation_options(const EvaluateCommandOptions& options, Simulator& simulator,
                                      const Network& network, const Progress& progress) {
   EvaluationOptions chosen{.overlap = !options.no_overlap,
@@ -294,10 +295,6 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
   const Progress progress{.report = [&](double done) { line.update(done); }, .stop = program.stop};
   EvaluationOptions chosen = evaluation_options(options, simulator, to_network(stations), progress);
   chosen.names = names;
-  if (options.visible)
-    chosen.attainable = visible_share(
-        site, simulator, options.sampled() ? std::min(chosen.sample_voxels, simulator.voxel_count()) : visible_sample,
-        program);
   chosen.target = options.target;
   if (options.targets) chosen.targets = read_targets_csv(*options.targets);
   if (options.proposed_targets) {
@@ -306,6 +303,14 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
     if (!proposal) throw Stopped{};
     spdlog::info("{}", proposal_text(*proposal, options.target.wanted));
     chosen.targets = std::move(proposal->targets);
+  }
+  AttainableCounts attainable;
+  if (options.attainable) {
+    attainable = attainable_counts(site, simulator,
+                                   options.sampled() ? std::min(chosen.sample_voxels, simulator.voxel_count())
+                                                     : std::min(kAttainableSample, simulator.voxel_count()),
+                                   program);
+    chosen.attainable = &attainable;
   }
   const Evaluation found = site.evaluate(placed, chosen, options.on_site, progress);
   if (found.counts.cancelled) throw Stopped{};

@@ -183,9 +183,9 @@ PlanResult run_plan(Site& site, const SurveyProblem& problem, const PlanConfig& 
   const auto report = [&](const PlanProgress& now) {
     line.set_label(now.phase);
     if (now.phase != phase) phase = now.phase, begun = Clock::now();
-    if (now.visible)
-      spdlog::info("{:.1f} % of the site can be seen from {} places all over the ground together", 100 * *now.visible,
-                   now.evaluations);
+    if (now.attainable)
+      spdlog::info("{:.1f} % of the site is attainable, by the best of {} places all over the ground for each surface",
+                   100 * *now.attainable, now.evaluations);
     // What it will take is told as soon as it is known, of the whole, and of each part that takes long.
     if (now.whole_seconds_left) {
       const double left = std::min(kWithResults * *now.whole_seconds_left, all_by.seconds_left());
@@ -238,7 +238,8 @@ void write_results(const std::filesystem::path& folder, Site& site, const PlanOp
                   {.title = site.name(), .field = field ? &*field : nullptr, .missed = judged ? &*judged : nullptr},
                   program, all_by.stop());
   if (options.prove)
-    prove(folder / "bound.json", site, simulator, chosen.stations, result.problem.kept.size(), program);
+    prove(folder / "bound.json", site, simulator, chosen.stations, result.problem.kept.size(), result.attainable.has_value(),
+          program);
 }
 
 int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {

@@ -56,6 +56,7 @@ std::string plan_text(const PlanResult& result, std::size_t chosen, const std::s
       "\n";
   text += summary_text(entry);  // violated requirements follow, with advice
   for (const std::string& help : what_would_help(result)) text += fmt::format("{:<11}{}\n", "would help", help);
+  if (const std::string trade_off = trade_off_text(result); !trade_off.empty()) text += "\n" + trade_off + "\n";
   return text + "results in " + folder + "\n";
 }
 

@@ -9,8 +9,16 @@
 
 namespace vantage::cli {
 
+Estimate captured_by(const AttainableCounts& attainable, const CoverageMatrix& matrix,
+                     std::span<const std::size_t> chosen) {
+  std::vector<double> amounts(matrix.elements());
+  for (const std::size_t k : chosen)
+    for (const CoverageMatrix::Entry& one : matrix.column(k)) amounts[one.element] += one.amount;
+  return attainable.captured(amounts);
+}
+
 void prove(const std::filesystem::path& file, Site& site, Simulator& simulator, std::span<const PlacedStation> stations,
-           std::size_t kept, Program& program) {
+           std::size_t kept, bool of_attainable, Program& program) {
   if (stations.size() <= kept) return;
   ProgressLine line(program.console, "bound");
   const Progress progress{.report = [&](double done) { line.update(done); }, .stop = program.abort};
@@ -27,14 +35,22 @@ void prove(const std::filesystem::path& file, Site& site, Simulator& simulator, 
   std::vector<std::size_t> plan(stations.size()), existing(kept);
   std::iota(plan.begin(), plan.end(), first);
   std::iota(existing.begin(), existing.end(), first);
-  const Estimate reached = sampled.coverage(plan);
+  AttainableCounts attainable = candidates.attainable_counts();
+  CoverageMatrix matrix = sampled.matrix();
+  for (const std::size_t k : plan)
+    for (const CoverageMatrix::Entry& one : matrix.column(k)) attainable.raise(one.element, one.amount);
+  if (of_attainable) matrix.set_goals(attainable.counts());
+  const auto reached_by = [&](std::span<const std::size_t> chosen) {
+    return of_attainable ? captured_by(attainable, matrix, chosen) : sampled.coverage(chosen);
+  };
+  const Estimate reached = reached_by(plan);
   const CoverSolution bound =
-      max_cover({.matrix = sampled.matrix(), .existing = std::move(existing), .most = placed}, {}, progress);
+      max_cover({.matrix = matrix, .existing = std::move(existing), .most = placed}, {}, progress);
   const double gap = CoverSolution::relative_gap(bound.bound, reached.value);
   spdlog::info(
-      "within {:.1f} % of the best that any {} stations can do: coverage {:.4f} ± {:.4f} on a sample, where no network "
+      "within {:.1f} % of the best that any {} stations can do: {} {:.4f} ± {:.4f} on a sample, where no network "
       "of {} candidates has more than {:.4f}; twice as many candidates raised that by {:.4f}",
-      100 * gap, placed, reached.value, reached.standard_error, candidates.stations().size(), bound.bound,
+      100 * gap, placed, of_attainable ? "captured" : "coverage", reached.value, reached.standard_error, candidates.stations().size(), bound.bound,
       bound.spacing_term);
   nlohmann::json chosen = nlohmann::json::array();
   for (const std::size_t k : bound.chosen) {
@@ -43,6 +59,7 @@ void prove(const std::filesystem::path& file, Site& site, Simulator& simulator, 
   }
   write_text(file, nlohmann::json{{"stations", placed},
                                   {"kept", kept},
+                                  {"measure", of_attainable ? "captured" : "coverage"},
                                   {"reached", reached.value},
                                   {"reached_se", reached.standard_error},
                                   {"bound", bound.bound},
@@ -51,9 +68,9 @@ void prove(const std::filesystem::path& file, Site& site, Simulator& simulator, 
                                   {"spacing_term", bound.spacing_term},
                                   {"candidates", candidates.stations().size()},
                                   {"spacing", candidates.spacing_m()},
-                                  {"visible", candidates.visible().value},
-                                  {"visible_se", candidates.visible().standard_error},
-                                  {"best_of_candidates", sampled.coverage(bound.chosen).value},
+                                  {"attainable", attainable.coverage().value},
+                                  {"attainable_se", attainable.coverage().standard_error},
+                                  {"best_of_candidates", reached_by(bound.chosen).value},
                                   {"chosen", std::move(chosen)},
                                   {"sample", sampled.voxels().size()}}
                            .dump(2) +

@@ -9,9 +9,13 @@
 
 namespace vantage::cli {
 
-// Bounds the coverage of any network of as many stations with the first `kept` of `stations`, reports how near the plan
-// comes, and writes the result to `file` as JSON.
+// What candidates capture together of what is attainable, by their columns.
+Estimate captured_by(const AttainableCounts& attainable, const CoverageMatrix& matrix,
+                     std::span<const std::size_t> chosen);
+
+// Bounds what any network of as many stations captures, the first `kept` of `stations` given, says how near these come,
+// and writes it to `file` as JSON. Of what is attainable, or else coverage.
 void prove(const std::filesystem::path& file, Site& site, Simulator& simulator, std::span<const PlacedStation> stations,
-           std::size_t kept, Program& program);
+           std::size_t kept, bool of_attainable, Program& program);
 
 }  // namespace vantage::cli

@@ -65,7 +65,7 @@ struct BendersMaster::Impl {
         group_weight(groups) {
     const double all = matrix.total_weight() > 0 ? matrix.total_weight() : 1;
     for (std::size_t e = 0; e < weight.size(); ++e) {
-      weight[e] = matrix.weights()[e] / all;
+      weight[e] = matrix.weight(e) / all;
       group_weight[group_of(e)] += weight[e];
     }
     for (const std::size_t k : existing)
@@ -75,7 +75,7 @@ struct BendersMaster::Impl {
 
   // Neighbouring numbers share a group: along a space-filling curve they are covered alike.
   std::size_t group_of(std::size_t element) const { return element * groups / weight.size(); }
-  double share(const CoverageMatrix::Entry& one) const { return std::min(one.amount / matrix.goal(), 1.0); }
+  double share(const CoverageMatrix::Entry& one) const { return std::min(one.amount / matrix.goal(one.element), 1.0); }
 
   std::vector<double> covered_at(std::span<const double> y) const {
     std::vector<double> covered(base);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cassert>
 #include <numeric>
+#include <string>
 
 #include "cover/partial_cover.hpp"
 #include "vantage/cover.hpp"
@@ -13,6 +14,19 @@ CoverageMatrix::CoverageMatrix(std::vector<std::uint32_t> weights, double goal)
     : weights_(std::move(weights)),
       total_weight_(std::accumulate(weights_.begin(), weights_.end(), 0.0)),
       goal_(goal) {}
+
+void CoverageMatrix::set_goals(std::span<const double> goals) {
+  if (goals.size() != elements() || !std::ranges::all_of(goals, [](double goal) { return goal >= 0; }))
+    throw Error(Errc::invalid_argument, "coverage matrix: " + std::to_string(goals.size()) + " goals for " +
+                                            std::to_string(elements()) + " elements; give one for each, none below 0");
+  goals_.assign(goals.begin(), goals.end());
+  shares_.resize(goals.size());
+  total_weight_ = 0;
+  for (std::size_t e = 0; e < goals_.size(); ++e) {
+    total_weight_ += shares_[e] = weights_[e] * (goals_[e] / goal_);
+    if (goals_[e] == 0) goals_[e] = goal_;  // nothing is divided by it; its weight is 0
+  }
+}
 
 void CoverageMatrix::add(std::span<const std::uint32_t> amounts) {
   assert(amounts.size() == elements());
@@ -27,7 +41,7 @@ void CoverageMatrix::add(std::span<const Entry> column) {
 }
 
 void CoverageMatrix::append(const CoverageMatrix& other, std::size_t most) {
-  if (other.weights_ != weights_ || other.goal_ != goal_)
+  if (other.weights_ != weights_ || other.goal_ != goal_ || other.goals_ != goals_ || other.shares_ != shares_)
     throw Error(Errc::invalid_argument, "coverage matrix: candidates over other elements cannot be appended");
   const std::size_t before = entries_.size(), count = std::min(most, other.candidates());
   entries_.insert(entries_.end(), other.entries_.begin(),

@@ -10,8 +10,8 @@ PartialCover::PartialCover(const CoverageMatrix& matrix, std::span<const std::si
   for (const std::size_t candidate : chosen) add(candidate);
 }
 
-double PartialCover::covered(std::uint64_t amount) const {
-  const double share = static_cast<double>(amount) / matrix_.goal();
+double PartialCover::covered(std::size_t element, std::uint64_t amount) const {
+  const double share = static_cast<double>(amount) / matrix_.goal(element);
   return share < 1 ? share : 1;
 }
 
@@ -27,8 +27,8 @@ double PartialCover::gain(std::size_t candidate) const {
   double sum = 0;
   for (const CoverageMatrix::Entry& one : matrix_.column(candidate)) {
     const std::uint64_t has = amounts_[one.element];
-    if (static_cast<double>(has) >= matrix_.goal()) continue;
-    sum += matrix_.weights()[one.element] * (covered(has + one.amount) - covered(has));
+    if (static_cast<double>(has) >= matrix_.goal(one.element)) continue;
+    sum += matrix_.weight(one.element) * (covered(one.element, has + one.amount) - covered(one.element, has));
   }
   return matrix_.total_weight() > 0 ? sum / matrix_.total_weight() : 0;
 }
@@ -37,14 +37,14 @@ double PartialCover::loss(std::size_t candidate) const {
   double sum = 0;
   for (const CoverageMatrix::Entry& one : matrix_.column(candidate)) {
     const std::uint64_t has = amounts_[one.element];
-    sum += matrix_.weights()[one.element] * (covered(has) - covered(has - one.amount));
+    sum += matrix_.weight(one.element) * (covered(one.element, has) - covered(one.element, has - one.amount));
   }
   return matrix_.total_weight() > 0 ? sum / matrix_.total_weight() : 0;
 }
 
 double PartialCover::value() const {
   double sum = 0;
-  for (std::size_t e = 0; e < amounts_.size(); ++e) sum += matrix_.weights()[e] * covered(amounts_[e]);
+  for (std::size_t e = 0; e < amounts_.size(); ++e) sum += matrix_.weight(e) * covered(e, amounts_[e]);
   return matrix_.total_weight() > 0 ? sum / matrix_.total_weight() : 0;
 }
 
@@ -63,13 +63,13 @@ void ColumnIndex::add_gains_without(std::size_t leaving, const PartialCover& cov
   if (matrix_.total_weight() <= 0) return;
   for (const CoverageMatrix::Entry& one : matrix_.column(leaving)) {
     const std::uint64_t has = cover.amount(one.element), left = has - one.amount;
-    if (static_cast<double>(left) >= matrix_.goal()) continue;  // covered without it, too
-    const double share = matrix_.weights()[one.element] / matrix_.total_weight();
-    const double lost = cover.covered(has) - cover.covered(left);
+    if (static_cast<double>(left) >= matrix_.goal(one.element)) continue;  // covered without it, too
+    const double share = matrix_.weight(one.element) / matrix_.total_weight();
+    const double lost = cover.covered(one.element, has) - cover.covered(one.element, left);
     for (std::size_t k = offsets_[one.element]; k < offsets_[one.element + 1]; ++k) {
       const Column& other = columns_[k];
       gains[other.candidate] +=
-          share * (lost - (cover.covered(has + other.amount) - cover.covered(left + other.amount)));
+          share * (lost - (cover.covered(one.element, has + other.amount) - cover.covered(one.element, left + other.amount)));
     }
   }
 }

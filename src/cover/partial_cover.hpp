@@ -20,8 +20,8 @@ class PartialCover {
   double gain(std::size_t candidate) const;  // F(S + candidate) − F(S)
   double loss(std::size_t candidate) const;  // F(S) − F(S − candidate). REQUIRES: in S
   double value() const;                      // F(S), summed anew
-  // Covered share of an element with this amount: min(amount / goal, 1).
-  double covered(std::uint64_t amount) const;
+  // How much of an element so much covers: min(amount / goal, 1).
+  double covered(std::size_t element, std::uint64_t amount) const;
   std::uint64_t amount(std::size_t element) const { return amounts_[element]; }
 
  private:

@@ -50,4 +50,16 @@ void StationGraph::exclude_nearer(std::span<const Vec3> positions, double least_
       if (const Vec3 apart = positions[i] - positions[j]; dot(apart, apart) < least_m * least_m) exclude(i, j);
 }
 
+void StationGraph::exclude_nearer(std::span<const Vec3> positions, std::span<const double> least_m,
+                                  const std::function<bool(std::size_t, std::size_t)>& parted) {
+  if (excluded_.empty()) excluded_.assign(size_ * size_, 0);
+  tbb::parallel_for(std::size_t{0}, size_, [&](std::size_t i) {
+    for (std::size_t j = i + 1; j < size_; ++j) {
+      const Vec3 apart = positions[i] - positions[j];
+      const double least = std::min(least_m[i], least_m[j]);
+      if (dot(apart, apart) < least * least && !excluded(i, j) && !parted(i, j)) exclude(i, j);
+    }
+  });
+}
+
 }  // namespace vantage

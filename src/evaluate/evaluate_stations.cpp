@@ -19,8 +19,7 @@ std::vector<Objective> measures_of(const EvaluationOptions& options) {
   if (options.overlap) add(make_objective("overlap"));
   for (const Objective& measure : options.measures) add(measure);
   for (const Requirement& requirement : options.requirements) add(requirement.objective);
-  if (options.attainable && options.attainable->value > 0)
-    add(make_objective("capture", {.visible = options.attainable->value}));
+  if (options.attainable) add(make_objective("capture"));
   return all;
 }
 
@@ -83,10 +82,21 @@ std::vector<Evaluation> evaluate_networks(const EvaluationSite& site,
         networks, {.registration = needs.surroundings_registration ? needs.registration : std::nullopt},
         {.report = {}, .stop = progress.stop});
 
+  AttainableCounts attainable;
+  std::vector<Estimate> captured;
+  if (options.attainable) {
+    attainable = *options.attainable;
+    const Progress silent{.report = {}, .stop = progress.stop};
+    bool whole = true;
+    for (const Network& network : networks) whole = whole && raise_attainable(attainable, site.simulator, network, silent);
+    if (whole) captured = captured_shares(site.simulator, attainable, networks, silent);
+  }
+
   std::vector<Evaluation> made;
   for (std::size_t k = 0; k < networks.size(); ++k) {
     const bool has_around = site.surroundings && options.overlap;
-    if (counts[k].cancelled || (has_around && (around.empty() || around[k].cancelled))) {
+    if (counts[k].cancelled || (has_around && (around.empty() || around[k].cancelled)) ||
+        (options.attainable && captured.empty())) {
       made.push_back({.stations = stations[k]});
       made.back().counts.cancelled = true;
       continue;
@@ -94,7 +104,7 @@ std::vector<Evaluation> evaluate_networks(const EvaluationSite& site,
     const auto existing = static_cast<std::size_t>(std::ranges::count(stations[k], true, &PlacedStation::kept));
     std::optional<Visit> visit;
     if (site.on_site) visit = site.on_site->visit(std::span(stations[k]).subspan(existing));
-    const MeasuredNetwork measured{
+    MeasuredNetwork measured{
         .counts = counts[k],
         .stations = stations[k],
         .kept = existing,
@@ -108,6 +118,7 @@ std::vector<Evaluation> evaluate_networks(const EvaluationSite& site,
         .surroundings = has_around ? &around[k] : nullptr,
         .surroundings_voxels = has_around ? site.surroundings->voxel_count() : 0,
         .minutes_on_site = visit ? visit->minutes : 0};
+    if (options.attainable) measured.captured = captured[k];
     std::vector<Target> targets = options.targets;
     std::vector<RegistrationTarget> sighted;
     if (!targets.empty()) sighted = sight_targets(site.simulator, *site.clash, stations[k], targets, options.target);
@@ -118,7 +129,8 @@ std::vector<Evaluation> evaluate_networks(const EvaluationSite& site,
                                                  measured.surroundings, measured.surroundings_voxels, sighted);
       one.values["registration"] = {kMillimetres * rms.value, kMillimetres * rms.standard_error};
     }
-    one.names = options.names, one.visit = std::move(visit), one.attainable = options.attainable;
+    one.names = options.names, one.visit = std::move(visit);
+    if (options.attainable) one.attainable = attainable.coverage();
     one.link_overlap = options.link_overlap, one.link = options.link;
     one.violation = violation_of(one, options.requirements);
   }

@@ -138,6 +138,8 @@ ordered_json entry_json(const PlanEntry& entry, std::size_t number, const PlanRe
     values[measure.name] = {{"searched", known(searched.value)},
                             {"standard_error", searched.standard_error},
                             {"exact", entry.exact ? known(entry.value(measure.name)) : ordered_json()}};
+    if (entry.exact && measure.needs.attainable)  // of a sample even then
+      values[measure.name]["exact_standard_error"] = entry.values.at(measure.name).standard_error;
   }
   for (const char* always : {"coverage", "overlap"}) {
     const Estimate& searched = entry.searched.at(always);
@@ -155,6 +157,21 @@ ordered_json entry_json(const PlanEntry& entry, std::size_t number, const PlanRe
   if (entry.exact) json["links"] = links_json(entry.overlap_matrix, result.problem.link_overlap);
   if (entry.scan_overlap_matrix.size() > 0) json["scan_links"] = links_json(entry.scan_overlap_matrix, 0);
   if (entry.visit) json["on_site"] = visit_json(*entry.visit, result.problem.kept.size());
+  return json;
+}
+
+ordered_json trade_off_json(const std::vector<TradeOffPoint>& points) {
+  ordered_json json = ordered_json::array();
+  for (const TradeOffPoint& point : points) {
+    ordered_json positions = ordered_json::array(), one{{"stations", point.stations.size()}};
+    for (const PlacedStation& station : point.stations) positions.push_back(to_json(station.position));
+    for (const auto& [name, value] : point.values)
+      one[name] = known(value.value), one[name + "_se"] = value.standard_error;
+    one["minutes_on_site"] = point.minutes_on_site ? ordered_json(*point.minutes_on_site) : ordered_json();
+    one["answer"] = point.answer, one["knee"] = point.knee;
+    one["positions"] = std::move(positions);
+    json.push_back(std::move(one));
+  }
   return json;
 }
 
@@ -192,8 +209,10 @@ std::string evaluation_json(const Evaluation& evaluation) {
                        {"overlap_se", nullptr},
                        {"overlap_matrix", nullptr},
                        {"scan_overlap_matrix", nullptr},
-                       {"visible", nullptr},
-                       {"visible_se", nullptr},
+                       {"attainable", nullptr},
+                       {"attainable_se", nullptr},
+                       {"captured", nullptr},
+                       {"captured_se", nullptr},
                        {"minutes_on_site", nullptr},
                        {"dropped", nullptr},
                        {"voxels", evaluation.voxels},
@@ -207,7 +226,9 @@ std::string evaluation_json(const Evaluation& evaluation) {
   if (evaluation.scan_overlap_matrix.size() > 0)
     json["scan_overlap_matrix"] = matrix_json(evaluation.scan_overlap_matrix);
   if (evaluation.attainable)
-    json["visible"] = evaluation.attainable->value, json["visible_se"] = evaluation.attainable->standard_error;
+    json["attainable"] = evaluation.attainable->value, json["attainable_se"] = evaluation.attainable->standard_error;
+  if (const auto capture = evaluation.values.find("capture"); capture != evaluation.values.end())
+    json["captured"] = capture->second.value, json["captured_se"] = capture->second.standard_error;
   if (evaluation.visit) json["minutes_on_site"] = evaluation.visit->minutes;
   if (evaluation.registration)
     json["registration"] = registration_json(*evaluation.registration, evaluation.values.at("registration"));
@@ -232,10 +253,15 @@ std::string front_json(const PlanResult& result, const Simulator& simulator) {
     json["what_would_help"] = what_would_help(result);
     json["summary"] = to_json(summary_lines(result.front[chosen], result.problem.requirements));
   }
-  if (result.candidates)
-    json["visible"] = {{"coverage", result.candidates->visible().value},
-                       {"standard_error", result.candidates->visible().standard_error},
-                       {"candidates", result.candidates->stations().size()}};
+  if (result.candidates) {
+    const Estimate attainable = result.attainable.value_or(result.candidates->attainable());
+    json["attainable"] = {{"coverage", attainable.value},
+                          {"standard_error", attainable.standard_error},
+                          {"last_doubling", result.candidates->change()},
+                          {"candidates", result.candidates->stations().size()},
+                          {"candidates_ended", result.candidates->ended()}};
+  }
+  if (!result.trade_off.empty()) json["trade_off"] = trade_off_json(result.trade_off);
   json["front"] = std::move(front);
   json["seconds"] = {{"total", result.seconds}, {"trace", result.trace_seconds}};
   json["engine"] = to_string(simulator.engine().engine);

@@ -30,9 +30,11 @@ std::string captured_text(const Evaluation& evaluation) {
   const Estimate& coverage = evaluation.values.at("coverage");
   const double error = evaluation.exact ? 0 : coverage.standard_error;
   std::string text = percent(coverage.value) + (error > 0 ? " ± " + percent(error) : "") + " of the site";
-  if (const auto capture = evaluation.values.find("capture"); capture != evaluation.values.end())
-    text += ", " + percent(capture->second.value) + " of what can be seen";
-  return text;
+  const auto capture = evaluation.values.find("capture");
+  if (capture == evaluation.values.end() || std::isnan(capture->second.value)) return text;
+  const double own = capture->second.standard_error;
+  return text + ", " + percent(capture->second.value) + (own > 0 ? " ± " + percent(own) : "") +
+         " of what is attainable";
 }
 
 std::string links_text(const StationLinks& links, const std::vector<std::string>& names) {
@@ -150,6 +152,37 @@ std::string summary_text(const Evaluation& evaluation, std::span<const Requireme
     last = line.heading;
     heading.resize(11, ' ');
     text += heading + line.text + "\n";
+  }
+  return text;
+}
+
+std::string trade_off_text(const PlanResult& result) {
+  const std::vector<TradeOffPoint>& points = result.trade_off;
+  if (points.empty()) return {};
+  // The ends, the knee, the answer, and what is half way between these where that is far.
+  std::vector<char> shown(points.size(), 0);
+  shown.front() = shown.back() = 1;
+  for (std::size_t k = 0; k < points.size(); ++k) shown[k] |= points[k].knee || points[k].answer;
+  for (std::size_t from = 0; from + 1 < points.size();) {
+    std::size_t to = from + 1;
+    while (!shown[to]) ++to;
+    if (to - from > 3) shown[(from + to) / 2] = 1;
+    from = to;
+  }
+  std::string text = "stations   captured  registered  on site\n";
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    if (!shown[k]) continue;
+    const TradeOffPoint& point = points[k];
+    const auto cell = [](std::string value, std::size_t width) {
+      return std::string(width > value.size() ? width - value.size() : 0, ' ') + value;
+    };
+    const auto registered = point.values.find("registration");
+    const bool known = registered != point.values.end() && std::isfinite(registered->second.value);
+    text += cell(std::to_string(point.stations.size()), 8) + cell(percent(point.values.at("capture").value), 11) +
+            cell(known ? fixed(registered->second.value, 2) + " mm" : "–", known ? 12 : 14) + "  " +
+            (point.minutes_on_site ? duration(60 * *point.minutes_on_site) : "–") +
+            (point.answer ? "  <- the plan" : "") + (point.knee ? "  <- beyond this each station gains less" : "") +
+            "\n";
   }
   return text;
 }

@@ -16,7 +16,7 @@ std::string title_of(const PlanEntry& entry) {
   std::string title = std::to_string(entry.stations.size()) + (entry.stations.size() == 1 ? " station" : " stations");
   if (const auto capture = entry.values.find("capture"); capture != entry.values.end())
     return title + ": " + fixed(100 * entry.value("coverage"), 1) + " % of the site captured, " +
-           fixed(100 * capture->second.value, 1) + " % of what can be seen";
+           fixed(100 * capture->second.value, 1) + " % of what is attainable";
   return title + ": coverage " + fixed(entry.value("coverage"), 3) + ", overlap " + fixed(entry.value("overlap"), 3);
 }
 

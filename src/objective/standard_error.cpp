@@ -155,6 +155,8 @@ Estimate estimate(const Objective& objective, const MeasuredNetwork& measured) {
   const NetworkCounts& counts = measured.counts;
   double variance = 0;
   const auto add = [&](double error) { variance += error * error; };
+  // On voxels of its own, whatever else was counted.
+  if (objective.needs.attainable && objective.standard_error) add(objective.standard_error(measured));
   if (const double unsampled = unsampled_share(counts, measured.voxels); objective.needs.counts && unsampled > 0) {
     if (objective.standard_error) {
       add(objective.standard_error(measured));

@@ -20,7 +20,7 @@ bool hangs_together(const PlanEntry& entry, const SurveyProblem& problem) {
   return entry.exact && connectivity(entry.overlap_matrix, problem.link_overlap).parts == 1;
 }
 
-// Whether attainable coverage was never computed, though a requirement is a share of it.
+// Whether what is attainable was never looked at in full, though a requirement is a share of it.
 bool look_cut_short(const PlanResult& result) {
   return result.candidates && result.candidates->ended() == "cancelled" &&
          std::ranges::any_of(result.problem.requirements,
@@ -79,8 +79,8 @@ std::vector<std::string> what_would_help(const PlanResult& result) {
       help.back() += "; it takes more stations than " + std::to_string(problem.stations_max);
     else if (minutes)
       help.back() += "; it takes more time than " + number(*minutes) + " min on site";
-    else if (problem.visible && requirement.limit * objective.coverage_of_one > *problem.visible)
-      help.back() += "; all allowed positions together see no more than " + fixed(*problem.visible, 3);
+    else if (problem.attainable && requirement.limit * objective.coverage_of_one > *problem.attainable)
+      help.back() += "; no more than " + fixed(*problem.attainable, 3) + " is attainable from one station at a time";
   }
   return help;
 }

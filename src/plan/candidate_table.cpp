@@ -8,16 +8,33 @@
 
 namespace vantage {
 
-TraceColumns columns_of(Simulator& simulator, std::uint64_t sample_voxels) {
-  return [&simulator, sample_voxels](std::span<const PlacedStation> stations, const Progress& progress) {
-    return sample_coverage(simulator, stations, sample_voxels, progress).matrix();
+TraceColumns columns_of(Simulator& simulator, std::uint64_t sample_voxels, std::vector<double> goals) {
+  return [&simulator, sample_voxels, goals = std::move(goals)](std::span<const PlacedStation> stations,
+                                                               const Progress& progress) {
+    CoverageMatrix matrix = sample_coverage(simulator, stations, sample_voxels, progress).matrix();
+    if (!goals.empty()) matrix.set_goals(goals);
+    return matrix;
   };
 }
 
-CandidateTable::CandidateTable(TraceColumns surveyed, TraceColumns surroundings, double nearest_m)
+double spacing_by_view(const PlacedStation& station, std::span<const CoverageMatrix::Entry> column,
+                       const CoverageMatrix& matrix, std::span<const Vec3> centres) {
+  std::vector<double> ranges;
+  for (const CoverageMatrix::Entry& one : column) {
+    if (matrix.weight(one.element) <= 0 || one.amount < 0.5 * matrix.goal(one.element)) continue;
+    const Vec3 way = centres[one.element] - station.position;
+    ranges.push_back(std::sqrt(dot(way, way)));
+  }
+  if (ranges.empty()) return 0;
+  const auto middle = ranges.begin() + static_cast<std::ptrdiff_t>(ranges.size() / 2);
+  std::ranges::nth_element(ranges, middle);
+  return kSpacingShare * *middle;
+}
+
+CandidateTable::CandidateTable(TraceColumns surveyed, TraceColumns surroundings, StationSpacing spacing)
     : surveyed_(std::move(surveyed)),
       surroundings_(std::move(surroundings)),
-      nearest_m_(nearest_m),
+      spacing_(std::move(spacing)),
       matrix_(surveyed_({}, {})),
       around_(surroundings_ ? surroundings_({}, {}) : CoverageMatrix()) {}
 
@@ -40,8 +57,35 @@ bool CandidateTable::add(std::span<const PlacedStation> stations, const Coverage
   graph_ = StationGraph(around_, stations_.size());
   std::vector<Vec3> positions;
   for (const PlacedStation& station : stations_) positions.push_back(station.position);
-  graph_.exclude_nearer(positions, nearest_m_);
+  graph_.exclude_nearer(positions, spacing_.nearest_m);
+  if (spacing_.least_m) {
+    for (std::size_t k = least_m_.size(); k < stations_.size(); ++k)
+      least_m_.push_back(spacing_.least_m(stations_[k], matrix_.column(k)));
+    graph_.exclude_nearer(positions, least_m_,
+                          [&](std::size_t i, std::size_t j) { return !spacing_.sees(positions[i], positions[j]); });
+  }
   return count == stations.size();
+}
+
+bool CandidateTable::spaced(std::span<const PlacedStation> stations) const {
+  const auto apart = [](const PlacedStation& a, const PlacedStation& b) {
+    const Vec3 way = a.position - b.position;
+    return std::sqrt(dot(way, way));
+  };
+  std::vector<double> least(stations.size(), 0);
+  for (std::size_t i = 0; i < stations.size() && spacing_.least_m; ++i) {
+    const auto nearest = std::ranges::min_element(
+        stations_, {}, [&](const PlacedStation& known) { return apart(known, stations[i]); });
+    least[i] = least_m_[static_cast<std::size_t>(nearest - stations_.begin())];
+  }
+  for (std::size_t i = 0; i < stations.size(); ++i)
+    for (std::size_t j = i + 1; j < stations.size(); ++j) {
+      const double metres = apart(stations[i], stations[j]);
+      if (metres < spacing_.nearest_m) return false;
+      if (metres < std::min(least[i], least[j]) && spacing_.sees(stations[i].position, stations[j].position))
+        return false;
+    }
+  return true;
 }
 
 std::vector<PlacedStation> positions_around(const PlacementOracle& site, std::span<const PlacedStation> stations,

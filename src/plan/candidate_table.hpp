@@ -15,14 +15,25 @@ namespace vantage {
 // Traces stations one by one and returns their columns on a sample. A stopped call returns the columns of the first
 // ones.
 using TraceColumns = std::function<CoverageMatrix(std::span<const PlacedStation>, const Progress&)>;
-// Makes one on a sample of `sample_voxels` of a simulator, which it borrows.
-TraceColumns columns_of(Simulator& simulator, std::uint64_t sample_voxels);
+// On a sample of so many voxels of a simulator, which it borrows. `goals`: of each voxel, in place of the simulator's.
+TraceColumns columns_of(Simulator& simulator, std::uint64_t sample_voxels, std::vector<double> goals = {});
+
+// Which stations stand so near that one of them does for both.
+struct StationSpacing {
+  double nearest_m = 0;  // whatever stands between them
+  // The least distance of a station with that column from another one that it sees; empty: nearest_m alone.
+  std::function<double(const PlacedStation&, std::span<const CoverageMatrix::Entry>)> least_m = {};
+  std::function<bool(const Vec3&, const Vec3&)> sees = {};  // whether nothing stands between two heads
+};
+// A quarter of the median distance from its head to what a station captures half of at least. `centres`: of the elements.
+inline constexpr double kSpacingShare = 0.25;
+double spacing_by_view(const PlacedStation& station, std::span<const CoverageMatrix::Entry> column,
+                       const CoverageMatrix& matrix, std::span<const Vec3> centres);
 
 class CandidateTable {
  public:
-  // `surroundings`: over all surfaces; empty if links do not matter. Stations nearer than `nearest_m` exclude each
-  // other.
-  CandidateTable(TraceColumns surveyed, TraceColumns surroundings, double nearest_m);
+  // `surroundings`: over all surfaces; empty where links do not matter. Stations that stand too near exclude each other.
+  CandidateTable(TraceColumns surveyed, TraceColumns surroundings, StationSpacing spacing);
 
   // Traces stations; those with known columns only over the surroundings. False if stopped: the table then has the
   // stations that were traced in full.
@@ -31,12 +42,15 @@ class CandidateTable {
 
   const std::vector<PlacedStation>& stations() const { return stations_; }
   const CoverageMatrix& matrix() const { return matrix_; }
-  // Remade by each addition.
+  // Whether no two of these stations stand too near, each taken for the nearest one of the table.
+  bool spaced(std::span<const PlacedStation> stations) const;
+  // Made anew by each addition.
   const StationGraph& graph() const { return graph_; }
 
  private:
   TraceColumns surveyed_, surroundings_;
-  double nearest_m_;
+  StationSpacing spacing_;
+  std::vector<double> least_m_;  // by station
   std::vector<PlacedStation> stations_;
   CoverageMatrix matrix_, around_;
   StationGraph graph_;

@@ -16,6 +16,7 @@ namespace {
 
 // Candidates between two checks of the clock.
 constexpr std::size_t chunk = 64;
+constexpr std::size_t kExpected = 512;
 
 SpreadPositions spread_or_refuse(const SearchArea& area, const ClashChecker& clash, const Scanner& scanner,
                                  std::size_t most) {
@@ -58,6 +59,12 @@ std::vector<PlacedStation> candidate_positions(const SearchArea& area, const Cla
   return spread_or_refuse(area, clash, scanner, most).stations;
 }
 
+CoverageMatrix Candidates::captured_matrix() const {
+  CoverageMatrix matrix = coverage_.matrix();
+  matrix.set_goals(attainable_counts_.counts());
+  return matrix;
+}
+
 Candidates find_candidates(Simulator& simulator, const SearchArea& area, const ClashChecker& clash,
                            const CandidateConfig& config, const Progress& progress) {
   check(config, simulator.scanners().size());
@@ -72,25 +79,31 @@ Candidates find_candidates(Simulator& simulator, const SearchArea& area, const C
   const std::uint64_t sample = config.sample_voxels == 0 ? simulator.voxel_count() : config.sample_voxels;
   Candidates found;
   found.coverage_ = SampledCoverage(simulator, std::max<std::uint64_t>(sample, 1));
+  found.attainable_counts_ = AttainableCounts(simulator, std::max<std::uint64_t>(sample, 1));
   std::size_t goal = std::min(config.first, spread.stations.size());
   double before = -1;
   while (found.ended_.empty()) {
     while (found.coverage_.size() < goal && found.ended_.empty()) {
       const std::size_t first = found.coverage_.size(), here = std::min(chunk, goal - first);
       const auto share = [&](double done) {
-        progress((static_cast<double>(first) + done * static_cast<double>(here)) /
-                 static_cast<double>(spread.stations.size()));
+        // How often they are doubled is not known yet; mostly this often.
+        const std::size_t expected = std::min(std::max(goal, kExpected), spread.stations.size());
+        progress((static_cast<double>(first) + done * static_cast<double>(here)) / static_cast<double>(expected));
       };
       found.coverage_.append(sample_coverage(simulator, std::span(spread.stations).subspan(first, here),
                                              found.coverage_.sample_voxels(), {share, progress.stop}));
+      const CoverageMatrix& matrix = found.coverage_.matrix();
+      for (std::size_t k = first; k < matrix.candidates(); ++k)
+        for (const CoverageMatrix::Entry& one : matrix.column(k))
+          found.attainable_counts_.raise(one.element, one.amount);
       if (found.coverage_.cancelled())
         found.ended_ = "cancelled";
       else if (found.coverage_.size() < goal && out_of_time())
         found.ended_ = "time";
     }
-    found.visible_ = found.coverage_.coverage();
+    found.attainable_ = found.attainable_counts_.coverage();
     if (!found.ended_.empty()) break;
-    const double now = found.visible_.value;
+    const double now = found.attainable_.value;
     if (before >= 0) found.change_ = now > 0 ? (now - before) / now : 0;
     if (before >= 0 && found.change_ < config.change)
       found.ended_ = "enough";

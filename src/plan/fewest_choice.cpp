@@ -5,7 +5,7 @@
 #include <numeric>
 #include <utility>
 
-#include "cover/partial_cover.hpp"
+#include "cover/connected_growth.hpp"
 #include "plan/limits.hpp"
 
 namespace vantage {
@@ -15,10 +15,14 @@ namespace {
 constexpr std::size_t kLateCandidates = 96;
 // Further candidates around each chosen station.
 constexpr std::size_t kAround = 8;
-// Length of the second short list, in multiples of the first.
-constexpr std::size_t kLongerList = 4;
+
+// As many stations as are asked for, with the most coverage: from a network, or one that grows.
+CoverSolution most_coverage(const CoverProblem& problem, std::vector<std::size_t> from, const std::stop_token& stop) {
+  return evaluate_cover(problem, improve_by_swaps(problem, grow_connected(problem, std::move(from)), stop));
+}
 
 void stronger(FewestChoice& choice, const std::stop_token& stop) {
+  if (choice.asked.most_coverage) return;  // all links are for coverage
   choice.network = improve_weakest_link(cover_problem(choice), std::move(choice.network), stop);
 }
 
@@ -36,49 +40,30 @@ void fit_time(FewestChoice& choice, const VisitTime& visit, const std::stop_toke
   }
 }
 
-// Candidates that may improve the network, in ascending order: the network itself, the best one of a station fewer, and
-// `times` the usual numbers of the best replacements and additions.
-std::vector<std::size_t> short_list(const FewestChoice& choice, std::size_t times) {
-  const CoverageMatrix& matrix = choice.table.matrix();
-  const std::vector<std::size_t>& chosen = choice.network.chosen;
-  std::vector<char> listed(matrix.candidates(), 0);
-  // One after the other: those with the largest gains at first are near each other.
-  for (const std::size_t k :
-       greedy({.matrix = matrix, .graph = &choice.table.graph(), .existing = chosen, .most = times * kBestAdditions}))
-    listed[k] = 1;
-  const ColumnIndex columns(matrix);
-  const PartialCover cover(matrix, chosen);
-  std::vector<double> gains(matrix.candidates());
-  for (std::size_t k = 0; k < gains.size(); ++k) gains[k] = cover.gain(k);
-  std::vector<std::size_t> order(gains.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  for (std::size_t at = choice.asked.existing; at < chosen.size(); ++at) {
-    std::vector<double> without = gains;
-    columns.add_gains_without(chosen[at], cover, without);
-    std::ranges::stable_sort(order, std::ranges::greater(), [&](std::size_t k) { return without[k]; });
-    for (std::size_t i = 0; i < std::min(times * kBestReplacements, order.size()); ++i) listed[order[i]] = 1;
-  }
-  if (choice.one_fewer)
-    for (const std::size_t k : choice.one_fewer->chosen) listed[k] = 1;
-  std::vector<std::size_t> list;
-  for (std::size_t k = choice.asked.existing; k < listed.size(); ++k)
-    if (listed[k]) list.push_back(k);
-  return list;
-}
-
 }  // namespace
 
 FewestAsked fewest_asked(const SurveyProblem& problem) {
+  const auto at_least = [](const Requirement& r) { return r.bound == Requirement::Bound::at_least && r.limit > 0; };
   const auto least = [&](Objective::Kind kind) {
     return std::max(0.0, limit_of(problem, kind, Requirement::Bound::at_least).value_or(0));
   };
-  return {.existing = problem.kept.size(),
-          .fewest = problem.stations_min,
-          .most = problem.stations_max,
-          .coverage = least(Objective::Kind::coverage),
-          .link = least(Objective::Kind::link),
-          .apart_m = least(Objective::Kind::distance),
-          .minutes = limit_of(problem, Objective::Kind::time, Requirement::Bound::at_most)};
+  FewestAsked asked{.existing = problem.kept.size(),
+                    .fewest = problem.stations_min,
+                    .most = problem.stations_max,
+                    .link = least(Objective::Kind::link),
+                    .apart_m = least(Objective::Kind::distance),
+                    .minutes = limit_of(problem, Objective::Kind::time, Requirement::Bound::at_most)};
+  const bool searched =
+      !problem.objectives.empty() && problem.objectives.front().kind == Objective::Kind::coverage;
+  asked.captured = std::ranges::any_of(problem.requirements, [&](const Requirement& r) {
+    return at_least(r) && r.objective.needs.attainable;
+  });
+  const double limit = least(Objective::Kind::coverage);
+  asked.most_coverage = limit == 0 && searched && asked.fewest == asked.most;
+  if (asked.most_coverage) asked.captured = problem.objectives.front().needs.attainable;
+  if (asked.captured) asked.whole = problem.attainable.value_or(1);
+  asked.coverage = asked.most_coverage ? 1 : std::min(limit / asked.whole, 1.0);
+  return asked;
 }
 
 std::vector<PlacedStation> FewestChoice::stations_of(const CoverSolution& solution) const {
@@ -118,6 +103,11 @@ void look(CandidateTable& table, std::span<const PlacedStation> existing, std::s
 }
 
 void choose_from(FewestChoice& choice, std::optional<CoverSolution> start, std::stop_token stop) {
+  if (choice.asked.most_coverage) {
+    const CoverProblem problem = cover_problem(choice);
+    choice.network = most_coverage(problem, start ? std::move(start->chosen) : problem.existing, stop);
+    return;
+  }
   ConnectedCover found = min_connected_cover(cover_problem(choice), std::move(stop), std::move(start));
   choice.network = std::move(found.best), choice.one_fewer = std::move(found.one_fewer);
 }
@@ -137,6 +127,7 @@ void refine_around(FewestChoice& choice, const PlacementOracle& oracle, double r
   add_around(choice.network);
   if (choice.one_fewer) add_around(*choice.one_fewer);
   choice.table.add(around, progress);
+  if (choice.asked.most_coverage) choose_from(choice, std::move(choice.network), progress.stop);
   if (choice.one_fewer) {
     CoverProblem fewer = cover_problem(choice);
     fewer.most = std::min(fewer.most, choice.one_fewer->chosen.size() - choice.asked.existing);
@@ -145,40 +136,6 @@ void refine_around(FewestChoice& choice, const PlacementOracle& oracle, double r
       choose_from(choice, std::move(choice.one_fewer), progress.stop);
   }
   stronger(choice, progress.stop);
-}
-
-std::size_t refine_on_larger_sample(FewestChoice& choice, CandidateTable larger, double coverage_margin,
-                                    const Progress& progress, const std::stop_token& abort) {
-  const auto stopped = [&] { return progress.stopped() || abort.stop_requested(); };
-  const std::vector<PlacedStation>& stations = choice.table.stations();
-  const std::size_t existing = choice.asked.existing, none = stations.size();
-  if (existing > 0 && !larger.add(std::span(stations).first(existing), {.report = {}, .stop = abort})) return 0;
-  std::vector<std::size_t> in_larger(stations.size(), none);  // the number of each candidate there
-  std::iota(in_larger.begin(), in_larger.begin() + static_cast<std::ptrdiff_t>(existing), std::size_t{0});
-  const Margins margins{.coverage = coverage_margin, .link = choice.margins.link};
-  std::size_t traced = 0;
-  for (const std::size_t times : {std::size_t{1}, kLongerList}) {
-    if (stopped()) break;
-    std::vector<PlacedStation> listed;
-    for (const std::size_t k : short_list(choice, times)) {
-      if (in_larger[k] < none) continue;
-      in_larger[k] = larger.stations().size() + listed.size();
-      listed.push_back(stations[k]);
-    }
-    if (!larger.add(listed, progress)) break;
-    traced += listed.size();
-    std::vector<std::size_t> chosen;
-    for (const std::size_t k : choice.network.chosen) chosen.push_back(in_larger[k]);
-    const CoverProblem problem = cover_problem(choice.asked, larger, margins);
-    ConnectedCover found = min_connected_cover(problem, progress.stop, evaluate_cover(problem, std::move(chosen)));
-    if (found.best.violation > choice.network.violation && times < kLongerList && !stopped()) continue;
-    choice.table = std::move(larger);
-    choice.margins = margins;
-    choice.network = std::move(found.best), choice.one_fewer = std::move(found.one_fewer);
-    stronger(choice, progress.stop);
-    break;
-  }
-  return traced;
 }
 
 }  // namespace vantage

@@ -21,9 +21,17 @@ namespace vantage {
 struct FewestAsked {
   std::size_t existing = 0;            // number of existing stations
   std::size_t fewest = 1, most = 1;    // further stations
-  double coverage = 0;                 // least coverage, equation 8
-  double link = 0, apart_m = 0;        // least values; 0: none
-  std::optional<double> minutes = {};  // largest time on site
+  bool captured = false;               // coverage is the share of what is attainable; else equation 8
+  double whole = 1;                    // what a coverage of 1 has of equation 8, at least
+  double coverage = 0;                 // at least; 1 where as much as so many stations can have is asked for
+  bool most_coverage = false;          // the latter
+  double link = 0, apart_m = 0;        // 0: not asked
+  std::optional<double> minutes = {};  // on site, at most
+
+  // The measure that `coverage` is.
+  const char* measure() const { return captured ? "capture" : "coverage"; }
+  // What a value of 1 of an objective on coverage is in `coverage`.
+  double of_one(const Objective& objective) const { return objective.coverage_of_one / whole; }
 };
 FewestAsked fewest_asked(const SurveyProblem& problem);
 
@@ -72,14 +80,5 @@ void choose_from(FewestChoice& choice, std::optional<CoverSolution> start, std::
 // Adds allowed positions within `radius_m` of the chosen stations, and of the best network of one fewer, to the table,
 // and chooses again from the present network.
 void refine_around(FewestChoice& choice, const PlacementOracle& oracle, double radius_m, const Progress& progress);
-
-// Lengths of a short list: the best replacements for each chosen station, and the best additions.
-inline constexpr std::size_t kBestReplacements = 8, kBestAdditions = 64;
-
-// Traces the best candidates on a larger sample, into `larger`, which is empty, and chooses again with a smaller
-// coverage margin, since a choice among thousands is favoured by its sample. If that choice is worse than it seemed,
-// more candidates follow. `larger` replaces the table. Returns the number of traced stations.
-std::size_t refine_on_larger_sample(FewestChoice& choice, CandidateTable larger, double coverage_margin,
-                                    const Progress& progress, const std::stop_token& abort);
 
 }  // namespace vantage

@@ -17,9 +17,8 @@ constexpr std::size_t kLeastIterations = 10, kMostIterations = 100;
 constexpr double kRefiningSigma = 0.03;
 // Timed samples: sampled networks, and stations by every ray.
 constexpr std::size_t kTimedNetworks = 2, kTimedStations = 4;
-// Measured on the sites of docs/examples.md: relative time of later rounds, share of a short list that is not listed
-// twice, and number of verified choices.
-constexpr double kLaterRounds = 1.1, kListedShare = 0.7, kVerified = 4.5;
+// Measured on the sites of docs/examples.md: how much longer later rounds take, and how many choices are verified.
+constexpr double kLaterRounds = 1.1, kVerified = 4.5;
 
 template <class Work>
 double seconds_of(const Work& work) {
@@ -30,12 +29,12 @@ double seconds_of(const Work& work) {
 
 }  // namespace
 
-SurveyProblem with_margins(SurveyProblem problem, double overstated, double link_margin) {
+SurveyProblem with_margins(SurveyProblem problem, const FewestAsked& asked, double overstated, double link_margin) {
   for (Requirement& requirement : problem.requirements) {
     if (requirement.bound != Requirement::Bound::at_least) continue;
     const Objective& objective = requirement.objective;
     if (objective.kind == Objective::Kind::coverage)
-      requirement.limit = std::min(1.0, requirement.limit + overstated / objective.coverage_of_one);
+      requirement.limit = std::min(1.0, requirement.limit + overstated / asked.of_one(objective));
     if (objective.kind == Objective::Kind::link) requirement.limit += link_margin;
   }
   return problem;
@@ -52,7 +51,7 @@ PlanConfig refining_config(const SurveyProblem& problem, PlanConfig config, std:
 }
 
 std::optional<double> expected_seconds(const FewestChoice& choice, const SurveyProblem& problem,
-                                       const PlanConfig& config, NetworkEvaluator& evaluator, const StageTimes& times,
+                                       const PlanConfig& config, NetworkEvaluator& evaluator, double round_s,
                                        const PlanWatch& watch) {
   const std::vector<PlacedStation> chosen = choice.stations_of(choice.network);
   const Progress silent{.report = {}, .stop = watch.stop};
@@ -72,12 +71,9 @@ std::optional<double> expected_seconds(const FewestChoice& choice, const SurveyP
   const double each = few > 1 ? (every_ray_of(few) - one) / static_cast<double>(few - 1) : one;
   if (watch.stop.stop_requested() || watch.abort.stop_requested()) return std::nullopt;
 
-  const auto count = static_cast<double>(chosen.size()), placed = static_cast<double>(choice.placed());
+  const auto count = static_cast<double>(chosen.size());
   const auto networks = static_cast<double>(config.iterations * population_of(problem, config));
-  const double listed = kBestAdditions + kListedShare * kBestReplacements * placed;
-  const double choosing = std::max(0.0, times.round_s - static_cast<double>(times.round_stations) * times.station_s);
-  const double larger = listed * (times.station_s + (kLargerSample - 1) * times.look_s) + choosing;
-  return (kRounds - 1) * kLaterRounds * times.round_s + larger + networks * network +
+  return (kRounds - 1) * kLaterRounds * round_s + networks * network +
          kVerified * (one + (count - 1) * std::max(each, 0.0));
 }
 

@@ -13,15 +13,15 @@ namespace {
 // Factor from a shortfall to the increase of its margin.
 constexpr double kBeyond = 1.25;
 
-// Shortfall of an entry below its required least values.
-Margins shortfall(const PlanEntry& entry, std::span<const Requirement> requirements) {
+// What an entry is short of the least values that are required of it.
+Margins shortfall(const PlanEntry& entry, const FewestAsked& asked, std::span<const Requirement> requirements) {
   Margins margins;
   for (const Requirement& requirement : requirements) {
     const Objective& objective = requirement.objective;
     if (requirement.bound != Requirement::Bound::at_least || !(requirement.limit > 0)) continue;
     const double here = requirement.limit - entry.value(objective.name);
     if (objective.kind == Objective::Kind::coverage)
-      margins.coverage = std::max(margins.coverage, here * objective.coverage_of_one);
+      margins.coverage = std::max(margins.coverage, here * asked.of_one(objective));
     if (objective.kind == Objective::Kind::link) margins.link = std::max(margins.link, here);
   }
   return margins;
@@ -105,14 +105,10 @@ double verify(const FewestChoice& choice, VerifiedNetworks& verified) {
   verified.add(choice.placed_of(choice.network));
   if (verified.entries().empty() || !verified.entries().back().exact) return choice.margins.coverage;
   const PlanEntry& entry = verified.entries().back();
-  return entry.searched.at("coverage").value - entry.value("coverage");
+  return entry.searched.at(choice.asked.measure()).value - entry.value(choice.asked.measure());
 }
 
-bool repair(FewestChoice& choice, const VerifiedNetworks& verified, const std::stop_token& stop) {
-  const PlanEntry* best = verified.best();
-  if (!best || choice.network.violation > 0) return false;
-  const Margins missing = shortfall(*best, verified.problem().requirements);
-  if (missing.coverage == 0 && missing.link == 0) return false;
+void raise_margins(FewestChoice& choice, const Margins& missing, const std::stop_token& stop) {
   choice.margins.coverage += kBeyond * missing.coverage, choice.margins.link += kBeyond * missing.link;
   choice.one_fewer.reset();
   // From the present network, at this number, or else with one more.
@@ -123,14 +119,22 @@ bool repair(FewestChoice& choice, const VerifiedNetworks& verified, const std::s
   else
     choose_from(choice, std::move(same), stop);
   choice.network = improve_weakest_link(asked, std::move(choice.network), stop);
+}
+
+bool repair(FewestChoice& choice, const VerifiedNetworks& verified, const std::stop_token& stop) {
+  const PlanEntry* best = verified.best();
+  if (!best || choice.network.violation > 0) return false;
+  const Margins missing = shortfall(*best, choice.asked, verified.problem().requirements);
+  if (missing.coverage == 0 && missing.link == 0) return false;
+  raise_margins(choice, missing, stop);
   return true;
 }
 
 bool choose_by_known_error(FewestChoice& choice, VerifiedNetworks& verified, double& overstated,
                            const std::stop_token& stop) {
   const PlanEntry& entry = verified.entries().back();
-  const auto exact = entry.values.find("coverage");
-  if (exact == entry.values.end() || !choice.one_fewer || choice.network.violation > 0) return false;
+  const auto exact = entry.values.find(choice.asked.measure());
+  if (!entry.exact || exact == entry.values.end() || !choice.one_fewer || choice.network.violation > 0) return false;
   const double error = choice.network.coverage - exact->second.value;
   if (error >= choice.margins.coverage) return false;
   const double margin = std::exchange(choice.margins.coverage, error);

@@ -53,7 +53,10 @@ SurveyProblem with_stations(SurveyProblem problem, std::size_t placed);
 // margin if that is not known.
 double verify(const FewestChoice& choice, VerifiedNetworks& verified);
 
-// Chooses again with margins raised by the shortfall of the best verified network. False if that cannot help.
+// Chooses anew with margins raised, by somewhat more than what is missing.
+void raise_margins(FewestChoice& choice, const Margins& missing, const std::stop_token& stop);
+
+// The same by what the best verified network is short of. False where that cannot help.
 bool repair(FewestChoice& choice, const VerifiedNetworks& verified, const std::stop_token& stop);
 
 // Uses the sample's error, known once the chosen network is verified. If it is below the margin, a station fewer may

@@ -43,6 +43,7 @@ Measures measures_of(const SurveyProblem& problem) {
     measures.required.push_back(place_of(measures.all, requirement.objective));
   measures.searched = measures.all.size();
   for (const char* told : {"coverage", "overlap"}) place_of(measures.all, make_objective(told, problem.settings()));
+  if (problem.fewest) place_of(measures.all, make_objective("registration", problem.settings()));
   return measures;
 }
 

@@ -9,6 +9,7 @@
 #include "plan/plan_context.hpp"
 #include "plan/plan_fewest.hpp"
 #include "plan/somewhere_to_stand.hpp"
+#include "plan/trade_off.hpp"
 #include "vantage/error.hpp"
 #include "vantage/planner.hpp"
 #include "vantage/question.hpp"
@@ -22,7 +23,7 @@ bool needs_attainable(const SurveyProblem& problem) {
          std::ranges::any_of(problem.requirements, needs, &Requirement::objective);
 }
 
-// The problem with the scale of the number of stations in force, and `capture` as a share of attainable coverage.
+// What a problem says, with the scale of the number of stations as it is, and `capture` of what is attainable.
 SurveyProblem settled(SurveyProblem problem) {
   const auto settle = [&](Objective& objective) {
     if (objective.needs.attainable) objective = make_objective(objective.name, problem.settings());
@@ -31,7 +32,7 @@ SurveyProblem settled(SurveyProblem problem) {
                        static_cast<double>(problem.kept.size() + problem.stations_max)};
   };
   for (Objective& objective : problem.objectives) settle(objective);
-  if (problem.visible)
+  if (problem.attainable)
     for (Requirement& requirement : problem.requirements)
       if (requirement.objective.needs.attainable) settle(requirement.objective);
   return problem;
@@ -50,10 +51,75 @@ std::uint32_t finest(const Simulator& simulator, std::span<const std::uint32_t> 
 
 // Share of the time limit for looking, choosing and searching. The rest is for tracing every ray of the results.
 constexpr double kSearchTimeShare = 0.8;
-// More are tried only around the chosen stations.
-constexpr std::size_t kMostCandidates = 512;
-// A front with more entries gets a round only for its answer.
+// More are tried where it pays: around the stations that are chosen.
+constexpr std::size_t kMostCandidates = 4096;
+// How many times as many voxels as a search has a number of stations is chosen by.
+constexpr std::uint64_t kLargerSample = 5;
+// The front of more entries than this has its rounds worked out for the answer alone.
 constexpr std::size_t kMostRounds = 16;
+
+// Voxels that a number of stations is chosen by: more than a search has, since it is chosen among thousands. Of a site
+// with no more than twice as many all of them, since as many others are taken to confirm it. 0: all.
+std::uint64_t sample_of_choice(const SurveyProblem& problem, const PlanConfig& config, const Simulator& simulator) {
+  const std::uint64_t sample = config.sample_voxels * (problem.fewest ? kLargerSample : 1);
+  return 2 * sample >= simulator.voxel_count() ? 0 : sample;
+}
+
+// Attainable counts by the candidates and the existing stations: on the voxels that networks are chosen by, and on as
+// many others, by which they are confirmed. Of a site of few voxels both are of all.
+void count_attainable(PlanContext& context, Simulator& simulator, const SurveyProblem& problem,
+                      const Candidates& candidates, std::uint64_t searched, const Progress& progress) {
+  const Network existing = to_network(existing_stations(context.oracle(), problem.kept, problem.kept_setups));
+  context.chosen = candidates.attainable_counts();
+  raise_attainable(context.chosen, simulator, existing, progress);
+  const std::uint64_t sample = context.chosen.sample_voxels();
+  context.searched = context.chosen.part(simulator, searched > 0 ? std::min(searched, sample) : sample);
+  if (sample >= simulator.voxel_count()) {
+    context.confirmed = context.chosen;
+    return;
+  }
+  context.confirmed = AttainableCounts(simulator, sample, sample);
+  Network all = to_network(candidates.stations());
+  all.insert(all.end(), existing.begin(), existing.end());
+  // Without the time for it, networks are confirmed on the voxels that they were chosen by.
+  if (!raise_attainable(context.confirmed, simulator, all, progress)) context.confirmed = context.chosen;
+}
+
+// A station of a confirmed network may see more of a voxel than any candidate did.
+void take_in_confirmed(PlanResult& result, PlanContext& context, Simulator& simulator, const Progress& progress) {
+  std::vector<Network> networks;
+  for (const PlanEntry& entry : result.front)
+    if (entry.exact) networks.push_back(to_network(entry.stations));
+  if (networks.empty()) return;
+  AttainableCounts raised = context.confirmed;
+  for (const Network& network : networks)
+    if (!raise_attainable(raised, simulator, network, progress)) return;
+  const std::vector<Estimate> shares = captured_shares(simulator, raised, networks, progress);
+  if (shares.empty()) return;
+  context.confirmed = std::move(raised);
+  std::size_t k = 0;
+  for (PlanEntry& entry : result.front) {
+    if (!entry.exact) continue;
+    entry.values.at("capture") = shares[k++];
+    entry.attainable = context.confirmed.coverage();
+  }
+  result.exact_hypervolume = judge_by_every_ray(result.front, result.problem, context.measures());
+}
+
+// The answer takes its place in the trade-off, as it was confirmed.
+void put_answer_in_trade_off(PlanResult& result) {
+  if (result.trade_off.empty() || result.front.empty()) return;
+  const PlanEntry& entry = result.front[answer(result)];
+  TradeOffPoint point{.stations = entry.stations, .values = entry.values, .answer = true};
+  if (entry.visit) point.minutes_on_site = entry.visit->minutes;
+  const auto stations = [](const TradeOffPoint& p) { return p.stations.size(); };
+  const auto at = std::ranges::lower_bound(result.trade_off, entry.stations.size(), {}, stations);
+  if (at != result.trade_off.end() && at->stations.size() == entry.stations.size())
+    *at = std::move(point);
+  else
+    result.trade_off.insert(at, std::move(point));
+  mark_knee(result.trade_off);
+}
 
 void work_out_rounds(PlanResult& result, PlanContext& context) {
   if (result.front.empty()) return;
@@ -95,8 +161,8 @@ PlanResult plan(Simulator& simulator, const SearchArea& area, const ClashChecker
   if (problem.heights_m) heights.assign(problem.heights_m->begin(), problem.heights_m->end());
   require_somewhere_to_stand(area, clash, heights);
   std::shared_ptr<const Candidates> candidates;
-  double candidates_seconds = 0;
-  const bool limit_wanted = !problem.visible && needs_attainable(problem);
+  PlanContext context(simulator, area, clash, config);
+  const bool limit_wanted = needs_attainable(problem);
   if (problem.fewest || limit_wanted) {
     const auto report = [&](double done) {
       if (!watch.report) return;
@@ -105,24 +171,25 @@ PlanResult plan(Simulator& simulator, const SearchArea& area, const ClashChecker
     };
     candidates = std::make_shared<const Candidates>(find_candidates(simulator, area, clash,
                                                                     {.most = kMostCandidates,
-                                                                     .sample_voxels = config.sample_voxels,
+                                                                     .sample_voxels = sample_of_choice(problem, config, simulator),
                                                                      .scanner = finest(simulator, problem.scanners)},
                                                                     {.report = report, .stop = watch.stop}));
-    candidates_seconds = since(start);
+    if (limit_wanted) count_attainable(context, simulator, problem, *candidates, config.sample_voxels,
+                       {.report = {}, .stop = watch.stop});
+    const double attainable = limit_wanted ? context.confirmed.coverage().value : candidates->attainable().value;
     if (watch.report && candidates->ended() != "cancelled")
       watch.report({.evaluations = candidates->stations().size(),
                     .seconds_left = -1,
                     .phase = "look",
-                    .visible = candidates->visible().value});
-    // Nothing is attainable: every network captures all of it.
-    if (limit_wanted) problem.visible = candidates->visible().value > 0 ? candidates->visible().value : 1;
+                    .attainable = attainable});
+    // Nothing is attainable: every network captures all of nothing.
+    if (limit_wanted) problem.attainable = attainable > 0 ? attainable : 1;
   }
   problem = settled(std::move(problem));
-  PlanContext context(simulator, area, clash, config);
   context.ask(problem);
   PlanResult result;
   if (problem.fewest) {
-    result = plan_fewest(context, simulator, candidates, candidates_seconds, config, watch);
+    result = plan_fewest(context, simulator, candidates, config, watch);
     result.seconds = since(start);
     result.trace_seconds = context.evaluator().trace_seconds();
   } else {
@@ -139,8 +206,13 @@ PlanResult plan(Simulator& simulator, const SearchArea& area, const ClashChecker
     result.trace_seconds = found.trace_seconds + context.evaluator().trace_seconds() - searched_trace;
   }
   if (result.stop_reason == StopReason::cancelled && search_by.passed()) result.stop_reason = StopReason::max_time;
+  if (limit_wanted) {
+    take_in_confirmed(result, context, simulator, {.report = {}, .stop = watch.abort});
+    result.attainable = context.confirmed.coverage();
+  }
   result.candidates = std::move(candidates);
   if (!watch.abort.stop_requested()) work_out_rounds(result, context);
+  put_answer_in_trade_off(result);
   return result;
 }
 

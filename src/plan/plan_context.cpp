@@ -45,6 +45,8 @@ void PlanContext::ask(const SurveyProblem& problem) {
           .surroundings = needs.surroundings ? &surroundings() : nullptr,
           .surroundings_voxels = surroundings_voxels(),
           .registration = problem.registration,
+          .searched = &searched,
+          .confirmed = &confirmed,
           .minutes = needs.time ? [this, &ways = on_site()](
                                       std::span<const PlacedStation> stations) { return ways.visit(stations).minutes; }
                                 : std::function<double(std::span<const PlacedStation>)>()});

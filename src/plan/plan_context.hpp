@@ -15,10 +15,14 @@ namespace vantage {
 
 class PlanContext {
  public:
-  // Borrows all. The problem is settled: its `capture` knows the attainable coverage.
+  // Borrows all. The problem is settled: its `capture` knows what is attainable.
   PlanContext(Simulator& simulator, const SearchArea& area, const ClashChecker& clash, const PlanConfig& config);
 
-  // From now on, networks are evaluated with this problem's measures.
+  // What captured shares are told by, where a measure needs it: of choices among candidates, of searches, on part of
+  // their voxels, and of confirmed networks, on others. To be filled in before ask().
+  AttainableCounts chosen, searched, confirmed;
+
+  // Networks are judged by this problem's measures from now on.
   void ask(const SurveyProblem& problem);
   const SurveyProblem& problem() const { return problem_; }
   const Measures& measures() const { return measures_; }

@@ -14,13 +14,12 @@
 #include "plan/fewest_search.hpp"
 #include "plan/fewest_verify.hpp"
 #include "plan/spread_positions.hpp"
+#include "plan/trade_off.hpp"
 
 namespace vantage {
 namespace {
 
-// Margin of a choice, in standard errors of the sample's coverage, so that most choices hold with every ray.
-constexpr double kMarginErrors = 1;
-// Radius of the first round of refinement, in distances between candidates; halved in each round.
+// Radius of the first round of refinement, in distances between candidates; halved each round.
 constexpr double kAroundRadius = 0.8;
 // Largest number of repairs of a choice, and of new choices by the known error of the sample.
 constexpr std::size_t kRepairs = 3;
@@ -28,9 +27,21 @@ constexpr std::size_t kRepairs = 3;
 // Makes tables of stations, with a column for each on a sample of this many voxels.
 class TableMaker {
  public:
-  TableMaker(PlanContext& context, Simulator& simulator) : simulator_(simulator) {
+  TableMaker(PlanContext& context, Simulator& simulator, const SampledCoverage& known) : simulator_(simulator) {
     const FewestAsked asked = fewest_asked(context.problem());
-    apart_m_ = asked.apart_m;
+    if (asked.captured) goals_ = context.chosen.counts();
+    spacing_.nearest_m = asked.apart_m;
+    if (asked.apart_m > 0) {
+      std::vector<Vec3> centres;
+      for (const std::uint32_t voxel : known.voxels()) centres.push_back(simulator.voxel_centre(voxel));
+      CoverageMatrix goals(known.matrix().weights(), known.matrix().goal());
+      if (asked.captured) goals.set_goals(goals_);
+      spacing_.least_m = [centres = std::move(centres), goals = std::move(goals)](
+                             const PlacedStation& station, std::span<const CoverageMatrix::Entry> column) {
+        return spacing_by_view(station, column, goals, centres);
+      };
+      spacing_.sees = context.oracle().sees;
+    }
     const bool link_is_objective = std::ranges::any_of(
         context.problem().objectives, [](const Objective& o) { return o.kind == Objective::Kind::link; });
     if (asked.link <= 0 && !link_is_objective) return;
@@ -38,13 +49,19 @@ class TableMaker {
     surroundings_ = columns_of(context.surroundings(), sample > 0 ? sample : std::numeric_limits<std::uint32_t>::max());
   }
   CandidateTable operator()(std::uint64_t sample_voxels) const {
-    return {columns_of(simulator_, sample_voxels), surroundings_, apart_m_};
+    return {columns_of(simulator_, sample_voxels, goals_), surroundings_, spacing_};
+  }
+  // Of columns that are known already.
+  CoverageMatrix by_goals(CoverageMatrix known) const {
+    if (!goals_.empty()) known.set_goals(goals_);
+    return known;
   }
 
  private:
   Simulator& simulator_;
   TraceColumns surroundings_;
-  double apart_m_ = 0;
+  std::vector<double> goals_;  // attainable counts, where the choice goes by them
+  StationSpacing spacing_;
 };
 
 // Reports the progress of the plan.
@@ -75,51 +92,51 @@ VisitTime visit_time(PlanContext& context, const FewestAsked& asked) {
           .minutes = [&on_site](std::span<const PlacedStation> placed) { return on_site.visit(placed).minutes; }};
 }
 
-// Looks, chooses and refines. Returns no stations if the time was over before.
-FewestChoice choose_number(PlanContext& context, Simulator& simulator, const Candidates& candidates,
-                           double candidates_seconds, const PlanConfig& config, const PlanWatch& watch,
-                           FewestReport& report) {
-  using Clock = std::chrono::steady_clock;
-  const SurveyProblem& problem = context.problem();
-  const std::uint64_t sample = config.sample_voxels > 0 ? config.sample_voxels : simulator.voxel_count();
-  const TableMaker make_table(context, simulator);
-  FewestChoice choice{.asked = fewest_asked(problem), .table = make_table(sample)};
-  choice.margins.coverage = kMarginErrors * candidates.visible().standard_error;
+// What is chosen among thousands by a sample is what the sample flatters. Other voxels tell by how much, long before
+// every ray does: chooses anew, with margins, until they show enough.
+void calibrate(FewestChoice& choice, PlanContext& context, Simulator& simulator, const PlanWatch& watch) {
+  if (!choice.asked.captured || choice.asked.most_coverage) return;
+  for (std::size_t k = 0; k < kRepairs && choice.network.violation == 0 && !watch.stop.stop_requested(); ++k) {
+    const Network network = to_network(choice.stations_of(choice.network));
+    const auto shares = captured_shares(simulator, context.confirmed, {&network, 1}, {.report = {}, .stop = watch.stop});
+    if (shares.empty() || shares.front().value >= choice.asked.coverage) return;
+    raise_margins(choice, {.coverage = choice.asked.coverage - shares.front().value}, watch.stop);
+  }
+}
 
-  auto begun = Clock::now();
+// Looks, chooses and refines. Without stations to place where the time was over first.
+FewestChoice choose_number(PlanContext& context, Simulator& simulator, const Candidates& candidates,
+                           const PlanConfig& config, const PlanWatch& watch, FewestReport& report) {
+  const SurveyProblem& problem = context.problem();
+  const TableMaker make_table(context, simulator, candidates.coverage());
+  FewestChoice choice{.asked = fewest_asked(problem), .table = make_table(candidates.coverage().sample_voxels())};
+  // Where nothing else tells by how much the sample flatters, a standard error of it.
+  if (!choice.asked.captured) choice.margins.coverage = candidates.coverage().coverage().standard_error;
+
   std::vector<PlacedStation> existing = existing_stations(context.oracle(), problem.kept, problem.kept_setups);
   for (PlacedStation& station : existing)
     if (active(station)) station.status = StationStatus::ok;  // others are not traced
-  look(choice.table, existing, candidates.stations(), candidates.coverage().matrix(), report.progress("look"),
-       watch.abort);
+  look(choice.table, existing, candidates.stations(), make_table.by_goals(candidates.coverage().matrix()),
+       report.progress("look"), watch.abort);
   report.traced += choice.table.stations().size();
   if (choice.table.stations().size() <= existing.size()) return choice;
-  const auto looked_at = static_cast<double>(std::max<std::size_t>(candidates.stations().size(), 1));
-  StageTimes times{.look_s = candidates_seconds / looked_at};
-  times.station_s = times.look_s + seconds_since(begun) / looked_at;
 
   report("choose");
   choose(choice, visit_time(context, choice.asked), watch.stop);
   for (std::size_t round = 0; round < kRounds && !report.stopped(); ++round) {
-    begun = Clock::now();
+    const auto begun = std::chrono::steady_clock::now();
     const std::size_t before = choice.table.stations().size();
     const double radius_m = kAroundRadius * std::ldexp(std::max(candidates.spacing_m(), 0.1), -static_cast<int>(round));
     refine_around(choice, context.oracle(), radius_m, report.progress("choose"));
-    const std::size_t tried = choice.table.stations().size() - before;
-    report.traced += tried;
+    report.traced += choice.table.stations().size() - before;
     if (round > 0 || !watch.report || report.stopped() || choice.placed() == 0) continue;
-    times.round_s = seconds_since(begun), times.round_stations = tried;
     const SurveyProblem narrowed = with_stations(problem, choice.placed());
     if (const auto seconds =
             expected_seconds(choice, narrowed, refining_config(narrowed, config, candidates.stations().size()),
-                             context.evaluator(), times, watch))
+                             context.evaluator(), seconds_since(begun), watch))
       report("choose", seconds);
   }
-  if (const std::uint64_t larger = std::min(kLargerSample * sample, simulator.voxel_count()); larger > sample) {
-    const double sharper = std::sqrt(static_cast<double>(sample) / static_cast<double>(larger));
-    report.traced += refine_on_larger_sample(choice, make_table(larger), choice.margins.coverage * sharper,
-                                             report.progress("choose"), watch.abort);
-  }
+  calibrate(choice, context, simulator, watch);
   return choice;
 }
 
@@ -146,14 +163,41 @@ SearchOutcome search_from(const FewestChoice& choice, PlanContext& context, doub
                           const PlanConfig& config, const PlanWatch& watch, const FewestReport& report) {
   SearchOutcome found;
   const SurveyProblem asked =
-      with_margins(with_stations(context.problem(), choice.placed()), overstated, choice.margins.link);
+      with_margins(with_stations(context.problem(), choice.placed()), choice.asked, overstated, choice.margins.link);
   const std::vector<double> start = DecisionSpace(context.oracle(), asked).encode(choice.placed_of(choice.network));
   if (!report.stopped()) found = context.search(asked, refining_config(asked, config, candidates), start, watch);
+  // Registration draws stations together; those that do the same do not need each other.
+  const DecisionSpace space(context.oracle(), asked);
+  for (std::size_t k = found.front.size(); k-- > 0;) {
+    if (choice.table.spaced(space.decode(found.front[k].x))) continue;
+    found.front.erase(found.front.begin() + static_cast<std::ptrdiff_t>(k));
+    if (k < found.estimates.size()) found.estimates.erase(found.estimates.begin() + static_cast<std::ptrdiff_t>(k));
+  }
   if (report.stopped() && found.stop_reason == StopReason::running) found.stop_reason = StopReason::cancelled;
   return found;
 }
 
-// Fallback if time ran out before anything was traced: an allowed position without figures.
+// The trade-off around the answer, measured on the voxels of confirmation. The answer's own point is as it was confirmed.
+std::vector<TradeOffPoint> trade_off(const FewestChoice& choice, PlanContext& context, const PlanWatch& watch) {
+  if (!choice.asked.captured) return {};
+  const std::vector<CoverSolution> solutions = trade_off_networks(choice, watch.stop);
+  std::vector<PlacedNetwork> networks;
+  for (const CoverSolution& solution : solutions) networks.push_back(choice.stations_of(solution));
+  const auto estimates = context.evaluator().estimate(
+      networks, {.voxels = context.confirmed.sample_voxels(), .from = context.confirmed.from()},
+      NetworkEvaluator::Which::all, {.report = {}, .stop = watch.stop});
+  if (!estimates) return {};
+  std::vector<TradeOffPoint> points;
+  for (std::size_t k = 0; k < networks.size(); ++k) {
+    TradeOffPoint& point = points.emplace_back(TradeOffPoint{.stations = networks[k]});
+    for (std::size_t m = 0; m < context.measures().all.size(); ++m)
+      point.values[context.measures().all[m].name] = (*estimates)[k][m];
+    point.minutes_on_site = context.on_site().visit(std::span(networks[k]).subspan(choice.asked.existing)).minutes;
+  }
+  return points;
+}
+
+// Time ran out before anything was traced: an allowed position, of which nothing is known.
 std::vector<PlanEntry> any_position(const PlanContext& context, const Candidates& candidates,
                                     VerifiedNetworks& verified) {
   std::vector<PlacedStation> one = candidates.stations();
@@ -167,12 +211,12 @@ std::vector<PlanEntry> any_position(const PlanContext& context, const Candidates
 }  // namespace
 
 PlanResult plan_fewest(PlanContext& context, Simulator& simulator, std::shared_ptr<const Candidates> candidates,
-                       double candidates_seconds, const PlanConfig& config, const PlanWatch& watch) {
+                       const PlanConfig& config, const PlanWatch& watch) {
   const SurveyProblem problem = context.problem();
   FewestReport report(watch);
   VerifiedNetworks verified(problem, context.measures(), context.oracle(), context.evaluator(), config.sample_voxels,
                             watch);
-  FewestChoice choice = choose_number(context, simulator, *candidates, candidates_seconds, config, watch, report);
+  FewestChoice choice = choose_number(context, simulator, *candidates, config, watch, report);
   SearchOutcome found;
   PlanResult result;
   if (choice.table.stations().size() <= choice.asked.existing) {
@@ -186,6 +230,7 @@ PlanResult plan_fewest(PlanContext& context, Simulator& simulator, std::shared_p
     result = context.result(found);
     result.evaluations += report.traced;
     result.front = verified.front();
+    if (!report.stopped()) result.trade_off = trade_off(choice, context, watch);
   }
   result.exact_hypervolume = judge_by_every_ray(result.front, problem, context.measures());
   return result;

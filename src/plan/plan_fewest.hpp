@@ -5,9 +5,8 @@
 
 namespace vantage {
 
-// plan() for problems that ask for the fewest stations. `context` already has the problem. `candidates_seconds`: time
-// spent on the candidates.
+// plan() for problems that ask for the fewest stations. `context` has been asked the problem.
 PlanResult plan_fewest(PlanContext& context, Simulator& simulator, std::shared_ptr<const Candidates> candidates,
-                       double candidates_seconds, const PlanConfig& config, const PlanWatch& watch);
+                       const PlanConfig& config, const PlanWatch& watch);
 
 }  // namespace vantage

@@ -61,8 +61,11 @@ SurveyProblem of_objectives(const SurveyQuestion& question, std::array<std::size
 }
 
 SurveyProblem fewest(const SurveyQuestion& question, std::array<std::size_t, 2> stations, double least, double apart) {
-  SurveyProblem asked = fewest_stations(question.capture.value_or(default_capture),
+  // So many stations and no share of what is attainable: as much of it as they can.
+  const bool most = question.stations && stations[0] == stations[1] && !question.capture && question.objectives.empty();
+  SurveyProblem asked = fewest_stations(most ? 0 : question.capture.value_or(default_capture),
                                         question.link.value_or(default_link), stations[0], stations[1], apart);
+  if (most) asked.objectives = {make_objective("capture", asked.settings())};
   if (question.objectives.empty()) return asked;
   std::vector<Requirement> required = std::move(asked.requirements);
   asked = of_objectives(question, stations, least);
@@ -121,7 +124,7 @@ constexpr std::uint64_t kSampleForCoverage = 20'000, kSampleForOverlap = 100'000
 // sample; every ray then judges the archive (docs/cases.md).
 constexpr std::uint64_t kSampleRedrawn = 5'000;
 constexpr std::size_t kIterationsOfASample = 20;
-// For tracing every candidate: errors of .004, which the choice keeps as a margin and every ray then judges.
+// A search for the best of so many stations; the number is chosen by a larger sample.
 constexpr std::uint64_t kSampleForFewest = 5'000;
 // A quarter of the voxels is enough on small sites, but at least some thousands.
 constexpr std::uint64_t kLeastSample = 5'000;

@@ -135,7 +135,7 @@ const SettingTable<SurveyQuestion>& question_settings() {
               "survey (the default: the fewest connected stations that capture enough), or " + list_of(problem_names()),
               &Question::problem)
           .number("capture", "SHARE",
-                  otherwise("Least share of what can be seen that the survey captures", default_capture),
+                  otherwise("Least share of what is attainable that the survey captures", default_capture),
                   &Question::capture, share)
           .number("link", "SHARE",
                   otherwise("Least scan overlap of the links that connect all stations: the share of the smaller scan "

@@ -34,9 +34,9 @@ SampledCoverage::SampledCoverage(const Simulator& simulator, std::uint64_t sampl
 }
 
 std::uint32_t SampledCoverage::amount(std::uint32_t element, std::uint32_t points) const {
-  if (point_weights_.empty()) return points;
   const double full = std::min(std::ceil(matrix_.goal()), 4294967295.0);
-  return static_cast<std::uint32_t>(std::min(static_cast<double>(points) * point_weights_[element], full));
+  const double weight = point_weights_.empty() ? 1 : point_weights_[element];
+  return static_cast<std::uint32_t>(std::min(static_cast<double>(points) * weight, full));
 }
 
 void SampledCoverage::append(const SampledCoverage& other, std::size_t most) {
@@ -79,7 +79,8 @@ SampledCoverage sample_coverage(Simulator& simulator, std::span<const PlacedStat
       networks.push_back(to_network(std::span(&station, 1)));
     // Networks come in any order; columns must be in order, so they are collected first.
     std::vector<std::vector<CoverageMatrix::Entry>> columns(here);
-    SampleOptions options{.voxels = sample_voxels, .overlap = false, .stop_at_goal = false};
+    SampleOptions options{.voxels = sample_voxels, .overlap = false, .stop_at_goal = true};
+    options.groups = false;
     std::size_t counted = 0;
     options.points = [&](std::size_t k, std::span<const std::uint32_t> points) {
       for (std::uint32_t i = 0; i < points.size(); ++i)

@@ -48,7 +48,7 @@ Settings settings(const SurveyProblem& problem) {
                       .add("requirements", requirements, {"require"})
                       .add("link_overlap", problem.link_overlap, {"link-overlap"})
                       .add("fewest", problem.fewest)
-                      .add("visible", problem.visible)
+                      .add("attainable", problem.attainable)
                       .add("set_up_min", problem.on_site.set_up_min, {"set-up"})
                       .add("walking_m_per_s", problem.on_site.walking_m_per_s, {"walking"})
                       .add("detour", problem.on_site.detour)

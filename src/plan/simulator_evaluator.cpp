@@ -38,17 +38,33 @@ std::optional<SimulatorEvaluator::Counted> SimulatorEvaluator::count(std::span<c
                                                                      const Progress& progress) {
   Counted counted;
   counted.surveyed.resize(networks.size());
+  // The voxels of a search are mostly those of its attainable counts: then one pass does.
+  const auto on_sample = [&](const AttainableCounts* counts) {
+    return counts && sample.voxels == counts->sample_voxels() && sample.from == counts->from();
+  };
+  const AttainableCounts* attainable = nullptr;
+  if (needs.attainable) attainable = on_sample(options_.confirmed) ? options_.confirmed : options_.searched;
+  const bool in_one = needs.counts && on_sample(attainable);
   if (needs.counts) {
-    auto counts = count_with(simulator_, networks,
-                             {.voxels = sample.voxels,
-                              .from = sample.from,
-                              .overlap = needs.pairs,
-                              .stop_at_goal = true,
-                              .registration = needs.registration,
-                              .groups = errors},
-                             progress);
+    SampleOptions options{.voxels = sample.voxels,
+                          .from = sample.from,
+                          .overlap = needs.pairs,
+                          .stop_at_goal = true,
+                          .registration = needs.registration,
+                          .groups = errors};
+    if (in_one) {
+      counted.captured.resize(networks.size());
+      options.points = [&](std::size_t k, std::span<const std::uint32_t> points) {
+        counted.captured[k] = attainable->captured(points);
+      };
+    }
+    auto counts = count_with(simulator_, networks, options, progress);
     if (!counts) return std::nullopt;
     counted.surveyed = std::move(*counts);
+  }
+  if (attainable && !in_one) {
+    counted.captured = captured_shares(simulator_, *attainable, networks, {.report = {}, .stop = progress.stop});
+    if (counted.captured.size() < networks.size()) return std::nullopt;
   }
   if (needs.surroundings) {
     auto counts = count_with(*options_.surroundings, networks,
@@ -77,10 +93,12 @@ std::optional<std::vector<NetworkCounts>> SimulatorEvaluator::count_with(Simulat
   return counts;
 }
 
-MeasuredNetwork SimulatorEvaluator::measured(const NetworkCounts& counts, const NetworkCounts* surroundings,
-                                             const PlacedNetwork& stations, const Network& network,
-                                             const RequiredInputs& needs) const {
-  return {.counts = counts,
+MeasuredNetwork SimulatorEvaluator::measured(const Counted& counted, std::size_t k, const PlacedNetwork& stations,
+                                             const Network& network, const RequiredInputs& needs) const {
+  const NetworkCounts& counts = counted.surveyed[k];
+  const NetworkCounts* const surroundings = needs.surroundings ? &counted.surroundings[k] : nullptr;
+  MeasuredNetwork made{
+          .counts = counts,
           .stations = stations,
           .kept = options_.existing,
           .goal_density = simulator_.goal_density(),
@@ -90,6 +108,8 @@ MeasuredNetwork SimulatorEvaluator::measured(const NetworkCounts& counts, const 
           .surroundings = surroundings,
           .surroundings_voxels = surroundings ? options_.surroundings->voxel_count() : 0,
           .minutes_on_site = needs.time ? options_.minutes(std::span(stations).subspan(options_.existing)) : 0};
+  if (needs.attainable) made.captured = counted.captured[k];
+  return made;
 }
 
 std::optional<std::vector<std::vector<double>>> SimulatorEvaluator::evaluate(std::span<const PlacedNetwork> placed,
@@ -99,10 +119,7 @@ std::optional<std::vector<std::vector<double>>> SimulatorEvaluator::evaluate(std
   const std::vector<Network> networks = to_networks(placed);
   const auto counts = count(networks, sample, needs, false, progress);
   if (!counts) return std::nullopt;
-  const auto measured_at = [&](std::size_t k) {
-    return measured(counts->surveyed[k], needs.surroundings ? &counts->surroundings[k] : nullptr, placed[k],
-                    networks[k], needs);
-  };
+  const auto measured_at = [&](std::size_t k) { return measured(*counts, k, placed[k], networks[k], needs); };
   std::vector<std::vector<double>> values(placed.size());
   tbb::parallel_for(std::size_t{0}, placed.size(), [&](std::size_t k) {
     const MeasuredNetwork network = measured_at(k);
@@ -120,10 +137,7 @@ std::optional<std::vector<std::vector<Estimate>>> SimulatorEvaluator::estimate(s
   const std::vector<Network> networks = to_networks(placed);
   const auto counts = count(networks, sample, needs, true, progress);
   if (!counts) return std::nullopt;
-  const auto measured_at = [&](std::size_t k) {
-    return measured(counts->surveyed[k], needs.surroundings ? &counts->surroundings[k] : nullptr, placed[k],
-                    networks[k], needs);
-  };
+  const auto measured_at = [&](std::size_t k) { return measured(*counts, k, placed[k], networks[k], needs); };
   std::vector<std::vector<Estimate>> estimates(placed.size());
   tbb::parallel_for(std::size_t{0}, placed.size(), [&](std::size_t k) {
     const MeasuredNetwork network = measured_at(k);
@@ -142,19 +156,22 @@ std::vector<std::optional<Evaluation>> SimulatorEvaluator::confirm(std::span<con
     return counts;
   };
   const std::size_t parts = needs.surroundings ? 2 : 1;
-  std::vector<NetworkCounts> counts =
-      count(simulator_, {.overlap = true, .registration = needs.registration}, part_of(progress, 0, parts));
-  std::vector<NetworkCounts> around;
+  Counted counted;
+  counted.surveyed = count(simulator_, {.overlap = true, .registration = needs.registration}, part_of(progress, 0, parts));
   if (needs.surroundings)
-    around = count(*options_.surroundings, {.overlap = true, .registration = registered_around(needs)},
-                   part_of(progress, 1, parts));
+    counted.surroundings = count(*options_.surroundings, {.overlap = true, .registration = registered_around(needs)},
+                                 part_of(progress, 1, parts));
+  if (needs.attainable)
+    counted.captured = captured_shares(simulator_, *options_.confirmed, networks, {.report = {}, .stop = progress.stop});
 
   std::vector<std::optional<Evaluation>> all(placed.size());
   for (std::size_t k = 0; k < placed.size(); ++k) {
-    if (counts[k].cancelled || (needs.surroundings && around[k].cancelled)) continue;
-    all[k] =
-        evaluation_of(measured(counts[k], needs.surroundings ? &around[k] : nullptr, placed[k], networks[k], needs),
-                      measures_.all, needs.registration ? std::optional(options_.registration) : std::nullopt);
+    if (counted.surveyed[k].cancelled || (needs.surroundings && counted.surroundings[k].cancelled) ||
+        (needs.attainable && counted.captured.empty()))
+      continue;
+    all[k] = evaluation_of(measured(counted, k, placed[k], networks[k], needs), measures_.all,
+                           needs.registration ? std::optional(options_.registration) : std::nullopt);
+    if (needs.attainable) all[k]->attainable = options_.confirmed->coverage();
   }
   return all;
 }

@@ -18,8 +18,11 @@ class SimulatorEvaluator final : public NetworkEvaluator {
     // All surfaces; required if a measure needs them. With a number of sampled voxels, or every ray.
     Simulator* surroundings = nullptr;
     std::uint64_t surroundings_voxels = 0;
-    RegistrationOptions registration = {};  // of confirmed networks, if a measure needs it
-    // Minutes on site without the existing stations; required if a measure needs it.
+    RegistrationOptions registration = {};  // of confirmed networks, where a measure needs it
+    // By which searches and confirmed networks are told what they capture; needed where a measure needs it. On
+    // different voxels, or a network would be confirmed on those that it was chosen by.
+    const AttainableCounts *searched = nullptr, *confirmed = nullptr;
+    // Minutes on site without the existing stations; needed where a measure needs it.
     std::function<double(std::span<const PlacedStation>)> minutes = {};
   };
   // Borrows the simulators.
@@ -39,7 +42,8 @@ class SimulatorEvaluator final : public NetworkEvaluator {
 
  private:
   struct Counted {
-    std::vector<NetworkCounts> surveyed, surroundings;  // the latter empty if not needed
+    std::vector<NetworkCounts> surveyed, surroundings;  // the latter empty where nothing needs them
+    std::vector<Estimate> captured;                     // the same
   };
   // `errors`: whether standard errors are needed.
   std::optional<Counted> count(std::span<const Network> networks, const VoxelWindow& sample,
@@ -47,8 +51,8 @@ class SimulatorEvaluator final : public NetworkEvaluator {
   // A window without voxels means every ray.
   std::optional<std::vector<NetworkCounts>> count_with(Simulator& simulator, std::span<const Network> networks,
                                                        const SampleOptions& sample, const Progress& progress);
-  MeasuredNetwork measured(const NetworkCounts& counts, const NetworkCounts* surroundings,
-                           const PlacedNetwork& stations, const Network& network, const RequiredInputs& needs) const;
+  MeasuredNetwork measured(const Counted& counted, std::size_t k, const PlacedNetwork& stations,
+                           const Network& network, const RequiredInputs& needs) const;
 
   Simulator& simulator_;
   Measures measures_;

@@ -33,7 +33,7 @@ ObjectiveSettings SurveyProblem::settings() const {
           .stations_max = stations_max,
           .link_overlap = link_overlap,
           .registration = registration,
-          .visible = visible.value_or(1)};
+          .attainable = attainable.value_or(1)};
 }
 
 SurveyProblem survey_problem(std::span<const std::string> objectives, std::size_t stations_min,

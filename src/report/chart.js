@@ -27,6 +27,42 @@ function described(report, network) {
   return `${network.stations.length} stations, ${told.join(', ')}`;
 }
 
+// Axes with a grid and titles, around a field `left`, `right`, `top` and `bottom` of which stay free.
+function gridChart({ width, height, left, right, top, bottom }, xTicks, yTicks, px, py, xTitle, yTitle, attributes) {
+  const chart = svg('svg', { viewBox: `0 0 ${width} ${height}`, ...attributes });
+  for (const t of xTicks) {
+    chart.append(svg('line', { class: 'grid', x1: px(t.value), x2: px(t.value), y1: top, y2: height - bottom }));
+    chart.append(svg('text', { x: px(t.value), y: height - bottom + 20, 'text-anchor': 'middle' }, t.text));
+  }
+  for (const t of yTicks) {
+    chart.append(svg('line', { class: 'grid', x1: left, x2: width - right, y1: py(t.value), y2: py(t.value) }));
+    chart.append(svg('text', { x: left - 9, y: py(t.value) + 4.5, 'text-anchor': 'end' }, t.text));
+  }
+  chart.append(svg('path', { class: 'axis', fill: 'none', d: `M${left} ${top}V${height - bottom}H${width - right}` }));
+  chart.append(svg('text', { x: (left + width - right) / 2, y: height - 12, 'text-anchor': 'middle' }, xTitle));
+  chart.append(svg('text', { transform: `translate(18 ${(top + height - bottom) / 2}) rotate(-90)`, 'text-anchor': 'middle' }, yTitle));
+  return chart;
+}
+
+// Stations against what they capture: a line with the plan and the knee marked.
+function tradeOffChart(holder, points) {
+  const width = Math.max(320, holder.clientWidth), height = 260, left = 66, right = 40, top = 26, bottom = 58;
+  const last = points[points.length - 1].stations;
+  const px = (n) => left + (n / last) * (width - left - right), py = (share) => height - bottom - share * (height - top - bottom);
+  const shares = [0, 0.25, 0.5, 0.75, 1].map((value) => ({ value, text: `${100 * value} %` }));
+  const chart = gridChart({ width, height, left, right, top, bottom }, niceTicks(0, last, width < 500 ? 4 : 8).filter((t) => Number.isInteger(t.value)),
+    shares, px, py, 'Stations', 'Captured', { role: 'img', 'aria-label': 'Stations against what they capture; the table below has the numbers' });
+  chart.append(svg('path', { class: 'trade-off', fill: 'none', d: points.map((p, k) => `${k ? 'L' : 'M'}${px(p.stations).toFixed(1)} ${py(p.captured).toFixed(1)}`).join('') }));
+  for (const p of points) {
+    const name = p.answer ? `${p.stations}: the plan` : p.knee ? `${p.stations}: knee` : '';
+    const dot = svg('circle', { class: name ? 'dot' : 'dot small', cx: px(p.stations), cy: py(p.captured), r: name ? 6.5 : 3.5 });
+    dot.append(svg('title', {}, `${p.stations} stations, ${(100 * p.captured).toFixed(1)} %`));
+    chart.append(dot);
+    if (name) chart.append(svg('text', { x: px(p.stations), y: py(p.captured) + 26, 'text-anchor': 'middle' }, name));
+  }
+  holder.replaceChildren(chart);
+}
+
 // Returns select(k), which marks a network. `pick(k)` is called when a dot is picked.
 function frontChart(holder, report, pick) {
   const [x, y, third] = report.axes;
@@ -43,20 +79,11 @@ function frontChart(holder, report, pick) {
   const [x0, x1] = range('x', x.count), [y0, y1] = range('y', y.count);
   const px = (v) => left + ((v - x0) / (x1 - x0)) * (width - left - right);
   const py = (v) => height - bottom - ((v - y0) / (y1 - y0)) * (height - top - bottom);
-  const chart = svg('svg', { viewBox: `0 0 ${width} ${height}`, role: 'radiogroup', 'aria-label': `Networks by ${x.label} and ${y.label}` });
   const ticks = (axis, low, high, wanted) => niceTicks(low, high, wanted).filter((t) => !axis.count || Number.isInteger(t.value));
-  for (const t of ticks(x, x0, x1, narrow ? 4 : 8)) {
-    chart.append(svg('line', { class: 'grid', x1: px(t.value), x2: px(t.value), y1: top, y2: height - bottom }));
-    chart.append(svg('text', { x: px(t.value), y: height - bottom + 20, 'text-anchor': 'middle' }, x.count ? String(Math.round(t.value)) : t.text));
-  }
-  for (const t of ticks(y, y0, y1, 5)) {
-    chart.append(svg('line', { class: 'grid', x1: left, x2: width - right, y1: py(t.value), y2: py(t.value) }));
-    chart.append(svg('text', { x: left - 9, y: py(t.value) + 4.5, 'text-anchor': 'end' }, t.text));
-  }
-  chart.append(svg('path', { class: 'axis', fill: 'none', d: `M${left} ${top}V${height - bottom}H${width - right}` }));
+  const xTicks = ticks(x, x0, x1, narrow ? 4 : 8).map((t) => ({ value: t.value, text: x.count ? String(Math.round(t.value)) : t.text }));
   const title = (axis) => (narrow ? axis.name.replace(/_/g, ' ') : axis.label) + (axis.unit ? ` (${axis.unit})` : '');
-  chart.append(svg('text', { x: (left + width - right) / 2, y: height - 12, 'text-anchor': 'middle' }, title(x)));
-  chart.append(svg('text', { transform: `translate(18 ${(top + height - bottom) / 2}) rotate(-90)`, 'text-anchor': 'middle' }, title(y)));
+  const chart = gridChart({ width, height, left, right, top, bottom }, xTicks, ticks(y, y0, y1, 5), px, py, title(x), title(y),
+    { role: 'radiogroup', 'aria-label': `Networks by ${x.label} and ${y.label}` });
 
   const low = Math.min(...dots.map((dot) => dot.c)), high = Math.max(...dots.map((dot) => dot.c));
   const rising = ['#440154', '#3b528b', '#21918c', '#5ec962', '#d9c71c'];  // viridis, its pale end darker

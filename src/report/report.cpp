@@ -12,6 +12,7 @@ Report report_of(const PlanResult& result, const Simulator& simulator, const Rep
                 .answer = answer(result),
                 .requirements = result.problem.requirements,
                 .measures = result.measures,
+                .trade_off = result.trade_off,
                 .parameters = run_parameters_json(simulator, &result)};
   if (result.problem.objectives.size() > 1) {
     const FrontView view(result);

@@ -21,12 +21,13 @@ struct Report {
   ReportOptions options = {};
   std::string question = {};  // question that the plan answers
   std::vector<Network> networks = {};
-  std::size_t answer = 0;                      // index of the network
-  std::vector<Requirement> requirements = {};  // on the networks
-  std::vector<Objective> measures = {};        // of every network
-  std::vector<Objective> front_axes = {};      // to the right, up, and by colour if there is a third; empty: no front
-  std::string parameters = "{}";               // JSON text of an object
-  // Views of the answer's stations: a JPEG each, empty if there is none; or none at all.
+  std::size_t answer = 0;                      // of the networks
+  std::vector<Requirement> requirements = {};  // that networks have to keep
+  std::vector<Objective> measures = {};        // all that is told of a network
+  std::vector<Objective> front_axes = {};  // to the right, up, and by colour where there is a third; empty: no front
+  std::vector<TradeOffPoint> trade_off = {};  // stations against what they capture; empty: not known
+  std::string parameters = "{}";           // JSON text of an object
+  // What the answer's stations see: a JPEG each, empty where there is none; or none at all.
   std::vector<std::vector<std::uint8_t>> pictures = {};
 
   const Evaluation& shown() const { return networks[answer].evaluation; }

@@ -112,6 +112,13 @@
     modes.forEach((button, k) => { button.setAttribute('aria-checked', String(k === 0)); button.tabIndex = k === 0 ? 0 : -1; });
   }
 
+  if (report.trade_off.length) {
+    at('trade-off').hidden = false;
+    tradeOffChart(at('trade-off-chart'), report.trade_off);
+    at('trade-off-table').replaceChildren(table(['Stations', 'Captured', 'Registered to', 'On site', ''], report.trade_off.map((p) => [
+      p.stations, `${percent(p.captured)} ± ${percent(p.error)}`, p.registration_mm === null ? null : `${p.registration_mm.toFixed(2)} mm`,
+      p.seconds_on_site === null ? null : duration(p.seconds_on_site), p.answer ? 'the plan' : p.knee ? 'knee' : '']), [4]));
+  }
   if (report.axes.length) {
     at('front').hidden = false;
     mark = frontChart(at('chart'), report, show);

@@ -68,13 +68,13 @@ ordered_json network_json(const Evaluation& network, std::span<const Requirement
   ordered_json json = {{"confirmed", network.exact},
                        {"missed", known(network.violation)},
                        {"values", std::move(values)},
-                       {"captured", network.value("coverage")},
-                       {"of_visible", nullptr},
+                       {"coverage", network.value("coverage")},
+                       {"captured", nullptr},
                        {"seconds_on_site", nullptr},
                        {"summary", std::move(summary)},
                        {"stations", stations_json(network)},
                        {"parts", nullptr}};
-  if (network.values.contains("capture")) json["of_visible"] = network.value("capture");
+  if (network.values.contains("capture")) json["captured"] = known(network.value("capture"));
   if (network.visit) json["seconds_on_site"] = 60 * network.visit->minutes;
   if (const auto links = network.links()) {
     json["parts"] = links->parts.size();
@@ -104,6 +104,25 @@ ordered_json missed_json(const Report& report) {
 
 }  // namespace
 
+namespace {
+
+ordered_json trade_off_json(const std::vector<TradeOffPoint>& points) {
+  ordered_json json = ordered_json::array();
+  for (const TradeOffPoint& point : points) {
+    const auto registered = point.values.find("registration");
+    json.push_back({{"stations", point.stations.size()},
+                    {"captured", known(point.values.at("capture").value)},
+                    {"error", point.values.at("capture").standard_error},
+                    {"registration_mm", registered == point.values.end() ? ordered_json() : known(registered->second.value)},
+                    {"seconds_on_site", point.minutes_on_site ? ordered_json(60 * *point.minutes_on_site) : ordered_json()},
+                    {"answer", point.answer},
+                    {"knee", point.knee}});
+  }
+  return json;
+}
+
+}  // namespace
+
 ordered_json report_json(const Report& report) {
   ordered_json axes = ordered_json::array(), measures = axes, networks = axes;
   for (const Objective& axis : report.front_axes) axes.push_back(measure_json(axis));
@@ -119,7 +138,8 @@ ordered_json report_json(const Report& report) {
           {"command", report.options.command}, {"version", version()},
           {"answer", report.answer},           {"axes", std::move(axes)},
           {"measures", std::move(measures)},   {"networks", std::move(networks)},
-          {"missed", missed_json(report)},     {"parameters", ordered_json::parse(report.parameters)}};
+          {"missed", missed_json(report)},     {"trade_off", trade_off_json(report.trade_off)},
+          {"parameters", ordered_json::parse(report.parameters)}};
 }
 
 }  // namespace vantage

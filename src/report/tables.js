@@ -38,9 +38,9 @@ function figures(holder, network) {
   const tile = (name, value, note, bad) =>
     element('div', bad ? { class: 'bad' } : {}, element('dt', {}, name), element('dd', {}, value, element('small', {}, note)));
   const tiles = [
-    network.of_visible !== null
-      ? tile('Captured', percent(network.of_visible), `of what can be seen; ${percent(network.captured)} of the site`)
-      : tile('Captured', percent(network.captured), 'of the site’s surfaces; where points are too few, in part'),
+    network.captured !== null
+      ? tile('Captured', percent(network.captured), `of what is attainable; ${percent(network.coverage)} of the site`)
+      : tile('Captured', percent(network.coverage), 'of the site’s surfaces; where points are too few, in part'),
     tile('Stations', String(used), kept ? `${kept} there already, ${used - kept} new` : 'all new'),
   ];
   if (network.parts !== null)

@@ -51,7 +51,7 @@ class CandidatesAndBounds(unittest.TestCase):
         for _ in range(200):
             chosen = random.choice(len(sampled), 3, replace=False)
             self.assertLessEqual(sampled.coverage(chosen)[0], best.bound + 1e-12)
-        wanted = vantage.min_cover(sampled.matrix, 0.9 * self.found.visible[0])
+        wanted = vantage.min_cover(sampled.matrix, 0.9 * self.found.attainable[0])
         self.assertTrue(wanted.possible)
         self.assertLessEqual(wanted.at_least, len(wanted.chosen))
         with self.assertRaisesRegex(vantage.Error, "number of stations"):
@@ -78,7 +78,7 @@ class CandidatesAndBounds(unittest.TestCase):
         self.assertEqual(len(linked.chosen), 3)
         self.assertGreaterEqual(len(among), 2)  # of three stations: a tree
         self.assertLessEqual(linked.bound, vantage.max_cover(matrix, 3).bound + 1e-12)
-        few = vantage.min_connected_cover(matrix, 0.8 * self.found.visible[0], graph, 0.3)
+        few = vantage.min_connected_cover(matrix, 0.8 * self.found.attainable[0], graph, 0.3)
         self.assertEqual(few.violation, 0)
         self.assertGreaterEqual(few.link, 0.3)
 

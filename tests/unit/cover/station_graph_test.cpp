@@ -36,5 +36,19 @@ TEST(StationGraph, ExcludesPairsThatStandTooNear) {
   EXPECT_TRUE(graph.excluded(0, 2) && graph.excluded(2, 0));
 }
 
+TEST(StationGraph, ExcludesPairsNearerThanTheirOwnDistanceUnlessTheyAreParted) {
+  StationGraph graph(4);
+  const std::vector<Vec3> positions{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 5}};
+  const std::vector<double> least{3, 2.5, 1.5, 9};
+  const auto wall = [](std::size_t i, std::size_t j) { return i + j == 1; };
+  graph.exclude_nearer(positions, least, [](std::size_t, std::size_t) { return false; });
+  EXPECT_TRUE(graph.excluded(0, 1) && graph.excluded(1, 0)) << "2 m, and each wants 2.5 m";
+  EXPECT_FALSE(graph.excluded(0, 2)) << "2 m, and one wants 1.5 m";
+  EXPECT_FALSE(graph.excluded(0, 3)) << "5 m, and one wants 3 m";
+  StationGraph parted(4);
+  parted.exclude_nearer(positions, least, wall);
+  EXPECT_FALSE(parted.excluded(0, 1)) << "a wall is between them";
+}
+
 }  // namespace
 }  // namespace vantage

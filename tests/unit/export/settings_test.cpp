@@ -177,7 +177,7 @@ const std::vector<Change<SurveyProblem>> kProblem{
     {"link_overlap", [](SurveyProblem& p) { p.link_overlap = 0.05; }},
     {"registration", [](SurveyProblem& p) { p.registration.tilt = Angle::degrees(1); }},
     {"fewest", [](SurveyProblem& p) { p.fewest = true; }},
-    {"visible", [](SurveyProblem& p) { p.visible = 0.7; }},
+    {"attainable", [](SurveyProblem& p) { p.attainable = 0.7; }},
     {"on_site", [](SurveyProblem& p) { p.on_site.set_up_min = 5; }}};
 static_assert(member_count<SurveyProblem>() == 14);
 

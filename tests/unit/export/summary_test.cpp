@@ -32,7 +32,7 @@ TEST(Summary, SaysInWordsWhatItKnowsAndNothingElse) {
   network.visit = Visit{.minutes = 3 * 60 + 25 + 20 / 60.0};
   EXPECT_EQ(
       summary_text(network),
-      "captured   71.2 % ± 0.4 % of the site, 92.0 % of what can be seen\n"
+      "captured   71.2 % ± 0.4 % of the site, 92.0 % ± 1.0 % of what is attainable\n"
       "linked     no: in 3 parts, by overlap of at least 0.01: S1, S2 and S3; S4 and S5; S6 stands alone\n"
       "registered to about 1.23 mm, as predicted\n"
       "on site    about 3 h 25 min\n"

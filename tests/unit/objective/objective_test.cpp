@@ -106,12 +106,18 @@ TEST(Objective, LinksErrorComesFromTheSurroundingsSample) {
   EXPECT_EQ(estimate(make_objective("link"), measured).standard_error, 0);
 }
 
-TEST(Objective, CaptureIsOfWhatCanBeSeen) {
-  EXPECT_EQ(value_of("capture"), 0.75);
-  EXPECT_EQ(value_of("capture", {.visible = 0.8}), 0.75 / 0.8);
-  EXPECT_EQ(value_of("capture", {.visible = 0.5}), 1) << "at most 1";
-  EXPECT_THROW(make_objective("capture", {.visible = 0}), Error);
-  EXPECT_THROW(make_objective("capture", {.visible = 1.5}), Error);
+TEST(Objective, CaptureIsOfWhatIsAttainable) {
+  EXPECT_TRUE(std::isnan(value_of("capture"))) << "nobody counted it";
+  const NetworkCounts counts;
+  MeasuredNetwork measured{.counts = counts, .stations = {}};
+  measured.captured = {0.8, 0.01};
+  const Objective capture = make_objective("capture", {.attainable = 0.6});
+  const Estimate share = estimate(capture, measured);
+  EXPECT_EQ(share.value, 0.8);
+  EXPECT_DOUBLE_EQ(share.standard_error, 0.01) << "of the voxels that it was counted on";
+  EXPECT_EQ(capture.coverage_of_one, 0.6);
+  EXPECT_THROW(make_objective("capture", {.attainable = 0}), Error);
+  EXPECT_THROW(make_objective("capture", {.attainable = 1.5}), Error);
 }
 
 TEST(Objective, ApartIsBetweenTheNearestTwo) {

@@ -66,7 +66,9 @@ TEST(SampledCoverage, AreTheVoxelFieldsOfSingleStations) {
     simulator.evaluate({{stations[k].position}}, {.overlap = false, .field = &field});
     std::vector<std::uint32_t> dense(field.count.size());
     for (const CoverageMatrix::Entry& one : sampled.matrix().column(k)) dense[one.element] = one.amount;
-    EXPECT_EQ(dense, field.count) << k;
+    const auto goal = static_cast<std::uint32_t>(std::ceil(simulator.goal_density()));
+    for (std::uint32_t& count : field.count) count = std::min(count, goal);
+    EXPECT_EQ(dense, field.count) << k << ", up to the goal";
     EXPECT_GT(sampled.matrix().column(k).size(), 0u);
   }
 }
@@ -176,7 +178,7 @@ TEST(SpreadPositions, FollowTheGroundInSquareMetres) {
 }
 
 // Two equal walls, one behind the other and out of sight from all of the ground.
-TEST(Candidates, TellWhatCanBeSeen) {
+TEST(Candidates, TellWhatIsAttainable) {
   QuadScene site;
   site.quad({5, -3, -1.5f}, {0, 6, 0}, {0, 0, 4});
   site.quad({6, -2, -1.4f}, {0, 4, 0}, {0, 0, 3.4f});
@@ -190,12 +192,15 @@ TEST(Candidates, TellWhatCanBeSeen) {
   EXPECT_GT(share, 0.5);
   EXPECT_LT(share, 0.8);
   // Voxels at the wall's rim hold less of it than the goal asks of a whole one, but many scans fill them too.
-  EXPECT_NEAR(found.visible().value, share, 0.01);
-  EXPECT_EQ(found.visible().standard_error, 0);
+  EXPECT_NEAR(found.attainable().value, share, 0.01);
+  EXPECT_EQ(found.attainable().standard_error, 0);
   EXPECT_EQ(found.ended(), "enough");
-  EXPECT_LT(found.change(), 0.005);
+  EXPECT_LT(found.change(), 0.01);
   EXPECT_EQ(found.coverage().size(), found.stations().size());
-  EXPECT_NEAR(found.coverage().coverage().value, found.visible().value, 1e-12);
+  EXPECT_GE(found.coverage().coverage().value, found.attainable().value) << "points of several stations add up";
+  std::vector<std::size_t> all(found.stations().size());
+  for (std::size_t k = 0; k < all.size(); ++k) all[k] = k;
+  EXPECT_NEAR(found.captured_matrix().coverage(all), 1, 1e-12);
   for (const PlacedStation& station : found.stations()) {
     EXPECT_EQ(station.status, StationStatus::ok);
     EXPECT_NEAR(station.position.z, -1.5 + simulator.scanner().height_m, 1e-9);
@@ -210,10 +215,10 @@ TEST(Candidates, GrowAsFarAsTheyMay) {
   EXPECT_EQ(few.ended(), "most");
   EXPECT_EQ(few.stations().size(), 12u);
   const Candidates more = find_candidates(simulator, area, clash, {.first = 4, .most = 48, .change = 0});
-  EXPECT_LE(few.visible().value, more.visible().value);
+  EXPECT_LE(few.attainable().value, more.attainable().value);
   EXPECT_GT(few.spacing_m(), more.spacing_m());
   const Candidates again = find_candidates(simulator, area, clash, {.first = 4, .most = 48, .change = 0});
-  EXPECT_EQ(again.visible().value, more.visible().value);
+  EXPECT_EQ(again.attainable().value, more.attainable().value);
   const Candidates timed =
       find_candidates(simulator, area, clash, {.first = 100, .most = 1000, .change = 0, .max_seconds = 1e-6});
   EXPECT_EQ(timed.ended(), "time");

@@ -24,7 +24,7 @@ FewestChoice chosen(const SurveyProblem& problem, int side, std::size_t step = 1
 
 TEST(FewestAsked, TakesTheStrictestLimits) {
   SurveyProblem problem = fewest_stations(0.8, 0.25, 2, 9, 1.5);
-  problem.visible = 0.5;
+  problem.attainable = 0.5;
   for (Requirement& requirement : problem.requirements)
     if (requirement.objective.name == "capture") requirement.objective = make_objective("capture", problem.settings());
   problem.kept = {{1, 1, 4.5}};
@@ -32,7 +32,8 @@ TEST(FewestAsked, TakesTheStrictestLimits) {
   EXPECT_EQ(asked.existing, 1u);
   EXPECT_EQ(asked.fewest, 2u);
   EXPECT_EQ(asked.most, 9u);
-  EXPECT_DOUBLE_EQ(asked.coverage, 0.4) << "of what can be seen";
+  EXPECT_TRUE(asked.captured);
+  EXPECT_DOUBLE_EQ(asked.coverage, 0.8) << "of what is attainable";
   EXPECT_EQ(asked.link, 0.25);
   EXPECT_EQ(asked.apart_m, 1.5);
   EXPECT_FALSE(asked.minutes);
@@ -40,8 +41,12 @@ TEST(FewestAsked, TakesTheStrictestLimits) {
   problem.requirements.push_back(
       {.objective = make_objective("time", problem.settings()), .bound = Requirement::Bound::at_most, .limit = 90});
   asked = fewest_asked(problem);
-  EXPECT_EQ(asked.coverage, 0.45);
+  EXPECT_EQ(asked.coverage, 0.9) << "a coverage of 0.45, of 0.5 that are attainable";
   EXPECT_EQ(asked.minutes, 90);
+  std::erase_if(problem.requirements, [](const Requirement& r) { return r.objective.name == "capture"; });
+  asked = fewest_asked(problem);
+  EXPECT_FALSE(asked.captured);
+  EXPECT_EQ(asked.coverage, 0.45);
 }
 
 TEST(Look, TakesExistingStationsFirstAndFewCandidatesWhereTimeIsOver) {
@@ -113,35 +118,28 @@ TEST(RefineAround, AddsAllowedPositionsNearTheChosen) {
   EXPECT_LE(choice.placed(), placed);
 }
 
-TEST(RefineOnLargerSample, ChoosesByWhatALargerSampleShows) {
-  // Every 37th cell: what is chosen by so few of them seems better than it is.
-  const SurveyProblem problem = floor_problem(0.75);
-  FewestChoice choice = chosen(problem, 14, 37);
-  choice.margins = {.coverage = 0.02, .link = 0};
-  const std::size_t candidates = choice.table.stations().size();
-  const double seemed = choice.network.coverage;
-  const double really = test::FloorEvaluator::coverage_of(choice.stations_of(choice.network));
-  ASSERT_GT(seemed, really) << "or this shows nothing";
-  const std::size_t traced = refine_on_larger_sample(choice, floor_choice(problem).table, 0.001, {}, {});
-  EXPECT_EQ(traced, choice.table.stations().size());
-  EXPECT_GT(traced, 20u);
-  EXPECT_LT(traced, candidates) << "a short list";
-  EXPECT_EQ(choice.margins.coverage, 0.001);
-  EXPECT_EQ(choice.network.violation, 0);
-  EXPECT_NEAR(choice.network.coverage, test::FloorEvaluator::coverage_of(choice.stations_of(choice.network)), 1e-12);
-}
-
-TEST(RefineOnLargerSample, LeavesAChoiceThatItIsStoppedFor) {
-  const SurveyProblem problem = floor_problem(0.75);
-  FewestChoice choice = chosen(problem, 10, 5);
-  const auto before = choice.network.chosen;
-  std::stop_source stop;
-  stop.request_stop();
-  EXPECT_EQ(
-      refine_on_larger_sample(choice, floor_choice(problem).table, 0.001, {.report = {}, .stop = stop.get_token()}, {}),
-      0u);
-  EXPECT_EQ(choice.network.chosen, before);
-  EXPECT_EQ(choice.table.stations().size(), floor_candidates(10).size());
+TEST(Choose, TakesTheMostCoverageOfSoManyStations) {
+  SurveyProblem problem = floor_problem(0);
+  std::erase_if(problem.requirements, [](const Requirement& r) { return r.objective.name == "capture"; });
+  problem.stations_min = problem.stations_max = 3;
+  const FewestAsked asked = fewest_asked(problem);
+  EXPECT_TRUE(asked.most_coverage);
+  EXPECT_FALSE(asked.captured) << "coverage is searched for";
+  FewestChoice choice = chosen(problem, 10);
+  ASSERT_EQ(choice.placed(), 3u);
+  EXPECT_GE(choice.network.link, 0.1) << "and linked";
+  // No swap of one station among the linked, apart networks of as many has more.
+  const CoverProblem asked_of = cover_problem(choice);
+  for (std::size_t at = 0; at < 3; ++at)
+    for (std::size_t k = 0; k < choice.table.stations().size(); ++k) {
+      std::vector<std::size_t> other = choice.network.chosen;
+      other[at] = k;
+      const CoverSolution swapped = evaluate_cover(asked_of, other);
+      const auto near = [&](std::size_t i, std::size_t j) { return choice.table.graph().excluded(i, j) || i == j; };
+      if (swapped.link < 0.1 || near(other[0], other[1]) || near(other[0], other[2]) || near(other[1], other[2]))
+        continue;
+      EXPECT_LE(swapped.coverage, choice.network.coverage + 1e-9);
+    }
 }
 
 }  // namespace

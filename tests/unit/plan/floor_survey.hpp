@@ -52,7 +52,7 @@ inline std::vector<PlacedStation> floor_candidates(int side) {
 // At least that coverage, linked by at least 0.1, at least a metre apart; then the most coverage.
 inline SurveyProblem floor_problem(double coverage) {
   SurveyProblem problem = fewest_stations(coverage, 0.1, 1, 12, 1);
-  problem.visible = 1;
+  problem.attainable = 1;
   for (Requirement& requirement : problem.requirements)
     if (requirement.objective.name == "capture") requirement.objective = make_objective("capture", problem.settings());
   problem.objectives = {make_objective("coverage", problem.settings())};
@@ -60,7 +60,7 @@ inline SurveyProblem floor_problem(double coverage) {
 }
 
 inline FewestChoice floor_choice(const SurveyProblem& problem, std::size_t step = 1) {
-  return {.asked = fewest_asked(problem), .table = CandidateTable(floor_columns(step), floor_columns(1, 4), 1)};
+  return {.asked = fewest_asked(problem), .table = CandidateTable(floor_columns(step), floor_columns(1, 4), {.nearest_m = 1})};
 }
 
 // Evaluates networks by the columns of all cells. A sample overstates coverage by `overstated`.

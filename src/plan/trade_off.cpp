@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plan/trade_off.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "cover/connected_growth.hpp"
+#include "cover/network.hpp"
+#include "cover/partial_cover.hpp"
+
+namespace vantage {
+namespace {
+
+// Points below the chosen number, and beyond it: up to half as many stations more.
+constexpr std::size_t kPointsBelow = 10, kPointsBeyond = 4;
+constexpr double kBeyondShare = 0.5;
+
+// Without the station that is missed least, of those without which the rest is connected as before.
+bool drop_one(const CoverProblem& problem, std::vector<std::size_t>& network) {
+  const PartialCover cover(problem.matrix, network);
+  const std::size_t parts = components_of(problem, network, problem.link).count;
+  std::size_t least = network.size();
+  double lost = std::numeric_limits<double>::infinity();
+  for (std::size_t at = problem.existing.size(); at < network.size(); ++at) {
+    const double loss = cover.loss(network[at]);
+    if (loss >= lost || components_of(problem, without(network, at), problem.link).count > parts) continue;
+    lost = loss, least = at;
+  }
+  if (least == network.size()) return false;
+  network = without(network, least);
+  return true;
+}
+
+}  // namespace
+
+std::vector<std::size_t> trade_off_numbers(std::size_t chosen, std::size_t most) {
+  std::vector<std::size_t> numbers;
+  const auto add = [&](std::size_t number) {
+    if (number >= 1 && number <= most && (numbers.empty() || number > numbers.back())) numbers.push_back(number);
+  };
+  for (std::size_t k = 0; k < kPointsBelow; ++k) {
+    const double share = static_cast<double>(k) / static_cast<double>(kPointsBelow);
+    add(1 + static_cast<std::size_t>(share * static_cast<double>(chosen - 1)));
+  }
+  add(chosen);
+  const double beyond = std::max(kBeyondShare * static_cast<double>(chosen), static_cast<double>(kPointsBeyond));
+  for (std::size_t k = 1; k <= kPointsBeyond; ++k)
+    add(chosen + static_cast<std::size_t>(beyond * static_cast<double>(k) / static_cast<double>(kPointsBeyond)));
+  return numbers;
+}
+
+std::vector<CoverSolution> trade_off_networks(const FewestChoice& choice, const std::stop_token& stop) {
+  if (choice.placed() == 0) return {};
+  CoverProblem problem = cover_problem(choice);
+  problem.coverage = 1;  // as much as there is
+  problem.link = choice.asked.link;
+  const std::size_t existing = choice.asked.existing;
+  const std::vector<std::size_t> numbers = trade_off_numbers(choice.placed(), std::numeric_limits<std::size_t>::max());
+  const auto here = std::ranges::find(numbers, choice.placed());
+  std::vector<CoverSolution> networks{evaluate_cover(problem, choice.network.chosen)};
+  std::vector<std::size_t> now = choice.network.chosen;
+  for (auto number = here; number != numbers.begin() && !stop.stop_requested();) {
+    --number;
+    bool dropped = true;
+    while (dropped && now.size() > existing + *number) dropped = drop_one(problem, now);
+    if (!dropped) break;
+    now = improve_by_swaps(problem, std::move(now), stop);
+    networks.insert(networks.begin(), evaluate_cover(problem, now));
+  }
+  now = choice.network.chosen;
+  for (auto number = here + 1; number != numbers.end() && !stop.stop_requested(); ++number) {
+    problem.most = problem.fewest = *number;
+    const std::size_t before = now.size();
+    now = improve_by_swaps(problem, grow_connected(problem, std::move(now)), stop);
+    if (now.size() == before) break;
+    networks.push_back(evaluate_cover(problem, now));
+  }
+  return networks;
+}
+
+void mark_knee(std::vector<TradeOffPoint>& points) {
+  if (points.size() < 3) return;
+  const auto at = [&](const TradeOffPoint& point) {
+    const TradeOffPoint &first = points.front(), &last = points.back();
+    const auto share = [](double value, double from, double to) { return to > from ? (value - from) / (to - from) : 0; };
+    const auto stations = [](const TradeOffPoint& p) { return static_cast<double>(p.stations.size()); };
+    const auto captured = [](const TradeOffPoint& p) { return p.values.at("capture").value; };
+    return share(captured(point), captured(first), captured(last)) -
+           share(stations(point), stations(first), stations(last));
+  };
+  const auto knee = std::ranges::max_element(points, {}, at);
+  if (at(*knee) > 0) knee->knee = true;
+}
+
+}  // namespace vantage
