@@ -11,6 +11,7 @@ namespace {
 Options<OnSiteOptions> on_site_options() {
   return Options<OnSiteOptions>("OnSiteOptions")
       .add("set_up_min", &OnSiteOptions::set_up_min, "Minutes at each station besides the scan.")
+      .add("photos_min", &OnSiteOptions::photos_min, "Minutes at each station for pictures.")
       .add("walking_m_per_s", &OnSiteOptions::walking_m_per_s, "Walking speed with scanner and tripod in hand.")
       .add("detour", &OnSiteOptions::detour,
            "Length over straight line of paths that the search area does not connect.")
@@ -31,11 +32,13 @@ void add_on_site(py::module_& m) {
   py::class_<Visit> visit(m, "Visit", "One round: in at the entrance, to every station, and back out.");
   visit.def_readonly("order", &Visit::order, "Indices of the stations; unusable ones are left out.")
       .def_readonly("legs_m", &Visit::legs_m, "Path to each in that order, then back out, metres.")
+      .def_readonly("paths", &Visit::paths, "Ground points of each of these paths: lists of (x, y, z).")
       .def_readonly("walk_m", &Visit::walk_m, "All legs together.")
       .def_readonly("scan_min", &Visit::scan_min, "Minutes of scanning.")
       .def_readonly("set_up_min", &Visit::set_up_min, "Minutes of setting up.")
+      .def_readonly("photos_min", &Visit::photos_min, "Minutes of taking pictures.")
       .def_readonly("walk_min", &Visit::walk_min, "Minutes of walking.")
-      .def_readonly("minutes", &Visit::minutes, "Scan, set-up and walking together.")
+      .def_readonly("minutes", &Visit::minutes, "Scan, set-up, photos and walking together.")
       .def_readonly("unconnected", &Visit::unconnected, "Legs that the search area does not connect.")
       .def("__repr__", [](const Visit& v) {
         return "<vantage.Visit of " + std::to_string(v.order.size()) + " stations, " +

@@ -27,7 +27,8 @@ inline auto members(RegistrationError& e) {
   return std::tie(e.rms_m, e.worst_m, e.worst_station, e.stations, e.poses, e.centre, e.scale_m);
 }
 inline auto members(Visit& v) {
-  return std::tie(v.order, v.legs_m, v.walk_m, v.scan_min, v.set_up_min, v.walk_min, v.minutes, v.unconnected);
+  return std::tie(v.order, v.legs_m, v.paths, v.walk_m, v.scan_min, v.set_up_min, v.photos_min, v.walk_min, v.minutes,
+                  v.unconnected);
 }
 inline auto members(Evaluation& e) {
   return std::tie(e.stations, e.names, e.exact, e.voxels, e.goal_density, e.counts, e.field, e.values, e.attainable,

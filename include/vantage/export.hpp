@@ -124,7 +124,7 @@ void draw_hypervolume(const std::filesystem::path& file, const PlanResult& resul
 void draw_history_fronts(const std::filesystem::path& file, const PlanResult& result);
 /// Draws the site in plan view: shaded relief, search area, stations with the height of their ground, and links. A link
 /// is as wide as its overlap is large, on one scale in all pictures; those below `link_overlap` are not drawn. A site
-/// with mostly covered ground, or with several floors, is cut 1.2 m above the floor, and cut parts are filled. Several
+/// with stations under a roof, or with several floors, is cut 1.2 m above the floor, and cut parts are filled. Several
 /// floors stand side by side, and each again on its own page, PLAN-level-1.png and so on, from the lowest. `names`: of
 /// the stations, if they have names; otherwise "S1", "S2", …, and "K1", … for existing ones. `errors`: predicted ones
 /// of the stations, if known: a standard ellipse (one sigma, of the head in x and y) around each. `overlap_words`: name
@@ -156,19 +156,20 @@ void write_missed_csv(const std::filesystem::path& file, std::span<const MissedS
 void write_missed_ply(const std::filesystem::path& file, const Simulator& simulator,
                       std::span<const std::uint32_t> ranks, std::span<const WhyMissed> why,
                       std::span<const std::uint32_t> points);
-/// The same in plan view, .png or .svg. Of voxels above each other, one missed for want of a station shows first, then
-/// one beyond help, then a captured one.
-void draw_missed(const std::filesystem::path& file, const Simulator& simulator, std::span<const std::uint32_t> ranks,
-                 std::span<const WhyMissed> why, std::span<const PlacedStation> stations, const std::string& title);
+/// The same in plan view, .png or .svg, a map for each floor, cut as by `draw_plan_view`. Of voxels above each other,
+/// one missed for want of a station shows first, then one beyond help, then a captured one.
+void draw_missed(const std::filesystem::path& file, const Simulator& simulator, const SearchArea& area,
+                 std::span<const std::uint32_t> ranks, std::span<const WhyMissed> why,
+                 std::span<const PlacedStation> stations, const std::string& title);
 
 /// The predicted registration error on the surface in false colours. Every surveyed voxel that a station sees is a
 /// point with its `error_mm`, the root mean square over the stations that see it, from dark (none) to yellow (the
 /// largest). `field`: with station masks, of the network of `error`. Binary PLY, survey frame. Throws Error.
 void write_registration_ply(const std::filesystem::path& file, const Simulator& simulator, const VoxelField& field,
                             const RegistrationError& error);
-/// The same in plan view, .png or .svg, with unseen parts in grey.
-void draw_registration(const std::filesystem::path& file, const Simulator& simulator, const VoxelField& field,
-                       const RegistrationError& error, std::span<const PlacedStation> stations,
+/// The same in plan view, .png or .svg, a map for each floor as by `draw_missed`, with unseen parts in grey.
+void draw_registration(const std::filesystem::path& file, const Simulator& simulator, const SearchArea& area,
+                       const VoxelField& field, const RegistrationError& error, std::span<const PlacedStation> stations,
                        const std::string& title);
 
 /// Writes text to a file atomically. Throws Error io.

@@ -19,6 +19,7 @@ namespace vantage {
 struct OnSiteOptions {
   /// Minutes at each station besides the scan: tripod, levelling, settings, stepping out of view, packing up.
   double set_up_min = 3;
+  double photos_min = 0;         ///< At each station for pictures, where the scanner takes some.
   double walking_m_per_s = 0.8;  ///< With scanner and tripod in hand.
   /// Length of a path that the search area does not connect, in straight lines between its ends.
   double detour = 1.5;
@@ -31,9 +32,11 @@ Settings settings(const OnSiteOptions& options);
 struct Visit {
   std::vector<std::size_t> order;  ///< Indices of the stations; unusable ones are left out.
   std::vector<double> legs_m;      ///< Path to each in that order, then back out: one more than stations.
+  /// Ground points of each of these paths, survey frame; a straight line if the search area does not connect its ends.
+  std::vector<std::vector<Vec3>> paths;
   double walk_m = 0;
-  double scan_min = 0, set_up_min = 0, walk_min = 0;
-  double minutes = 0;           ///< Scan, set-up and walking together.
+  double scan_min = 0, set_up_min = 0, photos_min = 0, walk_min = 0;
+  double minutes = 0;           ///< Scan, set-up, photos and walking together.
   std::size_t unconnected = 0;  ///< Legs that the search area does not connect: `detour` times the straight line.
 };
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Reports of a survey for people: report.html, a page that opens from disk in any browser, and report.pdf.
+/// Reports of a survey for people: report.html, a page that opens from disk in any browser, and report.pdf, sheets for
+/// the crew.
 #pragma once
 
 #include <filesystem>
@@ -25,11 +26,16 @@ struct ReportOptions {
   const VoxelField* field = nullptr;
   const MissedVoxels* missed = nullptr;  ///< Why voxels of the answer are not captured. Null: left out.
   bool pictures = true;                  ///< Show the views of the answer's stations in report.html.
+  std::string crs = {};             ///< Coordinate system of the survey frame, whose north is shown; empty: not known.
+  std::filesystem::path logo = {};  ///< Picture at the head, .png or .jpg; empty: none.
+  std::string date = {};            ///< Date at the head, as it is to be read; empty: none.
 };
 
-/// Writes the front of a plan, its answer first, as a page (.html) or on at most four A4 sheets (.pdf). A page loads
-/// nothing from anywhere. Borrows everything for the call. Throws Error: io; invalid_argument (an empty front, another
-/// extension, a build that writes no reports); and as the simulator does.
+/// Writes the front of a plan, its answer first, as a page (.html), or the answer as sheets A4 or A3 (.pdf): its
+/// summary, each storey at a round ratio with stations, their distances to corners and the round, a table of all
+/// stations, links, missed surface. A page loads nothing from anywhere. Borrows everything for the call. Throws Error:
+/// io; invalid_argument (an empty front, another extension, a build that writes no reports), malformed_file (a logo
+/// that is no picture); and as the simulator does.
 void write_report(const std::filesystem::path& file, const PlanResult& result, Simulator& simulator,
                   const SearchArea& area, const ReportOptions& options = {}, const Progress& progress = {});
 /// Writes the report of a single network, without a plan. Throws as above.

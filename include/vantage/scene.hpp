@@ -42,6 +42,12 @@ struct MeshInfo {
   double accuracy_m = 0;  ///< Largest range noise (one standard deviation) of a point that counts, in metres; 0: any.
 };
 
+/// A room that the file names, as IFC does.
+struct Room {
+  std::string name;
+  Box box;  ///< Survey frame.
+};
+
 /// Unit of length of a file.
 enum class Unit { metre, centimetre, millimetre, inch, foot };
 double metres_in(Unit unit) noexcept;
@@ -112,6 +118,7 @@ class Scene {
   Box bounds() const noexcept;
   std::span<const MeshInfo> meshes() const noexcept;
   std::size_t triangle_count() const noexcept;
+  std::span<const Room> rooms() const noexcept;  ///< In the file's order; empty where it has none.
   /// Whether the file marks a search area. If not, one is derived from walkable surfaces.
   bool has_search_area() const noexcept;
   /// Readable notes of the load: what was dropped or turned, how much precision was lost.

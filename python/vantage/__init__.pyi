@@ -402,6 +402,7 @@ def write_point_cloud(
 
 class OnSiteOptions:
     set_up_min: float
+    photos_min: float
     walking_m_per_s: float
     detour: float
     entrance: Optional[Tuple[float, float, float]]
@@ -409,6 +410,7 @@ class OnSiteOptions:
         self,
         *,
         set_up_min: float = 3.0,
+        photos_min: float = 0.0,
         walking_m_per_s: float = 0.8,
         detour: float = 1.5,
         entrance: Optional[Sequence[float]] = None,
@@ -420,11 +422,15 @@ class Visit:
     @property
     def legs_m(self) -> List[float]: ...
     @property
+    def paths(self) -> List[List[Tuple[float, float, float]]]: ...
+    @property
     def walk_m(self) -> float: ...
     @property
     def scan_min(self) -> float: ...
     @property
     def set_up_min(self) -> float: ...
+    @property
+    def photos_min(self) -> float: ...
     @property
     def walk_min(self) -> float: ...
     @property
@@ -724,6 +730,7 @@ class Site:
         *,
         progress: Optional[Callable[[PlanProgress], Any]] = None,
         set_up: Setting = None,
+        photos: Setting = None,
         walking: Setting = None,
         registration_rho: Setting = None,
         registration_patch: Setting = None,

@@ -146,7 +146,8 @@ int edit(CLI::App& command, EditCommandOptions& options, Program& program) {
     const auto judged = judge_missed(site, simulator, exact.field, program);
     if (progress.stopped()) return;
     write_reports(std::vector<std::filesystem::path>{folder / "report.html", folder / "report.pdf"}, exact, simulator,
-                  site.area(), {.title = title, .missed = judged ? &*judged : nullptr}, program, progress.stop);
+                  site.area(), ReportHead().with({.title = title, .missed = judged ? &*judged : nullptr}, site),
+                  program, progress.stop);
     spdlog::info("saved in {}", folder.string());
   };
   EditSession session(

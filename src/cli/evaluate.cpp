@@ -32,6 +32,7 @@ struct EvaluateCommandOptions {
   std::optional<std::string> cartography, matrix, picture;
   std::vector<std::string> station_files, registration_files, reports;
   MissedFiles missed;
+  ReportHead report_head;
   bool json = false;
 
   void add(CLI::App& command) {
@@ -98,6 +99,7 @@ struct EvaluateCommandOptions {
     add_texts(command, "--report", "FILE",
               "Write all of it as a page for a browser, .html, or on paper, .pdf; may be repeated", reports)
         ->group("Results");
+    report_head.add(command);
     add_number(command, "--link-overlap", "W",
                "Draw as links overlaps (equation 11) of at least W, 0 to 1, in place of scan overlaps", link_overlap,
                {.low = 0, .high = 1})
@@ -140,6 +142,7 @@ void check(const EvaluateCommandOptions& options, const Site& site) {
   for (const std::string& file : options.reports) must_end(file, "--report", ".html", ".pdf");
   if (!options.reports.empty() && !why_no_report().empty()) refuse("--report: " + why_no_report());
   options.missed.check();
+  options.report_head.check();
   for (const std::string& file : options.registration_files)
     must_end(file, "--registration-map", ".ply", ".png", ".svg");
 
@@ -181,14 +184,14 @@ void write_files(const EvaluateCommandOptions& options, Site& site, Simulator& s
   if (options.cartography) write_coverage_ply(*options.cartography, simulator, found.field);
   if (judged)
     write_missed(std::vector<std::filesystem::path>(options.missed.files.begin(), options.missed.files.end()), *judged,
-                 simulator, found.stations);
+                 simulator, site.area(), found.stations);
   if (options.matrix) write_overlap_csv(*options.matrix, found.overlap_matrix);
   if (options.proposed_targets) write_targets_csv(*options.proposed_targets, found.targets, names);
   for (const std::string& file : options.registration_files) {
     if (file.ends_with(".ply"))
       write_registration_ply(file, simulator, found.field, *found.registration);
     else
-      draw_registration(file, simulator, found.field, *found.registration, found.stations,
+      draw_registration(file, simulator, site.area(), found.field, *found.registration, found.stations,
                         "Registration error on the surface (predicted)");
   }
   const StationLinks links = drawn_links(options, found);
@@ -204,7 +207,9 @@ void write_files(const EvaluateCommandOptions& options, Site& site, Simulator& s
     write_stations(file, {found.stations, names}, links, site.area(), crs_text(site));
   if (!options.reports.empty())
     write_reports(std::vector<std::filesystem::path>(options.reports.begin(), options.reports.end()), found, simulator,
-                  site.area(), {.title = std::filesystem::path(options.site.scene).stem().string(), .missed = judged},
+                  site.area(),
+                  options.report_head.with(
+                      {.title = std::filesystem::path(options.site.scene).stem().string(), .missed = judged}, site),
                   program, program.abort);
 }
 

@@ -48,14 +48,14 @@ std::optional<MissedVoxels> judge_missed(Site& site, const Simulator& simulator,
 }
 
 void write_missed(std::span<const std::filesystem::path> files, const MissedVoxels& judged, const Simulator& simulator,
-                  std::span<const PlacedStation> stations) {
+                  const SearchArea& area, std::span<const PlacedStation> stations) {
   for (const std::filesystem::path& file : files) {
     if (file.extension() == ".csv")
       write_missed_csv(file, judged.shares);
     else if (file.extension() == ".ply")
       write_missed_ply(file, simulator, judged.ranks, judged.why, judged.points);
     else
-      draw_missed(file, simulator, judged.ranks, judged.why, stations, "Why surfaces are not captured");
+      draw_missed(file, simulator, area, judged.ranks, judged.why, stations, "Why surfaces are not captured");
   }
 }
 

@@ -29,6 +29,6 @@ std::optional<MissedVoxels> judge_missed(Site& site, const Simulator& simulator,
 
 // Writes each file by its extension: .csv a table by node, .ply a cloud, .png or .svg a picture in plan view.
 void write_missed(std::span<const std::filesystem::path> files, const MissedVoxels& judged, const Simulator& simulator,
-                  std::span<const PlacedStation> stations);
+                  const SearchArea& area, std::span<const PlacedStation> stations);
 
 }  // namespace vantage::cli

@@ -34,6 +34,7 @@ struct PlanOptions {
   SiteArguments site;
   SurveyQuestion question;
   PlanConfig config;
+  ReportHead report_head;
   bool force = false, prove = false, no_report = false, json = false;
   double seed_seconds = ExactConfig().max_seconds;
   std::string seed_with;  // nothing, greedy or exact
@@ -69,6 +70,7 @@ struct PlanOptions {
     command
         .add_flag("--prove", prove, "Bound what any network of as many stations captures: how near does the plan come?")
         ->group("Results");
+    report_head.add(command);
     command.add_flag("--no-report", no_report, "Leave out report.html and report.pdf")->group("Results");
     command.add_flag("--json", json, "Print one JSON object, the same as front.json");
   }
@@ -230,19 +232,22 @@ void write_results(const std::filesystem::path& folder, Site& site, const PlanOp
   if (judged)
     write_missed(
         std::vector<std::filesystem::path>{folder / "missed.csv", folder / "missed.ply", folder / "missed.png"},
-        *judged, simulator, chosen.stations);
+        *judged, simulator, site.area(), chosen.stations);
   if (!options.no_report && !why_no_report().empty()) spdlog::warn("no report: {}", why_no_report());
   if (!options.no_report && why_no_report().empty())
-    write_reports(std::vector<std::filesystem::path>{folder / "report.html", folder / "report.pdf"}, result, simulator,
-                  site.area(),
-                  {.title = site.name(), .field = field ? &*field : nullptr, .missed = judged ? &*judged : nullptr},
-                  program, all_by.stop());
+    write_reports(
+        std::vector<std::filesystem::path>{folder / "report.html", folder / "report.pdf"}, result, simulator,
+        site.area(),
+        options.report_head.with(
+            {.title = site.name(), .field = field ? &*field : nullptr, .missed = judged ? &*judged : nullptr}, site),
+        program, all_by.stop());
   if (options.prove)
     prove(folder / "bound.json", site, simulator, chosen.stations, result.problem.kept.size(), result.attainable.has_value(),
           program);
 }
 
 int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
+  options.report_head.check();
   const double limit = options.config.max_seconds;
   const Deadline plan_by(kPlanShare * limit, program.stop), all_by(limit, program.abort);
   Site site = open_site(command, options.site);

@@ -3,14 +3,42 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <stop_token>
+#include <string>
+#include <utility>
 
 #include "cli/command.hpp"
 #include "cli/console.hpp"
+#include "cli/options.hpp"
+#include "vantage/image.hpp"
 #include "vantage/report.hpp"
+#include "vantage/site.hpp"
 
 namespace vantage::cli {
+
+// What stands at the head of reports.
+struct ReportHead {
+  std::optional<std::string> logo, date;
+
+  void add(CLI::App& command) {
+    add_text(command, "--report-logo", "FILE", "Picture at the head of the report: .png or .jpg", logo)
+        ->group("Results");
+    add_text(command, "--report-date", "TEXT", "Date at the head of the report, as it is to be read", date)
+        ->group("Results");
+  }
+  // Throws Error io or malformed_file for a logo that cannot be read: before the work, not behind it.
+  void check() const {
+    if (logo) read_image(*logo);
+  }
+  ReportOptions with(ReportOptions options, const Site& site) const {
+    options.crs = site.crs();
+    if (logo) options.logo = *logo;
+    if (date) options.date = *date;
+    return options;
+  }
+};
 
 // Writes each file by its extension, with a progress line. `shown`: a PlanResult or an Evaluation.
 template <class Shown>

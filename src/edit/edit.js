@@ -256,7 +256,7 @@
   for (const what of ['undo', 'redo', 'exact', 'improve']) at(what).addEventListener('click', () => send({ do: what }));
   at('show-ground').addEventListener('change', showGround);
 
-  sliceTools(view, levels, origin[2], data.state.network.stations.find((s) => s.ground));
+  sliceTools(view, levels, origin[2], data.state.network.stations);
   at('oblique').addEventListener('click', () => view.oblique());
   at('above').addEventListener('click', () => view.above());
   await show(data.state);

@@ -24,6 +24,8 @@ void check(const OnSiteOptions& options) {
   };
   if (!(options.set_up_min >= 0 && std::isfinite(options.set_up_min)))
     refuse("set_up_min", options.set_up_min, "0 or more");
+  if (!(options.photos_min >= 0 && std::isfinite(options.photos_min)))
+    refuse("photos_min", options.photos_min, "0 or more");
   if (!(options.walking_m_per_s > 0 && std::isfinite(options.walking_m_per_s)))
     refuse("walking_m_per_s", options.walking_m_per_s, "above 0");
   if (!(options.detour >= 1 && std::isfinite(options.detour))) refuse("detour", options.detour, "1 or more");
@@ -74,23 +76,25 @@ class Round {
 
   bool move_elsewhere() {
     const std::size_t n = order_.size();
-    const auto length = [&](const std::vector<std::size_t>& order) {
-      double sum = 0;
-      for (std::size_t k = 0; k < n; ++k) sum += metres_[order[k]][order[(k + 1) % n]];
-      return sum;
-    };
-    const double now = length(order_);
     for (std::size_t count = 1; count <= 3 && count + 1 < n; ++count) {
       for (std::size_t from = 1; from + count <= n; ++from) {
-        std::vector<std::size_t> rest = order_;
-        const auto first = rest.begin() + static_cast<std::ptrdiff_t>(from);
-        const std::vector<std::size_t> moved(first, first + static_cast<std::ptrdiff_t>(count));
-        rest.erase(first, first + static_cast<std::ptrdiff_t>(count));
-        for (std::size_t to = 1; to <= rest.size(); ++to) {
-          std::vector<std::size_t> tried = rest;
-          tried.insert(tried.begin() + static_cast<std::ptrdiff_t>(to), moved.begin(), moved.end());
-          if (length(tried) + kGain_m >= now) continue;
-          order_ = std::move(tried);
+        const std::size_t left = n - count;  // stops without those that move
+        const auto rest = [&](std::size_t at) {
+          at %= left;
+          return order_[at < from ? at : at + count];
+        };
+        const std::size_t before = order_[from - 1], first = order_[from], last = order_[from + count - 1],
+                          after = order_[(from + count) % n];
+        const double taken = metres_[before][first] + metres_[last][after] - metres_[before][after];
+        for (std::size_t to = 1; to <= left; ++to) {
+          const std::size_t a = rest(to - 1), b = rest(to);
+          if (metres_[a][first] + metres_[last][b] - metres_[a][b] + kGain_m >= taken) continue;
+          const auto begin = order_.begin();
+          const auto at = [&](std::size_t k) { return begin + static_cast<std::ptrdiff_t>(k); };
+          if (to < from)
+            std::rotate(at(to), at(from), at(from + count));
+          else
+            std::rotate(at(from), at(from + count), at(to + count));
           return true;
         }
       }
@@ -158,10 +162,11 @@ Visit OnSite::visit(std::span<const PlacedStation> stations) const {
   const std::vector<std::size_t> round = Round(metres).order();
   const std::size_t first = options.entrance ? 1 : 0;
   for (std::size_t k = first; k < n; ++k) visit.order.push_back(station_of[round[k] - first]);
-  if (!options.entrance) visit.legs_m.push_back(0);
+  if (!options.entrance) visit.legs_m.push_back(0), visit.paths.emplace_back();
   for (std::size_t k = 0; k < n; ++k) {
     const std::size_t a = round[k], b = round[(k + 1) % n];
     visit.legs_m.push_back(metres[a][b]);
+    visit.paths.push_back(impl_->ways.path(stops[a], stops[b]));
     visit.walk_m += metres[a][b];
     if (!connected[a][b]) ++visit.unconnected;
   }
@@ -171,8 +176,9 @@ Visit OnSite::visit(std::span<const PlacedStation> stations) const {
   for (const std::size_t i : station_of) scans.at(stations[i].setup.scanner) += 1;
   for (std::size_t k = 0; k < scans.size(); ++k) visit.scan_min += scans[k] * impl_->scan_min[k];
   visit.set_up_min = count * options.set_up_min;
+  visit.photos_min = count * options.photos_min;
   visit.walk_min = visit.walk_m / options.walking_m_per_s / 60;
-  visit.minutes = visit.scan_min + visit.set_up_min + visit.walk_min;
+  visit.minutes = visit.scan_min + visit.set_up_min + visit.photos_min + visit.walk_min;
   return visit;
 }
 

@@ -41,6 +41,34 @@ std::optional<double> height_at(const std::array<Vec3, 3>& t, double x, double y
   return t[0].z + b * (t[1].z - t[0].z) + c * (t[2].z - t[0].z);
 }
 
+// Douglas and Peucker (Algorithms for the Reduction of the Number of Points, 1973), to half a step between places,
+// which takes out the corners that only the grid makes.
+std::vector<Vec3> without_straight(const std::vector<Vec3>& points, double spacing) {
+  std::vector<bool> kept(points.size(), false);
+  kept.front() = kept.back() = true;
+  std::vector<std::pair<std::size_t, std::size_t>> open{{0, points.size() - 1}};
+  while (!open.empty()) {
+    const auto [first, last] = open.back();
+    open.pop_back();
+    const Vec3 line = points[last] - points[first];
+    double farthest = spacing / 2;
+    std::size_t corner = 0;
+    for (std::size_t k = first + 1; k < last; ++k) {
+      const Vec3 away = points[k] - points[first];
+      const double share = dot(line, line) > 0 ? std::clamp(dot(away, line) / dot(line, line), 0.0, 1.0) : 0;
+      const Vec3 off = away - line * share;
+      if (const double metres = std::sqrt(dot(off, off)); metres > farthest) farthest = metres, corner = k;
+    }
+    if (corner == 0) continue;
+    kept[corner] = true;
+    open.emplace_back(first, corner), open.emplace_back(corner, last);
+  }
+  std::vector<Vec3> corners;
+  for (std::size_t k = 0; k < points.size(); ++k)
+    if (kept[k]) corners.push_back(points[k]);
+  return corners;
+}
+
 }  // namespace
 
 Ways::Ways(const SearchMesh& ground, const std::function<bool(const Vec3&, const Vec3&)>& sees) {
@@ -180,6 +208,30 @@ std::optional<double> Ways::between(const Vec3& from, const Vec3& to) const {
   const double metres = static_cast<double>((*distances_from(std::min(*a, *b)))[std::max(*a, *b)]);
   if (!std::isfinite(metres)) return std::nullopt;
   return length(places_[*a] - from) + metres + length(to - places_[*b]);
+}
+
+std::vector<Vec3> Ways::path(const Vec3& from, const Vec3& to) const {
+  const auto a = nearest(from), b = nearest(to);
+  std::vector<Vec3> points{from};
+  if (a && b && *a != *b) {
+    // Downhill from the place with the larger number, as `between` measures.
+    const std::uint32_t source = std::min(*a, *b);
+    const auto far = distances_from(source);
+    std::uint32_t at = std::max(*a, *b);
+    if (std::isfinite((*far)[at])) {
+      std::vector<Vec3> steps{places_[at]};
+      while (at != source) {
+        const auto next =
+            std::ranges::min_element(links_[at], {}, [&](const Link& l) { return (*far)[l.to] + l.metres; });
+        at = next->to;
+        steps.push_back(places_[at]);
+      }
+      if (source == *a) std::ranges::reverse(steps);
+      points.insert(points.end(), steps.begin(), steps.end());
+    }
+  }
+  points.push_back(to);
+  return without_straight(points, spacing_);
 }
 
 }  // namespace vantage

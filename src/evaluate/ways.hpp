@@ -21,6 +21,9 @@ class Ways {
 
   // Metres along the graph; empty if it does not connect them, or has no place near one of them.
   std::optional<double> between(const Vec3& from, const Vec3& to) const;
+  // The ground that such a way leads over, from `from` to `to`, without points on straight stretches; the straight line
+  // where there is none.
+  std::vector<Vec3> path(const Vec3& from, const Vec3& to) const;
   double spacing_m() const { return spacing_; }
   std::size_t places() const { return places_.size(); }
 

@@ -121,22 +121,47 @@ Point Chart::at(double x, double y) const {
   return {area_.x + share(x_, x) * area_.width, area_.bottom() - share(y_, y) * area_.height};
 }
 
-Rect place_label(Point at, double gap, double width, double height, const Rect& inside, std::vector<Rect>& taken) {
-  Rect best{};
-  double least = std::numeric_limits<double>::max();
-  for (double away = gap; away < gap + 160; away += 12) {
+namespace {
+
+// Calls tried(place, distance) for places beside a point, the nearest first, until it says that it has had enough.
+template <class Tried>
+void try_places(Point at, double gap, double most, double width, double height, const Rect& inside, Tried&& tried) {
+  for (double away = gap; away < gap + most; away += 12) {
     for (int k = 0; k < 16; ++k) {
       const double angle = -std::numbers::pi / 4 + k * std::numbers::pi / 8;
       const double dx = std::cos(angle), dy = std::sin(angle);
       const Rect r{at.x + dx * away + (dx - 1) / 2 * width, at.y + dy * away + (dy - 1) / 2 * height, width, height};
       if (r.x < inside.x || r.right() > inside.right() || r.y < inside.y || r.bottom() > inside.bottom()) continue;
-      const auto hits = std::count_if(taken.begin(), taken.end(), [&](const Rect& t) { return r.overlaps(t); });
-      const double cost = static_cast<double>(hits) * 1000 + away;
-      if (cost < least) least = cost, best = r;
+      if (tried(r, away)) return;
     }
   }
+}
+
+}  // namespace
+
+Rect place_label(Point at, double gap, double width, double height, const Rect& inside, std::vector<Rect>& taken) {
+  Rect best{};
+  double least = std::numeric_limits<double>::max();
+  try_places(at, gap, 160, width, height, inside, [&](const Rect& r, double away) {
+    const auto hits = std::ranges::count_if(taken, [&](const Rect& t) { return r.overlaps(t); });
+    const double cost = static_cast<double>(hits) * 1000 + away;
+    if (cost < least) least = cost, best = r;
+    return hits == 0;
+  });
   taken.push_back(best);
   return best;
+}
+
+std::optional<Rect> place_free_label(Point at, double gap, double most, double width, double height, const Rect& inside,
+                                     std::vector<Rect>& taken) {
+  std::optional<Rect> found;
+  try_places(at, gap, most, width, height, inside, [&](const Rect& r, double) {
+    if (std::ranges::any_of(taken, [&](const Rect& t) { return r.overlaps(t); })) return false;
+    found = r;
+    return true;
+  });
+  if (found) taken.push_back(*found);
+  return found;
 }
 
 }  // namespace vantage

@@ -2,6 +2,7 @@
 // A framed x-y chart with sensible ticks.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,6 +45,10 @@ class Chart {
 // Place for a label of this width and height beside `at`: the nearest free one, else the first tried. Appended to
 // `taken`.
 Rect place_label(Point at, double gap, double width, double height, const Rect& inside, std::vector<Rect>& taken);
+
+// The nearest free place at most `most` away; empty, and nothing taken, where there is none.
+std::optional<Rect> place_free_label(Point at, double gap, double most, double width, double height, const Rect& inside,
+                                     std::vector<Rect>& taken);
 
 namespace style {
 inline constexpr Colour ink{0.15, 0.15, 0.17}, faint{0.45, 0.45, 0.48}, grid{0.90, 0.90, 0.91};

@@ -11,8 +11,9 @@
 
 namespace vantage {
 
-void draw_missed(const std::filesystem::path& file, const Simulator& simulator, std::span<const std::uint32_t> ranks,
-                 std::span<const WhyMissed> why, std::span<const PlacedStation> stations, const std::string& title) {
+void draw_missed(const std::filesystem::path& file, const Simulator& simulator, const SearchArea& area,
+                 std::span<const std::uint32_t> ranks, std::span<const WhyMissed> why,
+                 std::span<const PlacedStation> stations, const std::string& title) {
   if (ranks.size() != why.size() || ranks.empty())
     throw Error(Errc::invalid_argument, "draw_missed: " + std::to_string(ranks.size()) + " voxels and " +
                                             std::to_string(why.size()) + " reasons");
@@ -35,8 +36,7 @@ void draw_missed(const std::filesystem::path& file, const Simulator& simulator, 
     }
     return at;
   };
-  draw_voxel_map(file, simulator, voxels, stations, title, "Surveyed surfaces from above, whatever lies over them",
-                 legend);
+  draw_voxel_map(file, simulator, area, voxels, stations, title, "Surveyed surfaces from above", legend);
 }
 
 }  // namespace vantage

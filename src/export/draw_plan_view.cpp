@@ -19,6 +19,8 @@ namespace vantage {
 namespace {
 
 constexpr double kPanel = 224, kTop = 68, kBottom = 64, kGap = 26;
+// Stations on a map up to which it keeps its size, and how many times as wide it gets at most.
+constexpr double kStationsAtFirst = 60, kMostGrowth = 3;
 
 // A bar of a round length, at most `widest` wide.
 void draw_scale_bar(Canvas& canvas, Point at, double widest, double metre) {
@@ -72,7 +74,7 @@ double draw_plan_legend(Canvas& canvas, Point at, const PlanView& view, const Pl
     at.y += 28;
   };
   PlacedStation example;
-  station("S1", example, "station, z of its ground");
+  station("S1", example, content.heights ? "station; z of its ground" : "station");
   if (any([](const PlacedStation& s) { return s.kept; })) {
     example.kept = true;
     station("K1", example, "kept: there before");
@@ -143,8 +145,15 @@ std::string level_words(const std::vector<PlanLevel>& levels, std::size_t k) {
 std::unique_ptr<Canvas> draw_page(const PlanView& view, const Box& window, const std::vector<PlanLevel>& levels,
                                   std::size_t first, std::size_t count) {
   const bool floors = levels.size() > 1;
-  const double room = count > 1 ? 460 : 700;
-  const double metre = std::min(room / window.size().x, (count > 1 ? 520 : 640) / window.size().y);
+  // Larger maps for many stations, so that their marks keep apart.
+  std::size_t most = 0;
+  for (std::size_t k = first; k < first + count; ++k)
+    most = std::max(most, static_cast<std::size_t>(std::ranges::count_if(view.stations, [&](const PlacedStation& s) {
+                      return s.status != StationStatus::hole && levels[k].holds(s.ground.z);
+                    })));
+  const double grow = std::clamp(std::sqrt(static_cast<double>(most) / kStationsAtFirst), 1.0, kMostGrowth);
+  const double metre =
+      grow * std::min((count > 1 ? 460 : 700) / window.size().x, (count > 1 ? 520 : 640) / window.size().y);
   const double width = std::max(1.0, std::floor(window.size().x * metre)),
                height = std::max(1.0, std::floor(window.size().y * metre));
   Canvas scratch(1, 1);
@@ -162,8 +171,8 @@ std::unique_ptr<Canvas> draw_page(const PlanView& view, const Box& window, const
     PlanMapContent content;
     for (std::size_t k = 0; k < count; ++k) {
       std::string subtitle = floors ? level_words(levels, first + k) : "";
-      content = content | draw_plan_map(canvas, map_at(k), view, window, floors ? &levels[first + k] : nullptr,
-                                        k == 0 ? view.title : "", subtitle);
+      content = content |
+                draw_plan_map(canvas, map_at(k), view, window, levels[first + k], k == 0 ? view.title : "", subtitle);
     }
     const double end = draw_plan_legend(canvas, {right + 24, kTop + 8}, view, content);
     const double bar = std::max(kTop + height - 6, end + 30);
@@ -192,7 +201,7 @@ std::vector<PlanPage> plan_view_pictures(const PlanView& view) {
     throw Error(Errc::invalid_argument, "draw_plan_view: " + std::to_string(view.stations.size()) + " stations, but " +
                                             std::to_string(view.errors.size()) + " errors");
   const Box window = plan_window(view);
-  const std::vector<PlanLevel> levels = plan_levels(view.area.mesh());
+  const std::vector<PlanLevel> levels = cut_levels(view.scene, view.area.mesh(), view.stations);
   std::vector<PlanPage> pages;
   pages.push_back({"", draw_page(view, window, levels, 0, levels.size())});
   if (levels.size() > 1)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "export/plan_map.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -9,7 +10,6 @@
 
 #include "core/text.hpp"
 #include "export/chart.hpp"
-#include "export/covered_floor.hpp"
 #include "export/left_out_hatch.hpp"
 #include "export/place_discs.hpp"
 #include "export/relief.hpp"
@@ -25,20 +25,6 @@ constexpr double kLeastWidth = 0.8, kMostWidth = 9;  // of links without overlap
 constexpr std::size_t kPixelsPerUnit = 2, kSupersampling = 2;
 constexpr Colour kStation{0.10, 0.22, 0.45}, kKept{0.42, 0.16, 0.44}, kLink{0.16, 0.34, 0.66},
     kSkipped{0.72, 0.12, 0.12};
-// A plan is cut at 1.2 m above the floor, between window sills and lintels, for a scanner at 1.85 m. Other head
-// heights, as in models of unusual size, scale it.
-constexpr double kCutHeight = 1.2, kCutShare = 1.2 / 1.85;
-
-double cut_above(std::span<const PlacedStation> stations) {
-  std::vector<double> heights;
-  for (const PlacedStation& s : stations)
-    if (s.status != StationStatus::hole && s.position.z > s.ground.z) heights.push_back(s.position.z - s.ground.z);
-  if (heights.empty()) return kCutHeight;
-  const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
-  std::nth_element(heights.begin(), middle, heights.end());
-  return kCutShare * *middle;
-}
-
 SearchMesh mesh_of(const SearchMesh& mesh, const PlanLevel& level) {
   SearchMesh part{.positions = mesh.positions, .uvs = mesh.uvs, .triangles = {}};
   for (const auto& t : mesh.triangles)
@@ -47,28 +33,78 @@ SearchMesh mesh_of(const SearchMesh& mesh, const PlanLevel& level) {
   return part;
 }
 
-void paint_section(std::vector<std::uint32_t>& pixels, const Section& section, const MapWindow& window) {
+void paint_section(std::vector<std::uint32_t>& pixels, const Section& section, const MapWindow& window, double line) {
   const auto c = to_bytes(kCutTint);
   const std::uint32_t fill = 0xFF000000u | std::uint32_t{c[0]} << 16 | std::uint32_t{c[1]} << 8 | c[2];
   for (std::size_t k = 0; k < pixels.size(); ++k)
     if (section.solid[k]) pixels[k] = fill;
-  constexpr double kHalf = 0.5 * kPixelsPerUnit * kSupersampling;  // a line of one unit
   for (const auto& [a, b] : section.outlines) {
     const int steps = static_cast<int>(std::ceil(std::max(std::abs(b.x - a.x), std::abs(b.y - a.y)))) + 1;
     for (int s = 0; s <= steps; ++s) {
       const double t = static_cast<double>(s) / steps, x = a.x + t * (b.x - a.x), y = a.y + t * (b.y - a.y);
-      const auto [x0, x1] = pixels_between(x - kHalf, x + kHalf, window.columns);
-      const auto [y0, y1] = pixels_between(y - kHalf, y + kHalf, window.rows);
+      const auto [x0, x1] = pixels_between(x - line / 2, x + line / 2, window.columns);
+      const auto [y0, y1] = pixels_between(y - line / 2, y + line / 2, window.rows);
       for (std::size_t j = y0; j < y1; ++j)
         for (std::size_t i = x0; i < x1; ++i) pixels[j * window.columns + i] = fill;
     }
   }
 }
 
+// `above` the ground that lies nearest to each pixel, local frame: where ground rises, what is cut off rises with it.
+std::vector<float> cuts_above(const SearchMesh& mesh, const MapWindow& window, double above, double origin_z) {
+  constexpr float kNone = std::numeric_limits<float>::lowest(), kFar = std::numeric_limits<float>::max();
+  std::vector<float> cuts(window.columns * window.rows, kNone), away(cuts.size(), kFar);
+  for (const auto& t : mesh.triangles) {
+    std::array<MapPoint, 3> c;
+    for (std::size_t k = 0; k < 3; ++k) c[k] = window.at(mesh.positions[t[k]]);
+    for_each_pixel(window, c, [&](std::size_t pixel, const std::array<double, 3>& weights) {
+      double z = above - origin_z;
+      for (std::size_t k = 0; k < 3; ++k) z += weights[k] * mesh.positions[t[k]].z;
+      cuts[pixel] = std::max(cuts[pixel], static_cast<float>(z)), away[pixel] = 0;
+    });
+  }
+  // Distances by steps along rows, columns and diagonals, forth and back.
+  const auto columns = static_cast<std::ptrdiff_t>(window.columns), rows = static_cast<std::ptrdiff_t>(window.rows);
+  const auto sweep = [&](std::ptrdiff_t step) {
+    const std::ptrdiff_t all = columns * rows;
+    for (std::ptrdiff_t n = 0; n < all; ++n) {
+      const std::ptrdiff_t k = step > 0 ? n : all - 1 - n, x = k % columns, y = k / columns;
+      for (const auto& [dx, dy] : {std::pair{-1, 0}, {-1, -1}, {0, -1}, {1, -1}}) {
+        const std::ptrdiff_t i = x + step * dx, j = y + step * dy;
+        if (i < 0 || j < 0 || i >= columns || j >= rows) continue;
+        const auto from = static_cast<std::size_t>(j * columns + i), to = static_cast<std::size_t>(k);
+        const float far = away[from] == kFar ? kFar : away[from] + (dx != 0 && dy != 0 ? 1.4142F : 1.0F);
+        if (far < away[to]) away[to] = far, cuts[to] = cuts[from];
+      }
+    }
+  };
+  sweep(1), sweep(-1);
+  return cuts;
+}
+
+double to_centimetres(double metres) { return std::round(100 * metres) / 100 + 0.0; }  // no "-0.00"
+
+constexpr double kEven_m = 0.02;
+
+// The height that is not told of a station whose ground has it: a storey's floor, else the ground of most stations, if
+// they have one.
+std::optional<double> common_ground(const PlanView& view, const PlanLevel& level) {
+  if (!level.only()) return level.floor;
+  std::vector<double> grounds;
+  for (const PlacedStation& s : view.stations)
+    if (s.status != StationStatus::hole && level.holds(s.ground.z)) grounds.push_back(s.ground.z);
+  if (grounds.empty()) return std::nullopt;
+  const auto middle = grounds.begin() + static_cast<std::ptrdiff_t>(grounds.size() / 2);
+  std::nth_element(grounds.begin(), middle, grounds.end());
+  const double common = *middle;
+  const auto same = std::ranges::count_if(grounds, [&](double z) { return std::abs(z - common) < kEven_m; });
+  return 2 * static_cast<std::size_t>(same) > grounds.size() ? std::optional(to_centimetres(common)) : std::nullopt;
+}
+
 // The stations of one map, with their links.
 class Stations {
  public:
-  Stations(Canvas& canvas, const Chart& chart, const PlanView& view, const PlanLevel* level)
+  Stations(Canvas& canvas, const Chart& chart, const PlanView& view, const PlanLevel& level)
       : canvas_(canvas), map_(chart.area()), view_(view), level_(level) {
     for (std::size_t i = 0; i < view.stations.size(); ++i) {
       const PlacedStation& s = view.stations[i];
@@ -103,13 +139,14 @@ class Stations {
       canvas_.disc(spots_[k], 4.6, {1, 1, 1});
       canvas_.disc(spots_[k], 3.4, colour(k));
     }
-    draw_labels();
+    draw_labels(content);
   }
 
  private:
+  static constexpr double kFar = 26;  // of a label that has no line to its station
   const PlacedStation& station(std::size_t k) const { return view_.stations[shown_[k]]; }
   const std::string& name(std::size_t k) const { return view_.names[shown_[k]]; }
-  bool on_level(std::size_t k) const { return !level_ || level_->holds(station(k).ground.z); }
+  bool on_level(std::size_t k) const { return level_.holds(station(k).ground.z); }
   bool moved(std::size_t k) const { return std::hypot(discs_[k].x - spots_[k].x, discs_[k].y - spots_[k].y) > 0.5; }
   Colour colour(std::size_t k) const { return station(k).kept ? kKept : kStation; }
 
@@ -156,38 +193,45 @@ class Stations {
     }
   }
 
-  // Draws the ground's height beside each, and its name if that does not fit into the disc.
-  void draw_labels() {
+  // Beside each its name, where that does not fit into the disc, and the ground's height, where that differs; without
+  // what would lie on something else. A name that finds no place stays over its disc.
+  void draw_labels(PlanMapContent& content) {
     const TextStyle style{.size = 10.5, .across = Align::middle, .halo = 2};
+    const std::optional<double> common = common_ground(view_, level_);
+    const Rect inside{map_.x + 2, map_.y + 2, map_.width - 4, map_.height - 4};
     std::vector<Rect> taken;
     for (std::size_t k = 0; k < shown_.size(); ++k) {
       const double r = on_level(k) ? kDisc : 0.7 * kDisc;
       taken.push_back({discs_[k].x - r, discs_[k].y - r, 2 * r, 2 * r});
       if (moved(k)) taken.push_back({spots_[k].x - 5, spots_[k].y - 5, 10, 10});
     }
+    const auto put = [&](std::size_t k, const std::string& text) {
+      const auto place =
+          place_free_label(discs_[k], kDisc + 3, kFar, canvas_.text_width(text, style) + 4, 13, inside, taken);
+      if (place) canvas_.text({place->x + place->width / 2, place->y + place->height / 2}, text, style);
+      return place.has_value();
+    };
     for (std::size_t k = 0; k < shown_.size(); ++k) {
       if (!on_level(k)) continue;
-      const std::string text = (name(k).size() > 3 ? name(k) + ", " : "") + "z " +
-                               fixed(std::round(100 * station(k).ground.z) / 100 + 0.0, 2);
-      const Rect place = place_label(discs_[k], kDisc + 3, canvas_.text_width(text, style) + 4, 13,
-                                     {map_.x + 2, map_.y + 2, map_.width - 4, map_.height - 4}, taken);
-      canvas_.text({place.x + place.width / 2, place.y + place.height / 2}, text, style);
+      const std::string height = "z " + fixed(to_centimetres(station(k).ground.z), 2);
+      const bool named = fits_disc(name(k));
+      const bool differs = !common || std::abs(station(k).ground.z - *common) >= kEven_m;
+      if (differs && put(k, named ? height : name(k) + ", " + height)) {
+        content.heights = true;
+        continue;
+      }
+      if (!named && !put(k, name(k)))
+        canvas_.text(discs_[k], name(k), {.size = 8, .bold = true, .across = Align::middle, .halo = 1.5});
     }
   }
 
   Canvas& canvas_;
   Rect map_;
   const PlanView& view_;
-  const PlanLevel* level_;
+  const PlanLevel& level_;
   std::vector<std::size_t> shown_;
   std::vector<Point> spots_, discs_;
 };
-
-// Puts a station's text into the disc if it fits, else its number.
-void disc_text(Canvas& canvas, Point at, const std::string& text, const Colour& colour) {
-  canvas.text(at, text,
-              {.size = text.size() > 2 ? 9.0 : 11.0, .bold = true, .colour = colour, .across = Align::middle});
-}
 
 }  // namespace
 
@@ -224,9 +268,29 @@ Box plan_window(const PlanView& view) {
   return box;
 }
 
+SiteMap map_site(const Scene& scene, const SearchArea& area, const MapWindow& window, const PlanLevel& level,
+                 double line, double paper, std::span<const std::uint32_t> surfaces) {
+  const SceneData& data = scene.data();
+  const SearchMesh mesh = mesh_of(area.mesh(), level);
+  constexpr double kEverything = std::numeric_limits<double>::infinity();
+  std::vector<float> cuts;
+  if (level.cut && level.only()) cuts = cuts_above(mesh, window, *level.cut - level.floor, data.origin.z);
+  const HeightBuffer heights = look_from_above(data, window, level.cut.value_or(kEverything), cuts);
+  SiteMap map{.pixels = shade(data, heights)};
+  tint_search_area(map.pixels, heights, data.origin.z, mesh);
+  map.left_out = hatch_left_out(map.pixels, heights, data.origin.z, area.left_out(), &level);
+  if (paper > 0)
+    for (std::uint32_t& pixel : map.pixels)
+      if (pixel != 0) pixel = laid_over(pixel, {1, 1, 1}, paper);
+  if (!level.cut) return map;
+  const Section section =
+      surfaces.empty() ? section_at(data, window, *level.cut) : section_at(data, surfaces, window, *level.cut);
+  paint_section(map.pixels, section, window, line);
+  return map;
+}
+
 PlanMapContent draw_plan_map(Canvas& canvas, const Rect& map, const PlanView& view, const Box& window,
-                             const PlanLevel* level, const std::string& title, std::string subtitle) {
-  const SceneData& data = view.scene.data();
+                             const PlanLevel& level, const std::string& title, std::string subtitle) {
   const double metre = map.width / window.size().x;  // canvas units
   const std::size_t fine = kPixelsPerUnit * kSupersampling;
   const MapWindow pixels{.x_min = window.min.x,
@@ -234,26 +298,15 @@ PlanMapContent draw_plan_map(Canvas& canvas, const Rect& map, const PlanView& vi
                          .pixel_m = 1 / (metre * static_cast<double>(fine)),
                          .columns = static_cast<std::size_t>(map.width) * fine,
                          .rows = static_cast<std::size_t>(map.height) * fine};
-  const SearchMesh mesh = level ? mesh_of(view.area.mesh(), *level) : view.area.mesh();
   PlanMapContent content;
-  std::optional<double> floor;
-  HeightBuffer heights{pixels, {}, {}};
-  if (level) {
-    floor = level->floor;
-  } else {
-    heights = look_from_above(data, pixels, std::numeric_limits<double>::infinity());
-    floor = covered_floor(mesh, heights, data);
-  }
-  std::optional<Section> section;
-  if (floor) {
-    const double cut = *floor + cut_above(view.stations);
-    heights = look_from_above(data, pixels, cut);
-    section = section_at(data, pixels, cut);
+  if (level.cut) {
     content.cut = true;
-    subtitle += (subtitle.empty() ? "Cut" : ", cut") + std::string(" at z = ") + fixed(cut, 2) + " m";
+    subtitle += (subtitle.empty() ? "Cut" : ", cut") + std::string(" at z = ") + fixed(*level.cut, 2) + " m";
   } else if (subtitle.empty()) {
     subtitle = "Site from above";
   }
+  if (const auto ground = common_ground(view, level); ground && level.only())
+    subtitle += ", most stations on ground at z = " + fixed(*ground, 2) + " m";
   const auto ticks = [](double length) { return std::max(2, static_cast<int>(length / 95)); };
   const Chart chart(canvas, map,
                     {.label = "x (m)",
@@ -265,11 +318,9 @@ PlanMapContent draw_plan_map(Canvas& canvas, const Rect& map, const PlanView& vi
                      .high = window.max.y,
                      .wanted_ticks = ticks(map.height)},
                     title, subtitle);
-  std::vector<std::uint32_t> site = shade(data, heights);
-  tint_search_area(site, heights, data.origin.z, mesh);
-  content.left_out = hatch_left_out(site, heights, data.origin.z, view.area.left_out(), level);
-  if (section) paint_section(site, *section, pixels);
-  canvas.image(map, halve(site, pixels.columns), pixels.columns / 2);
+  const SiteMap site = map_site(view.scene, view.area, pixels, level, static_cast<double>(fine));
+  content.left_out = site.left_out;
+  canvas.image(map, halve(site.pixels, pixels.columns), pixels.columns / 2);
   canvas.rectangle(map, {.colour = style::faint, .width = 1});
   canvas.clip(map);
   Stations(canvas, chart, view, level).draw(content);
@@ -277,28 +328,37 @@ PlanMapContent draw_plan_map(Canvas& canvas, const Rect& map, const PlanView& vi
   return content;
 }
 
-void draw_station(Canvas& canvas, Point at, const std::string& text, const PlacedStation& station) {
-  const double r = kDisc, square = 0.94 * kDisc;  // existing stations are square
+bool fits_disc(const std::string& name) { return name.size() <= 4; }
+
+void draw_station(Canvas& canvas, Point at, const std::string& text, const PlacedStation& station, double radius) {
+  const double square = 0.94 * radius;  // existing ones are square
   const auto mark = [&](double grow, const Colour& colour) {
     if (station.kept)
       canvas.fill({at.x - square - grow, at.y - square - grow, 2 * (square + grow), 2 * (square + grow)}, colour);
     else
-      canvas.disc(at, r + grow, colour);
+      canvas.disc(at, radius + grow, colour);
   };
   const bool skipped = !active(station);
-  mark(1.3, {1, 1, 1});
+  mark(0.12 * radius, {1, 1, 1});
   if (skipped)  // the cross sticks out from under the mark
     for (const double side : {-1.0, 1.0})
-      canvas.line({at.x - 1.25 * r, at.y - side * 1.25 * r}, {at.x + 1.25 * r, at.y + side * 1.25 * r},
-                  {.colour = kSkipped, .width = 3});
+      canvas.line({at.x - 1.25 * radius, at.y - side * 1.25 * radius},
+                  {at.x + 1.25 * radius, at.y + side * 1.25 * radius}, {.colour = kSkipped, .width = 0.28 * radius});
   mark(0, skipped ? Colour{0.93, 0.93, 0.94} : station.kept ? kKept : kStation);
-  if (text.size() <= 3) disc_text(canvas, at, text, skipped ? kSkipped : Colour{1, 1, 1});
+  if (!fits_disc(text)) return;
+  const double size = text.size() <= 2 ? 11 : text.size() == 3 ? 9 : 7;  // as large as there is room for
+  canvas.text(at, text,
+              {.size = size * radius / kDisc,
+               .bold = true,
+               .colour = skipped ? kSkipped : Colour{1, 1, 1},
+               .across = Align::middle});
 }
 
 void draw_elsewhere(Canvas& canvas, Point at, const std::string& text) {
   canvas.circle(at, 0.7 * kDisc, {.colour = style::faint, .width = 1.2, .dashes = {2.5, 2}});
-  if (text.size() <= 3)
-    canvas.text(at, text, {.size = 7.5, .colour = style::faint, .across = Align::middle, .halo = 1.5});
+  if (fits_disc(text))
+    canvas.text(at, text,
+                {.size = text.size() > 3 ? 6.0 : 7.5, .colour = style::faint, .across = Align::middle, .halo = 1.5});
 }
 
 void draw_link(Canvas& canvas, Point a, Point b, double overlap, bool bridge, bool between_floors) {

@@ -9,6 +9,7 @@
 
 #include "export/canvas.hpp"
 #include "export/plan_levels.hpp"
+#include "export/relief.hpp"
 #include "vantage/evaluation.hpp"
 #include "vantage/placement.hpp"
 #include "vantage/scene.hpp"
@@ -37,11 +38,12 @@ struct PlanMapContent {
   bool elsewhere = false;        // stations of other floors
   bool moved = false;            // discs beside their spots
   bool bridge = false;           // links that connect two components
+  bool heights = false;          // labels with heights of the ground
   double largest = 0;            // overlap of a link; 0: there is none
   std::size_t hidden_links = 0;  // omitted because they would make a tangle
   PlanMapContent operator|(const PlanMapContent& o) const {
-    return {cut || o.cut,       left_out || o.left_out,       elsewhere || o.elsewhere,     moved || o.moved,
-            bridge || o.bridge, std::max(largest, o.largest), hidden_links + o.hidden_links};
+    return {cut || o.cut,       left_out || o.left_out, elsewhere || o.elsewhere,     moved || o.moved,
+            bridge || o.bridge, heights || o.heights,   std::max(largest, o.largest), hidden_links + o.hidden_links};
   }
 };
 
@@ -49,19 +51,33 @@ struct PlanMapContent {
 // Error invalid_argument if there is nothing.
 Box plan_window(const PlanView& view);
 
-// Draws the window into `map`, which has its proportions, with title and subtitle above it. `level`: the floor, if the
-// site has several; null: all of it, cut only if most of the ground is covered.
+// What a map shows of a site under its marks.
+struct SiteMap {
+  std::vector<std::uint32_t> pixels;  // of the window, as `shade()` makes them
+  bool left_out = false;              // whether ground that is no part of the search area shows
+};
+// The site in shaded relief with its search area, cut where the level is, what is cut through filled and outlined by
+// `line` pixels. `paper`: how far all but that is faded into white, 0 to 1, for maps that are written on. `surfaces`:
+// `surfaces_of()` the scene, where they are known.
+SiteMap map_site(const Scene& scene, const SearchArea& area, const MapWindow& window, const PlanLevel& level,
+                 double line, double paper = 0, std::span<const std::uint32_t> surfaces = {});
+
+// Draws the window into `map`, which has its proportions. The map's title and what it is of stand above it.
 PlanMapContent draw_plan_map(Canvas& canvas, const Rect& map, const PlanView& view, const Box& window,
-                             const PlanLevel* level, const std::string& title, std::string subtitle);
+                             const PlanLevel& level, const std::string& title, std::string subtitle);
+
+inline constexpr double kDisc = 10.5;  // radius of a station's mark
 
 // Marks of the legend, as on the map.
-void draw_station(Canvas& canvas, Point at, const std::string& text, const PlacedStation& station);
+void draw_station(Canvas& canvas, Point at, const std::string& text, const PlacedStation& station,
+                  double radius = kDisc);
+// Whether a name is short enough to stand in a station's mark.
+bool fits_disc(const std::string& name);
 void draw_elsewhere(Canvas& canvas, Point at, const std::string& text);
 void draw_link(Canvas& canvas, Point a, Point b, double overlap, bool bridge, bool between_floors);
 
 // Overlaps in the legend. The scale of widths is the same on every picture and ends with the last.
 inline constexpr double kLinkSamples[] = {0.05, 0.1, 0.2, 0.5};
-inline constexpr double kDisc = 10.5;  // radius of a station's mark
 inline constexpr Colour kCutTint{0.27, 0.28, 0.31};
 
 }  // namespace vantage

@@ -71,8 +71,8 @@ void write_registration_ply(const std::filesystem::path& file, const Simulator& 
   });
 }
 
-void draw_registration(const std::filesystem::path& file, const Simulator& simulator, const VoxelField& field,
-                       const RegistrationError& error, std::span<const PlacedStation> stations,
+void draw_registration(const std::filesystem::path& file, const Simulator& simulator, const SearchArea& area,
+                       const VoxelField& field, const RegistrationError& error, std::span<const PlacedStation> stations,
                        const std::string& title) {
   check(simulator, field);
   const std::vector<std::uint32_t> ranks = simulator.sampled_voxels(std::min(kMostDrawn, simulator.voxel_count()));
@@ -102,8 +102,8 @@ void draw_registration(const std::filesystem::path& file, const Simulator& simul
     canvas.text({at.x + 34, at.y}, "not seen", {.size = 12.5});
     return Point{at.x, at.y + 24};
   };
-  draw_voxel_map(file, simulator, voxels, stations, title, "Surveyed surfaces from above, the largest error on top",
-                 legend);
+  draw_voxel_map(file, simulator, area, voxels, stations, title,
+                 "Surveyed surfaces from above, the largest error on top", legend);
 }
 
 }  // namespace vantage

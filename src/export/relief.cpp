@@ -20,7 +20,8 @@ double line_width(double length) { return std::clamp(0.15 * length, 3.0, 14.0); 
 
 class Painter {
  public:
-  Painter(HeightBuffer& target, double z_cut) : target_(target), z_cut_(z_cut) {}
+  Painter(HeightBuffer& target, double z_cut, std::span<const float> cuts)
+      : target_(target), z_cut_(z_cut), cuts_(cuts) {}
 
   void triangle(const std::array<MapPoint, 3>& c, const std::array<double, 3>& z, std::uint32_t id) {
     for_each_pixel(target_.window, c, [&](std::size_t pixel, const std::array<double, 3>& weights) {
@@ -43,13 +44,14 @@ class Painter {
 
  private:
   void put(std::size_t k, double z, std::uint32_t id) {
-    if (z > z_cut_) return;
+    if (z > z_cut_ && (cuts_.empty() || z > cuts_[k])) return;
     if (static_cast<float>(z) <= target_.z[k]) return;
     target_.z[k] = static_cast<float>(z), target_.triangle[k] = id;
   }
 
   HeightBuffer& target_;
   double z_cut_;  // local frame
+  std::span<const float> cuts_;
 };
 
 std::array<Float3, 3> corners_of(const SceneData& scene, std::uint32_t triangle) {
@@ -95,11 +97,12 @@ std::vector<float> box_mean(const HeightBuffer& heights, std::size_t r, float fl
 
 }  // namespace
 
-HeightBuffer look_from_above(const SceneData& scene, const MapWindow& window, double z_cut) {
+HeightBuffer look_from_above(const SceneData& scene, const MapWindow& window, double z_cut,
+                             std::span<const float> cuts) {
   HeightBuffer heights{window, {}, {}};
   heights.z.assign(window.columns * window.rows, -std::numeric_limits<float>::infinity());
   heights.triangle.assign(window.columns * window.rows, kNothing);
-  Painter painter(heights, z_cut - scene.origin.z);
+  Painter painter(heights, z_cut - scene.origin.z, cuts);
   for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
     std::array<MapPoint, 3> c;
     std::array<double, 3> z;

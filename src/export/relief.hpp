@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -55,15 +56,17 @@ void for_each_pixel(const MapWindow& window, const std::array<MapPoint, 3>& c, P
   }
 }
 
-// The topmost surface below `z_cut` (survey frame) under each pixel's centre. Steep surfaces cover no area and are
-// lines along their edges, except those that the cut crosses, which section.hpp draws.
+// The topmost surface below `z_cut` (survey frame) under each pixel's centre; with `cuts` (local frame, one a pixel),
+// below the higher of both. Steep surfaces cover no area and are lines along their edges, except those that the cut
+// crosses, which section.hpp draws.
 struct HeightBuffer {
   MapWindow window;
   std::vector<float> z;                 // local frame; −infinity in empty pixels
   std::vector<std::uint32_t> triangle;  // of the scene; 2^32 − 1 in empty pixels
 };
 
-HeightBuffer look_from_above(const SceneData& scene, const MapWindow& window, double z_cut);
+HeightBuffer look_from_above(const SceneData& scene, const MapWindow& window, double z_cut,
+                             std::span<const float> cuts = {});
 
 // Shaded relief, light from the north-west, surveyed meshes tinted. 0xAARRGGBB, premultiplied; empty pixels are
 // transparent.

@@ -23,54 +23,34 @@ std::vector<std::uint32_t> welded(const SceneData& scene) {
   return number;
 }
 
-// Number of the connected surface of each point.
-std::vector<std::uint32_t> surfaces_of(const SceneData& scene) {
-  std::vector<std::uint32_t> parent = welded(scene);
-  const auto root = [&](std::uint32_t v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
-  for (const Triangle& t : scene.triangles)
-    for (const std::size_t k : {1u, 2u}) {
-      const std::uint32_t a = root(t[0]), b = root(t[k]);
-      parent[std::max(a, b)] = std::min(a, b);
-    }
-  for (std::uint32_t v = 0; v < parent.size(); ++v) parent[v] = root(v);
-  return parent;
-}
-
 // A segment of the cut with the solid to its left in plan view.
 struct Cut {
   MapPoint from, to;
   std::uint32_t surface;
 };
 
-std::vector<Cut> cuts_at(const SceneData& scene, const MapWindow& window, double z) {
-  const std::vector<std::uint32_t> surface = surfaces_of(scene);
-  std::vector<Cut> cuts;
+// Calls found(triangle, from, to) for each triangle that crosses the height, with what is solid to the left.
+template <class Found>
+void for_each_cut(const SceneData& scene, double z, Found&& found) {
   for (const Triangle& t : scene.triangles) {
     std::array<Vec3, 3> p;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Float3& q = scene.positions[t[k]];
-      p[k] = Vec3{q.x, q.y, q.z} + scene.origin;
-    }
+    for (std::size_t k = 0; k < 3; ++k) p[k] = widen(scene.positions[t[k]]) + scene.origin;
     // a corner in the plane counts as above: each surface is crossed evenly
-    std::vector<Vec3> ends;
+    std::array<Vec3, 2> ends;
+    std::size_t count = 0;
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3 &a = p[k], &b = p[(k + 1) % 3];
       if ((a.z >= z) == (b.z >= z)) continue;
       // from the lower end, so that both triangles at an edge find the same point
       const Vec3 &low = a.z < b.z ? a : b, &high = a.z < b.z ? b : a;
-      ends.push_back(low + (high - low) * ((z - low.z) / (high.z - low.z)));
+      ends[count++] = low + (high - low) * ((z - low.z) / (high.z - low.z));
     }
-    if (ends.size() != 2) continue;
+    if (count != 2) continue;
     const Vec3 n = cross(p[1] - p[0], p[2] - p[0]);
     // up × n runs along the cut with the inside to its left
     const bool along = (ends[1].x - ends[0].x) * -n.y + (ends[1].y - ends[0].y) * n.x >= 0;
-    const MapPoint a = window.at(ends[0]), b = window.at(ends[1]);
-    cuts.push_back({along ? a : b, along ? b : a, surface[t[0]]});
+    found(t, along ? ends[0] : ends[1], along ? ends[1] : ends[0]);
   }
-  return cuts;
 }
 
 struct Crossing {
@@ -107,11 +87,35 @@ void fill_row(std::vector<Crossing>& row, std::uint8_t* solid, std::size_t colum
 
 }  // namespace
 
+// Which surface each point belongs to: those that triangles connect.
+std::vector<std::uint32_t> surfaces_of(const SceneData& scene) {
+  std::vector<std::uint32_t> parent = welded(scene);
+  const auto root = [&](std::uint32_t v) {
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+  };
+  for (const Triangle& t : scene.triangles)
+    for (const std::size_t k : {1u, 2u}) {
+      const std::uint32_t a = root(t[0]), b = root(t[k]);
+      parent[std::max(a, b)] = std::min(a, b);
+    }
+  for (std::uint32_t v = 0; v < parent.size(); ++v) parent[v] = root(v);
+  return parent;
+}
+
 Section section_at(const SceneData& scene, const MapWindow& window, double z) {
+  return section_at(scene, surfaces_of(scene), window, z);
+}
+
+Section section_at(const SceneData& scene, std::span<const std::uint32_t> surfaces, const MapWindow& window, double z) {
   Section section;
   section.solid.assign(window.columns * window.rows, 0);
   std::vector<std::vector<Crossing>> rows(window.rows);
-  for (const Cut& cut : cuts_at(scene, window, z)) {
+  std::vector<Cut> cuts;
+  for_each_cut(scene, z, [&](const Triangle& t, const Vec3& from, const Vec3& to) {
+    cuts.push_back({window.at(from), window.at(to), surfaces[t[0]]});
+  });
+  for (const Cut& cut : cuts) {
     section.outlines.push_back({cut.from, cut.to});
     // Rows count downward: the solid lies to the left of the cut, so to the right of a downward one.
     const double top = std::min(cut.from.y, cut.to.y), bottom = std::max(cut.from.y, cut.to.y);
@@ -125,6 +129,12 @@ Section section_at(const SceneData& scene, const MapWindow& window, double z) {
   for (std::size_t y = 0; y < window.rows; ++y)
     fill_row(rows[y], section.solid.data() + y * window.columns, window.columns);
   return section;
+}
+
+std::vector<std::array<Vec3, 2>> section_lines(const SceneData& scene, double z) {
+  std::vector<std::array<Vec3, 2>> lines;
+  for_each_cut(scene, z, [&](const Triangle&, const Vec3& from, const Vec3& to) { lines.push_back({from, to}); });
+  return lines;
 }
 
 }  // namespace vantage

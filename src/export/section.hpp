@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "export/relief.hpp"
@@ -15,9 +16,17 @@ struct Section {
   std::vector<std::array<MapPoint, 2>> outlines;  // lines where surfaces cross the plane, in pixels
 };
 
+// Number of the connected surface of each point.
+std::vector<std::uint32_t> surfaces_of(const SceneData& scene);
+
 // Cuts the scene at height `z` (survey frame). A pixel is solid if outward closed surfaces wind around it more often
 // than inward ones: walls as boxes, and the space between an outer and an inner skin. A surface that is not closed
 // along a row of pixels, such as a wall without thickness, is only an outline.
 Section section_at(const SceneData& scene, const MapWindow& window, double z);
+// The same for several windows of a scene. `surfaces`: `surfaces_of()` it.
+Section section_at(const SceneData& scene, std::span<const std::uint32_t> surfaces, const MapWindow& window, double z);
+
+// The lines (x, y) alone along which surfaces cross a height, survey frame, metres.
+std::vector<std::array<Vec3, 2>> section_lines(const SceneData& scene, double z);
 
 }  // namespace vantage

@@ -9,24 +9,56 @@ namespace {
 
 constexpr std::size_t kTangle = 4, kStrongest = 2;  // links for each station
 
+// Parts of a graph that grows by its links.
+class Parts {
+ public:
+  explicit Parts(std::size_t stations) : part_(stations) { std::iota(part_.begin(), part_.end(), std::size_t{0}); }
+  // Whether the two were apart.
+  bool join(std::size_t a, std::size_t b) {
+    a = find(a), b = find(b);
+    if (a != b) part_[a] = b;
+    return a != b;
+  }
+
+ private:
+  std::size_t find(std::size_t k) {
+    while (part_[k] != k) k = part_[k] = part_[part_[k]];
+    return k;
+  }
+  std::vector<std::size_t> part_;
+};
+
 }  // namespace
+
+std::vector<ShownLink> links_of(const StationLinks& network) {
+  std::vector<ShownLink> links;
+  const std::size_t stations = network.values.size();
+  const auto bridges = connectivity(network.values, network.least).bridges;
+  for (std::size_t a = 0; a < stations; ++a)
+    for (std::size_t b = a + 1; b < stations; ++b)
+      if (const double value = network.values(a, b); value > 0 && value >= network.least)
+        links.push_back({a, b, value, std::binary_search(bridges.begin(), bridges.end(), std::pair{a, b})});
+  // From the strongest on, as Kruskal does.
+  std::vector<std::size_t> order(links.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::size_t k) { return links[k].overlap; });
+  Parts parts(stations);
+  for (const std::size_t k : order) links[k].tree = parts.join(links[k].a, links[k].b);
+  return links;
+}
 
 std::vector<ShownLink> shown_links(std::vector<ShownLink> links, std::size_t stations) {
   std::ranges::stable_sort(links, {}, &ShownLink::overlap);
-  if (links.size() <= kTangle * stations) return links;
-  std::vector<std::size_t> part(stations), drawn(stations, 0);
-  std::iota(part.begin(), part.end(), std::size_t{0});
-  const auto part_of = [&](std::size_t k) {
-    while (part[k] != k) k = part[k] = part[part[k]];
-    return k;
-  };
-  // Kruskal's algorithm: from the strongest on.
+  std::vector<std::size_t> drawn(stations, 0);
+  for (const ShownLink& link : links) drawn[link.a] = drawn[link.b] = 1;
+  const auto linked = static_cast<std::size_t>(std::ranges::count(drawn, std::size_t{1}));
+  if (links.size() <= kTangle * linked) return links;
+  drawn.assign(stations, 0);
+  Parts parts(stations);
   std::vector<ShownLink> shown;
   for (auto link = links.rbegin(); link != links.rend(); ++link) {
-    const std::size_t a = part_of(link->a), b = part_of(link->b);
     const bool strong = drawn[link->a]++ < kStrongest, strong_too = drawn[link->b]++ < kStrongest;
-    if (a != b) part[a] = b;
-    if (a != b || strong || strong_too) shown.push_back(*link);
+    if (parts.join(link->a, link->b) || strong || strong_too) shown.push_back(*link);
   }
   std::ranges::reverse(shown);
   return shown;

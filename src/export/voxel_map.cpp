@@ -3,9 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
+#include "core/text.hpp"
 #include "export/chart.hpp"
+#include "export/plan_levels.hpp"
+#include "export/section.hpp"
 
 namespace vantage {
 namespace {
@@ -13,6 +17,8 @@ namespace {
 constexpr std::size_t kFine = 2;  // pixels a unit of the canvas
 constexpr double kPanel = 264;    // the longest line of any legend, and a margin
 constexpr Colour kHead{0.10, 0.22, 0.45};
+// Up to which height over the floor what is cut shows, in heights of the cut: over the heads, below most ceilings.
+constexpr double kBelowCeiling = 1.7;
 
 std::uint32_t opaque(const Colour& colour) {
   const auto [r, g, b] = to_bytes(colour);
@@ -21,10 +27,11 @@ std::uint32_t opaque(const Colour& colour) {
 
 }  // namespace
 
-void draw_voxel_map(const std::filesystem::path& file, const Simulator& simulator,
+void draw_voxel_map(const std::filesystem::path& file, const Simulator& simulator, const SearchArea& area,
                     std::span<const ColouredVoxel> voxels, std::span<const PlacedStation> stations,
                     const std::string& title, const std::string& subtitle,
                     const std::function<Point(Canvas& canvas, Point at)>& legend) {
+  const std::vector<PlanLevel> levels = cut_levels(simulator.scene(), area.mesh(), stations);
   Box box;
   for (const ColouredVoxel& voxel : voxels) box.extend(simulator.voxel_centre(voxel.rank));
   for (const PlacedStation& station : stations)
@@ -34,35 +41,67 @@ void draw_voxel_map(const std::filesystem::path& file, const Simulator& simulato
   const double margin = half + 0.03 * std::max(box.size().x, box.size().y);
   const double width = box.size().x + 2 * margin, height = box.size().y + 2 * margin;
   const double west = box.min.x - margin, north = box.max.y + margin;
-  const double metre = std::min(700 / width, 640 / height);  // canvas units
-  const Rect map{86, 68, std::ceil(width * metre), std::ceil(height * metre)};
-  Canvas canvas(map.right() + 26 + kPanel, std::max(map.bottom() + 64, map.y + 260));
-  const Chart chart(canvas, map, {.label = "x (m)", .low = west, .high = west + map.width / metre, .wanted_ticks = 7},
-                    {.label = "y (m)", .low = north - map.height / metre, .high = north, .wanted_ticks = 7}, title,
-                    subtitle);
-
-  const auto columns = static_cast<std::size_t>(map.width) * kFine, rows = static_cast<std::size_t>(map.height) * kFine;
-  std::vector<std::uint32_t> pixels(columns * rows);
+  const bool several = levels.size() > 1;
+  const double metre = std::min((several ? 460 : 700) / width, (several ? 520 : 640) / height);  // canvas units
+  constexpr double kLeft = 86, kTop = 68;
+  const auto map_of = [&](std::size_t k) {
+    const double across = std::ceil(width * metre);
+    return Rect{kLeft + static_cast<double>(k) * (across + kLeft + 10), kTop, across, std::ceil(height * metre)};
+  };
+  const Rect last = map_of(levels.size() - 1);
+  Canvas canvas(last.right() + 26 + kPanel, std::max(last.bottom() + 64, last.y + 260));
+  const auto columns = static_cast<std::size_t>(last.width) * kFine,
+             rows = static_cast<std::size_t>(last.height) * kFine;
   const auto pixel = [&](double metres, std::size_t size) {
     return static_cast<std::size_t>(
         std::clamp(metres * metre * static_cast<double>(kFine), 0.0, static_cast<double>(size - 1)));
   };
-  for (const ColouredVoxel& voxel : voxels) {
-    const Vec3 centre = simulator.voxel_centre(voxel.rank);
-    const std::size_t x0 = pixel(centre.x - half - west, columns), x1 = pixel(centre.x + half - west, columns);
-    const std::size_t y0 = pixel(north - centre.y - half, rows), y1 = pixel(north - centre.y + half, rows);
-    for (std::size_t y = y0; y <= y1; ++y)
-      std::fill_n(pixels.begin() + static_cast<std::ptrdiff_t>(y * columns + x0), x1 - x0 + 1, opaque(voxel.colour));
+  for (std::size_t k = 0; k < levels.size(); ++k) {
+    const PlanLevel& level = levels[k];
+    const Rect map = map_of(k);
+    std::string words = subtitle;
+    if (several)
+      words = "Level " + std::to_string(k + 1) + " of " + std::to_string(levels.size()) +
+              ", floor at z = " + fixed(level.floor, 2) + " m";
+    else
+      words += level.cut ? ", without what lies over the heads" : ", through whatever lies over them";
+    const Chart chart(canvas, map, {.label = "x (m)", .low = west, .high = west + map.width / metre, .wanted_ticks = 7},
+                      {.label = "y (m)", .low = north - map.height / metre, .high = north, .wanted_ticks = 7},
+                      k == 0 ? title : "", words);
+    std::vector<std::uint32_t> pixels(columns * rows);
+    const double top =
+        level.cut ? level.floor + kBelowCeiling * (*level.cut - level.floor) : std::numeric_limits<double>::infinity();
+    // Of what lies below a floor that is cut above, the upper over the lower; the rest as it comes.
+    std::vector<std::pair<long, const ColouredVoxel*>> shown;
+    for (const ColouredVoxel& voxel : voxels) {
+      const double z = simulator.voxel_centre(voxel.rank).z;
+      if (z < level.low || z > top) continue;
+      const double down = level.cut ? std::min(0.0, z - (level.floor - simulator.voxel_size_m())) : 0;
+      shown.emplace_back(std::lround(std::floor(down / simulator.voxel_size_m())), &voxel);
+    }
+    std::ranges::stable_sort(shown, {}, [](const auto& one) { return one.first; });
+    for (const auto& [layer, voxel] : shown) {
+      const Vec3 centre = simulator.voxel_centre(voxel->rank);
+      const std::size_t x0 = pixel(centre.x - half - west, columns), x1 = pixel(centre.x + half - west, columns);
+      const std::size_t y0 = pixel(north - centre.y - half, rows), y1 = pixel(north - centre.y + half, rows);
+      for (std::size_t y = y0; y <= y1; ++y)
+        std::fill_n(pixels.begin() + static_cast<std::ptrdiff_t>(y * columns + x0), x1 - x0 + 1, opaque(voxel->colour));
+    }
+    canvas.image(map, pixels, columns);
+    canvas.clip(map);
+    if (level.cut)
+      for (const auto& [a, b] : section_lines(simulator.scene().data(), *level.cut))
+        canvas.line(chart.at(a.x, a.y), chart.at(b.x, b.y), {.colour = style::ink, .width = 0.8});
+    for (const PlacedStation& station : stations) {
+      if (station.status != StationStatus::ok || !level.holds(station.ground.z)) continue;
+      const Point at = chart.at(station.position.x, station.position.y);
+      canvas.disc(at, 6, {1, 1, 1});
+      canvas.disc(at, 4.5, kHead);
+    }
+    canvas.unclip();
+    canvas.rectangle(map, {.colour = style::faint, .width = 1});
   }
-  canvas.image(map, pixels, columns);
-  canvas.rectangle(map, {.colour = style::faint, .width = 1});
-  for (const PlacedStation& station : stations) {
-    if (station.status != StationStatus::ok) continue;
-    const Point at = chart.at(station.position.x, station.position.y);
-    canvas.disc(at, 6, {1, 1, 1});
-    canvas.disc(at, 4.5, kHead);
-  }
-  const Point end = legend(canvas, {map.right() + 24, map.y + 8});
+  const Point end = legend(canvas, {last.right() + 24, last.y + 8});
   canvas.disc({end.x + 12, end.y}, 4.5, kHead);
   canvas.text({end.x + 34, end.y}, "station", {.size = 12.5});
   canvas.save(file);

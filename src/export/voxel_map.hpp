@@ -19,9 +19,11 @@ struct ColouredVoxel {
   Colour colour;
 };
 
-// Later voxels cover earlier ones; each stands for its neighbours too if there are fewer than the site has. `legend`
-// draws below `at` and returns where it ends; the mark of a station follows there. REQUIRES: voxels.
-void draw_voxel_map(const std::filesystem::path& file, const Simulator& simulator,
+// Draws a map for each level of the site, side by side. On a cut level, surfaces over the heads are left out, walls are
+// lines, and surfaces below the floor are covered by all others. Otherwise later voxels cover earlier ones; each stands
+// for its neighbours too if there are fewer than the site has. `legend` draws below `at` and returns where it ends; the
+// mark of a station follows there. REQUIRES: voxels.
+void draw_voxel_map(const std::filesystem::path& file, const Simulator& simulator, const SearchArea& area,
                     std::span<const ColouredVoxel> voxels, std::span<const PlacedStation> stations,
                     const std::string& title, const std::string& subtitle,
                     const std::function<Point(Canvas& canvas, Point at)>& legend);

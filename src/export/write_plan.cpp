@@ -51,8 +51,8 @@ std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& re
   if (result.problem.objectives.size() > 1) save("history", *history_picture(result));
   if (field && entry.registration)
     for (const char* extension : {".png", ".svg"})
-      draw_registration(folder / (std::string("registration") + extension), simulator, *field, *entry.registration,
-                        entry.stations, "Registration error on the surface (predicted)");
+      draw_registration(folder / (std::string("registration") + extension), simulator, area, *field,
+                        *entry.registration, entry.stations, "Registration error on the surface (predicted)");
   std::span<const StationError> errors;
   if (entry.registration) errors = entry.registration->stations;
   const auto names = station_names(entry.stations, entry.names);

@@ -27,6 +27,20 @@ Margins shortfall(const PlanEntry& entry, const FewestAsked& asked, std::span<co
   return margins;
 }
 
+// The same network with its stations in the order in which they are visited.
+std::vector<double> in_order(const DecisionSpace& space, const std::vector<double>& x,
+                             const VerifiedNetworks::VisitOrder& visit_order) {
+  if (!visit_order) return x;
+  const std::vector<PlacedStation> stations = space.decode(x);
+  const std::vector<std::size_t> order = visit_order(std::span(stations).subspan(space.existing()));
+  const auto blocks = space.blocks();
+  if (order.size() != blocks.size()) return x;  // one that cannot be visited
+  std::vector<double> ordered = x;
+  for (std::size_t k = 0; k < order.size(); ++k)
+    for (std::size_t c = 0; c < blocks[k].size(); ++c) ordered[blocks[k][c]] = x[blocks[order[k]][c]];
+  return ordered;
+}
+
 }  // namespace
 
 SurveyProblem with_stations(SurveyProblem problem, std::size_t placed) {
@@ -39,13 +53,14 @@ SurveyProblem with_stations(SurveyProblem problem, std::size_t placed) {
 
 VerifiedNetworks::VerifiedNetworks(const SurveyProblem& problem, const Measures& measures,
                                    const PlacementOracle& oracle, NetworkEvaluator& evaluator,
-                                   std::uint64_t sample_voxels, const PlanWatch& watch)
+                                   std::uint64_t sample_voxels, const PlanWatch& watch, VisitOrder visit_order)
     : problem_(problem),
       measures_(measures),
       oracle_(oracle),
       evaluator_(evaluator),
       sample_voxels_(sample_voxels),
-      watch_(watch) {}
+      watch_(watch),
+      visit_order_(std::move(visit_order)) {}
 
 void VerifiedNetworks::add(std::span<const PlacedStation> placed) {
   const SurveyProblem narrowed = with_stations(problem_, placed.size());
@@ -59,8 +74,10 @@ void VerifiedNetworks::add(const SearchOutcome& found, std::size_t placed) {
   if (found.front.empty()) return;
   const SurveyProblem narrowed = with_stations(problem_, placed);
   const DecisionSpace space(oracle_, narrowed);
+  SearchOutcome ordered = found;
+  for (ParetoPoint& point : ordered.front) point.x = in_order(space, point.x, visit_order_);
   for (PlanEntry& entry :
-       confirm_front(found, space, narrowed, measures_, sample_voxels_, evaluator_, watch_).entries) {
+       confirm_front(ordered, space, narrowed, measures_, sample_voxels_, evaluator_, watch_).entries) {
     entry.violation = violation_of(entry, problem_.requirements);
     entries_.push_back(std::move(entry));
   }

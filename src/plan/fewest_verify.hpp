@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <stop_token>
 #include <vector>
@@ -19,11 +20,15 @@ namespace vantage {
 // Networks of a problem that were evaluated with every ray, as entries of a plan.
 class VerifiedNetworks {
  public:
-  // Borrows all. `sample_voxels`: sample of the search, for the entries' searched values; 0: every ray.
+  // Returns the order in which to visit stations, as indices.
+  using VisitOrder = std::function<std::vector<std::size_t>(std::span<const PlacedStation>)>;
+  // Borrows all but the order. `sample_voxels`: sample of the search, for the entries' searched values; 0: every ray.
   VerifiedNetworks(const SurveyProblem& problem, const Measures& measures, const PlacementOracle& oracle,
-                   NetworkEvaluator& evaluator, std::uint64_t sample_voxels, const PlanWatch& watch);
+                   NetworkEvaluator& evaluator, std::uint64_t sample_voxels, const PlanWatch& watch,
+                   VisitOrder visit_order = {});
 
-  // Evaluates a network of these stations besides the existing ones, or the front of a search for as many stations.
+  // Evaluates a network of these stations besides the existing ones, or the front of a search for as many stations. Its
+  // stations are numbered in the order of visiting.
   void add(std::span<const PlacedStation> placed);
   void add(const SearchOutcome& found, std::size_t placed);
 
@@ -43,6 +48,7 @@ class VerifiedNetworks {
   NetworkEvaluator& evaluator_;
   std::uint64_t sample_voxels_;
   const PlanWatch& watch_;
+  VisitOrder visit_order_;
   std::vector<PlanEntry> entries_;
 };
 

@@ -88,7 +88,7 @@ class FewestReport {
 VisitTime visit_time(PlanContext& context, const FewestAsked& asked) {
   if (!asked.minutes) return {};  // avoids making the walking graph for nothing
   const OnSite& on_site = context.on_site();
-  return {.each_min = on_site.minutes_per_scan() + on_site.options().set_up_min,
+  return {.each_min = on_site.minutes_per_scan() + on_site.options().set_up_min + on_site.options().photos_min,
           .minutes = [&on_site](std::span<const PlacedStation> placed) { return on_site.visit(placed).minutes; }};
 }
 
@@ -214,8 +214,9 @@ PlanResult plan_fewest(PlanContext& context, Simulator& simulator, std::shared_p
                        const PlanConfig& config, const PlanWatch& watch) {
   const SurveyProblem problem = context.problem();
   FewestReport report(watch);
-  VerifiedNetworks verified(problem, context.measures(), context.oracle(), context.evaluator(), config.sample_voxels,
-                            watch);
+  VerifiedNetworks verified(
+      problem, context.measures(), context.oracle(), context.evaluator(), config.sample_voxels, watch,
+      [&context](std::span<const PlacedStation> placed) { return context.on_site().visit(placed).order; });
   FewestChoice choice = choose_number(context, simulator, *candidates, config, watch, report);
   SearchOutcome found;
   PlanResult result;

@@ -43,6 +43,10 @@ const SettingTable<OnSiteOptions>& on_site_settings() {
           .custom("set-up", "MIN",
                   otherwise("Minutes at each station besides the scan itself", OnSiteOptions().set_up_min),
                   number_of(&OnSiteOptions::set_up_min, not_negative))
+          .custom("photos", "MIN",
+                  otherwise("Minutes at each station for pictures, where the scanner takes some",
+                            OnSiteOptions().photos_min),
+                  number_of(&OnSiteOptions::photos_min, not_negative))
           .custom("walking", "M/S",
                   otherwise("Walking speed with the scanner, in metres per second", OnSiteOptions().walking_m_per_s),
                   number_of(&OnSiteOptions::walking_m_per_s, positive))

@@ -22,6 +22,7 @@ nlohmann::ordered_json to_json(const Objective& objective) {
 Settings settings(const OnSiteOptions& options) {
   return SettingList()
       .add("set_up_min", options.set_up_min, {"set-up"})
+      .add("photos_min", options.photos_min, {"photos"})
       .add("walking_m_per_s", options.walking_m_per_s, {"walking"})
       .add("detour", options.detour)
       .add("entrance", options.entrance)
@@ -50,6 +51,7 @@ Settings settings(const SurveyProblem& problem) {
                       .add("fewest", problem.fewest)
                       .add("attainable", problem.attainable)
                       .add("set_up_min", problem.on_site.set_up_min, {"set-up"})
+                      .add("photos_min", problem.on_site.photos_min, {"photos"})
                       .add("walking_m_per_s", problem.on_site.walking_m_per_s, {"walking"})
                       .add("detour", problem.on_site.detour)
                       .add("entrance", problem.on_site.entrance)

@@ -20,6 +20,7 @@ Report report_of(const PlanResult& result, const Simulator& simulator, const Rep
     if (view.third()) report.front_axes.push_back(*view.third());
   }
   for (const PlanEntry& entry : result.front) report.networks.push_back({entry, entry.dominated});
+  report.facts = report_facts(report, simulator);
   return report;
 }
 
@@ -32,6 +33,7 @@ Report report_of(const Evaluation& evaluation, const Simulator& simulator, const
   for (const std::string& name : objective_names())
     if (evaluation.values.contains(name)) report.measures.push_back(make_objective(name));
   if (!report.options.field && !evaluation.field.count.empty()) report.options.field = &evaluation.field;
+  report.facts = report_facts(report, simulator);
   return report;
 }
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "vantage/report.hpp"
@@ -21,13 +22,14 @@ struct Report {
   ReportOptions options = {};
   std::string question = {};  // question that the plan answers
   std::vector<Network> networks = {};
-  std::size_t answer = 0;                      // of the networks
-  std::vector<Requirement> requirements = {};  // that networks have to keep
-  std::vector<Objective> measures = {};        // all that is told of a network
-  std::vector<Objective> front_axes = {};  // to the right, up, and by colour where there is a third; empty: no front
-  std::vector<TradeOffPoint> trade_off = {};  // stations against what they capture; empty: not known
-  std::string parameters = "{}";           // JSON text of an object
-  // What the answer's stations see: a JPEG each, empty where there is none; or none at all.
+  std::size_t answer = 0;                      // index of the network
+  std::vector<Requirement> requirements = {};  // on the networks
+  std::vector<Objective> measures = {};        // of every network
+  std::vector<Objective> front_axes = {};      // to the right, up, and by colour if there is a third; empty: no front
+  std::vector<TradeOffPoint> trade_off = {};   // stations against what they capture; empty: not known
+  std::string parameters = "{}";               // JSON text of an object
+  std::vector<std::pair<std::string, std::string>> facts = {};  // scanner, time, …: heading and sentence
+  // Views of the answer's stations: a JPEG each, empty if there is none; or none at all.
   std::vector<std::vector<std::uint8_t>> pictures = {};
 
   const Evaluation& shown() const { return networks[answer].evaluation; }
@@ -37,6 +39,10 @@ struct Report {
 Report report_of(const PlanResult& result, const Simulator& simulator, const ReportOptions& options);
 // Report of given stations.
 Report report_of(const Evaluation& evaluation, const Simulator& simulator, const ReportOptions& options);
+
+// What a reader asks first besides what is captured: scanner, stations, time, what "captured" stands for. Heading and
+// sentence each.
+std::vector<std::pair<std::string, std::string>> report_facts(const Report& report, const Simulator& simulator);
 
 void write_report_html(const std::filesystem::path& file, const Report& report, Simulator& simulator,
                        const SearchArea& area, const Progress& progress);

@@ -10,6 +10,11 @@
   at('title').textContent = report.title;
   at('question').textContent = report.question;
   at('command').textContent = report.command;
+  at('date').textContent = report.date ? `· ${report.date}` : '';
+  if (report.logo) {
+    at('logo').src = report.logo;
+    at('logo').hidden = false;
+  }
   at('footer').textContent = `Made by vantage ${report.version}. Heights and places are those of the site’s model.`;
   parameterTable(at('parameters'), report.parameters);
   if (report.missed.nodes.length) missedTable(at('missed'), at('missed-words'), report.missed);
@@ -21,7 +26,7 @@
       if (view.standing) stepBack();
       view.select(selected);
     }
-    at('stations').querySelectorAll('tbody tr').forEach((row, i) => row.classList.toggle('picked', i === selected));
+    at('stations').querySelectorAll('[data-station]').forEach((name) => name.closest('tr').classList.toggle('picked', Number(name.dataset.station) === selected));
     card();
   }
   function card() {
@@ -48,12 +53,15 @@
     at('to-answer').disabled = k === report.answer;
     figures(at('figures'), network);
     words(at('words'), network, k === report.answer && report.missed.nodes.length ? report.missed : null);
+    // What holds of the answer alone is left out of other networks.
+    factWords(at('facts'), report.facts.filter((f) => k === report.answer || !['stations', 'at each', 'in all'].includes(f.heading)));
     stationTable(at('stations'), network, pick);
+    at('round').textContent = roundWords(network);
     linkTable(at('links'), at('links-words'), network);
     valuesTable(at('values'), report, network);
     only = null;
     if (view) {
-      view.setNetwork(network.stations, network.links || []);
+      view.setNetwork(network.stations, network.links || [], network.visit);
       const kept = report.view.cells && report.view.cells.networks[k];
       const [coverage, alone] = kept ? await Promise.all([unpack(kept.coverage), unpack(kept.only)]) : [null, null];
       if (current !== k) return;  // another was picked meanwhile
@@ -78,13 +86,14 @@
     if (mode !== 'plain') item(`background:${VIEW_COLOURS.blocking}`, 'not surveyed');
     if (view.known && mode !== 'plain') item(`background:${VIEW_COLOURS.only}`, 'only the picked station sees');
     item(`background:${VIEW_COLOURS.link}`, 'link', 'stroke');
+    if (network.visit && network.visit.ways.length) item(`background:${VIEW_COLOURS.route}`, 'the round', 'stroke');
     item(`background:repeating-linear-gradient(90deg,${VIEW_COLOURS.bridge} 0 6px,transparent 6px 9px)`, 'bridge', 'stroke');
     if (kept && kept.sample > 0 && mode === 'coverage') items.push(element('span', { class: 'muted' }, `colours from a sample of ${grouped(kept.sample)} voxels`));
     at('legend').replaceChildren(...items);
   }
 
   function setUpTools() {
-    sliceTools(view, report.view.levels, report.view.origin[2], report.networks[report.answer].stations.find((s) => s.ground));
+    sliceTools(view, report.view.levels, report.view.origin[2], report.networks[report.answer].stations);
     at('oblique').addEventListener('click', () => { stepBack(); view.oblique(); });
     at('above').addEventListener('click', () => { stepBack(); view.above(); });
     at('leave').addEventListener('click', stepBack);
@@ -128,7 +137,7 @@
     at('to-answer').addEventListener('click', () => show(report.answer));
   }
   try {
-    view = new SiteView(at('canvas'), report.view, pick);
+    view = new SiteView(at('canvas'), report.view, pick, report.crs);
     await view.load();
     setUpTools();
   } catch (error) {

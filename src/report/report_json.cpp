@@ -1,8 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/report_json.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "core/read_file.hpp"
 #include "export/missed_colours.hpp"
+#include "export/shown_links.hpp"
 #include "report/packed.hpp"
+#include "vantage/image.hpp"
 #include "vantage/summary.hpp"
 #include "vantage/version.hpp"
 
@@ -41,20 +48,56 @@ ordered_json stations_json(const Evaluation& network) {
   return stations;
 }
 
-// A station between others is linked only to one of the same component; the only link between two components is a
-// bridge.
-ordered_json links_json(const StationLinks& links) {
+// With many links, returns those that the survey depends on and the strongest of each station: as many as can be read.
+constexpr std::size_t kLinksOfEach = 8;
+
+std::vector<ShownLink> told_links(const StationLinks& network) {
+  std::vector<ShownLink> links = links_of(network);
+  const std::size_t stations = network.values.size();
+  if (links.size() <= kLinksOfEach * stations) return links;
+  std::ranges::stable_sort(links, std::ranges::greater{}, &ShownLink::overlap);
+  std::vector<std::size_t> told(stations, 0);
+  std::erase_if(links, [&](const ShownLink& link) {
+    const bool strong = told[link.a] < kLinksOfEach / 2 || told[link.b] < kLinksOfEach / 2;
+    if (strong) ++told[link.a], ++told[link.b];
+    return !strong && !link.tree && !link.bridge;
+  });
+  return links;
+}
+
+ordered_json links_json(const StationLinks& network) {
   ordered_json json = ordered_json::array();
-  const Connectivity graph = connectivity(links.values, links.least);
-  for (std::size_t i = 0; i < links.values.size(); ++i)
-    for (std::size_t j = i + 1; j < links.values.size(); ++j) {
-      const double value = links.values(i, j);
-      if (!(value > 0 && value >= links.least)) continue;
-      const bool bridge = std::ranges::count(graph.bridges, std::pair(i, j)) > 0;
-      const bool weakest = links.weakest == std::pair(i, j);
-      json.push_back({{"a", i}, {"b", j}, {"value", value}, {"bridge", bridge}, {"weakest", weakest}});
-    }
+  for (const ShownLink& link : told_links(network))
+    json.push_back({{"a", link.a},
+                    {"b", link.b},
+                    {"value", link.overlap},
+                    {"bridge", link.bridge},
+                    {"tree", link.tree},
+                    {"weakest", network.weakest == std::pair(link.a, link.b)}});
   return json;
+}
+
+// Of each station how many others it is linked to.
+std::vector<std::size_t> link_counts(const StationLinks& network) {
+  std::vector<std::size_t> counts(network.values.size(), 0);
+  for (const ShownLink& link : links_of(network)) ++counts[link.a], ++counts[link.b];
+  return counts;
+}
+
+// The round, by the places of stations in the network. `paths`: the ground that it leads over too, to the centimetre.
+ordered_json visit_json(const Visit& visit, std::size_t kept, bool paths) {
+  ordered_json order = ordered_json::array(), ways = order;
+  for (const std::size_t station : visit.order) order.push_back(kept + station);
+  if (paths)
+    for (const std::vector<Vec3>& path : visit.paths) {
+      ordered_json way = ordered_json::array();
+      for (const Vec3& p : path)
+        for (const double v : {p.x, p.y, p.z}) way.push_back(std::round(100 * v) / 100);
+      ways.push_back(std::move(way));
+    }
+  return {{"order", std::move(order)},  {"legs_m", visit.legs_m},         {"walk_m", visit.walk_m},
+          {"scan_min", visit.scan_min}, {"set_up_min", visit.set_up_min}, {"photos_min", visit.photos_min},
+          {"walk_min", visit.walk_min}, {"minutes", visit.minutes},       {"ways", std::move(ways)}};
 }
 
 }  // namespace
@@ -73,7 +116,12 @@ ordered_json network_json(const Evaluation& network, std::span<const Requirement
                        {"seconds_on_site", nullptr},
                        {"summary", std::move(summary)},
                        {"stations", stations_json(network)},
+                       {"visit", nullptr},
                        {"parts", nullptr}};
+  if (network.visit && !network.visit->order.empty()) {
+    const auto kept = static_cast<std::size_t>(std::ranges::count(network.stations, true, &PlacedStation::kept));
+    json["visit"] = visit_json(*network.visit, kept, true);
+  }
   if (network.values.contains("capture")) json["captured"] = known(network.value("capture"));
   if (network.visit) json["seconds_on_site"] = 60 * network.visit->minutes;
   if (const auto links = network.links()) {
@@ -81,6 +129,9 @@ ordered_json network_json(const Evaluation& network, std::span<const Requirement
     json["link_measure"] = to_string(links->measure);
     json["least_link"] = links->least;
     json["links"] = links_json(*links);
+    const std::vector<std::size_t> counts = link_counts(*links);
+    for (std::size_t k = 0; k < counts.size(); ++k) json["stations"][k]["linked"] = counts[k];
+    json["all_links"] = std::accumulate(counts.begin(), counts.end(), std::size_t{0}) / 2;
   }
   return json;
 }
@@ -121,10 +172,22 @@ ordered_json trade_off_json(const std::vector<TradeOffPoint>& points) {
   return json;
 }
 
+// As the address of a picture in a page; empty: none.
+std::string logo_json(const std::filesystem::path& file) {
+  if (file.empty()) return "";
+  read_image(file);  // refuses what is no picture
+  const std::string bytes = read_file(file);
+  const bool png = bytes.starts_with("\x89PNG");
+  const auto* first = reinterpret_cast<const std::uint8_t*>(bytes.data());
+  return std::string("data:image/") + (png ? "png" : "jpeg") + ";base64," + base64({first, bytes.size()});
+}
+
 }  // namespace
 
 ordered_json report_json(const Report& report) {
   ordered_json axes = ordered_json::array(), measures = axes, networks = axes;
+  ordered_json facts = ordered_json::array();
+  for (const auto& [heading, text] : report.facts) facts.push_back({{"heading", heading}, {"text", text}});
   for (const Objective& axis : report.front_axes) axes.push_back(measure_json(axis));
   for (const Objective& measure : report.measures) measures.push_back(measure_json(measure));
   for (const Report::Network& network : report.networks) {
@@ -134,8 +197,12 @@ ordered_json report_json(const Report& report) {
   ordered_json& stations = networks[report.answer]["stations"];
   for (std::size_t k = 0; k < report.pictures.size(); ++k)
     if (!report.pictures[k].empty()) stations[k]["picture"] = base64(report.pictures[k]);
+  for (std::size_t k = 0; k < networks.size(); ++k)  // a page draws one round
+    if (k != report.answer && !networks[k]["visit"].is_null()) networks[k]["visit"]["ways"] = ordered_json::array();
   return {{"title", report.options.title},     {"question", report.question},
           {"command", report.options.command}, {"version", version()},
+          {"facts", std::move(facts)},         {"date", report.options.date},
+          {"crs", report.options.crs},         {"logo", logo_json(report.options.logo)},
           {"answer", report.answer},           {"axes", std::move(axes)},
           {"measures", std::move(measures)},   {"networks", std::move(networks)},
           {"missed", missed_json(report)},     {"trade_off", trade_off_json(report.trade_off)},

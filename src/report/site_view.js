@@ -11,6 +11,7 @@ const VIEW_COLOURS = {
   reasons: Array(6).fill('#d6d3cd'),  // by WhyMissed; a report brings its own
   link: '#1d4f91',
   bridge: '#8c2d91',
+  route: '#e07b00',
   station: '#1d4f91',
   kept: '#6b2a70',
 };
@@ -149,9 +150,16 @@ class CellTable {
   }
 }
 
+function svgNode(name, attributes) {
+  const node = document.createElementNS('http://www.w3.org/2000/svg', name);
+  for (const [key, value] of Object.entries(attributes)) node.setAttribute(key, value);
+  return node;
+}
+
 class SiteView {
-  // `view`: from the report's data. Calls onPick(k) when a station is picked by its label.
-  constructor(holder, view, onPick) {
+  // `view`: from the report's data. Calls onPick(k) when a station is picked by its label. `crs`: the coordinate system
+  // whose north is shown; empty: the axes are.
+  constructor(holder, view, onPick, crs = '') {
     this.holder = holder;
     this.view = view;
     this.onPick = onPick;
@@ -167,7 +175,13 @@ class SiteView {
     this.canvas.setAttribute('aria-describedby', 'view-help');
     this.printed = document.createElement('img');
     this.printed.alt = 'The site with its stations and links';
-    holder.append(this.canvas, this.printed);
+    this.scaleBar = Object.assign(document.createElement('div'), { className: 'view-scale' });
+    this.size = Object.assign(document.createElement('div'), { className: 'view-size' });
+    this.north = document.createElementNS('http://www.w3.org/2000/svg', 'svg');
+    this.north.setAttribute('class', 'view-north');
+    this.north.setAttribute('viewBox', '-26 -26 52 52');
+    this.up = crs ? 'N' : 'y';
+    holder.append(this.canvas, this.printed, this.scaleBar, this.size, this.north);
 
     const low = new THREE.Vector3(...view.mesh.low), high = new THREE.Vector3(...view.mesh.high);
     this.low = low;
@@ -184,8 +198,11 @@ class SiteView {
     this.controls.addEventListener('change', () => this.draw());
     this.marks = new THREE.Group();
     this.scene.add(this.marks);
+    const across = view.mesh.surveyed_high.map((v, k) => v - view.mesh.surveyed_low[k]);
+    this.size.textContent = `${across[0].toFixed(1)} × ${across[1].toFixed(1)} m, ${across[2].toFixed(1)} m high`;
     this.labels = [];
     this.stations = [];
+    this.visit = null;
     this.links = [];
     this.selected = null;
     this.slice = [low.z, high.z];
@@ -239,9 +256,12 @@ class SiteView {
   local(point) { return new THREE.Vector3(...point.map((v, k) => v - this.view.origin[k])); }
 
   // `stations` and `links` in the form of the report.
-  setNetwork(stations, links) {
+  setNetwork(stations, links, visit = null) {
     this.stations = stations;
-    this.links = links;
+    this.visit = visit;
+    // Of many links those that the survey depends on.
+    const kMost = 4 * stations.length;
+    this.links = links.length > kMost ? links.filter((link) => link.tree || link.bridge) : links;
     this.selected = null;
     this.labels.forEach((label) => label.remove());
     this.labels = stations.map((station, k) => {
@@ -292,6 +312,7 @@ class SiteView {
       add(new THREE.SphereGeometry(size, 20, 14), colour, head);
       rod(this.local(station.ground), head, size * 0.18, colour);
     });
+    if (this.visit) this.addRoute(size);
     const most = Math.max(0.5, ...this.links.map((link) => link.value));
     for (const link of this.links) {
       const a = this.local(this.stations[link.a].head), b = this.local(this.stations[link.b].head);
@@ -308,6 +329,27 @@ class SiteView {
         rod(a.clone().lerp(b, d / dashes), a.clone().lerp(b, (d + 0.6) / dashes), radius, VIEW_COLOURS.bridge, true);
     }
     this.draw();
+  }
+
+  // The way of the round as a band on the ground.
+  addRoute(size) {
+    const corners = [], width = 0.35 * size;
+    for (const way of this.visit.ways)
+      for (let k = 0; k + 5 < way.length; k += 3) {
+        const a = this.local(way.slice(k, k + 3)), b = this.local(way.slice(k + 3, k + 6));
+        if (!this.shown(a) || !this.shown(b)) continue;
+        const side = new THREE.Vector3(a.y - b.y, b.x - a.x, 0);
+        if (side.lengthSq() === 0) continue;
+        side.setLength(width);
+        const [p, q, r, t] = [a.clone().add(side), a.clone().sub(side), b.clone().sub(side), b.clone().add(side)];
+        for (const v of [p, q, r, p, r, t]) corners.push(v.x, v.y, v.z + 0.05);
+      }
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(corners), 3));
+    const band = new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({ color: VIEW_COLOURS.route, side: THREE.DoubleSide, depthTest: false, transparent: true, opacity: 0.8 }));
+    band.renderOrder = 1;
+    band.frustumCulled = false;
+    this.marks.add(band);
   }
 
   shown(at) { return at.z >= this.slice[0] - 0.5 && at.z <= this.slice[1] + 0.5; }
@@ -456,17 +498,59 @@ class SiteView {
     this.camera.far = distance + 2 * this.high.distanceTo(this.low);
     this.camera.updateProjectionMatrix();
     this.renderer.render(this.scene, this.camera);
-    this.labels.forEach((label, k) => {
+    this.placeLabels();
+    this.placeScale(distance);
+  }
+
+  // Names of stations over their heads. One that would lie on another, or is of another storey, is a dot.
+  placeLabels() {
+    const taken = new Map(), kCell = 48, kGap = 1, kHeight = 24, kOver = 7;
+    const near = (box) => {
+      const keys = [];
+      for (let i = Math.floor(box[0] / kCell); i <= Math.floor(box[2] / kCell); ++i)
+        for (let j = Math.floor(box[1] / kCell); j <= Math.floor(box[3] / kCell); ++j) keys.push(`${i} ${j}`);
+      return keys;
+    };
+    const places = this.labels.map((label, k) => {
       const station = this.stations[k];
-      if (!station.head) return;
+      if (!station.head) return null;
       const head = this.local(station.head), at = head.clone().project(this.camera);
-      const hidden = at.z > 1 || Math.abs(at.x) > 1.05 || Math.abs(at.y) > 1.05 || Boolean(this.standing);
-      label.hidden = hidden;
-      if (hidden) return;
-      label.classList.toggle('off', !this.shown(head));
-      const x = ((at.x + 1) / 2) * this.width, y = ((1 - at.y) / 2) * this.height;
-      label.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) translate(-50%, calc(-100% - 7px))`;
-    });
+      label.hidden = at.z > 1 || Math.abs(at.x) > 1.05 || Math.abs(at.y) > 1.05 || Boolean(this.standing);
+      return label.hidden ? null : { k, label, off: !this.shown(head), z: at.z, x: ((at.x + 1) / 2) * this.width, y: ((1 - at.y) / 2) * this.height };
+    }).filter((place) => place);
+    // The picked one first, then what is shown and near.
+    places.sort((a, b) => Number(b.k === this.selected) - Number(a.k === this.selected) || Number(a.off) - Number(b.off) || a.z - b.z);
+    for (const { k, label, off, x, y } of places) {
+      const half = 4 * label.textContent.length + 8;
+      const box = [x - half - kGap, y - kOver - kHeight - kGap, x + half + kGap, y - kOver + kGap], keys = near(box);
+      const meets = (other) => box[0] < other[2] && other[0] < box[2] && box[1] < other[3] && other[1] < box[3];
+      const crowded = k !== this.selected && (off || keys.some((key) => (taken.get(key) || []).some(meets)));
+      label.classList.toggle('off', off);
+      label.classList.toggle('crowded', crowded);
+      if (!crowded) keys.forEach((key) => taken.set(key, [...(taken.get(key) || []), box]));
+      label.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) translate(-50%, ${crowded ? '-50%' : `calc(-100% - ${kOver}px)`})`;
+    }
+  }
+
+  // A bar of a round length, true at the middle of what is seen, and where north is, or the axes.
+  placeScale(distance) {
+    this.scaleBar.hidden = Boolean(this.standing);
+    this.north.style.display = this.standing ? 'none' : '';
+    const metre = this.height / (2 * distance * Math.tan(THREE.Math.degToRad(this.camera.fov / 2)));
+    const wanted = 120 / metre, power = 10 ** Math.floor(Math.log10(wanted));
+    const length = [5, 2, 1].map((f) => f * power).find((l) => l <= wanted) || power;
+    this.scaleBar.style.width = `${(length * metre).toFixed(1)}px`;
+    this.scaleBar.textContent = `${length >= 1 ? length : length.toFixed(2)} m`;
+    const arrow = (axis, name) => {
+      const v = axis.transformDirection(this.camera.matrixWorldInverse);
+      const line = svgNode('line', { x1: 0, y1: 0, x2: (14 * v.x).toFixed(1), y2: (-14 * v.y).toFixed(1), stroke: '#1b222c', 'stroke-width': 2 });
+      const text = svgNode('text', { x: (20 * v.x).toFixed(1), y: (4 - 20 * v.y).toFixed(1), 'font-size': 10, 'font-weight': 600, 'text-anchor': 'middle', fill: '#1b222c' });
+      text.textContent = name;
+      const [dx, dy] = [v.x, -v.y], tip = [14 * dx, 14 * dy], wing = (side) => `${(tip[0] - 5 * dx - 3 * side * dy).toFixed(1)},${(tip[1] - 5 * dy + 3 * side * dx).toFixed(1)}`;
+      const head = svgNode('polygon', { points: `${tip.map((c) => c.toFixed(1)).join()} ${wing(1)} ${wing(-1)}`, fill: '#1b222c' });
+      return [line, head, text];
+    };
+    this.north.replaceChildren(...arrow(new THREE.Vector3(0, 1, 0), this.up), ...(this.up === 'y' ? arrow(new THREE.Vector3(1, 0, 0), 'x') : []));
   }
 
   // The screen's content with the stations' names, for paper.
@@ -486,25 +570,34 @@ class SiteView {
     for (const label of this.labels) {
       const box = label.getBoundingClientRect();
       if (label.hidden || !box.width) continue;
+      if (label.classList.contains('crowded')) continue;
       pen.fillStyle = getComputedStyle(label).backgroundColor;
       pen.fillRect((box.left - frame.left) * scale, (box.top - frame.top) * scale, box.width * scale, box.height * scale);
       pen.fillStyle = '#fff';
       pen.fillText(label.textContent, (box.left + box.width / 2 - frame.left) * scale, (box.top + box.height / 2 - frame.top) * scale);
     }
+    // The bar and its length.
+    const bar = this.scaleBar.getBoundingClientRect(), left = (bar.left - frame.left) * scale, foot = (bar.bottom - frame.top) * scale;
+    pen.fillStyle = '#1b222c';
+    pen.fillRect(left, foot - 3 * scale, bar.width * scale, 3 * scale);
+    pen.fillText(this.scaleBar.textContent, left + (bar.width * scale) / 2, foot - 12 * scale);
     this.printed.src = page.toDataURL('image/png');
   }
 }
 
-// The page's controls for the shown storey and the height of its cut. `origin`: the local frame's height; `first`: a
-// station whose storey is shown first.
-function sliceTools(view, levels, origin, first) {
+// The page's controls for the shown storey and the height of its cut. `origin`: the local frame's height. The storey
+// with most stations is shown first.
+function sliceTools(view, levels, origin, stations) {
   const [level, cut, height] = ['level', 'cut', 'cut-height'].map((id) => document.getElementById(id));
   document.getElementById('level-label').hidden = levels.length === 0;
   const option = (value, text) => level.append(Object.assign(document.createElement('option'), { value, textContent: text }));
   levels.forEach((l, k) => option(k, levels.length > 1 ? `${k + 1}, floor at ${l.floor.toFixed(2)} m` : 'without ceiling'));
   option(-1, 'whole site');
   level.value = levels.length === 0 ? -1 : 0;
-  if (first) levels.forEach((l, k) => { if (l.floor <= first.ground[2] + 0.6) level.value = k; });
+  const standing = levels.map(() => 0);
+  for (const { ground } of stations)
+    if (ground && levels.length) ++standing[Math.max(0, levels.filter((l) => l.floor <= ground[2] + 0.6).length - 1)];
+  if (levels.length) level.value = standing.indexOf(Math.max(...standing));
   const cutAt = (local) => {
     const low = view.low.z, high = view.high.z, chosen = levels[Number(level.value)];
     cut.value = Math.round((1000 * (local - low)) / (high - low));

@@ -45,8 +45,8 @@ function figures(holder, network) {
   ];
   if (network.parts !== null)
     tiles.push(network.parts === 1
-      ? tile('Hangs together', 'Yes', used === 1 ? 'one station' : `all stations, by ${network.link_measure} of ${network.least_link} and more`)
-      : tile('Hangs together', 'No', `falls into ${network.parts} parts`, true));
+      ? tile('Connected', 'Yes', used === 1 ? 'one station' : `all stations, by ${network.link_measure} of ${network.least_link} and more`)
+      : tile('Connected', 'No', `in ${network.parts} parts that share no link`, true));
   if (network.seconds_on_site !== null) tiles.push(tile('On site', duration(network.seconds_on_site), 'with setting up and walking'));
   holder.replaceChildren(...tiles);
 }
@@ -63,24 +63,62 @@ function words(holder, network, missed) {
   const lines = [...network.summary];
   const told = missed ? missedWords(missed) : '';
   if (told) lines.splice(1, 0, { heading: 'missed', text: `${percent(1 - missed.nodes[0].shares[0])} in part or all: ${told}` });
-  holder.replaceChildren(...lines.flatMap(({ heading, text }, k) => {
-    const repeated = k > 0 && lines[k - 1].heading === heading;
+  // Advice that is more than one can read at once is folded.
+  const kAdvice = 8, folded = lines.filter((line) => line.heading === 'to do').slice(kAdvice);
+  const shown = lines.filter((line) => !folded.includes(line));
+  const pairs = shown.flatMap(({ heading, text }, k) => {
+    const repeated = k > 0 && shown[k - 1].heading === heading;
     const name = heading[0].toUpperCase() + heading.slice(1);
     const title = element('dt', heading === 'to do' ? { class: 'todo' } : {}, repeated ? element('span', { class: 'hidden' }, name) : name);
     return [title, element('dd', {}, text[0].toUpperCase() + text.slice(1))];
-  }));
+  });
+  if (folded.length)
+    pairs.push(element('dt', {}), element('dd', {}, element('details', { class: 'more' }, element('summary', {}, `${folded.length} more to do`),
+      ...folded.map(({ text }) => element('div', {}, text[0].toUpperCase() + text.slice(1))))));
+  holder.replaceChildren(...pairs);
+}
+
+// A table of which some rows show and the rest can be unfolded; made when they are.
+function foldedTable(titles, rows, textColumns, most, words) {
+  const shown = table(titles, rows.slice(0, most), textColumns);
+  if (rows.length <= most) return [shown];
+  const more = element('details', { class: 'more' }, element('summary', {}, words(rows.length - most)));
+  more.addEventListener('toggle', () => {
+    if (more.open && more.children.length === 1) more.append(table(titles, rows.slice(most), textColumns));
+  });
+  return [shown, more];
+}
+
+const kRows = 60;  // that a page shows at once
+
+// By their place in the round, the others behind them.
+function visitingOrder(network) {
+  const order = network.visit ? [...network.visit.order] : [], visited = new Set(order);
+  network.stations.forEach((s, k) => { if (!visited.has(k)) order.push(k); });
+  return order;
 }
 
 function stationTable(holder, network, pick) {
-  const count = (k) => (network.links ? network.links.filter((l) => l.a === k || l.b === k).length : null);
-  const rows = network.stations.map((s, k) => {
-    const name = element('button', { type: 'button' }, s.name);
+  const place = new Map((network.visit ? network.visit.order : []).map((k, stop) => [k, stop]));
+  const row = (k) => {
+    const s = network.stations[k];
+    const name = element('button', { type: 'button', 'data-station': k }, s.name);
     name.addEventListener('click', () => pick(k));
-    return [name, ...(s.head || [null, null, null]).map((v) => (v === null ? null : metres(v))), s.ground ? metres(s.ground[2]) : null,
-      s.points === null ? null : grouped(s.points), count(k),
-      s.kept ? element('span', { class: 'tag' }, 'there before') : s.fault ? element('span', { class: 'tag weak' }, s.fault) : ''];
-  });
-  holder.replaceChildren(table(['Name', 'x (m)', 'y (m)', 'Head z (m)', 'Ground z (m)', 'Points on the site', 'Links', ''], rows, [7]));
+    const cells = [name, ...(s.head || [null, null, null]).map((v) => (v === null ? null : metres(v))), s.ground ? metres(s.ground[2]) : null,
+      s.points === null ? null : grouped(s.points), s.linked === undefined ? null : s.linked];
+    if (place.size) cells.push(place.has(k) ? place.get(k) + 1 : null, place.has(k) ? network.visit.legs_m[place.get(k)].toFixed(1) : null);
+    return [...cells, s.kept ? element('span', { class: 'tag' }, 'there before') : s.fault ? element('span', { class: 'tag weak' }, s.fault) : ''];
+  };
+  const titles = ['Name', 'x (m)', 'y (m)', 'Head z (m)', 'Ground z (m)', 'Points on the site', 'Links', ...(place.size ? ['Stop', 'Walk (m)'] : []), ''];
+  holder.replaceChildren(...foldedTable(titles, visitingOrder(network).map(row), [titles.length - 1], kRows, (n) => `${n} more stations`));
+}
+
+// The round in a sentence.
+function roundWords(network) {
+  if (!network.visit) return '';
+  const { order, walk_m: walk, ways } = network.visit, kNamed = 40;
+  const names = order.slice(0, kNamed).map((k) => network.stations[k].name).join(' → ');
+  return `The round${ways.length && ways[0].length > 3 ? ' from the entrance' : ''}: ${names}${order.length > kNamed ? ` → … ${order.length} stations in all` : ''}, and back: ${walk.toFixed(0)} m on foot.`;
 }
 
 function linkTable(holder, wordsHolder, network) {
@@ -89,19 +127,36 @@ function linkTable(holder, wordsHolder, network) {
     holder.replaceChildren();
     return;
   }
-  wordsHolder.textContent = `Pairs of stations with ${network.link_measure} of at least ${network.least_link}, weakest first. `
+  const weakestFirst = (l, r) => Number(r.bridge) - Number(l.bridge) || l.value - r.value;
+  const tree = network.links.filter((l) => l.tree || l.bridge).sort(weakestFirst), rest = network.links.filter((l) => !l.tree && !l.bridge).sort(weakestFirst);
+  wordsHolder.textContent = `The links that the survey depends on: the strongest that connect all stations, by ${network.link_measure} of at least ${network.least_link}; bridges first, then the weakest. `
     + 'A bridge is the only link between two parts: lose it, and the survey falls apart. Weak: within a quarter of the least that counts.';
-  const rows = [...network.links].sort((l, r) => l.value - r.value).map((l) => {
+  const row = (l) => {
     const tags = [];
     if (l.bridge) tags.push(element('span', { class: 'tag bridge' }, 'bridge'), ' ');
     if (weak(network, l)) tags.push(element('span', { class: 'tag weak' }, 'weak'), ' ');
-    if (l.weakest) tags.push(element('span', { class: 'tag' }, 'weakest that all hang by'));
+    if (l.weakest) tags.push(element('span', { class: 'tag' }, 'weakest that the survey depends on'));
     const cell = element('span', {});
     cell.append(...tags);
     return [network.stations[l.a].name, network.stations[l.b].name, percent(l.value), cell];
-  });
-  holder.replaceChildren(rows.length ? table(['From', 'To', network.link_measure === 'overlap' ? 'Overlap' : 'Scan overlap', ''], rows, [0, 1, 3])
-    : element('p', {}, 'No two stations are linked.'));
+  };
+  if (!network.links.length) {
+    holder.replaceChildren(element('p', {}, 'No two stations are linked.'));
+    return;
+  }
+  const titles = ['From', 'To', network.link_measure === 'overlap' ? 'Overlap' : 'Scan overlap', ''], text = [0, 1, 3], kTree = 12;
+  const most = Math.min(kRows, Math.max(kTree, tree.filter((l) => l.bridge).length));
+  const parts = foldedTable(titles, tree.map(row), text, most, (n) => `${n} more that the survey depends on`);
+  if (rest.length) {
+    const others = network.all_links - tree.length;
+    parts.push(...foldedTable(titles, rest.map(row), text, 0, () => `${others} further links${others > rest.length ? `, the ${rest.length} strongest` : ''}`).slice(1));
+  }
+  holder.replaceChildren(...parts);
+}
+
+function factWords(holder, facts) {
+  const first = (text) => text[0].toUpperCase() + text.slice(1);
+  holder.replaceChildren(...facts.flatMap(({ heading, text }) => [element('dt', {}, first(heading)), element('dd', {}, text)]));
 }
 
 function missedTable(holder, wordsHolder, missed) {
@@ -117,10 +172,9 @@ function missedTable(holder, wordsHolder, missed) {
     node.shares.forEach((s, k) => bar.append(element('i', { style: `width:${100 * s}%;background:${VIEW_COLOURS.reasons[k]}` })));
     return [name, bar, ...node.shares.map((s) => (100 * s).toFixed(1))];
   };
-  const body = table(['Mesh', '', ...missed.reasons.map((r) => r.words[0].toUpperCase() + r.words.slice(1) + ' (%)')],
-    [row(all, 'All'), ...nodes.map((node) => row(node, node.node || '(no name)'))], [1]);
-  body.querySelectorAll('th').forEach((th) => { th.style.whiteSpace = 'normal'; });
-  holder.replaceChildren(body);
+  const kMeshes = 15;
+  holder.replaceChildren(...foldedTable(['Mesh', '', ...missed.reasons.map((r) => r.words[0].toUpperCase() + r.words.slice(1) + ' (%)')],
+    [row(all, 'All'), ...nodes.map((node) => row(node, node.node || '(no name)'))], [1], kMeshes, (n) => `${n} more meshes`));
 }
 
 function valuesTable(holder, report, network) {
@@ -161,14 +215,18 @@ function stationCard(holder, network, k, only, { pick, stand }) {
   }
   if (s.points !== null) fact('Points', `${grouped(s.points)} on the site`);
   if (only !== null) fact('Only it sees', percent(only) + ' of the site');
+  const stop = network.visit ? network.visit.order.indexOf(k) : -1;
+  if (stop >= 0) fact('Stop', `${stop + 1} of ${network.visit.order.length}, after ${network.visit.legs_m[stop].toFixed(1)} m on foot`);
   if (s.kept) fact('', 'was there before');
   if (s.fault) fact('Mind', s.fault);
   parts.push(facts);
   const links = (network.links || []).filter((l) => l.a === k || l.b === k).sort((l, r) => r.value - l.value);
   if (network.links) {
     parts.push(element('strong', {}, links.length ? 'Linked to' : 'Linked to no other station'));
-    parts.push(element('ul', {}, ...links.map((l) => element('li', {},
-      `${network.stations[l.a === k ? l.b : l.a].name}, ${percent(l.value)}${l.bridge ? ', a bridge' : ''}${weak(network, l) ? ', weak' : ''}`))));
+    const kNamed = 8;
+    parts.push(element('ul', {}, ...links.slice(0, kNamed).map((l) => element('li', {},
+      `${network.stations[l.a === k ? l.b : l.a].name}, ${percent(l.value)}${l.bridge ? ', a bridge' : ''}${weak(network, l) ? ', weak' : ''}`)),
+      s.linked > kNamed ? element('li', {}, `and ${s.linked - kNamed} more`) : null));
   }
   if (s.head && stand) {
     const look = element('button', { type: 'button', id: 'stand' }, 'Look round from here');

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "export/covered_floor.hpp"
 #include "export/plan_levels.hpp"
 #include "report/coverage_cells.hpp"
 #include "report/packed.hpp"
@@ -122,22 +121,8 @@ ordered_json colours_json(const Report& report, Simulator& simulator, const Cove
 
 // Storeys of a covered site, each a slice with its walls and heads and without ceilings. Empty: an open site.
 ordered_json levels_json(const Simulator& simulator, const SearchArea& area, std::span<const PlacedStation> stations) {
-  const SearchMesh& ground = area.mesh();
-  std::vector<PlanLevel> levels = plan_levels(ground);
-  if (levels.size() == 1) {
-    Box box;
-    for (const auto& t : ground.triangles)
-      for (const std::uint32_t v : t) box.extend(ground.positions[v]);
-    constexpr std::size_t kAcross = 400;
-    const double pixel = std::max({box.size().x, box.size().y, 1e-3}) / kAcross;
-    const SceneData& scene = simulator.scene().data();
-    const auto from_above = look_from_above(
-        scene, {.x_min = box.min.x, .y_max = box.max.y, .pixel_m = pixel, .columns = kAcross, .rows = kAcross},
-        simulator.scene().bounds().max.z + 1);
-    const auto floor = covered_floor(ground, from_above, scene);
-    if (!floor) return ordered_json::array();
-    levels.front().floor = *floor;
-  }
+  const std::vector<PlanLevel> levels = cut_levels(simulator.scene(), area.mesh(), stations);
+  if (levels.size() == 1 && !levels.front().cut) return ordered_json::array();
   double height = simulator.scanner().height_m;
   for (const PlacedStation& s : stations)
     if (s.status != StationStatus::hole) height = std::max(height, s.position.z - s.ground.z);

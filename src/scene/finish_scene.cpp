@@ -247,6 +247,7 @@ std::shared_ptr<const SceneData> finish_scene(RawScene&& raw, const std::string&
   data->search_uvs = std::move(raw.search_uvs);
   data->search_triangles = std::move(raw.search_triangles);
   data->notes = std::move(raw.notes);
+  data->rooms = std::move(raw.rooms);
   data->defaults_json = std::move(raw.defaults_json);
   data->options = std::move(raw.options);
   return data;

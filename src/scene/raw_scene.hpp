@@ -26,6 +26,7 @@ struct RawScene {
   std::vector<glm::dvec3> search_positions;
   std::vector<Uv> search_uvs;
   std::vector<Triangle> search_triangles;
+  std::vector<Room> rooms;
   // Coarsest spacing, in metres, of the float32 values of the file's positions; 0 if they were exact.
   double coarsest_input_spacing_m = 0;
   // Memory that cleaning may take beyond what these arrays make it take.

@@ -40,6 +40,7 @@ Box Scene::bounds() const noexcept {
 }
 std::span<const MeshInfo> Scene::meshes() const noexcept { return data_->meshes; }
 std::size_t Scene::triangle_count() const noexcept { return data_->triangles.size(); }
+std::span<const Room> Scene::rooms() const noexcept { return data_->rooms; }
 bool Scene::has_search_area() const noexcept { return !data_->search_triangles.empty(); }
 std::span<const std::string> Scene::notes() const noexcept { return data_->notes; }
 const std::string& Scene::defaults_json() const noexcept { return data_->defaults_json; }

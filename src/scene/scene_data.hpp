@@ -56,7 +56,8 @@ struct SceneData {
   std::vector<Uv> search_uvs;
   std::vector<Triangle> search_triangles;
 
-  Box local_bounds;  // bounds of positions used by triangles
+  std::vector<Room> rooms;  // survey frame
+  Box local_bounds;         // bounds of positions used by triangles
   std::vector<std::string> notes;
   std::string defaults_json = "{}";
   SceneOptions options = {};  // how the file was read

@@ -107,6 +107,7 @@ std::shared_ptr<const SceneData> splice_mesh(const SceneData& before, std::size_
   after->search_positions = before.search_positions;
   after->search_uvs = before.search_uvs;
   after->search_triangles = before.search_triangles;
+  after->rooms = before.rooms;
   after->defaults_json = before.defaults_json;
   after->options = before.options;
   // A mesh's own positions are contiguous, as its triangles are.

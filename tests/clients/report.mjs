@@ -16,7 +16,7 @@ const front = JSON.parse(read('plan/front.json'));
 const answer = front.answer - 1;
 assert.ok(front.front.length > 1, 'a front of one network shows no steps');
 const pages = read('plan/report.pdf').toString('latin1').match(/\/Type \/Page\b/g);
-assert.ok(pages && pages.length <= 4, 'report.pdf has one to four pages');
+assert.ok(pages && pages.length >= 4 && pages.length <= 8, 'report.pdf has a front, a map, stations, links and what is missed');
 
 const browser = await launch();
 const url = pathToFileURL(at('plan/report.html')).href;
@@ -32,7 +32,10 @@ async function checkNumbers(page, k) {
   }
   const stations = (await page.locator('#stations tbody tr').allInnerTexts()).map((row) => row.split('\t').map((cell) => cell.trim()));
   assert.equal(stations.length, entry.stations.length);
-  entry.stations.forEach((s, i) => {
+  // In the order of visiting, where there is a round.
+  const round = entry.on_site ? entry.on_site.order.map((n) => n - 1) : entry.stations.map((s, i) => i);
+  assert.equal(round.length, entry.stations.length);
+  round.map((n) => entry.stations[n]).forEach((s, i) => {
     assert.deepEqual(stations[i].slice(0, 5), [s.name, ...s.position.map((v) => v.toFixed(3)), s.ground[2].toFixed(3)]);
     assert.equal(stations[i][5].replace(/\s/g, ''), String(s.points_on_surveyed));
   });
@@ -54,6 +57,14 @@ for (const [size, viewport] of Object.entries({ phone: { width: 390, height: 844
   const wide = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
   assert.ok(wide <= 0, `${size}: the page is ${wide} pixels too wide`);
   assert.deepEqual(await paleTexts(page), [], `${size}: contrast`);
+  assert.match(await page.locator('#facts').innerText(), /a ray every 0\.5°/, `${size}: the scanner is named`);
+  assert.match(await page.locator('#round').innerText(), /^The round.*S\d → .*m on foot\.$/, `${size}: the round is told`);
+  // Names in the view keep apart.
+  const overlapping = await page.evaluate(() => {
+    const boxes = [...document.querySelectorAll('.label:not(.crowded)')].filter((l) => !l.hidden).map((l) => l.getBoundingClientRect());
+    return boxes.some((a, i) => boxes.some((b, j) => j > i && a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom));
+  });
+  assert.equal(overlapping, false, `${size}: names lie on each other`);
   await checkNumbers(page, answer);
   await page.screenshot({ path: path.join(process.env.VANTAGE_SCREENSHOTS ?? at('.'), `report-${size}.png`), fullPage: true });
 
@@ -88,9 +99,10 @@ for (const [size, viewport] of Object.entries({ phone: { width: 390, height: 844
     for (let k = 0; k < 3; ++k) await page.keyboard.press('ArrowLeft');
     await page.waitForTimeout(200);
     assert.ok(!before.equals(await shot()), 'arrow keys do not turn the view');
-    // On paper the view is a picture.
+    // On paper the view is a picture, and all is on a few pages.
     const paper = await page.pdf();
     assert.ok(paper.subarray(0, 5).toString() === '%PDF-');
+    assert.ok(paper.toString('latin1').match(/\/Type \/Page\b/g).length <= 8, 'printing takes too many pages');
     assert.ok(await page.evaluate(() => document.querySelector('#canvas img').naturalWidth > 100));
   }
   assert.deepEqual(page.troubles, [], `${size}: the console`);

@@ -102,6 +102,7 @@ class Loader {
     settle_axes();
     pass_notes_on();
     note_skipped();
+    read_rooms();
     raw_.materials = std::move(materials_.materials);
     raw_.images = std::move(materials_.images);
     if (const auto& defaults = file_.asset_extras("vantage"); !defaults.is_null()) raw_.defaults_json = defaults.dump();
@@ -370,6 +371,30 @@ class Loader {
     uv->read(0, count, values.data());
     raw_.search_uvs.resize(first);
     for (std::size_t i = 0; i < count; ++i) raw_.search_uvs.push_back({values[2 * i], values[2 * i + 1]});
+  }
+
+  // Nodes without a mesh that importers describe: a box in metres, Y up, whatever the file's axes are.
+  void read_rooms() {
+    for (std::size_t n = 0; n < file_.model().nodes.size(); ++n) {
+      const nlohmann::json& marks = file_.find("nodes", static_cast<int>(n), {"extras", "vantage"});
+      if (!marks.is_object() || !marks.contains("box")) continue;
+      const auto corner = [&](std::size_t k) {
+        const nlohmann::json& box = marks["box"];
+        const bool sound = box.is_array() && box.size() == 2 && box[k].is_array() && box[k].size() == 3 &&
+                           std::ranges::all_of(box[k], [](const nlohmann::json& v) { return v.is_number(); });
+        if (!sound)
+          throw file_.malformed("node " + std::to_string(n) +
+                                ": extras.vantage.box is not two corners of three numbers each");
+        return Vec3{box[k][0].get<double>(), -box[k][2].get<double>(), box[k][1].get<double>()};
+      };
+      const auto text = [&](const char* key) {
+        return marks.contains(key) && marks[key].is_string() ? marks[key].get<std::string>() : std::string();
+      };
+      const std::string number = text("name"), name = text("long_name");
+      Room room{.name = name.empty() || name == number ? number : number.empty() ? name : number + " " + name};
+      room.box.extend(corner(0)), room.box.extend(corner(1));
+      raw_.rooms.push_back(std::move(room));
+    }
   }
 
   // Adds the notes of an importer.

@@ -97,8 +97,32 @@ std::vector<PlacedStation> stations_at(const std::vector<Vec3>& grounds) {
   return stations;
 }
 
+TEST(Ways, PathsAreOverTheGroundAndAsLongAsTheirWays) {
+  SearchMesh corner;  // an L of two arms, 10 m long and 2 m wide
+  add_rectangle(corner, 0, 10, 0, 2, 0);
+  add_rectangle(corner, 0, 2, 2, 10, 0);
+  const Ways ways(corner, everywhere);
+  const Vec3 from{9, 1, 0}, to{1, 9, 0};
+  for (const bool back : {false, true}) {
+    const auto path = back ? ways.path(to, from) : ways.path(from, to);
+    ASSERT_GE(path.size(), 3u) << "round the corner";
+    EXPECT_EQ(path.front(), back ? to : from);
+    EXPECT_EQ(path.back(), back ? from : to);
+    double metres = 0;
+    for (std::size_t k = 0; k + 1 < path.size(); ++k) {
+      const Vec3 step = path[k + 1] - path[k];
+      metres += std::sqrt(dot(step, step));
+      const Vec3 middle = (path[k] + path[k + 1]) * 0.5;
+      EXPECT_TRUE(std::min(middle.x, middle.y) < 2.3) << "across the corner";
+    }
+    EXPECT_NEAR(metres, *ways.between(from, to), 0.6);
+  }
+  EXPECT_EQ(ways.path(from, {50, 1, 0}).size(), 2u) << "straight where there is no way";
+}
+
 TEST(OnSite, AddsScansSettingUpAndWalking) {
-  const OnSite on_site = Yard().on_site({.set_up_min = 2, .walking_m_per_s = 0.5, .entrance = Vec3{0, 20, 0}});
+  const OnSite on_site =
+      Yard().on_site({.set_up_min = 2, .photos_min = 0.5, .walking_m_per_s = 0.5, .entrance = Vec3{0, 20, 0}});
   EXPECT_NEAR(on_site.minutes_per_scan(), 1, 1e-12);
   const Visit visit = on_site.visit(stations_at({{30, 20, 0}, {10, 20, 0}, {20, 20, 0}}));
   EXPECT_EQ(visit.order, (std::vector<std::size_t>{1, 2, 0}));
@@ -108,7 +132,11 @@ TEST(OnSite, AddsScansSettingUpAndWalking) {
   EXPECT_NEAR(visit.scan_min, 3, 1e-12);
   EXPECT_NEAR(visit.set_up_min, 6, 1e-12);
   EXPECT_NEAR(visit.walk_min, 2, 0.05);
-  EXPECT_NEAR(visit.minutes, visit.scan_min + visit.set_up_min + visit.walk_min, 1e-12);
+  EXPECT_NEAR(visit.photos_min, 1.5, 1e-12);
+  EXPECT_NEAR(visit.minutes, visit.scan_min + visit.set_up_min + visit.photos_min + visit.walk_min, 1e-12);
+  ASSERT_EQ(visit.paths.size(), visit.legs_m.size());
+  EXPECT_EQ(visit.paths.front().front(), (Vec3{0, 20, 0})) << "from the entrance";
+  EXPECT_EQ(visit.paths.back().back(), (Vec3{0, 20, 0})) << "and back out";
   EXPECT_EQ(visit.unconnected, 0u);
 }
 

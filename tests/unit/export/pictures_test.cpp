@@ -369,8 +369,9 @@ TEST_P(RegistrationMaps, ShowTheErrorWhereItIs) {
   }
   EXPECT_EQ(at, ply.size());
   const std::vector<PlacedStation> stations{{.uv = {}, .position = {0, 0, 0}, .status = StationStatus::ok}};
+  const SearchArea area = SearchArea::build(simulator.scene());
   for (const char* name : {"error.png", "error.svg"})
-    draw_registration(folder / name, simulator, field, error, stations, "Where scans are off");
+    draw_registration(folder / name, simulator, area, field, error, stations, "Where scans are off");
   EXPECT_GT(test::Drawn(folder / "error.png").near(kRisingRamp.back(), 40), 500u) << "the largest on top";
   field.stations.pop_back();
   EXPECT_THROW(write_registration_ply(folder / "bad.ply", simulator, field, error), Error);

@@ -55,5 +55,47 @@ TEST(PlanLevels, AFrontGardenDoesNotHideTheFloorsOfATower) {
   EXPECT_NEAR(levels[3].floor, 9, 1e-9);
 }
 
+PlacedStation at(double x, double y, double z) { return {.uv = {}, .position = {x, y, z + 1.85}, .ground = {x, y, z}}; }
+
+TEST(PlanLevels, StationsOverEachOtherAreOnLevelsOfTheirOwn) {
+  SearchMesh estate;
+  add_floor(estate, 0, 200, 0, 0, 200), add_floor(estate, 90, 100, 3, 3);  // a house on a fortieth of a percent
+  EXPECT_EQ(plan_levels(estate).size(), 1u);
+  const std::vector<PlacedStation> below{at(95, 5, 0)}, above{at(95, 5, 3)}, beside{at(10, 50, 0)};
+  EXPECT_EQ(plan_levels(estate, beside).size(), 1u);
+  for (const auto& stations : {below, above}) {
+    const auto levels = plan_levels(estate, stations);
+    ASSERT_EQ(levels.size(), 2u);
+    EXPECT_NEAR(levels[1].floor, 3, 1e-9);
+    EXPECT_TRUE(levels[stations[0].ground.z > 0 ? 1 : 0].holds(stations[0].ground.z));
+  }
+}
+
+// A square of ground with a roof over a corner of it.
+Scene roofed_corner() {
+  const std::vector<Vec3> p{{0, 0, 0},   {40, 0, 0},  {40, 40, 0}, {0, 40, 0},
+                            {30, 30, 3}, {40, 30, 3}, {40, 40, 3}, {30, 40, 3}};
+  return Scene::from_triangles(p,
+                               std::vector<std::array<std::uint32_t, 3>>{{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}});
+}
+
+TEST(PlanLevels, ASiteIsCutWhereStationsStandUnderARoof) {
+  const Scene scene = roofed_corner();
+  SearchMesh ground;
+  add_floor(ground, 0, 40, 0, 0, 40);
+  const std::vector<PlacedStation> outside{at(5, 5, 0), at(20, 35, 0)}, some{at(5, 5, 0), at(35, 35, 0.1)};
+  EXPECT_EQ(under_roof(scene, some), (std::vector<bool>{false, true}));
+  EXPECT_FALSE(cut_levels(scene, ground, outside)[0].cut);
+  const auto cut = cut_levels(scene, ground, some);
+  ASSERT_EQ(cut.size(), 1u);
+  ASSERT_TRUE(cut[0].cut);
+  EXPECT_NEAR(cut[0].floor, 0.1, 1e-9);
+  EXPECT_NEAR(*cut[0].cut, 1.3, 1e-9) << "1.2 m over the floor of the one under the roof";
+  std::vector<PlacedStation> many(20, at(5, 5, 0));
+  many.push_back(at(35, 35, 0));
+  EXPECT_FALSE(cut_levels(scene, ground, many)[0].cut) << "one in twenty-one";
+  EXPECT_FALSE(cut_levels(scene, ground, {})[0].cut) << "most of the ground is outside";
+}
+
 }  // namespace
 }  // namespace vantage

@@ -309,5 +309,23 @@ TEST(Defaults, AreHandedOnAsJson) {
   EXPECT_EQ(json::parse(load(builder).defaults_json()), (json{{"spacing", 0.25}}));
 }
 
+// As importers describe the rooms of a building: metres, Y up.
+TEST(Rooms, AreReadFromNodesThatHaveABox) {
+  GlbBuilder builder;
+  builder.triangle("part");
+  EXPECT_TRUE(load(builder).rooms().empty());
+  builder.node(
+      {{"extras", {{"vantage", {{"name", "2.04"}, {"long_name", "Office"}, {"box", {{1, 0, -4}, {3, 2.5, -2}}}}}}}});
+  builder.node({{"extras", {{"vantage", {{"long_name", "Hall"}, {"box", {{0, 0, 0}, {1, 1, 1}}}}}}}});
+  const Scene scene = load(builder);
+  ASSERT_EQ(scene.rooms().size(), 2u);
+  EXPECT_EQ(scene.rooms()[0].name, "2.04 Office");
+  EXPECT_EQ(scene.rooms()[0].box.min, (Vec3{1, 2, 0}));
+  EXPECT_EQ(scene.rooms()[0].box.max, (Vec3{3, 4, 2.5}));
+  EXPECT_EQ(scene.rooms()[1].name, "Hall");
+  builder.node({{"extras", {{"vantage", {{"box", {{0, 0}, {1, 1, 1}}}}}}}});
+  EXPECT_THROW(load(builder), Error);
+}
+
 }  // namespace
 }  // namespace vantage

@@ -1,0 +1,482 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "report/field_sheets.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "core/text.hpp"
+#include "export/chart.hpp"
+#include "export/place_discs.hpp"
+#include "export/plan_map.hpp"
+#include "export/search_tint.hpp"
+#include "export/section.hpp"
+
+namespace vantage {
+namespace {
+
+constexpr double kPanelWidth = 196, kMark = 9;                // radius of a station's mark
+constexpr int kCoarsestInside = 200, kCoarsestOutside = 500;  // ratios at which walls and marks still tell apart
+constexpr std::size_t kPixels = 2;  // a point that a map is painted with; twice as many, halved, on A4
+constexpr double kFaded = 0.5;      // of a map's colours, so that pencil shows
+constexpr Colour kRoute{0.84, 0.37, 0.05}, kTape{0.10, 0.42, 0.36}, kRoomInk{0.42, 0.42, 0.46};
+
+Box grown(Box box, double metres) {
+  box.min = box.min - Vec3{metres, metres, 0}, box.max = box.max + Vec3{metres, metres, 0};
+  return box;
+}
+
+std::vector<Vec3> grounds_on(const PlanLevel& level, std::span<const PlacedStation> stations) {
+  std::vector<Vec3> spots;
+  for (const PlacedStation& s : stations)
+    if (s.status != StationStatus::hole && level.holds(s.ground.z)) spots.push_back(s.ground);
+  return spots;
+}
+
+// All ground of the storey where that is not much more than what lies around its stations, else the latter.
+SheetLayout layout_of(const PlanLevel& level, const SearchMesh& ground, const std::vector<Vec3>& spots) {
+  constexpr double kAround_m = 4, kRim_m = 1;
+  Box stations, storey;
+  for (const Vec3& spot : spots) stations.extend(spot), storey.extend(spot);
+  for (const auto& t : ground.triangles)
+    for (const std::uint32_t v : t)
+      if (level.holds(ground.positions[v].z)) storey.extend(ground.positions[v]);
+  const int coarsest = level.cut ? kCoarsestInside : kCoarsestOutside;
+  const SheetLayout all = lay_out(grown(storey, kRim_m), spots, coarsest, kPanelWidth);
+  const SheetLayout part = lay_out(grown(stations, kAround_m), spots, coarsest, kPanelWidth);
+  const bool worth_it = all.tiles.size() == 1 && all.ratio <= 2 * part.ratio;
+  return worth_it || (all.tiles.size() == part.tiles.size() && all.ratio == part.ratio) ? all : part;
+}
+
+class MapSheet {
+ public:
+  MapSheet(const SheetLayout& layout, const MapTile& tile, const PlanLevel& level)
+      : sheet(layout.paper), layout_(layout), window_(tile.window), level_(level) {}
+
+  Sheet sheet;
+
+  Point at(double x, double y) const {
+    return {layout_.map.x + (x - window_.min.x) * layout_.points_per_metre(),
+            layout_.map.y + (window_.max.y - y) * layout_.points_per_metre()};
+  }
+  Point at(const Vec3& p) const { return at(p.x, p.y); }
+  bool holds(const Vec3& p) const {
+    return p.x >= window_.min.x && p.x <= window_.max.x && p.y >= window_.min.y && p.y <= window_.max.y;
+  }
+
+  void site(const Scene& scene, const SearchArea& area, std::span<const std::uint32_t> surfaces) {
+    const Rect& map = layout_.map;
+    const bool smooth = layout_.paper.name == a4().name;
+    const std::size_t fine = kPixels * (smooth ? 2 : 1);
+    const MapWindow pixels{.x_min = window_.min.x,
+                           .y_max = window_.max.y,
+                           .pixel_m = 1 / (layout_.points_per_metre() * static_cast<double>(fine)),
+                           .columns = static_cast<std::size_t>(map.width) * fine,
+                           .rows = static_cast<std::size_t>(map.height) * fine};
+    const SiteMap painted = map_site(scene, area, pixels, level_, 0.75 * static_cast<double>(fine), kFaded, surfaces);
+    if (smooth)
+      sheet.canvas->image(map, halve(painted.pixels, pixels.columns), pixels.columns / 2);
+    else
+      sheet.canvas->image(map, painted.pixels, pixels.columns);
+  }
+
+  // Walls 1.2 m over the ground, from which distances are taken, where the map shows roofs.
+  void walls(const SceneData& scene) {
+    constexpr double kWall_m = 1.2;
+    constexpr std::size_t kMost = 20'000;  // lines that still are walls, and not a heap of stones
+    std::vector<std::array<Point, 2>> lines;
+    for (const auto& [a, b] : section_lines(scene, level_.floor + kWall_m))
+      if (holds(a) || holds(b)) lines.push_back({at(a), at(b)});
+    if (lines.size() > kMost) return;
+    for (const auto& [a, b] : lines) sheet.canvas->line(a, b, {.colour = style::ink, .width = 0.5, .opacity = 0.7});
+  }
+
+  // Crosses at round coordinates, which stand at the frame.
+  void grid() {
+    const Rect& map = layout_.map;
+    constexpr double kApart = 85;  // points
+    const auto ticks = [&](double low, double high) {
+      return nice_ticks(low, high, std::max(2, static_cast<int>((high - low) * layout_.points_per_metre() / kApart)));
+    };
+    const std::vector<double> xs = ticks(window_.min.x, window_.max.x), ys = ticks(window_.min.y, window_.max.y);
+    const TextStyle style{.size = 6.5, .colour = kFaintInk, .across = Align::middle};
+    for (const double x : xs)
+      for (const double y : ys) {
+        const Point p = at(x, y);
+        sheet.canvas->line({p.x - 4, p.y}, {p.x + 4, p.y}, {.colour = kFaintInk, .width = 0.4});
+        sheet.canvas->line({p.x, p.y - 4}, {p.x, p.y + 4}, {.colour = kFaintInk, .width = 0.4});
+      }
+    const auto x_labels = tick_labels(xs), y_labels = tick_labels(ys);
+    for (std::size_t k = 0; k < xs.size(); ++k)
+      sheet.canvas->text({at(xs[k], 0).x, map.bottom() + 7}, "x " + x_labels[k], style);
+    TextStyle upright = style;
+    upright.turn = -1.5707963267948966;
+    for (std::size_t k = 0; k < ys.size(); ++k)
+      sheet.canvas->text({map.x - 7, at(0, ys[k]).y}, "y " + y_labels[k], upright);
+    sheet.canvas->rectangle(map, {.colour = style::ink, .width = 0.8});
+  }
+
+  void route(const Visit& visit) {
+    for (std::size_t leg = 0; leg < visit.paths.size(); ++leg) {
+      const std::vector<Vec3>& path = visit.paths[leg];
+      if (path.size() < 2) continue;
+      // The way back, and straight lines where no way is known, are dotted.
+      const Vec3 straight = path.back() - path.front();
+      const bool unknown = path.size() == 2 && visit.legs_m[leg] > 1.01 * std::sqrt(dot(straight, straight));
+      const bool back = leg + 1 == visit.paths.size() || unknown;
+      double length = 0;
+      for (std::size_t k = 0; k + 1 < path.size(); ++k)
+        length += std::hypot(path[k + 1].x - path[k].x, path[k + 1].y - path[k].y);
+      double gone = 0;
+      for (std::size_t k = 0; k + 1 < path.size(); ++k) {
+        const Vec3 &a = path[k], &b = path[k + 1];
+        const double step = std::hypot(b.x - a.x, b.y - a.y);
+        gone += step;
+        if (!level_.holds(a.z) && !level_.holds(b.z)) continue;
+        const Pen pen{.colour = kRoute,
+                      .width = back ? 0.7 : 1.1,
+                      .opacity = back ? 0.7 : 0.9,
+                      .dashes = back ? std::vector<double>{1.5, 3} : std::vector<double>{5, 2.5}};
+        sheet.canvas->line(at(a), at(b), pen);
+        // The way is shown where half of it is gone.
+        if (gone >= length / 2 && gone - step < length / 2 && length * layout_.points_per_metre() > 3 * kMark &&
+            step > 0)
+          arrow(at(a), at(b), 1 - (gone - length / 2) / step);
+      }
+    }
+    if (visit.paths.empty() || visit.paths.front().size() < 2) return;
+    const Vec3& entrance = visit.paths.front().front();
+    if (!holds(entrance) || !level_.holds(entrance.z)) return;
+    const Point p = at(entrance);
+    sheet.canvas->disc(p, 4, {1, 1, 1});
+    sheet.canvas->circle(p, 3.5, {.colour = kRoute, .width = 1.6});
+    taken_.push_back({p.x - 5, p.y - 5, 10, 10});
+    label(p, 6, "entrance", {.size = 7, .colour = kRoute, .across = Align::middle, .halo = 1.5});
+  }
+
+  // Marks of the stations with their names, and their distances to corners.
+  void stations(std::span<const PlacedStation> stations, const std::vector<StationFacts>& facts) {
+    std::vector<std::size_t> shown;
+    std::vector<Point> spots;
+    for (std::size_t k = 0; k < stations.size(); ++k)
+      if (stations[k].status != StationStatus::hole && level_.holds(stations[k].ground.z) && holds(stations[k].ground))
+        shown.push_back(k), spots.push_back(at(stations[k].ground));
+    const std::vector<Point> discs = place_discs(spots, kMark, layout_.map);
+    for (std::size_t i = 0; i < shown.size(); ++i) {
+      taken_.push_back({discs[i].x - kMark, discs[i].y - kMark, 2 * kMark, 2 * kMark});
+      taken_.push_back({spots[i].x - 3, spots[i].y - 3, 6, 6});
+    }
+    for (std::size_t i = 0; i < shown.size(); ++i)
+      for (const WallCorner& corner : facts[shown[i]].corners) {
+        const Point c = at(corner.x, corner.y);
+        sheet.canvas->line(spots[i], c, {.colour = kTape, .width = 0.6});
+        sheet.canvas->disc(c, 1.6, kTape);
+      }
+    for (std::size_t i = 0; i < shown.size(); ++i) {
+      const bool moved = std::hypot(discs[i].x - spots[i].x, discs[i].y - spots[i].y) > 0.5;
+      if (moved) sheet.canvas->line(spots[i], discs[i], {.colour = style::ink, .width = 1});
+      draw_station(*sheet.canvas, discs[i], facts[shown[i]].name, stations[shown[i]], kMark);
+      if (moved) sheet.canvas->disc(spots[i], 2.4, style::ink);
+    }
+    for (std::size_t i = 0; i < shown.size(); ++i)
+      if (const std::string& name = facts[shown[i]].name; !fits_disc(name))
+        label(discs[i], kMark + 2, name, {.size = 8, .bold = true, .across = Align::middle, .halo = 1.5}, true);
+    for (std::size_t i = 0; i < shown.size(); ++i)
+      for (const WallCorner& corner : facts[shown[i]].corners)
+        tape(spots[i], at(corner.x, corner.y), corner.distance_m);
+  }
+
+  void rooms(std::span<const Room> rooms) {
+    for (const Room& room : rooms) {
+      const Vec3 middle = room.box.centre();
+      const bool here = room.box.max.z > level_.floor + 0.5 && room.box.min.z < level_.floor + 1.5;
+      if (here && holds(middle))
+        label(at(middle), 0, room.name, {.size = 7.5, .colour = kRoomInk, .across = Align::middle, .halo = 1.5});
+    }
+  }
+
+  // Where other sheets are.
+  void tiles(const std::vector<MapTile>& tiles) {
+    for (const MapTile& tile : tiles) {
+      const Point a = at(tile.window.min.x, tile.window.max.y), b = at(tile.window.max.x, tile.window.min.y);
+      sheet.canvas->rectangle({a.x, a.y, b.x - a.x, b.y - a.y}, {.colour = kTape, .width = 1.2});
+      sheet.canvas->text({a.x + 5, a.y + 10}, tile.name, {.size = 12, .bold = true, .colour = kTape, .halo = 2});
+    }
+  }
+
+  void dots(std::span<const PlacedStation> stations) {
+    for (const PlacedStation& s : stations)
+      if (s.status != StationStatus::hole && level_.holds(s.ground.z))
+        sheet.canvas->disc(at(s.ground), 1.8, style::ink);
+  }
+
+  void clip() { sheet.canvas->clip(layout_.map); }
+  void unclip() { sheet.canvas->unclip(); }
+
+ private:
+  void arrow(Point a, Point b, double share) {
+    const double dx = b.x - a.x, dy = b.y - a.y, length = std::hypot(dx, dy);
+    if (!(length > 0)) return;
+    const double ux = dx / length, uy = dy / length;
+    const Point tip{a.x + share * dx + 3.5 * ux, a.y + share * dy + 3.5 * uy};
+    const Point corners[] = {
+        tip, {tip.x - 7 * ux - 3 * uy, tip.y - 7 * uy + 3 * ux}, {tip.x - 7 * ux + 3 * uy, tip.y - 7 * uy - 3 * ux}};
+    sheet.canvas->polygon(corners, kRoute);
+  }
+
+  // Text beside a point where it is free; `must`: even where it is not.
+  void label(Point p, double gap, const std::string& text, const TextStyle& style, bool must = false) {
+    const double width = sheet.canvas->text_width(text, style) + 3, height = style.size + 2;
+    const Rect inside{layout_.map.x + 1, layout_.map.y + 1, layout_.map.width - 2, layout_.map.height - 2};
+    constexpr double kFar = 26;
+    std::optional<Rect> place;
+    if (gap == 0) {
+      const Rect over{p.x - width / 2, p.y - height / 2, width, height};
+      if (std::ranges::none_of(taken_, [&](const Rect& t) { return t.overlaps(over); })) {
+        taken_.push_back(over);
+        place = over;
+      }
+    }
+    if (!place) place = place_free_label(p, gap + 1, kFar, width, height, inside, taken_);
+    if (!place && must) place = place_label(p, gap, width, height, inside, taken_);
+    if (place) sheet.canvas->text({place->x + place->width / 2, place->y + place->height / 2}, text, style);
+  }
+
+  // A distance beside its line, at its middle or near one of its ends; nowhere if all of that is taken.
+  void tape(Point from, Point to, double metres) {
+    const TextStyle style{.size = 6.5, .colour = kTape, .across = Align::middle, .halo = 1.4};
+    const std::string text = fixed(metres, 2);
+    const double width = sheet.canvas->text_width(text, style) + 2, height = 7.5;
+    for (const double share : {0.5, 0.65, 0.35, 0.8}) {
+      const Point p{from.x + share * (to.x - from.x), from.y + share * (to.y - from.y)};
+      const Rect place{p.x - width / 2, p.y - height / 2, width, height};
+      const Rect& map = layout_.map;
+      if (place.x < map.x || place.right() > map.right() || place.y < map.y || place.bottom() > map.bottom()) continue;
+      if (std::ranges::any_of(taken_, [&](const Rect& t) { return t.overlaps(place); })) continue;
+      taken_.push_back(place);
+      sheet.canvas->text(p, text, style);
+      return;
+    }
+  }
+
+  const SheetLayout& layout_;
+  Box window_;
+  const PlanLevel& level_;
+  std::vector<Rect> taken_;
+};
+
+// Title, ratio, scale bar, north, marks, and the stations in the order of visiting as far as there is room.
+class SheetPanel {
+ public:
+  SheetPanel(Sheet& sheet, const SheetLayout& layout)
+      : sheet_(sheet), layout_(layout), x_(layout.map.right() + 14), y_(layout.map.y + 4) {}
+
+  void head(const std::string& title, const std::string& what, const ReportOptions& options) {
+    Canvas& canvas = *sheet_.canvas;
+    const double room = canvas.width() - 2 * layout_.map.x;
+    const TextStyle bold{.size = 14, .bold = true}, faint{.size = 9.5, .colour = kFaintInk};
+    const std::string ratio = "1:" + std::to_string(layout_.ratio);
+    const double wide = canvas.text_width(ratio, {.size = 20, .bold = true}) + 20;
+    canvas.text({layout_.map.x, 22}, fitted(canvas, title, room - wide, bold), bold);
+    canvas.text({layout_.map.x, 40},
+                fitted(canvas, what + (options.date.empty() ? "" : " · " + options.date), room - wide, faint), faint);
+    canvas.text({canvas.width() - layout_.map.x, 26}, ratio, {.size = 20, .bold = true, .across = Align::end});
+    canvas.text({canvas.width() - layout_.map.x, 42}, "on " + layout_.paper.name + ", printed at full size",
+                {.size = 8, .colour = kFaintInk, .across = Align::end});
+  }
+
+  void scale_and_north(const std::string& crs) {
+    Canvas& canvas = *sheet_.canvas;
+    const double metre = layout_.points_per_metre(), widest = 110;
+    double length = std::pow(10.0, std::floor(std::log10(widest / metre)));
+    for (const double factor : {5.0, 2.0})
+      if (factor * length * metre <= widest) {
+        length *= factor;
+        break;
+      }
+    const double width = length * metre, y = y_ + 16;
+    for (int k = 0; k < 4; ++k) {
+      const Rect part{x_ + k * width / 4, y, width / 4, 5};
+      if (k % 2 == 0) canvas.fill(part, style::ink);
+      canvas.rectangle(part, {.colour = style::ink, .width = 0.6});
+    }
+    canvas.text({x_, y - 6}, "0", {.size = 7.5, .across = Align::middle});
+    canvas.text({x_ + width, y - 6}, number(length) + " m", {.size = 7.5, .across = Align::middle});
+    // An arrow up where that is north, else the axes.
+    const double right = x_ + kPanelWidth - 30;
+    if (!crs.empty()) {
+      const Point arrow[] = {{right, y_}, {right + 6, y_ + 22}, {right, y_ + 17}, {right - 6, y_ + 22}};
+      canvas.polygon(arrow, style::ink);
+      canvas.text({right, y_ + 30}, "N", {.size = 10, .bold = true, .across = Align::middle});
+    } else {
+      canvas.line({right - 8, y_ + 24}, {right - 8, y_ + 4}, {.colour = style::ink, .width = 1});
+      canvas.line({right - 8, y_ + 24}, {right + 12, y_ + 24}, {.colour = style::ink, .width = 1});
+      canvas.text({right - 8, y_ - 2}, "y", {.size = 8, .across = Align::middle});
+      canvas.text({right + 17, y_ + 24}, "x", {.size = 8, .across = Align::middle});
+    }
+    y_ += 40;
+    line(crs.empty() ? "Survey frame; where north is, is not known" : crs + ", grid north up",
+         {.size = 7.5, .colour = kFaintInk}, 14);
+  }
+
+  void legend(bool cut, bool route, bool tape, bool kept, bool left_out) {
+    Canvas& canvas = *sheet_.canvas;
+    constexpr TextStyle text{.size = 8};
+    const auto words = [&](const std::string& what) {
+      canvas.text({x_ + 26, y_}, what, text);
+      y_ += 15;
+    };
+    PlacedStation example;
+    draw_station(canvas, {x_ + 9, y_}, "S1", example, 6.5);
+    words("station");
+    if (kept) {
+      example.kept = true;
+      draw_station(canvas, {x_ + 9, y_}, "K1", example, 6.5);
+      words("station that is there already");
+    }
+    if (left_out) {
+      example.kept = false, example.status = StationStatus::clash;
+      draw_station(canvas, {x_ + 9, y_}, "S2", example, 6.5);
+      words("left out: no place to stand");
+    }
+    if (route) {
+      canvas.line({x_, y_}, {x_ + 18, y_}, {.colour = kRoute, .width = 1.1, .dashes = {5, 2.5}});
+      words("the round; dotted: back, or not known");
+    }
+    if (tape) {
+      canvas.line({x_, y_}, {x_ + 18, y_}, {.colour = kTape, .width = 0.6});
+      canvas.disc({x_ + 18, y_}, 1.6, kTape);
+      words("distance to a corner, metres");
+    }
+    if (cut) {
+      canvas.fill({x_, y_ - 4, 18, 8}, kCutTint);
+      words("cut through, " + fixed(cut_over_, 1) + " m over the floor");
+    }
+    y_ += 4;
+  }
+  void cut_over(double metres) { cut_over_ = metres; }
+
+  void list(const std::vector<std::size_t>& shown, const std::vector<StationFacts>& facts,
+            std::span<const PlacedStation> stations) {
+    Canvas& canvas = *sheet_.canvas;
+    if (shown.empty()) return;
+    canvas.text({x_, y_}, "In the order of visiting", {.size = 9, .bold = true});
+    y_ += 14;
+    constexpr double kShort = 21, kLong = 30, kLast = 12;
+    const double bottom = layout_.map.bottom(), room = x_ + kPanelWidth - 18;
+    const bool three = static_cast<double>(shown.size()) * kLong <= bottom - y_;  // lines of each
+    const double entry = three ? kLong : kShort;
+    const auto fit = static_cast<std::size_t>(
+        std::max(0.0, (bottom - (static_cast<double>(shown.size()) * entry <= bottom - y_ ? 0 : kLast) - y_) / entry));
+    for (std::size_t k = 0; k < std::min(fit, shown.size()); ++k) {
+      const StationFacts& f = facts[shown[k]];
+      const PlacedStation& s = stations[shown[k]];
+      const TextStyle name{.size = 8, .bold = true}, figures{.size = 7.5}, faint{.size = 7, .colour = kFaintInk};
+      canvas.text({x_ + 12, y_}, f.visit > 0 ? std::to_string(f.visit) + "." : "–",
+                  {.size = 7.5, .colour = kFaintInk, .across = Align::end});
+      canvas.text({x_ + 17, y_}, fitted(canvas, f.name, 36, name), name);
+      canvas.text({x_ + 56, y_},
+                  fitted(canvas, fixed(s.ground.x, 2) + "  " + fixed(s.ground.y, 2) + "  z " + fixed(s.ground.z, 2),
+                         room - x_ - 56, figures),
+                  figures);
+      std::string more = f.note;
+      const auto add = [&](const std::string& text) { more += (more.empty() ? "" : "; ") + text; };
+      if (!f.corners.empty()) add("corners " + tape_text(f.corners));
+      if (!three && f.alone > 0) add("alone: " + f.alone_where);
+      canvas.text({x_ + 17, y_ + 9}, fitted(canvas, more, room - x_ - 17, faint), faint);
+      if (three && f.alone > 0)
+        canvas.text({x_ + 17, y_ + 17.5}, fitted(canvas, "alone sees " + f.alone_where, room - x_ - 17, faint), faint);
+      y_ += entry;
+    }
+    if (shown.size() > fit)
+      canvas.text({x_, bottom - 6}, std::to_string(shown.size() - fit) + " more in the table of stations",
+                  {.size = 7.5, .colour = kFaintInk});
+  }
+
+ private:
+  void line(const std::string& text, const TextStyle& style, double step) {
+    sheet_.canvas->text({x_, y_}, fitted(*sheet_.canvas, text, kPanelWidth - 20, style), style);
+    y_ += step;
+  }
+
+  Sheet& sheet_;
+  const SheetLayout& layout_;
+  double x_, y_, cut_over_ = 0;
+};
+
+}  // namespace
+
+FieldSheets field_sheets(const Report& report, const std::vector<StationFacts>& facts, const Scene& scene,
+                         const SearchArea& area) {
+  const Evaluation& network = report.shown();
+  const std::vector<PlacedStation>& stations = network.stations;
+  const std::vector<PlanLevel> levels = cut_levels(scene, area.mesh(), stations);
+  const std::vector<std::size_t> order = visiting_order(facts);
+  const bool any_cut = std::ranges::any_of(levels, [](const PlanLevel& level) { return level.cut.has_value(); });
+  const std::vector<std::uint32_t> surfaces = any_cut ? surfaces_of(scene.data()) : std::vector<std::uint32_t>();
+  FieldSheets all{.of_station = std::vector<std::size_t>(stations.size(), 0)};
+  std::vector<double> off_middle(stations.size(), std::numeric_limits<double>::max());
+
+  const auto draw = [&](const SheetLayout& layout, const MapTile& tile, const PlanLevel& level, const std::string& name,
+                        const std::vector<MapTile>* overview) {
+    MapSheet map(layout, tile, level);
+    map.clip();
+    map.site(scene, area, surfaces);
+    if (!level.cut) map.walls(scene.data());
+    std::vector<std::size_t> shown;
+    if (overview) {
+      map.tiles(*overview);
+      map.dots(stations);
+    } else {
+      if (network.visit) map.route(*network.visit);
+      map.stations(stations, facts);
+    }
+    map.rooms(scene.rooms());
+    map.unclip();
+    map.grid();
+    for (const std::size_t k : order) {
+      const PlacedStation& s = stations[k];
+      if (overview || s.status == StationStatus::hole || !level.holds(s.ground.z) || !map.holds(s.ground)) continue;
+      shown.push_back(k);
+      const Vec3 away = s.ground - tile.window.centre();
+      if (const double off = std::hypot(away.x, away.y); off < off_middle[k])
+        off_middle[k] = off, all.of_station[k] = all.sheets.size() + 1;
+    }
+    SheetPanel panel(map.sheet, layout);
+    panel.head(report.options.title, name, report.options);
+    panel.scale_and_north(report.options.crs);
+    if (level.cut) panel.cut_over(*level.cut - level.floor);
+    const auto any = [&](auto wanted) { return std::ranges::any_of(shown, wanted); };
+    if (!overview)
+      panel.legend(level.cut.has_value(), network.visit && !overview,
+                   any([&](std::size_t k) { return !facts[k].corners.empty(); }),
+                   any([&](std::size_t k) { return stations[k].kept; }),
+                   any([&](std::size_t k) { return !active(stations[k]); }));
+    panel.list(shown, facts, stations);
+    all.sheets.push_back(std::move(map.sheet));
+    all.names.push_back(name);
+  };
+
+  for (std::size_t k = 0; k < levels.size(); ++k) {
+    const PlanLevel& level = levels[k];
+    const std::vector<Vec3> spots = grounds_on(level, stations);
+    if (spots.empty()) continue;
+    std::string name = levels.size() > 1 ? "Storey " + std::to_string(k + 1) + " of " + std::to_string(levels.size()) +
+                                               ", floor at z = " + fixed(level.floor, 2) + " m"
+                                         : "Map of the stations";
+    name += ", " + std::to_string(spots.size()) + (spots.size() == 1 ? " station" : " stations");
+    const SheetLayout layout = layout_of(level, area.mesh(), spots);
+    if (layout.tiles.size() > 1) {
+      Box box;
+      for (const MapTile& tile : layout.tiles) box.extend(tile.window.min), box.extend(tile.window.max);
+      const SheetLayout overview = lay_out_overview(grown(box, 1), kPanelWidth);
+      draw(overview, overview.tiles.front(), level, name + ": where the sheets lie", &layout.tiles);
+    }
+    for (const MapTile& tile : layout.tiles)
+      draw(layout, tile, level, name + (tile.name.empty() ? "" : ": sheet " + tile.name), nullptr);
+  }
+  return all;
+}
+
+}  // namespace vantage

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// The maps that a crew carries: each storey at a round ratio.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "report/report.hpp"
+#include "report/sheet.hpp"
+#include "report/station_facts.hpp"
+
+namespace vantage {
+
+struct FieldSheets {
+  std::vector<Sheet> sheets = {};
+  std::vector<std::string> names = {};       // of each sheet: "Level 1 of 2, sheet B1"
+  std::vector<std::size_t> of_station = {};  // the sheet that shows it best, from 1; 0: none does
+};
+
+// Each level with a station, from the lowest; an overview before those that take several sheets.
+FieldSheets field_sheets(const Report& report, const std::vector<StationFacts>& facts, const Scene& scene,
+                         const SearchArea& area);
+
+}  // namespace vantage

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <string>
+
+#include "core/text.hpp"
+#include "report/report.hpp"
+#include "report/station_facts.hpp"
+#include "vantage/version.hpp"
+
+namespace vantage {
+namespace {
+
+std::string degrees(const Angle& angle) { return number(std::round(1e4 * angle.in_degrees()) / 1e4) + "°"; }
+
+// "RTC360 (6 mm), a ray every 0.0344° …".
+std::string scanner_text(const Scanner& scanner) {
+  const std::string steps = scanner.azimuth_step == scanner.zenith_step
+                                ? degrees(scanner.azimuth_step)
+                                : degrees(scanner.azimuth_step) + " across and " + degrees(scanner.zenith_step) + " up";
+  return (scanner.name == Scanner().name ? "" : scanner.name + ": ") + "a ray every " + steps + ", " +
+         grouped(scanner.rays()) + " rays a scan, head " + fixed(scanner.height_m, 2) + " m over the ground, range " +
+         number(scanner.min_range_m) + " to " + number(scanner.max_range_m) + " m";
+}
+
+std::string stations_text(const Evaluation& network) {
+  const auto kept = std::ranges::count(network.stations, true, &PlacedStation::kept);
+  const auto left_out = std::ranges::count_if(network.stations, [](const PlacedStation& s) { return !active(s); });
+  std::string text =
+      std::to_string(network.stations.size()) + (network.stations.size() == 1 ? " station" : " stations");
+  if (kept > 0) text += ", " + std::to_string(kept) + " of them there already";
+  if (left_out > 0) text += ", " + std::to_string(left_out) + " left out for want of a place to stand";
+  return text;
+}
+
+std::string time_text(const Visit& visit) {
+  return "scans " + minutes_text(visit.scan_min) + ", setting up " + minutes_text(visit.set_up_min) +
+         (visit.photos_min > 0 ? ", photos " + minutes_text(visit.photos_min) : "") + ", walking " +
+         minutes_text(visit.walk_min) + " (" + fixed(visit.walk_m, 0) + " m): " + minutes_text(visit.minutes) +
+         " in all";
+}
+
+// Of each scanner that stations have.
+std::string each_text(const Evaluation& network, std::span<const Scanner> scanners) {
+  const Visit& visit = *network.visit;
+  const auto stops = static_cast<double>(std::max<std::size_t>(1, visit.order.size()));
+  std::string text;
+  for (std::size_t k = 0; k < scanners.size(); ++k) {
+    const bool used =
+        std::ranges::any_of(network.stations, [&](const PlacedStation& s) { return s.setup.scanner == k; });
+    if (!used) continue;
+    const double scan = static_cast<double>(scanners[k].rays()) / scanners[k].points_per_second / 60;
+    const double rest = (visit.set_up_min + visit.photos_min) / stops;
+    text += (text.empty() ? "" : "; ") + (scanners.size() > 1 ? scanners[k].name + ": " : std::string()) +
+            minutes_text(scan + rest) + ": scan " + minutes_text(scan) + ", setting up " +
+            minutes_text(visit.set_up_min / stops) +
+            (visit.photos_min > 0 ? ", photos " + minutes_text(visit.photos_min / stops) : "");
+  }
+  return text;
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, std::string>> report_facts(const Report& report, const Simulator& simulator) {
+  const Evaluation& network = report.shown();
+  std::vector<std::pair<std::string, std::string>> facts;
+  for (const Scanner& scanner : simulator.scanners()) facts.emplace_back("scanner", scanner_text(scanner));
+  facts.emplace_back("stations", stations_text(network));
+  if (network.visit && !network.visit->order.empty()) {
+    facts.emplace_back("at each", each_text(network, simulator.scanners()));
+    facts.emplace_back("in all", time_text(*network.visit));
+  }
+  const SimulatorConfig& config = simulator.config();
+  const double goal = std::round(10 * simulator.goal_density()) / 10;
+  std::string checked = "surfaces are checked in cells of " + fixed(100 * simulator.voxel_size_m(), 1) +
+                        " cm; each is captured with " + number(goal) + (goal == 1 ? " point" : " points");
+  if (simulator.max_incidence())
+    checked += "; points that meet the surface at more than " + degrees(*simulator.max_incidence()) + " do not count";
+  facts.emplace_back("captured is", checked);
+  facts.emplace_back("coordinates", (report.options.crs.empty() ? "survey frame of the model, metres"
+                                                                : report.options.crs + ", metres") +
+                                        std::string("; x, y, z of the ground under the tripod"));
+  facts.emplace_back("computed", "vantage " + std::string(version()) + ", seed " + std::to_string(config.seed));
+  return facts;
+}
+
+}  // namespace vantage

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "report/station_facts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "core/text.hpp"
+#include "export/section.hpp"
+#include "report/coverage_cells.hpp"
+
+namespace vantage {
+namespace {
+
+// Walls are looked at so high over the ground, at heights this far apart, and so are stations of nearly one ground.
+constexpr double kWall_m = 1.2, kHeights_m = 0.5;
+constexpr std::uint64_t kSeen = 400'000;  // voxels that shares are taken of
+
+void add_round(std::vector<StationFacts>& facts, const Evaluation& network, const Simulator& simulator) {
+  if (!network.visit || network.visit->order.empty()) return;
+  const Visit& visit = *network.visit;
+  const auto kept = static_cast<std::size_t>(std::ranges::count(network.stations, true, &PlacedStation::kept));
+  const auto stops = static_cast<double>(visit.order.size());
+  double minutes = 0;
+  for (std::size_t k = 0; k < visit.order.size(); ++k) {
+    const std::size_t station = kept + visit.order[k];
+    const Scanner& scanner = simulator.scanners()[network.stations[station].setup.scanner];
+    const double walk_min = visit.walk_m > 0 ? visit.walk_min * visit.legs_m[k] / visit.walk_m : 0;
+    minutes += walk_min + (visit.set_up_min + visit.photos_min) / stops +
+               static_cast<double>(scanner.rays()) / scanner.points_per_second / 60;
+    facts[station].visit = k + 1, facts[station].walk_m = visit.legs_m[k], facts[station].done_min = minutes;
+  }
+}
+
+void add_corners(std::vector<StationFacts>& facts, std::span<const PlacedStation> stations, const SceneData& scene) {
+  std::map<long, std::vector<std::size_t>> by_height;
+  for (std::size_t k = 0; k < stations.size(); ++k)
+    if (active(stations[k]))  // the others are not set up
+      by_height[std::lround((stations[k].ground.z + kWall_m) / kHeights_m)].push_back(k);
+  for (const auto& [height, here] : by_height) {
+    Box box;
+    for (const std::size_t k : here) box.extend(stations[k].ground);
+    std::vector<std::array<Vec3, 2>> lines = section_lines(scene, static_cast<double>(height) * kHeights_m);
+    std::erase_if(lines, [&](const std::array<Vec3, 2>& line) {
+      const auto [low, high] = std::minmax({line[0].x, line[1].x});
+      const auto [south, north] = std::minmax({line[0].y, line[1].y});
+      return high < box.min.x - WallCorners::kReach_m || low > box.max.x + WallCorners::kReach_m ||
+             north < box.min.y - WallCorners::kReach_m || south > box.max.y + WallCorners::kReach_m;
+    });
+    const WallCorners corners(lines);
+    for (const std::size_t k : here) facts[k].corners = corners.nearest(stations[k].ground.x, stations[k].ground.y);
+  }
+}
+
+// The room that holds a point, or the mesh that it is of.
+class PlaceNames {
+ public:
+  explicit PlaceNames(const Scene& scene) : scene_(scene) {}
+  const std::string& of(const VoxelPatch& patch) const {
+    constexpr double kSkin_m = 0.15;  // surfaces around a room stand for it
+    for (const Room& room : scene_.rooms())
+      if (patch.point.x > room.box.min.x - kSkin_m && patch.point.x < room.box.max.x + kSkin_m &&
+          patch.point.y > room.box.min.y - kSkin_m && patch.point.y < room.box.max.y + kSkin_m &&
+          patch.point.z > room.box.min.z - kSkin_m && patch.point.z < room.box.max.z + kSkin_m)
+        return room.name;
+    return scene_.meshes()[patch.mesh].name;
+  }
+
+ private:
+  const Scene& scene_;
+};
+
+void add_alone(std::vector<StationFacts>& facts, const VoxelField* field, const Simulator& simulator) {
+  if (!field || field->stations.empty() || simulator.voxel_count() == 0) return;
+  const std::vector<std::uint32_t> ranks = simulator.sampled_voxels(std::min(kSeen, simulator.voxel_count()));
+  std::vector<std::uint32_t> alone, seer;
+  for (const std::uint32_t rank : ranks) {
+    const Seer by = seer_of(*field, rank);
+    if (by == 0 || by == several_stations || by > facts.size()) continue;
+    alone.push_back(rank), seer.push_back(by - 1u);
+  }
+  const PlaceNames names(simulator.scene());
+  const std::vector<VoxelPatch> patches = simulator.voxel_patches(alone);
+  std::vector<std::map<std::string, std::size_t>> where(facts.size());
+  for (std::size_t i = 0; i < alone.size(); ++i) ++where[seer[i]][names.of(patches[i])];
+  for (std::size_t k = 0; k < facts.size(); ++k) {
+    std::vector<std::pair<std::size_t, std::string>> places;
+    std::size_t all = 0;
+    for (const auto& [name, count] : where[k]) places.emplace_back(count, name), all += count;
+    std::ranges::stable_sort(places, std::ranges::greater{}, [](const auto& place) { return place.first; });
+    facts[k].alone = static_cast<double>(all) / static_cast<double>(ranks.size());
+    constexpr std::size_t kNamed = 2;
+    for (std::size_t p = 0; p < std::min(kNamed, places.size()); ++p)
+      facts[k].alone_where += (p > 0 ? ", " : "") + places[p].second;
+  }
+}
+
+}  // namespace
+
+std::vector<StationFacts> station_facts(const Report& report, const Simulator& simulator) {
+  const Evaluation& network = report.shown();
+  std::vector<StationFacts> facts;
+  for (const std::string& name : station_names(network.stations, network.names)) facts.push_back({.name = name});
+  for (std::size_t k = 0; k < facts.size(); ++k) {
+    const PlacedStation& s = network.stations[k];
+    facts[k].note = s.kept                            ? "there before"
+                    : s.status == StationStatus::hole ? "no ground"
+                    : active(s)                       ? ""
+                                                      : "left out";
+  }
+  add_round(facts, network, simulator);
+  add_corners(facts, network.stations, simulator.scene().data());
+  add_alone(facts, report.options.field, simulator);
+  return facts;
+}
+
+std::vector<std::size_t> visiting_order(const std::vector<StationFacts>& facts) {
+  std::vector<std::size_t> order(facts.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {},
+                           [&](std::size_t k) { return facts[k].visit == 0 ? facts.size() + 1 : facts[k].visit; });
+  return order;
+}
+
+std::string tape_text(const std::vector<WallCorner>& corners) {
+  std::string text;
+  for (const WallCorner& corner : corners)
+    text += (text.empty() ? "" : " + ") + std::string(corner.wall ? "wall " : "") + fixed(corner.distance_m, 2);
+  return text;
+}
+
+std::string minutes_text(double minutes) {
+  if (minutes > 0 && minutes < 1) return std::to_string(std::max(1LL, std::llround(60 * minutes))) + " s";
+  const auto whole = static_cast<long long>(std::llround(minutes));
+  const std::string rest = std::to_string(whole % 60) + " min";
+  return whole < 60 ? rest : std::to_string(whole / 60) + " h " + rest;
+}
+
+}  // namespace vantage

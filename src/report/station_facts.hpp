@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a crew wants to know of each station.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "report/report.hpp"
+#include "report/wall_corners.hpp"
+
+namespace vantage {
+
+struct StationFacts {
+  std::string name;
+  std::size_t visit = 0;                 // its place in the round, from 1; 0: it is not visited
+  double walk_m = 0, done_min = 0;       // the way to it, and the time since the start once it is scanned
+  std::vector<WallCorner> corners = {};  // two to find its spot by, as `WallCorners::nearest`
+  double alone = 0;                      // share of the surveyed surface that it alone sees; 0: none, or not known
+  std::string alone_where = {};          // the rooms, or meshes, with most of that
+  std::string note = {};                 // "there before", what is wrong with its place, or nothing
+};
+
+// Of all stations of the answer, in their order.
+std::vector<StationFacts> station_facts(const Report& report, const Simulator& simulator);
+
+// Stations by their place in the round, the others behind them.
+std::vector<std::size_t> visiting_order(const std::vector<StationFacts>& facts);
+
+// "4.84 + wall 0.51": the distances to a station's corners.
+std::string tape_text(const std::vector<WallCorner>& corners);
+// "1 h 5 min", "20 s".
+std::string minutes_text(double minutes);
+
+}  // namespace vantage
