@@ -46,6 +46,25 @@ class Planes {
     }
   }
 
+  // Whether points at distances t of n directions lie beside the triangle: outside a ball half as large again as the
+  // one around its middle. No hit does; but of a triangle seen edge-on, whatever tests the edges may let pass any ray
+  // in its plane.
+  template <unsigned n>
+  [[gnu::always_inline]] void beside(std::uint32_t triangle, const Float3& o, const float* x, const float* y,
+                                     const float* z, const float* t, std::int32_t* is_beside) const {
+    const Ball& ball = balls_[triangle];
+    const float cx = ball.x - o.x, cy = ball.y - o.y, cz = ball.z - o.z;
+    for (unsigned i = 0; i < n; ++i) {
+      const float dx = t[i] * x[i] - cx, dy = t[i] * y[i] - cy, dz = t[i] * z[i] - cz;
+      is_beside[i] = !(dx * dx + dy * dy + dz * dz <= ball.square + ball_doubt * (t[i] * t[i]));
+    }
+  }
+  // No hit is further from the middle of a triangle whose corners lie within `radius` of it and `farthest` of a head at
+  // o.
+  static double reach(double radius, double farthest, const Float3& o) {
+    return 1.5 * radius * (1 + 0x1p-10) + 0x1p-15 * farthest + 0x1p-19 * std::sqrt(dot(widen(o), widen(o)));
+  }
+
   Vec3 normal(std::uint32_t triangle) const {  // unit
     const Plane& p = planes_[triangle];
     return {p.x, p.y, p.z};
@@ -59,8 +78,13 @@ class Planes {
   struct Plane {
     double x, y, z, offset;  // unit normal n, and n·p for its points p
   };
+  struct Ball {
+    float x, y, z, square;  // middle of the corners; 1.5 times their largest distance from it, and a rounding, squared
+  };
+  static constexpr float ball_doubt = 0x1p-34f;  // of a squared distance, for all roundings
   std::shared_ptr<const SceneData> scene_;
   std::vector<Plane> planes_;
+  std::vector<Ball> balls_;
 };
 
 }  // namespace vantage

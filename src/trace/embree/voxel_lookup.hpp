@@ -61,10 +61,22 @@ class VoxelLookup {
     ++size_;
   }
 
-  // Calls f with the index of the surveyed voxel of each point that lies in one, in order. Inlined, to be compiled for
-  // the caller's target.
+  // As n calls of add() after clear(), with point(0), point(1), …, in a loop of vectors.
+  template <class Point>
+  [[gnu::always_inline]] void set(std::uint32_t n, const Point& point) {
+    size_ = n;
+    for (std::uint32_t k = 0; k < n; ++k) {
+      const Float3 p = point(k);
+      x_[k] = p.x;
+      y_[k] = p.y;
+      z_[k] = p.z;
+    }
+  }
+
+  // Calls f(index, points) with the surveyed voxel of each run of points that lie in one, in order. Inlined, to be
+  // compiled for the caller's target.
   template <class F>
-  [[gnu::always_inline]] void each_index(const F& f) {
+  [[gnu::always_inline]] void each_run(const F& f) {
     find_cells();
     const std::uint32_t runs = find_runs();
     for (std::uint32_t r = 0; r < runs; ++r) find_brick(runs_[r]);
@@ -76,11 +88,20 @@ class VoxelLookup {
         continue;
       }
       const VoxelBrick& brick = bricks_[index];
-      for (; k < end; ++k) {
-        const std::uint32_t w = code_[k] / 64;
-        const std::uint64_t word = BrickPrefixes::word(brick, w), flag = std::uint64_t{1} << (code_[k] % 64);
+      // Where the voxel changes, without a branch: nothing could foresee it.
+      std::uint32_t cells = 0;
+      begin_[cells++] = k;
+      for (++k; k < end; ++k) {
+        begin_[cells] = k;
+        cells += code_[k] != code_[k - 1];
+      }
+      begin_[cells] = end;
+      for (std::uint32_t c = 0; c < cells; ++c) {
+        const std::uint32_t code = code_[begin_[c]], w = code / 64;
+        const std::uint64_t word = BrickPrefixes::word(brick, w), flag = std::uint64_t{1} << (code % 64);
         if ((word & flag) == 0) continue;
-        f(brick.first + prefixes_.before(index, w) + static_cast<std::uint32_t>(std::popcount(word & (flag - 1))));
+        f(brick.first + prefixes_.before(index, w) + static_cast<std::uint32_t>(std::popcount(word & (flag - 1))),
+          begin_[c + 1] - begin_[c]);
       }
     }
   }
@@ -153,6 +174,7 @@ class VoxelLookup {
   alignas(64) std::array<std::uint32_t, capacity> a_, b_, c_;    // brick coordinates; a is empty_slot outside the cube
   alignas(64) std::array<std::uint32_t, capacity> slot_, code_;  // slot by the hash; Morton code in the brick
   std::array<Run, capacity> runs_;
+  std::array<std::uint32_t, capacity + 1> begin_;
 };
 
 }  // namespace vantage

@@ -1,0 +1,488 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trace/embree/picture.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <numbers>
+#include <tuple>
+
+#include "core/target_clones.hpp"
+#include "trace/embree/drawn_triangle.hpp"
+#include "trace/fast_atan2.hpp"
+#include "trace/rays_of_box.hpp"
+
+namespace vantage {
+namespace {
+
+constexpr std::uint32_t in_doubt = 0x80000000u;
+
+// Of two inverse distances with a ratio below this, either may be the larger. In float, C sin θ + D cos θ has an error
+// of 2^-21 of the inverse of the plane's height: 2^-17 of the value where the cosine of the incidence is `steep`.
+constexpr float apart = 1 + 0x1p-15f;
+constexpr float steep = 0x1p-4f;
+constexpr double least_slope = 0x1p-9;          // Planes clamps distances at half of it
+constexpr float angle_doubt = 0x1.8p-20f;       // radians; of rows computed in float
+constexpr float past_all = 8;                   // beyond any angle
+
+using Floats = float __attribute__((vector_size(32), may_alias));
+using Ints = std::int32_t __attribute__((vector_size(32), may_alias));
+constexpr std::uint32_t lanes = 8;
+
+// What a triangle's rows are computed from, in the scanner's frame.
+struct Outline {
+  float x[3], y[3], z[3], doubt[3];  // edges
+  std::uint32_t edges;
+  float inverse_x, inverse_y, inverse_z, inverse_height;  // inverse distance along d: their product with d
+  float least_zenith, most_zenith;                        // of its rays
+};
+
+// Rows of one triangle in each column of a strip: those that may hit it, from `begin` to `end`, and those that must.
+struct Rows {
+  alignas(64) std::int32_t begin[Picture::wide], end[Picture::wide], sure_begin[Picture::wide], sure_end[Picture::wide];
+  alignas(64) float c[Picture::wide];
+};
+
+struct Columns {
+  alignas(64) float cosine[Picture::wide], sine[Picture::wide];
+};
+
+// Bounds on the zenith in each column, from all edges. In a column an edge is R sin(θ₀ − θ) or R sin(θ − θ₀); its doubt
+// moves θ₀ by asin(doubt / R) either way.
+[[gnu::always_inline]] inline void find_rows(const Outline& outline, const Columns& columns, float first, float step,
+                                             std::int32_t row_begin, std::int32_t row_end, Rows& rows) {
+  constexpr std::uint32_t n = Picture::wide;
+  constexpr float pi = std::numbers::pi_v<float>;
+  alignas(64) float low[n], high[n], sure_low[n], sure_high[n];
+  for (std::uint32_t j = 0; j < n; ++j) low[j] = sure_low[j] = -past_all, high[j] = sure_high[j] = past_all;
+  for (std::uint32_t k = 0; k < outline.edges; ++k) {
+    const float x = outline.x[k], y = outline.y[k], z = outline.z[k], doubt = outline.doubt[k];
+    const float size = std::abs(z), toward = z >= 0 ? -1.0f : 1.0f;
+    const float least = outline.least_zenith, most = outline.most_zenith;
+    for (std::uint32_t j = 0; j < n; ++j) {
+      const float a = x * columns.cosine[j] + y * columns.sine[j];
+      const float r = std::sqrt(a * a + z * z);
+      const float zero = fast_atan2(size, toward * a);
+      const float moved = r > 2 * doubt ? 1.05f * doubt / r + angle_doubt : past_all / 2;
+      // Within `moved` of a pole, the edge may also let pass what lies at the other pole.
+      if (z >= 0) {
+        const bool both = zero < moved && most > zero + pi - moved;
+        high[j] = std::min(high[j], both ? past_all : zero + moved);
+        sure_high[j] = std::min(sure_high[j], zero - moved);
+        sure_low[j] = std::max(sure_low[j], zero - pi + moved);
+      } else {
+        const bool both = pi - zero < moved && least < zero - pi + moved;
+        low[j] = std::max(low[j], both ? -past_all : zero - moved);
+        sure_low[j] = std::max(sure_low[j], zero + moved);
+        sure_high[j] = std::min(sure_high[j], zero + pi - moved);
+      }
+    }
+  }
+  const float inverse = 1 / step;
+  const auto from = static_cast<float>(row_begin), to = static_cast<float>(row_end);
+  for (std::uint32_t j = 0; j < n; ++j) {
+    // The least row at or above, and the row past the last at or below.
+    const auto up = [&](float angle) {
+      const float row = std::min(std::max((angle - first) * inverse, from), to);
+      const auto whole = static_cast<std::int32_t>(row);
+      return whole + (static_cast<float>(whole) < row ? 1 : 0);
+    };
+    const auto down = [&](float angle) {
+      const float row = (angle - first) * inverse + 1;
+      return static_cast<std::int32_t>(std::min(std::max(row, from), to));
+    };
+    rows.begin[j] = up(low[j]);
+    rows.end[j] = down(high[j]);
+    rows.sure_begin[j] = std::max(rows.begin[j], up(sure_low[j]));
+    rows.sure_end[j] = std::min(rows.end[j], down(sure_high[j]));
+    rows.c[j] = outline.inverse_x * columns.cosine[j] + outline.inverse_y * columns.sine[j];
+  }
+}
+
+// Draws rows begin to end of a column. Returns whether any comes too near to what is there to be ordered; these rows
+// stay as they are.
+[[gnu::always_inline]] inline bool draw_rows(float c, float d, const float* sine, const float* cosine,
+                                             std::int32_t begin, std::int32_t end, std::uint32_t triangle,
+                                             float* inverse, std::uint32_t* triangles) {
+  const Ints count{0, 1, 2, 3, 4, 5, 6, 7};
+  const auto own = static_cast<std::int32_t>(triangle);
+  Ints near{};
+  for (std::int32_t row = begin & ~static_cast<std::int32_t>(lanes - 1); row < end;
+       row += static_cast<std::int32_t>(lanes)) {
+    auto& old = *reinterpret_cast<Floats*>(inverse + row);
+    auto& ids = *reinterpret_cast<Ints*>(triangles + row);
+    const Floats value = c * *reinterpret_cast<const Floats*>(sine + row) + d * *reinterpret_cast<const Floats*>(cosine + row);
+    const Ints rows = count + row, within = (rows >= begin) & (rows < end);
+    const Ints nearer = (value > old * apart) & within;
+    near |= (value * apart >= old) & within & ~nearer;
+    old = nearer ? value : old;
+    ids = nearer ? own - Ints{} : ids;
+  }
+  std::int64_t any[4];
+  static_assert(sizeof(any) == sizeof(near));
+  std::memcpy(any, &near, sizeof(any));
+  return (any[0] | any[1] | any[2] | any[3]) != 0;
+}
+
+}  // namespace
+
+bool Picture::Item::operator<(const Item& other) const {
+  return std::tuple(-nearest, triangle, column_begin) < std::tuple(-other.nearest, other.triangle, other.column_begin);
+}
+
+bool Picture::pays(std::size_t triangles, std::uint64_t rays) {
+  return triangles < none && rays >= 8 * static_cast<std::uint64_t>(triangles);
+}
+
+namespace {
+
+DrawnTriangle drawn(const StationRays& rays, const TraceStation& station, std::uint32_t triangle) {
+  const SceneData& scene = rays.scene();
+  std::array<Vec3, 3> corners;
+  for (std::size_t k = 0; k < 3; ++k)
+    corners[k] = widen(scene.positions[scene.triangles[triangle][k]]) - widen(station.origin);
+  return {corners, station.turn.has_value()};
+}
+
+const Turn* turn_of(const TraceStation& station) { return station.turn ? &*station.turn : nullptr; }
+
+}  // namespace
+
+Picture::Picture(const StationRays& rays, const TraceStation& station, const TileEnds& ends)
+    : rays_(rays), station_(station), ends_(ends) {
+  const RayPattern& pattern = rays.pattern();
+  start_ = pattern.min_range > 0 ? 1 / pattern.min_range : std::numeric_limits<float>::infinity();
+  for (const float end : ends.end) farthest_ = std::max(farthest_, end);
+  sine_.resize(ends.tall);
+  cosine_.resize(ends.tall);
+  for (std::uint32_t r = 0; r < pattern.rows(); ++r) {
+    sine_[r / block].of[r % block] = pattern.sin_zenith[r];
+    cosine_[r / block].of[r % block] = pattern.cos_zenith[r];
+  }
+
+  tbb::enumerable_thread_specific<std::vector<Item>> found;
+  std::atomic<bool> drawable = true;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rays.scene().triangles.size(), 1024), [&](const auto& range) {
+    std::vector<Item>& items = found.local();
+    for (std::size_t k = range.begin(); k < range.end() && drawable; ++k)
+      if (!place(static_cast<std::uint32_t>(k), items)) drawable = false;
+  });
+  drawable_ = drawable;
+  if (!drawable_) return;
+  for (const std::vector<Item>& items : found) items_.insert(items_.end(), items.begin(), items.end());
+  tbb::parallel_sort(items_.begin(), items_.end());
+
+  begin_.assign(std::size_t{strips()} + 1, 0);
+  const auto each_strip = [](const Item& item, const auto& f) {
+    for (std::uint32_t s = item.column_begin / wide; s <= (item.column_end - 1) / wide; ++s) f(s);
+  };
+  for (const Item& item : items_) each_strip(item, [&](std::uint32_t s) { ++begin_[s + 1]; });
+  for (std::size_t s = 0; s < strips(); ++s) begin_[s + 1] += begin_[s];
+  order_.resize(begin_.back());
+  std::vector<std::size_t> next(begin_.begin(), begin_.end() - 1);
+  for (std::size_t k = 0; k < items_.size(); ++k)
+    each_strip(items_[k], [&](std::uint32_t s) { order_[next[s]++] = static_cast<std::uint32_t>(k); });
+}
+
+bool Picture::place(std::uint32_t triangle, std::vector<Item>& items) const {
+  const RayPattern& pattern = rays_.pattern();
+  const double start = static_cast<double>(pattern.min_range), end = static_cast<double>(farthest_) * (1 + 0x1p-8);
+  const DrawnTriangle seen = drawn(rays_, station_, triangle);
+  const double away = std::sqrt(dot(seen.middle, seen.middle));
+  const double reach = seen.flat ? Planes::reach(seen.radius, seen.farthest, station_.origin) : seen.radius * (1 + seen.stretch);
+  if ((away + reach) * (1 + 0x1p-8) < start || away - reach > end) return true;
+  double nearest = away - reach;
+  RayRanges ranges;
+  if (!seen.flat) {
+    nearest = std::max(seen.height, seen.distance() - seen.stretch * seen.radius);
+    ranges = seen.rays(pattern, turn_of(station_));
+  } else if (nearest > 0x1p-8 * reach) {
+    Vec3 low = seen.middle - Vec3{reach, reach, reach}, high = seen.middle + Vec3{reach, reach, reach};
+    if (station_.turn) turn_back(*station_.turn, low, high);
+    ranges = rays_of_box(pattern, low, high);
+  } else if (std::isinf(seen.band().doubt)) {
+    return false;
+  } else {
+    ranges.rows = {0, pattern.rows()};
+    ranges.columns[0] = {0, pattern.columns()};
+  }
+  nearest = std::max(nearest, start * (1 - 0x1p-12));
+  if (ranges.empty() || nearest > end) return true;
+  const float inverse = static_cast<float>(std::min((1 + 0x1p-20) / nearest, 1e30));
+  for (const RayRanges::Range& columns : ranges.columns)
+    if (!columns.empty())
+      items.push_back({inverse, triangle, ranges.rows.begin, ranges.rows.end, columns.begin, columns.end});
+  return true;
+}
+
+// Draws one strip.
+class Picture::StripDrawing {
+ public:
+  StripDrawing(const Picture& picture, std::uint32_t index, Strip& strip) : picture_(picture), strip_(strip) {
+    const RayPattern& pattern = picture.rays_.pattern();
+    const TileEnds& ends = picture.ends_;
+    strip.first = index * wide;
+    strip.columns = std::min(wide, pattern.columns() - strip.first);
+    strip.blocks_ = ends.tall;
+    strip.rays = strip.traced = 0;
+    for (std::uint32_t a = 0; a < ends.tall; ++a)
+      if (ends.of(a, index) > 0) strip.rays += strip.columns * std::min(block, pattern.rows() - a * block);
+    strip.inverse_.resize(std::size_t{wide} * ends.tall);
+    strip.triangle_.resize(std::size_t{wide} * ends.tall);
+    strip.farthest_.assign(ends.tall, 0);
+    strip.stale_.assign(ends.tall, 1);
+    strip.doubts_.assign(ends.tall, 0);
+    constexpr float nowhere = std::numeric_limits<float>::infinity();
+    for (std::uint32_t j = 0; j < wide; ++j) {
+      for (std::uint32_t a = 0; a < ends.tall; ++a) {
+        Block<float>& inverse = strip.inverse_[j * ends.tall + a];
+        const float end = ends.of(a, index);
+        std::fill_n(inverse.of, block, j < strip.columns && end > 0 ? 1 / end : nowhere);
+        std::fill_n(strip.triangle_[j * ends.tall + a].of, block, none);
+      }
+      if (pattern.rows() % block != 0) {
+        Block<float>& last = strip.inverse_[j * ends.tall + ends.tall - 1];
+        std::fill(last.of + pattern.rows() % block, last.of + block, nowhere);
+      }
+      columns_.cosine[j] = j < strip.columns ? pattern.cos_azimuth[strip.first + j] : 0;
+      columns_.sine[j] = j < strip.columns ? pattern.sin_azimuth[strip.first + j] : 0;
+    }
+    first_ = static_cast<float>(pattern.first_zenith);
+    step_ = static_cast<float>(pattern.zenith_step);
+    middle_azimuth_ = pattern.first_azimuth + (strip.first + 0.5 * (strip.columns - 1)) * pattern.azimuth_step;
+    tile_radius_ = 0.5 * block * (pattern.zenith_step + pattern.azimuth_step) + 0x1p-18;
+  }
+
+  // Draws all of its triangles.
+  [[gnu::always_inline]] void draw_all() {
+    const std::size_t index = strip_.first / wide;
+    for (std::size_t k = picture_.begin_[index]; k < picture_.begin_[index + 1]; ++k)
+      draw(picture_.items_[picture_.order_[k]]);
+  }
+
+ private:
+  [[gnu::always_inline]] void draw(const Item& item);
+
+  float* inverse(std::uint32_t column) { return strip_.inverse_[column * strip_.blocks_].of; }
+  std::uint32_t* triangles(std::uint32_t column) { return strip_.triangle_[column * strip_.blocks_].of; }
+  const float* sine() const { return picture_.sine_.front().of; }
+  const float* cosine() const { return picture_.cosine_.front().of; }
+
+  // Whether something hides all of the tile that is no nearer.
+  [[gnu::always_inline]] bool hidden(std::uint32_t tile, float nearest) {
+    if (nearest * apart < strip_.farthest_[tile]) return true;
+    if (strip_.stale_[tile] == 0) return false;
+    float least = std::numeric_limits<float>::infinity();
+    for (std::uint32_t j = 0; j < wide; ++j)
+      for (const float value : strip_.inverse_[j * strip_.blocks_ + tile].of) least = value < least ? value : least;
+    strip_.farthest_[tile] = least;
+    strip_.stale_[tile] = 0;
+    return nearest * apart < least;
+  }
+  // A triangle may be hit there, no nearer than that.
+  void doubt(std::uint32_t column, std::int32_t row, float nearest) {
+    float& value = inverse(column)[row];
+    if (nearest * apart < value) return;
+    value = std::max(value, nearest);
+    triangles(column)[row] |= in_doubt;
+    strip_.doubts_[static_cast<std::uint32_t>(row) / block] = 1;
+  }
+  Float3 direction(std::uint32_t column, std::int32_t row) const {
+    const float s = sine()[row];
+    const Float3 d{s * columns_.cosine[column], s * columns_.sine[column], cosine()[row]};
+    const Float3 turned = picture_.station_.turn ? (*picture_.station_.turn)(d) : d;
+    return {RayCaster::safe(turned.x), RayCaster::safe(turned.y), RayCaster::safe(turned.z)};
+  }
+  // Of two triangles that are certainly hit, the one that RayCaster takes.
+  void settle(std::uint32_t column, std::int32_t row, float value, std::uint32_t triangle) {
+    std::uint32_t& held = triangles(column)[row];
+    if (held >= none) return doubt(column, row, value);
+    const Planes& planes = picture_.rays_.planes();
+    const Float3 &o = picture_.station_.origin, d = direction(column, row);
+    float own, other;
+    planes.distances<1>(planes.seen(triangle, o), triangle, o, &d.x, &d.y, &d.z, &own);
+    planes.distances<1>(planes.seen(held, o), held, o, &d.x, &d.y, &d.z, &other);
+    if (own < other || (own == other && triangle < held)) held = triangle;
+    inverse(column)[row] = std::max(inverse(column)[row], value);
+  }
+  // As draw_rows(), for grazing rays and near hits, with all that may go wrong.
+  void draw_carefully(const DrawnTriangle& seen, const Item& item, std::uint32_t column, const Rows& rows) {
+    const double inverse_height = 1 / seen.height;
+    for (std::int32_t row = rows.begin[column]; row < rows.end[column]; ++row) {
+      const Float3 d = direction(column, row);
+      const double slope = dot(seen.normal, widen(d));
+      if (!(slope >= least_slope)) {
+        doubt(column, row, item.nearest);
+        continue;
+      }
+      const auto value = static_cast<float>(slope * inverse_height);
+      if (value > picture_.start_ * apart) continue;
+      float& old = inverse(column)[row];
+      const bool sure = seen.certain && row >= rows.sure_begin[column] && row < rows.sure_end[column];
+      if (!sure || value * apart >= picture_.start_) {
+        doubt(column, row, value);
+      } else if (value > old * apart) {
+        old = value;
+        triangles(column)[row] = item.triangle;
+      } else if (value * apart >= old) {
+        settle(column, row, value, item.triangle);
+      }
+    }
+  }
+
+  const Picture& picture_;
+  Strip& strip_;
+  Columns columns_;
+  float first_, step_;
+  double middle_azimuth_, tile_radius_;
+};
+
+inline void Picture::StripDrawing::draw(const Item& item) {
+  const std::uint32_t first_column = std::max(item.column_begin, strip_.first) - strip_.first,
+                      last_column = std::min(item.column_end, strip_.first + strip_.columns) - strip_.first;
+  std::uint32_t top = item.row_begin / block, bottom = (item.row_end - 1) / block + 1;  // tiles
+  while (top < bottom && hidden(top, item.nearest)) ++top;
+  while (bottom > top && hidden(bottom - 1, item.nearest)) --bottom;
+  if (top == bottom) return;
+
+  const DrawnTriangle seen = drawn(picture_.rays_, picture_.station_, item.triangle);
+  const Turn* const turn = turn_of(picture_.station_);
+  Outline outline;
+  const RayPattern& pattern = picture_.rays_.pattern();
+  outline.least_zenith = static_cast<float>(pattern.first_zenith + (item.row_begin - 1.0) * pattern.zenith_step);
+  outline.most_zenith = static_cast<float>(pattern.first_zenith + (item.row_end + 0.0) * pattern.zenith_step);
+  const auto set_edge = [&](std::uint32_t k, const Vec3& local, double doubt) {
+    const Vec3 m = turned_back(turn, local);
+    outline.x[k] = static_cast<float>(m.x);
+    outline.y[k] = static_cast<float>(m.y);
+    outline.z[k] = static_cast<float>(m.z);
+    outline.doubt[k] = static_cast<float>(doubt) * (1 + 0x1p-20f);
+  };
+  const auto draw_doubts = [&](std::uint32_t column, std::int32_t begin, std::int32_t end) {
+    for (std::int32_t row = begin; row < end; ++row) doubt(column, row, item.nearest);
+  };
+  Rows rows;
+  outline.inverse_x = outline.inverse_y = outline.inverse_z = outline.inverse_height = 0;
+  if (seen.flat) {
+    const DrawnTriangle::Band band = seen.band();
+    outline.edges = std::isinf(band.doubt) ? 0 : 2;
+    set_edge(0, band.normal, band.doubt);
+    set_edge(1, band.normal * -1, band.doubt);
+  } else {
+    outline.edges = 3;
+    for (std::uint32_t k = 0; k < 3; ++k) set_edge(k, seen.edge[k], seen.doubt[k]);
+    const Vec3 plane = turned_back(turn, seen.normal) * (1 / seen.height);
+    outline.inverse_x = static_cast<float>(plane.x);
+    outline.inverse_y = static_cast<float>(plane.y);
+    outline.inverse_z = static_cast<float>(plane.z);
+    outline.inverse_height = static_cast<float>(1 / seen.height);
+    if (bottom - top > 4) {
+      // Of a large triangle, only what lies in a tile counts.
+      const double cosine = std::cos(middle_azimuth_), sine = std::sin(middle_azimuth_);
+      const double radius = tile_radius_ / seen.height;
+      const auto nearest_in = [&](std::uint32_t tile) {
+        const double zenith = pattern.first_zenith + (tile * block + 0.5 * (block - 1)) * pattern.zenith_step;
+        const double s = std::sin(zenith);
+        const double bound = plane.x * s * cosine + plane.y * s * sine + plane.z * std::cos(zenith) + radius;
+        // Distances of grazing rays are not always those of the plane.
+        return bound * seen.height < 2 * least_slope ? item.nearest : std::min(item.nearest, static_cast<float>(bound));
+      };
+      while (top < bottom && hidden(top, nearest_in(top))) ++top;
+      while (bottom > top && hidden(bottom - 1, nearest_in(bottom - 1))) --bottom;
+      if (top == bottom) return;
+    }
+  }
+  const auto row_begin = static_cast<std::int32_t>(std::max(item.row_begin, top * block)),
+             row_end = static_cast<std::int32_t>(std::min(item.row_end, bottom * block));
+  find_rows(outline, columns_, first_, step_, row_begin, row_end, rows);
+  std::fill(strip_.stale_.begin() + top, strip_.stale_.begin() + bottom, std::uint8_t{1});
+
+  const bool near_start = item.nearest * apart >= picture_.start_;
+  for (std::uint32_t j = first_column; j < last_column; ++j) {
+    const std::int32_t begin = rows.begin[j], end = rows.end[j];
+    if (begin >= end) continue;
+    if (seen.flat) {
+      draw_doubts(j, begin, end);
+      continue;
+    }
+    const float c = rows.c[j], d = outline.inverse_z, least = steep * outline.inverse_height;
+    const auto value_at = [&](std::int32_t row) { return c * sine()[row] + d * cosine()[row]; };
+    if (near_start || !seen.certain || !(value_at(begin) >= least) || !(value_at(end - 1) >= least)) {
+      draw_carefully(seen, item, j, rows);
+      continue;
+    }
+    const std::int32_t sure_begin = rows.sure_begin[j], sure_end = std::max(rows.sure_end[j], sure_begin);
+    for (std::int32_t row = begin; row < std::min(sure_begin, end); ++row) doubt(j, row, value_at(row));
+    if (draw_rows(c, d, sine(), cosine(), sure_begin, sure_end, item.triangle, inverse(j), triangles(j)))
+      for (std::int32_t row = sure_begin; row < sure_end; ++row) {
+        const float value = value_at(row), old = inverse(j)[row];
+        if (triangles(j)[row] != item.triangle && value * apart >= old) settle(j, row, value, item.triangle);
+      }
+    for (std::int32_t row = sure_end; row < end; ++row) doubt(j, row, value_at(row));
+  }
+}
+
+namespace {
+
+// Traces rays of a strip whose hit is in doubt, many at once.
+struct DoubtBundle {
+  RayBundle rays;
+  std::uint32_t* hit[RayBundle::capacity];
+
+  void trace(const RayCaster& caster) {
+    caster.cast(rays);
+    for (std::uint32_t k = 0; k < rays.size; ++k)
+      *hit[k] = rays.primitive[k] == RayBundle::no_hit ? Picture::none : rays.primitive[k];
+    rays.size = 0;
+  }
+};
+
+}  // namespace
+
+void Picture::trace_doubts(std::uint32_t index, Strip& strip) const {
+  const RayPattern& pattern = rays_.pattern();
+  DoubtBundle bundle;
+  bundle.rays.origin = station_.origin;
+  bundle.rays.start = pattern.min_range;
+  bundle.rays.size = 0;
+  for (std::uint32_t tile = 0; tile < strip.blocks_; ++tile) {
+    if (strip.doubts_[tile] == 0) continue;
+    for (std::uint32_t j = 0; j < strip.columns; ++j) {
+      std::uint32_t* const triangles = strip.triangle_[j * strip.blocks_ + tile].of;
+      for (std::uint32_t r = 0; r < block; ++r) {
+        if ((triangles[r] & in_doubt) == 0) continue;
+        RayBundle& rays = bundle.rays;
+        const std::uint32_t row = tile * block + r, column = strip.first + j;
+        const float sine = pattern.sin_zenith[row];
+        Float3 d{sine * pattern.cos_azimuth[column], sine * pattern.sin_azimuth[column], pattern.cos_zenith[row]};
+        if (station_.turn) d = (*station_.turn)(d);
+        rays.x[rays.size] = d.x;
+        rays.y[rays.size] = d.y;
+        rays.z[rays.size] = d.z;
+        rays.end[rays.size] = ends_.of(tile, index);
+        bundle.hit[rays.size++] = &triangles[r];
+        ++strip.traced;
+        if (rays.size == RayBundle::capacity) bundle.trace(rays_.caster());
+      }
+    }
+  }
+  bundle.trace(rays_.caster());
+}
+
+VANTAGE_TARGET_CLONES
+void Picture::draw_triangles(std::uint32_t index, Strip& strip) const { StripDrawing(*this, index, strip).draw_all(); }
+
+void Picture::draw(std::uint32_t index, Strip& strip) const {
+  draw_triangles(index, strip);
+  trace_doubts(index, strip);
+}
+
+}  // namespace vantage
