@@ -108,6 +108,18 @@ StationTotals count_tile(const StationRays& station_rays, const TraceStation& st
   hits.size += many;
 }
 
+// Where a run of a triangle ends. Reads up to eight elements past `end`, and may return a place there.
+[[gnu::always_inline]] inline std::uint32_t end_of_run(const std::uint32_t* triangles, std::uint32_t at,
+                                                       std::uint32_t end, std::uint32_t triangle) {
+  for (; at < end; at += 8) {
+    Ints8 next;
+    load(next, triangles + at);
+    if (any(next != static_cast<std::int32_t>(triangle))) break;
+  }
+  while (at < end && triangles[at] == triangle) ++at;
+  return at;
+}
+
 VANTAGE_TARGET_CLONES
 StationTotals count_strip(const StationRays& station_rays, const TraceStation& station, const Picture::Strip& strip,
                           VoxelLookup& voxels, PointBuckets::Local& points, std::uint32_t shift) {
@@ -117,7 +129,7 @@ StationTotals count_strip(const StationRays& station_rays, const TraceStation& s
   totals.rays = strip.rays;
   Hits hits;
   hits.size = 0;
-  const auto count = [&] {
+  const auto count = [&]() __attribute__((always_inline)) {
     station_rays.find_ranges(station, hits);
     count_points(station_rays, station.origin, hits, voxels, points, shift, totals);
     hits.size = 0;
@@ -126,8 +138,7 @@ StationTotals count_strip(const StationRays& station_rays, const TraceStation& s
     const std::uint32_t* const triangles = strip.triangles(j);
     for (std::uint32_t row = 0; row < rows;) {
       const std::uint32_t triangle = triangles[row];
-      std::uint32_t end = row + 1;
-      while (end < rows && triangles[end] == triangle) ++end;
+      const std::uint32_t end = std::min(rows, end_of_run(triangles, row + 1, rows, triangle));
       if (triangle == Picture::none) {
         row = end;
         continue;

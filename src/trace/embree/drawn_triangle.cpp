@@ -60,11 +60,8 @@ DrawnTriangle::DrawnTriangle(const std::array<Vec3, 3>& corners, bool turned) : 
 }
 
 DrawnTriangle::Band DrawnTriangle::band() const {
-  const double away = length(middle);
-  double before = 0;
-  if (away > 0 && farthest > 0)
-    before = std::min({dot(corner[0], middle), dot(corner[1], middle), dot(corner[2], middle)}) / (away * farthest);
-  if (before < 0x1p-5 || !(largest_ > 0)) return {{}, std::numeric_limits<double>::infinity()};
+  const double before = farthest > 0 ? distance() / farthest : 0;
+  if (!(before > 0) || !(largest_ > 0)) return {{}, std::numeric_limits<double>::infinity()};
   const double bound = 11 * most_doubt_ / (before * largest_) + 0x1p-20;
   return {edge[largest_edge_], bound > 0x1p-4 ? std::numeric_limits<double>::infinity() : bound};
 }

@@ -5,8 +5,8 @@
 // Σ Uₖ cornerₖ / K with K = normal·corner, Σ|Uₖ| >= K / farthest. If that is eight times the doubt, a ray may pass only
 // before the head, and the point where it meets the plane lies in the triangle, stretched from its middle by less than
 // 1 + 4 doubt / (K / farthest − 6 doubt). If not, the triangle is flat: seen edge-on, a sliver, or far too small. Then
-// all |Uₖ| <= 11 doubt / γ, where every corner lies at least γ · farthest before the head: a band of directions. Planes
-// confines it to the triangle's ball.
+// all |Uₖ| <= 11 doubt / γ, where the triangle is γ · farthest from the head: a band of directions. Planes confines it to
+// the triangle's ball.
 #pragma once
 
 #include <array>

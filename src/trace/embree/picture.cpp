@@ -10,13 +10,13 @@
 #include <array>
 #include <atomic>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <numbers>
 #include <tuple>
 
 #include "core/target_clones.hpp"
 #include "trace/embree/drawn_triangle.hpp"
+#include "trace/embree/vectors.hpp"
 #include "trace/fast_atan2.hpp"
 #include "trace/rays_of_box.hpp"
 
@@ -33,14 +33,11 @@ constexpr double least_slope = 0x1p-9;          // Planes clamps distances at ha
 constexpr float angle_doubt = 0x1.8p-20f;       // radians; of rows computed in float
 constexpr float past_all = 8;                   // beyond any angle
 
-using Floats = float __attribute__((vector_size(32), may_alias));
-using Ints = std::int32_t __attribute__((vector_size(32), may_alias));
-constexpr std::uint32_t lanes = 8;
+constexpr std::int32_t lanes = 8;
 
 // What a triangle's rows are computed from, in the scanner's frame.
 struct Outline {
   float x[3], y[3], z[3], doubt[3];  // edges
-  std::uint32_t edges;
   float inverse_x, inverse_y, inverse_z, inverse_height;  // inverse distance along d: their product with d
   float least_zenith, most_zenith;                        // of its rays
 };
@@ -63,7 +60,7 @@ struct Columns {
   constexpr float pi = std::numbers::pi_v<float>;
   alignas(64) float low[n], high[n], sure_low[n], sure_high[n];
   for (std::uint32_t j = 0; j < n; ++j) low[j] = sure_low[j] = -past_all, high[j] = sure_high[j] = past_all;
-  for (std::uint32_t k = 0; k < outline.edges; ++k) {
+  for (std::uint32_t k = 0; k < 3; ++k) {
     const float x = outline.x[k], y = outline.y[k], z = outline.z[k], doubt = outline.doubt[k];
     const float size = std::abs(z), toward = z >= 0 ? -1.0f : 1.0f;
     const float least = outline.least_zenith, most = outline.most_zenith;
@@ -72,15 +69,17 @@ struct Columns {
       const float r = std::sqrt(a * a + z * z);
       const float zero = fast_atan2(size, toward * a);
       const float moved = r > 2 * doubt ? 1.05f * doubt / r + angle_doubt : past_all / 2;
-      // Within `moved` of a pole, the edge may also let pass what lies at the other pole.
+      // An edge whose plane holds the axis to within `moved` may also let pass what lies at the other pole.
       if (z >= 0) {
-        const bool both = zero < moved && most > zero + pi - moved;
-        high[j] = std::min(high[j], both ? past_all : zero + moved);
+        const bool below = zero < moved && most > zero + pi - moved, above = !below || least < zero + moved;
+        high[j] = std::min(high[j], below ? past_all : zero + moved);
+        low[j] = std::max(low[j], above ? -past_all : zero + pi - moved);
         sure_high[j] = std::min(sure_high[j], zero - moved);
         sure_low[j] = std::max(sure_low[j], zero - pi + moved);
       } else {
-        const bool both = pi - zero < moved && least < zero - pi + moved;
-        low[j] = std::max(low[j], both ? -past_all : zero - moved);
+        const bool above = pi - zero < moved && least < zero - pi + moved, below = !above || most > zero - moved;
+        low[j] = std::max(low[j], above ? -past_all : zero - moved);
+        high[j] = std::min(high[j], below ? past_all : zero - pi + moved);
         sure_low[j] = std::max(sure_low[j], zero + moved);
         sure_high[j] = std::min(sure_high[j], zero + pi - moved);
       }
@@ -112,24 +111,26 @@ struct Columns {
 [[gnu::always_inline]] inline bool draw_rows(float c, float d, const float* sine, const float* cosine,
                                              std::int32_t begin, std::int32_t end, std::uint32_t triangle,
                                              float* inverse, std::uint32_t* triangles) {
-  const Ints count{0, 1, 2, 3, 4, 5, 6, 7};
+  const Ints8 count{0, 1, 2, 3, 4, 5, 6, 7};
   const auto own = static_cast<std::int32_t>(triangle);
-  Ints near{};
-  for (std::int32_t row = begin & ~static_cast<std::int32_t>(lanes - 1); row < end;
-       row += static_cast<std::int32_t>(lanes)) {
-    auto& old = *reinterpret_cast<Floats*>(inverse + row);
-    auto& ids = *reinterpret_cast<Ints*>(triangles + row);
-    const Floats value = c * *reinterpret_cast<const Floats*>(sine + row) + d * *reinterpret_cast<const Floats*>(cosine + row);
-    const Ints rows = count + row, within = (rows >= begin) & (rows < end);
-    const Ints nearer = (value > old * apart) & within;
+  Ints8 near{};
+  for (std::int32_t row = begin & ~(lanes - 1); row < end; row += lanes) {
+    Floats8 sines, cosines, old;
+    Ints8 ids;
+    load(sines, sine + row);
+    load(cosines, cosine + row);
+    load(old, inverse + row);
+    load(ids, triangles + row);
+    const Floats8 value = c * sines + d * cosines;
+    const Ints8 rows = count + row, within = (rows >= begin) & (rows < end);
+    const Ints8 nearer = (value > old * apart) & within;
     near |= (value * apart >= old) & within & ~nearer;
     old = nearer ? value : old;
-    ids = nearer ? own - Ints{} : ids;
+    ids = nearer ? own - Ints8{} : ids;
+    store(inverse + row, old);
+    store(triangles + row, ids);
   }
-  std::int64_t any[4];
-  static_assert(sizeof(any) == sizeof(near));
-  std::memcpy(any, &near, sizeof(any));
-  return (any[0] | any[1] | any[2] | any[3]) != 0;
+  return any(near);
 }
 
 }  // namespace
@@ -236,7 +237,7 @@ class Picture::StripDrawing {
     for (std::uint32_t a = 0; a < ends.tall; ++a)
       if (ends.of(a, index) > 0) strip.rays += strip.columns * std::min(block, pattern.rows() - a * block);
     strip.inverse_.resize(std::size_t{wide} * ends.tall);
-    strip.triangle_.resize(std::size_t{wide} * ends.tall);
+    strip.triangle_.resize(std::size_t{wide} * ends.tall + 1);  // whoever looks for runs reads on
     strip.farthest_.assign(ends.tall, 0);
     strip.stale_.assign(ends.tall, 1);
     strip.doubts_.assign(ends.tall, 0);
@@ -280,9 +281,15 @@ class Picture::StripDrawing {
   [[gnu::always_inline]] bool hidden(std::uint32_t tile, float nearest) {
     if (nearest * apart < strip_.farthest_[tile]) return true;
     if (strip_.stale_[tile] == 0) return false;
-    float least = std::numeric_limits<float>::infinity();
+    Floats8 low = std::numeric_limits<float>::infinity() - Floats8{};
     for (std::uint32_t j = 0; j < wide; ++j)
-      for (const float value : strip_.inverse_[j * strip_.blocks_ + tile].of) least = value < least ? value : least;
+      for (std::uint32_t half = 0; half < 2; ++half) {
+        Floats8 values;
+        load(values, strip_.inverse_[j * strip_.blocks_ + tile].of + half * lanes);
+        low = values < low ? values : low;
+      }
+    float least = low[0];
+    for (std::int32_t k = 1; k < lanes; ++k) least = std::min(least, low[k]);
     strip_.farthest_[tile] = least;
     strip_.stale_[tile] = 0;
     return nearest * apart < least;
@@ -314,28 +321,87 @@ class Picture::StripDrawing {
     inverse(column)[row] = std::max(inverse(column)[row], value);
   }
   // As draw_rows(), for grazing rays and near hits, with all that may go wrong.
-  void draw_carefully(const DrawnTriangle& seen, const Item& item, std::uint32_t column, const Rows& rows) {
-    const double inverse_height = 1 / seen.height;
-    for (std::int32_t row = rows.begin[column]; row < rows.end[column]; ++row) {
-      const Float3 d = direction(column, row);
-      const double slope = dot(seen.normal, widen(d));
-      if (!(slope >= least_slope)) {
-        doubt(column, row, item.nearest);
-        continue;
+  [[gnu::always_inline]] void draw_carefully(const DrawnTriangle& seen, const Item& item, std::uint32_t column,
+                                             const Rows& rows) {
+    const Ints8 count{0, 1, 2, 3, 4, 5, 6, 7};
+    const std::int32_t begin = rows.begin[column], end = rows.end[column];
+    const std::int32_t sure_begin = seen.certain ? rows.sure_begin[column] : end, sure_end = rows.sure_end[column];
+    const double scale = 1 / seen.height;
+    const float least = static_cast<float>(least_slope * scale) * (1 + 0x1p-20f), start = picture_.start_;
+    const float cos_azimuth = columns_.cosine[column], sin_azimuth = columns_.sine[column];
+    const Turn* const turn = turn_of(picture_.station_);
+    float* const inverses = inverse(column);
+    std::uint32_t* const held = triangles(column);
+    for (std::int32_t row = begin & ~(lanes - 1); row < end; row += lanes) {
+      Floats8 sines, z;
+      load(sines, sine() + row);
+      load(z, cosine() + row);
+      Floats8 x = sines * cos_azimuth, y = sines * sin_azimuth;
+      if (turn) {
+        const Floats8 tx = turn->x.x * x + turn->x.y * y + turn->x.z * z,
+                      ty = turn->y.x * x + turn->y.y * y + turn->y.z * z,
+                      tz = turn->z.x * x + turn->z.y * y + turn->z.z * z;
+        x = tx, y = ty, z = tz;
       }
-      const auto value = static_cast<float>(slope * inverse_height);
-      if (value > picture_.start_ * apart) continue;
-      float& old = inverse(column)[row];
-      const bool sure = seen.certain && row >= rows.sure_begin[column] && row < rows.sure_end[column];
-      if (!sure || value * apart >= picture_.start_) {
-        doubt(column, row, value);
-      } else if (value > old * apart) {
-        old = value;
-        triangles(column)[row] = item.triangle;
-      } else if (value * apart >= old) {
-        settle(column, row, value, item.triangle);
+      alignas(32) float along[3][lanes], values[lanes];
+      store(along[0], x);
+      store(along[1], y);
+      store(along[2], z);
+      for (std::int32_t half = 0; half < lanes; half += 4) {
+        Floats4 fx, fy, fz;
+        load(fx, along[0] + half);
+        load(fy, along[1] + half);
+        load(fz, along[2] + half);
+        const Doubles4 slopes = seen.normal.x * __builtin_convertvector(fx, Doubles4) +
+                                seen.normal.y * __builtin_convertvector(fy, Doubles4) +
+                                seen.normal.z * __builtin_convertvector(fz, Doubles4);
+        store(values + half, __builtin_convertvector(slopes * scale, Floats4));
+      }
+      Floats8 value, old;
+      Ints8 ids;
+      load(value, values);
+      load(old, inverses + row);
+      load(ids, held + row);
+      const Ints8 at = count + row, grazing = ~(value >= least);
+      const Ints8 candidate = (at >= begin) & (at < end) & (grazing | (value <= start * apart));
+      const Ints8 sure = (at >= sure_begin) & (at < sure_end) & ~grazing & (value * apart < start);
+      const Ints8 nearer = candidate & sure & (value > old * apart);
+      const Ints8 rest = candidate & ~nearer & (grazing | (value * apart >= old));
+      old = nearer ? value : old;
+      ids = nearer ? static_cast<std::int32_t>(item.triangle) - Ints8{} : ids;
+      store(inverses + row, old);
+      store(held + row, ids);
+      if (!any(rest)) continue;
+      for (std::int32_t k = 0; k < lanes; ++k) {
+        if (rest[k] == 0) continue;
+        if (sure[k] != 0) {
+          settle(column, row + k, value[k], item.triangle);
+        } else {
+          doubt(column, row + k, grazing[k] != 0 ? item.nearest : value[k]);
+        }
       }
     }
+  }
+  // Rays within the band of a flat triangle are in doubt: around where the band's plane meets the column, and where it
+  // does opposite. In a column, |R sin(θ₀ − θ)| <= doubt.
+  void draw_band(const DrawnTriangle::Band& band, const Item& item, std::uint32_t column, std::int32_t row_begin,
+                 std::int32_t row_end) {
+    const RayPattern& pattern = picture_.rays_.pattern();
+    const auto draw_between = [&](double least, double most) {
+      const double begin = std::ceil((least - pattern.first_zenith) / pattern.zenith_step),
+                   end = std::floor((most - pattern.first_zenith) / pattern.zenith_step) + 1;
+      const auto from = static_cast<std::int32_t>(std::clamp(begin, 0.0 + row_begin, 0.0 + row_end)),
+                 to = static_cast<std::int32_t>(std::clamp(end, 0.0 + row_begin, 0.0 + row_end));
+      for (std::int32_t row = from; row < to; ++row) doubt(column, row, item.nearest);
+    };
+    constexpr double pi = std::numbers::pi;
+    const Vec3 m = turned_back(turn_of(picture_.station_), band.normal);
+    const double a = m.x * columns_.cosine[column] + m.y * columns_.sine[column], r = std::sqrt(a * a + m.z * m.z);
+    if (!(r > 2 * band.doubt)) return draw_between(0, pi);
+    const double zero = fast_atan2(std::abs(m.z), m.z >= 0 ? -a : a), moved = 1.05 * band.doubt / r + 0x1p-20;
+    draw_between(zero - moved, zero + moved);
+    draw_between(zero - moved - pi, zero + moved - pi);
+    draw_between(zero - moved + pi, zero + moved + pi);
   }
 
   const Picture& picture_;
@@ -355,53 +421,48 @@ inline void Picture::StripDrawing::draw(const Item& item) {
 
   const DrawnTriangle seen = drawn(picture_.rays_, picture_.station_, item.triangle);
   const Turn* const turn = turn_of(picture_.station_);
-  Outline outline;
   const RayPattern& pattern = picture_.rays_.pattern();
-  outline.least_zenith = static_cast<float>(pattern.first_zenith + (item.row_begin - 1.0) * pattern.zenith_step);
-  outline.most_zenith = static_cast<float>(pattern.first_zenith + (item.row_end + 0.0) * pattern.zenith_step);
-  const auto set_edge = [&](std::uint32_t k, const Vec3& local, double doubt) {
-    const Vec3 m = turned_back(turn, local);
+  if (seen.flat) {
+    const DrawnTriangle::Band band = seen.band();
+    std::fill(strip_.stale_.begin() + top, strip_.stale_.begin() + bottom, std::uint8_t{1});
+    for (std::uint32_t j = first_column; j < last_column; ++j)
+      draw_band(band, item, j, static_cast<std::int32_t>(std::max(item.row_begin, top * block)),
+                static_cast<std::int32_t>(std::min(item.row_end, bottom * block)));
+    return;
+  }
+  Outline outline;
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    const Vec3 m = turned_back(turn, seen.edge[k]);
     outline.x[k] = static_cast<float>(m.x);
     outline.y[k] = static_cast<float>(m.y);
     outline.z[k] = static_cast<float>(m.z);
-    outline.doubt[k] = static_cast<float>(doubt) * (1 + 0x1p-20f);
-  };
-  const auto draw_doubts = [&](std::uint32_t column, std::int32_t begin, std::int32_t end) {
-    for (std::int32_t row = begin; row < end; ++row) doubt(column, row, item.nearest);
-  };
-  Rows rows;
-  outline.inverse_x = outline.inverse_y = outline.inverse_z = outline.inverse_height = 0;
-  if (seen.flat) {
-    const DrawnTriangle::Band band = seen.band();
-    outline.edges = std::isinf(band.doubt) ? 0 : 2;
-    set_edge(0, band.normal, band.doubt);
-    set_edge(1, band.normal * -1, band.doubt);
-  } else {
-    outline.edges = 3;
-    for (std::uint32_t k = 0; k < 3; ++k) set_edge(k, seen.edge[k], seen.doubt[k]);
-    const Vec3 plane = turned_back(turn, seen.normal) * (1 / seen.height);
-    outline.inverse_x = static_cast<float>(plane.x);
-    outline.inverse_y = static_cast<float>(plane.y);
-    outline.inverse_z = static_cast<float>(plane.z);
-    outline.inverse_height = static_cast<float>(1 / seen.height);
-    if (bottom - top > 4) {
-      // Of a large triangle, only what lies in a tile counts.
-      const double cosine = std::cos(middle_azimuth_), sine = std::sin(middle_azimuth_);
-      const double radius = tile_radius_ / seen.height;
-      const auto nearest_in = [&](std::uint32_t tile) {
-        const double zenith = pattern.first_zenith + (tile * block + 0.5 * (block - 1)) * pattern.zenith_step;
-        const double s = std::sin(zenith);
-        const double bound = plane.x * s * cosine + plane.y * s * sine + plane.z * std::cos(zenith) + radius;
-        // Distances of grazing rays are not always those of the plane.
-        return bound * seen.height < 2 * least_slope ? item.nearest : std::min(item.nearest, static_cast<float>(bound));
-      };
-      while (top < bottom && hidden(top, nearest_in(top))) ++top;
-      while (bottom > top && hidden(bottom - 1, nearest_in(bottom - 1))) --bottom;
-      if (top == bottom) return;
-    }
+    outline.doubt[k] = static_cast<float>(seen.doubt[k]) * (1 + 0x1p-20f);
+  }
+  outline.least_zenith = static_cast<float>(pattern.first_zenith + (item.row_begin - 1.0) * pattern.zenith_step);
+  outline.most_zenith = static_cast<float>(pattern.first_zenith + (item.row_end + 0.0) * pattern.zenith_step);
+  const Vec3 plane = turned_back(turn, seen.normal) * (1 / seen.height);
+  outline.inverse_x = static_cast<float>(plane.x);
+  outline.inverse_y = static_cast<float>(plane.y);
+  outline.inverse_z = static_cast<float>(plane.z);
+  outline.inverse_height = static_cast<float>(1 / seen.height);
+  if (bottom - top > 4) {
+    // Of a large triangle, only what lies in a tile counts.
+    const double cosine = std::cos(middle_azimuth_), sine = std::sin(middle_azimuth_);
+    const double radius = tile_radius_ / seen.height;
+    const auto nearest_in = [&](std::uint32_t tile) {
+      const double zenith = pattern.first_zenith + (tile * block + 0.5 * (block - 1)) * pattern.zenith_step;
+      const double s = std::sin(zenith);
+      const double bound = plane.x * s * cosine + plane.y * s * sine + plane.z * std::cos(zenith) + radius;
+      // Distances of grazing rays are not always those of the plane.
+      return bound * seen.height < 2 * least_slope ? item.nearest : std::min(item.nearest, static_cast<float>(bound));
+    };
+    while (top < bottom && hidden(top, nearest_in(top))) ++top;
+    while (bottom > top && hidden(bottom - 1, nearest_in(bottom - 1))) --bottom;
+    if (top == bottom) return;
   }
   const auto row_begin = static_cast<std::int32_t>(std::max(item.row_begin, top * block)),
              row_end = static_cast<std::int32_t>(std::min(item.row_end, bottom * block));
+  Rows rows;
   find_rows(outline, columns_, first_, step_, row_begin, row_end, rows);
   std::fill(strip_.stale_.begin() + top, strip_.stale_.begin() + bottom, std::uint8_t{1});
 
@@ -409,10 +470,6 @@ inline void Picture::StripDrawing::draw(const Item& item) {
   for (std::uint32_t j = first_column; j < last_column; ++j) {
     const std::int32_t begin = rows.begin[j], end = rows.end[j];
     if (begin >= end) continue;
-    if (seen.flat) {
-      draw_doubts(j, begin, end);
-      continue;
-    }
     const float c = rows.c[j], d = outline.inverse_z, least = steep * outline.inverse_height;
     const auto value_at = [&](std::int32_t row) { return c * sine()[row] + d * cosine()[row]; };
     if (near_start || !seen.certain || !(value_at(begin) >= least) || !(value_at(end - 1) >= least)) {

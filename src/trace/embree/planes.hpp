@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "scene/scene_data.hpp"
+#include "trace/embree/vectors.hpp"
 #include "vantage/types.hpp"
 
 namespace vantage {
@@ -35,8 +36,22 @@ class Planes {
   [[gnu::always_inline]] void distances(const Seen& plane, std::uint32_t triangle, const Float3& o, const float* x,
                                         const float* y, const float* z, float* t) const {
     double slope[n], least = 1;
-    for (unsigned i = 0; i < n; ++i) slope[i] = plane.x * x[i] + plane.y * y[i] + plane.z * z[i];
-    for (unsigned i = 0; i < n; ++i) t[i] = static_cast<float>(plane.height / slope[i]);
+    unsigned first = 0;
+    for (; first + 4 <= n; first += 4) {
+      Floats4 fx, fy, fz;
+      load(fx, x + first);
+      load(fy, y + first);
+      load(fz, z + first);
+      const Doubles4 slopes = plane.x * __builtin_convertvector(fx, Doubles4) +
+                              plane.y * __builtin_convertvector(fy, Doubles4) +
+                              plane.z * __builtin_convertvector(fz, Doubles4);
+      store(slope + first, slopes);
+      store(t + first, __builtin_convertvector(plane.height / slopes, Floats4));
+    }
+    for (unsigned i = first; i < n; ++i) {
+      slope[i] = plane.x * x[i] + plane.y * y[i] + plane.z * z[i];
+      t[i] = static_cast<float>(plane.height / slope[i]);
+    }
     for (unsigned i = 0; i < n; ++i) least = std::min(least, std::abs(slope[i]));
     if (least >= grazing) [[likely]]
       return;
