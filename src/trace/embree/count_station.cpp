@@ -70,33 +70,44 @@ StationTotals count_tile(const StationRays& station_rays, const TraceStation& st
   return totals;
 }
 
+// As RayCaster::safe().
+[[gnu::always_inline]] inline void make_safe(Floats8& v) {
+  v = (v >= RayCaster::least_component) | (v <= -RayCaster::least_component) ? v : Floats8{};
+}
+
 // Adds rays row to row + many of a column, with their common triangle.
 [[gnu::always_inline]] inline void add_run(const StationRays& station_rays, const TraceStation& station,
-                                           std::uint32_t column, std::uint32_t row, std::uint32_t many,
-                                           std::uint32_t triangle, const Planes::Seen& plane, Hits& hits) {
+                                           const Picture& picture, std::uint32_t column, std::uint32_t row,
+                                           std::uint32_t many, std::uint32_t triangle, const Planes::Seen& plane,
+                                           Hits& hits) {
   const RayPattern& pattern = station_rays.pattern();
-  constexpr std::uint32_t lanes = Hits::lanes;
   const float cosine = pattern.cos_azimuth[column], sine = pattern.sin_azimuth[column];
-  const float *const sines = pattern.sin_zenith.data() + row, *const cosines = pattern.cos_zenith.data() + row;
-  float *const __restrict x = hits.x + hits.size, *const __restrict y = hits.y + hits.size,
-                         *const __restrict z = hits.z + hits.size;
-  for (std::uint32_t k = 0; k < many; ++k) {
-    x[k] = sines[k] * cosine;
-    y[k] = sines[k] * sine;
-    z[k] = cosines[k];
-  }
-  if (station.turn) turn_all(*station.turn, x, y, z, many);
   // The last vector may run past the run's rays; those values are overwritten or never read.
-  for (std::uint32_t k = many; k < (many + lanes - 1) / lanes * lanes; ++k) x[k] = y[k] = z[k] = 1;
-  for (std::uint32_t k = 0; k < many; k += lanes) {
-    alignas(32) float safe_x[lanes], safe_y[lanes], safe_z[lanes];
-    for (std::uint32_t i = 0; i < lanes; ++i) {
-      safe_x[i] = RayCaster::safe(x[k + i]);
-      safe_y[i] = RayCaster::safe(y[k + i]);
-      safe_z[i] = RayCaster::safe(z[k + i]);
+  for (std::uint32_t k = 0, at = hits.size; k < many; k += 8, at += 8) {
+    Floats8 sines, z, t;
+    load(sines, picture.sines() + row + k);
+    load(z, picture.cosines() + row + k);
+    Floats8 x = sines * cosine, y = sines * sine;
+    if (station.turn) {
+      const Turn& turn = *station.turn;
+      const Floats8 tx = turn.x.x * x + turn.x.y * y + turn.x.z * z, ty = turn.y.x * x + turn.y.y * y + turn.y.z * z,
+                    tz = turn.z.x * x + turn.z.y * y + turn.z.z * z;
+      x = tx, y = ty, z = tz;
     }
-    station_rays.planes().distances<lanes>(plane, triangle, station.origin, safe_x, safe_y, safe_z,
-                                           hits.t + hits.size + k);
+    store(hits.x + at, x);
+    store(hits.y + at, y);
+    store(hits.z + at, z);
+    make_safe(x);
+    make_safe(y);
+    make_safe(z);
+    if (Planes::distances(plane, x, y, z, t)) {
+      store(hits.t + at, t);
+    } else {
+      for (std::uint32_t i = 0; i < 8; ++i) {
+        const float dx = x[i], dy = y[i], dz = z[i];
+        station_rays.planes().distances<1>(plane, triangle, station.origin, &dx, &dy, &dz, hits.t + at + i);
+      }
+    }
   }
   std::fill_n(hits.primitive + hits.size, many, triangle);
   if (station_rays.noise().enabled())
@@ -121,8 +132,9 @@ StationTotals count_tile(const StationRays& station_rays, const TraceStation& st
 }
 
 VANTAGE_TARGET_CLONES
-StationTotals count_strip(const StationRays& station_rays, const TraceStation& station, const Picture::Strip& strip,
-                          VoxelLookup& voxels, PointBuckets::Local& points, std::uint32_t shift) {
+StationTotals count_strip(const StationRays& station_rays, const TraceStation& station, const Picture& picture,
+                          const Picture::Strip& strip, VoxelLookup& voxels, PointBuckets::Local& points,
+                          std::uint32_t shift) {
   const Surface& surface = station_rays.surface();
   const std::uint32_t rows = station_rays.pattern().rows();
   StationTotals totals;
@@ -151,7 +163,7 @@ StationTotals count_strip(const StationRays& station_rays, const TraceStation& s
       const Planes::Seen plane = station_rays.planes().seen(triangle, station.origin);
       while (row < end) {
         const std::uint32_t many = std::min(end - row, RayBundle::capacity - hits.size);
-        add_run(station_rays, station, strip.first + j, row, many, triangle, plane, hits);
+        add_run(station_rays, station, picture, strip.first + j, row, many, triangle, plane, hits);
         row += many;
         if (hits.size == RayBundle::capacity) count();
       }
@@ -206,7 +218,7 @@ bool count_station(const StationRays& rays, const TraceStation& station, bool sk
                  Picture::Strip& strip = strips.local();
                  const auto index = static_cast<std::uint32_t>(k);
                  picture->draw(index, strip);
-                 return count_strip(rays, station, strip, voxels, local, shift);
+                 return count_strip(rays, station, *picture, strip, voxels, local, shift);
                });
     } else {
       totals = totals + add_up(first, end, 16, rays, points, [&](std::size_t k, VoxelLookup& voxels, auto& local) {

@@ -162,8 +162,8 @@ Picture::Picture(const StationRays& rays, const TraceStation& station, const Til
   const RayPattern& pattern = rays.pattern();
   start_ = pattern.min_range > 0 ? 1 / pattern.min_range : std::numeric_limits<float>::infinity();
   for (const float end : ends.end) farthest_ = std::max(farthest_, end);
-  sine_.resize(ends.tall);
-  cosine_.resize(ends.tall);
+  sine_.resize(ends.tall + 1);
+  cosine_.resize(ends.tall + 1);
   for (std::uint32_t r = 0; r < pattern.rows(); ++r) {
     sine_[r / block].of[r % block] = pattern.sin_zenith[r];
     cosine_[r / block].of[r % block] = pattern.cos_zenith[r];
@@ -178,19 +178,19 @@ Picture::Picture(const StationRays& rays, const TraceStation& station, const Til
   });
   drawable_ = drawable;
   if (!drawable_) return;
-  for (const std::vector<Item>& items : found) items_.insert(items_.end(), items.begin(), items.end());
-  tbb::parallel_sort(items_.begin(), items_.end());
+  std::vector<Item> all;
+  for (const std::vector<Item>& items : found) all.insert(all.end(), items.begin(), items.end());
+  tbb::parallel_sort(all.begin(), all.end());
 
   begin_.assign(std::size_t{strips()} + 1, 0);
   const auto each_strip = [](const Item& item, const auto& f) {
     for (std::uint32_t s = item.column_begin / wide; s <= (item.column_end - 1) / wide; ++s) f(s);
   };
-  for (const Item& item : items_) each_strip(item, [&](std::uint32_t s) { ++begin_[s + 1]; });
+  for (const Item& item : all) each_strip(item, [&](std::uint32_t s) { ++begin_[s + 1]; });
   for (std::size_t s = 0; s < strips(); ++s) begin_[s + 1] += begin_[s];
-  order_.resize(begin_.back());
+  items_.resize(begin_.back());
   std::vector<std::size_t> next(begin_.begin(), begin_.end() - 1);
-  for (std::size_t k = 0; k < items_.size(); ++k)
-    each_strip(items_[k], [&](std::uint32_t s) { order_[next[s]++] = static_cast<std::uint32_t>(k); });
+  for (const Item& item : all) each_strip(item, [&](std::uint32_t s) { items_[next[s]++] = item; });
 }
 
 bool Picture::place(std::uint32_t triangle, std::vector<Item>& items) const {
@@ -266,7 +266,7 @@ class Picture::StripDrawing {
   [[gnu::always_inline]] void draw_all() {
     const std::size_t index = strip_.first / wide;
     for (std::size_t k = picture_.begin_[index]; k < picture_.begin_[index + 1]; ++k)
-      draw(picture_.items_[picture_.order_[k]]);
+      draw(picture_.items_[k]);
   }
 
  private:
@@ -274,8 +274,8 @@ class Picture::StripDrawing {
 
   float* inverse(std::uint32_t column) { return strip_.inverse_[column * strip_.blocks_].of; }
   std::uint32_t* triangles(std::uint32_t column) { return strip_.triangle_[column * strip_.blocks_].of; }
-  const float* sine() const { return picture_.sine_.front().of; }
-  const float* cosine() const { return picture_.cosine_.front().of; }
+  const float* sine() const { return picture_.sines(); }
+  const float* cosine() const { return picture_.cosines(); }
 
   // Whether something hides all of the tile that is no nearer.
   [[gnu::always_inline]] bool hidden(std::uint32_t tile, float nearest) {
@@ -343,23 +343,14 @@ class Picture::StripDrawing {
                       tz = turn->z.x * x + turn->z.y * y + turn->z.z * z;
         x = tx, y = ty, z = tz;
       }
-      alignas(32) float along[3][lanes], values[lanes];
-      store(along[0], x);
-      store(along[1], y);
-      store(along[2], z);
-      for (std::int32_t half = 0; half < lanes; half += 4) {
-        Floats4 fx, fy, fz;
-        load(fx, along[0] + half);
-        load(fy, along[1] + half);
-        load(fz, along[2] + half);
-        const Doubles4 slopes = seen.normal.x * __builtin_convertvector(fx, Doubles4) +
-                                seen.normal.y * __builtin_convertvector(fy, Doubles4) +
-                                seen.normal.z * __builtin_convertvector(fz, Doubles4);
-        store(values + half, __builtin_convertvector(slopes * scale, Floats4));
-      }
+      Doubles4 lx, ly, lz, hx, hy, hz;
+      widen(x, lx, hx);
+      widen(y, ly, hy);
+      widen(z, lz, hz);
       Floats8 value, old;
+      narrow((seen.normal.x * lx + seen.normal.y * ly + seen.normal.z * lz) * scale,
+             (seen.normal.x * hx + seen.normal.y * hy + seen.normal.z * hz) * scale, value);
       Ints8 ids;
-      load(value, values);
       load(old, inverses + row);
       load(ids, held + row);
       const Ints8 at = count + row, grazing = ~(value >= least);

@@ -52,6 +52,10 @@ class Picture {
     std::vector<std::uint8_t> doubts_;            // [tile] has rays in doubt
   };
 
+  // Of the zeniths, by row; readable up to eight beyond the last.
+  const float* sines() const { return sine_.front().of; }
+  const float* cosines() const { return cosine_.front().of; }
+
   // Finds the hits of a strip's rays; those outside `ends` have none.
   void draw(std::uint32_t index, Strip& strip) const;
 
@@ -76,9 +80,8 @@ class Picture {
   float start_ = 0;                     // inverse of the least range
   float farthest_ = 0;                  // of the ends
   bool drawable_ = true;
-  std::vector<Item> items_;             // near ones first
-  std::vector<std::uint32_t> order_;    // of items_, strip by strip
-  std::vector<std::size_t> begin_;      // [strip] in order_
+  std::vector<Item> items_;             // strip by strip, near ones first
+  std::vector<std::size_t> begin_;      // [strip] in items_
   std::vector<Block<float>> sine_, cosine_;  // of the zeniths; 0 beyond the last
 };
 

@@ -35,30 +35,34 @@ class Planes {
   template <unsigned n>
   [[gnu::always_inline]] void distances(const Seen& plane, std::uint32_t triangle, const Float3& o, const float* x,
                                         const float* y, const float* z, float* t) const {
-    double slope[n], least = 1;
-    unsigned first = 0;
-    for (; first + 4 <= n; first += 4) {
-      Floats4 fx, fy, fz;
-      load(fx, x + first);
-      load(fy, y + first);
-      load(fz, z + first);
-      const Doubles4 slopes = plane.x * __builtin_convertvector(fx, Doubles4) +
-                              plane.y * __builtin_convertvector(fy, Doubles4) +
-                              plane.z * __builtin_convertvector(fz, Doubles4);
-      store(slope + first, slopes);
-      store(t + first, __builtin_convertvector(plane.height / slopes, Floats4));
+    static_assert(n == 1 || n == 8);
+    if constexpr (n == 8) {
+      Floats8 fx, fy, fz, ft;
+      load(fx, x);
+      load(fy, y);
+      load(fz, z);
+      if (distances(plane, fx, fy, fz, ft)) [[likely]] {
+        store(t, ft);
+        return;
+      }
     }
-    for (unsigned i = first; i < n; ++i) {
-      slope[i] = plane.x * x[i] + plane.y * y[i] + plane.z * z[i];
-      t[i] = static_cast<float>(plane.height / slope[i]);
-    }
-    for (unsigned i = 0; i < n; ++i) least = std::min(least, std::abs(slope[i]));
-    if (least >= grazing) [[likely]]
-      return;
     for (unsigned i = 0; i < n; ++i) {
-      if (!(std::abs(slope[i]) >= grazing))
-        t[i] = static_cast<float>(within(triangle, o, {x[i], y[i], z[i]}, plane.height / slope[i]));
+      const double slope = plane.x * x[i] + plane.y * y[i] + plane.z * z[i], along = plane.height / slope;
+      const bool clear = std::abs(slope) >= grazing;
+      t[i] = static_cast<float>(clear ? along : within(triangle, o, {x[i], y[i], z[i]}, along));
     }
+  }
+  // The same of eight, unless one nearly lies in the plane: then false.
+  [[gnu::always_inline]] static bool distances(const Seen& plane, const Floats8& x, const Floats8& y, const Floats8& z,
+                                               Floats8& t) {
+    Doubles4 lx, ly, lz, hx, hy, hz;
+    widen(x, lx, hx);
+    widen(y, ly, hy);
+    widen(z, lz, hz);
+    const Doubles4 low = plane.x * lx + plane.y * ly + plane.z * lz, high = plane.x * hx + plane.y * hy + plane.z * hz;
+    narrow(plane.height / low, plane.height / high, t);
+    const auto flat = ~((low >= grazing) | (low <= -grazing)) | ~((high >= grazing) | (high <= -grazing));
+    return (flat[0] | flat[1] | flat[2] | flat[3]) == 0;
   }
 
   // Whether points at distances t of n directions lie beside the triangle: outside a ball half as large again as the

@@ -51,7 +51,8 @@ class RayCaster {
   // A direction's component as Embree is given it. Embree replaces one below 1e-18 by +1e-18 but keeps its sign; such a
   // ray, and its neighbours in a packet, then miss every box. At 1 km, a component below 1e-16 moves a point by less
   // than 1e-13 m.
-  static float safe(float component) { return std::abs(component) < 1e-16f ? 0.0f : component; }
+  static constexpr float least_component = 1e-16f;
+  static float safe(float component) { return std::abs(component) < least_component ? 0.0f : component; }
 
   // Fills `hit` of rays from one point, in any order. Faster than cast().
   void any_hits(const Float3& origin, float start, std::span<Probe> probes) const;

@@ -22,6 +22,15 @@ template <class Vector>
 [[gnu::always_inline]] inline void store(void* to, const Vector& vector) {
   std::memcpy(to, &vector, sizeof(vector));
 }
+// Lower and upper half, in double precision.
+[[gnu::always_inline]] inline void widen(const Floats8& v, Doubles4& low, Doubles4& high) {
+  low = __builtin_convertvector(__builtin_shufflevector(v, v, 0, 1, 2, 3), Doubles4);
+  high = __builtin_convertvector(__builtin_shufflevector(v, v, 4, 5, 6, 7), Doubles4);
+}
+[[gnu::always_inline]] inline void narrow(const Doubles4& low, const Doubles4& high, Floats8& v) {
+  v = __builtin_shufflevector(__builtin_convertvector(low, Floats4), __builtin_convertvector(high, Floats4), 0, 1, 2, 3,
+                              4, 5, 6, 7);
+}
 // Whether any element of a comparison is true.
 [[gnu::always_inline]] inline bool any(const Ints8& mask) {
   std::uint64_t words[4];
