@@ -19,6 +19,25 @@ double edge_doubt(double farthest, double side, double longest) {
   return farthest * (0x1p-19 * side + 0x1p-20 * longest);
 }
 
+// Zeniths of what lies between the corners of a triangle, and whether the axis may pierce it.
+void find_extremes(const std::array<Vec3, 3>& p, double& least, double& most, bool& up, bool& down) {
+  constexpr double pi = std::numbers::pi;
+  up = down = true;
+  const double sign = dot(cross(p[1] - p[0], p[2] - p[0]), p[0]) < 0 ? -1 : 1;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3 &from = p[k], &to = p[(k + 1) % 3];
+    const Vec3 m = cross(from, to) * sign;
+    up = up && m.z >= 0;
+    down = down && m.z <= 0;
+    // The edge's great circle is highest at `top`, and lowest opposite.
+    const Vec3 top{-m.x * m.z, -m.y * m.z, m.x * m.x + m.y * m.y};
+    const double a = dot(cross(from, top), m) * sign, b = dot(cross(top, to), m) * sign;
+    const double zenith = fast_atan2(std::abs(m.z), std::sqrt(m.x * m.x + m.y * m.y));
+    if (a >= 0 && b >= 0) least = std::min(least, zenith);
+    if (a <= 0 && b <= 0) most = std::max(most, pi - zenith);
+  }
+}
+
 }  // namespace
 
 Vec3 turned_back(const Turn* turn, const Vec3& v) {
@@ -96,19 +115,14 @@ RayRanges DrawnTriangle::rays(const RayPattern& pattern, const Turn* turn) const
     least = std::min(least, zenith);
     most = std::max(most, zenith);
   }
-  bool up = true, down = true;  // whether the axis may pierce it
-  const double sign = dot(cross(p[1] - p[0], p[2] - p[0]), p[0]) < 0 ? -1 : 1;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Vec3 &from = p[k], &to = p[(k + 1) % 3];
-    const Vec3 m = cross(from, to) * sign;
-    up = up && m.z >= 0;
-    down = down && m.z <= 0;
-    // The edge's great circle is highest at `top`, and lowest opposite.
-    const Vec3 top{-m.x * m.z, -m.y * m.z, m.x * m.x + m.y * m.y};
-    const double a = dot(cross(from, top), m) * sign, b = dot(cross(top, to), m) * sign;
-    const double zenith = fast_atan2(std::abs(m.z), std::sqrt(m.x * m.x + m.y * m.y));
-    if (a >= 0 && b >= 0) least = std::min(least, zenith);
-    if (a <= 0 && b <= 0) most = std::max(most, pi - zenith);
+  bool up = false, down = false;  // whether the axis may pierce it
+  const double wide = radius * (1 + stretch) / length(middle);
+  if (wide < 0.02 && least > 0.25 && most < pi - 0.25) {
+    // A small one away from the axis: the middle of an edge is beyond its ends by less than half of wide² / tan zenith.
+    least -= 4 * wide * wide;
+    most += 4 * wide * wide;
+  } else {
+    find_extremes(p, least, most, up, down);
   }
   if (up) least = 0;
   if (down) most = pi;

@@ -34,6 +34,7 @@ constexpr float angle_doubt = 0x1.8p-20f;       // radians; of rows computed in 
 constexpr float past_all = 8;                   // beyond any angle
 
 constexpr std::int32_t lanes = 8;
+constexpr std::int32_t few_rows = 32;  // so many are quicker evaluated than bounded
 
 // What a triangle's rows are computed from, in the scanner's frame.
 struct Outline {
@@ -52,11 +53,13 @@ struct Columns {
   alignas(64) float cosine[Picture::wide], sine[Picture::wide];
 };
 
-// Bounds on the zenith in each column, from all edges. In a column an edge is R sin(θ₀ − θ) or R sin(θ − θ₀); its doubt
+// Bounds on the zenith in eight columns, from all edges. In a column an edge is R sin(θ₀ − θ) or R sin(θ − θ₀); its doubt
 // moves θ₀ by asin(doubt / R) either way.
-[[gnu::always_inline]] inline void find_rows(const Outline& outline, const Columns& columns, float first, float step,
-                                             std::int32_t row_begin, std::int32_t row_end, Rows& rows) {
-  constexpr std::uint32_t n = Picture::wide;
+[[gnu::always_inline]] inline void find_rows(const Outline& outline, const Columns& columns, std::uint32_t column,
+                                             float first, float step, std::int32_t row_begin, std::int32_t row_end,
+                                             Rows& rows) {
+  constexpr std::uint32_t n = lanes;
+  const float *const cos_azimuth = columns.cosine + column, *const sin_azimuth = columns.sine + column;
   constexpr float pi = std::numbers::pi_v<float>;
   alignas(64) float low[n], high[n], sure_low[n], sure_high[n];
   for (std::uint32_t j = 0; j < n; ++j) low[j] = sure_low[j] = -past_all, high[j] = sure_high[j] = past_all;
@@ -65,7 +68,7 @@ struct Columns {
     const float size = std::abs(z), toward = z >= 0 ? -1.0f : 1.0f;
     const float least = outline.least_zenith, most = outline.most_zenith;
     for (std::uint32_t j = 0; j < n; ++j) {
-      const float a = x * columns.cosine[j] + y * columns.sine[j];
+      const float a = x * cos_azimuth[j] + y * sin_azimuth[j];
       const float r = std::sqrt(a * a + z * z);
       const float zero = fast_atan2(size, toward * a);
       const float moved = r > 2 * doubt ? 1.05f * doubt / r + angle_doubt : past_all / 2;
@@ -98,39 +101,13 @@ struct Columns {
       const float row = (angle - first) * inverse + 1;
       return static_cast<std::int32_t>(std::min(std::max(row, from), to));
     };
-    rows.begin[j] = up(low[j]);
-    rows.end[j] = down(high[j]);
-    rows.sure_begin[j] = std::max(rows.begin[j], up(sure_low[j]));
-    rows.sure_end[j] = std::min(rows.end[j], down(sure_high[j]));
-    rows.c[j] = outline.inverse_x * columns.cosine[j] + outline.inverse_y * columns.sine[j];
+    const std::int32_t begin = up(low[j]), end = down(high[j]);
+    rows.begin[column + j] = begin;
+    rows.end[column + j] = end;
+    rows.sure_begin[column + j] = std::max(begin, up(sure_low[j]));
+    rows.sure_end[column + j] = std::min(end, down(sure_high[j]));
+    rows.c[column + j] = outline.inverse_x * cos_azimuth[j] + outline.inverse_y * sin_azimuth[j];
   }
-}
-
-// Draws rows begin to end of a column. Returns whether any comes too near to what is there to be ordered; these rows
-// stay as they are.
-[[gnu::always_inline]] inline bool draw_rows(float c, float d, const float* sine, const float* cosine,
-                                             std::int32_t begin, std::int32_t end, std::uint32_t triangle,
-                                             float* inverse, std::uint32_t* triangles) {
-  const Ints8 count{0, 1, 2, 3, 4, 5, 6, 7};
-  const auto own = static_cast<std::int32_t>(triangle);
-  Ints8 near{};
-  for (std::int32_t row = begin & ~(lanes - 1); row < end; row += lanes) {
-    Floats8 sines, cosines, old;
-    Ints8 ids;
-    load(sines, sine + row);
-    load(cosines, cosine + row);
-    load(old, inverse + row);
-    load(ids, triangles + row);
-    const Floats8 value = c * sines + d * cosines;
-    const Ints8 rows = count + row, within = (rows >= begin) & (rows < end);
-    const Ints8 nearer = (value > old * apart) & within;
-    near |= (value * apart >= old) & within & ~nearer;
-    old = nearer ? value : old;
-    ids = nearer ? own - Ints8{} : ids;
-    store(inverse + row, old);
-    store(triangles + row, ids);
-  }
-  return any(near);
 }
 
 }  // namespace
@@ -265,8 +242,16 @@ class Picture::StripDrawing {
   // Draws all of its triangles.
   [[gnu::always_inline]] void draw_all() {
     const std::size_t index = strip_.first / wide;
-    for (std::size_t k = picture_.begin_[index]; k < picture_.begin_[index + 1]; ++k)
+    const SceneData& scene = picture_.rays_.scene();
+    const std::size_t end = picture_.begin_[index + 1];
+    for (std::size_t k = picture_.begin_[index]; k < end; ++k) {
+      // By distance, triangles are anywhere in memory.
+      if (k + 8 < end) __builtin_prefetch(&scene.triangles[picture_.items_[k + 8].triangle]);
+      if (k + 4 < end)
+        for (const std::uint32_t corner : scene.triangles[picture_.items_[k + 4].triangle])
+          __builtin_prefetch(&scene.positions[corner]);
       draw(picture_.items_[k]);
+    }
   }
 
  private:
@@ -320,23 +305,82 @@ class Picture::StripDrawing {
     if (own < other || (own == other && triangle < held)) held = triangle;
     inverse(column)[row] = std::max(inverse(column)[row], value);
   }
-  // As draw_rows(), for grazing rays and near hits, with all that may go wrong.
+  // Draws eight rows, of which the `sure` ones hit the triangle and the `possible` others may, at inverse distances
+  // `value`.
+  [[gnu::always_inline]] void merge(std::uint32_t column, std::int32_t row, std::uint32_t triangle,
+                                    const Floats8& value, const Ints8& possible, const Ints8& sure) {
+    float* const inverses = inverse(column) + row;
+    std::uint32_t* const held = triangles(column) + row;
+    Floats8 old;
+    Ints8 ids;
+    load(old, inverses);
+    load(ids, held);
+    const Ints8 nearer = sure & (value > old * apart);
+    const Ints8 rest = possible & ~nearer & (value * apart >= old);
+    old = nearer ? value : old;
+    ids = nearer ? static_cast<std::int32_t>(triangle) - Ints8{} : ids;
+    store(inverses, old);
+    store(held, ids);
+    if (!any(rest)) [[likely]]
+      return;
+    for (std::int32_t k = 0; k < lanes; ++k) {
+      if (rest[k] == 0) continue;
+      if (sure[k] != 0) {
+        settle(column, row + k, value[k], triangle);
+      } else {
+        doubt(column, row + k, value[k]);
+      }
+    }
+  }
+  [[gnu::always_inline]] void load_zeniths(std::int32_t row, Floats8& sines, Floats8& cosines) const {
+    load(sines, sine() + row);
+    load(cosines, cosine() + row);
+  }
+
+  [[gnu::always_inline]] void draw_span(const Outline& outline, std::uint32_t triangle, std::uint32_t column,
+                                        const Rows& rows) {
+    const std::int32_t begin = rows.begin[column], end = rows.end[column];
+    for (std::int32_t row = begin & ~(lanes - 1); row < end; row += lanes) {
+      Floats8 sines, cosines;
+      load_zeniths(row, sines, cosines);
+      const Floats8 value = rows.c[column] * sines + outline.inverse_z * cosines;
+      const Ints8 at = Ints8{0, 1, 2, 3, 4, 5, 6, 7} + row;
+      merge(column, row, triangle, value, (at >= begin) & (at < end),
+            (at >= rows.sure_begin[column]) & (at < rows.sure_end[column]));
+    }
+  }
+  // Evaluates the edges in place of solving for their rows, which is quicker where these are few.
+  [[gnu::always_inline]] void draw_few(const Outline& outline, std::uint32_t triangle, std::uint32_t column,
+                                       std::int32_t begin, std::int32_t end) {
+    const float cos_azimuth = columns_.cosine[column], sin_azimuth = columns_.sine[column];
+    const float c = outline.inverse_x * cos_azimuth + outline.inverse_y * sin_azimuth;
+    float a[3];
+    for (std::uint32_t k = 0; k < 3; ++k) a[k] = outline.x[k] * cos_azimuth + outline.y[k] * sin_azimuth;
+    for (std::int32_t row = begin & ~(lanes - 1); row < end; row += lanes) {
+      Floats8 sines, cosines;
+      load_zeniths(row, sines, cosines);
+      const Ints8 at = Ints8{0, 1, 2, 3, 4, 5, 6, 7} + row;
+      Ints8 possible = (at >= begin) & (at < end), sure = possible;
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        const Floats8 edge = a[k] * sines + outline.z[k] * cosines;
+        possible &= edge >= -outline.doubt[k];
+        sure &= edge >= outline.doubt[k];
+      }
+      merge(column, row, triangle, c * sines + outline.inverse_z * cosines, possible, sure);
+    }
+  }
+  // For grazing rays and near hits: with all that may go wrong.
   [[gnu::always_inline]] void draw_carefully(const DrawnTriangle& seen, const Item& item, std::uint32_t column,
                                              const Rows& rows) {
-    const Ints8 count{0, 1, 2, 3, 4, 5, 6, 7};
     const std::int32_t begin = rows.begin[column], end = rows.end[column];
     const std::int32_t sure_begin = seen.certain ? rows.sure_begin[column] : end, sure_end = rows.sure_end[column];
     const double scale = 1 / seen.height;
     const float least = static_cast<float>(least_slope * scale) * (1 + 0x1p-20f), start = picture_.start_;
-    const float cos_azimuth = columns_.cosine[column], sin_azimuth = columns_.sine[column];
     const Turn* const turn = turn_of(picture_.station_);
-    float* const inverses = inverse(column);
-    std::uint32_t* const held = triangles(column);
     for (std::int32_t row = begin & ~(lanes - 1); row < end; row += lanes) {
       Floats8 sines, z;
-      load(sines, sine() + row);
-      load(z, cosine() + row);
-      Floats8 x = sines * cos_azimuth, y = sines * sin_azimuth;
+      load_zeniths(row, sines, z);
+      Floats8 x = sines * columns_.cosine[column], y = sines * columns_.sine[column];
       if (turn) {
         const Floats8 tx = turn->x.x * x + turn->x.y * y + turn->x.z * z,
                       ty = turn->y.x * x + turn->y.y * y + turn->y.z * z,
@@ -347,30 +391,14 @@ class Picture::StripDrawing {
       widen(x, lx, hx);
       widen(y, ly, hy);
       widen(z, lz, hz);
-      Floats8 value, old;
+      Floats8 value;
       narrow((seen.normal.x * lx + seen.normal.y * ly + seen.normal.z * lz) * scale,
              (seen.normal.x * hx + seen.normal.y * hy + seen.normal.z * hz) * scale, value);
-      Ints8 ids;
-      load(old, inverses + row);
-      load(ids, held + row);
-      const Ints8 at = count + row, grazing = ~(value >= least);
-      const Ints8 candidate = (at >= begin) & (at < end) & (grazing | (value <= start * apart));
-      const Ints8 sure = (at >= sure_begin) & (at < sure_end) & ~grazing & (value * apart < start);
-      const Ints8 nearer = candidate & sure & (value > old * apart);
-      const Ints8 rest = candidate & ~nearer & (grazing | (value * apart >= old));
-      old = nearer ? value : old;
-      ids = nearer ? static_cast<std::int32_t>(item.triangle) - Ints8{} : ids;
-      store(inverses + row, old);
-      store(held + row, ids);
-      if (!any(rest)) continue;
-      for (std::int32_t k = 0; k < lanes; ++k) {
-        if (rest[k] == 0) continue;
-        if (sure[k] != 0) {
-          settle(column, row + k, value[k], item.triangle);
-        } else {
-          doubt(column, row + k, grazing[k] != 0 ? item.nearest : value[k]);
-        }
-      }
+      const Ints8 at = Ints8{0, 1, 2, 3, 4, 5, 6, 7} + row, grazing = ~(value >= least);
+      const Ints8 possible = (at >= begin) & (at < end) & (grazing | (value <= start * apart));
+      const Ints8 sure = possible & (at >= sure_begin) & (at < sure_end) & ~grazing & (value * apart < start);
+      value = grazing ? item.nearest - Floats8{} : value;
+      merge(column, row, item.triangle, value, possible, sure);
     }
   }
   // Rays within the band of a flat triangle are in doubt: around where the band's plane meets the column, and where it
@@ -453,28 +481,28 @@ inline void Picture::StripDrawing::draw(const Item& item) {
   }
   const auto row_begin = static_cast<std::int32_t>(std::max(item.row_begin, top * block)),
              row_end = static_cast<std::int32_t>(std::min(item.row_end, bottom * block));
-  Rows rows;
-  find_rows(outline, columns_, first_, step_, row_begin, row_end, rows);
+  const bool plain = seen.certain && item.nearest * apart < picture_.start_;
+  // Within the triangle, the incidence is least steep in the farthest corner.
+  const bool all_steep = seen.height > 1.01 * static_cast<double>(steep) * seen.farthest * (1 + 4 * seen.stretch);
   std::fill(strip_.stale_.begin() + top, strip_.stale_.begin() + bottom, std::uint8_t{1});
-
-  const bool near_start = item.nearest * apart >= picture_.start_;
+  if (plain && all_steep && row_end - row_begin <= few_rows) {
+    for (std::uint32_t j = first_column; j < last_column; ++j) draw_few(outline, item.triangle, j, row_begin, row_end);
+    return;
+  }
+  Rows rows;
+  for (std::uint32_t j = first_column & ~7u; j < last_column; j += lanes)
+    find_rows(outline, columns_, j, first_, step_, row_begin, row_end, rows);
   for (std::uint32_t j = first_column; j < last_column; ++j) {
     const std::int32_t begin = rows.begin[j], end = rows.end[j];
     if (begin >= end) continue;
-    const float c = rows.c[j], d = outline.inverse_z, least = steep * outline.inverse_height;
-    const auto value_at = [&](std::int32_t row) { return c * sine()[row] + d * cosine()[row]; };
-    if (near_start || !seen.certain || !(value_at(begin) >= least) || !(value_at(end - 1) >= least)) {
+    const auto is_steep = [&](std::int32_t row) {
+      return rows.c[j] * sine()[row] + outline.inverse_z * cosine()[row] >= steep * outline.inverse_height;
+    };
+    if (plain && (all_steep || (is_steep(begin) && is_steep(end - 1)))) {
+      draw_span(outline, item.triangle, j, rows);
+    } else {
       draw_carefully(seen, item, j, rows);
-      continue;
     }
-    const std::int32_t sure_begin = rows.sure_begin[j], sure_end = std::max(rows.sure_end[j], sure_begin);
-    for (std::int32_t row = begin; row < std::min(sure_begin, end); ++row) doubt(j, row, value_at(row));
-    if (draw_rows(c, d, sine(), cosine(), sure_begin, sure_end, item.triangle, inverse(j), triangles(j)))
-      for (std::int32_t row = sure_begin; row < sure_end; ++row) {
-        const float value = value_at(row), old = inverse(j)[row];
-        if (triangles(j)[row] != item.triangle && value * apart >= old) settle(j, row, value, item.triangle);
-      }
-    for (std::int32_t row = sure_end; row < end; ++row) doubt(j, row, value_at(row));
   }
 }
 
