@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/target_clones.hpp"
+#include "trace/fast_atan2.hpp"
 
 namespace vantage {
 namespace {
@@ -13,22 +14,6 @@ namespace {
 // Components of a direction are products of two values rounded to 24 bits. Its angles are off by less than 2^−22, and
 // fast_atan2 by 2^−25.
 constexpr double angle_pad = 0x1p-20;
-
-// atan2 to 2e-8, for y >= 0 (Abramowitz, Stegun: Handbook of Mathematical Functions, 1964, 4.4.49). The C library's
-// atan2 would take most of the time of a sampled voxel. Branch-free, for loops over many boxes.
-[[gnu::always_inline]] inline double fast_atan2(double y, double x) {
-  const double size = std::abs(x), least = std::min(y, size), most = std::max(y, size);
-  const double q = least / (most + 1e-300), s = q * q;
-  const double angle =
-      q *
-      (1 + s * (-0.3333314528 +
-                s * (0.1999355085 +
-                     s * (-0.1420889944 +
-                          s * (0.1065626393 +
-                               s * (-0.0752896400 + s * (0.0429096138 + s * (-0.0161657367 + s * 0.0028662257))))))));
-  const double upright = (y > size ? std::numbers::pi / 2 : 0.0) + (y > size ? -1.0 : 1.0) * angle;
-  return (x < 0 ? std::numbers::pi : 0.0) + (x < 0 ? -1.0 : 1.0) * upright;
-}
 
 // Indices k in [0, count) with low <= first + k·step <= high.
 [[gnu::always_inline]] inline RayRanges::Range indices(double low, double high, double first, double step,
@@ -82,6 +67,19 @@ void turn_back(const Turn& turn, BoxBatch& boxes) {
     boxes.x[i] = middle.x, boxes.y[i] = middle.y, boxes.z[i] = middle.z;
     boxes.half_x[i] = half.x, boxes.half_y[i] = half.y, boxes.half_z[i] = half.z;
   }
+}
+
+RayRanges rays_between(const RayPattern& pattern, double least_zenith, double most_zenith, double azimuth,
+                       double width) {
+  RayRanges ranges;
+  ranges.rows = indices(least_zenith - angle_pad, most_zenith + angle_pad, pattern.first_zenith, pattern.zenith_step,
+                        pattern.rows());
+  if (width + 2 * angle_pad >= 2 * std::numbers::pi) {
+    ranges.columns[0] = {0, pattern.columns()};
+  } else {
+    ranges.columns = columns_of(pattern, azimuth - angle_pad, width + 2 * angle_pad);
+  }
+  return ranges;
 }
 
 double rounding_pad(double reach) { return 0x1p-20 * reach; }

@@ -25,6 +25,10 @@ struct RayRanges {
 // directions.
 RayRanges rays_of_box(const RayPattern& pattern, const Vec3& low, const Vec3& high);
 
+// Rays with a zenith between two and an azimuth in [azimuth, azimuth + width], radians; widened likewise.
+RayRanges rays_between(const RayPattern& pattern, double least_zenith, double most_zenith, double azimuth,
+                       double width);
+
 // For a turned scanner: replaces a box, relative to the head, by one in the scanner's own frame that contains it. It is
 // wide enough for the rounding of turned directions.
 void turn_back(const Turn& turn, Vec3& low, Vec3& high);

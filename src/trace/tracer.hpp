@@ -71,6 +71,13 @@ struct TraceScanner {
 
 struct RegistrationJob;  // trace/registration_sums.hpp
 
+// How the CPU engine finds the hits of whole scans. Results are the same.
+enum class WholeScans : std::uint8_t {
+  faster,  // of the two, by the scene's triangles and the rays
+  drawn,   // except from a head that stands in a surface
+  traced
+};
+
 // Input to an engine's constructor. Borrowed for that call only, unless the engine says otherwise.
 struct TraceScene {
   std::shared_ptr<const SceneData> scene;
@@ -80,6 +87,7 @@ struct TraceScene {
   bool validation = false;
   // Triangles of each sampled voxel, shared among devices. Null: each engine finds them itself.
   std::shared_ptr<SampleTriangles> sample_triangles = nullptr;
+  WholeScans whole_scans = WholeScans::faster;  // another only for tests and measurements
   bool sort_triangles = true;  // for drivers that build on the given order; off only to measure the gain of sorting
 };
 

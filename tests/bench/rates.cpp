@@ -54,6 +54,13 @@ void run_rates(const RatesOptions& options) {
   };
   for (const EngineInfo& info : options.site.engines_here()) {
     add(info, "");
+    if (info.engine == Engine::embree) {
+      for (const auto& [way, suffix] : {std::pair{WholeScans::traced, "-traced"}, {WholeScans::drawn, "-drawn"}}) {
+        site.scene.whole_scans = way;
+        add(info, suffix);
+      }
+      site.scene.whole_scans = WholeScans::faster;
+    }
     if (options.unsorted && info.engine == Engine::ray_query) {
       site.scene.sort_triangles = false;
       add(info, "-unsorted");

@@ -25,11 +25,6 @@ std::pair<std::uint64_t, std::uint64_t> seeds(std::uint64_t usual_first, std::ui
   return {first, last};
 }
 
-struct RandomSite {
-  TraceScene scene;
-  std::vector<TraceStation> stations;
-};
-
 // A closed ball of connected triangles, with dents that fold it as seen from most places.
 std::vector<Float3> bumpy_ball(RandomStream& random, const Float3& centre, float radius) {
   constexpr std::size_t rows = 9, columns = 14;
@@ -58,8 +53,8 @@ std::vector<Float3> bumpy_ball(RandomStream& random, const Float3& centre, float
   return triangles;
 }
 
-// Triangles of all sizes, slivers, walls, coincident walls of both roles, grazing planes and balls; heads anywhere,
-// also on surfaces.
+}  // namespace
+
 RandomSite random_site(std::uint64_t seed) {
   RandomStream random(seed, 1);
   const double scale = std::pow(10.0, 2 * random.uniform() - 1), offset = random.bits() % 3 == 0 ? 100 * scale : 0;
@@ -130,8 +125,6 @@ RandomSite random_site(std::uint64_t seed) {
   }
   return site;
 }
-
-}  // namespace
 
 RaysTraced expect_every_way_agrees(const std::function<std::unique_ptr<Tracer>(const TraceScene&)>& make,
                                    std::uint64_t first, std::uint64_t last) {

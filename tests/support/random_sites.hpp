@@ -5,10 +5,19 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <vector>
 
 #include "trace/tracer.hpp"
 
 namespace vantage::test {
+
+struct RandomSite {
+  TraceScene scene;
+  std::vector<TraceStation> stations;
+};
+// Triangles of all sizes, slivers, walls, coincident walls of both roles, grazing planes and balls; seven heads
+// anywhere, also on surfaces.
+RandomSite random_site(std::uint64_t seed);
 
 // Rays traced by exact evaluations.
 struct RaysTraced {

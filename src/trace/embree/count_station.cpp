@@ -2,18 +2,46 @@
 #include "trace/embree/count_station.hpp"
 
 #include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_reduce.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "core/target_clones.hpp"
+#include "trace/embree/picture.hpp"
 #include "trace/embree/tile_selection.hpp"
 
 namespace vantage {
 namespace {
+
+// Adds the points of `hits`, which are on surveyed meshes and have their ranges.
+[[gnu::always_inline]] inline void count_points(const StationRays& station_rays, const Float3& origin,
+                                                const Hits& hits, VoxelLookup& voxels, PointBuckets::Local& points,
+                                                std::uint32_t shift, StationTotals& totals) {
+  if (station_rays.limited()) {
+    voxels.clear();
+    for (std::uint32_t k = 0; k < hits.size; ++k) {
+      const Float3 point = hits.point(origin, k);
+      const DroppedPoints dropped =
+          station_rays.dropped(origin, {hits.x[k], hits.y[k], hits.z[k]}, hits.t[k], hits.primitive[k]);
+      if (dropped.points == 0) {
+        voxels.add(point);
+      } else if (station_rays.grid().index_of(point) != no_voxel) {
+        totals.dropped = totals.dropped + dropped;
+      }
+    }
+  } else {
+    voxels.set(hits.size, [&](std::uint32_t k) { return hits.point(origin, k); });
+  }
+  voxels.each_run([&](std::uint32_t voxel_index, std::uint32_t many) {
+    points.add(voxel_index, shift, many);
+    totals.points_on_surveyed += many;
+  });
+}
 
 VANTAGE_TARGET_CLONES
 StationTotals count_tile(const StationRays& station_rays, const TraceStation& station, const SelectedTile& planned,
@@ -24,7 +52,6 @@ StationTotals count_tile(const StationRays& station_rays, const TraceStation& st
   station_rays.caster().cast(rays);
 
   const Surface& surface = station_rays.surface();
-  const bool limited = station_rays.limited();
   StationTotals totals;
   totals.rays = rays.size;
   Hits hits;
@@ -39,45 +66,167 @@ StationTotals count_tile(const StationRays& station_rays, const TraceStation& st
     }
   }
   station_rays.find_ranges(station, hits);
-  voxels.clear();
-  for (std::uint32_t k = 0; k < hits.size; ++k) {
-    const Float3 point = hits.point(rays.origin, k);
-    const DroppedPoints dropped = limited ? station_rays.dropped(rays, hits.slot[k]) : DroppedPoints{};
-    if (dropped.points == 0) {
-      voxels.add(point);
-    } else if (station_rays.grid().index_of(point) != no_voxel) {
-      totals.dropped = totals.dropped + dropped;
+  count_points(station_rays, rays.origin, hits, voxels, points, shift, totals);
+  return totals;
+}
+
+// As RayCaster::safe().
+[[gnu::always_inline]] inline void make_safe(Floats8& v) {
+  v = (v >= RayCaster::least_component) | (v <= -RayCaster::least_component) ? v : Floats8{};
+}
+
+// Adds rays row to row + many of a column, with their common triangle.
+[[gnu::always_inline]] inline void add_run(const StationRays& station_rays, const TraceStation& station,
+                                           const Picture& picture, std::uint32_t column, std::uint32_t row,
+                                           std::uint32_t many, std::uint32_t triangle, const Planes::Seen& plane,
+                                           Hits& hits) {
+  const RayPattern& pattern = station_rays.pattern();
+  const float cosine = pattern.cos_azimuth[column], sine = pattern.sin_azimuth[column];
+  // The last vector may run past the run's rays; those values are overwritten or never read.
+  for (std::uint32_t k = 0, at = hits.size; k < many; k += 8, at += 8) {
+    Floats8 sines, z, t;
+    load(sines, picture.sines() + row + k);
+    load(z, picture.cosines() + row + k);
+    Floats8 x = sines * cosine, y = sines * sine;
+    if (station.turn) {
+      const Turn& turn = *station.turn;
+      const Floats8 tx = turn.x.x * x + turn.x.y * y + turn.x.z * z, ty = turn.y.x * x + turn.y.y * y + turn.y.z * z,
+                    tz = turn.z.x * x + turn.z.y * y + turn.z.z * z;
+      x = tx, y = ty, z = tz;
+    }
+    store(hits.x + at, x);
+    store(hits.y + at, y);
+    store(hits.z + at, z);
+    make_safe(x);
+    make_safe(y);
+    make_safe(z);
+    if (Planes::distances(plane, x, y, z, t)) {
+      store(hits.t + at, t);
+    } else {
+      for (std::uint32_t i = 0; i < 8; ++i) {
+        const float dx = x[i], dy = y[i], dz = z[i];
+        station_rays.planes().distances<1>(plane, triangle, station.origin, &dx, &dy, &dz, hits.t + at + i);
+      }
     }
   }
-  voxels.each_index([&](std::uint32_t voxel_index) {
-    points.add(voxel_index, shift);
-    ++totals.points_on_surveyed;
-  });
+  std::fill_n(hits.primitive + hits.size, many, triangle);
+  if (station_rays.noise().enabled())
+    for (std::uint32_t k = 0; k < many; ++k) {
+      const std::uint64_t ray = station_rays.ray(row + k, column);
+      hits.ray_low[hits.size + k] = static_cast<std::uint32_t>(ray);
+      hits.ray_high[hits.size + k] = static_cast<std::uint32_t>(ray >> 32);
+    }
+  hits.size += many;
+}
+
+// Where a run of a triangle ends. Reads up to eight elements past `end`, and may return a place there.
+[[gnu::always_inline]] inline std::uint32_t end_of_run(const std::uint32_t* triangles, std::uint32_t at,
+                                                       std::uint32_t end, std::uint32_t triangle) {
+  for (; at < end; at += 8) {
+    Ints8 next;
+    load(next, triangles + at);
+    if (any(next != static_cast<std::int32_t>(triangle))) break;
+  }
+  while (at < end && triangles[at] == triangle) ++at;
+  return at;
+}
+
+VANTAGE_TARGET_CLONES
+StationTotals count_strip(const StationRays& station_rays, const TraceStation& station, const Picture& picture,
+                          const Picture::Strip& strip, VoxelLookup& voxels, PointBuckets::Local& points,
+                          std::uint32_t shift) {
+  const Surface& surface = station_rays.surface();
+  const std::uint32_t rows = station_rays.pattern().rows();
+  StationTotals totals;
+  totals.rays = strip.rays;
+  Hits hits;
+  hits.size = 0;
+  const auto count = [&]() __attribute__((always_inline)) {
+    station_rays.find_ranges(station, hits);
+    count_points(station_rays, station.origin, hits, voxels, points, shift, totals);
+    hits.size = 0;
+  };
+  for (std::uint32_t j = 0; j < strip.columns; ++j) {
+    const std::uint32_t* const triangles = strip.triangles(j);
+    for (std::uint32_t row = 0; row < rows;) {
+      const std::uint32_t triangle = triangles[row];
+      const std::uint32_t end = std::min(rows, end_of_run(triangles, row + 1, rows, triangle));
+      if (triangle == Picture::none) {
+        row = end;
+        continue;
+      }
+      totals.points += end - row;
+      if (!surface.surveyed(triangle)) {
+        row = end;
+        continue;
+      }
+      const Planes::Seen plane = station_rays.planes().seen(triangle, station.origin);
+      while (row < end) {
+        const std::uint32_t many = std::min(end - row, RayBundle::capacity - hits.size);
+        add_run(station_rays, station, picture, strip.first + j, row, many, triangle, plane, hits);
+        row += many;
+        if (hits.size == RayBundle::capacity) count();
+      }
+    }
+  }
+  count();
   return totals;
+}
+
+// Adds up totals of parts first to end, in parallel.
+template <class Part>
+StationTotals add_up(std::size_t first, std::size_t end, std::size_t grain, const StationRays& rays, PointBuckets& points,
+                  const Part& part) {
+  return tbb::parallel_reduce(
+      tbb::blocked_range<std::size_t>(first, end, grain), StationTotals{},
+      [&](const auto& range, StationTotals sum) {
+        VoxelLookup voxels = rays.voxels();
+        PointBuckets::Local& local = points.local();
+        for (std::size_t k = range.begin(); k < range.end(); ++k) sum = sum + part(k, voxels, local);
+        return sum;
+      },
+      std::plus<>());
 }
 
 }  // namespace
 
 bool count_station(const StationRays& rays, const TraceStation& station, bool skip, VoxelField& field,
                    PointBuckets& points, StationTotals& totals, const Progress& progress) {
+  const RayPattern& pattern = rays.pattern();
+  const TileEnds ends = skip ? tiles_with_bricks(rays, station) : all_tiles(pattern);
+  const std::vector<SelectedTile> tiles = selected(ends, pattern);
+  std::uint64_t selected_rays = 0;
+  for (const SelectedTile& tile : tiles) selected_rays += tile.tile.rows * tile.tile.columns;
+
+  std::optional<Picture> picture;
+  const WholeScans way = rays.whole_scans();
+  if (way == WholeScans::drawn ||
+      (way == WholeScans::faster && Picture::pays(rays.scene().triangles.size(), selected_rays)))
+    picture.emplace(rays, station, ends);
+  if (picture && !picture->drawable()) picture.reset();
+  tbb::enumerable_thread_specific<Picture::Strip> strips;
+  const std::size_t parts = picture ? picture->strips() : tiles.size();
   // About a tenth of a second between checks of the stop token.
-  const std::size_t chunk = 1024 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
-  const std::vector<SelectedTile> tiles = skip ? tiles_with_bricks(rays, station) : all_tiles(rays.pattern());
-  for (std::size_t first = 0; first < tiles.size(); first += chunk) {
+  const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+  const std::size_t chunk = threads * (picture ? std::max<std::size_t>(1, 4096 / ends.tall) : 1024);
+  for (std::size_t first = 0; first < parts; first += chunk) {
     if (progress.stopped()) return false;
-    const std::size_t end = std::min(tiles.size(), first + chunk);
-    totals = totals + tbb::parallel_reduce(
-                          tbb::blocked_range<std::size_t>(first, end, 16), StationTotals{},
-                          [&](const auto& range, StationTotals part) {
-                            VoxelLookup voxels = rays.voxels();
-                            PointBuckets::Local& local = points.local();
-                            for (std::size_t k = range.begin(); k < range.end(); ++k)
-                              part = part + count_tile(rays, station, tiles[k], voxels, local, points.shift());
-                            return part;
-                          },
-                          std::plus<>());
+    const std::size_t end = std::min(parts, first + chunk);
+    const std::uint32_t shift = points.shift();
+    if (picture) {
+      totals = totals + add_up(first, end, 1, rays, points, [&](std::size_t k, VoxelLookup& voxels, auto& local) {
+                 Picture::Strip& strip = strips.local();
+                 const auto index = static_cast<std::uint32_t>(k);
+                 picture->draw(index, strip);
+                 return count_strip(rays, station, *picture, strip, voxels, local, shift);
+               });
+    } else {
+      totals = totals + add_up(first, end, 16, rays, points, [&](std::size_t k, VoxelLookup& voxels, auto& local) {
+                 return count_tile(rays, station, tiles[k], voxels, local, shift);
+               });
+    }
     points.flush(field, std::uint64_t{1} << station.bit());
-    progress(static_cast<double>(end) / static_cast<double>(tiles.size()));
+    progress(static_cast<double>(end) / static_cast<double>(parts));
   }
   return true;
 }

@@ -12,6 +12,7 @@ namespace vantage {
 Planes::Planes(std::shared_ptr<const SceneData> scene) : scene_(std::move(scene)) {
   const SceneData& s = *scene_;
   planes_.resize(s.triangles.size());
+  balls_.resize(s.triangles.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, s.triangles.size(), 4096), [&](const auto& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
       const Triangle& t = s.triangles[i];
@@ -20,6 +21,15 @@ Planes::Planes(std::shared_ptr<const SceneData> scene) : scene_(std::move(scene)
       const double length = std::sqrt(dot(n, n));
       if (length > 0) n = n * (1 / length);
       planes_[i] = {n.x, n.y, n.z, dot(n, a)};
+      const Vec3 b = widen(s.positions[t[1]]), c = widen(s.positions[t[2]]), middle = (a + b + c) * (1.0 / 3);
+      double radius = 0, size = 0;
+      for (const Vec3& corner : {a, b, c}) {
+        radius = std::max(radius, std::sqrt(dot(corner - middle, corner - middle)));
+        size = std::max(size, std::sqrt(dot(corner, corner)));
+      }
+      const double wide = 1.5 * radius + 0x1p-21 * size;  // the middle is rounded
+      balls_[i] = {static_cast<float>(middle.x), static_cast<float>(middle.y), static_cast<float>(middle.z),
+                   static_cast<float>(wide * wide)};
     }
   });
 }

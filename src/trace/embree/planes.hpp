@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "scene/scene_data.hpp"
+#include "trace/embree/vectors.hpp"
 #include "vantage/types.hpp"
 
 namespace vantage {
@@ -34,16 +35,53 @@ class Planes {
   template <unsigned n>
   [[gnu::always_inline]] void distances(const Seen& plane, std::uint32_t triangle, const Float3& o, const float* x,
                                         const float* y, const float* z, float* t) const {
-    double slope[n], least = 1;
-    for (unsigned i = 0; i < n; ++i) slope[i] = plane.x * x[i] + plane.y * y[i] + plane.z * z[i];
-    for (unsigned i = 0; i < n; ++i) t[i] = static_cast<float>(plane.height / slope[i]);
-    for (unsigned i = 0; i < n; ++i) least = std::min(least, std::abs(slope[i]));
-    if (least >= grazing) [[likely]]
-      return;
-    for (unsigned i = 0; i < n; ++i) {
-      if (!(std::abs(slope[i]) >= grazing))
-        t[i] = static_cast<float>(within(triangle, o, {x[i], y[i], z[i]}, plane.height / slope[i]));
+    static_assert(n == 1 || n == 8);
+    if constexpr (n == 8) {
+      Floats8 fx, fy, fz, ft;
+      load(fx, x);
+      load(fy, y);
+      load(fz, z);
+      if (distances(plane, fx, fy, fz, ft)) [[likely]] {
+        store(t, ft);
+        return;
+      }
     }
+    for (unsigned i = 0; i < n; ++i) {
+      const double slope = plane.x * x[i] + plane.y * y[i] + plane.z * z[i], along = plane.height / slope;
+      const bool clear = std::abs(slope) >= grazing;
+      t[i] = static_cast<float>(clear ? along : within(triangle, o, {x[i], y[i], z[i]}, along));
+    }
+  }
+  // The same of eight, unless one nearly lies in the plane: then false.
+  [[gnu::always_inline]] static bool distances(const Seen& plane, const Floats8& x, const Floats8& y, const Floats8& z,
+                                               Floats8& t) {
+    Doubles4 lx, ly, lz, hx, hy, hz;
+    widen(x, lx, hx);
+    widen(y, ly, hy);
+    widen(z, lz, hz);
+    const Doubles4 low = plane.x * lx + plane.y * ly + plane.z * lz, high = plane.x * hx + plane.y * hy + plane.z * hz;
+    narrow(plane.height / low, plane.height / high, t);
+    const auto flat = ~((low >= grazing) | (low <= -grazing)) | ~((high >= grazing) | (high <= -grazing));
+    return (flat[0] | flat[1] | flat[2] | flat[3]) == 0;
+  }
+
+  // Whether points at distances t of n directions lie beside the triangle: outside a ball half as large again as the
+  // one around its middle. No hit does; but of a triangle seen edge-on, whatever tests the edges may let pass any ray
+  // in its plane.
+  template <unsigned n>
+  [[gnu::always_inline]] void beside(std::uint32_t triangle, const Float3& o, const float* x, const float* y,
+                                     const float* z, const float* t, std::int32_t* is_beside) const {
+    const Ball& ball = balls_[triangle];
+    const float cx = ball.x - o.x, cy = ball.y - o.y, cz = ball.z - o.z;
+    for (unsigned i = 0; i < n; ++i) {
+      const float dx = t[i] * x[i] - cx, dy = t[i] * y[i] - cy, dz = t[i] * z[i] - cz;
+      is_beside[i] = !(dx * dx + dy * dy + dz * dz <= ball.square + ball_doubt * (t[i] * t[i]));
+    }
+  }
+  // No hit is further from the middle of a triangle whose corners lie within `radius` of it and `farthest` of a head at
+  // o.
+  static double reach(double radius, double farthest, const Float3& o) {
+    return 1.5 * radius * (1 + 0x1p-10) + 0x1p-15 * farthest + 0x1p-19 * std::sqrt(dot(widen(o), widen(o)));
   }
 
   Vec3 normal(std::uint32_t triangle) const {  // unit
@@ -59,8 +97,13 @@ class Planes {
   struct Plane {
     double x, y, z, offset;  // unit normal n, and n·p for its points p
   };
+  struct Ball {
+    float x, y, z, square;  // middle of the corners; 1.5 times their largest distance from it, and a rounding, squared
+  };
+  static constexpr float ball_doubt = 0x1p-34f;  // of a squared distance, for all roundings
   std::shared_ptr<const SceneData> scene_;
   std::vector<Plane> planes_;
+  std::vector<Ball> balls_;
 };
 
 }  // namespace vantage

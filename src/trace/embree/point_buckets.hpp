@@ -6,9 +6,9 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
+#include "core/add_saturating.hpp"
 #include "vantage/trace.hpp"
 
 namespace vantage {
@@ -24,14 +24,20 @@ class PointBuckets {
     while (((voxels - 1) >> shift_) >= count && voxels > 0) ++shift_;
   }
 
+  static constexpr std::uint32_t most_at_once = 256;
+
   // The calling thread's buckets.
   class Local {
    public:
-    void add(std::uint32_t voxel_index, std::uint32_t shift) { buckets_[voxel_index >> shift].push_back(voxel_index); }
+    // Adds `points` to a voxel. REQUIRES: 1 <= points <= most_at_once.
+    void add(std::uint32_t voxel_index, std::uint32_t shift, std::uint32_t points = 1) {
+      const std::uint32_t place = voxel_index & ((std::uint32_t{1} << shift) - 1);
+      buckets_[voxel_index >> shift].push_back(place | (points - 1) << place_bits);
+    }
 
    private:
     friend class PointBuckets;
-    std::vector<std::uint32_t> buckets_[count];
+    std::vector<std::uint32_t> buckets_[count];  // the voxel's place in the range, and its points less one
   };
   Local& local() { return local_.local(); }
   std::uint32_t shift() const { return shift_; }
@@ -41,9 +47,9 @@ class PointBuckets {
     const bool masks = !field.stations.empty();
     tbb::parallel_for(std::uint32_t{0}, count, [&](std::uint32_t b) {
       for (Local& local : local_) {
-        for (const std::uint32_t voxel_index : local.buckets_[b]) {
-          std::uint32_t& n = field.count[voxel_index];
-          n += n != std::numeric_limits<std::uint32_t>::max();
+        for (const std::uint32_t entry : local.buckets_[b]) {
+          const std::uint32_t voxel_index = b << shift_ | (entry & ((std::uint32_t{1} << shift_) - 1));
+          add_saturating(field.count[voxel_index], (entry >> place_bits) + 1);
           if (masks) field.stations[voxel_index] |= bit;
         }
         local.buckets_[b].clear();
@@ -52,6 +58,7 @@ class PointBuckets {
   }
 
  private:
+  static constexpr std::uint32_t place_bits = 24;  // 2^32 voxels in 256 ranges
   std::uint32_t shift_ = 0;
   tbb::enumerable_thread_specific<Local> local_;
 };

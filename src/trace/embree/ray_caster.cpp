@@ -17,11 +17,6 @@ namespace {
 constexpr std::uint32_t packet = 8;
 constexpr std::uint32_t packets = RayBundle::capacity / packet;
 
-// Embree replaces a direction's component below 1e-18 by +1e-18 but keeps its sign; such a ray, and its neighbours in a
-// packet, then miss every box. At 1 km, a component below this moves a point by less than 1e-13 m.
-constexpr float least_component = 1e-16f;
-float safe(float component) { return std::abs(component) < least_component ? 0.0f : component; }
-
 constexpr float before = 1 - RayCaster::doubt, beyond = 1 + RayCaster::doubt;
 
 struct Context {
@@ -41,6 +36,7 @@ template <unsigned n, class Take>
   const unsigned all = args->N;
   unsigned primitive = RayBundle::no_hit;
   alignas(32) float t[n]{};
+  alignas(32) std::int32_t beside[n]{};
   for (unsigned k = 0; k < n; ++k) {
     const unsigned i = first + k;
     if (args->valid[i] == 0) continue;
@@ -49,8 +45,10 @@ template <unsigned n, class Take>
       context.planes.distances<n>(context.planes.seen(primitive, context.origin), primitive, context.origin,
                                   &RTCRayN_dir_x(args->ray, all, first), &RTCRayN_dir_y(args->ray, all, first),
                                   &RTCRayN_dir_z(args->ray, all, first), t);
+      context.planes.beside<n>(primitive, context.origin, &RTCRayN_dir_x(args->ray, all, first),
+                               &RTCRayN_dir_y(args->ray, all, first), &RTCRayN_dir_z(args->ray, all, first), t, beside);
     }
-    if (take(RTCRayN_id(args->ray, all, i), primitive, t[k])) {
+    if (beside[k] == 0 && take(RTCRayN_id(args->ray, all, i), primitive, t[k])) {
       RTCRayN_tfar(args->ray, all, i) = t[k] * beyond;
     } else {
       args->valid[i] = 0;
@@ -126,8 +124,8 @@ void RayCaster::any_hits(const Float3& origin, float start, std::span<Probe> pro
       const Probe& probe = probes[first + i];
       end[i] = probe.end;
       rays[i] = {
-          origin.x,        origin.y, origin.z,           start * before, safe(probe.d.x),          safe(probe.d.y),
-          safe(probe.d.z), 0,        probe.end * beyond, 0xFFFFFFFFu,    static_cast<unsigned>(i), 0};
+          origin.x,        origin.y, origin.z,           start * before, RayCaster::safe(probe.d.x),          RayCaster::safe(probe.d.y),
+          RayCaster::safe(probe.d.z), 0,        probe.end * beyond, 0xFFFFFFFFu,    static_cast<unsigned>(i), 0};
     }
     hit.fill(RayBundle::no_hit);
     Context context{{}, *planes_, origin, start, end.data(), hit.data()};
@@ -161,9 +159,9 @@ void RayCaster::cast(RayBundle& rays) const {
       ray.org_y[lane] = rays.origin.y;
       ray.org_z[lane] = rays.origin.z;
       ray.tnear[lane] = rays.start * before;
-      ray.dir_x[lane] = safe(rays.x[i]);
-      ray.dir_y[lane] = safe(rays.y[i]);
-      ray.dir_z[lane] = safe(rays.z[i]);
+      ray.dir_x[lane] = RayCaster::safe(rays.x[i]);
+      ray.dir_y[lane] = RayCaster::safe(rays.y[i]);
+      ray.dir_z[lane] = RayCaster::safe(rays.z[i]);
       ray.time[lane] = 0;
       ray.tfar[lane] = rays.end[i] * beyond;
       ray.mask[lane] = 0xFFFFFFFFu;

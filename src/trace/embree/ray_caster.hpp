@@ -2,6 +2,7 @@
 // Nearest hits of bundles of rays from one point. Embree proposes hits, and this file chooses.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -41,11 +42,17 @@ class RayCaster {
   RayCaster(std::shared_ptr<const SceneData> scene, std::shared_ptr<const Planes> planes);
 
   // Fills t and primitive. The hit is the least (t, primitive) over all triangles with start < t <= end that Embree
-  // finds the ray to pass through, whatever the other rays of the bundle. Embree's own distance depends on the
+  // finds the ray to pass through, and that it comes near (Planes::beside), whatever the other rays of the bundle. Embree's own distance depends on the
   // processor's maker, and its choice among coincident triangles on the order of visits; neither is used. Its tree is
   // searched by `doubt` past the nearest hit and past both ends.
   static constexpr float doubt = 0x1p-8f;
   void cast(RayBundle& rays) const;
+
+  // A direction's component as Embree is given it. Embree replaces one below 1e-18 by +1e-18 but keeps its sign; such a
+  // ray, and its neighbours in a packet, then miss every box. At 1 km, a component below 1e-16 moves a point by less
+  // than 1e-13 m.
+  static constexpr float least_component = 1e-16f;
+  static float safe(float component) { return std::abs(component) < least_component ? 0.0f : component; }
 
   // Fills `hit` of rays from one point, in any order. Faster than cast().
   void any_hits(const Float3& origin, float start, std::span<Probe> probes) const;

@@ -35,7 +35,8 @@ struct EmbreeScene {
         planes(std::make_shared<Planes>(scene)),
         caster(scene, planes),
         surface(scene, planes),
-        prefixes(*grid) {}
+        prefixes(*grid),
+        whole_scans(traced.whole_scans) {}
 
   std::shared_ptr<const SceneData> scene;
   std::shared_ptr<const VoxelGrid> grid;
@@ -44,6 +45,7 @@ struct EmbreeScene {
   RayCaster caster;
   Surface surface;
   BrickPrefixes prefixes;
+  WholeScans whole_scans;
 };
 
 // Turns directions of a pattern for a turned station.
@@ -67,8 +69,10 @@ class StationRays {
   SampleTriangles& sample_triangles() const { return *scene_->sample_triangles; }
   const RayPattern& pattern() const { return *pattern_; }
   const RangeNoise& noise() const { return noise_; }
+  const Planes& planes() const { return *scene_->planes; }
   const RayCaster& caster() const { return scene_->caster; }
   const Surface& surface() const { return scene_->surface; }
+  WholeScans whole_scans() const { return scene_->whole_scans; }
   VoxelLookup voxels() const { return {grid(), scene_->prefixes}; }
 
   std::uint64_t ray(std::uint32_t row, std::uint32_t column) const {
@@ -106,11 +110,11 @@ class StationRays {
   // Limits for which a point is dropped; none if it counts. REQUIRES: limited(); rays.primitive[slot] is a hit on a
   // surveyed mesh.
   DroppedPoints dropped(const RayBundle& rays, std::uint32_t slot) const {
-    const std::uint32_t triangle = rays.primitive[slot];
-    const Float3 d{rays.x[slot], rays.y[slot], rays.z[slot]};
-    const float t = rays.t[slot];
+    return dropped(rays.origin, {rays.x[slot], rays.y[slot], rays.z[slot]}, rays.t[slot], rays.primitive[slot]);
+  }
+  DroppedPoints dropped(const Float3& origin, const Float3& d, float t, std::uint32_t triangle) const {
     const Facet facet = surface().facet(triangle);
-    const Vec3 normal = facet.smooth ? facet.smooth_normal(d, facet.weights(rays.origin, d, t)) : facet.flat_normal(d);
+    const Vec3 normal = facet.smooth ? facet.smooth_normal(d, facet.weights(origin, d, t)) : facet.flat_normal(d);
     return judge_.missed(surface().mesh(triangle), dot(normal, widen(d)), t, facet.reflectivity(d, normal));
   }
 

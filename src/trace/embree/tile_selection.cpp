@@ -30,24 +30,23 @@ void raise(float& value, float to) {
 
 }  // namespace
 
-std::vector<SelectedTile> all_tiles(const RayPattern& pattern) {
-  std::vector<SelectedTile> tiles;
-  for (std::uint32_t a = 0; a < tiles_across(pattern.rows()); ++a) {
-    for (std::uint32_t b = 0; b < tiles_across(pattern.columns()); ++b)
-      tiles.push_back({tile_at(pattern, a, b), pattern.max_range});
-  }
-  return tiles;
+TileEnds all_tiles(const RayPattern& pattern) {
+  TileEnds ends{tiles_across(pattern.rows()), tiles_across(pattern.columns()), {}};
+  ends.end.assign(std::size_t{ends.tall} * ends.wide, pattern.max_range);
+  return ends;
 }
 
-std::vector<SelectedTile> tiles_with_bricks(const StationRays& rays, const TraceStation& station) {
+TileEnds tiles_with_bricks(const StationRays& rays, const TraceStation& station) {
   const RayPattern& pattern = rays.pattern();
   const VoxelGrid& grid = rays.grid();
   const double reach = static_cast<double>(rays.noise().reach());
   // If noise may carry a point through the head to its other side, the rays of that side are needed.
   if (reach > 0 && reach >= static_cast<double>(pattern.min_range)) return all_tiles(pattern);
 
-  const std::uint32_t wide = tiles_across(pattern.columns());
-  std::vector<float> ends(std::size_t{wide} * tiles_across(pattern.rows()), 0.0f);
+  TileEnds tiles{tiles_across(pattern.rows()), tiles_across(pattern.columns()), {}};
+  const std::uint32_t wide = tiles.wide;
+  std::vector<float>& ends = tiles.end;
+  ends.assign(std::size_t{tiles.tall} * wide, 0.0f);
   const Vec3 head{station.origin.x, station.origin.y, station.origin.z};
   const Vec3 min{grid.min()[0], grid.min()[1], grid.min()[2]};
   const double side = grid.voxel_size() * (1 << brick_bits), cube = grid.voxel_size() * (1 << grid.depth());
@@ -76,11 +75,15 @@ std::vector<SelectedTile> tiles_with_bricks(const StationRays& rays, const Trace
     }
   });
 
+  for (float& end : ends) end = end > pattern.min_range ? std::min(end, pattern.max_range) : 0.0f;
+  return tiles;
+}
+
+std::vector<SelectedTile> selected(const TileEnds& ends, const RayPattern& pattern) {
   std::vector<SelectedTile> tiles;
-  for (std::uint32_t k = 0; k < ends.size(); ++k) {
-    if (ends[k] > pattern.min_range)
-      tiles.push_back({tile_at(pattern, k / wide, k % wide), std::min(ends[k], pattern.max_range)});
-  }
+  for (std::uint32_t a = 0; a < ends.tall; ++a)
+    for (std::uint32_t b = 0; b < ends.wide; ++b)
+      if (ends.of(a, b) > 0) tiles.push_back({tile_at(pattern, a, b), ends.of(a, b)});
   return tiles;
 }
 

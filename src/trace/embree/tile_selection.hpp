@@ -9,16 +9,26 @@
 
 namespace vantage {
 
+// How far the rays of each tile must be traced; 0: not at all.
+struct TileEnds {
+  std::uint32_t tall = 0, wide = 0;  // tiles
+  std::vector<float> end;            // [row of tiles][column of tiles]
+  float of(std::uint32_t a, std::uint32_t b) const { return end[std::size_t{a} * wide + b]; }
+};
+
+// All tiles of the pattern, to its full range.
+TileEnds all_tiles(const RayPattern& pattern);
+
+// Tiles in which a surveyed brick lies as seen from `station`. Rays left out, and parts of rays beyond their end, hold
+// no point that counts and no hit that hides one.
+TileEnds tiles_with_bricks(const StationRays& rays, const TraceStation& station);
+
 struct SelectedTile {
   RayTile tile;
   float end = 0;  // rays need not be traced further
 };
 
-// All tiles of the pattern, to its full range.
-std::vector<SelectedTile> all_tiles(const RayPattern& pattern);
-
-// Tiles in which a surveyed brick lies as seen from `station`. Rays left out, and parts of rays beyond their end, hold
-// no point that counts and no hit that hides one.
-std::vector<SelectedTile> tiles_with_bricks(const StationRays& rays, const TraceStation& station);
+// Tiles that must be traced.
+std::vector<SelectedTile> selected(const TileEnds& ends, const RayPattern& pattern);
 
 }  // namespace vantage

@@ -61,33 +61,48 @@ class VoxelLookup {
     ++size_;
   }
 
-  // Calls f with the index of the surveyed voxel of each point that lies in one, in order. Inlined, to be compiled for
-  // the caller's target.
+  // As n calls of add() after clear(), with point(0), point(1), …, in a loop of vectors.
+  template <class Point>
+  [[gnu::always_inline]] void set(std::uint32_t n, const Point& point) {
+    size_ = n;
+    for (std::uint32_t k = 0; k < n; ++k) {
+      const Float3 p = point(k);
+      x_[k] = p.x;
+      y_[k] = p.y;
+      z_[k] = p.z;
+    }
+  }
+
+  // Calls f(index, points) with the surveyed voxel of each run of points that lie in one, in order. Inlined, to be
+  // compiled for the caller's target.
   template <class F>
-  [[gnu::always_inline]] void each_index(const F& f) {
+  [[gnu::always_inline]] void each_run(const F& f) {
+    if (size_ == 0) return;
     find_cells();
-    const std::uint32_t runs = find_runs();
+    const std::uint32_t cells = find_changes();
+    const std::uint32_t runs = find_runs(cells);
     for (std::uint32_t r = 0; r < runs; ++r) find_brick(runs_[r]);
-    std::uint32_t k = 0;
+    std::uint32_t c = 0;
     for (std::uint32_t r = 0; r < runs; ++r) {
       const std::uint32_t index = runs_[r].slot, end = runs_[r].end;
       if (index == empty_slot) {
-        k = end;
+        c = end;
         continue;
       }
       const VoxelBrick& brick = bricks_[index];
-      for (; k < end; ++k) {
-        const std::uint32_t w = code_[k] / 64;
-        const std::uint64_t word = BrickPrefixes::word(brick, w), flag = std::uint64_t{1} << (code_[k] % 64);
+      for (; c < end; ++c) {
+        const std::uint32_t code = code_[begin_[c]], w = code / 64;
+        const std::uint64_t word = BrickPrefixes::word(brick, w), flag = std::uint64_t{1} << (code % 64);
         if ((word & flag) == 0) continue;
-        f(brick.first + prefixes_.before(index, w) + static_cast<std::uint32_t>(std::popcount(word & (flag - 1))));
+        f(brick.first + prefixes_.before(index, w) + static_cast<std::uint32_t>(std::popcount(word & (flag - 1))),
+          begin_[c + 1] - begin_[c]);
       }
     }
   }
 
  private:
-  struct Run {            // points in one brick
-    std::uint32_t point;  // any of them
+  struct Run {            // cells of one brick
+    std::uint32_t point;  // in any of them
     std::uint32_t slot;   // slot to look up; then the brick's index
     std::uint32_t end;
   };
@@ -112,14 +127,31 @@ class VoxelLookup {
   }
   static std::uint32_t spread(std::uint32_t i) { return (i & 1) | (i & 2) << 2 | (i & 4) << 4; }
 
-  [[gnu::always_inline]] std::uint32_t find_runs() {
+  // Finds where the cell changes from one point to the next. Without a branch: nothing could foresee it.
+  [[gnu::always_inline]] std::uint32_t find_changes() {
+    for (std::uint32_t p = 1; p < size_; ++p) {
+      brick_changes_[p] = (a_[p] ^ a_[p - 1]) | (b_[p] ^ b_[p - 1]) | (c_[p] ^ c_[p - 1]);
+      changes_[p] = brick_changes_[p] | (code_[p] ^ code_[p - 1]);
+    }
+    begin_[0] = 0;
+    std::uint32_t cells = 1;
+    for (std::uint32_t p = 1; p < size_; ++p) {
+      begin_[cells] = p;
+      cells += changes_[p] != 0;
+    }
+    begin_[cells] = size_;
+    return cells;
+  }
+
+  [[gnu::always_inline]] std::uint32_t find_runs(std::uint32_t cells) {
     std::uint32_t runs = 0;
-    for (std::uint32_t p = 0; p < size_; ++p) {
-      if (p == 0 || ((a_[p] ^ a_[p - 1]) | (b_[p] ^ b_[p - 1]) | (c_[p] ^ c_[p - 1])) != 0) {
+    for (std::uint32_t c = 0; c < cells; ++c) {
+      const std::uint32_t p = begin_[c];
+      if (p == 0 || brick_changes_[p] != 0) {
         runs_[runs++] = {p, slot_[p], 0};
         __builtin_prefetch(&slots_[slot_[p]]);
       }
-      runs_[runs - 1].end = p + 1;
+      runs_[runs - 1].end = c + 1;
     }
     return runs;
   }
@@ -152,6 +184,8 @@ class VoxelLookup {
   alignas(64) std::array<float, capacity> x_, y_, z_;
   alignas(64) std::array<std::uint32_t, capacity> a_, b_, c_;    // brick coordinates; a is empty_slot outside the cube
   alignas(64) std::array<std::uint32_t, capacity> slot_, code_;  // slot by the hash; Morton code in the brick
+  alignas(64) std::array<std::uint32_t, capacity> changes_, brick_changes_;  // from the point before; 0: none
+  std::array<std::uint32_t, capacity + 1> begin_;                            // first point of each run in one cell
   std::array<Run, capacity> runs_;
 };
 

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// The hits of all rays of a station, by drawing. The rays leave one point in a grid of azimuth and zenith, so the
+// nearest triangle of each is a picture of the scene. A triangle is drawn column by column: with the ray's direction
+// (sin θ cos φ, sin θ sin φ, cos θ), an edge is A sin θ + B cos θ >= 0 in a column, and the inverse of the distance is
+// C sin θ + D cos θ. Drawing is certain of nearly all rays. RayCaster traces the others, so that each ray has the hit
+// that RayCaster would give it.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "trace/embree/station_rays.hpp"
+#include "trace/embree/tile_selection.hpp"
+
+namespace vantage {
+
+class Picture {
+ public:
+  static constexpr std::uint32_t none = 0x7FFFFFFFu;      // no hit, among a strip's triangles
+  static constexpr std::uint32_t wide = RayTile::side;    // columns of a strip
+  static constexpr std::uint32_t block = RayTile::side;   // rows that are stored together
+
+  // Whether drawing is faster than tracing.
+  static bool pays(std::size_t triangles, std::uint64_t rays);
+
+  // Of the rays within `ends`. Borrows all.
+  Picture(const StationRays& rays, const TraceStation& station, const TileEnds& ends);
+
+  // It cannot from a head that stands in a surface.
+  bool drawable() const { return drawable_; }
+  std::uint32_t strips() const { return ends_.wide; }
+
+  template <class Value>
+  struct alignas(64) Block {
+    Value of[block];
+  };
+  // A column of tiles: `wide` columns of rays, with all rows. Kept to be used again.
+  struct Strip {
+    std::uint32_t first = 0, columns = 0;  // of the pattern
+    std::uint64_t rays = 0;                // within the ends
+    std::uint64_t traced = 0;              // of these, rays that drawing was not certain of
+    // Of the rays of a column, by rows.
+    const std::uint32_t* triangles(std::uint32_t column) const { return triangle_[column * blocks_].of; }
+
+   private:
+    friend class Picture;
+    std::uint32_t blocks_ = 0;
+    std::vector<Block<float>> inverse_;           // [column][row] of the distance of the nearest so far
+    std::vector<Block<std::uint32_t>> triangle_;  // [column][row] the nearest; `in_doubt` beside it unless certain
+    std::vector<float> farthest_;                 // [tile] at most the least of its inverse_
+    std::vector<std::uint8_t> stale_;             // [tile] farthest_ may be too small
+    std::vector<std::uint8_t> doubts_;            // [tile] has rays in doubt
+  };
+
+  // Of the zeniths, by row; readable up to eight beyond the last.
+  const float* sines() const { return sine_.front().of; }
+  const float* cosines() const { return cosine_.front().of; }
+
+  // Finds the hits of a strip's rays; those outside `ends` have none.
+  void draw(std::uint32_t index, Strip& strip) const;
+
+ private:
+  // Where a triangle is to be drawn.
+  struct Item {
+    float nearest;  // inverse distance that no hit exceeds
+    std::uint32_t triangle;
+    std::uint32_t row_begin, row_end, column_begin, column_end;
+    bool operator<(const Item& other) const;
+  };
+  class StripDrawing;
+
+  // Appends where it is to be drawn. Returns false if nothing can be, for the sake of this triangle.
+  bool place(std::uint32_t triangle, std::vector<Item>& items) const;
+  void draw_triangles(std::uint32_t index, Strip& strip) const;
+  void trace_doubts(std::uint32_t index, Strip& strip) const;
+
+  const StationRays& rays_;
+  const TraceStation& station_;
+  const TileEnds& ends_;
+  float start_ = 0;                     // inverse of the least range
+  float farthest_ = 0;                  // of the ends
+  bool drawable_ = true;
+  std::vector<Item> items_;             // strip by strip, near ones first
+  std::vector<std::size_t> begin_;      // [strip] in items_
+  std::vector<Block<float>> sine_, cosine_;  // of the zeniths; 0 beyond the last
+};
+
+}  // namespace vantage

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trace/embree/picture.hpp"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "scan/limit_model.hpp"
+#include "support/random_sites.hpp"
+#include "support/trace_scenes.hpp"
+#include "trace/embree/embree_tracer.hpp"
+
+namespace vantage {
+namespace {
+
+using Corners = std::vector<Float3>;
+
+struct Compared {
+  std::uint64_t rays = 0, hits = 0, differ = 0, traced = 0;
+  bool drawable = true;
+};
+
+// Draws all rays of a station, and traces them.
+Compared compare(const TraceScene& scene, const TraceStation& station, const TileEnds& ends) {
+  const StationRays rays(std::make_shared<const EmbreeScene>(scene), scene.scanners[station.scanner]);
+  const Picture picture(rays, station, ends);
+  Compared compared;
+  compared.drawable = picture.drawable();
+  if (!picture.drawable()) return compared;
+  Picture::Strip strip;
+  auto bundle = std::make_unique<RayBundle>();
+  for (std::uint32_t b = 0; b < picture.strips(); ++b) {
+    picture.draw(b, strip);
+    compared.traced += strip.traced;
+    compared.rays += strip.rays;
+    for (std::uint32_t a = 0; a < ends.tall; ++a) {
+      RayTile tile{a * RayTile::side, b * RayTile::side, 0, 0};
+      tile.rows = std::min(RayTile::side, rays.pattern().rows() - tile.row);
+      tile.columns = std::min(RayTile::side, rays.pattern().columns() - tile.column);
+      rays.gather(station, tile, ends.of(a, b), *bundle);
+      if (ends.of(a, b) > 0) rays.caster().cast(*bundle);
+      for (std::uint32_t k = 0; k < bundle->size; ++k) {
+        const std::uint32_t drawn = strip.triangles(k % tile.columns)[tile.row + k / tile.columns];
+        const std::uint32_t traced = ends.of(a, b) > 0 ? bundle->primitive[k] : RayBundle::no_hit;
+        compared.hits += drawn != Picture::none;
+        compared.differ += drawn != (traced == RayBundle::no_hit ? Picture::none : traced);
+      }
+    }
+  }
+  return compared;
+}
+
+Compared compare(const TraceScene& scene, const TraceStation& station) {
+  return compare(scene, station, all_tiles(*scene.scanners[station.scanner].pattern));
+}
+
+Scanner scanner(double step_deg) {
+  Scanner scanner;
+  scanner.azimuth_step = scanner.zenith_step = Angle::degrees(step_deg);
+  scanner.vertical_angle = Angle::degrees(360);
+  scanner.min_range_m = 0.1;
+  scanner.max_range_m = 60;
+  return scanner;
+}
+
+TraceScene scene_of(const Corners& corners, const Scanner& with) {
+  return test::trace_scene(test::SceneBuilder().mesh(Role::surveyed, corners).finish(), with, 1);
+}
+
+Corners box(const Float3& low, const Float3& high) {
+  Corners all;
+  const Float3 size{high.x - low.x, high.y - low.y, high.z - low.z};
+  const auto add = [&](const Float3& at, const Float3& u, const Float3& v) {
+    const Corners side = test::quad(at, u, v);
+    all.insert(all.end(), side.begin(), side.end());
+  };
+  for (const bool far : {false, true}) {
+    add({far ? high.x : low.x, low.y, low.z}, {0, size.y, 0}, {0, 0, size.z});
+    add({low.x, far ? high.y : low.y, low.z}, {size.x, 0, 0}, {0, 0, size.z});
+    add({low.x, low.y, far ? high.z : low.z}, {size.x, 0, 0}, {0, size.y, 0});
+  }
+  return all;
+}
+
+// A room with a table, from inside: the axis meets floor and ceiling, walls cross the seam of the azimuths, and the
+// head lies in the planes of edges, in that of the table's top, and straight above a corner.
+TEST(Picture, ARoomIsWhatTracingFinds) {
+  Corners corners = box({-4, -3, 0}, {5, 6, 2.5});
+  const Corners table = box({1, -1, 0.7f}, {2, 1, 0.75f}), cupboard = box({-1, 3, 0}, {1, 3.5, 2});
+  corners.insert(corners.end(), table.begin(), table.end());
+  corners.insert(corners.end(), cupboard.begin(), cupboard.end());
+  const TraceScene scene = scene_of(corners, scanner(0.4));
+  const auto turn = make_turn({.heading = Angle::degrees(33), .tilt = Angle::degrees(71)});
+  for (const Float3& head : {Float3{0.3f, 0.2f, 1.6f}, {0, 0, 1.5}, {1, -1, 1.7f}, {-2, 0, 0.75f}, {1, 2, 2}})
+    for (const bool turned : {false, true}) {
+      SCOPED_TRACE(std::to_string(head.x) + (turned ? ", turned" : ""));
+      const Compared compared = compare(scene, {head, 0, 0, turned ? turn : std::nullopt});
+      EXPECT_TRUE(compared.drawable);
+      EXPECT_EQ(compared.differ, 0u);
+      EXPECT_EQ(compared.hits, compared.rays);
+      EXPECT_LT(static_cast<double>(compared.traced), 0.03 * static_cast<double>(compared.rays));
+    }
+}
+
+// Sheets far nearer to each other than float tells apart, and in one place.
+TEST(Picture, TheNearestOfSheetsIsFoundToTheLastBit) {
+  Corners corners;
+  for (const float gap : {0.0f, 1e-6f, 3e-6f, 1e-5f, 1e-4f, 2e-4f, 0.0f}) {
+    const Corners sheet = test::quad({-8, 3 + gap, -5}, {16, 7, 0}, {0, 0.3f, 10});
+    corners.insert(corners.end(), sheet.begin(), sheet.end());
+  }
+  const Compared compared = compare(scene_of(corners, scanner(0.5)), {{0.1f, 0.2f, 0.3f}});
+  EXPECT_EQ(compared.differ, 0u);
+  EXPECT_GT(compared.hits, compared.rays / 12);
+  EXPECT_LT(compared.traced, compared.rays / 50);
+}
+
+TEST(Picture, AHeadInASurfaceIsNotDrawn) {
+  const TraceScene scene = scene_of(test::quad({-3, -3, 0}, {6, 0, 0}, {0, 6, 0}), scanner(2));
+  EXPECT_FALSE(compare(scene, {{0.5f, 0.25f, 0}}).drawable);
+  EXPECT_TRUE(compare(scene, {{0.5f, 0.25f, 0.01f}}).drawable);
+  EXPECT_TRUE(compare(scene, {{30, 0.25f, 0}}).drawable);
+}
+
+TEST(Picture, RaysOutsideTheEndsHaveNoHit) {
+  const TraceScene scene = scene_of(box({-4, -3, 0}, {5, 6, 2.5}), scanner(0.5));
+  TileEnds ends = all_tiles(*scene.scanners[0].pattern);
+  RandomStream random(5);
+  for (float& end : ends.end) end = random.uniform() < 0.5 ? 0.0f : test::between(random, 1, 6);
+  const Compared compared = compare(scene, {{0.3f, 0.2f, 1.6f}}, ends);
+  EXPECT_EQ(compared.differ, 0u);
+  EXPECT_GT(compared.hits, 0u);
+  EXPECT_LT(compared.hits, compared.rays);
+}
+
+// A float of one of many sizes, or a round one: many scenes have corners that lie exactly above each other.
+float coordinate() {
+  const int kind = *rc::gen::inRange(0, 4);
+  if (kind == 0) return static_cast<float>(*rc::gen::inRange(-3, 4));
+  if (kind == 1) return static_cast<float>(*rc::gen::inRange(-1000000, 1000001)) * 1e-8f;
+  return static_cast<float>(*rc::gen::inRange(-1000000, 1000001)) * 4e-6f;
+}
+
+RC_GTEST_PROP(Picture, OfAnyTrianglesIsWhatTracingFinds, ()) {
+  Corners corners;
+  const int triangles = *rc::gen::inRange(1, 60);
+  for (int k = 0; k < triangles; ++k) {
+    const Float3 a{coordinate(), coordinate(), coordinate()}, b{coordinate(), coordinate(), coordinate()};
+    Float3 c{coordinate(), coordinate(), coordinate()};
+    const int kind = *rc::gen::inRange(0, 6);
+    if (kind == 0) c = {a.x + 0.5f * (b.x - a.x), a.y + 0.5f * (b.y - a.y), a.z + 0.5f * (b.z - a.z)};  // nearly a line
+    if (kind == 1) c = {b.x, b.y, std::nextafter(b.z, 100.0f)};
+    if (kind == 2) c = {a.x, a.y, b.z};  // upright
+    corners.insert(corners.end(), {a, b, c});
+  }
+  Scanner with = scanner(*rc::gen::inRange(70, 150) * 0.01);
+  with.min_range_m = *rc::gen::inRange(0, 3) * 0.4;
+  with.max_range_m = *rc::gen::inRange(0, 2) == 0 ? 3 : 60;
+  with.horizontal_angle = Angle::degrees(*rc::gen::inRange(0, 3) == 0 ? 230 : 360);
+  with.heading = Angle::degrees(*rc::gen::inRange(0, 4) * 45);
+  Float3 head{coordinate(), coordinate(), coordinate()};
+  const int place = *rc::gen::inRange(0, 6);
+  const Float3 &a = corners[0], &b = corners[1], &c = corners[2];
+  if (place == 0) head = {2 * a.x - b.x, 2 * a.y - b.y, 2 * a.z - b.z};  // in the plane of the first triangle
+  if (place == 1) head = {a.x, a.y, a.z + 1};                           // above a corner
+  if (place == 2)  // just off a surface
+    head = {(a.x + b.x + c.x) / 3, (a.y + b.y + c.y) / 3, (a.z + b.z + c.z) / 3 + 1e-4f};
+  TraceStation station{head};
+  if (*rc::gen::inRange(0, 3) == 0)
+    station.turn = make_turn({.heading = Angle::degrees(*rc::gen::inRange(0, 360)),
+                              .tilt = Angle::degrees(*rc::gen::inRange(0, 181))});
+  const Compared compared = compare(scene_of(corners, with), station);
+  RC_TAG(std::string(compared.drawable ? "drawn" : "in a surface"));
+  RC_ASSERT(compared.differ == 0u);
+}
+
+void expect_equal(const NetworkCounts& a, const NetworkCounts& b) {
+  EXPECT_EQ(a.rays, b.rays);
+  EXPECT_EQ(a.points, b.points);
+  EXPECT_EQ(a.points_on_surveyed, b.points_on_surveyed);
+  EXPECT_EQ(a.seen, b.seen);
+  EXPECT_EQ(a.shared, b.shared);
+  ASSERT_EQ(a.dropped.size(), b.dropped.size());
+  for (std::size_t k = 0; k < a.dropped.size(); ++k) EXPECT_EQ(a.dropped[k].points, b.dropped[k].points);
+}
+
+// Noise, limits, skipping, turned stations: the counts of drawing and tracing, voxel by voxel.
+TEST(Picture, CountsAreThoseOfTracing) {
+  std::uint64_t points = 0;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    const test::RandomSite site = test::random_site(seed);
+    std::vector<TraceStation> stations = site.stations;
+    stations[1].turn = make_turn({.heading = Angle::degrees(20), .tilt = Angle::degrees(120)});
+    const auto n = static_cast<std::uint32_t>(stations.size());
+    for (const bool noisy : {false, true})
+      for (const bool limited : {false, true}) {
+        TraceScene scene = site.scene;
+        if (!noisy) scene.scanners[0].noise = std::make_shared<const NoiseModel>();
+        if (limited) {
+          LimitModel limits;
+          limits.meshes.assign(scene.scene->meshes.size(), {.least_cosine_square = 0.2f});
+          scene.scanners[0].limits = std::make_shared<const LimitModel>(limits);
+        }
+        scene.whole_scans = WholeScans::drawn;
+        const auto drawing = make_embree_tracer(scene);
+        scene.whole_scans = WholeScans::traced;
+        const auto tracing = make_embree_tracer(scene);
+        for (const bool skip : {false, true}) {
+          SCOPED_TRACE("seed " + std::to_string(seed) + (noisy ? ", noise" : "") + (limited ? ", limits" : "") +
+                       (skip ? ", skipping" : ""));
+          VoxelField drawn, traced;
+          expect_equal(drawing->count(stations, n, {true, skip, &drawn}, {}),
+                       tracing->count(stations, n, {true, skip, &traced}, {}));
+          EXPECT_EQ(drawn.count, traced.count);
+          EXPECT_EQ(drawn.stations, traced.stations);
+          for (const std::uint32_t count : drawn.count) points += count;
+        }
+      }
+  }
+  EXPECT_GT(points, 10'000u);
+}
+
+// Drawing has to look at every triangle, and most pay for themselves only where they are larger than a few rays.
+TEST(Picture, PaysWhereTrianglesHaveEnoughRays) {
+  EXPECT_TRUE(Picture::pays(3'000, 1'000'000));
+  EXPECT_FALSE(Picture::pays(3'000'000, 1'000'000));
+}
+
+}  // namespace
+}  // namespace vantage
