@@ -230,7 +230,7 @@ std::string front_json(const PlanResult& result, const Simulator& simulator) {
     json["answer"] = chosen + 1;
     json["met"] = met(result);
     json["what_would_help"] = what_would_help(result);
-    json["summary"] = to_json(summary_lines(result.front[chosen], result.problem.requirements));
+    json["summary"] = to_json(summary_lines(result));
   }
   if (result.candidates)
     json["visible"] = {{"coverage", result.candidates->visible().value},

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "vantage/report.hpp"
+#include "vantage/summary.hpp"
 
 namespace vantage {
 
@@ -25,6 +26,7 @@ struct Report {
   std::vector<Requirement> requirements = {};  // on the networks
   std::vector<Objective> measures = {};        // of every network
   std::vector<Objective> front_axes = {};      // to the right, up, and by colour if there is a third; empty: no front
+  std::vector<SummaryLine> ground = {};        // a plane laid under the model, and floor that is not entered
   std::string parameters = "{}";               // JSON text of an object
   // Views of the answer's stations: a JPEG each, empty if there is none; or none at all.
   std::vector<std::vector<std::uint8_t>> pictures = {};

@@ -101,7 +101,9 @@ Sheet summary_sheet(const Report& report, const Simulator& simulator, const Sear
   sheet.y += 32;
   sheet.words(kMargin, "Laser scanning survey plan: " + report.question, {.size = 10, .colour = kFaint});
   sheet.y += 14;
-  for (const auto& [heading, text] : summary_lines(network, report.requirements)) {
+  std::vector<SummaryLine> lines = summary_lines(network, report.requirements);
+  lines.insert(lines.end(), report.ground.begin(), report.ground.end());
+  for (const auto& [heading, text] : lines) {
     sheet.canvas->text({kMargin, sheet.y}, heading,
                        {.size = 10, .bold = true, .colour = heading == "to do" ? kAlert : Colour{0.15, 0.15, 0.17}});
     sheet.words(kMargin + 68, text, {.size = 10});
