@@ -39,7 +39,7 @@ Options<WalkableOptions> walkable_options() {
       .add("passage_width_m", &WalkableOptions::passage_width_m, "Width of the narrowest opening that a person passes.")
       .add("passage_height_m", &WalkableOptions::passage_height_m, "Height of the lowest opening that a person passes.")
       .add("climb_m", &WalkableOptions::climb_m, "Highest step that a person takes.")
-      .add("enter", &WalkableOptions::enter, "Entrance of the site, (x, y, z); None: found automatically.")
+      .add("enter", &WalkableOptions::enter, "Entrances of the site, a list of (x, y, z); empty: found automatically.")
       .add("levels", &WalkableOptions::levels, "Lowest and highest height of ground; None: any.")
       .add<std::vector<Rings>>(
           "within", [regions](const WalkableOptions& o) { return regions(o.within); },

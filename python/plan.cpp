@@ -289,7 +289,7 @@ void add_results(py::module_& m) {
       .def_property_readonly(
           "summary",
           [](const Plan& plan) {
-            return summary_text(plan.result.front.at(answer(plan.result)), plan.result.problem.requirements);
+            return summary_text(plan.result);
           },
           "Summary of the answer in plain words.")
       .def(

@@ -40,7 +40,9 @@ std::size_t read_settings(const SettingTable<Options>& table, Options& options, 
     ++taken;
     const py::object value = given[word.c_str()];
     if (value.is_none()) continue;
-    if (row.repeated && !py::isinstance<py::str>(value))
+    const bool one_point = py::isinstance<py::sequence>(value) && !py::isinstance<py::str>(value) &&
+                           py::len(value) > 0 && py::hasattr(value[py::int_(0)], "__float__");
+    if (row.repeated && !one_point && !py::isinstance<py::str>(value))
       for (const py::handle item : value) row.set(options, setting_text(item, word), word);
     else
       row.set(options, setting_text(value, word), word);

@@ -3,7 +3,7 @@
 # tests/nightly.sh [part...]
 # What takes too long for `ctest --preset release` and `.ci/run`, after `./setup.sh --tests`; without arguments, all parts, one after the other:
 #
-#   sites      conformance and stress on every engine, with every case of the suite's own; plans of a street and a plant; more random sites
+#   sites      conformance and stress on every engine, with every case of the suite's own; plans of a street and a plant; more random sites, 200 of them walked
 #   faults     every n of the faults of device, disk and process, and every number for every option
 #   address, undefined, thread
 #              every suite under that sanitizer (tests/sanitizers/check.sh)
@@ -28,6 +28,7 @@ sites() {
   run "$tests/conformance/conformance_test" --gtest_brief=1
   VANTAGE_WHOLE_SITES=1 run "$tests/stress/stress_test" --gtest_brief=1
   VANTAGE_WHOLE_SITES=1 run "$tests/sites/sites_test" --gtest_brief=1 --gtest_filter='*Plans*'
+  VANTAGE_SEEDS=1..200 run "$tests/sites/sites_test" --gtest_brief=1 --gtest_filter='RandomSites.*'
   VANTAGE_SEEDS=5..20 run "$tests/conformance/conformance_test" --gtest_brief=1 --gtest_filter='*RandomSites*'
 }
 

@@ -39,7 +39,7 @@ struct WalkableOptions {
   double passage_width_m = 0.6;    ///< Width of the narrowest opening that a person passes.
   double passage_height_m = 1.9;   ///< Height of the lowest such opening.
   double climb_m = 0.25;           ///< Highest step that a person takes.
-  std::optional<Vec3> enter = {};  ///< Entrance of the site, survey frame; empty: found automatically.
+  std::vector<Vec3> enter = {};  ///< Entrances of the site, survey frame; empty: found automatically.
   /// Lowest and highest level of the ground, survey frame. Like the two below, it also limits a marked search area.
   std::optional<std::array<double, 2>> levels = {};
   std::vector<PlanRegion> within = {};   ///< If not empty, only ground in one of these.
@@ -74,12 +74,18 @@ struct LeftOut {
   std::vector<std::array<std::uint32_t, 3>> triangles = {};
 };
 
+/// Floor as large as a room that nothing leads to: behind closed doors, or on a storey without a stair.
+struct NotEntered {
+  double area_m2 = 0;
+  Vec3 place;  ///< In its middle, survey frame; as one of `WalkableOptions::enter` it opens the part.
+};
+
 /// The search area: maps (u, v) to the ground through a quadtree (section 4.2). Immutable; copies share storage; safe
 /// to read from any thread.
 class SearchArea {
  public:
   /// Returns the scene's marked search area; meshes with `MeshInfo::station_area` take precedence. If there is no such
-  /// mesh, or none with (u, v), charts in true proportion are made. If no ground is found around the model, a
+  /// mesh, or none with (u, v), charts in true proportion are made. If no ground is found around or inside the model, a
   /// horizontal plane is laid under its lowest point; it extends beyond every side by the model's largest extent.
   /// `description()` says what was done.
   /// Throws Error: invalid_argument when the scene has neither a mesh nor a usable search area, an option is out of its
@@ -96,6 +102,9 @@ class SearchArea {
   const WalkableOptions& options() const noexcept;  ///< Options it was built with.
   /// Largest area first. For a marked search area, only what lies outside the limits.
   std::span<const LeftOut> left_out() const noexcept;
+  std::span<const NotEntered> not_entered() const noexcept;  ///< Largest first.
+  std::span<const Vec3> entries() const noexcept;            ///< Where the site is entered, survey frame.
+  bool on_plane() const noexcept;                            ///< Whether a plane was laid under the model.
   /// Ground point under (u, v), survey frame; empty in a hole. Points on an edge or a vertex are always found, and so
   /// are points at most 1e-9 of the (u, v) extent outside. If charts overlap, the first triangle of the mesh wins.
   std::optional<Vec3> locate(Uv uv) const;

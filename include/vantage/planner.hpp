@@ -159,6 +159,7 @@ struct PlanResult {
   PlanConfig config;
   std::size_t population = 0, batch = 0;  ///< In force, also if the configuration left them open.
   WalkableOptions walkable;               ///< Settings of the search area.
+  std::optional<SearchArea> area = {};    ///< Search area, if the plan was made of a `Site`.
   SecurityVolume security;                ///< Setting of the clash checker.
   std::vector<Scanner> scanners;          ///< Indexed by `StationSetup::scanner`.
   /// Measures of every network: the objectives, then those of requirements, then coverage and overlap.

@@ -48,7 +48,7 @@ struct SiteOptions {
   std::optional<Angle> max_slope = {};
   std::optional<double> headroom_m = {}, min_area_m2 = {}, climb_m = {};
   std::optional<std::array<double, 2>> passage_m = {};  ///< Width and height.
-  std::optional<Vec3> enter = {};
+  std::vector<Vec3> enter = {};  ///< Where one enters; empty: found.
   std::optional<std::array<double, 2>> levels_m = {};  ///< Lowest and highest ground.
   std::vector<PlanRegion> within = {}, without = {};
 
@@ -97,7 +97,7 @@ class Site {
   /// Index of a scanner in `scanners()`, which it joins if it is new. Throws Error invalid_argument if it fails
   /// `Scanner::check`, or is new once the simulator exists.
   std::uint32_t place_of(const Scanner& scanner);
-  /// Factor of default lengths for scenes of unusual size; 1 from 2 m to 200 m.
+  /// Factor of default lengths for scenes smaller than a site; 1 from 2 m.
   double length_scale() const noexcept;
   const SimulatorConfig& simulator_config() const noexcept;
   const WalkableOptions& walkable() const noexcept;

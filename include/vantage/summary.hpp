@@ -27,6 +27,12 @@ struct SummaryLine {
 };
 /// Figures of a network in words, then advice on stations that are left out, missing links and violated requirements.
 std::vector<SummaryLine> summary_lines(const Evaluation& evaluation, std::span<const Requirement> requirements = {});
+/// The same of a plan's answer. The first line tells of a plane laid under the model, the last ones of floor that is
+/// not entered.
+std::vector<SummaryLine> summary_lines(const PlanResult& result);
+std::string summary_text(const PlanResult& result);
+/// Lines on the ground alone: a plane laid under the model, and floor that is not entered.
+std::vector<SummaryLine> ground_lines(const SearchArea& area);
 /// The same as lines for a terminal.
 std::string summary_text(const Evaluation& evaluation, std::span<const Requirement> requirements = {});
 

@@ -239,7 +239,7 @@ class SearchArea:
         passage_width_m: float = 0.6,
         passage_height_m: float = 1.9,
         climb_m: float = 0.25,
-        enter: Optional[Sequence[float]] = None,
+        enter: Sequence[Sequence[float]] = [],
         levels: Optional[Tuple[float, float]] = None,
         within: Sequence[Rings] = [],
         without: Sequence[Rings] = [],

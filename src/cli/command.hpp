@@ -12,7 +12,7 @@
 
 namespace vantage::cli {
 
-// exit_unmet: there are results, but no network meets the requirements.
+// exit_unmet: there are results, but no network meets the requirements, or floor as large as a room is not entered.
 enum ExitCode : int { exit_ok = 0, exit_failed = 1, exit_usage = 2, exit_unmet = 3 };
 
 // Surroundings of a command.

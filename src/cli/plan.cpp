@@ -294,7 +294,8 @@ int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {
   if (result.front.empty())
     throw Error(Errc::invalid_argument,
                 "there is nothing to write: the search ended before its first networks were evaluated");
-  const int code = result.problem.requirements.empty() || met(result) ? exit_ok : exit_unmet;
+  const bool whole = !result.area || result.area->not_entered().empty();
+  const int code = whole && (result.problem.requirements.empty() || met(result)) ? exit_ok : exit_unmet;
   const auto show = [&] {
     program.console.print(options.json ? front_json(result, simulator) + "\n"
                                        : plan_text(result, answer(result), folder.string()));

@@ -28,7 +28,9 @@ std::string remarks(const PlanEntry& entry, const PlanResult& result) {
 }  // namespace
 
 std::string plan_text(const PlanResult& result, std::size_t chosen, const std::string& folder) {
-  std::string text = unmet_text(result);
+  std::string text;
+  if (result.area && result.area->on_plane()) text = ground_lines(*result.area).front().text + "\n";
+  text += unmet_text(result);
   std::vector<const Objective*> told;
   for (const Objective& measure : result.measures)
     if (!measure.by_alpha) told.push_back(&measure);
@@ -54,7 +56,7 @@ std::string plan_text(const PlanResult& result, std::size_t chosen, const std::s
       "\n" +
       station_table(entry.stations, station_names(entry.stations), entry.counts.points_on_surveyed, result.scanners) +
       "\n";
-  text += summary_text(entry);  // violated requirements follow, with advice
+  text += chosen == answer(result) ? summary_text(result) : summary_text(entry);  // violated requirements follow, with advice
   for (const std::string& help : what_would_help(result)) text += fmt::format("{:<11}{}\n", "would help", help);
   if (const std::string trade_off = trade_off_text(result); !trade_off.empty()) text += "\n" + trade_off + "\n";
   return text + "results in " + folder + "\n";

@@ -10,6 +10,7 @@
 
 #include "core/closest_name.hpp"
 #include "core/read_file.hpp"
+#include "core/utf8.hpp"
 #include "export/csv_cell.hpp"
 #include "vantage/error.hpp"
 #include "vantage/export.hpp"
@@ -135,6 +136,7 @@ class Table {
       if (line_number_ == 1 && text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // written by spreadsheets
       if (line_number_ == 1 && (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")))
         refuse("the file is UTF-16; save it as UTF-8");
+      if (!is_utf8(text)) refuse("its text is not UTF-8 (Latin-1, perhaps): save the table as UTF-8");
       if (trimmed(text).empty() || trimmed(text).front() == '#') continue;
       if (columns_.empty())
         read_header(text);

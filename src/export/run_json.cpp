@@ -251,7 +251,7 @@ std::string front_json(const PlanResult& result, const Simulator& simulator) {
     json["answer"] = chosen + 1;
     json["met"] = met(result);
     json["what_would_help"] = what_would_help(result);
-    json["summary"] = to_json(summary_lines(result.front[chosen], result.problem.requirements));
+    json["summary"] = to_json(summary_lines(result));
   }
   if (result.candidates) {
     const Estimate attainable = result.attainable.value_or(result.candidates->attainable());

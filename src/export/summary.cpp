@@ -145,9 +145,40 @@ std::vector<SummaryLine> summary_lines(const Evaluation& evaluation, std::span<c
   return lines;
 }
 
-std::string summary_text(const Evaluation& evaluation, std::span<const Requirement> requirements) {
+std::vector<SummaryLine> ground_lines(const SearchArea& area) {
+  constexpr std::size_t kMost = 5;
+  std::vector<SummaryLine> lines;
+  if (area.on_plane()) lines.push_back({"ground", "none in the model: the stations stand on " + area.description()});
+  const auto place = [](const Vec3& p) { return fixed(p.x, 2) + "," + fixed(p.y, 2) + "," + fixed(p.z, 2); };
+  std::string entries;
+  for (const Vec3& entry : area.entries()) entries += "enter " + place(entry) + " and ";
+  double rest = 0;
+  const std::span<const NotEntered> parts = area.not_entered();
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    if (k >= kMost)
+      rest += parts[k].area_m2;
+    else
+      lines.push_back({"closed", fixed(parts[k].area_m2, 1) + " m² of floor that nothing leads to; plan it too with " +
+                                     entries + "enter " + place(parts[k].place)});
+  }
+  if (rest > 0)
+    lines.push_back({"closed", fixed(rest, 1) + " m² of floor in " + std::to_string(parts.size() - kMost) +
+                                   " more such parts"});
+  return lines;
+}
+
+std::vector<SummaryLine> summary_lines(const PlanResult& result) {
+  std::vector<SummaryLine> lines = summary_lines(result.front.at(answer(result)), result.problem.requirements);
+  if (!result.area) return lines;
+  for (SummaryLine& line : ground_lines(*result.area))
+    lines.insert(line.heading == "ground" ? lines.begin() : lines.end(), std::move(line));
+  return lines;
+}
+
+namespace {
+std::string as_text(const std::vector<SummaryLine>& lines) {
   std::string text, last;
-  for (const SummaryLine& line : summary_lines(evaluation, requirements)) {
+  for (const SummaryLine& line : lines) {
     std::string heading = line.heading == last ? "" : line.heading;
     last = line.heading;
     heading.resize(11, ' ');
@@ -155,6 +186,12 @@ std::string summary_text(const Evaluation& evaluation, std::span<const Requireme
   }
   return text;
 }
+}  // namespace
+
+std::string summary_text(const Evaluation& evaluation, std::span<const Requirement> requirements) {
+  return as_text(summary_lines(evaluation, requirements));
+}
+std::string summary_text(const PlanResult& result) { return as_text(summary_lines(result)); }
 
 std::string trade_off_text(const PlanResult& result) {
   const std::vector<TradeOffPoint>& points = result.trade_off;

@@ -6,6 +6,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "core/utf8.hpp"
+
 namespace vantage::importer {
 namespace {
 
@@ -16,25 +18,6 @@ constexpr std::uint32_t kMagic = 0x46546C67, kJson = 0x4E4F534A, kBinary = 0x004
 
 void append_word(std::string& out, std::size_t value) {
   for (int shift = 0; shift < 32; shift += 8) out += static_cast<char>((value >> shift) & 0xFF);
-}
-
-// Number of bytes of the UTF-8 character at `at`; 0 if there is none.
-std::size_t character_at(const std::string& text, std::size_t at) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const unsigned char first = byte(at);
-  const std::size_t size = first < 0x80                    ? 1
-                           : first >= 0xC2 && first < 0xE0 ? 2
-                           : first >= 0xE0 && first < 0xF0 ? 3
-                           : first >= 0xF0 && first < 0xF5 ? 4
-                                                           : 0;
-  if (size == 0 || at + size > text.size()) return 0;
-  for (std::size_t i = 1; i < size; ++i)
-    if ((byte(at + i) & 0xC0) != 0x80) return 0;
-  if (size < 3) return size;
-  const unsigned char second = byte(at + 1);
-  const bool overlong = (first == 0xE0 && second < 0xA0) || (first == 0xF0 && second < 0x90);
-  const bool surrogate = first == 0xED && second > 0x9F, beyond = first == 0xF4 && second > 0x8F;
-  return overlong || surrogate || beyond ? 0 : size;
 }
 
 }  // namespace
@@ -101,13 +84,7 @@ std::string glb_bytes(json document, const std::string& binary) {
 }
 
 std::string utf8(const std::string& text) {
-  bool valid = true;
-  for (std::size_t at = 0; valid && at < text.size();) {
-    const std::size_t size = character_at(text, at);
-    valid = size > 0;
-    at += size;
-  }
-  if (valid) return text;
+  if (is_utf8(text)) return text;
   std::string out;
   for (const char c : text) {
     const auto byte = static_cast<unsigned char>(c);

@@ -355,7 +355,7 @@ bool GroundField::leads_out(const MeshTree& tree, const Part& part, std::uint32_
   return false;
 }
 
-std::optional<std::uint32_t> GroundField::choose_part(const MeshTree& tree) const {
+std::vector<std::uint32_t> GroundField::choose_parts(const MeshTree& tree) const {
   // Smallest shares of the largest part. An entrance may be small beside its hall; closed parts must be of similar
   // size.
   constexpr double large_open = 0.2, large_closed = 0.5;
@@ -363,13 +363,14 @@ std::optional<std::uint32_t> GroundField::choose_part(const MeshTree& tree) cons
   struct Candidate {
     std::uint32_t part;
     double area, z;
+    bool sky;
   };
   std::vector<Candidate> open, closed, roofs;
   for (std::uint32_t i = 0; i < parts_.size(); ++i) {
     const Part& part = parts_[i];
     if (part.area(cell_) < room()) continue;
     const bool sky = 2 * part.in_the_sky > part.samples;
-    const Candidate candidate{i, part.area(cell_), part.mean_z};
+    const Candidate candidate{i, part.area(cell_), part.mean_z, sky};
     if (sky && 2 * part.above_others > part.samples)
       roofs.push_back(candidate);
     else if (sky || part.at_door)
@@ -395,27 +396,47 @@ std::optional<std::uint32_t> GroundField::choose_part(const MeshTree& tree) cons
   });
   if (open.empty() && closed.empty()) closed = roofs;
   only_above(closed, large_closed * largest_of(closed));
-  const auto& choice = open.empty() ? closed : open;
-  if (choice.empty()) return std::nullopt;
+  auto& choice = open.empty() ? closed : open;
   double lowest = std::numeric_limits<double>::infinity();
   for (const Candidate& c : choice) lowest = std::min(lowest, c.z);
-  const Candidate* best = nullptr;
-  for (const Candidate& c : choice)
-    if (c.z <= lowest + storey && (!best || c.area > best->area || (c.area == best->area && c.part < best->part)))
-      best = &c;
-  return best->part;
+  std::erase_if(choice, [&](const Candidate& c) { return c.z > lowest + storey; });
+  std::ranges::sort(choice, [](const Candidate& a, const Candidate& b) {
+    return a.area != b.area ? a.area > b.area : a.part < b.part;
+  });
+  std::vector<std::uint32_t> parts;
+  for (const Candidate& c : choice) {
+    // Beside the largest part, what is entered from outside: dwellings of a house without the ground around it.
+    const bool dwelling = !c.sky && !choice.front().sky && !open.empty();
+    if (parts.empty() || dwelling) parts.push_back(c.part);
+  }
+  return parts;
 }
 
-void GroundField::reach(const MeshTree& tree, std::optional<glm::dvec3> enter) {
+glm::dvec3 GroundField::middle_of(std::uint32_t part) const {
+  glm::dvec2 mean(0);
+  for (std::uint32_t s = parts_[part].first; s < z_.size(); ++s)
+    if (part_[s] == part) mean += middle(column_[s]);
+  mean /= static_cast<double>(parts_[part].samples);
+  std::uint32_t best = parts_[part].first;
+  for (std::uint32_t s = best; s < z_.size(); ++s)
+    if (part_[s] == part && squared(middle(column_[s]) - mean) < squared(middle(column_[best]) - mean)) best = s;
+  const glm::dvec2 p = middle(column_[best]);
+  return {p.x, p.y, z_[best]};
+}
+
+void GroundField::reach(const MeshTree& tree, std::span<const glm::dvec3> enter) {
   access_.assign(parts_.size(), Access::unreachable);
-  std::optional<std::uint32_t> start;  // index of a sample
-  if (enter) {
+  const auto place = [&](std::uint32_t s) {
+    const glm::dvec2 p = middle(column_[s]);
+    return glm::dvec3{p.x, p.y, z_[s]};
+  };
+  for (const glm::dvec3& wanted : enter) {
     const double within = 2 * radius_ / 0.3;  // 2 m for a passage of 0.6 m
     double best = within * within;
+    std::optional<std::uint32_t> start;
     for (std::uint32_t s = 0; s < z_.size(); ++s) {
       if (part_[s] == nowhere) continue;
-      const glm::dvec2 p = middle(column_[s]);
-      const glm::dvec3 d = glm::dvec3{p.x, p.y, z_[s]} - *enter;
+      const glm::dvec3 d = place(s) - wanted;
       if (dot(d, d) < best) best = dot(d, d), start = s;
     }
     if (!start) {
@@ -424,26 +445,43 @@ void GroundField::reach(const MeshTree& tree, std::optional<glm::dvec3> enter) {
       throw Error(Errc::invalid_argument, text.str());
     }
     access_[part_[*start]] = Access::reached;
-  } else if (border_) {
+    entries_.push_back(place(*start));
+  }
+  if (enter.empty() && border_) {
     const auto at_border = [&](std::uint32_t column) {
       const std::uint32_t x = column % columns_, y = column / columns_;
       return x == 0 || y == 0 || x + 1 == columns_ || y + 1 == rows_;
     };
     for (std::uint32_t s = 0; s < z_.size(); ++s)
       if (part_[s] != nowhere && at_border(column_[s])) {
-        if (!start) start = s;
+        if (entries_.empty()) entries_.push_back(place(s));
         access_[part_[s]] = Access::reached;
       }
-  } else if (const auto part = choose_part(tree)) {
-    access_[*part] = Access::reached;
-    start = parts_[*part].first;
-  }
-  if (start) {
-    const glm::dvec2 p = middle(column_[*start]);
-    entry_ = glm::dvec3{p.x, p.y, z_[*start]};
+  } else if (enter.empty()) {
+    for (const std::uint32_t part : choose_parts(tree)) {
+      access_[part] = Access::reached;
+      entries_.push_back(place(parts_[part].first));
+    }
   }
   tell_apart();
   look_beyond_high_steps();
+}
+
+std::vector<std::pair<double, glm::dvec3>> GroundField::rooms_not_entered() const {
+  const double least = 3 * room();  // 2.7 m² for a passage of 0.6 m, to which walls' margins come
+  const double hall = 10 * room();
+  std::vector<std::pair<double, glm::dvec3>> rooms;
+  for (std::uint32_t i = 0; i < parts_.size(); ++i)
+    if ((access_[i] == Access::sealed && parts_[i].area(cell_) >= least) ||
+        (access_[i] == Access::unreachable && parts_[i].area(cell_) >= hall &&
+         2 * parts_[i].in_the_sky <= parts_[i].samples))
+      rooms.emplace_back(parts_[i].area(cell_), middle_of(i));
+  std::ranges::stable_sort(rooms, [](const auto& a, const auto& b) { return a.first > b.first; });
+  return rooms;
+}
+
+double GroundField::outline() const {
+  return static_cast<double>(std::ranges::count_if(top_, [](float z) { return std::isfinite(z); })) * cell_ * cell_;
 }
 
 // Marks unreached parts as sealed if they are behind walls: under a cover, and not one step above or below a reached

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/glm.hpp"
@@ -46,17 +47,22 @@ class GroundField {
   // REQUIRES: the scene has triangles. Doors do not block.
   GroundField(const SceneData& scene, const WalkableOptions& options, std::optional<Plane> plane = {});
 
-  // Determines the reached parts: from `enter` if given; from the border if a plane is laid; otherwise from the part
-  // where people enter. That is the lowest large part that is in the open or leads there, by a door or an opening;
-  // without one, the largest of the lowest. Throws Error invalid_argument if there is no room for a person near
-  // `enter`.
-  void reach(const MeshTree& tree, std::optional<glm::dvec3> enter);
+  // Determines the reached parts: from `enter` if given; from the border if a plane is laid; otherwise from the parts
+  // where people enter. These are the lowest large parts that are in the open or lead there, by a door or an opening,
+  // as several dwellings do; without one, the largest of the lowest. Throws Error invalid_argument if there is no room
+  // for a person near one of `enter`.
+  void reach(const MeshTree& tree, std::span<const glm::dvec3> enter);
 
   // Access of the sample at this place, or of its nearest neighbour; narrow if there is none. REQUIRES: reach() was
   // called.
   Access at(const glm::dvec3& place) const;
-  // Entrance of the reached part; empty if nothing is reached.
-  std::optional<glm::dvec3> entry() const { return entry_; }
+  // Entrances of the reached parts, the largest first; empty if nothing is reached.
+  const std::vector<glm::dvec3>& entries() const { return entries_; }
+  // Sealed parts as large as a room, and covered ones as large as a hall beyond a step, with their middles. Largest
+  // first.
+  std::vector<std::pair<double, glm::dvec3>> rooms_not_entered() const;
+  // Area of the columns that hold anything.
+  double outline() const;
   // Area, seen from above and up to this height, of the surfaces that continue the reached ones, with or without room.
   double ground_area(double highest_z) const;
   // Area of parts with room under a cover, reached or not: large in a building, small in a machine.
@@ -82,7 +88,9 @@ class GroundField {
   void find_room(const SceneData& scene);
   void find_parts();
   bool leads_out(const MeshTree& tree, const Part& part, std::uint32_t number) const;
-  std::optional<std::uint32_t> choose_part(const MeshTree& tree) const;
+  std::vector<std::uint32_t> choose_parts(const MeshTree& tree) const;
+  // The sample of a part nearest to its middle.
+  glm::dvec3 middle_of(std::uint32_t part) const;
   void tell_apart();
   void look_beyond_high_steps();
 
@@ -112,7 +120,7 @@ class GroundField {
   std::vector<std::uint32_t> part_;    // per sample with room
   std::vector<Part> parts_;
   std::vector<Access> access_;  // per part
-  std::optional<glm::dvec3> entry_;
+  std::vector<glm::dvec3> entries_;
   std::optional<HighSteps> high_steps_;
 };
 

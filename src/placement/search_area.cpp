@@ -18,10 +18,8 @@ namespace vantage {
 
 struct SearchArea::Impl {
   SearchMesh mesh;
-  bool derived = false;
-  std::string description;
+  WalkableSurface how;  // but for its mesh
   WalkableOptions options = {};
-  std::vector<LeftOut> left_out = {};
   AreaLimits limits = {};
   std::optional<PlaneQuadtree> in_uv;
   // Quadtree over the mesh seen from above. Only stations given by X, Y, Z need it, so it is built on first use.
@@ -29,14 +27,8 @@ struct SearchArea::Impl {
   mutable std::vector<Uv> plan_points;
   mutable std::optional<PlaneQuadtree> in_plan;
 
-  Impl(SearchMesh given, bool was_derived, std::string how, const WalkableOptions& with = {},
-       std::vector<LeftOut> without = {})
-      : mesh(std::move(given)),
-        derived(was_derived),
-        description(std::move(how)),
-        options(with),
-        left_out(std::move(without)),
-        limits(with) {
+  explicit Impl(WalkableSurface surface, const WalkableOptions& with = {})
+      : mesh(std::move(surface.mesh)), how(std::move(surface)), options(with), limits(with) {
     if (mesh.uvs.size() != mesh.positions.size())
       throw Error(Errc::invalid_argument, "a search area needs one (u, v) per position; it has " +
                                               std::to_string(mesh.uvs.size()) + " for " +
@@ -102,24 +94,27 @@ SearchArea SearchArea::build(const Scene& scene, const WalkableOptions& options)
     if (cut_off.area_m2 > 0) surface.left_out.push_back(std::move(cut_off));
   }
   SearchArea area;
-  area.impl_ = std::make_shared<const Impl>(std::move(surface.mesh), surface.derived, std::move(surface.description),
-                                            options, std::move(surface.left_out));
+  area.impl_ = std::make_shared<const Impl>(std::move(surface), options);
   return area;
 }
 
 SearchArea SearchArea::from_mesh(SearchMesh mesh) {
   SearchArea area;
-  area.impl_ = std::make_shared<const Impl>(std::move(mesh), false, "as given");
+  area.impl_ = std::make_shared<const Impl>(
+      WalkableSurface{.mesh = std::move(mesh), .derived = false, .description = "as given"});
   return area;
 }
 
 Uv SearchArea::uv_min() const noexcept { return impl_->in_uv->min(); }
 Uv SearchArea::uv_max() const noexcept { return impl_->in_uv->max(); }
-bool SearchArea::derived() const noexcept { return impl_->derived; }
-const std::string& SearchArea::description() const noexcept { return impl_->description; }
+bool SearchArea::derived() const noexcept { return impl_->how.derived; }
+const std::string& SearchArea::description() const noexcept { return impl_->how.description; }
 const SearchMesh& SearchArea::mesh() const noexcept { return impl_->mesh; }
 const WalkableOptions& SearchArea::options() const noexcept { return impl_->options; }
-std::span<const LeftOut> SearchArea::left_out() const noexcept { return impl_->left_out; }
+std::span<const LeftOut> SearchArea::left_out() const noexcept { return impl_->how.left_out; }
+std::span<const NotEntered> SearchArea::not_entered() const noexcept { return impl_->how.not_entered; }
+std::span<const Vec3> SearchArea::entries() const noexcept { return impl_->how.entries; }
+bool SearchArea::on_plane() const noexcept { return impl_->how.on_plane; }
 
 std::optional<Vec3> SearchArea::locate(Uv uv) const {
   const auto at = impl_->in_uv->find(uv);

@@ -12,6 +12,11 @@ std::vector<std::vector<std::vector<std::array<double, 2>>>> rings_of(const std:
   return rings;
 }
 
+std::optional<std::vector<Vec3>> entries_of(const WalkableOptions& options) {
+  if (options.enter.empty()) return std::nullopt;
+  return options.enter;
+}
+
 }  // namespace
 
 Settings settings(const WalkableOptions& options) {
@@ -22,7 +27,7 @@ Settings settings(const WalkableOptions& options) {
       .add("passage_width_m", options.passage_width_m, {"passage"})
       .add("passage_height_m", options.passage_height_m, {"passage"})
       .add("climb_m", options.climb_m, {"climb"})
-      .add("enter", options.enter, {"enter"})
+      .add("enter", entries_of(options), {"enter"})
       .add("levels", options.levels, {"levels"})
       .add("within", rings_of(options.within))
       .add("without", rings_of(options.without))

@@ -188,7 +188,8 @@ WalkableSurface derive_from(const SceneData& scene, const MeshTree& tree, const 
     if (access != Access::reached && !(any_access && room)) return kind_of(reason_of(access));
     if (limits.any() && !limits.allow_near(to_vec3(p) + scene.origin, spacing)) return kind_of(LeftOutReason::limits);
     if (tree.covered(p, from, to)) return kind_of(LeftOutReason::headroom);
-    if (tree.inside_solid(p + glm::dvec3{0, 0, (from + to) / 2}))  // above bumps of the ground
+    // No way leads into a solid, whatever side its faces show: where one gets to on foot there is none.
+    if (access != Access::reached && tree.inside_solid(p + glm::dvec3{0, 0, (from + to) / 2}))
       return kind_of(LeftOutReason::sealed);
     return kept;
   });
@@ -223,15 +224,22 @@ std::vector<Triangle> upward_triangles(const SceneData& scene, const std::vector
   return upward;
 }
 
-std::optional<glm::dvec3> local_entry(const SceneData& scene, const WalkableOptions& options) {
-  if (!options.enter) return std::nullopt;
-  return to_glm(*options.enter - scene.origin);
+std::vector<glm::dvec3> local_entries(const SceneData& scene, const WalkableOptions& options) {
+  std::vector<glm::dvec3> entries;
+  for (const Vec3& enter : options.enter) entries.push_back(to_glm(enter - scene.origin));
+  return entries;
+}
+
+void tell_entries(WalkableSurface& surface, const GroundField& field, const Vec3& origin) {
+  for (const glm::dvec3& entry : field.entries()) surface.entries.push_back(to_vec3(entry) + origin);
+  for (const auto& [area, place] : field.rooms_not_entered())
+    surface.not_entered.push_back({.area_m2 = area, .place = to_vec3(place) + origin});
 }
 
 WalkableSurface use_station_area(const SceneData& scene, const MeshTree& tree, const std::vector<glm::dvec3>& points,
                                  const WalkableOptions& options) {
   GroundField field(scene, options);
-  field.reach(tree, local_entry(scene, options));
+  field.reach(tree, local_entries(scene, options));
   WalkableSurface surface =
       derive_from(scene, tree, field, points, upward_triangles(scene, points, options, true), options, true);
   if (surface.mesh.triangles.empty())
@@ -249,16 +257,19 @@ WalkableSurface derive_walkable(const SceneData& scene, const MeshTree& tree, co
   const std::vector<Triangle> upward = upward_triangles(scene, points, options, false);
   if (upward.empty()) return {};
   GroundField field(scene, options);
-  field.reach(tree, local_entry(scene, options));
+  field.reach(tree, local_entries(scene, options));
   const Box& bounds = scene.local_bounds;
   const double lower_half_z = bounds.min.z + lower_half * bounds.size().z;
-  const double wanted = ground_share * plan_hull_area(points);
-  if (!field.entry() || (!options.enter && field.ground_area(lower_half_z) < wanted && field.covered_area() < wanted))
-    return {};
+  // A floor inside is measured by what is built: a bent tunnel fills little of what its hull does.
+  const bool around = field.ground_area(lower_half_z) >= ground_share * plan_hull_area(points);
+  const bool inside = field.covered_area() >= ground_share * field.outline();
+  if (field.entries().empty() || (options.enter.empty() && !around && !inside)) return {};
   WalkableSurface surface = derive_from(scene, tree, field, points, upward, options, false);
   if (surface.mesh.triangles.empty()) return surface;
-  surface.description = "derived from walkable surfaces, entered near " +
-                        place_text(to_vec3(*field.entry()) + scene.origin) + ": " + surface.description;
+  tell_entries(surface, field, scene.origin);
+  std::string entries;
+  for (const Vec3& entry : surface.entries) entries += (entries.empty() ? "" : " and ") + place_text(entry);
+  surface.description = "derived from walkable surfaces, entered near " + entries + ": " + surface.description;
   if (const auto beyond = field.high_steps()) {
     std::ostringstream text;
     text.precision(3);
@@ -278,7 +289,7 @@ WalkableSurface lay_plane(const SceneData& scene, const MeshTree& tree, const Wa
   std::vector<glm::dvec3> points{low, {high.x, low.y, low.z}, high, {low.x, high.y, low.z}};
   const std::vector<Triangle> triangles{{0, 1, 2}, {0, 2, 3}};
   GroundField field(scene, options, GroundField::Plane{reach, b.min.z});
-  field.reach(tree, local_entry(scene, options));
+  field.reach(tree, local_entries(scene, options));
   // Nobody can stand under the model itself.
   const double from = 1e-4 * reach, to = b.size().z + reach, spacing = std::max(high.x - low.x, high.y - low.y) / 256;
   const SurfacePieces pieces =
@@ -306,6 +317,7 @@ WalkableSurface lay_plane(const SceneData& scene, const MeshTree& tree, const Wa
        << "), reaching " << reach << " m beyond it on every side, as no walkable ground was found around it: "
        << charts_text(charts.size(), total_area(charts));
   surface.description = text.str();
+  surface.on_plane = true;
   return surface;
 }
 

@@ -15,6 +15,9 @@ struct WalkableSurface {
   bool derived = true;
   std::string description;
   std::vector<LeftOut> left_out = {};
+  std::vector<NotEntered> not_entered = {};
+  std::vector<Vec3> entries = {};
+  bool on_plane = false;
 };
 
 // Returns the first non-empty of: meshes marked as station area; the marked search area unfolded into charts; upward,

@@ -163,7 +163,8 @@ SurveyProblem survey_problem(Site& site, const SurveyQuestion& question) {
   asked.link_overlap = least;
   asked.registration = question.registration;
   asked.on_site = question.on_site;
-  if (!asked.on_site.entrance) asked.on_site.entrance = site.walkable().enter;
+  if (!asked.on_site.entrance && !site.walkable().enter.empty())
+    asked.on_site.entrance = site.walkable().enter.front();
   for (Objective& objective : asked.objectives)
     if (objective.needs.registration) objective = make_objective(objective.name, asked.settings());
   if (!survey) {
@@ -221,6 +222,7 @@ PlanResult plan(Site& site, const SurveyProblem& problem, const PlanConfig& conf
   if (config.max_seconds > 0) limited.max_seconds = std::max(kMoment_s, config.max_seconds - seconds_since(begun));
   PlanResult result = plan(simulator, area, clash, problem, limited, watch);
   result.config.max_seconds = config.max_seconds;
+  result.area = area;
   return result;
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "vantage/report.hpp"
+#include "vantage/summary.hpp"
 
 namespace vantage {
 
@@ -27,6 +28,7 @@ struct Report {
   std::vector<Objective> measures = {};        // of every network
   std::vector<Objective> front_axes = {};      // to the right, up, and by colour if there is a third; empty: no front
   std::vector<TradeOffPoint> trade_off = {};   // stations against what they capture; empty: not known
+  std::vector<SummaryLine> ground = {};        // a plane laid under the model, and floor that is not entered
   std::string parameters = "{}";               // JSON text of an object
   std::vector<std::pair<std::string, std::string>> facts = {};  // scanner, time, …: heading and sentence
   // Views of the answer's stations: a JPEG each, empty if there is none; or none at all.

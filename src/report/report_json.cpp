@@ -193,6 +193,8 @@ ordered_json report_json(const Report& report) {
   for (const Report::Network& network : report.networks) {
     networks.push_back(network_json(network.evaluation, report.requirements));
     networks.back()["dominated"] = network.dominated;
+    for (const auto& [heading, text] : report.ground)
+      networks.back()["summary"].push_back({{"heading", heading}, {"text", text}});
   }
   ordered_json& stations = networks[report.answer]["stations"];
   for (std::size_t k = 0; k < report.pictures.size(); ++k)

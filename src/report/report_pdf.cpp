@@ -63,7 +63,9 @@ Sheet front_sheet(const Report& report, const Simulator& simulator, const Search
   // Advice as far as it leaves room for what follows.
   constexpr double kLeastLeft = 300;
   std::size_t more = 0;
-  for (const auto& [heading, text] : summary_lines(network, report.requirements)) {
+  std::vector<SummaryLine> lines = summary_lines(network, report.requirements);
+  lines.insert(lines.end(), report.ground.begin(), report.ground.end());
+  for (const auto& [heading, text] : lines) {
     if (heading == "to do" && sheet.left() < kLeastLeft)
       ++more;
     else

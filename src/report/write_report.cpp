@@ -8,6 +8,7 @@ namespace {
 
 void write(const std::filesystem::path& file, Report report, Simulator& simulator, const SearchArea& area,
            const Progress& progress) {
+  report.ground = ground_lines(area);
   if (file.extension() == ".pdf") return write_report_pdf(file, report, simulator, area);
   if (file.extension() != ".html")
     throw Error(Errc::invalid_argument, "report: " + file.string() + " ends with neither .html nor .pdf");

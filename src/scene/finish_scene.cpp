@@ -14,9 +14,7 @@
 #include "vantage/error.hpp"
 
 namespace vantage {
-namespace {
 
-// Keeps the triangles whose `keep` is not 0, and adjusts the ranges.
 void keep_triangles(RawScene& raw, const std::vector<std::uint8_t>& keep) {
   std::uint32_t out = 0;
   for (MeshRange& range : raw.ranges) {
@@ -29,6 +27,8 @@ void keep_triangles(RawScene& raw, const std::vector<std::uint8_t>& keep) {
   raw.triangles.resize(out);
   drop_empty_meshes(raw);
 }
+
+namespace {
 
 template <class Keep>
 std::size_t drop_unless(RawScene& raw, Keep&& sound_triangle) {

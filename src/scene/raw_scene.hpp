@@ -43,6 +43,9 @@ struct RawScene {
 // cut.
 std::shared_ptr<const SceneData> finish_scene(RawScene&& raw, const std::string& source);
 
+// Keeps the triangles whose `keep` is not 0, one for each, and removes meshes that have none left.
+void keep_triangles(RawScene& raw, const std::vector<std::uint8_t>& keep);
+
 // Removes meshes without triangles; sets the other meshes' counts from their ranges.
 void drop_empty_meshes(RawScene& raw);
 

@@ -1,327 +1,250 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/recognise_units.hpp"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
-#include <cctype>
+#include <array>
 #include <cmath>
 #include <cstdio>
-#include <map>
-#include <string_view>
+#include <numeric>
+#include <set>
 #include <utility>
 
-#include "core/glm.hpp"
+#include "scene/columns.hpp"
+#include "scene/positions.hpp"
 #include "scene/sound_triangle.hpp"
 
 namespace vantage {
 namespace {
 
-constexpr int kX = 0, kY = 1, kZ = 2;
 constexpr std::array<Unit, 5> kUnits{Unit::metre, Unit::foot, Unit::inch, Unit::centimetre, Unit::millimetre};
 
-double along(const Vec3& v, int axis) { return axis == kX ? v.x : axis == kY ? v.y : v.z; }
+// A person, and what is built for one. Metres.
+constexpr double kTall = 1.8, kClimb = 0.25, kRoom_m2 = 2;
+constexpr double kDoorWidth = 0.9, kNarrowestDoor = 0.55, kWidestDoor = 2.4, kLowestDoor = 1.85, kHighestDoor = 2.6, kThickestWall = 0.8, kLintel = 0.1;
+constexpr double kLeastRise = 0.12, kMostRise = 0.215, kLeastGoing = 0.2, kMostGoing = 0.45;
+constexpr int kFewestRises = 3;
 
-// From the survey frame, by glTF's rule, back to the file's axes.
-Vec3 file_from_survey(const glm::dvec3& p) { return {p.x, p.z, -p.y}; }
+// What the features of a hypothesis count, in their order. Fitted, as a multinomial logit, to sites whose truth is known
+// (`hypotheses --features`), and rounded.
+constexpr std::array<double, kFeatures> kWeights{4, 3.5, 5, 3, 3.5, 5, 2, 4, 0.7, 0.5};
+// By how much the best must lead: glTF's rule, and any other.
+constexpr double kRuleLead = 0.3, kLead = 1.3;
+constexpr std::size_t kMostChoices = 3;
 
-// --- names ---
+constexpr double kNoSite_m = 1, kNoSiteEither_m = 10'000;
 
-// Lower-case words of a name, plurals without s: "Kitchen_Table.003" and "kitchenTable" are kitchen, table.
-std::vector<std::string> words_of(const std::string& name) {
-  std::vector<std::string> words;
-  bool inside = false, lower_before = false;
-  for (const char c : name) {
-    const auto letter = static_cast<unsigned char>(c);
-    if (!std::isalpha(letter)) {
-      inside = false;
-      continue;
+double extent_of(const Hypothesis& h) { return std::max({h.size.x, h.size.y, h.size.z}); }
+
+// 1 in a range, falling to 0 at its outer limits, by the logarithm.
+double within(double x, double none_below, double low, double high, double none_above) {
+  if (!(x > none_below) || !(x < none_above)) return 0;
+  if (x < low) return std::log(x / none_below) / std::log(low / none_below);
+  if (x > high) return std::log(none_above / x) / std::log(none_above / high);
+  return 1;
+}
+
+// Where one gets to in a unit.
+class Walk {
+ public:
+  Walk(const Columns& columns, double metres)
+      : c_(columns),
+        metres_(metres),
+        tall_(static_cast<float>(kTall / metres)),
+        climb_(static_cast<float>(std::max(kClimb / metres, 0.9 * columns.cell()))),
+        part_(columns.levels().size()) {
+    std::iota(part_.begin(), part_.end(), 0U);
+    for (std::uint32_t column = 0; column < c_.count(); ++column)
+      for (int axis = 0; axis < 2; ++axis)
+        if (const auto beside = neighbour(column, axis))
+          for (std::uint32_t a = c_.first(column); a < c_.first(column + 1); ++a)
+            for (std::uint32_t b = c_.first(*beside); b < c_.first(*beside + 1); ++b)
+              if (linked(column, axis, a, b)) join(a, b);
+  }
+
+  void measure(Hypothesis& h) {
+    const double cell = c_.cell() * metres_, square = cell * cell;
+    std::vector<std::uint32_t> size(part_.size(), 0);
+    std::vector<std::pair<double, double>> headroom;
+    double under = 0;
+    for (std::uint32_t i = 0; i < part_.size(); ++i) {
+      const Columns::Level& level = c_.levels()[i];
+      if (level.free >= tall_) ++size[root(i)];
+      if (std::isinf(level.free)) continue;
+      under += 1;
+      h.rooms += within(level.free * metres_, 1.7, 2.2, 5, 12);
     }
-    if (!inside || (std::isupper(letter) && lower_before)) words.emplace_back();
-    inside = true;
-    lower_before = std::islower(letter) != 0;
-    words.back() += static_cast<char>(std::tolower(letter));
-  }
-  for (std::string& word : words)
-    if (word.size() > 3 && word.back() == 's' && word[word.size() - 2] != 's') word.pop_back();
-  return words;
-}
-
-bool one_of(const std::string& word, std::initializer_list<std::string_view> list) {
-  return std::ranges::find(list, word) != list.end();
-}
-
-bool has_word(const std::vector<std::string>& words, std::initializer_list<std::string_view> list) {
-  return std::ranges::any_of(words, [&](const std::string& word) { return one_of(word, list); });
-}
-
-// Sizes of well-known things, in metres. Our own figures, wide on purpose: units differ by a factor of 2.5 or more.
-struct KnownThing {
-  std::string_view word;
-  bool upright;  // the range is for its height, else for its longest side
-  double least_m, most_m;
-};
-constexpr KnownThing kKnown[] = {
-    {"door", true, 1.8, 2.6},     {"chair", true, 0.7, 1.3},    {"stool", true, 0.4, 0.9},
-    {"desk", true, 0.65, 1.3},    {"table", true, 0.35, 1.1},   {"bed", false, 1.7, 2.4},
-    {"sofa", false, 1.2, 3.3},    {"couch", false, 1.2, 3.3},   {"car", false, 3.0, 5.5},
-    {"person", true, 1.4, 2.1},   {"human", true, 1.4, 2.1},    {"fridge", true, 0.8, 2.1},
-    {"counter", true, 0.8, 1.2},  {"wardrobe", true, 1.4, 2.6}, {"refrigerator", true, 0.8, 2.1},
-    {"toilet", true, 0.35, 0.95}, {"bathtub", false, 1.4, 2.0}, {"washbasin", true, 0.6, 1.0},
-    {"bench", false, 0.9, 2.6},   {"pallet", false, 0.8, 1.3},  {"bus", false, 6, 19},
-    {"cupboard", true, 0.5, 2.8}, {"cabinet", true, 0.5, 2.8},  {"shelf", true, 0.5, 2.8},
-    {"bookcase", true, 0.5, 2.8}, {"window", true, 0.3, 3.2},   {"truck", false, 4, 18},
-    {"van", false, 3.5, 7.5},     {"tree", true, 1.5, 30},      {"house", false, 4, 60},
-    {"building", false, 4, 150},  {"column", true, 2, 15},      {"pump", false, 0.2, 4},
-    {"room", false, 1.5, 40},     {"kerb", true, 0.05, 0.4},    {"curb", true, 0.05, 0.4},
-};
-constexpr double kSharp = 3.5;  // a range up to this width separates neighbouring units and counts full, a wider one
-                                // half
-
-// Names of parts say nothing about the whole.
-bool is_fitting(const std::string& word) {
-  return one_of(word, {"handle", "knob",   "frame",   "leg",    "wheel", "hinge",  "glass", "lock",   "light", "lamp",
-                       "sill",   "drawer", "cushion", "pillow", "light", "mirror", "leaf",  "branch", "top",   "mat"});
-}
-
-// --- levels ---
-
-struct Run {
-  double pitch = 0;
-  int count = 0;
-};
-
-constexpr int kFewestSteps = 5;
-constexpr double kSameArea = 0.02, kSamePitch = 0.02;
-
-// Runs of faces of equal area at equal distances: treads of a stair along its height, risers along its length; also
-// rows of windows.
-std::vector<Run> equal_runs(const std::vector<FlatLevel>& levels, bool forward) {
-  constexpr std::size_t kMostLevels = 4000;
-  std::vector<FlatLevel> by_area;
-  for (const FlatLevel& level : levels)
-    if (level.forward == forward) by_area.push_back(level);
-  std::ranges::sort(by_area, [](const FlatLevel& a, const FlatLevel& b) { return a.area > b.area; });
-  if (by_area.size() > kMostLevels) by_area.resize(kMostLevels);
-  std::vector<Run> runs;
-  for (std::size_t i = 0; i < by_area.size();) {
-    std::size_t end = i + 1;
-    while (end < by_area.size() && by_area[end].area >= by_area[i].area * (1 - kSameArea)) ++end;
-    std::vector<double> at;
-    for (std::size_t k = i; k < end; ++k) at.push_back(by_area[k].at);
-    std::ranges::sort(at);
-    for (std::size_t k = 0; k + 1 < at.size();) {
-      const double pitch = at[k + 1] - at[k];
-      std::size_t last = k + 1;
-      while (last + 1 < at.size() && std::abs(at[last + 1] - at[last] - pitch) <= kSamePitch * pitch) ++last;
-      if (static_cast<int>(last - k) >= kFewestSteps) runs.push_back({pitch, static_cast<int>(last - k)});
-      k = last;
+    const double outline = c_.outline() * metres_ * metres_;
+    h.covered = std::min(1.0, under * square / outline);
+    if (under > 0) h.rooms /= under;
+    std::uint32_t largest = 0;
+    for (const std::uint32_t n : size) {
+      largest = std::max(largest, n);
+      if (n * square >= kRoom_m2) h.floor_m2 += n * square;
     }
-    i = end;
-  }
-  return runs;
-}
-
-struct Stair {
-  double rise = 0, going = 0;
-  int count = 0;
-};
-
-// Finds a run along `up` and one of equal length along another axis, with pitches in the ratio of going to rise.
-std::optional<Stair> find_stair(const std::array<std::vector<Run>, 3>& runs, int up) {
-  constexpr double kLeastRatio = 1.15, kMostRatio = 2.3;
-  std::optional<Stair> best;
-  for (int other = 0; other < 3; ++other) {
-    if (other == up) continue;
-    for (const Run& rises : runs[static_cast<std::size_t>(up)])
-      for (const Run& goings : runs[static_cast<std::size_t>(other)]) {
-        const double ratio = goings.pitch / rises.pitch;
-        if (ratio < kLeastRatio || ratio > kMostRatio || std::abs(rises.count - goings.count) > 2) continue;
-        if (!best || rises.count > best->count) best = Stair{rises.pitch, goings.pitch, rises.count};
-      }
-  }
-  return best;
-}
-
-// Free height between the two largest faces that face each other along an axis, such as floor and ceiling.
-struct Storey {
-  double height = 0, area = 0;
-};
-Storey find_storey(const std::vector<FlatLevel>& levels) {
-  constexpr double kLarge = 0.3, kFits = 0.5;
-  double most = 0;
-  for (const FlatLevel& level : levels) most = std::max(most, level.area);
-  Storey best;
-  for (std::size_t i = 0; i < levels.size(); ++i) {
-    if (!levels[i].forward || levels[i].area < kLarge * most) continue;
-    for (std::size_t k = i + 1; k < levels.size(); ++k) {
-      if (levels[k].forward && levels[k].area >= kFits * levels[i].area) break;  // another floor: no ceiling between
-      if (levels[k].forward || levels[k].area < kFits * levels[i].area) continue;
-      const double area = std::min(levels[i].area, levels[k].area);
-      if (levels[k].at > levels[i].at && area > best.area) best = {levels[k].at - levels[i].at, area};
-      break;
+    std::vector<float> heights;
+    for (std::uint32_t i = 0; i < part_.size(); ++i)
+      if (const float free = c_.levels()[i].free; !std::isinf(free) && size[root(i)] * square >= kRoom_m2 && free >= tall_)
+        heights.push_back(free);
+    if (!heights.empty()) {
+      const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
+      std::ranges::nth_element(heights, middle);
+      h.headroom_m = *middle * metres_;
     }
-  }
-  return best;
-}
-
-// --- signs ---
-
-// Evidence for one choice: its votes, and their description.
-struct Case {
-  double votes = 0;
-  std::vector<std::string> signs;
-  void add(double weight, const std::string& sign) {
-    votes += weight;
-    if (std::ranges::find(signs, sign) == signs.end()) signs.push_back(sign);
-  }
-  std::string text() const {
-    constexpr std::size_t kMost = 4;
-    std::string out;
-    const std::size_t shown = std::min(signs.size(), kMost);
-    for (std::size_t i = 0; i < shown; ++i) out += (i == 0 ? "" : i + 1 == signs.size() ? " and " : ", ") + signs[i];
-    return out + (shown < signs.size() ? " and more" : "");
-  }
-};
-
-struct UpCases {
-  Case y, z;
-  bool more_than_proportions = false;  // for z: evidence beyond proportions
-};
-
-void add_names(const SceneEvidence& evidence, UpCases& cases) {
-  int flat[3] = {}, tall[3] = {};
-  double low[3] = {}, high[3] = {};
-  int lows = 0, highs = 0;
-  for (const NamedBox& node : evidence.nodes) {
-    const Vec3 size = node.box.size();
-    double sides[3] = {size.x, size.y, size.z};
-    std::ranges::sort(sides);
-    const auto words = words_of(node.name);
-    if (words.empty() || is_fitting(words.back())) continue;
-    const bool above = has_word(words, {"roof", "ceiling", "crown", "chimney"});
-    const bool below =
-        has_word(words, {"floor", "ground", "road", "pavement", "foundation", "terrain", "garden", "lawn"});
-    const bool lying = above || below || has_word(words, {"slab", "deck", "platform", "sidewalk"});
-    const bool standing =
-        has_word(words, {"column", "pillar", "post", "pole", "trunk", "person", "human", "door", "tree"});
-    for (int axis = 0; axis < 3; ++axis) {
-      if (lying && sides[0] < 0.4 * sides[1] && along(size, axis) == sides[0]) ++flat[axis];
-      if (standing && !lying && sides[2] > 1.5 * sides[1] && along(size, axis) == sides[2]) ++tall[axis];
-      if (above != below) (above ? high : low)[axis] += along(node.box.centre(), axis);
-    }
-    if (above != below) ++(above ? highs : lows);
-  }
-  const auto mostly = [](const int* counts, int axis) {
-    return counts[axis] > 0 && counts[axis] >= 3 * (counts[kX] + counts[kY] + counts[kZ] - counts[axis]);
-  };
-  for (const int axis : {kY, kZ}) {
-    Case& found = axis == kY ? cases.y : cases.z;
-    const auto add = [&](const std::string& sign) {
-      found.add(1, sign);
-      cases.more_than_proportions |= axis == kZ;
+    h.reached = largest * square / outline;
+    std::array<std::vector<std::uint8_t>, 2> lintel;
+    for (auto& some : lintel) some.assign(part_.size(), 0);
+    const auto for_places = [&](const auto& visit) {
+      for (std::uint32_t column = 0; column < c_.count(); ++column)
+        for (std::uint32_t i = c_.first(column); i < c_.first(column + 1); ++i)
+          if (c_.levels()[i].free >= tall_ && size[root(i)] * square >= kRoom_m2) visit(Place{column, i});
     };
-    if (mostly(flat, axis)) add("floors and roofs lie flat");
-    if (mostly(tall, axis)) add("columns, doors or trees stand");
-    if (lows > 0 && highs > 0) {
-      const auto rise = [&](int a) { return high[a] / highs - low[a] / lows; };
-      const double here = rise(axis), other = std::abs(rise(axis == kY ? kZ : kY));
-      const double extent = along(evidence.bounds.size(), axis);
-      if (here > 0.15 * extent && here > 1.5 * other) add("roofs are above floors");
-    }
+    for_places([&](const Place& at) {
+      for (int axis = 0; axis < 2; ++axis) {
+        lintel[static_cast<std::size_t>(axis)][at.level] = begins_door(at, axis);
+        h.flights += begins_flight(at, axis) ? cell / kDoorWidth : 0;
+      }
+    });
+    // Doors are runs of places under a lintel, as wide as doors.
+    for_places([&](const Place& at) {
+      for (int axis = 0; axis < 2; ++axis) {
+        const auto& under = lintel[static_cast<std::size_t>(axis)];
+        const auto before = next(at, 1 - axis, true);
+        if (!under[at.level] || (before && under[before->level])) continue;
+        double width = 0;
+        for (std::optional<Place> along = at; along && under[along->level] && width <= kWidestDoor;
+             along = next(*along, 1 - axis, false))
+          width += cell;
+        if (width >= kNarrowestDoor && width <= kWidestDoor) h.doors += 1;
+      }
+    });
   }
-}
 
-UpCases up_cases(const SceneEvidence& evidence, const std::array<std::vector<Run>, 3>& runs) {
-  UpCases cases;
-  add_names(evidence, cases);
-  const bool stair_y = find_stair(runs, kY).has_value(), stair_z = find_stair(runs, kZ).has_value();
-  if (stair_y != stair_z) (stair_y ? cases.y : cases.z).add(1, "a stair climbs");
-  const Vec3 size = evidence.bounds.size();
-  const Storey storey_y = find_storey(evidence.levels[kY]), storey_z = find_storey(evidence.levels[kZ]);
-  const auto low = [](const Storey& storey, double a, double b) {
-    return storey.height > 0 && storey.height < 0.5 * std::min(a, b) && storey.area > 0.25 * a * b;
+ private:
+  struct Place {
+    std::uint32_t column, level;
   };
-  const bool room_y = low(storey_y, size.x, size.z) && storey_y.area > 2 * storey_z.area;
-  const bool room_z = low(storey_z, size.x, size.y) && storey_z.area > 2 * storey_y.area;
-  if (room_y) cases.y.add(1, "floor and ceiling face each other");
-  if (room_z) cases.z.add(1, "floor and ceiling face each other");
-  cases.more_than_proportions |= room_z || (stair_z && !stair_y);
-  if (size.y < 0.5 * std::min(size.x, size.z)) cases.y.add(0.5, "the scene is flat");
-  if (size.z < 0.5 * std::min(size.x, size.y)) cases.z.add(0.5, "the scene is flat");
-  double across[3] = {};
-  for (int axis = 0; axis < 3; ++axis)
-    for (const FlatLevel& level : evidence.levels[static_cast<std::size_t>(axis)]) across[axis] += level.area;
-  if (across[kY] > 1.5 * std::max(across[kX], across[kZ])) cases.y.add(0.5, "most faces lie flat");
-  if (across[kZ] > 1.5 * std::max(across[kX], across[kY])) cases.z.add(0.5, "most faces lie flat");
-  return cases;
-}
 
-// Share of faces at whole-number coordinates, by area across an axis. In drawings on a grid, most are multiples of 8 in
-// inches, and of 10 in parts of a metre.
-struct DrawingGrid {
-  double eights = 0, tens = 0;
+  std::optional<std::uint32_t> neighbour(std::uint32_t column, int axis, bool back = false) const {
+    const std::uint32_t step = axis == 0 ? 1 : c_.nx();
+    if (back) {
+      if (axis == 0 ? column % c_.nx() == 0 : column < step) return std::nullopt;
+      return column - step;
+    }
+    if (axis == 0 ? column % c_.nx() + 1 == c_.nx() : column + step >= c_.count()) return std::nullopt;
+    return column + step;
+  }
+
+  // Whether a person takes the step between levels of a column and the next.
+  bool linked(std::uint32_t column, int axis, std::uint32_t a, std::uint32_t b) const {
+    const Columns::Level &p = c_.levels()[a], &q = c_.levels()[b];
+    if (p.free < tall_ || q.free < tall_ || std::abs(p.z - q.z) > climb_) return false;
+    const float low = std::max(p.z, q.z);
+    return std::min(p.z + p.free, q.z + q.free) - low >= tall_ && !c_.wall(column, axis, low + climb_, low + tall_);
+  }
+
+  std::optional<Place> next(const Place& from, int axis, bool back) const {
+    const auto beside = neighbour(from.column, axis, back);
+    if (!beside) return std::nullopt;
+    for (std::uint32_t b = c_.first(*beside); b < c_.first(*beside + 1); ++b)
+      if (back ? linked(*beside, axis, b, from.level) : linked(from.column, axis, from.level, b))
+        return Place{*beside, b};
+    return std::nullopt;
+  }
+
+  float free(const Place& at) const { return c_.levels()[at.level].free; }
+  float z(const Place& at) const { return c_.levels()[at.level].z; }
+
+  // Whether one comes from more headroom to that of a door here, and to more again behind a wall's thickness.
+  bool begins_door(const Place& here, int axis) const {
+    const double high = free(here) * metres_;
+    if (high < kLowestDoor || high > kHighestDoor) return false;
+    const double more = free(here) + kLintel / metres_;
+    const auto before = next(here, axis, true);
+    if (!before || free(*before) < more) return false;
+    std::optional<Place> at = here;
+    for (double gone = 0; gone <= kThickestWall; gone += c_.cell() * metres_) {
+      at = next(*at, axis, false);
+      if (!at) return false;
+      if (free(*at) >= more) return true;
+    }
+    return false;
+  }
+
+  // Whether a stair begins here: rises of one height, each behind a tread.
+  bool begins_flight(const Place& from, int axis) const {
+    const double cell = c_.cell() * metres_;
+    if (cell > kLeastGoing) return false;
+    for (const bool back : {false, true}) {
+      Place at = from;
+      double rise = 0, going = 0;
+      int rises = 0;
+      while (rises < kFewestRises) {
+        const auto to = next(at, axis, back);
+        if (!to) break;
+        const double dz = (z(*to) - z(at)) * metres_;
+        going += cell;
+        at = *to;
+        if (dz >= kLeastRise && dz <= kMostRise && (rises == 0 || std::abs(dz - rise) < 0.1 * rise)) {
+          if (rises == 0 ? going > cell * 1.5 : going < std::max(kLeastGoing - cell, 1.5 * cell)) break;
+          rise = dz, going = 0, ++rises;
+        } else if (std::abs(dz) > 0.02 || going > kMostGoing || rises == 0) {
+          break;
+        }
+      }
+      if (rises == kFewestRises) return true;
+    }
+    return false;
+  }
+
+  std::uint32_t root(std::uint32_t i) {
+    while (part_[i] != i) i = part_[i] = part_[part_[i]];
+    return i;
+  }
+  void join(std::uint32_t a, std::uint32_t b) {
+    a = root(a), b = root(b);
+    part_[std::max(a, b)] = std::min(a, b);
+  }
+
+  const Columns& c_;
+  double metres_;
+  float tall_, climb_;
+  std::vector<std::uint32_t> part_;
 };
-DrawingGrid drawing_grid(const SceneEvidence& evidence) {
-  constexpr double kWhole = 1e-3;
+
+// The unit that a model's drawing grid is of: most faces across an axis lie at multiples of 8 where it is drawn in
+// inches, of 10 where in parts of a metre.
+struct DrawingGrid {
+  bool inches = false, parts_of_a_metre = false;
+};
+DrawingGrid drawing_grid(const RawScene& raw) {
+  constexpr double kWhole = 1e-3, kAcross = 0.9999, kMost = 0.5;
   constexpr std::size_t kFewest = 30;  // different coordinates; fewer may be coincidence
   double all = 0, eights = 0, tens = 0;
-  std::size_t whole = 0;
-  for (const auto& levels : evidence.levels)
-    for (const FlatLevel& level : levels) {
-      all += level.area;
-      const double nearest = std::round(level.at);
-      if (nearest == 0 || std::abs(level.at - nearest) > kWhole) continue;
-      ++whole;
-      if (std::fmod(nearest, 8) == 0) eights += level.area;
-      if (std::fmod(nearest, 10) == 0) tens += level.area;
-    }
-  return whole < kFewest ? DrawingGrid{} : DrawingGrid{eights / all, tens / all};
-}
-
-Case unit_case(const SceneEvidence& evidence, const std::array<std::vector<Run>, 3>& runs, int up, double metres) {
-  Case found;
-  std::map<std::string_view, std::pair<int, int>> things;  // number that fit, and total
-  for (const NamedBox& node : evidence.nodes) {
-    const auto words = words_of(node.name);
-    if (words.empty() || is_fitting(words.back())) continue;
-    const Vec3 size = node.box.size();
-    for (const KnownThing& thing : kKnown) {
-      if (!has_word(words, {thing.word})) continue;
-      const double length = metres * (thing.upright ? along(size, up) : std::max({size.x, size.y, size.z}));
-      auto& [fit, all] = things[thing.word];
-      fit += length >= thing.least_m && length <= thing.most_m;
-      ++all;
+  std::set<double> whole;
+  for (const Triangle& t : raw.triangles) {
+    const glm::dvec3 &a = raw.positions[t[0]], &b = raw.positions[t[1]], &c = raw.positions[t[2]];
+    if (!sound(a) || !sound(b) || !sound(c)) continue;
+    const glm::dvec3 n = cross(b - a, c - a);
+    const double area = length(n);
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!(std::abs(n[axis]) > kAcross * area) || area == 0) continue;
+      all += area;
+      const double nearest = std::round(std::abs(a[axis]));
+      if (nearest == 0 || std::abs(std::abs(a[axis]) - nearest) > kWhole) continue;
+      if (whole.size() < kFewest) whole.insert(nearest);
+      if (std::fmod(nearest, 8) == 0) eights += area;
+      if (std::fmod(nearest, 10) == 0) tens += area;
     }
   }
-  for (const KnownThing& thing : kKnown) {
-    const auto at = things.find(thing.word);
-    if (at == things.end() || 2 * at->second.first < at->second.second || at->second.first == 0) continue;
-    const bool sharp = thing.most_m <= kSharp * thing.least_m;
-    found.add(sharp ? 1 : 0.5, "\"" + std::string(thing.word) + "\"");
-  }
-  const auto within = [&](double length, double least, double most) {
-    return length * metres >= least && length * metres <= most;
-  };
-  const auto stair = find_stair(runs, up);
-  if (stair && within(stair->rise, 0.14, 0.21) && within(stair->going, 0.2, 0.36))
-    found.add(1.5, "the steps of a stair");
-  const Storey storey = find_storey(evidence.levels[static_cast<std::size_t>(up)]);
-  const Vec3 size = evidence.bounds.size();
-  const double wide = up == kY ? size.z : size.y;
-  if (within(storey.height, 2.2, 4.5) && storey.area > 0.25 * size.x * wide) found.add(1, "the height of a storey");
-  const DrawingGrid grid = drawing_grid(evidence);
-  if (metres == metres_in(Unit::inch) && grid.eights > 0.5 && grid.eights > 2 * grid.tens)
-    found.add(1, "a drawing grid of 8");
-  if ((metres == metres_in(Unit::centimetre) || metres == metres_in(Unit::millimetre)) && grid.tens > 0.5 &&
-      grid.tens > 2 * grid.eights)
-    found.add(0.5, "a drawing grid of 10");
-  return found;
+  if (whole.size() < kFewest) return {};
+  return {eights > kMost * all && eights > 2 * tens, tens > kMost * all && tens > 2 * eights};
 }
 
 std::string rounded(double value) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  if (value < 1000) return text;
-  std::snprintf(text, sizeof text, "%.0f", value);
+  std::snprintf(text, sizeof text, value < 1000 ? "%.3g" : "%.0f", value);
   return text;
 }
 
@@ -336,149 +259,114 @@ std::string plural(Unit unit) {
   return {};
 }
 
-// Whether the body looks like a machine drawn in CAD: larger in every direction than any building, and closed.
-bool like_a_machine(const SceneEvidence& evidence) {
-  const Vec3 size = evidence.bounds.size();
-  const double least = std::min({size.x, size.y, size.z}), most = std::max({size.x, size.y, size.z});
-  const double open = std::sqrt(dot(evidence.open, evidence.open));
-  return least > 100 && least > 0.25 * most && most < 20'000 && open < 0.05 * evidence.area;
+// "millimetres, Z up (60.6 x 30.6 x 10.5 m, 1480 m² of floor, rooms 2.7 m high, stairs)"
+std::string meaning(const Hypothesis& h) {
+  constexpr double kSome = 0.5;
+  return plural(h.unit) + ", " + (h.up == UpAxis::y ? "Y" : "Z") + " up (" + rounded(h.size.x) + " x " +
+         rounded(h.size.y) + " x " + rounded(h.size.z) + " m" + (h.floor_m2 > 0 ? ", " + rounded(h.floor_m2) + " m² of floor" : "") +
+         (h.headroom_m > 0 ? ", rooms " + rounded(h.headroom_m) + " m high" : "") + (h.doors > kSome ? ", doors" : "") +
+         (h.flights > kSome ? ", stairs" : "") + ")";
 }
 
-struct UnitChoice {
-  Unit unit = Unit::metre;
-  std::string text;
-};
-
-UnitChoice choose_unit(const SceneEvidence& evidence, const std::array<std::vector<Run>, 3>& runs, int up) {
-  constexpr double kAbsurd_m = 3000, kLeast_m = 0.5, kMost_m = 20'000;
-  constexpr double kWide_m = 800, kTall_m = 250;  // both exceeded: mountains, which have no flat faces, but no site
-  const Vec3 size = evidence.bounds.size();
-  const double extent = std::max({size.x, size.y, size.z});
-  const std::string as_metres = rounded(size.x) + " x " + rounded(size.y) + " x " + rounded(size.z) + " m";
-  const bool absurd = extent > kAbsurd_m || (extent > kWide_m && along(size, up) > kTall_m);
-  std::array<Case, kUnits.size()> cases;
-  std::size_t best = 0, second = 0;
-  for (std::size_t i = 0; i < kUnits.size(); ++i) {
-    const double metres = metres_in(kUnits[i]);
-    if (i > 0 && (extent * metres < kLeast_m || extent * metres > kMost_m)) continue;
-    cases[i] = unit_case(evidence, runs, up, metres);
-    if (i == 0) continue;
-    if (best == 0 || cases[i].votes > cases[best].votes)
-      second = best, best = i;
-    else if (second == 0 || cases[i].votes > cases[second].votes)
-      second = i;
-  }
-  const double metre_votes = cases[0].votes, votes = best ? cases[best].votes : 0;
-  const double rival = second ? cases[second].votes : 0, needed = absurd ? 1 : 2;
-  if (votes >= needed && votes - metre_votes >= needed && votes > rival)
-    return {kUnits[best], "lengths are taken as " + plural(kUnits[best]) + ", which " + cases[best].text() +
-                              (cases[best].signs.size() == 1 ? " fits" : " fit") + " (in metres it would be " +
-                              as_metres + ")"};
-  if (votes == 0 && metre_votes == 0 && like_a_machine(evidence))
-    return {Unit::millimetre,
-            "lengths are taken as millimetres, as those of a machine are (in metres it would be " + as_metres + ")"};
-  if (extent > kAbsurd_m) return {Unit::metre, "it is " + as_metres + " large if its lengths are metres, as glTF says"};
-  return {};
+double score_of(const Hypothesis& h) {
+  const std::array<double, kFeatures> f = features_of(h);
+  double score = 0;
+  for (std::size_t i = 0; i < kFeatures; ++i) score += kWeights[i] * f[i];
+  return score;
 }
-
 }  // namespace
 
-SceneEvidence gather_evidence(const RawScene& raw, const std::vector<NamedBox>& nodes) {
-  constexpr int kBins = 1 << 14;
-  constexpr double kFlat = 0.9999, kFarthest = 1e12;
-  SceneEvidence evidence;
-  const auto within = [&](const Triangle& t, double limit) {
-    return std::ranges::all_of(t, [&](std::uint32_t v) {
-      const glm::dvec3& p = raw.positions[v];
-      return std::abs(p.x) < limit && std::abs(p.y) < limit && std::abs(p.z) < limit;
-    });
-  };
-  // Broken vertices are no evidence. But in a site in millimetres, all vertices may lie as far out as broken ones.
-  const bool near = std::ranges::any_of(raw.triangles, [&](const Triangle& t) { return within(t, kFarthest_m); });
-  const auto counts = [&](const Triangle& t) { return within(t, near ? kFarthest_m : kFarthest); };
-  for (const Triangle& t : raw.triangles)
-    if (counts(t))
-      for (const std::uint32_t v : t) evidence.bounds.extend(file_from_survey(raw.positions[v]));
-  for (const NamedBox& node : nodes) {
-    NamedBox turned{node.name, {}};
-    if (!node.box.empty())
-      for (const Vec3& corner : {node.box.min, node.box.max}) turned.box.extend(file_from_survey(to_glm(corner)));
-    evidence.nodes.push_back(std::move(turned));
-  }
-  const Vec3 size = evidence.bounds.size();
-  struct Bin {
-    double area = 0, moment = 0;
-  };
-  std::array<std::vector<Bin>, 6> bins;  // axis and side
-  for (auto& side : bins) side.resize(kBins);
-  for (const Triangle& t : raw.triangles) {
-    if (!counts(t)) continue;
-    const Vec3 a = file_from_survey(raw.positions[t[0]]), b = file_from_survey(raw.positions[t[1]]),
-               c = file_from_survey(raw.positions[t[2]]);
-    const Vec3 normal = cross(b - a, c - a) * 0.5;
-    const double area = std::sqrt(dot(normal, normal));
-    evidence.area += area;
-    evidence.open = evidence.open + normal;
-    for (int axis = 0; axis < 3; ++axis) {
-      if (!(std::abs(along(normal, axis)) > kFlat * area) || !(along(size, axis) > 0)) continue;
-      const double at = (along(a, axis) + along(b, axis) + along(c, axis)) / 3;
-      const double share = (at - along(evidence.bounds.min, axis)) / along(size, axis);
-      const auto bin = static_cast<std::size_t>(std::clamp(share * kBins, 0.0, kBins - 1.0));
-      Bin& hit = bins[static_cast<std::size_t>(2 * axis + (along(normal, axis) > 0))][bin];
-      hit.area += area, hit.moment += area * (at - along(evidence.bounds.min, axis));
-    }
-  }
-  for (int axis = 0; axis < 3; ++axis) {
-    auto& levels = evidence.levels[static_cast<std::size_t>(axis)];
-    const double width = along(size, axis) / kBins;
-    for (const bool forward : {false, true}) {
-      const std::size_t first = levels.size();
-      for (const Bin& bin : bins[static_cast<std::size_t>(2 * axis + forward)]) {
-        if (!(bin.area > 0)) continue;
-        const double at = bin.moment / bin.area + along(evidence.bounds.min, axis);
-        if (levels.size() > first && at - levels.back().at < width) {  // one level on the edge of two bins
-          FlatLevel& before = levels.back();
-          before.at = (before.at * before.area + at * bin.area) / (before.area + bin.area);
-          before.area += bin.area;
-        } else {
-          levels.push_back({at, bin.area, forward});
-        }
-      }
-    }
-    std::ranges::stable_sort(levels, {}, &FlatLevel::at);
-  }
-  return evidence;
+std::array<double, kFeatures> features_of(const Hypothesis& h) {
+  const double extent = extent_of(h), wide = std::sqrt(h.size.x * h.size.y);
+  return {within(extent, 1.5, 4, 400, 2500),
+          std::min(1.0, h.reached),
+          h.covered * h.rooms + (1 - h.covered) * 0.4,
+          h.doors / (h.doors + 0.5),  // few say as much as many
+          h.flights / (h.flights + 5),
+          std::clamp(0.5 - 0.5 * std::log2(h.size.z / wide), 0.0, 1.0),
+          h.upright,
+          h.grid,
+          h.unit == Unit::metre ? 1.0 : 0.0,
+          h.up == UpAxis::y ? 1.0 : 0.0};
 }
 
-Recognised recognise(const SceneEvidence& evidence, const std::optional<Unit>& unit, const std::optional<UpAxis>& up) {
-  Recognised out{unit.value_or(Unit::metre), up.value_or(UpAxis::y), {}};
-  if (evidence.bounds.empty() || !(evidence.area > 0)) return out;
-  std::array<std::vector<Run>, 3> runs;
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    for (const bool forward : {false, true})
-      for (const Run& run : equal_runs(evidence.levels[axis], forward)) runs[axis].push_back(run);
-  std::string up_text;
-  if (!up) {
-    const UpCases cases = up_cases(evidence, runs);
-    if (cases.more_than_proportions && cases.z.votes >= 2 && cases.y.votes <= 0.5) {
-      out.up = UpAxis::z;
-      up_text = "Z is taken as up, for along it " + cases.z.text();
-    } else if (cases.z.votes >= 1.5 && cases.z.votes > cases.y.votes) {
-      up_text = "Y is taken as up, as glTF says, though along Z " + cases.z.text();
+std::vector<Hypothesis> weigh_hypotheses(const RawScene& raw, const std::optional<Unit>& unit,
+                                         const std::optional<UpAxis>& up) {
+  std::vector<Hypothesis> all;
+  const DrawingGrid grid = drawing_grid(raw);
+  for (const UpAxis axis : {UpAxis::y, UpAxis::z}) {
+    if (up.value_or(axis) != axis) continue;
+    const Columns columns(raw, axis == UpAxis::z);
+    if (columns.empty()) return {};
+    const std::size_t first = all.size();
+    for (const Unit length : kUnits) {
+      if (unit.value_or(length) != length) continue;
+      Hypothesis& h = all.emplace_back();
+      h.unit = length, h.up = axis, h.upright = columns.upright(), h.inside_out = columns.inside_out();
+      const bool part = length == Unit::centimetre || length == Unit::millimetre;
+      h.grid = (length == Unit::inch && grid.inches) || (part && grid.parts_of_a_metre) ? 1 : 0;
     }
+    tbb::parallel_for(first, all.size(), [&](std::size_t i) {
+      const double metres = metres_in(all[i].unit);
+      all[i].size = to_vec3(columns.size() * metres);
+      if (extent_of(all[i]) < kNoSite_m || extent_of(all[i]) > kNoSiteEither_m) return;  // nobody walks there
+      Walk(columns, metres).measure(all[i]);
+    });
   }
-  UnitChoice choice;
-  if (!unit) {
-    choice = choose_unit(evidence, runs, out.up == UpAxis::z ? kZ : kY);
-    out.unit = choice.unit;
+  double upright = 0.01;  // less than this says nothing
+  for (const UpAxis axis : {UpAxis::y, UpAxis::z})
+    if (const auto h = std::ranges::find(all, axis, &Hypothesis::up); h != all.end()) upright += h->upright;
+  for (Hypothesis& h : all) {
+    h.upright /= upright;
+    h.score = score_of(h);
   }
-  if (!choice.text.empty() && !up_text.empty())
-    out.note = choice.text + "; " + up_text + "; if that is wrong, give the setting unit and the setting up";
-  else if (!choice.text.empty())
-    out.note = choice.text + "; if that is wrong, give the setting unit";
-  else if (!up_text.empty())
-    out.note = up_text + "; if that is wrong, give the setting up";
+  std::ranges::stable_sort(all, [](const Hypothesis& a, const Hypothesis& b) { return a.score > b.score; });
+  return all;
+}
+
+namespace {
+// Where neither a door nor a stair nor a drawing grid tells, headroom alone does, and halls have any.
+bool as_good_by_headroom(const Hypothesis& best, const Hypothesis& other) {
+  constexpr double kPlausible = 0.2, kSize = 0.3;
+  const bool told = best.doors >= 1 || best.flights >= 1 || best.grid > 0;
+  return !told && other.up == best.up && other.unit != best.unit && features_of(other)[0] >= kSize &&
+         other.rooms >= kPlausible * best.rooms;
+}
+}  // namespace
+
+Recognised recognise(const RawScene& raw, const std::optional<Unit>& unit, const std::optional<UpAxis>& up) {
+  Recognised out{unit.value_or(Unit::metre), up.value_or(UpAxis::y)};
+  const std::vector<Hypothesis> all = weigh_hypotheses(raw, unit, up);
+  if (all.empty()) return out;
+  const Hypothesis& best = all[0];
+  const bool rule = best.unit == out.unit && best.up == out.up;
+  out.unit = best.unit, out.up = best.up, out.inside_out = best.inside_out;
+  const std::string settings = unit ? "the setting up" : up ? "the setting unit" : "the setting unit and the setting up";
+  const auto rivals = [&](const Hypothesis& other) {
+    return best.score - other.score < (rule ? kRuleLead : kLead) || (!rule && as_good_by_headroom(best, other));
+  };
+  if (std::any_of(all.begin() + 1, all.end(), rivals)) {
+    out.question = "its unit and up axis are not clear: a person could walk in it read in several ways; give " + settings;
+    for (const Hypothesis& h : all)
+      if (out.choices.size() < kMostChoices && (&h == &best || rivals(h)))
+        out.choices.push_back(meaning(h) + ": unit " + to_string(h.unit) + ", up " + to_string(h.up));
+    return out;
+  }
+  if (rule) return out;
+  const auto stated = std::ranges::find_if(all, [&](const Hypothesis& h) {
+    return h.unit == unit.value_or(Unit::metre) && h.up == up.value_or(UpAxis::y);
+  });
+  out.note = "read as " + meaning(best) + "; as " + meaning(*stated) + ", a person could walk less of it; " +
+             "if that is wrong, give " +
+             (best.unit == stated->unit ? "the setting up"
+              : best.up == stated->up   ? "the setting unit"
+                                        : "the setting unit and the setting up");
   return out;
+}
+
+void turn_faces(RawScene& raw) {
+  for (Triangle& t : raw.triangles) std::swap(t[1], t[2]);
+  for (Float3& n : raw.normals) n = without_minus_zero({-n.x, -n.y, -n.z});
 }
 
 void reinterpret_axes(RawScene& raw, Unit unit, UpAxis up) {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recognises whether a file follows glTF: metres and Y up. Many exporters write another unit, or do not turn the axes.
-// Evidence comes from the sizes of things by their names, stairs, the height of a storey, flat surfaces, and what
-// stands above what. With little evidence, glTF's rule applies.
+// Decides a file's unit and up axis by what a person could do in the model: how much ground one reaches, under what
+// headroom, through what openings and over what steps. glTF says metres and Y up; many exporters do not keep to that.
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,39 +14,44 @@
 
 namespace vantage {
 
-// Faces across an axis at one coordinate.
-struct FlatLevel {
-  double at = 0, area = 0;
-  bool forward = true;  // facing along the axis
+// What the model would be in one unit and with one axis up. Lengths in metres.
+struct Hypothesis {
+  Unit unit = Unit::metre;
+  UpAxis up = UpAxis::y;
+  Vec3 size;              // survey frame: z is the height
+  double floor_m2 = 0;    // level ground with headroom, in parts as large as a room
+  double reached = 0;     // largest connected part of it, as a share of the outline seen from above
+  double headroom_m = 0;  // median under cover, over all of the model's levels; 0: nothing is covered
+  double covered = 0;     // area of those levels as a share of the outline, at most 1
+  double rooms = 0;       // share of them with the headroom of a room
+  double doors = 0;       // openings as wide and high as doors, on the way
+  double flights = 0;     // stairs on the way, in doors' widths
+  double upright = 0;     // Columns::upright(), as a share of that with either axis up
+  double grid = 0;        // 1 if the unit is that of the model's drawing grid
+  bool inside_out = false;  // Columns::inside_out()
+  double score = 0;
 };
 
-// A thing named by its node.
-struct NamedBox {
-  std::string name;
-  Box box;
-};
+constexpr std::size_t kFeatures = 10;
+std::array<double, kFeatures> features_of(const Hypothesis& h);
 
-// Data about a scene before its unit and axes are known, in the file's own axes and lengths.
-struct SceneEvidence {
-  Box bounds;
-  std::vector<NamedBox> nodes;
-  std::array<std::vector<FlatLevel>, 3> levels;  // per axis, ascending; both sides separate
-  double area = 0;                               // of all triangles
-  Vec3 open;                                     // sum of normals times areas; 0 for closed bodies
-};
+// Best first. Values that are given are not doubted. `raw`: read by glTF's rule, in the survey frame.
+std::vector<Hypothesis> weigh_hypotheses(const RawScene& raw, const std::optional<Unit>& unit,
+                                         const std::optional<UpAxis>& up);
 
 struct Recognised {
   Unit unit = Unit::metre;
   UpAxis up = UpAxis::y;
-  std::string note;  // one line; empty if nothing contradicts glTF's rule
+  bool inside_out = false;                // whether its faces are to be turned
+  std::string note = {};                  // one line; empty if glTF's rule holds
+  std::string question = {};              // not empty: no hypothesis wins clearly
+  std::vector<std::string> choices = {};  // then, what the best ones would mean
 };
 
-// `raw`: read by glTF's rule, in the survey frame.
-SceneEvidence gather_evidence(const RawScene& raw, const std::vector<NamedBox>& nodes);
+Recognised recognise(const RawScene& raw, const std::optional<Unit>& unit, const std::optional<UpAxis>& up);
 
-// Values given by the options are not examined. Conservative: another unit needs two signs that contradict metres, or
-// one if the scene would measure kilometres. Z up needs two signs, one of them more than proportions.
-Recognised recognise(const SceneEvidence& evidence, const std::optional<Unit>& unit, const std::optional<UpAxis>& up);
+// Makes every face show its other side.
+void turn_faces(RawScene& raw);
 
 // Converts a scene read as metres with Y up to the survey frame, by its true unit and axis.
 void reinterpret_axes(RawScene& raw, Unit unit, UpAxis up);

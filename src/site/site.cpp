@@ -39,12 +39,11 @@ bool asks_for_detail(const Scene& scene) {
                              [](const MeshInfo& mesh) { return mesh.role == Role::surveyed && mesh.detail_m > 0; });
 }
 
-// Length scale of a scene of unusual size: 1 from 2 m to 200 m; otherwise the largest extent over 20 m, with two
-// significant digits.
+// Length scale of a scene smaller than a site: below 2 m the largest extent over 20 m, with two significant digits.
 double scale_of(const Box& bounds) {
   const Vec3 size = bounds.size();
   const double extent = std::max({size.x, size.y, size.z});
-  if ((extent >= 2 && extent <= 200) || !(extent > 0)) return 1;
+  if (extent >= 2 || !(extent > 0)) return 1;
   const double scale = extent / 20;
   const double unit = std::pow(10, std::floor(std::log10(scale)) - 1);
   return std::round(scale / unit) * unit;
@@ -181,9 +180,8 @@ struct Site::Impl {
 
   void resolve() {
     scale = scale_of(scene.bounds());
-    const double small = std::min(scale, 1.0);  // people and tripods do not grow with a site
     scanners = options.scanners;
-    if (scanners.empty()) scanners = {site_scanner(options, small)};
+    if (scanners.empty()) scanners = {site_scanner(options, scale)};
     noise = noise_source(options, scanners.front());
     choose_devices(config, options);
     config.warn = options.warn;
@@ -193,8 +191,8 @@ struct Site::Impl {
     config.max_incidence = options.max_incidence;
     config.noise = std::ranges::any_of(scanners, [](const Scanner& scanner) { return !scanner.noise.empty(); });
     resolve_density();
-    security = security_of(options, small);
-    walkable = walkable_of(options, small);
+    security = security_of(options, scale);
+    walkable = walkable_of(options, scale);
     if (scale != 1) log_scaled();
   }
 
@@ -216,28 +214,22 @@ struct Site::Impl {
         number(config.point_spacing_m) + " m");
   }
 
-  // Logs the values scaled for a scene of unusual size in one line.
+  // Logs the values scaled for a scene smaller than a site in one line.
   void log_scaled() const {
-    const bool small = scale < 1;
     std::string made_up;
     const auto add = [&](bool given, const std::string& text) {
       if (!given) made_up += (made_up.empty() ? "" : ", ") + text;
     };
+    const Scanner& scanner = scanners.front();
     add(options.user_size_m.has_value(), "user-size " + number(config.user_size_m));
     add(options.spacing_m.has_value(), "spacing " + number(config.point_spacing_m));
-    if (small) {
-      const Scanner& scanner = scanners.front();
-      add(options.height_m.has_value(), "height " + number(scanner.height_m));
-      add(options.range_m || options.scanner,
-          "range " + number(scanner.min_range_m) + "," + number(scanner.max_range_m));
-      add(options.security_m.has_value(),
-          "security " + number(security.lower_m) + "," + number(security.upper_m) + "," + number(security.radius_m));
-    }
+    add(options.height_m.has_value(), "height " + number(scanner.height_m));
+    add(options.range_m || options.scanner, "range " + number(scanner.min_range_m) + "," + number(scanner.max_range_m));
+    add(options.security_m.has_value(),
+        "security " + number(security.lower_m) + "," + number(security.upper_m) + "," + number(security.radius_m));
     if (made_up.empty()) return;
     const Vec3 size = scene.bounds().size();
-    log("the scene measures " + number(size.x) + " x " + number(size.y) + " x " + number(size.z) + " m, " +
-        (small ? "smaller" : "larger") + " than a site: " + (small ? "lengths" : "what is measured by is") +
-        " taken as " + number(scale, 2) + " times the usual (" + made_up + ")");
+    log("the scene measures " + number(size.x) + " x " + number(size.y) + " x " + number(size.z) + " m, smaller than a site: lengths are taken as " + number(scale, 2) + " times the usual (" + made_up + ")");
   }
 
   const SearchArea& search_area() {
@@ -374,7 +366,7 @@ Simulator& Site::surroundings() {
 Evaluation Site::evaluate(std::span<const PlacedStation> stations, const EvaluationOptions& options,
                           const OnSiteOptions& on_site, const Progress& progress) {
   OnSiteOptions round = on_site;
-  if (!round.entrance) round.entrance = walkable().enter;
+  if (!round.entrance && !walkable().enter.empty()) round.entrance = walkable().enter.front();
   std::optional<OnSite> walk;
   if (has_area()) walk.emplace(area(), clash(), scanners(), round);
   return evaluate_stations({.simulator = simulator(),

@@ -156,14 +156,15 @@ void add_placement(Rows& rows) {
       .numbers("passage", "W,H", "Width and height of the narrowest opening that a person passes; 0.6,1.9",
                &SiteOptions::passage_m, 2, positive)
       .number("climb", "M", "Highest step that a person takes; 0.25", &SiteOptions::climb_m, not_negative)
-      .optional("enter", "X,Y,Z", "Entrance of the site; found automatically by default", &SiteOptions::enter,
-                [](const std::string& text, const std::string& what) {
-                  const auto values = parse_numbers(text, what, 3, 3);
-                  return Vec3{values[0], values[1], values[2]};
-                })
+      .repeated(
+          "enter", "X,Y,Z", "Entrance of the site; found automatically by default; may be repeated",
+          [](SiteOptions & o) -> auto& { return o.enter; },
+          [](const std::string& text, const std::string& what) {
+            const auto values = parse_numbers(text, what, 3, 3);
+            return Vec3{values[0], values[1], values[2]};
+          })
       .texts(
-          "doors", "PATTERN",
-          "Nodes that are closed doors: open for people, closed for rays; closed: keep the doors of an IFC closed",
+          "doors", "PATTERN", "Nodes that are closed doors: open for people, closed for rays; closed: keep all doors closed",
           [](SiteOptions & o) -> auto& { return o.scene.doors; })
       .texts(
           "station-area", "PATTERN", "Nodes to stand on that keep their role, such as surveyed",

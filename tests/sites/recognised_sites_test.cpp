@@ -2,8 +2,11 @@
 // Unit and up axis of the reference sites, however they are written.
 #include <gtest/gtest.h>
 
+#include <optional>
+
 #include "sites/site.hpp"
 #include "support/temporary_folder.hpp"
+#include "vantage/error.hpp"
 #include "vantage/scene.hpp"
 
 namespace vantage {
@@ -45,17 +48,29 @@ class RecognisedSites : public testing::TestWithParam<const char*> {
 INSTANTIATE_TEST_SUITE_P(All, RecognisedSites, testing::ValuesIn(test::site_names().begin(), test::site_names().end()),
                          [](const auto& site) { return std::string(site.param); });
 
+// A street of houses without a door may be one of inches or feet: that is asked for.
 TEST_P(RecognisedSites, InEveryVariant) {
+  int asked = 0;
   for (const double per_metre : {1.0, 1000.0, 100.0, 1 / 0.0254, 1 / 0.3048})
     for (const bool z_up : {false, true})
       for (const bool utm : {false, true}) {
         const Variant variant{.z_up = z_up, .utm = utm, .per_metre = per_metre};
-        const Scene scene = load(variant);
         const std::string what = std::to_string(per_metre) + (z_up ? " Z up" : " Y up") + (utm ? " UTM: " : ": ");
+        std::optional<Scene> read;
+        try {
+          read = load(variant);
+        } catch (const Error& question) {
+          ++asked;
+          EXPECT_NE(per_metre, 1) << what << question.what();
+          EXPECT_GE(question.details().size(), 2U) << what << question.what();
+          continue;
+        }
+        const Scene& scene = *read;
         expect_box(scene.bounds(), bounds(test::make_site(GetParam(), variant)), what + text(scene));
         EXPECT_EQ(text(scene).find("setting unit") != std::string::npos, per_metre != 1) << what << text(scene);
         EXPECT_EQ(text(scene).find("setting up") != std::string::npos, z_up) << what << text(scene);
       }
+  EXPECT_LE(asked, std::string(GetParam()) == "street" ? 8 : 0);
 }
 
 TEST_P(RecognisedSites, AsAreNamelessOnesThatKeepToGltf) {

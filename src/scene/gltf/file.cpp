@@ -175,8 +175,8 @@ void File::read_bytes() {
   read_structure();
 }
 
-Error File::malformed(const std::string& what) const {
-  return Error(Errc::malformed_file, path_.string() + ": " + what);
+Error File::malformed(const std::string& what, std::vector<std::string> details) const {
+  return Error(Errc::malformed_file, path_.string() + ": " + what, std::move(details));
 }
 
 // A tile of 3D Tiles 1.0 (b3dm) is a header of 28 bytes, four tables whose lengths that states, and a GLB. Gives where

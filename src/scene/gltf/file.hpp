@@ -49,7 +49,7 @@ class File {
   const nlohmann::json& asset_extras(const char* key) const;
 
   // An error in this file: "FILE: what".
-  Error malformed(const std::string& what) const;
+  Error malformed(const std::string& what, std::vector<std::string> details = {}) const;
 
  private:
   void read_bytes();

@@ -16,6 +16,7 @@
 #include "scene/gltf/material.hpp"
 #include "scene/gltf/node_tree.hpp"
 #include "scene/gltf/primitive.hpp"
+#include "scene/open_doors.hpp"
 #include "scene/positions.hpp"
 #include "scene/raw_scene.hpp"
 #include "scene/recognise_units.hpp"
@@ -100,6 +101,7 @@ class Loader {
     if (raw_.triangles.empty() && raw_.search_triangles.empty() && skipped_.points_or_lines > 0)
       throw file_.malformed("it holds points or lines alone; a survey is planned on surfaces: export triangles");
     settle_axes();
+    find_doors();
     pass_notes_on();
     note_skipped();
     read_rooms();
@@ -139,11 +141,14 @@ class Loader {
     } catch (const Error& error) {
       throw file_.malformed(std::string("asset.extras.vantage: ") + error.what());
     }
-    Recognised axes{unit.value_or(Unit::metre), up.value_or(UpAxis::y), {}};
-    if (!(unit && up) && !prepared()) axes = recognise(gather_evidence(raw_, boxes_), unit, up);
-    boxes_ = {};
+    Recognised axes{unit.value_or(Unit::metre), up.value_or(UpAxis::y)};
+    if (!prepared()) axes = recognise(raw_, unit, up);
+    if (!axes.question.empty()) throw file_.malformed(axes.question, axes.choices);
     if (!axes.note.empty()) raw_.notes.push_back(axes.note);
     reinterpret_axes(raw_, axes.unit, axes.up);
+    if (!axes.inside_out) return;
+    turn_faces(raw_);
+    raw_.notes.emplace_back("its faces show away from the space that they enclose, which is open; they are turned");
   }
 
   std::vector<Job> list_jobs(const std::vector<PlacedMesh>& placed) {
@@ -229,12 +234,21 @@ class Loader {
       job.role = Role::ignore;
       if (names.empty() || names.back() != job.placed->name) names.push_back(job.placed->name);
     }
-    if (names.empty()) return;
+    doors_ = std::move(names);
+  }
+
+  // So are those that only their names or shapes tell, in a file that marks nothing. REQUIRES: lengths in metres, Z up.
+  void find_doors() {
+    if (!prepared() && std::ranges::count(options_.doors, kClosedDoors) == 0)
+      for (std::string& name : open_doors(raw_, may_be_door_)) doors_.push_back(std::move(name));
+    if (doors_.empty()) return;
     constexpr std::size_t kNamed = 3;
     std::string some;
-    for (std::size_t i = 0; i < std::min(kNamed, names.size()); ++i) some += (i ? ", " : "") + gltf::quoted(names[i]);
-    raw_.notes.push_back(std::to_string(names.size()) + " doors are taken as open, their leaves left out: " + some +
-                         (names.size() > kNamed ? ", …" : ""));
+    for (std::size_t i = 0; i < std::min(kNamed, doors_.size()); ++i) some += (i ? ", " : "") + gltf::quoted(doors_[i]);
+    raw_.notes.push_back(std::to_string(doors_.size()) +
+                         (doors_.size() == 1 ? " door is taken as open, its leaf left out: "
+                                             : " doors are taken as open, their leaves left out: ") +
+                         some + (doors_.size() > kNamed ? ", …" : "") + "; the word closed for the setting doors keeps them");
   }
 
   void read(const Job& job) {
@@ -252,6 +266,8 @@ class Loader {
       for (const glm::dmat4& world_from_mesh : job.placed->world_from_mesh) append_search(*primitive, world_from_mesh);
       return;
     }
+    const Marks& marks = job.placed->marks;
+    may_be_door_.push_back(!job.placed->pattern_role && !marks.role && !job.placed->door && !marks.door);
     raw_.ranges.push_back({static_cast<std::uint32_t>(raw_.triangles.size()),
                            static_cast<std::uint32_t>(primitive->triangles.size() * instances), job.material->index});
     raw_.meshes.push_back({.name = job.placed->name,
@@ -263,18 +279,8 @@ class Loader {
                            .station_area = job.placed->station_area,
                            .detail_m = job.detail_mm * 1e-3,
                            .accuracy_m = job.accuracy_mm * 1e-3});
-    const std::size_t first = raw_.positions.size();
     for (const glm::dmat4& world_from_mesh : job.placed->world_from_mesh)
       append(*primitive, *job.material, world_from_mesh);
-    if (instances == 1) note_box(*job.placed, first);
-  }
-
-  // Adds the box of a node, over all primitives of its mesh.
-  void note_box(const PlacedMesh& placed, std::size_t first_vertex) {
-    if (boxed_ != &placed) boxes_.push_back({placed.name, {}});
-    boxed_ = &placed;
-    for (std::size_t v = first_vertex; v < raw_.positions.size(); ++v)
-      boxes_.back().box.extend(to_vec3(raw_.positions[v]));
   }
 
   void append_triangles(const Primitive& primitive, const glm::dmat4& world_from_mesh, std::size_t first_vertex,
@@ -425,8 +431,8 @@ class Loader {
   RawScene raw_;
   MaterialTable materials_;
   SkippedPrimitives skipped_;
-  std::vector<NamedBox> boxes_;
-  const PlacedMesh* boxed_ = nullptr;
+  std::vector<std::string> doors_;          // that are open
+  std::vector<std::uint8_t> may_be_door_;   // per mesh
   std::size_t mirrored_meshes_ = 0;
   bool search_without_uv_ = false;
 };

@@ -108,13 +108,14 @@ std::string cut_name(const std::string& name) {
   return name.substr(0, end).append(kMore);
 }
 
-std::string node_name(const tinygltf::Model& model, int index) {
+// `above`: of the nearest node above that has one. Converters name a product and leave its meshes without.
+std::string node_name(const tinygltf::Model& model, int index, const std::string& above) {
   const tinygltf::Node& node = model.nodes[static_cast<std::size_t>(index)];
   if (!node.name.empty()) return cut_name(node.name);
   if (node.mesh >= 0 && static_cast<std::size_t>(node.mesh) < model.meshes.size() &&
       !model.meshes[static_cast<std::size_t>(node.mesh)].name.empty())
     return cut_name(model.meshes[static_cast<std::size_t>(node.mesh)].name);
-  return "node " + std::to_string(index);
+  return above.empty() ? "node " + std::to_string(index) : above;
 }
 
 // (x, y, z) ↦ (x, −z, y): glTF's Y up becomes the survey frame's Z up.
@@ -287,6 +288,7 @@ std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& opti
     std::optional<double> pattern_detail_mm, pattern_accuracy_mm;
     Marks marks;
     bool door = false, station_area = false;
+    std::string name = {};  // of the nearest node above that has one
   };
   std::vector<Visit> stack;  // an explicit stack: node trees may be deeper than the thread's stack
   const std::vector<int> roots = root_nodes(file, options);
@@ -312,7 +314,8 @@ std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& opti
                            std::to_string(model.nodes.size()));
     const auto index = static_cast<std::size_t>(visit.node);
     const tinygltf::Node& node = model.nodes[index];
-    const std::string name = node_name(model, visit.node);
+    const std::string name = node_name(model, visit.node, visit.name);
+    if (!node.name.empty()) visit.name = name;
     const std::string where = "node " + std::to_string(visit.node) + (node.name.empty() ? "" : " " + quoted(node.name));
     if (visited[index]) throw file.malformed(where + " is reached twice: a cycle, or a node with two parents");
     visited[index] = true;
@@ -361,7 +364,7 @@ std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& opti
     for (auto it = node.children.rbegin(); it != node.children.rend(); ++it)
       stack.push_back({*it, visit.node, world_from_node, visit.pattern_role, visit.pattern_weight,
                        visit.pattern_detail_mm, visit.pattern_accuracy_mm, visit.marks, visit.door,
-                       visit.station_area});
+                       visit.station_area, visit.name});
   }
   roles.check(names);
   weights.check(names);

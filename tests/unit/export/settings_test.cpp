@@ -135,7 +135,7 @@ const std::vector<Change<WalkableOptions>> kWalkable{
     {"climb_m", [](WalkableOptions& o) { o.climb_m = 0.1; }},
     {"enter",
      [](WalkableOptions& o) {
-       o.enter = {0, -5, 0};
+       o.enter = {Vec3{0, -5, 0}};
      }},
     {"levels",
      [](WalkableOptions& o) {

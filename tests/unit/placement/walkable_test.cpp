@@ -167,12 +167,12 @@ TEST(Walkable, OneEntersWhereOneIsTold) {
   const Scene scene = two_rooms(0.4, 2.1).scene();
   for (const double x : {1.0, 7.0}) {
     WalkableOptions options;
-    options.enter = origin + Vec3{x, 2, 0.4};
+    options.enter = {origin + Vec3{x, 2, 0.4}};
     const SearchArea area = SearchArea::build(scene, options);
     for (const Vec3& p : random_places(area, 1000)) EXPECT_EQ(p.x - origin.x < 4, x < 4);
   }
   WalkableOptions nowhere;
-  nowhere.enter = origin + Vec3{50, 2, 0};
+  nowhere.enter = {origin + Vec3{50, 2, 0}};
   try {
     SearchArea::build(scene, nowhere);
     FAIL();

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// A scene along a few hundred thousand upright lines: level surfaces, the free height above each, and the walls between
+// neighbouring lines. In the file's lengths, so that one pass serves every unit.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/glm.hpp"
+#include "scene/raw_scene.hpp"
+
+namespace vantage {
+
+class Columns {
+ public:
+  // A surface no steeper than people walk on.
+  struct Level {
+    float z = 0;     // above the lowest point
+    float free = 0;  // free height; infinite under the sky
+  };
+  // Part of something steep that stands between two neighbouring columns.
+  struct Wall {
+    float low = 0, high = 0;
+  };
+
+  // `raw`: read by glTF's rule; `z_up`: turned as reinterpret_axes() turns it. Deterministic.
+  Columns(const RawScene& raw, bool z_up);
+
+  bool empty() const { return outline_ == 0; }
+  double cell() const { return cell_; }
+  std::uint32_t nx() const { return nx_; }
+  std::uint32_t count() const { return nx_ * ny_; }
+  glm::dvec3 size() const { return size_; }
+  double outline() const { return static_cast<double>(outline_) * cell_ * cell_; }  // area seen from above
+  // Share of steep faces that are upright and lie along neither horizontal axis: columns, tanks, turned walls.
+  double upright() const { return upright_; }
+  // Whether the model is a shell of sheets that is open at its sides and shows its faces to the outside, as a tunnel may
+  // be. Then its floor faces down.
+  bool inside_out() const { return inside_out_; }
+  const std::vector<Level>& levels() const { return levels_; }
+  std::uint32_t first(std::uint32_t column) const { return first_[column]; }  // ascending in z; up to `count()`
+  // Whether a wall stands between a column and the next along x (0) or y (1), somewhere from `low` to `high`.
+  bool wall(std::uint32_t column, int axis, float low, float high) const;
+
+ private:
+  bool faces_outwards(const std::vector<std::uint64_t>& crossings, double tall) const;
+
+  double cell_ = 0, upright_ = 0;
+  std::uint32_t nx_ = 0, ny_ = 0;
+  std::size_t outline_ = 0;
+  bool inside_out_ = false;
+  glm::dvec3 size_{};
+  std::vector<std::uint32_t> first_, first_wall_;
+  std::vector<Level> levels_;
+  std::vector<Wall> walls_;
+};
+
+}  // namespace vantage

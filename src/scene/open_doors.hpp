@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// Doors that a modeller left closed are open: their leaves stop neither rays nor people.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "scene/raw_scene.hpp"
+
+namespace vantage {
+
+// Takes out the leaves of doors among the meshes that `candidate` marks, one of them for each mesh, and returns their
+// names. A leaf has the size of a door, with free space on both sides, so a cabinet's is none; and a name calls it a
+// door in one of several languages, or it stands in an opening of a thicker wall. `raw`: survey frame, metres.
+std::vector<std::string> open_doors(RawScene& raw, const std::vector<std::uint8_t>& candidate);
+
+// Whether a name is that of a door, and no part of furniture.
+bool names_a_door(const std::string& name);
+
+}  // namespace vantage

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sites that nobody designed, from a seed: buildings, halls and tunnels, with the truth about them.
+#pragma once
+
+#include <cstdint>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "sites/site.hpp"
+
+namespace vantage::test {
+
+struct RandomSite {
+  Site site;              // every room is one of its places
+  Variant variant;        // how it is written: unit, axis, origin, names
+  std::set<std::string> shut;  // rooms that no way leads to
+  std::vector<Part> leaves;    // of doors, closed in the file and open in truth
+  bool turned = false;    // sheets whose normals point away from the room
+  std::string told;       // in words, for messages
+};
+
+// The same seed gives the same site.
+RandomSite make_random_site(std::uint64_t seed);
+
+}  // namespace vantage::test

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sites that nobody designed: unit and up axis are right or asked for, no station stands where nobody gets to, and each
+// room is reached or told. VANTAGE_SEEDS=first..last chooses the sites.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <optional>
+#include <random>
+
+#include "sites/random_site.hpp"
+#include "support/temporary_folder.hpp"
+#include "vantage/error.hpp"
+#include "vantage/placement.hpp"
+#include "vantage/scene.hpp"
+
+namespace vantage {
+namespace {
+
+using test::RandomSite;
+using test::Standing;
+using test::Surface;
+
+double area_of(const test::Place& place) { return (place.x1 - place.x0) * (place.y1 - place.y0); }
+
+// Sheets may be turned in the file; the truth keeps them upward.
+void write(const RandomSite& random, const std::filesystem::path& file) {
+  test::Site site = random.site;
+  site.parts.insert(site.parts.end(), random.leaves.begin(), random.leaves.end());
+  if (random.turned)
+    for (test::Part& part : site.parts)
+      for (auto& t : part.triangles) std::swap(t[1], t[2]);
+  write_site(site, random.variant, file);
+}
+
+void stand(const RandomSite& random, const Scene& scene) {
+  const SearchArea area = SearchArea::build(scene);
+  SCOPED_TRACE(area.description());
+  EXPECT_FALSE(area.on_plane());
+  std::mt19937 rng(7);
+  std::uniform_real_distribution<double> unit(0, 1);
+  const Uv low = area.uv_min(), high = area.uv_max();
+  std::map<std::string, int> ground, wrong;
+  for (int tries = 0, draws = 0; tries < 40'000 && draws < 2000; ++tries) {
+    const auto p = area.locate({low.u + unit(rng) * (high.u - low.u), low.v + unit(rng) * (high.v - low.v)});
+    if (!p) continue;
+    ++draws;
+    Standing standing = random.site.at(*p);
+    // Surfaces are cut to a few decimetres at what stands on them.
+    constexpr double kEdge = 0.25;
+    for (const Vec3& aside : {Vec3{kEdge, 0, 0}, {-kEdge, 0, 0}, {0, kEdge, 0}, {0, -kEdge, 0}})
+      if (standing.surface != Surface::floor) standing = random.site.at(*p + aside);
+    const std::string where = standing.surface != Surface::floor ? to_string(standing.surface) : standing.place;
+    const bool off = standing.surface != Surface::floor || random.shut.contains(standing.place);
+    if (off && ++wrong[where] <= 2) ADD_FAILURE() << where << " at " << p->x << ", " << p->y << ", " << p->z;
+    ++ground[standing.place];
+  }
+  double unseen = 0, told = 0;
+  std::string names;
+  for (const test::Place& place : random.site.places)
+    if (ground[place.name] == 0) unseen += area_of(place), names += " " + place.name;
+  for (const NotEntered& part : area.not_entered()) told += part.area_m2;
+  EXPECT_GE(told, 0.3 * unseen) << "not reached:" << names;
+  for (const test::Place& place : random.site.places)
+    if (!random.shut.contains(place.name) && ground[place.name] == 0)
+      std::printf("    %s is not reached, and told\n", place.name.c_str());
+}
+
+TEST(RandomSites, AreRecognisedOrAskedForAndWalkedAsTheyAre) {
+  int first = 1, last = 20;
+  if (const char* seeds = std::getenv("VANTAGE_SEEDS")) {
+    ASSERT_EQ(std::sscanf(seeds, "%d..%d", &first, &last), 2);
+  }
+  int right = 0, asked = 0, wrong = 0;
+  for (int seed = first; seed <= last; ++seed) {
+    const RandomSite random = test::make_random_site(static_cast<std::uint64_t>(seed));
+    SCOPED_TRACE("seed " + std::to_string(seed) + ": " + random.told);
+    const test::TemporaryFolder folder;
+    write(random, folder / "site.glb");
+    const double per_metre = random.variant.per_metre;
+    Unit unit = Unit::metre;
+    for (const Unit u : {Unit::centimetre, Unit::millimetre, Unit::inch, Unit::foot})
+      if (std::abs(per_metre * metres_in(u) - 1) < 1e-6) unit = u;
+    const SceneOptions truth{.unit = unit, .up = random.variant.z_up ? UpAxis::z : UpAxis::y};
+    const Scene scene = Scene::load(folder / "site.glb", truth);
+    std::optional<Scene> found;
+    try {
+      found = Scene::load(folder / "site.glb");
+    } catch (const Error& error) {
+      ++asked;
+      std::printf("  seed %d, %s: asked\n", seed, random.told.c_str());
+      EXPECT_GE(error.details().size(), 2U) << error.what();
+    }
+    if (found) {
+      const bool same = found->fingerprint() == scene.fingerprint();
+      (same ? right : wrong) += 1;
+      EXPECT_TRUE(same) << (found->notes().empty() ? "" : found->notes().front());
+    }
+    stand(random, scene);
+  }
+  std::printf("%d right, %d asked, %d wrong\n", right, asked, wrong);
+}
+
+}  // namespace
+}  // namespace vantage
