@@ -397,7 +397,10 @@ class Loader {
         return marks.contains(key) && marks[key].is_string() ? marks[key].get<std::string>() : std::string();
       };
       const std::string number = text("name"), name = text("long_name");
-      Room room{.name = name.empty() || name == number ? number : number.empty() ? name : number + " " + name};
+      Room room{.name = name.empty() || name == number ? number
+                        : number.empty()               ? name
+                                                       : number + " " + name,
+                .box = {}};
       room.box.extend(corner(0)), room.box.extend(corner(1));
       raw_.rooms.push_back(std::move(room));
     }
