@@ -16,12 +16,13 @@ template <class Real>
   const Real size = std::abs(x), least = std::min(y, size), most = std::max(y, size);
   const Real q = least / (most + std::numeric_limits<Real>::min()), s = q * q;
   const Real angle =
-      q * (1 + s * (Real(-0.3333314528) +
-                    s * (Real(0.1999355085) +
-                         s * (Real(-0.1420889944) +
-                              s * (Real(0.1065626393) +
-                                   s * (Real(-0.0752896400) +
-                                        s * (Real(0.0429096138) + s * (Real(-0.0161657367) + s * Real(0.0028662257)))))))));
+      q *
+      (1 + s * (Real(-0.3333314528) +
+                s * (Real(0.1999355085) +
+                     s * (Real(-0.1420889944) +
+                          s * (Real(0.1065626393) +
+                               s * (Real(-0.0752896400) +
+                                    s * (Real(0.0429096138) + s * (Real(-0.0161657367) + s * Real(0.0028662257)))))))));
   const Real upright = (y > size ? half_turn / 2 : Real(0)) + (y > size ? Real(-1) : Real(1)) * angle;
   return (x < 0 ? half_turn : Real(0)) + (x < 0 ? Real(-1) : Real(1)) * upright;
 }

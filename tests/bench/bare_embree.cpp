@@ -110,14 +110,15 @@ void BareEmbreeOptions::add(CLI::App& command) { site.add(command); }
 
 void run_bare_embree(const BareEmbreeOptions& options) {
   const Scene scene = Scene::load(options.site.scene);
-  const TracedSite site = options.site.traced(scene, options.site.stations());
+  TracedSite site = options.site.traced(scene, options.site.stations());
+  site.scene.whole_scans = WholeScans::traced;  // as the bare loops do
   const RayPattern& pattern = *site.scene.scanners[0].pattern;
   const auto engine = make_tracer(Engine::embree, std::nullopt, site.scene);
   engine->set_goal_density(site.goal_density);
   const embree::Device device = embree::new_device();
   const embree::Scene tree = tree_of(device.get(), scene.data());
 
-  std::vector<Way> ways{{"rtcIntersect8"}, {"rtcIntersectNM"}, {"engine, counting"}};
+  std::vector<Way> ways{{"rtcIntersect8"}, {"rtcIntersectNM"}, {"engine, tracing and counting"}};
 #if VANTAGE_EMBREE_MAJOR >= 4
   ways.erase(ways.begin() + 1);  // Embree 4 has no streams
 #endif

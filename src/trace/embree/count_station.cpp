@@ -19,9 +19,9 @@ namespace vantage {
 namespace {
 
 // Adds the points of `hits`, which are on surveyed meshes and have their ranges.
-[[gnu::always_inline]] inline void count_points(const StationRays& station_rays, const Float3& origin,
-                                                const Hits& hits, VoxelLookup& voxels, PointBuckets::Local& points,
-                                                std::uint32_t shift, StationTotals& totals) {
+[[gnu::always_inline]] inline void count_points(const StationRays& station_rays, const Float3& origin, const Hits& hits,
+                                                VoxelLookup& voxels, PointBuckets::Local& points, std::uint32_t shift,
+                                                StationTotals& totals) {
   if (station_rays.limited()) {
     voxels.clear();
     for (std::uint32_t k = 0; k < hits.size; ++k) {
@@ -175,8 +175,8 @@ StationTotals count_strip(const StationRays& station_rays, const TraceStation& s
 
 // Adds up totals of parts first to end, in parallel.
 template <class Part>
-StationTotals add_up(std::size_t first, std::size_t end, std::size_t grain, const StationRays& rays, PointBuckets& points,
-                  const Part& part) {
+StationTotals add_up(std::size_t first, std::size_t end, std::size_t grain, const StationRays& rays,
+                     PointBuckets& points, const Part& part) {
   return tbb::parallel_reduce(
       tbb::blocked_range<std::size_t>(first, end, grain), StationTotals{},
       [&](const auto& range, StationTotals sum) {

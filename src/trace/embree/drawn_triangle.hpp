@@ -5,8 +5,8 @@
 // Σ Uₖ cornerₖ / K with K = normal·corner, Σ|Uₖ| >= K / farthest. If that is eight times the doubt, a ray may pass only
 // before the head, and the point where it meets the plane lies in the triangle, stretched from its middle by less than
 // 1 + 4 doubt / (K / farthest − 6 doubt). If not, the triangle is flat: seen edge-on, a sliver, or far too small. Then
-// all |Uₖ| <= 11 doubt / γ, where the triangle is γ · farthest from the head: a band of directions. Planes confines it to
-// the triangle's ball.
+// all |Uₖ| <= 11 doubt / γ, where the triangle is γ · farthest from the head: a band of directions. Planes confines it
+// to the triangle's ball.
 #pragma once
 
 #include <array>
@@ -23,16 +23,16 @@ struct DrawnTriangle {
   DrawnTriangle(const std::array<Vec3, 3>& corners, bool turned);
 
   std::array<Vec3, 3> corner;
-  std::array<Vec3, 3> edge;      // unit normals of the planes through head and edges, inwards; 0 if there is none
-  std::array<double, 3> doubt;   // of edgeₖ·d for a unit direction: Embree's, and that of directions and drawing
-  Vec3 normal;                   // unit, away from the head
-  double height;                 // of the plane over the head
-  double farthest;               // corner
+  std::array<Vec3, 3> edge;     // unit normals of the planes through head and edges, inwards; 0 if there is none
+  std::array<double, 3> doubt;  // of edgeₖ·d for a unit direction: Embree's, and that of directions and drawing
+  Vec3 normal;                  // unit, away from the head
+  double height;                // of the plane over the head
+  double farthest;              // corner
   Vec3 middle;
-  double radius;                 // of the corners around it
-  double stretch;                // of the triangle, so that it contains all points of rays that may pass
+  double radius;   // of the corners around it
+  double stretch;  // of the triangle, so that it contains all points of rays that may pass
   bool flat;
-  bool certain;                  // Embree's own distance is good enough to find every hit
+  bool certain;  // Embree's own distance is good enough to find every hit
 
   // Flat triangles: |normal·d| <= doubt for all rays that may pass.
   struct Band {

@@ -29,16 +29,16 @@ constexpr std::uint32_t in_doubt = 0x80000000u;
 // of 2^-21 of the inverse of the plane's height: 2^-17 of the value where the cosine of the incidence is `steep`.
 constexpr float apart = 1 + 0x1p-15f;
 constexpr float steep = 0x1p-4f;
-constexpr double least_slope = 0x1p-9;          // Planes clamps distances at half of it
-constexpr float angle_doubt = 0x1.8p-20f;       // radians; of rows computed in float
-constexpr float past_all = 8;                   // beyond any angle
+constexpr double least_slope = 0x1p-9;     // Planes clamps distances at half of it
+constexpr float angle_doubt = 0x1.8p-20f;  // radians; of rows computed in float
+constexpr float past_all = 8;              // beyond any angle
 
 constexpr std::int32_t lanes = 8;
 constexpr std::int32_t few_rows = 32;  // so many are quicker evaluated than bounded
 
 // What a triangle's rows are computed from, in the scanner's frame.
 struct Outline {
-  float x[3], y[3], z[3], doubt[3];  // edges
+  float x[3], y[3], z[3], doubt[3];                       // edges
   float inverse_x, inverse_y, inverse_z, inverse_height;  // inverse distance along d: their product with d
   float least_zenith, most_zenith;                        // of its rays
 };
@@ -53,8 +53,8 @@ struct Columns {
   alignas(64) float cosine[Picture::wide], sine[Picture::wide];
 };
 
-// Bounds on the zenith in eight columns, from all edges. In a column an edge is R sin(θ₀ − θ) or R sin(θ − θ₀); its doubt
-// moves θ₀ by asin(doubt / R) either way.
+// Bounds on the zenith in eight columns, from all edges. In a column an edge is R sin(θ₀ − θ) or R sin(θ − θ₀); its
+// doubt moves θ₀ by asin(doubt / R) either way.
 [[gnu::always_inline]] inline void find_rows(const Outline& outline, const Columns& columns, std::uint32_t column,
                                              float first, float step, std::int32_t row_begin, std::int32_t row_end,
                                              Rows& rows) {
@@ -116,8 +116,11 @@ bool Picture::Item::operator<(const Item& other) const {
   return std::tuple(-nearest, triangle, column_begin) < std::tuple(-other.nearest, other.triangle, other.column_begin);
 }
 
+// Drawing looks at every triangle, tracing only at those near a ray. On a plant of 300 000, with as many rays, both
+// take as long (docs/benchmarks.md).
+constexpr std::uint64_t least_rays_a_triangle = 16;
 bool Picture::pays(std::size_t triangles, std::uint64_t rays) {
-  return triangles < none && rays >= 8 * static_cast<std::uint64_t>(triangles);
+  return triangles < none && rays >= least_rays_a_triangle * triangles;
 }
 
 namespace {
@@ -175,7 +178,8 @@ bool Picture::place(std::uint32_t triangle, std::vector<Item>& items) const {
   const double start = static_cast<double>(pattern.min_range), end = static_cast<double>(farthest_) * (1 + 0x1p-8);
   const DrawnTriangle seen = drawn(rays_, station_, triangle);
   const double away = std::sqrt(dot(seen.middle, seen.middle));
-  const double reach = seen.flat ? Planes::reach(seen.radius, seen.farthest, station_.origin) : seen.radius * (1 + seen.stretch);
+  const double reach =
+      seen.flat ? Planes::reach(seen.radius, seen.farthest, station_.origin) : seen.radius * (1 + seen.stretch);
   if ((away + reach) * (1 + 0x1p-8) < start || away - reach > end) return true;
   double nearest = away - reach;
   RayRanges ranges;

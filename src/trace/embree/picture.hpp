@@ -16,9 +16,9 @@ namespace vantage {
 
 class Picture {
  public:
-  static constexpr std::uint32_t none = 0x7FFFFFFFu;      // no hit, among a strip's triangles
-  static constexpr std::uint32_t wide = RayTile::side;    // columns of a strip
-  static constexpr std::uint32_t block = RayTile::side;   // rows that are stored together
+  static constexpr std::uint32_t none = 0x7FFFFFFFu;     // no hit, among a strip's triangles
+  static constexpr std::uint32_t wide = RayTile::side;   // columns of a strip
+  static constexpr std::uint32_t block = RayTile::side;  // rows that are stored together
 
   // Whether drawing is faster than tracing.
   static bool pays(std::size_t triangles, std::uint64_t rays);
@@ -77,11 +77,11 @@ class Picture {
   const StationRays& rays_;
   const TraceStation& station_;
   const TileEnds& ends_;
-  float start_ = 0;                     // inverse of the least range
-  float farthest_ = 0;                  // of the ends
+  float start_ = 0;     // inverse of the least range
+  float farthest_ = 0;  // of the ends
   bool drawable_ = true;
-  std::vector<Item> items_;             // strip by strip, near ones first
-  std::vector<std::size_t> begin_;      // [strip] in items_
+  std::vector<Item> items_;                  // strip by strip, near ones first
+  std::vector<std::size_t> begin_;           // [strip] in items_
   std::vector<Block<float>> sine_, cosine_;  // of the zeniths; 0 beyond the last
 };
 

@@ -123,9 +123,18 @@ void RayCaster::any_hits(const Float3& origin, float start, std::span<Probe> pro
     for (std::size_t i = 0; i < n; ++i) {
       const Probe& probe = probes[first + i];
       end[i] = probe.end;
-      rays[i] = {
-          origin.x,        origin.y, origin.z,           start * before, RayCaster::safe(probe.d.x),          RayCaster::safe(probe.d.y),
-          RayCaster::safe(probe.d.z), 0,        probe.end * beyond, 0xFFFFFFFFu,    static_cast<unsigned>(i), 0};
+      rays[i] = {origin.x,
+                 origin.y,
+                 origin.z,
+                 start * before,
+                 RayCaster::safe(probe.d.x),
+                 RayCaster::safe(probe.d.y),
+                 RayCaster::safe(probe.d.z),
+                 0,
+                 probe.end * beyond,
+                 0xFFFFFFFFu,
+                 static_cast<unsigned>(i),
+                 0};
     }
     hit.fill(RayBundle::no_hit);
     Context context{{}, *planes_, origin, start, end.data(), hit.data()};

@@ -42,9 +42,9 @@ class RayCaster {
   RayCaster(std::shared_ptr<const SceneData> scene, std::shared_ptr<const Planes> planes);
 
   // Fills t and primitive. The hit is the least (t, primitive) over all triangles with start < t <= end that Embree
-  // finds the ray to pass through, and that it comes near (Planes::beside), whatever the other rays of the bundle. Embree's own distance depends on the
-  // processor's maker, and its choice among coincident triangles on the order of visits; neither is used. Its tree is
-  // searched by `doubt` past the nearest hit and past both ends.
+  // finds the ray to pass through, and that it comes near (Planes::beside), whatever the other rays of the bundle.
+  // Embree's own distance depends on the processor's maker, and its choice among coincident triangles on the order of
+  // visits; neither is used. Its tree is searched by `doubt` past the nearest hit and past both ends.
   static constexpr float doubt = 0x1p-8f;
   void cast(RayBundle& rays) const;
 

@@ -168,13 +168,13 @@ RC_GTEST_PROP(Picture, OfAnyTrianglesIsWhatTracingFinds, ()) {
   const int place = *rc::gen::inRange(0, 6);
   const Float3 &a = corners[0], &b = corners[1], &c = corners[2];
   if (place == 0) head = {2 * a.x - b.x, 2 * a.y - b.y, 2 * a.z - b.z};  // in the plane of the first triangle
-  if (place == 1) head = {a.x, a.y, a.z + 1};                           // above a corner
-  if (place == 2)  // just off a surface
+  if (place == 1) head = {a.x, a.y, a.z + 1};                            // above a corner
+  if (place == 2)                                                        // just off a surface
     head = {(a.x + b.x + c.x) / 3, (a.y + b.y + c.y) / 3, (a.z + b.z + c.z) / 3 + 1e-4f};
   TraceStation station{head};
   if (*rc::gen::inRange(0, 3) == 0)
-    station.turn = make_turn({.heading = Angle::degrees(*rc::gen::inRange(0, 360)),
-                              .tilt = Angle::degrees(*rc::gen::inRange(0, 181))});
+    station.turn = make_turn(
+        {.heading = Angle::degrees(*rc::gen::inRange(0, 360)), .tilt = Angle::degrees(*rc::gen::inRange(0, 181))});
   const Compared compared = compare(scene_of(corners, with), station);
   RC_TAG(std::string(compared.drawable ? "drawn" : "in a surface"));
   RC_ASSERT(compared.differ == 0u);

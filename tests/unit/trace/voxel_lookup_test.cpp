@@ -35,7 +35,9 @@ TEST(VoxelLookup, IsRankOfForEveryPoint) {
         lookup.add(p);
         if (grid.index_of(p) != no_voxel) expected.push_back(grid.index_of(p));
       }
-      lookup.each_run([&](std::uint32_t voxel_index, std::uint32_t many) { voxel_indices.insert(voxel_indices.end(), many, voxel_index); });
+      lookup.each_run([&](std::uint32_t voxel_index, std::uint32_t many) {
+        voxel_indices.insert(voxel_indices.end(), many, voxel_index);
+      });
       ASSERT_EQ(voxel_indices, expected);
       found += voxel_indices.size();
     }
