@@ -332,6 +332,12 @@ bool as_good_by_headroom(const Hypothesis& best, const Hypothesis& other) {
   return !told && other.up == best.up && other.unit != best.unit && features_of(other)[0] >= kSize &&
          other.rooms >= kPlausible * best.rooms;
 }
+
+// Whether round columns and turned walls stand along the other axis, and no door is along this one.
+bool stands_as_well(const Hypothesis& best, const Hypothesis& other) {
+  constexpr double kMostUpright = 0.5;
+  return best.doors < 1 && other.unit == best.unit && other.up != best.up && other.upright >= kMostUpright;
+}
 }  // namespace
 
 Recognised recognise(const RawScene& raw, const std::optional<Unit>& unit, const std::optional<UpAxis>& up) {
@@ -343,7 +349,7 @@ Recognised recognise(const RawScene& raw, const std::optional<Unit>& unit, const
   out.unit = best.unit, out.up = best.up, out.inside_out = best.inside_out;
   const std::string settings = unit ? "the setting up" : up ? "the setting unit" : "the setting unit and the setting up";
   const auto rivals = [&](const Hypothesis& other) {
-    return best.score - other.score < (rule ? kRuleLead : kLead) || (!rule && as_good_by_headroom(best, other));
+    return best.score - other.score < (rule ? kRuleLead : kLead) || (!rule && (as_good_by_headroom(best, other) || stands_as_well(best, other)));
   };
   if (std::any_of(all.begin() + 1, all.end(), rivals)) {
     out.question = "its unit and up axis are not clear: a person could walk in it read in several ways; give " + settings;
