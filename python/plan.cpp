@@ -287,10 +287,7 @@ void add_results(py::module_& m) {
       .def_property_readonly(
           "seconds", [](const Plan& plan) { return plan.result.seconds; }, "Time of the call.")
       .def_property_readonly(
-          "summary",
-          [](const Plan& plan) {
-            return summary_text(plan.result);
-          },
+          "summary", [](const Plan& plan) { return summary_text(plan.result); },
           "Summary of the answer in plain words.")
       .def(
           "to_dict", [](const Plan& plan) { return from_json(front_json(plan.result, simulator_of(plan))); },

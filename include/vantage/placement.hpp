@@ -35,11 +35,11 @@ PlanRegion read_region(const std::string& file);
 struct WalkableOptions {
   Angle max_slope = Angle::degrees(25);  ///< Between a triangle's normal and up; most pitched roofs are steeper.
   double headroom_m = 2.0;               ///< Clear height needed above the surface.
-  double min_area_m2 = 0.25;       ///< Connected parts smaller than this, or far narrower than its side, are left out.
-  double passage_width_m = 0.6;    ///< Width of the narrowest opening that a person passes.
-  double passage_height_m = 1.9;   ///< Height of the lowest such opening.
-  double climb_m = 0.25;           ///< Highest step that a person takes.
-  std::vector<Vec3> enter = {};  ///< Entrances of the site, survey frame; empty: found automatically.
+  double min_area_m2 = 0.25;      ///< Connected parts smaller than this, or far narrower than its side, are left out.
+  double passage_width_m = 0.6;   ///< Width of the narrowest opening that a person passes.
+  double passage_height_m = 1.9;  ///< Height of the lowest such opening.
+  double climb_m = 0.25;          ///< Highest step that a person takes.
+  std::vector<Vec3> enter = {};   ///< Entrances of the site, survey frame; empty: found automatically.
   /// Lowest and highest level of the ground, survey frame. Like the two below, it also limits a marked search area.
   std::optional<std::array<double, 2>> levels = {};
   std::vector<PlanRegion> within = {};   ///< If not empty, only ground in one of these.

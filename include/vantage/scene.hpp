@@ -74,8 +74,8 @@ struct SceneOptions {
   std::vector<std::string> ignore = {};    ///< Nodes that are left out.
   /// Node patterns with the weight of their voxels in coverage. Precedence among patterns as with roles.
   std::vector<std::pair<std::string, std::uint32_t>> weights = {};
-  /// Nodes with `MeshInfo::door`. Leaves that the file marks as doors, as those of IFC are, are open and left out,
-  /// except those that a pattern here or above names. The word `closed` here keeps all of them.
+  /// Nodes with `MeshInfo::door`. Leaves that the file marks as doors, or that are doors by name or shape, are open and
+  /// left out, except those that a pattern here or above names. The word `closed` here keeps all of them.
   std::vector<std::string> doors = {};
   std::vector<std::string> station_area = {};  ///< Nodes with `MeshInfo::station_area`.
   /// Node patterns with the wanted detail and accuracy, in millimetres (`MeshInfo`). Precedence as with roles.
@@ -83,9 +83,9 @@ struct SceneOptions {
   std::optional<std::size_t> scene_index = std::nullopt;  ///< Which glTF scene; empty: the file's default.
   double default_diffuse = 0.5;  ///< R if neither extras nor a plain base colour (its luminance) give one.
   bool allow_outside = false;    ///< Lets the file name buffers and images outside its own folder.
-  /// Unit of the file's lengths. Empty: metres, as glTF says, unless its size, the sizes of things by their names,
-  /// stairs and storeys say otherwise; a note then reports it. Files with any `vantage` extras are always read in
-  /// metres.
+  /// Unit of the file's lengths. Empty: recognised by what a person could do in the model. A note reports another unit
+  /// than glTF's metres, and `load` throws malformed_file, with the choices as details, where none is clear. Files with
+  /// any `vantage` extras are always read in metres.
   std::optional<Unit> unit = std::nullopt;
   std::optional<UpAxis> up = std::nullopt;  ///< Which axis points up. Empty: Y, as glTF says, or as with `unit`.
   /// Memory that the process may take while the scene is loaded, in bytes; what takes more is refused before it is

@@ -48,8 +48,8 @@ struct SiteOptions {
   std::optional<Angle> max_slope = {};
   std::optional<double> headroom_m = {}, min_area_m2 = {}, climb_m = {};
   std::optional<std::array<double, 2>> passage_m = {};  ///< Width and height.
-  std::vector<Vec3> enter = {};  ///< Where one enters; empty: found.
-  std::optional<std::array<double, 2>> levels_m = {};  ///< Lowest and highest ground.
+  std::vector<Vec3> enter = {};                         ///< Where one enters; empty: found.
+  std::optional<std::array<double, 2>> levels_m = {};   ///< Lowest and highest ground.
   std::vector<PlanRegion> within = {}, without = {};
 
   Engine engine = Engine::automatic;

@@ -56,7 +56,8 @@ std::string plan_text(const PlanResult& result, std::size_t chosen, const std::s
       "\n" +
       station_table(entry.stations, station_names(entry.stations), entry.counts.points_on_surveyed, result.scanners) +
       "\n";
-  text += chosen == answer(result) ? summary_text(result) : summary_text(entry);  // violated requirements follow, with advice
+  text += chosen == answer(result) ? summary_text(result)
+                                   : summary_text(entry);  // violated requirements follow, with advice
   for (const std::string& help : what_would_help(result)) text += fmt::format("{:<11}{}\n", "would help", help);
   if (const std::string trade_off = trade_off_text(result); !trade_off.empty()) text += "\n" + trade_off + "\n";
   return text + "results in " + folder + "\n";

@@ -162,8 +162,8 @@ std::vector<SummaryLine> ground_lines(const SearchArea& area) {
                                      entries + "enter " + place(parts[k].place)});
   }
   if (rest > 0)
-    lines.push_back({"closed", fixed(rest, 1) + " m² of floor in " + std::to_string(parts.size() - kMost) +
-                                   " more such parts"});
+    lines.push_back(
+        {"closed", fixed(rest, 1) + " m² of floor in " + std::to_string(parts.size() - kMost) + " more such parts"});
   return lines;
 }
 

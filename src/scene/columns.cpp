@@ -18,7 +18,7 @@ namespace vantage {
 namespace {
 
 constexpr double kMostColumns = 160'000, kFewestColumns = 2000, kColumnsPerTriangle = 1000;
-constexpr double kLeastUp = 0.766;  // cosine of 40°, the steepest slope that people walk on
+constexpr double kLeastUp = 0.766;         // cosine of 40°, the steepest slope that people walk on
 constexpr double kBeside = 0.38196601125;  // where the first column stands in its cell: models are drawn on round lines
 
 // Heights in 2^-29 of the whole, and three bits below them.
@@ -233,7 +233,8 @@ bool Columns::faces_outwards(const std::vector<std::uint64_t>& crossings, double
       return !border && kind[beside] == nothing && !wall(edge, axis, low + 0.3F * span, low + 0.6F * span);
     };
     open += opens(x + 1 == nx_, column + 1, column, 0) || opens(x == 0, column - 1, column - 1, 0) ||
-            opens(column + nx_ >= count(), column + nx_, column, 1) || opens(column < nx_, column - nx_, column - nx_, 1);
+            opens(column + nx_ >= count(), column + nx_, column, 1) ||
+            opens(column < nx_, column - nx_, column - nx_, 1);
   }
   return open >= kFewestOpen;
 }

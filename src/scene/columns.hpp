@@ -35,8 +35,8 @@ class Columns {
   double outline() const { return static_cast<double>(outline_) * cell_ * cell_; }  // area seen from above
   // Share of steep faces that are upright and lie along neither horizontal axis: columns, tanks, turned walls.
   double upright() const { return upright_; }
-  // Whether the model is a shell of sheets that is open at its sides and shows its faces to the outside, as a tunnel may
-  // be. Then its floor faces down.
+  // Whether the model is a shell of sheets that is open at its sides and shows its faces to the outside, as a tunnel
+  // may be. Then its floor faces down.
   bool inside_out() const { return inside_out_; }
   const std::vector<Level>& levels() const { return levels_; }
   std::uint32_t first(std::uint32_t column) const { return first_[column]; }  // ascending in z; up to `count()`

@@ -19,10 +19,10 @@ constexpr double kLowest = 1.75, kHighest = 3.0, kNarrowest = 0.55, kWidest = 2.
 // Of those that no name tells.
 constexpr double kLowestPlain = 1.85, kHighestPlain = 2.5, kNarrowestPlain = 0.6, kWidestPlain = 1.3,
                  kThickestPlain = 0.12;
-constexpr double kFree = 0.65;       // what is clear before and behind a door; a cabinet is less deep
-constexpr double kAside = 0.08;     // how far beside the leaf its wall is looked for
-constexpr double kWallHalf = 0.4;    // and how far before and behind
-constexpr double kThicker = 0.02;    // by which a wall stands out on either side
+constexpr double kFree = 0.65;             // what is clear before and behind a door; a cabinet is less deep
+constexpr double kAside = 0.08;            // how far beside the leaf its wall is looked for
+constexpr double kWallHalf = 0.4;          // and how far before and behind
+constexpr double kThicker = 0.02;          // by which a wall stands out on either side
 constexpr std::size_t kMostLeaves = 2000;  // leaves that are looked at
 
 // A thin upright box, turned about the vertical.
@@ -106,8 +106,7 @@ bool in_a_wall(const RawScene& raw, const Leaf& leaf) {
   const double thicker = leaf.thickness / 2 + kThicker;
   const auto wall_at = [&](const glm::dvec3& p) {
     const Sight sight = look(raw, leaf, p, leaf.through, kWallHalf);
-    return sight.before >= thicker && sight.before <= kWallHalf && sight.behind >= thicker &&
-           sight.behind <= kWallHalf;
+    return sight.before >= thicker && sight.before <= kWallHalf && sight.behind >= thicker && sight.behind <= kWallHalf;
   };
   const glm::dvec3 aside = leaf.along * (leaf.width / 2 + kAside), up{0, 0, leaf.height / 2 + kAside};
   return wall_at(leaf.middle + aside) && wall_at(leaf.middle - aside) && wall_at(leaf.middle + up);
@@ -147,8 +146,9 @@ std::vector<std::string> open_doors(RawScene& raw, const std::vector<std::uint8_
     const std::optional<Leaf> leaf = leaf_of(raw, raw.ranges[m]);
     if (!leaf) continue;
     const bool named = names_a_door(raw.meshes[m].name);
-    const bool plain = leaf->height >= kLowestPlain && leaf->height <= kHighestPlain && leaf->width >= kNarrowestPlain &&
-                       leaf->width <= kWidestPlain && leaf->thickness <= kThickestPlain;
+    const bool plain = leaf->height >= kLowestPlain && leaf->height <= kHighestPlain &&
+                       leaf->width >= kNarrowestPlain && leaf->width <= kWidestPlain &&
+                       leaf->thickness <= kThickestPlain;
     if (!named && !plain) continue;
     ++looked;
     if (!leads_through(raw, *leaf) || (!named && !in_a_wall(raw, *leaf))) continue;

@@ -22,11 +22,13 @@ constexpr std::array<Unit, 5> kUnits{Unit::metre, Unit::foot, Unit::inch, Unit::
 
 // A person, and what is built for one. Metres.
 constexpr double kTall = 1.8, kClimb = 0.25, kRoom_m2 = 2;
-constexpr double kDoorWidth = 0.9, kNarrowestDoor = 0.55, kWidestDoor = 2.4, kLowestDoor = 1.85, kHighestDoor = 2.6, kThickestWall = 0.8, kLintel = 0.1;
+constexpr double kDoorWidth = 0.9, kNarrowestDoor = 0.55, kWidestDoor = 2.4, kLowestDoor = 1.85, kHighestDoor = 2.6,
+                 kThickestWall = 0.8, kLintel = 0.1;
 constexpr double kLeastRise = 0.12, kMostRise = 0.215, kLeastGoing = 0.2, kMostGoing = 0.45;
 constexpr int kFewestRises = 3;
 
-// What the features of a hypothesis count, in their order. Fitted, as a multinomial logit, to sites whose truth is known
+// What the features of a hypothesis count, in their order. Fitted, as a multinomial logit, to sites whose truth is
+// known
 // (`hypotheses --features`), and rounded.
 constexpr std::array<double, kFeatures> kWeights{4, 3.5, 5, 3, 3.5, 5, 2, 4, 0.7, 0.5};
 // By how much the best must lead: glTF's rule, and any other.
@@ -85,7 +87,8 @@ class Walk {
     }
     std::vector<float> heights;
     for (std::uint32_t i = 0; i < part_.size(); ++i)
-      if (const float free = c_.levels()[i].free; !std::isinf(free) && size[root(i)] * square >= kRoom_m2 && free >= tall_)
+      if (const float free = c_.levels()[i].free;
+          !std::isinf(free) && size[root(i)] * square >= kRoom_m2 && free >= tall_)
         heights.push_back(free);
     if (!heights.empty()) {
       const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
@@ -263,7 +266,8 @@ std::string plural(Unit unit) {
 std::string meaning(const Hypothesis& h) {
   constexpr double kSome = 0.5;
   return plural(h.unit) + ", " + (h.up == UpAxis::y ? "Y" : "Z") + " up (" + rounded(h.size.x) + " x " +
-         rounded(h.size.y) + " x " + rounded(h.size.z) + " m" + (h.floor_m2 > 0 ? ", " + rounded(h.floor_m2) + " m² of floor" : "") +
+         rounded(h.size.y) + " x " + rounded(h.size.z) + " m" +
+         (h.floor_m2 > 0 ? ", " + rounded(h.floor_m2) + " m² of floor" : "") +
          (h.headroom_m > 0 ? ", rooms " + rounded(h.headroom_m) + " m high" : "") + (h.doors > kSome ? ", doors" : "") +
          (h.flights > kSome ? ", stairs" : "") + ")";
 }
@@ -332,6 +336,12 @@ bool as_good_by_headroom(const Hypothesis& best, const Hypothesis& other) {
   return !told && other.up == best.up && other.unit != best.unit && features_of(other)[0] >= kSize &&
          other.rooms >= kPlausible * best.rooms;
 }
+
+// Whether round columns and turned walls stand along the other axis, and no door is along this one.
+bool stands_as_well(const Hypothesis& best, const Hypothesis& other) {
+  constexpr double kMostUpright = 0.5;
+  return best.doors < 1 && other.unit == best.unit && other.up != best.up && other.upright >= kMostUpright;
+}
 }  // namespace
 
 Recognised recognise(const RawScene& raw, const std::optional<Unit>& unit, const std::optional<UpAxis>& up) {
@@ -341,21 +351,24 @@ Recognised recognise(const RawScene& raw, const std::optional<Unit>& unit, const
   const Hypothesis& best = all[0];
   const bool rule = best.unit == out.unit && best.up == out.up;
   out.unit = best.unit, out.up = best.up, out.inside_out = best.inside_out;
-  const std::string settings = unit ? "the setting up" : up ? "the setting unit" : "the setting unit and the setting up";
+  const std::string settings = unit ? "the setting up"
+                               : up ? "the setting unit"
+                                    : "the setting unit and the setting up";
   const auto rivals = [&](const Hypothesis& other) {
-    return best.score - other.score < (rule ? kRuleLead : kLead) || (!rule && as_good_by_headroom(best, other));
+    return best.score - other.score < (rule ? kRuleLead : kLead) ||
+           (!rule && (as_good_by_headroom(best, other) || stands_as_well(best, other)));
   };
   if (std::any_of(all.begin() + 1, all.end(), rivals)) {
-    out.question = "its unit and up axis are not clear: a person could walk in it read in several ways; give " + settings;
+    out.question =
+        "its unit and up axis are not clear: a person could walk in it read in several ways; give " + settings;
     for (const Hypothesis& h : all)
       if (out.choices.size() < kMostChoices && (&h == &best || rivals(h)))
         out.choices.push_back(meaning(h) + ": unit " + to_string(h.unit) + ", up " + to_string(h.up));
     return out;
   }
   if (rule) return out;
-  const auto stated = std::ranges::find_if(all, [&](const Hypothesis& h) {
-    return h.unit == unit.value_or(Unit::metre) && h.up == up.value_or(UpAxis::y);
-  });
+  const auto stated = std::ranges::find_if(
+      all, [&](const Hypothesis& h) { return h.unit == unit.value_or(Unit::metre) && h.up == up.value_or(UpAxis::y); });
   out.note = "read as " + meaning(best) + "; as " + meaning(*stated) + ", a person could walk less of it; " +
              "if that is wrong, give " +
              (best.unit == stated->unit ? "the setting up"

@@ -18,16 +18,16 @@ namespace vantage {
 struct Hypothesis {
   Unit unit = Unit::metre;
   UpAxis up = UpAxis::y;
-  Vec3 size;              // survey frame: z is the height
-  double floor_m2 = 0;    // level ground with headroom, in parts as large as a room
-  double reached = 0;     // largest connected part of it, as a share of the outline seen from above
-  double headroom_m = 0;  // median under cover, over all of the model's levels; 0: nothing is covered
-  double covered = 0;     // area of those levels as a share of the outline, at most 1
-  double rooms = 0;       // share of them with the headroom of a room
-  double doors = 0;       // openings as wide and high as doors, on the way
-  double flights = 0;     // stairs on the way, in doors' widths
-  double upright = 0;     // Columns::upright(), as a share of that with either axis up
-  double grid = 0;        // 1 if the unit is that of the model's drawing grid
+  Vec3 size;                // survey frame: z is the height
+  double floor_m2 = 0;      // level ground with headroom, in parts as large as a room
+  double reached = 0;       // largest connected part of it, as a share of the outline seen from above
+  double headroom_m = 0;    // median under cover, over all of the model's levels; 0: nothing is covered
+  double covered = 0;       // area of those levels as a share of the outline, at most 1
+  double rooms = 0;         // share of them with the headroom of a room
+  double doors = 0;         // openings as wide and high as doors, on the way
+  double flights = 0;       // stairs on the way, in doors' widths
+  double upright = 0;       // Columns::upright(), as a share of that with either axis up
+  double grid = 0;          // 1 if the unit is that of the model's drawing grid
   bool inside_out = false;  // Columns::inside_out()
   double score = 0;
 };

@@ -229,7 +229,8 @@ struct Site::Impl {
         "security " + number(security.lower_m) + "," + number(security.upper_m) + "," + number(security.radius_m));
     if (made_up.empty()) return;
     const Vec3 size = scene.bounds().size();
-    log("the scene measures " + number(size.x) + " x " + number(size.y) + " x " + number(size.z) + " m, smaller than a site: lengths are taken as " + number(scale, 2) + " times the usual (" + made_up + ")");
+    log("the scene measures " + number(size.x) + " x " + number(size.y) + " x " + number(size.z) +
+        " m, smaller than a site: lengths are taken as " + number(scale, 2) + " times the usual (" + made_up + ")");
   }
 
   const SearchArea& search_area() {

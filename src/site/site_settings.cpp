@@ -164,7 +164,8 @@ void add_placement(Rows& rows) {
             return Vec3{values[0], values[1], values[2]};
           })
       .texts(
-          "doors", "PATTERN", "Nodes that are closed doors: open for people, closed for rays; closed: keep all doors closed",
+          "doors", "PATTERN",
+          "Nodes that are closed doors: open for people, closed for rays; closed: keep all doors closed",
           [](SiteOptions & o) -> auto& { return o.scene.doors; })
       .texts(
           "station-area", "PATTERN", "Nodes to stand on that keep their role, such as surveyed",

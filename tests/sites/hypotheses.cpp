@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// hypotheses [--features] [--as-is] UNIT AXIS FILE...: models whose true unit and up axis are known, written in every unit and with
-// either axis up, or as they are alone. Prints for each whether they are recognised, asked for, or wrong.
+// hypotheses [--features] [--as-is] UNIT AXIS FILE...: models whose true unit and up axis are known, written in every
+// unit and with either axis up, or as they are alone. Prints for each whether they are recognised, asked for, or wrong.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -26,10 +26,12 @@ int main(int argc, char** argv) {
   }
   int right = 0, asked = 0, wrong = 0;
   for (int i = first + 2; i < argc; ++i) try {
-      const Scene scene = Scene::load(argv[i], {.unit = unit_from_string(argv[first]), .up = up_axis_from_string(argv[first + 1])});
+      const Scene scene =
+          Scene::load(argv[i], {.unit = unit_from_string(argv[first]), .up = up_axis_from_string(argv[first + 1])});
       for (const Unit unit : {Unit::metre, Unit::centimetre, Unit::millimetre, Unit::inch, Unit::foot})
         for (const UpAxis up : {UpAxis::y, UpAxis::z}) {
-          if (as_is && (std::string(to_string(unit)) != argv[first] || std::string(to_string(up)) != argv[first + 1])) continue;
+          if (as_is && (std::string(to_string(unit)) != argv[first] || std::string(to_string(up)) != argv[first + 1]))
+            continue;
           RawScene raw;
           for (const Float3& p : scene.data().positions) {
             const glm::dvec3 q = (to_glm(p) + to_glm(scene.data().origin)) / metres_in(unit);
@@ -42,14 +44,17 @@ int main(int argc, char** argv) {
           const bool question = !found.question.empty(), good = found.unit == unit && found.up == up;
           (question ? asked : good ? right : wrong) += 1;
           std::printf("%s in %s, %s up: %s, %.2f s: %s\n", argv[i], to_string(unit), to_string(up),
-                      question ? "asked" : good ? "right" : "WRONG", took, (found.question + found.note).c_str());
+                      question ? "asked"
+                      : good   ? "right"
+                               : "WRONG",
+                      took, (found.question + found.note).c_str());
           for (const std::string& choice : found.choices) std::printf("    %s\n", choice.c_str());
           if (!features) continue;
           for (const Hypothesis& h : weigh_hypotheses(raw, {}, {})) {
             std::printf("  %d %s %s %6.2f", h.unit == unit && h.up == up, to_string(h.unit), to_string(h.up), h.score);
             for (const double f : features_of(h)) std::printf(" %.3f", f);
-            std::printf("  %.4g x %.4g x %.4g m, floor %.4g, headroom %.3g, doors %.1f, flights %.1f\n", h.size.x, h.size.y,
-                        h.size.z, h.floor_m2, h.headroom_m, h.doors, h.flights);
+            std::printf("  %.4g x %.4g x %.4g m, floor %.4g, headroom %.3g, doors %.1f, flights %.1f\n", h.size.x,
+                        h.size.y, h.size.z, h.floor_m2, h.headroom_m, h.doors, h.flights);
           }
         }
     } catch (const std::exception& error) {

@@ -117,8 +117,13 @@ class Maker {
       for (std::size_t j = 0; j < rows; ++j)
         for (std::size_t i = 0; i < columns; ++i) {
           const std::size_t room = s * rooms + j * columns + i;
-          made_.site.places.push_back({.name = "room " + std::to_string(room), .storey = static_cast<int>(s),
-                                       .x0 = low_x(i), .x1 = high_x(i), .y0 = low_y(j), .y1 = high_y(j), .z = z});
+          made_.site.places.push_back({.name = "room " + std::to_string(room),
+                                       .storey = static_cast<int>(s),
+                                       .x0 = low_x(i),
+                                       .x1 = high_x(i),
+                                       .y0 = low_y(j),
+                                       .y1 = high_y(j),
+                                       .z = z});
           if (i > 0 && chance(0.75)) {
             opening(low_y(j), high_y(j), x[i], kInner, false, z, chance(0.3));
             group[root(room)] = root(room - 1);
@@ -163,8 +168,8 @@ class Maker {
     }
     std::ostringstream text;
     text << "building of " << columns << " x " << rows << " rooms on " << storeys << " storeys"
-         << (stairs ? " with stairs" : "") << (lawn ? " on a lawn" : "") << (entrance ? "" : " without an entrance") << ", "
-         << leaves.size() << " leaves";
+         << (stairs ? " with stairs" : "") << (lawn ? " on a lawn" : "") << (entrance ? "" : " without an entrance")
+         << ", " << leaves.size() << " leaves";
     made_.told = text.str();
   }
 
@@ -174,11 +179,11 @@ class Maker {
     carve(add_part(made_.site, name(floor_), sites::kConcrete, Surface::floor),
           {block(0, x1, 0, y1, -0.3, 0), block(0, x1, 0, y1, height, height + 0.3)});
     const double gate = uniform(1, 4);
-    carve(add_part(made_.site, name(wall_), sites::kPlaster, Surface::wall_top),
-          {block(0, x1, 0, kOuter, 0, height), block(0, x1, y1 - kOuter, y1, 0, height), block(0, kOuter, 0, y1, 0, height),
-           block(x1 - kOuter, x1, 0, y1, 0, height)},
-          {block(4, 4 + gate, 0, kOuter, 0, std::min(height - 0.5, 2 + gate / 2)),
-           block(8.5, 9.4, 0, kOuter, 0, 2.05)});
+    carve(
+        add_part(made_.site, name(wall_), sites::kPlaster, Surface::wall_top),
+        {block(0, x1, 0, kOuter, 0, height), block(0, x1, y1 - kOuter, y1, 0, height),
+         block(0, kOuter, 0, y1, 0, height), block(x1 - kOuter, x1, 0, y1, 0, height)},
+        {block(4, 4 + gate, 0, kOuter, 0, std::min(height - 0.5, 2 + gate / 2)), block(8.5, 9.4, 0, kOuter, 0, 2.05)});
     const bool racks = chance(0.5);
     for (double x = 4; x < x1 - 4; x += 6)
       for (double y = 4; y < y1 - 4; y += 6) {
@@ -189,12 +194,14 @@ class Maker {
         }
         Part& rack = add_part(made_.site, "rack " + std::to_string(++named_), sites::kSteel, Surface::furniture);
         std::vector<Box> boards;
-        for (double z = 0.1; z < std::min(height - 1, 4.0); z += 1.2) boards.push_back(block(x, x + 1, y, y + 3, z, z + 0.08));
+        for (double z = 0.1; z < std::min(height - 1, 4.0); z += 1.2)
+          boards.push_back(block(x, x + 1, y, y + 3, z, z + 0.08));
         boards.push_back(block(x, x + 0.08, y, y + 3, 0, boards.back().max.z));
         carve(rack, boards);
       }
     if (chance(0.5))
-      add_box(add_part(made_.site, "yard", sites::kGrass, Surface::floor), block(-15, x1 + 15, -20, y1 + 10, -0.6, -0.15));
+      add_box(add_part(made_.site, "yard", sites::kGrass, Surface::floor),
+              block(-15, x1 + 15, -20, y1 + 10, -0.6, -0.15));
     made_.site.places.push_back({.name = "hall", .x0 = kOuter, .x1 = x1 - kOuter, .y0 = kOuter, .y1 = y1 - kOuter});
     made_.told = std::string("hall with ") + (racks ? "racks" : "columns");
   }

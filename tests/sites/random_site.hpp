@@ -12,12 +12,12 @@
 namespace vantage::test {
 
 struct RandomSite {
-  Site site;              // every room is one of its places
-  Variant variant;        // how it is written: unit, axis, origin, names
+  Site site;                   // every room is one of its places
+  Variant variant;             // how it is written: unit, axis, origin, names
   std::set<std::string> shut;  // rooms that no way leads to
   std::vector<Part> leaves;    // of doors, closed in the file and open in truth
-  bool turned = false;    // sheets whose normals point away from the room
-  std::string told;       // in words, for messages
+  bool turned = false;         // sheets whose normals point away from the room
+  std::string told;            // in words, for messages
 };
 
 // The same seed gives the same site.

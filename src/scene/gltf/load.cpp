@@ -248,7 +248,8 @@ class Loader {
     raw_.notes.push_back(std::to_string(doors_.size()) +
                          (doors_.size() == 1 ? " door is taken as open, its leaf left out: "
                                              : " doors are taken as open, their leaves left out: ") +
-                         some + (doors_.size() > kNamed ? ", …" : "") + "; the word closed for the setting doors keeps them");
+                         some + (doors_.size() > kNamed ? ", …" : "") +
+                         "; the word closed for the setting doors keeps them");
   }
 
   void read(const Job& job) {
@@ -434,8 +435,8 @@ class Loader {
   RawScene raw_;
   MaterialTable materials_;
   SkippedPrimitives skipped_;
-  std::vector<std::string> doors_;          // that are open
-  std::vector<std::uint8_t> may_be_door_;   // per mesh
+  std::vector<std::string> doors_;         // that are open
+  std::vector<std::uint8_t> may_be_door_;  // per mesh
   std::size_t mirrored_meshes_ = 0;
   bool search_without_uv_ = false;
 };

@@ -363,8 +363,8 @@ std::vector<PlacedMesh> flatten_scene(const File& file, const SceneOptions& opti
     }
     for (auto it = node.children.rbegin(); it != node.children.rend(); ++it)
       stack.push_back({*it, visit.node, world_from_node, visit.pattern_role, visit.pattern_weight,
-                       visit.pattern_detail_mm, visit.pattern_accuracy_mm, visit.marks, visit.door,
-                       visit.station_area, visit.name});
+                       visit.pattern_detail_mm, visit.pattern_accuracy_mm, visit.marks, visit.door, visit.station_area,
+                       visit.name});
   }
   roles.check(names);
   weights.check(names);

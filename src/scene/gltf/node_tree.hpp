@@ -35,7 +35,7 @@ constexpr std::size_t kLongestName = 200;
 // A node with a mesh.
 struct PlacedMesh {
   int node = 0, mesh = 0;
-  std::string name;                         // the node's, the mesh's, that of the nearest node above, or "node N"; at most kLongestName bytes
+  std::string name;  // the node's, the mesh's, that of the nearest node above, or "node N"; at most kLongestName bytes
   std::vector<glm::dmat4> world_from_mesh;  // affine, to the survey frame; several with EXT_mesh_gpu_instancing
   std::optional<Role> pattern_role;         // from the nearest node whose name matches a pattern
   std::optional<std::uint32_t> pattern_weight;
