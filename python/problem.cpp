@@ -193,7 +193,8 @@ Options<SurveyProblem> problem_options() {
       .add("registration", &SurveyProblem::registration, "Prior of registration.")
       .add("on_site", &SurveyProblem::on_site, "OnSiteOptions: times of a round.")
       .add("fewest", &SurveyProblem::fewest, "First the fewest stations that meet the requirements, then the best.")
-      .add("attainable", &SurveyProblem::attainable, "Attainable coverage, the denominator of `capture`; a plan finds it.")
+      .add("attainable", &SurveyProblem::attainable,
+           "Attainable coverage, the denominator of `capture`; a plan finds it.")
       .add<py::iterable>(
           "objectives", [](const SurveyProblem& p) { return py::tuple(py::cast(p.objectives)); },
           [](SurveyProblem& p, const py::iterable& given) { p.objectives = objectives_from(given, p); },

@@ -68,10 +68,10 @@ class AttainableCounts {
 
 /// Traces each active station alone, and takes it in. False if stopped; then some are missing.
 bool raise_attainable(AttainableCounts& attainable, Simulator& simulator, std::span<const Station> stations,
-           const Progress& progress = {});
+                      const Progress& progress = {});
 
 /// The share of what is attainable that each network captures, traced on the voxels of `attainable`. Empty if stopped.
 std::vector<Estimate> captured_shares(Simulator& simulator, const AttainableCounts& attainable,
-                               std::span<const Network> networks, const Progress& progress = {});
+                                      std::span<const Network> networks, const Progress& progress = {});
 
 }  // namespace vantage

@@ -106,8 +106,9 @@ std::vector<StationRow> read_stations_csv(const std::filesystem::path& file);
 std::string run_parameters_json(const Simulator& simulator, const PlanResult* result = nullptr);
 
 /// The figures of one network, as JSON text: keys coverage, coverage_se, overlap, overlap_se, overlap_matrix,
-/// scan_overlap_matrix, attainable, attainable_se, captured, captured_se, minutes_on_site, registration{error_mm, standard_error_mm, worst_mm,
-/// worst_station, stations}, dropped, voxels, goal_density, rays, sample, summary. Null: not known. Stations count from
+/// scan_overlap_matrix, attainable, attainable_se, captured, captured_se, minutes_on_site, registration{error_mm,
+/// standard_error_mm, worst_mm, worst_station, stations}, dropped, voxels, goal_density, rays, sample, summary. Null:
+/// not known. Stations count from
 /// 1. Axes of the standard ellipsoid of each head are in millimetres, survey frame, longest first.
 std::string evaluation_json(const Evaluation& evaluation);
 

@@ -138,11 +138,11 @@ struct PlanEntry : Evaluation {
 
 /// A point of the trade-off: the best network found of so many stations.
 struct TradeOffPoint {
-  std::vector<PlacedStation> stations = {};      ///< Existing ones first.
-  std::map<std::string, Estimate> values = {};   ///< By the names of their measures, as an entry's.
-  std::optional<double> minutes_on_site = {};    ///< Without existing stations.
-  bool answer = false;                           ///< The plan's answer.
-  bool knee = false;  ///< The point farthest above the line from the first to the last.
+  std::vector<PlacedStation> stations = {};     ///< Existing ones first.
+  std::map<std::string, Estimate> values = {};  ///< By the names of their measures, as an entry's.
+  std::optional<double> minutes_on_site = {};   ///< Without existing stations.
+  bool answer = false;                          ///< The plan's answer.
+  bool knee = false;                            ///< The point farthest above the line from the first to the last.
 };
 
 /// One line of the history, an iteration each.

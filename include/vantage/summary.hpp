@@ -36,8 +36,8 @@ std::vector<SummaryLine> ground_lines(const SearchArea& area);
 /// The same as lines for a terminal.
 std::string summary_text(const Evaluation& evaluation, std::span<const Requirement> requirements = {});
 
-/// Lines for a terminal: the trade-off of a plan as a table of about five lines, with captured share, registration error
-/// and time on site of each number of stations. Empty if the plan has none.
+/// Lines for a terminal: the trade-off of a plan as a table of about five lines, with captured share, registration
+/// error and time on site of each number of stations. Empty if the plan has none.
 std::string trade_off_text(const PlanResult& result);
 
 /// Lines for a terminal: a sentence for each requirement that no network of a front meets, with the nearest value.

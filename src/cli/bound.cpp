@@ -92,8 +92,8 @@ std::string text_of(const CoverSolution& best, std::size_t stations, const Estim
 
 std::string text_of(const StationsBound& bound, double capture) {
   if (!bound.possible) return fmt::format("{:.4g} of what is attainable cannot be captured\n", capture);
-  return fmt::format("{:.4g} of what is attainable takes at least {} stations among the candidates ({:.2f}){}\n", capture,
-                     bound.at_least, bound.relaxation,
+  return fmt::format("{:.4g} of what is attainable takes at least {} stations among the candidates ({:.2f}){}\n",
+                     capture, bound.at_least, bound.relaxation,
                      bound.chosen.empty() ? "" : fmt::format("; {} are enough", bound.chosen.size()));
 }
 
@@ -151,8 +151,7 @@ int bound(CLI::App& command, BoundOptions& options, Program& program) {
   }
   for (const double capture : options.captures) {
     if (program.stop.stop_requested()) break;
-    const StationsBound found =
-        min_cover({.matrix = matrix, .coverage = capture}, options.bound, progress);
+    const StationsBound found = min_cover({.matrix = matrix, .coverage = capture}, options.bound, progress);
     text += text_of(found, capture);
     by_capture.push_back({{"capture", capture},
                           {"possible", found.possible},

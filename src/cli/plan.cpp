@@ -242,8 +242,8 @@ void write_results(const std::filesystem::path& folder, Site& site, const PlanOp
             {.title = site.name(), .field = field ? &*field : nullptr, .missed = judged ? &*judged : nullptr}, site),
         program, all_by.stop());
   if (options.prove)
-    prove(folder / "bound.json", site, simulator, chosen.stations, result.problem.kept.size(), result.attainable.has_value(),
-          program);
+    prove(folder / "bound.json", site, simulator, chosen.stations, result.problem.kept.size(),
+          result.attainable.has_value(), program);
 }
 
 int plan_survey(CLI::App& command, PlanOptions& options, Program& program) {

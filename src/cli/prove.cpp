@@ -50,8 +50,8 @@ void prove(const std::filesystem::path& file, Site& site, Simulator& simulator, 
   spdlog::info(
       "within {:.1f} % of the best that any {} stations can do: {} {:.4f} ± {:.4f} on a sample, where no network "
       "of {} candidates has more than {:.4f}; twice as many candidates raised that by {:.4f}",
-      100 * gap, placed, of_attainable ? "captured" : "coverage", reached.value, reached.standard_error, candidates.stations().size(), bound.bound,
-      bound.spacing_term);
+      100 * gap, placed, of_attainable ? "captured" : "coverage", reached.value, reached.standard_error,
+      candidates.stations().size(), bound.bound, bound.spacing_term);
   nlohmann::json chosen = nlohmann::json::array();
   for (const std::size_t k : bound.chosen) {
     const Vec3& head = (k < first ? candidates.stations()[k] : stations[k - first]).position;

@@ -69,7 +69,8 @@ void ColumnIndex::add_gains_without(std::size_t leaving, const PartialCover& cov
     for (std::size_t k = offsets_[one.element]; k < offsets_[one.element + 1]; ++k) {
       const Column& other = columns_[k];
       gains[other.candidate] +=
-          share * (lost - (cover.covered(one.element, has + other.amount) - cover.covered(one.element, left + other.amount)));
+          share *
+          (lost - (cover.covered(one.element, has + other.amount) - cover.covered(one.element, left + other.amount)));
     }
   }
 }

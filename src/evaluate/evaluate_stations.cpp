@@ -88,7 +88,8 @@ std::vector<Evaluation> evaluate_networks(const EvaluationSite& site,
     attainable = *options.attainable;
     const Progress silent{.report = {}, .stop = progress.stop};
     bool whole = true;
-    for (const Network& network : networks) whole = whole && raise_attainable(attainable, site.simulator, network, silent);
+    for (const Network& network : networks)
+      whole = whole && raise_attainable(attainable, site.simulator, network, silent);
     if (whole) captured = captured_shares(site.simulator, attainable, networks, silent);
   }
 

@@ -56,8 +56,8 @@ void AttainableCounts::raise(std::size_t element, double point_weights) {
   counts_[element] = std::max(counts_[element], std::min(point_weights, goal_));
 }
 
-// Σ part / Σ whole, with the error of a ratio: that of the mean of part − ratio · whole, by successive differences, as a
-// systematic sample needs it (Wolter, Introduction to Variance Estimation, 2007, chapters 6 and 8).
+// Σ part / Σ whole, with the error of a ratio: that of the mean of part − ratio · whole, by successive differences, as
+// a systematic sample needs it (Wolter, Introduction to Variance Estimation, 2007, chapters 6 and 8).
 template <class Share>
 Estimate AttainableCounts::ratio(const std::vector<double>& whole, const Share& part) const {
   double parts = 0, wholes = 0;
@@ -98,7 +98,7 @@ Estimate AttainableCounts::captured(std::span<const double> point_weights) const
 }
 
 bool raise_attainable(AttainableCounts& attainable, Simulator& simulator, std::span<const Station> stations,
-           const Progress& progress) {
+                      const Progress& progress) {
   for (std::size_t first = 0; first < stations.size(); first += kStationsAtOnce) {
     std::vector<Network> alone;
     for (const Station& station : stations.subspan(first, std::min(kStationsAtOnce, stations.size() - first)))
@@ -127,7 +127,7 @@ bool raise_attainable(AttainableCounts& attainable, Simulator& simulator, std::s
 }
 
 std::vector<Estimate> captured_shares(Simulator& simulator, const AttainableCounts& attainable,
-                               std::span<const Network> networks, const Progress& progress) {
+                                      std::span<const Network> networks, const Progress& progress) {
   std::vector<Estimate> shares(networks.size());
   std::size_t counted = 0;
   simulator.evaluate_sampled(networks,

@@ -74,8 +74,8 @@ bool CandidateTable::spaced(std::span<const PlacedStation> stations) const {
   };
   std::vector<double> least(stations.size(), 0);
   for (std::size_t i = 0; i < stations.size() && spacing_.least_m; ++i) {
-    const auto nearest = std::ranges::min_element(
-        stations_, {}, [&](const PlacedStation& known) { return apart(known, stations[i]); });
+    const auto nearest =
+        std::ranges::min_element(stations_, {}, [&](const PlacedStation& known) { return apart(known, stations[i]); });
     least[i] = least_m_[static_cast<std::size_t>(nearest - stations_.begin())];
   }
   for (std::size_t i = 0; i < stations.size(); ++i)

@@ -25,14 +25,16 @@ struct StationSpacing {
   std::function<double(const PlacedStation&, std::span<const CoverageMatrix::Entry>)> least_m = {};
   std::function<bool(const Vec3&, const Vec3&)> sees = {};  // whether nothing stands between two heads
 };
-// A quarter of the median distance from its head to what a station captures half of at least. `centres`: of the elements.
+// A quarter of the median distance from its head to what a station captures half of at least. `centres`: of the
+// elements.
 inline constexpr double kSpacingShare = 0.25;
 double spacing_by_view(const PlacedStation& station, std::span<const CoverageMatrix::Entry> column,
                        const CoverageMatrix& matrix, std::span<const Vec3> centres);
 
 class CandidateTable {
  public:
-  // `surroundings`: over all surfaces; empty where links do not matter. Stations that stand too near exclude each other.
+  // `surroundings`: over all surfaces; empty where links do not matter. Stations that stand too near exclude each
+  // other.
   CandidateTable(TraceColumns surveyed, TraceColumns surroundings, StationSpacing spacing);
 
   // Traces stations; those with known columns only over the surroundings. False if stopped: the table then has the

@@ -53,11 +53,9 @@ FewestAsked fewest_asked(const SurveyProblem& problem) {
                     .link = least(Objective::Kind::link),
                     .apart_m = least(Objective::Kind::distance),
                     .minutes = limit_of(problem, Objective::Kind::time, Requirement::Bound::at_most)};
-  const bool searched =
-      !problem.objectives.empty() && problem.objectives.front().kind == Objective::Kind::coverage;
-  asked.captured = std::ranges::any_of(problem.requirements, [&](const Requirement& r) {
-    return at_least(r) && r.objective.needs.attainable;
-  });
+  const bool searched = !problem.objectives.empty() && problem.objectives.front().kind == Objective::Kind::coverage;
+  asked.captured = std::ranges::any_of(
+      problem.requirements, [&](const Requirement& r) { return at_least(r) && r.objective.needs.attainable; });
   const double limit = least(Objective::Kind::coverage);
   asked.most_coverage = limit == 0 && searched && asked.fewest == asked.most;
   if (asked.most_coverage) asked.captured = problem.objectives.front().needs.attainable;

@@ -22,8 +22,9 @@ SurveyProblem with_margins(SurveyProblem problem, const FewestAsked& asked, doub
 // candidate.
 PlanConfig refining_config(const SurveyProblem& problem, PlanConfig config, std::size_t candidates);
 
-// `round_s`: what a round of refinement took. Seconds that all the rest will take, from the first round of refinement on: further rounds, the search by `config`, and
-// every ray. Times the evaluator on the chosen network. Empty where it was stopped.
+// `round_s`: what a round of refinement took. Seconds that all the rest will take, from the first round of refinement
+// on: further rounds, the search by `config`, and every ray. Times the evaluator on the chosen network. Empty where it
+// was stopped.
 std::optional<double> expected_seconds(const FewestChoice& choice, const SurveyProblem& problem,
                                        const PlanConfig& config, NetworkEvaluator& evaluator, double round_s,
                                        const PlanWatch& watch);

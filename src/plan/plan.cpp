@@ -169,12 +169,14 @@ PlanResult plan(Simulator& simulator, const SearchArea& area, const ClashChecker
       const double seconds = since(start);
       watch.report({.seconds_left = done > 0 ? seconds / done - seconds : -1, .phase = "look"});
     };
-    candidates = std::make_shared<const Candidates>(find_candidates(simulator, area, clash,
-                                                                    {.most = kMostCandidates,
-                                                                     .sample_voxels = sample_of_choice(problem, config, simulator),
-                                                                     .scanner = finest(simulator, problem.scanners)},
-                                                                    {.report = report, .stop = watch.stop}));
-    if (limit_wanted) count_attainable(context, simulator, problem, *candidates, config.sample_voxels,
+    candidates = std::make_shared<const Candidates>(
+        find_candidates(simulator, area, clash,
+                        {.most = kMostCandidates,
+                         .sample_voxels = sample_of_choice(problem, config, simulator),
+                         .scanner = finest(simulator, problem.scanners)},
+                        {.report = report, .stop = watch.stop}));
+    if (limit_wanted)
+      count_attainable(context, simulator, problem, *candidates, config.sample_voxels,
                        {.report = {}, .stop = watch.stop});
     const double attainable = limit_wanted ? context.confirmed.coverage().value : candidates->attainable().value;
     if (watch.report && candidates->ended() != "cancelled")

@@ -98,7 +98,8 @@ void calibrate(FewestChoice& choice, PlanContext& context, Simulator& simulator,
   if (!choice.asked.captured || choice.asked.most_coverage) return;
   for (std::size_t k = 0; k < kRepairs && choice.network.violation == 0 && !watch.stop.stop_requested(); ++k) {
     const Network network = to_network(choice.stations_of(choice.network));
-    const auto shares = captured_shares(simulator, context.confirmed, {&network, 1}, {.report = {}, .stop = watch.stop});
+    const auto shares =
+        captured_shares(simulator, context.confirmed, {&network, 1}, {.report = {}, .stop = watch.stop});
     if (shares.empty() || shares.front().value >= choice.asked.coverage) return;
     raise_margins(choice, {.coverage = choice.asked.coverage - shares.front().value}, watch.stop);
   }
@@ -177,7 +178,8 @@ SearchOutcome search_from(const FewestChoice& choice, PlanContext& context, doub
   return found;
 }
 
-// The trade-off around the answer, measured on the voxels of confirmation. The answer's own point is as it was confirmed.
+// The trade-off around the answer, measured on the voxels of confirmation. The answer's own point is as it was
+// confirmed.
 std::vector<TradeOffPoint> trade_off(const FewestChoice& choice, PlanContext& context, const PlanWatch& watch) {
   if (!choice.asked.captured) return {};
   const std::vector<CoverSolution> solutions = trade_off_networks(choice, watch.stop);

@@ -98,16 +98,16 @@ MeasuredNetwork SimulatorEvaluator::measured(const Counted& counted, std::size_t
   const NetworkCounts& counts = counted.surveyed[k];
   const NetworkCounts* const surroundings = needs.surroundings ? &counted.surroundings[k] : nullptr;
   MeasuredNetwork made{
-          .counts = counts,
-          .stations = stations,
-          .kept = options_.existing,
-          .goal_density = simulator_.goal_density(),
-          .voxels = simulator_.voxel_count(),
-          .overlap = needs.pairs ? overlap_matrix(counts) : OverlapMatrix{},
-          .visible_parts = needs.visibility ? options_.visible_parts(network) : 0,
-          .surroundings = surroundings,
-          .surroundings_voxels = surroundings ? options_.surroundings->voxel_count() : 0,
-          .minutes_on_site = needs.time ? options_.minutes(std::span(stations).subspan(options_.existing)) : 0};
+      .counts = counts,
+      .stations = stations,
+      .kept = options_.existing,
+      .goal_density = simulator_.goal_density(),
+      .voxels = simulator_.voxel_count(),
+      .overlap = needs.pairs ? overlap_matrix(counts) : OverlapMatrix{},
+      .visible_parts = needs.visibility ? options_.visible_parts(network) : 0,
+      .surroundings = surroundings,
+      .surroundings_voxels = surroundings ? options_.surroundings->voxel_count() : 0,
+      .minutes_on_site = needs.time ? options_.minutes(std::span(stations).subspan(options_.existing)) : 0};
   if (needs.attainable) made.captured = counted.captured[k];
   return made;
 }
@@ -157,12 +157,14 @@ std::vector<std::optional<Evaluation>> SimulatorEvaluator::confirm(std::span<con
   };
   const std::size_t parts = needs.surroundings ? 2 : 1;
   Counted counted;
-  counted.surveyed = count(simulator_, {.overlap = true, .registration = needs.registration}, part_of(progress, 0, parts));
+  counted.surveyed =
+      count(simulator_, {.overlap = true, .registration = needs.registration}, part_of(progress, 0, parts));
   if (needs.surroundings)
     counted.surroundings = count(*options_.surroundings, {.overlap = true, .registration = registered_around(needs)},
                                  part_of(progress, 1, parts));
   if (needs.attainable)
-    counted.captured = captured_shares(simulator_, *options_.confirmed, networks, {.report = {}, .stop = progress.stop});
+    counted.captured =
+        captured_shares(simulator_, *options_.confirmed, networks, {.report = {}, .stop = progress.stop});
 
   std::vector<std::optional<Evaluation>> all(placed.size());
   for (std::size_t k = 0; k < placed.size(); ++k) {

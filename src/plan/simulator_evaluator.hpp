@@ -51,8 +51,8 @@ class SimulatorEvaluator final : public NetworkEvaluator {
   // A window without voxels means every ray.
   std::optional<std::vector<NetworkCounts>> count_with(Simulator& simulator, std::span<const Network> networks,
                                                        const SampleOptions& sample, const Progress& progress);
-  MeasuredNetwork measured(const Counted& counted, std::size_t k, const PlacedNetwork& stations,
-                           const Network& network, const RequiredInputs& needs) const;
+  MeasuredNetwork measured(const Counted& counted, std::size_t k, const PlacedNetwork& stations, const Network& network,
+                           const RequiredInputs& needs) const;
 
   Simulator& simulator_;
   Measures measures_;

@@ -83,7 +83,9 @@ void mark_knee(std::vector<TradeOffPoint>& points) {
   if (points.size() < 3) return;
   const auto at = [&](const TradeOffPoint& point) {
     const TradeOffPoint &first = points.front(), &last = points.back();
-    const auto share = [](double value, double from, double to) { return to > from ? (value - from) / (to - from) : 0; };
+    const auto share = [](double value, double from, double to) {
+      return to > from ? (value - from) / (to - from) : 0;
+    };
     const auto stations = [](const TradeOffPoint& p) { return static_cast<double>(p.stations.size()); };
     const auto captured = [](const TradeOffPoint& p) { return p.values.at("capture").value; };
     return share(captured(point), captured(first), captured(last)) -

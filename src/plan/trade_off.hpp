@@ -9,8 +9,8 @@
 
 namespace vantage {
 
-// The best network found of each of some numbers of stations, from one to a few beyond the chosen, by rising number: from
-// the chosen one down, always without the station that is missed least, and up along links; swaps improve each. A
+// The best network found of each of some numbers of stations, from one to a few beyond the chosen, by rising number:
+// from the chosen one down, always without the station that is missed least, and up along links; swaps improve each. A
 // stopped call returns what it has.
 std::vector<CoverSolution> trade_off_networks(const FewestChoice& choice, const std::stop_token& stop);
 

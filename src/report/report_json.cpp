@@ -161,13 +161,14 @@ ordered_json trade_off_json(const std::vector<TradeOffPoint>& points) {
   ordered_json json = ordered_json::array();
   for (const TradeOffPoint& point : points) {
     const auto registered = point.values.find("registration");
-    json.push_back({{"stations", point.stations.size()},
-                    {"captured", known(point.values.at("capture").value)},
-                    {"error", point.values.at("capture").standard_error},
-                    {"registration_mm", registered == point.values.end() ? ordered_json() : known(registered->second.value)},
-                    {"seconds_on_site", point.minutes_on_site ? ordered_json(60 * *point.minutes_on_site) : ordered_json()},
-                    {"answer", point.answer},
-                    {"knee", point.knee}});
+    json.push_back(
+        {{"stations", point.stations.size()},
+         {"captured", known(point.values.at("capture").value)},
+         {"error", point.values.at("capture").standard_error},
+         {"registration_mm", registered == point.values.end() ? ordered_json() : known(registered->second.value)},
+         {"seconds_on_site", point.minutes_on_site ? ordered_json(60 * *point.minutes_on_site) : ordered_json()},
+         {"answer", point.answer},
+         {"knee", point.knee}});
   }
   return json;
 }
@@ -201,13 +202,20 @@ ordered_json report_json(const Report& report) {
     if (!report.pictures[k].empty()) stations[k]["picture"] = base64(report.pictures[k]);
   for (std::size_t k = 0; k < networks.size(); ++k)  // a page draws one round
     if (k != report.answer && !networks[k]["visit"].is_null()) networks[k]["visit"]["ways"] = ordered_json::array();
-  return {{"title", report.options.title},     {"question", report.question},
-          {"command", report.options.command}, {"version", version()},
-          {"facts", std::move(facts)},         {"date", report.options.date},
-          {"crs", report.options.crs},         {"logo", logo_json(report.options.logo)},
-          {"answer", report.answer},           {"axes", std::move(axes)},
-          {"measures", std::move(measures)},   {"networks", std::move(networks)},
-          {"missed", missed_json(report)},     {"trade_off", trade_off_json(report.trade_off)},
+  return {{"title", report.options.title},
+          {"question", report.question},
+          {"command", report.options.command},
+          {"version", version()},
+          {"facts", std::move(facts)},
+          {"date", report.options.date},
+          {"crs", report.options.crs},
+          {"logo", logo_json(report.options.logo)},
+          {"answer", report.answer},
+          {"axes", std::move(axes)},
+          {"measures", std::move(measures)},
+          {"networks", std::move(networks)},
+          {"missed", missed_json(report)},
+          {"trade_off", trade_off_json(report.trade_off)},
           {"parameters", ordered_json::parse(report.parameters)}};
 }
 

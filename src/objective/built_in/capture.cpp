@@ -5,12 +5,13 @@
 
 namespace vantage::built_in {
 
-// The share of attainable coverage that a network captures (attainable.cpp). Whoever measures counts it, on voxels whose
-// attainable counts are known.
+// The share of attainable coverage that a network captures (attainable.cpp). Whoever measures counts it, on voxels
+// whose attainable counts are known.
 Objective capture(const ObjectiveSettings& settings) {
   if (!(settings.attainable > 0 && settings.attainable <= 1))
-    throw Error(Errc::invalid_argument, "capture is a share of what is attainable, a coverage above 0 and at most 1, not " +
-                                            number(settings.attainable));
+    throw Error(Errc::invalid_argument,
+                "capture is a share of what is attainable, a coverage above 0 and at most 1, not " +
+                    number(settings.attainable));
   return {.name = "capture",
           .label = "Captured (share of what is attainable)",
           .scale = maximise(1, 0),

@@ -160,7 +160,8 @@ TEST(Attainable, StandardErrorsAreThoseOfTheSamples) {
     const Estimate share = captured_shares(simulator, attainable, {&network, 1})[0];
     sum += share.value, squares += share.value * share.value, variance += share.standard_error * share.standard_error;
   }
-  const double mean = sum / kSamples, scatter = std::sqrt((squares / kSamples - mean * mean) * kSamples / (kSamples - 1));
+  const double mean = sum / kSamples,
+               scatter = std::sqrt((squares / kSamples - mean * mean) * kSamples / (kSamples - 1));
   const double told = std::sqrt(variance / kSamples);
   EXPECT_GT(told, 0.4 * scatter);
   EXPECT_LT(told, 3 * scatter);

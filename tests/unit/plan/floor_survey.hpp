@@ -60,7 +60,8 @@ inline SurveyProblem floor_problem(double coverage) {
 }
 
 inline FewestChoice floor_choice(const SurveyProblem& problem, std::size_t step = 1) {
-  return {.asked = fewest_asked(problem), .table = CandidateTable(floor_columns(step), floor_columns(1, 4), {.nearest_m = 1})};
+  return {.asked = fewest_asked(problem),
+          .table = CandidateTable(floor_columns(step), floor_columns(1, 4), {.nearest_m = 1})};
 }
 
 // Evaluates networks by the columns of all cells. A sample overstates coverage by `overstated`.
