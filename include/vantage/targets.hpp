@@ -78,7 +78,7 @@ struct TargetProposal {
 /// most; it ends early where another one would gain less than a fifth of a station's share of that error. `given`:
 /// targets and control points that are there. No random numbers. Returns nothing if it was stopped. Throws Error
 /// invalid_argument, and what the simulator throws.
-std::optional<TargetProposal> propose_targets(Site& site, std::span<const PlacedStation> stations,
+std::optional<TargetProposal> propose_targets(vantage::Site& site, std::span<const PlacedStation> stations,
                                               const RegistrationOptions& registration = {},
                                               const TargetOptions& options = {}, std::vector<Target> given = {},
                                               const Progress& progress = {});
