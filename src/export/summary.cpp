@@ -214,7 +214,9 @@ std::string trade_off_text(const PlanResult& result) {
       return std::string(width > value.size() ? width - value.size() : 0, ' ') + value;
     };
     const auto registered = point.values.find("registration");
-    const bool known = registered != point.values.end() && std::isfinite(registered->second.value);
+    // A single station has nothing to be registered to.
+    const bool known =
+        point.stations.size() > 1 && registered != point.values.end() && std::isfinite(registered->second.value);
     text += cell(std::to_string(point.stations.size()), 8) + cell(percent(point.values.at("capture").value), 11) +
             cell(known ? fixed(registered->second.value, 2) + " mm" : "–", known ? 12 : 14) + "  " +
             (point.minutes_on_site ? duration(60 * *point.minutes_on_site) : "–") +

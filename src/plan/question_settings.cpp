@@ -75,8 +75,12 @@ const SettingTable<TargetOptions>& target_settings() {
                 number(&Options::sigma_m, {.low = 1e-5, .high = 0.1}))
         .custom("accuracy-class", "LOA20|LOA30|LOA40|LOA50",
                 "What the registration error is judged by, at 95 %: 50, 15, 5 or 1 mm; LOA30 otherwise",
-                [](Options& options, const std::string& text, const std::string&) {
-                  options.wanted = accuracy_class_from_string(text);
+                [](Options& options, const std::string& text, const std::string& what) {
+                  try {
+                    options.wanted = accuracy_class_from_string(text);
+                  } catch (const Error& error) {
+                    throw Error(Errc::invalid_argument, what + ": " + error.what());
+                  }
                 })
         .take();
   }();

@@ -179,7 +179,7 @@ TEST(EditSession, ImprovesTheOthersAndKeepsLockedOnes) {
   EXPECT_EQ(after["ids"], before["ids"]);
   EXPECT_EQ(after["network"]["stations"][1]["head"], before["network"]["stations"][1]["head"]);
   EXPECT_NE(after["network"]["stations"][0]["head"], before["network"]["stations"][0]["head"]);
-  EXPECT_GT(after["network"]["captured"], before["network"]["captured"]);
+  EXPECT_GT(after["network"]["coverage"], before["network"]["coverage"]);
   EXPECT_LE(after["network"]["parts"], before["network"]["parts"]);
   bench.session.change({{"do", "undo"}});
   EXPECT_EQ(bench.session.state()["network"], before["network"]);
@@ -198,11 +198,11 @@ TEST(EditSession, ImprovesAStationWithItsOwnScanner) {
   std::vector<EditStation> kept;
   EditSession session(simulator, bench.area, bench.clash, {{.id = 1, .placed = far}}, bench.options,
                       [&](const std::vector<EditStation>& stations) { kept = stations; }, {});
-  const double before = session.state()["network"]["captured"];
+  const double before = session.state()["network"]["coverage"];
   session.change({{"do", "improve"}});
   const State after = finished(session);
   EXPECT_EQ(after["message"], "improved");
-  EXPECT_GT(after["network"]["captured"], before);
+  EXPECT_GT(after["network"]["coverage"], before);
   ASSERT_EQ(kept.size(), 1u);
   EXPECT_EQ(kept[0].placed.setup, far.setup);
 }
@@ -221,7 +221,7 @@ TEST(EditSession, BeginsWithNothing) {
   Bench bench;
   const State state = bench.session.state();
   EXPECT_EQ(state["network"]["stations"].size(), 0u);
-  EXPECT_EQ(state["network"]["captured"], 0);
+  EXPECT_EQ(state["network"]["coverage"], 0);
   bench.session.change({{"do", "exact"}});
   EXPECT_EQ(bench.finished()["message"], "there is no station to trace");
 }

@@ -34,7 +34,7 @@ TEST(Summary, SaysInWordsWhatItKnowsAndNothingElse) {
       summary_text(network),
       "captured   71.2 % ± 0.4 % of the site, 92.0 % ± 1.0 % of what is attainable\n"
       "linked     no: in 3 parts, by overlap of at least 0.01: S1, S2 and S3; S4 and S5; S6 stands alone\n"
-      "registered to about 1.23 mm, as predicted\n"
+      "registered to about 1.23 mm, as predicted; LOA30 (15 mm at 95 %) is met\n"
       "on site    about 3 h 25 min\n"
       "to do      link S4 to S3, the nearest to it with 0.004: put a station between them, or move them closer\n"
       "           S6 shares nothing with any station of another part: put a station between it and S1, or tie it in "

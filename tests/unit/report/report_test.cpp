@@ -205,7 +205,7 @@ TEST(Report, OfANetworkThatNoPlanFoundHasItsFigures) {
       evaluate_stations({.simulator = survey.simulator}, survey.result.front.front().stations, {.field = true});
   const auto json = report_json(report_of(found, survey.simulator, {}));
   ASSERT_EQ(json["networks"].size(), 1u);
-  EXPECT_EQ(json["networks"][0]["captured"], found.value("coverage"));
+  EXPECT_EQ(json["networks"][0]["coverage"], found.value("coverage"));
   EXPECT_EQ(json["question"], "3 stations, as given");
   EXPECT_TRUE(json["axes"].empty());
   write_report(folder / "a.html", found, survey.simulator, survey.area, {.title = "A wall", .pictures = false});
