@@ -51,7 +51,8 @@ void add_matrix(py::module_& m) {
             return view<std::uint32_t>(std::span(self.cast<const CoverageMatrix&>().weights()), self);
           },
           "Weight of each element in coverage: read-only.")
-      .def_property_readonly("goal", &CoverageMatrix::goal, "The amount that covers an element.")
+      .def_property_readonly(
+          "goal", [](const CoverageMatrix& matrix) { return matrix.goal(); }, "The amount that covers an element.")
       .def(
           "coverage",
           [](const CoverageMatrix& matrix, const Chosen& chosen) {

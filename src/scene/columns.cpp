@@ -18,7 +18,7 @@ namespace vantage {
 namespace {
 
 // Triangles may lie on each other by the thousand; columns are fewer then. 8 bytes each.
-constexpr double kMostCrossings = 8'000'000;
+constexpr double kMostCrossings = 4'000'000;
 constexpr double kMostColumns = 160'000, kFewestColumns = 2000, kColumnsPerTriangle = 1000;
 constexpr double kLeastUp = 0.766;         // cosine of 40°, the steepest slope that people walk on
 constexpr double kBeside = 0.38196601125;  // where the first column stands in its cell: models are drawn on round lines
@@ -82,14 +82,14 @@ Columns::Columns(const RawScene& raw, bool z_up) {
   const double columns =
       std::min(kMostColumns, kFewestColumns + kColumnsPerTriangle * static_cast<double>(raw.triangles.size()));
   cell_ = std::max(std::sqrt(width * depth / columns), std::max(width, depth) / columns);
-  double expected = 0;
+  double in_squares = 0, in_lines = 0;
   for (const Triangle& t : raw.triangles) {
     if (!within(t, limit)) continue;
     const glm::dvec3 a = place(t[0]), b = place(t[1]), c = place(t[2]);
     const glm::dvec3 extent = (glm::max(glm::max(a, b), c) - glm::min(glm::min(a, b), c)) / cell_;
-    expected += extent.x * extent.y + extent.x + extent.y;
+    in_squares += extent.x * extent.y, in_lines += extent.x + extent.y;
   }
-  cell_ *= std::sqrt(std::max(1.0, expected / kMostCrossings));
+  cell_ *= std::max({1.0, std::sqrt(in_squares / kMostCrossings), in_lines / kMostCrossings});
   // One more on each side, outside of everything.
   nx_ = static_cast<std::uint32_t>(width / cell_) + 3, ny_ = static_cast<std::uint32_t>(depth / cell_) + 3;
   low.x -= cell_, low.y -= cell_;
