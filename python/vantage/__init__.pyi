@@ -773,7 +773,7 @@ def find_candidates(
     *,
     progress: Optional[Progress] = None,
     first: int = 128,
-    most: int = 2048,
+    most: int = 4096,
     change: float = 0.005,
     sample_voxels: int = 20000,
     scanner: int = 0,
