@@ -774,7 +774,7 @@ def find_candidates(
     progress: Optional[Progress] = None,
     first: int = 128,
     most: int = 4096,
-    change: float = 0.005,
+    change: float = 0.01,
     sample_voxels: int = 20000,
     scanner: int = 0,
     max_seconds: float = 0.0,
