@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What is attainable of a site, and how much of it a network captures.
+/// Attainable coverage of a site, and the share of it that a network captures.
 ///
 /// The attainable count a_v of a voxel is the most points that one station alone leaves in it, up to the goal g_v, over
 /// a set of stations: one on each candidate. With weights w_v, attainable coverage is Σ w_v a_v/g_v / Σ w_v. A network
@@ -21,9 +21,9 @@ namespace vantage {
 /// Attainable counts of a sample of the surveyed voxels, or of all of them.
 class AttainableCounts {
  public:
-  /// Of no voxels.
+  /// Holds no voxels.
   AttainableCounts() = default;
-  /// Of no station yet, in the voxels that `Simulator::evaluate_sampled` draws for these `SampleOptions`. Throws Error
+  /// Has no station yet, in the voxels that `Simulator::evaluate_sampled` draws for these `SampleOptions`. Throws Error
   /// invalid_argument for 0 voxels.
   AttainableCounts(const Simulator& simulator, std::uint64_t voxels, std::uint64_t from = 0);
 

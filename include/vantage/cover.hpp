@@ -96,7 +96,7 @@ class StationGraph {
   bool linked(std::size_t i, std::size_t j, double least) const {
     return i != j && static_cast<double>(overlap(i, j)) >= least;
   }
-  /// Whether no network may have both.
+  /// Returns true if no network may have both.
   bool excluded(std::size_t i, std::size_t j) const { return !excluded_.empty() && excluded_[i * size_ + j] != 0; }
 
   /// Both set i, j and j, i. REQUIRES: i, j < size().

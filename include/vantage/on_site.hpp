@@ -46,7 +46,7 @@ class OnSite {
   /// Lays a graph of at most some 20 000 places over the search area, 0.25 m apart or more. Links connect neighbours
   /// that see each other at hip height. Throws Error invalid_argument (an option out of its range).
   OnSite(const SearchArea& area, const ClashChecker& clash, const Scanner& scanner, const OnSiteOptions& options = {});
-  /// With several scanners, from which stations choose by `StationSetup::scanner`. Throws as above, and Error
+  /// Takes several scanners, from which stations choose by `StationSetup::scanner`. Throws as above, and Error
   /// invalid_argument for none.
   OnSite(const SearchArea& area, const ClashChecker& clash, std::span<const Scanner> scanners,
          const OnSiteOptions& options = {});

@@ -228,7 +228,7 @@ PlanResult plan(Simulator& simulator, const SearchArea& area, const ClashChecker
 /// Programming, 1973).
 /// Throws Error invalid_argument if the front is empty.
 std::size_t answer(const PlanResult& result);
-/// Whether the answer meets all requirements. False if this is not certain: the answer was not confirmed, or `capture`
+/// True if the answer meets all requirements. False if this is not certain: the answer was not confirmed, or `capture`
 /// is required and the look at attainable coverage was cut short.
 bool met(const PlanResult& result);
 /// Advice if the answer does not meet the requirements, a sentence each.

@@ -18,7 +18,7 @@ struct Setting {
   /// Option of the program that sets it, without dashes; empty: none, or not set. Neighbours with the same option are
   /// its values in order.
   std::string option = {};
-  /// Whether another value can change the result of a search. Limits, places and devices cannot, so a run may be
+  /// True if another value can change the result of a search. Limits, places and devices cannot, so a run may be
   /// resumed with others.
   bool decides = true;
 };

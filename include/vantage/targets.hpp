@@ -41,7 +41,7 @@ struct Target {
   std::vector<std::size_t> stations = {};
 };
 
-/// What a scan needs of a target, and where new ones may stand.
+/// Needs of a scan that measures a target, and places for new ones.
 struct TargetOptions {
   double diameter_m = 0.145;  ///< Of a sphere, or width of a checkerboard; above 0.
   double height_m = 1.5;      ///< Centre of a proposed one above the ground.
