@@ -202,4 +202,9 @@ std::vector<std::size_t> grow_connected(const CoverProblem& problem, std::vector
   return Growth(problem, std::move(network)).run();
 }
 
+CoverSolution grow_and_swap(const CoverProblem& problem, std::vector<std::size_t> network,
+                            const std::stop_token& stop) {
+  return evaluate_cover(problem, improve_by_swaps(problem, grow_connected(problem, std::move(network)), stop));
+}
+
 }  // namespace vantage

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <stop_token>
 #include <vector>
 
 #include "vantage/cover.hpp"
@@ -11,5 +12,7 @@ namespace vantage {
 
 // Adds candidates to `network` until coverage and links are as wanted, `problem.most` are reached, or none helps.
 std::vector<std::size_t> grow_connected(const CoverProblem& problem, std::vector<std::size_t> network);
+// Grows `network` likewise, then improves it by swaps.
+CoverSolution grow_and_swap(const CoverProblem& problem, std::vector<std::size_t> network, const std::stop_token& stop);
 
 }  // namespace vantage

@@ -39,14 +39,14 @@ std::vector<std::size_t> places_by_loss(const CoverProblem& problem, const std::
 
 // Adds one candidate at a time, with swaps after each, until the network is feasible. Growth alone can shut itself in:
 // where candidates keep a distance from each other, a chosen one may block the only way to the rest.
-CoverSolution grow_with_swaps(CoverProblem problem, CoverSolution from, const std::stop_token& stop) {
-  const std::size_t existing = problem.existing.size(), fewest = problem.fewest,
-                    most = std::min(problem.most, problem.matrix.candidates() - existing);
-  CoverSolution best = std::move(from);
-  for (std::size_t placed = best.chosen.size() - existing + 1; placed <= most && !stop.stop_requested(); ++placed) {
+CoverSolution grow_one_by_one(CoverProblem problem, const std::stop_token& stop) {
+  const std::size_t fewest = problem.fewest,
+                    most = std::min(problem.most, problem.matrix.candidates() - problem.existing.size());
+  CoverSolution best = evaluate_cover(problem, problem.existing);
+  for (std::size_t placed = 1; placed <= most && !stop.stop_requested(); ++placed) {
     problem.most = placed, problem.fewest = std::min(fewest, placed);
     const std::size_t before = best.chosen.size();
-    best = evaluate_cover(problem, improve_by_swaps(problem, grow_connected(problem, std::move(best.chosen)), stop));
+    best = grow_and_swap(problem, std::move(best.chosen), stop);
     if (best.violation == 0 || best.chosen.size() == before) break;
   }
   return best;
@@ -73,7 +73,7 @@ ConnectedCover min_connected_cover(const CoverProblem& problem, std::stop_token 
     swap();
   }
   if (best.violation > 0 && problem.graph && !stop.stop_requested()) {
-    CoverSolution other = grow_with_swaps(problem, evaluate_cover(problem, problem.existing), stop);
+    CoverSolution other = grow_one_by_one(problem, stop);
     if (other.violation < best.violation) best = std::move(other);
   }
   // One fewer while that is no worse, even if the network is not feasible.

@@ -4,8 +4,8 @@
 #include <cctype>
 #include <cmath>
 #include <numbers>
-#include <sstream>
 
+#include "core/require_above_zero.hpp"
 #include "core/setting_list.hpp"
 #include "evaluate/field_of_view.hpp"
 #include "scan/noise_model.hpp"
@@ -79,15 +79,9 @@ Settings settings(const TargetOptions& options) {
 }
 
 void check(const TargetOptions& options) {
-  const auto above_zero = [](const char* what, double value) {
-    if (std::isfinite(value) && value > 0) return;
-    std::ostringstream text;
-    text << "targets: " << what << " is " << value << ", but must be above 0";
-    throw Error(Errc::invalid_argument, text.str());
-  };
-  above_zero("diameter_m", options.diameter_m);
-  above_zero("height_m", options.height_m);
-  above_zero("sigma_m", options.sigma_m);
+  require_above_zero("targets", "diameter_m", options.diameter_m);
+  require_above_zero("targets", "height_m", options.height_m);
+  require_above_zero("targets", "sigma_m", options.sigma_m);
 }
 
 double target_reach_m(const Scanner& scanner, const TargetOptions& options) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
-#include <sstream>
 #include <string>
 
+#include "core/require_above_zero.hpp"
 #include "core/setting_list.hpp"
 #include "objective/registration_adjustment.hpp"
 #include "objective/whole_counts.hpp"
@@ -27,17 +27,11 @@ Settings settings(const RegistrationOptions& options) {
 }
 
 void check(const RegistrationOptions& options) {
-  const auto above_zero = [](const char* what, double value, bool or_zero = false) {
-    if (std::isfinite(value) && (value > 0 || (or_zero && value == 0))) return;
-    std::ostringstream text;
-    text << "registration: " << what << " is " << value << ", but must be " << (or_zero ? "0 or above" : "above 0");
-    throw Error(Errc::invalid_argument, text.str());
-  };
-  above_zero("rho_m", options.model.rho_m);
-  above_zero("patch_m", options.model.patch_m);
-  above_zero("position_m", options.position_m);
-  above_zero("heading", options.heading.in_degrees());
-  above_zero("tilt", options.tilt.in_degrees(), true);
+  require_above_zero("registration", "rho_m", options.model.rho_m);
+  require_above_zero("registration", "patch_m", options.model.patch_m);
+  require_above_zero("registration", "position_m", options.position_m);
+  require_above_zero("registration", "heading", options.heading.in_degrees());
+  require_above_zero("registration", "tilt", options.tilt.in_degrees(), true);
 }
 
 double RegistrationError::at(std::size_t station, const Vec3& local) const {

@@ -16,11 +16,6 @@ constexpr std::size_t kLateCandidates = 96;
 // Further candidates around each chosen station.
 constexpr std::size_t kAround = 8;
 
-// As many stations as are asked for, with the most coverage: from a network, or one that grows.
-CoverSolution most_coverage(const CoverProblem& problem, std::vector<std::size_t> from, const std::stop_token& stop) {
-  return evaluate_cover(problem, improve_by_swaps(problem, grow_connected(problem, std::move(from)), stop));
-}
-
 void stronger(FewestChoice& choice, const std::stop_token& stop) {
   if (choice.asked.most_coverage) return;  // all links are for coverage
   choice.network = improve_weakest_link(cover_problem(choice), std::move(choice.network), stop);
@@ -103,7 +98,7 @@ void look(CandidateTable& table, std::span<const PlacedStation> existing, std::s
 void choose_from(FewestChoice& choice, std::optional<CoverSolution> start, std::stop_token stop) {
   if (choice.asked.most_coverage) {
     const CoverProblem problem = cover_problem(choice);
-    choice.network = most_coverage(problem, start ? std::move(start->chosen) : problem.existing, stop);
+    choice.network = grow_and_swap(problem, start ? std::move(start->chosen) : problem.existing, stop);
     return;
   }
   ConnectedCover found = min_connected_cover(cover_problem(choice), std::move(stop), std::move(start));

@@ -76,11 +76,7 @@ const SettingTable<TargetOptions>& target_settings() {
         .custom("accuracy-class", "LOA20|LOA30|LOA40|LOA50",
                 "What the registration error is judged by, at 95 %: 50, 15, 5 or 1 mm; LOA30 otherwise",
                 [](Options& options, const std::string& text, const std::string& what) {
-                  try {
-                    options.wanted = accuracy_class_from_string(text);
-                  } catch (const Error& error) {
-                    throw Error(Errc::invalid_argument, what + ": " + error.what());
-                  }
+                  options.wanted = named(what, [&] { return accuracy_class_from_string(text); });
                 })
         .take();
   }();

@@ -68,13 +68,11 @@ std::vector<CoverSolution> trade_off_networks(const FewestChoice& choice, const 
     now = improve_by_swaps(problem, std::move(now), stop);
     networks.insert(networks.begin(), evaluate_cover(problem, now));
   }
-  now = choice.network.chosen;
   for (auto number = here + 1; number != numbers.end() && !stop.stop_requested(); ++number) {
     problem.most = problem.fewest = *number;
-    const std::size_t before = now.size();
-    now = improve_by_swaps(problem, grow_connected(problem, std::move(now)), stop);
-    if (now.size() == before) break;
-    networks.push_back(evaluate_cover(problem, now));
+    CoverSolution more = grow_and_swap(problem, networks.back().chosen, stop);
+    if (more.chosen.size() == networks.back().chosen.size()) break;
+    networks.push_back(std::move(more));
   }
   return networks;
 }

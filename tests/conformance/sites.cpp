@@ -10,6 +10,7 @@
 #include "scan/noise_model.hpp"
 #include "scan/pattern.hpp"
 #include "scene/raw_scene.hpp"
+#include "support/box.hpp"
 #include "support/temporary_folder.hpp"
 #include "vantage/built_in_scenes.hpp"
 
@@ -36,22 +37,7 @@ class Builder {
   }
 
   void box(const std::string& name, Role role, const Vec3& low, const Vec3& high, std::uint32_t weight = 1) {
-    std::vector<Vec3> p;
-    for (int i = 0; i < 8; ++i) p.push_back({i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z});
-    add(name, role, 0.6, p,
-        {{0, 2, 1},
-         {1, 2, 3},
-         {4, 5, 6},
-         {5, 7, 6},
-         {0, 1, 4},
-         {1, 5, 4},
-         {2, 6, 3},
-         {3, 6, 7},
-         {0, 4, 2},
-         {2, 4, 6},
-         {1, 3, 5},
-         {3, 7, 5}},
-        {}, weight);
+    add(name, role, 0.6, box_corners(low, high), box_triangles, {}, weight);
   }
 
   // A grid of columns × rows quads over at(u, v), u and v in [0, 1].

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "scene/positions.hpp"
+#include "support/box.hpp"
 #include "support/glb_builder.hpp"
 #include "support/temporary_folder.hpp"
 #include "vantage/built_in_scenes.hpp"
@@ -33,21 +34,8 @@ class House {
   }
   void box(const Vec3& low, const Vec3& high) {
     const auto first = static_cast<std::uint32_t>(points.size());
-    for (int i = 0; i < 8; ++i)
-      points.push_back({i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z});
-    for (const Triangle& t : std::initializer_list<Triangle>{{0, 2, 1},
-                                                             {1, 2, 3},
-                                                             {4, 5, 6},
-                                                             {5, 7, 6},
-                                                             {0, 1, 4},
-                                                             {1, 5, 4},
-                                                             {2, 6, 3},
-                                                             {3, 6, 7},
-                                                             {0, 4, 2},
-                                                             {2, 4, 6},
-                                                             {1, 3, 5},
-                                                             {3, 7, 5}})
-      triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    for (const Vec3& corner : test::box_corners(low, high)) points.push_back(corner);
+    for (const Triangle& t : test::box_triangles) triangles.push_back({first + t[0], first + t[1], first + t[2]});
   }
   // As the loader reads it by glTF's rule, where the file has it in this unit, with this axis up.
   RawScene written(Unit unit, UpAxis up) const {
