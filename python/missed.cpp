@@ -50,15 +50,18 @@ void add_missed(py::module_& m) {
           "Points of the network in each: (k,), read-only.")
       .def_property_readonly(
           "why",
-          [](const py::object& self) {
-            return view<std::uint8_t>(std::span(self.cast<const MissedVoxels&>().why), self);
+          [](const MissedVoxels& self) {
+            py::array_t<std::uint8_t> why(static_cast<py::ssize_t>(self.status.size()));
+            for (std::size_t k = 0; k < self.status.size(); ++k)
+              why.mutable_data()[k] = static_cast<std::uint8_t>(self.status[k].why);
+            return why;
           },
-          "Status of each, an index into `reasons`: (k,), read-only.")
+          "Status of each, an index into `reasons`: (k,).")
       .def_property_readonly(
           "reasons", [](const MissedVoxels&) { return reasons(); },
           "'captured', 'hidden', 'far', 'flat', 'sparse' and 'not_chosen', in the order of the numbers of `why`.")
       .def_property_readonly("shares", &shares_of,
-                             "Share of voxels by reason, for each node by its name; '': the whole site.")
+                             "Shares of the goal points by reason, which add up to 1, for each node by its name; '': the whole site.")
       .def_readonly("candidates", &MissedVoxels::candidates, "Number of positions from which lines were drawn.");
   add_pickle(type);
   const auto options = missed_options();

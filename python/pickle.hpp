@@ -40,8 +40,9 @@ inline auto members(MeshInfo& m) {
   return std::tie(m.name, m.role, m.diffuse, m.triangle_count, m.weight, m.door, m.station_area, m.detail_m,
                   m.accuracy_m);
 }
-inline auto members(MissedShare& s) { return std::tie(s.node, s.voxels, s.count); }
-inline auto members(MissedVoxels& m) { return std::tie(m.ranks, m.points, m.why, m.shares, m.candidates); }
+inline auto members(MissedShare& s) { return std::tie(s.node, s.voxels, s.shares); }
+inline auto members(VoxelStatus& s) { return std::tie(s.why, s.captured, s.attainable); }
+inline auto members(MissedVoxels& m) { return std::tie(m.ranks, m.points, m.status, m.shares, m.candidates); }
 inline auto members(Scan& s) {
   return std::tie(s.ray, s.position, s.range_m, s.normal, s.reflectivity, s.mesh, s.primitive, s.colour, s.voxel,
                   s.summary, s.rows, s.columns, s.outputs, s.grid);

@@ -150,18 +150,16 @@ std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& re
 std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& result, Site& site,
                        const VoxelField* field = nullptr);
 
-/// CSV: `node,voxels,captured,hidden,out_of_range,too_flat,too_sparse,not_chosen`, shares of the node's voxels.
+/// CSV: `node,voxels,captured,hidden,out_of_range,too_flat,too_sparse,not_chosen`, the node's `MissedShare`.
 void write_missed_csv(const std::filesystem::path& file, std::span<const MissedShare> shares);
-/// Every voxel of `ranks` as a point in the colour of its reason, with the number of the reason (`WhyMissed`) and its
-/// count. Binary PLY, survey frame.
-void write_missed_ply(const std::filesystem::path& file, const Simulator& simulator,
-                      std::span<const std::uint32_t> ranks, std::span<const WhyMissed> why,
-                      std::span<const std::uint32_t> points);
+/// Every judged voxel as a point in the colour of its reason, with the number of the reason (`WhyMissed`) and its count.
+/// Binary PLY, survey frame.
+void write_missed_ply(const std::filesystem::path& file, const Simulator& simulator, const MissedVoxels& missed);
 /// The same in plan view, .png or .svg, a map for each floor, cut as by `draw_plan_view`. Of voxels above each other,
-/// one missed for want of a station shows first, then one beyond help, then a captured one.
+/// one missed for want of a station shows first, then one seen badly, then a captured one, then a hidden one: most of
+/// these are undersides.
 void draw_missed(const std::filesystem::path& file, const Simulator& simulator, const SearchArea& area,
-                 std::span<const std::uint32_t> ranks, std::span<const WhyMissed> why,
-                 std::span<const PlacedStation> stations, const std::string& title);
+                 const MissedVoxels& missed, std::span<const PlacedStation> stations, const std::string& title);
 
 /// The predicted registration error on the surface in false colours. Every surveyed voxel that a station sees is a
 /// point with its `error_mm`, the root mean square over the stations that see it, from dark (none) to yellow (the

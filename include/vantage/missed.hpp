@@ -25,8 +25,8 @@ enum class WhyMissed : std::uint8_t {
   hidden,      ///< No line is free, whatever its length.
   far,         ///< Free lines are all longer than the scanner's range, or shorter than its nearest.
   flat,        ///< Free lines within range all meet the surface at more than `MissedOptions::flat`.
-  sparse,      ///< A station on every candidate together would leave fewer points than the goal density.
-  not_chosen,  ///< Other stations would have captured it.
+  sparse,      ///< No single candidate's station would leave as many points as the goal density.
+  not_chosen,  ///< One other station would have captured it.
 };
 inline constexpr std::size_t why_missed_count = 6;
 std::string to_string(WhyMissed);
@@ -39,35 +39,44 @@ struct MissedOptions {
 
 Settings settings(const MissedOptions& options);
 
-/// Returns why each voxel of `ranks` is not captured by a network that left `points` in them. `sparse` uses the points
-/// expected of the pattern: area · cos(incidence) / (range² · Δazimuth · Δzenith · sin zenith) for each candidate with
-/// a free line in range. A cancelled call returns nothing. Throws Error invalid_argument if the spans differ in length,
-/// a voxel index is too large or there are no candidates.
-std::vector<WhyMissed> why_missed(const Simulator& simulator, const ClashChecker& clash,
+/// Status of one voxel, with shares of its goal density in [0, 1].
+struct VoxelStatus {
+  WhyMissed why = WhyMissed::captured;
+  float captured = 0;    ///< What the network left.
+  float attainable = 0;  ///< What the best single candidate would leave, or `captured` if that is more.
+};
+
+/// Returns the status of each voxel of `ranks` under a network that left `points` in them. `attainable` and `sparse` use
+/// the points expected of the pattern: area · cos(incidence) / (range² · Δazimuth · Δzenith · sin zenith), the most over
+/// candidates with a free line in range. A cancelled call returns nothing. Throws Error invalid_argument if the spans
+/// differ in length, a voxel index is too large or there are no candidates.
+std::vector<VoxelStatus> why_missed(const Simulator& simulator, const ClashChecker& clash,
                                   std::span<const PlacedStation> candidates, std::span<const std::uint32_t> ranks,
                                   std::span<const std::uint32_t> points, const MissedOptions& options = {},
                                   const Progress& progress = {});
 
-/// Number of a node's voxels with each status. A voxel belongs to the mesh with most surface in it.
+/// Shares of a node's goal points, which add up to 1: `captured` is the node's coverage, `not_chosen` what other stations
+/// would add to it, and the other reasons share what is beyond every station. A voxel belongs to the mesh with most
+/// surface in it, and counts by its weight, as in coverage.
 struct MissedShare {
   std::string node;  ///< `MeshInfo::name`; "" is the whole site.
   std::uint64_t voxels = 0;
-  std::array<std::uint64_t, why_missed_count> count{};  ///< Indexed by `WhyMissed`.
-  double share(WhyMissed why) const {
-    return voxels > 0 ? static_cast<double>(count[static_cast<std::size_t>(why)]) / static_cast<double>(voxels) : 0;
-  }
+  std::array<double, why_missed_count> shares{};  ///< Indexed by `WhyMissed`.
+  double share(WhyMissed why) const { return shares[static_cast<std::size_t>(why)]; }
 };
 /// Returns the whole site first, then nodes with a voxel, in the order of their first meshes. Nodes of one name are
 /// one.
 std::vector<MissedShare> missed_by_node(const Simulator& simulator, std::span<const std::uint32_t> ranks,
-                                        std::span<const WhyMissed> why);
+                                        std::span<const VoxelStatus> status);
 
 /// Status of surveyed voxels under a network: of all voxels, or of a sample on a large site.
 struct MissedVoxels {
   std::vector<std::uint32_t> ranks = {};   ///< Voxel indices, ascending.
   std::vector<std::uint32_t> points = {};  ///< Points of the network in each.
-  std::vector<WhyMissed> why = {};
-  std::vector<MissedShare> shares = {};  ///< Their `missed_by_node()`.
+  std::vector<VoxelStatus> status = {};
+  /// Their `missed_by_node()`. The whole site's captured share is its coverage, from all voxels; the sample splits the
+  /// rest.
+  std::vector<MissedShare> shares = {};
   std::size_t candidates = 0;            ///< Number of positions from which lines were drawn.
 };
 /// Judges at most 50 000 voxels of the network with voxel field `field`, enough for shares to a tenth of a percent.

@@ -83,6 +83,8 @@ struct Objective {
   std::string name = {};
   std::string label = {};  ///< Text for axes: "Overlap (average clustering coefficient)".
   std::string unit = {};   ///< "mm"; empty: a plain number.
+  std::string noun = {};   ///< In sentences: "registration error"; empty: the name.
+  bool percent = false;    ///< Sentences show a value of 1 as 100 %.
   Scale scale = {};        ///< E.g. `minimise(0, 10)` for millimetres, `maximise(1, 0)` for a share.
   RequiredInputs needs = {};
   /// Computes the value. Called from several threads at once. Must be a pure function.
@@ -97,7 +99,7 @@ struct Objective {
   enum class Kind { other, coverage, link, distance, time };
   Kind kind = Kind::other;
   double coverage_of_one = 1;  ///< The coverage (equation 8) that a value of 1 has at least, for `Kind::coverage`.
-  /// What helps where a limit on it is not kept, after "to keep it, ": "allow more stations".
+  /// What helps if a requirement on it is not met: "allow more stations".
   std::string advice = "search longer";
   /// Its parameters as text. Results state them, and a run is resumed only under the same ones.
   std::string parameters = {};
@@ -127,10 +129,12 @@ struct Requirement {
   /// Violation as a share of the objective's scale; 0 if the bound holds, infinity for NaN.
   double missed_by(double measured) const;
 };
-std::string to_string(const Requirement&);  ///< "coverage >= 0.9"
-/// A sentence for a violated requirement: "misses coverage >= 0.9: it has 0.853; to keep it, allow more stations, or
-/// ask for less". `measured`: the network's value; NaN: not known.
-std::string advice(const Requirement& requirement, double measured);
+std::string to_string(const Requirement&);                   ///< "coverage >= 0.9"
+std::string value_text(const Objective&, double value);      ///< "85.3 %", "12.000 mm"; NaN: "not known".
+std::string in_words(const Requirement&);                    ///< "share of the site captured at least 90 %"
+/// A sentence for a violated requirement: "not met: share of the site captured at least 90 %, it has 85.3 %; allow more
+/// stations, or ask for less". `measured`: the network's value; NaN: not known. `ended_early`: the time was over first.
+std::string advice(const Requirement& requirement, double measured, bool ended_early = false);
 
 /// Equation 7: rounded(N_min + α (N_max − N_min)), half up, α clamped to [0, 1].
 std::size_t station_count_from_alpha(double alpha, std::size_t n_min, std::size_t n_max);

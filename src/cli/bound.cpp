@@ -106,7 +106,7 @@ int bound(CLI::App& command, BoundOptions& options, Program& program) {
   tell_engine(simulator);
   tell_grid(simulator);
   if (options.sample) options.candidates.sample_voxels = options.sample->of(simulator.voxel_count());
-  ProgressLine line(program.console, "candidates");
+  ProgressLine line(program.console, "tracing candidates");
   const Progress progress{.report = [&](double done) { line.update(done); }, .stop = program.stop};
   const Candidates candidates = find_candidates(simulator, site.area(), site.clash(), options.candidates, progress);
   const Estimate attainable = candidates.attainable();

@@ -110,27 +110,30 @@ ProgressLine::ProgressLine(Console& console, std::string label)
 
 ProgressLine::~ProgressLine() { console_.set_status(""); }
 
-void ProgressLine::update(double done, const std::string& note, double seconds_left) {
+void ProgressLine::update(std::optional<double> done, const std::string& note, double seconds_left) {
   constexpr std::chrono::duration<double> redraw{0.1}, line_every{10};
   const auto now = Clock::now();
   if (now - last_ < (console_.interactive() ? redraw : line_every)) return;
   last_ = now;
-  done = std::clamp(done, 0.0, 1.0);
   const double elapsed = std::chrono::duration<double>(now - start_).count();
-  if (seconds_left < 0 && done > 0) seconds_left = elapsed * (1 - done) / done;
-
-  char percent[16];
-  std::snprintf(percent, sizeof percent, "%3.0f %%", 100 * done);
-  std::string tail = percent;
-  if (seconds_left >= 0) tail += ", " + duration_text(seconds_left) + " left";
-  if (!note.empty()) tail += ", " + note;
-  if (!console_.interactive()) {
-    spdlog::info("{} {}", label_, tail);
-    return;
+  std::string text = label_;
+  if (done) {
+    const double share = std::clamp(*done, 0.0, 1.0);
+    if (seconds_left < 0 && share > 0) seconds_left = elapsed * (1 - share) / share;
+    constexpr std::size_t bar_width = 24;
+    const auto filled = static_cast<std::size_t>(share * bar_width);
+    text += console_.interactive()
+                ? " [" + std::string(filled, '=') + std::string(bar_width - filled, ' ') + "]" : ":";
+    text += fmt::format(" {:.0f} % done", 100 * share);
+  } else {
+    text += ": " + duration_text(elapsed) + " so far";
   }
-  constexpr std::size_t bar_width = 24;
-  const auto filled = static_cast<std::size_t>(done * bar_width);
-  console_.set_status(label_ + " [" + std::string(filled, '=') + std::string(bar_width - filled, ' ') + "] " + tail);
+  if (seconds_left >= 0) text += ", about " + duration_text(seconds_left) + " left";
+  if (!note.empty()) text += ", " + note;
+  if (console_.interactive())
+    console_.set_status(text);
+  else
+    spdlog::info("{}", text);
 }
 
 }  // namespace vantage::cli

@@ -6,6 +6,7 @@
 
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
@@ -43,9 +44,13 @@ class ProgressLine {
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  // `done` in [0, 1]; `seconds_left` < 0: estimated from the elapsed time. `note` follows the numbers.
-  void update(double done, const std::string& note = {}, double seconds_left = -1);
-  void set_label(std::string label) { label_ = std::move(label); }
+  // `done` in [0, 1], or nothing where it is not known; `seconds_left` < 0: estimated from the elapsed time. `note`
+  // follows the numbers.
+  void update(std::optional<double> done, const std::string& note = {}, double seconds_left = -1);
+  // Times start anew with another label.
+  void set_label(const std::string& label) {
+    if (label != label_) label_ = label, start_ = Clock::now();
+  }
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -115,7 +115,7 @@ struct EvaluateCommandOptions {
 
 // As `plan` looks at it before it searches.
 AttainableCounts attainable_counts(Site& site, Simulator& simulator, std::uint64_t sample, Program& program) {
-  ProgressLine line(program.console, "look");
+  ProgressLine line(program.console, "looking at what can be captured");
   return find_candidates(simulator, site.area(), site.clash(), {.sample_voxels = sample},
                          {.report = [&](double done) { line.update(done); }, .stop = program.stop})
       .attainable_counts();
@@ -296,7 +296,7 @@ int evaluate(CLI::App& command, EvaluateCommandOptions& options, Program& progra
   Simulator& simulator = build_simulator(site, program);
   tell_engine(simulator);
   tell_grid(simulator);
-  ProgressLine line(program.console, "evaluate");
+  ProgressLine line(program.console, "counting every ray");
   const Progress progress{.report = [&](double done) { line.update(done); }, .stop = program.stop};
   EvaluationOptions chosen = evaluation_options(options, simulator, to_network(stations), progress);
   chosen.names = names;

@@ -32,17 +32,18 @@ void MissedFiles::check() const {
 
 std::optional<MissedVoxels> judge_missed(Site& site, const Simulator& simulator, const VoxelField& field,
                                          Program& program) {
-  ProgressLine line(program.console, "why missed");
+  ProgressLine line(program.console, "finding why surface is missed");
   MissedVoxels judged = missed_voxels(simulator, site.area(), site.clash(), field, {},
                                       {.report = [&](double done) { line.update(done); }, .stop = program.abort});
   if (judged.shares.empty()) return std::nullopt;
   const MissedShare& all = judged.shares.front();
   const auto percent = [&](WhyMissed why) { return 100 * all.share(why); };
   spdlog::info(
-      "{:.1f} % of the surveyed voxels are captured, {:.1f} % would be by other stations; {:.1f} % are hidden "
-      "from {} positions all over the ground, {:.1f} % out of range, {:.1f} % seen too flatly, {:.1f} % too "
-      "sparsely",
-      percent(WhyMissed::captured), percent(WhyMissed::not_chosen), percent(WhyMissed::hidden), judged.candidates,
+      "{:.1f} % of the site is captured, other stations would capture {:.1f} % more; the rest is hidden from {} "
+      "positions all over the ground ({:.1f} %), out of range ({:.1f} %), or seen too flatly ({:.1f} %) or too sparsely "
+      "({:.1f} %)",
+
+      percent(WhyMissed::captured), percent(WhyMissed::not_chosen), judged.candidates, percent(WhyMissed::hidden),
       percent(WhyMissed::far), percent(WhyMissed::flat), percent(WhyMissed::sparse));
   return judged;
 }
@@ -53,9 +54,9 @@ void write_missed(std::span<const std::filesystem::path> files, const MissedVoxe
     if (file.extension() == ".csv")
       write_missed_csv(file, judged.shares);
     else if (file.extension() == ".ply")
-      write_missed_ply(file, simulator, judged.ranks, judged.why, judged.points);
+      write_missed_ply(file, simulator, judged);
     else
-      draw_missed(file, simulator, area, judged.ranks, judged.why, stations, "Why surfaces are not captured");
+      draw_missed(file, simulator, area, judged, stations, "Why surfaces are not captured");
   }
 }
 

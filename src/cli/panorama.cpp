@@ -66,7 +66,7 @@ int panorama(CLI::App& command, PanoramaCommandOptions& options, Program& progra
     options.picture.max_range_m = scanner.max_range_m;
     return renderers.try_emplace(place, site.scene(), options.picture, site.simulator_config()).first->second;
   };
-  ProgressLine line(program.console, "panorama");
+  ProgressLine line(program.console, "drawing panoramas");
   nlohmann::json rows = nlohmann::json::array();
   std::string text;
   for (std::size_t k = 0; k < stations.size(); ++k) {

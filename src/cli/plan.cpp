@@ -99,7 +99,7 @@ void keep(SurveyQuestion& question, std::span<const PlacedStation> stations) {
 // Heads of a greedy choice for the largest network; empty where it was stopped.
 std::vector<Vec3> greedy_start(Site& site, const SurveyProblem& problem, const PlanConfig& config, Program& program,
                                std::stop_token stop) {
-  ProgressLine line(program.console, "greedy");
+  ProgressLine line(program.console, "choosing a start");
   const GreedyResult greedy =
       greedy_network(site.simulator(), site.area(), site.clash(),
                      {.stations = problem.stations_max,
@@ -121,7 +121,7 @@ std::vector<Vec3> exact_start(Site& site, const SurveyProblem& problem, const Pl
     return limit_of(problem, kind, Requirement::Bound::at_least).value_or(0);
   };
   const double link = least(Objective::Kind::link);
-  ProgressLine line(program.console, "exact");
+  ProgressLine line(program.console, "choosing the best start");
   const ExactResult exact = exact_network(site.simulator(), site.area(), site.clash(),
                                           {.stations = problem.stations_max,
                                            .sample_voxels = std::min<std::uint64_t>(config.sample_voxels, kStartSample),
@@ -159,7 +159,7 @@ std::string map_system(const Site& site) {
 // Every voxel's count under the network that is shown; empty where it was stopped.
 std::optional<VoxelField> cartography(Simulator& simulator, const PlanEntry& entry, Program& program,
                                       std::stop_token abort) {
-  ProgressLine line(program.console, "cartography");
+  ProgressLine line(program.console, "mapping what is captured");
   VoxelField field;
   const NetworkCounts counts = simulator.evaluate(to_network(entry.stations), {.overlap = true, .field = &field},
                                                   {.report = [&](double done) { line.update(done); }, .stop = abort});
@@ -167,11 +167,20 @@ std::optional<VoxelField> cartography(Simulator& simulator, const PlanEntry& ent
   return field;
 }
 
-std::string told(const PlanProgress& now) {
-  if (now.phase == "look" || now.phase == "choose")
-    return now.evaluations > 0 ? fmt::format("{} stations", now.evaluations) : "";
-  return fmt::format("hypervolume {:.4f}, {} networks, {:.3g} a second", now.hypervolume, now.evaluations,
-                     now.evaluations_per_second);
+// What a phase does, in words.
+const char* doing(const std::string& phase) {
+  if (phase == "look") return "looking at what can be captured";
+  if (phase == "choose") return "choosing stations";
+  if (phase == "confirm") return "counting every ray";
+  return "searching";
+}
+
+std::string told(const PlanProgress& now, const SurveyProblem& problem) {
+  if (now.phase == "confirm" || now.evaluations == 0) return "";
+  if (now.phase != "search") return fmt::format("{} places tried", now.evaluations);
+  std::string text = fmt::format("{} networks tried, {:.3g} a second", now.evaluations, now.evaluations_per_second);
+  if (problem.objectives.size() > 1 && !problem.fewest) text += fmt::format(", hypervolume {:.4f}", now.hypervolume);
+  return text;
 }
 
 PlanResult run_plan(Site& site, const SurveyProblem& problem, const PlanConfig& config, Program& program,
@@ -179,11 +188,11 @@ PlanResult run_plan(Site& site, const SurveyProblem& problem, const PlanConfig& 
   using Clock = std::chrono::steady_clock;
   constexpr std::chrono::seconds soon{3};  // before that, what a part of it takes is a guess
   constexpr double kWithResults = 1.1;     // what is missed and the files take about a tenth of the search
-  ProgressLine line(program.console, "search");
+  ProgressLine line(program.console, doing("search"));
   std::string phase, told_phase;
   Clock::time_point begun;
   const auto report = [&](const PlanProgress& now) {
-    line.set_label(now.phase);
+    line.set_label(doing(now.phase));
     if (now.phase != phase) phase = now.phase, begun = Clock::now();
     if (now.attainable)
       spdlog::info("{:.1f} % of the site is attainable, by the best of {} places all over the ground for each surface",
@@ -191,15 +200,17 @@ PlanResult run_plan(Site& site, const SurveyProblem& problem, const PlanConfig& 
     // What it will take is told as soon as it is known, of the whole, and of each part that takes long.
     if (now.whole_seconds_left) {
       const double left = std::min(kWithResults * *now.whole_seconds_left, all_by.seconds_left());
-      spdlog::info("about {} more, in all", duration_text(left));
+      spdlog::info("the number of stations is nearly known; about {} left in all", duration_text(left));
     }
     if (phase != told_phase && now.seconds_left > 1 && Clock::now() - begun > soon) {
       told_phase = phase;
-      spdlog::info("{}: about {}", phase, duration_text(now.seconds_left));
+      spdlog::info("{}: about {} left", doing(phase), duration_text(now.seconds_left));
     }
-    const double done =
-        now.iterations > 0 ? static_cast<double>(now.iteration) / static_cast<double>(now.iterations) : 0;
-    line.update(done, told(now), now.seconds_left);
+    if (now.iterations > 0)
+      line.update(static_cast<double>(now.iteration) / static_cast<double>(now.iterations), told(now, problem),
+                  now.seconds_left);
+    else
+      line.update(std::nullopt, told(now, problem), now.seconds_left);
   };
   return plan(site, problem, config, {.report = report, .stop = program.stop, .abort = program.abort});
 }

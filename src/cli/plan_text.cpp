@@ -20,17 +20,14 @@ std::string remarks(const PlanEntry& entry, const PlanResult& result) {
   }
   for (const Requirement& requirement : result.problem.requirements) {
     const double value = entry.value(requirement.objective.name);
-    if (requirement.missed_by(value) > 0) text += fmt::format("  misses {} ({:.4g})", to_string(requirement), value);
+    if (requirement.missed_by(value) > 0) text += fmt::format("  not met: {} ({})", in_words(requirement), value_text(requirement.objective, value));
   }
   return text;
 }
 
-}  // namespace
-
-std::string plan_text(const PlanResult& result, std::size_t chosen, const std::string& folder) {
+// Networks of the front, a line each, and how the search ended.
+std::string front_text(const PlanResult& result, std::size_t chosen) {
   std::string text;
-  if (result.area && result.area->on_plane()) text = ground_lines(*result.area).front().text + "\n";
-  text += unmet_text(result);
   std::vector<const Objective*> told;
   for (const Objective& measure : result.measures)
     if (!measure.by_alpha) told.push_back(&measure);
@@ -51,14 +48,23 @@ std::string plan_text(const PlanResult& result, std::size_t chosen, const std::s
     text += fmt::format(" ({:.4f} by every ray)", result.exact_hypervolume);
   if (result.spared > 0) text += fmt::format(", {} networks not worth every ray", result.spared);
   text += fmt::format(", stopped: {}\n", to_string(result.stop_reason));
+  return text;
+}
+
+}  // namespace
+
+std::string plan_text(const PlanResult& result, std::size_t chosen, const std::string& folder) {
+  std::string text;
+  if (result.area && result.area->on_plane()) text = ground_lines(*result.area).front().text + "\n";
+  text += unmet_text(result);
+  // The summary and the trade-off tell all of a surveyor's plan.
+  const bool whole_front = result.trade_off.empty() || result.front.size() > 1;
+  if (whole_front) text += front_text(result, chosen) + "\n";
   const PlanEntry& entry = result.front[chosen];
   text +=
-      "\n" +
       station_table(entry.stations, station_names(entry.stations), entry.counts.points_on_surveyed, result.scanners) +
       "\n";
-  text += chosen == answer(result) ? summary_text(result)
-                                   : summary_text(entry);  // violated requirements follow, with advice
-  for (const std::string& help : what_would_help(result)) text += fmt::format("{:<11}{}\n", "would help", help);
+  text += chosen == answer(result) ? summary_text(result) : summary_text(entry, result.problem.requirements);
   if (const std::string trade_off = trade_off_text(result); !trade_off.empty()) text += "\n" + trade_off + "\n";
   return text + "results in " + folder + "\n";
 }

@@ -45,7 +45,7 @@ template <class Shown>
 void write_reports(std::span<const std::filesystem::path> files, const Shown& shown, Simulator& simulator,
                    const SearchArea& area, ReportOptions options, Program& program, std::stop_token stop) {
   options.command = program.command;
-  ProgressLine line(program.console, "report");
+  ProgressLine line(program.console, "writing the report");
   for (const std::filesystem::path& file : files)
     write_report(file, shown, simulator, area, options,
                  {.report = [&](double done) { line.update(done); }, .stop = stop});

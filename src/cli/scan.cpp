@@ -86,7 +86,7 @@ int scan(CLI::App& command, ScanCommandOptions& options, Program& program) {
   }
   ScanSummary sum;
   nlohmann::json rows = nlohmann::json::array();
-  ProgressLine line(program.console, "scan");
+  ProgressLine line(program.console, "scanning");
   for (std::size_t k = 0; k < stations.size(); ++k) {
     const Progress progress{
         .report =

@@ -38,7 +38,7 @@ Site open_site(CLI::App& command, SiteArguments& arguments) {
 std::string crs_text(const Site& site) { return site.crs().empty() ? "" : coordinate_system(site.crs()); }
 
 Simulator& build_simulator(Site& site, Program& program) {
-  ProgressLine line(program.console, "voxels");
+  ProgressLine line(program.console, "making voxels");
   // Ranks stop together, between pieces of the search.
   const std::stop_token stop = program.ranks ? std::stop_token() : program.stop;
   if (!site.build({.report = [&](double done) { line.update(done); }, .stop = stop})) throw Stopped{};

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <array>
 #include <string>
 #include <vector>
 
@@ -12,25 +11,21 @@
 namespace vantage {
 
 void draw_missed(const std::filesystem::path& file, const Simulator& simulator, const SearchArea& area,
-                 std::span<const std::uint32_t> ranks, std::span<const WhyMissed> why,
-                 std::span<const PlacedStation> stations, const std::string& title) {
-  if (ranks.size() != why.size() || ranks.empty())
-    throw Error(Errc::invalid_argument, "draw_missed: " + std::to_string(ranks.size()) + " voxels and " +
-                                            std::to_string(why.size()) + " reasons");
+                 const MissedVoxels& missed, std::span<const PlacedStation> stations, const std::string& title) {
+  if (missed.ranks.empty()) throw Error(Errc::invalid_argument, "draw_missed: no voxel was judged");
   std::vector<ColouredVoxel> voxels;
-  std::array<std::size_t, why_missed_count> count{};
-  for (const MissedStyle& style : kMissedStyles) {
-    for (std::size_t i = 0; i < ranks.size(); ++i) {
-      if (why[i] != style.why) continue;
-      ++count[static_cast<std::size_t>(style.why)];
-      voxels.push_back({ranks[i], style.colour});
-    }
-  }
+  const auto add = [&](const MissedStyle& style) {
+    for (std::size_t i = 0; i < missed.ranks.size(); ++i)
+      if (missed.status[i].why == style.why) voxels.push_back({missed.ranks[i], style.colour});
+  };
+  // Most hidden voxels are undersides, of slabs whose upper sides are captured.
+  add(missed_style(WhyMissed::hidden));
+  for (const MissedStyle& style : kMissedStyles)
+    if (style.why != WhyMissed::hidden) add(style);
   const auto legend = [&](Canvas& canvas, Point at) {
     for (const MissedStyle& style : kMissedStyles) {
       canvas.fill({at.x, at.y - 7, 24, 14}, style.colour);
-      const double percent =
-          100 * static_cast<double>(count[static_cast<std::size_t>(style.why)]) / static_cast<double>(ranks.size());
+      const double percent = 100 * missed.shares.front().share(style.why);
       canvas.text({at.x + 34, at.y}, std::string(style.words) + ", " + fixed(percent, 1) + " %", {.size = 12.5});
       at.y += 24;
     }

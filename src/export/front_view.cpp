@@ -116,7 +116,7 @@ std::string problem_line(const SurveyProblem& problem) {
   if (high != low) line += " to " + std::to_string(high);
   line += high == 1 ? " station" : " stations";
   if (!problem.kept.empty()) line += " (" + std::to_string(problem.kept.size()) + " kept)";
-  for (const Requirement& requirement : problem.requirements) line += ", " + spoken(to_string(requirement));
+  for (const Requirement& requirement : problem.requirements) line += ", " + in_words(requirement);
   return line;
 }
 

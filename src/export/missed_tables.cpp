@@ -6,7 +6,6 @@
 #include "export/csv_cell.hpp"
 #include "export/missed_colours.hpp"
 #include "export/voxel_ply.hpp"
-#include "vantage/error.hpp"
 #include "vantage/export.hpp"
 
 namespace vantage {
@@ -22,18 +21,13 @@ void write_missed_csv(const std::filesystem::path& file, std::span<const MissedS
   write_atomically(file, text);
 }
 
-void write_missed_ply(const std::filesystem::path& file, const Simulator& simulator,
-                      std::span<const std::uint32_t> ranks, std::span<const WhyMissed> why,
-                      std::span<const std::uint32_t> points) {
-  if (ranks.size() != why.size() || ranks.size() != points.size())
-    throw Error(Errc::invalid_argument, "write_missed_ply: " + std::to_string(ranks.size()) + " voxels, " +
-                                            std::to_string(why.size()) + " reasons and " +
-                                            std::to_string(points.size()) + " counts");
-  write_voxel_ply(file, simulator, {{"uchar", "why"}, {"uint", "count"}}, ranks.size(),
+void write_missed_ply(const std::filesystem::path& file, const Simulator& simulator, const MissedVoxels& missed) {
+  write_voxel_ply(file, simulator, {{"uchar", "why"}, {"uint", "count"}}, missed.ranks.size(),
                   [&](std::uint64_t k, std::string& bytes) {
-                    append(bytes, static_cast<std::uint8_t>(why[k]));
-                    append(bytes, points[k]);
-                    return VoxelVertex{ranks[k], missed_style(why[k]).colour};
+                    const WhyMissed why = missed.status[k].why;
+                    append(bytes, static_cast<std::uint8_t>(why));
+                    append(bytes, missed.points[k]);
+                    return VoxelVertex{missed.ranks[k], missed_style(why).colour};
                   });
 }
 

@@ -71,16 +71,19 @@ std::vector<std::string> links_advice(const StationLinks& links, const std::vect
     const std::string &inside = names[gap.inside], &outside = names[gap.outside];
     advice.push_back(gap.value > 0
                          ? "link " + inside + " to " + outside + ", the nearest to it with " + fixed(gap.value, 3) +
-                               ": put a station between them, or move them closer"
-                         : inside + " shares nothing with any station of another part: put a station between it and " +
-                               outside + ", or tie it in with targets");
+                               ": put a station on the way between them, in a doorway if there is one, or move them "
+                               "closer"
+                         : inside + " shares nothing with any station of another part: put a station on the way to " +
+                               outside + ", in a doorway if there is one, or tie it in with targets");
   }
   return advice;
 }
 
 // "to about 28.5 mm, as predicted; at 95 % 56 mm, where LOA30 allows 15"
-std::string registered_text(const Evaluation& evaluation, double rms_mm) {
-  std::string text = "to about " + fixed(rms_mm, 2) + " mm, as predicted";
+std::string registered_text(const Evaluation& evaluation, const Estimate& registered) {
+  const double rms_mm = registered.value, sampling_mm = evaluation.exact ? 0 : registered.standard_error;
+  std::string text = "to about " + fixed(rms_mm, 2) + (sampling_mm > 0 ? " ± " + fixed(sampling_mm, 2) : "") +
+                     " mm, as predicted";
   const auto by = static_cast<std::size_t>(
       std::ranges::count_if(evaluation.targets, [](const Target& target) { return target.stations.size() > 1; }));
   if (!evaluation.targets.empty())
@@ -132,7 +135,7 @@ std::vector<SummaryLine> summary_lines(const Evaluation& evaluation, std::span<c
   if (links) lines.push_back({"linked", links_text(*links, names)});
   const auto registered = evaluation.values.find("registration");
   if (registered != evaluation.values.end() && std::isfinite(registered->second.value))
-    lines.push_back({"registered", registered_text(evaluation, registered->second.value)});
+    lines.push_back({"registered", registered_text(evaluation, registered->second)});
   if (evaluation.visit) lines.push_back({"on site", "about " + duration(60 * evaluation.visit->minutes)});
   const auto to_do = [&](const std::vector<std::string>& advice) {
     for (const std::string& text : advice) lines.push_back({"to do", text});
@@ -168,7 +171,8 @@ std::vector<SummaryLine> ground_lines(const SearchArea& area) {
 }
 
 std::vector<SummaryLine> summary_lines(const PlanResult& result) {
-  std::vector<SummaryLine> lines = summary_lines(result.front.at(answer(result)), result.problem.requirements);
+  std::vector<SummaryLine> lines = summary_lines(result.front.at(answer(result)));
+  for (std::string& help : what_would_help(result)) lines.push_back({"to do", std::move(help)});
   if (!result.area) return lines;
   for (SummaryLine& line : ground_lines(*result.area))
     lines.insert(line.heading == "ground" ? lines.begin() : lines.end(), std::move(line));
@@ -214,9 +218,7 @@ std::string trade_off_text(const PlanResult& result) {
       return std::string(width > value.size() ? width - value.size() : 0, ' ') + value;
     };
     const auto registered = point.values.find("registration");
-    // A single station has nothing to be registered to.
-    const bool known =
-        point.stations.size() > 1 && registered != point.values.end() && std::isfinite(registered->second.value);
+    const bool known = registered != point.values.end() && std::isfinite(registered->second.value);
     text += cell(std::to_string(point.stations.size()), 8) + cell(percent(point.values.at("capture").value), 11) +
             cell(known ? fixed(registered->second.value, 2) + " mm" : "–", known ? 12 : 14) + "  " +
             (point.minutes_on_site ? duration(60 * *point.minutes_on_site) : "–") +
@@ -236,8 +238,8 @@ std::string unmet_text(const PlanResult& result) {
       if (missed < least) least = missed, best = value;
     }
     if (result.front.empty() || !(least > 0)) continue;
-    text += "no network keeps " + to_string(requirement) +
-            (best == best ? ": the best has " + fixed(best, 3) : std::string()) + "\n";
+    text += "no network has its " + in_words(requirement) +
+            (std::isnan(best) ? "" : ": the best has " + value_text(requirement.objective, best)) + "\n";
   }
   return text;
 }

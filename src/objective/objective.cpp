@@ -82,12 +82,26 @@ std::string to_string(const Requirement& requirement) {
          number(requirement.limit);
 }
 
-std::string advice(const Requirement& requirement, double measured) {
-  const std::string what = "misses " + to_string(requirement) + ": it ";
-  if (std::isnan(measured)) return what + "was not measured before the search ended; search longer";
-  const std::string& unit = requirement.objective.unit;
-  return what + "has " + fixed(measured, 3) + (unit.empty() ? "" : " " + unit) + "; to keep it, " +
-         requirement.objective.advice + ", or ask for less";
+std::string value_text(const Objective& objective, double value) {
+  if (std::isnan(value)) return "not known";
+  if (objective.percent) return fixed(100 * value, 1) + " %";
+  return fixed(value, 3) + (objective.unit.empty() ? "" : " " + objective.unit);
+}
+
+std::string in_words(const Requirement& requirement) {
+  const Objective& objective = requirement.objective;
+  return (objective.noun.empty() ? objective.name : objective.noun) +
+         (requirement.bound == Requirement::Bound::at_least ? " at least " : " at most ") +
+         (objective.percent        ? number(100 * requirement.limit) + " %"
+          : objective.unit.empty() ? number(requirement.limit)
+                                   : number(requirement.limit) + " " + objective.unit);
+}
+
+std::string advice(const Requirement& requirement, double measured, bool ended_early) {
+  const std::string what = "not met: " + in_words(requirement) + ", ";
+  if (std::isnan(measured)) return what + "not measured before the time was over; allow more time";
+  return what + "it has " + value_text(requirement.objective, measured) + "; " +
+         (ended_early ? "the time was over first: allow more time" : requirement.objective.advice) + ", or ask for less";
 }
 
 std::span<const std::string> objective_names() {

@@ -176,7 +176,9 @@ Estimate estimate(const Objective& objective, const MeasuredNetwork& measured) {
       const Estimate own = objective.needs.pairs && !objective.needs.registration
                                ? of_pairs(estimate.value, counts, unsampled, scale, of)
                                : jackknifed(estimate.value, replicates<double>(counts, of), unsampled, scale);
-      estimate.value = own.value;
+      // As `registration_estimate`: no registration is without error.
+      estimate.value =
+          objective.needs.registration ? std::max(own.value, least_unbiased * estimate.value) : own.value;
       add(own.standard_error);
     }
   }

@@ -73,8 +73,9 @@ std::vector<std::string> what_would_help(const PlanResult& result) {
     const Objective& objective = requirement.objective;
     const double value = entry.value(objective.name);
     if (requirement.missed_by(value) == 0) continue;
-    help.push_back(advice(requirement, value));
-    if (objective.kind != Objective::Kind::coverage) continue;
+    const bool ended_early = result.stop_reason == StopReason::max_time || result.stop_reason == StopReason::cancelled;
+    help.push_back(advice(requirement, value, ended_early));
+    if (objective.kind != Objective::Kind::coverage || ended_early) continue;
     if (all_placed)
       help.back() += "; it takes more stations than " + std::to_string(problem.stations_max);
     else if (minutes)

@@ -47,7 +47,8 @@ class Judge {
         per_steradian_(
             1 / (simulator.scanner().azimuth_step.in_radians() * simulator.scanner().zenith_step.in_radians())) {}
 
-  WhyMissed why(std::uint32_t rank, const VoxelPatch& patch) const {
+  // `captured` is the share of the goal that the network has.
+  VoxelStatus status(std::uint32_t rank, const VoxelPatch& patch, double captured) const {
     const Scanner& scanner = simulator_.scanner();
     const Vec3 centre = simulator_.voxel_centre(rank);
     const double half = simulator_.voxel_size_m() / 2;
@@ -56,7 +57,8 @@ class Judge {
     for (std::size_t k = 0; k < order.size(); ++k) order[k] = {length(patch.point - candidates_[k].position), k};
     std::sort(order.begin(), order.end());
     bool free_line = false, in_range = false, steep = false;
-    double expected = 0;
+    const double goal = simulator_.goal_density(rank);
+    double best = 0;
     for (const auto& [range, k] : order) {
       const Vec3 head = candidates_[k].position, way = patch.point - head;
       const bool reached = range >= scanner.min_range_m && range <= scanner.max_range_m;
@@ -71,10 +73,16 @@ class Judge {
       steep = true;
       if (!in_field_of_view(scanner, way, range)) continue;
       const double across = std::sqrt(std::max(way.x * way.x + way.y * way.y, 1e-12)) / range;  // sin zenith
-      expected += patch.area_m2 * incidence / (range * range) * per_steradian_ / across;
-      if (expected >= simulator_.goal_density(rank)) return WhyMissed::not_chosen;
+      best = std::max(best, patch.area_m2 * incidence / (range * range) * per_steradian_ / across);
+      if (best >= goal) break;
     }
-    return !free_line ? WhyMissed::hidden : !in_range ? WhyMissed::far : !steep ? WhyMissed::flat : WhyMissed::sparse;
+    const WhyMissed why = best >= goal ? WhyMissed::not_chosen
+                          : !free_line ? WhyMissed::hidden
+                          : !in_range  ? WhyMissed::far
+                          : !steep     ? WhyMissed::flat
+                                       : WhyMissed::sparse;
+    return {why, static_cast<float>(captured),
+            static_cast<float>(std::max(captured, std::min(best / goal, 1.0)))};
   }
 
  private:
@@ -105,7 +113,7 @@ Settings settings(const MissedOptions& options) {
       .take();
 }
 
-std::vector<WhyMissed> why_missed(const Simulator& simulator, const ClashChecker& clash,
+std::vector<VoxelStatus> why_missed(const Simulator& simulator, const ClashChecker& clash,
                                   std::span<const PlacedStation> candidates, std::span<const std::uint32_t> ranks,
                                   std::span<const std::uint32_t> points, const MissedOptions& options,
                                   const Progress& progress) {
@@ -119,7 +127,7 @@ std::vector<WhyMissed> why_missed(const Simulator& simulator, const ClashChecker
       throw Error(Errc::invalid_argument, "why_missed: there is no voxel " + std::to_string(rank) + " of " +
                                               std::to_string(simulator.voxel_count()));
   const Judge judge(simulator, clash, candidates.first(std::min(candidates.size(), options.candidates)), options);
-  std::vector<WhyMissed> why(ranks.size(), WhyMissed::captured);
+  std::vector<VoxelStatus> status(ranks.size(), {WhyMissed::captured, 1, 1});
   std::vector<std::size_t> missed;
   for (std::size_t i = 0; i < ranks.size(); ++i)
     if (points[i] < simulator.goal_density(ranks[i])) missed.push_back(i);
@@ -130,17 +138,19 @@ std::vector<WhyMissed> why_missed(const Simulator& simulator, const ClashChecker
     std::vector<std::uint32_t> of;
     for (const std::size_t i : here) of.push_back(ranks[i]);
     const std::vector<VoxelPatch> patches = simulator.voxel_patches(of);
-    tbb::parallel_for(std::size_t{0}, here.size(), [&](std::size_t k) { why[here[k]] = judge.why(of[k], patches[k]); });
+    tbb::parallel_for(std::size_t{0}, here.size(), [&](std::size_t k) {
+      status[here[k]] = judge.status(of[k], patches[k], points[here[k]] / simulator.goal_density(of[k]));
+    });
     progress(static_cast<double>(first + here.size()) / static_cast<double>(missed.size()));
   }
-  return why;
+  return status;
 }
 
 std::vector<MissedShare> missed_by_node(const Simulator& simulator, std::span<const std::uint32_t> ranks,
-                                        std::span<const WhyMissed> why) {
-  if (ranks.size() != why.size())
+                                        std::span<const VoxelStatus> status) {
+  if (ranks.size() != status.size())
     throw Error(Errc::invalid_argument, "missed_by_node: " + std::to_string(ranks.size()) + " voxels, but reasons of " +
-                                            std::to_string(why.size()));
+                                            std::to_string(status.size()));
   const auto meshes = simulator.scene().meshes();
   std::vector<MissedShare> shares(1);
   std::map<std::string, std::size_t> place;
@@ -150,16 +160,45 @@ std::vector<MissedShare> missed_by_node(const Simulator& simulator, std::span<co
     if (added) shares.push_back({.node = meshes[m].name});
     of_mesh[m] = at->second;
   }
+  std::vector<double> weights(shares.size());
   const std::vector<VoxelPatch> patches = simulator.voxel_patches(ranks);
   for (std::size_t i = 0; i < ranks.size(); ++i) {
-    for (MissedShare* share : {&shares.front(), &shares[of_mesh[patches[i].mesh]]}) {
-      ++share->voxels;
-      ++share->count[static_cast<std::size_t>(why[i])];
+    const double weight = simulator.voxel_weight(ranks[i]);
+    const auto& [why, captured, attainable] = status[i];
+    for (const std::size_t k : {std::size_t{0}, of_mesh[patches[i].mesh]}) {
+      const auto add = [&](WhyMissed reason, double part) {
+        shares[k].shares[static_cast<std::size_t>(reason)] += weight * part;
+      };
+      ++shares[k].voxels;
+      weights[k] += weight;
+      add(WhyMissed::captured, captured);
+      add(WhyMissed::not_chosen, attainable - captured);
+      add(why, 1 - attainable);
     }
   }
+  for (std::size_t k = 0; k < shares.size(); ++k)
+    for (double& share : shares[k].shares) share /= std::max(weights[k], 1.0);
   std::erase_if(shares, [&](const MissedShare& share) { return share.voxels == 0 && &share != &shares.front(); });
   return shares;
 }
+
+namespace {
+// Coverage of all voxels in place of the sample's; the sample splits the rest.
+void take_whole_coverage(MissedShare& all, const Simulator& simulator, const VoxelField& field) {
+  double captured = 0, weights = 0;
+  for (std::uint32_t voxel = 0; voxel < field.count.size(); ++voxel) {
+    const double weight = simulator.voxel_weight(voxel);
+    captured += weight * std::min(field.count[voxel] / simulator.goal_density(voxel), 1.0);
+    weights += weight;
+  }
+  captured /= weights;
+  double& sampled = all.shares[static_cast<std::size_t>(WhyMissed::captured)];
+  const double rest = 1 - sampled;
+  sampled = captured;
+  for (std::size_t k = 0; k < why_missed_count; ++k)
+    if (k != static_cast<std::size_t>(WhyMissed::captured) && rest > 0) all.shares[k] *= (1 - captured) / rest;
+}
+}  // namespace
 
 MissedVoxels missed_voxels(const Simulator& simulator, const SearchArea& area, const ClashChecker& clash,
                            const VoxelField& field, const MissedOptions& options, const Progress& progress) {
@@ -168,9 +207,10 @@ MissedVoxels missed_voxels(const Simulator& simulator, const SearchArea& area, c
       candidate_positions(area, clash, simulator.scanner(), options.candidates);
   MissedVoxels judged{.ranks = simulator.sampled_voxels(std::min(kJudgedVoxels, simulator.voxel_count()))};
   for (const std::uint32_t rank : judged.ranks) judged.points.push_back(field.count[rank]);
-  judged.why = why_missed(simulator, clash, candidates, judged.ranks, judged.points, options, progress);
-  if (judged.why.empty()) return {};
-  judged.shares = missed_by_node(simulator, judged.ranks, judged.why);
+  judged.status = why_missed(simulator, clash, candidates, judged.ranks, judged.points, options, progress);
+  if (judged.status.empty()) return {};
+  judged.shares = missed_by_node(simulator, judged.ranks, judged.status);
+  take_whole_coverage(judged.shares.front(), simulator, field);
   judged.candidates = candidates.size();
   return judged;
 }

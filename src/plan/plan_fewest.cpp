@@ -192,8 +192,12 @@ std::vector<TradeOffPoint> trade_off(const FewestChoice& choice, PlanContext& co
   std::vector<TradeOffPoint> points;
   for (std::size_t k = 0; k < networks.size(); ++k) {
     TradeOffPoint& point = points.emplace_back(TradeOffPoint{.stations = networks[k]});
-    for (std::size_t m = 0; m < context.measures().all.size(); ++m)
-      point.values[context.measures().all[m].name] = (*estimates)[k][m];
+    for (std::size_t m = 0; m < context.measures().all.size(); ++m) {
+      const Objective& measure = context.measures().all[m];
+      // A single scan has nothing to be registered to.
+      if (measure.needs.registration && networks[k].size() < 2) continue;
+      point.values[measure.name] = (*estimates)[k][m];
+    }
     point.minutes_on_site = context.on_site().visit(std::span(networks[k]).subspan(choice.asked.existing)).minutes;
   }
   return points;

@@ -135,10 +135,10 @@ CellColours cell_colours(const CoverageCells& cells, std::span<const std::uint32
 }
 
 std::vector<std::uint8_t> cell_reasons(const CoverageCells& cells, std::span<const std::uint32_t> ranks,
-                                       std::span<const WhyMissed> why) {
+                                       std::span<const VoxelStatus> status) {
   std::vector<std::array<std::uint32_t, why_missed_count>> count(cells.keys.size());
   for (std::size_t i = 0; i < ranks.size(); ++i)
-    ++count[cells.cell_of[cells.place_of(ranks[i])]][static_cast<std::size_t>(why[i])];
+    ++count[cells.cell_of[cells.place_of(ranks[i])]][static_cast<std::size_t>(status[i].why)];
   std::vector<std::uint8_t> reasons;
   std::vector<bool> known;
   for (std::uint32_t cell = 0; cell < count.size(); ++cell) {

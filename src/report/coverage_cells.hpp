@@ -51,6 +51,6 @@ CellColours cell_colours(const CoverageCells& cells, std::span<const std::uint32
 
 // The most common reason around each cell, by `WhyMissed`, in the same way. REQUIRES: ranks is not empty.
 std::vector<std::uint8_t> cell_reasons(const CoverageCells& cells, std::span<const std::uint32_t> ranks,
-                                       std::span<const WhyMissed> why);
+                                       std::span<const VoxelStatus> status);
 
 }  // namespace vantage

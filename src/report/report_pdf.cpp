@@ -230,8 +230,8 @@ void missed_table(std::vector<Sheet>& sheets, const std::vector<MissedShare>& sh
   const auto rows = static_cast<std::size_t>(std::max(0.0, sheet.left() / Sheet::kLine - 3));
   write_table(sheets, a4(),
               {{"Mesh, shares in %", 125, Align::start},
-               {"dense enough", 76},
-               {"not chosen", 72},
+               {"captured", 76},
+               {"others would", 76},
                {"hidden", 50},
                {"too far", 50},
                {"too flat", 50},

@@ -163,9 +163,9 @@ function missedTable(holder, wordsHolder, missed) {
   const [all, ...nodes] = missed.nodes;
   const share = (node, name) => node.shares[missed.reasons.findIndex((r) => r.name === name)];
   const told = missedWords(missed);
-  wordsHolder.textContent = `Of the proposed network: ${percent(share(all, 'captured'))} of the surfaces have the wanted density of points; `
+  wordsHolder.textContent = `Of the proposed network: ${percent(share(all, 'captured'))} of the surfaces are captured; `
     + (told ? told + '. ' : '')
-    + 'What is hidden, out of range or too flat from everywhere no choice of stations can help; what is “not with these stations”, more of them would.';
+    + 'Only what other stations would capture can be helped by more of them.';
   nodes.sort((a, b) => b.voxels * (1 - share(b, 'captured')) - a.voxels * (1 - share(a, 'captured')));
   const row = (node, name) => {
     const bar = element('span', { class: 'bar', 'aria-hidden': 'true' });

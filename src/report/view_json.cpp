@@ -164,7 +164,7 @@ ordered_json view_json(const Report& report, Simulator& simulator, const SearchA
   if (cells.keys.empty()) return json;
   json["cells"]["networks"] = colours_json(report, simulator, cells, progress);
   if (const MissedVoxels* const missed = report.options.missed; missed && !missed->ranks.empty())
-    json["cells"]["reasons"] = packed(cell_reasons(cells, missed->ranks, missed->why));
+    json["cells"]["reasons"] = packed(cell_reasons(cells, missed->ranks, missed->status));
   return json;
 }
 

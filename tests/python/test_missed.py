@@ -22,8 +22,9 @@ class AfterASearch(unittest.TestCase):
         self.assertEqual(missed.reasons, ["captured", "hidden", "out_of_range", "too_flat", "too_sparse", "not_chosen"])
         np.testing.assert_array_equal(missed.points, seen.voxel_points[missed.voxels])
         np.testing.assert_array_equal(missed.why == 0, missed.points >= seen.goal_density)
-        counts = np.bincount(missed.why, minlength=6) / len(missed.why)
-        np.testing.assert_allclose([missed.shares[""][reason] for reason in missed.reasons], counts, atol=1e-12)
+        self.assertAlmostEqual(missed.shares[""]["captured"], seen.coverage, delta=1e-9)
+        for name, shares in missed.shares.items():
+            self.assertAlmostEqual(sum(shares.values()), 1, delta=1e-6, msg=name)
         self.assertEqual(set(missed.shares), {""} | {mesh.name for mesh in self.simulator.scene.meshes})
         self.assertGreater(missed.shares[""]["not_chosen"], 0.3)
         self.assertEqual(missed.candidates, 256)

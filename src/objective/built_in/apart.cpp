@@ -12,6 +12,7 @@ Objective apart(const ObjectiveSettings&) {
   return {.name = "apart",
           .label = "Distance of the nearest two stations",
           .unit = "m",
+          .noun = "distance between the nearest stations",
           .scale = maximise(1, 0),
           .needs = {.counts = false},
           .value =

@@ -14,6 +14,8 @@ Objective capture(const ObjectiveSettings& settings) {
                     number(settings.attainable));
   return {.name = "capture",
           .label = "Captured (share of what is attainable)",
+          .noun = "share captured of what is attainable",
+          .percent = true,
           .scale = maximise(1, 0),
           .needs = {.counts = false, .attainable = true},
           .value = [](const MeasuredNetwork& m) { return m.captured.value; },

@@ -8,6 +8,8 @@ Objective coverage(const ObjectiveSettings&) {
   return {
       .name = "coverage",
       .label = "Coverage (1: every surveyed voxel at its goal density)",
+      .noun = "share captured of the site",
+      .percent = true,
       .scale = maximise(1, 0),
       .value = [](const MeasuredNetwork& m) { return vantage::coverage(m.counts, m.goal_density); },
       .standard_error =

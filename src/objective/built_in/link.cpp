@@ -8,6 +8,7 @@ namespace vantage::built_in {
 Objective link(const ObjectiveSettings&) {
   return {.name = "link",
           .label = "Weakest link (share of the smaller scan, over all surfaces)",
+          .noun = "scan overlap at the weakest link",
           .scale = maximise(1, 0),
           .needs = {.counts = false, .surroundings = true},
           .value =

@@ -7,6 +7,7 @@ namespace vantage::built_in {
 Objective overlap(const ObjectiveSettings&) {
   return {.name = "overlap",
           .label = "Overlap (average clustering coefficient)",
+          .noun = "overlap",
           .scale = maximise(1, 0),
           .needs = {.pairs = true},
           .value = [](const MeasuredNetwork& m) { return clustering_coefficient(m.overlap); },

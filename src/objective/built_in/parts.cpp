@@ -8,6 +8,7 @@ namespace vantage::built_in {
 Objective parts(const ObjectiveSettings& settings) {
   return {.name = "parts",
           .label = "Parts that no link connects",
+          .noun = "number of parts",
           .scale = minimise(1, 2),
           .needs = {.pairs = true},
           .value = [least = settings.link_overlap](

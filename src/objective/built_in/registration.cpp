@@ -22,7 +22,7 @@ std::string parameters_of(const RegistrationOptions& options) {
 
 }  // namespace
 
-Objective registration_figure(const ObjectiveSettings& settings, std::string name, std::string label,
+Objective registration_figure(const ObjectiveSettings& settings, std::string name, std::string noun, std::string label,
                               double RegistrationError::*figure) {
   const RegistrationOptions options = settings.registration;
   check(options);
@@ -31,6 +31,7 @@ Objective registration_figure(const ObjectiveSettings& settings, std::string nam
       .name = std::move(name),
       .label = std::move(label),
       .unit = "mm",
+      .noun = std::move(noun),
       .scale = minimise(0, worst_mm),
       .needs = {.pairs = true, .surroundings = all, .registration = options.model, .surroundings_registration = all},
       .value =
@@ -42,7 +43,7 @@ Objective registration_figure(const ObjectiveSettings& settings, std::string nam
 }
 
 Objective registration(const ObjectiveSettings& settings) {
-  return registration_figure(settings, "registration", "Registration error over the covered surface (predicted)",
+  return registration_figure(settings, "registration", "registration error", "Registration error over the covered surface (predicted)",
                              &RegistrationError::rms_m);
 }
 

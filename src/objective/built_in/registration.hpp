@@ -9,7 +9,7 @@
 namespace vantage::built_in {
 
 // In millimetres.
-Objective registration_figure(const ObjectiveSettings& settings, std::string name, std::string label,
+Objective registration_figure(const ObjectiveSettings& settings, std::string name, std::string noun, std::string label,
                               double RegistrationError::*figure);
 
 }  // namespace vantage::built_in

@@ -5,7 +5,7 @@
 namespace vantage::built_in {
 
 Objective registration_worst(const ObjectiveSettings& settings) {
-  return registration_figure(settings, "registration_worst", "Registration error of the worst station (predicted)",
+  return registration_figure(settings, "registration_worst", "registration error of the worst station", "Registration error of the worst station (predicted)",
                              &RegistrationError::worst_m);
 }
 

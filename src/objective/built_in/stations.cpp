@@ -6,6 +6,7 @@ namespace vantage::built_in {
 Objective stations(const ObjectiveSettings& settings) {
   return {.name = "stations",
           .label = "Number of stations",
+          .noun = "number of stations",
           .scale = {static_cast<double>(settings.stations_min), static_cast<double>(settings.stations_max)},
           .needs = {.counts = false},
           .value = [](const MeasuredNetwork& m) { return static_cast<double>(m.stations.size()); },

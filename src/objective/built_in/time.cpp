@@ -8,6 +8,7 @@ Objective time(const ObjectiveSettings& settings) {
   return {.name = "time",
           .label = "Time on site",
           .unit = "min",
+          .noun = "time on site",
           // An hour per station, if the number is known: no survey exceeds this scale.
           .scale = minimise(0, 60 * static_cast<double>(settings.stations_max)),
           .needs = {.counts = false, .time = true},

@@ -8,6 +8,7 @@ namespace vantage::built_in {
 Objective weakest_link(const ObjectiveSettings&) {
   return {.name = "weakest_link",
           .label = "Weakest link (share of the smaller scan)",
+          .noun = "overlap at the weakest link",
           .scale = maximise(1, 0),
           .needs = {.pairs = true},
           .value =

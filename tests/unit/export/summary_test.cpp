@@ -36,8 +36,10 @@ TEST(Summary, SaysInWordsWhatItKnowsAndNothingElse) {
       "linked     no: in 3 parts, by overlap of at least 0.01: S1, S2 and S3; S4 and S5; S6 stands alone\n"
       "registered to about 1.23 mm, as predicted; LOA30 (15 mm at 95 %) is met\n"
       "on site    about 3 h 25 min\n"
-      "to do      link S4 to S3, the nearest to it with 0.004: put a station between them, or move them closer\n"
-      "           S6 shares nothing with any station of another part: put a station between it and S1, or tie it in "
+      "to do      link S4 to S3, the nearest to it with 0.004: put a station on the way between "
+      "them, in a doorway if there is one, or move them closer\n"
+      "           S6 shares nothing with any station of another part: put a station on the way to S1, in a doorway "
+      "if there is one, or tie it in "
       "with targets\n"
       "           S7 " +
           explain(StationStatus::hole) + ", and is left out: move it\n");
@@ -94,7 +96,7 @@ TEST(Summary, OfAPlanTellsWhatItMisses) {
   ASSERT_EQ(lines.size(), 4u);
   EXPECT_EQ(lines[0].text, "94.8 % of the site");
   EXPECT_TRUE(lines[2].text.starts_with("S2 clashes")) << lines[2].text;
-  EXPECT_TRUE(lines[3].text.starts_with("misses coverage >= 0.99: it has 0.948")) << lines[3].text;
+  EXPECT_TRUE(lines[3].text.starts_with("not met: share captured of the site at least 99 %, it has 94.8 %; allow")) << lines[3].text;
   EXPECT_EQ(summary_lines(entry).size(), 3u) << "nothing is required";
 }
 

@@ -71,33 +71,42 @@ TEST(VoxelPatches, LieOnTheirSurfaces) {
 TEST(WhyMissed, TellsEachReason) {
   const Walls site;
   const std::vector<std::uint32_t> none(site.ranks.size());
-  const std::vector<WhyMissed> why = why_missed(*site.simulator, *site.clash, site.candidates, site.ranks, none);
+  const std::vector<VoxelStatus> status =
+      why_missed(*site.simulator, *site.clash, site.candidates, site.ranks, none);
   const std::array<WhyMissed, 5> expected{WhyMissed::not_chosen, WhyMissed::hidden, WhyMissed::far, WhyMissed::flat,
                                           WhyMissed::sparse};
   const double face = site.simulator->voxel_size_m() * site.simulator->voxel_size_m();
   std::array<std::size_t, 5> whole{};
-  double points = 0, sparse = 0;
-  VoxelField field;
-  site.simulator->evaluate(to_network(site.candidates), {.field = &field});
-  for (std::size_t i = 0; i < why.size(); ++i) {
+  double points = 0, attainable = 0, sparse = 0;
+  VoxelField field, other;
+  site.simulator->evaluate(to_network(std::span(site.candidates).first(1)), {.field = &field});
+  site.simulator->evaluate(to_network(std::span(site.candidates).last(1)), {.field = &other});
+  for (std::size_t i = 0; i < status.size(); ++i) {
     const VoxelPatch& patch = site.patches[i];
     if (patch.area_m2 < 0.95 * face) continue;  // a wall's rim
     ++whole[patch.mesh];
-    EXPECT_EQ(why[i], expected[patch.mesh]) << i << " of wall " << patch.mesh;
+    const WhyMissed why = status[i].why;
+    const std::uint32_t most = std::max(field.count[i], other.count[i]);
+    EXPECT_EQ(why, expected[patch.mesh]) << i << " of wall " << patch.mesh;
+    EXPECT_EQ(status[i].captured, 0);
     // And rays agree: these are all the stations there are.
-    if (why[i] == WhyMissed::hidden || why[i] == WhyMissed::far) {
-      EXPECT_EQ(field.count[i], 0u);
+    if (why == WhyMissed::hidden || why == WhyMissed::far) {
+      EXPECT_EQ(most, 0u);
+      EXPECT_EQ(status[i].attainable, 0);
     }
-    if (why[i] == WhyMissed::sparse) {
-      points += field.count[i];
+    if (why == WhyMissed::sparse) {
+      points += (field.count[i] + other.count[i]) / 2.0;
+      attainable += status[i].attainable * site.simulator->goal_density();
       ++sparse;
     }
-    if (why[i] == WhyMissed::not_chosen) {
-      EXPECT_GE(field.count[i], site.simulator->goal_density());
+    if (why == WhyMissed::not_chosen) {
+      EXPECT_GE(most, site.simulator->goal_density());
+      EXPECT_EQ(status[i].attainable, 1);
     }
   }
-  // A ray more or less falls into a voxel; in the mean they are as many as expected, 10.7 where 14.7 are wanted.
-  EXPECT_NEAR(points / sparse, 10.7, 1.5);
+  // A ray more or less falls into a voxel; in the mean they are as many as expected, 5.4 where 14.7 are wanted.
+  EXPECT_NEAR(attainable / sparse, 5.4, 0.3);
+  EXPECT_NEAR(points / sparse, attainable / sparse, 0.8);
   for (const std::size_t n : whole) EXPECT_GT(n, 5u);
 }
 
@@ -106,13 +115,17 @@ TEST(WhyMissed, KnowsWhatIsCaptured) {
   const auto enough = static_cast<std::uint32_t>(std::ceil(site.simulator->goal_density()));
   std::vector<std::uint32_t> points(site.ranks.size(), enough);
   points[0] = enough - 1;
-  const std::vector<WhyMissed> why = why_missed(*site.simulator, *site.clash, site.candidates, site.ranks, points);
-  EXPECT_NE(why[0], WhyMissed::captured);
-  EXPECT_TRUE(std::all_of(why.begin() + 1, why.end(), [](WhyMissed w) { return w == WhyMissed::captured; }));
-  const std::vector<MissedShare> shares = missed_by_node(*site.simulator, site.ranks, why);
+  const std::vector<VoxelStatus> status =
+      why_missed(*site.simulator, *site.clash, site.candidates, site.ranks, points);
+  EXPECT_NE(status[0].why, WhyMissed::captured);
+  EXPECT_TRUE(std::all_of(status.begin() + 1, status.end(), [](const VoxelStatus& s) { return s.why == WhyMissed::captured; }));
+  const std::vector<MissedShare> shares = missed_by_node(*site.simulator, site.ranks, status);
   ASSERT_EQ(shares.size(), 6u);
   EXPECT_EQ(shares[0].voxels, site.ranks.size());
-  EXPECT_NEAR(shares[0].share(WhyMissed::captured), 1 - 1.0 / static_cast<double>(site.ranks.size()), 1e-12);
+  const double part = points[0] / site.simulator->goal_density(), voxels = static_cast<double>(site.ranks.size());
+  EXPECT_NEAR(shares[0].share(WhyMissed::captured), 1 - (1 - part) / voxels, 1e-6);
+  for (const MissedShare& share : shares)
+    EXPECT_NEAR(std::accumulate(share.shares.begin(), share.shares.end(), 0.0), 1, 1e-6) << share.node;
   std::uint64_t sum = 0;
   for (std::size_t k = 1; k < 6; ++k) {
     EXPECT_EQ(shares[k].node, "quad " + std::to_string(k - 1));

@@ -90,9 +90,9 @@ TEST(CoverageCells, AreAsTheNearestWhereNothingWasCounted) {
 TEST(CoverageCells, ReasonsAreTheCommonestAround) {
   Site site;
   const CoverageCells cells = coverage_cells(site.simulator, 100'000, 60);
-  std::vector<WhyMissed> why;
+  std::vector<VoxelStatus> why;
   for (const std::uint32_t rank : cells.ranks)
-    why.push_back(site.simulator.voxel_centre(rank).y < 2000 ? WhyMissed::hidden : WhyMissed::captured);
+    why.push_back({site.simulator.voxel_centre(rank).y < 2000 ? WhyMissed::hidden : WhyMissed::captured});
   const auto reasons = cell_reasons(cells, cells.ranks, why);
   for (std::uint32_t c = 0; c < cells.keys.size(); ++c) {
     const double y = cells.corner.y + (cells.keys[c] >> 11 & 2047) * cells.size_m;  // local: 0 is the border

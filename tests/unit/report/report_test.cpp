@@ -185,7 +185,7 @@ TEST(Report, SheetsHoldAsManyStationsAsThereMayBe) {
     for (std::size_t j = i + 1; j < max_stations; ++j) entry.overlap_matrix.set(i, j, 0.5);
   MissedVoxels missed;
   missed.shares.assign(200,
-                       {.node = "a mesh with a name that is far too long for its column", .voxels = 10, .count = {10}});
+                       {.node = "a mesh with a name that is far too long for its column", .voxels = 10, .shares = {1}});
   write_report(folder / "report.pdf", survey.result, survey.simulator, survey.area, {.missed = &missed});
   const auto sheets = words_of(folder / "report.pdf", folder / "words.html");
   std::set<std::string> names;
