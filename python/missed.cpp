@@ -60,8 +60,9 @@ void add_missed(py::module_& m) {
       .def_property_readonly(
           "reasons", [](const MissedVoxels&) { return reasons(); },
           "'captured', 'hidden', 'far', 'flat', 'sparse' and 'not_chosen', in the order of the numbers of `why`.")
-      .def_property_readonly("shares", &shares_of,
-                             "Shares of the goal points by reason, which add up to 1, for each node by its name; '': the whole site.")
+      .def_property_readonly(
+          "shares", &shares_of,
+          "Shares of the goal points by reason, which add up to 1, for each node by its name; '': the whole site.")
       .def_readonly("candidates", &MissedVoxels::candidates, "Number of positions from which lines were drawn.");
   add_pickle(type);
   const auto options = missed_options();

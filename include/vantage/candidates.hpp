@@ -49,7 +49,8 @@ class SampledCoverage {
   Estimate coverage() const;
 
  private:
-  friend SampledCoverage sample_coverage(Simulator&, std::span<const PlacedStation>, std::uint64_t, const Progress&);
+  friend SampledCoverage sample_coverage(Simulator&, std::span<const PlacedStation>, std::uint64_t, const Progress&,
+                                         CountTo);
   Estimate coverage_of(std::span<const std::uint32_t> amounts) const;
   std::uint32_t amount(std::uint32_t element, std::uint32_t points) const;
 
@@ -61,9 +62,11 @@ class SampledCoverage {
 };
 
 /// Traces stations one by one on a sample of `sample_voxels`. A station that is not `StationStatus::ok` covers nothing.
-/// A cancelled call holds the first stations and has `cancelled()` set.
+/// A cancelled call holds the first stations and has `cancelled()` set. With `CountTo::one` amounts only tell which
+/// voxels each station sees.
 SampledCoverage sample_coverage(Simulator& simulator, std::span<const PlacedStation> stations,
-                                std::uint64_t sample_voxels, const Progress& progress = {});
+                                std::uint64_t sample_voxels, const Progress& progress = {},
+                                CountTo count_to = CountTo::goal);
 
 /// Scan overlap of each pair (the shared surface as a share of the smaller scan), on a sample of `sample_voxels` of
 /// `surroundings`, the simulator of all surfaces (`surroundings_of()`). A stopped call has overlaps of the first

@@ -88,6 +88,9 @@ class StationGraph {
   /// Overlap of two candidates: the elements that both cover in part, as a share of those of the candidate with fewer.
   /// Candidates from `seen.candidates()` to `size` overlap with none.
   StationGraph(const CoverageMatrix& seen, std::size_t size);
+  /// Adds candidates up to `size`, with their overlaps among each other and with those before. REQUIRES: `seen` begins
+  /// with the candidates before; size >= size().
+  void extend(const CoverageMatrix& seen, std::size_t size);
 
   std::size_t size() const noexcept { return size_; }
   float overlap(std::size_t i, std::size_t j) const { return overlaps_[i * size_ + j]; }
@@ -102,12 +105,13 @@ class StationGraph {
   /// Both set i, j and j, i. REQUIRES: i, j < size().
   void set_overlap(std::size_t i, std::size_t j, float overlap);
   void exclude(std::size_t i, std::size_t j);
-  /// Excludes all pairs whose positions are less than `least_m` apart. REQUIRES: a position for each candidate.
-  void exclude_nearer(std::span<const Vec3> positions, double least_m);
+  /// Excludes all pairs whose positions are less than `least_m` apart, of which one is candidate `first` or a later
+  /// one. REQUIRES: a position for each candidate.
+  void exclude_nearer(std::span<const Vec3> positions, double least_m, std::size_t first = 0);
   /// Excludes the pairs that are nearer than the smaller of their two distances, and between which nothing stands.
   /// `parted`: whether something stands between two candidates. REQUIRES: a position and a distance for each candidate.
   void exclude_nearer(std::span<const Vec3> positions, std::span<const double> least_m,
-                      const std::function<bool(std::size_t, std::size_t)>& parted);
+                      const std::function<bool(std::size_t, std::size_t)>& parted, std::size_t first = 0);
 
  private:
   std::size_t size_ = 0;

@@ -152,8 +152,8 @@ std::size_t write_plan(const std::filesystem::path& folder, const PlanResult& re
 
 /// CSV: `node,voxels,captured,hidden,out_of_range,too_flat,too_sparse,not_chosen`, the node's `MissedShare`.
 void write_missed_csv(const std::filesystem::path& file, std::span<const MissedShare> shares);
-/// Every judged voxel as a point in the colour of its reason, with the number of the reason (`WhyMissed`) and its count.
-/// Binary PLY, survey frame.
+/// Every judged voxel as a point in the colour of its reason, with the number of the reason (`WhyMissed`) and its
+/// count. Binary PLY, survey frame.
 void write_missed_ply(const std::filesystem::path& file, const Simulator& simulator, const MissedVoxels& missed);
 /// The same in plan view, .png or .svg, a map for each floor, cut as by `draw_plan_view`. Of voxels above each other,
 /// one missed for want of a station shows first, then one seen badly, then a captured one, then a hidden one: most of

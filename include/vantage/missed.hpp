@@ -46,18 +46,18 @@ struct VoxelStatus {
   float attainable = 0;  ///< What the best single candidate would leave, or `captured` if that is more.
 };
 
-/// Returns the status of each voxel of `ranks` under a network that left `points` in them. `attainable` and `sparse` use
-/// the points expected of the pattern: area · cos(incidence) / (range² · Δazimuth · Δzenith · sin zenith), the most over
-/// candidates with a free line in range. A cancelled call returns nothing. Throws Error invalid_argument if the spans
-/// differ in length, a voxel index is too large or there are no candidates.
+/// Returns the status of each voxel of `ranks` under a network that left `points` in them. `attainable` and `sparse`
+/// use the points expected of the pattern: area · cos(incidence) / (range² · Δazimuth · Δzenith · sin zenith), the most
+/// over candidates with a free line in range. A cancelled call returns nothing. Throws Error invalid_argument if the
+/// spans differ in length, a voxel index is too large or there are no candidates.
 std::vector<VoxelStatus> why_missed(const Simulator& simulator, const ClashChecker& clash,
-                                  std::span<const PlacedStation> candidates, std::span<const std::uint32_t> ranks,
-                                  std::span<const std::uint32_t> points, const MissedOptions& options = {},
-                                  const Progress& progress = {});
+                                    std::span<const PlacedStation> candidates, std::span<const std::uint32_t> ranks,
+                                    std::span<const std::uint32_t> points, const MissedOptions& options = {},
+                                    const Progress& progress = {});
 
-/// Shares of a node's goal points, which add up to 1: `captured` is the node's coverage, `not_chosen` what other stations
-/// would add to it, and the other reasons share what is beyond every station. A voxel belongs to the mesh with most
-/// surface in it, and counts by its weight, as in coverage.
+/// Shares of a node's goal points, which add up to 1: `captured` is the node's coverage, `not_chosen` what other
+/// stations would add to it, and the other reasons share what is beyond every station. A voxel belongs to the mesh with
+/// most surface in it, and counts by its weight, as in coverage.
 struct MissedShare {
   std::string node;  ///< `MeshInfo::name`; "" is the whole site.
   std::uint64_t voxels = 0;
@@ -77,7 +77,7 @@ struct MissedVoxels {
   /// Their `missed_by_node()`. The whole site's captured share is its coverage, from all voxels; the sample splits the
   /// rest.
   std::vector<MissedShare> shares = {};
-  std::size_t candidates = 0;            ///< Number of positions from which lines were drawn.
+  std::size_t candidates = 0;  ///< Number of positions from which lines were drawn.
 };
 /// Judges at most 50 000 voxels of the network with voxel field `field`, enough for shares to a tenth of a percent.
 /// Empty if it was stopped, or if nothing is surveyed. Throws as `why_missed`.

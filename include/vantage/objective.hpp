@@ -129,9 +129,9 @@ struct Requirement {
   /// Violation as a share of the objective's scale; 0 if the bound holds, infinity for NaN.
   double missed_by(double measured) const;
 };
-std::string to_string(const Requirement&);                   ///< "coverage >= 0.9"
-std::string value_text(const Objective&, double value);      ///< "85.3 %", "12.000 mm"; NaN: "not known".
-std::string in_words(const Requirement&);                    ///< "share of the site captured at least 90 %"
+std::string to_string(const Requirement&);               ///< "coverage >= 0.9"
+std::string value_text(const Objective&, double value);  ///< "85.3 %", "12.000 mm"; NaN: "not known".
+std::string in_words(const Requirement&);                ///< "share of the site captured at least 90 %"
 /// A sentence for a violated requirement: "not met: share of the site captured at least 90 %, it has 85.3 %; allow more
 /// stations, or ask for less". `measured`: the network's value; NaN: not known. `ended_early`: the time was over first.
 std::string advice(const Requirement& requirement, double measured, bool ended_early = false);

@@ -138,16 +138,22 @@ struct EvaluateOptions {
 };
 
 /// Sample and outputs of a sampled evaluation.
+/// Points of a voxel that are counted. Fewer rays do for fewer.
+enum class CountTo {
+  all,
+  goal,  ///< Up to the goal density: a voxel there may show fewer points than it got.
+  one,   ///< Whether there is any: pairs and registration are right, and no coverage.
+};
+
 struct SampleOptions {
   std::uint64_t voxels = 20'000;  ///< Number of surveyed voxels, capped at all of them.
   /// Number of voxels passed over first, in the order of the draw. Samples of n voxels from 0, n, 2n, … are disjoint
   /// until all voxels were drawn; a smaller sample from the same place is part of a larger one.
   std::uint64_t from = 0;
   bool overlap = true;
-  bool stop_at_goal = false;  ///< Stops counting a voxel's points at the goal density.
+  CountTo count_to = CountTo::all;
   /// Called with the points of a network in each voxel of the sample, in the order of `Simulator::sampled_voxels`.
-  /// Called once for each network that was counted to its end, in any order, on the calling thread. With
-  /// `stop_at_goal`, a voxel at the goal may show fewer points than it got.
+  /// Called once for each network that was counted to its end, in any order, on the calling thread.
   std::function<void(std::size_t network, std::span<const std::uint32_t> points)> points = {};
   /// Fills `NetworkCounts::registration`, if given. Needs `overlap`.
   std::optional<RegistrationModel> registration = std::nullopt;

@@ -122,8 +122,7 @@ void ProgressLine::update(std::optional<double> done, const std::string& note, d
     if (seconds_left < 0 && share > 0) seconds_left = elapsed * (1 - share) / share;
     constexpr std::size_t bar_width = 24;
     const auto filled = static_cast<std::size_t>(share * bar_width);
-    text += console_.interactive()
-                ? " [" + std::string(filled, '=') + std::string(bar_width - filled, ' ') + "]" : ":";
+    text += console_.interactive() ? " [" + std::string(filled, '=') + std::string(bar_width - filled, ' ') + "]" : ":";
     text += fmt::format(" {:.0f} % done", 100 * share);
   } else {
     text += ": " + duration_text(elapsed) + " so far";

@@ -20,7 +20,8 @@ std::string remarks(const PlanEntry& entry, const PlanResult& result) {
   }
   for (const Requirement& requirement : result.problem.requirements) {
     const double value = entry.value(requirement.objective.name);
-    if (requirement.missed_by(value) > 0) text += fmt::format("  not met: {} ({})", in_words(requirement), value_text(requirement.objective, value));
+    if (requirement.missed_by(value) > 0)
+      text += fmt::format("  not met: {} ({})", in_words(requirement), value_text(requirement.objective, value));
   }
   return text;
 }

@@ -15,8 +15,8 @@ struct MissedStyle {
   const char* words;
 };
 
-// In the order of legends and columns; reasons beyond help come first. Any two differ for people with any kind of colour
-// blindness.
+// In the order of legends and columns; reasons beyond help come first. Any two differ for people with any kind of
+// colour blindness.
 inline constexpr std::array<MissedStyle, why_missed_count> kMissedStyles{
     {{WhyMissed::captured, {0.56, 0.75, 0.87}, "captured"},
      {WhyMissed::hidden, {0.29, 0.27, 0.33}, "hidden from everywhere"},

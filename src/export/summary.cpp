@@ -82,8 +82,8 @@ std::vector<std::string> links_advice(const StationLinks& links, const std::vect
 // "to about 28.5 mm, as predicted; at 95 % 56 mm, where LOA30 allows 15"
 std::string registered_text(const Evaluation& evaluation, const Estimate& registered) {
   const double rms_mm = registered.value, sampling_mm = evaluation.exact ? 0 : registered.standard_error;
-  std::string text = "to about " + fixed(rms_mm, 2) + (sampling_mm > 0 ? " ± " + fixed(sampling_mm, 2) : "") +
-                     " mm, as predicted";
+  std::string text =
+      "to about " + fixed(rms_mm, 2) + (sampling_mm > 0 ? " ± " + fixed(sampling_mm, 2) : "") + " mm, as predicted";
   const auto by = static_cast<std::size_t>(
       std::ranges::count_if(evaluation.targets, [](const Target& target) { return target.stations.size() > 1; }));
   if (!evaluation.targets.empty())

@@ -113,7 +113,7 @@ bool raise_attainable(AttainableCounts& attainable, Simulator& simulator, std::s
                                  {.voxels = attainable.sample_voxels(),
                                   .from = attainable.from(),
                                   .overlap = false,
-                                  .stop_at_goal = true,
+                                  .count_to = CountTo::goal,
                                   .points =
                                       [&](std::size_t, std::span<const std::uint32_t> points) {
                                         attainable.raise(points);
@@ -134,7 +134,7 @@ std::vector<Estimate> captured_shares(Simulator& simulator, const AttainableCoun
                              {.voxels = attainable.sample_voxels(),
                               .from = attainable.from(),
                               .overlap = false,
-                              .stop_at_goal = true,
+                              .count_to = CountTo::goal,
                               .points =
                                   [&](std::size_t k, std::span<const std::uint32_t> points) {
                                     shares[k] = attainable.captured(points);

@@ -101,7 +101,8 @@ std::string advice(const Requirement& requirement, double measured, bool ended_e
   const std::string what = "not met: " + in_words(requirement) + ", ";
   if (std::isnan(measured)) return what + "not measured before the time was over; allow more time";
   return what + "it has " + value_text(requirement.objective, measured) + "; " +
-         (ended_early ? "the time was over first: allow more time" : requirement.objective.advice) + ", or ask for less";
+         (ended_early ? "the time was over first: allow more time" : requirement.objective.advice) +
+         ", or ask for less";
 }
 
 std::span<const std::string> objective_names() {

@@ -177,8 +177,7 @@ Estimate estimate(const Objective& objective, const MeasuredNetwork& measured) {
                                ? of_pairs(estimate.value, counts, unsampled, scale, of)
                                : jackknifed(estimate.value, replicates<double>(counts, of), unsampled, scale);
       // As `registration_estimate`: no registration is without error.
-      estimate.value =
-          objective.needs.registration ? std::max(own.value, least_unbiased * estimate.value) : own.value;
+      estimate.value = objective.needs.registration ? std::max(own.value, least_unbiased * estimate.value) : own.value;
       add(own.standard_error);
     }
   }

@@ -17,6 +17,12 @@ TraceColumns columns_of(Simulator& simulator, std::uint64_t sample_voxels, std::
   };
 }
 
+TraceColumns seen_columns_of(Simulator& surroundings, std::uint64_t sample_voxels) {
+  return [&surroundings, sample_voxels](std::span<const PlacedStation> stations, const Progress& progress) {
+    return sample_coverage(surroundings, stations, sample_voxels, progress, CountTo::one).matrix();
+  };
+}
+
 double spacing_by_view(const PlacedStation& station, std::span<const CoverageMatrix::Entry> column,
                        const CoverageMatrix& matrix, std::span<const Vec3> centres) {
   std::vector<double> ranges;
@@ -54,15 +60,17 @@ bool CandidateTable::add(std::span<const PlacedStation> stations, const Coverage
   }
   matrix_.append(known, count);
   stations_.insert(stations_.end(), stations.begin(), stations.begin() + static_cast<std::ptrdiff_t>(count));
-  graph_ = StationGraph(around_, stations_.size());
+  const std::size_t first = graph_.size();
+  graph_.extend(around_, stations_.size());
   std::vector<Vec3> positions;
   for (const PlacedStation& station : stations_) positions.push_back(station.position);
-  graph_.exclude_nearer(positions, spacing_.nearest_m);
+  graph_.exclude_nearer(positions, spacing_.nearest_m, first);
   if (spacing_.least_m) {
     for (std::size_t k = least_m_.size(); k < stations_.size(); ++k)
       least_m_.push_back(spacing_.least_m(stations_[k], matrix_.column(k)));
-    graph_.exclude_nearer(positions, least_m_,
-                          [&](std::size_t i, std::size_t j) { return !spacing_.sees(positions[i], positions[j]); });
+    graph_.exclude_nearer(
+        positions, least_m_, [&](std::size_t i, std::size_t j) { return !spacing_.sees(positions[i], positions[j]); },
+        first);
   }
   return count == stations.size();
 }

@@ -17,6 +17,8 @@ namespace vantage {
 using TraceColumns = std::function<CoverageMatrix(std::span<const PlacedStation>, const Progress&)>;
 // On a sample of so many voxels of a simulator, which it borrows. `goals`: of each voxel, in place of the simulator's.
 TraceColumns columns_of(Simulator& simulator, std::uint64_t sample_voxels, std::vector<double> goals = {});
+// Of the surroundings: which voxels each station sees, without how densely.
+TraceColumns seen_columns_of(Simulator& surroundings, std::uint64_t sample_voxels);
 
 // Which stations stand so near that one of them does for both.
 struct StationSpacing {

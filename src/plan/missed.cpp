@@ -81,8 +81,7 @@ class Judge {
                           : !in_range  ? WhyMissed::far
                           : !steep     ? WhyMissed::flat
                                        : WhyMissed::sparse;
-    return {why, static_cast<float>(captured),
-            static_cast<float>(std::max(captured, std::min(best / goal, 1.0)))};
+    return {why, static_cast<float>(captured), static_cast<float>(std::max(captured, std::min(best / goal, 1.0)))};
   }
 
  private:
@@ -114,9 +113,9 @@ Settings settings(const MissedOptions& options) {
 }
 
 std::vector<VoxelStatus> why_missed(const Simulator& simulator, const ClashChecker& clash,
-                                  std::span<const PlacedStation> candidates, std::span<const std::uint32_t> ranks,
-                                  std::span<const std::uint32_t> points, const MissedOptions& options,
-                                  const Progress& progress) {
+                                    std::span<const PlacedStation> candidates, std::span<const std::uint32_t> ranks,
+                                    std::span<const std::uint32_t> points, const MissedOptions& options,
+                                    const Progress& progress) {
   if (ranks.size() != points.size())
     throw Error(Errc::invalid_argument, "why_missed: " + std::to_string(ranks.size()) + " voxels, but counts of " +
                                             std::to_string(points.size()));

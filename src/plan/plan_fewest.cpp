@@ -46,7 +46,8 @@ class TableMaker {
         context.problem().objectives, [](const Objective& o) { return o.kind == Objective::Kind::link; });
     if (asked.link <= 0 && !link_is_objective) return;
     const std::uint64_t sample = context.surroundings_voxels();
-    surroundings_ = columns_of(context.surroundings(), sample > 0 ? sample : std::numeric_limits<std::uint32_t>::max());
+    surroundings_ =
+        seen_columns_of(context.surroundings(), sample > 0 ? sample : std::numeric_limits<std::uint32_t>::max());
   }
   CandidateTable operator()(std::uint64_t sample_voxels) const {
     return {columns_of(simulator_, sample_voxels, goals_), surroundings_, spacing_};

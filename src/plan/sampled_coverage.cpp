@@ -70,7 +70,7 @@ Estimate SampledCoverage::coverage() const {
 }
 
 SampledCoverage sample_coverage(Simulator& simulator, std::span<const PlacedStation> stations,
-                                std::uint64_t sample_voxels, const Progress& progress) {
+                                std::uint64_t sample_voxels, const Progress& progress, CountTo count_to) {
   SampledCoverage sampled(simulator, sample_voxels);
   for (std::size_t first = 0; first < stations.size(); first += stations_at_once) {
     const std::size_t here = std::min(stations_at_once, stations.size() - first);
@@ -79,7 +79,7 @@ SampledCoverage sample_coverage(Simulator& simulator, std::span<const PlacedStat
       networks.push_back(to_network(std::span(&station, 1)));
     // Networks come in any order; columns must be in order, so they are collected first.
     std::vector<std::vector<CoverageMatrix::Entry>> columns(here);
-    SampleOptions options{.voxels = sample_voxels, .overlap = false, .stop_at_goal = true};
+    SampleOptions options{.voxels = sample_voxels, .overlap = false, .count_to = count_to};
     options.groups = false;
     std::size_t counted = 0;
     options.points = [&](std::size_t k, std::span<const std::uint32_t> points) {
@@ -102,7 +102,7 @@ SampledCoverage sample_coverage(Simulator& simulator, std::span<const PlacedStat
 
 StationGraph overlap_graph(Simulator& surroundings, std::span<const PlacedStation> stations,
                            std::uint64_t sample_voxels, const Progress& progress) {
-  return {sample_coverage(surroundings, stations, sample_voxels, progress).matrix(), stations.size()};
+  return {sample_coverage(surroundings, stations, sample_voxels, progress, CountTo::one).matrix(), stations.size()};
 }
 
 }  // namespace vantage

@@ -49,7 +49,7 @@ std::optional<SimulatorEvaluator::Counted> SimulatorEvaluator::count(std::span<c
     SampleOptions options{.voxels = sample.voxels,
                           .from = sample.from,
                           .overlap = needs.pairs,
-                          .stop_at_goal = true,
+                          .count_to = CountTo::goal,
                           .registration = needs.registration,
                           .groups = errors};
     if (in_one) {
@@ -71,6 +71,7 @@ std::optional<SimulatorEvaluator::Counted> SimulatorEvaluator::count(std::span<c
                              {.voxels = std::min(sample.voxels, options_.surroundings_voxels),
                               .from = sample.from,
                               .overlap = true,
+                              .count_to = CountTo::one,
                               .registration = registered_around(needs),
                               .groups = errors},
                              {.report = {}, .stop = progress.stop});

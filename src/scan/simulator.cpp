@@ -32,6 +32,11 @@
 namespace vantage {
 namespace {
 
+// Points of a voxel after which counting may stop; 0: never.
+std::uint32_t stop_at(CountTo count_to, double goal) {
+  return count_to == CountTo::all ? 0 : count_to == CountTo::one ? 1 : static_cast<std::uint32_t>(std::ceil(goal));
+}
+
 constexpr std::uint32_t sample_groups = 20;
 constexpr std::uint32_t known_outputs =
     scan_range | scan_position | scan_normal | scan_reflectivity | scan_ids | scan_colour | scan_voxel;
@@ -527,7 +532,7 @@ std::vector<NetworkCounts> Simulator::Impl::evaluate_sampled(std::span<const Net
   const Tracer::SampleJob job{.sample = sample,
                               .groups = options.groups ? sample_groups : 0,
                               .masks = options.overlap,
-                              .stop_at = options.stop_at_goal ? static_cast<std::uint32_t>(std::ceil(goal)) : 0,
+                              .stop_at = stop_at(options.count_to, goal),
                               .points = options.points ? decltype(options.points)(points) : nullptr,
                               .registration = registration ? &*registration : nullptr};
   std::vector<NetworkCounts> counts;

@@ -53,7 +53,7 @@ std::vector<Task> tasks_of(const DevicesOptions& options) {
                       voxels = options.sample](Simulator& simulator) {
                        // As a search asks.
                        return simulator.evaluate_sampled(
-                           networks, {.voxels = voxels, .overlap = true, .stop_at_goal = true, .groups = false});
+                           networks, {.voxels = voxels, .overlap = true, .count_to = CountTo::goal, .groups = false});
                      }});
   for (const std::size_t size : options.sizes)
     for (const std::size_t many : {options.exact, std::size_t{1}})

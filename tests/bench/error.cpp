@@ -92,8 +92,9 @@ void time_alone(Trial& trial, std::span<const Network> networks) {
 
 // All in one submission, as a search does it. Errors are of the first `compared`.
 void time_together(Trial& trial, std::span<const Network> population, std::size_t compared) {
-  const SampleOptions sample{
-      .voxels = static_cast<std::uint64_t>(trial.amount), .overlap = trial.overlap, .stop_at_goal = !trial.overlap};
+  const SampleOptions sample{.voxels = static_cast<std::uint64_t>(trial.amount),
+                             .overlap = trial.overlap,
+                             .count_to = trial.overlap ? CountTo::all : CountTo::goal};
   trial.simulator->evaluate_sampled(population.first(1), sample);  // draws the sample, which a search does once
   const Stopwatch watch;
   const double cpu = cpu_ms();

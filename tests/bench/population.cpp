@@ -96,7 +96,7 @@ void run_population(const PopulationOptions& options) {
 
     for (const std::uint64_t size : options.sizes)
       for (const auto [overlap, registration] : {Kind{false, false}, {true, false}, {true, true}}) {
-        SampleOptions sample{.voxels = size, .overlap = overlap, .stop_at_goal = true};
+        SampleOptions sample{.voxels = size, .overlap = overlap, .count_to = CountTo::goal};
         if (registration) sample.registration = RegistrationModel{};
         double best = std::numeric_limits<double>::infinity(), device_ms = 0;
         std::vector<NetworkCounts> counts;

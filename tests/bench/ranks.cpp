@@ -41,7 +41,7 @@ void measure_networks(RanksModel& model, const RanksOptions& options, NetworkCou
   const Scene scene = Scene::load(options.site.scene);
   Simulator simulator = options.site.simulator(scene);
   const std::vector<Network> networks = networks_around(options.site.stations(), options.networks, options.spread_m);
-  const SampleOptions sample{.voxels = options.sample, .overlap = true, .stop_at_goal = true};
+  const SampleOptions sample{.voxels = options.sample, .overlap = true, .count_to = CountTo::goal};
   const auto run = [&](std::span<const Network> some) {
     const Stopwatch watch;
     counts = simulator.evaluate_sampled(some, sample).front();

@@ -43,8 +43,8 @@ Objective registration_figure(const ObjectiveSettings& settings, std::string nam
 }
 
 Objective registration(const ObjectiveSettings& settings) {
-  return registration_figure(settings, "registration", "registration error", "Registration error over the covered surface (predicted)",
-                             &RegistrationError::rms_m);
+  return registration_figure(settings, "registration", "registration error",
+                             "Registration error over the covered surface (predicted)", &RegistrationError::rms_m);
 }
 
 }  // namespace vantage::built_in

@@ -5,8 +5,8 @@
 namespace vantage::built_in {
 
 Objective registration_worst(const ObjectiveSettings& settings) {
-  return registration_figure(settings, "registration_worst", "registration error of the worst station", "Registration error of the worst station (predicted)",
-                             &RegistrationError::worst_m);
+  return registration_figure(settings, "registration_worst", "registration error of the worst station",
+                             "Registration error of the worst station (predicted)", &RegistrationError::worst_m);
 }
 
 }  // namespace vantage::built_in

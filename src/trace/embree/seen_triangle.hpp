@@ -34,6 +34,19 @@ class SeenTriangle {
   // Whether the distance of a hit is accurate to within distance_doubt.
   bool is_steep(const Vec3& d) const { return dot(normal_, d) > steep_; }
   double distance(const Vec3& d) const { return height_ / dot(normal_, d); }
+  // Whether Embree is certain to report a hit beyond `start`, and before a point of the box, for every ray that reaches
+  // such a point. Each test holds for all points of a box if it holds at its corners: their directions are sums of the
+  // corners' with weights that add up to at least 1.
+  bool hides(const Box& box, double start) const {
+    if (!(height_ > start * (1 + distance_doubt) * std::sqrt(dot(normal_, normal_)))) return false;
+    for (unsigned k = 0; k < 8; ++k) {
+      const Vec3 corner{k & 1 ? box.max.x : box.min.x, k & 2 ? box.max.y : box.min.y, k & 4 ? box.max.z : box.min.z};
+      if (!(dot(normal_, corner) > height_ * (1 + distance_doubt))) return false;
+      const Vec3 d = corner * (1 / std::sqrt(dot(corner, corner)));
+      if (!is_steep(d) || !must_hit(d)) return false;
+    }
+    return true;
+  }
 
   // Embree's edge test is a sum of products of an edge and of corners relative to the head, in float: some eight
   // roundings of 2^−24 of their product. This is eight times that.

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // For each station in turn, look_from() bounds the rows and columns of rays that can cross each cube of the block, all
-// side by side. list_rays() walks this window of a voxel and gathers rays in a RayBatch. When that is full,
+// side by side. drop_hidden_boxes() probes the way to the middle of each cube: a triangle there that hides all of the
+// cube settles it. list_rays() walks the window of each other voxel and gathers rays in a RayBatch. When that is full,
 // fill_nearest() intersects them with the voxel's surveyed planes and triangles, in float with margins for all errors.
 // Each ray gets the least distance at which its hit can count; if there is none, infinity, and list_batch() drops the
 // ray. The rays listed for a voxel form a `VoxelRays`, with the distance of the last hit that may count. Once many are
 // listed, settle() probes one ray of each `VoxelRays` up to its nearest hit that counts. A triangle in the way hides
 // that ray, and drop_hidden() removes all other rays of the `VoxelRays` that it stops for certain. After `rounds` of
 // that, cast() traces every remaining ray to its nearest hit, in bundles. finish() counts those whose point, noise
-// included, lies in the voxel. Only certain occlusion is used, so the counts are those of casting all rays.
+// included, lies in the voxel. Only certain occlusion is used, so the counts are those of casting all rays. With a
+// limit `stop_at`, as many rays of a voxel are listed as usually suffice, and the rest only if they did not.
 #include "trace/embree/voxel_counter.hpp"
 
 #include <algorithm>
@@ -22,6 +24,7 @@ namespace {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr std::size_t rays_at_once = 2048;
+constexpr std::uint32_t kAll = std::numeric_limits<std::uint32_t>::max();
 // Rays of a voxel probed one by one for an occluder: the first, and the first that its occluder does not hide. Then all
 // are traced.
 constexpr int rounds = 2;
@@ -74,9 +77,16 @@ void SampledVoxelCounter::count(std::span<const TraceStation> stations, std::siz
     bundle_.origin = station.origin;
     bundle_.start = rays_->pattern().min_range;
     look_from(first, counts.size());
-    for (std::uint32_t i = 0; i < counts.size(); ++i) {
-      if (!full(i)) list_rays(i);
-    }
+    looks_.clear();
+    rest_.clear();
+    Look look;
+    for (std::uint32_t i = 0; i < counts.size(); ++i)
+      if (!full(i) && look_at(i, look)) looks_.push_back(look);
+    drop_hidden_boxes();
+    for (const Look& each : looks_) list_rays(each);
+    settle();
+    for (const Rest& rest : rest_)
+      if (!full(rest.look.voxel)) list_rays(rest.look, rest.window, rest.from, kAll);
     settle();
   }
 }
@@ -155,51 +165,120 @@ void SampledVoxelCounter::fill_nearest(std::span<const SampledVoxels::Plane> pla
   }
 }
 
-// Lists the rays that may leave a point in voxel number i of the block.
-VANTAGE_TARGET_CLONES
-void SampledVoxelCounter::list_rays(std::uint32_t i) {
+// Looks at voxel number i of the block. Returns false if no ray leaves a point there.
+bool SampledVoxelCounter::look_at(std::uint32_t i, Look& look) {
   const RayPattern& pattern = rays_->pattern();
   const double half = rays_->grid().voxel_size() / 2 + pad_, corner = half * 1.7320509;
   const double first = (pattern.min_range - reach_) * (1 - trust), last = (pattern.max_range + reach_) * (1 + trust);
-  if (distance_[i] + corner < first || distance_[i] - corner > last) return;
+  if (distance_[i] + corner < first || distance_[i] - corner > last) return false;
   // Hits whose points count lie within the noise's reach of the cube.
   const double reach =
       reach_ > 0 ? static_cast<double>(rays_->noise().reach_within(static_cast<float>(distance_[i] + corner + reach_)))
                  : 0;
-  const Cube cube{{static_cast<float>(x_[i]), static_cast<float>(y_[i]), static_cast<float>(z_[i])},
-                  static_cast<float>(half + reach + pad_),
-                  static_cast<float>(distance_[i] - corner - reach - 2 * pad_),
-                  static_cast<float>(distance_[i] + corner + reach + 2 * pad_)};
+  look.voxel = i;
+  look.cube = {{static_cast<float>(x_[i]), static_cast<float>(y_[i]), static_cast<float>(z_[i])},
+               static_cast<float>(half + reach + pad_),
+               static_cast<float>(distance_[i] - corner - reach - 2 * pad_),
+               static_cast<float>(distance_[i] + corner + reach + 2 * pad_)};
+  const std::span<const SampledVoxels::Plane> planes = voxels_.planes(first_ + i);
+  look.sure = !planes.empty();
+  for (const SampledVoxels::Plane& plane : planes)
+    look.sure &= std::abs(height_over(plane, i)) >= sure_height * plane.slenderness * look.cube.farthest;
+  return !look.sure || voxels_.crossing(first_ + i) > 0;
+}
 
-  std::span<const SampledVoxels::Plane> planes = voxels_.planes(first_ + i);
-  bool sure = !planes.empty();
-  for (std::size_t k = 0; k < planes.size(); ++k) {
-    const SampledVoxels::Plane& plane = planes[k];
-    // In double, so that rounding, which turned the plane, turned it around the voxel.
-    heights_[k] = static_cast<float>(plane.normal.x * x_[i] + plane.normal.y * y_[i] + plane.normal.z * z_[i] +
-                                     static_cast<double>(plane.offset));
-    sure &= std::abs(heights_[k]) >= sure_height * plane.slenderness * cube.farthest;
+// Of the head over a plane of voxel number i. In double, so that rounding, which turned the plane, turned it around the
+// voxel.
+float SampledVoxelCounter::height_over(const SampledVoxels::Plane& plane, std::uint32_t i) const {
+  return static_cast<float>(plane.normal.x * x_[i] + plane.normal.y * y_[i] + plane.normal.z * z_[i] +
+                            static_cast<double>(plane.offset));
+}
+
+// Holds every point that counts, before the noise moves it, relative to the head.
+Box SampledVoxelCounter::box_of(const Look& look) const {
+  const std::uint32_t i = look.voxel;
+  const double half = static_cast<double>(look.cube.half) + pad_;
+  return {{x_[i] - half, y_[i] - half, z_[i] - half}, {x_[i] + half, y_[i] + half, z_[i] + half}};
+}
+
+// Drops voxels that one triangle hides whole.
+void SampledVoxelCounter::drop_hidden_boxes() {
+  probes_.clear();
+  for (const Look& look : looks_) {
+    const std::uint32_t i = look.voxel;
+    const double inverse = 1 / std::max(distance_[i], std::numeric_limits<double>::min());
+    const Float3 d{static_cast<float>(x_[i] * inverse), static_cast<float>(y_[i] * inverse),
+                   static_cast<float>(z_[i] * inverse)};
+    probes_.push_back({d, look.cube.nearest * static_cast<float>(1 - trust)});
   }
+  rays_->caster().any_hits(bundle_.origin, bundle_.start, probes_);
+  traced_ += probes_.size();
+  const SceneData& scene = rays_->scene();
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < looks_.size(); ++k) {
+    if (probes_[k].hit != RayBundle::no_hit) {
+      const Triangle& t = scene.triangles[probes_[k].hit];
+      const SeenTriangle triangle(relative(scene.positions[t[0]], head_), relative(scene.positions[t[1]], head_),
+                                  relative(scene.positions[t[2]], head_));
+      if (triangle.hides(box_of(looks_[k]), static_cast<double>(bundle_.start))) continue;
+    }
+    looks_[kept++] = looks_[k];
+  }
+  looks_.resize(kept);
+}
+
+std::uint32_t SampledVoxelCounter::wanted(std::uint32_t i) const {
+  if (stop_at_ == 0) return kAll;
+  return counts_[i] >= stop_at_ ? 1 : stop_at_ + stop_at_ / 4 + 1;
+}
+
+// Lists rays that may leave a point in a voxel: all, or as many as usually suffice.
+void SampledVoxelCounter::list_rays(const Look& look) {
+  const RayPattern& pattern = rays_->pattern();
+  const std::uint32_t i = look.voxel;
   RayRanges window;
-  if (sure) planes = planes.first(voxels_.crossing(first_ + i));
-  if (sure && boxes_.simple[i]) {
+  if (look.sure && boxes_.simple[i]) {
     window.rows = {static_cast<std::uint32_t>(boxes_.row_begin[i]), static_cast<std::uint32_t>(boxes_.row_end[i])};
     window.columns[0] = {static_cast<std::uint32_t>(boxes_.column_begin[i]),
                          static_cast<std::uint32_t>(boxes_.column_end[i])};
   } else {
+    const double half = rays_->grid().voxel_size() / 2 + pad_;
     const Vec3 narrow{half, half, half}, centre{x_[i], y_[i], z_[i]};
     Vec3 low = centre - narrow, high = centre + narrow;
     if (station_->turn) turn_back(*station_->turn, low, high);
     window = rays_of_box(pattern, low, high);
   }
-  if (window.empty() || (sure && planes.empty())) return;
+  if (!window.empty()) list_rays(look, window, {0, window.rows.begin, window.columns[0].begin}, wanted(i));
+}
+
+// Lists the rays of the window from a place on, at least `enough` if there are as many.
+VANTAGE_TARGET_CLONES
+void SampledVoxelCounter::list_rays(const Look& look, const RayRanges& window, Place from, std::uint32_t enough) {
+  const RayPattern& pattern = rays_->pattern();
+  const std::uint32_t i = look.voxel;
+  const Cube& cube = look.cube;
+  std::span<const SampledVoxels::Plane> planes = voxels_.planes(first_ + i);
+  for (std::size_t k = 0; k < planes.size(); ++k) heights_[k] = height_over(planes[k], i);
+  if (look.sure) planes = planes.first(voxels_.crossing(first_ + i));
+  // Whole vectors of the batch, which are worth a test.
+  std::uint32_t worth = std::min(RayBatch::capacity, (std::min(enough, RayBatch::capacity) + 7) / 8 * 8);
+  std::uint32_t found = 0;
 
   VoxelRays rays{i, listed_size_, 0, std::min(cube.farthest * static_cast<float>(1 + trust), pattern.max_range)};
   const float *const cosines = pattern.cos_azimuth.data(), *const sines = pattern.sin_azimuth.data();
-  for (const RayRanges::Range columns : window.columns) {
-    for (std::uint32_t row = window.rows.begin; row < window.rows.end; ++row) {
+  const auto end_voxel = [&] {
+    rays.end = listed_size_;
+    if (rays.end == rays.begin) return;
+    // an occluder of the middle ray may hide all
+    std::swap(listed_[rays.begin], listed_[(rays.begin + rays.end) / 2]);
+    voxel_rays_.push_back(rays);
+  };
+  for (std::uint32_t range = from.range; range < window.columns.size(); ++range) {
+    const RayRanges::Range columns = window.columns[range];
+    for (std::uint32_t row = range == from.range ? from.row : window.rows.begin; row < window.rows.end; ++row) {
       const float sine = pattern.sin_zenith[row], cosine = pattern.cos_zenith[row];
-      for (std::uint32_t column = columns.begin; column < columns.end;) {
+      const bool begun = range == from.range && row == from.row;
+      for (std::uint32_t column = begun ? from.column : columns.begin; column < columns.end;) {
         const std::uint32_t size = batch_.size;
         const auto put = [&](std::uint32_t k) {
           batch_.x[size + k] = sine * cosines[column + k];
@@ -208,7 +287,7 @@ void SampledVoxelCounter::list_rays(std::uint32_t i) {
           batch_.row[size + k] = row;
           batch_.column[size + k] = column + k;
         };
-        std::uint32_t n = std::min({columns.end - column, RayBatch::capacity - size, RayBatch::step});
+        std::uint32_t n = std::min({columns.end - column, worth - size, RayBatch::step});
         if (column + RayBatch::step <= pattern.columns()) {
           for (std::uint32_t k = 0; k < RayBatch::step; ++k) put(k);
         } else {
@@ -217,36 +296,40 @@ void SampledVoxelCounter::list_rays(std::uint32_t i) {
         }
         batch_.size += n;
         column += n;
-        if (batch_.size < RayBatch::capacity) continue;
+        if (batch_.size < worth) continue;
         fill_nearest(planes, cube);
-        list_batch(rays);
+        found += list_batch(rays);
         if (full(i)) return;
+        if (found >= enough) {
+          end_voxel();
+          rest_.push_back({look, window, {range, row, column}});
+          return;
+        }
+        worth = std::min(2 * worth, RayBatch::capacity);
       }
     }
   }
   fill_nearest(planes, cube);
   list_batch(rays);
-  rays.end = listed_size_;
-  if (rays.end == rays.begin) return;
-  // an occluder of the middle ray may hide all
-  std::swap(listed_[rays.begin], listed_[(rays.begin + rays.end) / 2]);
-  voxel_rays_.push_back(rays);
+  end_voxel();
 }
 
-// Empties the batch: lists those of its rays that may hit.
-void SampledVoxelCounter::list_batch(VoxelRays& rays) {
+// Empties the batch: lists those of its rays that may hit. Returns their number.
+std::uint32_t SampledVoxelCounter::list_batch(VoxelRays& rays) {
   Ray* next = listed_.data() + listed_size_;
   for (std::uint32_t k = 0; k < batch_.size; ++k) {
     *next = {{batch_.x[k], batch_.y[k], batch_.z[k]}, batch_.nearest[k], batch_.row[k], batch_.column[k]};
     next += batch_.nearest[k] < infinity;  // branch-free, since the branch is unpredictable
   }
-  listed_size_ = static_cast<std::uint32_t>(next - listed_.data());
+  const auto size = static_cast<std::uint32_t>(next - listed_.data()), added = size - listed_size_;
+  listed_size_ = size;
   batch_.size = 0;
-  if (listed_size_ < rays_at_once) return;
+  if (listed_size_ < rays_at_once) return added;
   rays.end = listed_size_;
   if (rays.end > rays.begin) voxel_rays_.push_back(rays);
   settle();
   rays.begin = 0;
+  return added;
 }
 
 // Drops rays from `rays` that a triangle stops for certain, before they come near the voxel.
@@ -317,9 +400,8 @@ void SampledVoxelCounter::settle() {
 void SampledVoxelCounter::cast() {
   bundle_.size = 0;
   if (stop_at_ != 0) {
-    const std::uint32_t some = stop_at_ + stop_at_ / 4 + 1;
     for (VoxelRays& rays : visible_)
-      if (!full(rays.voxel)) cast(rays, std::min(counts_[rays.voxel] >= stop_at_ ? 1 : some, rays.end - rays.begin));
+      if (!full(rays.voxel)) cast(rays, std::min(wanted(rays.voxel), rays.end - rays.begin));
     finish();
   }
   for (VoxelRays& rays : visible_)

@@ -50,6 +50,22 @@ class SampledVoxelCounter {
     alignas(64) std::array<float, capacity> nearest;  // no hit that counts is nearer; infinity: there is none
     alignas(64) std::array<float, capacity> px, py, pz, slant, candidate;  // of the plane in work
   };
+  // What can be said of one voxel of the block before its rays are listed.
+  struct Look {
+    std::uint32_t voxel = 0;  // index in the block
+    Cube cube;
+    bool sure = false;  // every hit that counts lies on a plane that crosses the voxel
+  };
+  // Where the listing of a voxel's rays goes on: at this row and column of this range of columns.
+  struct Place {
+    std::uint32_t range = 0, row = 0, column = 0;
+  };
+  // A voxel of which some rays were listed, as many as usually suffice.
+  struct Rest {
+    Look look;
+    RayRanges window;
+    Place from;
+  };
   // Rays that may leave a point in one voxel: listed_ from `begin` to `end`.
   struct VoxelRays {
     std::uint32_t voxel = 0;  // index in the block
@@ -68,9 +84,16 @@ class SampledVoxelCounter {
   bool full(std::uint32_t i) const {
     return stop_at_ != 0 && counts_[i] >= stop_at_ && (masks_.empty() || (masks_[i] >> station_->place & 1) != 0);
   }
-  void list_rays(std::uint32_t i);
+  bool look_at(std::uint32_t i, Look& look);
+  float height_over(const SampledVoxels::Plane& plane, std::uint32_t i) const;
+  Box box_of(const Look& look) const;
+  void drop_hidden_boxes();
+  // Points that are still to be counted in voxel number i of the block, or more.
+  std::uint32_t wanted(std::uint32_t i) const;
+  void list_rays(const Look& look);
+  void list_rays(const Look& look, const RayRanges& window, Place from, std::uint32_t enough);
   void fill_nearest(std::span<const SampledVoxels::Plane> planes, const Cube& cube);
-  void list_batch(VoxelRays& rays);
+  std::uint32_t list_batch(VoxelRays& rays);
   void settle();
   void drop_hidden(VoxelRays& rays, std::uint32_t by);
   void cast();
@@ -96,6 +119,8 @@ class SampledVoxelCounter {
   std::array<float, SampledVoxels::most_planes> heights_;  // of the head over the planes of the current voxel
   std::vector<Ray> listed_;
   std::uint32_t listed_size_ = 0;
+  std::vector<Look> looks_;
+  std::vector<Rest> rest_;
   std::vector<VoxelRays> voxel_rays_, visible_;
   std::vector<Probe> probes_;
   RayBundle bundle_;

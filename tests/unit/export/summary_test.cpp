@@ -96,7 +96,8 @@ TEST(Summary, OfAPlanTellsWhatItMisses) {
   ASSERT_EQ(lines.size(), 4u);
   EXPECT_EQ(lines[0].text, "94.8 % of the site");
   EXPECT_TRUE(lines[2].text.starts_with("S2 clashes")) << lines[2].text;
-  EXPECT_TRUE(lines[3].text.starts_with("not met: share captured of the site at least 99 %, it has 94.8 %; allow")) << lines[3].text;
+  EXPECT_TRUE(lines[3].text.starts_with("not met: share captured of the site at least 99 %, it has 94.8 %; allow"))
+      << lines[3].text;
   EXPECT_EQ(summary_lines(entry).size(), 3u) << "nothing is required";
 }
 

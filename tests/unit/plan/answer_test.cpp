@@ -87,7 +87,8 @@ TEST(Answer, HasTheFewestStationsThatKeepWhatIsRequired) {
   EXPECT_EQ(answer(result), 0u);
   EXPECT_FALSE(met(result));
   ASSERT_EQ(what_would_help(result).size(), 1u);
-  EXPECT_NE(what_would_help(result)[0].find("share captured of the site at least 90 %, it has 85.0 %"), std::string::npos);
+  EXPECT_NE(what_would_help(result)[0].find("share captured of the site at least 90 %, it has 85.0 %"),
+            std::string::npos);
   result.front[0].violation = 0, result.front[0].exact = false;
   EXPECT_FALSE(met(result)) << "not for sure";
 }

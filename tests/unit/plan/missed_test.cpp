@@ -71,8 +71,7 @@ TEST(VoxelPatches, LieOnTheirSurfaces) {
 TEST(WhyMissed, TellsEachReason) {
   const Walls site;
   const std::vector<std::uint32_t> none(site.ranks.size());
-  const std::vector<VoxelStatus> status =
-      why_missed(*site.simulator, *site.clash, site.candidates, site.ranks, none);
+  const std::vector<VoxelStatus> status = why_missed(*site.simulator, *site.clash, site.candidates, site.ranks, none);
   const std::array<WhyMissed, 5> expected{WhyMissed::not_chosen, WhyMissed::hidden, WhyMissed::far, WhyMissed::flat,
                                           WhyMissed::sparse};
   const double face = site.simulator->voxel_size_m() * site.simulator->voxel_size_m();
@@ -115,10 +114,10 @@ TEST(WhyMissed, KnowsWhatIsCaptured) {
   const auto enough = static_cast<std::uint32_t>(std::ceil(site.simulator->goal_density()));
   std::vector<std::uint32_t> points(site.ranks.size(), enough);
   points[0] = enough - 1;
-  const std::vector<VoxelStatus> status =
-      why_missed(*site.simulator, *site.clash, site.candidates, site.ranks, points);
+  const std::vector<VoxelStatus> status = why_missed(*site.simulator, *site.clash, site.candidates, site.ranks, points);
   EXPECT_NE(status[0].why, WhyMissed::captured);
-  EXPECT_TRUE(std::all_of(status.begin() + 1, status.end(), [](const VoxelStatus& s) { return s.why == WhyMissed::captured; }));
+  EXPECT_TRUE(
+      std::all_of(status.begin() + 1, status.end(), [](const VoxelStatus& s) { return s.why == WhyMissed::captured; }));
   const std::vector<MissedShare> shares = missed_by_node(*site.simulator, site.ranks, status);
   ASSERT_EQ(shares.size(), 6u);
   EXPECT_EQ(shares[0].voxels, site.ranks.size());

@@ -525,7 +525,7 @@ TEST(Evaluate, GoesByTheGoalOfEachVoxel) {
   EXPECT_GT(full[1], voxels[1] / 2);
   EXPECT_EQ(counts.saturated, static_cast<std::uint64_t>(full[0] + full[1]));
   const NetworkCounts sampled =
-      simulator.evaluate_sampled({&network, 1}, {.voxels = simulator.voxel_count(), .stop_at_goal = true})[0];
+      simulator.evaluate_sampled({&network, 1}, {.voxels = simulator.voxel_count(), .count_to = CountTo::goal})[0];
   EXPECT_EQ(sampled.saturated, counts.saturated);
   EXPECT_EQ(coverage(sampled, simulator.goal_density()), coverage(counts, simulator.goal_density()));
   by_detail.spacing_by_detail = false;
@@ -548,7 +548,7 @@ TEST(EvaluateSampled, AllVoxelsAreExact) {
   EXPECT_EQ(coverage_estimate(all, simulator.goal_density(), simulator.voxel_count()).standard_error, 0.0);
 
   const NetworkCounts stopped = simulator.evaluate_sampled(
-      {&network, 1}, {.voxels = simulator.voxel_count(), .overlap = false, .stop_at_goal = true})[0];
+      {&network, 1}, {.voxels = simulator.voxel_count(), .overlap = false, .count_to = CountTo::goal})[0];
   EXPECT_EQ(coverage(stopped, simulator.goal_density()), coverage(exact, simulator.goal_density()));
   EXPECT_NE(message_of([&] {
               simulator.evaluate_sampled({&network, 1}, {.voxels = 0});
